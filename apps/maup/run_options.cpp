@@ -232,7 +232,7 @@ std::optional<ExtendedResult> run_model(Study& study, const ExtendedSimulationOp
 }
 
 ExitCode exit_code(Ending ending) {
-  if (ending == Ending::Finished || ending == Ending::UntilReached) return ExitCode::Fine;
+  if (ending == Ending::Finished || ending == Ending::UntilReached || ending == Ending::Stopped) return ExitCode::Fine;
   return ending == Ending::Interrupted ? ExitCode::Interrupted : ExitCode::RunFailed;
 }
 
@@ -260,6 +260,12 @@ const char* ending_name(Ending ending) {
       return "sliding";
     case Ending::TooManySteps:
       return "too many steps";
+    case Ending::Stopped:
+      return "stopped by an event";
+    case Ending::Paradox:
+      return "no motion fits";
+    case Ending::Unending:
+      return "events without end";
   }
   return "";
 }

@@ -54,15 +54,19 @@ class TaylorStepper {
   void start(double t, std::span<const double> q, std::span<const double> v);
   /// After start(): event functions that vanish here, to rounding. They are on the side that the motion goes to.
   void put_at_zero(std::span<const std::size_t> events);
-  /// After start(): the motion here under a bound on the time to look ahead. Ending: None where there is one.
-  /// sides [events]: on which side of zero each event function is just after, 0 where rounding hides it.
+  /// Sizes that q and q̇ have had elsewhere in the motion [n]: constraints on coordinates that have come to rest are
+  /// met to rounding of these.
+  void set_usual_sizes(std::span<const double> q, std::span<const double> v);
+  /// What is seen of the motion at its start, before a step is made.
   struct Outlook {
-    StepEnding ending = StepEnding::None;
+    StepEnding ending = StepEnding::None;  // None: there is a motion
     std::string reason;
-    std::vector<std::int8_t> sides;
-    std::vector<double> values;         // [events]
+    std::vector<std::int8_t> sides;     // [events] of zero, just after; 0 where rounding hides it
+    std::vector<double> values;         // [events] here
+    std::vector<double> reach;          // [events] the largest that they can become over the length that is judged
     std::vector<double> accelerations;  // [n]
   };
+  /// After start(); `bound`: how far to look at most.
   Outlook outlook(double bound);
   /// One step towards `bound`, at most up to it; time() == bound exactly when it is reached. Backwards if bound <
   /// time().

@@ -114,6 +114,29 @@ ImpactResult simultaneous_impact(const ImpactProblem& p, const VectorXd& v, bool
   return out;
 }
 
+ImpactResult end_of_bounces(const ImpactProblem& p, const VectorXd& v) {
+  ImpactResult out;
+  out.v = v;
+  const std::size_t count = p.contacts.size();
+  Eigen::MatrixXd w(at(count), at(count));
+  VectorXd q(at(count));
+  for (std::size_t a = 0; a < count; ++a) {
+    for (std::size_t b = 0; b < count; ++b) w(at(a), at(b)) = dot(p.normal[a], p.response.col(at(b)));
+    q(at(a)) = -rate(p, a, v);
+  }
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(w);
+  const VectorXd impulses = lu.solve(q);
+  for (std::size_t a = 0; a < count; ++a) out.v += impulses(at(a)) * p.response.col(at(a));
+  for (std::size_t a = 0; a < count; ++a) {
+    const double before = rate(p, a, v), after = rate(p, a, out.v);
+    out.moving -= impulses(at(a)) * p.drive[a];
+    out.loss -= 0.5 * impulses(at(a)) * (before + after);
+    if (before < -p.rest[a])
+      out.impulses.push_back({p.contacts[a], impulses(at(a)), 0, -before, -0.5 * impulses(at(a)) * (before + after)});
+  }
+  return out;
+}
+
 namespace {
 
 /// The course of an impact over the normal impulse p: v_n, v_t and the work of the normal force are piecewise simple.

@@ -50,6 +50,9 @@ ImpactResult sequential_impact(const ImpactProblem& problem, const Eigen::Vector
 /// 0 ≤ Λ ⟂ ġ⁺ + e ġ⁻ ≥ 0 over the contacts that close or rest. Without friction. `plastic`: e = 0.
 ImpactResult simultaneous_impact(const ImpactProblem& problem, const Eigen::VectorXd& v, bool plastic);
 
+/// ġ⁺ = 0 at all contacts: what infinitely many bounces between them end in.
+ImpactResult end_of_bounces(const ImpactProblem& problem, const Eigen::VectorXd& v);
+
 /// Normal and tangential impulse at one contact in the plane: w = [W_nn, W_nt, W_tt] gives what they change in
 /// (v_n, v_t). Sliding, sticking and reversal follow each other while the normal impulse grows (Stronge). v_n < 0.
 struct PlaneImpulse {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace maupertuis {
 namespace {
@@ -47,14 +48,16 @@ class Teller {
   }
 
  private:
-  /// Times of events: by those of the companions, as long as the same things happen in the same order.
+  /// Times of events: by those of the companions, each by its count among its like.
   void tell_happenings() {
-    for (std::size_t k = 0; k < result_.happenings.size(); ++k) {
-      Happening& h = result_.happenings[k];
+    std::map<std::pair<Happening::Kind, std::string>, std::size_t> counts;
+    for (Happening& h : result_.happenings) {
+      const std::size_t count = counts[{h.kind, h.name}]++;
       h.error = error_of(h.t, [&](const CompanionRun& run) {
-        if (k >= run.happenings.size()) return infinity;
-        const Happening& other = run.happenings[k];
-        return other.kind == h.kind && other.name == h.name ? other.t : infinity;
+        std::size_t before = 0;
+        for (const Happening& other : run.happenings)
+          if (other.kind == h.kind && other.name == h.name && before++ == count) return other.t;
+        return infinity;
       });
     }
   }
@@ -115,6 +118,10 @@ class Teller {
       double of_unit = 0;
       for (std::size_t other = 0; other < 2 * n_; ++other)
         if (names[other].unit == names[c].unit) of_unit = std::max(of_unit, sizes[other]);
+      // What moves a coordinate along the whole run by less than its noise is noise too.
+      if (const double length = std::abs(plan_.run.end - plan_.run.begin); c >= n_ && length > 0)
+        for (std::size_t other = 0; other < n_; ++other)
+          if (names[other].unit == names[c - n_].unit) of_unit = std::max(of_unit, sizes[other] / length);
       const std::size_t g = first_lost(c, sizes[c], of_unit);
       if (g == plan_.grid.size()) {
         everything = everything && sizes[c] == 0;

@@ -203,6 +203,15 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   residual_before_ = 0;
   fastest_.assign(system_.contacts.size(), 0);
   fastest_slip_.assign(system_.contacts.size() + system_.frictions.size(), 0);
+  widest_ = hardest_ = compliance_ = fastest_;
+  kind_.clear();
+  for (std::size_t i = 0; i < system_.coordinates.size(); ++i) {
+    std::size_t k = 0;
+    while (!(system_.coordinates[k].dimension == system_.coordinates[i].dimension)) ++k;
+    kind_.push_back(k);
+  }
+  speed_.assign(kind_.size(), 0);
+  acceleration_ = place_ = speed_;
   bounces_.assign(system_.contacts.size(), {});
   record_ = {};
   started_ = false;
@@ -249,7 +258,14 @@ Step HybridMotion::step(double bound) {
   }
   Step out = now_->stepper->step(bound);
   if (out.end != out.begin) same_time_ = 0;
-  if (out.ending == StepEnding::None && !out.events.empty()) classify(out);
+  if (out.ending != StepEnding::None) return out;
+  if (!system_.contacts.empty())
+    if (const auto contact = violated())
+      return ended(StepEnding::Paradox,
+                   fmt::format("The motion went through the contact {} without a sign of it: bounces have become too small "
+                               "to be told apart.",
+                               system_.contact_label(*contact)));
+  if (!out.events.empty()) classify(out);
   return out;
 }
 
@@ -305,12 +321,63 @@ double HybridMotion::rest_slip(std::size_t friction, const ContactValues& values
   return rest_unit * std::max(values.slip_scale[friction], fastest_slip_[friction]);
 }
 
+/// Motions of one kind of coordinates have one size: a pendulum that hangs still among others that swing is at rest to
+/// rounding of their motion, not of its own.
+void HybridMotion::note_sizes(const ContactValues& values) {
+  for (std::size_t i = 0; i < v_.size(); ++i) {
+    place_[kind_[i]] = std::max(place_[kind_[i]], std::abs(q_[i]));
+    speed_[kind_[i]] = std::max(speed_[kind_[i]], std::abs(v_[i]));
+  }
+  const auto size_along = [&](const SparseRow& row) {
+    double sum = 0;
+    for (const auto& [k, x] : row) sum += std::abs(x) * speed_[kind_[k]];
+    return sum;
+  };
+  for (std::size_t i = 0; i < fastest_.size(); ++i) {
+    fastest_[i] = std::max({fastest_[i], values.rate_scale[i], size_along(values.normal[i])});
+    for (std::size_t k = 0; k < widest_.size(); ++k)
+      if (system_.contacts[k].dimension == system_.contacts[i].dimension)
+        widest_[k] = std::max(widest_[k], values.gap_scale[i]);
+  }
+  for (std::size_t i = 0; i < fastest_slip_.size(); ++i)
+    fastest_slip_[i] = std::max({fastest_slip_[i], values.slip_scale[i], size_along(values.tangent[i])});
+}
+
+void HybridMotion::note_accelerations(std::span<const double> a, const ContactValues& values) {
+  for (std::size_t i = 0; i < a.size(); ++i)
+    acceleration_[kind_[i]] = std::max(acceleration_[kind_[i]], std::abs(a[i]));
+  for (std::size_t i = 0; i < hardest_.size(); ++i) {
+    if (compliance_[i] == 0) continue;
+    double size = 0;
+    for (const auto& [k, g] : values.normal[i]) size += std::abs(g) * acceleration_[kind_[k]];
+    hardest_[i] = std::max(hardest_[i], size / compliance_[i]);
+  }
+}
+
+void HybridMotion::note_compliance(const std::vector<std::size_t>& touching, const ContactValues& values) {
+  std::vector<SparseRow> rows;
+  for (const std::size_t i : touching) rows.push_back(values.normal[i]);
+  const Eigen::MatrixXd response = functions_.response(t_, q_, v_, rows);
+  for (std::size_t k = 0; k < touching.size(); ++k)
+    compliance_[touching[k]] = std::abs(dot(rows[k], response.col(static_cast<Index>(k))));
+}
+
+/// An open contact whose gap has become negative though no step saw it close: then nothing of the motion holds.
+std::optional<std::size_t> HybridMotion::violated() {
+  constexpr double digits = 1e-10;
+  const TaylorStepper& s = *now_->stepper;
+  const ContactValues& values = functions_.at(s.time(), s.q(), s.v());
+  for (std::size_t i = 0; i < values.gap.size(); ++i)
+    if (!now_->mode.closed[i] && values.gap[i] < -digits * widest_[i]) return i;
+  return std::nullopt;
+}
+
 /// Contacts with g = 0: closed ones, those that were hit, and those whose gap is rounding.
 std::vector<std::size_t> HybridMotion::touching(const ContactValues& values) const {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < values.gap.size(); ++i) {
     const bool hit = std::find(pending_->hit.begin(), pending_->hit.end(), i) != pending_->hit.end();
-    if (hit || now_->mode.closed[i] || std::abs(values.gap[i]) <= rest_unit * values.gap_scale[i]) out.push_back(i);
+    if (hit || now_->mode.closed[i] || std::abs(values.gap[i]) <= rest_unit * widest_[i]) out.push_back(i);
   }
   return out;
 }
@@ -376,11 +443,9 @@ std::optional<Step> HybridMotion::settle(double bound) {
   const ContactValues& values = functions_.at(t_, q_, v_);
   if (pending_->begins)
     for (std::size_t i = 0; i < values.gap.size(); ++i)
-      if (values.gap[i] < -1e-9 * values.gap_scale[i] || !std::isfinite(values.gap[i]))
+      if (values.gap[i] < -rest_unit * values.gap_scale[i] || !std::isfinite(values.gap[i]))
         return ended(StepEnding::Paradox, fmt::format("The start violates the contact {}.", system_.contact_label(i)));
-  for (std::size_t i = 0; i < fastest_.size(); ++i) fastest_[i] = std::max(fastest_[i], values.rate_scale[i]);
-  for (std::size_t i = 0; i < fastest_slip_.size(); ++i)
-    fastest_slip_[i] = std::max(fastest_slip_[i], values.slip_scale[i]);
+  note_sizes(values);
   std::vector<std::size_t> touch = touching(values);
   if (!hit(touch, reason)) return ended(StepEnding::Paradox, reason);
   if (!choose_mode(touch, bound, reason)) return ended(StepEnding::Paradox, reason);
@@ -445,32 +510,37 @@ std::optional<double> HybridMotion::accumulation(std::size_t contact, double spe
   const double ratio = last[3].second / last[2].second, before = last[2].second / last[1].second;
   const double flight = last[3].first - last[2].first;
   if (!(ratio < 0.999 && std::abs(ratio - before) < 1e-3) || !(flight < last[2].first - last[1].first)) return std::nullopt;
+  cycle_.clear();  // with those that were hit since its impact before: they come to rest together
+  for (std::size_t i = 0; i < bounces_.size(); ++i)
+    if (!bounces_[i].last.empty() && bounces_[i].last.back().first >= last[2].first) cycle_.push_back(i);
   return t_ + flight * ratio / (1 - ratio);
 }
 
 /// What closing contacts do to the velocities. False, and why, where no impulses are found.
-bool HybridMotion::hit(const std::vector<std::size_t>& touching, std::string& reason) {
+bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) {
   accumulated_.reset();
   const ContactValues& values = functions_.at(t_, q_, v_);
   const bool closing = std::any_of(touching.begin(), touching.end(),
                                    [&](std::size_t i) { return values.rate[i] < -rest_speed(i, values); });
   if (!closing) return true;
-  ImpactProblem p = impact_problem(touching, values);
-  const VectorXd v = vector_of(v_);
   std::optional<double> end;
   for (const std::size_t i : touching)
     if (values.rate[i] < -rest_speed(i, values))
       if (const auto found = accumulation(i, -values.rate[i])) end = found;
-  if (end) std::fill(p.restitution.begin(), p.restitution.end(), 0.0);
-  const bool rubs = std::any_of(p.tangent.begin(), p.tangent.end(), [](const SparseRow& r) { return !r.empty(); });
-  const bool at_once = (system_.impact_law == ImpactLaw::Simultaneous || end) && !rubs;
-  const ImpactResult result =
-      at_once ? simultaneous_impact(p, v, end.has_value()) : sequential_impact(p, v, ImpactOrder::FastestFirst);
+  if (end)
+    for (const std::size_t i : cycle_)
+      if (std::find(touching.begin(), touching.end(), i) == touching.end()) touching.push_back(i);
+  const bool at_once = system_.impact_law == ImpactLaw::Simultaneous;
+  const ImpactProblem p = impact_problem(end ? cycle_ : touching, values);
+  const VectorXd v = vector_of(v_);
+  const ImpactResult result = end       ? end_of_bounces(p, v)
+                              : at_once ? simultaneous_impact(p, v, false)
+                                        : sequential_impact(p, v, ImpactOrder::FastestFirst);
   if (result.unsolved) {
     reason = "No impulses keep all contacts that are hit here from closing.";
     return false;
   }
-  if (!at_once) note_order(p, result, v);
+  if (!at_once && !end) note_order(p, result, v);
   if (result.bounded)
     remark(fmt::format("At t = {:.9g} impacts followed each other without an end; the rest of them was done at once, "
                        "without bounce.",
@@ -537,6 +607,14 @@ std::vector<HybridMotion::Choice> HybridMotion::choices(const std::vector<std::s
   return out;
 }
 
+/// Whether what a condition does over the length that is judged is lost in rounding.
+bool HybridMotion::vanishes(const Watch& watch, double size) const {
+  constexpr double digits = 1e-12;
+  if (watch.what == Watch::What::Gap) return size <= digits * widest_[watch.index];
+  if (watch.what == Watch::What::Force) return size <= digits * hardest_[watch.index];
+  return false;
+}
+
 /// Whether the motion in a mode keeps its conditions: gaps that do not close, forces that press, friction that holds
 /// or opposes. A condition that is 0 here counts by the first of its derivatives that is not. Lenient: what is violated
 /// at once is 0 here to rounding.
@@ -558,8 +636,12 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
     if (touches || starts_to_slide || (left && w.what == Watch::What::Force)) at_zero.push_back(k);
   }
   s.put_at_zero(at_zero);
+  std::vector<double> places, speeds;
+  for (const std::size_t k : kind_) places.push_back(place_[k]), speeds.push_back(speed_[k]);
+  s.set_usual_sizes(places, speeds);
   const TaylorStepper::Outlook outlook = s.outlook(bound);
   if (outlook.ending != StepEnding::None) return false;
+  note_accelerations(outlook.accelerations, values);
   if (accelerations) *accelerations = outlook.accelerations;
   double largest_force = 0;
   for (std::size_t k = 0; k < motion.watches.size(); ++k)
@@ -570,10 +652,13 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
     if (!w.keeps_sign()) continue;
     const bool zero = std::find(at_zero.begin(), at_zero.end(), k) != at_zero.end();
     const bool must_move = w.what == Watch::What::Slip && zero;
+    const bool lost = vanishes(w, outlook.reach[k]);
+    if (w.what == Watch::What::Gap && lost) continue;
+    if (w.what == Watch::What::Force && lost && !lenient) return false;  // what does not press needs not be closed
     const bool wrong = outlook.sides[k] < 0 || (must_move && outlook.sides[k] == 0);
     if (!wrong) continue;
     const bool is_force = w.what == Watch::What::Force || w.what == Watch::What::Hold;
-    const bool rounding = zero || (is_force && std::abs(outlook.values[k]) <= 1e-12 * largest_force) ||
+    const bool rounding = (is_force && std::abs(outlook.values[k]) <= 1e-12 * largest_force) ||
                           (is_force && std::abs(outlook.values[k]) < 1e-280);
     if (!lenient || !rounding || must_move) return false;
   }
@@ -603,6 +688,7 @@ bool HybridMotion::may_be_several(const ContactMode& mode, const ContactValues& 
 
 bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason) {
   const ContactValues values = functions_.at(t_, q_, v_);
+  if (!touching.empty()) note_compliance(touching, values);
   const std::vector<Choice> list = choices(touching, values);
   double count = 1;
   for (const Choice& c : list) count *= static_cast<double>(c.options.size());

@@ -72,7 +72,7 @@ class HybridMotion final : public Method {
   std::optional<Step> settle(double bound);
   bool carry_out_sets(std::string& reason);
   std::vector<std::size_t> touching(const ContactValues& values) const;
-  bool hit(const std::vector<std::size_t>& touching, std::string& reason);
+  bool hit(std::vector<std::size_t>& touching, std::string& reason);
   ImpactProblem impact_problem(const std::vector<std::size_t>& touching, const ContactValues& values);
   void note_order(const ImpactProblem& problem, const ImpactResult& first, const Eigen::VectorXd& v);
   void record_impulses(const ImpactResult& result);
@@ -85,6 +85,11 @@ class HybridMotion final : public Method {
   std::vector<Choice> choices(const std::vector<std::size_t>& touching, const ContactValues& values) const;
   bool fits(const ContactMode& mode, const std::vector<std::size_t>& touching, double bound, bool lenient,
             std::vector<double>* accelerations);
+  bool vanishes(const Watch& watch, double size) const;
+  void note_sizes(const ContactValues& values);
+  void note_accelerations(std::span<const double> a, const ContactValues& values);
+  void note_compliance(const std::vector<std::size_t>& touching, const ContactValues& values);
+  std::optional<std::size_t> violated();
   bool may_be_several(const ContactMode& mode, const ContactValues& values);
   void record_changes(const ContactMode& before, const ContactMode& after);
   void add(Happening::Kind kind, const std::string& name, double impulse = 0, double speed = 0,
@@ -111,11 +116,17 @@ class HybridMotion final : public Method {
   mutable Sample step_start_;
   std::size_t steps_before_ = 0, rejected_before_ = 0, switches_before_ = 0, same_time_ = 0;
   double residual_before_ = 0;
-  std::vector<double> fastest_, fastest_slip_;  // speeds of each contact and friction so far
+  // The largest so far: what is much smaller is rounding.
+  std::vector<double> fastest_, fastest_slip_;  // [contacts], [contacts + frictions] sizes of the terms of ġ and of v_t
+  std::vector<double> widest_, hardest_;        // [contacts] sizes of the terms of g; of λ
+  std::vector<std::size_t> kind_;               // [n] coordinates of one dimension share a number
+  std::vector<double> place_, speed_, acceleration_;  // [kinds] |q|, |q'|, |q''|
+  std::vector<double> compliance_;              // [contacts] what a force λ = 1 does to g̈, where it was needed
   struct Bounces {
     std::vector<std::pair<double, double>> last;  // (t, speed) of the last impacts
   };
   std::vector<Bounces> bounces_;  // [contacts]
+  std::vector<std::size_t> cycle_;  // contacts that bounce together towards an end of their bounces
   std::optional<std::string> accumulated_;
   double accumulated_at_ = 0;
   HybridRecord record_;

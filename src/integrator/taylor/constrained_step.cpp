@@ -19,7 +19,7 @@ bool TaylorStepper::Impl::forces_diverge() {
 /// solves; only where the corrections are above rounding is the motion expanded anew.
 /// `known`: the corrections are there.
 bool TaylorStepper::Impl::project(Step& result, bool known) {
-  double error = taylor::constraint_error(work, n, m, length);
+  double error = taylor::constraint_error(work, n, m, length, constraints.usual);
   if (!first) constraints.residual = std::max(constraints.residual, error);
   // In a rotation the radius of convergence is no bound: steps get so long that each order of λ multiplies the rounding
   // errors of those before it. What a step leaves in the constraints shows it.
@@ -37,7 +37,7 @@ bool TaylorStepper::Impl::project(Step& result, bool known) {
     if (error <= taylor::rounding_of_constraints) return true;
     if (const KernelStatus status = work.expand(state.t.hi, state.q_now, state.v_now); status != KernelStatus::Ok)
       return fail(result, status);
-    const double now = taylor::constraint_error(work, n, m, length);
+    const double now = taylor::constraint_error(work, n, m, length, constraints.usual);
     if (turn > 2 && now > 0.5 * error) break;
     error = now;
   }
@@ -58,7 +58,7 @@ void TaylorStepper::Impl::land(Step& result, double tau) {
     if (work.expand(state.t.hi, state.q_now, state.v_now) == KernelStatus::Ok) {
       defined = true;
       work.corrections(constraints.dq, constraints.dv);
-      const double error = taylor::constraint_error(work, n, m, length);
+      const double error = taylor::constraint_error(work, n, m, length, constraints.usual);
       const std::size_t in_force = work.constraints_in_force();
       const bool regular =
           in_force >= constraints.most_in_force && work.pivot_ratio() > 1e-6 * constraints.best_pivot_ratio;

@@ -40,12 +40,18 @@ double beyond(double value, double threshold) { return std::max(0.0, std::abs(va
 
 }  // namespace
 
-double constraint_error(const KernelWorkspace& work, std::size_t freedoms, std::size_t constraints, double h) {
+double constraint_error(const KernelWorkspace& work, std::size_t freedoms, std::size_t constraints, double h,
+                        const UsualSizes& usual) {
   double largest = 0;
+  const auto along = [&](std::size_t row, const std::vector<double>& sizes) {
+    double sum = 0;
+    for (std::size_t i = 0; i < sizes.size(); ++i) sum += std::abs(work.constraint_matrix(row, i)) * sizes[i];
+    return sum;
+  };
   for (std::size_t j = 0; j < constraints; ++j) {
-    const double rate = rate_bound(work, j, freedoms, h);
+    const double rate = rate_bound(work, j, freedoms, h) + along(j, usual.v);
     const double unseen = h > 0 ? rounding_of_position(work, j, freedoms) / h : 0;
-    largest = std::max({largest, ratio(work.constraint_value(j), work.constraint_scale(j) + h * rate),
+    largest = std::max({largest, ratio(work.constraint_value(j), work.constraint_scale(j) + h * rate + along(j, usual.q)),
                         ratio(beyond(work.constraint_rate(j), unseen), work.constraint_rate_scale(j) + rate)});
   }
   return largest;

@@ -10,9 +10,16 @@ namespace maupertuis::taylor {
 /// What the evaluation of a constraint leaves by rounding, relative to the sizes of its terms.
 inline constexpr double rounding_of_constraints = 1e-14;
 
+/// Sizes of a motion that are known from elsewhere, [n] each or empty: of q, and of q̇.
+struct UsualSizes {
+  std::vector<double> q, v;
+};
+
 /// The largest of φ, and of dφ/dt or ψ, at the point of the workspace, each divided by the sizes of its terms and by
-/// how far they change in a step of length h, so that a constraint such as y = 0 has a measure too.
-double constraint_error(const KernelWorkspace& work, std::size_t freedoms, std::size_t constraints, double h);
+/// how far they change in a step of length h or in a motion of the usual sizes, so that a constraint such as y = 0 has
+/// a measure too.
+double constraint_error(const KernelWorkspace& work, std::size_t freedoms, std::size_t constraints, double h,
+                        const UsualSizes& usual);
 
 /// How far corrections of q and q̇ go, relative to q̇ and to what it moves in a step of length h, in the metric of the
 /// diagonal of M.
@@ -33,6 +40,7 @@ struct ConstraintRecord {
   double best_pivot_ratio = 0;  // of the bordered matrix
   std::size_t most_in_force = 0;
   std::vector<double> largest_row;  // [constraints] of A
+  UsualSizes usual;
   static constexpr double vanishing = 1e-6;
 };
 

@@ -198,6 +198,11 @@ void TaylorStepper::put_at_zero(std::span<const std::size_t> events) {
   for (const std::size_t i : events) impl_->watched.put_at_zero(i);
 }
 
+void TaylorStepper::set_usual_sizes(std::span<const double> q, std::span<const double> v) {
+  impl_->constraints.usual.q.assign(q.begin(), q.end());
+  impl_->constraints.usual.v.assign(v.begin(), v.end());
+}
+
 TaylorStepper::Outlook TaylorStepper::outlook(double bound) {
   Impl& s = *impl_;
   Outlook out;
@@ -209,7 +214,10 @@ TaylorStepper::Outlook TaylorStepper::outlook(double bound) {
   out.reason = result.reason;
   if (!s.expanded) return out;
   const double h = std::min(taylor::step_size(s.work, s.n, s.control, s.length), std::abs(s.remaining(bound)));
-  out.sides = s.watched.sides_of_events(s.work, std::copysign(h, s.remaining(bound)));
+  for (const auto& [side, reach] : s.watched.sides_of_events(s.work, std::copysign(h, s.remaining(bound)))) {
+    out.sides.push_back(side);
+    out.reach.push_back(reach);
+  }
   for (std::size_t i = 0; i < s.kernel.events(); ++i) out.values.push_back(s.work.event(i, 0));
   for (std::size_t i = 0; i < s.n; ++i) out.accelerations.push_back(s.work.acceleration(i));
   return out;

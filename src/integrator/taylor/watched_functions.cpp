@@ -93,12 +93,12 @@ Crossing WatchedFunctions::first_crossing(const KernelWorkspace& work, const Com
   return out;
 }
 
-std::vector<std::int8_t> WatchedFunctions::sides_of_events(const KernelWorkspace& work, double h) const {
-  std::vector<std::int8_t> out;
+std::vector<WatchedFunctions::Side> WatchedFunctions::sides_of_events(const KernelWorkspace& work, double h) const {
+  std::vector<Side> out;
   for (std::size_t i = 0; i < events.size(); ++i) {
     const auto polynomial = judged(event_polynomial(work, i, h));
     const bool at_zero = events[i].at_zero || polynomial.begins_at_zero();
-    out.push_back(at_zero ? polynomial.direction() : sign(polynomial.p[0]));
+    out.push_back({at_zero ? polynomial.direction() : sign(polynomial.p[0]), polynomial.reach});
   }
   return out;
 }

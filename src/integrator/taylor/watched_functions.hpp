@@ -39,7 +39,11 @@ class WatchedFunctions {
   void put_at_zero(std::size_t event) { events[event] = {0, true}; }
   /// The sides that events take as the motion of the workspace begins, judged over h: 0 where all that they do is lost
   /// in rounding.
-  std::vector<std::int8_t> sides_of_events(const KernelWorkspace& work, double h) const;
+  struct Side {
+    std::int8_t side;
+    double reach;  // of the function over the length that was judged
+  };
+  std::vector<Side> sides_of_events(const KernelWorkspace& work, double h) const;
   /// The sides that a step leaves behind; how many switches changed, and which event was met, go to the result.
   void leave(const Crossing& crossing, Step& result);
 
