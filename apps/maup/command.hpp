@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,7 @@ class CommandLine {
 struct ModelOptions {
   std::string path;
   std::vector<std::string> set, start;  // as written
+  std::optional<std::string> mode;      // of contacts and friction
 };
 void add_model_options(Command& command, ModelOptions& options);
 

@@ -125,6 +125,10 @@ void add_model_options(Command& command, ModelOptions& options) {
   command.add_option("--start", options.start, "Another start value, e.g. θ=10deg or \"θ'=1 rad/s\"")
       ->allow_extra_args(false)
       ->type_name("NAME=VALUE");
+  command
+      .add_option("--mode", options.mode,
+                  "The system in one mode of its contacts and frictions, e.g. free, \"floor\" or \"floor sticking\"")
+      ->type_name("MODE");
 }
 
 namespace {

@@ -19,6 +19,7 @@ Study open_study(const ModelOptions& options) {
   Study study = open_study(options.path);
   for (const std::string& typed : options.set) study.override_with(OverrideKind::Parameters, "--set", typed);
   for (const std::string& typed : options.start) study.override_with(OverrideKind::Start, "--start", typed);
+  if (options.mode) study.fix_mode(*options.mode);
   return study;
 }
 

@@ -2,6 +2,7 @@
 #include <maupertuis/mechanical_system.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,10 @@ const Friction& friction_of(const MechanicalSystem& system, std::size_t index);
 
 /// "floor, wall sliding, x sticking"; empty where all is open and nothing rubs.
 std::string mode_text(const MechanicalSystem& system, const ContactMode& mode);
+
+/// Reads what mode_text writes: "floor, wall sliding +, x sticking"; "free" for none. Nothing, with one sentence why in
+/// `trouble`, where a name is no contact, or a friction is left open.
+std::optional<ContactMode> read_mode(const MechanicalSystem& system, const std::string& text, std::string& trouble);
 
 /// The system as it moves in a mode, without inequalities: closed contacts are constraints g = 0 at the end of its
 /// constraints, sticking ones constraints between velocities v_t = 0 after them; sliding ones have the generalized

@@ -54,6 +54,9 @@ class Study {
   SourceId add_text(std::string label, std::string text) {
     return overrides_.add_text(std::move(label), std::move(text));
   }
+  /// The system in one mode of its contacts and frictions (see read_mode), without inequalities from then on. What is
+  /// wrong with it is an error (E0269) of model(). Precondition as above.
+  void fix_mode(std::string text);
   /// For questions that do not need accelerations: a mass matrix that is singular (E0407, E0408) is no mistake then.
   /// Precondition as above.
   void admit_singular_mass_matrix();
@@ -87,10 +90,13 @@ class Study {
   bool refuse_held_integrals();
   /// E0245 where another variable stands in the place of the time. For questions about motions in time.
   bool refuse_without_time();
+  /// E0270 where the model has contacts or friction: for questions about the equations of one mode.
+  bool refuse_modes();
 
  private:
   bool elaborate_model(Diagnostics& found, std::optional<Model>& model) const;
   void report(const CertificateCheck& check);
+  void enter_mode(Model& model, Diagnostics& found) const;
 
   SourceText source_;
   Interrupt interrupt_;
@@ -101,6 +107,7 @@ class Study {
   std::shared_ptr<const Model> model_;
   bool elaborated_ = false;
   bool admits_singular_ = false;
+  std::optional<std::string> mode_;
   std::optional<EquationsOfMotion> equations_;
   bool derived_ = false;
   std::optional<Derivation> derivation_;

@@ -83,6 +83,72 @@ std::string mode_text(const MechanicalSystem& system, const ContactMode& mode) {
   return out;
 }
 
+namespace {
+
+std::vector<std::string> parts_of(const std::string& text) {
+  std::vector<std::string> out{""};
+  for (const char c : text)
+    if (c == ',')
+      out.emplace_back();
+    else if (c != ' ' || (!out.back().empty() && out.back().back() != ' '))
+      out.back() += c;
+  for (std::string& part : out)
+    while (!part.empty() && part.back() == ' ') part.pop_back();
+  return out;
+}
+
+/// The state at the end of a part, which is cut off; None where there is no word for one.
+FrictionState take_state(std::string& part) {
+  const std::pair<const char*, FrictionState> words[] = {{" sticking", FrictionState::Stick},
+                                                         {" sliding +", FrictionState::Forward},
+                                                         {" sliding -", FrictionState::Backward},
+                                                         {" sliding −", FrictionState::Backward}};
+  for (const auto& [word, state] : words)
+    if (part.ends_with(word)) {
+      part.resize(part.size() - std::string(word).size());
+      return state;
+    }
+  return FrictionState::None;
+}
+
+}  // namespace
+
+std::optional<ContactMode> read_mode(const MechanicalSystem& system, const std::string& text, std::string& trouble) {
+  ContactMode mode = open_mode(system);
+  std::vector<bool> told(mode.friction.size(), false);
+  for (std::string part : parts_of(text)) {
+    if (part.empty() || part == "free") continue;
+    const FrictionState state = take_state(part);
+    std::size_t i = 0;
+    while (i < told.size() && label_of_friction(system, i) != part) ++i;
+    if (i == told.size()) {
+      trouble = fmt::format("The model has no contact or friction `{}`.", part);
+      return std::nullopt;
+    }
+    const bool contact = i < mode.closed.size();
+    const Friction& friction = friction_of(system, i);
+    if (state == FrictionState::None && friction.present() && !friction.sticking) {
+      trouble = fmt::format("Say what friction does there: `{0} sticking`, `{0} sliding +` or `{0} sliding -`.", part);
+      return std::nullopt;
+    }
+    if (state != FrictionState::None && (!friction.present() || (friction.sticking && state != FrictionState::Stick))) {
+      trouble = friction.present() ? fmt::format("`{}` never slides while it is closed.", part)
+                                   : fmt::format("`{}` has no friction.", part);
+      return std::nullopt;
+    }
+    if (contact) mode.closed[i] = true;
+    mode.friction[i] = friction.sticking ? FrictionState::Stick : state;
+    told[i] = true;
+  }
+  for (std::size_t i = mode.closed.size(); i < told.size(); ++i)
+    if (!told[i]) {
+      const std::string& name = label_of_friction(system, i);
+      trouble = fmt::format("Say what friction does along {0}: `{0} sticking`, `{0} sliding +` or `{0} sliding -`.", name);
+      return std::nullopt;
+    }
+  return mode;
+}
+
 MechanicalSystem system_in_mode(const MechanicalSystem& system, const ContactMode& mode) {
   MechanicalSystem out = system;
   out.contacts.clear();

@@ -112,6 +112,12 @@ constexpr std::array entries{
     CodeEntry{"E0726", "a run cannot end with a force that the model does not determine",
               "Where constraints depend on each other, or coordinates have removed one, its force is not unique.", "",
               ""},
+    CodeEntry{"E0727", "this method does not go through contacts, friction or events",
+              "They are located to rounding on the polynomials of Taylor's steps, and the mode changes there. The stiff "
+              "and the variational method have no such polynomials.",
+              "", ""},
+    CodeEntry{"E0728", "the start violates a contact",
+              "A contact g >= 0 holds at all times, at the first one too: bodies do not begin inside each other.", "", ""},
 };
 
 }  // namespace

@@ -62,7 +62,7 @@ class Recorder {
 
   /// Nothing where the user has interrupted it.
   std::optional<CompanionRun> record(const RoundedNumbers::Draw& draw) {
-    const bool until = plan_.result.ending == Ending::UntilReached;
+    const bool until = plan_.result.ending == Ending::UntilReached || plan_.result.ending == Ending::Stopped;
     const double bound = until ? plan_.run.end : plan_.result.final.t;
     method_.start(plan_.run.begin, draw.q, draw.v);
     cover();

@@ -39,7 +39,7 @@ class Teller {
       if (!result_.at[i].q.empty())
         tell_state(result_.at[i], [i](const CompanionRun& run) { return sample_or_null(run.at[i]); });
     tell_state(result_.final, [](const CompanionRun& run) { return run.final ? &*run.final : nullptr; });
-    if (result_.ending == Ending::UntilReached)
+    if (result_.ending == Ending::UntilReached || result_.ending == Ending::Stopped)
       result_.final.errors->t =
           error_of(result_.final.t, [](const CompanionRun& run) { return run.final ? run.final->t : infinity; });
     if (plan_.whole_rows) tell_rows();

@@ -210,6 +210,12 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
     while (!(system_.coordinates[k].dimension == system_.coordinates[i].dimension)) ++k;
     kind_.push_back(k);
   }
+  gap_kind_.clear();
+  for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
+    std::size_t k = 0;
+    while (!(system_.contacts[k].dimension == system_.contacts[i].dimension)) ++k;
+    gap_kind_.push_back(k);
+  }
   speed_.assign(kind_.size(), 0);
   acceleration_ = place_ = speed_;
   bounces_.assign(system_.contacts.size(), {});
@@ -221,6 +227,7 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   pending_->begins = true;
   forwards_ = true;
   failed_ = settle(t + 1);
+  std::fill(std::begin(carried_), std::end(carried_), 0.0);  // work before the first sample
 }
 
 double HybridMotion::time() const { return now_->stepper->time(); }
@@ -333,14 +340,20 @@ void HybridMotion::note_sizes(const ContactValues& values) {
     for (const auto& [k, x] : row) sum += std::abs(x) * speed_[kind_[k]];
     return sum;
   };
-  for (std::size_t i = 0; i < fastest_.size(); ++i) {
+  for (std::size_t i = 0; i < fastest_.size(); ++i)
     fastest_[i] = std::max({fastest_[i], values.rate_scale[i], size_along(values.normal[i])});
-    for (std::size_t k = 0; k < widest_.size(); ++k)
-      if (system_.contacts[k].dimension == system_.contacts[i].dimension)
-        widest_[k] = std::max(widest_[k], values.gap_scale[i]);
-  }
+  note_gaps(values);
   for (std::size_t i = 0; i < fastest_slip_.size(); ++i)
     fastest_slip_[i] = std::max({fastest_slip_[i], values.slip_scale[i], size_along(values.tangent[i])});
+}
+
+/// Gaps of one dimension have one size too.
+void HybridMotion::note_gaps(const ContactValues& values) {
+  for (std::size_t i = 0; i < widest_.size(); ++i) {
+    double& size = widest_[gap_kind_[i]];
+    size = std::max(size, values.gap_scale[i]);
+  }
+  for (std::size_t i = 0; i < widest_.size(); ++i) widest_[i] = widest_[gap_kind_[i]];
 }
 
 void HybridMotion::note_accelerations(std::span<const double> a, const ContactValues& values) {
@@ -367,6 +380,7 @@ std::optional<std::size_t> HybridMotion::violated() {
   constexpr double digits = 1e-10;
   const TaylorStepper& s = *now_->stepper;
   const ContactValues& values = functions_.at(s.time(), s.q(), s.v());
+  note_gaps(values);
   for (std::size_t i = 0; i < values.gap.size(); ++i)
     if (!now_->mode.closed[i] && values.gap[i] < -digits * widest_[i]) return i;
   return std::nullopt;

@@ -87,6 +87,7 @@ class HybridMotion final : public Method {
             std::vector<double>* accelerations);
   bool vanishes(const Watch& watch, double size) const;
   void note_sizes(const ContactValues& values);
+  void note_gaps(const ContactValues& values);
   void note_accelerations(std::span<const double> a, const ContactValues& values);
   void note_compliance(const std::vector<std::size_t>& touching, const ContactValues& values);
   std::optional<std::size_t> violated();
@@ -120,6 +121,7 @@ class HybridMotion final : public Method {
   std::vector<double> fastest_, fastest_slip_;  // [contacts], [contacts + frictions] sizes of the terms of ġ and of v_t
   std::vector<double> widest_, hardest_;        // [contacts] sizes of the terms of g; of λ
   std::vector<std::size_t> kind_;               // [n] coordinates of one dimension share a number
+  std::vector<std::size_t> gap_kind_;           // [contacts] so do gaps
   std::vector<double> place_, speed_, acceleration_;  // [kinds] |q|, |q'|, |q''|
   std::vector<double> compliance_;              // [contacts] what a force λ = 1 does to g̈, where it was needed
   struct Bounces {

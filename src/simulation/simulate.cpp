@@ -1,4 +1,5 @@
 #include <maupertuis/across_switches.hpp>
+#include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/integrator.hpp>
 #include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/simulation.hpp>
@@ -19,6 +20,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 /// One run, in named stages: plan (numbers), kernel (program), steps, measures, companions (errors). The observables of
@@ -72,6 +74,30 @@ std::unique_ptr<HybridMotion> hybrid_method(const Model& model, const EquationsO
   }
   return std::make_unique<HybridMotion>(model, equations, wanted, parameter_values(model.system),
                                         taylor_options(options));
+}
+
+/// E0728 for each contact that is violated at the start.
+bool start_keeps_contacts(const Model& model, const RunPlan& plan, Diagnostics& diagnostics) {
+  const MechanicalSystem& system = model.system;
+  Bindings at = parameter_bindings(system);
+  at[system.context->time()] = plan.begin;
+  for (std::size_t i = 0; i < plan.q.size(); ++i) at[system.coordinates[i].q] = plan.q[i];
+  bool kept = true;
+  constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
+  for (std::size_t i = 0; i < system.contacts.size(); ++i) {
+    const Expr gap = in_terms_of_motion(system, {&system.contacts[i].gap, 1}).front();
+    double size = 0;
+    if (gap.is(Kind::Sum))
+      for (std::size_t k = 0; k < gap.size(); ++k) size += std::abs(evaluate(gap[k], at));
+    const double value = evaluate(gap, at);
+    if (value >= -rounding * size) continue;
+    kept = false;
+    diagnostics.error("E0728", system.contacts[i].span,
+                      fmt::format("the start violates the contact {}", system.contact_label(i)),
+                      fmt::format("Its left side less its right side is {:.6g} there (SI), and has to be at least 0.", value),
+                      "Change the start, or the sense of the inequality.");
+  }
+  return kept;
 }
 
 std::unique_ptr<Method> first_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
@@ -398,6 +424,8 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   const SimulationOptions options = with_method_of(model, asked);
   const auto plan = plan_run(model, equations, options, diagnostics);
   if (!plan || !requests_lie_ahead(model.system, *plan, options, diagnostics)) return std::nullopt;
+
+  if (!start_keeps_contacts(model, *plan, diagnostics)) return std::nullopt;
 
   const auto begin = Clock::now();
   const Observables observables = collect_observables(equations, probe);

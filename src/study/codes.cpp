@@ -9,6 +9,17 @@ constexpr CodeEntry entries[] = {
      "place there are "
      "equations (`maup derive`), their solutions from a start (`maup simulate`) and between two ends (`maup action`).",
      "", ""},
+    {"E0269", "no mode of the model",
+     "A mode says which contacts are closed and what each friction does: `floor`, `floor sliding +, wall`, `x sticking`, "
+     "or `free`. What is not named is open; friction that acts has to be named with what it does.",
+     "", ""},
+    {"E0270", "a question about one set of equations for a model with several modes",
+     "Contacts and dry friction change the equations on the way. Conserved quantities, Hamiltonians, modes of vibration, "
+     "paths and periodic motions are those of one mode, which --mode chooses; `maup simulate` and `maup test` go through "
+     "all of them.",
+     "", ""},
+    {"N0505", "the equations of a model with contacts",
+     "Without --mode the equations are those of the system while no contact is closed and no dry friction acts.", "", ""},
     {"E0690", "a derivation failed its certificate",
      "Every derivation is checked by routes that share nothing with it: jets of L along random paths, d'Alembert's "
      "principle over the particles, the power balance. One of them found a different value, so the derived equations "

@@ -1,3 +1,4 @@
+#include <maupertuis/contact_mode.hpp>
 #include <maupertuis/require.hpp>
 #include <maupertuis/study.hpp>
 
@@ -19,6 +20,26 @@ SourceId Study::override_with(OverrideKind kind, std::string label, std::string 
 std::size_t Study::ask(std::string label, std::string formula) {
   override_with(OverrideKind::Formula, std::move(label), std::move(formula));
   return asked_ - 1;
+}
+
+void Study::fix_mode(std::string text) {
+  MAUP_REQUIRE(!elaborated_);
+  mode_ = std::move(text);
+}
+
+void Study::enter_mode(Model& model, Diagnostics& found) const {
+  std::string trouble;
+  const auto mode = read_mode(model.system, *mode_, trouble);
+  if (!mode) {
+    found.error("E0269", std::nullopt, fmt::format("`{}` is no mode of this model", *mode_), trouble,
+                "`maup check` lists its contacts and frictions; `free` is the mode without any.");
+    return;
+  }
+  const auto free = euler_lagrange(std::make_shared<const MechanicalSystem>(model.system), found);
+  if (!free) return;
+  for (Friction& f : model.system.frictions)
+    if (f.normal) f.normal = with_reactions(*free, {&f.normal, 1}).front();
+  model.system = system_in_mode(model.system, *mode);
 }
 
 void Study::admit_singular_mass_matrix() {
@@ -53,7 +74,9 @@ const Model* Study::model() {
     overrides_.read(*tree_, diagnostics_);
     Diagnostics found = diagnostics_;  // kept when the stage is complete
     std::optional<Model> model;
-    if (elaborate_model(found, model)) model_ = std::make_shared<const Model>(std::move(*model));
+    const bool complete = elaborate_model(found, model);
+    if (complete && mode_) enter_mode(*model, found);
+    if (complete && !found.has_errors()) model_ = std::make_shared<const Model>(std::move(*model));
     found.sort_by_place();
     diagnostics_ = std::move(found);
   }
@@ -111,7 +134,7 @@ std::optional<SimulationResult> Study::motion(const SimulationOptions& options) 
 }
 
 std::optional<ExtendedResult> Study::motion(const ExtendedSimulationOptions& options) {
-  if (wrong() || refuse_held_integrals() || !certificate()) return std::nullopt;
+  if (wrong() || refuse_held_integrals() || refuse_modes() || !certificate()) return std::nullopt;
   return simulate_extended(*model_, *equations_, options, diagnostics_);
 }
 
@@ -131,6 +154,17 @@ bool Study::refuse_held_integrals() {
       "Its equations are those of L + λ G with one λ for a whole path, which only the two ends of the path determine: "
       "there is no motion from a start.",
       "`maup action` finds the paths between two ends, and λ.");
+  return true;
+}
+
+bool Study::refuse_modes() {
+  if (!model()) return false;
+  const MechanicalSystem& system = model_->system;
+  if (!system.has_modes()) return false;
+  const Span span = system.contacts.empty() ? system.frictions.front().span : system.contacts.front().span;
+  diagnostics_.error("E0270", span, "this question is about one set of equations, and the model has several modes",
+                     "Contacts that open and close and friction that sticks and slides change the equations on the way.",
+                     "Ask it of one mode: --mode free, --mode \"floor\", --mode \"floor sticking\".");
   return true;
 }
 

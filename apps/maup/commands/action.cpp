@@ -207,7 +207,7 @@ ExitCode study_action(const ActionCommand& o, Console& console) {
   if (good_text) check_ends(o, study);
   if (good_text && study.wrong()) return finish_usage(console, study, "action");
   put_in_path(o, study);
-  if (!study.certificate()) return finish(console, study, json_document("action"));
+  if (study.refuse_modes() || !study.certificate()) return finish(console, study, json_document("action"));
   check_search(o, study);
   if (study.wrong()) return finish_usage(console, study, "action");
 

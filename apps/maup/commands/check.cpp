@@ -68,6 +68,18 @@ std::string held_text(const IntegralConstraint& held, const EquationsOfMotion& e
                      system.dimensionless ? value : with_unit(value, held.dimension));
 }
 
+/// floor: z >= 0, closed at the start
+std::string contact_text(const MechanicalSystem& system, std::size_t index, const ReadingOrder& order) {
+  const Contact& c = system.contacts[index];
+  std::string out = fmt::format("{}: {} >= 0", system.contact_label(index), to_plain(c.gap, order));
+  if (const double e = value_of(c.restitution, system); e != 0) out += fmt::format(", restitution {}", brief(e));
+  if (c.friction.sticking)
+    out += ", never slides while it is closed";
+  else if (c.friction.present())
+    out += fmt::format(", friction {}", brief(value_of(c.friction.kinetic, system)));
+  return out;
+}
+
 /// What the check finds out beyond the text: the start on the constraints, and what these are.
 struct Findings {
   std::optional<ConsistentStart> start;
@@ -127,6 +139,14 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
   words.clear();
   for (const AppliedForce& force : system.forces) words.push_back("on " + force.target);
   line("forces Q", joined(words));
+  for (std::size_t i = 0; i < system.contacts.size() && i < 12; ++i)
+    line(i == 0 ? "contacts" : "", contact_text(system, i, equations.order));
+  if (system.contacts.size() > 12) line("", fmt::format("… {} of them", system.contacts.size()));
+  for (std::size_t i = 0; i < system.frictions.size(); ++i)
+    line(i == 0 ? "friction" : "", "along " + system.frictions[i].name);
+  words.clear();
+  for (const ModelEvent& event : model.experiment.events) words.push_back(event.name);
+  line("events", joined(words));
   words.clear();
   for (const StartValue& start : model.experiment.start) words.push_back(start_text(start, system));
   if (words.size() > 8) words.resize(8), words.push_back("…");

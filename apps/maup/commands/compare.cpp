@@ -187,7 +187,7 @@ ExitCode compare_models(const CompareOptions& options, Console& console) {
   if (of_map.has_errors()) return end(json_document("compare"), ExitCode::Usage);
   const bool readable = !unreadable(a.diagnostics()) && !unreadable(b.diagnostics());
   const EquationsOfMotion* a_equations = a.equations();
-  if (!b.equations() || !a_equations || a.refuse_held_integrals() || b.refuse_held_integrals() || !a.certificate() ||
+  if (!b.equations() || !a_equations || a.refuse_held_integrals() || a.refuse_modes() || b.refuse_modes() || b.refuse_held_integrals() || !a.certificate() ||
       !b.certificate())
     return end(json_document("compare"), readable ? ExitCode::ModelWrong : ExitCode::Usage);
 

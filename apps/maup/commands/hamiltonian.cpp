@@ -147,7 +147,7 @@ ExitCode hamiltonian_of(const HamiltonianOptions& options, Console& console) {
   put_in_run(options.run, study);
   for (const std::string& formula : options.bracket) study.ask("--bracket", formula);
   if (!options.integrate) study.admit_singular_mass_matrix();  // then there are primary constraints
-  if (!study.model() || study.refuse_held_integrals() || !study.certificate()) return finish(console, study, document);
+  if (!study.model() || study.refuse_held_integrals() || study.refuse_modes() || !study.certificate()) return finish(console, study, document);
   const PhaseSpace found = analyse(options, study);
   if (study.wrong()) return finish(console, study, document);
   if (!console.json()) {

@@ -16,7 +16,7 @@ ExitCode invariants_of_model(const CommandOptions& options, Console& console) {
   Study study = open_study(options.model);
   Json document = json_document("invariants");
   const EquationsOfMotion* equations = study.equations();
-  if (!equations || study.refuse_held_integrals() || !study.certificate()) return finish(console, study, document);
+  if (!equations || study.refuse_held_integrals() || study.refuse_modes() || !study.certificate()) return finish(console, study, document);
   InvariantsOptions search = options.search;
   search.drift = !options.no_drift;
   const InterruptScope scope = study.interruptible();

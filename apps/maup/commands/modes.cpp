@@ -267,7 +267,7 @@ ExitCode modes(const ModesOptions& options, Console& console) {
   if (!options.sweep.empty()) study.override_with(OverrideKind::Sweep, "--sweep", options.sweep);
   for (const std::string& y : options.outputs) study.ask("--y", y);
   const EquationsOfMotion* equations = study.equations();
-  if (!equations || study.refuse_held_integrals() || study.refuse_without_time() || !study.certificate())
+  if (!equations || study.refuse_held_integrals() || study.refuse_modes() || study.refuse_without_time() || !study.certificate())
     return finish(console, study, json_document("modes"));
   if (options.orbit) return orbit(options, study, console);
   const InterruptScope scope = study.interruptible();
