@@ -98,11 +98,42 @@ class Tableau {
   double scale_ = 1;
 };
 
+/// The z that vanish stay so; the others are solved for anew with W itself.
+Eigen::VectorXd refined(const Eigen::MatrixXd& w, const Eigen::VectorXd& q, const Eigen::VectorXd& z) {
+  std::vector<Index> in;
+  for (Index i = 0; i < z.size(); ++i)
+    if (z(i) > 0) in.push_back(i);
+  const auto count = static_cast<Index>(in.size());
+  Eigen::MatrixXd part(count, count);
+  Eigen::VectorXd right(count);
+  for (Index a = 0; a < count; ++a) {
+    right(a) = -q(in[static_cast<std::size_t>(a)]) -
+               w.row(in[static_cast<std::size_t>(a)]).dot(z);  // what is still missing
+    for (Index b = 0; b < count; ++b) part(a, b) = w(in[static_cast<std::size_t>(a)], in[static_cast<std::size_t>(b)]);
+  }
+  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(part);
+  const Eigen::VectorXd more = solver.solve(right);
+  Eigen::VectorXd out = z;
+  for (Index a = 0; a < count; ++a) {
+    double& entry = out(in[static_cast<std::size_t>(a)]);
+    entry = std::max(0.0, entry + more(a));
+  }
+  return out;
+}
+
 }  // namespace
 
 std::optional<Eigen::VectorXd> linear_complementarity(const Eigen::MatrixXd& w, const Eigen::VectorXd& q) {
   if (q.size() == 0) return Eigen::VectorXd();
-  return Tableau(w, q).solve();
+  if (const auto z = Tableau(w, q).solve()) return z;
+  // Redundant rows make pivots of rounding alone: a little on the diagonal tells them apart.
+  constexpr double little = 1e-11;
+  const double size = w.cwiseAbs().maxCoeff();
+  const auto z = Tableau(w + little * size * Eigen::MatrixXd::Identity(w.rows(), w.cols()), q).solve();
+  if (!z) return z;
+  const Eigen::VectorXd out = refined(w, q, *z);
+  const double allowed = 1e-9 * q.cwiseAbs().maxCoeff();
+  return (q + w * out).minCoeff() >= -allowed ? std::optional(out) : std::nullopt;
 }
 
 }  // namespace maupertuis

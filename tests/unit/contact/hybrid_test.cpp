@@ -1,0 +1,164 @@
+// Runs through modes: closed forms, books of energy, and what has no motion.
+#include <maupertuis/contact_mode.hpp>
+#include <maupertuis/simulation.hpp>
+
+#include "../model_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace maupertuis;
+
+namespace {
+
+SimulationResult run(ModelText& m, double end, SimulationOptions options = {}) {
+  options.duration = end;
+  options.errors = ErrorEstimates::None;
+  auto result = simulate(m.model, m.equations, options, m.diagnostics);
+  INFO(render(m.diagnostics, m.source));
+  REQUIRE(result);
+  return std::move(*result);
+}
+
+std::size_t count(const SimulationResult& r, Happening::Kind kind, const std::string& name = {}) {
+  return static_cast<std::size_t>(std::count_if(r.happenings.begin(), r.happenings.end(), [&](const Happening& h) {
+    return h.kind == kind && (name.empty() || h.name == name);
+  }));
+}
+
+const std::string rod =
+    "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, z : length, θ : angle\n"
+    "T = 1/2 m (x'^2 + z'^2) + 1/24 m l^2 θ'^2\nV = m g z\n";
+
+}  // namespace
+
+TEST_CASE("a block at rest stays where it is for ten thousand seconds, to the last bit") {
+  ModelText m("param m = 1 kg, g = 9.81 m/s^2, α = 0.3 rad\ncoord s, n : length\nT = 1/2 m (s'^2 + n'^2)\n"
+              "V = m g (s sin α + n cos α)\ncontact n >= 0 friction 0.4 slip s' name plane\nstart s = 0.7 m\n");
+  const auto r = run(m, 1e4);
+  CHECK(r.first_mode == "plane sticking");
+  CHECK(r.final.q[0] == 0.7);
+  CHECK(r.final.v[0] == 0);
+  CHECK(r.happenings.empty());
+}
+
+TEST_CASE("the threshold of sticking is tan α, to nine digits on either side") {
+  const auto mode = [](double mu) {
+    ModelText m("param m = 1 kg, g = 9.81 m/s^2, α = 0.3 rad\ncoord s, n : length\nT = 1/2 m (s'^2 + n'^2)\n"
+                "V = m g (s sin α + n cos α)\ncontact n >= 0 friction " +
+                fmt::format("{:.17g}", mu) + " slip s' name plane\n");
+    return run(m, 0.1).first_mode;
+  };
+  CHECK(mode(std::tan(0.3) * (1 + 1e-9)) == "plane sticking");
+  CHECK(mode(std::tan(0.3) * (1 - 1e-9)) == "plane sliding −");
+}
+
+TEST_CASE("two blocks and a wall count the digits of π") {
+  const std::pair<double, std::size_t> counts[] = {{1, 3}, {100, 31}, {10'000, 314}};
+  for (const auto& [ratio, expected] : counts) {
+    ModelText m("dimensionless\nparam M = " + fmt::format("{}", ratio) +
+                "\ncoord x, y : number\nT = 1/2 x'^2 + 1/2 M y'^2\n"
+                "contact x >= 0 restitution 1 name wall\ncontact y >= x restitution 1 name blocks\n"
+                "start x = 1, y = 2, y' = -1\n");
+    const auto r = run(m, 1000);
+    CHECK(count(r, Happening::Kind::Impact) == expected);
+    CHECK(r.statistics.energy_drift < 1e-12);
+  }
+}
+
+TEST_CASE("the books of a bouncing rod with friction close") {
+  ModelText m(rod + "contact z - l/2 sin θ >= 0 restitution 0.5 friction 0.3 slip x' + l/2 sin θ θ' name left\n"
+                    "contact z + l/2 sin θ >= 0 restitution 0.5 friction 0.3 slip x' - l/2 sin θ θ' name right\n"
+                    "start z = 1 m, θ = 0.4 rad, x' = 2 m/s\n");
+  const auto r = run(m, 0.9);
+  REQUIRE(r.ok());
+  CHECK(count(r, Happening::Kind::Impact) >= 2);
+  REQUIRE(r.books);
+  CHECK(r.books->impacts > 0);
+  CHECK(r.statistics.energy_drift < 1e-12);
+}
+
+TEST_CASE("Painlevé's rod: no motion, and two motions, are told") {
+  const std::string text = rod + "contact z - l/2 sin θ >= 0 friction 1.6 slip x' + l/2 sin θ θ' name floor\n";
+  ModelText none(text + "start z = l/2 sin(1), θ = 1 rad, x' = -3 m/s\n");
+  const auto a = run(none, 0.1);
+  CHECK(a.ending == Ending::Paradox);
+  CHECK(a.reason.find("no finite forces") != std::string::npos);
+  ModelText two(text + "start z = l/2 sin(1), θ = 1 rad, x' = -3 m/s, θ' = 6 rad/s, z' = 3 cos(1) m/s\n");
+  const auto b = run(two, 0.1);
+  CHECK(b.ending == Ending::Paradox);
+  CHECK(b.reason.find("more than one motion") != std::string::npos);
+}
+
+TEST_CASE("a result that depends on the order of impacts is told with both") {
+  ModelText m("dimensionless\ncoord x, y, z : number\nT = 1/2 x'^2 + 1/2 y'^2 + 1/2 z'^2\n"
+              "contact y >= x restitution 0.5\ncontact z >= y restitution 0.5\nstart x = -1, z = 1, x' = 1, z' = -1\n");
+  const auto r = run(m, 2);
+  CHECK(r.remarks.size() == 1);
+}
+
+TEST_CASE("events: record, direction, set, stop") {
+  ModelText m("dimensionless\nparam w = 1\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 w^2 x^2\n"
+              "event up when x = 0 rising : record\nevent down when x = 0 falling : record\n"
+              "event kick when x = 0.5 rising : set x' = 2 x'\nevent far when x = 1.5 : stop\nstart x = 1\n");
+  const auto r = run(m, 50);
+  CHECK(r.ending == Ending::Stopped);
+  // 1 → −1, kicked at x = ½ from ẋ = √¾ to √3: amplitude √(3 + ¼) > 1.5
+  CHECK(count(r, Happening::Kind::Event, "down") == 1);
+  CHECK(count(r, Happening::Kind::Event, "up") == 1);
+  CHECK(count(r, Happening::Kind::Event, "kick") == 1);
+  CHECK(r.happenings[0].t == doctest::Approx(std::acos(0.0)).epsilon(1e-14));
+  CHECK(r.happenings[1].t == doctest::Approx(3 * std::acos(0.0)).epsilon(1e-14));
+  CHECK(r.final.q[0] == doctest::Approx(1.5).epsilon(1e-14));
+  CHECK(std::abs(r.final.v[0]) == doctest::Approx(std::sqrt(3.25 - 2.25)).epsilon(1e-13));
+  CHECK(r.statistics.energy_drift < 1e-14);
+}
+
+TEST_CASE("a set that breaks a contact or a constraint ends the run with the reason") {
+  ModelText m("dimensionless\ncoord x : number\nT = 1/2 x'^2\ncontact x >= 0 name wall\n"
+              "event bad when x = 2 : set x = -1\nstart x = 1, x' = 1\n");
+  const auto r = run(m, 5);
+  CHECK(r.ending == Ending::SingularConstraints);
+  CHECK(r.reason.find("wall") != std::string::npos);
+  ModelText c("dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nconstraint x = y name tie\n"
+              "event bad when x = 2 : set x = 5\nstart x = 1, y = 1, x' = 1, y' = 1\n");
+  const auto s = run(c, 5);
+  CHECK(s.ending == Ending::SingularConstraints);
+  CHECK(s.reason.find("tie") != std::string::npos);
+}
+
+TEST_CASE("a contact that the start violates is an error") {
+  ModelText m("dimensionless\ncoord x : number\nT = 1/2 x'^2\ncontact x >= 0 name wall\nstart x = -1\n");
+  SimulationOptions options;
+  options.duration = 1;
+  CHECK_FALSE(simulate(m.model, m.equations, options, m.diagnostics));
+  CHECK(m.diagnostics.items().back().code == "E0728");
+}
+
+TEST_CASE("backwards through an impact is refused") {
+  ModelText m("param m = 1 kg, g = 9.81 m/s^2\ncoord z : length\nT = 1/2 m z'^2\nV = m g z\n"
+              "contact z >= 0 restitution 0.5 name floor\nstart z = 1 m\n");
+  const auto r = run(m, -2);
+  CHECK(r.ending == Ending::Paradox);
+  CHECK(r.reason.find("Backwards") != std::string::npos);
+}
+
+TEST_CASE("a table on four legs: λ is not determined, the motion is") {
+  ModelText m("param m = 1 kg, g = 9.81 m/s^2, J = 1 kg m^2\ncoord z : length, a, b : angle\n"
+              "T = 1/2 m z'^2 + 1/2 J (a'^2 + b'^2)\nV = m g z\nlet d = 1 [m]\n"
+              "contact z + d a + d b >= 0\ncontact z + d a - d b >= 0\ncontact z - d a + d b >= 0\ncontact z - d a - d b >= 0\n");
+  const auto r = run(m, 10);
+  REQUIRE(r.ok());
+  for (int i = 0; i < 3; ++i) CHECK(std::abs(r.final.q[static_cast<std::size_t>(i)]) < 1e-13);
+}
+
+TEST_CASE("a block on a table that vibrates flies off where a_max > g, and at the phase where z'' = -g") {
+  ModelText m("param m = 1 kg, g = 9.81 m/s^2, A = 10 mm, w = 40 rad/s\ncoord z : length\nT = 1/2 m z'^2\nV = m g z\n"
+              "contact z >= A sin(w t) name table\nstart z' = A w\n");
+  const auto r = run(m, 0.1);
+  REQUIRE(!r.happenings.empty());
+  CHECK(r.happenings[0].kind == Happening::Kind::Lost);
+  CHECK(r.happenings[0].t == doctest::Approx(std::asin(9.81 / 16) / 40).epsilon(1e-13));
+}
