@@ -1,6 +1,6 @@
 #pragma once
-#include "contact/contact_functions.hpp"
-#include "contact/impact.hpp"
+#include "simulation/contact/contact_functions.hpp"
+#include "simulation/contact/impact.hpp"
 #include "simulation/function_kernels.hpp"
 #include "simulation/method.hpp"
 

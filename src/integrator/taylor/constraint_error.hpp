@@ -19,7 +19,7 @@ struct UsualSizes {
 /// how far they change in a step of length h or in a motion of the usual sizes, so that a constraint such as y = 0 has
 /// a measure too.
 double constraint_error(const KernelWorkspace& work, std::size_t freedoms, std::size_t constraints, double h,
-                        const UsualSizes& usual);
+                        const UsualSizes& usual = {});
 
 /// How far corrections of q and q̇ go, relative to q̇ and to what it moves in a step of length h, in the metric of the
 /// diagonal of M.

@@ -268,17 +268,49 @@ TEST_CASE("constraints") {
   CHECK(Parsed("reaction rod = relaese l\n").tree.lost_names.at(0).text == "rod");
 }
 
-TEST_CASE("statements for later are read whole") {
+TEST_CASE("contacts, friction, events and impacts are read whole") {
   const char* const texts[] = {
       "contact r >= R restitution 0",
       "contact y <= 0 restitution e friction μ static μs slip x' name floor",
+      "contact y >= 0 slip x' - R φ' sticking",
       "friction x coefficient μ static μs normal m g",
       "friction x coefficient μ normal reaction(floor)",
       "friction θ limit τ0",
+      "friction θ limit τ0 static τ1",
       "impact simultaneous",
       "event hit when x = 0 rising : record",
       "event hit when x - 2 = 3 m falling : stop",
       "event hit when x = 0 : set x' = -e x', y' = y'",
+  };
+  for (const char* text : texts) {
+    CAPTURE(text);
+    Parsed parsed(std::string(text) + "\n");
+    CHECK_MESSAGE(parsed.fine(), parsed.messages());
+    REQUIRE(parsed.tree.statements.size() == 1);
+    CHECK(formatted(std::string(text) + "\n") == std::string(text) + "\n");
+  }
+  const auto floor = only<ContactStatement>("contact y <= 0 restitution e friction μ static μs slip x' name floor");
+  CHECK(floor.at_most);
+  CHECK(text_of(floor.restitution) == "e");
+  CHECK(text_of(floor.friction) == "μ");
+  CHECK(text_of(floor.static_friction) == "μs");
+  CHECK(text_of(floor.slip) == "x'");
+  CHECK(floor.name->text == "floor");
+  CHECK(only<ContactStatement>("contact y >= 0 slip x' sticking").sticking);
+  const auto hit = only<EventStatement>("event hit when x - 2 = 3 m falling : stop");
+  CHECK(hit.direction == -1);
+  CHECK(hit.action == EventStatement::Action::Stop);
+  CHECK(only<EventStatement>("event hit when x = 0 rising : set x' = -x', y' = y'").sets.size() == 2);
+  CHECK(only<ImpactStatement>("impact simultaneous").simultaneous);
+  CHECK_FALSE(only<ImpactStatement>("impact sequential").simultaneous);
+  CHECK(codes("contact x = 3") == "E0111");
+  CHECK(codes("contact x >= 3 restitution 1 restitution 1") == "E0127");
+  CHECK(codes("friction x coefficient 0.3") == "E0127");
+  CHECK(codes("event hit when x = 0 : jump") == "E0111");
+}
+
+TEST_CASE("statements for later are read whole") {
+  const char* const texts[] = {
       "field u(x) : angle on x = -20 m .. 20 m cells 800 boundary u_x = 0",
       "density = 1/2 u'^2 - 1/2 c^2 u_x^2",
   };
@@ -290,7 +322,6 @@ TEST_CASE("statements for later are read whole") {
     CHECK(std::holds_alternative<LaterStatement>(parsed.tree.statements[0].body));
     CHECK(formatted(std::string(text) + "\n") == std::string(text) + "\n");
   }
-  CHECK(codes("contact x = 3") == "E0111");
   CHECK(codes("sweep x = 0 .. 3") == "E0127");
   CHECK(only<LaterStatement>("field u(x) : angle").names.size() == 2);
 }

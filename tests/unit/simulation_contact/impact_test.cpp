@@ -1,5 +1,5 @@
 // Impulses against closed forms and against what energy allows.
-#include "contact/impact.hpp"
+#include "simulation/contact/impact.hpp"
 #include "linear_algebra/complementarity.hpp"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
 #pragma once
-#include "contact/contact_functions.hpp"
+#include "simulation/contact/contact_functions.hpp"
 
 #include <maupertuis/contact.hpp>
 

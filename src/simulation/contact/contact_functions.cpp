@@ -1,4 +1,4 @@
-#include "contact/contact_functions.hpp"
+#include "simulation/contact/contact_functions.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/contact_mode.hpp>

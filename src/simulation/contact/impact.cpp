@@ -1,4 +1,4 @@
-#include "contact/impact.hpp"
+#include "simulation/contact/impact.hpp"
 
 #include "linear_algebra/complementarity.hpp"
 
