@@ -173,6 +173,23 @@ void as_generalized(const Tie& tie, Reaction& r) {
                            force ? "force" : "torque", fmt::join(names, ", "));
 }
 
+/// Of a contact: it presses, or a string pulls, whatever the sense of its gap: never negative.
+Reaction reaction_of_contact(const Tie& tie, std::string label) {
+  Reaction r;
+  r.name = std::move(label);
+  r.symbol = tie.constraint.reaction;
+  r.dimension = dimension_of_reaction(tie);
+  const bool force = dimensions::force().same_as(r.dimension) || tie.system.dimensionless;
+  if (!force || !as_contact(tie, r)) {
+    if (tie.system.dimensionless || dimension_of_multiplier(tie.system, tie.constraint).same_as(r.dimension))
+      as_multiplier(tie, r);
+    else
+      as_generalized(tie, r);
+  }
+  r.sentence = "the force of the contact, which is 0 while it is open and positive while it presses";
+  return r;
+}
+
 Reaction reaction_of(const Tie& tie, std::string label) {
   Reaction r;
   r.name = std::move(label);
@@ -239,7 +256,7 @@ std::vector<Reaction> reactions(const EquationsOfMotion& equations) {
       tie.row.push_back(differentiate(closed.value, system.coordinates[i].q));
       if (!tie.row[i].is_zero()) tie.coordinates.push_back(i);
     }
-    all.push_back(reaction_of(tie, closed.name));
+    all.push_back(reaction_of_contact(tie, closed.name));
   }
   for (const Release& release : system.releases) all.push_back(reaction_of(equations, release));
   return all;
