@@ -1,7 +1,9 @@
 #pragma once
 #include "kernel/reference/elementary.hpp"
 
+#include <boost/math/special_functions/zeta.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
+#include <boost/version.hpp>
 
 #include <cmath>
 #include <limits>
@@ -48,6 +50,20 @@ bool is_finite(const T& x) {
 }
 
 }  // namespace maupertuis::extended
+
+// Values of ζ, which stand in erf behind the gamma functions, are computed by whoever asks first for one, in his
+// thread. Boost computes them for every number type when a program starts as well, in the main thread: 35 ms of the 42
+// that `maup --version` took. Newer versions of Boost are left as they are.
+#if BOOST_VERSION <= 108100
+namespace boost::math::detail {
+
+template <unsigned Bits, class Policy, class Tag>
+struct zeta_initializer<maupertuis::extended::Real<Bits>, Policy, Tag> {
+  static void force_instantiate() {}
+};
+
+}  // namespace boost::math::detail
+#endif
 
 namespace maupertuis::reference {
 

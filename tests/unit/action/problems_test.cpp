@@ -245,7 +245,7 @@ TEST_CASE("random quadratic actions: both counts agree") {
     return static_cast<double>(seed >> 11) / 9007199254740992.0 - 0.5;
   };
   std::size_t largest = 0;
-  for (int trial = 0; trial < 12; ++trial) {
+  for (int trial = 0; trial < (under_sanitizers ? 4 : 12); ++trial) {
     const ModelText m("system r\ndimensionless\nparam a = " + std::to_string(1.3 + random()) +
                       ", b = " + std::to_string(random()) + ", c = " + std::to_string(8 * random()) +
                       ", d = " + std::to_string(8 * random()) + ", e = " + std::to_string(4 * random()) +
@@ -276,7 +276,8 @@ TEST_CASE("what has no action, ends off the constraints, ends in the wrong order
 TEST_CASE(
     "conjugate points of a double pendulum: det ∂q/∂q̇(0) of differences in 113 bits changes its sign at "
     "3.935433753879") {
-  for (const std::string run : {"6", "5.3"}) {
+  for (const std::string run : {"5.3", "6"}) {
+    if (under_sanitizers && run == "6") break;
     const ModelText m(
         "system dp\ndimensionless\ncoord a, b : angle\nL = a'^2 + 1/2 b'^2 + a' b' cos(a - b) + 9.81 (2 cos a + cos "
         "b)\n"

@@ -67,7 +67,7 @@ TEST_CASE("the error of S holds for oscillators") {
     look(m, e, exact, oscillator_size(mass, w, e));
   };
   look_at(line(1, 1, 0), {0.4, 0, -1.1, 2});
-  for (int round = 0; round < 30; ++round) {
+  for (int round = 0; round < (under_sanitizers ? 4 : 30); ++round) {
     const ModelText m = line(between(0.1, 9), between(0.1, 5), 0);
     const double w = std::sqrt(parameter(m, "k") / parameter(m, "m"));
     for (const double halves : {0.11, 0.37, 0.81, 1.6, 2.4}) {
@@ -80,7 +80,7 @@ TEST_CASE("the error of S holds for oscillators") {
 TEST_CASE("the error of S holds for free fall and free particles, also far from the origin") {
   std::mt19937_64 random(1744);
   const auto between = [&](double a, double b) { return a + (b - a) * std::generate_canonical<double, 53>(random); };
-  for (int round = 0; round < 30; ++round) {
+  for (int round = 0; round < (under_sanitizers ? 4 : 30); ++round) {
     const ModelText m = line(between(0.1, 9), 0, round % 2 ? between(0.5, 20) : 0);
     const Wide mass = parameter(m, "m"), F = parameter(m, "F");
     for (const double far : {0.0, 1.0, 1000.0}) {

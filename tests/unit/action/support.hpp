@@ -1,5 +1,6 @@
 #pragma once
 #include "../model_text.hpp"
+#include "../under_sanitizers.hpp"
 
 #include <maupertuis/action.hpp>
 

@@ -1,3 +1,4 @@
+#include "../under_sanitizers.hpp"
 #include "decimal.hpp"
 
 #include <atomic>
@@ -55,7 +56,7 @@ TEST_CASE("three links with motors: the 24 digits of an extrapolation in 44-digi
 
 TEST_CASE("quad and 100 digits agree on every digit that quad claims, and the motion loses some") {
   ExtendedSimulationOptions options;
-  options.duration = 6;
+  options.duration = under_sanitizers ? 3 : 6;
   const ExtendedResult quad = run(ModelText(two_links), options);
   options.precision = Precision::Digits100;
   options.tolerance = 1e-50;

@@ -1,4 +1,5 @@
 // Every model of the gallery in phase space: certified, and the canonical equations give the motion of Lagrange's.
+#include "../under_sanitizers.hpp"
 #include "phase_space.hpp"
 
 #include <fmt/format.h>
@@ -27,6 +28,11 @@ double allowed(const std::string& name) { return name == "heavy_top" ? 1e-10 : 1
 const std::set<std::string> chaotic = {"double_pendulum", "chain",      "elastic_pendulum",
                                        "cart_pendulum",   "rattleback", "tumbling_satellite"};
 
+/// More than half of the time belongs to them. `make test` has them all.
+const std::set<std::string> left_out = under_sanitizers ? std::set<std::string>{"rattleback", "satellite", "squeezer",
+                                                                                "ball_on_turntable", "bennett_linkage"}
+                                                        : std::set<std::string>{};
+
 }  // namespace
 
 TEST_CASE("the gallery in phase space") {
@@ -34,6 +40,7 @@ TEST_CASE("the gallery in phase space") {
   for (const auto& entry : std::filesystem::directory_iterator(PROJECT_DIR "/models")) {
     if (entry.path().extension() != ".lag") continue;
     const std::string name = entry.path().stem();
+    if (left_out.count(name)) continue;
     CAPTURE(name);
     const PhaseSpaceOf p(text_of(entry.path()));
     CHECK_MESSAGE(p.certified(), name);
@@ -67,7 +74,7 @@ TEST_CASE("the gallery in phase space") {
 
 TEST_CASE("a multiplier that is zero but for rounding does not hold up a motion: three cranks from many angles") {
   const std::string text = text_of(PROJECT_DIR "/models/parallelogram.lag");
-  for (int degrees = 20; degrees <= 80; degrees += 3) {
+  for (int degrees = 20; degrees <= 80; degrees += under_sanitizers ? 20 : 3) {
     CAPTURE(degrees);
     std::string changed = text.substr(0, text.find("start "));
     changed += fmt::format(

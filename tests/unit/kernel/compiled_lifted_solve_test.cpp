@@ -7,6 +7,7 @@ TEST_CASE("chains, trees and combs: unknowns and tangents as by the loops, M x =
   for (const auto& [parent, count] :
        {std::pair<Parents, int>{chain, 20}, {chain, 100}, {binary_tree, 63}, {comb, 50}}) {
     Rods rods(count, parent);
+    const MassOfRods mass_of_rods(count, parent);
     Lifted loops(build_kernel(rods.source)), code(build_kernel(rods.source));
     code.solve.compile({.cache = false, .long_run = count != 100, .processor = {}});  // factors by code too, and not
     CHECK_FALSE(code.solve.compile_report());                                         // no pivots yet
@@ -33,7 +34,7 @@ TEST_CASE("chains, trees and combs: unknowns and tangents as by the loops, M x =
         for (std::size_t i = 0; i < n; ++i) {
           double sum = 0, size = std::abs(b[i]);
           for (std::size_t j = 0; j < n; ++j) {
-            const double term = mass_of_rods(count, parent, p.q, i, j) * y[j];
+            const double term = mass_of_rods(p.q, i, j) * y[j];
             sum += term, size += std::abs(term);
           }
           CHECK(std::abs(sum - b[i]) <= 1e-13 * size);
@@ -69,6 +70,7 @@ TEST_CASE("up to 48 unknowns: −M₀⁻¹ by eight columns at once, times M in 
   for (const auto& [parent, count] : {std::pair<Parents, int>{chain, 17}, {chain, 48}, {binary_tree, 31}, {comb, 30}}) {
     CAPTURE(count);
     Rods rods(count, parent);
+    const MassOfRods mass_of_rods(count, parent);
     Lifted code(build_kernel(rods.source));
     code.solve.compile({.cache = false, .processor = {}});
     const auto n = static_cast<std::size_t>(count), padded = (n + 7) / 8 * 8;
@@ -82,7 +84,7 @@ TEST_CASE("up to 48 unknowns: −M₀⁻¹ by eight columns at once, times M in 
         for (std::size_t j = 0; j < padded; ++j) {
           double sum = i == j ? 1 : 0, size = 1;
           for (std::size_t k = 0; k < n; ++k) {
-            const double term = mass_of_rods(count, parent, p.q, i, k) * inverse[k * padded + j];
+            const double term = mass_of_rods(p.q, i, k) * inverse[k * padded + j];
             sum += term, size += std::abs(term);
           }
           CHECK(std::abs(sum) <= 1e-13 * size);

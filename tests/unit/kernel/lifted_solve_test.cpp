@@ -5,6 +5,7 @@
 TEST_CASE("chains, trees and combs: M x = b with M in closed form") {
   for (const auto& [parent, count] : {std::pair<Parents, int>{chain, 40}, {binary_tree, 63}, {comb, 50}}) {
     Rods rods(count, parent);
+    const MassOfRods mass_of_rods(count, parent);
     Lifted lifted(build_kernel(rods.source));
     const auto n = static_cast<std::size_t>(count);
     for (unsigned seed = 1; seed <= 5; ++seed) {
@@ -17,7 +18,7 @@ TEST_CASE("chains, trees and combs: M x = b with M in closed form") {
       for (std::size_t i = 0; i < n; ++i) {
         double sum = 0, size = std::abs(b[i]);
         for (std::size_t j = 0; j < n; ++j) {
-          const double term = mass_of_rods(count, parent, p.q, i, j) * x[j];
+          const double term = mass_of_rods(p.q, i, j) * x[j];
           sum += term, size += std::abs(term);
         }
         CHECK(std::abs(sum - b[i]) <= 1e-13 * size);
@@ -58,6 +59,7 @@ TEST_CASE("accelerations of large systems satisfy Lagrange's equations, whatever
   for (const auto& [parent, count] :
        {std::pair<Parents, int>{chain, 17}, {chain, 50}, {chain, 200}, {binary_tree, 127}, {comb, 90}}) {
     Rods rods(count, parent);
+    const MassOfRods mass_of_rods(count, parent);
     const auto n = static_cast<std::size_t>(count);
     KernelWorkspace work(build_kernel(rods.source), 4);
     work.set_parameters(one);
@@ -67,16 +69,16 @@ TEST_CASE("accelerations of large systems satisfy Lagrange's equations, whatever
     for (std::size_t k = 0; k < n; ++k) {
       double sum = 0, size = 0;
       for (std::size_t i = 0; i < n; ++i) {
-        const double mass = mass_of_rods(count, parent, p.q, k, i);
+        const double mass = mass_of_rods(p.q, k, i);
         const double shared = mass == 0 ? 0 : mass / std::cos(p.q[k] - p.q[i]);
         const double left = mass * work.acceleration(i), right = shared * std::sin(p.q[i] - p.q[k]) * p.v[i] * p.v[i];
         sum += left - right, size += std::abs(left) + std::abs(right);
       }
-      const double carried = mass_of_rods(count, parent, p.q, k, k);
+      const double carried = mass_of_rods(p.q, k, k);
       sum += carried * 9.81 * std::sin(p.q[k]);
       CHECK(std::abs(sum) <= 1e-12 * (size + carried * 9.81));
     }
-    CHECK(work.mass(0, n - 1) == doctest::Approx(mass_of_rods(count, parent, p.q, 0, n - 1)).epsilon(1e-12));
+    CHECK(work.mass(0, n - 1) == doctest::Approx(mass_of_rods(p.q, 0, n - 1)).epsilon(1e-12));
   }
 }
 

@@ -39,16 +39,22 @@ struct Rods {
 };
 
 /// M of the rods in closed form: M_ij = (points that both carry) l² cos(a_i − a_j).
-inline double mass_of_rods(int count, const Parents& parent, const std::vector<double>& a, std::size_t i,
-                           std::size_t j) {
-  int shared = 0;
-  for (int point = 0; point < count; ++point) {
-    bool has_i = false, has_j = false;
-    for (int p = point; p >= 0; p = parent(p)) has_i |= p == static_cast<int>(i), has_j |= p == static_cast<int>(j);
-    shared += has_i && has_j;
+class MassOfRods {
+ public:
+  MassOfRods(int count, const Parents& parent) : shared_(static_cast<std::size_t>(count)) {
+    for (auto& row : shared_) row.assign(shared_.size(), 0);
+    for (int point = 0; point < count; ++point)
+      for (int i = point; i >= 0; i = parent(i))
+        for (int j = point; j >= 0; j = parent(j)) ++shared_[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
   }
-  return shared * std::cos(a[i] - a[j]);
-}
+
+  double operator()(const std::vector<double>& a, std::size_t i, std::size_t j) const {
+    return shared_[i][j] * std::cos(a[i] - a[j]);
+  }
+
+ private:
+  std::vector<std::vector<int>> shared_;
+};
 
 inline int chain(int i) { return i - 1; }
 inline int binary_tree(int i) { return i == 0 ? -1 : (i - 1) / 2; }
