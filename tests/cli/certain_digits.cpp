@@ -7,6 +7,7 @@
 
 using namespace cli_test;
 
+namespace certain_digits_test {
 namespace {
 
 const std::string oscillator =
@@ -121,3 +122,5 @@ TEST_CASE("plots shade what is not certain") {
   CHECK_FALSE(contains(plain.out, "<path class=\"band"));
   CHECK(contains(maup({"plot", model, "--x", "a", "--y", "a'"}).out, "class=\"curve lost"));
 }
+
+}  // namespace certain_digits_test

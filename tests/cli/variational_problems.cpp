@@ -7,6 +7,7 @@
 
 using namespace cli_test;
 
+namespace variational_problems_test {
 namespace {
 
 const std::string brachistochrone =
@@ -93,3 +94,5 @@ TEST_CASE("reduce leaves out a path whose coordinates go, and says so") {
   CHECK(!contains(told.out, "expect action"));
   CHECK(contains(told.err, "path from (0.6 m, -0.8 m) at 0 s to (-0.6 m, -0.8 m) at 1 s"));
 }
+
+}  // namespace variational_problems_test

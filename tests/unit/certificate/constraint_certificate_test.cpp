@@ -8,6 +8,7 @@
 
 using namespace maupertuis;
 
+namespace constraint_certificate_test {
 namespace {
 
 const char* const pendulum = R"(system pendulum
@@ -248,3 +249,5 @@ TEST_CASE("large systems with constraints pass without their matrices, and fail 
   model.equations.constraint_accelerations[1] = -model.equations.constraint_accelerations[1];
   CHECK(failed(certify(model.equations, nullptr)) == Names{"constraint_rows"});
 }
+
+}  // namespace constraint_certificate_test

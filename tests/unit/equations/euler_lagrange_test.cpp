@@ -7,6 +7,7 @@
 
 using namespace maupertuis;
 
+namespace euler_lagrange_test {
 namespace {
 
 const char* const double_pendulum = R"(system double_pendulum
@@ -186,3 +187,5 @@ TEST_CASE("the steps of a derivation stand in their sections, in the order of th
                                              "Potential energy", "Lagrangian", "Equation of θ1", "Equation of θ2",
                                              "Solved for the accelerations"});
 }
+
+}  // namespace euler_lagrange_test

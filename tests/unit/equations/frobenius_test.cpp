@@ -7,6 +7,8 @@
 
 using namespace maupertuis;
 
+namespace frobenius_test {
+
 /// The closure by brackets against exterior algebra: dω_i ∧ ω_1 ∧ … ∧ ω_r = 0 for all i, which shares no code with it.
 namespace {
 
@@ -172,3 +174,5 @@ TEST_CASE(
     CHECK(analysis.combinations[i].constraints == std::vector<std::size_t>{4 * i + 2, 4 * i + 3});
   }
 }
+
+}  // namespace frobenius_test

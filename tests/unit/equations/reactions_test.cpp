@@ -8,6 +8,7 @@
 
 using namespace maupertuis;
 
+namespace reactions_test {
 namespace {
 
 const char* const cartesian_pendulum = R"(system pendulum
@@ -304,3 +305,5 @@ TEST_CASE("relations that are no rods") {
   CHECK(equal(square(r.value),
               Rational(4) * square(given.equations.multipliers[0]) * (square(given.q(0)) + square(given.q(1)))));
 }
+
+}  // namespace reactions_test

@@ -4,6 +4,8 @@
 
 using namespace maupertuis;
 
+namespace proved_integrals_test {
+
 /// What `expect conserved` proves, `expect integral` finds: each integral is that of the literature.
 namespace {
 
@@ -52,3 +54,5 @@ TEST_CASE("the integral of the swinging Atwood machine with the mass ratio 3") {
   const Found two(machine("2 m"));
   CHECK_FALSE(two.has(integral(two.m)));
 }
+
+}  // namespace proved_integrals_test

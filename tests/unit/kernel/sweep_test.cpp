@@ -8,6 +8,7 @@
 
 using namespace maupertuis::sparse;
 
+namespace sweep_test {
 namespace {
 
 struct Case {
@@ -106,3 +107,5 @@ TEST_CASE("sums of any shape") {
     check(to.take());
   }
 }
+
+}  // namespace sweep_test

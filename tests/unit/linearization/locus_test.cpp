@@ -7,6 +7,7 @@
 
 using namespace maupertuis;
 
+namespace locus_test {
 namespace {
 
 const char* const hoop = R"(system hoop
@@ -93,3 +94,5 @@ TEST_CASE("A part of π that it is only for these numbers is not taken for the f
   REQUIRE(s->equilibrium.size() == 1);
   CHECK(zero_test(s->equilibrium[0].second.value - m.p("τ") / m.p("k")).verdict == Verdict::Zero);
 }
+
+}  // namespace locus_test

@@ -8,6 +8,7 @@
 
 using namespace maupertuis;
 
+namespace plot_test {
 namespace {
 
 Trajectory waves(std::size_t rows) {
@@ -211,3 +212,5 @@ TEST_CASE("a column that is not there is named, with a suggestion") {
   options.width = 10;
   CHECK(plot_problem(waves(2), options) == "a picture is at least 240 px wide");
 }
+
+}  // namespace plot_test

@@ -6,6 +6,7 @@
 
 using namespace maupertuis;
 
+namespace modes_test {
 namespace {
 
 ReportContent with_modes() {
@@ -48,3 +49,5 @@ TEST_CASE("a page without equilibria has no such part") {
   CHECK_FALSE(has(page, "id=\"modes\""));
   CHECK_FALSE(has(page, "function animate("));
 }
+
+}  // namespace modes_test

@@ -6,6 +6,7 @@
 
 using namespace maupertuis;
 
+namespace simulate_test {
 namespace {
 
 SimulationResult run(const ModelText& m, SimulationOptions options = {}) {
@@ -225,3 +226,5 @@ TEST_CASE("what is switched in time does work at once: the books close") {
   CHECK(run(ModelText("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = abs(x)\nstart x = 1\nrun 20\n"))
             .statistics.energy_drift < 1e-14);
 }
+
+}  // namespace simulate_test

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+namespace stiff_test {
 namespace {
 
 using namespace maupertuis;
@@ -236,3 +237,5 @@ TEST_CASE("a run ends with its reason") {
   CHECK(ending("system undefined\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - x sqrt(x)\n", {-1}, {0}, 10) ==
         StepEnding::Overflow);
 }
+
+}  // namespace stiff_test

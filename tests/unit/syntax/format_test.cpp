@@ -10,6 +10,7 @@ using namespace maupertuis;
 using namespace maupertuis::syntax;
 using namespace maupertuis::syntax::test;
 
+namespace format_test {
 namespace {
 
 std::string read(const std::filesystem::path& path) {
@@ -112,3 +113,5 @@ TEST_CASE("golden: the sample models in canonical layout") {
   }
   CHECK(count >= 11);
 }
+
+}  // namespace format_test

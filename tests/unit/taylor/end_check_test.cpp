@@ -12,6 +12,7 @@
 using namespace maupertuis;
 using taylor::EndCheck;
 
+namespace end_check_test {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -112,3 +113,5 @@ TEST_CASE("roundings of the equations reach the accelerations through the invers
   CHECK(taylor::acceleration_roundings({0}, 1, 0, disks, 0.1, epsilon)[0] == 0);
   CHECK(taylor::acceleration_roundings({}, 1, 0, disks, 0.1, epsilon)[0] == 0);
 }
+
+}  // namespace end_check_test

@@ -14,6 +14,7 @@
 using namespace maupertuis;
 using taylor::SafeLength;
 
+namespace safe_length_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -204,3 +205,5 @@ TEST_CASE("what is known of motions with other constants allows nothing") {
   CHECK(longest(steep) < 0.9 * h);
   CHECK(longest(gentle) == h);
 }
+
+}  // namespace safe_length_test

@@ -2,10 +2,12 @@
 
 #include <eigen3/Eigen/Dense>
 
+namespace structure_test {
+
+using State = std::vector<double>;
 namespace {
 
 using namespace maupertuis;
-using State = std::vector<double>;
 
 constexpr const char* kEntangled =
     "system entangled\ndimensionless\ncoord x, y : number\n"
@@ -231,3 +233,5 @@ TEST_CASE("an event is located by the method itself") {
   CHECK(!step.event);
   CHECK(step.end == doctest::Approx(std::acos(0.0) + 0.1).epsilon(1e-12));
 }
+
+}  // namespace structure_test

@@ -6,6 +6,7 @@
 
 using namespace maupertuis;
 
+namespace phase_space_test {
 namespace {
 
 const std::string spherical =
@@ -48,3 +49,5 @@ TEST_CASE("H, the Routhian and brackets: the closed forms hold, and no others") 
     CHECK(r.actual == (r.passed ? r.expected : "another function"));
   }
 }
+
+}  // namespace phase_space_test

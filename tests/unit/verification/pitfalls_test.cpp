@@ -6,6 +6,7 @@
 
 using namespace maupertuis;
 
+namespace pitfalls_test {
 namespace {
 
 std::string mistake_of(const std::string& system, const std::string& claim) {
@@ -64,3 +65,5 @@ TEST_CASE("a momentum put into L whose velocity also stands linearly, as in a ma
                     "the conserved momentum of φ was put into L"));
   CHECK(mistake_of(charge, "m r'' = -m r φ'^2 - b r φ' + b^2 r/(2 m)") == "");
 }
+
+}  // namespace pitfalls_test

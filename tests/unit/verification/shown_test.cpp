@@ -5,6 +5,7 @@
 
 using namespace maupertuis;
 
+namespace shown_test {
 namespace {
 
 const std::string spring = R"(param m = 1 kg, k = 1 N/m
@@ -89,3 +90,5 @@ TEST_CASE("an equation that a mistake would make empty explains no claim") {
     CHECK_MESSAGE(r.pitfall.empty(), claim << ": " << r.pitfall);
   }
 }
+
+}  // namespace shown_test

@@ -7,6 +7,7 @@
 
 using namespace maupertuis;
 
+namespace value_verdict_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -87,3 +88,5 @@ TEST_CASE("digits that are known pass without a word") {
   CHECK_FALSE(r.beyond_digits);
   CHECK(r.uncertainty.find("e-0") != std::string::npos);
 }
+
+}  // namespace value_verdict_test
