@@ -12,24 +12,24 @@ namespace maupertuis {
 /// Coulomb's friction along a slip velocity v_t: while it slides λ_t = −μ N v_t/|v_t|, while it sticks v_t = 0 and
 /// |λ_t| ≤ μ_s N. N is the force of the contact that it belongs to, or what the model says.
 struct Friction {
-  std::string name;             // of the contact, or of the coordinate
-  std::vector<Expr> slip;       // v_t in q, q', t: one component, or two in space; empty: without friction
+  std::string name;               // of the contact, or of the coordinate
+  std::vector<Expr> slip;         // v_t in q, q', t: one component, or two in space; empty: without friction
   std::vector<Expr> multipliers;  // λ_t while it sticks, one a component
-  Expr kinetic, static_;        // μ, μ_s: coefficients of N; or where there is no N the limits of the force themselves
-  Expr normal;                  // N, of a coordinate; empty: the force of the contact, or 1
-  bool sticking = false;        // it never slides while the contact is closed
+  Expr kinetic, static_;  // μ, μ_s: coefficients of N; or where there is no N the limits of the force themselves
+  Expr normal;            // N, of a coordinate; empty: the force of the contact, or 1
+  bool sticking = false;  // it never slides while the contact is closed
   Span span;
   bool present() const { return !slip.empty(); }
 };
 
 /// g(q, t) ≥ 0. While it is closed g = 0 and its force is +λ ∂g/∂q with λ ≥ 0.
 struct Contact {
-  std::string name;   // as written; empty if it has none
-  Expr gap;           // g, SI; no TimeDerivative nodes
-  Expr multiplier;    // λ, Role::Multiplier
-  Expr reaction;      // symbol: what `reaction(name)` stands for
-  Expr restitution;   // e in [0, 1], of parameters and numbers
-  Friction friction;  // its slip is empty where there is none
+  std::string name;     // as written; empty if it has none
+  Expr gap;             // g, SI; no TimeDerivative nodes
+  Expr multiplier;      // λ, Role::Multiplier
+  Expr reaction;        // symbol: what `reaction(name)` stands for
+  Expr restitution;     // e in [0, 1], of parameters and numbers
+  Friction friction;    // its slip is empty where there is none
   Dimension dimension;  // of g
   Span span;
 };

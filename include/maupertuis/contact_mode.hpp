@@ -13,8 +13,8 @@ enum class FrictionState : std::int8_t { None, Stick, Forward, Backward };
 
 /// Which contacts are closed and what each friction does: between events a system moves by the equations of one mode.
 struct ContactMode {
-  std::vector<bool> closed;             // [contacts]
-  std::vector<FrictionState> friction;  // [contacts + frictions]: those of the contacts, then those of coordinates
+  std::vector<bool> closed;              // [contacts]
+  std::vector<FrictionState> friction;   // [contacts + frictions]: those of the contacts, then those of coordinates
   std::vector<std::int8_t> normal_sign;  // [frictions] sign of a normal force that is made of multipliers; else 1
   friend bool operator==(const ContactMode&, const ContactMode&) = default;
 };
@@ -23,6 +23,12 @@ struct ContactMode {
 ContactMode open_mode(const MechanicalSystem& system);
 /// Friction number i of a mode: of contact i, then of the coordinates.
 const Friction& friction_of(const MechanicalSystem& system, std::size_t index);
+
+/// The normal force of friction i in a mode, not negative there: λ of its contact; the |N| that the model says, by the
+/// sign of the mode where it is made of multipliers. Empty where the limits of the friction are forces themselves.
+Expr normal_force(const MechanicalSystem& system, const ContactMode& mode, std::size_t index);
+/// Whether multipliers stand in it.
+bool has_multipliers(Expr e);
 
 /// "floor, wall sliding, x sticking"; empty where all is open and nothing rubs.
 std::string mode_text(const MechanicalSystem& system, const ContactMode& mode);

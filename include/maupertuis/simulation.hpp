@@ -106,7 +106,7 @@ struct Happening {
   double speed = 0;     // Impact: −ġ before
   std::string remark{};   // "the end of infinitely many bounces at t = 4.0637 s"
   std::string mode{};     // that the motion is in afterwards: "floor, wall sliding"; empty: free
-  std::vector<double> q, v;  // [n] just after
+  std::vector<double> q, v;  // [n] just after; empty beyond two million numbers of a run
 };
 std::string_view word_of(Happening::Kind kind);
 

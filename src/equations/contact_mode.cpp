@@ -11,15 +11,6 @@ std::string label_of_friction(const MechanicalSystem& system, std::size_t index)
                                         : system.frictions[index - system.contacts.size()].name;
 }
 
-/// N of friction `index`; empty where its limit is a force already.
-Expr normal_force(const MechanicalSystem& system, std::size_t index, const ContactMode& mode) {
-  if (index < system.contacts.size()) return system.contacts[index].multiplier;
-  const std::size_t own = index - system.contacts.size();
-  const Expr normal = system.frictions[own].normal;
-  if (!normal) return normal;
-  return mode.normal_sign[own] < 0 ? -normal : normal;
-}
-
 void add_sticking(MechanicalSystem& out, const Friction& friction, const std::string& label) {
   Context& context = *out.context;
   for (std::size_t k = 0; k < friction.slip.size(); ++k) {
@@ -61,6 +52,22 @@ ContactMode open_mode(const MechanicalSystem& system) {
   mode.friction.resize(system.contacts.size() + system.frictions.size(), FrictionState::Stick);
   mode.normal_sign.assign(system.frictions.size(), 1);
   return mode;
+}
+
+bool has_multipliers(Expr e) {
+  if (!e) return false;
+  for (const Expr& s : symbols_of({&e, 1}))
+    if (s.role() == Role::Multiplier) return true;
+  return false;
+}
+
+Expr normal_force(const MechanicalSystem& system, const ContactMode& mode, std::size_t index) {
+  if (index < system.contacts.size()) return system.contacts[index].multiplier;
+  const std::size_t own = index - system.contacts.size();
+  const Expr normal = system.frictions[own].normal;
+  if (!normal) return normal;
+  if (!has_multipliers(normal)) return apply(Kind::Abs, normal);
+  return mode.normal_sign[own] < 0 ? -normal : normal;
 }
 
 const Friction& friction_of(const MechanicalSystem& system, std::size_t index) {
@@ -143,7 +150,8 @@ std::optional<ContactMode> read_mode(const MechanicalSystem& system, const std::
   for (std::size_t i = mode.closed.size(); i < told.size(); ++i)
     if (!told[i]) {
       const std::string& name = label_of_friction(system, i);
-      trouble = fmt::format("Say what friction does along {0}: `{0} sticking`, `{0} sliding +` or `{0} sliding -`.", name);
+      trouble =
+          fmt::format("Say what friction does along {0}: `{0} sticking`, `{0} sliding +` or `{0} sliding -`.", name);
       return std::nullopt;
     }
   return mode;
@@ -165,7 +173,7 @@ MechanicalSystem system_in_mode(const MechanicalSystem& system, const ContactMod
     if (mode.friction[i] == FrictionState::Stick)
       add_sticking(out, friction, label_of_friction(system, i));
     else
-      add_sliding(out, friction, normal_force(system, i, mode), mode.friction[i] == FrictionState::Forward ? 1 : -1);
+      add_sliding(out, friction, normal_force(system, mode, i), mode.friction[i] == FrictionState::Forward ? 1 : -1);
   }
   if (system.written) out.written = std::make_shared<const MechanicalSystem>(system_in_mode(*system.written, mode));
   return out;

@@ -107,8 +107,8 @@ Eigen::VectorXd refined(const Eigen::MatrixXd& w, const Eigen::VectorXd& q, cons
   Eigen::MatrixXd part(count, count);
   Eigen::VectorXd right(count);
   for (Index a = 0; a < count; ++a) {
-    right(a) = -q(in[static_cast<std::size_t>(a)]) -
-               w.row(in[static_cast<std::size_t>(a)]).dot(z);  // what is still missing
+    right(a) =
+        -q(in[static_cast<std::size_t>(a)]) - w.row(in[static_cast<std::size_t>(a)]).dot(z);  // what is still missing
     for (Index b = 0; b < count; ++b) part(a, b) = w(in[static_cast<std::size_t>(a)], in[static_cast<std::size_t>(b)]);
   }
   const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(part);

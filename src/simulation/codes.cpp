@@ -116,6 +116,10 @@ constexpr std::array entries{
               "They are located to rounding on the polynomials of Taylor's steps, and the mode changes there. The stiff "
               "and the variational method have no such polynomials.",
               "", ""},
+    CodeEntry{"E0729", "impacts where momenta are not linear in the velocities",
+              "An impulse changes p = ∂L/∂q'. For a Lagrangian that is quadratic in q' the velocities after it follow from a "
+              "linear equation, which is solved; others, as of a relativistic particle, are not carried out yet.",
+              "", ""},
     CodeEntry{"E0728", "the start violates a contact",
               "A contact g >= 0 holds at all times, at the first one too: bodies do not begin inside each other.", "", ""},
 };

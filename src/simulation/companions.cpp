@@ -156,14 +156,14 @@ Companions one_after_the_other(const CompanionPlan& plan, const WantedFunctions&
     if (!taylor) draw.q = plan.run.q, draw.v = plan.run.v;  // rounding is nothing beside their tolerances
     HybridMotion* through_modes = nullptr;
     const auto hybrid = [&] {
-      auto made = std::make_unique<HybridMotion>(plan.model, plan.equations, wanted, draw.parameters,
-                                                 taylor_options(plan, k));
+      auto made =
+          std::make_unique<HybridMotion>(plan.model, plan.equations, wanted, draw.parameters, taylor_options(plan, k));
       through_modes = made.get();
       return made;
     };
     const std::unique_ptr<Method> method =
         goes_through_modes(plan.model) ? std::unique_ptr<Method>(hybrid())
-        : taylor            ? method_of(TaylorStepper(numbers.kernel(), draw.parameters, taylor_options(plan, k)))
+        : taylor          ? method_of(TaylorStepper(numbers.kernel(), draw.parameters, taylor_options(plan, k)))
         : name == "stiff" ? finer_stiff(plan, wanted, k)
                           : finer_variational(plan, wanted, k);
     auto run = Recorder(plan, *method).record(draw);

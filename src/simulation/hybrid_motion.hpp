@@ -19,8 +19,8 @@ namespace maupertuis {
 struct HybridRecord {
   std::string first_mode;
   std::vector<Happening> happenings;
-  EnergyBooks books;                     // friction and dampers: at the end of the run
-  std::vector<std::string> remarks;      // a sentence each, each once
+  EnergyBooks books;                      // friction and dampers: at the end of the run
+  std::vector<std::string> remarks;       // a sentence each, each once
   std::optional<std::string> stopped_by;  // the event that stopped the run
 };
 
@@ -123,11 +123,11 @@ class HybridMotion final : public Method {
   std::vector<std::size_t> kind_;               // [n] coordinates of one dimension share a number
   std::vector<std::size_t> gap_kind_;           // [contacts] so do gaps
   std::vector<double> place_, speed_, acceleration_;  // [kinds] |q|, |q'|, |q''|
-  std::vector<double> compliance_;              // [contacts] what a force λ = 1 does to g̈, where it was needed
+  std::vector<double> compliance_;                    // [contacts] what a force λ = 1 does to g̈, where it was needed
   struct Bounces {
     std::vector<std::pair<double, double>> last;  // (t, speed) of the last impacts
   };
-  std::vector<Bounces> bounces_;  // [contacts]
+  std::vector<Bounces> bounces_;    // [contacts]
   std::vector<std::size_t> cycle_;  // contacts that bounce together towards an end of their bounces
   std::optional<std::string> accumulated_;
   double accumulated_at_ = 0;

@@ -3,6 +3,7 @@
 #include <maupertuis/integrator.hpp>
 #include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/simulation.hpp>
+#include <maupertuis/transform.hpp>
 
 #include "simulation/companions.hpp"
 #include "simulation/ending.hpp"
@@ -62,6 +63,18 @@ std::unique_ptr<Method> stiff_method(const EquationsOfMotion& equations, const W
   return stiff_method(equations, wanted, out, diagnostics);
 }
 
+bool has_linear_momenta(const EquationsOfMotion& equations) {
+  const ExprMatrix mass = mass_matrix(equations);
+  ExprVector velocities, slopes;
+  for (const Expr& s : symbols_of(mass.entries))
+    if (s.role() == Role::Coordinate && s.order() == 1) velocities.push_back(s);
+  if (velocities.empty()) return true;
+  for (const Expr& entry : mass.entries)
+    for (const Expr& slope : gradient(entry, velocities))
+      if (!slope.is_zero()) slopes.push_back(slope);
+  return slopes.empty() || zero_test(slopes).verdict == Verdict::Zero;
+}
+
 /// Contacts, friction and events go through modes, by Taylor's steps.
 std::unique_ptr<HybridMotion> hybrid_method(const Model& model, const EquationsOfMotion& equations,
                                             const WantedFunctions& wanted, const SimulationOptions& options,
@@ -70,6 +83,13 @@ std::unique_ptr<HybridMotion> hybrid_method(const Model& model, const EquationsO
     diagnostics.error("E0727", std::nullopt, "this method does not go through contacts, friction or events",
                       "They are located on the polynomials of Taylor's steps.",
                       "Use --method taylor, or leave the method out.");
+    return nullptr;
+  }
+  if (!model.system.contacts.empty() && !has_linear_momenta(equations)) {
+    diagnostics.error("E0729", model.system.contacts.front().span,
+                      "impacts are not carried out where momenta are not linear in the velocities",
+                      "An impulse changes p = ∂L/∂q'; here q' does not follow from p by a linear equation.",
+                      "Leave the contacts out, or use a Lagrangian that is quadratic in the velocities.");
     return nullptr;
   }
   return std::make_unique<HybridMotion>(model, equations, wanted, parameter_values(model.system),
@@ -92,10 +112,10 @@ bool start_keeps_contacts(const Model& model, const RunPlan& plan, Diagnostics& 
     const double value = evaluate(gap, at);
     if (value >= -rounding * size) continue;
     kept = false;
-    diagnostics.error("E0728", system.contacts[i].span,
-                      fmt::format("the start violates the contact {}", system.contact_label(i)),
-                      fmt::format("Its left side less its right side is {:.6g} there (SI), and has to be at least 0.", value),
-                      "Change the start, or the sense of the inequality.");
+    diagnostics.error(
+        "E0728", system.contacts[i].span, fmt::format("the start violates the contact {}", system.contact_label(i)),
+        fmt::format("Its left side less its right side is {:.6g} there (SI), and has to be at least 0.", value),
+        "Change the start, or the sense of the inequality.");
   }
   return kept;
 }
@@ -444,8 +464,7 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
     stiff = [&] { return stiff_method(equations, wanted, options, diagnostics); };
   const bool energy_jumps =
       across_switches(*equations.system, equations.energy_function, equations.order).jump.has_value();
-  Run run(model, options, *plan, observables, std::move(method), std::move(stiff), probe, energy_jumps,
-          hybrid);
+  Run run(model, options, *plan, observables, std::move(method), std::move(stiff), probe, energy_jumps, hybrid);
   const double compile_seconds = seconds_since(begin);
 
   SimulationResult result = run.carry_out();

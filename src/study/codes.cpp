@@ -20,6 +20,9 @@ constexpr CodeEntry entries[] = {
      "", ""},
     {"N0505", "the equations of a model with contacts",
      "Without --mode the equations are those of the system while no contact is closed and no dry friction acts.", "", ""},
+    {"N0506", "a report of a model with contacts",
+     "The page has the motion through all modes, but its equations are those without contact and dry friction, and "
+     "what belongs to one set of equations is left out.", "", ""},
     {"E0690", "a derivation failed its certificate",
      "Every derivation is checked by routes that share nothing with it: jets of L along random paths, d'Alembert's "
      "principle over the particles, the power balance. One of them found a different value, so the derived equations "

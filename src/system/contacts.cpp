@@ -83,6 +83,12 @@ bool refuse_order_of_coefficients(Elaboration& e, Expr kinetic, Expr static_, co
 ExprVector slip_of(Elaboration& e, const ContactStatement& s, Expr gap) {
   const Value v = evaluate_formula(e, *s.slip);
   if (v.poisoned) return {};
+  if (v.parts.size() > 1) {
+    e.diagnostics.error("E0501", s.slip->span, "not supported yet: a slip velocity of several components",
+                        "Friction in the plane of a contact in space is carried out by a later version.",
+                        "Write one component, or leave the friction out.");
+    return {};
+  }
   const Dimension speed = e.dimension(dimensions::length()) / e.time();
   if (!v.fits_any && !check_dimension(e, v, speed, "a slip velocity", *s.slip)) return {};
   ExprVector velocities, coordinates, out;
@@ -94,7 +100,8 @@ ExprVector slip_of(Elaboration& e, const ContactStatement& s, Expr gap) {
     bool moves = false, along_normal = true, linear = true;
     for (std::size_t i = 0; i < row.size(); ++i) {
       moves = moves || !row[i].is_zero();
-      for (const Expr& entry : gradient(row[i], velocities)) linear = linear && zero_test(entry).verdict == Verdict::Zero;
+      for (const Expr& entry : gradient(row[i], velocities))
+        linear = linear && zero_test(entry).verdict == Verdict::Zero;
       for (std::size_t j = 0; j < i; ++j)
         along_normal = along_normal && zero_test(row[i] * normal[j] - row[j] * normal[i]).verdict == Verdict::Zero;
     }
@@ -128,16 +135,15 @@ bool add_friction(Elaboration& e, const ContactStatement& s, const Dimension& ga
   if (!s.friction && !s.static_friction && !s.slip && !s.sticking) return true;
   if (!s.slip || (!s.friction && !s.sticking)) {
     const Span at = s.slip ? s.slip->span : s.friction ? s.friction->span : s.left->span;
-    e.diagnostics.error("E0265", at,
-                        s.slip ? "a slip velocity without friction" : "friction without a slip velocity",
+    e.diagnostics.error("E0265", at, s.slip ? "a slip velocity without friction" : "friction without a slip velocity",
                         "Friction acts against the velocity of the point of contact along the surface.",
                         "Write both: friction μ slip x'; or slip x' sticking, where it never slides.");
     return false;
   }
   const auto kinetic = number_in(e, s.friction, "a coefficient of friction", 1e300, kReasonOfCoefficient);
-  const auto static_ =
-      s.static_friction ? number_in(e, s.static_friction, "a coefficient of friction", 1e300, kReasonOfCoefficient)
-                        : kinetic;
+  const auto static_ = s.static_friction
+                           ? number_in(e, s.static_friction, "a coefficient of friction", 1e300, kReasonOfCoefficient)
+                           : kinetic;
   if (!kinetic || !static_) return false;
   if (s.static_friction && refuse_order_of_coefficients(e, *kinetic, *static_, *s.static_friction)) return false;
   if (!s.sticking && refuse_gap_of_friction(e, s, gap)) return false;
@@ -190,7 +196,8 @@ void friction(Elaboration& e, const FrictionStatement& s, Span span) {
   f.span = span;
   if (s.limit) {
     const Value most = scalar_of(e, *s.limit, force, fmt::format("the greatest friction along {}", c.name));
-    const Value holds = s.static_friction ? scalar_of(e, *s.static_friction, force, "the greatest static friction") : most;
+    const Value holds =
+        s.static_friction ? scalar_of(e, *s.static_friction, force, "the greatest static friction") : most;
     if (most.poisoned || holds.poisoned) return;
     f.kinetic = most.scalar(), f.static_ = holds.scalar();
     const std::optional<double> size = constant_value(e, f.kinetic);
@@ -201,9 +208,9 @@ void friction(Elaboration& e, const FrictionStatement& s, Span span) {
     }
   } else {
     const auto kinetic = number_in(e, s.coefficient, "a coefficient of friction", 1e300, kReasonOfCoefficient);
-    const auto static_ =
-        s.static_friction ? number_in(e, s.static_friction, "a coefficient of friction", 1e300, kReasonOfCoefficient)
-                          : kinetic;
+    const auto static_ = s.static_friction
+                             ? number_in(e, s.static_friction, "a coefficient of friction", 1e300, kReasonOfCoefficient)
+                             : kinetic;
     Place along_motion;
     along_motion.reactions = true;
     const Value normal = scalar_of(e, *s.normal, force, "the normal force", along_motion);
@@ -254,7 +261,8 @@ void elaborate_event(Elaboration& e, const syntax::EventStatement& s, Span span)
     const Value v = scalar_of(e, *item.value, expected, fmt::format("`{}`", e.texts.slice(item.variable->span)), place);
     complete = complete && !v.poisoned;
     if (!v.poisoned)
-      event.sets.push_back({variable->coordinate, variable->order, expand_time_derivatives(v.scalar()), item.value->span});
+      event.sets.push_back(
+          {variable->coordinate, variable->order, expand_time_derivatives(v.scalar()), item.value->span});
   }
   if (complete) e.experiment().events.push_back(std::move(event));
 }

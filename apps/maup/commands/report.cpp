@@ -101,7 +101,14 @@ class Page {
     if (!find_long_run()) return false;
     find_paths();
     if (study_.wrong()) return false;
+    const bool has_modes = model().system.has_modes();
+    if (has_modes)
+      study_.diagnostics().note(
+          "N0506", std::nullopt, "this page has the equations without contact and without dry friction",
+          "Conserved quantities and modes of vibration belong to one mode of contacts and frictions, and are left out.",
+          "`maup report --mode \"floor\"` makes the page of a mode.");
     budget_.carry_out("expectations", context_, [&](const Interrupt& interrupt) { verify_model(interrupt); });
+    if (has_modes) return true;
     budget_.carry_out("conserved", context_, [&](const Interrupt&) { find_conserved(); });
     if (moves_in_time(model().system))
       budget_.carry_out("modes", context_, [&](const Interrupt& interrupt) { find_modes(interrupt); });
@@ -147,7 +154,7 @@ class Page {
     const OrbitsOptions& asked = options_.orbits;
     const bool any = asked.has_section() || asked.floquet || asked.lyapunov;
     if (!any) return true;
-    if (study_.refuse_without_time()) return false;
+    if (study_.refuse_without_time() || study_.refuse_modes()) return false;
     budget_.carry_out("orbits", context_, [&](const Interrupt& interrupt) {
       Diagnostics said;
       if (asked.has_section()) find_section(interrupt, said);

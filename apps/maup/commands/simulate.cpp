@@ -92,7 +92,10 @@ Json happening_json(const Happening& h, const MechanicalSystem& system) {
     state[system.coordinates[i].name] = number_or_null(h.q[i]);
     state[system.coordinates[i].name + "'"] = number_or_null(h.v[i]);
   }
-  Json out = {{"t", h.t}, {"error", number_or_null(h.error)}, {"what", word_of(h.kind)}, {"name", h.name},
+  Json out = {{"t", h.t},
+              {"error", number_or_null(h.error)},
+              {"what", word_of(h.kind)},
+              {"name", h.name},
               {"state", std::move(state)}};
   if (h.kind == Happening::Kind::Impact) out["impulse"] = h.impulse, out["speed"] = h.speed;
   if (system.has_modes()) out["mode"] = h.mode;
@@ -188,7 +191,8 @@ std::string happenings_text(const SimulationResult& result, const MechanicalSyst
   constexpr std::size_t most = 24, first = 16;
   std::string out;
   if (system.has_modes())
-    out += fmt::format("begins {}\n", result.first_mode.empty() ? "without contact" : "in the mode " + result.first_mode);
+    out +=
+        fmt::format("begins {}\n", result.first_mode.empty() ? "without contact" : "in the mode " + result.first_mode);
   const std::size_t count = result.happenings.size();
   for (std::size_t k = 0; k < count; ++k) {
     if (count > most && k == first) {

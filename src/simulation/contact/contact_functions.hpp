@@ -14,14 +14,14 @@ using SparseRow = std::vector<std::pair<std::size_t, double>>;
 
 /// What contacts and frictions are at one point.
 struct ContactValues {
-  std::vector<double> gap, gap_scale;    // [contacts] g, Σ |terms of g|
-  std::vector<double> rate, drive;       // [contacts] ġ, and its part ∂g/∂t
-  std::vector<double> rate_scale;        // [contacts] Σ |∂g/∂q_i q̇_i| + |∂g/∂t|
-  std::vector<SparseRow> normal;         // [contacts] ∂g/∂q
+  std::vector<double> gap, gap_scale;  // [contacts] g, Σ |terms of g|
+  std::vector<double> rate, drive;     // [contacts] ġ, and its part ∂g/∂t
+  std::vector<double> rate_scale;      // [contacts] Σ |∂g/∂q_i q̇_i| + |∂g/∂t|
+  std::vector<SparseRow> normal;       // [contacts] ∂g/∂q
   std::vector<double> slip, slip_scale;  // [contacts + frictions] v_t, Σ |∂v_t/∂q̇_i q̇_i| + |rest|; 0 without friction
-  std::vector<SparseRow> tangent;        // [contacts + frictions] ∂v_t/∂q̇
-  std::vector<double> kinetic, fixed;    // [contacts + frictions] μ and μ_s, or the limits of the force
-  std::vector<double> restitution;       // [contacts]
+  std::vector<SparseRow> tangent;      // [contacts + frictions] ∂v_t/∂q̇
+  std::vector<double> kinetic, fixed;  // [contacts + frictions] μ and μ_s, or the limits of the force
+  std::vector<double> restitution;     // [contacts]
 };
 
 /// The functions of contacts and frictions, and M and A, at points. Inputs: q, q̇, t.

@@ -51,7 +51,8 @@ Impulse apply(const ImpactProblem& p, std::size_t i, VectorXd& v, ImpactResult& 
     impulse.loss = 0.5 * impulse.normal * (1 - p.restitution[i]) * -before;
   } else {
     const double slip = dot(p.tangent[i], v) + p.slip_drive[i];
-    const double w_nt = dot(p.normal[i], p.tangent_response.col(at(i))), w_tt = dot(p.tangent[i], p.tangent_response.col(at(i)));
+    const double w_nt = dot(p.normal[i], p.tangent_response.col(at(i))),
+                 w_tt = dot(p.tangent[i], p.tangent_response.col(at(i)));
     const PlaneImpulse found = frictional_impulse(w, w_nt, w_tt, before, slip, p.friction[i], p.static_friction[i],
                                                   p.sticking[i], p.restitution[i]);
     impulse.normal = found.normal, impulse.tangential = found.tangential;

@@ -28,16 +28,16 @@ struct ImpactResult {
 
 /// What an impact is made of: at one configuration, contacts with g = 0.
 struct ImpactProblem {
-  std::vector<std::size_t> contacts;  // that touch, by number
-  std::vector<SparseRow> normal;      // [contacts] ∂g/∂q
-  std::vector<SparseRow> tangent;     // [contacts] ∂v_t/∂q̇; empty: without friction
-  std::vector<double> drive;          // [contacts] ∂g/∂t
-  std::vector<double> slip_drive;     // [contacts] what v_t has besides ∂v_t/∂q̇ q̇
+  std::vector<std::size_t> contacts;                           // that touch, by number
+  std::vector<SparseRow> normal;                               // [contacts] ∂g/∂q
+  std::vector<SparseRow> tangent;                              // [contacts] ∂v_t/∂q̇; empty: without friction
+  std::vector<double> drive;                                   // [contacts] ∂g/∂t
+  std::vector<double> slip_drive;                              // [contacts] what v_t has besides ∂v_t/∂q̇ q̇
   std::vector<double> restitution, friction, static_friction;  // [contacts] e, μ, μ_s
   std::vector<bool> sticking;                                  // [contacts] it never slides
-  std::vector<double> rest;            // [contacts] speeds up to which ġ counts as 0
-  Eigen::MatrixXd response;            // [n × contacts] M⁻¹ (∂g/∂q)ᵀ on the constraints
-  Eigen::MatrixXd tangent_response;    // [n × contacts] the same for ∂v_t/∂q̇
+  std::vector<double> rest;                                    // [contacts] speeds up to which ġ counts as 0
+  Eigen::MatrixXd response;          // [n × contacts] M⁻¹ (∂g/∂q)ᵀ on the constraints
+  Eigen::MatrixXd tangent_response;  // [n × contacts] the same for ∂v_t/∂q̇
 };
 
 enum class ImpactOrder { FastestFirst, FastestLast };

@@ -35,8 +35,9 @@ const std::string rod =
 }  // namespace
 
 TEST_CASE("a block at rest stays where it is for ten thousand seconds, to the last bit") {
-  ModelText m("param m = 1 kg, g = 9.81 m/s^2, α = 0.3 rad\ncoord s, n : length\nT = 1/2 m (s'^2 + n'^2)\n"
-              "V = m g (s sin α + n cos α)\ncontact n >= 0 friction 0.4 slip s' name plane\nstart s = 0.7 m\n");
+  ModelText m(
+      "param m = 1 kg, g = 9.81 m/s^2, α = 0.3 rad\ncoord s, n : length\nT = 1/2 m (s'^2 + n'^2)\n"
+      "V = m g (s sin α + n cos α)\ncontact n >= 0 friction 0.4 slip s' name plane\nstart s = 0.7 m\n");
   const auto r = run(m, 1e4);
   CHECK(r.first_mode == "plane sticking");
   CHECK(r.final.q[0] == 0.7);
@@ -46,9 +47,10 @@ TEST_CASE("a block at rest stays where it is for ten thousand seconds, to the la
 
 TEST_CASE("the threshold of sticking is tan α, to nine digits on either side") {
   const auto mode = [](double mu) {
-    ModelText m("param m = 1 kg, g = 9.81 m/s^2, α = 0.3 rad\ncoord s, n : length\nT = 1/2 m (s'^2 + n'^2)\n"
-                "V = m g (s sin α + n cos α)\ncontact n >= 0 friction " +
-                fmt::format("{:.17g}", mu) + " slip s' name plane\n");
+    ModelText m(
+        "param m = 1 kg, g = 9.81 m/s^2, α = 0.3 rad\ncoord s, n : length\nT = 1/2 m (s'^2 + n'^2)\n"
+        "V = m g (s sin α + n cos α)\ncontact n >= 0 friction " +
+        fmt::format("{:.17g}", mu) + " slip s' name plane\n");
     return run(m, 0.1).first_mode;
   };
   CHECK(mode(std::tan(0.3) * (1 + 1e-9)) == "plane sticking");
@@ -69,9 +71,10 @@ TEST_CASE("two blocks and a wall count the digits of π") {
 }
 
 TEST_CASE("the books of a bouncing rod with friction close") {
-  ModelText m(rod + "contact z - l/2 sin θ >= 0 restitution 0.5 friction 0.3 slip x' + l/2 sin θ θ' name left\n"
-                    "contact z + l/2 sin θ >= 0 restitution 0.5 friction 0.3 slip x' - l/2 sin θ θ' name right\n"
-                    "start z = 1 m, θ = 0.4 rad, x' = 2 m/s\n");
+  ModelText m(rod +
+              "contact z - l/2 sin θ >= 0 restitution 0.5 friction 0.3 slip x' + l/2 sin θ θ' name left\n"
+              "contact z + l/2 sin θ >= 0 restitution 0.5 friction 0.3 slip x' - l/2 sin θ θ' name right\n"
+              "start z = 1 m, θ = 0.4 rad, x' = 2 m/s\n");
   const auto r = run(m, 0.9);
   REQUIRE(r.ok());
   CHECK(count(r, Happening::Kind::Impact) >= 2);
@@ -93,16 +96,18 @@ TEST_CASE("Painlevé's rod: no motion, and two motions, are told") {
 }
 
 TEST_CASE("a result that depends on the order of impacts is told with both") {
-  ModelText m("dimensionless\ncoord x, y, z : number\nT = 1/2 x'^2 + 1/2 y'^2 + 1/2 z'^2\n"
-              "contact y >= x restitution 0.5\ncontact z >= y restitution 0.5\nstart x = -1, z = 1, x' = 1, z' = -1\n");
+  ModelText m(
+      "dimensionless\ncoord x, y, z : number\nT = 1/2 x'^2 + 1/2 y'^2 + 1/2 z'^2\n"
+      "contact y >= x restitution 0.5\ncontact z >= y restitution 0.5\nstart x = -1, z = 1, x' = 1, z' = -1\n");
   const auto r = run(m, 2);
   CHECK(r.remarks.size() == 1);
 }
 
 TEST_CASE("events: record, direction, set, stop") {
-  ModelText m("dimensionless\nparam w = 1\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 w^2 x^2\n"
-              "event up when x = 0 rising : record\nevent down when x = 0 falling : record\n"
-              "event kick when x = 0.5 rising : set x' = 2 x'\nevent far when x = 1.5 : stop\nstart x = 1\n");
+  ModelText m(
+      "dimensionless\nparam w = 1\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 w^2 x^2\n"
+      "event up when x = 0 rising : record\nevent down when x = 0 falling : record\n"
+      "event kick when x = 0.5 rising : set x' = 2 x'\nevent far when x = 1.5 : stop\nstart x = 1\n");
   const auto r = run(m, 50);
   CHECK(r.ending == Ending::Stopped);
   // 1 → −1, kicked at x = ½ from ẋ = √¾ to √3: amplitude √(3 + ¼) > 1.5
@@ -117,13 +122,15 @@ TEST_CASE("events: record, direction, set, stop") {
 }
 
 TEST_CASE("a set that breaks a contact or a constraint ends the run with the reason") {
-  ModelText m("dimensionless\ncoord x : number\nT = 1/2 x'^2\ncontact x >= 0 name wall\n"
-              "event bad when x = 2 : set x = -1\nstart x = 1, x' = 1\n");
+  ModelText m(
+      "dimensionless\ncoord x : number\nT = 1/2 x'^2\ncontact x >= 0 name wall\n"
+      "event bad when x = 2 : set x = -1\nstart x = 1, x' = 1\n");
   const auto r = run(m, 5);
   CHECK(r.ending == Ending::SingularConstraints);
   CHECK(r.reason.find("wall") != std::string::npos);
-  ModelText c("dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nconstraint x = y name tie\n"
-              "event bad when x = 2 : set x = 5\nstart x = 1, y = 1, x' = 1, y' = 1\n");
+  ModelText c(
+      "dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nconstraint x = y name tie\n"
+      "event bad when x = 2 : set x = 5\nstart x = 1, y = 1, x' = 1, y' = 1\n");
   const auto s = run(c, 5);
   CHECK(s.ending == Ending::SingularConstraints);
   CHECK(s.reason.find("tie") != std::string::npos);
@@ -138,27 +145,62 @@ TEST_CASE("a contact that the start violates is an error") {
 }
 
 TEST_CASE("backwards through an impact is refused") {
-  ModelText m("param m = 1 kg, g = 9.81 m/s^2\ncoord z : length\nT = 1/2 m z'^2\nV = m g z\n"
-              "contact z >= 0 restitution 0.5 name floor\nstart z = 1 m\n");
+  ModelText m(
+      "param m = 1 kg, g = 9.81 m/s^2\ncoord z : length\nT = 1/2 m z'^2\nV = m g z\n"
+      "contact z >= 0 restitution 0.5 name floor\nstart z = 1 m\n");
   const auto r = run(m, -2);
   CHECK(r.ending == Ending::Paradox);
   CHECK(r.reason.find("Backwards") != std::string::npos);
 }
 
 TEST_CASE("a table on four legs: λ is not determined, the motion is") {
-  ModelText m("param m = 1 kg, g = 9.81 m/s^2, J = 1 kg m^2\ncoord z : length, a, b : angle\n"
-              "T = 1/2 m z'^2 + 1/2 J (a'^2 + b'^2)\nV = m g z\nlet d = 1 [m]\n"
-              "contact z + d a + d b >= 0\ncontact z + d a - d b >= 0\ncontact z - d a + d b >= 0\ncontact z - d a - d b >= 0\n");
+  ModelText m(
+      "param m = 1 kg, g = 9.81 m/s^2, J = 1 kg m^2\ncoord z : length, a, b : angle\n"
+      "T = 1/2 m z'^2 + 1/2 J (a'^2 + b'^2)\nV = m g z\nlet d = 1 [m]\n"
+      "contact z + d a + d b >= 0\ncontact z + d a - d b >= 0\ncontact z - d a + d b >= 0\ncontact z - d a - d b >= "
+      "0\n");
   const auto r = run(m, 10);
   REQUIRE(r.ok());
   for (int i = 0; i < 3; ++i) CHECK(std::abs(r.final.q[static_cast<std::size_t>(i)]) < 1e-13);
 }
 
 TEST_CASE("a block on a table that vibrates flies off where a_max > g, and at the phase where z'' = -g") {
-  ModelText m("param m = 1 kg, g = 9.81 m/s^2, A = 10 mm, w = 40 rad/s\ncoord z : length\nT = 1/2 m z'^2\nV = m g z\n"
-              "contact z >= A sin(w t) name table\nstart z' = A w\n");
+  ModelText m(
+      "param m = 1 kg, g = 9.81 m/s^2, A = 10 mm, w = 40 rad/s\ncoord z : length\nT = 1/2 m z'^2\nV = m g z\n"
+      "contact z >= A sin(w t) name table\nstart z' = A w\n");
   const auto r = run(m, 0.1);
   REQUIRE(!r.happenings.empty());
   CHECK(r.happenings[0].kind == Happening::Kind::Lost);
   CHECK(r.happenings[0].t == doctest::Approx(std::asin(9.81 / 16) / 40).epsilon(1e-13));
+}
+
+TEST_CASE("friction with the force of a constraint as its normal force, whichever way that presses") {
+  const auto slide = [](const char* lift) {
+    ModelText m(std::string("param m = 2 kg, g = 9.81 m/s^2, F = ") + lift +
+                "\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = m g y\nforce y = F\nconstraint y = 0 name rail\n"
+                "friction x coefficient 0.2 normal reaction(rail)\nstart x' = 3 m/s\n");
+    return run(m, 0.5);
+  };
+  CHECK(slide("0 N").final.v[0] == doctest::Approx(3 - 0.5 * 0.2 * 9.81).epsilon(1e-13));
+  CHECK(slide("50 N").final.v[0] == doctest::Approx(3 - 0.5 * 0.2 * (25 - 9.81)).epsilon(1e-13));
+}
+
+TEST_CASE("a bead on a horizontal hoop: v = v0/(1 + μ v0 t/R), the normal force written out, and never negative") {
+  ModelText m(
+      "param m = 1 kg, R = 0.5 m, μ = 0.25\ncoord θ : angle\nT = 1/2 m R^2 θ'^2\n"
+      "friction θ coefficient μ normal -m R^2 θ'^2\nstart θ' = 6 rad/s\n");
+  const auto r = run(m, 2);
+  CHECK(r.final.v[0] == doctest::Approx(6 / (1 + 0.25 * 6 * 2)).epsilon(1e-13));
+  REQUIRE(r.books);
+  CHECK(r.books->friction == doctest::Approx(0.125 * (36 - r.final.v[0] * r.final.v[0])).epsilon(1e-12));
+}
+
+TEST_CASE("friction with a limit: an oscillator stops where the spring is weaker than static friction") {
+  ModelText m(
+      "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\nfriction x limit 0.1 static 0.15\nstart x = 1\n");
+  const auto r = run(m, 50);
+  // Half cycles take 0.2 off the amplitude: 1 → −0.8 → 0.6 → −0.4 → 0.2 → 0, where |x| ≤ 0.15 holds.
+  CHECK(std::abs(r.final.q[0]) < 1e-12);
+  CHECK(r.final.v[0] == 0);
+  CHECK(count(r, Happening::Kind::Stick) == 1);
 }

@@ -1,0 +1,124 @@
+#include "simulation/hybrid_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+/// What contacts that are hit do to the velocities, and where infinitely many bounces end.
+namespace maupertuis {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+VectorXd vector_of(std::span<const double> x) {
+  return Eigen::Map<const VectorXd>(x.data(), static_cast<Index>(x.size()));
+}
+
+}  // namespace
+
+ImpactProblem HybridMotion::impact_problem(const std::vector<std::size_t>& touching, const ContactValues& values) {
+  ImpactProblem p;
+  p.contacts = touching;
+  for (const std::size_t i : touching) {
+    p.normal.push_back(values.normal[i]);
+    p.tangent.push_back(values.tangent[i]);
+    p.drive.push_back(values.drive[i]);
+    double rest = values.slip[i];
+    for (const auto& [k, x] : values.tangent[i]) rest -= x * v_[k];
+    p.slip_drive.push_back(std::abs(rest) <= rest_slip(i, values) ? 0 : rest);
+    p.restitution.push_back(values.restitution[i]);
+    p.friction.push_back(values.kinetic[i]);
+    p.static_friction.push_back(values.fixed[i]);
+    p.sticking.push_back(system_.contacts[i].friction.sticking);
+    p.rest.push_back(rest_speed(i, values));
+  }
+  p.response = functions_.response(t_, q_, v_, p.normal);
+  p.tangent_response = functions_.response(t_, q_, v_, p.tangent);
+  return p;
+}
+
+void HybridMotion::note_order(const ImpactProblem& p, const ImpactResult& first, const VectorXd& v) {
+  if (p.contacts.size() < 2 || first.impulses.size() < 2) return;
+  const ImpactResult other = sequential_impact(p, v, ImpactOrder::FastestLast);
+  const double size = std::max(first.v.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff());
+  if ((other.v - first.v).cwiseAbs().maxCoeff() <= 1e-9 * size) return;
+  const auto velocities = [&](const VectorXd& x) {
+    std::string out;
+    constexpr Index shown = 6;
+    for (Index i = 0; i < std::min(x.size(), shown); ++i) out += fmt::format("{}{:.6g}", i == 0 ? "" : ", ", x(i));
+    return "(" + out + (x.size() > shown ? ", …)" : ")");
+  };
+  remark(
+      fmt::format("Several contacts are hit at t = {:.9g}, and the result depends on their order: q' = {} with the "
+                  "fastest first, as it was done, {} with the fastest last.",
+                  t_, velocities(first.v), velocities(other.v)));
+}
+
+void HybridMotion::record_impulses(const ImpactResult& result) {
+  for (const Impulse& impulse : result.impulses)
+    add(Happening::Kind::Impact, system_.contact_label(impulse.contact), impulse.normal, impulse.speed);
+  record_.books.impacts += result.loss;
+  record_.books.moving += result.moving;
+  carried_[0] += result.moving - result.loss;
+}
+
+/// When infinitely many bounces come to their end, told from the last three of a contact; nothing while they go on. The
+/// flights are then as short as their rounding allows to tell: speeds of a millionth of the fastest.
+std::optional<double> HybridMotion::accumulation(std::size_t contact, double speed) {
+  auto& last = bounces_[contact].last;
+  last.emplace_back(t_, speed);
+  if (last.size() > 4) last.erase(last.begin());
+  if (last.size() < 4 || !(speed < 3e-6 * fastest_[contact])) return std::nullopt;
+  const double ratio = last[3].second / last[2].second, before = last[2].second / last[1].second;
+  const double flight = last[3].first - last[2].first;
+  if (!(ratio < 0.999 && std::abs(ratio - before) < 1e-3) || !(flight < last[2].first - last[1].first))
+    return std::nullopt;
+  cycle_.clear();  // with those that were hit since its impact before: they come to rest together
+  for (std::size_t i = 0; i < bounces_.size(); ++i)
+    if (!bounces_[i].last.empty() && bounces_[i].last.back().first >= last[2].first) cycle_.push_back(i);
+  return t_ + flight * ratio / (1 - ratio);
+}
+
+/// What closing contacts do to the velocities. False, and why, where no impulses are found.
+bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) {
+  accumulated_.reset();
+  const ContactValues& values = functions_.at(t_, q_, v_);
+  const bool closing = std::any_of(touching.begin(), touching.end(),
+                                   [&](std::size_t i) { return values.rate[i] < -rest_speed(i, values); });
+  if (!closing) return true;
+  std::optional<double> end;
+  for (const std::size_t i : touching)
+    if (values.rate[i] < -rest_speed(i, values))
+      if (const auto found = accumulation(i, -values.rate[i])) end = found;
+  if (end)
+    for (const std::size_t i : cycle_)
+      if (std::find(touching.begin(), touching.end(), i) == touching.end()) touching.push_back(i);
+  const bool at_once = system_.impact_law == ImpactLaw::Simultaneous;
+  const ImpactProblem p = impact_problem(end ? cycle_ : touching, values);
+  const VectorXd v = vector_of(v_);
+  const ImpactResult result = end       ? end_of_bounces(p, v)
+                              : at_once ? simultaneous_impact(p, v, false)
+                                        : sequential_impact(p, v, ImpactOrder::FastestFirst);
+  if (result.unsolved) {
+    reason = "No impulses keep all contacts that are hit here from closing.";
+    return false;
+  }
+  if (!at_once && !end) note_order(p, result, v);
+  if (result.bounded)
+    remark(
+        fmt::format("At t = {:.9g} impacts followed each other without an end; the rest of them was done at once, "
+                    "without bounce.",
+                    t_));
+  v_.assign(result.v.data(), result.v.data() + result.v.size());
+  record_impulses(result);
+  if (end) {
+    accumulated_ = fmt::format("the end of infinitely many bounces at t = {:.12g}", *end);
+    accumulated_at_ = *end;
+    for (const std::size_t i : touching) bounces_[i].last.clear();
+  }
+  return true;
+}
+
+}  // namespace maupertuis

@@ -1,0 +1,336 @@
+#include "simulation/hybrid_parts.hpp"
+#include "simulation/motion_kernel.hpp"
+
+#include <maupertuis/motion_kernel.hpp>
+#include <maupertuis/transform.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+/// The motions of modes, what they watch, and which mode follows an instant.
+namespace maupertuis {
+namespace {
+
+constexpr std::size_t most_choices = 4096;  // modes that are tried
+
+std::string key_of(const ContactMode& mode) {
+  std::string key;
+  for (const bool closed : mode.closed) key += closed ? '1' : '0';
+  for (const FrictionState state : mode.friction) key += static_cast<char>('a' + static_cast<int>(state));
+  for (const std::int8_t sign : mode.normal_sign) key += sign < 0 ? '-' : '+';
+  return key;
+}
+
+}  // namespace
+
+/// Gaps of open contacts; λ of closed ones.
+void HybridMotion::watch_contacts(ModeMotion& motion, std::vector<Expr>& events) {
+  for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
+    const Contact& c = system_.contacts[i];
+    motion.watches.push_back({motion.mode.closed[i] ? Watch::What::Force : Watch::What::Gap, i});
+    events.push_back(motion.mode.closed[i] ? c.multiplier : c.gap);
+  }
+}
+
+/// What holds while it sticks, |λ_t| ≤ μ_s N; the direction in which it slides; the sign of its normal force.
+void HybridMotion::watch_frictions(ModeMotion& motion, std::vector<Expr>& events) {
+  const std::size_t contacts = system_.contacts.size();
+  for (std::size_t i = 0; i < motion.mode.friction.size(); ++i) {
+    const FrictionState state = motion.mode.friction[i];
+    if (state == FrictionState::None) continue;
+    const Friction& f = friction_of(system_, i);
+    const Expr normal = normal_force(system_, motion.mode, i);
+    if (state == FrictionState::Stick) {
+      if (f.sticking) continue;
+      const Expr most = normal ? f.static_ * normal : f.static_;
+      for (const Expr& event : {most - f.multipliers[0], most + f.multipliers[0]}) {
+        motion.watches.push_back({Watch::What::Hold, i});
+        events.push_back(event);
+      }
+    } else {
+      motion.watches.push_back({Watch::What::Slip, i});
+      events.push_back(state == FrictionState::Forward ? f.slip[0] : -f.slip[0]);
+    }
+    if (i >= contacts && has_multipliers(normal)) {
+      motion.watches.push_back({Watch::What::Normal, i - contacts});
+      events.push_back(normal);
+    }
+  }
+}
+
+HybridMotion::ModeMotion& HybridMotion::motion_in(const ContactMode& mode) {
+  std::unique_ptr<ModeMotion>& slot = modes_[key_of(mode)];
+  if (slot) return *slot;
+  slot = std::make_unique<ModeMotion>();
+  slot->mode = mode;
+  Diagnostics unheard;  // the system passed its checks with its contacts
+  MechanicalSystem in_mode = system_in_mode(system_, mode);
+  in_mode.written = nullptr;
+  slot->equations = std::make_unique<EquationsOfMotion>(
+      *euler_lagrange(std::make_shared<const MechanicalSystem>(std::move(in_mode)), unheard));
+  Context& context = *system_.context;
+  WantedFunctions wanted = wanted_;
+  const bool until = wanted_.events.size() > model_.experiment.events.size();
+  for (std::size_t i = 0; i < wanted.events.size(); ++i)
+    slot->watches.push_back(until && i == 0 ? Watch{Watch::What::Until, 0} : Watch{Watch::What::Event, i - until});
+  watch_contacts(*slot, wanted.events);
+  watch_frictions(*slot, wanted.events);
+  ExprVector rubbed{context.number(0)}, damped{context.number(0)};
+  for (std::size_t i = 0; i < mode.friction.size(); ++i) {
+    if (mode.friction[i] != FrictionState::Forward && mode.friction[i] != FrictionState::Backward) continue;
+    const Friction& f = friction_of(system_, i);
+    const Expr normal = normal_force(system_, mode, i);
+    const Expr force = normal ? f.kinetic * normal : f.kinetic;
+    rubbed.push_back(mode.friction[i] == FrictionState::Forward ? force * f.slip[0] : -(force * f.slip[0]));
+  }
+  for (std::size_t i = 0; i < system_.coordinates.size(); ++i)
+    damped.push_back(equations_.dissipative_terms[i] * system_.coordinates[i].velocity);
+  wanted.integrands = {slot->equations->power, context.sum(rubbed), context.sum(damped)};
+  ExprMap open;  // forces that do not act in this mode
+  for (std::size_t i = 0; i < mode.closed.size(); ++i)
+    if (!mode.closed[i]) open[system_.contacts[i].multiplier] = context.number(0);
+  for (auto* list : {&wanted.observables, &wanted.events, &wanted.integrands})
+    if (!open.empty() && !list->empty()) *list = substitute(*list, open);
+  slot->stepper = std::make_unique<TaylorStepper>(motion_kernel(*slot->equations, wanted), parameters_, options_);
+  return *slot;
+}
+
+std::vector<HybridMotion::Choice> HybridMotion::choices(const std::vector<std::size_t>& touching,
+                                                        const ContactValues& values) const {
+  std::vector<Choice> out;
+  const auto slides = [&](std::size_t i) {
+    return values.slip[i] > rest_slip(i, values)    ? FrictionState::Forward
+           : values.slip[i] < -rest_slip(i, values) ? FrictionState::Backward
+                                                    : FrictionState::None;
+  };
+  const auto left = [&](Watch::What what, std::size_t i) {
+    return std::any_of(pending_->left.begin(), pending_->left.end(),
+                       [&](const Watch& w) { return w.what == what && w.index == i; });
+  };
+  for (const std::size_t i : touching) {
+    if (values.rate[i] > rest_speed(i, values)) continue;  // it opens
+    Choice choice{i, {}};
+    const Friction& f = system_.contacts[i].friction;
+    const FrictionState sliding = f.present() ? slides(i) : FrictionState::None;
+    if (!f.present())
+      choice.options = {{true, FrictionState::None, 1}};
+    else if (f.sticking)
+      choice.options = {{true, FrictionState::Stick, 1}};
+    else if (sliding != FrictionState::None)
+      choice.options = {{true, sliding, 1}};
+    else
+      choice.options = {
+          {true, FrictionState::Stick, 1}, {true, FrictionState::Forward, 1}, {true, FrictionState::Backward, 1}};
+    const Choice::Option open{false, FrictionState::None, 1};
+    if (left(Watch::What::Force, i))
+      choice.options.insert(choice.options.begin(), open);
+    else
+      choice.options.push_back(open);
+    out.push_back(std::move(choice));
+  }
+  const std::size_t contacts = system_.contacts.size();
+  for (std::size_t i = contacts; i < contacts + system_.frictions.size(); ++i) {
+    Choice choice{i, {}};
+    const bool signs = has_multipliers(system_.frictions[i - contacts].normal);
+    const FrictionState sliding = slides(i);
+    for (const std::int8_t sign : {std::int8_t{1}, std::int8_t{-1}}) {
+      if (sign < 0 && !signs) continue;
+      if (sliding != FrictionState::None)
+        choice.options.push_back({false, sliding, sign});
+      else
+        for (const FrictionState s : {FrictionState::Stick, FrictionState::Forward, FrictionState::Backward})
+          choice.options.push_back({false, s, sign});
+    }
+    out.push_back(std::move(choice));
+  }
+  return out;
+}
+
+/// Whether what a condition does over the length that is judged is lost in rounding.
+bool HybridMotion::vanishes(const Watch& watch, double size) const {
+  constexpr double digits = 1e-12;
+  if (watch.what == Watch::What::Gap) return size <= digits * widest_[watch.index];
+  if (watch.what == Watch::What::Force) return size <= digits * hardest_[watch.index];
+  return false;
+}
+
+/// Whether the motion in a mode keeps its conditions: gaps that do not close, forces that press, friction that holds
+/// or opposes. A condition that is 0 here counts by the first of its derivatives that is not. Lenient: what is violated
+/// at once is 0 here to rounding.
+bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>& touching, double bound, bool lenient,
+                        std::vector<double>* accelerations) {
+  ModeMotion& motion = motion_in(mode);
+  TaylorStepper& s = *motion.stepper;
+  s.start(t_, q_, v_);
+  const ContactValues& values = functions_.at(t_, q_, v_);
+  std::vector<std::size_t> at_zero;
+  for (std::size_t k = 0; k < motion.watches.size(); ++k) {
+    const Watch& w = motion.watches[k];
+    const bool left = std::any_of(pending_->left.begin(), pending_->left.end(),
+                                  [&](const Watch& x) { return x.what == w.what && x.index == w.index; });
+    const bool touches =
+        w.what == Watch::What::Gap && std::find(touching.begin(), touching.end(), w.index) != touching.end();
+    const bool starts_to_slide =
+        w.what == Watch::What::Slip && std::abs(values.slip[w.index]) <= rest_slip(w.index, values);
+    if (touches || starts_to_slide || (left && w.what == Watch::What::Force)) at_zero.push_back(k);
+  }
+  s.put_at_zero(at_zero);
+  std::vector<double> places, speeds;
+  for (const std::size_t k : kind_) places.push_back(place_[k]), speeds.push_back(speed_[k]);
+  s.set_usual_sizes(places, speeds);
+  const TaylorStepper::Outlook outlook = s.outlook(bound);
+  if (outlook.ending != StepEnding::None) return false;
+  note_accelerations(outlook.accelerations, values);
+  if (accelerations) *accelerations = outlook.accelerations;
+  double largest_force = 0;
+  for (std::size_t k = 0; k < motion.watches.size(); ++k)
+    if (motion.watches[k].what == Watch::What::Force || motion.watches[k].what == Watch::What::Hold)
+      largest_force = std::max(largest_force, std::abs(outlook.values[k]));
+  for (std::size_t k = 0; k < motion.watches.size(); ++k) {
+    const Watch& w = motion.watches[k];
+    if (!w.keeps_sign()) continue;
+    const bool zero = std::find(at_zero.begin(), at_zero.end(), k) != at_zero.end();
+    const bool must_move = w.what == Watch::What::Slip && zero;
+    const bool lost = vanishes(w, outlook.reach[k]);
+    if (w.what == Watch::What::Gap && lost) continue;
+    if (w.what == Watch::What::Force && lost && !lenient) return false;  // what does not press needs not be closed
+    const bool wrong = outlook.sides[k] < 0 || (must_move && outlook.sides[k] == 0);
+    if (!wrong) continue;
+    const bool is_force = w.what == Watch::What::Force || w.what == Watch::What::Hold;
+    const bool rounding = (is_force && std::abs(outlook.values[k]) <= 1e-12 * largest_force) ||
+                          (is_force && std::abs(outlook.values[k]) < 1e-280);
+    if (!lenient || !rounding || must_move) return false;
+  }
+  return true;
+}
+
+/// Where more normal force makes a contact close faster (Painlevé), more than one mode may fit.
+bool HybridMotion::may_be_several(const ContactMode& mode, const ContactValues& values) {
+  for (std::size_t i = 0; i < mode.closed.size(); ++i) {
+    if (!mode.closed[i] || mode.friction[i] == FrictionState::None || mode.friction[i] == FrictionState::Stick)
+      continue;
+    SparseRow force = values.normal[i];
+    const double factor = values.kinetic[i] * (mode.friction[i] == FrictionState::Forward ? -1 : 1);
+    for (const auto& [k, x] : values.tangent[i]) force.emplace_back(k, factor * x);
+    SparseRow summed;
+    for (const auto& [k, x] : force) {
+      const auto same = std::find_if(summed.begin(), summed.end(), [&, k = k](const auto& e) { return e.first == k; });
+      if (same == summed.end())
+        summed.emplace_back(k, x);
+      else
+        same->second += x;
+    }
+    const Eigen::MatrixXd response = functions_.response(t_, q_, v_, {&summed, 1});
+    if (!(dot(values.normal[i], response.col(0)) > 0)) return true;
+  }
+  return false;
+}
+
+bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason) {
+  const ContactValues values = functions_.at(t_, q_, v_);
+  if (!touching.empty()) note_compliance(touching, values);
+  const std::vector<Choice> list = choices(touching, values);
+  double count = 1;
+  for (const Choice& c : list) count *= static_cast<double>(c.options.size());
+  const auto mode_of = [&](const std::vector<std::size_t>& taken) {
+    ContactMode mode = open_mode(system_);
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      const Choice::Option& option = list[k].options[taken[k]];
+      if (list[k].contact < mode.closed.size())
+        mode.closed[list[k].contact] = option.closed;
+      else
+        mode.normal_sign[list[k].contact - mode.closed.size()] = option.normal_sign;
+      mode.friction[list[k].contact] = option.state;
+    }
+    return mode;
+  };
+  /// All combinations, those with the least changes of the likeliest first.
+  std::vector<std::vector<std::size_t>> tries{std::vector<std::size_t>(list.size(), 0)};
+  for (std::size_t done = 0; done < tries.size() && tries.size() < most_choices; ++done) {
+    const std::vector<std::size_t> from = tries[done];
+    std::size_t last = 0;  // only later entries are changed, so that each combination comes once
+    for (std::size_t k = 0; k < from.size(); ++k)
+      if (from[k] != 0) last = k;
+    for (std::size_t k = last; k < list.size(); ++k)
+      if (from[k] + 1 < list[k].options.size()) {
+        tries.push_back(from);
+        ++tries.back()[k];
+      }
+  }
+  std::optional<ContactMode> found;
+  std::vector<double> first;
+  for (const bool lenient : {false, true}) {
+    for (const auto& taken : tries) {
+      const ContactMode mode = mode_of(taken);
+      std::vector<double> accelerations;
+      if (!fits(mode, touching, bound, lenient, &accelerations)) continue;
+      if (!found) {
+        found = mode;
+        first = accelerations;
+        if (!may_be_several(mode, values)) break;
+        continue;
+      }
+      double off = 0, size = 0;
+      for (std::size_t i = 0; i < first.size(); ++i) {
+        off = std::max(off, std::abs(first[i] - accelerations[i]));
+        size = std::max({size, std::abs(first[i]), std::abs(accelerations[i])});
+      }
+      if (off <= 1e-9 * size) continue;
+      reason = fmt::format(
+          "Painlevé's paradox: friction turns the contact force around here, and more than one motion fits: in the "
+          "mode "
+          "`{}` and in the mode `{}`.",
+          mode_text(system_, *found), mode_text(system_, mode));
+      return false;
+    }
+    if (found) break;
+  }
+  if (!found) {
+    const bool rubs = std::any_of(list.begin(), list.end(), [](const Choice& c) { return c.options.size() > 2; }) ||
+                      std::any_of(touching.begin(), touching.end(),
+                                  [&](std::size_t i) { return system_.contacts[i].friction.present(); });
+    reason = rubs ? "Painlevé's paradox: no finite forces of contact and friction fit the motion here."
+             : count > static_cast<double>(most_choices)
+                 ? fmt::format("None of the {} modes that were tried fits the contacts that touch here.", most_choices)
+                 : "No forces keep all contacts that touch here from closing.";
+    return false;
+  }
+  static_cast<void>(fits(*found, touching, bound, true, nullptr));
+  const ContactMode before = now_->mode;
+  now_ = modes_.at(key_of(*found)).get();
+  record_changes(before, *found);
+  return true;
+}
+
+void HybridMotion::record_changes(const ContactMode& before, const ContactMode& after) {
+  const std::string text = mode_text(system_, after);
+  const std::size_t begin = record_.happenings.size();
+  if (!started_) {
+    record_.first_mode = text;
+  } else {
+    for (std::size_t i = 0; i < after.closed.size(); ++i) {
+      const std::string label = system_.contact_label(i);
+      if (after.closed[i] && !before.closed[i]) {
+        add(Happening::Kind::Made, label, 0, 0, accumulated_.value_or(""));
+        if (accumulated_) record_.happenings.back().t = accumulated_at_;
+      }
+      if (!after.closed[i] && before.closed[i]) add(Happening::Kind::Lost, label);
+    }
+    for (std::size_t i = 0; i < after.friction.size(); ++i) {
+      const FrictionState now = after.friction[i];
+      if (now == before.friction[i] || now == FrictionState::None) continue;
+      const std::string label =
+          i < after.closed.size() ? system_.contact_label(i) : system_.frictions[i - after.closed.size()].name;
+      add(now == FrictionState::Stick ? Happening::Kind::Stick : Happening::Kind::Slip, label);
+    }
+  }
+  for (std::size_t k = record_.happenings.size(); k-- > 0;) {
+    Happening& h = record_.happenings[k];
+    if (k < begin && h.t != t_) break;
+    h.mode = text;
+  }
+}
+
+}  // namespace maupertuis

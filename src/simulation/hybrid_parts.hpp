@@ -1,0 +1,47 @@
+#pragma once
+#include "simulation/hybrid_motion.hpp"
+
+#include <maupertuis/integrator.hpp>
+
+#include <limits>
+
+/// What the parts of HybridMotion share.
+namespace maupertuis {
+
+/// Of the sizes of terms: below, a gap or a speed is 0.
+inline constexpr double rest_unit = 64 * std::numeric_limits<double>::epsilon();
+
+/// An event function of a mode, and what a root of it means.
+struct HybridMotion::Watch {
+  enum class What { Until, Event, Gap, Force, Hold, Slip, Normal } what = What::Event;
+  std::size_t index = 0;  // of the event, the contact, the friction
+  bool keeps_sign() const { return what != What::Until && what != What::Event; }  // must not be negative in its mode
+};
+
+struct HybridMotion::ModeMotion {
+  ContactMode mode;
+  std::unique_ptr<EquationsOfMotion> equations;
+  std::vector<Watch> watches;
+  std::unique_ptr<TaylorStepper> stepper;
+};
+
+/// What a step has met, to be settled before the next one.
+struct HybridMotion::Pending {
+  std::vector<std::size_t> hit;  // contacts whose gap came to 0
+  std::vector<Watch> left;       // conditions of the mode that end here
+  std::vector<const ModelEvent*> sets;
+  bool begins = false;
+};
+
+/// What a contact or a friction may do next, the likeliest first.
+struct HybridMotion::Choice {
+  std::size_t contact = 0;  // or contacts + friction of a coordinate
+  struct Option {
+    bool closed = false;
+    FrictionState state = FrictionState::None;
+    std::int8_t normal_sign = 1;
+  };
+  std::vector<Option> options;
+};
+
+}  // namespace maupertuis

@@ -1,0 +1,65 @@
+#include "simulation/hybrid_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+/// What is rounding in a motion: measured by the largest that coordinates of one unit have done so far.
+namespace maupertuis {
+
+/// ġ below this counts as 0.
+double HybridMotion::rest_speed(std::size_t contact, const ContactValues& values) const {
+  return rest_unit * std::max(values.rate_scale[contact], fastest_[contact]);
+}
+
+double HybridMotion::rest_slip(std::size_t friction, const ContactValues& values) const {
+  return rest_unit * std::max(values.slip_scale[friction], fastest_slip_[friction]);
+}
+
+/// Motions of one kind of coordinates have one size: a pendulum that hangs still among others that swing is at rest to
+/// rounding of their motion, not of its own.
+void HybridMotion::note_sizes(const ContactValues& values) {
+  for (std::size_t i = 0; i < v_.size(); ++i) {
+    place_[kind_[i]] = std::max(place_[kind_[i]], std::abs(q_[i]));
+    speed_[kind_[i]] = std::max(speed_[kind_[i]], std::abs(v_[i]));
+  }
+  const auto size_along = [&](const SparseRow& row) {
+    double sum = 0;
+    for (const auto& [k, x] : row) sum += std::abs(x) * speed_[kind_[k]];
+    return sum;
+  };
+  for (std::size_t i = 0; i < fastest_.size(); ++i)
+    fastest_[i] = std::max({fastest_[i], values.rate_scale[i], size_along(values.normal[i])});
+  note_gaps(values);
+  for (std::size_t i = 0; i < fastest_slip_.size(); ++i)
+    fastest_slip_[i] = std::max({fastest_slip_[i], values.slip_scale[i], size_along(values.tangent[i])});
+}
+
+/// Gaps of one dimension have one size too.
+void HybridMotion::note_gaps(const ContactValues& values) {
+  for (std::size_t i = 0; i < widest_.size(); ++i) {
+    double& size = widest_[gap_kind_[i]];
+    size = std::max(size, values.gap_scale[i]);
+  }
+  for (std::size_t i = 0; i < widest_.size(); ++i) widest_[i] = widest_[gap_kind_[i]];
+}
+
+void HybridMotion::note_accelerations(std::span<const double> a, const ContactValues& values) {
+  for (std::size_t i = 0; i < a.size(); ++i)
+    acceleration_[kind_[i]] = std::max(acceleration_[kind_[i]], std::abs(a[i]));
+  for (std::size_t i = 0; i < hardest_.size(); ++i) {
+    if (compliance_[i] == 0) continue;
+    double size = 0;
+    for (const auto& [k, g] : values.normal[i]) size += std::abs(g) * acceleration_[kind_[k]];
+    hardest_[i] = std::max(hardest_[i], size / compliance_[i]);
+  }
+}
+
+void HybridMotion::note_compliance(const std::vector<std::size_t>& touching, const ContactValues& values) {
+  std::vector<SparseRow> rows;
+  for (const std::size_t i : touching) rows.push_back(values.normal[i]);
+  const Eigen::MatrixXd response = functions_.response(t_, q_, v_, rows);
+  for (std::size_t k = 0; k < touching.size(); ++k)
+    compliance_[touching[k]] = std::abs(dot(rows[k], response.col(static_cast<Eigen::Index>(k))));
+}
+
+}  // namespace maupertuis
