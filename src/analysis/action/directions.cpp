@@ -1,6 +1,7 @@
 #include "analysis/action/directions.hpp"
 
 #include "linear_algebra/dense.hpp"
+#include "linear_algebra/products.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -123,7 +124,7 @@ Matrix reduced_element(const Trial& trial, const Matrix& hessian, const Directio
       const Matrix& a = directions.basis[static_cast<std::size_t>(trial.mesh.node(e, j))];
       const Matrix& b = directions.basis[static_cast<std::size_t>(trial.mesh.node(e, l))];
       out.block(offset[static_cast<std::size_t>(j)], offset[static_cast<std::size_t>(l)], a.cols(), b.cols()) =
-          a.transpose() * hessian.block(j * n, l * n, n, n) * b;
+          product(transposed_product(a, hessian.block(j * n, l * n, n, n)), b);
     }
   return out;
 }
@@ -132,7 +133,7 @@ Matrix node_curvature(Functional& functional, const Trial& trial, const Directio
   const auto at = static_cast<std::size_t>(k);
   const Matrix& z = directions.basis[at];
   if (functional.constraints() == 0 || z.cols() == 0) return Matrix::Zero(z.cols(), z.cols());
-  return z.transpose() * functional.constraint_curvature(trial.mesh.time(k), trial.q.col(k), directions.mu[at]) * z;
+  return quadratic_form(z, functional.constraint_curvature(trial.mesh.time(k), trial.q.col(k), directions.mu[at]));
 }
 
 Sparse reduced_matrix(Functional& functional, const Trial& trial, const Assembly& assembly,

@@ -2,6 +2,7 @@
 
 #include "analysis/action/newton.hpp"
 #include "linear_algebra/dense.hpp"
+#include "linear_algebra/products.hpp"
 
 #include <maupertuis/integrator.hpp>
 #include <maupertuis/motion_kernel.hpp>
@@ -77,11 +78,13 @@ class Neighbours {
     functional_.evaluate(s.t, s.q.data(), s.v.data(), trial_.multipliers, 2, density_);
     const Index d = z.cols();
     const Matrix dq = y.topRows(n_), dv = y.middleRows(half, n_);
-    Matrix dp = density_.hessian.bottomLeftCorner(n_, n_) * dq + density_.hessian.bottomRightCorner(n_, n_) * dv;
-    if (k_ > 0) dp += density_.integral_gradients.bottomRows(n_) * y.middleRows(n_, k_);
+    Matrix dp = product(density_.hessian.bottomLeftCorner(n_, n_), dq);
+    dp += product(density_.hessian.bottomRightCorner(n_, n_), dv);
+    if (k_ > 0) dp += product(density_.integral_gradients.bottomRows(n_), y.middleRows(n_, k_));
     Matrix out(2 * (d + k_), y.cols());
-    out.topRows(d) = z.transpose() * scale_.cwiseInverse().asDiagonal() * dq;
-    out.middleRows(d + k_, d) = sign_ * (z.transpose() * scale_.asDiagonal() * dp);
+    const Matrix over_scale = scale_.cwiseInverse().asDiagonal() * z, by_scale = scale_.asDiagonal() * z;
+    out.topRows(d) = transposed_product(over_scale, dq);
+    out.middleRows(d + k_, d) = sign_ * transposed_product(by_scale, dp);
     if (k_ > 0) {
       out.middleRows(d, k_) = integral_scale_.cwiseInverse().asDiagonal() * y.middleRows(n_ + k_, k_);
       out.bottomRows(k_) = -sign_ * (integral_scale_.asDiagonal() * y.middleRows(n_, k_));
@@ -92,8 +95,8 @@ class Neighbours {
   /// The basis next to another one: turned as little as the constraints ask for.
   Matrix tangent_next_to(const MotionState& s, const Matrix& z) {
     const Matrix own = tangent(s);
-    const Eigen::JacobiSVD<Matrix> overlap(own.transpose() * z, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    return own * (overlap.matrixU() * overlap.matrixV().transpose());
+    const Eigen::JacobiSVD<Matrix> overlap(transposed_product(own, z), Eigen::ComputeThinU | Eigen::ComputeThinV);
+    return product(own, product_transposed(overlap.matrixU(), overlap.matrixV()));
   }
 
   struct Carried {
@@ -107,7 +110,7 @@ class Neighbours {
     const Matrix before = canonical(point, z);
     if (const auto stop = flow_.advance(point, to)) return {{}, from, {}, stop->reason};
     const Matrix basis = tangent_next_to(state(to), z);
-    return {canonical(point, basis) * before.partialPivLu().inverse(), point.state, basis, {}};
+    return {product(canonical(point, basis), before.partialPivLu().inverse()), point.state, basis, {}};
   }
 
   /// Whether the stretch is too short for a conjugate point of its own: B M / t near 1.
@@ -115,8 +118,8 @@ class Neighbours {
     const Index d = transfer.rows() / 2 - k_;
     functional_.evaluate(from.t, from.q.data(), from.v.data(), trial_.multipliers, 2, density_);
     const Matrix z = scale_.asDiagonal() * basis;
-    const Matrix mass = z.transpose() * density_.hessian.bottomRightCorner(n_, n_) * z / length;
-    const Matrix turn = transfer.block(0, d + k_, d, d) * mass - Matrix::Identity(d, d);
+    const Matrix mass = quadratic_form(z, density_.hessian.bottomRightCorner(n_, n_)) / length;
+    const Matrix turn = product(transfer.block(0, d + k_, d, d), mass) - Matrix::Identity(d, d);
     return turn.norm() < longest_turn;
   }
 
@@ -224,7 +227,7 @@ class Study {
         to = half;
         continue;
       }
-      Matrix next = carried.transfer * frame_;
+      Matrix next = product(carried.transfer, frame_);
       next = columns_of_q(Eigen::HouseholderQR<Matrix>(next), next.cols());
       const Vector sizes = Eigen::JacobiSVD<Matrix>(next.topRows(next.cols())).singularValues();
       const bool last = to == breaks_.back();
@@ -238,7 +241,7 @@ class Study {
       compare(from, carried.end);
       frame_ = next;
       basis_ = carried.basis;
-      total_ = carried.transfer * total_;
+      total_ = product(carried.transfer, total_);
       return to;
     }
     return fail("Stretches of the path become too short for a conjugate point to be located."), std::nullopt;
@@ -248,9 +251,8 @@ class Study {
     const Index d = frame.cols();
     const Matrix q = frame.topRows(d), p = frame.bottomRows(d);
     const Matrix u = inverse_times(transfer.topRightCorner(d, d), transfer.topLeftCorner(d, d));
-    const Matrix g = q.transpose() * u * q + q.transpose() * p;
-    const Matrix symmetric = (g + g.transpose()) / 2;
-    return Eigen::SelfAdjointEigenSolver<Matrix>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
+    const Matrix g = quadratic_form(q, u) + transposed_product(q, p);
+    return Eigen::SelfAdjointEigenSolver<Matrix>(symmetric_part(g), Eigen::EigenvaluesOnly).eigenvalues();
   }
 
   void count(const MotionState& from, double to, const Matrix& transfer, std::size_t at_end) {
@@ -340,7 +342,7 @@ class Study {
         rows.conservativeResize(rows.rows() + 1, n);
         rows.row(rows.rows() - 1) = Vector::Unit(n, i).transpose();
       }
-    const Matrix free = null_basis(rows * tangent, tangent.cols());
+    const Matrix free = null_basis(product(rows, tangent), tangent.cols());
     Matrix out = Matrix::Zero(tangent.cols() + neighbours_.integrals(), free.cols());
     out.topRows(tangent.cols()) = free;
     return out;
@@ -352,13 +354,16 @@ class Study {
     const Matrix a = total_.topLeftCorner(d, d), b = total_.topRightCorner(d, d), dd = total_.bottomRightCorner(d, d);
     const Matrix inverse = b.partialPivLu().inverse();
     Matrix c(2 * d, 2 * d);
-    c << inverse * a, -inverse, -inverse.transpose(), dd * inverse;
+    c.topLeftCorner(d, d) = product(inverse, a);
+    c.topRightCorner(d, d) = -inverse;
+    c.bottomLeftCorner(d, d) = -inverse.transpose();
+    c.bottomRightCorner(d, d) = product(dd, inverse);
     const Matrix& last_tangent = basis_;
     Matrix w;
     if (trial_.mesh.closed) {
       w = Matrix::Zero(2 * d, d - k);
       w.topRows(d - k).setIdentity();
-      w.middleRows(d, d - k) = last_tangent.transpose() * first_tangent_;
+      w.middleRows(d, d - k) = transposed_product(last_tangent, first_tangent_);
     } else {
       const Matrix first = free_directions(first_tangent_, fixed_.from),
                    last = free_directions(last_tangent, fixed_.to);
@@ -367,9 +372,8 @@ class Study {
       w.bottomRightCorner(d, last.cols()) = last;
     }
     if (w.cols() == 0) return 0;  // constraints leave nothing of the ends' freedom
-    const Matrix on = w.transpose() * c * w;
-    const Matrix symmetric = (on + on.transpose()) / 2;
-    const Vector values = Eigen::SelfAdjointEigenSolver<Matrix>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
+    const Matrix on = symmetric_part(quadratic_form(w, c));
+    const Vector values = Eigen::SelfAdjointEigenSolver<Matrix>(on, Eigen::EigenvaluesOnly).eigenvalues();
     const double zero = 1e-8 * c.cwiseAbs().maxCoeff();  // the same closed orbit, begun later, changes nothing
     return static_cast<std::size_t>((values.array() < -zero).count());
   }

@@ -2,6 +2,7 @@
 
 #include "analysis/action/newton.hpp"
 #include "linear_algebra/dense.hpp"
+#include "linear_algebra/products.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +23,8 @@ Pivot eliminate(const Matrix& block, const Matrix& right) {
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(block);
   const Vector& values = eigen.eigenvalues();
   return {(values.array() < 0).count(),
-          eigen.eigenvectors() * (values.cwiseInverse().asDiagonal() * (eigen.eigenvectors().transpose() * right))};
+          product(eigen.eigenvectors(),
+                  values.cwiseInverse().asDiagonal() * transposed_product(eigen.eigenvectors(), right))};
 }
 
 /// The same inertia (Sylvester) with every unknown in a unit of its own: where a coordinate's sizes are far below those
@@ -46,7 +48,7 @@ Index negatives_of(const Matrix& given, Index border) {
     const Index rest = all.rows() - piece;
     const Pivot pivot = eliminate(all.topLeftCorner(piece, piece), all.topRightCorner(piece, rest));
     out += pivot.negative;
-    const Matrix less = all.bottomRightCorner(rest, rest) - all.bottomLeftCorner(rest, piece) * pivot.solved;
+    const Matrix less = all.bottomRightCorner(rest, rest) - product(all.bottomLeftCorner(rest, piece), pivot.solved);
     all = less;
   }
   if (all.rows() == 0) return out;
@@ -125,7 +127,7 @@ class Counter {
     own.block(0, left, left, right) = all.topRightCorner(left, right);
     own.block(left, 0, right, left) = all.bottomLeftCorner(right, left);
     const Pivot pivot = eliminate(all.block(left, left, inner, inner), coupling);
-    own -= coupling.transpose() * pivot.solved;
+    own -= transposed_product(coupling, pivot.solved);
     scatter(e, left, right, own, rest);
     return pivot.negative;
   }
@@ -196,7 +198,7 @@ bool convex_along(Functional& functional, const Trial& trial) {
       const Vector size =
           mass.diagonal().cwiseAbs().cwiseMax(1e-12 * mass.diagonal().cwiseAbs().maxCoeff()).cwiseSqrt().cwiseInverse();
       const Matrix z = null_basis(rows * size.asDiagonal(), n);
-      const Matrix reduced = z.transpose() * (size.asDiagonal() * mass * size.asDiagonal()) * z;
+      const Matrix reduced = quadratic_form(z, size.asDiagonal() * mass * size.asDiagonal());
       if (reduced.rows() == 0) continue;
       const Eigen::SelfAdjointEigenSolver<Matrix> eigen(reduced, Eigen::EigenvaluesOnly);
       if (!(eigen.eigenvalues()[0] > 1e-10 * eigen.eigenvalues().tail(1)[0])) return false;

@@ -1,5 +1,6 @@
 #include "analysis/action/problem.hpp"
 #include "linear_algebra/dense.hpp"
+#include "linear_algebra/products.hpp"
 
 #include <fmt/format.h>
 
@@ -85,11 +86,13 @@ class Neighbourhood {
     Matrix x(trial_.q.size(), count);
     for (Index i = 0; i < count; ++i)
       x.col(i) = Eigen::Map<const Vector>(shapes[static_cast<std::size_t>(i)].xi.data(), x.rows());
-    if (problem_.functional.integrals() > 0) x = x * null_basis(a_.integral_gradients.transpose() * x, count);
+    if (problem_.functional.integrals() > 0)
+      x = product(x, null_basis(transposed_product(a_.integral_gradients, x), count));
     if (x.cols() == 0) return std::nullopt;
-    Matrix h = x.transpose() * times(a_.hessians, x, true), k = x.transpose() * times(a_.kinetic, x, false);
+    Matrix h = transposed_product(x, times(a_.hessians, x, true)),
+           k = transposed_product(x, times(a_.kinetic, x, false));
     k += 1e-12 * k.trace() * Matrix::Identity(k.rows(), k.cols());  // shapes that constraints make alike
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> eigen((h + h.transpose()) / 2, (k + k.transpose()) / 2);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> eigen(symmetric_part(h), symmetric_part(k));
     if (eigen.info() != Eigen::Success) return std::nullopt;
     Vector best = x * eigen.eigenvectors().col(0);
     const double size =
@@ -135,15 +138,15 @@ class Neighbourhood {
     for (Index e = 0; e < trial_.mesh.elements(); ++e) {
       Matrix local(n * (p + 1), x.cols());
       for (Index j = 0; j <= p; ++j) local.middleRows(j * n, n) = x.middleRows(trial_.mesh.node(e, j) * n, n);
-      const Matrix product = blocks[static_cast<std::size_t>(e)] * local;
-      for (Index j = 0; j <= p; ++j) out.middleRows(trial_.mesh.node(e, j) * n, n) += product.middleRows(j * n, n);
+      const Matrix times_local = product(blocks[static_cast<std::size_t>(e)], local);
+      for (Index j = 0; j <= p; ++j) out.middleRows(trial_.mesh.node(e, j) * n, n) += times_local.middleRows(j * n, n);
     }
     if (!with_curvature || problem_.functional.constraints() == 0) return out;
     for (Index k = 0; k < trial_.mesh.nodes(); ++k)
       out.middleRows(k * n, n) +=
-          problem_.functional.constraint_curvature(trial_.mesh.time(k), trial_.q.col(k),
-                                                   directions_.mu[static_cast<std::size_t>(k)]) *
-          x.middleRows(k * n, n);
+          product(problem_.functional.constraint_curvature(trial_.mesh.time(k), trial_.q.col(k),
+                                                           directions_.mu[static_cast<std::size_t>(k)]),
+                  x.middleRows(k * n, n));
     return out;
   }
 

@@ -1,6 +1,7 @@
 #include "analysis/linearization/eigenproblem.hpp"
 
 #include "analysis/linearization/dense.hpp"
+#include "linear_algebra/products.hpp"
 
 #include <cmath>
 #include <limits>
@@ -49,8 +50,8 @@ EigenSystem eigen_system(const Matrix& a) {
     if (stage == 1) out.chained = static_cast<std::size_t>(split.kernel);
     Matrix change = Matrix::Identity(n, n);
     change.bottomRightCorner(n - zeros, n - zeros) = split.basis;
-    t = (change.transpose() * t * change).eval();
-    q = (q * change).eval();
+    t = quadratic_form(change, t);
+    q = product(q, change);
     if (stage == 0) out.kernel = q.leftCols(split.kernel);
     t.block(zeros, zeros, n - zeros, split.kernel).setZero();
     zeros += split.kernel;

@@ -1,5 +1,6 @@
 #include "analysis/linearization/dense.hpp"
 #include "analysis/linearization/measured.hpp"
+#include "linear_algebra/products.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -93,7 +94,7 @@ Matrix cleaned(Matrix part, const Matrix& whole) {
   if (part.size() > 0 && part.lpNorm<Eigen::Infinity>() <= rounding * whole.lpNorm<Eigen::Infinity>()) part.setZero();
   return part;
 }
-Matrix symmetric_part(const Matrix& m) { return cleaned((m + m.transpose()) / 2, m); }
+Matrix clean_symmetric_part(const Matrix& m) { return cleaned(symmetric_part(m), m); }
 Matrix skew_part(const Matrix& m) { return cleaned((m - m.transpose()) / 2, m); }
 
 /// All pieces at one point.
@@ -104,12 +105,12 @@ struct Pieces {
 
 /// Nᵀ M N and so on. Only where the independent directions do not turn along the motion: at rest and in steady motions.
 void second_order_form(Linearization& out, const Pieces& p, const Matrix& directions) {
-  const auto project = [&](const Matrix& m) { return Matrix(directions.transpose() * m * directions); };
+  const auto project = [&](const Matrix& m) { return quadratic_form(directions, m); };
   const Matrix mass = project(p.balance.by_a), velocity = project(p.balance.by_v), position = project(p.balance.by_q);
-  out.mass = to_real(symmetric_part(mass));
-  out.damping = to_real(symmetric_part(velocity));
+  out.mass = to_real(clean_symmetric_part(mass));
+  out.damping = to_real(clean_symmetric_part(velocity));
   out.gyroscopic = to_real(skew_part(velocity));
-  out.stiffness = to_real(symmetric_part(position));
+  out.stiffness = to_real(clean_symmetric_part(position));
   out.circulatory = to_real(skew_part(position));
   out.input = to_real(-directions.transpose() * p.balance.by_inputs);
 }
@@ -133,18 +134,19 @@ LinearizationResult linearize(const PointEquations& equations, const OperatingPo
   out.independent = at_positions.independent;
   out.independent_velocities = at_velocities.independent;
 
-  const Matrix xi = null_basis(p.positions.by_q, at_positions);                   // ξ by positions [n × f]
-  const Matrix rate_w = null_basis(p.rates.by_v, at_velocities);                  // ξ̇ by velocities [n × g]
-  const Matrix rate_q = spread(p.rates.by_v, at_velocities, -p.rates.by_q * xi);  // ξ̇ by positions [n × f]
+  const Matrix xi = null_basis(p.positions.by_q, at_positions);   // ξ by positions [n × f]
+  const Matrix rate_w = null_basis(p.rates.by_v, at_velocities);  // ξ̇ by velocities [n × g]
+  const Matrix rate_q =
+      spread(p.rates.by_v, at_velocities, negated_product(p.rates.by_q, xi));  // ξ̇ by positions [n × f]
   const auto n = static_cast<Index>(e.n), m = static_cast<Index>(e.m), k = static_cast<Index>(e.k);
   const Index f = xi.cols(), g = rate_w.cols();
 
   Matrix right = Matrix::Zero(n + m, f + g + k);
-  right.topLeftCorner(n, f) = -p.balance.by_q * xi - p.balance.by_v * rate_q;
-  right.block(0, f, n, g) = -p.balance.by_v * rate_w;
+  right.topLeftCorner(n, f) = negated_product(p.balance.by_q, xi) - product(p.balance.by_v, rate_q);
+  right.block(0, f, n, g) = negated_product(p.balance.by_v, rate_w);
   right.topRightCorner(n, k) = -p.balance.by_inputs;
-  right.bottomLeftCorner(m, f) = -p.accelerations.by_q * xi - p.accelerations.by_v * rate_q;
-  right.block(n, f, m, g) = -p.accelerations.by_v * rate_w;
+  right.bottomLeftCorner(m, f) = negated_product(p.accelerations.by_q, xi) - product(p.accelerations.by_v, rate_q);
+  right.block(n, f, m, g) = negated_product(p.accelerations.by_v, rate_w);
   const BorderedSolution bordered =
       solve_bordered(p.balance.by_a, p.balance.by_multipliers, p.accelerations.by_a, right);
   if (bordered.singular) {

@@ -2,6 +2,7 @@
 #include "analysis/linearization/eigenproblem.hpp"
 #include "analysis/linearization/point_equations.hpp"
 #include "analysis/linearization/stability.hpp"
+#include "linear_algebra/products.hpp"
 
 #include <maupertuis/modes.hpp>
 
@@ -113,7 +114,7 @@ class Analysis {
       out_.residual = std::max(out_.residual, ((balanced / s).cast<Complex>() * x - system.values[i] * x).norm());
       add_pair(s * system.values[i], s * system.errors[i], positions.cast<Complex>() * x);
     }
-    add_zero_shapes(positions * system.kernel, system.zeros, system.chained);
+    add_zero_shapes(product(positions, system.kernel), system.zeros, system.chained);
   }
 
   /// Powers of two that bring rows and columns of A to like sizes (Parlett and Reinsch 1969).
@@ -178,7 +179,7 @@ class Analysis {
   // ------------------------------------------------------------------------------------------------------- zero modes
 
   void add_zeros(const Matrix& kernel_y, std::size_t zeros, std::size_t chained) {
-    add_zero_shapes(to_eigen(l_.positions) * form_.to_independent * kernel_y, zeros, chained);
+    add_zero_shapes(product(product(to_eigen(l_.positions), form_.to_independent), kernel_y), zeros, chained);
   }
 
   /// Where symmetries span the kernel, each of them is a mode of its own.
@@ -214,9 +215,9 @@ class Analysis {
   void complete(Matrix& shapes, const Matrix& kernel, Index explained) const {
     const Matrix known = shapes.leftCols(explained);
     Matrix rest = kernel;
-    const Matrix metric = known.transpose() * mass_;
-    const Matrix gram = metric * known;
-    rest -= known * least_squares(gram, metric * kernel, 1e-12).x;
+    const Matrix metric = transposed_product(known, mass_);
+    const Matrix gram = product(metric, known);
+    rest -= product(known, least_squares(gram, product(metric, kernel), 1e-12).x);
     const std::vector<std::size_t> columns = pivot_columns(rest, 1e-9);
     for (std::size_t k = 0; k < columns.size() && explained + static_cast<Index>(k) < shapes.cols(); ++k)
       shapes.col(explained + static_cast<Index>(k)) = rest.col(static_cast<Index>(columns[k]));
@@ -274,7 +275,9 @@ MassNormalForm mass_normal_form(const Linearization& l, const std::vector<Transl
   const Matrix mass = to_eigen(l.mass);
   const std::optional<Cholesky> factor = cholesky(mass);
   if (!factor) return out;
-  const auto both_sides = [&](const Matrix& m) { return Matrix(factor->inverse * m * factor->inverse.transpose()); };
+  const auto both_sides = [&](const Matrix& m) {
+    return product_transposed(product(factor->inverse, m), factor->inverse);
+  };
   const Matrix damping = to_eigen(l.damping), gyroscopic = to_eigen(l.gyroscopic),
                circulatory = to_eigen(l.circulatory);
   out.k = both_sides(to_eigen(l.stiffness) + circulatory);
@@ -287,7 +290,7 @@ MassNormalForm mass_normal_form(const Linearization& l, const std::vector<Transl
   for (std::size_t t = 0; t < translations.size(); ++t)
     for (std::size_t i = 0; i < l.independent.size(); ++i)
       directions(static_cast<Index>(i), static_cast<Index>(t)) = translations[t].direction[l.independent[i]];
-  out.translations = factor->lower.transpose() * directions;
+  out.translations = transposed_product(factor->lower, directions);
   out.valid = true;
   return out;
 }

@@ -1,5 +1,6 @@
 #include "analysis/linearization/dense.hpp"
 #include "analysis/linearization/ordered_schur.hpp"
+#include "linear_algebra/products.hpp"
 
 #include <maupertuis/regulator.hpp>
 
@@ -120,8 +121,8 @@ std::optional<Regulator> linear_quadratic_regulator(const Linearization& l, cons
   const Matrix an = units.cwiseInverse().asDiagonal() * a * units.asDiagonal(),
                bn = units.cwiseInverse().asDiagonal() * b, qn = units.asDiagonal() * q * units.asDiagonal();
   const Cholesky price = *cholesky(r);  // positive: checked
-  const Matrix inverse_r = price.inverse.transpose() * price.inverse;
-  const Matrix g = bn * inverse_r * bn.transpose();
+  const Matrix inverse_r = transposed_product(price.inverse, price.inverse);
+  const Matrix g = product_transposed(product(bn, inverse_r), bn);
   Matrix hamiltonian(2 * s, 2 * s);
   hamiltonian.topLeftCorner(s, s) = an;
   hamiltonian.topRightCorner(s, s) = -g;
@@ -136,15 +137,15 @@ std::optional<Regulator> linear_quadratic_regulator(const Linearization& l, cons
   if (!basis) return refuse("The stable eigenvalues of the Hamiltonian matrix do not stand apart from the others.");
   const Matrix solved =
       least_squares(basis->topRows(s).transpose(), basis->bottomRows(s).transpose(), 1e-15).x.transpose();
-  const Matrix p = (solved + solved.transpose()) / 2;
-  const Matrix terms[] = {an.transpose() * p + p * an, p * g * p, qn};
+  const Matrix p = symmetric_part(solved);
+  const Matrix raised = transposed_product(an, p);
+  const Matrix terms[] = {raised + product(p, an), product(product(p, g), p), qn};
   Regulator out;
-  out.residual =
-      (terms[0] - terms[1] + terms[2]).norm() / (2 * (an.transpose() * p).norm() + terms[1].norm() + terms[2].norm());
+  out.residual = (terms[0] - terms[1] + terms[2]).norm() / (2 * raised.norm() + terms[1].norm() + terms[2].norm());
   if (!(out.residual <= promised)) return refuse(fmt::format("Its relative residual is {:.1e}.", out.residual));
   const Matrix cost = units.cwiseInverse().asDiagonal() * p * units.cwiseInverse().asDiagonal();
-  const Matrix gain = inverse_r * b.transpose() * cost;
-  const Eigen::VectorXcd poles = general_eigen(a - b * gain).values;
+  const Matrix gain = product(product_transposed(inverse_r, b), cost);
+  const Eigen::VectorXcd poles = general_eigen(a - product(b, gain)).values;
   out.poles.assign(poles.data(), poles.data() + poles.size());
   std::sort(out.poles.begin(), out.poles.end(), [](const Complex& x, const Complex& y) {
     return x.real() != y.real() ? x.real() < y.real() : x.imag() < y.imag();

@@ -1,6 +1,7 @@
 #include "analysis/linearization/stability.hpp"
 
 #include "analysis/linearization/dense.hpp"
+#include "linear_algebra/products.hpp"
 
 #include <fmt/format.h>
 
@@ -21,8 +22,9 @@ Matrix effective_stiffness(const MassNormalForm& form, bool keeps_momenta) {
   if (s == 0) return form.k;
   const Matrix q = orthogonal_factor(form.translations);
   const Matrix along = q.leftCols(s), rest = q.rightCols(f - s);
-  Matrix k = rest.transpose() * form.k * rest;
-  if (keeps_momenta) k -= (rest.transpose() * form.c * along) * (along.transpose() * form.c * rest);
+  Matrix k = quadratic_form(rest, form.k);
+  if (keeps_momenta)
+    k -= product(product(transposed_product(rest, form.c), along), product(transposed_product(along, form.c), rest));
   return k;
 }
 
@@ -44,7 +46,7 @@ struct Verdicts {
     if (!equilibrium.at_rest && !all_conserved()) return {};
     const Matrix k = effective_stiffness(form, all_conserved());
     if (k.size() == 0) return {};
-    return to_list(symmetric_eigen((k + k.transpose()) / 2).values);
+    return to_list(symmetric_eigen(symmetric_part(k)).values);
   }
 
   double hessian_tolerance() const {

@@ -3,6 +3,7 @@
 #include <maupertuis/interrupt_scope.hpp>
 
 #include "analysis/linearization/dense.hpp"
+#include "linear_algebra/products.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -166,7 +167,7 @@ Matrix SteadyState::soft_ways(const Matrix& derivatives, const Equilibration& by
   const Matrix moving = kernel.topRows(static_cast<Index>(free_q_.size() + free_rates_.size()));
   Matrix out(kernel.rows(), 0);
   if (split.kernel == 0) return out;
-  const SymmetricEigen parts = symmetric_eigen(moving.transpose() * moving);
+  const SymmetricEigen parts = symmetric_eigen(transposed_product(moving, moving));
   for (Index k = 0; k < parts.values.size(); ++k) {
     if (!(parts.values[k] > moves)) continue;
     out.conservativeResize(Eigen::NoChange, out.cols() + 1);
@@ -196,7 +197,7 @@ void SteadyState::find_family(Solution& solution, const System& s, const Vector&
     if (there) gone.col(k) = (unknowns(there->point) - z).head(moving).cwiseQuotient(by.columns.head(moving)) / part;
   }
   if (gone.isZero(0)) return;  // no way at all, or none that was followed
-  const SymmetricEigen projections = symmetric_eigen(gone.transpose() * gone);
+  const SymmetricEigen projections = symmetric_eigen(transposed_product(gone, gone));
   std::vector<bool> moves(e_.n, false);
   for (Index k = 0; k < projections.values.size(); ++k) {
     if (!(projections.values[k] > followed)) continue;

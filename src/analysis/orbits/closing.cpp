@@ -4,6 +4,7 @@
 #include "analysis/orbits/messages.hpp"
 #include "analysis/tangent/point_functions.hpp"
 #include "linear_algebra/dense.hpp"
+#include "linear_algebra/products.hpp"
 
 #include <fmt/format.h>
 
@@ -336,8 +337,8 @@ ReturnMap return_map(const TangentPoint& begin, const TangentPoint& end, const s
   Eigen::HouseholderQR<Matrix> qr(size.cwiseInverse().asDiagonal() * basis);
   ReturnMap out;
   out.directions = columns_of_q(qr, d);
-  const Matrix combination = basis.transpose() * (size.asDiagonal() * out.directions);
-  out.monodromy = out.directions.transpose() * (size.cwiseInverse().asDiagonal() * (carried * combination));
+  const Matrix combination = transposed_product(basis, size.asDiagonal() * out.directions);
+  out.monodromy = transposed_product(out.directions, size.cwiseInverse().asDiagonal() * product(carried, combination));
   return out;
 }
 

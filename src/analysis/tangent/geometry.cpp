@@ -1,5 +1,6 @@
 #include "analysis/tangent/point_functions.hpp"
 #include "linear_algebra/dense.hpp"
+#include "linear_algebra/products.hpp"
 
 #include <maupertuis/tangent.hpp>
 
@@ -110,7 +111,7 @@ std::vector<double> TangentGeometry::symplectic_sizes(const TangentPoint& point,
   const Matrix slopes = s.momenta->slopes(point.state);
   const auto columns = static_cast<Index>(point.columns());
   const Matrix y = Eigen::Map<const Matrix>(point.directions.data(), 2 * s.n, columns);
-  Matrix q = y.topRows(s.n), p = slopes * y;
+  Matrix q = y.topRows(s.n), p = product(slopes, y);
   const Eigen::VectorXd size = Eigen::Map<const Eigen::VectorXd>(sizes.data(), 2 * s.n),
                         momentum = slopes.cwiseAbs() * size;
   for (Index k = 0; k < s.n; ++k) {
@@ -127,8 +128,8 @@ std::optional<double> TangentGeometry::divergence(const MotionState& state) cons
   const Impl& s = *impl_;
   if (!s.holonomic || !s.force_slopes) return std::nullopt;
   const Matrix z = s.configuration_directions(state);
-  const Matrix mass = z * s.momenta->slopes(state).rightCols(s.n) * z.transpose();
-  const Matrix slopes = z * s.force_slopes->slopes(state).rightCols(s.n) * z.transpose();
+  const Matrix mass = product_transposed(product(z, s.momenta->slopes(state).rightCols(s.n)), z);
+  const Matrix slopes = product_transposed(product(z, s.force_slopes->slopes(state).rightCols(s.n)), z);
   return mass.partialPivLu().solve(slopes).trace();
 }
 
