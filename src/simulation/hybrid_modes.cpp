@@ -182,7 +182,6 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
   s.set_usual_sizes(places, speeds);
   const TaylorStepper::Outlook outlook = s.outlook(bound);
   if (outlook.ending != StepEnding::None) return false;
-  note_accelerations(outlook.accelerations, values);
   if (accelerations) *accelerations = outlook.accelerations;
   double largest_force = 0;
   for (std::size_t k = 0; k < motion.watches.size(); ++k)
@@ -297,6 +296,7 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
                  : "No forces keep all contacts that touch here from closing.";
     return false;
   }
+  note_accelerations(first, values);  // those of modes that do not fit are no measure
   static_cast<void>(fits(*found, touching, bound, true, nullptr));
   const ContactMode before = now_->mode;
   now_ = modes_.at(key_of(*found)).get();

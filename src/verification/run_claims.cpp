@@ -47,6 +47,17 @@ std::vector<const Happening*> happenings_of(const SimulationResult& run, const s
   return out;
 }
 
+/// What impacts, friction and moving contacts do to the energy, in units of the largest that it has.
+double energy_exchanged(const SimulationResult& run) {
+  if (!run.books) return 0;
+  double largest = 0;
+  const std::size_t column = run.trajectory.columns.size() - 1;
+  for (std::size_t row = 0; row < run.trajectory.rows(); ++row)
+    largest = std::max(largest, std::abs(run.trajectory.at(row, column)));
+  const double exchanged = std::abs(run.books->impacts) + std::abs(run.books->friction) + std::abs(run.books->moving);
+  return exchanged == 0 ? 0 : exchanged / std::max(largest, exchanged);
+}
+
 std::string called(const std::string& name, const std::string& change) {
   return change.empty() ? name : name + " " + change;
 }
@@ -246,6 +257,10 @@ void RunClaims::judge_energy(const Energy& energy, const std::optional<Simulatio
               : fmt::format("The energy jumps where {}: what is switched there does work at once.", jump->place);
   } else if (!run->ok()) {
     result.message = ended_before(*run);
+  } else if (const double lost = energy_exchanged(*run);
+             lost > number(energy.expectation->tolerance.size, usual_tolerance)) {
+    report_drift(result, lost, number(energy.expectation->tolerance.size, usual_tolerance));
+    result.message = "Impacts, friction or moving contacts change the energy along the run.";
   } else {
     report_drift(result, run->statistics.energy_drift, number(energy.expectation->tolerance.size, usual_tolerance));
   }

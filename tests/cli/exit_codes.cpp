@@ -32,7 +32,7 @@ TEST_CASE("1: a wrong model, with the place and one message") {
 }
 
 TEST_CASE("1: statements and commands of later versions say so") {
-  const Outcome statement = maup({"check", "-"}, std::string(pendulum) + "contact θ >= 0\n");
+  const Outcome statement = maup({"check", "-"}, std::string(pendulum) + "field u(s) : angle\n");
   CHECK(statement.code == 1);
   CHECK(contains(statement.err, "not supported yet"));
   for (const char* command : {"sweep", "export", "studio"}) {
