@@ -23,6 +23,13 @@ Expr rebuilt(Expr node, const std::vector<Expr>& arguments, const ExprMap& repla
 
 bool same_value(double a, double b) { return std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b)); }
 
+/// Whether parameters alone stand in it.
+bool is_constant(Expr e) {
+  for (const Expr& s : symbols_of({&e, 1}))
+    if (s.role() != Role::Parameter && s.role() != Role::Constant) return false;
+  return true;
+}
+
 }  // namespace
 
 ExprVector carried_over(std::span<const Expr> roots, const ExprMap& replacements, Context& to) {
@@ -63,6 +70,12 @@ PullBack::PullBack(const MechanicalSystem& a, const CoordinateMap& map, Diagnost
     Expr counterpart = map.parameters[i];
     if (counterpart) {
       counterpart = with_constants_as_numbers(b, in_terms_of_motion(b, {&counterpart, 1})).front();
+      if (!is_constant(counterpart)) {
+        diagnostics.error("E0825", {}, fmt::format("the map gives the parameter `{}` a value that changes", p.name),
+                          "A parameter is one number for a whole motion.",
+                          "Give it a parameter or a number of the second model.");
+        counterpart = context_.number(Rational::from_double(p.si_value));
+      }
       const double other = evaluate(counterpart, values);
       if (!same_value(p.si_value, other))
         diagnostics.error(

@@ -147,11 +147,11 @@ class Formulas {
     if (zero_test(differentiate(slope, q)).verdict != Verdict::Zero || zero_test(slope).verdict != Verdict::Nonzero)
       return false;
     const ExprMap origin{{q, context_.number(0)}};
-    const Expr value = readable(-substitute(force, origin) / substitute(slope, origin), equations_.order).value;
+    const Expr value = -substitute(force, origin) / substitute(slope, origin);
     if (!(std::abs(number(value) - numbers_.point.q[i]) <= digits * std::max(std::abs(numbers_.point.q[i]), 1e-300)))
       return false;
     put(i, value);
-    shown_.emplace_back(q, ReadableForm{value, {}, {}});
+    shown_.emplace_back(q, readable(value, equations_.order));
     return true;
   }
 

@@ -75,7 +75,7 @@ std::optional<std::string> of_numbers(const Input& input, const Outcome& outcome
   const bool is_text_alone =
       !input.arguments.empty() && input.arguments[0] == "explain";  // the catalogue writes about NaN
   if (is_text_alone || writes_no_number_itself(input)) return {};
-  if (const std::string line = no_number(without_messages(outcome.out)); !line.empty())
+  if (const std::string line = no_number(without_scripts(without_messages(outcome.out))); !line.empty())
     return "no number in the result: " + line;
   for (const auto& [name, text] : outcome.files) {
     const bool is_text = name.size() < 4 || name.compare(name.size() - 4, 4, ".npy") != 0;
