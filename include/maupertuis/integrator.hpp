@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -53,7 +54,8 @@ class TaylorStepper {
   /// Begins a run; integrals and statistics start at zero.
   void start(double t, std::span<const double> q, std::span<const double> v);
   /// After start(): event functions that vanish here, to rounding. They are on the side that the motion goes to.
-  void put_at_zero(std::span<const std::size_t> events);
+  /// order: of the zero, where it is known; what rounding makes of lower powers of time does not count.
+  void put_at_zero(std::span<const std::size_t> events, std::uint8_t order = 1);
   /// Sizes that q and q̇ have had elsewhere in the motion [n]: constraints on coordinates that have come to rest are
   /// met to rounding of these.
   void set_usual_sizes(std::span<const double> q, std::span<const double> v);
@@ -63,6 +65,7 @@ class TaylorStepper {
     std::string reason;
     std::vector<std::int8_t> sides;     // [events] of zero, just after; 0 where rounding hides it
     std::vector<double> values;         // [events] here
+    std::vector<double> slopes;         // [events] their rates here
     std::vector<double> reach;          // [events] the largest that they can become over the length that is judged
     std::vector<double> accelerations;  // [n]
   };

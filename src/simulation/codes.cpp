@@ -116,6 +116,10 @@ constexpr std::array entries{
               "They are located to rounding on the polynomials of Taylor's steps, and the mode changes there. The stiff "
               "and the variational method have no such polynomials.",
               "", ""},
+    CodeEntry{"E0730", "a contact with a kink",
+              "A gap made of abs, min, max, step or piecewise may switch where it and its slope go on, as on the border of a "
+              "stadium. At a corner or a step of the surface the normal direction jumps: that is two contacts.",
+              "", ""},
     CodeEntry{"E0729", "impacts where momenta are not linear in the velocities",
               "An impulse changes p = ∂L/∂q'. For a Lagrangian that is quadratic in q' the velocities after it follow from a "
               "linear equation, which is solved; others, as of a relativistic particle, are not carried out yet.",

@@ -81,6 +81,17 @@ std::optional<double> HybridMotion::accumulation(std::size_t contact, double spe
   return t_ + flight * ratio / (1 - ratio);
 }
 
+/// The last impact of a series without end, with the friction of all those that are left out: after it the contacts
+/// stay closed, and press as the bounces would have pressed on the average.
+ImpactResult HybridMotion::last_impact(const ImpactProblem& p, const VectorXd& v) {
+  ImpactResult first = sequential_impact(p, v, ImpactOrder::FastestFirst);
+  if (p.contacts.size() == 1) return first;
+  ImpactResult rest = end_of_bounces(p, first.v);
+  rest.impulses.insert(rest.impulses.begin(), first.impulses.begin(), first.impulses.end());
+  rest.loss += first.loss, rest.moving += first.moving;
+  return rest;
+}
+
 /// What closing contacts do to the velocities. False, and why, where no impulses are found.
 bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) {
   accumulated_.reset();
@@ -96,11 +107,12 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
     for (const std::size_t i : cycle_)
       if (std::find(touching.begin(), touching.end(), i) == touching.end()) touching.push_back(i);
   const bool at_once = system_.impact_law == ImpactLaw::Simultaneous;
-  const ImpactProblem p = impact_problem(end ? cycle_ : touching, values);
+  ImpactProblem p = impact_problem(end ? cycle_ : touching, values);
+  if (end) std::fill(p.restitution.begin(), p.restitution.end(), 0.0);
   const VectorXd v = vector_of(v_);
-  const ImpactResult result = end       ? end_of_bounces(p, v)
-                              : at_once ? simultaneous_impact(p, v, false)
-                                        : sequential_impact(p, v, ImpactOrder::FastestFirst);
+  ImpactResult result = end       ? last_impact(p, v)
+                        : at_once ? simultaneous_impact(p, v, false)
+                                  : sequential_impact(p, v, ImpactOrder::FastestFirst);
   if (result.unsolved) {
     reason = "No impulses keep all contacts that are hit here from closing.";
     return false;

@@ -177,11 +177,15 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
     if (touches || starts_to_slide || (left && w.what == Watch::What::Force)) at_zero.push_back(k);
   }
   s.put_at_zero(at_zero);
+  // λ falls through 0, and so does g̈ rise from it: the gap begins with the third power of time.
+  for (std::size_t k = 0; k < motion.watches.size(); ++k)
+    if (motion.watches[k].what == Watch::What::Gap && released_[motion.watches[k].index]) s.put_at_zero({&k, 1}, 3);
   std::vector<double> places, speeds;
   for (const std::size_t k : kind_) places.push_back(place_[k]), speeds.push_back(speed_[k]);
   s.set_usual_sizes(places, speeds);
   const TaylorStepper::Outlook outlook = s.outlook(bound);
   if (outlook.ending != StepEnding::None) return false;
+  constexpr double located = 1e-11;
   if (accelerations) *accelerations = outlook.accelerations;
   double largest_force = 0;
   for (std::size_t k = 0; k < motion.watches.size(); ++k)
@@ -193,8 +197,15 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
     const bool zero = std::find(at_zero.begin(), at_zero.end(), k) != at_zero.end();
     const bool must_move = w.what == Watch::What::Slip && zero;
     const bool lost = vanishes(w, outlook.reach[k]);
-    if (w.what == Watch::What::Gap && lost) continue;
+    if (w.what == Watch::What::Gap && (lost || released_[w.index])) continue;
     if (w.what == Watch::What::Force && lost && !lenient) return false;  // what does not press needs not be closed
+    if (w.what == Watch::What::Force && std::abs(outlook.values[k]) <= located * hardest_[w.index]) {
+      // λ was located to rounding of the time alone: what it does next counts, and where it falls the contact opens
+      // whatever rounding makes of its gap.
+      if (outlook.slopes[k] >= 0) continue;
+      released_[w.index] = true;
+      return false;
+    }
     const bool wrong = outlook.sides[k] < 0 || (must_move && outlook.sides[k] == 0);
     if (!wrong) continue;
     const bool is_force = w.what == Watch::What::Force || w.what == Watch::What::Hold;
@@ -258,6 +269,14 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
         ++tries.back()[k];
       }
   }
+  released_.assign(system_.contacts.size(), false);
+  for (const Watch& w : pending_->left)
+    if (w.what == Watch::What::Force) released_[w.index] = true;
+  if (std::vector<double> free; !started_) {  // what acts without contact is a first measure of forces
+    static_cast<void>(fits(open_mode(system_), touching, bound, true, &free));
+    if (!free.empty()) note_accelerations(free, values);
+    std::fill(released_.begin(), released_.end(), false);
+  }
   std::optional<ContactMode> found;
   std::vector<double> first;
   for (const bool lenient : {false, true}) {
@@ -298,6 +317,8 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
   }
   note_accelerations(first, values);  // those of modes that do not fit are no measure
   static_cast<void>(fits(*found, touching, bound, true, nullptr));
+  for (std::size_t i = 0; i < released_.size(); ++i)
+    if (released_[i] && !found->closed[i]) released_at_[i] = t_;
   const ContactMode before = now_->mode;
   now_ = modes_.at(key_of(*found)).get();
   record_changes(before, *found);

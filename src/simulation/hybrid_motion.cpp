@@ -81,6 +81,8 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   speed_.assign(kind_.size(), 0);
   acceleration_ = place_ = speed_;
   bounces_.assign(system_.contacts.size(), {});
+  released_.assign(system_.contacts.size(), false);
+  released_at_.assign(system_.contacts.size(), std::numeric_limits<double>::quiet_NaN());
   record_ = {};
   started_ = false;
   now_ = &motion_in(open_mode(system_));
@@ -130,14 +132,19 @@ Step HybridMotion::step(double bound) {
   Step out = now_->stepper->step(bound);
   if (out.end != out.begin) same_time_ = 0;
   if (out.ending != StepEnding::None) return out;
-  if (!system_.contacts.empty())
-    if (const auto contact = violated())
-      return ended(
-          StepEnding::Paradox,
-          fmt::format("The motion went through the contact {} without a sign of it: bounces have become too small "
-                      "to be told apart.",
-                      system_.contact_label(*contact)));
+  note_step();
+  if (const auto contact = violated())
+    return ended(
+        StepEnding::Paradox,
+        fmt::format("The motion went through the contact {} without a sign of it: bounces have become too small "
+                    "to be told apart.",
+                    system_.contact_label(*contact)));
   if (!out.events.empty()) classify(out);
+  // A force that jumps may let a contact or a friction go, though none of their conditions has a root.
+  if (!pending_ && (out.switches > 0 || pulls())) {
+    take_state();
+    pending_ = std::make_unique<Pending>();
+  }
   return out;
 }
 
@@ -155,12 +162,35 @@ void HybridMotion::add(Happening::Kind kind, const std::string& name, double imp
   record_.happenings.back().v = v_;
 }
 
-/// Roots of the step: events of the model are recorded at once; what changes the mode waits for the next step.
-void HybridMotion::classify(Step& step) {
-  const auto& s = *now_->stepper;
+void HybridMotion::take_state() {
+  const TaylorStepper& s = *now_->stepper;
   t_ = s.time();
   q_.assign(s.q().begin(), s.q().end());
   v_.assign(s.v().begin(), s.v().end());
+}
+
+/// Where a contact opens since λ falls through 0 its gap begins as the third power of time: what rounding makes of its
+/// first two is no hit.
+bool HybridMotion::is_just_released(std::size_t contact) {
+  constexpr double short_way = 1e-6, slow = 1e-9;
+  const double since = std::abs(t_ - released_at_[contact]);
+  if (!(since * fastest_[contact] <= short_way * widest_[contact])) return false;
+  return std::abs(functions_.at(t_, q_, v_).rate[contact]) <= slow * fastest_[contact];
+}
+
+/// Whether a closed contact pulled as the last step began.
+bool HybridMotion::pulls() const {
+  constexpr double digits = 1e-9;
+  const std::vector<double>& multipliers = now_->stepper->step_start().multipliers;
+  std::size_t k = equations_.system->constraints.size();
+  for (std::size_t i = 0; i < now_->mode.closed.size(); ++i)
+    if (now_->mode.closed[i] && multipliers[k++] < -digits * std::max(hardest_[i], 1e-280)) return true;
+  return false;
+}
+
+/// Roots of the step: events of the model are recorded at once; what changes the mode waits for the next step.
+void HybridMotion::classify(Step& step) {
+  take_state();
   step.event.reset();
   auto pending = std::make_unique<Pending>();
   for (const EventRoot& root : step.events) {
@@ -177,9 +207,9 @@ void HybridMotion::classify(Step& step) {
       }
       if (event.action == ModelEvent::Action::Set) pending->sets.push_back(&event);
     } else if (root.direction <= 0) {
-      if (watch.what == Watch::What::Gap)
-        pending->hit.push_back(watch.index);
-      else
+      if (watch.what == Watch::What::Gap) {
+        if (!is_just_released(watch.index)) pending->hit.push_back(watch.index);
+      } else
         pending->left.push_back(watch);
     }
   }
@@ -191,6 +221,7 @@ void HybridMotion::classify(Step& step) {
 std::optional<std::size_t> HybridMotion::violated() {
   constexpr double digits = 1e-10;
   const TaylorStepper& s = *now_->stepper;
+  if (system_.contacts.empty()) return std::nullopt;
   const ContactValues& values = functions_.at(s.time(), s.q(), s.v());
   note_gaps(values);
   for (std::size_t i = 0; i < values.gap.size(); ++i)
@@ -208,6 +239,24 @@ std::vector<std::size_t> HybridMotion::touching(const ContactValues& values) con
   return out;
 }
 
+/// A constraint that is off by more than these digits of the sizes that the motion has had.
+std::optional<std::size_t> HybridMotion::violated_constraint(const MotionState& state, double digits) const {
+  if (!system_.constrained()) return std::nullopt;
+  const ConstraintManifold manifold(equations_);
+  const std::vector<double> a = manifold.matrix(state), values = manifold.values(state), rates = manifold.rates(state);
+  const std::size_t n = state.q.size();
+  for (std::size_t k = 0; k < system_.constraints.size(); ++k) {
+    double place = 0, speed = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      place += std::abs(a[k * n + i]) * std::max(place_[kind_[i]], std::abs(state.q[i]));
+      speed += std::abs(a[k * n + i]) * std::max(speed_[kind_[i]], std::abs(state.v[i]));
+    }
+    const bool position = system_.constraints[k].level == Constraint::Level::Position;
+    if ((position && std::abs(values[k]) > digits * place) || std::abs(rates[k]) > digits * speed) return k;
+  }
+  return std::nullopt;
+}
+
 /// Assigns what events set, all from the values before.
 bool HybridMotion::carry_out_sets(std::string& reason) {
   Bindings bindings;
@@ -223,15 +272,9 @@ bool HybridMotion::carry_out_sets(std::string& reason) {
     for (const ModelEvent::Assignment& a : event->sets)
       (a.order == 0 ? q : v)[a.coordinate] = evaluate(in_terms_of_motion(system_, {&a.value, 1}).front(), bindings);
   constexpr double digits = 1e-9;
-  if (system_.constrained()) {
-    const ConstraintManifold manifold(equations_);
-    const MotionState state{t_, q, v};
-    const auto off = manifold.relative_values(state), rates = manifold.relative_rates(state);
-    for (std::size_t k = 0; k < system_.constraints.size(); ++k)
-      if (off[k] > digits || rates[k] > digits) {
-        reason = fmt::format("The event `{}` sets a state that violates {}.", before, system_.constraint_label(k));
-        return false;
-      }
+  if (const auto k = violated_constraint({t_, q, v}, digits)) {
+    reason = fmt::format("The event `{}` sets a state that violates {}.", before, system_.constraint_label(*k));
+    return false;
   }
   const ContactValues& values = functions_.at(t_, q, v);
   for (std::size_t i = 0; i < values.gap.size(); ++i)
@@ -251,6 +294,12 @@ bool HybridMotion::carry_out_sets(std::string& reason) {
   return true;
 }
 
+/// A motion that cannot go on stays where it is, with all that was counted so far.
+Step HybridMotion::stopped(StepEnding ending, std::string reason) {
+  now_->stepper->start(t_, q_, v_);
+  return ended(ending, std::move(reason));
+}
+
 /// Sets, impacts, and the mode after them. A step that ended where it cannot go on; nothing where all is well.
 std::optional<Step> HybridMotion::settle(double bound) {
   std::string reason;
@@ -265,16 +314,17 @@ std::optional<Step> HybridMotion::settle(double bound) {
                      ? fmt::format("{} changes follow each other at the same time without an end.", most_at_once)
                      : fmt::format("More than {} events and changes of contact.", most_happenings));
   if (!pending_->begins) leave_mode();
-  if (!pending_->sets.empty() && !carry_out_sets(reason)) return ended(StepEnding::SingularConstraints, reason);
+  if (!pending_->sets.empty() && !carry_out_sets(reason)) return stopped(StepEnding::SingularConstraints, reason);
   const ContactValues& values = functions_.at(t_, q_, v_);
   if (pending_->begins)
     for (std::size_t i = 0; i < values.gap.size(); ++i)
       if (values.gap[i] < -rest_unit * values.gap_scale[i] || !std::isfinite(values.gap[i]))
-        return ended(StepEnding::Paradox, fmt::format("The start violates the contact {}.", system_.contact_label(i)));
+        return stopped(StepEnding::Paradox,
+                       fmt::format("The start violates the contact {}.", system_.contact_label(i)));
   note_sizes(values);
   std::vector<std::size_t> touch = touching(values);
-  if (!hit(touch, reason)) return ended(StepEnding::Paradox, reason);
-  if (!choose_mode(touch, bound, reason)) return ended(StepEnding::Paradox, reason);
+  if (!hit(touch, reason)) return stopped(StepEnding::Paradox, reason);
+  if (!choose_mode(touch, bound, reason)) return stopped(StepEnding::Paradox, reason);
   pending_.reset();
   started_ = true;
   return std::nullopt;

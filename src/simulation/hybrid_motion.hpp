@@ -4,6 +4,7 @@
 #include "simulation/function_kernels.hpp"
 #include "simulation/method.hpp"
 
+#include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/contact_mode.hpp>
 #include <maupertuis/simulation.hpp>
 
@@ -68,11 +69,12 @@ class HybridMotion final : public Method {
 
   // What happens at an instant.
   void classify(Step& step);
-  void happen(const ModelEvent& event, Step& step);
+  bool is_just_released(std::size_t contact);
   std::optional<Step> settle(double bound);
   bool carry_out_sets(std::string& reason);
   std::vector<std::size_t> touching(const ContactValues& values) const;
   bool hit(std::vector<std::size_t>& touching, std::string& reason);
+  static ImpactResult last_impact(const ImpactProblem& problem, const Eigen::VectorXd& v);
   ImpactProblem impact_problem(const std::vector<std::size_t>& touching, const ContactValues& values);
   void note_order(const ImpactProblem& problem, const ImpactResult& first, const Eigen::VectorXd& v);
   void record_impulses(const ImpactResult& result);
@@ -97,6 +99,11 @@ class HybridMotion final : public Method {
            const std::string& remark = {});
   void remark(const std::string& sentence);
   Step ended(StepEnding ending, std::string reason) const;
+  Step stopped(StepEnding ending, std::string reason);
+  void take_state();
+  bool pulls() const;
+  void note_step();
+  std::optional<std::size_t> violated_constraint(const MotionState& state, double digits) const;
 
   const Model& model_;
   const EquationsOfMotion& equations_;
@@ -127,8 +134,10 @@ class HybridMotion final : public Method {
   struct Bounces {
     std::vector<std::pair<double, double>> last;  // (t, speed) of the last impacts
   };
-  std::vector<Bounces> bounces_;    // [contacts]
-  std::vector<std::size_t> cycle_;  // contacts that bounce together towards an end of their bounces
+  std::vector<Bounces> bounces_;     // [contacts]
+  std::vector<bool> released_;       // [contacts] λ is 0 to rounding at this instant, and falls
+  std::vector<double> released_at_;  // [contacts] when that was last; not a number before
+  std::vector<std::size_t> cycle_;   // contacts that bounce together towards an end of their bounces
   std::optional<std::string> accumulated_;
   double accumulated_at_ = 0;
   HybridRecord record_;

@@ -8,11 +8,23 @@ namespace maupertuis {
 
 /// ġ below this counts as 0.
 double HybridMotion::rest_speed(std::size_t contact, const ContactValues& values) const {
-  return rest_unit * std::max(values.rate_scale[contact], fastest_[contact]);
+  double acceleration = 0;  // times the rounding of t: what a located instant leaves of a speed
+  for (const auto& [i, g] : values.normal[contact]) acceleration += std::abs(g) * acceleration_[kind_[i]];
+  return rest_unit * (std::max(values.rate_scale[contact], fastest_[contact]) + 0.25 * std::abs(t_) * acceleration);
 }
 
 double HybridMotion::rest_slip(std::size_t friction, const ContactValues& values) const {
   return rest_unit * std::max(values.slip_scale[friction], fastest_slip_[friction]);
+}
+
+/// What a step shows of the sizes of the motion.
+void HybridMotion::note_step() {
+  const TaylorStepper& s = *now_->stepper;
+  take_state();
+  const ContactValues& values = functions_.at(t_, q_, v_);
+  note_sizes(values);
+  const std::vector<double>& a = s.step_start().a;
+  if (std::all_of(a.begin(), a.end(), [](double x) { return std::isfinite(x); })) note_accelerations(a, values);
 }
 
 /// Motions of one kind of coordinates have one size: a pendulum that hangs still among others that swing is at rest to

@@ -75,6 +75,29 @@ bool has_linear_momenta(const EquationsOfMotion& equations) {
   return slopes.empty() || zero_test(slopes).verdict == Verdict::Zero;
 }
 
+/// E0730 for each contact whose gap, or its slope, jumps at a switch: there λ would have to be an impulse.
+bool contacts_are_smooth(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
+  const MechanicalSystem& system = *equations.system;
+  bool smooth = true;
+  for (const Contact& c : system.contacts) {
+    ExprVector symbols{system.context->time()};
+    for (const Coordinate& q : system.coordinates) symbols.push_back(q.q);
+    ExprVector functions = gradient(c.gap, symbols);
+    functions.push_back(c.gap);
+    for (const Expr& f : functions) {
+      const auto jump = across_switches(system, f, equations.order).jump;
+      if (!jump) continue;
+      diagnostics.error("E0730", c.span,
+                        fmt::format("the surface of this contact has a kink or a step where {}", jump->place),
+                        "There the direction of its force jumps, and what slides over it is let go or hit.",
+                        "Write one contact for each smooth side of the surface.");
+      smooth = false;
+      break;
+    }
+  }
+  return smooth;
+}
+
 /// Contacts, friction and events go through modes, by Taylor's steps.
 std::unique_ptr<HybridMotion> hybrid_method(const Model& model, const EquationsOfMotion& equations,
                                             const WantedFunctions& wanted, const SimulationOptions& options,
@@ -92,6 +115,7 @@ std::unique_ptr<HybridMotion> hybrid_method(const Model& model, const EquationsO
                       "Leave the contacts out, or use a Lagrangian that is quadratic in the velocities.");
     return nullptr;
   }
+  if (!contacts_are_smooth(equations, diagnostics)) return nullptr;
   return std::make_unique<HybridMotion>(model, equations, wanted, parameter_values(model.system),
                                         taylor_options(options));
 }

@@ -164,7 +164,7 @@ bool Study::refuse_modes() {
   const Span span = system.contacts.empty() ? system.frictions.front().span : system.contacts.front().span;
   diagnostics_.error("E0270", span, "this question is about one set of equations, and the model has several modes",
                      "Contacts that open and close and friction that sticks and slides change the equations on the way.",
-                     "Ask it of one mode: --mode free, --mode \"floor\", --mode \"floor sticking\".");
+                     "Ask it of one mode: --mode free, --mode \"floor\", or --mode \"floor sticking\" where there is friction.");
   return true;
 }
 

@@ -174,9 +174,10 @@ ExitCode derive(const DeriveOptions& options, Console& console) {
   if (study.refuse_held_integrals()) return finish(console, study, document_of(options, study, {}, nullptr));
   study.derivation(options.steps);
   if (study.model() && study.model()->system.has_modes())
-    study.diagnostics().note("N0505", std::nullopt, "these are the equations without contact and without dry friction",
-                             "While a contact is closed, or friction sticks or slides, others hold.",
-                             "--mode \"floor\" shows those of a mode; `maup check` lists contacts and frictions.");
+    study.diagnostics().note(
+        "N0505", std::nullopt, "these are the equations without contact and without dry friction",
+        "While a contact is closed, or friction sticks or slides, others hold.",
+        "--mode \"floor\", or \"floor sticking\" with friction, shows those of a mode; `maup check` lists them.");
   const Certificate* certificate = study.certificate({.full = options.certify == "full"});
   EquationForm form;
   if (certificate) form = equation_form(options.chosen_form(), study);

@@ -211,10 +211,15 @@ std::string happenings_text(const SimulationResult& result, const MechanicalSyst
     out += "\n";
   }
   for (const std::string& remark : result.remarks) out += "  " + remark + "\n";
-  if (result.books)
-    out += fmt::format("energy lost: impacts {}, friction {}, dampers {}{}\n", brief(result.books->impacts),
-                       brief(result.books->friction), brief(result.books->dampers),
-                       result.books->moving == 0 ? "" : "; gained from moving contacts " + brief(result.books->moving));
+  if (result.books) {
+    const std::string unit = system.dimensionless ? "" : " J";
+    out += fmt::format("energy lost: impacts {}{}, friction {}{}, dampers {}{}", brief(result.books->impacts), unit,
+                       brief(result.books->friction), unit, brief(result.books->dampers), unit);
+    if (const double moving = result.books->moving; moving != 0)
+      out += fmt::format("; {} moving contacts {}{}", moving > 0 ? "gained from" : "given to", brief(std::abs(moving)),
+                         unit);
+    out += "\n";
+  }
   return out;
 }
 

@@ -201,7 +201,7 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(Slot slot, Watched& watched, con
       continue;
     }
     if (watched.side == 0)
-      watched.side = watched.at_zero ? now.polynomial.direction() : watching::sign(now.polynomial.p[0]);
+      watched.side = watched.at_zero ? now.polynomial.direction(watched.order) : watching::sign(now.polynomial.p[0]);
     const auto root = crossing(now.polynomial, watched);
     watched.at_zero = false;  // the step goes on from it, wherever it ends
     if (wants_touching) {

@@ -194,8 +194,8 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   s.last.start_sample = s.last.sample(t, s.probe);
 }
 
-void TaylorStepper::put_at_zero(std::span<const std::size_t> events) {
-  for (const std::size_t i : events) impl_->watched.put_at_zero(i);
+void TaylorStepper::put_at_zero(std::span<const std::size_t> events, std::uint8_t order) {
+  for (const std::size_t i : events) impl_->watched.put_at_zero(i, order);
 }
 
 void TaylorStepper::set_usual_sizes(std::span<const double> q, std::span<const double> v) {
@@ -218,7 +218,8 @@ TaylorStepper::Outlook TaylorStepper::outlook(double bound) {
     out.sides.push_back(side);
     out.reach.push_back(reach);
   }
-  for (std::size_t i = 0; i < s.kernel.events(); ++i) out.values.push_back(s.work.event(i, 0));
+  for (std::size_t i = 0; i < s.kernel.events(); ++i)
+    out.values.push_back(s.work.event(i, 0)), out.slopes.push_back(s.work.event(i, 1));
   for (std::size_t i = 0; i < s.n; ++i) out.accelerations.push_back(s.work.acceleration(i));
   return out;
 }

@@ -21,8 +21,9 @@ struct ScalarOf<KernelWorkspace> {
 
 /// A function along the motion whose sign changes are to be seen: a switch function or an event.
 struct Watched {
-  std::int8_t side = 0;  // sign before the next crossing; 0: vanishes identically (switch), not known (event)
-  bool at_zero = false;  // the step begins at a zero that was located
+  std::int8_t side = 0;    // sign before the next crossing; 0: vanishes identically (switch), not known (event)
+  bool at_zero = false;    // the step begins at a zero that was located
+  std::uint8_t order = 1;  // of that zero, where it is known from elsewhere: lower powers are rounding
 };
 
 /// The polynomial of a watched function over a step of length h, in x = τ/h.
@@ -33,10 +34,10 @@ struct ScaledPolynomialOf {
   T reach = T(0);  // scale + Σ_{k≥1} |p_k|
 
   /// Index of the first coefficient after p_0 that is told from zero; 0 if there is none.
-  std::size_t leading() const;
+  std::size_t leading(std::size_t from = 1) const;
   bool begins_at_zero() const;
   /// The side that the function takes from a zero at x = 0: sign of its first derivative that is not zero.
-  std::int8_t direction() const;
+  std::int8_t direction(std::size_t from = 1) const;
 };
 
 using ScaledPolynomial = ScaledPolynomialOf<double>;

@@ -36,9 +36,9 @@ ScaledPolynomialOf<T> scaled(int degree, const T& h, const T& scale, Coefficient
 }  // namespace watching
 
 template <class T>
-std::size_t ScaledPolynomialOf<T>::leading() const {
+std::size_t ScaledPolynomialOf<T>::leading(std::size_t from) const {
   using std::abs;
-  for (std::size_t k = 1; k < p.size(); ++k)
+  for (std::size_t k = from; k < p.size(); ++k)
     if (abs(p[k]) > watching::unit<T>() * reach) return k;
   return 0;
 }
@@ -50,8 +50,8 @@ bool ScaledPolynomialOf<T>::begins_at_zero() const {
 }
 
 template <class T>
-std::int8_t ScaledPolynomialOf<T>::direction() const {
-  const std::size_t k = leading();
+std::int8_t ScaledPolynomialOf<T>::direction(std::size_t from) const {
+  const std::size_t k = leading(from);
   return k == 0 ? std::int8_t{0} : watching::sign(p[k]);
 }
 
@@ -110,7 +110,7 @@ std::optional<T> crossing(const ScaledPolynomialOf<T>& polynomial, const Watched
   if (watched.side == 0) return std::nullopt;
   const std::span<const T> p = polynomial.p;
   if (!watched.at_zero && !polynomial.begins_at_zero()) return first_crossing(p, watched.side, unit, polynomial.scale);
-  const std::size_t k = polynomial.leading();
+  const std::size_t k = polynomial.leading(watched.order);
   if (k == 0) return std::nullopt;
   const auto x = first_crossing(p.subspan(k), watched.side, unit, T(0));
   return x ? std::optional<T>(std::min(T(1), watching::polished(p, *x))) : x;

@@ -25,7 +25,7 @@ bool begins_past_root(const KernelWorkspace& work, std::size_t index, double h, 
   const auto polynomial = judged(event_polynomial(work, index, h));
   const std::int8_t before = watched.side;
   watched.at_zero = watched.at_zero || polynomial.begins_at_zero();
-  watched.side = watched.at_zero ? polynomial.direction() : sign(polynomial.p[0]);
+  watched.side = watched.at_zero ? polynomial.direction(watched.order) : sign(polynomial.p[0]);
   constexpr double close = 1e-6;  // beyond, the sign has changed by a jump
   return before != 0 && watched.side == -before && std::abs(polynomial.p[0]) <= close * polynomial.reach;
 }
@@ -98,7 +98,7 @@ std::vector<WatchedFunctions::Side> WatchedFunctions::sides_of_events(const Kern
   for (std::size_t i = 0; i < events.size(); ++i) {
     const auto polynomial = judged(event_polynomial(work, i, h));
     const bool at_zero = events[i].at_zero || polynomial.begins_at_zero();
-    out.push_back({at_zero ? polynomial.direction() : sign(polynomial.p[0]), polynomial.reach});
+    out.push_back({at_zero ? polynomial.direction(events[i].order) : sign(polynomial.p[0]), polynomial.reach});
   }
   return out;
 }

@@ -35,8 +35,8 @@ class WatchedFunctions {
   void choose_first_sides(KernelWorkspace& work, const MotionState& state);
   /// The first roots of the step of length h that the workspace holds. Switches may change at jumps too, events not.
   Crossing first_crossing(const KernelWorkspace& work, const Compensated& t, double h);
-  /// An event that begins at a zero: its side is the one that the motion goes to.
-  void put_at_zero(std::size_t event) { events[event] = {0, true}; }
+  /// An event that begins at a zero of this order: its side is the one that the motion goes to.
+  void put_at_zero(std::size_t event, std::uint8_t order) { events[event] = {0, true, order}; }
   /// The sides that events take as the motion of the workspace begins, judged over h: 0 where all that they do is lost
   /// in rounding.
   struct Side {

@@ -204,3 +204,81 @@ TEST_CASE("friction with a limit: an oscillator stops where the spring is weaker
   CHECK(r.final.v[0] == 0);
   CHECK(count(r, Happening::Kind::Stick) == 1);
 }
+
+TEST_CASE("a force that jumps lets a contact and a friction go") {
+  ModelText lifted(
+      "param m = 1 kg, g = 10 m/s^2, F = 20 N, T0 = 1 s\ncoord z : length\nT = 1/2 m z'^2\nV = m g z\n"
+      "force z = F step(t - T0)\ncontact z >= 0 name floor\n");
+  const auto a = run(lifted, 3);
+  CHECK(count(a, Happening::Kind::Lost, "floor") == 1);
+  CHECK(a.final.q[0] == doctest::Approx(20).epsilon(1e-14));
+  ModelText pushed(
+      "param m = 1 kg, F = 4 N, T0 = 1 s\ncoord x : length\nT = 1/2 m x'^2\nforce x = F step(t - T0)\n"
+      "friction x limit 3 N\n");
+  const auto b = run(pushed, 3);
+  CHECK(count(b, Happening::Kind::Slip, "x") == 1);
+  CHECK(b.final.q[0] == doctest::Approx(2).epsilon(1e-14));
+}
+
+TEST_CASE("the bounces that are left out at their end rub too") {
+  ModelText m(
+      "param m = 1 kg, g = 10 m/s^2\ncoord x, z : length\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\n"
+      "contact z >= 0 restitution 0.5 friction 0.2 slip x' name floor\nstart z = 0.1 m, x' = 1 m/s\n");
+  const auto r = run(m, 2);
+  CHECK(r.final.q[0] == doctest::Approx(0.27).epsilon(1e-11));  // 3 T − 8 T² + (1 − 6 T)²/4 with T = √2/10
+  CHECK(r.statistics.energy_drift < 1e-13);
+}
+
+TEST_CASE("a block that slides in a bowl turns, stops and stays, by x and y as by the angle") {
+  const std::string friction = "param m = 1 kg, R = 1 m, g = 10 m/s^2, μ = 0.3\n";
+  ModelText plane(
+      friction +
+      "coord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = m g y\n"
+      "contact sqrt(x^2 + y^2) <= R friction μ slip (x y' - y x')/sqrt(x^2 + y^2) name bowl\nstart x = R\n");
+  ModelText angle(friction +
+                  "coord φ : angle\nT = 1/2 m R^2 φ'^2\nV = -m g R sin φ\n"
+                  "friction φ coefficient μ normal m R^2 φ'^2 + m g R sin φ\n");  // from the right end, downwards
+  const auto a = run(plane, 5), b = run(angle, 5);
+  REQUIRE(a.ok());
+  CHECK(count(a, Happening::Kind::Impact) == 0);
+  CHECK(a.final.q[0] == doctest::Approx(std::cos(b.final.q[0])).epsilon(1e-12));
+  CHECK(a.final.q[1] == doctest::Approx(-std::sin(b.final.q[0])).epsilon(1e-12));
+  CHECK(a.books->friction == doctest::Approx(b.books->friction).epsilon(1e-12));
+}
+
+TEST_CASE("a table that vibrates: thrown and caught again in each of its periods") {
+  ModelText m(
+      "param m = 1 kg, g = 10 m/s^2, A = 0.01 m, w = 40 rad/s\ncoord z : length\nT = 1/2 m z'^2\nV = m g z\n"
+      "contact z >= A sin(w t) name table\nstart z' = 0.4 m/s\n");
+  const auto r = run(m, 20);
+  REQUIRE(r.ok());
+  CHECK(count(r, Happening::Kind::Impact) == 127);  // 20 s · 40/(2π), and one more period's landing
+  for (const Happening& h : r.happenings)
+    if (h.kind == Happening::Kind::Impact) CHECK(h.impulse == doctest::Approx(0.567191424106).epsilon(1e-10));
+}
+
+TEST_CASE("a set that keeps a constraint to rounding is carried out") {
+  ModelText m(
+      "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = m g y\n"
+      "constraint x^2 + y^2 = l^2 name rod\nevent low when x = 0 m : set x' = -x', y' = -y'\nstart x = l\n");
+  const auto r = run(m, 3);
+  CHECK(r.ok());
+  CHECK(count(r, Happening::Kind::Event, "low") >= 2);
+}
+
+TEST_CASE("a surface with a kink is refused, one that goes on smoothly is not") {
+  SimulationOptions options;
+  options.duration = 5;
+  ModelText hill(
+      "dimensionless\ncoord x, z : number\nT = 1/2 (x'^2 + z'^2)\nV = z\ncontact z >= -max(0, x)\nstart x = -1, x' = "
+      "2\n");
+  CHECK_FALSE(simulate(hill.model, hill.equations, options, hill.diagnostics));
+  CHECK(hill.diagnostics.items().back().code == "E0730");
+  ModelText stadium(
+      "dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n"
+      "contact max(abs(x) - 1, 0)^2 + y^2 <= 1 restitution 1\nstart x = 0.1, y = 0.2, x' = 0.8, y' = 0.6\n");
+  const auto r = run(stadium, 300);
+  REQUIRE(r.ok());
+  CHECK(r.statistics.energy_drift < 1e-13);
+  CHECK(count(r, Happening::Kind::Impact) > 100);
+}
