@@ -73,13 +73,16 @@ Crossing WatchedFunctions::first_crossing(const KernelWorkspace& work, const Com
   roots_->begin({t.hi, t.lo}, h, [&work](int k) { return work.coordinate(k); });
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const double together = std::max(4 * epsilon, 4 * epsilon * std::abs(t.hi / h));
+  constexpr double unresolved = 1e-12;  // of the step
   const std::size_t count = switches.size();
   for (std::size_t i = 0; i < out.after.size(); ++i) {
     const bool is_switch = i < count;
     Watched& watched = out.after[i];
     if (is_switch && watched.side == 0) continue;  // it vanishes along the motion
     if (!is_switch && begins_past_root(work, i - count, h, watched)) note(out, 0, i, together, watched.side);
-    const double until = std::min(1.0, out.x * (1 + together) + together);
+    // Events at one instant are all told: the search goes on beyond the first root by what a polynomial does not resolve.
+    const double beyond = is_switch ? together : std::max(together, unresolved);
+    const double until = std::min(1.0, out.x * (1 + together) + beyond);
     const Slot slot = is_switch ? work.program().switch_slots[i] : work.program().events[i - count];
     if (const auto root = roots_->first(slot, watched, until, !is_switch, is_switch))
       note(out, root->x, i, together, root->kind == RootKind::Touching ? 0 : -watched.side);

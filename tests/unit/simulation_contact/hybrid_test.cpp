@@ -282,3 +282,12 @@ TEST_CASE("a surface with a kink is refused, one that goes on smoothly is not") 
   CHECK(r.statistics.energy_drift < 1e-13);
   CHECK(count(r, Happening::Kind::Impact) > 100);
 }
+
+TEST_CASE("events at one instant all happen, and their sets are all carried out") {
+  ModelText m("dimensionless\ncoord x, z : number\nT = 1/2 (x'^2 + z'^2)\nV = 9.81 z\n"
+              "event a when z = 0.5 : set z' = -z'\nevent b when z = 0.5 : set x' = 3\nstart z = 1\n");
+  const auto r = run(m, 0.6);
+  CHECK(count(r, Happening::Kind::Event, "a") == 1);
+  CHECK(count(r, Happening::Kind::Event, "b") == 1);
+  CHECK(r.final.v[0] == 3);
+}
