@@ -133,12 +133,16 @@ Step HybridMotion::step(double bound) {
   if (out.end != out.begin) same_time_ = 0;
   if (out.ending != StepEnding::None) return out;
   note_step();
-  if (const auto contact = violated())
+  if (const auto contact = violated()) {
+    const std::string label = system_.contact_label(*contact);
+    if (!std::isfinite(functions_.at(t_, q_, v_).gap[*contact]))
+      return ended(StepEnding::Overflow, fmt::format("The gap of the contact {} has no value here.", label));
     return ended(
         StepEnding::Paradox,
         fmt::format("The motion went through the contact {} without a sign of it: bounces have become too small "
                     "to be told apart.",
-                    system_.contact_label(*contact)));
+                    label));
+  }
   if (!out.events.empty()) classify(out);
   // A force that jumps may let a contact or a friction go, though none of their conditions has a root.
   if (!pending_ && (out.switches > 0 || pulls())) {
@@ -225,7 +229,7 @@ std::optional<std::size_t> HybridMotion::violated() {
   const ContactValues& values = functions_.at(s.time(), s.q(), s.v());
   note_gaps(values);
   for (std::size_t i = 0; i < values.gap.size(); ++i)
-    if (!now_->mode.closed[i] && values.gap[i] < -digits * widest_[i]) return i;
+    if (!now_->mode.closed[i] && !(values.gap[i] >= -digits * widest_[i])) return i;
   return std::nullopt;
 }
 

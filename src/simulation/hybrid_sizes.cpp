@@ -50,7 +50,7 @@ void HybridMotion::note_sizes(const ContactValues& values) {
 void HybridMotion::note_gaps(const ContactValues& values) {
   for (std::size_t i = 0; i < widest_.size(); ++i) {
     double& size = widest_[gap_kind_[i]];
-    size = std::max(size, values.gap_scale[i]);
+    if (std::isfinite(values.gap_scale[i])) size = std::max(size, values.gap_scale[i]);
   }
   for (std::size_t i = 0; i < widest_.size(); ++i) widest_[i] = widest_[gap_kind_[i]];
 }

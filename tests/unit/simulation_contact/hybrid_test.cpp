@@ -284,10 +284,29 @@ TEST_CASE("a surface with a kink is refused, one that goes on smoothly is not") 
 }
 
 TEST_CASE("events at one instant all happen, and their sets are all carried out") {
-  ModelText m("dimensionless\ncoord x, z : number\nT = 1/2 (x'^2 + z'^2)\nV = 9.81 z\n"
-              "event a when z = 0.5 : set z' = -z'\nevent b when z = 0.5 : set x' = 3\nstart z = 1\n");
+  ModelText m(
+      "dimensionless\ncoord x, z : number\nT = 1/2 (x'^2 + z'^2)\nV = 9.81 z\n"
+      "event a when z = 0.5 : set z' = -z'\nevent b when z = 0.5 : set x' = 3\nstart z = 1\n");
   const auto r = run(m, 0.6);
   CHECK(count(r, Happening::Kind::Event, "a") == 1);
   CHECK(count(r, Happening::Kind::Event, "b") == 1);
   CHECK(r.final.v[0] == 3);
+}
+
+TEST_CASE("a gap that loses its value on the way ends the run with a word") {
+  ModelText m(
+      "dimensionless\ncoord x, z : number\nT = 1/2 (x'^2 + z'^2)\ncontact z >= sqrt(1 - x) name cliff\n"
+      "start x' = 1, z = 3\n");
+  const auto r = run(m, 2);
+  CHECK_FALSE(r.ok());
+  CHECK(r.reason.find("cliff") != std::string::npos);
+}
+
+TEST_CASE("a wall that is narrower than a step is hit, far from the start") {
+  ModelText m(
+      "dimensionless\ncoord x, z : number\nT = 1/2 (x'^2 + z'^2)\n"
+      "contact (x - 30)^2 + (z - 900)^2 >= 1e-6 restitution 1 name bead\nstart x' = 1, z' = 30\n");
+  const auto r = run(m, 60);
+  REQUIRE(count(r, Happening::Kind::Impact, "bead") == 1);
+  CHECK(r.happenings[0].t == doctest::Approx(30 - 0.001 / std::hypot(1, 30)).epsilon(1e-12));
 }
