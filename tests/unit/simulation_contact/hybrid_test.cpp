@@ -310,3 +310,24 @@ TEST_CASE("a wall that is narrower than a step is hit, far from the start") {
   REQUIRE(count(r, Happening::Kind::Impact, "bead") == 1);
   CHECK(r.happenings[0].t == doctest::Approx(30 - 0.001 / std::hypot(1, 30)).epsilon(1e-12));
 }
+
+TEST_CASE(
+    "a string whose tension vanishes just at the start is slack from the start, until the parabola meets the circle") {
+  ModelText m(
+      "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = m g y\n"
+      "contact sqrt(x^2 + y^2) <= l name string\n"
+      "start x = l sqrt(3)/2, y = l/2, x' = -1/2 sqrt(g l/2), y' = sqrt(3)/2 sqrt(g l/2)\n");
+  const auto r = run(m, 1);
+  CHECK(r.first_mode.empty());
+  REQUIRE(!r.happenings.empty());
+  CHECK(r.happenings[0].kind == Happening::Kind::Impact);
+  CHECK(r.happenings[0].t == doctest::Approx(4 * std::sqrt(3.0) / 2 * std::sqrt(9.81 / 2) / 9.81).epsilon(1e-13));
+}
+
+TEST_CASE("infinitely many bounces end at √(2 h/g) (1 + e)/(1 − e)") {
+  ModelText m(
+      "dimensionless\ncoord z : number\nT = 1/2 z'^2\nV = z\ncontact z >= 0 restitution 0.5 name floor\nstart z = 1\n");
+  const auto r = run(m, 6);
+  REQUIRE(count(r, Happening::Kind::Made) == 1);
+  CHECK(r.happenings.back().t == doctest::Approx(3 * std::sqrt(2.0)).epsilon(1e-10));
+}
