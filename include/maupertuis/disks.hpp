@@ -36,6 +36,8 @@ class Disks {
   ~Disks();
   Disks(Disks&&) noexcept;
 
+  /// From now on these slots alone, without the residual. Cost: that of some evaluations.
+  void bound_only(std::span<const std::uint32_t> slots);
   /// False: the residual is linear in q, so that its polynomial is all there is.
   bool residual_has_tails() const { return residual_has_tails_; }
   /// [program.constants]; anew whenever parameters or sides change.
@@ -77,7 +79,7 @@ class Disks {
 
   void find_degrees();
   void find_series(const std::vector<bool>& made);
-  void find_needs(std::span<const std::uint32_t> slots);
+  void find_needs(std::span<const std::uint32_t> slots, bool residual);
   void need_operands(const Node& node);
   void find_derived();
   void find_powers();
@@ -116,6 +118,8 @@ class Disks {
   std::vector<int> residual_;            // node that makes R_j; −1: none
   std::vector<std::int8_t> has_series_;  // [slots] all known orders are in the rows
   std::vector<std::uint32_t> alone_;     // slots with a series beyond the stored ones
+  std::vector<std::uint32_t> few_;       // those with a series that are needed, where bound_only() left few of them
+  bool only_few_ = false;
   std::vector<int> degree_;              // [slots] of polynomials in t; very large for all else
   std::vector<bool> linear_;             // [slots] in coordinates and polynomials in t
   bool residual_has_tails_ = false;

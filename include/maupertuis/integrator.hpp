@@ -53,6 +53,14 @@ class TaylorStepper {
   int order() const;
   /// Begins a run; integrals and statistics start at zero.
   void start(double t, std::span<const double> q, std::span<const double> v);
+  /// What a root of an event does. Those that do not end the step are told with it, at their own times, and cost it
+  /// nothing: the motion is the one without them, to the bit.
+  struct EventTreatment {
+    bool ends_step = true;
+    bool touches = true;  // roots without a change of sign are told too
+  };
+  /// [events]; without it each event ends the step, and touches are told.
+  void treat_events(std::span<const EventTreatment> treatments);
   /// After start(): event functions that vanish here, to rounding. They are on the side that the motion goes to.
   /// order: of the zero, where it is known; what rounding makes of lower powers of time does not count.
   void put_at_zero(std::span<const std::size_t> events, std::uint8_t order = 1);

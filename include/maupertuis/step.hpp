@@ -25,6 +25,7 @@ enum class StepEnding {
 struct EventRoot {
   std::size_t event = 0;
   int direction = 0;
+  double time = 0;  // s
 };
 
 /// One step, or the reason why there is none: then begin == end and the state is the one reached before.
@@ -33,7 +34,7 @@ struct Step {
   StepEnding ending = StepEnding::None;
   std::string reason;                // one sentence for every ending but None
   std::optional<std::size_t> event;  // the step ended at a root of this event function
-  std::vector<EventRoot> events;     // all of them that have a root there, within rounding
+  std::vector<EventRoot> events;     // all roots there, within rounding, after those that the step passed, by time
   int switches = 0;                  // switch functions whose root the step ended at
 };
 

@@ -37,15 +37,17 @@ SwitchSearch search_of_states(const MechanicalSystem& system) {
 AcrossSwitches across_switches(const MechanicalSystem& system, Expr function, const ReadingOrder& order,
                                const std::function<Expr(Expr)>& rate) {
   AcrossSwitches out;
-  SwitchSearch search = search_of_states(system);
-  ExprMap values;
-  for (const Parameter& p : system.parameters) values.emplace(p.symbol, p.value);
   const auto moving = [&](Expr e) { return in_terms_of_motion(system, expand_time_derivatives({&e, 1})).front(); };
   function = moving(function);
+  const ExprVector all = switches_of({&function, 1});
+  if (all.empty()) return out;
+  SwitchSearch search = search_of_states(system);
   ExprVector named;
-  for (const Expr& g : switches_of({&function, 1}))
+  for (const Expr& g : all)
     if (moves(search, g)) named.push_back(g);
   if (named.empty()) return out;
+  ExprMap values;
+  for (const Parameter& p : system.parameters) values.emplace(p.symbol, p.value);
   if (named.size() > many_switches) search.points = 4;
   function = substitute(function, values);
   if (!knows(search, function)) return out;

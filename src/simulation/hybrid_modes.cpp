@@ -23,6 +23,38 @@ std::string key_of(const ContactMode& mode) {
   return key;
 }
 
+/// All combinations of options, those with the least changes of the likeliest first; made as they are asked for.
+class Combinations {
+ public:
+  template <class Choices>
+  explicit Combinations(const Choices& list) {
+    for (const auto& choice : list) counts_.push_back(choice.options.size());
+    made_.emplace_back(counts_.size(), 0);
+  }
+  /// Nothing beyond the last.
+  const std::vector<std::size_t>* number(std::size_t turn) {
+    while (made_.size() <= turn && made_.size() < most_choices && done_ < made_.size()) extend(made_[done_++]);
+    return turn < std::min(made_.size(), most_choices) ? &made_[turn] : nullptr;
+  }
+
+ private:
+  /// Only entries from the last changed one on are changed, so that each combination comes once.
+  void extend(const std::vector<std::size_t> from) {
+    std::size_t last = 0;
+    for (std::size_t k = 0; k < from.size(); ++k)
+      if (from[k] != 0) last = k;
+    for (std::size_t k = last; k < from.size(); ++k)
+      if (from[k] + 1 < counts_[k]) {
+        made_.push_back(from);
+        ++made_.back()[k];
+      }
+  }
+
+  std::vector<std::size_t> counts_;  // of options
+  std::vector<std::vector<std::size_t>> made_;
+  std::size_t done_ = 0;  // of made_, whose changes have been made
+};
+
 }  // namespace
 
 /// Gaps of open contacts; λ of closed ones.
@@ -94,6 +126,13 @@ HybridMotion::ModeMotion& HybridMotion::motion_in(const ContactMode& mode) {
   for (auto* list : {&wanted.observables, &wanted.events, &wanted.integrands})
     if (!open.empty() && !list->empty()) *list = substitute(*list, open);
   slot->stepper = std::make_unique<TaylorStepper>(motion_kernel(*slot->equations, wanted), parameters_, options_);
+  std::vector<TaylorStepper::EventTreatment> treatments;
+  for (const Watch& w : slot->watches) {
+    const bool is_recorded =
+        w.what == Watch::What::Event && model_.experiment.events[w.index].action == ModelEvent::Action::Record;
+    treatments.push_back({!is_recorded, w.touches_count()});
+  }
+  slot->stepper->treat_events(treatments);
   return *slot;
 }
 
@@ -123,7 +162,7 @@ std::vector<HybridMotion::Choice> HybridMotion::choices(const std::vector<std::s
     else
       choice.options = {
           {true, FrictionState::Stick, 1}, {true, FrictionState::Forward, 1}, {true, FrictionState::Backward, 1}};
-    const Choice::Option open{false, FrictionState::None, 1};
+    const HybridOption open{false, FrictionState::None, 1};
     if (left(Watch::What::Force, i))
       choice.options.insert(choice.options.begin(), open);
     else
@@ -238,37 +277,29 @@ bool HybridMotion::may_be_several(const ContactMode& mode, const ContactValues& 
   return false;
 }
 
+ContactMode HybridMotion::mode_of(const std::vector<Choice>& list, const std::vector<std::size_t>& taken) const {
+  ContactMode mode = open_mode(system_);
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const HybridOption& option = list[k].options[taken[k]];
+    if (list[k].contact < mode.closed.size())
+      mode.closed[list[k].contact] = option.closed;
+    else
+      mode.normal_sign[list[k].contact - mode.closed.size()] = option.normal_sign;
+    mode.friction[list[k].contact] = option.state;
+  }
+  return mode;
+}
+
+bool HybridMotion::interrupted() const {
+  return options_.interrupt && options_.interrupt->load(std::memory_order_relaxed);
+}
+
 bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason) {
   const ContactValues values = functions_.at(t_, q_, v_);
   if (!touching.empty()) note_compliance(touching, values);
-  const std::vector<Choice> list = choices(touching, values);
-  double count = 1;
-  for (const Choice& c : list) count *= static_cast<double>(c.options.size());
-  const auto mode_of = [&](const std::vector<std::size_t>& taken) {
-    ContactMode mode = open_mode(system_);
-    for (std::size_t k = 0; k < list.size(); ++k) {
-      const Choice::Option& option = list[k].options[taken[k]];
-      if (list[k].contact < mode.closed.size())
-        mode.closed[list[k].contact] = option.closed;
-      else
-        mode.normal_sign[list[k].contact - mode.closed.size()] = option.normal_sign;
-      mode.friction[list[k].contact] = option.state;
-    }
-    return mode;
-  };
-  /// All combinations, those with the least changes of the likeliest first.
-  std::vector<std::vector<std::size_t>> tries{std::vector<std::size_t>(list.size(), 0)};
-  for (std::size_t done = 0; done < tries.size() && tries.size() < most_choices; ++done) {
-    const std::vector<std::size_t> from = tries[done];
-    std::size_t last = 0;  // only later entries are changed, so that each combination comes once
-    for (std::size_t k = 0; k < from.size(); ++k)
-      if (from[k] != 0) last = k;
-    for (std::size_t k = last; k < list.size(); ++k)
-      if (from[k] + 1 < list[k].options.size()) {
-        tries.push_back(from);
-        ++tries.back()[k];
-      }
-  }
+  std::vector<Choice> list = choices(touching, values);
+  if (list.size() > 1) order_by_forces(list, values, bound);
+  Combinations tries(list);
   released_.assign(system_.contacts.size(), false);
   for (const Watch& w : pending_->left)
     if (w.what == Watch::What::Force) released_[w.index] = true;
@@ -278,11 +309,14 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
     std::fill(released_.begin(), released_.end(), false);
   }
   std::optional<ContactMode> found;
+  ContactMode last;  // whose motion was begun last
   std::vector<double> first;
   for (const bool lenient : {false, true}) {
-    for (const auto& taken : tries) {
-      const ContactMode mode = mode_of(taken);
+    for (std::size_t turn = 0; const std::vector<std::size_t>* taken = tries.number(turn); ++turn) {
+      if (interrupted()) return true;  // the step that follows says so
+      const ContactMode mode = mode_of(list, *taken);
       std::vector<double> accelerations;
+      last = mode;
       if (!fits(mode, touching, bound, lenient, &accelerations)) continue;
       if (!found) {
         found = mode;
@@ -310,13 +344,13 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
                       std::any_of(touching.begin(), touching.end(),
                                   [&](std::size_t i) { return system_.contacts[i].friction.present(); });
     reason = rubs ? "Painlevé's paradox: no finite forces of contact and friction fit the motion here."
-             : count > static_cast<double>(most_choices)
+             : tries.number(most_choices - 1)
                  ? fmt::format("None of the {} modes that were tried fits the contacts that touch here.", most_choices)
                  : "No forces keep all contacts that touch here from closing.";
     return false;
   }
   note_accelerations(first, values);  // those of modes that do not fit are no measure
-  static_cast<void>(fits(*found, touching, bound, true, nullptr));
+  if (last != *found) static_cast<void>(fits(*found, touching, bound, true, nullptr));
   for (std::size_t i = 0; i < released_.size(); ++i)
     if (released_[i] && !found->closed[i]) released_at_[i] = t_;
   const ContactMode before = now_->mode;

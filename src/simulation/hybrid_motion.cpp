@@ -192,6 +192,16 @@ bool HybridMotion::pulls() const {
   return false;
 }
 
+/// An event of the last step, with the state that the motion has there.
+void HybridMotion::record_event(const std::string& name, double t) {
+  add(Happening::Kind::Event, name);
+  Happening& told = record_.happenings.back();
+  if (t == t_) return;
+  told.t = t;
+  if (!told.q.empty()) state(t, told.q, told.v);
+  told.mode = mode_text(system_, now_->mode);
+}
+
 /// Roots of the step: events of the model are recorded at once; what changes the mode waits for the next step.
 void HybridMotion::classify(Step& step) {
   take_state();
@@ -204,7 +214,7 @@ void HybridMotion::classify(Step& step) {
     } else if (watch.what == Watch::What::Event) {
       const ModelEvent& event = model_.experiment.events[watch.index];
       if (event.direction != 0 && root.direction != event.direction * (forwards_ ? 1 : -1)) continue;
-      add(Happening::Kind::Event, event.name);
+      record_event(event.name, root.time);
       if (event.action == ModelEvent::Action::Stop && !record_.stopped_by) {
         record_.stopped_by = event.name;
         step.event = 0;

@@ -69,6 +69,7 @@ class HybridMotion final : public Method {
 
   // What happens at an instant.
   void classify(Step& step);
+  void record_event(const std::string& name, double t);
   bool is_just_released(std::size_t contact);
   std::optional<Step> settle(double bound);
   bool carry_out_sets(std::string& reason);
@@ -85,6 +86,10 @@ class HybridMotion final : public Method {
   // The mode after it.
   bool choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason);
   std::vector<Choice> choices(const std::vector<std::size_t>& touching, const ContactValues& values) const;
+  ContactMode mode_without_contacts(const std::vector<Choice>& list) const;
+  void order_by_forces(std::vector<Choice>& list, const ContactValues& values, double bound);
+  ContactMode mode_of(const std::vector<Choice>& list, const std::vector<std::size_t>& taken) const;
+  bool interrupted() const;
   bool fits(const ContactMode& mode, const std::vector<std::size_t>& touching, double bound, bool lenient,
             std::vector<double>* accelerations);
   bool vanishes(const Watch& watch, double size) const;

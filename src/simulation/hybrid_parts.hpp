@@ -16,6 +16,8 @@ struct HybridMotion::Watch {
   enum class What { Until, Event, Gap, Force, Hold, Slip, Normal } what = What::Event;
   std::size_t index = 0;  // of the event, the contact, the friction
   bool keeps_sign() const { return what != What::Until && what != What::Event; }  // must not be negative in its mode
+  /// A gap or a force that comes to 0 and goes back changes nothing; a slip may come to rest there.
+  bool touches_count() const { return !keeps_sign() || what == What::Slip; }
 };
 
 struct HybridMotion::ModeMotion {
@@ -34,14 +36,15 @@ struct HybridMotion::Pending {
 };
 
 /// What a contact or a friction may do next, the likeliest first.
+struct HybridOption {
+  bool closed = false;
+  FrictionState state = FrictionState::None;
+  std::int8_t normal_sign = 1;
+};
+
 struct HybridMotion::Choice {
   std::size_t contact = 0;  // or contacts + friction of a coordinate
-  struct Option {
-    bool closed = false;
-    FrictionState state = FrictionState::None;
-    std::int8_t normal_sign = 1;
-  };
-  std::vector<Option> options;
+  std::vector<HybridOption> options;
 };
 
 }  // namespace maupertuis

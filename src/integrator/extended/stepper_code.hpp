@@ -208,18 +208,18 @@ typename Stepper<T>::Crossing Stepper<T>::first_crossing(const T& h) {
   first.after = switch_state_;
   first.after.insert(first.after.end(), event_state_.begin(), event_state_.end());
   take_rough_constants();
-  roots_->set_constants(work_.constants(), rough_constants_.data());
+  roots_->set_constants({work_.constants(), rough_constants_.size()}, rough_constants_.data());
   roots_->begin({t_, T(0)}, h, [this](int k) { return work_.coordinate(k); });
   const T together = std::max(T(4 * epsilon<T>()), T(4 * epsilon<T>() * abs(t_ / h)));
+  first.x = roots_->window();
   const std::size_t count = switch_state_.size();
   for (std::size_t i = 0; i < first.after.size(); ++i) {
     const bool is_switch = i < count;
     taylor::Watched& watched = first.after[i];
     if (is_switch && watched.side == 0) continue;  // it vanishes along the motion
-    if (!is_switch && begins_past_root(i - count, h, watched)) note(first, T(0), i, together);
-    const T until = std::min(T(1), T(first.x * (1 + together) + together));
-    const auto root = roots_->first(is_switch ? work_.program().switch_slots[i] : work_.program().events[i - count],
-                                    watched, until, !is_switch, is_switch);
+    if (!is_switch && !roots_->is_clear(i) && begins_past_root(i - count, h, watched)) note(first, T(0), i, together);
+    const T until = std::min(roots_->window(), T(first.x * (1 + together) + together));
+    const auto root = roots_->first(i, watched, T(0), until, !is_switch, is_switch);
     if (root) note(first, root->x, i, together);
   }
   // A step of no length leaves the others where they were.
@@ -249,7 +249,7 @@ std::optional<typename Stepper<T>::Outcome> Stepper<T>::advance(const T& bound, 
                    "Switches follow each other in no time: the motion has come to slide along a switch."};
   const T tau = h * crossing.x;
   state_after(tau, q_, v_);
-  t_ = reaches && !crossing.found ? bound : T(begin_ + tau);
+  t_ = reaches && !crossing.found && crossing.x == 1 ? bound : T(begin_ + tau);
   if (!equations_hold(tau)) return std::nullopt;
   stuck_ = crossing.found && t_ == begin_ ? stuck_ + 1 : 0;
   leave(crossing);

@@ -3,6 +3,7 @@
 #include "kernel/disks/retrace.hpp"
 #include "kernel/disks/scaled_rows.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -33,18 +34,31 @@ struct RootOf {
 ///                        rounding
 ///
 /// In a piece the function is a polynomial with a remainder; all its roots are found by Bernstein coefficients, never
-/// by sampling, and each is refined on the function itself.
+/// by sampling, and each is refined on the function itself. Functions that a disk about the beginning of the step keeps
+/// clear of zero are not expanded at all.
 template <class T>
 class RootSearchOf {
  public:
-  /// The program must outlive this.
+  /// The functions are numbered as their slots are. The program must outlive this.
   RootSearchOf(const Program& program, int order, std::span<const Slot> slots)
-      : retrace_(program, order, slots), disks_(program, slots) {}
+      : slots_(slots.begin(), slots.end()),
+        retrace_(program, order, slots),
+        all_disks_(program, slots),
+        disks_(program, slots),
+        clear_(slots.size(), 0) {
+    all_disks_.bound_only(slots_);
+    disks_.bound_only(slots_);
+    for (std::size_t i = 0; i < slots_.size(); ++i) near_.push_back(i);
+  }
 
   /// [program.constants], under the sides in force.
-  void set_constants(const T* constants, const double* rough) {
-    retrace_.set_constants(constants);
-    disks_.set_constants(rough);
+  void set_constants(std::span<const T> constants, const double* rough) {
+    if (std::ranges::equal(constants, constants_)) return;
+    constants_.assign(constants.begin(), constants.end());
+    rough_.assign(rough, rough + constants.size());
+    retrace_.set_constants(constants_.data());
+    all_disks_.set_constants(rough_.data());
+    disks_.set_constants(rough_.data());
   }
   /// The time at which a step begins, hi + lo.
   struct Time {
@@ -61,11 +75,19 @@ class RootSearchOf {
     using std::abs;
     resolution_ =
         std::max(T(64 * std::numeric_limits<T>::epsilon()), T(4 * std::numeric_limits<T>::epsilon() * abs(t) / abs(h)));
+    find_near();
   }
+  /// The part of the step, from its beginning, in which roots can be searched: 1, or less where the functions that come
+  /// near zero would be many.
+  const T& window() const { return window_; }
+  /// Whether a function stays clear of zero within the window.
+  bool is_clear(std::size_t index) const { return clear_[index] != 0; }
+  std::int8_t side_of_clear(std::size_t index) const { return clear_[index]; }
 
-  /// The first root in (0, until]; `watched` begins as the step does and ends as the search does: with the side that
-  /// the function has there.
-  std::optional<RootOf<T>> first(Slot slot, Watched& watched, const T& until, bool wants_touching, bool wants_jumps);
+  /// The first root in (from, until]; `watched` begins as the motion is at `from` and ends as the search does: with the
+  /// side that the function has there. Precondition: until ≤ window().
+  std::optional<RootOf<T>> first(std::size_t index, Watched& watched, const T& from, const T& until,
+                                 bool wants_touching, bool wants_jumps);
 
  private:
   struct Piece {
@@ -73,25 +95,51 @@ class RootSearchOf {
     T width;                           // of [0, 1] over the step; 0: the function is not analytic here
   };
 
-  Piece piece(Slot slot, const T& x, const T& most);
-  T value(Slot slot, const T& x) {
+  /// What all pieces about one place share: the expansion there, and disks about it, each smaller than the one before.
+  struct Place {
+    bool known = false;
+    T x = T(0), most = T(0);                 // pieces from x, at most so long
+    std::vector<T> coefficients, scales;     // [near][order + 2], [near]
+    std::vector<double> radii;               // of the disks so far
+    std::vector<std::vector<double>> tails;  // [disks][near]
+  };
+
+  void find_near();
+  void find_clear(double radius);
+  void note_near();
+  void narrow();
+  void go_to(const T& x, const T& most);
+  void expand();
+  double tail(std::size_t disk, std::size_t near);
+  Piece piece(std::size_t index, const T& x, const T& most);
+  static Piece up_to(Piece piece, const T& width);
+  T value(std::size_t index, const T& x) {
+    expanded_ = false;
     retrace_.evaluate(T(h_ * x));
-    return retrace_.row(0)[slot];
+    return retrace_.row(0)[slots_[index]];
   }
   T at_a_time(const T& x) const;
-  T refined(Slot slot, const Piece& piece, const T& begin, const T& root);
+  T refined(std::size_t index, const Piece& piece, const T& begin, const T& root);
   struct Gap {
     T end;             // where the function is analytic again
     std::int8_t side;  // that it has there; 0: it has no value any more
     std::optional<RootOf<T>> root;
   };
-  Gap gap(Slot slot, const T& x, const T& until, std::int8_t side);
+  Gap gap(std::size_t index, const T& x, const T& until, std::int8_t side);
 
+  std::vector<Slot> slots_;
   Retrace<T> retrace_;
-  Disks disks_;
+  Disks all_disks_, disks_;  // of all functions; of those that come near zero
   ScaledRows<T> rows_;
+  std::vector<std::int8_t> clear_;               // [slots] side on which it stays; 0: it may come to zero
+  std::vector<std::size_t> near_, near_before_;  // the others
+  Place place_;
+  bool expanded_ = false;  // the rows are those of the place
   Time t_;
-  T h_ = T(1), resolution_ = T(0);
+  T h_ = T(1), resolution_ = T(0), window_ = T(1);
+  double last_window_ = 0;     // in time; 0: there was none
+  std::vector<T> constants_;   // those that are set
+  std::vector<double> rough_;  // the same
 };
 
 using RootSearch = RootSearchOf<double>;

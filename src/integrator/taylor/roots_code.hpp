@@ -83,34 +83,134 @@ ScaledPolynomialOf<T> up_to(ScaledPolynomialOf<T> polynomial, const std::optiona
 
 }  // namespace touches
 
+/// A function whose reach on the disk over the window is less than its value has no root there. Where many functions
+/// come near zero, those of a shorter window may be few: it begins with twice the last one.
+template <class T>
+void RootSearchOf<T>::find_near() {
+  using std::abs;
+  constexpr std::size_t many = 12;
+  constexpr int halvings = 7;
+  place_.known = expanded_ = false;
+  near_before_ = near_;
+  const bool derives = all_disks_.needs_larger_disk();
+  retrace_.values_about(T(0), derives ? 2 : 0);
+  const double length = static_cast<double>(abs(h_));
+  all_disks_.begin(rows_.of(retrace_.row(0), retrace_.stride(), retrace_.order(), std::ilogb(length)));
+  if (derives) all_disks_.evaluate(1.5 * length, Disks::Depth::Derivatives);
+  const bool may_shorten = slots_.size() > 4 * many;
+  double window = may_shorten && last_window_ > 0 ? std::min(1.0, 2 * last_window_ / length) : 1;
+  find_clear(window * length);
+  for (int turn = 0; may_shorten && near_.size() > many && turn < halvings; ++turn) {
+    window *= 0.5;
+    find_clear(window * length);
+  }
+  last_window_ = window * length;
+  if (window < 1 && near_.size() > many) {
+    all_disks_.begin(rows_.of(retrace_.row(0), retrace_.stride(), retrace_.order(), std::ilogb(length)));
+    if (derives) all_disks_.evaluate(1.5 * length, Disks::Depth::Derivatives);
+    find_clear(length);
+    window = 1;
+  }
+  window_ = T(window);
+  if (near_ != near_before_) narrow();
+}
+
+template <class T>
+void RootSearchOf<T>::find_clear(double radius) {
+  all_disks_.evaluate(radius, Disks::Depth::Rules);
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    const double here = static_cast<double>(retrace_.row(0)[slots_[i]]);
+    clear_[i] = std::abs(here) > all_disks_.reach(slots_[i]) * (1 + 1e-9) ? watching::sign(here) : std::int8_t{0};
+  }
+  note_near();
+}
+
+template <class T>
+void RootSearchOf<T>::note_near() {
+  near_.clear();
+  for (std::size_t i = 0; i < slots_.size(); ++i)
+    if (clear_[i] == 0) near_.push_back(i);
+}
+
+template <class T>
+void RootSearchOf<T>::narrow() {
+  std::vector<Slot> wanted;
+  for (const std::size_t i : near_) wanted.push_back(slots_[i]);
+  retrace_.want(wanted);
+  disks_.bound_only(wanted);
+}
+
+template <class T>
+void RootSearchOf<T>::expand() {
+  if (expanded_) return;
+  retrace_.expand_about(T(h_ * place_.x));
+  expanded_ = true;
+}
+
+template <class T>
+void RootSearchOf<T>::go_to(const T& x, const T& most) {
+  using std::abs;
+  if (place_.known && place_.x == x && place_.most == most) return;
+  place_ = {true, x, most, std::move(place_.coefficients), std::move(place_.scales), {}, {}};
+  expanded_ = false;
+  expand();
+  const std::size_t orders = static_cast<std::size_t>(retrace_.order()) + 2;
+  place_.coefficients.resize(near_.size() * orders);
+  place_.scales.resize(near_.size());
+  for (std::size_t i = 0; i < near_.size(); ++i) {
+    const Slot slot = slots_[near_[i]];
+    for (std::size_t k = 0; k < orders; ++k)
+      place_.coefficients[i * orders + k] = retrace_.row(static_cast<int>(k))[slot];
+    place_.scales[i] = retrace_.scale(slot);
+  }
+  const double length = static_cast<double>(abs(h_) * most);
+  disks_.begin(rows_.of(retrace_.row(0), retrace_.stride(), retrace_.order(), std::ilogb(length)));
+}
+
+/// What the step leaves out of a function on the disk number `disk`: their radii fall from 8 lengths on by a third.
+template <class T>
+double RootSearchOf<T>::tail(std::size_t disk, std::size_t near) {
+  using std::abs;
+  while (place_.tails.size() <= disk) {
+    expand();
+    const double radius =
+        place_.radii.empty() ? 8 * static_cast<double>(abs(h_) * place_.most) : place_.radii.back() / 1.5;
+    disks_.evaluate(radius);
+    place_.radii.push_back(radius);
+    place_.tails.emplace_back();
+    for (const std::size_t i : near_) place_.tails.back().push_back(disks_.tail(slots_[i]));
+  }
+  return place_.tails[disk][near];
+}
+
 /// As long as the remainder stays below the rounding error, over the best of all disks.
 template <class T>
-typename RootSearchOf<T>::Piece RootSearchOf<T>::piece(Slot slot, const T& x, const T& most) {
+typename RootSearchOf<T>::Piece RootSearchOf<T>::piece(std::size_t index, const T& x, const T& most) {
   using std::abs;
-  retrace_.expand_about(T(h_ * x));
+  go_to(x, most);
+  const auto near = static_cast<std::size_t>(std::lower_bound(near_.begin(), near_.end(), index) - near_.begin());
+  const std::size_t orders = static_cast<std::size_t>(retrace_.order()) + 2;
+  const T* const coefficients = place_.coefficients.data() + near * orders;
   const double length = static_cast<double>(abs(h_) * most);
-  const int last = retrace_.order() + 1;
-  disks_.begin(rows_.of(retrace_.row(0), retrace_.stride(), retrace_.order(), std::ilogb(length)));
-  const int known = disks_.last_order(slot);
+  const int last = retrace_.order() + 1, known = disks_.last_order(slots_[index]);
   const T unit = watching::unit<T>();
-  const T scale = retrace_.scale(slot);
   const auto polynomial_over = [&](double part) {  // of `most`
-    return watching::scaled<T>(std::min(last, known), T(h_ * most * T(part)), scale,
-                               [&](int k) { return retrace_.row(k)[slot]; });
+    return watching::scaled<T>(std::min(last, known), T(h_ * most * T(part)), place_.scales[near],
+                               [&](int k) { return coefficients[k]; });
   };
   constexpr double most_of_radius = 0.45, least_of_radius = 0.02;
   double best = 0;
   T remainder = T(0);
   const double least = static_cast<double>(resolution_ / most);
   double radius = 8 * length;
-  for (int i = 0; i < 200 && best < 1 && most_of_radius * radius > std::max(best, least) * length; ++i, radius /= 1.5) {
-    disks_.evaluate(radius);
-    const double tail = disks_.tail(slot);
-    if (!(tail < std::numeric_limits<double>::infinity())) continue;
+  for (std::size_t i = 0; i < 200 && best < 1 && most_of_radius * radius > std::max(best, least) * length;
+       ++i, radius /= 1.5) {
+    const double left = tail(i, near);
+    if (!(left < std::numeric_limits<double>::infinity())) continue;
     for (double part = std::min(1.0, most_of_radius * radius / length);
          part > best && part * length > least_of_radius * radius; part *= 0.75) {
       const double ratio = part * length / radius;
-      const T left_out = tail == 0 ? T(0) : T(tail) * T(std::pow(ratio, known + 1) / (1 - ratio));
+      const T left_out = left == 0 ? T(0) : T(left) * T(std::pow(ratio, known + 1) / (1 - ratio));
       const auto polynomial = polynomial_over(part);
       if (!(left_out <= unit * polynomial.reach)) continue;
       best = part, remainder = left_out;
@@ -126,6 +226,18 @@ typename RootSearchOf<T>::Piece RootSearchOf<T>::piece(Slot slot, const T& x, co
   return result;
 }
 
+/// The beginning of a piece.
+template <class T>
+typename RootSearchOf<T>::Piece RootSearchOf<T>::up_to(Piece piece, const T& width) {
+  using std::abs;
+  if (!(width < piece.width)) return piece;
+  piece.polynomial = touches::up_to(std::move(piece.polynomial), std::optional<T>(width / piece.width));
+  piece.polynomial.reach = piece.polynomial.scale;
+  for (std::size_t k = 1; k < piece.polynomial.p.size(); ++k) piece.polynomial.reach += abs(piece.polynomial.p[k]);
+  piece.width = width;
+  return piece;
+}
+
 /// Times are rounded, the parts of a step are not: a function of t is looked at where t + h x is a number of the type,
 /// so that its root is known better than t is. Steps of a few roundings of t have no such places.
 template <class T>
@@ -139,7 +251,7 @@ T RootSearchOf<T>::at_a_time(const T& x) const {
 
 /// Secants on the function itself, whose digits near the root are its own and not those of the polynomial.
 template <class T>
-T RootSearchOf<T>::refined(Slot slot, const Piece& piece, const T& begin, const T& root) {
+T RootSearchOf<T>::refined(std::size_t index, const Piece& piece, const T& begin, const T& root) {
   using std::abs;
   const auto& p = piece.polynomial.p;
   T slope = T(0);
@@ -147,7 +259,7 @@ T RootSearchOf<T>::refined(Slot slot, const Piece& piece, const T& begin, const 
   T x = begin + piece.width * root;
   if (slope == 0) return x;
   for (int turn = 0; turn < 2; ++turn) {
-    const T there = at_a_time(x), change = value(slot, there) / slope * piece.width;
+    const T there = at_a_time(x), change = value(index, there) / slope * piece.width;
     if (!(abs(change) <= T(1e-6) * piece.width)) break;
     x = there - change;
   }
@@ -156,14 +268,14 @@ T RootSearchOf<T>::refined(Slot slot, const Piece& piece, const T& begin, const 
 
 /// Looks for the other side of a point where the function is not analytic, and for what its sign does there.
 template <class T>
-typename RootSearchOf<T>::Gap RootSearchOf<T>::gap(Slot slot, const T& x, const T& until, std::int8_t side) {
+typename RootSearchOf<T>::Gap RootSearchOf<T>::gap(std::size_t index, const T& x, const T& until, std::int8_t side) {
   using std::abs;
   Gap result{until, side, std::nullopt};
-  const auto sign_at = [&](const T& at) { return watching::sign(value(slot, at)); };
+  const auto sign_at = [&](const T& at) { return watching::sign(value(index, at)); };
   T beyond = resolution_;
   for (;; beyond *= 2) {
     if (x + beyond >= until) break;
-    const Piece there = piece(slot, T(x + beyond), std::min(beyond, T(until - x - beyond)));
+    const Piece there = piece(index, T(x + beyond), std::min(beyond, T(until - x - beyond)));
     if (there.width > 0) {
       result.end = x + beyond;
       break;
@@ -171,12 +283,12 @@ typename RootSearchOf<T>::Gap RootSearchOf<T>::gap(Slot slot, const T& x, const 
   }
   result.side = sign_at(result.end);
   if (side == 0 || result.side == 0 || result.side == side) return result;
-  T low = x, high = result.end, at_low = abs(value(slot, low)), at_high = abs(value(slot, high));
+  T low = x, high = result.end, at_low = abs(value(index, low)), at_high = abs(value(index, high));
   const T before = std::max(at_low, at_high);
   for (int turn = 0; turn < 2 * std::numeric_limits<T>::digits; ++turn) {
     const T middle = T(0.5) * (low + high);
     if (!(low < middle && middle < high)) break;
-    const T there = value(slot, middle);
+    const T there = value(index, middle);
     (watching::sign(there) == side ? low : high) = middle;
     (watching::sign(there) == side ? at_low : at_high) = abs(there);
   }
@@ -187,13 +299,18 @@ typename RootSearchOf<T>::Gap RootSearchOf<T>::gap(Slot slot, const T& x, const 
 }
 
 template <class T>
-std::optional<RootOf<T>> RootSearchOf<T>::first(Slot slot, Watched& watched, const T& until, bool wants_touching,
-                                                bool wants_jumps) {
-  T x = T(0);
+std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watched, const T& from, const T& until,
+                                                bool wants_touching, bool wants_jumps) {
+  if (is_clear(index)) {
+    const bool wrong = watched.side == -clear_[index] && wants_jumps;
+    watched = {clear_[index], false};
+    return wrong ? std::optional<RootOf<T>>({from, RootKind::Jump}) : std::nullopt;
+  }
+  T x = from;
   while (x < until) {
-    const Piece now = piece(slot, x, T(until - x));
+    const Piece now = x == T(0) ? up_to(piece(index, x, window_), until) : piece(index, x, T(until - x));
     if (now.width == 0) {
-      const Gap beyond = gap(slot, x, until, watched.side);
+      const Gap beyond = gap(index, x, until, watched.side);
       watched.at_zero = false;
       if (beyond.root && (beyond.root->kind == RootKind::Crossing || wants_jumps)) return beyond.root;
       watched = {beyond.side, false};
@@ -209,7 +326,7 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(Slot slot, Watched& watched, con
       const T end = root ? *root : T(1);
       if (touch && (!root || *touch < T(0.999))) return RootOf<T>{T(x + now.width * end * *touch), RootKind::Touching};
     }
-    if (root) return RootOf<T>{std::min(until, refined(slot, now, x, *root)), RootKind::Crossing};
+    if (root) return RootOf<T>{std::min(until, refined(index, now, x, *root)), RootKind::Crossing};
     x += now.width;
   }
   return std::nullopt;

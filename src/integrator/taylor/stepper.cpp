@@ -65,7 +65,7 @@ bool TaylorStepper::Impl::decide_sides(double bound, Step& result) {
 
 /// Up to the first crossing, or to the end of the step.
 void TaylorStepper::Impl::advance(double bound, double h, const taylor::Crossing& crossing, Step& result) {
-  const bool reaches_bound = !crossing.found && h == remaining(bound);
+  const bool reaches_bound = !crossing.found && crossing.x == 1 && h == remaining(bound);
   state.move(last.dense, last.begin, h * crossing.x);
   if (reaches_bound) state.arrive(bound);
   result.end = state.t.hi;
@@ -156,7 +156,7 @@ bool TaylorStepper::Impl::make_step(double bound, double h, Step& result) {
   if (!settles(bound, crossing, result)) return false;
   if (result.ending != StepEnding::None) return true;
   stuck = crossing.found && state.t.hi == last.begin.hi ? stuck + 1 : 0;
-  watched.leave(crossing, result);
+  watched.leave(crossing, h, result);
   switches += static_cast<std::size_t>(result.switches);
   first = false;
   ++steps;
@@ -196,6 +196,11 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
 
 void TaylorStepper::put_at_zero(std::span<const std::size_t> events, std::uint8_t order) {
   for (const std::size_t i : events) impl_->watched.put_at_zero(i, order);
+}
+
+void TaylorStepper::treat_events(std::span<const EventTreatment> treatments) {
+  MAUP_REQUIRE(treatments.size() == impl_->kernel.events());
+  impl_->watched.treat(treatments);
 }
 
 void TaylorStepper::set_usual_sizes(std::span<const double> q, std::span<const double> v) {

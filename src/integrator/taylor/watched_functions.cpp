@@ -9,6 +9,8 @@ namespace {
 
 std::int8_t sign(double x) { return static_cast<std::int8_t>((x > 0) - (x < 0)); }
 
+constexpr double unresolved = 1e-12;  // of the step
+
 /// Roots that rounding does not tell apart are one crossing.
 void note(Crossing& crossing, double x, std::size_t index, double together, int direction) {
   if (crossing.found && x > crossing.x * (1 + together) + together) return;
@@ -69,22 +71,25 @@ Crossing WatchedFunctions::first_crossing(const KernelWorkspace& work, const Com
   Crossing out;
   out.after = switches;
   out.after.insert(out.after.end(), events.begin(), events.end());
-  roots_->set_constants(work.constants(), work.constants());
+  roots_->set_constants({work.constants(), work.program().constants.size()}, work.constants());
   roots_->begin({t.hi, t.lo}, h, [&work](int k) { return work.coordinate(k); });
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const double together = std::max(4 * epsilon, 4 * epsilon * std::abs(t.hi / h));
-  constexpr double unresolved = 1e-12;  // of the step
+  out.x = roots_->window();
   const std::size_t count = switches.size();
   for (std::size_t i = 0; i < out.after.size(); ++i) {
     const bool is_switch = i < count;
     Watched& watched = out.after[i];
     if (is_switch && watched.side == 0) continue;  // it vanishes along the motion
-    if (!is_switch && begins_past_root(work, i - count, h, watched)) note(out, 0, i, together, watched.side);
-    // Events at one instant are all told: the search goes on beyond the first root by what a polynomial does not resolve.
+    if (!is_switch && !ends_step(i - count)) continue;
+    if (!is_switch && !roots_->is_clear(i) && begins_past_root(work, i - count, h, watched))
+      note(out, 0, i, together, watched.side);
+    // Events at one instant are all told: the search goes on beyond the first root by what a polynomial does not
+    // resolve.
     const double beyond = is_switch ? together : std::max(together, unresolved);
-    const double until = std::min(1.0, out.x * (1 + together) + beyond);
-    const Slot slot = is_switch ? work.program().switch_slots[i] : work.program().events[i - count];
-    if (const auto root = roots_->first(slot, watched, until, !is_switch, is_switch))
+    const double until = std::min(roots_->window(), out.x * (1 + together) + beyond);
+    const bool touches = !is_switch && tells_touches(i - count);
+    if (const auto root = roots_->first(i, watched, 0, until, touches, is_switch))
       note(out, root->x, i, together, root->kind == RootKind::Touching ? 0 : -watched.side);
   }
   // A step of no length leaves the others where they were.
@@ -93,12 +98,43 @@ Crossing WatchedFunctions::first_crossing(const KernelWorkspace& work, const Com
     Watched& watched = out.after[i];
     watched = {i < count ? static_cast<std::int8_t>(-watched.side) : std::int8_t{0}, true};
   }
+  pass(work, h, out);
   return out;
 }
 
+/// Roots of events that do not end the step, up to its end: each search goes on from the root before.
+void WatchedFunctions::pass(const KernelWorkspace& work, double h, Crossing& out) {
+  const std::size_t count = switches.size();
+  const double until = std::min(roots_->window(), out.x + (out.found ? unresolved : 0));
+  for (std::size_t event = 0; event < events.size(); ++event) {
+    if (ends_step(event)) continue;
+    const std::size_t i = count + event;
+    Watched& watched = out.after[i];
+    const auto note_root = [&](double x, int direction) {
+      out.passed.push_back({std::min(x, out.x), event, direction});
+    };
+    if (!roots_->is_clear(i) && begins_past_root(work, event, h, watched)) note_root(0, watched.side);
+    for (double from = 0; from < until;) {
+      const auto root = roots_->first(i, watched, from, until, tells_touches(event), false);
+      if (!root) break;
+      const bool touch = root->kind == RootKind::Touching;
+      note_root(root->x, touch ? 0 : -watched.side);
+      watched = {touch ? watched.side : std::int8_t{0}, true, static_cast<std::uint8_t>(touch ? 2 : 1)};
+      from = std::max(root->x, std::nextafter(from, 1.0));
+    }
+  }
+  std::stable_sort(out.passed.begin(), out.passed.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+}
+
 std::vector<WatchedFunctions::Side> WatchedFunctions::sides_of_events(const KernelWorkspace& work, double h) const {
+  constexpr double clear = 1e-9;  // of the terms of the function: its own value decides
   std::vector<Side> out;
   for (std::size_t i = 0; i < events.size(); ++i) {
+    const double here = work.event(i, 0);
+    if (!events[i].at_zero && std::abs(here) > clear * work.event_scale(i)) {
+      out.push_back({sign(here), work.event_scale(i)});
+      continue;
+    }
     const auto polynomial = judged(event_polynomial(work, i, h));
     const bool at_zero = events[i].at_zero || polynomial.begins_at_zero();
     out.push_back({at_zero ? polynomial.direction(events[i].order) : sign(polynomial.p[0]), polynomial.reach});
@@ -106,10 +142,12 @@ std::vector<WatchedFunctions::Side> WatchedFunctions::sides_of_events(const Kern
   return out;
 }
 
-void WatchedFunctions::leave(const Crossing& crossing, Step& result) {
+void WatchedFunctions::leave(const Crossing& crossing, double length, Step& result) {
   const std::size_t count = switches.size();
   for (std::size_t i = 0; i < crossing.after.size(); ++i)
     (i < count ? switches[i] : events[i - count]) = crossing.after[i];
+  for (const PassedRoot& root : crossing.passed)
+    result.events.push_back({root.event, root.direction, result.begin + root.x * length});
   for (std::size_t k = 0; k < crossing.roots.size(); ++k) {
     const std::size_t i = crossing.roots[k];
     if (i < count) {
@@ -117,7 +155,7 @@ void WatchedFunctions::leave(const Crossing& crossing, Step& result) {
       continue;
     }
     if (!result.event) result.event = i - count;
-    result.events.push_back({i - count, crossing.directions[k]});
+    result.events.push_back({i - count, crossing.directions[k], result.end});
   }
 }
 

@@ -10,13 +10,21 @@
 
 namespace maupertuis::taylor {
 
+/// A root of an event within a step that does not end there.
+struct PassedRoot {
+  double x = 0;  // fraction of the step
+  std::size_t event = 0;
+  int direction = 0;  // 1: rising, −1: falling, 0: touching
+};
+
 /// Where a step ends at a switch or an event.
 struct Crossing {
-  double x = 1;  // fraction of the step
+  double x = 1;  // fraction of the step; less than 1 without a root where the step is too long to be searched
   bool found = false;
   std::vector<std::size_t> roots;  // switches, then events
   std::vector<int> directions;     // [roots] 1: rising, −1: falling, 0: touching
   std::vector<Watched> after;      // the same, as the step leaves them
+  std::vector<PassedRoot> passed;  // in time order
 };
 
 /// The switch functions and events of a motion: on which sides they are, and where along a step they first leave them.
@@ -33,6 +41,10 @@ class WatchedFunctions {
   /// another comes before it. Under sides that are not those of the state forces may have no value (log|x|), but switch
   /// functions do.
   void choose_first_sides(KernelWorkspace& work, const MotionState& state);
+  /// How each event is treated, see TaylorStepper::EventTreatment.
+  void treat(std::span<const TaylorStepper::EventTreatment> treatments) {
+    treatments_.assign(treatments.begin(), treatments.end());
+  }
   /// The first roots of the step of length h that the workspace holds. Switches may change at jumps too, events not.
   Crossing first_crossing(const KernelWorkspace& work, const Compensated& t, double h);
   /// An event that begins at a zero of this order: its side is the one that the motion goes to.
@@ -41,18 +53,23 @@ class WatchedFunctions {
   /// in rounding.
   struct Side {
     std::int8_t side;
-    double reach;  // of the function over the length that was judged
+    double reach;  // of the function over the length that was judged; clear of zero: the size of its terms
   };
   std::vector<Side> sides_of_events(const KernelWorkspace& work, double h) const;
-  /// The sides that a step leaves behind; how many switches changed, and which event was met, go to the result.
-  void leave(const Crossing& crossing, Step& result);
+  /// The sides that a step leaves behind; how many switches changed, and which events were met, go to the result.
+  /// length: of the step before it was shortened.
+  void leave(const Crossing& crossing, double length, Step& result);
+  bool ends_step(std::size_t event) const { return treatments_.empty() || treatments_[event].ends_step; }
+  bool tells_touches(std::size_t event) const { return treatments_.empty() || treatments_[event].touches; }
 
   std::vector<Watched> switches, events;
 
  private:
   void copy_sides(KernelWorkspace& work) const;
+  void pass(const KernelWorkspace& work, double h, Crossing& out);
 
-  std::optional<RootSearch> roots_;  // where something is watched
+  std::optional<RootSearch> roots_;                        // where something is watched
+  std::vector<TaylorStepper::EventTreatment> treatments_;  // [events], or none: all end the step
 };
 
 }  // namespace maupertuis::taylor

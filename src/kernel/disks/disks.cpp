@@ -36,16 +36,29 @@ Disks::Disks(const Program& program, std::span<const std::uint32_t> slots) : pro
   for (auto& values : rate_reach_) values.assign(program.unknowns, 0.0);
   find_degrees();
   find_series(made);
-  find_needs(slots);
+  find_needs(slots, true);
+}
+
+void Disks::bound_only(std::span<const std::uint32_t> slots) {
+  needed_.clear();
+  derived_.clear();
+  most_rates_ = 0;
+  find_needs(slots, false);
+  few_.clear();
+  for (const std::uint32_t at : needed_)
+    for (const Slot slot : {nodes_[at].instruction.out, nodes_[at].instruction.second})
+      if (slot != no_slot && has_series_[slot]) few_.push_back(slot);
+  constexpr std::size_t much_less = 8;
+  only_few_ = few_.size() * much_less < program_.stored_end[2];
 }
 
 /// Backwards from the tails that are asked for. The tail of a sum needs the tails of its terms and the reaches of what
 /// it multiplies; that of a function needs the reach of its operand.
-void Disks::find_needs(std::span<const std::uint32_t> slots) {
+void Disks::find_needs(std::span<const std::uint32_t> slots, bool residual) {
   needs_reach_.assign(program_.slots, 0);
   needs_tail_.assign(program_.slots, 0);
   for (const Slot slot : program_.residual)
-    if (slot != no_slot) needs_tail_[slot] = 1;
+    if (residual && slot != no_slot) needs_tail_[slot] = 1;
   for (const Slot slot : slots) needs_tail_[slot] = needs_reach_[slot] = 1;
   for (std::size_t at = nodes_.size(); at-- > 0;) {
     const Instruction& i = nodes_[at].instruction;
@@ -234,7 +247,7 @@ double Disks::reach_of_rate(std::uint32_t slot, int shift) const {
 /// Σ_{k≥1} |f_k| r^k of slots whose coefficients are in the rows.
 void Disks::evaluate_series() {
   Slot first = static_cast<Slot>(program_.unknowns);
-  for (int lag = 0; lag <= 2; ++lag) {
+  for (int lag = 0; lag <= 2 && !only_few_; ++lag) {
     const Slot last = std::max(first, program_.stored_end[static_cast<std::size_t>(lag)]);
     std::fill(series_.begin() + first, series_.begin() + last, 0.0);
     for (int k = 1; k <= now_.order + 1 - lag; ++k) {
@@ -247,7 +260,7 @@ void Disks::evaluate_series() {
     }
     first = last;
   }
-  for (const Slot slot : alone_) {
+  for (const Slot slot : only_few_ ? few_ : alone_) {
     double sum = 0;
     for (int k = 1; k <= now_.order + 1 - std::max<int>(0, program_.lags[slot]); ++k)
       sum += std::abs(coefficient(k, slot)) * powers_[static_cast<std::size_t>(k)];

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -20,9 +21,27 @@ class Retrace {
         order_(order),
         memory_(program, order + 2 + (-2 - program.first_stage), program.slots),
         polynomials_((order + 2) * program.unknowns) {
-    find_needed(slots);
     producer_.assign(program.slots, nullptr);
     for (const Instruction& i : program.instructions) producer_[i.out] = &i;
+    for (const Section section : {Dynamics, Along})
+      for (const Run& run : program.runs[section])
+        for (std::uint32_t i = run.first; i < run.last; ++i) all_.push_back(i);
+    wanted_.resize(program.slots);
+    taken_.resize(program.instructions.size());
+    want(slots);
+    every_ = needed_;
+  }
+
+  /// From now on only these slots are carried out, and what they need. Cost: two looks at each instruction.
+  void want(std::span<const Slot> slots) {
+    std::fill(wanted_.begin(), wanted_.end(), false);
+    std::fill(taken_.begin(), taken_.end(), false);
+    for (const Slot slot : slots) wanted_[slot] = true;
+    while (take_makers()) {
+    }
+    needed_.clear();
+    for (const std::uint32_t index : all_)
+      if (taken_[index]) needed_.push_back(index);
   }
 
   /// [program.constants]
@@ -38,9 +57,11 @@ class Retrace {
       std::copy_n(row(k), program_.unknowns, polynomials_.data() + static_cast<std::size_t>(k) * program_.unknowns);
   }
   /// All orders about s.
-  void expand_about(const T& s) { run(s, order_); }
+  void expand_about(const T& s) { run(needed_, s, order_, order_ + 1); }
   /// Values at s alone.
-  void evaluate(const T& s) { run(s, 1); }
+  void evaluate(const T& s) { run(needed_, s, 1, 2); }
+  /// Of all slots of the constructor, wanted now or not: orders up to `most`, those of the coordinates all.
+  void values_about(const T& s, int most) { run(every_, s, std::min(most + 1, order_), order_ + 1, most); }
 
   int order() const { return order_; }
   const T* row(int k) const { return memory_.row(k); }
@@ -50,37 +71,30 @@ class Retrace {
 
  private:
   /// Backwards from what is wanted. What a function's differential needs may stand behind it, hence the turns.
-  void find_needed(std::span<const Slot> slots) {
-    std::vector<bool> wanted(program_.slots, false), taken(program_.instructions.size(), false);
-    for (const Slot slot : slots) wanted[slot] = true;
-    std::vector<std::uint32_t> all;
-    for (const Section section : {Dynamics, Along})
-      for (const Run& run : program_.runs[section])
-        for (std::uint32_t i = run.first; i < run.last; ++i) all.push_back(i);
-    for (bool changed = true; changed;) {
-      changed = false;
-      for (auto at = all.rbegin(); at != all.rend(); ++at) {
-        const Instruction& i = program_.instructions[*at];
-        if (taken[*at] || !(wanted[i.out] || (i.second != no_slot && wanted[i.second]))) continue;
-        taken[*at] = changed = true;
-        for (const Slot slot : {i.a, i.b})
-          if (slot != no_slot) wanted[slot] = true;
-        for (std::uint32_t t = i.first_term; t < i.last_term; ++t)
-          for (const Slot slot : {program_.terms[t].a, program_.terms[t].b})
-            if (slot != no_slot) wanted[slot] = true;
-      }
+  bool take_makers() {
+    bool changed = false;
+    for (auto at = all_.rbegin(); at != all_.rend(); ++at) {
+      const Instruction& i = program_.instructions[*at];
+      if (taken_[*at] || !(wanted_[i.out] || (i.second != no_slot && wanted_[i.second]))) continue;
+      taken_[*at] = changed = true;
+      for (const Slot slot : {i.a, i.b})
+        if (slot != no_slot) wanted_[slot] = true;
+      for (std::uint32_t t = i.first_term; t < i.last_term; ++t)
+        for (const Slot slot : {program_.terms[t].a, program_.terms[t].b})
+          if (slot != no_slot) wanted_[slot] = true;
     }
-    for (const std::uint32_t index : all)
-      if (taken[index]) needed_.push_back(index);
+    return changed;
   }
 
-  void run(const T& s, int stages) {
+  static constexpr int never = std::numeric_limits<int>::max();
+  void run(std::span<const std::uint32_t> instructions, const T& s, int stages, int last_of_coordinates,
+           int most = never) {
     reference::set_leaves(memory_, T(t_ + (rest_ + s)), order_ + 2 + (-2 - program_.first_stage));
-    shift(s, stages + 1);
+    shift(s, last_of_coordinates);
     for (int stage = program_.first_stage; stage < stages; ++stage)
-      for (const std::uint32_t index : needed_) {
+      for (const std::uint32_t index : instructions) {
         const int order = stage + 2 - program_.instructions[index].lag;
-        if (order >= 0) reference::run_instruction(memory_, index, order);
+        if (order >= 0 && order <= most) reference::run_instruction(memory_, index, order);
       }
   }
 
@@ -103,8 +117,9 @@ class Retrace {
   reference::MemoryOf<T> memory_;
   std::vector<T> polynomials_;  // [order + 2][unknowns]
   T t_ = T(0), rest_ = T(0);
-  std::vector<std::uint32_t> needed_;         // instructions, in order
-  std::vector<const Instruction*> producer_;  // [slots]
+  std::vector<std::uint32_t> all_, every_, needed_;  // instructions in order: all, for all slots, for those wanted
+  std::vector<bool> wanted_, taken_;                 // [slots], [instructions]
+  std::vector<const Instruction*> producer_;         // [slots]
 };
 
 }  // namespace maupertuis

@@ -4,6 +4,7 @@
 #include <maupertuis/contact_mode.hpp>
 #include <maupertuis/transform.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace maupertuis {
@@ -69,6 +70,16 @@ ExprVector rates_of(const MechanicalSystem& s) {
   return out;
 }
 
+/// d²g/dt² and dv_t/dt without their terms in q̈.
+ExprVector drifts_of(const MechanicalSystem& s) {
+  ExprVector out;
+  for (const Contact& c : s.contacts) out.push_back(total_time_derivative(total_time_derivative(c.gap)));
+  for (Expr slip : slips_of(s)) out.push_back(total_time_derivative(slip));
+  ExprMap no_accelerations;
+  for (const Coordinate& c : s.coordinates) no_accelerations[c.acceleration] = s.context->number(0);
+  return substitute(out, no_accelerations);
+}
+
 /// M by rows, then A by rows.
 ExprVector matrices_of(const EquationsOfMotion& equations) {
   ExprVector out = mass_matrix(equations).entries;
@@ -93,7 +104,9 @@ double dot(const SparseRow& row, const Eigen::VectorXd& x) {
 }
 
 ContactFunctions::ContactFunctions(const EquationsOfMotion& equations, std::span<const double> parameters)
-    : n_(equations.system->coordinates.size()),
+    : equations_(equations),
+      parameters_(parameters.begin(), parameters.end()),
+      n_(equations.system->coordinates.size()),
       m_(equations.system->constraints.size()),
       contacts_(equations.system->contacts.size()),
       frictions_(contacts_ + equations.system->frictions.size()),
@@ -122,6 +135,10 @@ void ContactFunctions::evaluate(FunctionWorkspace& work, std::vector<double>& ou
 }
 
 const ContactValues& ContactFunctions::at(double t, std::span<const double> q, std::span<const double> v) {
+  if (t == t_ && std::ranges::equal(q, q_) && std::ranges::equal(v, v_)) return values_;
+  t_ = t;
+  q_.assign(q.begin(), q.end());
+  v_.assign(v.begin(), v.end());
   evaluate(gaps_work_, gaps_out_, t, q, v);
   evaluate(slips_work_, slips_out_, t, q, v);
   evaluate(rates_work_, rates_out_, t, q, v);
@@ -152,21 +169,69 @@ const ContactValues& ContactFunctions::at(double t, std::span<const double> q, s
   return out;
 }
 
+namespace {
+
+/// Which unknowns hang together by entries that are not zero: a number for each.
+std::vector<std::size_t> parts_of(const Eigen::MatrixXd& matrix) {
+  std::vector<std::size_t> part(static_cast<std::size_t>(matrix.rows()));
+  for (std::size_t i = 0; i < part.size(); ++i) part[i] = i;
+  const auto root = [&](std::size_t i) {
+    while (part[i] != i) i = part[i] = part[part[i]];
+    return i;
+  };
+  for (std::size_t j = 0; j < part.size(); ++j)
+    for (std::size_t i = 0; i < part.size(); ++i)
+      if (i != j && matrix(at(i), at(j)) != 0) part[root(i)] = root(j);
+  for (std::size_t i = 0; i < part.size(); ++i) part[i] = root(i);
+  return part;
+}
+
+/// matrix x = right, each part of the system that the right sides touch by itself: many bodies hang together in few.
+Eigen::MatrixXd solve_by_parts(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right) {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(right.rows(), right.cols());
+  const std::vector<std::size_t> part = parts_of(matrix);
+  for (std::size_t number = 0; number < part.size(); ++number) {
+    std::vector<Index> in;
+    bool touched = false;
+    for (std::size_t i = 0; i < part.size(); ++i)
+      if (part[i] == number) in.push_back(at(i)), touched = touched || (right.row(at(i)).array() != 0).any();
+    if (!touched) continue;
+    const Eigen::FullPivLU<Eigen::MatrixXd> lu(Eigen::MatrixXd(matrix(in, in)));
+    out(in, Eigen::all) = lu.solve(Eigen::MatrixXd(right(in, Eigen::all)));
+  }
+  return out;
+}
+
+}  // namespace
+
 Eigen::MatrixXd ContactFunctions::response(double t, std::span<const double> q, std::span<const double> v,
-                                           std::span<const SparseRow> rows) {
+                                           std::span<const SparseRow> rows, std::span<const SparseRow> held) {
   evaluate(matrices_work_, matrices_out_, t, q, v);
-  const auto n = static_cast<Index>(n_), m = static_cast<Index>(m_);
+  const auto n = static_cast<Index>(n_), own = static_cast<Index>(m_), m = own + static_cast<Index>(held.size());
   Eigen::MatrixXd bordered = Eigen::MatrixXd::Zero(n + m, n + m);
   for (Index i = 0; i < n; ++i)
     for (Index j = 0; j < n; ++j) bordered(i, j) = matrices_out_[static_cast<std::size_t>(i * n + j)];
-  for (Index k = 0; k < m; ++k)
+  for (Index k = 0; k < own; ++k)
     for (Index j = 0; j < n; ++j)
       bordered(n + k, j) = bordered(j, n + k) = matrices_out_[static_cast<std::size_t>((n + k) * n + j)];
+  for (Index k = 0; k < m - own; ++k)
+    for (const auto& [j, value] : held[static_cast<std::size_t>(k)])
+      bordered(n + own + k, static_cast<Index>(j)) = bordered(static_cast<Index>(j), n + own + k) = value;
   Eigen::MatrixXd right = Eigen::MatrixXd::Zero(n + m, static_cast<Index>(rows.size()));
   for (std::size_t r = 0; r < rows.size(); ++r)
     for (const auto& [i, value] : rows[r]) right(static_cast<Index>(i), static_cast<Index>(r)) = value;
-  const Eigen::FullPivLU<Eigen::MatrixXd> lu(bordered);
-  return lu.solve(right).topRows(n);
+  return solve_by_parts(bordered, right).topRows(n);
+}
+
+std::span<const double> ContactFunctions::drifts(double t, std::span<const double> q, std::span<const double> v) {
+  if (!drifts_) {
+    drifts_ = build_function(Lowering(*equations_.system).source(drifts_of(*equations_.system)));
+    drifts_work_.emplace(*drifts_);
+    drifts_work_->set_parameters(parameters_);
+    drifts_out_.resize(drifts_->outputs());
+  }
+  evaluate(*drifts_work_, drifts_out_, t, q, v);
+  return drifts_out_;
 }
 
 }  // namespace maupertuis

@@ -4,6 +4,8 @@
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/function_kernel.hpp>
 
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,21 +35,33 @@ class ContactFunctions {
 
   const ContactValues& at(double t, std::span<const double> q, std::span<const double> v);
   /// x [n × columns] of M x = rows, A x = 0: what impulses along `rows` change in q̇. M may be singular where A is not.
+  /// `held`: rows h besides those of A, with h x = 0.
   Eigen::MatrixXd response(double t, std::span<const double> q, std::span<const double> v,
-                           std::span<const SparseRow> rows);
+                           std::span<const SparseRow> rows, std::span<const SparseRow> held = {});
+  /// What g̈ and v̇_t are where q̈ = 0: [contacts], then [contacts + frictions]. Cost of the first call: the second
+  /// derivatives of all gaps.
+  std::span<const double> drifts(double t, std::span<const double> q, std::span<const double> v);
 
  private:
   void evaluate(FunctionWorkspace& work, std::vector<double>& out, double t, std::span<const double> q,
                 std::span<const double> v);
 
+  EquationsOfMotion equations_;
+  std::vector<double> parameters_;
   std::size_t n_, m_, contacts_, frictions_;
   DifferentiableKernel gaps_, slips_;  // by q; by q̇
   FunctionKernel rates_, matrices_;
   FunctionWorkspace gaps_work_, slips_work_, rates_work_, matrices_work_;
+  std::optional<FunctionKernel> drifts_;
+  std::optional<FunctionWorkspace> drifts_work_;
+  std::vector<double> drifts_out_;
   std::vector<double> point_, gaps_out_, slips_out_, rates_out_, matrices_out_;
+  double t_ = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> q_, v_;  // where values_ are
   ContactValues values_;
 };
 
+inline Eigen::Index at(std::size_t i) { return static_cast<Eigen::Index>(i); }
 double dot(const SparseRow& row, const Eigen::VectorXd& x);
 
 }  // namespace maupertuis

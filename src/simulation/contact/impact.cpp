@@ -14,8 +14,6 @@ using Eigen::VectorXd;
 
 constexpr std::size_t most_impulses = 1000;  // a contact
 
-Index at(std::size_t i) { return static_cast<Index>(i); }
-
 double rate(const ImpactProblem& p, std::size_t i, const VectorXd& v) { return dot(p.normal[i], v) + p.drive[i]; }
 
 /// The closing contact that comes next; nothing where none closes.
