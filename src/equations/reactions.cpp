@@ -252,8 +252,11 @@ std::vector<Reaction> reactions(const EquationsOfMotion& equations) {
     if (system.contacts[k].name.empty()) continue;
     const Constraint closed = as_constraint(system.contacts[k]);
     Tie tie{system, closed, {}, {}};
+    const std::vector<Expr> named = symbols_of({&closed.value, 1});  // few of many bodies
     for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
-      tie.row.push_back(differentiate(closed.value, system.coordinates[i].q));
+      const Expr q = system.coordinates[i].q;
+      const bool is_named = std::find(named.begin(), named.end(), q) != named.end();
+      tie.row.push_back(is_named ? differentiate(closed.value, q) : system.context->number(0));
       if (!tie.row[i].is_zero()) tie.coordinates.push_back(i);
     }
     all.push_back(reaction_of_contact(tie, closed.name));

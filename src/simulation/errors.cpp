@@ -48,16 +48,22 @@ class Teller {
   }
 
  private:
+  using Like = std::pair<Happening::Kind, std::string>;
+
   /// Times of events: by those of the companions, each by its count among its like.
   void tell_happenings() {
-    std::map<std::pair<Happening::Kind, std::string>, std::size_t> counts;
+    std::vector<std::map<Like, std::vector<double>>> times(companions_.runs.size());
+    for (std::size_t r = 0; r < times.size(); ++r)
+      for (const Happening& other : companions_.runs[r].happenings)
+        times[r][{other.kind, other.name}].push_back(other.t);
+    std::map<Like, std::size_t> counts;
     for (Happening& h : result_.happenings) {
-      const std::size_t count = counts[{h.kind, h.name}]++;
+      const Like like{h.kind, h.name};
+      const std::size_t count = counts[like]++;
       h.error = error_of(h.t, [&](const CompanionRun& run) {
-        std::size_t before = 0;
-        for (const Happening& other : run.happenings)
-          if (other.kind == h.kind && other.name == h.name && before++ == count) return other.t;
-        return infinity;
+        const auto& of_run = times[static_cast<std::size_t>(&run - companions_.runs.data())];
+        const auto found = of_run.find(like);
+        return found != of_run.end() && count < found->second.size() ? found->second[count] : infinity;
       });
     }
   }

@@ -57,11 +57,30 @@ void HybridMotion::note_order(const ImpactProblem& p, const ImpactResult& first,
 }
 
 void HybridMotion::record_impulses(const ImpactResult& result) {
-  for (const Impulse& impulse : result.impulses)
-    add(Happening::Kind::Impact, system_.contact_label(impulse.contact), impulse.normal, impulse.speed);
   record_.books.impacts += result.loss;
   record_.books.moving += result.moving;
   carried_[0] += result.moving - result.loss;
+  constexpr std::size_t most_told = 32;
+  if (result.impulses.size() <= most_told) {
+    for (const Impulse& impulse : result.impulses)
+      add(Happening::Kind::Impact, system_.contact_label(impulse.contact), impulse.normal, impulse.speed);
+    return;
+  }
+  // A chain of contacts whose impulses follow each other without end, each smaller: their sum for each contact.
+  std::vector<std::size_t> order;
+  std::map<std::size_t, std::pair<Impulse, std::size_t>> sums;
+  for (const Impulse& impulse : result.impulses) {
+    const auto [sum, is_new] = sums.try_emplace(impulse.contact, impulse, 1);
+    if (is_new)
+      order.push_back(impulse.contact);
+    else
+      sum->second.first.normal += impulse.normal, ++sum->second.second;
+  }
+  for (const std::size_t contact : order) {
+    const auto& [impulse, count] = sums.at(contact);
+    add(Happening::Kind::Impact, system_.contact_label(contact), impulse.normal, impulse.speed,
+        count > 1 ? fmt::format("the sum of {} impacts", count) : std::string());
+  }
 }
 
 /// When infinitely many bounces come to their end, told from the last three of a contact; nothing while they go on. The
@@ -92,6 +111,21 @@ ImpactResult HybridMotion::last_impact(const ImpactProblem& p, const VectorXd& v
   return rest;
 }
 
+/// Bounces whose flights are lower than the gap is known end at once: whether all of them that close here are so low.
+/// The acceleration that brings them back is that of the run so far; a contact without loss is left alone.
+bool HybridMotion::is_lost_in_rounding(const std::vector<std::size_t>& touching, const ContactValues& values) const {
+  constexpr double slow = 1e-6;  // of the fastest so far: never what is to be seen
+  for (const std::size_t i : touching) {
+    const double speed = -values.rate[i];
+    if (speed <= rest_speed(i, values)) continue;
+    double acceleration = 0;
+    for (const auto& [k, g] : values.normal[i]) acceleration += std::abs(g) * acceleration_[kind_[k]];
+    const bool is_low = speed * speed <= 2 * acceleration * rest_unit * widest_[i];
+    if (!(values.restitution[i] < 1) || !is_low || speed > slow * fastest_[i]) return false;
+  }
+  return true;
+}
+
 /// What closing contacts do to the velocities. False, and why, where no impulses are found.
 bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) {
   accumulated_.reset();
@@ -106,10 +140,13 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
   if (end)
     for (const std::size_t i : cycle_)
       if (std::find(touching.begin(), touching.end(), i) == touching.end()) touching.push_back(i);
-  const bool at_once = system_.impact_law == ImpactLaw::Simultaneous;
+  const bool rubs =
+      std::any_of(touching.begin(), touching.end(), [&](std::size_t i) { return !values.tangent[i].empty(); });
   ImpactProblem p = impact_problem(end ? cycle_ : touching, values);
-  if (end) std::fill(p.restitution.begin(), p.restitution.end(), 0.0);
+  const bool rests = !end && is_lost_in_rounding(touching, values);
+  if (end || rests) std::fill(p.restitution.begin(), p.restitution.end(), 0.0);
   const VectorXd v = vector_of(v_);
+  const bool at_once = system_.impact_law == ImpactLaw::Simultaneous || (rests && !rubs);
   ImpactResult result = end       ? last_impact(p, v)
                         : at_once ? simultaneous_impact(p, v, false)
                                   : sequential_impact(p, v, ImpactOrder::FastestFirst);

@@ -209,8 +209,11 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
     const Watch& w = motion.watches[k];
     const bool left = std::any_of(pending_->left.begin(), pending_->left.end(),
                                   [&](const Watch& x) { return x.what == w.what && x.index == w.index; });
+    // A gap that opens and is not negative begins as it is: next to rounding, but with the way that it has.
+    const bool opens =
+        w.what == Watch::What::Gap && values.gap[w.index] > 0 && values.rate[w.index] > rest_speed(w.index, values);
     const bool touches =
-        w.what == Watch::What::Gap && std::find(touching.begin(), touching.end(), w.index) != touching.end();
+        w.what == Watch::What::Gap && !opens && std::find(touching.begin(), touching.end(), w.index) != touching.end();
     const bool starts_to_slide =
         w.what == Watch::What::Slip && std::abs(values.slip[w.index]) <= rest_slip(w.index, values);
     if (touches || starts_to_slide || (left && w.what == Watch::What::Force)) at_zero.push_back(k);

@@ -145,7 +145,7 @@ Step HybridMotion::step(double bound) {
   }
   if (!out.events.empty()) classify(out);
   // A force that jumps may let a contact or a friction go, though none of their conditions has a root.
-  if (!pending_ && (out.switches > 0 || pulls())) {
+  if (!pending_ && ((out.switches > 0 && !goes_on(bound)) || pulls())) {
     take_state();
     pending_ = std::make_unique<Pending>();
   }
@@ -180,6 +180,15 @@ bool HybridMotion::is_just_released(std::size_t contact) {
   const double since = std::abs(t_ - released_at_[contact]);
   if (!(since * fastest_[contact] <= short_way * widest_[contact])) return false;
   return std::abs(functions_.at(t_, q_, v_).rate[contact]) <= slow * fastest_[contact];
+}
+
+/// Whether the conditions of the mode hold as the next step begins.
+bool HybridMotion::goes_on(double bound) {
+  const TaylorStepper::Outlook outlook = now_->stepper->outlook(bound);
+  if (outlook.ending != StepEnding::None) return true;  // the next step says why it cannot be made
+  for (std::size_t k = 0; k < now_->watches.size(); ++k)
+    if (now_->watches[k].keeps_sign() && outlook.sides[k] < 0) return false;
+  return true;
 }
 
 /// Whether a closed contact pulled as the last step began.

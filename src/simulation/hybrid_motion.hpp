@@ -74,6 +74,7 @@ class HybridMotion final : public Method {
   std::optional<Step> settle(double bound);
   bool carry_out_sets(std::string& reason);
   std::vector<std::size_t> touching(const ContactValues& values) const;
+  bool is_lost_in_rounding(const std::vector<std::size_t>& touching, const ContactValues& values) const;
   bool hit(std::vector<std::size_t>& touching, std::string& reason);
   static ImpactResult last_impact(const ImpactProblem& problem, const Eigen::VectorXd& v);
   ImpactProblem impact_problem(const std::vector<std::size_t>& touching, const ContactValues& values);
@@ -107,6 +108,7 @@ class HybridMotion final : public Method {
   Step stopped(StepEnding ending, std::string reason);
   void take_state();
   bool pulls() const;
+  bool goes_on(double bound);
   void note_step();
   std::optional<std::size_t> violated_constraint(const MotionState& state, double digits) const;
 

@@ -258,10 +258,13 @@ T RootSearchOf<T>::refined(std::size_t index, const Piece& piece, const T& begin
   for (std::size_t k = p.size(); k-- > 1;) slope = slope * root + T(k) * p[k];
   T x = begin + piece.width * root;
   if (slope == 0) return x;
+  T there = at_a_time(x), off = value(index, there);
   for (int turn = 0; turn < 2; ++turn) {
-    const T there = at_a_time(x), change = value(index, there) / slope * piece.width;
+    const T change = off / slope * piece.width;
     if (!(abs(change) <= T(1e-6) * piece.width)) break;
-    x = there - change;
+    const T next = there - change, next_there = at_a_time(next), next_off = value(index, next_there);
+    if (!(abs(next_off) <= abs(off))) break;  // next to another root the slope says nothing
+    x = next, there = next_there, off = next_off;
   }
   return std::clamp(x, begin, T(begin + piece.width));
 }

@@ -64,6 +64,31 @@ Impulse apply(const ImpactProblem& p, std::size_t i, VectorXd& v, ImpactResult& 
   return impulse;
 }
 
+/// Rates of these contacts as they are to be, but for the rounding of the velocities as they are now: what solving left
+/// of larger ones is taken out once more.
+void polish(const ImpactProblem& p, const std::vector<std::size_t>& contacts, const std::vector<double>& rates,
+            VectorXd& v) {
+  Eigen::MatrixXd w(at(contacts.size()), at(contacts.size()));
+  VectorXd off(at(contacts.size()));
+  for (std::size_t a = 0; a < contacts.size(); ++a) {
+    for (std::size_t b = 0; b < contacts.size(); ++b)
+      w(at(a), at(b)) = dot(p.normal[contacts[a]], p.response.col(at(contacts[b])));
+    off(at(a)) = rates[a] - rate(p, contacts[a], v);
+  }
+  if (contacts.empty() || !(off.cwiseAbs().maxCoeff() > 0)) return;
+  const VectorXd more = Eigen::FullPivLU<Eigen::MatrixXd>(w).solve(off);
+  for (std::size_t a = 0; a < contacts.size(); ++a) v += more(at(a)) * p.response.col(at(contacts[a]));
+}
+
+/// Many impulses leave what is nearly closed at some roundings of zero: it is closed.
+void settle(const ImpactProblem& p, ImpactResult& out) {
+  constexpr double roundings = 16;
+  std::vector<std::size_t> closed;
+  for (std::size_t i = 0; i < p.contacts.size(); ++i)
+    if (std::abs(rate(p, i, out.v)) <= roundings * p.rest[i]) closed.push_back(i);
+  if (closed.size() > 1) polish(p, closed, std::vector<double>(closed.size(), 0.0), out.v);
+}
+
 }  // namespace
 
 ImpactResult sequential_impact(const ImpactProblem& p, const VectorXd& v, ImpactOrder order) {
@@ -79,6 +104,7 @@ ImpactResult sequential_impact(const ImpactProblem& p, const VectorXd& v, Impact
     }
     out.impulses.push_back(apply(p, *i, out.v, out));
   }
+  settle(p, out);
   return out;
 }
 
@@ -101,7 +127,15 @@ ImpactResult simultaneous_impact(const ImpactProblem& p, const VectorXd& v, bool
     out.unsolved = true;
     return out;
   }
-  for (std::size_t a = 0; a < in.size(); ++a) out.v += (*found)(at(a)) * p.response.col(at(in[a]));
+  std::vector<std::size_t> pressed;
+  std::vector<double> rates;
+  for (std::size_t a = 0; a < in.size(); ++a) {
+    out.v += (*found)(at(a)) * p.response.col(at(in[a]));
+    if (!((*found)(at(a)) > 0)) continue;
+    pressed.push_back(in[a]);
+    rates.push_back(rate(p, in[a], v) - q(at(a)));
+  }
+  polish(p, pressed, rates, out.v);
   for (std::size_t a = 0; a < in.size(); ++a) {
     const double impulse = (*found)(at(a));
     if (!(impulse > 0)) continue;
@@ -125,7 +159,9 @@ ImpactResult end_of_bounces(const ImpactProblem& p, const VectorXd& v) {
   }
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(w);
   const VectorXd impulses = lu.solve(q);
-  for (std::size_t a = 0; a < count; ++a) out.v += impulses(at(a)) * p.response.col(at(a));
+  std::vector<std::size_t> all;
+  for (std::size_t a = 0; a < count; ++a) out.v += impulses(at(a)) * p.response.col(at(a)), all.push_back(a);
+  polish(p, all, std::vector<double>(count, 0.0), out.v);
   for (std::size_t a = 0; a < count; ++a) {
     const double before = rate(p, a, v), after = rate(p, a, out.v);
     out.moving -= impulses(at(a)) * p.drive[a];
