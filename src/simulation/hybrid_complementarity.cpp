@@ -9,6 +9,7 @@ namespace maupertuis {
 namespace {
 
 constexpr double held_fast = 1e3;  // a coefficient of friction for contacts that never slide
+constexpr double small = 1e-10;    // of the largest
 
 ContactForceProblem::Contact contact_of(const ContactValues& values, std::span<const double> drifts,
                                         std::span<const double> accelerations, std::size_t i) {
@@ -41,19 +42,20 @@ ContactMode HybridMotion::mode_without_contacts(const std::vector<Choice>& list)
   return mode;
 }
 
-void HybridMotion::order_by_forces(std::vector<Choice>& list, const ContactValues& values, double bound) {
+/// The contacts of the list as they would move without their forces; nothing where that motion does not exist.
+std::optional<ContactForceProblem> HybridMotion::force_problem(const std::vector<Choice>& list,
+                                                               const ContactValues& values, double bound) {
   const ContactMode base = mode_without_contacts(list);
   TaylorStepper& stepper = *motion_in(base).stepper;
   stepper.start(t_, q_, v_);
   const TaylorStepper::Outlook outlook = stepper.outlook(bound);
-  if (outlook.ending != StepEnding::None) return;
+  if (outlook.ending != StepEnding::None) return std::nullopt;
   const std::span<const double> drifts = functions_.drifts(t_, q_, v_);
   std::vector<SparseRow> normals, tangents, held;
   for (std::size_t i = base.closed.size(); i < base.friction.size(); ++i)
     if (base.friction[i] == FrictionState::Stick) held.push_back(values.tangent[i]);
   ContactForceProblem problem;
-  std::vector<Choice*> contacts;
-  for (Choice& choice : list) {
+  for (const Choice& choice : list) {
     const std::size_t i = choice.contact;
     if (i >= base.closed.size()) continue;
     problem.contacts.push_back(contact_of(values, drifts, outlook.accelerations, i));
@@ -65,28 +67,65 @@ void HybridMotion::order_by_forces(std::vector<Choice>& list, const ContactValue
     contact.friction = friction.sticking ? held_fast : contact.sliding != 0 ? values.kinetic[i] : values.fixed[i];
     normals.push_back(values.normal[i]);
     tangents.push_back(contact.tangent);
-    contacts.push_back(&choice);
   }
   problem.response = functions_.response(t_, q_, v_, normals, held);
   problem.tangent_response = functions_.response(t_, q_, v_, tangents, held);
-  const auto forces = contact_forces(problem);
+  return problem;
+}
+
+void HybridMotion::order_by_forces(std::vector<Choice>& list, const ContactValues& values, double bound) {
+  const auto problem = force_problem(list, values, bound);
+  const auto forces = problem ? contact_forces(*problem) : std::nullopt;
   if (!forces) return;
-  constexpr double small = 1e-10;
   double largest = 0, fastest = 0;
-  for (std::size_t k = 0; k < contacts.size(); ++k) {
+  for (std::size_t k = 0; k < problem->contacts.size(); ++k) {
     largest = std::max(largest, forces->normal[k]);
-    fastest = std::max({fastest, std::abs(problem.contacts[k].gap_acceleration), forces->acceleration[k]});
+    fastest = std::max({fastest, std::abs(problem->contacts[k].gap_acceleration), forces->acceleration[k]});
   }
   std::vector<std::size_t> open_to_doubt;
-  for (std::size_t k = 0; k < contacts.size(); ++k) {
+  std::size_t k = 0;
+  for (Choice& choice : list) {
+    if (choice.contact >= system_.contacts.size()) continue;
     const bool presses = forces->normal[k] > small * largest;
-    prefer(contacts[k]->options, presses, forces->friction[k]);
-    if (!presses && forces->acceleration[k] <= small * fastest) open_to_doubt.push_back(contacts[k]->contact);
+    prefer(choice.options, presses, forces->friction[k]);
+    if (!presses && forces->acceleration[k] <= small * fastest) open_to_doubt.push_back(choice.contact);
+    ++k;
   }
   // What is tried after the first guess begins with contacts that neither press nor open.
   std::stable_partition(list.begin(), list.end(), [&](const Choice& c) {
     return std::find(open_to_doubt.begin(), open_to_doubt.end(), c.contact) != open_to_doubt.end();
   });
+}
+
+/// A contact that opens so slowly that it would be pressed again before its gap can be told from zero is closed: its
+/// speed is taken out. v²/(2 |g̈|) is the height of such a flight, g̈ being what its own force takes back.
+void HybridMotion::close_lowest_flights(const std::vector<std::size_t>& touching, double bound) {
+  constexpr double slow = 1e-6;  // of the fastest so far: never what is to be seen
+  const ContactValues values = functions_.at(t_, q_, v_);
+  const auto is_slow = [&](std::size_t i) {
+    return values.rate[i] > rest_speed(i, values) && values.rate[i] <= slow * fastest_[i];
+  };
+  if (std::none_of(touching.begin(), touching.end(), is_slow)) return;
+  std::vector<Choice> list;
+  for (const std::size_t i : touching)
+    if (values.rate[i] <= slow * fastest_[i]) list.push_back(choice_of_contact(i, values));
+  const auto problem = force_problem(list, values, bound);
+  const auto forces = problem ? contact_forces(*problem) : std::nullopt;
+  if (!forces) return;
+  std::vector<std::size_t> pressed;
+  bool found = false;
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const std::size_t i = list[k].contact;
+    const double falls = forces->normal[k] * dot(problem->contacts[k].normal, problem->response.col(at(k)));
+    const bool is_low = values.rate[i] * values.rate[i] <= 2 * falls * rest_unit * widest_[i];
+    if (!(forces->normal[k] > 0) || (is_slow(i) && !is_low)) continue;
+    pressed.push_back(i);
+    found = found || is_slow(i);
+  }
+  if (!found) return;
+  const ImpactResult closed =
+      end_of_bounces(impact_problem(pressed, values), Eigen::Map<const Eigen::VectorXd>(v_.data(), at(v_.size())));
+  v_.assign(closed.v.data(), closed.v.data() + closed.v.size());
 }
 
 }  // namespace maupertuis

@@ -150,6 +150,16 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
   ImpactResult result = end       ? last_impact(p, v)
                         : at_once ? simultaneous_impact(p, v, false)
                                   : sequential_impact(p, v, ImpactOrder::FastestFirst);
+  if (end) {  // what rests beside them is not pressed through
+    ImpactProblem all = impact_problem(touching, values);
+    std::fill(all.restitution.begin(), all.restitution.end(), 0.0);
+    const ImpactResult more = rubs ? sequential_impact(all, result.v, ImpactOrder::FastestFirst)
+                                   : simultaneous_impact(all, result.v, true);
+    result.v = more.v;
+    result.impulses.insert(result.impulses.end(), more.impulses.begin(), more.impulses.end());
+    result.loss += more.loss, result.moving += more.moving;
+    result.unsolved = more.unsolved;
+  }
   if (result.unsolved) {
     reason = "No impulses keep all contacts that are hit here from closing.";
     return false;

@@ -136,44 +136,45 @@ HybridMotion::ModeMotion& HybridMotion::motion_in(const ContactMode& mode) {
   return *slot;
 }
 
+namespace {
+
+FrictionState sliding_state(double slip, double rest) {
+  return slip > rest ? FrictionState::Forward : slip < -rest ? FrictionState::Backward : FrictionState::None;
+}
+
+}  // namespace
+
+/// What a contact that touches and does not open may do.
+HybridMotion::Choice HybridMotion::choice_of_contact(std::size_t i, const ContactValues& values) const {
+  Choice choice{i, {}};
+  const Friction& f = system_.contacts[i].friction;
+  const FrictionState sliding = f.present() ? sliding_state(values.slip[i], rest_slip(i, values)) : FrictionState::None;
+  if (!f.present())
+    choice.options = {{true, FrictionState::None, 1}};
+  else if (f.sticking)
+    choice.options = {{true, FrictionState::Stick, 1}};
+  else if (sliding != FrictionState::None)
+    choice.options = {{true, sliding, 1}};
+  else
+    choice.options = {
+        {true, FrictionState::Stick, 1}, {true, FrictionState::Forward, 1}, {true, FrictionState::Backward, 1}};
+  const HybridOption open{false, FrictionState::None, 1};
+  const bool lets_go = std::any_of(pending_->left.begin(), pending_->left.end(),
+                                   [&](const Watch& w) { return w.what == Watch::What::Force && w.index == i; });
+  choice.options.insert(lets_go ? choice.options.begin() : choice.options.end(), open);
+  return choice;
+}
+
 std::vector<HybridMotion::Choice> HybridMotion::choices(const std::vector<std::size_t>& touching,
                                                         const ContactValues& values) const {
   std::vector<Choice> out;
-  const auto slides = [&](std::size_t i) {
-    return values.slip[i] > rest_slip(i, values)    ? FrictionState::Forward
-           : values.slip[i] < -rest_slip(i, values) ? FrictionState::Backward
-                                                    : FrictionState::None;
-  };
-  const auto left = [&](Watch::What what, std::size_t i) {
-    return std::any_of(pending_->left.begin(), pending_->left.end(),
-                       [&](const Watch& w) { return w.what == what && w.index == i; });
-  };
-  for (const std::size_t i : touching) {
-    if (values.rate[i] > rest_speed(i, values)) continue;  // it opens
-    Choice choice{i, {}};
-    const Friction& f = system_.contacts[i].friction;
-    const FrictionState sliding = f.present() ? slides(i) : FrictionState::None;
-    if (!f.present())
-      choice.options = {{true, FrictionState::None, 1}};
-    else if (f.sticking)
-      choice.options = {{true, FrictionState::Stick, 1}};
-    else if (sliding != FrictionState::None)
-      choice.options = {{true, sliding, 1}};
-    else
-      choice.options = {
-          {true, FrictionState::Stick, 1}, {true, FrictionState::Forward, 1}, {true, FrictionState::Backward, 1}};
-    const HybridOption open{false, FrictionState::None, 1};
-    if (left(Watch::What::Force, i))
-      choice.options.insert(choice.options.begin(), open);
-    else
-      choice.options.push_back(open);
-    out.push_back(std::move(choice));
-  }
+  for (const std::size_t i : touching)
+    if (!(values.rate[i] > rest_speed(i, values))) out.push_back(choice_of_contact(i, values));
   const std::size_t contacts = system_.contacts.size();
   for (std::size_t i = contacts; i < contacts + system_.frictions.size(); ++i) {
     Choice choice{i, {}};
     const bool signs = has_multipliers(system_.frictions[i - contacts].normal);
-    const FrictionState sliding = slides(i);
+    const FrictionState sliding = sliding_state(values.slip[i], rest_slip(i, values));
     for (const std::int8_t sign : {std::int8_t{1}, std::int8_t{-1}}) {
       if (sign < 0 && !signs) continue;
       if (sliding != FrictionState::None)

@@ -347,6 +347,7 @@ std::optional<Step> HybridMotion::settle(double bound) {
   note_sizes(values);
   std::vector<std::size_t> touch = touching(values);
   if (!hit(touch, reason)) return stopped(StepEnding::Paradox, reason);
+  if (!pending_->begins) close_lowest_flights(touch, bound);
   if (!choose_mode(touch, bound, reason)) return stopped(StepEnding::Paradox, reason);
   pending_.reset();
   started_ = true;

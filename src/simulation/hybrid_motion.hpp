@@ -1,4 +1,5 @@
 #pragma once
+#include "simulation/contact/contact_forces.hpp"
 #include "simulation/contact/contact_functions.hpp"
 #include "simulation/contact/impact.hpp"
 #include "simulation/function_kernels.hpp"
@@ -88,6 +89,10 @@ class HybridMotion final : public Method {
   bool choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason);
   std::vector<Choice> choices(const std::vector<std::size_t>& touching, const ContactValues& values) const;
   ContactMode mode_without_contacts(const std::vector<Choice>& list) const;
+  Choice choice_of_contact(std::size_t contact, const ContactValues& values) const;
+  std::optional<ContactForceProblem> force_problem(const std::vector<Choice>& list, const ContactValues& values,
+                                                   double bound);
+  void close_lowest_flights(const std::vector<std::size_t>& touching, double bound);
   void order_by_forces(std::vector<Choice>& list, const ContactValues& values, double bound);
   ContactMode mode_of(const std::vector<Choice>& list, const std::vector<std::size_t>& taken) const;
   bool interrupted() const;

@@ -89,7 +89,7 @@ template <class T>
 void RootSearchOf<T>::find_near() {
   using std::abs;
   constexpr std::size_t many = 12;
-  constexpr int halvings = 7;
+  constexpr double shortest = 1e-4;  // in a shorter part nothing is told from rounding
   place_.known = expanded_ = false;
   near_before_ = near_;
   const bool derives = all_disks_.needs_larger_disk();
@@ -98,13 +98,13 @@ void RootSearchOf<T>::find_near() {
   all_disks_.begin(rows_.of(retrace_.row(0), retrace_.stride(), retrace_.order(), std::ilogb(length)));
   if (derives) all_disks_.evaluate(1.5 * length, Disks::Depth::Derivatives);
   const bool may_shorten = slots_.size() > 4 * many;
-  double window = may_shorten && last_window_ > 0 ? std::min(1.0, 2 * last_window_ / length) : 1;
+  double window = may_shorten && last_window_ > 0 ? std::clamp(2 * last_window_ / length, shortest, 1.0) : 1;
   find_clear(window * length);
-  for (int turn = 0; may_shorten && near_.size() > many && turn < halvings; ++turn) {
+  while (may_shorten && near_.size() > many && window > 2 * shortest) {
     window *= 0.5;
     find_clear(window * length);
   }
-  last_window_ = window * length;
+  last_window_ = near_.size() > many ? length : window * length;
   if (window < 1 && near_.size() > many) {
     all_disks_.begin(rows_.of(retrace_.row(0), retrace_.stride(), retrace_.order(), std::ilogb(length)));
     if (derives) all_disks_.evaluate(1.5 * length, Disks::Depth::Derivatives);
