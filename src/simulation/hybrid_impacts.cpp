@@ -153,8 +153,8 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
   if (end) {  // what rests beside them is not pressed through
     ImpactProblem all = impact_problem(touching, values);
     std::fill(all.restitution.begin(), all.restitution.end(), 0.0);
-    const ImpactResult more = rubs ? sequential_impact(all, result.v, ImpactOrder::FastestFirst)
-                                   : simultaneous_impact(all, result.v, true);
+    const ImpactResult more =
+        rubs ? sequential_impact(all, result.v, ImpactOrder::FastestFirst) : simultaneous_impact(all, result.v, true);
     result.v = more.v;
     result.impulses.insert(result.impulses.end(), more.impulses.begin(), more.impulses.end());
     result.loss += more.loss, result.moving += more.moving;

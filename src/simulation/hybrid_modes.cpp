@@ -13,7 +13,8 @@
 namespace maupertuis {
 namespace {
 
-constexpr std::size_t most_choices = 4096;  // modes that are tried
+constexpr std::size_t most_choices = 1024;  // modes that are tried
+constexpr std::size_t most_kept = 32;       // motions of modes that were tried in vain at an instant
 
 std::string key_of(const ContactMode& mode) {
   std::string key;
@@ -249,6 +250,13 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
       released_[w.index] = true;
       return false;
     }
+    // Meeting the constraints of others may move a gap that opens through zero, by what they are known to.
+    const bool is_moved = w.what == Watch::What::Gap && outlook.sides[k] < 0 && outlook.slopes[k] > 0 &&
+                          -outlook.values[k] <= located * widest_[w.index];
+    if (is_moved) {
+      s.put_at_zero({&k, 1});
+      continue;
+    }
     const bool wrong = outlook.sides[k] < 0 || (must_move && outlook.sides[k] == 0);
     if (!wrong) continue;
     const bool is_force = w.what == Watch::What::Force || w.what == Watch::What::Hold;
@@ -298,6 +306,12 @@ bool HybridMotion::interrupted() const {
   return options_.interrupt && options_.interrupt->load(std::memory_order_relaxed);
 }
 
+/// A motion of a mode that did not fit makes room.
+void HybridMotion::forget(const ContactMode& mode) {
+  const auto found = modes_.find(key_of(mode));
+  if (found != modes_.end() && found->second.get() != now_) modes_.erase(found);
+}
+
 bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason) {
   const ContactValues values = functions_.at(t_, q_, v_);
   if (!touching.empty()) note_compliance(touching, values);
@@ -321,7 +335,10 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
       const ContactMode mode = mode_of(list, *taken);
       std::vector<double> accelerations;
       last = mode;
-      if (!fits(mode, touching, bound, lenient, &accelerations)) continue;
+      if (!fits(mode, touching, bound, lenient, &accelerations)) {
+        if (turn >= most_kept) forget(mode);
+        continue;
+      }
       if (!found) {
         found = mode;
         first = accelerations;

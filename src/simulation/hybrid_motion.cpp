@@ -84,6 +84,7 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   released_.assign(system_.contacts.size(), false);
   released_at_.assign(system_.contacts.size(), std::numeric_limits<double>::quiet_NaN());
   record_ = {};
+  left_out_remarks_ = 0;
   started_ = false;
   now_ = &motion_in(open_mode(system_));
   now_->stepper->start(t_, q_, v_);
@@ -153,8 +154,42 @@ Step HybridMotion::step(double bound) {
 }
 
 void HybridMotion::remark(const std::string& sentence) {
-  if (std::find(record_.remarks.begin(), record_.remarks.end(), sentence) == record_.remarks.end())
+  constexpr std::size_t most = 6;
+  if (std::find(record_.remarks.begin(), record_.remarks.end(), sentence) != record_.remarks.end()) return;
+  if (record_.remarks.size() < most)
     record_.remarks.push_back(sentence);
+  else if (++left_out_remarks_; record_.remarks.size() == most)
+    record_.remarks.push_back({});
+  if (left_out_remarks_ > 0) record_.remarks.back() = fmt::format("and {} more of the like.", left_out_remarks_);
+}
+
+void HybridMotion::finish() {
+  if (system_.contacts.empty() || !started_) return;
+  take_state();
+  const ContactValues& values = functions_.at(t_, q_, v_);
+  for (std::size_t i = 0; i < values.gap.size(); ++i) {
+    const bool touches = std::abs(values.gap[i]) <= rest_unit * widest_[i];
+    if (now_->mode.closed[i] || !touches || !(values.rate[i] < -rest_speed(i, values))) continue;
+    remark(fmt::format("The contact {} is hit as the run ends: the last state is the one before the impact.",
+                       system_.contact_label(i)));
+  }
+}
+
+/// Events that hold as the motion begins are told, but do not act: it leaves them.
+void HybridMotion::tell_events_at_start(double bound) {
+  constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
+  const TaylorStepper::Outlook outlook = now_->stepper->outlook(bound);
+  if (outlook.ending != StepEnding::None) return;
+  for (std::size_t k = 0; k < now_->watches.size(); ++k) {
+    if (now_->watches[k].what != Watch::What::Event) continue;
+    const ModelEvent& event = model_.experiment.events[now_->watches[k].index];
+    if (!(std::abs(outlook.values[k]) <= rounding * outlook.reach[k]) || outlook.sides[k] == 0) continue;
+    if (event.direction != 0 && outlook.sides[k] != event.direction * (forwards_ ? 1 : -1)) continue;
+    add(Happening::Kind::Event, event.name);
+    record_.happenings.back().mode = record_.first_mode;
+    if (event.action != ModelEvent::Action::Record)
+      remark(fmt::format("The motion begins at the event `{}`, which acts when it is met again.", event.name));
+  }
 }
 
 void HybridMotion::add(Happening::Kind kind, const std::string& name, double impulse, double speed,
@@ -349,6 +384,7 @@ std::optional<Step> HybridMotion::settle(double bound) {
   if (!hit(touch, reason)) return stopped(StepEnding::Paradox, reason);
   if (!pending_->begins) close_lowest_flights(touch, bound);
   if (!choose_mode(touch, bound, reason)) return stopped(StepEnding::Paradox, reason);
+  if (pending_->begins) tell_events_at_start(bound);
   pending_.reset();
   started_ = true;
   return std::nullopt;

@@ -54,6 +54,8 @@ class HybridMotion final : public Method {
   double constraint_residual() const override;
   BackendUse backend() const override;
 
+  /// What the end of the run leaves unsettled is told.
+  void finish();
   const HybridRecord& record() const { return record_; }
 
  private:
@@ -70,6 +72,8 @@ class HybridMotion final : public Method {
 
   // What happens at an instant.
   void classify(Step& step);
+  void tell_events_at_start(double bound);
+  void forget(const ContactMode& mode);
   void record_event(const std::string& name, double t);
   bool is_just_released(std::size_t contact);
   std::optional<Step> settle(double bound);
@@ -153,6 +157,7 @@ class HybridMotion final : public Method {
   std::optional<std::string> accumulated_;
   double accumulated_at_ = 0;
   HybridRecord record_;
+  std::size_t left_out_remarks_ = 0;
 };
 
 }  // namespace maupertuis

@@ -211,7 +211,7 @@ class Run {
   /// `stiff` makes the method that takes over where stability limits the steps; it may be empty.
   Run(const Model& model, const SimulationOptions& options, const RunPlan& plan, const Observables& observables,
       std::unique_ptr<Method> method, std::function<std::unique_ptr<Method>()> stiff, Probe* probe, bool energy_jumps,
-      const HybridMotion* hybrid)
+      HybridMotion* hybrid)
       : model_(model),
         options_(options),
         plan_(plan),
@@ -375,6 +375,7 @@ class Run {
   }
 
   void take_record(const Sample& last) {
+    hybrid_->finish();
     const HybridRecord& record = hybrid_->record();
     result_.first_mode = record.first_mode;
     result_.happenings = record.happenings;
@@ -392,7 +393,7 @@ class Run {
   Probe* probe_;
   std::unique_ptr<Method> method_;
   std::function<std::unique_ptr<Method>()> stiff_;
-  const HybridMotion* hybrid_;  // the method, where the model has contacts, friction or events
+  HybridMotion* hybrid_;  // the method, where the model has contacts, friction or events
   StiffnessWatch watch_;
   BackendUse backend_;
   bool turned_stiff_ = false;
@@ -479,7 +480,7 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   const bool is_hybrid = goes_through_modes(model);
   std::unique_ptr<HybridMotion> through_modes;
   if (is_hybrid) through_modes = hybrid_method(model, equations, wanted, options, diagnostics);
-  const HybridMotion* const hybrid = through_modes.get();
+  HybridMotion* const hybrid = through_modes.get();
   std::unique_ptr<Method> method = is_hybrid ? std::unique_ptr<Method>(std::move(through_modes))
                                              : first_method(equations, wanted, options, diagnostics);
   if (!method) return std::nullopt;
