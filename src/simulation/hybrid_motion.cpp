@@ -84,6 +84,8 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   released_.assign(system_.contacts.size(), false);
   released_at_.assign(system_.contacts.size(), std::numeric_limits<double>::quiet_NaN());
   record_ = {};
+  settled_.reset();
+  instant_.reset();
   started_ = false;
   now_ = &motion_in(open_mode(system_));
   now_->stepper->start(t_, q_, v_);
@@ -125,6 +127,7 @@ Step HybridMotion::ended(StepEnding ending, std::string reason) const {
 
 Step HybridMotion::step(double bound) {
   if (failed_) return *failed_;
+  instant_.reset();
   forwards_ = bound >= time();
   if (pending_) {
     if (auto failed = settle(bound)) return std::move(*failed);
@@ -337,6 +340,7 @@ std::optional<Step> HybridMotion::settle(double bound) {
                      ? fmt::format("{} changes follow each other at the same time without an end.", most_at_once)
                      : fmt::format("More than {} events and changes of contact.", most_happenings));
   if (!pending_->begins) leave_mode();
+  if (derivative_ && !pending_->begins) note_before(bound);
   if (!pending_->sets.empty() && !carry_out_sets(reason)) return stopped(StepEnding::SingularConstraints, reason);
   const ContactValues& values = functions_.at(t_, q_, v_);
   if (pending_->begins)
@@ -349,6 +353,7 @@ std::optional<Step> HybridMotion::settle(double bound) {
   if (!hit(touch, reason)) return stopped(StepEnding::Paradox, reason);
   if (!pending_->begins) close_lowest_flights(touch, bound);
   if (!choose_mode(touch, bound, reason)) return stopped(StepEnding::Paradox, reason);
+  if (settled_) note_after(bound);
   pending_.reset();
   started_ = true;
   return std::nullopt;

@@ -7,6 +7,7 @@
 
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/contact_mode.hpp>
+#include <maupertuis/motion_through_modes.hpp>
 #include <maupertuis/simulation.hpp>
 
 #include <map>
@@ -16,6 +17,8 @@
 #include <vector>
 
 namespace maupertuis {
+
+class ImpactDerivative;
 
 /// What a run through modes tells besides the motion.
 struct HybridRecord {
@@ -56,11 +59,18 @@ class HybridMotion final : public Method {
 
   const HybridRecord& record() const { return record_; }
 
+  /// For neighbours (motion_through_modes.hpp): from here on each instant is kept.
+  void keep_instants();
+  const ModeInstant* instant() const { return instant_ ? &*instant_ : nullptr; }
+  const ContactMode& mode() const;
+  const EquationsOfMotion& equations_in(const ContactMode& mode);
+
  private:
   struct Watch;
   struct ModeMotion;
   struct Pending;
   struct Choice;
+  struct Settled;
 
   ModeMotion& motion_in(const ContactMode& mode);
   void watch_contacts(ModeMotion& motion, std::vector<Expr>& events);
@@ -109,6 +119,19 @@ class HybridMotion final : public Method {
   void add(Happening::Kind kind, const std::string& name, double impulse = 0, double speed = 0,
            const std::string& remark = {});
   void remark(const std::string& sentence);
+  // What neighbours need.
+  void note_before(double bound);
+  void note_impact(const ImpactProblem& problem, const ImpactResult& result, const Eigen::VectorXd& v,
+                   bool ends_bounces);
+  void note_after(double bound);
+  void add_set_jump();
+  void add_impact_jumps();
+  void add_impulses_in_order(const ImpactResult& ordered);
+  void add_impulses_at_once();
+  void add_change_of_forces();
+  std::string at_once_sentence() const;
+  Expr function_of(const Watch& watch, bool second) const;
+
   Step ended(StepEnding ending, std::string reason) const;
   Step stopped(StepEnding ending, std::string reason);
   void take_state();
@@ -153,6 +176,9 @@ class HybridMotion final : public Method {
   std::optional<std::string> accumulated_;
   double accumulated_at_ = 0;
   HybridRecord record_;
+  std::shared_ptr<ImpactDerivative> derivative_;  // where instants are kept
+  std::shared_ptr<Settled> settled_;              // the instant that is being settled
+  std::optional<ModeInstant> instant_;            // the one at the beginning of the last step
 };
 
 }  // namespace maupertuis
