@@ -54,6 +54,8 @@ class MotionThroughModes {
   /// From here on each instant is kept with what neighbours need of it.
   void keep_instants();
   void start(double t, std::span<const double> q, std::span<const double> v);
+  /// Sizes that q and q' have elsewhere in the motion [n]: of later starts, what is much smaller is rounding.
+  void set_usual_sizes(std::span<const double> q, std::span<const double> v);
   /// As TaylorStepper::step; first what was met at the end of the last step is settled.
   Step step(double bound);
   double time() const;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 /// What neighbours of a motion need of its instants: the functions whose roots they are, and the derivatives of what
@@ -164,11 +165,12 @@ void HybridMotion::add_set_jump() {
 void HybridMotion::add_impact_jumps() {
   Settled& s = *settled_;
   const ImpactProblem& p = *s.problem;
-  std::vector<std::size_t> open_before;
+  std::set<std::size_t> open_before;  // those that are hit, or would be hit in another order
   for (const Impulse& i : s.impact.impulses)
-    if (!s.instant.mode_before.closed[i.contact] &&
-        std::find(open_before.begin(), open_before.end(), i.contact) == open_before.end())
-      open_before.push_back(i.contact);
+    if (!s.instant.mode_before.closed[i.contact]) open_before.insert(i.contact);
+  for (std::size_t k = 0; k < p.contacts.size(); ++k)
+    if (!s.instant.mode_before.closed[p.contacts[k]] && dot(p.normal[k], s.v_before_impact) + p.drive[k] < -p.rest[k])
+      open_before.insert(p.contacts[k]);
   if (!s.left.empty()) {
     s.instant.obstacle = at_once_sentence();
     return;

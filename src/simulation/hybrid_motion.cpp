@@ -80,6 +80,10 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   }
   speed_.assign(kind_.size(), 0);
   acceleration_ = place_ = speed_;
+  for (std::size_t i = 0; i < usual_q_.size(); ++i) {
+    place_[kind_[i]] = std::max(place_[kind_[i]], usual_q_[i]);
+    speed_[kind_[i]] = std::max(speed_[kind_[i]], usual_v_[i]);
+  }
   bounces_.assign(system_.contacts.size(), {});
   released_.assign(system_.contacts.size(), false);
   released_at_.assign(system_.contacts.size(), std::numeric_limits<double>::quiet_NaN());
@@ -343,9 +347,10 @@ std::optional<Step> HybridMotion::settle(double bound) {
   if (derivative_ && !pending_->begins) note_before(bound);
   if (!pending_->sets.empty() && !carry_out_sets(reason)) return stopped(StepEnding::SingularConstraints, reason);
   const ContactValues& values = functions_.at(t_, q_, v_);
+  note_usual_gaps(values);
   if (pending_->begins)
     for (std::size_t i = 0; i < values.gap.size(); ++i)
-      if (values.gap[i] < -rest_unit * values.gap_scale[i] || !std::isfinite(values.gap[i]))
+      if (values.gap[i] < -rest_unit * std::max(values.gap_scale[i], widest_[i]) || !std::isfinite(values.gap[i]))
         return stopped(StepEnding::Paradox,
                        fmt::format("The start violates the contact {}.", system_.contact_label(i)));
   note_sizes(values);

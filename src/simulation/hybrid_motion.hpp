@@ -64,6 +64,8 @@ class HybridMotion final : public Method {
   const ModeInstant* instant() const { return instant_ ? &*instant_ : nullptr; }
   const ContactMode& mode() const;
   const EquationsOfMotion& equations_in(const ContactMode& mode);
+  /// Sizes that q and q' have elsewhere in the motion [n]: of later starts, what is much smaller is rounding.
+  void set_usual_sizes(std::span<const double> q, std::span<const double> v);
 
  private:
   struct Watch;
@@ -111,6 +113,7 @@ class HybridMotion final : public Method {
   bool vanishes(const Watch& watch, double size) const;
   void note_sizes(const ContactValues& values);
   void note_gaps(const ContactValues& values);
+  void note_usual_gaps(const ContactValues& values);
   void note_accelerations(std::span<const double> a, const ContactValues& values);
   void note_compliance(const std::vector<std::size_t>& touching, const ContactValues& values);
   std::optional<std::size_t> violated();
@@ -165,6 +168,7 @@ class HybridMotion final : public Method {
   std::vector<std::size_t> kind_;               // [n] coordinates of one dimension share a number
   std::vector<std::size_t> gap_kind_;           // [contacts] so do gaps
   std::vector<double> place_, speed_, acceleration_;  // [kinds] |q|, |q'|, |q''|
+  std::vector<double> usual_q_, usual_v_;             // [n] or empty
   std::vector<double> compliance_;                    // [contacts] what a force λ = 1 does to g̈, where it was needed
   struct Bounces {
     std::vector<std::pair<double, double>> last;  // (t, speed) of the last impacts

@@ -94,6 +94,9 @@ void MotionThroughModes::keep_instants() { impl_->motion.keep_instants(); }
 void MotionThroughModes::start(double t, std::span<const double> q, std::span<const double> v) {
   impl_->motion.start(t, q, v);
 }
+void MotionThroughModes::set_usual_sizes(std::span<const double> q, std::span<const double> v) {
+  impl_->motion.set_usual_sizes(q, v);
+}
 Step MotionThroughModes::step(double bound) { return impl_->motion.step(bound); }
 double MotionThroughModes::time() const { return impl_->motion.time(); }
 std::size_t MotionThroughModes::steps() const { return impl_->motion.steps(); }

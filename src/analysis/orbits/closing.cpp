@@ -111,6 +111,7 @@ class Closer {
     }
     seen_ = survey(model_, equations_, motion_, at_, length, options_.interrupt);
     out_.sizes = seen_.sizes;
+    flow_.set_usual_sizes(seen_.sizes);
     if (!seen_.ended.empty() && (period_ || seen_.states.size() < 64))
       return refuse_end(seen_.states.back().t, seen_.ended, diagnostics_);
     const Vector f = flow_at(at_);
@@ -128,18 +129,21 @@ class Closer {
   /// At an impact the state has two values, and next to it a correction may throw the start through the contact: where
   /// one is near, the orbit begins in the middle of the longest stretch without.
   bool leave_impacts() {
-    if (!out_.through_modes || seen_.instants.empty()) return true;
+    if (!out_.through_modes) return true;
     const double begin = at_.t, end = seen_.states.back().t;
-    if (!touches_contact() && seen_.instants.front() - begin > near_impact * (end - begin)) return true;
+    std::vector<double> instants = seen_.instants;
+    instants.push_back(end);
+    if (!touches_contact() && instants.front() - begin > near_impact * (end - begin)) return true;
     double from = begin, middle = begin, longest = 0;
-    for (const double t : seen_.instants) {
+    for (const double t : instants) {
       if (t - from > longest) longest = t - from, middle = 0.5 * (from + t);
       from = t;
     }
     const auto later = [](const MotionState& s, double t) { return s.t < t; };
     at_ = *std::lower_bound(seen_.states.begin(), seen_.states.end(), middle, later);
     const double length = end - begin;
-    seen_ = survey(model_, equations_, motion_, at_, length, options_.interrupt);
+    const std::vector<double> sizes = seen_.sizes;
+    seen_ = survey(model_, equations_, motion_, at_, length, options_.interrupt, sizes);
     return seen_.ended.empty() || seen_.states.size() >= 64 ||
            refuse_end(seen_.states.back().t, seen_.ended, diagnostics_);
   }

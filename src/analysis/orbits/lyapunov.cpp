@@ -68,6 +68,7 @@ class LyapunovRun {
     const double look = std::min(*duration, std::max(0.02 * *duration, transient_));
     const orbits::Survey seen = orbits::survey(model_, equations_, motion, start->state, look, options_.interrupt);
     if (seen.steps == 0) return orbits::refuse_end(start->state.t, seen.ended, diagnostics_);
+    flow_.set_usual_sizes(seen.sizes);
     sizes_ = Eigen::Map<const Vector>(seen.sizes.data(), static_cast<Index>(seen.sizes.size()));
     const double step = (seen.states.back().t - start->state.t) / static_cast<double>(seen.steps);
     if (!check_interval(*duration) || !check_transient(step)) return false;
@@ -273,6 +274,7 @@ class LyapunovRun {
       check_sum();
     }
     const double largest = std::abs(*std::max_element(out_.exponents.begin(), out_.exponents.end()));
+    if (flow_.through_modes() && !out_.expected_sum) return;  // other directions may have vanished before
     if (!(out_.expected_sum.value_or(out_.sum) < -1e-9 * largest)) return;  // no attractor where volumes stay
     std::vector<double> sorted = out_.exponents;
     std::sort(sorted.rbegin(), sorted.rend());

@@ -90,10 +90,12 @@ Survey survey(const MechanicalSystem& system, const MotionKernel& motion, const 
 }
 
 Survey survey(const Model& model, const EquationsOfMotion& equations, const MotionKernel& motion,
-              const MotionState& start, double duration, const std::atomic<bool>* interrupt) {
+              const MotionState& start, double duration, const std::atomic<bool>* interrupt,
+              std::span<const double> sizes) {
   if (!jumps_on_its_way(model)) return survey(*equations.system, motion, start, duration, interrupt);
   MotionThroughModes through(model, equations, {}, {.interrupt = interrupt});
   through.keep_instants();
+  if (!sizes.empty()) through.set_usual_sizes(sizes.first(start.q.size()), sizes.subspan(start.q.size()));
   return survey_by(std::move(through), *equations.system, start, duration);
 }
 

@@ -23,8 +23,9 @@ struct Survey {
 
 Survey survey(const MechanicalSystem& system, const MotionKernel& motion, const MotionState& start, double duration,
               const std::atomic<bool>* interrupt);
-/// Through contacts, friction and events of the model, if there are any.
+/// Through contacts, friction and events of the model, if there are any; `sizes` [2n] of the motion before, or none.
 Survey survey(const Model& model, const EquationsOfMotion& equations, const MotionKernel& motion,
-              const MotionState& start, double duration, const std::atomic<bool>* interrupt);
+              const MotionState& start, double duration, const std::atomic<bool>* interrupt,
+              std::span<const double> sizes = {});
 
 }  // namespace maupertuis::orbits

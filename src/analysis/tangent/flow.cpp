@@ -274,6 +274,10 @@ double TangentFlow::spread() const { return modes_ ? 0 : impl_->spread; }
 
 std::optional<double> TangentFlow::log_volume_of_jumps() const { return modes_ ? modes_->log_volume : 0.0; }
 
+void TangentFlow::set_usual_sizes(std::span<const double> sizes) {
+  if (modes_) modes_->set_usual_sizes(sizes);
+}
+
 std::size_t TangentFlow::fewest_directions() const { return modes_ ? modes_->fewest : 2 * impl_->n; }
 
 const EquationsOfMotion& TangentFlow::equations_at(const MotionState& state) {

@@ -25,6 +25,10 @@ struct TangentFlow::ThroughModes {
   std::vector<double> accelerations(const MotionState& state);
   const EquationsOfMotion& equations_at(const MotionState& state);
 
+  void set_usual_sizes(std::span<const double> sizes) {
+    motion_.set_usual_sizes(sizes.first(freedoms), sizes.subspan(freedoms));
+  }
+
   // Of the last advance: what its jumps do to volumes, nothing where that is not known; the least number of directions
   // that a mode on the way allows.
   std::optional<double> log_volume = 0;

@@ -114,8 +114,10 @@ TEST_CASE("exponents of billiards: none in a circle, those of Sinai's by reflect
     log_sum += std::log1p(curvature * t);
     curvature /= 1 + curvature * t;
     if (disk) {
-      const double normal = (x * u + y * v) / 0.4;
-      u -= 2 * normal * x / 0.4, v -= 2 * normal * y / 0.4;
+      const double r = std::hypot(x, y), normal = (x * u + y * v) / r;
+      u -= 2 * normal * x / r, v -= 2 * normal * y / r;
+      const double speed = std::hypot(u, v);
+      u /= speed, v /= speed;
       curvature += 2 / (0.4 * -normal);
     } else {
       (side ? u : v) *= -1;
