@@ -226,7 +226,10 @@ std::string through_text(const IntegralThroughModes& through) {
     std::vector<std::string> names;
     for (const auto& m : through.modes)
       if (m.holds == holds) names.push_back("\"" + m.mode + "\"");
-    if (!names.empty()) lines.push_back(fmt::format("{} {}", before, fmt::join(names, ", ")));
+    if (names.size() == through.modes.size() && names.size() > 1)
+      lines.push_back(fmt::format("{} all {} modes", before, names.size()));
+    else if (!names.empty())
+      lines.push_back(fmt::format("{} {}", before, fmt::join(names, ", ")));
   };
   modes(Holds::Yes, "holds in");
   modes(Holds::No, "not in");

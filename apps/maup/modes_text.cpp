@@ -510,13 +510,24 @@ std::string range_text(const MechanicalSystem& system, const RestingRange& range
 }
 
 std::string holds_text(const MechanicalSystem& system, const RestingMode& mode, std::size_t entry) {
-  if (mode.holds[entry].empty()) return {};
-  std::vector<std::string> names;
-  for (const StaticHold& h : mode.holds[entry]) names.push_back(h.friction);
-  std::string out = fmt::format("  static friction of {} holds neighbours as well: rest is a set of points, not one",
-                                fmt::join(names, ", "));
-  if (mode.ranges[entry]) out += "\n  it holds " + range_text(system, *mode.ranges[entry]);
+  const auto& holds = mode.holds[entry];
+  if (holds.empty()) return {};
+  std::string out;
+  for (const StaticHold& h : holds)
+    if (std::isinf(h.limit))
+      out += fmt::format("  friction of {} holds with {}: it never slides\n", h.friction, number(h.force));
+    else
+      out += fmt::format("  static friction of {} holds with {} (SI) of {} at most\n", h.friction, number(h.force),
+                         number(h.limit));
+  out += "  rest is a set of points, not one: static friction holds neighbours as well";
+  if (mode.ranges[entry]) out += ", here " + range_text(system, *mode.ranges[entry]);
   return out + "\n";
+}
+
+/// A point that friction holds: there is nothing to linearize.
+std::string held_text(const MechanicalSystem& system, const ModalStudy& study) {
+  return fmt::format("{}\n  held by static friction\n", place_text(system, study.entries.front(), study)) +
+         multipliers_text(system, study.entries.front().linearization.point);
 }
 
 }  // namespace
@@ -524,12 +535,13 @@ std::string holds_text(const MechanicalSystem& system, const RestingMode& mode, 
 std::string resting_text(const RestingMode& mode, bool first) {
   const MechanicalSystem& system = *mode.equations->system;
   std::string out = fmt::format("{}Mode \"{}\"{}\n", first ? "" : "\n", mode.text,
-                                mode.frictionless ? ", its friction left out of what follows" : "");
+                                mode.frictionless ? ", its friction left out of the equations" : "");
   for (std::size_t i = 0; i < mode.study.entries.size(); ++i) {
     ModalStudy one;
     one.entries = {mode.study.entries[i]};
     one.translations = mode.study.translations;
-    out += modes_text(system, one, {std::nullopt}, mode.equations->order, {}, {});
+    const bool held = !mode.frictionless && !mode.holds[i].empty();
+    out += held ? held_text(system, one) : modes_text(system, one, {std::nullopt}, mode.equations->order, {}, {});
     out += holds_text(system, mode, i);
   }
   return out;

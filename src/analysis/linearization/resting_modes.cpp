@@ -49,18 +49,22 @@ class AtRest {
   }
   double value(Expr e, const Bindings& b) const { return evaluate(in_terms_of_motion(system_, {&e, 1}).front(), b); }
 
-  /// Closed contacts press and open ones are open, by more than rounding.
-  bool presses(const OperatingPoint& point) const {
+  /// Closed contacts press and open ones are open, by more than rounding. `touching`: whether nothing but rounding is
+  /// missing.
+  bool presses(const OperatingPoint& point, bool* touching = nullptr) const {
     const Bindings b = at(point);
     double largest = 0;
     for (const double x : point.multipliers) largest = std::max(largest, std::abs(x));
+    bool good = true;
+    if (touching) *touching = true;
     for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
       const Contact& c = system_.contacts[i];
-      if (mode_.closed[i] ? !(value(c.multiplier, b) > touches * largest)
-                          : !(value(c.gap, b) > touches * size(c.gap, b)))
-        return false;
+      const double x = mode_.closed[i] ? value(c.multiplier, b) : value(c.gap, b),
+                   rounding = touches * (mode_.closed[i] ? largest : size(c.gap, b));
+      good = good && x > rounding;
+      if (touching) *touching = *touching && x >= -rounding;
     }
-    return true;
+    return good;
   }
 
   std::vector<StaticHold> holds(const OperatingPoint& point) const {
@@ -69,7 +73,7 @@ class AtRest {
     for (std::size_t i = 0; i < mode_.friction.size(); ++i) {
       const Friction& f = friction_of(system_, i);
       const bool acts = i >= system_.contacts.size() || mode_.closed[i];
-      if (!f.present() || !acts) continue;
+      if (!f.present() || !acts || slides(mode_.friction[i])) continue;
       const Expr normal = normal_force(system_, mode_, i);
       const double limit = f.sticking ? HUGE_VAL : value(f.static_, b) * (normal ? std::abs(value(normal, b)) : 1);
       const std::string name =
@@ -77,6 +81,9 @@ class AtRest {
       out.push_back({name, std::abs(value(f.multipliers[0], b)), limit});
     }
     return out;
+  }
+  static bool slides(FrictionState state) {
+    return state == FrictionState::Forward || state == FrictionState::Backward;
   }
   bool friction_holds(const OperatingPoint& point) const {
     const auto all = holds(point);
@@ -110,24 +117,46 @@ std::vector<std::vector<bool>> sets_of(std::size_t contacts) {
   return out;
 }
 
-ContactMode mode_with(const MechanicalSystem& system, const std::vector<bool>& closed, bool sticks) {
+/// v_t of friction i while nothing moves: that of a belt.
+double slip_at_rest(const MechanicalSystem& system, std::size_t i, const MotionState& start) {
+  Bindings b = parameter_bindings(system);
+  for (std::size_t k = 0; k < start.q.size(); ++k) {
+    b[system.coordinates[k].q] = start.q[k];
+    b[system.coordinates[k].velocity] = 0;
+  }
+  b[system.context->time()] = start.t;
+  return evaluate(in_terms_of_motion(system, {&friction_of(system, i).slip[0], 1}).front(), b);
+}
+
+/// At rest friction sticks, or is left out; on what moves by itself it slides.
+ContactMode mode_with(const MechanicalSystem& system, const std::vector<bool>& closed, bool sticks,
+                      const MotionState& start) {
   ContactMode mode = open_mode(system);
   mode.closed = closed;
   for (std::size_t i = 0; i < mode.friction.size(); ++i) {
-    const bool acts = friction_of(system, i).present() && (i >= closed.size() || closed[i]);
-    mode.friction[i] = acts && (sticks || friction_of(system, i).sticking) ? FrictionState::Stick : FrictionState::None;
+    mode.friction[i] = FrictionState::None;
+    const Friction& f = friction_of(system, i);
+    if (!f.present() || (i < closed.size() && !closed[i])) continue;
+    const double slip = f.sticking ? 0 : slip_at_rest(system, i, start);
+    mode.friction[i] = slip > 0                ? FrictionState::Forward
+                       : slip < 0              ? FrictionState::Backward
+                       : sticks || f.sticking ? FrictionState::Stick
+                                              : FrictionState::None;
   }
   return mode;
 }
 
 /// The entries of a study at which its mode rests.
 template <class Keep>
-ModalStudy resting(const AtRest& mode, const MotionState& start, const Keep& keep) {
+ModalStudy resting(const AtRest& mode, const MotionState& start, bool& touched, const Keep& keep) {
   Diagnostics unheard;  // a mode without equilibria is no mistake
   auto study = modal_study(mode.points(), start, unheard);
   if (!study) return {};
   std::erase_if(study->entries, [&](const ModalEntry& e) {
-    return !e.equilibrium.at_rest || !mode.presses(e.linearization.point) || !keep(e.linearization.point);
+    bool touching = false;
+    const bool rests = e.equilibrium.at_rest && mode.presses(e.linearization.point, &touching);
+    touched = touched || (e.equilibrium.at_rest && !rests && touching);
+    return !rests || !keep(e.linearization.point);
   });
   study->failing.clear();
   study->kinks.clear();
@@ -144,7 +173,11 @@ class RangeSearch {
     search.start = {point.t, point.q, std::vector<double>(point.q.size(), 0.0)};
     search.steady = false;
     const auto here = equilibrium_near(sticking_.points(), search);
-    if (here.empty() || here.front().family != 1 || here.front().family_along.empty()) return std::nullopt;
+    if (here.empty()) return std::nullopt;
+    const auto translations = sticking_.points().translations();
+    if (here.front().family == 0 && translations.size() == 1)
+      return RestingRange{translations.front().pivot, -HUGE_VAL, HUGE_VAL};
+    if (here.front().family != 1 || here.front().family_along.empty() || !translations.empty()) return std::nullopt;
     const std::size_t k = here.front().family_along.front();
     const double down = end(here.front().point, k, -1), up = end(here.front().point, k, 1);
     return RestingRange{k, down, up};
@@ -188,31 +221,36 @@ class RangeSearch {
   const MechanicalSystem& system_;
 };
 
-/// Closed contacts, and what sticks; friction that is left out is not named.
+/// Closed contacts, and what sticks or slides; friction that is left out is not named.
 std::string text_of(const MechanicalSystem& system, const ContactMode& mode) {
   std::string out;
-  const auto add = [&](const std::string& part) { out += (out.empty() ? "" : ", ") + part; };
   for (std::size_t i = 0; i < mode.friction.size(); ++i) {
-    const bool contact = i < mode.closed.size(), sticks = mode.friction[i] == FrictionState::Stick;
-    if (contact && mode.closed[i]) add(system.contact_label(i) + (sticks ? " sticking" : ""));
-    if (!contact && sticks) add(system.frictions[i - mode.closed.size()].name + " sticking");
+    const bool contact = i < mode.closed.size();
+    const FrictionState state = mode.friction[i];
+    if (contact ? !mode.closed[i] : state == FrictionState::None) continue;
+    out += out.empty() ? "" : ", ";
+    out += contact ? system.contact_label(i) : system.frictions[i - mode.closed.size()].name;
+    out += state == FrictionState::Stick     ? " sticking"
+           : state == FrictionState::Forward ? " sliding +"
+           : state == FrictionState::None    ? ""
+                                             : " sliding −";
   }
   return out.empty() ? "free" : out;
 }
 
 std::optional<RestingMode> rest_with(const MechanicalSystem& system, const std::vector<bool>& closed,
-                                     const MotionState& start) {
-  const ContactMode sticks = mode_with(system, closed, true), slides = mode_with(system, closed, false);
+                                     const MotionState& start, bool& touched) {
+  const ContactMode sticks = mode_with(system, closed, true, start), slides = mode_with(system, closed, false, start);
   const bool rubs = !(sticks == slides);
   const AtRest plain(system, slides);
   RestingMode out;
-  out.study = resting(plain, start, [](const OperatingPoint&) { return true; });
+  out.study = resting(plain, start, touched, [](const OperatingPoint&) { return true; });
   out.frictionless = rubs;
   const AtRest* in = &plain;
   std::optional<AtRest> sticking;
   if (rubs) sticking.emplace(system, sticks);
   if (rubs && out.study.entries.empty()) {
-    out.study = resting(*sticking, start, [&](const OperatingPoint& p) { return sticking->friction_holds(p); });
+    out.study = resting(*sticking, start, touched, [&](const OperatingPoint& p) { return sticking->friction_holds(p); });
     out.frictionless = false;
     in = &*sticking;
   }
@@ -232,12 +270,15 @@ std::optional<RestingMode> rest_with(const MechanicalSystem& system, const std::
 std::vector<RestingMode> resting_modes(const MechanicalSystem& system, const MotionState& start,
                                        Diagnostics& diagnostics) {
   std::vector<RestingMode> out;
+  bool touched = false;
   for (const auto& closed : sets_of(system.contacts.size()))
-    if (auto found = rest_with(system, closed, start)) out.push_back(std::move(*found));
+    if (auto found = rest_with(system, closed, start, touched)) out.push_back(std::move(*found));
   if (out.empty())
     diagnostics.error(
         "E1308", std::nullopt, "no point of rest was found in any mode of the contacts",
-        "At rest the forces balance, contacts that are closed press, and static friction holds what is left.",
+        touched ? "There are points at which the forces balance and contacts touch without pressing: neighbours on one "
+                  "side of them are free and those on the other are not, so that nothing is linear there."
+                : "At rest the forces balance, contacts that are closed press, and static friction holds what is left.",
         "--mode looks at one mode, whether its contacts press or not; --at at one point of it.");
   return out;
 }
