@@ -42,4 +42,9 @@ struct RestingMode {
 std::vector<RestingMode> resting_modes(const MechanicalSystem& system, const MotionState& start,
                                        Diagnostics& diagnostics);
 
+/// The mode that rests at a point, given as to modal_study_at; the first of them in that order. Nothing, with E1308,
+/// where none does.
+std::optional<RestingMode> resting_mode_at(const MechanicalSystem& system, const MotionState& start,
+                                           const std::vector<StartValue>& at, Diagnostics& diagnostics);
+
 }  // namespace maupertuis

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 
 namespace maupertuis {
 namespace {
@@ -138,19 +139,22 @@ ContactMode mode_with(const MechanicalSystem& system, const std::vector<bool>& c
     const Friction& f = friction_of(system, i);
     if (!f.present() || (i < closed.size() && !closed[i])) continue;
     const double slip = f.sticking ? 0 : slip_at_rest(system, i, start);
-    mode.friction[i] = slip > 0                ? FrictionState::Forward
-                       : slip < 0              ? FrictionState::Backward
+    mode.friction[i] = slip > 0               ? FrictionState::Forward
+                       : slip < 0             ? FrictionState::Backward
                        : sticks || f.sticking ? FrictionState::Stick
                                               : FrictionState::None;
   }
   return mode;
 }
 
+/// What is asked of the equations of a mode: all of its points of rest, or one.
+using Question = std::function<std::optional<ModalStudy>(const PointEquations&, Diagnostics&)>;
+
 /// The entries of a study at which its mode rests.
 template <class Keep>
-ModalStudy resting(const AtRest& mode, const MotionState& start, bool& touched, const Keep& keep) {
+ModalStudy resting(const AtRest& mode, const Question& ask, bool& touched, const Keep& keep) {
   Diagnostics unheard;  // a mode without equilibria is no mistake
-  auto study = modal_study(mode.points(), start, unheard);
+  auto study = ask(mode.points(), unheard);
   if (!study) return {};
   std::erase_if(study->entries, [&](const ModalEntry& e) {
     bool touching = false;
@@ -239,18 +243,18 @@ std::string text_of(const MechanicalSystem& system, const ContactMode& mode) {
 }
 
 std::optional<RestingMode> rest_with(const MechanicalSystem& system, const std::vector<bool>& closed,
-                                     const MotionState& start, bool& touched) {
+                                     const MotionState& start, const Question& ask, bool& touched) {
   const ContactMode sticks = mode_with(system, closed, true, start), slides = mode_with(system, closed, false, start);
   const bool rubs = !(sticks == slides);
   const AtRest plain(system, slides);
   RestingMode out;
-  out.study = resting(plain, start, touched, [](const OperatingPoint&) { return true; });
+  out.study = resting(plain, ask, touched, [](const OperatingPoint&) { return true; });
   out.frictionless = rubs;
   const AtRest* in = &plain;
   std::optional<AtRest> sticking;
   if (rubs) sticking.emplace(system, sticks);
   if (rubs && out.study.entries.empty()) {
-    out.study = resting(*sticking, start, touched, [&](const OperatingPoint& p) { return sticking->friction_holds(p); });
+    out.study = resting(*sticking, ask, touched, [&](const OperatingPoint& p) { return sticking->friction_holds(p); });
     out.frictionless = false;
     in = &*sticking;
   }
@@ -265,22 +269,38 @@ std::optional<RestingMode> rest_with(const MechanicalSystem& system, const std::
   return out;
 }
 
+void refuse_no_rest(bool touched, Diagnostics& diagnostics) {
+  diagnostics.error(
+      "E1308", std::nullopt, "no point of rest was found in any mode of the contacts",
+      touched ? "There are points at which the forces balance and contacts touch without pressing: neighbours on one "
+                "side of them are free and those on the other are not, so that nothing is linear there."
+              : "At rest the forces balance, contacts that are closed press, and static friction holds what is left.",
+      "--mode looks at one mode, whether its contacts press or not; --at at one point of it.");
+}
+
 }  // namespace
 
 std::vector<RestingMode> resting_modes(const MechanicalSystem& system, const MotionState& start,
                                        Diagnostics& diagnostics) {
   std::vector<RestingMode> out;
   bool touched = false;
+  const Question ask = [&](const PointEquations& points, Diagnostics& d) { return modal_study(points, start, d); };
   for (const auto& closed : sets_of(system.contacts.size()))
-    if (auto found = rest_with(system, closed, start, touched)) out.push_back(std::move(*found));
-  if (out.empty())
-    diagnostics.error(
-        "E1308", std::nullopt, "no point of rest was found in any mode of the contacts",
-        touched ? "There are points at which the forces balance and contacts touch without pressing: neighbours on one "
-                  "side of them are free and those on the other are not, so that nothing is linear there."
-                : "At rest the forces balance, contacts that are closed press, and static friction holds what is left.",
-        "--mode looks at one mode, whether its contacts press or not; --at at one point of it.");
+    if (auto found = rest_with(system, closed, start, ask, touched)) out.push_back(std::move(*found));
+  if (out.empty()) refuse_no_rest(touched, diagnostics);
   return out;
+}
+
+std::optional<RestingMode> resting_mode_at(const MechanicalSystem& system, const MotionState& start,
+                                           const std::vector<StartValue>& at, Diagnostics& diagnostics) {
+  bool touched = false;
+  const Question ask = [&](const PointEquations& points, Diagnostics& d) {
+    return modal_study_at(points, start, at, d);
+  };
+  for (const auto& closed : sets_of(system.contacts.size()))
+    if (auto found = rest_with(system, closed, start, ask, touched)) return found;
+  refuse_no_rest(touched, diagnostics);
+  return std::nullopt;
 }
 
 }  // namespace maupertuis

@@ -274,7 +274,7 @@ class LyapunovRun {
       check_sum();
     }
     const double largest = std::abs(*std::max_element(out_.exponents.begin(), out_.exponents.end()));
-    if (flow_.through_modes() && !out_.expected_sum) return;  // other directions may have vanished before
+    if (flow_.through_modes() && !out_.expected_sum) return;                // other directions may have vanished before
     if (!(out_.expected_sum.value_or(out_.sum) < -1e-9 * largest)) return;  // no attractor where volumes stay
     std::vector<double> sorted = out_.exponents;
     std::sort(sorted.rbegin(), sorted.rend());

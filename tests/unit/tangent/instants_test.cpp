@@ -189,3 +189,32 @@ TEST_CASE("a right corner is no obstacle: either order ends the same") {
   CHECK(p.column(1)[1] == doctest::Approx(-0.5).epsilon(1e-14));
   CHECK(p.column(3)[1] == doctest::Approx(-1.5).epsilon(1e-14));
 }
+
+TEST_CASE("neighbours through the end of infinitely many bounces") {
+  ModelText m(
+      "dimensionless\ncoord x, z : number\nT = 1/2 (x'^2 + z'^2)\nV = z + 1/2 x^2\n"
+      "contact z >= 0.3 x restitution 0.5 name floor\nstart z = 1, x' = 0.2\n");
+  TangentFlow flow(m.model, m.equations, {});
+  const TangentPoint start = flow.all_directions(start_of(m));
+  TangentPoint end = start;
+  REQUIRE_FALSE(flow.advance(end, 5.5));
+  CHECK(flow.fewest_directions() == 2);
+  CHECK(relative_difference(end.directions, differences(m, start, 5.5, 1e-4)) < 1e-5);
+}
+
+TEST_CASE("a stepper that has been elsewhere gives the motion of a new one, to the bit") {
+  ModelText m(
+      "dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = y\n"
+      "contact y >= x^2 restitution 0.9 friction 0.1 slip x' name bowl\nstart x = 0.4, y = 1\n");
+  MotionThroughModes used(m.model, m.equations, {}, {});
+  const std::vector<MotionState> starts{{0, {0.4, 1}, {0, 0}}, {0, {-0.7, 2}, {0.3, 1}}, {0, {0.4, 1}, {0, 0}}};
+  for (const MotionState& start : starts) {
+    MotionThroughModes fresh(m.model, m.equations, {}, {});
+    for (MotionThroughModes* motion : {&used, &fresh}) {
+      motion->start(start.t, start.q, start.v);
+      while (motion->time() != 9.0) REQUIRE(motion->step(9.0).ending == StepEnding::None);
+    }
+    CHECK(used.state().q == fresh.state().q);
+    CHECK(used.state().v == fresh.state().v);
+  }
+}
