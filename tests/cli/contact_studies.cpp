@@ -56,7 +56,7 @@ TEST_CASE("what is expected of a model with contacts holds in all of its modes")
   CHECK(verdict("1/2 m (x'^2 + z'^2) + 1/2 k x^2 + m g z not conserved").code == 0);
   CHECK(verdict("equilibrium at x = 0, z = 0 is stable").code == 0);
   const Outcome frequency = verdict("frequencies at x = 0, z = 0 : 6.324555320336759 rad/s rel 1e-12");
-  CHECK_MESSAGE(frequency.code == 0, frequency.out + frequency.err);
+  CHECK_MESSAGE(frequency.code == 0, frequency.out);
 }
 
 TEST_CASE("hamiltonian, action, compare and reduce want one mode") {
