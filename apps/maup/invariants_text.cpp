@@ -216,4 +216,60 @@ void add_invariants_json(Json& document, const Invariants& found, const Equation
     document["on_one_side"].push_back({{"plain", to_plain(readable(value, order), order)}, {"jumps_at", place}});
 }
 
+namespace {
+
+using Holds = IntegralThroughModes::Holds;
+
+std::string through_text(const IntegralThroughModes& through) {
+  std::vector<std::string> lines;
+  const auto modes = [&](Holds holds, const char* before) {
+    std::vector<std::string> names;
+    for (const auto& m : through.modes)
+      if (m.holds == holds) names.push_back("\"" + m.mode + "\"");
+    if (names.size() == through.modes.size() && names.size() > 1)
+      lines.push_back(fmt::format("{} all {} modes", before, names.size()));
+    else if (!names.empty())
+      lines.push_back(fmt::format("{} {}", before, fmt::join(names, ", ")));
+  };
+  modes(Holds::Yes, "holds in");
+  modes(Holds::No, "not in");
+  modes(Holds::Undecided, "undecided in");
+  const auto impacts = [&](Holds kept, const char* before) {
+    std::vector<std::string> names;
+    for (const auto& i : through.impacts)
+      if (i.kept == kept) names.push_back(i.contact);
+    if (!names.empty()) lines.push_back(fmt::format("{} {}", before, fmt::join(names, ", ")));
+  };
+  impacts(Holds::Yes, "kept by impacts on");
+  impacts(Holds::No, "changed by impacts on");
+  impacts(Holds::Undecided, "undecided at impacts on");
+  if (through.left_out > 0) lines.push_back(fmt::format("{} modes were not looked at", through.left_out));
+  return fmt::format("{}", fmt::join(lines, "\n       "));
+}
+
+const char* word_of_holds(Holds holds) { return holds == Holds::Yes ? "yes" : holds == Holds::No ? "no" : "undecided"; }
+
+}  // namespace
+
+std::string through_modes_text(const Invariants& found, const std::vector<IntegralThroughModes>& through, bool all) {
+  const std::size_t count = std::min(all ? found.integrals.size() : found.shown, through.size());
+  std::string text = "\nAll this is the motion while contacts are open. Through contacts, friction and impacts:\n";
+  if (count == 0) return "\nAll this is the motion while contacts are open; --mode asks of another one.\n";
+  for (std::size_t i = 0; i < count; ++i)
+    text += fmt::format("  {:<4} {}\n", found.symbols[i].name(),
+                        through[i].everywhere() ? "holds in all modes, and impacts keep it" : through_text(through[i]));
+  return text;
+}
+
+void add_through_modes_json(Json& document, const std::vector<IntegralThroughModes>& through) {
+  for (std::size_t i = 0; i < through.size(); ++i) {
+    Json modes = Json::array(), impacts = Json::array();
+    for (const auto& m : through[i].modes) modes.push_back({{"mode", m.mode}, {"holds", word_of_holds(m.holds)}});
+    for (const auto& c : through[i].impacts)
+      impacts.push_back({{"contact", c.contact}, {"kept", word_of_holds(c.kept)}, {"largest_change", c.change}});
+    document["integrals"][i]["through_modes"] = {
+        {"modes", std::move(modes)}, {"impacts", std::move(impacts)}, {"modes_left_out", through[i].left_out}};
+  }
+}
+
 }  // namespace maupertuis::app

@@ -496,4 +496,75 @@ Json locus_document(const MechanicalSystem& system, const Locus& locus) {
   return document;
 }
 
+// ------------------------------------------------------------------------------------------- rest with contacts
+
+namespace {
+
+std::string range_text(const MechanicalSystem& system, const RestingRange& range) {
+  const Coordinate& c = system.coordinates[range.coordinate];
+  const auto value = [&](double x) { return value_text(system, x, c.dimension, c.kind == "angle"); };
+  if (std::isinf(range.from) && std::isinf(range.to)) return fmt::format("at every {}", c.name);
+  if (std::isinf(range.from)) return fmt::format("for {} up to {}", c.name, value(range.to));
+  if (std::isinf(range.to)) return fmt::format("for {} from {}", c.name, value(range.from));
+  return fmt::format("for {} from {} to {}", c.name, value(range.from), value(range.to));
+}
+
+std::string holds_text(const MechanicalSystem& system, const RestingMode& mode, std::size_t entry) {
+  const auto& holds = mode.holds[entry];
+  if (holds.empty()) return {};
+  std::string out;
+  for (const StaticHold& h : holds)
+    if (std::isinf(h.limit))
+      out += fmt::format("  friction of {} holds with {}: it never slides\n", h.friction, number(h.force));
+    else
+      out += fmt::format("  static friction of {} holds with {} (SI) of {} at most\n", h.friction, number(h.force),
+                         number(h.limit));
+  out += "  rest is a set of points, not one: static friction holds neighbours as well";
+  if (mode.ranges[entry]) out += ", here " + range_text(system, *mode.ranges[entry]);
+  return out + "\n";
+}
+
+/// A point that friction holds: there is nothing to linearize.
+std::string held_text(const MechanicalSystem& system, const ModalStudy& study) {
+  return fmt::format("{}\n  held by static friction\n", place_text(system, study.entries.front(), study)) +
+         multipliers_text(system, study.entries.front().linearization.point);
+}
+
+}  // namespace
+
+std::string resting_text(const RestingMode& mode, bool first) {
+  const MechanicalSystem& system = *mode.equations->system;
+  std::string out = fmt::format("{}Mode \"{}\"{}\n", first ? "" : "\n", mode.text,
+                                mode.frictionless ? ", its friction left out of the equations" : "");
+  for (std::size_t i = 0; i < mode.study.entries.size(); ++i) {
+    ModalStudy one;
+    one.entries = {mode.study.entries[i]};
+    one.translations = mode.study.translations;
+    const bool held = !mode.frictionless && !mode.holds[i].empty();
+    out += held ? held_text(system, one) : modes_text(system, one, {std::nullopt}, mode.equations->order, {}, {});
+    out += holds_text(system, mode, i);
+  }
+  return out;
+}
+
+Json resting_document(const RestingMode& mode) {
+  const MechanicalSystem& system = *mode.equations->system;
+  Json out = modes_document(system, mode.study);
+  Json points = out["points"];
+  for (std::size_t i = 0; i < mode.study.entries.size(); ++i) {
+    points[i]["static_friction"] = Json::array();
+    for (const StaticHold& h : mode.holds[i])
+      points[i]["static_friction"].push_back({{"friction", h.friction},
+                                              {"force", h.force},
+                                              {"limit", std::isinf(h.limit) ? Json(nullptr) : Json(h.limit)}});
+    const auto end = [](double x) { return std::isinf(x) ? Json(nullptr) : Json(x); };
+    const auto& range = mode.ranges[i];
+    points[i]["held"] = range ? Json({{"coordinate", system.coordinates[range->coordinate].name},
+                                      {"from", end(range->from)},
+                                      {"to", end(range->to)}})
+                              : Json(nullptr);
+  }
+  return {{"mode", mode.text}, {"without_friction", mode.frictionless}, {"points", std::move(points)}};
+}
+
 }  // namespace maupertuis::app

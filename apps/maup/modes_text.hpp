@@ -5,6 +5,7 @@
 #include <maupertuis/modes.hpp>
 #include <maupertuis/orbits.hpp>
 #include <maupertuis/regulator.hpp>
+#include <maupertuis/resting_modes.hpp>
 #include <maupertuis/symbolic_linearization.hpp>
 
 #include <string>
@@ -19,6 +20,9 @@ std::string modes_text(const MechanicalSystem& system, const ModalStudy& study,
                        const std::vector<std::string>& outputs,
                        const std::vector<std::optional<FloquetResult>>& neighbours);
 Json modes_document(const MechanicalSystem& system, const ModalStudy& study);
+/// A mode of contacts with its points of rest, and what static friction holds there.
+std::string resting_text(const RestingMode& mode, bool first);
+Json resting_document(const RestingMode& mode);
 Json symbolic_json(const SymbolicLinearization& formulas, const ReadingOrder& order);
 std::string regulator_text(const MechanicalSystem& system, const Linearization& linearization,
                            const Regulator& regulator);

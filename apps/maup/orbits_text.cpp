@@ -10,7 +10,8 @@
 namespace maupertuis::app {
 namespace {
 
-constexpr std::size_t most_rows = 12;  // of a table on the terminal
+constexpr double vanishing_multiplier = 1e-13;  // of a contact that closes, or friction that sticks
+constexpr std::size_t most_rows = 12;           // of a table on the terminal
 
 /// The unit of coordinate i (order 0) or its velocity (order 1), "" for numbers.
 std::string unit_of(const MechanicalSystem& system, std::size_t i, int order) {
@@ -76,6 +77,8 @@ std::string multiplier_line(std::complex<double> mu, double period) {
   const std::string value =
       mu.imag() == 0 ? fmt::format("{:.9g}", mu.real())
                      : fmt::format("{:.9g} {} {:.9g} i", mu.real(), mu.imag() < 0 ? "-" : "+", std::abs(mu.imag()));
+  if (modulus < vanishing_multiplier)
+    return "0                               by rounding: the direction vanishes in a period";
   return fmt::format("{:<32}|μ| = {:<16.9g}arg μ = {:<14.6g}log|μ|/T = {:.6g}", value, modulus, argument,
                      std::log(modulus) / period);
 }
@@ -85,6 +88,7 @@ std::string multiplier_line(std::complex<double> mu, double period) {
 std::string stability_sentence(const FloquetResult& r) {
   switch (r.stability) {
     case OrbitalStability::Attracting:
+      if (r.largest < vanishing_multiplier) return "attracting: after a period neighbours are in the same motion";
       return fmt::format("attracting: in each period neighbours come nearer by a factor {}", brief(r.largest));
     case OrbitalStability::Neutral:
       return r.multipliers.size() == r.trivial

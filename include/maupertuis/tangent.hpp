@@ -1,6 +1,7 @@
 #pragma once
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/equations_of_motion.hpp>
+#include <maupertuis/mechanical_system.hpp>
 #include <maupertuis/step.hpp>
 
 #include <atomic>
@@ -40,6 +41,13 @@ struct TangentStop {
   StepEnding ending = StepEnding::None;  // None: an acceleration jumps at a switch, where the tangent equations end
   double t = 0;                          // s
   std::string reason;                    // one sentence
+  std::string help = {};                 // what to do instead, where it is not to make a jump smooth
+};
+
+/// q̈ and λ at a point, and what they change by along each direction: by the tangent equations.
+struct TangentForces {
+  std::vector<double> a, multipliers;                        // [n], [m]
+  std::vector<double> changes_of_a, changes_of_multipliers;  // [columns × n], [columns × m]
 };
 
 struct TangentOptions {
@@ -53,6 +61,10 @@ class TangentFlow {
  public:
   /// Kernels are made at first use, for as many directions at once as 96 unknowns have room for.
   explicit TangentFlow(const EquationsOfMotion& equations, const TangentOptions& options = {});
+  /// Through the contacts, the friction and the events of a model, if there are any (docs/theory/contacts.md): its
+  /// directions jump at instants, and have in each mode those that it allows. It stops where neighbours have no
+  /// derivative. Model and equations outlive it.
+  TangentFlow(const Model& model, const EquationsOfMotion& equations, const TangentOptions& options);
   ~TangentFlow();
   TangentFlow(TangentFlow&&) noexcept;
 
@@ -80,10 +92,24 @@ class TangentFlow {
   /// Columns are carried in groups, each with the motion itself: how far those copies of the motion came apart in the
   /// last advance, relative to the size of each coordinate. An estimate of the error of the motion; 0 for one group.
   double spread() const;
+  /// Sizes of the motion [2n], through modes: in later starts, what is much smaller is rounding.
+  void set_usual_sizes(std::span<const double> sizes);
+  /// q̈, λ and their changes at a point. Precondition: not through modes.
+  TangentForces forces(const TangentPoint& point);
+  /// The equations that hold at a state: those of its mode.
+  const EquationsOfMotion& equations_at(const MotionState& state);
+  bool through_modes() const { return modes_ != nullptr; }
+  /// log of what the jumps of the last advance multiply volumes of q and p by: 2 log e an impact without friction.
+  /// Nothing where one is not known, or is 0.
+  std::optional<double> log_volume_of_jumps() const;
+  /// The least number of independent directions that a mode on the way of the last advance allows.
+  std::size_t fewest_directions() const;
 
  private:
   struct Impl;
+  struct ThroughModes;
   std::unique_ptr<Impl> impl_;
+  std::unique_ptr<ThroughModes> modes_;  // else
 };
 
 /// What the geometry of mechanics says of directions at a state. The state space has the coordinates (q, q̇).

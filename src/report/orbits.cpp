@@ -25,6 +25,9 @@ std::string stability_text(const FloquetResult& r) {
   const std::string factor = short_number(r.largest);
   if (r.stability == OrbitalStability::Unstable)
     return fmt::format("unstable: neighbours move away by a factor {} in each period", factor);
+  constexpr double vanishing = 1e-13;  // of a contact that closes, or friction that sticks
+  if (r.stability == OrbitalStability::Attracting && r.largest < vanishing)
+    return "attracting: after a period neighbours are in the same motion";
   if (r.stability == OrbitalStability::Attracting)
     return fmt::format("attracting: neighbours come nearer by a factor {} in each period", factor);
   if (r.stability == OrbitalStability::Undecided)

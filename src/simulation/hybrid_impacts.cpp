@@ -164,6 +164,7 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
     reason = "No impulses keep all contacts that are hit here from closing.";
     return false;
   }
+  note_impact(p, result, v, end.has_value());
   if (!at_once && !end) note_order(p, result, v);
   if (result.bounded)
     remark(

@@ -80,11 +80,17 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   }
   speed_.assign(kind_.size(), 0);
   acceleration_ = place_ = speed_;
+  for (std::size_t i = 0; i < usual_q_.size(); ++i) {
+    place_[kind_[i]] = std::max(place_[kind_[i]], usual_q_[i]);
+    speed_[kind_[i]] = std::max(speed_[kind_[i]], usual_v_[i]);
+  }
   bounces_.assign(system_.contacts.size(), {});
   released_.assign(system_.contacts.size(), false);
   released_at_.assign(system_.contacts.size(), std::numeric_limits<double>::quiet_NaN());
   record_ = {};
   left_out_remarks_ = 0;
+  settled_.reset();
+  instant_.reset();
   started_ = false;
   now_ = &motion_in(open_mode(system_));
   now_->stepper->start(t_, q_, v_);
@@ -126,6 +132,7 @@ Step HybridMotion::ended(StepEnding ending, std::string reason) const {
 
 Step HybridMotion::step(double bound) {
   if (failed_) return *failed_;
+  instant_.reset();
   forwards_ = bound >= time();
   if (pending_) {
     if (auto failed = settle(bound)) return std::move(*failed);
@@ -372,11 +379,13 @@ std::optional<Step> HybridMotion::settle(double bound) {
                      ? fmt::format("{} changes follow each other at the same time without an end.", most_at_once)
                      : fmt::format("More than {} events and changes of contact.", most_happenings));
   if (!pending_->begins) leave_mode();
+  if (derivative_ && !pending_->begins) note_before(bound);
   if (!pending_->sets.empty() && !carry_out_sets(reason)) return stopped(StepEnding::SingularConstraints, reason);
   const ContactValues& values = functions_.at(t_, q_, v_);
+  note_usual_gaps(values);
   if (pending_->begins)
     for (std::size_t i = 0; i < values.gap.size(); ++i)
-      if (values.gap[i] < -rest_unit * values.gap_scale[i] || !std::isfinite(values.gap[i]))
+      if (values.gap[i] < -rest_unit * std::max(values.gap_scale[i], widest_[i]) || !std::isfinite(values.gap[i]))
         return stopped(StepEnding::Paradox,
                        fmt::format("The start violates the contact {}.", system_.contact_label(i)));
   note_sizes(values);
@@ -385,6 +394,7 @@ std::optional<Step> HybridMotion::settle(double bound) {
   if (!pending_->begins) close_lowest_flights(touch, bound);
   if (!choose_mode(touch, bound, reason)) return stopped(StepEnding::Paradox, reason);
   if (pending_->begins) tell_events_at_start(bound);
+  if (settled_) note_after(bound);
   pending_.reset();
   started_ = true;
   return std::nullopt;

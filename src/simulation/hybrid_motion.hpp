@@ -7,6 +7,7 @@
 
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/contact_mode.hpp>
+#include <maupertuis/motion_through_modes.hpp>
 #include <maupertuis/simulation.hpp>
 
 #include <map>
@@ -16,6 +17,8 @@
 #include <vector>
 
 namespace maupertuis {
+
+class ImpactDerivative;
 
 /// What a run through modes tells besides the motion.
 struct HybridRecord {
@@ -58,11 +61,20 @@ class HybridMotion final : public Method {
   void finish();
   const HybridRecord& record() const { return record_; }
 
+  /// For neighbours (motion_through_modes.hpp): from here on each instant is kept.
+  void keep_instants();
+  const ModeInstant* instant() const { return instant_ ? &*instant_ : nullptr; }
+  const ContactMode& mode() const;
+  const EquationsOfMotion& equations_in(const ContactMode& mode);
+  /// Sizes that q and q' have elsewhere in the motion [n]: of later starts, what is much smaller is rounding.
+  void set_usual_sizes(std::span<const double> q, std::span<const double> v);
+
  private:
   struct Watch;
   struct ModeMotion;
   struct Pending;
   struct Choice;
+  struct Settled;
 
   ModeMotion& motion_in(const ContactMode& mode);
   void watch_contacts(ModeMotion& motion, std::vector<Expr>& events);
@@ -105,6 +117,7 @@ class HybridMotion final : public Method {
   bool vanishes(const Watch& watch, double size) const;
   void note_sizes(const ContactValues& values);
   void note_gaps(const ContactValues& values);
+  void note_usual_gaps(const ContactValues& values);
   void note_accelerations(std::span<const double> a, const ContactValues& values);
   void note_compliance(const std::vector<std::size_t>& touching, const ContactValues& values);
   std::optional<std::size_t> violated();
@@ -113,6 +126,19 @@ class HybridMotion final : public Method {
   void add(Happening::Kind kind, const std::string& name, double impulse = 0, double speed = 0,
            const std::string& remark = {});
   void remark(const std::string& sentence);
+  // What neighbours need.
+  void note_before(double bound);
+  void note_impact(const ImpactProblem& problem, const ImpactResult& result, const Eigen::VectorXd& v,
+                   bool ends_bounces);
+  void note_after(double bound);
+  void add_set_jump();
+  void add_impact_jumps();
+  void add_impulses_in_order(const ImpactResult& ordered);
+  void add_impulses_at_once();
+  void add_change_of_forces();
+  std::string at_once_sentence() const;
+  Expr function_of(const Watch& watch, bool second) const;
+
   Step ended(StepEnding ending, std::string reason) const;
   Step stopped(StepEnding ending, std::string reason);
   void take_state();
@@ -146,6 +172,7 @@ class HybridMotion final : public Method {
   std::vector<std::size_t> kind_;               // [n] coordinates of one dimension share a number
   std::vector<std::size_t> gap_kind_;           // [contacts] so do gaps
   std::vector<double> place_, speed_, acceleration_;  // [kinds] |q|, |q'|, |q''|
+  std::vector<double> usual_q_, usual_v_;             // [n] or empty
   std::vector<double> compliance_;                    // [contacts] what a force λ = 1 does to g̈, where it was needed
   struct Bounces {
     std::vector<std::pair<double, double>> last;  // (t, speed) of the last impacts
@@ -158,6 +185,9 @@ class HybridMotion final : public Method {
   double accumulated_at_ = 0;
   HybridRecord record_;
   std::size_t left_out_remarks_ = 0;
+  std::shared_ptr<ImpactDerivative> derivative_;  // where instants are kept
+  std::shared_ptr<Settled> settled_;              // the instant that is being settled
+  std::optional<ModeInstant> instant_;            // the one at the beginning of the last step
 };
 
 }  // namespace maupertuis

@@ -55,6 +55,22 @@ void HybridMotion::note_gaps(const ContactValues& values) {
   for (std::size_t i = 0; i < widest_.size(); ++i) widest_[i] = widest_[gap_kind_[i]];
 }
 
+void HybridMotion::set_usual_sizes(std::span<const double> q, std::span<const double> v) {
+  usual_q_.assign(q.begin(), q.end());
+  usual_v_.assign(v.begin(), v.end());
+}
+
+/// Of a start whose coordinates have had other sizes elsewhere: what gaps are made of then.
+void HybridMotion::note_usual_gaps(const ContactValues& values) {
+  if (usual_q_.empty() || !pending_->begins) return;
+  for (std::size_t i = 0; i < widest_.size(); ++i) {
+    double size = 0;
+    for (const auto& [k, g] : values.normal[i]) size += std::abs(g) * place_[kind_[k]];
+    widest_[gap_kind_[i]] = std::max(widest_[gap_kind_[i]], size);
+  }
+  note_gaps(values);
+}
+
 void HybridMotion::note_accelerations(std::span<const double> a, const ContactValues& values) {
   for (std::size_t i = 0; i < a.size(); ++i)
     acceleration_[kind_[i]] = std::max(acceleration_[kind_[i]], std::abs(a[i]));

@@ -10,19 +10,22 @@ constexpr CodeEntry entries[] = {
      "equations (`maup derive`), their solutions from a start (`maup simulate`) and between two ends (`maup action`).",
      "", ""},
     {"E0269", "no mode of the model",
-     "A mode says which contacts are closed and what each friction does: `floor`, `floor sliding +, wall`, `x sticking`, "
+     "A mode says which contacts are closed and what each friction does: `floor`, `floor sliding +, wall`, `x "
+     "sticking`, "
      "or `free`. What is not named is open; friction that acts has to be named with what it does.",
      "", ""},
     {"E0270", "a question about one set of equations for a model with several modes",
-     "Contacts and dry friction change the equations on the way. Conserved quantities, Hamiltonians, modes of vibration, "
-     "paths and periodic motions are those of one mode, which --mode chooses; `maup simulate` and `maup test` go through "
-     "all of them.",
+     "Contacts and dry friction change the equations on the way. Hamiltonians, paths, second descriptions, and the "
+     "linearization at a point or along a parameter are those of one mode, which --mode chooses; `maup simulate`, "
+     "`maup test`, `maup orbits`, `maup invariants` and `maup modes` alone go through all of them.",
      "", ""},
     {"N0505", "the equations of a model with contacts",
-     "Without --mode the equations are those of the system while no contact is closed and no dry friction acts.", "", ""},
+     "Without --mode the equations are those of the system while no contact is closed and no dry friction acts.", "",
+     ""},
     {"N0506", "a report of a model with contacts",
      "The page has the motion through all modes, but its equations are those without contact and dry friction, and "
-     "what belongs to one set of equations is left out.", "", ""},
+     "what belongs to one set of equations is left out.",
+     "", ""},
     {"E0690", "a derivation failed its certificate",
      "Every derivation is checked by routes that share nothing with it: jets of L along random paths, d'Alembert's "
      "principle over the particles, the power balance. One of them found a different value, so the derived equations "

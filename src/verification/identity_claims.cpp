@@ -19,6 +19,23 @@ std::string jump_text(const JumpAcross& jump) {
       std::abs(jump.jump), jump.place.empty() ? "" : " where " + jump.place);
 }
 
+/// "It is not conserved in the mode "floor sliding +", and impacts on floor change it."
+std::string where_it_changes(const IntegralThroughModes& through) {
+  using Holds = IntegralThroughModes::Holds;
+  const auto mode =
+      std::find_if(through.modes.begin(), through.modes.end(), [](const auto& m) { return m.holds != Holds::Yes; });
+  const auto impact =
+      std::find_if(through.impacts.begin(), through.impacts.end(), [](const auto& i) { return i.kept != Holds::Yes; });
+  std::string text;
+  if (mode != through.modes.end())
+    text = fmt::format("In the mode \"{}\" {}.", mode->mode,
+                       mode->holds == Holds::No ? "it is not conserved" : "it is not known to be conserved");
+  if (impact != through.impacts.end())
+    text += fmt::format("{}Impacts on {} {}.", text.empty() ? "" : " ", impact->contact,
+                        impact->kept == Holds::No ? "change it" : "could not be looked at");
+  return text.empty() ? fmt::format("{} modes are too many to look at.", through.left_out) : text;
+}
+
 }  // namespace
 
 const AlongMotion& IdentityClaims::along() {
@@ -47,11 +64,31 @@ void IdentityClaims::decide(const expectation::Conserved& e, ExpectationResult& 
   result.expected = "d/dt = 0 along the motion";
   if (test.verdict == Verdict::Zero)
     if (const AcrossSwitches sides = along().across(with_momenta(e.subject, equations_));
-        sides.switches > 0 || sides.jump)
-      return judge_sides(test, sides, result);
+        sides.switches > 0 || sides.jump) {
+      judge_sides(test, sides, result);
+      return judge_through_modes(e.subject, result);
+    }
   result.passed = test.verdict == Verdict::Zero;
   result.actual = result.passed ? result.expected : "d/dt is not 0";
   result.message = result.passed ? ground(test) : failure(test, {"Its time derivative along the motion", rate});
+  judge_through_modes(e.subject, result);
+}
+
+/// What holds while contacts are open has to hold in all modes, and impacts have to keep it.
+void IdentityClaims::judge_through_modes(Expr subject, ExpectationResult& result) {
+  if (!result.passed || !model_.system.has_modes()) return;
+  const IntegralThroughModes through = through_modes(subject);
+  result.passed = through.everywhere();
+  if (!result.passed) {
+    result.actual = "conserved while all contacts are open, but not throughout";
+    result.message = where_it_changes(through);
+  } else {
+    result.message += fmt::format("; so in {} modes, and impacts keep it", through.modes.size());
+  }
+}
+
+IntegralThroughModes IdentityClaims::through_modes(Expr subject) const {
+  return integrals_through_modes(model_, equations_, {with_momenta(subject, equations_)}).front();
 }
 
 /// A constant on each side of a switch is one constant only if it goes on there.
@@ -106,6 +143,22 @@ void IdentityClaims::decide(const expectation::NotConserved& e, ExpectationResul
       result.message = jump_text(*sides.jump);
       return;
     }
+  if (test.verdict == Verdict::Zero && model_.system.has_modes()) {
+    const IntegralThroughModes through = through_modes(e.subject);
+    const auto differs = [](const auto& x) {
+      if constexpr (requires { x.kept; })
+        return x.kept == IntegralThroughModes::Holds::No;
+      else
+        return x.holds == IntegralThroughModes::Holds::No;
+    };
+    if (std::any_of(through.modes.begin(), through.modes.end(), differs) ||
+        std::any_of(through.impacts.begin(), through.impacts.end(), differs)) {
+      result.passed = true;
+      result.actual = "conserved while all contacts are open, but not throughout";
+      result.message = where_it_changes(through);
+      return;
+    }
+  }
   result.actual = result.passed                   ? result.expected
                   : test.verdict == Verdict::Zero ? "d/dt = 0: it is conserved"
                                                   : "undecided";

@@ -1,5 +1,6 @@
 #pragma once
 #include <maupertuis/along_motion.hpp>
+#include <maupertuis/integrals_through_modes.hpp>
 #include <maupertuis/invariants.hpp>
 #include <maupertuis/verification.hpp>
 
@@ -32,6 +33,8 @@ class IdentityClaims {
   std::string failure(const ZeroTest& test, const Identity& identity) const;
   std::string state_text(const Bindings& sample) const;
   void judge_sides(const ZeroTest& test, const AcrossSwitches& sides, ExpectationResult& result) const;
+  void judge_through_modes(Expr subject, ExpectationResult& result);
+  IntegralThroughModes through_modes(Expr subject) const;
   void decide_on_level(const expectation::Conserved& expectation, ExpectationResult& result);
   const std::optional<Invariants>& invariants(int degree);
 

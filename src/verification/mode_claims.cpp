@@ -5,6 +5,7 @@
 #include "verification/matrix_claims.hpp"
 
 #include <maupertuis/orbits.hpp>
+#include <maupertuis/resting_modes.hpp>
 #include <maupertuis/simulation.hpp>
 
 #include <fmt/format.h>
@@ -43,7 +44,9 @@ std::string list_text(const std::vector<double>& values, const expectation::Freq
 }  // namespace
 
 ModeClaims::ModeClaims(const Model& model, const EquationsOfMotion& equations)
-    : model_(model), derived_(equations), equations_(equations) {
+    : model_(model), derived_(equations), equations_(equations), plain_(model.system) {
+  for (Friction& f : plain_.frictions)
+    if (f.normal) f.normal = with_reactions(equations, {&f.normal, 1}).front();
   Diagnostics unheard;  // why there is no start is for a run to say
   if (const auto start = consistent_start(model, equations, unheard))
     start_ = start->state;
@@ -55,17 +58,27 @@ ModeClaims::ModeClaims(const Model& model, const EquationsOfMotion& equations)
 void ModeClaims::decide_at(const MotionState& begin, const std::vector<StartValue>& at, const char* what,
                            const Judge& judge, ExpectationResult& result) {
   Diagnostics told;
-  auto study = modal_study_at(equations_, begin, at, told);
+  std::optional<ModalStudy> study;
+  std::string mode;  // of contacts
+  if (model_.system.has_modes()) {
+    if (auto rest = resting_mode_at(plain_, begin, at, told)) {
+      study = std::move(rest->study);
+      mode = rest->text;
+    }
+  } else {
+    study = modal_study_at(equations_, begin, at, told);
+  }
   if (!study) {
     result.expected = what;
     result.actual = "none";
     for (const Diagnostic& d : told.items()) result.message = d.message + ". " + d.reason;
     return;
   }
-  settle_driven(*study, equations_, model_, derived_, nullptr);
+  if (mode.empty()) settle_driven(*study, equations_, model_, derived_, nullptr);
   // On a kink each side is judged for itself, and all have to agree.
   for (const ModalEntry& entry : study->entries) {
     judge(entry, result);
+    if (!mode.empty()) result.message += fmt::format("; mode \"{}\"", mode);
     if (!entry.side.empty()) result.message = fmt::format("On the side {} of a kink: {}", entry.side, result.message);
     if (!result.passed) return;
   }

@@ -35,6 +35,7 @@ class ModeClaims {
   const Model& model_;
   const EquationsOfMotion& derived_;
   PointEquations equations_;
+  MechanicalSystem plain_;  // without reactions in normal forces
   MotionState start_;
 };
 

@@ -16,7 +16,7 @@ ExitCode invariants_of_model(const CommandOptions& options, Console& console) {
   Study study = open_study(options.model);
   Json document = json_document("invariants");
   const EquationsOfMotion* equations = study.equations();
-  if (!equations || study.refuse_held_integrals() || study.refuse_modes() || !study.certificate()) return finish(console, study, document);
+  if (!equations || study.refuse_held_integrals() || !study.certificate()) return finish(console, study, document);
   InvariantsOptions search = options.search;
   search.drift = !options.no_drift;
   const InterruptScope scope = study.interruptible();
@@ -24,7 +24,17 @@ ExitCode invariants_of_model(const CommandOptions& options, Console& console) {
   if (!found) return finish(console, study, document);
   document["system"] = equations->system->name;
   add_invariants_json(document, *found, *equations);
-  if (!console.json()) console.print(invariants_text(*found, *equations, options.all));
+  std::vector<IntegralThroughModes> through;
+  const bool has_modes = equations->system->has_modes();
+  if (has_modes) {
+    std::vector<Expr> integrals;
+    for (const ConservedFunction& i : found->integrals) integrals.push_back(i.value);
+    through = integrals_through_modes(*study.model(), *equations, integrals);
+    add_through_modes_json(document, through);
+  }
+  if (!console.json())
+    console.print(invariants_text(*found, *equations, options.all) +
+                  (has_modes ? through_modes_text(*found, through, options.all) : ""));
   return finish(console, study, document);
 }
 

@@ -29,6 +29,8 @@ struct ModesOptions {
   std::string sweep, plot, roots, csv;
   std::vector<std::string> outputs;  // what is measured, as written
   std::optional<std::string> orbit;  // about the periodic motion near the start: its period, or empty
+  /// What needs one set of equations.
+  bool asks_of_one_point() const { return !orbit && (locus() || !(at.empty() && q.empty() && outputs.empty())); }
   bool locus() const { return !sweep.empty() || !plot.empty() || !roots.empty() || !csv.empty(); }
 };
 
@@ -212,6 +214,22 @@ ExitCode points(const ModesOptions& options, Study& study, const PointEquations&
   return finish(console, study, document);
 }
 
+/// With contacts and friction: the points of rest of all modes.
+ExitCode rest(Study& study, const MotionState& start, Console& console) {
+  MechanicalSystem system = study.model()->system;
+  for (Friction& f : system.frictions)
+    if (f.normal) f.normal = with_reactions(*study.equations(), {&f.normal, 1}).front();
+  const std::vector<RestingMode> found = resting_modes(system, start, study.diagnostics());
+  Json document = json_document("modes");
+  document["system"] = system.name;
+  document["resting"] = Json::array();
+  for (const RestingMode& mode : found) {
+    document["resting"].push_back(resting_document(mode));
+    if (!console.json()) console.print(resting_text(mode, &mode == &found.front()));
+  }
+  return finish(console, study, document);
+}
+
 /// The modes of a periodic motion are those of its monodromy: Floquet multipliers.
 ExitCode orbit(const ModesOptions& options, Study& study, Console& console) {
   FloquetOptions wanted{std::nullopt, &interrupt_flag()};
@@ -267,12 +285,14 @@ ExitCode modes(const ModesOptions& options, Console& console) {
   if (!options.sweep.empty()) study.override_with(OverrideKind::Sweep, "--sweep", options.sweep);
   for (const std::string& y : options.outputs) study.ask("--y", y);
   const EquationsOfMotion* equations = study.equations();
-  if (!equations || study.refuse_held_integrals() || study.refuse_modes() || study.refuse_without_time() || !study.certificate())
+  if (!equations || study.refuse_held_integrals() || (options.asks_of_one_point() && study.refuse_modes()) ||
+      study.refuse_without_time() || !study.certificate())
     return finish(console, study, json_document("modes"));
   if (options.orbit) return orbit(options, study, console);
   const InterruptScope scope = study.interruptible();
   const auto start = consistent_start(*study.model(), *equations, study.diagnostics());
   if (!start) return finish(console, study, json_document("modes"));
+  if (study.model()->system.has_modes()) return rest(study, start->state, console);
   PointEquations at_points(*equations, measured(*study.model()));
   return options.locus() ? locus(options, study, at_points, start->state, console)
                          : points(options, study, at_points, start->state, console);

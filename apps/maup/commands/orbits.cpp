@@ -76,7 +76,7 @@ ExitCode study_orbits(const Options& o, Console& console) {
   check_usage(o, study.diagnostics());
   if (readable_model && study.wrong()) return finish_usage(console, study, "orbits");
   put_in_section(o.orbits, study);
-  if (study.refuse_held_integrals() || study.refuse_modes() || study.refuse_without_time() || !study.certificate())
+  if (study.refuse_held_integrals() || study.refuse_without_time() || !study.certificate())
     return finish(console, study, json_document("orbits"));
   const auto found = o.orbits.has_section() ? find_section(o, study)
                      : o.orbits.floquet     ? find_floquet(o, study)

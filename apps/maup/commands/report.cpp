@@ -154,7 +154,7 @@ class Page {
     const OrbitsOptions& asked = options_.orbits;
     const bool any = asked.has_section() || asked.floquet || asked.lyapunov;
     if (!any) return true;
-    if (study_.refuse_without_time() || study_.refuse_modes()) return false;
+    if (study_.refuse_without_time()) return false;
     budget_.carry_out("orbits", context_, [&](const Interrupt& interrupt) {
       Diagnostics said;
       if (asked.has_section()) find_section(interrupt, said);

@@ -42,6 +42,13 @@ constexpr CodeEntry entries[] = {
      "The equilibrium is on a kink, and on this side the forces do not balance beside it. What the other sides have is "
      "shown for each of them.",
      "", ""},
+    {"E1308", "no point of rest in any mode of the contacts",
+     "With contacts `maup modes` looks for rest in each mode: the forces balance, contacts that are closed press (λ > "
+     "0), "
+     "the others are open, and static friction holds what is left over. A point at which a closed contact would have "
+     "to "
+     "pull is none. `--mode floor` looks at the equations of one mode whatever its contacts do.",
+     "", ""},
     {"E1310", "a regulator for a model without inputs",
      "The linear-quadratic regulator chooses the inputs as functions of the state, u = u0 - F x. A force that is a "
      "formula of t cannot be chosen.",

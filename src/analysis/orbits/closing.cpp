@@ -29,6 +29,7 @@ constexpr int most_iterations = 40;
 constexpr double converged = 1e-9;  // closure that counts as closed where rounding lets nothing better
 constexpr double least_singular = 1e-9;
 constexpr double longest_step = 0.2;                     // of the size of the orbit, and of the period
+constexpr double near_impact = 0.01;                     // of the stretch that is seen, and of the size of the orbit
 constexpr double near_return = 0.02, any_return = 0.25;  // distances from the start, of the largest
 
 Vector state_vector(const MotionState& s) {
@@ -51,16 +52,18 @@ class Closer {
         diagnostics_(diagnostics),
         n_(system_.coordinates.size()),
         motion_(motion_kernel(equations)),
-        flow_(equations, {0, 100'000'000, options.interrupt}) {}
+        flow_(model, equations, {0, 100'000'000, options.interrupt}) {}
 
   std::optional<Closed> close() {
     const auto start = options_.start ? options_.start : start_of_model();
     if (!start || n_ == 0) return std::nullopt;
     at_ = *start;
     out_.motion.driven = depends_on_time(equations_);
-    if (!first_period() || !follow() || !find_angles() || !guess()) return std::nullopt;
+    out_.through_modes = flow_.through_modes();
+    out_.keeps_energy = keeps_energy(model_, equations_);
+    if (!first_period() || !follow() || !leave_impacts() || !find_angles() || !guess()) return std::nullopt;
     first_ = at_;
-    if (!out_.motion.driven && conserved_quantities(equations_).energy_conserved) {
+    if (!out_.motion.driven && out_.keeps_energy) {
       energy_.emplace(system_, std::span(&equations_.energy_function, 1));
       energy_of_start_ = energy_->values(at_)[0];
     }
@@ -106,14 +109,15 @@ class Closer {
       if (!run) return false;
       length = *run;
     }
-    seen_ = survey(system_, motion_, at_, length, options_.interrupt);
+    seen_ = survey(model_, equations_, motion_, at_, length, options_.interrupt);
     out_.sizes = seen_.sizes;
+    flow_.set_usual_sizes(seen_.sizes);
     if (!seen_.ended.empty() && (period_ || seen_.states.size() < 64))
       return refuse_end(seen_.states.back().t, seen_.ended, diagnostics_);
     const Vector f = flow_at(at_);
     if (f.size() == 0) return refuse_end(at_.t, "An acceleration has no value here.", diagnostics_);
     if (!out_.motion.driven && f.cwiseAbs().maxCoeff() == 0) return refuse_rest();
-    if (out_.motion.driven && !repeats_in_time(motion_, seen_, *period_)) {
+    if (out_.motion.driven && !repeats_in_time(system_, motion_, seen_, *period_)) {
       diagnostics_.error("E1404", {}, fmt::format("the equations do not repeat after {:.9g} s", *period_),
                          "A driven motion can only repeat with the period of its drive, or a multiple of it.",
                          "Give a period of the drive with --period.");
@@ -122,9 +126,47 @@ class Closer {
     return true;
   }
 
+  /// At an impact the state has two values, and next to it a correction may throw the start through the contact: where
+  /// one is near, the orbit begins in the middle of the longest stretch without.
+  bool leave_impacts() {
+    if (!out_.through_modes) return true;
+    const double begin = at_.t, end = seen_.states.back().t;
+    std::vector<double> instants = seen_.instants;
+    instants.push_back(end);
+    if (!touches_contact() && instants.front() - begin > near_impact * (end - begin)) return true;
+    double from = begin, middle = begin, longest = 0;
+    for (const double t : instants) {
+      if (t - from > longest) longest = t - from, middle = 0.5 * (from + t);
+      from = t;
+    }
+    const auto later = [](const MotionState& s, double t) { return s.t < t; };
+    at_ = *std::lower_bound(seen_.states.begin(), seen_.states.end(), middle, later);
+    const double length = end - begin;
+    const std::vector<double> sizes = seen_.sizes;
+    seen_ = survey(model_, equations_, motion_, at_, length, options_.interrupt, sizes);
+    return seen_.ended.empty() || seen_.states.size() >= 64 ||
+           refuse_end(seen_.states.back().t, seen_.ended, diagnostics_);
+  }
+
+  bool touches_contact() const {
+    ExprVector gaps;
+    for (const Contact& c : system_.contacts) gaps.push_back(c.gap);
+    if (gaps.empty()) return false;
+    const tangent::PointFunctions functions(system_, gaps);
+    const std::vector<double> values = functions.values(at_);
+    const Matrix slopes = functions.slopes(at_);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      double size = 0;
+      for (std::size_t k = 0; k < n_; ++k)
+        size += std::abs(slopes(static_cast<Index>(i), static_cast<Index>(k))) * seen_.sizes[k];
+      if (std::abs(values[i]) <= near_impact * size) return true;
+    }
+    return false;
+  }
+
   bool find_angles() {
     for (std::size_t i = 0; i < n_; ++i)
-      is_angle_.push_back(system_.coordinates[i].kind == "angle" && repeats_in_angle(motion_, seen_, i));
+      is_angle_.push_back(system_.coordinates[i].kind == "angle" && repeats_in_angle(system_, motion_, seen_, i));
     return true;
   }
 
@@ -221,10 +263,24 @@ class Closer {
   }
 
   bool carry() {
-    out_.begin = out_.end = flow_.all_directions(at_);
-    const auto stop = flow_.advance(out_.end, at_.t + *period_);
+    std::optional<TangentStop> stop;
+    for (int halvings = 0;; ++halvings) {
+      out_.begin = out_.end = flow_.all_directions(at_);
+      stop = flow_.advance(out_.end, at_.t + *period_);
+      // A correction may end where contacts allow no start: half of it then.
+      constexpr int most_halvings = 12;
+      if (!stop || !out_.through_modes || out_.motion.iterations == 0 || halvings == most_halvings) break;
+      if (stop->t != at_.t) break;
+      for (std::size_t i = 0; i < n_; ++i) {
+        at_.q[i] = 0.5 * (at_.q[i] + keep_.begin.state.q[i]);
+        at_.v[i] = 0.5 * (at_.v[i] + keep_.begin.state.v[i]);
+      }
+      *period_ = 0.5 * (*period_ + keep_.period);
+      if (!on_constraints()) return false;
+    }
+    out_.log_volume = flow_.log_volume_of_jumps();
     if (!stop) return true;
-    if (stop->ending == StepEnding::None) return refuse_jump(stop->t, stop->reason, diagnostics_);
+    if (stop->ending == StepEnding::None) return refuse_jump(*stop, diagnostics_);
     return refuse_end(stop->t, stop->reason, diagnostics_);
   }
 
@@ -272,8 +328,10 @@ class Closer {
   }
 
   bool on_constraints() {
-    if (!system_.constrained()) return true;
-    if (!manifold_) manifold_.emplace(equations_);
+    const EquationsOfMotion& equations =
+        out_.through_modes ? flow_.equations_at(keep_.begin.state) : equations_;  // of the mode that it starts in
+    if (!equations.system->constrained()) return true;
+    if (!manifold_ || out_.through_modes) manifold_.emplace(equations);
     const std::vector<bool> free(n_, false);
     return (manifold_->move_positions(at_, free) && manifold_->move_velocities(at_, free)) || refuse_newton(1);
   }
@@ -290,7 +348,7 @@ class Closer {
     out_.motion.moved = gap(first_, out_.motion.start).norm();
     out_.flow = flow_at(out_.motion.start);
     if (out_.motion.driven)
-      out_.motion.rests = survey(system_, motion_, out_.motion.start, *period_, options_.interrupt).rests;
+      out_.motion.rests = survey(model_, equations_, motion_, out_.motion.start, *period_, options_.interrupt).rests;
     return out_.motion.driven || turning(out_.motion.start).cwiseAbs().maxCoeff() > 1e-6 || refuse_rest();
   }
 

@@ -12,9 +12,12 @@ namespace maupertuis::orbits {
 /// A closed motion with the derivative of its return map.
 struct Closed {
   PeriodicMotion motion;
-  TangentPoint begin, end;    // all directions that the constraints allow, and what a period makes of them
-  Eigen::VectorXd flow;       // [2n] (q̇, q̈) at the start
-  std::vector<double> sizes;  // [2n] of the orbit
+  TangentPoint begin, end;     // all directions that the constraints allow, and what a period makes of them
+  Eigen::VectorXd flow;        // [2n] (q̇, q̈) at the start
+  std::vector<double> sizes;   // [2n] of the orbit
+  bool through_modes = false;  // with impacts, friction, events
+  bool keeps_energy = false;
+  std::optional<double> log_volume;  // log of what its jumps multiply volumes by; nothing where none is known
 };
 
 /// The periodic motion next to the start of the model; the diagnostics are those of `floquet`.

@@ -19,7 +19,10 @@ constexpr CodeEntry entries[] = {
      "neighbours of a motion "
      "meet the jump at other times, and the tangent equations do not say what it does to them. A force that is "
      "continuous at "
-     "its switch, such as min(x, 0), is no obstacle.",
+     "its switch, such as min(x, 0), is no obstacle. Impacts, contacts and friction of the model are none either: "
+     "neighbours "
+     "are carried through them. But some of them part there: where a contact is only touched, where several are hit at "
+     "once and the order matters, where the motion starts in an impact.",
      "V = k abs(x)", "V = k sqrt(x^2 + w^2)"},
     {"E1404", "the period does not fit the drive",
      "Where t stands in the equations, a motion can only repeat together with them. The period of sines and cosines of "
@@ -69,6 +72,11 @@ constexpr CodeEntry entries[] = {
      "A system of n freedoms has 2 n exponents: one for each direction in which a neighbour can lie, in positions and "
      "velocities.",
      "maup orbits pendulum.lag --lyapunov --exponents 7", "maup orbits pendulum.lag --lyapunov --exponents 2"},
+    {"E1413", "exponents of directions that vanish",
+     "Where a contact closes or friction sticks, neighbours that differ in the direction that is held from then on "
+     "come "
+     "into the same state. Their exponents are −∞, and there are numbers only for the directions that are left.",
+     "maup orbits stick_slip.lag --lyapunov", "maup orbits stick_slip.lag --lyapunov --exponents 1"},
     {"W1401", "Lyapunov exponents that do not add up",
      "The exponents add up to the mean rate at which the flow changes volumes: zero without dissipation, minus the "
      "damping rates else. If they "

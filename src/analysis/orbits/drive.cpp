@@ -1,5 +1,7 @@
 #include "analysis/orbits/drive.hpp"
 
+#include "analysis/tangent/point_functions.hpp"
+
 #include <maupertuis/transform.hpp>
 
 #include <algorithm>
@@ -14,10 +16,30 @@ namespace {
 constexpr double same_acceleration = 1e-9;  // of the largest one
 constexpr int largest_ratio = 60;           // of frequencies whose common period is looked for
 
+/// Gaps, slip velocities and coefficients of friction.
+ExprVector of_contacts(const MechanicalSystem& system) {
+  ExprVector out;
+  const auto add = [&](const Friction& f) {
+    if (!f.present()) return;
+    out.insert(out.end(), f.slip.begin(), f.slip.end());
+    for (const Expr& e : {f.kinetic, f.static_, f.normal})
+      if (e) out.push_back(e);
+  };
+  for (const Contact& c : system.contacts) {
+    out.push_back(c.gap);
+    out.push_back(c.restitution);
+    add(c.friction);
+  }
+  for (const Friction& f : system.frictions) add(f);
+  return in_terms_of_motion(system, out);
+}
+
 ExprVector of_motion(const EquationsOfMotion& equations) {
   const KernelSource source = motion_source(equations);
   ExprVector out = source.residual;
   for (const KernelConstraint& c : source.constraints) out.push_back(c.value);
+  const ExprVector contacts = of_contacts(*equations.system);
+  out.insert(out.end(), contacts.begin(), contacts.end());
   return expand_time_derivatives(out);
 }
 
@@ -44,7 +66,36 @@ std::array<MotionState, 2> places_at(const MotionState& state, const std::vector
   return {state, beside};
 }
 
-bool repeats(const MotionKernel& motion, const Survey& seen, const std::function<void(MotionState&)>& move) {
+/// Whether gaps and slip velocities are the same there: values and rates of those along the motion and beside it.
+bool contacts_repeat(const MechanicalSystem& system, const Survey& seen,
+                     const std::function<void(MotionState&)>& move) {
+  if (!system.has_modes()) return true;
+  ExprVector functions;
+  for (const Contact& c : system.contacts) {
+    functions.push_back(c.gap);
+    if (c.friction.present()) functions.push_back(c.friction.slip[0]);
+  }
+  for (const Friction& f : system.frictions) functions.push_back(f.slip[0]);
+  const tangent::PointFunctions at(system, functions);
+  const std::size_t stride = std::max<std::size_t>(1, seen.states.size() / 32);
+  std::vector<double> largest(functions.size(), 0.0), difference(functions.size(), 0.0);
+  for (std::size_t k = 0; k < seen.states.size(); k += stride)
+    for (const MotionState& here : places_at(seen.states[k], seen.sizes)) {
+      MotionState moved = here;
+      move(moved);
+      const auto a = at.values(here), b = at.values(moved);
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        largest[i] = std::max(largest[i], std::abs(a[i]));
+        difference[i] = std::max(difference[i], std::abs(a[i] - b[i]));
+      }
+    }
+  for (std::size_t i = 0; i < largest.size(); ++i)
+    if (!(difference[i] <= same_acceleration * largest[i])) return false;
+  return true;
+}
+
+bool repeats(const MechanicalSystem& system, const MotionKernel& motion, const Survey& seen,
+             const std::function<void(MotionState&)>& move) {
   KernelWorkspace work(motion.kernel, 1);
   work.set_parameters(motion.parameters);
   const auto accelerations = [&](const MotionState& s) {
@@ -69,7 +120,7 @@ bool repeats(const MotionKernel& motion, const Survey& seen, const std::function
     }
   for (std::size_t i = 0; i < n; ++i)
     if (!(difference[i] <= same_acceleration * largest[i])) return false;
-  return true;
+  return contacts_repeat(system, seen, move);
 }
 
 }  // namespace
@@ -77,6 +128,22 @@ bool repeats(const MotionKernel& motion, const Survey& seen, const std::function
 bool depends_on_time(const EquationsOfMotion& equations) {
   const auto symbols = symbols_of(of_motion(equations));
   return std::any_of(symbols.begin(), symbols.end(), [](const Expr& e) { return e.role() == Role::Time; });
+}
+
+bool keeps_energy(const Model& model, const EquationsOfMotion& equations) {
+  const MechanicalSystem& system = model.system;
+  if (!conserved_quantities(equations).energy_conserved || !system.frictions.empty()) return false;
+  const auto& events = model.experiment.events;
+  if (std::any_of(events.begin(), events.end(),
+                  [](const ModelEvent& e) { return e.action == ModelEvent::Action::Set; }))
+    return false;
+  const Bindings values = parameter_bindings(system);
+  return std::all_of(system.contacts.begin(), system.contacts.end(), [&](const Contact& c) {
+    const Expr gap = expand_time_derivatives(in_terms_of_motion(system, {&c.gap, 1})).front();
+    const Expr restitution = in_terms_of_motion(system, {&c.restitution, 1}).front();
+    return !c.friction.present() && differentiate(gap, system.context->time()).is_zero() &&
+           evaluate(restitution, values) == 1;
+  });
 }
 
 std::optional<double> period_of_drive(const EquationsOfMotion& equations) {
@@ -94,12 +161,13 @@ std::optional<double> period_of_drive(const EquationsOfMotion& equations) {
   return std::nullopt;
 }
 
-bool repeats_in_time(const MotionKernel& motion, const Survey& seen, double period) {
-  return repeats(motion, seen, [period](MotionState& s) { s.t += period; });
+bool repeats_in_time(const MechanicalSystem& system, const MotionKernel& motion, const Survey& seen, double period) {
+  return repeats(system, motion, seen, [period](MotionState& s) { s.t += period; });
 }
 
-bool repeats_in_angle(const MotionKernel& motion, const Survey& seen, std::size_t coordinate) {
-  return repeats(motion, seen, [coordinate](MotionState& s) { s.q[coordinate] += 2 * std::numbers::pi; });
+bool repeats_in_angle(const MechanicalSystem& system, const MotionKernel& motion, const Survey& seen,
+                      std::size_t coordinate) {
+  return repeats(system, motion, seen, [coordinate](MotionState& s) { s.q[coordinate] += 2 * std::numbers::pi; });
 }
 
 }  // namespace maupertuis::orbits

@@ -10,16 +10,21 @@
 
 namespace maupertuis::orbits {
 
-/// Whether t stands in the equations of motion or the constraints.
+/// Whether t stands in the equations of motion, the constraints, the contacts or the friction.
 bool depends_on_time(const EquationsOfMotion& equations);
+
+/// Whether the motion keeps h_E: its equations do, and there are neither friction, nor restitution below 1, nor
+/// contacts that move, nor events that set the state.
+bool keeps_energy(const Model& model, const EquationsOfMotion& equations);
 
 /// The common period of the sines and cosines of t in the equations, if t stands in their arguments linearly and they
 /// have one. s
 std::optional<double> period_of_drive(const EquationsOfMotion& equations);
 
-/// Whether the accelerations at the states of a motion and beside them are the same when t is later by `period`, and
-/// when coordinate i is larger by 2π: to rounding.
-bool repeats_in_time(const MotionKernel& motion, const Survey& seen, double period);
-bool repeats_in_angle(const MotionKernel& motion, const Survey& seen, std::size_t coordinate);
+/// Whether the accelerations, the gaps and the slip velocities at the states of a motion and beside them are the same
+/// when t is later by `period`, and when coordinate i is larger by 2π: to rounding.
+bool repeats_in_time(const MechanicalSystem& system, const MotionKernel& motion, const Survey& seen, double period);
+bool repeats_in_angle(const MechanicalSystem& system, const MotionKernel& motion, const Survey& seen,
+                      std::size_t coordinate);
 
 }  // namespace maupertuis::orbits

@@ -70,7 +70,7 @@ class Multipliers {
     if (driven) return out;
     const Vector size = Eigen::Map<const Vector>(closed_.sizes.data(), static_cast<Index>(closed_.sizes.size()));
     out.push_back(map_.directions.transpose() * closed_.flow.cwiseQuotient(size));
-    if (!conserved_quantities(equations_).energy_conserved) return out;
+    if (!closed_.keeps_energy) return out;
     const tangent::PointFunctions energy(*equations_.system, {&equations_.energy_function, 1});
     const Vector slope = energy.slopes(closed_.motion.start).row(0).transpose();
     out.push_back(map_.directions.transpose() * slope.cwiseProduct(size));
@@ -110,14 +110,18 @@ SymplecticMiss symplectic_miss(const TangentGeometry& geometry, const Closed& cl
 void check(const EquationsOfMotion& equations, const Closed& closed, const Multipliers& multipliers,
            FloquetResult& out) {
   const TangentGeometry geometry(equations);
-  if (geometry.symplectic()) {
+  // Elastic impacts without friction keep the symplectic form.
+  if (geometry.symplectic() && closed.log_volume == 0.0) {
     const SymplecticMiss miss = symplectic_miss(geometry, closed);
     out.symplectic_residual = miss.residual;
     out.error = miss.relative;
   }
   const PeriodicMotion& motion = out.motion;
-  out.integrated_divergence =
-      orbits::DivergenceIntegral(equations, geometry)(motion.start, motion.start.t + motion.period);
+  if (!closed.through_modes)
+    out.integrated_divergence =
+        orbits::DivergenceIntegral(equations, geometry)(motion.start, motion.start.t + motion.period);
+  else if (geometry.symplectic() && closed.begin.columns() == closed.begin.width())
+    out.integrated_divergence = closed.log_volume;  // 2 log e an impact
   if (!out.integrated_divergence) return;
   out.log_determinant = multipliers.log_determinant();
   out.error = std::max(out.error.value_or(0),
@@ -128,6 +132,7 @@ void check(const EquationsOfMotion& equations, const Closed& closed, const Multi
 
 std::optional<FloquetResult> floquet(const Model& model, const EquationsOfMotion& equations,
                                      const FloquetOptions& options, Diagnostics& diagnostics) {
+  if (jumps_on_its_way(model) && !can_go_through_modes(equations, diagnostics)) return std::nullopt;
   const auto closed = orbits::close_motion(model, equations, options, diagnostics);
   if (!closed) return std::nullopt;
   FloquetResult out;

@@ -43,11 +43,12 @@ class LyapunovRun {
         options_(options),
         diagnostics_(diagnostics),
         geometry_(equations),
-        flow_(equations, {0, 100'000'000, options.interrupt}) {}
+        flow_(model, equations, {0, 100'000'000, options.interrupt}) {}
 
   std::optional<LyapunovResult> carry_out() {
     if (!plan() || !choose_directions() || !warm_up()) return std::nullopt;
-    if (takes_all()) divergence_.emplace(equations_, geometry_);
+    if (takes_all() && !flow_.through_modes()) divergence_.emplace(equations_, geometry_);
+    if (flow_.through_modes() && !geometry_.symplectic()) volume_.reset();
     for (std::size_t k = 0; k < intervals_ && interval(); ++k) {
       if (options_.progress) options_.progress((k + 1.0) / static_cast<double>(intervals_));
     }
@@ -65,8 +66,9 @@ class LyapunovRun {
     if (!(transient_ >= 0 && std::isfinite(transient_))) return orbits::refuse_no_time("the transient", diagnostics_);
     const MotionKernel motion = motion_kernel(equations_);
     const double look = std::min(*duration, std::max(0.02 * *duration, transient_));
-    const orbits::Survey seen = orbits::survey(*equations_.system, motion, start->state, look, options_.interrupt);
+    const orbits::Survey seen = orbits::survey(model_, equations_, motion, start->state, look, options_.interrupt);
     if (seen.steps == 0) return orbits::refuse_end(start->state.t, seen.ended, diagnostics_);
+    flow_.set_usual_sizes(seen.sizes);
     sizes_ = Eigen::Map<const Vector>(seen.sizes.data(), static_cast<Index>(seen.sizes.size()));
     const double step = (seen.states.back().t - start->state.t) / static_cast<double>(seen.steps);
     if (!check_interval(*duration) || !check_transient(step)) return false;
@@ -158,8 +160,16 @@ class LyapunovRun {
     const MotionState from = point_.state;
     const Matrix frame = directions_;
     if (!carry_at_once(t)) return std::nullopt;
+    if (flow_.fewest_directions() < static_cast<std::size_t>(directions_.cols())) {
+      vanishing_ = flow_.fewest_directions();
+      stop_ = {StepEnding::None, point_.state.t, {}, {}};
+      return std::nullopt;
+    }
     const Vector logs = orthogonalize();
-    if (logs.allFinite() && logs.maxCoeff() - logs.minCoeff() <= most_parting) return logs;
+    if (logs.allFinite() && logs.maxCoeff() - logs.minCoeff() <= most_parting) {
+      add_jumps();
+      return logs;
+    }
     if (halvings == most_halvings) {
       stop_ = {StepEnding::Overflow, point_.state.t, "A direction shrank to nothing, or grew beyond all numbers."};
       return std::nullopt;
@@ -172,7 +182,8 @@ class LyapunovRun {
   }
 
   bool tell_stop() {
-    if (stop_.ending == StepEnding::None) return orbits::refuse_jump(stop_.t, stop_.reason, diagnostics_);
+    if (vanishing_) return orbits::refuse_vanishing(stop_.t, *vanishing_, diagnostics_);
+    if (stop_.ending == StepEnding::None) return orbits::refuse_jump(stop_, diagnostics_);
     return orbits::refuse_end(stop_.t, stop_.reason, diagnostics_);
   }
 
@@ -182,6 +193,7 @@ class LyapunovRun {
     for (std::size_t k = 1; k <= count; ++k)
       if (!carry(begin + transient_ * static_cast<double>(k) / static_cast<double>(count))) return tell_stop();
     begin_ = point_.state.t;
+    averaging_ = true;
     before_ = point_.state;
     frame_before_ = directions_;
     return true;
@@ -209,6 +221,13 @@ class LyapunovRun {
     if (!volume_ || !divergence_) return;
     const auto here = (*divergence_)(before, point_.state.t);
     volume_ = here ? std::optional(*volume_ + *here) : std::nullopt;
+  }
+
+  /// What impacts on the way did to volumes: with them the sum rule holds through modes.
+  void add_jumps() {
+    if (!flow_.through_modes() || !volume_ || !averaging_) return;
+    const auto jumps = flow_.log_volume_of_jumps();
+    volume_ = jumps ? std::optional(*volume_ + *jumps) : std::nullopt;
   }
 
   void average() {
@@ -255,6 +274,7 @@ class LyapunovRun {
       check_sum();
     }
     const double largest = std::abs(*std::max_element(out_.exponents.begin(), out_.exponents.end()));
+    if (flow_.through_modes() && !out_.expected_sum) return;                // other directions may have vanished before
     if (!(out_.expected_sum.value_or(out_.sum) < -1e-9 * largest)) return;  // no attractor where volumes stay
     std::vector<double> sorted = out_.exponents;
     std::sort(sorted.rbegin(), sorted.rend());
@@ -309,7 +329,9 @@ class LyapunovRun {
   std::vector<Vector> logs_;                              // of each interval
   std::optional<orbits::DivergenceIntegral> divergence_;  // of all exponents
   std::optional<double> volume_ = 0;  // its integral over the intervals; nothing where there is none
+  bool averaging_ = false;
   TangentStop stop_;
+  std::optional<std::size_t> vanishing_;  // directions that a mode on the way leaves: fewer than are carried
   LyapunovResult out_;
 };
 
@@ -317,6 +339,7 @@ class LyapunovRun {
 
 std::optional<LyapunovResult> lyapunov_exponents(const Model& model, const EquationsOfMotion& equations,
                                                  const LyapunovOptions& options, Diagnostics& diagnostics) {
+  if (jumps_on_its_way(model) && !can_go_through_modes(equations, diagnostics)) return std::nullopt;
   return LyapunovRun(model, equations, options, diagnostics).carry_out();
 }
 

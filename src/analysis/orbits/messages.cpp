@@ -20,9 +20,22 @@ bool refuse_end(double t, const std::string& reason, Diagnostics& diagnostics) {
   return false;
 }
 
-bool refuse_jump(double t, const std::string& reason, Diagnostics& diagnostics) {
-  diagnostics.error("E1403", {}, fmt::format("the motion has no derivative by its start beyond t = {:.9g} s", t),
-                    reason, "Replace the jump by a smooth function, such as tanh(x/w) for sign(x).");
+bool refuse_jump(const TangentStop& stop, Diagnostics& diagnostics) {
+  diagnostics.error(
+      "E1403", {}, fmt::format("the motion has no derivative by its start beyond t = {:.9g} s", stop.t), stop.reason,
+      stop.help.empty() ? "Replace the jump by a smooth function, such as tanh(x/w) for sign(x)." : stop.help);
+  return false;
+}
+
+bool refuse_vanishing(double t, std::size_t left, Diagnostics& diagnostics) {
+  diagnostics.error(
+      "E1413", {}, fmt::format("directions vanish at t = {:.9g} s", t),
+      fmt::format(
+          "Where a contact closes or friction sticks, neighbours come into the same state: {} of their directions "
+          "are left, and the exponents of the others are −∞.",
+          left),
+      left > 0 ? fmt::format("Ask for the largest alone: --exponents {}.", left)
+               : "No neighbour parts from this motion: there is no exponent to ask for.");
   return false;
 }
 

@@ -1,3 +1,4 @@
+#include "analysis/orbits/any_motion.hpp"
 #include "analysis/orbits/drive.hpp"
 #include "analysis/orbits/messages.hpp"
 #include "analysis/orbits/section_starts.hpp"
@@ -27,7 +28,7 @@ class SectionRun {
         options_(options),
         diagnostics_(diagnostics),
         motion_(motion_kernel(equations, events())),
-        stepper_(motion_.kernel, motion_.parameters, {.tolerance = options.tolerance, .interrupt = options.interrupt}) {
+        stepper_(stepper()) {
     if (options_.section) section_.emplace(system_, std::span(&options_.section, 1));
   }
 
@@ -35,7 +36,7 @@ class SectionRun {
     if (!sound()) return std::nullopt;
     const auto start = consistent_start(model_, equations_, diagnostics_);
     if (!start || !limit()) return std::nullopt;
-    out_.energy_conserved = conserved_quantities(equations_).energy_conserved;
+    out_.energy_conserved = orbits::keeps_energy(model_, equations_);
     auto starts = starts_from(start->state);
     if (!starts) return std::nullopt;
     for (std::size_t k = 0; k < starts->size(); ++k) {
@@ -49,6 +50,13 @@ class SectionRun {
  private:
   std::vector<Expr> events() const {
     return options_.section ? std::vector<Expr>{options_.section} : std::vector<Expr>{};
+  }
+
+  std::unique_ptr<orbits::AnyMotion> stepper() const {
+    const TaylorOptions options{.tolerance = options_.tolerance, .interrupt = options_.interrupt};
+    if (!jumps_on_its_way(model_))
+      return orbits::any_motion(TaylorStepper(motion_.kernel, motion_.parameters, options));
+    return orbits::any_motion(MotionThroughModes(model_, equations_, options_.section, options));
   }
 
   bool sound() {
@@ -121,7 +129,7 @@ class SectionRun {
     if (!alone.crossed()) return std::nullopt;
     const MotionState at = alone.out_.crossings.front().state;
     const orbits::Survey seen =
-        orbits::survey(system_, motion_, start, std::max(2 * (at.t - start.t), 1e-9), options_.interrupt);
+        orbits::survey(model_, equations_, motion_, start, std::max(2 * (at.t - start.t), 1e-9), options_.interrupt);
     MotionState from = at;
     from.t = start.t;
     return std::pair(from, seen.sizes);
@@ -150,7 +158,7 @@ class SectionRun {
     SectionOrbit orbit;
     orbit.start = start;
     orbit.energy = energy_of(start);
-    stepper_.start(start.t, start.q, start.v);
+    stepper_->start(start.t, start.q, start.v);
     largest_value_ = 0;
     const std::size_t before = out_.crossings.size();
     if (options_.strobe)
@@ -158,13 +166,15 @@ class SectionRun {
     else
       cross(index, orbit);
     orbit.crossings = out_.crossings.size() - before;
-    orbit.reached = stepper_.time();
+    orbit.reached = stepper_->time();
     out_.orbits.push_back(std::move(orbit));
   }
 
   bool advance(double bound, SectionOrbit& orbit, bool* hit) {
-    const Step step = stepper_.step(bound);
+    const Step step = stepper_->step(bound);
     if (step.ending != StepEnding::None) orbit.ended = step.reason;
+    if (const auto event = stepper_->stopped_by())
+      orbit.ended = fmt::format("The event `{}` of the model stops it.", *event);
     *hit = step.event.has_value();
     if (!orbit.ended.empty()) return false;
     if (section_) middle_ = value_at(0.5 * (step.begin + step.end));
@@ -175,7 +185,7 @@ class SectionRun {
     bool hit = false;
     for (std::size_t k = 1; k <= options_.crossings; ++k) {
       const double t = orbit.start.t + *options_.strobe * static_cast<double>(k);
-      while (stepper_.time() != t)
+      while (stepper_->time() != t)
         if (!advance(t, orbit, &hit)) return;
       record(index, k, orbit);
     }
@@ -184,7 +194,7 @@ class SectionRun {
   void cross(std::size_t index, SectionOrbit& orbit) {
     const double end = orbit.start.t + limit_;
     bool hit = false;
-    for (std::size_t k = 1; k <= options_.crossings && stepper_.time() != end;) {
+    for (std::size_t k = 1; k <= options_.crossings && stepper_->time() != end;) {
       if (!advance(end, orbit, &hit)) return;
       largest_value_ = std::max(largest_value_, std::abs(middle_));
       const bool rising = middle_ < 0;  // the sign up to the root, which is the first in the step
@@ -196,12 +206,12 @@ class SectionRun {
 
   double value_at(double t) {
     MotionState s{t, std::vector<double>(system_.coordinates.size()), std::vector<double>(system_.coordinates.size())};
-    stepper_.state(t, s.q, s.v);
+    stepper_->state(t, s.q, s.v);
     return section_->values(s)[0];
   }
 
   void record(std::size_t index, std::size_t number, SectionOrbit& orbit) {
-    const Sample sample = stepper_.sample(stepper_.time());
+    const Sample sample = stepper_->sample(stepper_->time());
     out_.crossings.push_back({index, number, {sample.t, sample.q, sample.v}});
     double energy = 0, size = 0;
     for (std::size_t i = 0; i < motion_.energy_terms; ++i)
@@ -218,7 +228,7 @@ class SectionRun {
   const SectionOptions& options_;
   Diagnostics& diagnostics_;
   MotionKernel motion_;
-  TaylorStepper stepper_;
+  std::unique_ptr<orbits::AnyMotion> stepper_;
   std::optional<tangent::PointFunctions> section_;
   SectionOptions alone_;
   double limit_ = 0, middle_ = 0, largest_value_ = 0;
@@ -229,6 +239,7 @@ class SectionRun {
 
 std::optional<SectionResult> poincare_section(const Model& model, const EquationsOfMotion& equations,
                                               const SectionOptions& options, Diagnostics& diagnostics) {
+  if (jumps_on_its_way(model) && !can_go_through_modes(equations, diagnostics)) return std::nullopt;
   return SectionRun(model, equations, options, diagnostics).carry_out();
 }
 

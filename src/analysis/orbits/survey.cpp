@@ -50,21 +50,25 @@ std::vector<double> sizes_of(const MechanicalSystem& system, const std::vector<M
   return sizes;
 }
 
-}  // namespace
+void note_instant(const TaylorStepper&, Survey&) {}
+void note_instant(const MotionThroughModes& motion, Survey& out) {
+  if (const ModeInstant* instant = motion.instant()) out.instants.push_back(instant->before.t);
+  if (motion.stopped_by()) out.ended = "The event `" + *motion.stopped_by() + "` of the model stops it.";
+}
 
-Survey survey(const MechanicalSystem& system, const MotionKernel& motion, const MotionState& start, double duration,
-              const std::atomic<bool>* interrupt) {
+template <class Stepper>
+Survey survey_by(Stepper stepper, const MechanicalSystem& system, const MotionState& start, double duration) {
   Survey out;
-  TaylorStepper stepper(motion.kernel, motion.parameters, {.interrupt = interrupt});
   stepper.start(start.t, start.q, start.v);
   out.states.push_back(start);
   const double end = start.t + duration;
-  while (stepper.time() != end) {
+  while (stepper.time() != end && out.ended.empty()) {
     const Step step = stepper.step(end);
     if (step.ending != StepEnding::None) {
       out.ended = step.reason;
       break;
     }
+    note_instant(stepper, out);
     for (int k = 1; k <= states_of_a_step; ++k) {
       MotionState state = start;
       state.t = k == states_of_a_step ? step.end : step.begin + (step.end - step.begin) * k / states_of_a_step;
@@ -76,6 +80,23 @@ Survey survey(const MechanicalSystem& system, const MotionKernel& motion, const 
   out.rests = true;
   out.sizes = sizes_of(system, out.states, out.rests);
   return out;
+}
+
+}  // namespace
+
+Survey survey(const MechanicalSystem& system, const MotionKernel& motion, const MotionState& start, double duration,
+              const std::atomic<bool>* interrupt) {
+  return survey_by(TaylorStepper(motion.kernel, motion.parameters, {.interrupt = interrupt}), system, start, duration);
+}
+
+Survey survey(const Model& model, const EquationsOfMotion& equations, const MotionKernel& motion,
+              const MotionState& start, double duration, const std::atomic<bool>* interrupt,
+              std::span<const double> sizes) {
+  if (!jumps_on_its_way(model)) return survey(*equations.system, motion, start, duration, interrupt);
+  MotionThroughModes through(model, equations, {}, {.interrupt = interrupt});
+  through.keep_instants();
+  if (!sizes.empty()) through.set_usual_sizes(sizes.first(start.q.size()), sizes.subspan(start.q.size()));
+  return survey_by(std::move(through), *equations.system, start, duration);
 }
 
 }  // namespace maupertuis::orbits

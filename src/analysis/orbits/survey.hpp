@@ -1,6 +1,7 @@
 #pragma once
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/motion_kernel.hpp>
+#include <maupertuis/motion_through_modes.hpp>
 
 #include <atomic>
 #include <string>
@@ -16,10 +17,15 @@ struct Survey {
                               // Of what rests its own value, or 1, and that in the time seen
   bool rests = false;         // nothing moves but by rounding
   std::size_t steps = 0;
-  std::string ended;  // why before the end; empty: it did not
+  std::string ended;             // why before the end; empty: it did not
+  std::vector<double> instants;  // s: of impacts, changes of mode, events that set the state
 };
 
 Survey survey(const MechanicalSystem& system, const MotionKernel& motion, const MotionState& start, double duration,
               const std::atomic<bool>* interrupt);
+/// Through contacts, friction and events of the model, if there are any; `sizes` [2n] of the motion before, or none.
+Survey survey(const Model& model, const EquationsOfMotion& equations, const MotionKernel& motion,
+              const MotionState& start, double duration, const std::atomic<bool>* interrupt,
+              std::span<const double> sizes = {});
 
 }  // namespace maupertuis::orbits

@@ -1,4 +1,5 @@
 #include "analysis/tangent/extended_source.hpp"
+#include "analysis/tangent/through_modes.hpp"
 
 #include <maupertuis/integrator.hpp>
 #include <maupertuis/motion_kernel.hpp>
@@ -109,6 +110,22 @@ class Group {
       }
     }
   }
+  /// After start(): what forces do, of the columns that the point has from `first` on.
+  void read_forces(TangentForces& out, std::size_t first, std::size_t columns) const {
+    const Sample here = stepper_.sample(stepper_.time());
+    const auto n = static_cast<std::ptrdiff_t>(n_),
+               m = static_cast<std::ptrdiff_t>(here.multipliers.size() / (1 + columns_));
+    out.a.assign(here.a.begin(), here.a.begin() + n);
+    out.multipliers.assign(here.multipliers.begin(), here.multipliers.begin() + m);
+    for (std::size_t j = 0; j < columns_ && first + j < columns; ++j) {
+      const double inverse = scales_[j] > 0 ? 1 / scales_[j] : 0;
+      const auto k = static_cast<std::ptrdiff_t>(1 + j);
+      for (auto x = here.a.begin() + k * n; x != here.a.begin() + (k + 1) * n; ++x)
+        out.changes_of_a.push_back(inverse * *x);
+      for (auto x = here.multipliers.begin() + k * m; x != here.multipliers.begin() + (k + 1) * m; ++x)
+        out.changes_of_multipliers.push_back(inverse * *x);
+    }
+  }
   MotionState state() const {
     return {stepper_.time(),
             {stepper_.q().begin(), stepper_.q().begin() + static_cast<std::ptrdiff_t>(n_)},
@@ -145,6 +162,12 @@ struct TangentFlow::Impl {
         geometry(e) {}
 
   Group& group(std::size_t columns);
+  /// How many groups the columns of a point take, and how many each has.
+  std::pair<std::size_t, std::size_t> groups_for(std::size_t columns) const {
+    const std::size_t most = std::max<std::size_t>(2, most_unknowns / unknowns) - 1;
+    const std::size_t count = std::max<std::size_t>(1, (columns + most - 1) / most);
+    return {count, (columns + count - 1) / count};
+  }
   KernelWorkspace& point_kernel();
   std::vector<std::int8_t> sides_at(const MotionState& state);
   std::optional<TangentStop> jump_at_start(const MotionState& start, double duration);
@@ -237,25 +260,63 @@ std::optional<TangentStop> TangentFlow::Impl::jump_at_start(const MotionState& s
 
 TangentFlow::TangentFlow(const EquationsOfMotion& equations, const TangentOptions& options)
     : impl_(std::make_unique<Impl>(equations, options)) {}
+TangentFlow::TangentFlow(const Model& model, const EquationsOfMotion& equations, const TangentOptions& options) {
+  if (jumps_on_its_way(model))
+    modes_ = std::make_unique<ThroughModes>(model, equations, options);
+  else
+    impl_ = std::make_unique<Impl>(equations, options);
+}
 TangentFlow::~TangentFlow() = default;
 TangentFlow::TangentFlow(TangentFlow&&) noexcept = default;
 
-std::size_t TangentFlow::freedoms() const { return impl_->n; }
-double TangentFlow::spread() const { return impl_->spread; }
+std::size_t TangentFlow::freedoms() const { return modes_ ? modes_->freedoms : impl_->n; }
+double TangentFlow::spread() const { return modes_ ? 0 : impl_->spread; }
+
+std::optional<double> TangentFlow::log_volume_of_jumps() const { return modes_ ? modes_->log_volume : 0.0; }
+
+void TangentFlow::set_usual_sizes(std::span<const double> sizes) {
+  if (modes_) modes_->set_usual_sizes(sizes);
+}
+
+std::size_t TangentFlow::fewest_directions() const { return modes_ ? modes_->fewest : 2 * impl_->n; }
+
+const EquationsOfMotion& TangentFlow::equations_at(const MotionState& state) {
+  return modes_ ? modes_->equations_at(state) : impl_->equations;
+}
+
+TangentForces TangentFlow::forces(const TangentPoint& point) {
+  MAUP_REQUIRE(!modes_ && point.columns() > 0);
+  const auto [count, width] = impl_->groups_for(point.columns());
+  Group& group = impl_->group(width);
+  TangentForces out;
+  for (std::size_t k = 0; k < count; ++k) {
+    group.start(point, k * width);
+    group.read_forces(out, k * width, point.columns());
+  }
+  return out;
+}
 
 TangentPoint TangentFlow::all_directions(const MotionState& state) const {
+  if (modes_) return modes_->all_directions(state);
   return {state, impl_->geometry.basis(state)};
 }
 
 std::optional<TangentStop> TangentFlow::along(const TangentPoint& start, std::span<const double> times,
                                               std::vector<TangentPoint>& points) {
+  if (modes_) {
+    TangentPoint here = start;
+    points.clear();
+    for (const double t : times) {
+      if (auto stop = modes_->advance(here, t)) return stop;
+      points.push_back(here);
+    }
+    return std::nullopt;
+  }
   Impl& s = *impl_;
   MAUP_REQUIRE(start.state.q.size() == s.n && start.state.v.size() == s.n && start.directions.size() % (2 * s.n) == 0);
   s.spread = 0;
   points.assign(times.size(), start);
-  const std::size_t columns = start.columns(), most = std::max<std::size_t>(2, most_unknowns / s.unknowns) - 1;
-  const std::size_t count = std::max<std::size_t>(1, (columns + most - 1) / most),
-                    width = (columns + count - 1) / count;
+  const auto [count, width] = s.groups_for(start.columns());
   std::optional<TangentStop> stop =
       times.empty() ? std::nullopt : s.jump_at_start(start.state, times.back() - start.state.t);
   if (stop) points.clear();
@@ -280,6 +341,7 @@ std::optional<TangentStop> TangentFlow::along(const TangentPoint& start, std::sp
 }
 
 std::optional<TangentStop> TangentFlow::advance(TangentPoint& point, double t) {
+  if (modes_) return modes_->advance(point, t);
   std::vector<TangentPoint> points;
   if (auto stop = along(point, {&t, 1}, points)) return stop;
   point = std::move(points.front());
@@ -287,6 +349,7 @@ std::optional<TangentStop> TangentFlow::advance(TangentPoint& point, double t) {
 }
 
 std::vector<double> TangentFlow::accelerations(const MotionState& state) {
+  if (modes_) return modes_->accelerations(state);
   Impl& s = *impl_;
   KernelWorkspace& work = s.point_kernel();
   const std::size_t count = s.motion->switches().size();

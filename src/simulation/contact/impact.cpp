@@ -1,6 +1,7 @@
 #include "simulation/contact/impact.hpp"
 
 #include "linear_algebra/complementarity.hpp"
+#include "simulation/contact/plane_impulse.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -172,75 +173,11 @@ ImpactResult end_of_bounces(const ImpactProblem& p, const VectorXd& v) {
   return out;
 }
 
-namespace {
-
-/// The course of an impact over the normal impulse p: v_n, v_t and the work of the normal force are piecewise simple.
-///
-///     v_n │╲                 ╱ restitution until its work is e² times that of compression
-///         │ ╲ compression   ╱
-///       0 ┼──╲─────────────╱──── p
-struct Course {
-  double w_nn, w_nt, w_tt, friction, static_friction;
-  bool sticking;
-  double v_n, v_t, p = 0, p_t = 0, work = 0;
-
-  /// dp_t/dp while it slides in a direction, or sticks.
-  double slope() const {
-    if (v_t != 0 && !sticking) return v_t > 0 ? -friction : friction;
-    const double hold = w_tt > 0 ? -w_nt / w_tt : 0;  // keeps v_t = 0
-    if (sticking || std::abs(hold) <= static_friction) return hold;
-    return hold > 0 ? friction : -friction;  // as near to holding as friction goes: v_t moves the other way
-  }
-  double normal_slope(double f) const { return w_nn + w_nt * f; }
-  double slip_slope(double f) const { return w_nt + w_tt * f; }
-
-  void advance(double dp, double f) {
-    work += (v_n + 0.5 * normal_slope(f) * dp) * dp;
-    v_n += normal_slope(f) * dp;
-    v_t += slip_slope(f) * dp;
-    p += dp;
-    p_t += f * dp;
-  }
-  /// Impulse until the slip stops in this phase; infinite if it does not.
-  double until_stop(double f) const {
-    const double s = slip_slope(f);
-    return v_t != 0 && s * v_t < 0 ? -v_t / s : HUGE_VAL;
-  }
-};
-
-}  // namespace
-
 PlaneImpulse frictional_impulse(double w_nn, double w_nt, double w_tt, double v_n, double v_t, double friction,
                                 double static_friction, bool sticking, double restitution) {
-  Course c{w_nn, w_nt, w_tt, friction, static_friction, sticking, v_n, v_t};
-  if (sticking && v_t != 0) {  // what never slides takes the slip at once, in proportion to the normal impulse
-    const double total = w_nn * w_tt - w_nt * w_nt;
-    const double n = (-(1 + restitution) * v_n * w_tt + v_t * w_nt) / total;
-    return {n, -(v_t + w_nt * n) / w_tt};
-  }
-  constexpr int most_phases = 8;
-  for (int phase = 0; phase < most_phases && c.v_n < 0; ++phase) {  // compression
-    const double f = c.slope(), stop = c.until_stop(f), slope = c.normal_slope(f);
-    const double end = slope > 0 ? -c.v_n / slope : HUGE_VAL;
-    if (std::isinf(std::min(stop, end))) return {0, 0};  // jammed: friction presses more than it gives way
-    c.advance(std::min(stop, end), f);
-    if (stop <= end) c.v_t = 0;
-    if (end <= stop) c.v_n = 0;
-  }
-  double give_back = -restitution * restitution * c.work;
-  c.work = 0;
-  for (int phase = 0; phase < most_phases && give_back > 0; ++phase) {  // restitution
-    const double f = c.slope(), stop = c.until_stop(f), slope = c.normal_slope(f);
-    if (!(slope > 0)) break;
-    // v_n dp + ½ slope dp² = give_back
-    const double end = (std::sqrt(c.v_n * c.v_n + 2 * slope * give_back) - c.v_n) / slope;
-    const double before = c.work;
-    c.advance(std::min(stop, end), f);
-    give_back -= c.work - before;
-    if (end <= stop) break;
-    c.v_t = 0;
-  }
-  return {c.p, c.p_t};
+  const ImpulseOf<double> found =
+      impulse_in_plane<double>({w_nn, w_nt, w_tt, friction, static_friction, sticking, v_n, v_t}, restitution);
+  return {found.normal, found.tangential};
 }
 
 }  // namespace maupertuis

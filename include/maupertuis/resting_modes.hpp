@@ -1,0 +1,50 @@
+#pragma once
+#include <maupertuis/contact_mode.hpp>
+#include <maupertuis/modes.hpp>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace maupertuis {
+
+/// Static friction at a point of rest.
+struct StaticHold {
+  std::string friction;  // of the contact or the coordinate
+  double force = 0;      // |λ_t| with which it holds the point
+  double limit = 0;      // the most that it may be: μ_s N
+};
+
+/// The values of one coordinate at which static friction holds the system.
+struct RestingRange {
+  std::size_t coordinate = 0;
+  double from = 0, to = 0;  // SI; infinite where nothing ends it
+};
+
+/// Points of rest in one mode of contacts: closed ones press, the gaps of the others are open.
+struct RestingMode {
+  ContactMode mode;
+  std::string text;           // "floor", "floor sticking"; "free"
+  bool frictionless = false;  // friction acts in it, and is left out of its equations
+  std::shared_ptr<const EquationsOfMotion> equations;
+  ModalStudy study;                                 // entries that are points of rest here
+  std::vector<std::vector<StaticHold>> holds;       // [entries] the frictions that act there
+  std::vector<std::optional<RestingRange>> ranges;  // [entries] where one coordinate tells what friction holds
+};
+
+/// The points of rest of a system with contacts and friction, each with the linearization of its mode: contacts that
+/// are closed and press are constraints. Where friction acts the points are those at which no friction is needed, with
+/// the equations without it, and beside them what static friction holds; where there are none, points that friction
+/// holds. Of up to 64 sets of closed contacts, the smaller ones first. Points where a closed contact does not press, or
+/// an open one touches, are left out. Empty, with E1308, where there is none.
+/// Precondition: no reactions stand in normal forces (with_reactions).
+std::vector<RestingMode> resting_modes(const MechanicalSystem& system, const MotionState& start,
+                                       Diagnostics& diagnostics);
+
+/// The mode that rests at a point, given as to modal_study_at; the first of them in that order. Nothing, with E1308,
+/// where none does.
+std::optional<RestingMode> resting_mode_at(const MechanicalSystem& system, const MotionState& start,
+                                           const std::vector<StartValue>& at, Diagnostics& diagnostics);
+
+}  // namespace maupertuis

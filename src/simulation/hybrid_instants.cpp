@@ -1,0 +1,305 @@
+#include "simulation/contact/impact_derivative.hpp"
+#include "simulation/hybrid_parts.hpp"
+
+#include <maupertuis/evaluate.hpp>
+#include <maupertuis/transform.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+/// What neighbours of a motion need of its instants: the functions whose roots they are, and the derivatives of what
+/// happens there.
+namespace maupertuis {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Of the largest speed of a contact: one that closes more slowly only touches.
+constexpr double slow = 1e-9;
+constexpr double same = 1e-9;
+
+std::vector<double> rows_of(const MatrixXd& m) {
+  std::vector<double> out;
+  for (Index i = 0; i < m.rows(); ++i)
+    for (Index j = 0; j < m.cols(); ++j) out.push_back(m(i, j));
+  return out;
+}
+
+/// ∂(q⁺, q̇⁺)/∂(q, q̇, t) of a change of velocities.
+std::vector<double> slopes_of_velocities(const MatrixXd& velocities) {
+  const Index n = velocities.rows();
+  MatrixXd out = MatrixXd::Zero(2 * n, 2 * n + 1);
+  out.topLeftCorner(n, n) = MatrixXd::Identity(n, n);
+  out.bottomRows(n) = velocities;
+  return rows_of(out);
+}
+
+bool equal(const VectorXd& a, const VectorXd& b) {
+  return (a - b).cwiseAbs().maxCoeff() <= same * std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
+}
+
+}  // namespace
+
+/// What is kept while an instant is settled.
+struct HybridMotion::Settled {
+  ModeInstant instant;
+  std::vector<std::size_t> hit;
+  struct Ended {
+    Expr function;  // of the mode before
+    double rate = 0;
+  };
+  std::vector<Ended> left, sets;  // as in Pending
+  std::vector<const ModelEvent*> events;
+  std::optional<ImpactProblem> problem;
+  ImpactResult impact;
+  VectorXd v_before_impact;
+  bool ends_bounces = false;
+};
+
+void HybridMotion::keep_instants() { derivative_ = std::make_shared<ImpactDerivative>(equations_, parameters_); }
+
+const ContactMode& HybridMotion::mode() const { return now_->mode; }
+const EquationsOfMotion& HybridMotion::equations_in(const ContactMode& mode) { return *motion_in(mode).equations; }
+
+/// Before anything is settled. The mode before is asked once more, for the rates of what ends it.
+void HybridMotion::note_before(double bound) {
+  settled_ = std::make_shared<Settled>();
+  Settled& s = *settled_;
+  s.instant.mode_before = now_->mode;
+  s.instant.before = {t_, q_, v_};
+  TaylorStepper& stepper = *now_->stepper;
+  s.instant.a_before = stepper.sample(stepper.time()).a;
+  s.hit = pending_->hit;
+  s.events = pending_->sets;
+  if (pending_->left.empty() && pending_->sets.empty()) return;
+  stepper.start(t_, q_, v_);
+  const TaylorStepper::Outlook outlook = stepper.outlook(bound);
+  // Of the two sides of what holds, the one that is met.
+  const auto find = [&](Watch::What what, std::size_t index) {
+    Settled::Ended found{{}, std::numeric_limits<double>::quiet_NaN()};
+    double least = HUGE_VAL;
+    for (std::size_t k = 0, sides = 0; k < now_->watches.size() && k < outlook.slopes.size(); ++k) {
+      if (now_->watches[k].what != what || now_->watches[k].index != index) continue;
+      const bool second = sides++ > 0;
+      if (!(std::abs(outlook.values[k]) < least)) continue;
+      least = std::abs(outlook.values[k]);
+      found = {function_of(now_->watches[k], second), outlook.slopes[k]};
+    }
+    return found;
+  };
+  for (const Watch& w : pending_->left) s.left.push_back(find(w.what, w.index));
+  for (const ModelEvent* e : s.events)
+    s.sets.push_back(find(Watch::What::Event, static_cast<std::size_t>(e - model_.experiment.events.data())));
+}
+
+void HybridMotion::note_impact(const ImpactProblem& problem, const ImpactResult& result, const VectorXd& v,
+                               bool ends_bounces) {
+  if (!settled_) return;
+  settled_->problem = problem;
+  settled_->impact = result;
+  settled_->v_before_impact = v;
+  settled_->ends_bounces = ends_bounces;
+}
+
+/// Once the mode after it is known.
+void HybridMotion::note_after(double bound) {
+  Settled& s = *settled_;
+  ModeInstant& out = s.instant;
+  out.mode_after = now_->mode;
+  out.after = {t_, q_, v_};
+  out.a_after = now_->stepper->outlook(bound).accelerations;
+  if (!s.events.empty())
+    add_set_jump();
+  else if (!s.impact.impulses.empty())
+    add_impact_jumps();
+  else
+    add_change_of_forces();
+  instant_ = std::move(out);
+  settled_.reset();
+}
+
+std::string HybridMotion::at_once_sentence() const {
+  return fmt::format("Several things happen at t = {:.9g}, and neighbours meet them one after the other.", t_);
+}
+
+/// An event that sets the state.
+void HybridMotion::add_set_jump() {
+  Settled& s = *settled_;
+  if (s.events.size() > 1 || !s.hit.empty() || !s.left.empty() || !s.impact.impulses.empty()) {
+    s.instant.obstacle = at_once_sentence();
+    return;
+  }
+  const ModelEvent& event = *s.events.front();
+  const std::size_t n = q_.size();
+  ExprVector inputs;
+  for (const Coordinate& c : system_.coordinates) inputs.push_back(c.q);
+  for (const Coordinate& c : system_.coordinates) inputs.push_back(c.velocity);
+  inputs.push_back(system_.context->time());
+  Bindings values;
+  for (std::size_t i = 0; i < n; ++i) {
+    values[inputs[i]] = s.instant.before.q[i];
+    values[inputs[n + i]] = s.instant.before.v[i];
+  }
+  values[inputs[2 * n]] = t_;
+  for (std::size_t i = 0; i < parameters_.size(); ++i) values[system_.parameters[i].symbol] = parameters_[i];
+  MatrixXd slopes = MatrixXd::Zero(static_cast<Index>(2 * n), static_cast<Index>(2 * n + 1));
+  slopes.leftCols(static_cast<Index>(2 * n)).setIdentity();
+  for (const ModelEvent::Assignment& a : event.sets) {
+    const Expr value = expand_time_derivatives(in_terms_of_motion(system_, {&a.value, 1})).front();
+    const std::vector<Expr> gradients = gradient(value, inputs);
+    for (std::size_t j = 0; j < inputs.size(); ++j)
+      slopes(static_cast<Index>(a.order == 0 ? a.coordinate : n + a.coordinate), static_cast<Index>(j)) =
+          evaluate(gradients[j], values);
+  }
+  s.instant.jumps.push_back({s.sets.front().function, s.sets.front().rate, 0, s.instant.mode_after, s.instant.after,
+                             rows_of(slopes), std::nullopt});
+}
+
+/// One impulse after the other, each with the gap of its contact; or all at once where they share the impact.
+void HybridMotion::add_impact_jumps() {
+  Settled& s = *settled_;
+  const ImpactProblem& p = *s.problem;
+  std::set<std::size_t> open_before;  // those that are hit, or would be hit in another order
+  for (const Impulse& i : s.impact.impulses)
+    if (!s.instant.mode_before.closed[i.contact]) open_before.insert(i.contact);
+  for (std::size_t k = 0; k < p.contacts.size(); ++k)
+    if (!s.instant.mode_before.closed[p.contacts[k]] && dot(p.normal[k], s.v_before_impact) + p.drive[k] < -p.rest[k])
+      open_before.insert(p.contacts[k]);
+  if (!s.left.empty()) {
+    s.instant.obstacle = at_once_sentence();
+    return;
+  }
+  const ImpactResult ordered = sequential_impact(p, s.v_before_impact, ImpactOrder::FastestFirst);
+  if (open_before.size() > 1) {
+    const ImpactResult other = sequential_impact(p, s.v_before_impact, ImpactOrder::FastestLast);
+    if (s.ends_bounces || s.impact.bounded || !equal(ordered.v, other.v) || !equal(ordered.v, s.impact.v)) {
+      s.instant.obstacle = fmt::format(
+          "Several contacts are hit at t = {:.9g}: neighbours hit them one after the other, and what follows depends "
+          "on "
+          "the order.",
+          t_);
+      return;
+    }
+  }
+  if (equal(ordered.v, s.impact.v))
+    add_impulses_in_order(ordered);
+  else
+    add_impulses_at_once();
+}
+
+/// Where the impact that is looked at changes the contacts: those that were hit are open between impulses.
+void HybridMotion::add_impulses_in_order(const ImpactResult& ordered) {
+  Settled& s = *settled_;
+  const ImpactProblem& p = *s.problem;
+  MotionState at = s.instant.before;
+  ContactMode mode = s.instant.mode_before;
+  VectorXd v = s.v_before_impact;
+  for (const Impulse& impulse : ordered.impulses) {
+    const std::size_t c = impulse.contact;
+    const auto k = static_cast<std::size_t>(std::find(p.contacts.begin(), p.contacts.end(), c) - p.contacts.begin());
+    const double rate = dot(p.normal[k], v) + p.drive[k];
+    const auto slopes = derivative_->one_impulse(c, {t_, at.q, at.v, s.ends_bounces});
+    if (!slopes) {
+      s.instant.obstacle = fmt::format(
+          "The contact {} is hit at t = {:.9g} without slip: neighbours that slide this way and that come out of the "
+          "impact in ways that are no linear function of the slip.",
+          system_.contact_label(c), t_);
+      return;
+    }
+    v += impulse.normal * p.response.col(static_cast<Index>(k));
+    if (impulse.tangential != 0) v += impulse.tangential * p.tangent_response.col(static_cast<Index>(k));
+    at.v.assign(v.data(), v.data() + v.size());
+    mode.closed[c] = false;
+    mode.friction[c] = FrictionState::None;
+    const bool rubs = system_.contacts[c].friction.present();
+    const double e = p.restitution[k];
+    const auto volume = rubs || !(e > 0) ? std::nullopt : std::optional(2 * std::log(e));
+    s.instant.jumps.push_back(
+        {system_.contacts[c].gap, rate, slow * fastest_[c], mode, at, slopes_of_velocities(*slopes), volume});
+  }
+  s.instant.jumps.back().mode = s.instant.mode_after;
+  s.instant.jumps.back().after = s.instant.after;
+}
+
+void HybridMotion::add_impulses_at_once() {
+  Settled& s = *settled_;
+  const ImpactProblem& p = *s.problem;
+  std::vector<std::size_t> pressing;
+  std::optional<std::size_t> met;  // the contact that was open before
+  for (const Impulse& i : s.impact.impulses) {
+    pressing.push_back(i.contact);
+    if (!s.instant.mode_before.closed[i.contact]) met = i.contact;
+  }
+  if (s.ends_bounces || s.impact.bounded || !met) {
+    s.instant.obstacle = fmt::format(
+        "At t = {:.9g} infinitely many impacts of several contacts come to their end, and neighbours meet them in "
+        "another "
+        "order.",
+        t_);
+    return;
+  }
+  const auto k = static_cast<std::size_t>(std::find(p.contacts.begin(), p.contacts.end(), *met) - p.contacts.begin());
+  const MatrixXd slopes = derivative_->at_once(pressing, {t_, s.instant.before.q, s.instant.before.v, s.ends_bounces});
+  s.instant.jumps.push_back({system_.contacts[*met].gap, dot(p.normal[k], s.v_before_impact) + p.drive[k],
+                             slow * fastest_[*met], s.instant.mode_after, s.instant.after, slopes_of_velocities(slopes),
+                             std::nullopt});
+}
+
+/// The state stays. Where accelerations go on, so do those of neighbours, whenever they get there.
+void HybridMotion::add_change_of_forces() {
+  Settled& s = *settled_;
+  const ModeInstant& i = s.instant;
+  if (!s.hit.empty()) {
+    s.instant.obstacle =
+        fmt::format("The contact {} is only touched at t = {:.9g}: some neighbours hit it and others do not.",
+                    system_.contact_label(s.hit.front()), t_);
+    return;
+  }
+  bool goes_on = true;
+  for (std::size_t k = 0; k < q_.size(); ++k)
+    goes_on = goes_on && std::abs(i.a_before[k] - i.a_after[k]) <= same * std::max(acceleration_[kind_[k]], 1e-280);
+  if (goes_on) return;
+  if (s.left.size() != 1) {
+    s.instant.obstacle =
+        s.left.empty() ? fmt::format("An acceleration jumps at a switch at t = {:.9g} s.", t_) : at_once_sentence();
+    return;
+  }
+  s.instant.jumps.push_back({s.left.front().function, s.left.front().rate, 0, i.mode_after, i.after, {}, std::nullopt});
+}
+
+/// The function of a condition of the mode that it is in; `second`: the other of two sides.
+Expr HybridMotion::function_of(const Watch& watch, bool second) const {
+  const std::size_t i = watch.index;
+  const ContactMode& mode = now_->mode;
+  switch (watch.what) {
+    case Watch::What::Gap:
+      return system_.contacts[i].gap;
+    case Watch::What::Force:
+      return system_.contacts[i].multiplier;
+    case Watch::What::Slip: {
+      const Expr slip = friction_of(system_, i).slip[0];
+      return mode.friction[i] == FrictionState::Forward ? slip : -slip;
+    }
+    case Watch::What::Normal:
+      return normal_force(system_, mode, i + system_.contacts.size());
+    case Watch::What::Hold: {
+      const Friction& f = friction_of(system_, i);
+      const Expr normal = normal_force(system_, mode, i);
+      const Expr most = normal ? f.static_ * normal : f.static_;
+      return second ? most + f.multipliers[0] : most - f.multipliers[0];
+    }
+    case Watch::What::Until:
+      return wanted_.events[0];
+    case Watch::What::Event:
+      return wanted_.events[wanted_.events.size() - model_.experiment.events.size() + i];
+  }
+  throw std::logic_error("an unknown condition of a mode; please report");
+}
+
+}  // namespace maupertuis

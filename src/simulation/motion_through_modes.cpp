@@ -1,0 +1,156 @@
+#include <maupertuis/motion_through_modes.hpp>
+
+#include "simulation/energy_terms.hpp"
+#include "simulation/hybrid_motion.hpp"
+
+#include <maupertuis/across_switches.hpp>
+#include <maupertuis/evaluate.hpp>
+#include <maupertuis/motion_kernel.hpp>
+#include <maupertuis/transform.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace maupertuis {
+
+struct MotionThroughModes::Impl {
+  HybridMotion motion;
+};
+
+namespace {
+
+WantedFunctions wanted_of(const EquationsOfMotion& equations, Expr until) {
+  WantedFunctions out;
+  out.observables = energy_terms(equations);
+  if (until) out.events.push_back(until);
+  return out;
+}
+
+bool has_linear_momenta(const EquationsOfMotion& equations) {
+  const ExprMatrix mass = mass_matrix(equations);
+  ExprVector velocities, slopes;
+  for (const Expr& s : symbols_of(mass.entries))
+    if (s.role() == Role::Coordinate && s.order() == 1) velocities.push_back(s);
+  if (velocities.empty()) return true;
+  for (const Expr& entry : mass.entries)
+    for (const Expr& slope : gradient(entry, velocities))
+      if (!slope.is_zero()) slopes.push_back(slope);
+  return slopes.empty() || zero_test(slopes).verdict == Verdict::Zero;
+}
+
+/// E0730 for each contact whose gap, or its slope, jumps at a switch: there λ would have to be an impulse.
+bool contacts_are_smooth(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
+  const MechanicalSystem& system = *equations.system;
+  bool smooth = true;
+  for (const Contact& c : system.contacts) {
+    ExprVector symbols{system.context->time()};
+    for (const Coordinate& q : system.coordinates) symbols.push_back(q.q);
+    ExprVector functions = gradient(c.gap, symbols);
+    functions.push_back(c.gap);
+    for (const Expr& f : functions) {
+      const auto jump = across_switches(system, f, equations.order).jump;
+      if (!jump) continue;
+      diagnostics.error("E0730", c.span,
+                        fmt::format("the surface of this contact has a kink or a step where {}", jump->place),
+                        "There the direction of its force jumps, and what slides over it is let go or hit.",
+                        "Write one contact for each smooth side of the surface.");
+      smooth = false;
+      break;
+    }
+  }
+  return smooth;
+}
+
+}  // namespace
+
+bool can_go_through_modes(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
+  const MechanicalSystem& system = *equations.system;
+  if (!system.contacts.empty() && !has_linear_momenta(equations)) {
+    diagnostics.error("E0729", system.contacts.front().span,
+                      "impacts are not carried out where momenta are not linear in the velocities",
+                      "An impulse changes p = ∂L/∂q'; here q' does not follow from p by a linear equation.",
+                      "Leave the contacts out, or use a Lagrangian that is quadratic in the velocities.");
+    return false;
+  }
+  return contacts_are_smooth(equations, diagnostics);
+}
+
+bool jumps_on_its_way(const Model& model) {
+  const auto& events = model.experiment.events;
+  return model.system.has_modes() || std::any_of(events.begin(), events.end(), [](const ModelEvent& e) {
+           return e.action != ModelEvent::Action::Record;
+         });
+}
+
+MotionThroughModes::MotionThroughModes(const Model& model, const EquationsOfMotion& equations, Expr until,
+                                       const TaylorOptions& options)
+    : impl_(std::unique_ptr<Impl>(
+          new Impl{{model, equations, wanted_of(equations, until), parameter_values(model.system), options}})) {}
+MotionThroughModes::~MotionThroughModes() = default;
+MotionThroughModes::MotionThroughModes(MotionThroughModes&&) noexcept = default;
+
+void MotionThroughModes::keep_instants() { impl_->motion.keep_instants(); }
+void MotionThroughModes::start(double t, std::span<const double> q, std::span<const double> v) {
+  impl_->motion.start(t, q, v);
+}
+void MotionThroughModes::set_usual_sizes(std::span<const double> q, std::span<const double> v) {
+  impl_->motion.set_usual_sizes(q, v);
+}
+Step MotionThroughModes::step(double bound) { return impl_->motion.step(bound); }
+double MotionThroughModes::time() const { return impl_->motion.time(); }
+std::size_t MotionThroughModes::steps() const { return impl_->motion.steps(); }
+Sample MotionThroughModes::sample(double t) const { return impl_->motion.sample(t); }
+void MotionThroughModes::state(double t, std::span<double> q, std::span<double> v) const {
+  impl_->motion.state(t, q, v);
+}
+MotionState MotionThroughModes::state() const {
+  const Sample here = impl_->motion.sample(impl_->motion.time());
+  return {here.t, here.q, here.v};
+}
+const ModeInstant* MotionThroughModes::instant() const { return impl_->motion.instant(); }
+const ContactMode& MotionThroughModes::mode() const { return impl_->motion.mode(); }
+const EquationsOfMotion& MotionThroughModes::equations_in(const ContactMode& mode) {
+  return impl_->motion.equations_in(mode);
+}
+const std::optional<std::string>& MotionThroughModes::stopped_by() const { return impl_->motion.record().stopped_by; }
+
+// ----------------------------------------------------------------------------------------------------- one impact
+
+struct SingleImpact::Impl {
+  const EquationsOfMotion& equations;
+  ContactFunctions functions;
+};
+
+SingleImpact::SingleImpact(const EquationsOfMotion& equations)
+    : impl_(std::unique_ptr<Impl>(
+          new Impl{equations, ContactFunctions(equations, parameter_values(*equations.system))})) {}
+SingleImpact::~SingleImpact() = default;
+
+double SingleImpact::rate(std::size_t contact, const MotionState& state) {
+  return impl_->functions.at(state.t, state.q, state.v).rate[contact];
+}
+
+std::vector<double> SingleImpact::after(std::size_t contact, const MotionState& state) {
+  const ContactValues& values = impl_->functions.at(state.t, state.q, state.v);
+  const MechanicalSystem& system = *impl_->equations.system;
+  const Eigen::VectorXd v =
+      Eigen::Map<const Eigen::VectorXd>(state.v.data(), static_cast<Eigen::Index>(state.v.size()));
+  ImpactProblem p;
+  p.contacts = {contact};
+  p.normal = {values.normal[contact]};
+  p.tangent = {values.tangent[contact]};
+  p.drive = {values.drive[contact]};
+  p.slip_drive = {values.slip[contact] - dot(values.tangent[contact], v)};
+  p.restitution = {values.restitution[contact]};
+  p.friction = {values.kinetic[contact]};
+  p.static_friction = {values.fixed[contact]};
+  p.sticking = {system.contacts[contact].friction.sticking};
+  p.rest = {0};
+  p.response = impl_->functions.response(state.t, state.q, state.v, p.normal);
+  p.tangent_response = impl_->functions.response(state.t, state.q, state.v, p.tangent);
+  const ImpactResult found = sequential_impact(p, v, ImpactOrder::FastestFirst);
+  return {found.v.data(), found.v.data() + found.v.size()};
+}
+
+}  // namespace maupertuis

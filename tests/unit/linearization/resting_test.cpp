@@ -1,0 +1,100 @@
+// Rest with contacts and friction: which contacts press, and what static friction holds.
+#include "../model_text.hpp"
+
+#include <maupertuis/resting_modes.hpp>
+
+#include <cmath>
+
+using namespace maupertuis;
+
+namespace {
+
+std::vector<RestingMode> rests(const ModelText& m, Diagnostics& told) {
+  const std::size_t n = m.system->coordinates.size();
+  return resting_modes(*m.system, {0, std::vector<double>(n), std::vector<double>(n)}, told);
+}
+std::vector<RestingMode> rests(const ModelText& m) {
+  Diagnostics told;
+  const auto found = rests(m, told);
+  CHECK_FALSE(told.has_errors());
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("a pendulum against a stop: where it presses, and where it hangs free") {
+  // The stop is at −0.3: hanging down is free. At 0.3 from the other side the weight presses against it.
+  const std::string text =
+      "dimensionless\nparam w = 0.3\ncoord θ, s : number\nT = 1/2 (θ'^2 + s'^2)\nV = -cos θ + 2 s^2\n";
+  const auto open = rests(ModelText(text + "contact θ >= -w name stop\n"));
+  REQUIRE(open.size() == 1);
+  CHECK(open[0].text == "free");
+  const auto closed = rests(ModelText(text + "contact θ >= w name stop\n"));
+  bool pressed = false;
+  for (const RestingMode& mode : closed) {
+    if (mode.text != "stop") continue;
+    pressed = true;
+    REQUIRE(mode.study.entries.size() == 1);
+    CHECK(mode.study.entries[0].equilibrium.point.multipliers[0] == doctest::Approx(std::sin(0.3)).epsilon(1e-12));
+    REQUIRE(mode.study.entries[0].analysis.modes.size() == 1);  // s alone
+    CHECK(mode.study.entries[0].analysis.modes[0].frequency() == doctest::Approx(2).epsilon(1e-12));
+  }
+  CHECK(pressed);
+}
+
+TEST_CASE("static friction holds a spring within μs m g/k, not beyond") {
+  const ModelText m(
+      "dimensionless\nparam k = 40, g = 9.81, μ = 0.1, μs = 0.15\ncoord x, z : number\nT = 1/2 (x'^2 + z'^2)\n"
+      "V = 1/2 k (x - 0.2)^2 + g z\ncontact z >= 0 friction μ static μs slip x' name floor\n");
+  const auto found = rests(m);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].text == "floor");
+  CHECK(found[0].frictionless);
+  REQUIRE(found[0].ranges.at(0));
+  const double reach = 0.15 * 9.81 / 40;
+  CHECK(found[0].ranges[0]->coordinate == 0);
+  CHECK(found[0].ranges[0]->from == doctest::Approx(0.2 - reach).epsilon(1e-12));
+  CHECK(found[0].ranges[0]->to == doctest::Approx(0.2 + reach).epsilon(1e-12));
+  CHECK(found[0].study.entries[0].analysis.modes[0].frequency() == doctest::Approx(std::sqrt(40)).epsilon(1e-12));
+}
+
+TEST_CASE("friction of a coordinate with a limit of its own") {
+  const ModelText m("dimensionless\nparam M0 = 0.5\ncoord θ : angle\nT = 1/2 θ'^2\nV = -cos θ\nfriction θ limit M0\n");
+  const auto found = rests(m);
+  REQUIRE(found.size() == 1);
+  bool hangs = false;
+  for (std::size_t i = 0; i < found[0].study.entries.size(); ++i) {
+    if (std::abs(found[0].study.entries[i].equilibrium.point.q[0]) > 1e-9) continue;
+    hangs = true;
+    REQUIRE(found[0].ranges.at(i));
+    CHECK(found[0].ranges[i]->to == doctest::Approx(std::asin(0.5)).epsilon(1e-12));
+  }
+  CHECK(hangs);
+}
+
+TEST_CASE("a block on an incline rests by friction alone, up to its angle") {
+  const auto incline = [](const char* friction) {
+    return ModelText(std::string("dimensionless\nparam α = 0.3\ncoord s, n : number\nT = 1/2 (s'^2 + n'^2)\n"
+                                 "V = s sin α + n cos α\ncontact n >= 0 friction ") +
+                     friction + " slip s' name plane\n");
+  };
+  const auto held = rests(incline("0.31"));
+  REQUIRE(held.size() == 1);
+  CHECK(held[0].text == "plane sticking");
+  CHECK(held[0].holds.at(0).at(0).force == doctest::Approx(std::sin(0.3)).epsilon(1e-12));
+  CHECK(held[0].holds[0][0].limit == doctest::Approx(0.31 * std::cos(0.3)).epsilon(1e-12));
+  Diagnostics told;
+  CHECK(rests(incline("0.309"), told).empty());
+  REQUIRE(told.items().size() == 1);
+  CHECK(told.items().front().code == "E1308");
+}
+
+TEST_CASE("on a belt friction slides also at rest") {
+  const ModelText m(
+      "dimensionless\ncoord x, z : number\nT = 1/2 (x'^2 + z'^2)\nV = 2 x^2 + z\n"
+      "contact z >= 0 friction 0.3 static 0.4 slip x' - 0.2 name belt\n");
+  const auto found = rests(m);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].text == "belt sliding −");
+  CHECK(found[0].study.entries.at(0).equilibrium.point.q[0] == doctest::Approx(0.075).epsilon(1e-12));
+}
