@@ -179,6 +179,20 @@ struct Probe {
   std::vector<std::vector<double>> errors;  // [at][expressions] as in StateErrors; empty without companions
 };
 
+/// How a motion with contacts and friction begins.
+struct ContactStart {
+  std::vector<double> gaps, rates;   // [contacts] g and ġ of the start, SI
+  std::vector<bool> closed;          // [contacts] in the first mode
+  std::vector<Happening> impacts{};  // at once, of contacts that touch and close
+  std::string mode{};                // the first one; empty: free
+  std::string trouble{};             // a sentence why no motion begins here; empty: one does
+};
+
+/// Of a model with contacts or friction. Nothing where the start violates a contact (E0728), or where contacts are such
+/// that no motion is carried out with them (E0729, E0730).
+std::optional<ContactStart> contact_start(const Model& model, const EquationsOfMotion& equations,
+                                          const MotionState& start, Diagnostics& diagnostics);
+
 /// Whether its motion is one through modes and events: contacts, friction, `event` statements.
 bool goes_through_modes(const Model& model);
 

@@ -55,6 +55,10 @@ class HybridMotion final : public Method {
   BackendUse backend() const override;
 
   const HybridRecord& record() const { return record_; }
+  /// Whether the next step begins with an impact, or with what an event sets: the state is another one then.
+  bool will_jump() const;
+  /// Why there is no motion from the start; empty where there is one.
+  std::string trouble() const { return failed_ ? failed_->reason : std::string(); }
 
  private:
   struct Watch;

@@ -6,6 +6,7 @@
 #include <maupertuis/transform.hpp>
 
 #include "simulation/companions.hpp"
+#include "simulation/contact_checks.hpp"
 #include "simulation/ending.hpp"
 #include "simulation/energy_terms.hpp"
 #include "simulation/errors.hpp"
@@ -63,41 +64,6 @@ std::unique_ptr<Method> stiff_method(const EquationsOfMotion& equations, const W
   return stiff_method(equations, wanted, out, diagnostics);
 }
 
-bool has_linear_momenta(const EquationsOfMotion& equations) {
-  const ExprMatrix mass = mass_matrix(equations);
-  ExprVector velocities, slopes;
-  for (const Expr& s : symbols_of(mass.entries))
-    if (s.role() == Role::Coordinate && s.order() == 1) velocities.push_back(s);
-  if (velocities.empty()) return true;
-  for (const Expr& entry : mass.entries)
-    for (const Expr& slope : gradient(entry, velocities))
-      if (!slope.is_zero()) slopes.push_back(slope);
-  return slopes.empty() || zero_test(slopes).verdict == Verdict::Zero;
-}
-
-/// E0730 for each contact whose gap, or its slope, jumps at a switch: there λ would have to be an impulse.
-bool contacts_are_smooth(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
-  const MechanicalSystem& system = *equations.system;
-  bool smooth = true;
-  for (const Contact& c : system.contacts) {
-    ExprVector symbols{system.context->time()};
-    for (const Coordinate& q : system.coordinates) symbols.push_back(q.q);
-    ExprVector functions = gradient(c.gap, symbols);
-    functions.push_back(c.gap);
-    for (const Expr& f : functions) {
-      const auto jump = across_switches(system, f, equations.order).jump;
-      if (!jump) continue;
-      diagnostics.error("E0730", c.span,
-                        fmt::format("the surface of this contact has a kink or a step where {}", jump->place),
-                        "There the direction of its force jumps, and what slides over it is let go or hit.",
-                        "Write one contact for each smooth side of the surface.");
-      smooth = false;
-      break;
-    }
-  }
-  return smooth;
-}
-
 /// Contacts, friction and events go through modes, by Taylor's steps.
 std::unique_ptr<HybridMotion> hybrid_method(const Model& model, const EquationsOfMotion& equations,
                                             const WantedFunctions& wanted, const SimulationOptions& options,
@@ -108,40 +74,9 @@ std::unique_ptr<HybridMotion> hybrid_method(const Model& model, const EquationsO
                       "Use --method taylor, or leave the method out.");
     return nullptr;
   }
-  if (!model.system.contacts.empty() && !has_linear_momenta(equations)) {
-    diagnostics.error("E0729", model.system.contacts.front().span,
-                      "impacts are not carried out where momenta are not linear in the velocities",
-                      "An impulse changes p = ∂L/∂q'; here q' does not follow from p by a linear equation.",
-                      "Leave the contacts out, or use a Lagrangian that is quadratic in the velocities.");
-    return nullptr;
-  }
-  if (!contacts_are_smooth(equations, diagnostics)) return nullptr;
+  if (!contacts_can_be_followed(equations, diagnostics)) return nullptr;
   return std::make_unique<HybridMotion>(model, equations, wanted, parameter_values(model.system),
                                         taylor_options(options));
-}
-
-/// E0728 for each contact that is violated at the start.
-bool start_keeps_contacts(const Model& model, const RunPlan& plan, Diagnostics& diagnostics) {
-  const MechanicalSystem& system = model.system;
-  Bindings at = parameter_bindings(system);
-  at[system.context->time()] = plan.begin;
-  for (std::size_t i = 0; i < plan.q.size(); ++i) at[system.coordinates[i].q] = plan.q[i];
-  bool kept = true;
-  constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
-  for (std::size_t i = 0; i < system.contacts.size(); ++i) {
-    const Expr gap = in_terms_of_motion(system, {&system.contacts[i].gap, 1}).front();
-    double size = 0;
-    if (gap.is(Kind::Sum))
-      for (std::size_t k = 0; k < gap.size(); ++k) size += std::abs(evaluate(gap[k], at));
-    const double value = evaluate(gap, at);
-    if (value >= -rounding * size) continue;
-    kept = false;
-    diagnostics.error(
-        "E0728", system.contacts[i].span, fmt::format("the start violates the contact {}", system.contact_label(i)),
-        fmt::format("Its left side less its right side is {:.6g} there (SI), and has to be at least 0.", value),
-        "Change the start, or the sense of the inequality.");
-  }
-  return kept;
 }
 
 std::unique_ptr<Method> first_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
@@ -269,7 +204,10 @@ class Run {
   /// One step. False when the run ends here.
   bool advance() {
     const std::optional<Sample> on_switch = at_switch_ ? std::optional(method_->sample(method_->time())) : std::nullopt;
+    const bool jumps = hybrid_ && hybrid_->will_jump() && jumps_ < most_jumps;
+    if (jumps) add_row_before_jump();
     const Step step = method_->step(plan_.end);
+    if (jumps && step.begin != step.end) add_row(shown(method_->step_start()));
     if (on_switch && step.begin != step.end) balance_.pass_switch(*on_switch, method_->step_start());
     at_switch_ = energy_jumps_ && step.switches > 0;
     if (step.begin != step.end) balance_.add(method_->step_start());
@@ -330,10 +268,17 @@ class Run {
     }
   }
 
-  Sample sample(double t) const {
-    Sample out = method_->sample(t);
+  Sample sample(double t) const { return shown(method_->sample(t)); }
+  Sample shown(Sample out) const {
     leave_out_undetermined(out, observables_);
     return out;
+  }
+
+  /// The last state before an impact; the first one after it follows, with the same time.
+  void add_row_before_jump() {
+    ++jumps_;
+    const auto& times = result_.trajectory.times;
+    if (times.empty() || times.back() != method_->time()) add_row(sample(method_->time()));
   }
 
   void add_row(const Sample& sample) {
@@ -404,6 +349,8 @@ class Run {
   std::vector<std::size_t> requests_;
   std::vector<State> answers_;
   std::size_t next_output_ = 0, next_request_ = 0;
+  static constexpr std::size_t most_jumps = 10'000;  // that have rows of their own
+  std::size_t jumps_ = 0;
 };
 
 std::string title_of(const std::string& method) {
@@ -469,7 +416,7 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   const auto plan = plan_run(model, equations, options, diagnostics);
   if (!plan || !requests_lie_ahead(model.system, *plan, options, diagnostics)) return std::nullopt;
 
-  if (!start_keeps_contacts(model, *plan, diagnostics)) return std::nullopt;
+  if (!start_keeps_contacts(model, plan->begin, plan->q, diagnostics)) return std::nullopt;
 
   const auto begin = Clock::now();
   const Observables observables = collect_observables(equations, probe);
