@@ -65,8 +65,8 @@ struct ContactImpulse {
 /// The drawing of a model at the rows of a run, at most `frames` of them. Where the model has no `draw`, it shows what
 /// the model has: bobs where mass is, rods where a distance is kept, bodies as the ellipsoids of their inertia,
 /// springs, dampers. Nothing where there is neither a point nor a body. With the equations the forces of `draw reaction
-/// rod` too: arrows on the points, the longest a third of the scene. In the plane contacts show their surfaces, where no
-/// item shows them, with the equations their forces, and impulses as arrows that shrink from the instant on.
+/// rod` too: arrows on the points, the longest a third of the scene. In the plane contacts show their surfaces, where
+/// no item shows them, with the equations their forces, and impulses as arrows that shrink from the instant on.
 std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& trajectory, std::size_t frames = 6000,
                                         const EquationsOfMotion* equations = nullptr,
                                         const std::vector<ContactImpulse>& impulses = {});

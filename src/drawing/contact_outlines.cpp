@@ -22,6 +22,11 @@ double to_segment(const Place& p, const Place& a, const Place& b) {
   return std::hypot(p[0] - a[0] - u * dx, p[1] - a[1] - u * dy);
 }
 
+bool is_round(const SolidShape& shape) {
+  const auto& list = shape.faces.empty() ? shape.lines : shape.faces;
+  return !list.empty() && list[0].closed && list[0].points.size() > 8;
+}
+
 class ContactPictures {
  public:
   ContactPictures(const ContactSetting& setting, std::vector<Outline>& outlines) : s_(setting), outlines_(outlines) {
@@ -47,7 +52,7 @@ class ContactPictures {
       bool moves = false;
       for (std::size_t i = width; i < e.positions.size(); ++i)
         moves = moves || std::abs(e.positions[i] - e.positions[i % width]) > 1e-9 * s_.extent;
-      if (moves) continue;
+      if (moves && !turns_in_place(e)) continue;
       const std::vector<double> pose(e.positions.begin(), e.positions.begin() + static_cast<std::ptrdiff_t>(width));
       if (e.kind == Kind::Path)
         still_.push_back(pose);
@@ -55,6 +60,18 @@ class ContactPictures {
         for (const auto* list : {&e.shape.faces, &e.shape.lines})
           for (const SolidShape::Outline& line : *list) still_.push_back(carried(line, pose));
     }
+  }
+
+  /// A disc about a middle that stands still.
+  bool turns_in_place(const Drawing::Element& e) const {
+    if (e.kind != Kind::Solid || !is_round(e.shape)) return false;
+    for (std::size_t i = 0; i + 6 <= e.positions.size(); i += 6) {
+      const double* p = &e.positions[i];
+      const double u = std::hypot(p[2] - p[0], p[3] - p[1]), v = std::hypot(p[4] - p[0], p[5] - p[1]);
+      const double off = std::hypot(p[0] - e.positions[0], p[1] - e.positions[1]) + std::abs(u - v);
+      if (!(off <= 1e-9 * s_.extent)) return false;
+    }
+    return true;
   }
 
   static std::vector<double> carried(const SolidShape::Outline& line, const std::vector<double>& pose) {
@@ -81,6 +98,11 @@ class ContactPictures {
       const std::size_t at = e.still ? 0 : 6 * frame;
       const std::vector<double> pose(e.positions.begin() + static_cast<std::ptrdiff_t>(at),
                                      e.positions.begin() + static_cast<std::ptrdiff_t>(at + 6));
+      if (is_round(e.shape)) {  // an ellipse, whatever polygon stands for it
+        out = std::max(out, std::hypot((pose[2] - pose[0]) * nx + (pose[3] - pose[1]) * ny,
+                                       (pose[4] - pose[0]) * nx + (pose[5] - pose[1]) * ny));
+        continue;
+      }
       const std::vector<double> points = reach_of(e.shape, pose);
       for (std::size_t i = 0; i < points.size(); i += 2)
         out = std::max(out, -(points[i] - pose[0]) * nx - (points[i + 1] - pose[1]) * ny);
@@ -91,19 +113,15 @@ class ContactPictures {
   // ------------------------------------------------------------------------------------------------------ surfaces
 
   void add_surface(const ContactPlaces& c) {
-    const auto least = std::min_element(c.gap.begin(), c.gap.end(),
-                                        [](double a, double b) { return std::abs(a) < std::abs(b); });
+    const auto least =
+        std::min_element(c.gap.begin(), c.gap.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
     const auto nearest = static_cast<std::size_t>(least - c.gap.begin());
-    const SurfaceRequest request{s_.system,
-                                 s_.parameters,
-                                 s_.drawing,
-                                 c,
-                                 s_.tracks.states,
-                                 s_.low,
-                                 s_.high,
-                                 s_.extent,
-                                 s_.hatching,
-                                 [&](double nx, double ny) { return reach(c.places[0].name, nearest, nx, ny); }};
+    const SurfaceRequest request{
+        s_.system,        s_.parameters,
+        s_.drawing,       c,
+        s_.tracks.states, s_.low,
+        s_.high,          s_.extent,
+        s_.hatching,      [&](double nx, double ny) { return reach(c.places[0].name, nearest, nx, ny); }};
     for (Surface& surface : surfaces_of(request)) {
       if ((surface.still && is_shown(surface)) || is_string(surface, c.places[0].name)) continue;
       include(surface, c);
@@ -146,18 +164,24 @@ class ContactPictures {
   /// Whether ground, a wall, a circle or a line of the model shows it, as far as it is seen.
   bool is_shown(const Surface& surface) const {
     const double tolerance = surface.distance + 0.015 * s_.extent;
-    bool seen = false;
+    if (surface.stop) return is_near_line({surface.positions[0], surface.positions[1]}, tolerance);
+    const Place middle{(s_.low[0] + s_.high[0]) / 2, (s_.low[1] + s_.high[1]) / 2};
+    Place nearest{HUGE_VAL, HUGE_VAL};
     for (std::size_t i = 0; i + 1 < surface.line.size(); i += 2) {
       const Place p{surface.line[i], surface.line[i + 1]};
-      if (p[0] < s_.low[0] || p[0] > s_.high[0] || p[1] < s_.low[1] || p[1] > s_.high[1]) continue;
-      seen = true;
-      const bool ground = std::any_of(s_.grounds.begin(), s_.grounds.end(), [&](const WrittenGround& g) {
-        return std::abs((p[0] - g.place[0]) * g.normal[0] + (p[1] - g.place[1]) * g.normal[1]) <=
-               tolerance * std::hypot(g.normal[0], g.normal[1]);
-      });
-      if (!ground && !is_near_line(p, tolerance)) return false;
+      if (std::hypot(p[0] - middle[0], p[1] - middle[1]) < std::hypot(nearest[0] - middle[0], nearest[1] - middle[1]))
+        nearest = p;
+      const bool seen = p[0] >= s_.low[0] && p[0] <= s_.high[0] && p[1] >= s_.low[1] && p[1] <= s_.high[1];
+      if (seen && !is_on_the_drawn(p, tolerance)) return false;
     }
-    return seen || is_near_line({surface.line[0], surface.line[1]}, tolerance);
+    return is_on_the_drawn(nearest, tolerance);
+  }
+
+  bool is_on_the_drawn(const Place& p, double tolerance) const {
+    return is_near_line(p, tolerance) || std::any_of(s_.grounds.begin(), s_.grounds.end(), [&](const WrittenGround& g) {
+             return std::abs((p[0] - g.place[0]) * g.normal[0] + (p[1] - g.place[1]) * g.normal[1]) <=
+                    tolerance * std::hypot(g.normal[0], g.normal[1]);
+           });
   }
 
   bool is_near_line(const Place& p, double tolerance) const {
@@ -175,7 +199,8 @@ class ContactPictures {
       for (std::size_t p = 0; p < e.points; ++p)
         for (const std::size_t other : {p - 1, p + 1}) {
           if (e.names[p] != name || other >= e.points) continue;
-          const double *end = &e.positions[2 * other], *then = end + (e.positions.size() / (2 * e.points) / 2) * 2 * e.points;
+          const double *end = &e.positions[2 * other],
+                       *then = end + (e.positions.size() / (2 * e.points) / 2) * 2 * e.points;
           if (std::hypot(end[0] - then[0], end[1] - then[1]) > 1e-9 * s_.extent) continue;
           double least = HUGE_VAL, most = 0;
           for (std::size_t i = 0; i + 1 < surface.line.size(); i += 2) {
@@ -208,8 +233,9 @@ class ContactPictures {
       for (const ContactImpulse& i : s_.impulses)
         if (i.contact == c.contact)
           for (const auto& place : c.places) impulse = std::max(impulse, i.size * slope(place, frame_at(i.t)));
-    const double metres =
-        s_.metres_a_newton > 0 ? s_.metres_a_newton : force > 0 ? longest_force * s_.extent / force : 0;
+    const double metres = s_.metres_a_newton > 0 ? s_.metres_a_newton
+                          : force > 0            ? longest_force * s_.extent / force
+                                                 : 0;
     for (const ContactPlaces& c : s_.tracks.contacts) {
       const std::string label = s_.system.contact_label(c.contact);
       for (const auto& place : c.places) {

@@ -99,8 +99,7 @@ class Finder {
     ContactPlaces out;
     out.contact = contact;
     const bool angle = !system_.dimensionless && system_.contacts[contact].dimension.is_one();
-    for (std::size_t i = 0; i < candidates_.size(); ++i)
-      if (holds(symbols_[i], tied) && depends_on(candidates_[i], angle, out)) return out;
+    if (is_distance_of_candidate(tied, angle, out)) return out;
     for (const Body& body : system_.bodies)
       if (const auto place = angle ? std::nullopt : place_on(body, tied); place && depends_on(*place, false, out))
         return out;
@@ -121,9 +120,28 @@ class Finder {
     return std::includes(all.begin(), all.end(), some.begin(), some.end());
   }
 
+  /// With as many coordinates as a place has freedoms any function of them is one of the place: the place is meant in
+  /// which the gap is written, else the one that moves least, and of several the one whose distance the gap is.
+  bool is_distance_of_candidate(const std::set<std::size_t>& tied, bool angle, ContactPlaces& out) const {
+    bool found = false;
+    double best = 0;
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      ContactPlaces one;
+      if (!holds(symbols_[i], tied) || !depends_on(candidates_[i], angle, one)) continue;
+      const double merit = (one.places[0].slope.empty() ? 0 : 4) + (one.freedoms == 1 ? 2 : 0) + (is_distance_ ? 1 : 0);
+      if (found && merit <= best) continue;
+      found = true;
+      best = merit;
+      out.freedoms = one.freedoms;
+      out.places = one.places;
+    }
+    return found;
+  }
+
   /// Whether the gap is a function of this place and the time. A bound of an angle shows as a stop on the way of a
   /// place that this angle alone moves.
   bool depends_on(const Place& place, bool angle, ContactPlaces& out) const {
+    is_distance_ = true;
     const ExprVector functions = with_slopes(system_, {gap_, place.position[0], place.position[1]});
     std::size_t freedoms = 0;
     for (std::size_t s = 0; s < samples_.states.size(); ++s) {
@@ -131,12 +149,29 @@ class Finder {
       const Vector slope = slopes_of(values, 3, 0, 1, n_).transpose();
       const Fit found = fit(slopes_of(values, 3, 1, 2, n_), slope);
       if (!(found.residual <= agrees)) return false;
+      is_distance_ = is_distance_ && std::abs(found.push.norm() - 1) < 1e-6;
       freedoms = std::max(freedoms, static_cast<std::size_t>(found.rank));
     }
     if (angle && freedoms != 1) return false;
     out.freedoms = freedoms;
     out.places = {place};
+    out.places[0].slope = written_slope(place);
     return true;
+  }
+
+  /// ∂g/∂P where g holds the coordinates as parts of P alone, `sqrt(P.x^2 + P.y^2) >= R`.
+  ExprVector written_slope(const Place& place) const {
+    Context& c = *system_.context;
+    const ExprVector names{c.symbol("x of contact", Role::Auxiliary), c.symbol("y of contact", Role::Auxiliary)};
+    ExprMap in, back;
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (coordinates_in({place.position[k]}).empty()) continue;
+      in.emplace(place.position[k], names[k]);
+      back.emplace(names[k], place.position[k]);
+    }
+    const Expr written = substitute(gap_, in);
+    if (!coordinates_in({written}).empty()) return {};
+    return {substitute(differentiate(written, names[0]), back), substitute(differentiate(written, names[1]), back)};
   }
 
   /// The place on a body through which the force of the contact goes however the body is turned.
@@ -191,8 +226,8 @@ class Finder {
   }
 
   bool touch(const Place& one, const Place& other) const {
-    const ExprVector functions = with_slopes(
-        system_, {gap_, one.position[0], one.position[1], other.position[0], other.position[1]});
+    const ExprVector functions =
+        with_slopes(system_, {gap_, one.position[0], one.position[1], other.position[0], other.position[1]});
     for (Bindings state : samples_.states) {
       std::vector<double> values;
       for (int round = 0; round < 20; ++round) {  // to where they touch
@@ -216,6 +251,7 @@ class Finder {
   std::vector<Place> candidates_;
   std::vector<std::set<std::size_t>> symbols_;  // [candidates] coordinates that they depend on
   Expr gap_;
+  mutable bool is_distance_ = false;  // of the place that was looked at last: |∂g/∂P| = 1
 };
 
 }  // namespace
@@ -262,6 +298,11 @@ void ContactTracks::add_formulas(const MechanicalSystem& system, const Trajector
       f.values.push_back(substitute(slip, at_rest));
       for (const Coordinate& q : system.coordinates) f.values.push_back(differentiate(slip, q.velocity));
     }
+    f.written = c.places.size() == 1 && !c.places[0].slope.empty();
+    if (f.written) {
+      const ExprVector slope = in_terms_of_motion(system, c.places[0].slope);
+      f.values.insert(f.values.end(), slope.begin(), slope.end());
+    }
     formulas_.push_back(std::move(f));
   }
 }
@@ -284,6 +325,8 @@ void ContactTracks::add_frame(const Bindings& state, const std::function<double(
         c.places[p].push.push_back(push(static_cast<Eigen::Index>(2 * p + k)));
       }
     const std::size_t after = functions * (1 + n);
+    for (std::size_t k = 0; k < 2 && f.written; ++k)
+      c.places[0].push[c.places[0].push.size() - 2 + k] = values[values.size() - 2 + k];
     if (f.reaction) c.multiplier.push_back(values[after] != 0 ? column(*f.reaction) / values[after] : 0);
     if (!f.slips) continue;
     Vector lever(static_cast<Eigen::Index>(n));  // ∂v_t/∂q' = s Jᵀ τ

@@ -12,16 +12,17 @@ namespace maupertuis::drawing {
 /// place that its gap g(P, t) depends on alone; or of two, ∂g/∂P₁ = −∂g/∂P₂, which touch each other.
 struct ContactPlaces {
   struct Place {
-    std::string name;      // of a point or a body; empty: a place that is fixed on a body
-    ExprVector position;   // [2] m
+    std::string name;       // of a point or a body; empty: a place that is fixed on a body
+    ExprVector position;    // [2] m
+    ExprVector slope = {};  // [2] ∂g/∂P where the gap is written in P; empty: of least size along the way of P
     std::vector<double> at = {};    // [frames × 2] m
     std::vector<double> push = {};  // [frames × 2] N for λ = 1
   };
   std::size_t contact = 0;
-  std::vector<Place> places;            // one: the other side belongs to the surroundings; two
-  std::size_t freedoms = 2;             // of one place: in the plane, or along a line
-  std::vector<double> gap = {};         // [frames]
-  std::vector<double> multiplier = {};  // [frames] λ; empty: the run does not tell it
+  std::vector<Place> places;               // one: the other side belongs to the surroundings; two
+  std::size_t freedoms = 2;                // of one place: in the plane, or along a line
+  std::vector<double> gap = {};            // [frames]
+  std::vector<double> multiplier = {};     // [frames] λ; empty: the run does not tell it
   std::vector<double> surface_speed = {};  // [frames] m/s along the surface, to the right of its normal; empty: at rest
 };
 
@@ -38,9 +39,9 @@ class ContactTracks {
 
  private:
   struct Formulas {
-    ExprVector values;                    // g, ∂g/∂q, P and ∂P/∂q of each place, λ for a reaction of 1, v_t at rest
+    ExprVector values;  // g, ∂g/∂q, P and ∂P/∂q of each place, λ for a reaction of 1, v_t at rest
     std::optional<std::size_t> reaction;  // column of the run
-    bool slips = false;
+    bool slips = false, written = false;  // written: at the end ∂g/∂P of the one place
   };
   void add_formulas(const MechanicalSystem& system, const Trajectory& run, const EquationsOfMotion* equations);
   const MechanicalSystem& system_;

@@ -3,6 +3,7 @@
 #include "drawing/shapes.hpp"
 #include "linear_algebra/dense.hpp"
 
+#include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/repeated_evaluation.hpp>
 #include <maupertuis/transform.hpp>
 
@@ -25,7 +26,8 @@ class GapField {
         n_(r.system.coordinates.size()),
         formulas_(with_slopes(r.system, {r.system.contacts[r.contact.contact].gap, r.contact.places[0].position[0],
                                          r.contact.places[0].position[1]})),
-        values_of_(formulas_),
+        written_(!r.contact.places[0].slope.empty()),
+        values_of_(all(r)),
         parameters_(r.parameters) {
     time_ = system_.context->time();
     for (const Expr& s : symbols_of(formulas_)) moves_ = moves_ || s == time_;
@@ -45,7 +47,11 @@ class GapField {
   double gap = 0;
   Place at{}, slope{};  // P; ∂G/∂P
   double steepness() const { return std::hypot(slope[0], slope[1]); }
-  Place normal() const { return {slope[0] / steepness(), slope[1] / steepness()}; }
+  Place normal() const {
+    const Place& n = written_ ? written_slope_ : slope;
+    const double size = std::hypot(n[0], n[1]);
+    return {n[0] / size, n[1] / size};
+  }
 
   /// Newton's method over the configuration, by its smallest changes.
   bool go_to(const Place& place, double tolerance) {
@@ -72,6 +78,12 @@ class GapField {
   void limit_steps(double length) { limit_ = length; }
 
  private:
+  ExprVector all(const SurfaceRequest& r) const {
+    ExprVector out = formulas_;
+    const ExprVector written = in_terms_of_motion(r.system, r.contact.places[0].slope);
+    out.insert(out.end(), written.begin(), written.end());
+    return out;
+  }
   void look() {
     const std::vector<double> v = values_of_([&](Expr symbol) {
       if (symbol == time_) return t_;
@@ -82,6 +94,7 @@ class GapField {
     });
     gap = v[0];
     at = {v[1], v[2]};
+    if (written_) written_slope_ = {v[v.size() - 2], v[v.size() - 1]};
     // J Jᵀ w = J ∇g, and its inverse for steps; of rank one along the line on which the place moves
     double a = 0, b = 0, c = 0, x = 0, y = 0;
     const double *g = &v[3], *jx = &v[3 + n_], *jy = &v[3 + 2 * n_];
@@ -105,6 +118,8 @@ class GapField {
   const MechanicalSystem& system_;
   std::size_t n_;
   ExprVector formulas_;
+  bool written_;
+  Place written_slope_{};
   RepeatedEvaluation values_of_;
   const Bindings& parameters_;
   Expr time_;
@@ -136,8 +151,7 @@ class Tracer {
       if (!field_.fall(tolerance_)) continue;
       const Vertex seed{field_.at, field_.normal()};
       if (is_near(out, seed.at)) continue;
-      std::optional<Surface> found =
-          r_.contact.freedoms == 1 ? stop(frame, seed) : of_curve(frame, seed, trace(seed));
+      std::optional<Surface> found = r_.contact.freedoms == 1 ? stop(frame, seed) : of_curve(frame, seed, trace(seed));
       if (found) out.push_back(std::move(*found));
       if (field_.moves()) break;
     }
@@ -235,9 +249,10 @@ class Tracer {
   /// On the way of a place that moves along a line: a short piece across it.
   std::optional<Surface> stop(std::size_t frame, const Vertex& seed) {
     Surface out;
-    out.straight = true;
+    out.straight = out.stop = true;
     out.distance = r_.reach(seed.normal[0], seed.normal[1]);
-    const double half = std::max(0.1 * r_.extent, 1.6 * out.distance);
+    const double along = std::max(r_.reach(seed.normal[1], -seed.normal[0]), r_.reach(-seed.normal[1], seed.normal[0]));
+    const double half = std::max(0.1 * r_.extent, 1.5 * along);
     out.shape = shapes::ground_line(half, r_.spacing);
     out.still = !field_.moves();
     for (std::size_t f = 0; f < (out.still ? 1 : frames()); ++f) {
@@ -272,8 +287,7 @@ class Tracer {
     out.straight = is_straight(curve);
     out.closed = curve.closed;
     for (const Vertex& v : curve.vertices)
-      out.line.insert(out.line.end(),
-                      {v.at[0] - out.distance * v.normal[0], v.at[1] - out.distance * v.normal[1]});
+      out.line.insert(out.line.end(), {v.at[0] - out.distance * v.normal[0], v.at[1] - out.distance * v.normal[1]});
     const bool placed = out.straight ? place_line(out, frame, seed) : place_curve(out, curve);
     return placed ? std::optional(out) : std::nullopt;
   }
@@ -300,8 +314,8 @@ class Tracer {
     for (std::size_t f = 0; f < (out.still ? 1 : frames()); ++f) {
       if (field_.moves() && !follow_in_time(f, frame)) return false;
       Vertex foot{field_.at, field_.normal()};
-      const double along = (middle[0] - foot.at[0]) * foot.normal[1] - (middle[1] - foot.at[1]) * foot.normal[0] +
-                           (belt ? way[f] : 0);
+      const double along =
+          (middle[0] - foot.at[0]) * foot.normal[1] - (middle[1] - foot.at[1]) * foot.normal[0] + (belt ? way[f] : 0);
       foot.at[0] += along * foot.normal[1];
       foot.at[1] -= along * foot.normal[0];
       add_pose(out, foot);
@@ -339,8 +353,7 @@ class Tracer {
         moved[0] += more(0), moved[1] += more(1);
       }
       if (!(worst <= 1e-4 * r_.extent)) return false;
-      out.positions.insert(out.positions.end(),
-                           {moved[0], moved[1], moved[0] + 1, moved[1], moved[0], moved[1] + 1});
+      out.positions.insert(out.positions.end(), {moved[0], moved[1], moved[0] + 1, moved[1], moved[0], moved[1] + 1});
     }
     return true;
   }

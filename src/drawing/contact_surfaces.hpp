@@ -23,8 +23,8 @@ struct Surface {
   std::vector<double> positions;  // of the solid, [frames × 6], or [6] where it stands still
   bool still = true;
   std::vector<double> line;  // [n × 2] its points at the first frame, as far as the scene goes
-  bool straight = false, closed = false;
-  double distance = 0;  // between the places of what touches and what is drawn
+  bool straight = false, closed = false, stop = false;  // stop: a short piece across the way of a place
+  double distance = 0;                                  // between the places of what touches and what is drawn
 };
 
 /// Its pieces that the motion comes near to. None where it moves and changes its form.

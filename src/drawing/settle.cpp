@@ -388,8 +388,8 @@ std::vector<WrittenGround> Settler::written_grounds() const {
 
 void Settler::add_contacts(const std::vector<WrittenGround>& grounds) {
   if (contacts_.contacts.empty()) return;
-  drawing::add_contacts({drawing_, system_, parameters_, contacts_, impulses_, grounds, world_low_, world_high_, extent_,
-                         hatching * extent_, longest_force_ > 0 ? longest_arrow * extent_ / longest_force_ : 0,
+  drawing::add_contacts({drawing_, system_, parameters_, contacts_, impulses_, grounds, world_low_, world_high_,
+                         extent_, hatching * extent_, longest_force_ > 0 ? longest_arrow * extent_ / longest_force_ : 0,
                          [&](const double* place, std::size_t frame) { include(place, frame); }},
                         outlines_);
 }

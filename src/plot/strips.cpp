@@ -76,8 +76,8 @@ std::string draw_names(const Figure& figure, const Axis& across) {
 std::string draw_strip(const Figure& figure, const Axis& across, const PlotStrip& strip, double top) {
   std::map<std::string, std::string> paths;
   const double left = figure.left, right = figure.right;
-  paths["open"] += fmt::format("M{:.2f} {:.2f}h{:.2f}v{:.2f}h{:.2f}z", left, top + bar / 2 - 0.5, right - left, 1.0,
-                               left - right);
+  paths["open"] +=
+      fmt::format("M{:.2f} {:.2f}h{:.2f}v{:.2f}h{:.2f}z", left, top + bar / 2 - 0.5, right - left, 1.0, left - right);
   double drawn_to = -HUGE_VAL;
   State last = State::Open;
   for (const PlotStrip::Part& part : strip.parts) {

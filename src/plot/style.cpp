@@ -49,8 +49,10 @@ std::string rules(PlotTheme theme, std::string_view scope) {
       "{0} .dense{{stroke-width:.8}}{0} .dot{{stroke:none}}{0} .dot.many{{fill:currentColor}}",
       scope, serif_faces, c.ink, c.paper, c.muted, c.grid);
   for (std::size_t i = 0; i < c.series.size(); ++i)
-    css += fmt::format("{0} .s{1}{{stroke:{2}}}{0} .dot.s{1},{0} .band.s{1},{0} .strip.s{1}{{fill:{2}}}{0} .band,{0} .strip{{stroke:none}}", scope,
-                       i + 1, c.series[i]);
+    css += fmt::format(
+        "{0} .s{1}{{stroke:{2}}}{0} .dot.s{1},{0} .band.s{1},{0} .strip.s{1}{{fill:{2}}}{0} .band,{0} "
+        ".strip{{stroke:none}}",
+        scope, i + 1, c.series[i]);
   return css;
 }
 

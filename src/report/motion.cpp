@@ -129,8 +129,8 @@ void add_motion(ReportContent& content, const Model& model, const EquationsOfMot
                 const SimulationResult& run) {
   add_statistics(content, run, model.system);
   content.trajectory = run.trajectory;
-  content.drawing = evaluate_drawing(model, run.trajectory, frames_within_budget(model), &equations,
-                                     impulses_of(run, model.system));
+  content.drawing =
+      evaluate_drawing(model, run.trajectory, frames_within_budget(model), &equations, impulses_of(run, model.system));
   if (energy_conserved) add_drift_column(content.trajectory);
   add_pictures(content, model.system, run.reactions, energy_conserved);
   for (ReportContent::Picture& picture : content.pictures)

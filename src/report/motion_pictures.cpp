@@ -6,7 +6,7 @@
 namespace maupertuis {
 namespace {
 
-using State = PlotStrip::State;
+using Doing = PlotStrip::State;
 
 constexpr std::size_t most_strips = 12, most_parts = 20'000;
 
@@ -32,18 +32,18 @@ std::vector<Stretch> stretches(const SimulationResult& run, const MechanicalSyst
   return out;
 }
 
-State state_of(const ContactMode& mode, std::size_t friction) {
+Doing doing_of(const ContactMode& mode, std::size_t friction) {
   switch (mode.friction[friction]) {
     case FrictionState::Stick:
-      return State::Stick;
+      return Doing::Stick;
     case FrictionState::Forward:
-      return State::Forward;
+      return Doing::Forward;
     case FrictionState::Backward:
-      return State::Backward;
+      return Doing::Backward;
     case FrictionState::None:
       break;
   }
-  return friction < mode.closed.size() && mode.closed[friction] ? State::Closed : State::Open;
+  return friction < mode.closed.size() && mode.closed[friction] ? Doing::Closed : Doing::Open;
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ void show_happenings(PlotOptions& options, const SimulationResult& run, const Me
     PlotStrip strip;
     strip.name = i < contacts ? system.contact_label(i) : system.frictions[i - contacts].name;
     for (std::size_t k = 0; k < modes.size(); ++k) {
-      const State state = state_of(modes[k].mode, i);
+      const Doing state = doing_of(modes[k].mode, i);
       const double to = k + 1 < modes.size() ? modes[k + 1].from : run.final.t;
       if (!strip.parts.empty() && strip.parts.back().state == state)
         strip.parts.back().to = to;
@@ -67,7 +67,7 @@ void show_happenings(PlotOptions& options, const SimulationResult& run, const Me
         strip.parts.push_back({modes[k].from, to, state});
     }
     const bool open = std::all_of(strip.parts.begin(), strip.parts.end(),
-                                  [](const PlotStrip::Part& p) { return p.state == State::Open; });
+                                  [](const PlotStrip::Part& p) { return p.state == Doing::Open; });
     if (!open && options.strips.size() < most_strips) options.strips.push_back(std::move(strip));
   }
 }

@@ -206,7 +206,8 @@ void add_mode(const DeriveOptions& options, Study& whole, const ContactMode& mod
     const auto items = study.diagnostics().items();
     const auto error =
         std::find_if(items.begin(), items.end(), [](const Diagnostic& d) { return d.severity == Severity::Error; });
-    const std::string reason = error == items.end() ? "the check of its equations did not come to an end" : error->message;
+    const std::string reason =
+        error == items.end() ? "the check of its equations did not come to an end" : error->message;
     text += fmt::format("  no equations: {}\n", reason);
     list.push_back({{"mode", shown}, {"first", first}, {"reason", reason}});
     return;
@@ -226,8 +227,9 @@ ExitCode derive_modes(const DeriveOptions& options, Study& study, Console& conso
   if (!study.equations()) return finish(console, study, document);
   const MechanicalSystem& system = study.model()->system;
   if (!system.has_modes()) {
-    study.diagnostics().error("E0809", {}, "--modes asks for the modes of contacts and dry friction, and the model has none.",
-                              {}, "Without --modes `maup derive` shows its one set of equations.");
+    study.diagnostics().error("E0809", {},
+                              "--modes asks for the modes of contacts and dry friction, and the model has none.", {},
+                              "Without --modes `maup derive` shows its one set of equations.");
     return finish_usage(console, study, "derive");
   }
   std::string text;
@@ -244,9 +246,10 @@ ExitCode derive_modes(const DeriveOptions& options, Study& study, Console& conso
   document["number_of_modes"] = all;
   document["modes"] = std::move(list);
   if (all > static_cast<double>(modes.size()))
-    text += fmt::format("\n{} of {:.6g} modes: those that one contact or one friction makes of the first. --mode NAME shows "
-                        "another.\n",
-                        modes.size(), all);
+    text += fmt::format(
+        "\n{} of {:.6g} modes: those that one contact or one friction makes of the first. --mode NAME shows "
+        "another.\n",
+        modes.size(), all);
   if (!console.json()) console.print(text);
   return finish(console, study, document);
 }
@@ -265,10 +268,9 @@ ExitCode derive(const DeriveOptions& options, Console& console) {
   if (study.refuse_held_integrals()) return finish(console, study, document_of(options, study, {}, nullptr));
   study.derivation(options.steps);
   if (study.model() && study.model()->system.has_modes())
-    study.diagnostics().note(
-        "N0505", std::nullopt, "these are the equations without contact and without dry friction",
-        "While a contact is closed, or friction sticks or slides, others hold.",
-        "--modes shows those of its modes, --mode \"floor\" or \"floor sticking\" those of one.");
+    study.diagnostics().note("N0505", std::nullopt, "these are the equations without contact and without dry friction",
+                             "While a contact is closed, or friction sticks or slides, others hold.",
+                             "--modes shows those of its modes, --mode \"floor\" or \"floor sticking\" those of one.");
   const Certificate* certificate = study.certificate({.full = options.certify == "full"});
   EquationForm form;
   if (certificate) form = equation_form(options.chosen_form(), study);
@@ -299,8 +301,9 @@ void add_derive(CommandLine& line) {
                               [options](Console& console) { return derive(*options, console); });
   add_model_options(command, options->model);
   command.add_flag("--steps", options->steps, "The textbook derivation, line by line, each with its rule");
-  command.add_flag("--modes", options->modes,
-                   "The equations of each mode of contacts and friction; of many those next to where the motion begins");
+  command.add_flag(
+      "--modes", options->modes,
+      "The equations of each mode of contacts and friction; of many those next to where the motion begins");
   Option* form = command
                      .add_option("--form", options->form,
                                  "standard: R = Aᵀλ; solved: q'' = …, λ = …; matrix: M, h, A and b of M q'' + h = Aᵀλ, "
