@@ -22,6 +22,9 @@ std::optional<ContactStart> contact_start(const Model& model, const EquationsOfM
   for (const Happening& h : motion.record().happenings)
     if (h.kind == Happening::Kind::Impact) out.impacts.push_back(h);
   out.trouble = motion.trouble();
+  if (!out.trouble.empty())
+    diagnostics.warning("W0731", std::nullopt, "no motion begins at this start", out.trouble,
+                        "Change the start, or a coefficient of friction.");
   out.mode = motion.record().first_mode;
   std::string unread;
   out.closed.assign(system.contacts.size(), false);

@@ -91,6 +91,7 @@ std::string contact_text(const MechanicalSystem& system, std::size_t index, cons
            (start->closed[index] ? ", then closed" : "");
   if (start->closed[index]) return out + "; closed at the start";
   const double gap = start->gaps[index];
+  if (!start->trouble.empty() && std::abs(gap) < 1e-14) return out + "; touches at the start";
   return out + (std::abs(gap) < 1e-14 ? "; touches at the start without force"
                                       : "; open at the start, by " +
                                             (system.dimensionless ? brief(gap) : with_unit(brief(gap), c.dimension)));

@@ -59,6 +59,25 @@ TEST_CASE("a start that violates a contact is an error with the contact's place"
   CHECK(diagnostics.items()[0].code == "E0728");
 }
 
+TEST_CASE("a rod that slides the wrong way on rough ground begins no motion: Painlevé") {
+  const auto rod = [](const std::string& speed) {
+    return "system rod\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, z : length, θ : angle\n"
+           "T = 1/2 m (x'^2 + z'^2) + 1/24 m l^2 θ'^2\nV = m g z\n"
+           "contact z - l/2 sin θ >= 0 friction 3 slip x' + l/2 sin θ θ' name floor\n"
+           "start z = l/2 sin(1), θ = 1 rad, x' = " +
+           speed + " m/s\nrun 1 s\n";
+  };
+  CHECK(start_of(ModelText(rod("3"))).mode == "floor sliding +");
+  const ModelText m(rod("-3"));
+  Diagnostics diagnostics;
+  const auto start = consistent_start(m.model, m.equations, diagnostics);
+  const auto found = contact_start(m.model, m.equations, start.value().state, diagnostics);
+  REQUIRE(found);
+  CHECK(found->trouble.find("Painlevé") != std::string::npos);
+  REQUIRE(diagnostics.items().size() == 1);
+  CHECK(diagnostics.items()[0].code == "W0731");
+}
+
 TEST_CASE("modes to show: all where they are few, each once; else what one contact or friction makes of the first") {
   const ModelText m(box("x' = 1 m/s"));
   CHECK(number_of_modes(*m.system) == 8);  // the floor: open and three; the wall: two
