@@ -139,12 +139,8 @@ std::string certificate_text(const Certificate& certificate) {
   return out;
 }
 
-std::string lecture(Study& study, const EquationForm& form, const Certificate& certificate, bool with_steps) {
-  const EquationsOfMotion& equations = *study.equations();
-  const ReadingOrder& order = equations.order;
+std::string equations_text(const EquationForm& form, const ReadingOrder& order) {
   std::string out;
-  if (with_steps) out += steps_text(*study.derivation(true), order) + "\n";
-  out += fmt::format("Equations of motion of {}\n", equations.system->name);
   for (const auto* lines : {&form.lines, &form.constraints})
     for (const EquationLine& line : *lines)
       out += fmt::format("  {}{}\n", plain_text(shown_line(line, order)),
@@ -152,6 +148,16 @@ std::string lecture(Study& study, const EquationForm& form, const Certificate& c
   if (!form.intermediates.empty()) out += "with\n";
   for (const Intermediate& i : form.intermediates)
     out += fmt::format("  {} = {}\n", to_plain(i.symbol, order), to_plain(i.value, order));
+  return out;
+}
+
+std::string lecture(Study& study, const EquationForm& form, const Certificate& certificate, bool with_steps) {
+  const EquationsOfMotion& equations = *study.equations();
+  const ReadingOrder& order = equations.order;
+  std::string out;
+  if (with_steps) out += steps_text(*study.derivation(true), order) + "\n";
+  out += fmt::format("Equations of motion of {}\n", equations.system->name);
+  out += equations_text(form, order);
   out += legend(*equations.system, order);
   out += reactions_text(equations);
   out += momenta_and_energy(equations, *study.derivation(false));

@@ -8,6 +8,9 @@ namespace maupertuis::app {
 /// and the certificate.
 std::string lecture(Study& study, const EquationForm& form, const Certificate& certificate, bool with_steps);
 
+/// The equations alone, a line each, with what the names in them stand for.
+std::string equations_text(const EquationForm& form, const ReadingOrder& order);
+
 /// The checks of a certificate, a line each, under a head.
 std::string certificate_text(const Certificate& certificate);
 

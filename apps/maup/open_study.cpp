@@ -15,11 +15,26 @@ Study open_study(const std::string& path) {
   return study;
 }
 
-Study open_study(const ModelOptions& options) {
-  Study study = open_study(options.path);
+namespace {
+
+void put_in(Study& study, const ModelOptions& options) {
   for (const std::string& typed : options.set) study.override_with(OverrideKind::Parameters, "--set", typed);
   for (const std::string& typed : options.start) study.override_with(OverrideKind::Start, "--start", typed);
+}
+
+}  // namespace
+
+Study open_study(const ModelOptions& options) {
+  Study study = open_study(options.path);
+  put_in(study, options);
   if (options.mode) study.fix_mode(*options.mode);
+  return study;
+}
+
+Study study_in_mode(const SourceText& source, const ModelOptions& options, const std::string& mode) {
+  Study study(source, &interrupt_flag());
+  put_in(study, options);
+  study.fix_mode(mode);
   return study;
 }
 

@@ -37,6 +37,12 @@ std::string mode_text(const MechanicalSystem& system, const ContactMode& mode);
 /// `trouble`, where a name is no contact, or a friction is left open.
 std::optional<ContactMode> read_mode(const MechanicalSystem& system, const std::string& text, std::string& trouble);
 
+/// How many modes there are: 2 for each contact, 4 where it has friction, 3 for each friction of a coordinate.
+double number_of_modes(const MechanicalSystem& system);
+/// All modes where there are at most `most`, fewest changes from `from` first. Else `from` and those that one contact
+/// or one friction makes of it.
+std::vector<ContactMode> modes_to_show(const MechanicalSystem& system, const ContactMode& from, std::size_t most);
+
 /// The system as it moves in a mode, without inequalities: closed contacts are constraints g = 0 at the end of its
 /// constraints, sticking ones constraints between velocities v_t = 0 after them; sliding ones have the generalized
 /// force −σ μ N ∂v_t/∂q̇ with σ = ±1, which holds the multiplier of the contact. Its equations are those of any system,

@@ -41,6 +41,7 @@ struct Drawing {
     std::vector<std::string> names = {};  // [points] Path, Trail: "" where the text has an expression; Arrow: what acts
     NameParts text = {};                  // Label, Arrow
     SolidShape shape = {};                // Solid
+    bool impulse = false;                 // Arrow: of an impact, not of a force
   };
   int dimension = 2;              // 2 or 3
   std::vector<double> times;      // [frames] s, ascending or descending
@@ -54,12 +55,21 @@ struct Drawing {
   bool empty() const { return elements.empty() || times.empty(); }
 };
 
+/// What an impact gave to a contact, to be seen as an arrow for a moment.
+struct ContactImpulse {
+  std::size_t contact = 0;  // of the system
+  double t = 0;             // s
+  double size = 0;          // Λ
+};
+
 /// The drawing of a model at the rows of a run, at most `frames` of them. Where the model has no `draw`, it shows what
 /// the model has: bobs where mass is, rods where a distance is kept, bodies as the ellipsoids of their inertia,
 /// springs, dampers. Nothing where there is neither a point nor a body. With the equations the forces of `draw reaction
-/// rod` too: arrows on the points, the longest a third of the scene.
+/// rod` too: arrows on the points, the longest a third of the scene. In the plane contacts show their surfaces, where
+/// no item shows them, with the equations their forces, and impulses as arrows that shrink from the instant on.
 std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& trajectory, std::size_t frames = 6000,
-                                        const EquationsOfMotion* equations = nullptr);
+                                        const EquationsOfMotion* equations = nullptr,
+                                        const std::vector<ContactImpulse>& impulses = {});
 
 /// As JSON, for the page that draws it.
 std::string drawing_json(const Drawing& drawing);

@@ -62,9 +62,9 @@ enum class Ending {
   StepUnderflow,
   Sliding,
   TooManySteps,
-  Stopped,      // by an event of the model that stops the run
-  Paradox,      // no mode, or none that is known, fits contacts and friction here
-  Unending,     // events follow each other without end and without getting denser
+  Stopped,   // by an event of the model that stops the run
+  Paradox,   // no mode, or none that is known, fits contacts and friction here
+  Unending,  // events follow each other without end and without getting denser
 };
 
 struct SimulationStatistics {
@@ -100,12 +100,12 @@ struct Happening {
     Event,   // of the model
   } kind = Kind::Event;
   double t = 0;
-  double error = 0;     // by how much t may be off; 0 where nobody asked
-  std::string name;     // of the contact, the coordinate with friction, or the event
-  double impulse = 0;   // Impact: Λ, in the unit of λ times s
-  double speed = 0;     // Impact: −ġ before
-  std::string remark{};   // "the end of infinitely many bounces at t = 4.0637 s"
-  std::string mode{};     // that the motion is in afterwards: "floor, wall sliding"; empty: free
+  double error = 0;          // by how much t may be off; 0 where nobody asked
+  std::string name;          // of the contact, the coordinate with friction, or the event
+  double impulse = 0;        // Impact: Λ, in the unit of λ times s
+  double speed = 0;          // Impact: −ġ before
+  std::string remark{};      // "the end of infinitely many bounces at t = 4.0637 s"
+  std::string mode{};        // that the motion is in afterwards: "floor, wall sliding"; empty: free
   std::vector<double> q, v;  // [n] just after; empty beyond two million numbers of a run
 };
 std::string_view word_of(Happening::Kind kind);
@@ -131,9 +131,7 @@ struct SimulationResult {
   std::vector<std::string> remarks{};  // what the run has to say of its impacts and of friction, a sentence each
   Ending ending = Ending::Finished;
   std::string reason;  // one sentence for every ending but Finished
-  bool ok() const {
-    return ending == Ending::Finished || ending == Ending::UntilReached || ending == Ending::Stopped;
-  }
+  bool ok() const { return ending == Ending::Finished || ending == Ending::UntilReached || ending == Ending::Stopped; }
 };
 
 /// Expressions with the values of reactions in place of their symbols. A reaction that the model does not determine
@@ -178,6 +176,20 @@ struct Probe {
   std::vector<std::vector<double>> values;  // [at][expressions], filled by the run
   std::vector<std::vector<double>> errors;  // [at][expressions] as in StateErrors; empty without companions
 };
+
+/// How a motion with contacts and friction begins.
+struct ContactStart {
+  std::vector<double> gaps, rates;   // [contacts] g and ġ of the start, SI
+  std::vector<bool> closed;          // [contacts] in the first mode
+  std::vector<Happening> impacts{};  // at once, of contacts that touch and close
+  std::string mode{};                // the first one; empty: free
+  std::string trouble{};             // a sentence why no motion begins here; empty: one does
+};
+
+/// Of a model with contacts or friction; W0731 where no motion begins. Nothing where the start violates a contact (E0728), or where contacts are such
+/// that no motion is carried out with them (E0729, E0730).
+std::optional<ContactStart> contact_start(const Model& model, const EquationsOfMotion& equations,
+                                          const MotionState& start, Diagnostics& diagnostics);
 
 /// Whether its motion is one through modes and events: contacts, friction, `event` statements.
 bool goes_through_modes(const Model& model);

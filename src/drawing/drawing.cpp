@@ -1,3 +1,4 @@
+#include "drawing/contact_places.hpp"
 #include "drawing/outlines.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
@@ -91,7 +92,8 @@ std::vector<double> gravity_of(const MechanicalSystem& system, const Bindings& p
 }  // namespace
 
 std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& run, std::size_t frames,
-                                        const EquationsOfMotion* equations) {
+                                        const EquationsOfMotion* equations,
+                                        const std::vector<ContactImpulse>& impulses) {
   const MechanicalSystem& system = model.system;
   const Bindings parameters = parameter_bindings(system);
   Motion motion(system, run, parameters);
@@ -104,6 +106,7 @@ std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& ru
     wanted.insert(wanted.end(), outline.values.begin(), outline.values.end());
   wanted.insert(wanted.end(), plan.follow.begin(), plan.follow.end());
   wanted = in_terms_of_motion(system, wanted);
+  drawing::ContactTracks contacts(model, parameters, run, equations);
 
   Drawing drawing;
   drawing.dimension = system.space_dimension;
@@ -114,9 +117,11 @@ std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& ru
   for (std::size_t row = 0; row < rows; row += stride)
     for (std::size_t k = 0; k < (row + 1 == rows ? 1 : stride == 1 ? parts : 1); ++k) {
       const double u = static_cast<double>(k) / static_cast<double>(parts);
-      add_frame(drawing, plan.outlines, evaluate(wanted, motion.state(row, u)), motion, row, u);
+      const Bindings& state = motion.state(row, u);
+      add_frame(drawing, plan.outlines, evaluate(wanted, state), motion, row, u);
+      contacts.add_frame(state, [&](std::size_t column) { return motion.column(column, row, u); });
     }
-  drawing::settle(drawing, plan.outlines, plan, system, parameters);
+  drawing::settle(drawing, plan.outlines, plan, system, parameters, contacts, impulses);
   return drawing;
 }
 

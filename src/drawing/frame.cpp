@@ -363,10 +363,11 @@ void Painter::trail(const Drawing::Element& e, std::size_t series) {
 
 void Painter::force(const Drawing::Element& e, const std::vector<double>& points) {
   const View::Placed foot = place(&points[0]), tip = place(&points[d_]);
-  for (FrameItem& item : drawing::arrow({foot.x, foot.y}, {tip.x, tip.y}, {Ink::Series, 1}, 2.2, view_.unit()))
+  for (FrameItem& item : drawing::arrow({foot.x, foot.y}, {tip.x, tip.y}, {Ink::Series, e.impulse ? std::size_t{4} : 1},
+                                        2.2, view_.unit()))
     add(std::move(item));
   const double dx = tip.x - foot.x, dy = tip.y - foot.y, length = std::hypot(dx, dy), gap = 14 * view_.unit();
-  if (length <= 24 * view_.unit()) return;
+  if (length <= 24 * view_.unit() || e.text.base.empty()) return;
   const char align = dy > 0.3 * length ? 'r' : dy < -0.3 * length ? 'l' : 'c';
   add(drawing::words(e.text, tip.x - gap * dy / length, tip.y + gap * dx / length, align, {Ink::Muted}));
 }

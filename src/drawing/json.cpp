@@ -71,6 +71,7 @@ void append_element(std::string& out, const Drawing::Element& e) {
   if (e.kind == Drawing::Kind::Arrow || e.kind == Drawing::Kind::Label)
     out += fmt::format(",\"text\":{{\"base\":{},\"index\":{},\"dots\":{},\"upright\":{}}}", quoted(e.text.base),
                        quoted(e.text.index), e.text.dots, e.text.upright);
+  if (e.impulse) out += ",\"impulse\":true";
   if (e.kind == Drawing::Kind::Solid) {
     out += fmt::format(",\"ground\":{},\"convex\":{},\"ball\":{}", e.shape.role == SolidShape::Role::Ground,
                        e.shape.convex, e.shape.ball);

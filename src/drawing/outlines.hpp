@@ -48,8 +48,9 @@ Plan plan_of(const Model& model, const Bindings& parameters, const EquationsOfMo
 bool same_everywhere(const MechanicalSystem& system, const std::vector<Expr>& expressions, const Bindings& parameters);
 
 /// What the whole motion decides of what is drawn, once the positions of every frame are there: bounds, sizes of bobs,
-/// springs, dashpots, pivots, ground, arrows.
+/// springs, dashpots, pivots, ground, arrows, surfaces of contacts.
+class ContactTracks;
 void settle(Drawing& drawing, std::vector<Outline>& outlines, const Plan& plan, const MechanicalSystem& system,
-            const Bindings& parameters);
+            const Bindings& parameters, const ContactTracks& contacts, const std::vector<ContactImpulse>& impulses);
 
 }  // namespace maupertuis::drawing

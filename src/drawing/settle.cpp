@@ -1,3 +1,4 @@
+#include "drawing/contact_outlines.hpp"
 #include "drawing/outlines.hpp"
 #include "drawing/shapes.hpp"
 
@@ -30,19 +31,23 @@ double distance(const double* a, const double* b, std::size_t d) {
 class Settler {
  public:
   Settler(Drawing& drawing, std::vector<Outline>& outlines, const Plan& plan, const MechanicalSystem& system,
-          const Bindings& parameters)
+          const Bindings& parameters, const ContactTracks& contacts, const std::vector<ContactImpulse>& impulses)
       : drawing_(drawing),
         outlines_(outlines),
         plan_(plan),
         system_(system),
         parameters_(parameters),
+        contacts_(contacts),
+        impulses_(impulses),
         d_(static_cast<std::size_t>(drawing.dimension)) {}
 
   void settle() {
     find_bounds();
     for (Outline& o : outlines_) place(o);
     size_marks();
-    add_grounds();
+    const std::vector<WrittenGround> grounds = written_grounds();
+    add_contacts(grounds);
+    add_grounds(grounds);
     for (Outline& o : outlines_) drawing_.elements.push_back(std::move(o.element));
     // What stands on the paper comes first, then the ways of points.
     const auto rank = [](const Drawing::Element& e) {
@@ -66,7 +71,9 @@ class Settler {
   void place_arrow(Outline& o);
   void place_pivot(Outline& o);
   void size_marks();
-  void add_grounds();
+  std::vector<WrittenGround> written_grounds() const;
+  void add_contacts(const std::vector<WrittenGround>& grounds);
+  void add_grounds(const std::vector<WrittenGround>& grounds);
   void add_ground(std::vector<double> place, std::vector<double> normal);
   std::vector<double> up() const;
   /// Floor, ceiling or wall: the one that a spring of this direction stands on best.
@@ -77,6 +84,8 @@ class Settler {
   const Plan& plan_;
   const MechanicalSystem& system_;
   const Bindings& parameters_;
+  const ContactTracks& contacts_;
+  const std::vector<ContactImpulse>& impulses_;
   std::size_t d_;
   std::vector<double> world_low_, world_high_;
   double extent_ = 1;
@@ -355,7 +364,8 @@ void Settler::size_marks() {
   }
 }
 
-void Settler::add_grounds() {
+std::vector<WrittenGround> Settler::written_grounds() const {
+  std::vector<WrittenGround> out;
   const auto values = [&](const ExprVector& v) {
     Bindings start = parameters_;
     start[system_.context->time()] = drawing_.times.front();
@@ -371,8 +381,21 @@ void Settler::add_grounds() {
       normal.assign(d_, 0);
       normal[0] = place[0] <= middle ? 1 : -1;
     }
-    add_ground(place, normal);
+    out.push_back({place, normal});
   }
+  return out;
+}
+
+void Settler::add_contacts(const std::vector<WrittenGround>& grounds) {
+  if (contacts_.contacts.empty()) return;
+  drawing::add_contacts({drawing_, system_, parameters_, contacts_, impulses_, grounds, world_low_, world_high_,
+                         extent_, hatching * extent_, longest_force_ > 0 ? longest_arrow * extent_ / longest_force_ : 0,
+                         [&](const double* place, std::size_t frame) { include(place, frame); }},
+                        outlines_);
+}
+
+void Settler::add_grounds(const std::vector<WrittenGround>& grounds) {
+  for (const WrittenGround& g : grounds) add_ground(g.place, g.normal);
   const std::vector<double> u = up();
   if (d_ == 3 && plan_.grounds.empty() && !drawing_.gravity.empty() && u[2] > 0.999)
     add_ground({0, 0, world_low_[2]}, u);
@@ -430,8 +453,8 @@ void Settler::add_ground(std::vector<double> place, std::vector<double> normal) 
 }  // namespace
 
 void settle(Drawing& drawing, std::vector<Outline>& outlines, const Plan& plan, const MechanicalSystem& system,
-            const Bindings& parameters) {
-  Settler(drawing, outlines, plan, system, parameters).settle();
+            const Bindings& parameters, const ContactTracks& contacts, const std::vector<ContactImpulse>& impulses) {
+  Settler(drawing, outlines, plan, system, parameters, contacts, impulses).settle();
 }
 
 }  // namespace maupertuis::drawing

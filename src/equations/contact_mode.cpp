@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace maupertuis {
 namespace {
 
@@ -155,6 +157,50 @@ std::optional<ContactMode> read_mode(const MechanicalSystem& system, const std::
       return std::nullopt;
     }
   return mode;
+}
+
+namespace {
+
+/// What contact or friction i may do, apart from the rest.
+std::vector<ContactMode> with_each_state(const MechanicalSystem& system, const ContactMode& from, std::size_t i) {
+  const bool contact = i < system.contacts.size();
+  const Friction& friction = friction_of(system, i);
+  std::vector<ContactMode> out;
+  const auto add = [&](bool closed, FrictionState state) {
+    out.push_back(from);
+    if (contact) out.back().closed[i] = closed;
+    out.back().friction[i] = state;
+  };
+  if (contact) add(false, FrictionState::None);
+  if (contact && !friction.present()) add(true, FrictionState::None);
+  if (!friction.present()) return out;
+  add(contact, FrictionState::Stick);
+  if (friction.sticking) return out;
+  add(contact, FrictionState::Forward);
+  add(contact, FrictionState::Backward);
+  return out;
+}
+
+}  // namespace
+
+double number_of_modes(const MechanicalSystem& system) {
+  double out = 1;
+  const ContactMode mode = open_mode(system);
+  for (std::size_t i = 0; i < mode.friction.size(); ++i)
+    out *= static_cast<double>(with_each_state(system, mode, i).size());
+  return out;
+}
+
+std::vector<ContactMode> modes_to_show(const MechanicalSystem& system, const ContactMode& from, std::size_t most) {
+  const bool all = number_of_modes(system) <= static_cast<double>(most);
+  std::vector<ContactMode> out{from};
+  for (std::size_t done = 0; done < (all ? out.size() : 1); ++done) {
+    const ContactMode before = out[done];
+    for (std::size_t i = 0; i < before.friction.size(); ++i)
+      for (ContactMode& mode : with_each_state(system, before, i))
+        if (std::find(out.begin(), out.end(), mode) == out.end()) out.push_back(std::move(mode));
+  }
+  return out;
 }
 
 MechanicalSystem system_in_mode(const MechanicalSystem& system, const ContactMode& mode) {

@@ -257,7 +257,7 @@ std::string draw_frame(const Figure& figure, const Panel& panel, const Axis& acr
   for (const Tick& tick : across.ticks()) {
     const double x = figure.left + tick.position * figure.frame_width();
     grid += fmt::format("M{:.2f} {:.2f}v{:.2f}", x, panel.top, panel.height);
-    if (lowest) labels += text_element(x, bottom + 17, "middle", tick_size, {{tick.label}}, " class=\"tick\"");
+    if (lowest) labels += text_element(x, figure.bottom + 17, "middle", tick_size, {{tick.label}}, " class=\"tick\"");
   }
   for (const Tick& tick : up.ticks()) {
     const double y = bottom - tick.position * panel.height;

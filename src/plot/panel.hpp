@@ -37,6 +37,8 @@ struct Figure {
   Series horizontal;
   std::vector<Panel> panels;
   double left = 0, right = 0, bottom = 0, height = 0;
+  double marks_top = 0;   // of the names of marks
+  double strips_top = 0;  // of the bars below the panels
   double frame_width() const { return right - left; }
 };
 
@@ -48,7 +50,17 @@ std::string text_element(double x, double y, std::string_view anchor, double siz
 /// Height of the lines above the frame that name the curves; 0 for a single curve, which its axis names.
 double legend_height(const Panel& panel, double width);
 
-/// Grid, axes, curves, labels and legend of one panel; the lowest one labels the ticks of the shared axis.
+/// Grid, axes, curves, labels and legend of one panel; the lowest one labels the ticks of the shared axis, below the
+/// bars.
 std::string draw_panel(const Figure& figure, const Panel& panel, const Axis& across, const Axis& up, bool lowest);
+
+/// Room for the names of marks above the panels, for the bars below them, and for their legend below the axis.
+double names_of_marks_height(const Figure& figure);
+double strips_height(const Figure& figure);
+double strips_legend_height(const Figure& figure);
+double widest_strip_name(const Figure& figure);
+/// Lines through the panels, below the curves; then names and bars.
+std::string draw_marks(const Figure& figure, const Axis& across);
+std::string draw_names_and_strips(const Figure& figure, const Axis& across);
 
 }  // namespace maupertuis

@@ -74,17 +74,20 @@ double chosen_panel_height(const Figure& figure, const std::vector<Range>& up, c
 
 // Places the panels; the left margin follows the widest label.
 void arrange(Figure& figure, double panel_height, double label_width) {
-  figure.left = 30 + label_width + 10;
+  figure.left = std::max(30 + label_width, 8 + widest_strip_name(figure)) + 10;
   figure.right = figure.options.width - 18;
   double y = figure.options.title.empty() ? 10 : 38;
+  figure.marks_top = y;
+  y += names_of_marks_height(figure);
   for (Panel& panel : figure.panels) {
     panel.legend_height = legend_height(panel, figure.frame_width());
     panel.top = y + panel.legend_height;
     panel.height = panel_height;
     y = panel.top + panel.height + gap;
   }
-  figure.bottom = y - gap;
-  figure.height = figure.bottom + 46;
+  figure.strips_top = y - gap + 7;
+  figure.bottom = y - gap + strips_height(figure);
+  figure.height = figure.bottom + 46 + strips_legend_height(figure);
 }
 
 struct Axes {
@@ -160,6 +163,8 @@ std::string plot_svg(const Trajectory& trajectory, const PlotOptions& options) {
                 0,
                 0,
                 0,
+                0,
+                0,
                 0};
   if (!options.against.empty()) figure.horizontal = series_of(trajectory, options.against, options.degrees);
 
@@ -176,6 +181,7 @@ std::string plot_svg(const Trajectory& trajectory, const PlotOptions& options) {
 
   std::string svg = opening(figure);
   if (!options.title.empty()) svg += text_element(options.width / 2, 24, "middle", title_size, {{options.title}});
+  svg += draw_marks(figure, axes.across);
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     const Panel& panel = figure.panels[i];
     svg += draw_panel(figure, panel, axes.across, axes.up[i], i + 1 == figure.panels.size());
@@ -183,7 +189,8 @@ std::string plot_svg(const Trajectory& trajectory, const PlotOptions& options) {
       svg += text_element((figure.left + figure.right) / 2, panel.top + panel.height / 2, "middle", label_size,
                           {{"no data"}});
   }
-  svg += text_element((figure.left + figure.right) / 2, figure.height - 9, "middle", label_size,
+  svg += draw_names_and_strips(figure, axes.across);
+  svg += text_element((figure.left + figure.right) / 2, figure.bottom + 37, "middle", label_size,
                       axis_text({figure.horizontal.name}, figure.horizontal.unit, axes.across));
   return svg + "</svg>\n";
 }

@@ -44,11 +44,15 @@ std::string rules(PlotTheme theme, std::string_view scope) {
       "{0} .dots{{fill:none;stroke-width:1.7;stroke-linecap:round}}{0} "
       ".outline{{fill:none;stroke:{4};stroke-width:1;stroke-dasharray:4 3}}"
       "{0} .band{{stroke:none;fill-opacity:.2}}{0} .band.many{{fill:currentColor}}{0} .lost{{stroke-opacity:.3}}"
+      "{0} .mark{{stroke:{4};stroke-width:.8;stroke-opacity:.55;fill:none}}{0} .mark.event{{stroke-dasharray:3 3}}"
+      "{0} .strip{{stroke:none}}{0} .strip.open{{fill:{5}}}"
       "{0} .dense{{stroke-width:.8}}{0} .dot{{stroke:none}}{0} .dot.many{{fill:currentColor}}",
       scope, serif_faces, c.ink, c.paper, c.muted, c.grid);
   for (std::size_t i = 0; i < c.series.size(); ++i)
-    css += fmt::format("{0} .s{1}{{stroke:{2}}}{0} .dot.s{1},{0} .band.s{1}{{fill:{2}}}{0} .band{{stroke:none}}", scope,
-                       i + 1, c.series[i]);
+    css += fmt::format(
+        "{0} .s{1}{{stroke:{2}}}{0} .dot.s{1},{0} .band.s{1},{0} .strip.s{1}{{fill:{2}}}{0} .band,{0} "
+        ".strip{{stroke:none}}",
+        scope, i + 1, c.series[i]);
   return css;
 }
 

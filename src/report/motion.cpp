@@ -1,6 +1,7 @@
 #include "report/motion_parts.hpp"
 #include "report/notation.hpp"
 
+#include <maupertuis/motion_pictures.hpp>
 #include <maupertuis/uncertainty.hpp>
 
 #include <fmt/format.h>
@@ -128,9 +129,12 @@ void add_motion(ReportContent& content, const Model& model, const EquationsOfMot
                 const SimulationResult& run) {
   add_statistics(content, run, model.system);
   content.trajectory = run.trajectory;
-  content.drawing = evaluate_drawing(model, run.trajectory, frames_within_budget(model), &equations);
+  content.drawing =
+      evaluate_drawing(model, run.trajectory, frames_within_budget(model), &equations, impulses_of(run, model.system));
   if (energy_conserved) add_drift_column(content.trajectory);
   add_pictures(content, model.system, run.reactions, energy_conserved);
+  for (ReportContent::Picture& picture : content.pictures)
+    if (picture.options.against.empty()) show_happenings(picture.options, run, model.system);
 }
 
 }  // namespace maupertuis

@@ -112,20 +112,27 @@ constexpr std::array entries{
     CodeEntry{"E0726", "a run cannot end with a force that the model does not determine",
               "Where constraints depend on each other, or coordinates have removed one, its force is not unique.", "",
               ""},
-    CodeEntry{"E0727", "this method does not go through contacts, friction or events",
-              "They are located to rounding on the polynomials of Taylor's steps, and the mode changes there. The stiff "
-              "and the variational method have no such polynomials.",
-              "", ""},
-    CodeEntry{"E0730", "a contact with a kink",
-              "A gap made of abs, min, max, step or piecewise may switch where it and its slope go on, as on the border of a "
-              "stadium. At a corner or a step of the surface the normal direction jumps: that is two contacts.",
-              "", ""},
-    CodeEntry{"E0729", "impacts where momenta are not linear in the velocities",
-              "An impulse changes p = ∂L/∂q'. For a Lagrangian that is quadratic in q' the velocities after it follow from a "
-              "linear equation, which is solved; others, as of a relativistic particle, are not carried out yet.",
-              "", ""},
+    CodeEntry{
+        "E0727", "this method does not go through contacts, friction or events",
+        "They are located to rounding on the polynomials of Taylor's steps, and the mode changes there. The stiff "
+        "and the variational method have no such polynomials.",
+        "", ""},
+    CodeEntry{
+        "E0730", "a contact with a kink",
+        "A gap made of abs, min, max, step or piecewise may switch where it and its slope go on, as on the border of a "
+        "stadium. At a corner or a step of the surface the normal direction jumps: that is two contacts.",
+        "", ""},
+    CodeEntry{
+        "E0729", "impacts where momenta are not linear in the velocities",
+        "An impulse changes p = ∂L/∂q'. For a Lagrangian that is quadratic in q' the velocities after it follow from a "
+        "linear equation, which is solved; others, as of a relativistic particle, are not carried out yet.",
+        "", ""},
+    CodeEntry{"W0731", "no motion begins at this start",
+              "Contacts and friction allow no motion with finite forces from here, or several: Painlevé's paradox.", "",
+              ""},
     CodeEntry{"E0728", "the start violates a contact",
-              "A contact g >= 0 holds at all times, at the first one too: bodies do not begin inside each other.", "", ""},
+              "A contact g >= 0 holds at all times, at the first one too: bodies do not begin inside each other.", "",
+              ""},
 };
 
 }  // namespace

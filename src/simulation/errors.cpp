@@ -226,7 +226,8 @@ class Teller {
                                                    [i](const CompanionRun& run) { return sample_or_null(run.at[i]); }));
   }
 
-  /// A row that is not in the grid is the last one, of an event or an early end: its companions are the ends.
+  /// A row that is not in the grid is the last one, of an event or an early end, whose companions are the ends; or it
+  /// stands beside a jump, whose instant is not quite that of the companions: then the errors of the rows around tell.
   void tell_rows() {
     Trajectory& rows = result_.trajectory;
     std::size_t g = 0;
@@ -241,7 +242,7 @@ class Teller {
       const bool in_grid = g < plan_.grid.size() && plan_.grid[g] == row;
       for (std::size_t c = 0; c < columns_; ++c) {
         const double value = rows.at(row, c);
-        double e = in_grid ? errors_[g * columns_ + c] : of_ends(value, c);
+        double e = in_grid ? errors_[g * columns_ + c] : row + 1 == rows.rows() ? of_ends(value, c) : around(g, c);
         const bool exact = row == 0 && e == 0 && is_given(c);
         if (!exact) e = with_rounding(e, value);
         if (c < 2 * n_ && is_lost_at(c, rows.times[row])) e = infinity;
@@ -249,6 +250,12 @@ class Teller {
       }
       if (in_grid) ++g;
     }
+  }
+
+  double around(std::size_t g, std::size_t column) const {
+    const double before = g > 0 ? errors_[(g - 1) * columns_ + column] : 0,
+                 after = g < plan_.grid.size() ? errors_[g * columns_ + column] : 0;
+    return std::max(before, after);
   }
 
   SimulationResult& result_;
@@ -263,12 +270,13 @@ class Teller {
 }  // namespace
 
 std::vector<std::size_t> comparison_grid(const Trajectory& rows, const RunPlan& plan, ErrorEstimates wanted) {
-  std::size_t count = std::min(rows.rows(), plan.output_times.size());
-  while (count > 0 && rows.times[count - 1] != plan.output_times[count - 1]) --count;
-  const std::size_t stride = wanted == ErrorEstimates::Rows ? 1 : 1 + count / usual_rows;
+  std::vector<std::size_t> all;  // rows of the output times; those beside jumps are not
+  for (std::size_t row = 0; row < rows.rows() && all.size() < plan.output_times.size(); ++row)
+    if (rows.times[row] == plan.output_times[all.size()]) all.push_back(row);
+  const std::size_t stride = wanted == ErrorEstimates::Rows ? 1 : 1 + all.size() / usual_rows;
   std::vector<std::size_t> out;
-  for (std::size_t row = 0; row < count; row += stride) out.push_back(row);
-  if (count > 0 && out.back() != count - 1) out.push_back(count - 1);
+  for (std::size_t k = 0; k < all.size(); k += stride) out.push_back(all[k]);
+  if (!all.empty() && out.back() != all.back()) out.push_back(all.back());
   return out;
 }
 

@@ -45,6 +45,8 @@ HybridMotion::HybridMotion(const Model& model, const EquationsOfMotion& equation
 
 HybridMotion::~HybridMotion() = default;
 
+bool HybridMotion::will_jump() const { return pending_ && (!pending_->hit.empty() || !pending_->sets.empty()); }
+
 void HybridMotion::leave_mode() {
   if (!now_) return;
   const TaylorStepper& s = *now_->stepper;

@@ -60,6 +60,10 @@ class HybridMotion final : public Method {
   /// What the end of the run leaves unsettled is told.
   void finish();
   const HybridRecord& record() const { return record_; }
+  /// Whether the next step begins with an impact, or with what an event sets: the state is another one then.
+  bool will_jump() const;
+  /// Why there is no motion from the start; empty where there is one.
+  std::string trouble() const { return failed_ ? failed_->reason : std::string(); }
 
   /// For neighbours (motion_through_modes.hpp): from here on each instant is kept.
   void keep_instants();

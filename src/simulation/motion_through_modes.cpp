@@ -3,7 +3,6 @@
 #include "simulation/energy_terms.hpp"
 #include "simulation/hybrid_motion.hpp"
 
-#include <maupertuis/across_switches.hpp>
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/transform.hpp>
@@ -27,54 +26,7 @@ WantedFunctions wanted_of(const EquationsOfMotion& equations, Expr until) {
   return out;
 }
 
-bool has_linear_momenta(const EquationsOfMotion& equations) {
-  const ExprMatrix mass = mass_matrix(equations);
-  ExprVector velocities, slopes;
-  for (const Expr& s : symbols_of(mass.entries))
-    if (s.role() == Role::Coordinate && s.order() == 1) velocities.push_back(s);
-  if (velocities.empty()) return true;
-  for (const Expr& entry : mass.entries)
-    for (const Expr& slope : gradient(entry, velocities))
-      if (!slope.is_zero()) slopes.push_back(slope);
-  return slopes.empty() || zero_test(slopes).verdict == Verdict::Zero;
-}
-
-/// E0730 for each contact whose gap, or its slope, jumps at a switch: there λ would have to be an impulse.
-bool contacts_are_smooth(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
-  const MechanicalSystem& system = *equations.system;
-  bool smooth = true;
-  for (const Contact& c : system.contacts) {
-    ExprVector symbols{system.context->time()};
-    for (const Coordinate& q : system.coordinates) symbols.push_back(q.q);
-    ExprVector functions = gradient(c.gap, symbols);
-    functions.push_back(c.gap);
-    for (const Expr& f : functions) {
-      const auto jump = across_switches(system, f, equations.order).jump;
-      if (!jump) continue;
-      diagnostics.error("E0730", c.span,
-                        fmt::format("the surface of this contact has a kink or a step where {}", jump->place),
-                        "There the direction of its force jumps, and what slides over it is let go or hit.",
-                        "Write one contact for each smooth side of the surface.");
-      smooth = false;
-      break;
-    }
-  }
-  return smooth;
-}
-
 }  // namespace
-
-bool can_go_through_modes(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
-  const MechanicalSystem& system = *equations.system;
-  if (!system.contacts.empty() && !has_linear_momenta(equations)) {
-    diagnostics.error("E0729", system.contacts.front().span,
-                      "impacts are not carried out where momenta are not linear in the velocities",
-                      "An impulse changes p = ∂L/∂q'; here q' does not follow from p by a linear equation.",
-                      "Leave the contacts out, or use a Lagrangian that is quadratic in the velocities.");
-    return false;
-  }
-  return contacts_are_smooth(equations, diagnostics);
-}
 
 bool jumps_on_its_way(const Model& model) {
   const auto& events = model.experiment.events;

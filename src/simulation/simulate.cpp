@@ -7,6 +7,7 @@
 #include <maupertuis/transform.hpp>
 
 #include "simulation/companions.hpp"
+#include "simulation/contact_checks.hpp"
 #include "simulation/ending.hpp"
 #include "simulation/energy_terms.hpp"
 #include "simulation/errors.hpp"
@@ -77,30 +78,6 @@ std::unique_ptr<HybridMotion> hybrid_method(const Model& model, const EquationsO
   if (!can_go_through_modes(equations, diagnostics)) return nullptr;
   return std::make_unique<HybridMotion>(model, equations, wanted, parameter_values(model.system),
                                         taylor_options(options));
-}
-
-/// E0728 for each contact that is violated at the start.
-bool start_keeps_contacts(const Model& model, const RunPlan& plan, Diagnostics& diagnostics) {
-  const MechanicalSystem& system = model.system;
-  Bindings at = parameter_bindings(system);
-  at[system.context->time()] = plan.begin;
-  for (std::size_t i = 0; i < plan.q.size(); ++i) at[system.coordinates[i].q] = plan.q[i];
-  bool kept = true;
-  constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
-  for (std::size_t i = 0; i < system.contacts.size(); ++i) {
-    const Expr gap = in_terms_of_motion(system, {&system.contacts[i].gap, 1}).front();
-    double size = 0;
-    if (gap.is(Kind::Sum))
-      for (std::size_t k = 0; k < gap.size(); ++k) size += std::abs(evaluate(gap[k], at));
-    const double value = evaluate(gap, at);
-    if (value >= -rounding * size) continue;
-    kept = false;
-    diagnostics.error(
-        "E0728", system.contacts[i].span, fmt::format("the start violates the contact {}", system.contact_label(i)),
-        fmt::format("Its left side less its right side is {:.6g} there (SI), and has to be at least 0.", value),
-        "Change the start, or the sense of the inequality.");
-  }
-  return kept;
 }
 
 std::unique_ptr<Method> first_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
@@ -228,7 +205,10 @@ class Run {
   /// One step. False when the run ends here.
   bool advance() {
     const std::optional<Sample> on_switch = at_switch_ ? std::optional(method_->sample(method_->time())) : std::nullopt;
+    const bool jumps = hybrid_ && hybrid_->will_jump() && jumps_ < most_jumps;
+    if (jumps) add_row_before_jump();
     const Step step = method_->step(plan_.end);
+    if (jumps && step.begin != step.end) add_row(shown(method_->step_start()));
     if (on_switch && step.begin != step.end) balance_.pass_switch(*on_switch, method_->step_start());
     at_switch_ = energy_jumps_ && step.switches > 0;
     if (step.begin != step.end) balance_.add(method_->step_start());
@@ -289,10 +269,17 @@ class Run {
     }
   }
 
-  Sample sample(double t) const {
-    Sample out = method_->sample(t);
+  Sample sample(double t) const { return shown(method_->sample(t)); }
+  Sample shown(Sample out) const {
     leave_out_undetermined(out, observables_);
     return out;
+  }
+
+  /// The last state before an impact; the first one after it follows, with the same time.
+  void add_row_before_jump() {
+    ++jumps_;
+    const auto& times = result_.trajectory.times;
+    if (times.empty() || times.back() != method_->time()) add_row(sample(method_->time()));
   }
 
   void add_row(const Sample& sample) {
@@ -364,6 +351,8 @@ class Run {
   std::vector<std::size_t> requests_;
   std::vector<State> answers_;
   std::size_t next_output_ = 0, next_request_ = 0;
+  static constexpr std::size_t most_jumps = 10'000;  // that have rows of their own
+  std::size_t jumps_ = 0;
 };
 
 std::string title_of(const std::string& method) {
@@ -429,7 +418,7 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   const auto plan = plan_run(model, equations, options, diagnostics);
   if (!plan || !requests_lie_ahead(model.system, *plan, options, diagnostics)) return std::nullopt;
 
-  if (!start_keeps_contacts(model, *plan, diagnostics)) return std::nullopt;
+  if (!start_keeps_contacts(model, plan->begin, plan->q, diagnostics)) return std::nullopt;
 
   const auto begin = Clock::now();
   const Observables observables = collect_observables(equations, probe);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <maupertuis/drawing.hpp>
+#include <maupertuis/motion_pictures.hpp>
 #include <maupertuis/picture.hpp>
 #include <maupertuis/report.hpp>
 
@@ -213,7 +214,8 @@ std::optional<Drawing> drawing_of(Study& study, const SimulationOptions& setting
   run.errors = ErrorEstimates::None;
   result = run_model(study, run, console);
   if (!result) return {};
-  std::optional<Drawing> drawing = evaluate_drawing(*study.model(), result->trajectory, 12'000, study.equations());
+  std::optional<Drawing> drawing = evaluate_drawing(*study.model(), result->trajectory, 12'000, study.equations(),
+                                                    impulses_of(*result, study.model()->system));
   if (!drawing)
     study.diagnostics().error("E0843", {}, fmt::format("{} has nothing to draw.", study.model()->system.name),
                               "A drawing shows points, bodies, springs and what `draw` names; this model has none.",

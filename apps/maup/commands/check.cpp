@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <maupertuis/print.hpp>
 #include <maupertuis/simulation.hpp>
@@ -68,23 +69,56 @@ std::string held_text(const IntegralConstraint& held, const EquationsOfMotion& e
                      system.dimensionless ? value : with_unit(value, held.dimension));
 }
 
-/// floor: z >= 0, closed at the start
-std::string contact_text(const MechanicalSystem& system, std::size_t index, const ReadingOrder& order) {
+/// "friction 0.3, static 0.4"
+std::string friction_text(const Friction& friction, const MechanicalSystem& system) {
+  if (friction.sticking) return "never slides while it is closed";
+  const double kinetic = value_of(friction.kinetic, system), fixed = value_of(friction.static_, system);
+  return fmt::format("friction {}", brief(kinetic)) + (fixed != kinetic ? ", static " + brief(fixed) : "");
+}
+
+/// floor: z >= 0, restitution 0.8; at the start open by 1 m
+std::string contact_text(const MechanicalSystem& system, std::size_t index, const ReadingOrder& order,
+                         const std::optional<ContactStart>& start) {
   const Contact& c = system.contacts[index];
   std::string out = fmt::format("{}: {} >= 0", system.contact_label(index), to_plain(c.gap, order));
   if (const double e = value_of(c.restitution, system); e != 0) out += fmt::format(", restitution {}", brief(e));
-  if (c.friction.sticking)
-    out += ", never slides while it is closed";
-  else if (c.friction.present())
-    out += fmt::format(", friction {}", brief(value_of(c.friction.kinetic, system)));
-  return out;
+  if (c.friction.present()) out += ", " + friction_text(c.friction, system);
+  if (!start) return out;
+  const auto hit = std::find_if(start->impacts.begin(), start->impacts.end(),
+                                [&](const Happening& h) { return h.name == system.contact_label(index); });
+  if (hit != start->impacts.end())
+    return out + "; at the start it touches and closes: an impact at once" +
+           (start->closed[index] ? ", then closed" : "");
+  if (start->closed[index]) return out + "; closed at the start";
+  const double gap = start->gaps[index];
+  if (!start->trouble.empty() && std::abs(gap) < 1e-14) return out + "; touches at the start";
+  return out + (std::abs(gap) < 1e-14 ? "; touches at the start without force"
+                                      : "; open at the start, by " +
+                                            (system.dimensionless ? brief(gap) : with_unit(brief(gap), c.dimension)));
 }
 
-/// What the check finds out beyond the text: the start on the constraints, and what these are.
+/// "along x: coefficient 0.3 of m g"; "along θ: at most 0.2 N m"
+std::string friction_of_coordinate(const Friction& f, const MechanicalSystem& system, const ReadingOrder& order) {
+  if (f.normal)
+    return fmt::format("along {}: {} of the normal force {}", f.name, friction_text(f, system),
+                       to_plain(f.normal, order));
+  return fmt::format("along {}: at most {}{}", f.name, to_plain(f.kinetic, order),
+                     f.static_ == f.kinetic ? "" : ", static " + to_plain(f.static_, order));
+}
+
+std::string mode_name(const std::string& mode) { return mode.empty() ? "free" : mode; }
+
+/// What the check finds out beyond the text: the start on the constraints, and what these are; how contacts begin.
 struct Findings {
   std::optional<ConsistentStart> start;
   ConstraintAnalysis analysis;
+  std::optional<ContactStart> contacts = std::nullopt;
 };
+
+/// A model without start and run asks about no motion.
+bool asks_for_motion(const Experiment& experiment) {
+  return !experiment.start.empty() || experiment.duration || experiment.until;
+}
 
 Findings look_into(const Model& model, const EquationsOfMotion& equations, Diagnostics& diagnostics) {
   Findings out;
@@ -92,6 +126,8 @@ Findings look_into(const Model& model, const EquationsOfMotion& equations, Diagn
   const MotionState* start = out.start ? &out.start->state : nullptr;
   out.analysis = analyse_constraints(equations, start);
   report_constraints(out.analysis, equations, start, diagnostics);
+  if (start && model.system.has_modes() && asks_for_motion(model.experiment))
+    out.contacts = contact_start(model, equations, *start, diagnostics);
   diagnostics.sort_by_place();
   return out;
 }
@@ -140,10 +176,13 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
   for (const AppliedForce& force : system.forces) words.push_back("on " + force.target);
   line("forces Q", joined(words));
   for (std::size_t i = 0; i < system.contacts.size() && i < 12; ++i)
-    line(i == 0 ? "contacts" : "", contact_text(system, i, equations.order));
+    line(i == 0 ? "contacts" : "", contact_text(system, i, equations.order, findings.contacts));
   if (system.contacts.size() > 12) line("", fmt::format("… {} of them", system.contacts.size()));
   for (std::size_t i = 0; i < system.frictions.size(); ++i)
-    line(i == 0 ? "friction" : "", "along " + system.frictions[i].name);
+    line(i == 0 ? "friction" : "", friction_of_coordinate(system.frictions[i], system, equations.order));
+  if (findings.contacts)
+    line("begins", findings.contacts->trouble.empty() ? "in the mode " + mode_name(findings.contacts->mode)
+                                                      : "not: " + findings.contacts->trouble);
   words.clear();
   for (const ModelEvent& event : model.experiment.events) words.push_back(event.name);
   line("events", joined(words));
@@ -159,6 +198,35 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
   if (!model.experiment.expectations.empty())
     line("expectations", fmt::format("{} (run them with `maup test`)", model.experiment.expectations.size()));
   return out;
+}
+
+Json friction_json(const Friction& f, const EquationsOfMotion& equations) {
+  if (f.sticking) return {{"sticking", true}};
+  return {{"kinetic", value_of(f.kinetic, *equations.system)}, {"static", value_of(f.static_, *equations.system)}};
+}
+
+/// contacts: [{name, gap, restitution, friction, start: {gap, rate, closed, impact}}], first_mode
+void add_contacts(Json& document, const EquationsOfMotion& equations, const std::optional<ContactStart>& start) {
+  const MechanicalSystem& system = *equations.system;
+  document["contacts"] = Json::array();
+  for (std::size_t i = 0; i < system.contacts.size(); ++i) {
+    const Contact& c = system.contacts[i];
+    Json contact{{"name", system.contact_label(i)},
+                 {"gap", to_plain(c.gap, equations.order)},
+                 {"restitution", value_of(c.restitution, system)},
+                 {"friction", c.friction.present() ? friction_json(c.friction, equations) : Json()},
+                 {"start", nullptr}};
+    if (start) {
+      const bool hit = std::any_of(start->impacts.begin(), start->impacts.end(),
+                                   [&](const Happening& h) { return h.name == system.contact_label(i); });
+      contact["start"] = {{"gap", start->gaps[i]},
+                          {"rate", start->rates[i]},
+                          {"closed", static_cast<bool>(start->closed[i])},
+                          {"impact", hit}};
+    }
+    document["contacts"].push_back(std::move(contact));
+  }
+  document["first_mode"] = start && start->trouble.empty() ? Json(mode_name(start->mode)) : Json();
 }
 
 ExitCode check(const ModelOptions& options, Console& console) {
@@ -180,6 +248,7 @@ ExitCode check(const ModelOptions& options, Console& console) {
     document["freedoms"] = counted ? Json(findings->analysis.configuration_freedoms) : Json(nullptr);
     document["instantaneous_freedoms"] = counted ? Json(findings->analysis.instantaneous_freedoms) : Json(nullptr);
     document["constraints"] = counted ? constraints_to_json(*equations, findings->analysis) : Json::array();
+    if (counted && model->system.has_modes()) add_contacts(document, *equations, findings->contacts);
     return finish(console, study, document);
   }
   if (findings && !study.wrong()) console.print(summary(*model, *equations, *findings) + "No mistakes found.\n");

@@ -2,15 +2,19 @@
 #include "derivation_text.hpp"
 #include "emit.hpp"
 #include "equation_forms.hpp"
+#include "interrupt.hpp"
 #include "outcome.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <maupertuis/constraint_analysis.hpp>
+#include <maupertuis/contact_mode.hpp>
 #include <maupertuis/couplings.hpp>
 #include <maupertuis/print.hpp>
 #include <maupertuis/reactions.hpp>
+#include <maupertuis/simulation.hpp>
 
 namespace maupertuis::app {
 namespace {
@@ -21,6 +25,7 @@ struct DeriveOptions {
   bool eliminate = false, steps = false, latex = false, mathml = false, plain = false;
   std::string certify = "standard";
   std::string emit;
+  bool modes = false;
 
   Form chosen_form() const {
     if (eliminate) return Form::Eliminated;
@@ -167,17 +172,105 @@ ExitCode emit_stage(const DeriveOptions& options, Study& study, Console& console
   return finish(console, study, document);
 }
 
+// ------------------------------------------------------------------------------------------------------------- modes
+
+constexpr std::size_t few_modes = 8;  // shown all
+
+/// That of the start, if the model has one from which a motion begins; else all is open and what rubs sticks.
+ContactMode first_mode(Study& study) {
+  const Model& model = *study.model();
+  ContactMode mode = open_mode(model.system);
+  if (model.experiment.start.empty() || !study.equations()) return mode;
+  Diagnostics unheard;  // of the start: `maup check` tells them
+  const auto start = consistent_start(model, *study.equations(), unheard);
+  const auto contacts =
+      start ? contact_start(model, *study.equations(), start->state, unheard) : std::optional<ContactStart>();
+  std::string trouble;
+  if (contacts && contacts->trouble.empty())
+    if (auto read = read_mode(model.system, contacts->mode, trouble)) mode = *std::move(read);
+  return mode;
+}
+
+/// The equations of one mode, certified; or why it has none.
+void add_mode(const DeriveOptions& options, Study& whole, const ContactMode& mode, bool first, std::string& text,
+              Json& list) {
+  const std::string name = mode_text(whole.model()->system, mode);
+  const std::string shown = name.empty() ? "free" : name;
+  Study study = study_in_mode(whole.source(), options.model, shown);
+  study.derivation(false);
+  const Certificate* certificate = study.certificate({.full = options.certify == "full"});
+  EquationForm form;
+  if (certificate) form = equation_form(options.chosen_form(), study);
+  text += fmt::format("{}Mode {}{}\n", text.empty() ? "" : "\n", shown, first ? ", in which the motion begins" : "");
+  if (!certificate || study.wrong()) {
+    const auto items = study.diagnostics().items();
+    const auto error =
+        std::find_if(items.begin(), items.end(), [](const Diagnostic& d) { return d.severity == Severity::Error; });
+    const std::string reason =
+        error == items.end() ? "the check of its equations did not come to an end" : error->message;
+    text += fmt::format("  no equations: {}\n", reason);
+    list.push_back({{"mode", shown}, {"first", first}, {"reason", reason}});
+    return;
+  }
+  text += equations_text(form, study.equations()->order);
+  const auto passed = std::count_if(certificate->checks.begin(), certificate->checks.end(),
+                                    [](const CertificateCheck& c) { return c.applies && c.verdict == Verdict::Zero; });
+  text += fmt::format("Certificate: {}, {} checks\n", certificate->passed() ? "passed" : "NOT PASSED", passed);
+  Json entry = document_of(options, study, form, certificate);
+  entry["mode"] = shown;
+  entry["first"] = first;
+  list.push_back(std::move(entry));
+}
+
+ExitCode derive_modes(const DeriveOptions& options, Study& study, Console& console) {
+  Json document = json_document("derive");
+  if (!study.equations()) return finish(console, study, document);
+  const MechanicalSystem& system = study.model()->system;
+  if (!system.has_modes()) {
+    study.diagnostics().error("E0809", {},
+                              "--modes asks for the modes of contacts and dry friction, and the model has none.", {},
+                              "Without --modes `maup derive` shows its one set of equations.");
+    return finish_usage(console, study, "derive");
+  }
+  std::string text;
+  Json list = Json::array();
+  const ContactMode start = first_mode(study);
+  const bool begins = !study.model()->experiment.start.empty();
+  const std::vector<ContactMode> modes = modes_to_show(system, start, few_modes);
+  for (const ContactMode& mode : modes) {
+    if (interrupt_flag().load()) throw Interrupted();
+    add_mode(options, study, mode, begins && mode == start, text, list);
+  }
+  const double all = number_of_modes(system);
+  document["system"] = system.name;
+  document["number_of_modes"] = all;
+  document["modes"] = std::move(list);
+  if (all > static_cast<double>(modes.size()))
+    text += fmt::format(
+        "\n{} of {:.6g} modes: those that one contact or one friction makes of the first. --mode NAME shows "
+        "another.\n",
+        modes.size(), all);
+  if (!console.json()) console.print(text);
+  return finish(console, study, document);
+}
+
 ExitCode derive(const DeriveOptions& options, Console& console) {
   Study study = open_study(options.model);
+  if (options.modes && (options.steps || options.latex || options.mathml || options.plain || !options.emit.empty() ||
+                        options.model.mode)) {
+    study.diagnostics().error("E0809", {}, "--modes goes with --form, --eliminate, --certify and --json alone.", {},
+                              "--mode NAME shows one of them in every way.");
+    return finish_usage(console, study, "derive");
+  }
+  if (options.modes) return derive_modes(options, study, console);
   if (!options.emit.empty()) return emit_stage(options, study, console);
 
   if (study.refuse_held_integrals()) return finish(console, study, document_of(options, study, {}, nullptr));
   study.derivation(options.steps);
   if (study.model() && study.model()->system.has_modes())
-    study.diagnostics().note(
-        "N0505", std::nullopt, "these are the equations without contact and without dry friction",
-        "While a contact is closed, or friction sticks or slides, others hold.",
-        "--mode \"floor\", or \"floor sticking\" with friction, shows those of a mode; `maup check` lists them.");
+    study.diagnostics().note("N0505", std::nullopt, "these are the equations without contact and without dry friction",
+                             "While a contact is closed, or friction sticks or slides, others hold.",
+                             "--modes shows those of its modes, --mode \"floor\" or \"floor sticking\" those of one.");
   const Certificate* certificate = study.certificate({.full = options.certify == "full"});
   EquationForm form;
   if (certificate) form = equation_form(options.chosen_form(), study);
@@ -208,6 +301,9 @@ void add_derive(CommandLine& line) {
                               [options](Console& console) { return derive(*options, console); });
   add_model_options(command, options->model);
   command.add_flag("--steps", options->steps, "The textbook derivation, line by line, each with its rule");
+  command.add_flag(
+      "--modes", options->modes,
+      "The equations of each mode of contacts and friction; of many those next to where the motion begins");
   Option* form = command
                      .add_option("--form", options->form,
                                  "standard: R = Aᵀλ; solved: q'' = …, λ = …; matrix: M, h, A and b of M q'' + h = Aᵀλ, "

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <maupertuis/motion_pictures.hpp>
 #include <maupertuis/plot.hpp>
 
 namespace maupertuis::app {
@@ -53,6 +54,7 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
     return ExitCode::Usage;
   }
   check_numbers(result->trajectory, study.diagnostics());
+  show_happenings(picture, *result, study.model()->system);
   const std::string svg = plot_svg(result->trajectory, picture);
   if (options.output != "-")
     write_picture(options.output, svg, study.diagnostics());

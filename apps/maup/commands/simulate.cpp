@@ -10,6 +10,7 @@
 
 #include <cmath>
 
+#include <maupertuis/motion_pictures.hpp>
 #include <maupertuis/plot.hpp>
 #include <maupertuis/uncertainty.hpp>
 
@@ -254,6 +255,7 @@ void write_files(const SimulateOptions& options, const AskedColumns& columns, co
   if (!options.plot.empty()) {
     PlotOptions picture;
     picture.title = study.model()->system.title;
+    show_happenings(picture, result, study.model()->system);
     write_picture(options.plot, plot_svg(*rows, picture), diagnostics);
   }
 }

@@ -267,9 +267,9 @@ const maupScene = (() => {
 
     function force(e, points) {
       const [foot, tip] = [0, 1].map(p => place(at(points, p)));
-      for (const item of arrow(foot, tip, series(1), 2.2, unit)) add(item);
+      for (const item of arrow(foot, tip, series(e.impulse ? 4 : 1), 2.2, unit)) add(item);
       const dx = tip[0] - foot[0], dy = tip[1] - foot[1], length = hypot(dx, dy), gap = 14 * unit;
-      if (length <= 24 * unit) return;
+      if (length <= 24 * unit || !e.text.base) return;
       const align = dy > 0.3 * length ? 'r' : dy < -0.3 * length ? 'l' : 'c';
       add(words(e.text, tip[0] - gap * dy / length, tip[1] + gap * dx / length, align, plain('muted')));
     }

@@ -3,6 +3,7 @@
 #include <maupertuis/mechanical_system.hpp>
 #include <maupertuis/report.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -31,17 +32,26 @@ Drawing drawn(const char* text, Q q) {
   const auto& coordinates = model->system.coordinates;
   for (const char* dash : {"", "'"})
     for (const Coordinate& c : coordinates) run.columns.push_back({c.name + dash, ""});
+  const auto& contacts = model->system.contacts;
+  std::vector<ContactImpulse> impulses;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    run.columns.push_back({"reaction(" + contacts[c].name + ")", "N"});
+    impulses.push_back({c, 0.15 * duration, 1});  // seen at 1.234 s
+  }
   for (int i = 0; i < frames; ++i) {
     const double t = duration * i / (frames - 1), h = 1e-6;
     run.times.push_back(t);
     for (std::size_t k = 0; k < coordinates.size(); ++k) run.values.push_back(q(k, t));
     for (std::size_t k = 0; k < coordinates.size(); ++k) run.values.push_back((q(k, t + h) - q(k, t - h)) / (2 * h));
+    for (std::size_t c = 0; c < contacts.size(); ++c) run.values.push_back(std::max(0.0, std::sin(t)));
   }
-  return evaluate_drawing(*model, run).value();
+  const auto system = std::make_shared<const MechanicalSystem>(model->system);
+  const auto equations = euler_lagrange(system, diagnostics);
+  return evaluate_drawing(*model, run, 6000, equations ? &*equations : nullptr, impulses).value();
 }
 
-// A cart on a rail with a pendulum, a spring and a dashpot to the wall, a box, a wheel and a label; and a point that is
-// lost at the end.
+// A cart on a rail with a pendulum, a spring and a dashpot to the wall, a box, a wheel and a label; a table that
+// moves and presses on the bob; and a point that is lost at the end.
 Drawing plane_drawing() {
   return drawn(
       "system plane\nparam m = 1 kg, k = 3 N/m, c = 1 N s/m, l = 80 cm, w = 1.2 m, R = 10 cm, T0 = 6 s\ncoord x : "
@@ -50,7 +60,7 @@ Drawing plane_drawing() {
       "angle -x/R\n"
       "point lost at (w sqrt(1 - t/T0), 3 R)\nspring (-w, 0) - cart stiffness k length w\ndamper (-w, -R) - cart "
       "coefficient c\n"
-      "gravity (0, -9.81 [m/s^2])\nrun 8 s\n"
+      "gravity (0, -9.81 [m/s^2])\ncontact bob.y >= -l - w/4 + R sin(t/T0) name table\nrun 8 s\n"
       "draw trail bob, box cart 0.4 m by 0.2 m, cart - bob, hoop wheel R, circle lost R, label bob, wall at (-w, 0), "
       "ground at (0, -R)\n",
       [](std::size_t k, double t) { return k == 0 ? 0.4 * std::cos(2 * t) : 0.9 * std::cos(3.1 * t); });
@@ -167,6 +177,7 @@ std::string scene(const Drawing& drawing) {
              ",\"radius\":" + std::to_string(item.radius) +
              ",\"fill\":" + std::to_string(item.fill.ink == FrameColour::Ink::None ? 0 : item.fill.strength) +
              ",\"stroke\":" + std::to_string(item.stroke.ink == FrameColour::Ink::None ? 0 : item.stroke.strength) +
+             ",\"series\":" + std::to_string(item.fill.series + item.stroke.series) +
              ",\"points\":" + numbers(item.points) + "}";
     out += "]}";
   }

@@ -40,6 +40,8 @@ for (const name of ['scene-plane', 'scene-space']) {
       check(`${at}: item ${item.id} has its radius`, Math.abs((other.radius ?? 0) - item.radius) < 0.02);
       check(`${at}: item ${item.id} is closed alike`, Boolean(other.closed) === item.closed);
       check(`${at}: item ${item.id} has its fill`, Math.abs((other.fill?.strength ?? 0) - item.fill) < 1e-3, [other.fill, item.fill]);
+      const series = (other.fill?.series ?? 0) + (other.stroke?.series ?? 0);
+      check(`${at}: item ${item.id} has its colour`, series === item.series, [series, item.series]);
       check(`${at}: item ${item.id} has its stroke`, Math.abs((other.stroke?.strength ?? 0) - item.stroke) < 1e-3);
     }
     check(`${at}: the same order`, swaps === 0, swaps);

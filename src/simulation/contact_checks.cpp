@@ -1,0 +1,87 @@
+#include "simulation/contact_checks.hpp"
+
+#include <maupertuis/across_switches.hpp>
+#include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/motion_through_modes.hpp>
+#include <maupertuis/transform.hpp>
+
+#include <fmt/format.h>
+
+#include <limits>
+
+namespace maupertuis {
+namespace {
+
+bool has_linear_momenta(const EquationsOfMotion& equations) {
+  const ExprMatrix mass = mass_matrix(equations);
+  ExprVector velocities, slopes;
+  for (const Expr& s : symbols_of(mass.entries))
+    if (s.role() == Role::Coordinate && s.order() == 1) velocities.push_back(s);
+  if (velocities.empty()) return true;
+  for (const Expr& entry : mass.entries)
+    for (const Expr& slope : gradient(entry, velocities))
+      if (!slope.is_zero()) slopes.push_back(slope);
+  return slopes.empty() || zero_test(slopes).verdict == Verdict::Zero;
+}
+
+/// E0730 for each contact whose gap, or its slope, jumps at a switch: there λ would have to be an impulse.
+bool contacts_are_smooth(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
+  const MechanicalSystem& system = *equations.system;
+  bool smooth = true;
+  for (const Contact& c : system.contacts) {
+    ExprVector symbols{system.context->time()};
+    for (const Coordinate& q : system.coordinates) symbols.push_back(q.q);
+    ExprVector functions = gradient(c.gap, symbols);
+    functions.push_back(c.gap);
+    for (const Expr& f : functions) {
+      const auto jump = across_switches(system, f, equations.order).jump;
+      if (!jump) continue;
+      diagnostics.error("E0730", c.span,
+                        fmt::format("the surface of this contact has a kink or a step where {}", jump->place),
+                        "There the direction of its force jumps, and what slides over it is let go or hit.",
+                        "Write one contact for each smooth side of the surface.");
+      smooth = false;
+      break;
+    }
+  }
+  return smooth;
+}
+
+}  // namespace
+
+bool can_go_through_modes(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
+  const MechanicalSystem& system = *equations.system;
+  if (!system.contacts.empty() && !has_linear_momenta(equations)) {
+    diagnostics.error("E0729", system.contacts.front().span,
+                      "impacts are not carried out where momenta are not linear in the velocities",
+                      "An impulse changes p = ∂L/∂q'; here q' does not follow from p by a linear equation.",
+                      "Leave the contacts out, or use a Lagrangian that is quadratic in the velocities.");
+    return false;
+  }
+  return contacts_are_smooth(equations, diagnostics);
+}
+
+bool start_keeps_contacts(const Model& model, double t, std::span<const double> q, Diagnostics& diagnostics) {
+  const MechanicalSystem& system = model.system;
+  Bindings at = parameter_bindings(system);
+  at[system.context->time()] = t;
+  for (std::size_t i = 0; i < q.size(); ++i) at[system.coordinates[i].q] = q[i];
+  bool kept = true;
+  constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
+  for (std::size_t i = 0; i < system.contacts.size(); ++i) {
+    const Expr gap = in_terms_of_motion(system, {&system.contacts[i].gap, 1}).front();
+    double size = 0;
+    if (gap.is(Kind::Sum))
+      for (std::size_t k = 0; k < gap.size(); ++k) size += std::abs(evaluate(gap[k], at));
+    const double value = evaluate(gap, at);
+    if (value >= -rounding * size) continue;
+    kept = false;
+    diagnostics.error(
+        "E0728", system.contacts[i].span, fmt::format("the start violates the contact {}", system.contact_label(i)),
+        fmt::format("Its left side less its right side is {:.6g} there (SI), and has to be at least 0.", value),
+        "Change the start, or the sense of the inequality.");
+  }
+  return kept;
+}
+
+}  // namespace maupertuis

@@ -1,0 +1,85 @@
+// Contacts from outside: what check and derive say of them, and what files and pictures hold.
+#include "json.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace cli_test;
+
+namespace {
+
+std::string box(const std::string& start) {
+  return "system box\nparam m = 1 kg, g = 10 m/s^2\ncoord x, z : length\npoint P mass m at (x, z)\ngravity (0, -g)\n"
+         "contact z >= 0 restitution 0.5 friction 0.3 static 0.4 slip x' name floor\n"
+         "contact x <= 3 [m] name wall\nstart " +
+         start + "\nrun 1 s\ndraw circle P 5 cm\n";
+}
+
+}  // namespace
+
+TEST_CASE("check lists contacts, which are closed, which are hit at once, and how the motion begins") {
+  const Folder folder;
+  const Outcome slides = maup({"check", folder.write("a.lag", box("x' = 1 m/s"))});
+  CHECK_MESSAGE(slides.code == 0, slides.err);
+  CHECK(contains(slides.out, "floor: z >= 0, restitution 0.5, friction 0.3, static 0.4; closed at the start"));
+  CHECK(contains(slides.out, "open at the start, by 3 m"));
+  CHECK(contains(slides.out, "in the mode floor sliding +"));
+
+  const std::string falls = folder.write("b.lag", box("z' = -2 m/s"));
+  CHECK(contains(maup({"check", falls}).out, "at the start it touches and closes: an impact at once"));
+  const Json document = json_of(maup({"check", falls, "--json"}));
+  CHECK(document["first_mode"] == "free");
+  REQUIRE(document["contacts"].size() == 2);
+  CHECK(document["contacts"][0]["start"]["impact"] == true);
+  CHECK(document["contacts"][0]["start"]["rate"] == -2.0);
+  CHECK(document["contacts"][1]["friction"].is_null());
+
+  const Outcome below = maup({"check", folder.write("c.lag", box("z = -1 mm"))});
+  CHECK(below.code == 1);
+  CHECK(contains(below.err, "E0728"));
+}
+
+TEST_CASE("derive --modes: the equations of each mode, certified, that of the start first") {
+  const Folder folder;
+  const std::string model = folder.write("a.lag", box("x' = 1 m/s"));
+  const Outcome told = maup({"derive", model, "--modes"});
+  CHECK_MESSAGE(told.code == 0, told.err);
+  CHECK(told.out.rfind("Mode floor sliding +, in which the motion begins\n", 0) == 0);
+  for (const char* part : {"Mode free\n", "Mode floor sticking\n", "Mode floor sliding −\n", "Mode wall\n",
+                           "Mode floor sticking, wall\n", "Certificate: passed"})
+    CHECK(contains(told.out, part));
+  const Json document = json_of(maup({"derive", model, "--modes", "--json"}));
+  CHECK(document["number_of_modes"] == 8);
+  REQUIRE(document["modes"].size() == 8);
+  for (const Json& mode : document["modes"])
+    if (mode.contains("certificate")) CHECK(mode["certificate"]["passed"] == true);
+  // The same as the one mode alone.
+  const Json alone = json_of(maup({"derive", model, "--mode", "floor sliding +", "--json"}));
+  CHECK(document["modes"][0]["equations"] == alone["equations"]);
+
+  CHECK(maup({"derive", model, "--modes", "--steps"}).code == 2);
+  CHECK(maup({"derive", folder.write("p.lag", pendulum), "--modes"}).code == 2);
+}
+
+TEST_CASE("rows beside impacts, marks and bars in plots, surfaces and arrows in drawings") {
+  const Folder folder;
+  const std::string model = folder.write("a.lag", box("z = 0.2 m, x' = 1 m/s")), csv = folder.path("a.csv"),
+                    plot = folder.path("a.svg"), still = folder.path("still.svg");
+  REQUIRE(maup({"simulate", model, "-o", csv, "--every", "0.25s"}).code == 0);
+  const std::string rows = read(csv);
+  std::size_t at = 0;
+  std::string before;
+  bool twice = false;
+  while ((at = rows.find("\r\n", at)) != std::string::npos) {
+    const std::string time = rows.substr(at + 2, rows.find(',', at) - at - 2);
+    twice = twice || (time == before && !time.empty());
+    before = time;
+    at += 2;
+  }
+  CHECK(twice);
+  REQUIRE(maup({"plot", model, "-o", plot}).code == 0);
+  CHECK(contains(read(plot), "class=\"mark\""));
+  CHECK(contains(read(plot), "class=\"strip s3\""));
+  CHECK(contains(read(plot), "sticking"));
+  REQUIRE(maup({"animate", model, "--still", "0.95s", "-o", still}).code == 0);
+  CHECK(contains(read(still), "</svg>"));
+}
