@@ -20,6 +20,7 @@ struct Friction {
   bool sticking = false;  // it never slides while the contact is closed
   Span span;
   bool present() const { return !slip.empty(); }
+  bool in_space() const { return slip.size() == 2; }
 };
 
 /// g(q, t) ≥ 0. While it is closed g = 0 and its force is +λ ∂g/∂q with λ ≥ 0.

@@ -8,8 +8,9 @@
 
 namespace maupertuis {
 
-/// What a friction does in a mode. None: its contact is open, or there is none.
-enum class FrictionState : std::int8_t { None, Stick, Forward, Backward };
+/// What a friction does in a mode. None: its contact is open, or there is none. Slide: in space, along v_t, wherever
+/// that points.
+enum class FrictionState : std::int8_t { None, Stick, Forward, Backward, Slide };
 
 /// Which contacts are closed and what each friction does: between events a system moves by the equations of one mode.
 struct ContactMode {
@@ -24,6 +25,8 @@ ContactMode open_mode(const MechanicalSystem& system);
 /// Friction number i of a mode: of contact i, then of the coordinates.
 const Friction& friction_of(const MechanicalSystem& system, std::size_t index);
 
+/// |v_t| of a friction in space.
+Expr slip_speed(const Friction& friction);
 /// The normal force of friction i in a mode, not negative there: λ of its contact; the |N| that the model says, by the
 /// sign of the mode where it is made of multipliers. Empty where the limits of the friction are forces themselves.
 Expr normal_force(const MechanicalSystem& system, const ContactMode& mode, std::size_t index);
@@ -45,7 +48,7 @@ std::vector<ContactMode> modes_to_show(const MechanicalSystem& system, const Con
 
 /// The system as it moves in a mode, without inequalities: closed contacts are constraints g = 0 at the end of its
 /// constraints, sticking ones constraints between velocities v_t = 0 after them; sliding ones have the generalized
-/// force −σ μ N ∂v_t/∂q̇ with σ = ±1, which holds the multiplier of the contact. Its equations are those of any system,
+/// force −σ μ N ∂v_t/∂q̇ with σ = ±1, in space −μ N Σ_k v_tk/|v_t| ∂v_tk/∂q̇, which holds the multiplier of the contact. Its equations are those of any system,
 /// and are certified as such. Reactions in normal forces have been replaced (see contact_normals).
 MechanicalSystem system_in_mode(const MechanicalSystem& system, const ContactMode& mode);
 

@@ -76,6 +76,7 @@ class TaylorStepper {
     std::vector<double> slopes;         // [events] their rates here
     std::vector<double> reach;          // [events] the largest that they can become over the length that is judged
     std::vector<double> accelerations;  // [n]
+    double length = 0;                  // over which all that is judged, s
   };
   /// After start(); `bound`: how far to look at most.
   Outlook outlook(double bound);

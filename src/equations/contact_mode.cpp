@@ -28,18 +28,25 @@ void add_sticking(MechanicalSystem& out, const Friction& friction, const std::st
   }
 }
 
-/// −σ μ N ∂v_t/∂q̇
-void add_sliding(MechanicalSystem& out, const Friction& friction, Expr normal, int direction) {
-  Expr force = normal ? friction.kinetic * normal : friction.kinetic;
-  if (direction > 0) force = -force;
+/// −σ μ N ∂v_t/∂q̇; in space −μ N Σ_k v_tk/|v_t| ∂v_tk/∂q̇
+void add_sliding(MechanicalSystem& out, const Friction& friction, Expr normal, FrictionState state) {
+  const Expr most = normal ? friction.kinetic * normal : friction.kinetic;
+  const Expr speed = friction.in_space() ? slip_speed(friction) : Expr();
   for (std::size_t i = 0; i < out.coordinates.size(); ++i) {
-    const Expr lever = differentiate(friction.slip[0], out.coordinates[i].velocity);
-    if (lever.is_zero()) continue;
+    ExprVector terms;
+    for (const Expr& slip : friction.slip) {
+      const Expr lever = differentiate(slip, out.coordinates[i].velocity);
+      if (lever.is_zero()) continue;
+      terms.push_back(friction.in_space()                ? -(most * slip / speed * lever)
+                      : state == FrictionState::Backward ? most * lever
+                                                         : -most * lever);
+    }
+    if (terms.empty()) continue;
     AppliedForce f;
     f.kind = AppliedForce::Kind::Generalized;
     f.target = out.coordinates[i].name;
     f.coordinate = i;
-    f.components = {force * lever};
+    f.components = {out.context->sum(terms)};
     f.span = friction.span;
     out.forces.push_back(std::move(f));
   }
@@ -54,6 +61,12 @@ ContactMode open_mode(const MechanicalSystem& system) {
   mode.friction.resize(system.contacts.size() + system.frictions.size(), FrictionState::Stick);
   mode.normal_sign.assign(system.frictions.size(), 1);
   return mode;
+}
+
+Expr slip_speed(const Friction& friction) {
+  ExprVector squares;
+  for (const Expr& slip : friction.slip) squares.push_back(slip * slip);
+  return sqrt(friction.slip[0].context().sum(squares));
 }
 
 bool has_multipliers(Expr e) {
@@ -87,6 +100,7 @@ std::string mode_text(const MechanicalSystem& system, const ContactMode& mode) {
     const FrictionState state = mode.friction[i];
     add(state == FrictionState::None    ? label
         : state == FrictionState::Stick ? label + " sticking"
+        : state == FrictionState::Slide ? label + " sliding"
                                         : label + (state == FrictionState::Forward ? " sliding +" : " sliding −"));
   }
   return out;
@@ -111,7 +125,8 @@ FrictionState take_state(std::string& part) {
   const std::pair<const char*, FrictionState> words[] = {{" sticking", FrictionState::Stick},
                                                          {" sliding +", FrictionState::Forward},
                                                          {" sliding -", FrictionState::Backward},
-                                                         {" sliding −", FrictionState::Backward}};
+                                                         {" sliding −", FrictionState::Backward},
+                                                         {" sliding", FrictionState::Slide}};
   for (const auto& [word, state] : words)
     if (part.ends_with(word)) {
       part.resize(part.size() - std::string(word).size());
@@ -137,12 +152,21 @@ std::optional<ContactMode> read_mode(const MechanicalSystem& system, const std::
     const bool contact = i < mode.closed.size();
     const Friction& friction = friction_of(system, i);
     if (state == FrictionState::None && friction.present() && !friction.sticking) {
-      trouble = fmt::format("Say what friction does there: `{0} sticking`, `{0} sliding +` or `{0} sliding -`.", part);
+      trouble =
+          friction.in_space()
+              ? fmt::format("Say what friction does there: `{0} sticking` or `{0} sliding`.", part)
+              : fmt::format("Say what friction does there: `{0} sticking`, `{0} sliding +` or `{0} sliding -`.", part);
       return std::nullopt;
     }
     if (state != FrictionState::None && (!friction.present() || (friction.sticking && state != FrictionState::Stick))) {
       trouble = friction.present() ? fmt::format("`{}` never slides while it is closed.", part)
                                    : fmt::format("`{}` has no friction.", part);
+      return std::nullopt;
+    }
+    if (friction.present() && state != FrictionState::None && state != FrictionState::Stick &&
+        (state == FrictionState::Slide) != friction.in_space()) {
+      trouble = friction.in_space() ? fmt::format("`{0}` slides in a plane: write `{0} sliding`.", part)
+                                    : fmt::format("Say which way: `{0} sliding +` or `{0} sliding -`.", part);
       return std::nullopt;
     }
     if (contact) mode.closed[i] = true;
@@ -176,6 +200,10 @@ std::vector<ContactMode> with_each_state(const MechanicalSystem& system, const C
   if (!friction.present()) return out;
   add(contact, FrictionState::Stick);
   if (friction.sticking) return out;
+  if (friction.in_space()) {
+    add(contact, FrictionState::Slide);
+    return out;
+  }
   add(contact, FrictionState::Forward);
   add(contact, FrictionState::Backward);
   return out;
@@ -219,7 +247,7 @@ MechanicalSystem system_in_mode(const MechanicalSystem& system, const ContactMod
     if (mode.friction[i] == FrictionState::Stick)
       add_sticking(out, friction, label_of_friction(system, i));
     else
-      add_sliding(out, friction, normal_force(system, mode, i), mode.friction[i] == FrictionState::Forward ? 1 : -1);
+      add_sliding(out, friction, normal_force(system, mode, i), mode.friction[i]);
   }
   if (system.written) out.written = std::make_shared<const MechanicalSystem>(system_in_mode(*system.written, mode));
   return out;

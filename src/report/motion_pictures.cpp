@@ -37,6 +37,7 @@ Doing doing_of(const ContactMode& mode, std::size_t friction) {
     case FrictionState::Stick:
       return Doing::Stick;
     case FrictionState::Forward:
+    case FrictionState::Slide:
       return Doing::Forward;
     case FrictionState::Backward:
       return Doing::Backward;

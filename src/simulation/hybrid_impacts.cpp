@@ -36,6 +36,13 @@ ImpactProblem HybridMotion::impact_problem(const std::vector<std::size_t>& touch
   }
   p.response = functions_.response(t_, q_, v_, p.normal);
   p.tangent_response = functions_.response(t_, q_, v_, p.tangent);
+  for (const std::size_t i : touching) {
+    p.second_tangent.push_back(values.second_tangent[i]);
+    double rest = values.second_slip[i];
+    for (const auto& [k, x] : values.second_tangent[i]) rest -= x * v_[k];
+    p.second_drive.push_back(std::abs(rest) <= rest_slip(i, values) ? 0 : rest);
+  }
+  p.second_response = functions_.response(t_, q_, v_, p.second_tangent);
   return p;
 }
 

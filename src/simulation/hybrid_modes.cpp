@@ -24,6 +24,10 @@ std::string key_of(const ContactMode& mode) {
   return key;
 }
 
+Expr number_of(const MechanicalSystem& system, double value) {
+  return system.context->number(Rational::from_double(value));
+}
+
 /// All combinations of options, those with the least changes of the likeliest first; made as they are asked for.
 class Combinations {
  public:
@@ -78,10 +82,19 @@ void HybridMotion::watch_frictions(ModeMotion& motion, std::vector<Expr>& events
     if (state == FrictionState::Stick) {
       if (f.sticking) continue;
       const Expr most = normal ? f.static_ * normal : f.static_;
+      if (f.in_space()) {
+        motion.watches.push_back({Watch::What::Hold, i});
+        events.push_back(most * most - f.multipliers[0] * f.multipliers[0] - f.multipliers[1] * f.multipliers[1]);
+        continue;
+      }
       for (const Expr& event : {most - f.multipliers[0], most + f.multipliers[0]}) {
         motion.watches.push_back({Watch::What::Hold, i});
         events.push_back(event);
       }
+    } else if (f.in_space()) {
+      const Expr stops = number_of(system_, stop_slip(i));
+      motion.watches.push_back({Watch::What::Slip, i});
+      events.push_back(f.slip[0] * f.slip[0] + f.slip[1] * f.slip[1] - stops * stops);
     } else {
       motion.watches.push_back({Watch::What::Slip, i});
       events.push_back(state == FrictionState::Forward ? f.slip[0] : -f.slip[0]);
@@ -94,7 +107,10 @@ void HybridMotion::watch_frictions(ModeMotion& motion, std::vector<Expr>& events
 }
 
 HybridMotion::ModeMotion& HybridMotion::motion_in(const ContactMode& mode) {
-  std::unique_ptr<ModeMotion>& slot = modes_[key_of(mode)];
+  std::string key = key_of(mode);
+  for (std::size_t i = 0; i < mode.closed.size(); ++i)  // the motion knows at which slip friction in space stops
+    if (mode.friction[i] == FrictionState::Slide) key += fmt::format(" {}", stop_slip(i));
+  std::unique_ptr<ModeMotion>& slot = modes_[key];
   if (slot) return *slot;
   slot = std::make_unique<ModeMotion>();
   slot->mode = mode;
@@ -112,11 +128,14 @@ HybridMotion::ModeMotion& HybridMotion::motion_in(const ContactMode& mode) {
   watch_frictions(*slot, wanted.events);
   ExprVector rubbed{context.number(0)}, damped{context.number(0)};
   for (std::size_t i = 0; i < mode.friction.size(); ++i) {
-    if (mode.friction[i] != FrictionState::Forward && mode.friction[i] != FrictionState::Backward) continue;
+    const FrictionState state = mode.friction[i];
+    if (state == FrictionState::None || state == FrictionState::Stick) continue;
     const Friction& f = friction_of(system_, i);
     const Expr normal = normal_force(system_, mode, i);
     const Expr force = normal ? f.kinetic * normal : f.kinetic;
-    rubbed.push_back(mode.friction[i] == FrictionState::Forward ? force * f.slip[0] : -(force * f.slip[0]));
+    rubbed.push_back(state == FrictionState::Slide     ? force * slip_speed(f)
+                     : state == FrictionState::Forward ? force * f.slip[0]
+                                                       : -(force * f.slip[0]));
   }
   for (std::size_t i = 0; i < system_.coordinates.size(); ++i)
     damped.push_back(equations_.dissipative_terms[i] * system_.coordinates[i].velocity);
@@ -152,6 +171,8 @@ HybridMotion::Choice HybridMotion::choice_of_contact(std::size_t i, const Contac
   const FrictionState sliding = f.present() ? sliding_state(values.slip[i], rest_slip(i, values)) : FrictionState::None;
   if (!f.present())
     choice.options = {{true, FrictionState::None, 1}};
+  else if (f.in_space() && !f.sticking)
+    choice.options = {{true, slides_in_space(i, values) ? FrictionState::Slide : FrictionState::Stick, 1}};
   else if (f.sticking)
     choice.options = {{true, FrictionState::Stick, 1}};
   else if (sliding != FrictionState::None)
@@ -216,8 +237,8 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
         w.what == Watch::What::Gap && values.gap[w.index] > 0 && values.rate[w.index] > rest_speed(w.index, values);
     const bool touches =
         w.what == Watch::What::Gap && !opens && std::find(touching.begin(), touching.end(), w.index) != touching.end();
-    const bool starts_to_slide =
-        w.what == Watch::What::Slip && std::abs(values.slip[w.index]) <= rest_slip(w.index, values);
+    const bool starts_to_slide = w.what == Watch::What::Slip && !friction_of(system_, w.index).in_space() &&
+                                 std::abs(values.slip[w.index]) <= rest_slip(w.index, values);
     if (touches || starts_to_slide || (left && w.what == Watch::What::Force)) at_zero.push_back(k);
   }
   s.put_at_zero(at_zero);
@@ -232,9 +253,13 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
   constexpr double located = 1e-11;
   if (accelerations) *accelerations = outlook.accelerations;
   double largest_force = 0;
+  const auto is_squared = [&](const Watch& w) {
+    return w.what == Watch::What::Hold && friction_of(system_, w.index).in_space();
+  };
   for (std::size_t k = 0; k < motion.watches.size(); ++k)
     if (motion.watches[k].what == Watch::What::Force || motion.watches[k].what == Watch::What::Hold)
-      largest_force = std::max(largest_force, std::abs(outlook.values[k]));
+      largest_force = std::max(largest_force, is_squared(motion.watches[k]) ? std::sqrt(std::abs(outlook.values[k]))
+                                                                            : std::abs(outlook.values[k]));
   for (std::size_t k = 0; k < motion.watches.size(); ++k) {
     const Watch& w = motion.watches[k];
     if (!w.keeps_sign()) continue;
@@ -257,10 +282,14 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
       s.put_at_zero({&k, 1});
       continue;
     }
+    const bool begins = w.what == Watch::What::Slip && friction_of(system_, w.index).in_space() &&
+                        w.index < begins_to_slide_.size() && begins_to_slide_[w.index];
+    if (begins) continue;  // it has not yet the speed at which it counts as stopped
     const bool wrong = outlook.sides[k] < 0 || (must_move && outlook.sides[k] == 0);
     if (!wrong) continue;
     const bool is_force = w.what == Watch::What::Force || w.what == Watch::What::Hold;
-    const bool rounding = (is_force && std::abs(outlook.values[k]) <= 1e-12 * largest_force) ||
+    const double size_of_force = is_squared(w) ? largest_force * largest_force : largest_force;
+    const bool rounding = (is_force && std::abs(outlook.values[k]) <= 1e-12 * size_of_force) ||
                           (is_force && std::abs(outlook.values[k]) < 1e-280);
     if (!lenient || !rounding || must_move) return false;
   }
@@ -272,17 +301,10 @@ bool HybridMotion::may_be_several(const ContactMode& mode, const ContactValues& 
   for (std::size_t i = 0; i < mode.closed.size(); ++i) {
     if (!mode.closed[i] || mode.friction[i] == FrictionState::None || mode.friction[i] == FrictionState::Stick)
       continue;
-    SparseRow force = values.normal[i];
-    const double factor = values.kinetic[i] * (mode.friction[i] == FrictionState::Forward ? -1 : 1);
-    for (const auto& [k, x] : values.tangent[i]) force.emplace_back(k, factor * x);
-    SparseRow summed;
-    for (const auto& [k, x] : force) {
-      const auto same = std::find_if(summed.begin(), summed.end(), [&, k = k](const auto& e) { return e.first == k; });
-      if (same == summed.end())
-        summed.emplace_back(k, x);
-      else
-        same->second += x;
-    }
+    const double sign = mode.friction[i] == FrictionState::Backward ? -1 : 1;
+    const SparseRow summed = mode.friction[i] == FrictionState::Slide
+                                 ? sliding_force(i, values)
+                                 : sum_of(values.normal[i], values.tangent[i], -sign * values.kinetic[i]);
     const Eigen::MatrixXd response = functions_.response(t_, q_, v_, {&summed, 1});
     if (!(dot(values.normal[i], response.col(0)) > 0)) return true;
   }
@@ -308,8 +330,7 @@ bool HybridMotion::interrupted() const {
 
 /// A motion of a mode that did not fit makes room.
 void HybridMotion::forget(const ContactMode& mode) {
-  const auto found = modes_.find(key_of(mode));
-  if (found != modes_.end() && found->second.get() != now_) modes_.erase(found);
+  std::erase_if(modes_, [&](const auto& entry) { return entry.second->mode == mode && entry.second.get() != now_; });
 }
 
 bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason) {
@@ -374,10 +395,38 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
   if (last != *found) static_cast<void>(fits(*found, touching, bound, true, nullptr));
   for (std::size_t i = 0; i < released_.size(); ++i)
     if (released_[i] && !found->closed[i]) released_at_[i] = t_;
+  note_indeterminate(list, values);
   const ContactMode before = now_->mode;
-  now_ = modes_.at(key_of(*found)).get();
+  now_ = &motion_in(*found);
   record_changes(before, *found);
   return true;
+}
+
+/// More contacts than the motion needs: their forces are not unique, and what friction makes of them is not either.
+void HybridMotion::note_indeterminate(const std::vector<Choice>& list, const ContactValues& values) {
+  std::vector<std::size_t> contacts;
+  bool rubs = false;
+  for (const Choice& c : list)
+    if (c.contact < values.gap.size()) {
+      contacts.push_back(c.contact);
+      rubs = rubs || (system_.contacts[c.contact].friction.present() && !system_.contacts[c.contact].friction.sticking);
+    }
+  if (contacts.size() < 2) return;
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(at(contacts.size()), at(q_.size()));
+  for (std::size_t r = 0; r < contacts.size(); ++r)
+    for (const auto& [k, x] : values.normal[contacts[r]]) rows(at(r), at(k)) = x;
+  if (Eigen::FullPivLU<Eigen::MatrixXd>(rows).rank() == rows.rows()) return;
+  std::string names;
+  constexpr std::size_t shown = 6;
+  for (std::size_t k = 0; k < std::min(shown, contacts.size()); ++k)
+    names += (k == 0 ? "" : ", ") + system_.contact_label(contacts[k]);
+  if (contacts.size() > shown) names += ", …";
+  remark(
+      fmt::format("The contacts {} are more than the motion needs, so that it does not determine their forces "
+                  "(statically indeterminate). One distribution that carries it is shown{}.",
+                  names,
+                  rubs ? ", and friction follows that one: with another the motion may be another"
+                       : "; the motion is the same for all"));
 }
 
 void HybridMotion::record_changes(const ContactMode& before, const ContactMode& after) {

@@ -91,6 +91,10 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   released_at_.assign(system_.contacts.size(), std::numeric_limits<double>::quiet_NaN());
   record_ = {};
   left_out_remarks_ = 0;
+  begins_to_slide_.assign(system_.contacts.size(), false);
+  slip_scale_.assign(system_.contacts.size(), 0);
+  cone_residual_ = 0;
+  gap_begin_ = std::numeric_limits<double>::quiet_NaN();
   settled_.reset();
   instant_.reset();
   started_ = false;
@@ -104,7 +108,23 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
 }
 
 double HybridMotion::time() const { return now_->stepper->time(); }
-bool HybridMotion::covers(double t) const { return now_->stepper->covers(t); }
+bool HybridMotion::covers(double t) const { return now_->stepper->covers(covered(t)); }
+
+/// Times in a moment that was left out are known from its end.
+double HybridMotion::covered(double t) const {
+  const double begin = now_->stepper->step_start().t;
+  const bool in_gap = gap_begin_ <= begin ? gap_begin_ <= t && t < begin : begin < t && t <= gap_begin_;
+  return in_gap ? begin : t;
+}
+
+void HybridMotion::move_back(double t, std::span<double> q, std::span<double> v) const {
+  const double by = t - covered(t);
+  for (std::size_t i = 0; by != 0 && i < q.size(); ++i) {
+    q[i] += by * (v[i] + 0.5 * by * moment_accelerations_[i]);
+    v[i] += by * moment_accelerations_[i];
+  }
+}
+
 std::size_t HybridMotion::steps() const { return steps_before_ + now_->stepper->steps(); }
 std::size_t HybridMotion::rejected() const { return rejected_before_ + now_->stepper->rejected(); }
 std::size_t HybridMotion::switches() const { return switches_before_ + now_->stepper->switches(); }
@@ -113,7 +133,10 @@ double HybridMotion::constraint_residual() const {
 }
 
 BackendUse HybridMotion::backend() const { return now_->stepper->backend(); }
-void HybridMotion::state(double t, std::span<double> q, std::span<double> v) const { now_->stepper->state(t, q, v); }
+void HybridMotion::state(double t, std::span<double> q, std::span<double> v) const {
+  now_->stepper->state(covered(t), q, v);
+  move_back(t, q, v);
+}
 
 Sample HybridMotion::adjusted(Sample sample) const {
   sample.multipliers.resize(equations_.system->constraints.size());
@@ -121,7 +144,12 @@ Sample HybridMotion::adjusted(Sample sample) const {
   return sample;
 }
 
-Sample HybridMotion::sample(double t) const { return adjusted(now_->stepper->sample(t)); }
+Sample HybridMotion::sample(double t) const {
+  Sample out = adjusted(now_->stepper->sample(covered(t)));
+  move_back(t, out.q, out.v);
+  out.t = t;
+  return out;
+}
 const Sample& HybridMotion::step_start() const { return step_start_ = adjusted(now_->stepper->step_start()); }
 
 Step HybridMotion::ended(StepEnding ending, std::string reason) const {
@@ -141,6 +169,8 @@ Step HybridMotion::step(double bound) {
   }
   Step out = now_->stepper->step(bound);
   if (out.end != out.begin) same_time_ = 0;
+  if (!just_moved_on_) gap_begin_ = std::numeric_limits<double>::quiet_NaN();
+  just_moved_on_ = false;
   if (out.ending != StepEnding::None) return out;
   note_step();
   if (const auto contact = violated()) {
@@ -291,8 +321,11 @@ std::optional<std::size_t> HybridMotion::violated() {
   if (system_.contacts.empty()) return std::nullopt;
   const ContactValues& values = functions_.at(s.time(), s.q(), s.v());
   note_gaps(values);
-  for (std::size_t i = 0; i < values.gap.size(); ++i)
-    if (!now_->mode.closed[i] && !(values.gap[i] >= -digits * widest_[i])) return i;
+  for (std::size_t i = 0; i < values.gap.size(); ++i) {
+    double size = widest_[i];  // and what rounding of the coordinates may make of it
+    for (const auto& [k, g] : values.normal[i]) size = std::max(size, std::abs(g) * place_[kind_[k]]);
+    if (!now_->mode.closed[i] && !(values.gap[i] >= -digits * size)) return i;
+  }
   return std::nullopt;
 }
 
@@ -391,9 +424,11 @@ std::optional<Step> HybridMotion::settle(double bound) {
         return stopped(StepEnding::Paradox,
                        fmt::format("The start violates the contact {}.", system_.contact_label(i)));
   note_sizes(values);
-  std::vector<std::size_t> touch = touching(values);
+  if (!pending_->begins) come_to_rest();
+  std::vector<std::size_t> touch = touching(functions_.at(t_, q_, v_));
   if (!hit(touch, reason)) return stopped(StepEnding::Paradox, reason);
   if (!pending_->begins) close_lowest_flights(touch, bound);
+  if (!choose_slips(touch, bound, reason)) return stopped(StepEnding::Paradox, reason);
   if (!choose_mode(touch, bound, reason)) return stopped(StepEnding::Paradox, reason);
   if (pending_->begins) tell_events_at_start(bound);
   if (settled_) note_after(bound);

@@ -10,6 +10,7 @@
 #include <maupertuis/motion_through_modes.hpp>
 #include <maupertuis/simulation.hpp>
 
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -78,6 +79,7 @@ class HybridMotion final : public Method {
   struct ModeMotion;
   struct Pending;
   struct Choice;
+  struct Cones;
   struct Settled;
 
   ModeMotion& motion_in(const ContactMode& mode);
@@ -85,6 +87,8 @@ class HybridMotion final : public Method {
   void watch_frictions(ModeMotion& motion, std::vector<Expr>& events);
   void leave_mode();
   Sample adjusted(Sample sample) const;
+  double covered(double t) const;
+  void move_back(double t, std::span<double> q, std::span<double> v) const;
 
   // What happens at an instant.
   void classify(Step& step);
@@ -112,6 +116,16 @@ class HybridMotion final : public Method {
   Choice choice_of_contact(std::size_t contact, const ContactValues& values) const;
   std::optional<ContactForceProblem> force_problem(const std::vector<Choice>& list, const ContactValues& values,
                                                    double bound);
+  // Friction in space.
+  double slip_speed_at(std::size_t contact, const ContactValues& values) const;
+  bool slides_in_space(std::size_t contact, const ContactValues& values) const;
+  double stop_slip(std::size_t contact) const;
+  SparseRow sliding_force(std::size_t contact, const ContactValues& values) const;
+  Cones cones_of(const std::vector<std::size_t>& touching, const ContactValues& values,
+                 std::span<const double> accelerations);
+  void move_on(double by, const Eigen::VectorXd& accelerations);
+  void come_to_rest();
+  bool choose_slips(const std::vector<std::size_t>& touching, double bound, std::string& reason);
   void close_lowest_flights(const std::vector<std::size_t>& touching, double bound);
   void order_by_forces(std::vector<Choice>& list, const ContactValues& values, double bound);
   ContactMode mode_of(const std::vector<Choice>& list, const std::vector<std::size_t>& taken) const;
@@ -126,6 +140,7 @@ class HybridMotion final : public Method {
   void note_compliance(const std::vector<std::size_t>& touching, const ContactValues& values);
   std::optional<std::size_t> violated();
   bool may_be_several(const ContactMode& mode, const ContactValues& values);
+  void note_indeterminate(const std::vector<Choice>& list, const ContactValues& values);
   void record_changes(const ContactMode& before, const ContactMode& after);
   void add(Happening::Kind kind, const std::string& name, double impulse = 0, double speed = 0,
            const std::string& remark = {});
@@ -189,9 +204,15 @@ class HybridMotion final : public Method {
   double accumulated_at_ = 0;
   HybridRecord record_;
   std::size_t left_out_remarks_ = 0;
-  std::shared_ptr<ImpactDerivative> derivative_;  // where instants are kept
-  std::shared_ptr<Settled> settled_;              // the instant that is being settled
-  std::optional<ModeInstant> instant_;            // the one at the beginning of the last step
+  std::vector<bool> begins_to_slide_;  // [contacts] in space, at this instant
+  std::vector<double> slip_scale_;     // [contacts] of friction in space, the largest slips so far
+  double cone_residual_ = 0;           // the largest so far
+  double gap_begin_ = std::numeric_limits<double>::quiet_NaN();  // of a moment in which a slip began
+  std::vector<double> moment_accelerations_;                     // [n] in it
+  bool just_moved_on_ = false;                                   // the last step follows it
+  std::shared_ptr<ImpactDerivative> derivative_;                 // where instants are kept
+  std::shared_ptr<Settled> settled_;                             // the instant that is being settled
+  std::optional<ModeInstant> instant_;                           // the one at the beginning of the last step
 };
 
 }  // namespace maupertuis

@@ -8,6 +8,9 @@
 /// What the parts of HybridMotion share.
 namespace maupertuis {
 
+/// a + factor b
+SparseRow sum_of(const SparseRow& a, const SparseRow& b, double factor);
+
 /// Of the sizes of terms: below, a gap or a speed is 0.
 inline constexpr double rest_unit = 64 * std::numeric_limits<double>::epsilon();
 

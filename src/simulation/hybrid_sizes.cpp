@@ -44,6 +44,7 @@ void HybridMotion::note_sizes(const ContactValues& values) {
   note_gaps(values);
   for (std::size_t i = 0; i < fastest_slip_.size(); ++i)
     fastest_slip_[i] = std::max({fastest_slip_[i], values.slip_scale[i], size_along(values.tangent[i])});
+  for (std::size_t i = 0; i < slip_scale_.size(); ++i) slip_scale_[i] = std::max(slip_scale_[i], fastest_slip_[i]);
 }
 
 /// Gaps of one dimension have one size too.

@@ -456,7 +456,7 @@ constexpr CodeEntry kEntries[] = {
      "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\nevent hit when g = 9.8 m/s^2 : record\n",
      "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\nevent hit when z = 0 m : record\n"},
     {"E0501", "a statement that is not supported yet",
-     "The language describes fields, and friction in the plane of a contact in space. They are read and checked for their grammar, and carried out by a later version.",
+     "The language describes fields. They are read and checked for their grammar, and carried out by a later version.",
      "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nfield u(s) : angle\n",
      "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\n"},
     {"E0504", "a start that is not supported yet",

@@ -81,12 +81,14 @@ bool refuse_order_of_coefficients(Elaboration& e, Expr kinetic, Expr static_, co
 
 /// v_t: linear in the velocities, and not along the normal. Empty after a mistake.
 ExprVector slip_of(Elaboration& e, const ContactStatement& s, Expr gap) {
-  const Value v = evaluate_formula(e, *s.slip);
+  Value v = evaluate_formula(e, *s.slip);
   if (v.poisoned) return {};
-  if (v.parts.size() > 1) {
-    e.diagnostics.error("E0501", s.slip->span, "not supported yet: a slip velocity of several components",
-                        "Friction in the plane of a contact in space is carried out by a later version.",
-                        "Write one component, or leave the friction out.");
+  std::erase_if(v.parts, [&](const Expr& part) { return v.parts.size() > 1 && part.is_zero(); });
+  if (v.parts.size() > 2) {
+    e.diagnostics.error("E0265", s.slip->span, "a slip velocity of three components",
+                        "The point of contact slides in the plane of contact: two components, along two directions at "
+                        "right angles to each other.",
+                        "Write the components in that plane, such as slip (x', y').");
     return {};
   }
   const Dimension speed = e.dimension(dimensions::length()) / e.time();

@@ -30,6 +30,7 @@ std::vector<ContactMode> modes_of(const MechanicalSystem& system, std::size_t& l
       std::vector<FrictionState> states{FrictionState::None};
       if (f.present()) states = {FrictionState::Stick};
       if (f.present() && !f.sticking) states = {FrictionState::Stick, FrictionState::Forward, FrictionState::Backward};
+      if (f.in_space() && !f.sticking) states = {FrictionState::Stick, FrictionState::Slide};
       for (const FrictionState s : states) {
         if (!closes && s == FrictionState::Stick) continue;  // that is there already
         next.friction[i] = s;

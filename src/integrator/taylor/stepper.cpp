@@ -219,6 +219,7 @@ TaylorStepper::Outlook TaylorStepper::outlook(double bound) {
   out.reason = result.reason;
   if (!s.expanded) return out;
   const double h = std::min(taylor::step_size(s.work, s.n, s.control, s.length), std::abs(s.remaining(bound)));
+  out.length = h;
   for (const auto& [side, reach] : s.watched.sides_of_events(s.work, std::copysign(h, s.remaining(bound)))) {
     out.sides.push_back(side);
     out.reach.push_back(reach);

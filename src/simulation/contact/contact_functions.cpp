@@ -51,6 +51,7 @@ ExprVector slips_of(const MechanicalSystem& s) {
     const Friction& f = friction_of(s, i);
     out.push_back(f.present() ? f.slip[0] : s.context->number(0));
   }
+  for (const Contact& c : s.contacts) out.push_back(c.friction.in_space() ? c.friction.slip[1] : s.context->number(0));
   return out;
 }
 
@@ -147,6 +148,10 @@ const ContactValues& ContactFunctions::at(double t, std::span<const double> q, s
   out.slip.assign(slips_out_.begin(), slips_out_.begin() + static_cast<std::ptrdiff_t>(frictions_));
   out.normal = rows_of(gaps_, gaps_out_, 0);
   out.tangent = rows_of(slips_, slips_out_, n_);
+  const auto second = static_cast<std::ptrdiff_t>(frictions_);
+  out.second_slip.assign(slips_out_.begin() + second, slips_out_.begin() + second + static_cast<std::ptrdiff_t>(contacts_));
+  out.second_tangent.assign(out.tangent.begin() + second, out.tangent.end());
+  out.tangent.resize(frictions_);
   for (auto* list : {&out.gap_scale, &out.rate, &out.drive, &out.rate_scale, &out.restitution}) list->clear();
   for (auto* list : {&out.slip_scale, &out.kinetic, &out.fixed}) list->clear();
   for (std::size_t c = 0; c < contacts_; ++c) {
@@ -162,7 +167,13 @@ const ContactValues& ContactFunctions::at(double t, std::span<const double> q, s
   for (std::size_t i = 0; i < frictions_; ++i) {
     double rest = out.slip[i], scale = 0;
     for (const auto& [k, t_k] : out.tangent[i]) rest -= t_k * v[k], scale += std::abs(t_k * v[k]);
-    out.slip_scale.push_back(scale + std::abs(rest));
+    scale += std::abs(rest);
+    if (i < contacts_ && !out.second_tangent[i].empty()) {
+      double second_rest = out.second_slip[i];
+      for (const auto& [k, t_k] : out.second_tangent[i]) second_rest -= t_k * v[k], scale += std::abs(t_k * v[k]);
+      scale += std::abs(second_rest);
+    }
+    out.slip_scale.push_back(scale);
     out.kinetic.push_back(rates_out_[3 * contacts_ + 2 * i]);
     out.fixed.push_back(rates_out_[3 * contacts_ + 2 * i + 1]);
   }

@@ -2,6 +2,7 @@
 
 #include "linear_algebra/complementarity.hpp"
 #include "simulation/contact/plane_impulse.hpp"
+#include "simulation/contact/space_impulse.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,6 +38,29 @@ bool has_friction(const ImpactProblem& p, std::size_t i) {
   return !p.tangent[i].empty() && (p.sticking[i] || p.friction[i] > 0 || p.static_friction[i] > 0);
 }
 
+bool is_in_space(const ImpactProblem& p, std::size_t i) {
+  return i < p.second_tangent.size() && !p.second_tangent[i].empty();
+}
+
+/// Friction in space: the same along two tangents.
+void apply_in_space(const ImpactProblem& p, std::size_t i, VectorXd& v, Impulse& impulse, ImpactResult& out) {
+  const SparseRow* const rows[] = {&p.normal[i], &p.tangent[i], &p.second_tangent[i]};
+  const VectorXd responses[] = {p.response.col(at(i)), p.tangent_response.col(at(i)), p.second_response.col(at(i))};
+  const Eigen::Vector3d drive(p.drive[i], p.slip_drive[i], p.second_drive[i]);
+  const auto rates = [&]() -> Eigen::Vector3d { return Eigen::Vector3d(dot(*rows[0], v), dot(*rows[1], v), dot(*rows[2], v)) + drive; };
+  SpaceImpact impact;
+  impact.velocity = rates();
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) impact.response(a, b) = dot(*rows[a], responses[b]);
+  impact.friction = p.friction[i], impact.static_friction = p.static_friction[i];
+  impact.restitution = p.restitution[i], impact.sticking = p.sticking[i];
+  const Eigen::Vector3d found = impulse_in_space(impact);
+  impulse.normal = found(0), impulse.tangential = found(1), impulse.second_tangential = found(2);
+  for (int a = 0; a < 3; ++a) v += found(a) * responses[a];
+  impulse.loss = -0.5 * found.dot(impact.velocity + rates());
+  out.moving -= found(1) * p.slip_drive[i] + found(2) * p.second_drive[i];
+}
+
 /// −Λ ġ averaged over the impulse is what it takes from the motion; without friction ½ Λ (1 − e)|ġ⁻| for contacts at
 /// rest. With friction kinetic energy before and after tells.
 Impulse apply(const ImpactProblem& p, std::size_t i, VectorXd& v, ImpactResult& out) {
@@ -48,6 +72,8 @@ Impulse apply(const ImpactProblem& p, std::size_t i, VectorXd& v, ImpactResult& 
     impulse.normal = (1 + p.restitution[i]) * -before / w;
     v += impulse.normal * p.response.col(at(i));
     impulse.loss = 0.5 * impulse.normal * (1 - p.restitution[i]) * -before;
+  } else if (is_in_space(p, i)) {
+    apply_in_space(p, i, v, impulse, out);
   } else {
     const double slip = dot(p.tangent[i], v) + p.slip_drive[i];
     const double w_nt = dot(p.normal[i], p.tangent_response.col(at(i))),

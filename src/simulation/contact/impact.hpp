@@ -12,6 +12,7 @@ namespace maupertuis {
 struct Impulse {
   std::size_t contact = 0;
   double normal = 0, tangential = 0;  // Λ ≥ 0, Λ_t
+  double second_tangential = 0;       // the second component of Λ_t in space
   double speed = 0;                   // −ġ before it
   double loss = 0;                    // of energy in the frame of the contact
 };
@@ -38,6 +39,10 @@ struct ImpactProblem {
   std::vector<double> rest;                                    // [contacts] speeds up to which ġ counts as 0
   Eigen::MatrixXd response;          // [n × contacts] M⁻¹ (∂g/∂q)ᵀ on the constraints
   Eigen::MatrixXd tangent_response;  // [n × contacts] the same for ∂v_t/∂q̇
+  // Of friction in space the second components; empty where there is none.
+  std::vector<SparseRow> second_tangent;
+  std::vector<double> second_drive;
+  Eigen::MatrixXd second_response;
 };
 
 enum class ImpactOrder { FastestFirst, FastestLast };

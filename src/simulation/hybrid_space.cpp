@@ -1,0 +1,200 @@
+#include "simulation/contact/cone_forces.hpp"
+#include "simulation/hybrid_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+/// Friction in the plane of a contact in space: which contacts stick, and which way others begin to slide.
+namespace maupertuis {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double slow = 1e-8;    // of the slips of the run: below, the direction of a slip is lost in rounding
+constexpr double moment = 1e-8;  // of the length of a step: its third power is rounding
+constexpr double small = 1e-10;
+
+double product(const SparseRow& row, std::span<const double> x) {
+  double sum = 0;
+  for (const auto& [k, value] : row) sum += value * x[k];
+  return sum;
+}
+
+}  // namespace
+
+SparseRow sum_of(const SparseRow& a, const SparseRow& b, double factor) {
+  SparseRow out = a;
+  for (const auto& [k, x] : b) {
+    const auto same = std::find_if(out.begin(), out.end(), [&, k = k](const auto& e) { return e.first == k; });
+    if (same == out.end())
+      out.emplace_back(k, factor * x);
+    else
+      same->second += factor * x;
+  }
+  return out;
+}
+
+double HybridMotion::slip_speed_at(std::size_t i, const ContactValues& values) const {
+  return i < values.second_slip.size() ? std::hypot(values.slip[i], values.second_slip[i]) : std::abs(values.slip[i]);
+}
+
+/// Not where a slip has just come to rest.
+bool HybridMotion::slides_in_space(std::size_t i, const ContactValues& values) const {
+  const bool stops = std::any_of(pending_->left.begin(), pending_->left.end(),
+                                 [&](const Watch& w) { return w.what == Watch::What::Slip && w.index == i; });
+  return begins_to_slide_[i] || (!stops && slip_speed_at(i, values) > rest_slip(i, values));
+}
+
+/// The speed at which a slip counts as stopped, in steps of ten so that the motion of a mode serves many of them.
+double HybridMotion::stop_slip(std::size_t i) const {
+  const double scale = std::max(slip_scale_[i], 1e-200);
+  return slow * std::pow(10, std::floor(std::log10(scale)));
+}
+
+/// ∂g/∂q − μ Σ_k v_tk/|v_t| ∂v_tk/∂q̇: what a unit of the normal force does while it slides.
+SparseRow HybridMotion::sliding_force(std::size_t i, const ContactValues& values) const {
+  const double speed = slip_speed_at(i, values), mu = values.kinetic[i];
+  SparseRow out = sum_of(values.normal[i], values.tangent[i], -mu * values.slip[i] / speed);
+  if (!values.second_tangent[i].empty())
+    out = sum_of(out, values.second_tangent[i], -mu * values.second_slip[i] / speed);
+  return out;
+}
+
+/// Contacts that touch and do not open, as one problem over their cones.
+struct HybridMotion::Cones {
+  std::vector<std::size_t> contacts;
+  std::vector<std::size_t> first;       // [contacts] of its rows
+  std::vector<SparseRow> rows, forces;  // ∂g/∂q, ∂v_t/∂q̇ of those at rest; what a unit of each force does
+  ConeProblem problem;
+};
+
+HybridMotion::Cones HybridMotion::cones_of(const std::vector<std::size_t>& touching, const ContactValues& values,
+                                           std::span<const double> accelerations) {
+  const std::span<const double> drifts = functions_.drifts(t_, q_, v_);
+  const std::size_t contacts = values.gap.size(), seconds = drifts.size() - contacts;
+  Cones out;
+  std::vector<double> free;
+  const auto add = [&](const SparseRow& row, const SparseRow& force, double drift) {
+    out.rows.push_back(row);
+    out.forces.push_back(force);
+    free.push_back(drift + product(row, accelerations));
+  };
+  for (const std::size_t i : touching) {
+    if (values.rate[i] > rest_speed(i, values)) continue;
+    const Friction& f = system_.contacts[i].friction;
+    const bool slides =
+        f.present() && (f.in_space() ? slides_in_space(i, values) : std::abs(values.slip[i]) > rest_slip(i, values));
+    out.contacts.push_back(i);
+    out.first.push_back(out.rows.size());
+    add(values.normal[i], slides && !f.sticking ? sliding_force(i, values) : values.normal[i], drifts[i]);
+    ConeProblem::Contact contact{0, 0};
+    if (f.present() && (!slides || f.sticking)) {
+      constexpr double held_fast = 1e3;
+      contact = {f.in_space() ? 2 : 1, f.sticking ? held_fast : values.fixed[i]};
+      add(values.tangent[i], values.tangent[i], drifts[contacts + i]);
+      if (f.in_space()) add(values.second_tangent[i], values.second_tangent[i], drifts[seconds + i]);
+    }
+    out.problem.contacts.push_back(contact);
+  }
+  const Eigen::MatrixXd response = functions_.response(t_, q_, v_, out.forces);
+  const auto size = at(out.rows.size());
+  out.problem.response.resize(size, size);
+  for (Index r = 0; r < size; ++r)
+    for (Index c = 0; c < size; ++c)
+      out.problem.response(r, c) = dot(out.rows[static_cast<std::size_t>(r)], response.col(c));
+  out.problem.free = Eigen::Map<const VectorXd>(free.data(), size);
+  return out;
+}
+
+/// On by a moment with these accelerations: what they leave out are third powers of it, rounding.
+void HybridMotion::move_on(double by, const VectorXd& accelerations) {
+  for (std::size_t i = 0; i < q_.size(); ++i) {
+    q_[i] += by * (v_[i] + 0.5 * by * accelerations(at(i)));
+    v_[i] += by * accelerations(at(i));
+  }
+  moment_accelerations_.assign(accelerations.data(), accelerations.data() + accelerations.size());
+  gap_begin_ = t_;
+  just_moved_on_ = true;
+  t_ += by;
+}
+
+/// A slip that is slow comes to rest after v_t²/(−v_t·v̇_t): the motion moves on to there, where both components are 0.
+void HybridMotion::come_to_rest() {
+  double by = 0;
+  const ContactValues values = functions_.at(t_, q_, v_);
+  const std::vector<double> a = now_->stepper->sample(t_).a;
+  const std::span<const double> drifts = functions_.drifts(t_, q_, v_);
+  const std::size_t contacts = values.gap.size(), seconds = drifts.size() - contacts;
+  for (const Watch& w : pending_->left) {
+    if (w.what != Watch::What::Slip || !friction_of(system_, w.index).in_space()) continue;
+    const std::size_t i = w.index;
+    const double first = drifts[contacts + i] + product(values.tangent[i], a),
+                 second = drifts[seconds + i] + product(values.second_tangent[i], a);
+    const double speed = slip_speed_at(i, values);
+    const double falls = -(values.slip[i] * first + values.second_slip[i] * second);
+    if (falls > 0) by = std::max(by, speed * speed / falls);
+  }
+  if (by > 0) move_on(forwards_ ? by : -by, Eigen::Map<const VectorXd>(a.data(), at(a.size())));
+}
+
+/// Where contacts in space rest on friction: each sticks, or begins to slide. The direction of friction is that of the
+/// slip, and there is none yet: the motion moves on by a moment with the accelerations that the cones give. False, and
+/// why, where the cones have no solution that is found.
+bool HybridMotion::choose_slips(const std::vector<std::size_t>& touching, double bound, std::string& reason) {
+  begins_to_slide_.assign(system_.contacts.size(), false);
+  const ContactValues values = functions_.at(t_, q_, v_);
+  const auto may_begin = [&](std::size_t i) {
+    const Friction& f = system_.contacts[i].friction;
+    return f.in_space() && !f.sticking && !(values.rate[i] > rest_speed(i, values)) && !slides_in_space(i, values);
+  };
+  if (std::none_of(touching.begin(), touching.end(), may_begin)) return true;
+  const ContactMode base = mode_without_contacts(choices({}, values));
+  TaylorStepper& stepper = *motion_in(base).stepper;
+  stepper.start(t_, q_, v_);
+  const TaylorStepper::Outlook outlook = stepper.outlook(bound);
+  if (outlook.ending != StepEnding::None) return true;
+  Cones cones = cones_of(touching, values, outlook.accelerations);
+  const auto reaches_limit = [&](std::size_t i) {
+    return std::any_of(pending_->left.begin(), pending_->left.end(),
+                       [&](const Watch& w) { return w.what == Watch::What::Hold && w.index == i; });
+  };
+  VectorXd forces;
+  std::vector<bool> slides(cones.contacts.size(), false);
+  for (int pass = 0; pass < 2; ++pass) {  // with static friction, then with the kinetic one of those that slide
+    for (std::size_t c = 0; c < cones.contacts.size(); ++c)
+      if (slides[c] || (pass == 0 && reaches_limit(cones.contacts[c])))
+        cones.problem.contacts[c].friction = values.kinetic[cones.contacts[c]];
+    const auto found = cone_forces(cones.problem);
+    if (!found) {
+      reason =
+          "The forces of contacts with friction in space were not found: their cones have no solution here, or the "
+          "iteration does not converge to it.";
+      return false;
+    }
+    cone_residual_ = std::max(cone_residual_, found->residual);
+    for (std::size_t c = 0; c < cones.contacts.size(); ++c) {
+      const std::size_t i = cones.contacts[c];
+      if (!may_begin(i)) continue;
+      const Index n = at(cones.first[c]);
+      const VectorXd force = found->forces.segment(n + 1, 2), slip = found->accelerations.segment(n + 1, 2);
+      const double most = cones.problem.contacts[c].friction * found->forces(n);
+      const bool is_at_limit = force.norm() >= most * (1 - small);
+      slides[c] = found->forces(n) > 0 && is_at_limit && (reaches_limit(i) || slip.norm() > 0);
+      if (!slides[c] || pass == 0) continue;
+      slip_scale_[i] = std::max({slip_scale_[i], fastest_slip_[i], slip.norm() * outlook.length});
+      begins_to_slide_[i] = true;
+    }
+    forces = found->forces;
+  }
+  if (std::find(slides.begin(), slides.end(), true) == slides.end()) return true;
+  const VectorXd changes = functions_.response(t_, q_, v_, cones.forces) * forces;
+  constexpr double told_apart = 1e-13;  // of t: two times are different
+  const double by = std::max(moment * outlook.length, told_apart * std::abs(t_));
+  move_on(forwards_ ? by : -by, Eigen::Map<const VectorXd>(outlook.accelerations.data(), changes.size()) + changes);
+  return true;
+}
+
+}  // namespace maupertuis
