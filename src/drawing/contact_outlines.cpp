@@ -164,7 +164,7 @@ class ContactPictures {
   /// Whether ground, a wall, a circle or a line of the model shows it, as far as it is seen.
   bool is_shown(const Surface& surface) const {
     const double tolerance = surface.distance + 0.015 * s_.extent;
-    if (surface.stop) return is_near_line({surface.positions[0], surface.positions[1]}, tolerance);
+    if (surface.stop) return is_on_the_drawn({surface.positions[0], surface.positions[1]}, tolerance);
     const Place middle{(s_.low[0] + s_.high[0]) / 2, (s_.low[1] + s_.high[1]) / 2};
     Place nearest{HUGE_VAL, HUGE_VAL};
     for (std::size_t i = 0; i + 1 < surface.line.size(); i += 2) {
