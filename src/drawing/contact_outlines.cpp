@@ -2,6 +2,7 @@
 
 #include "drawing/contact_surfaces.hpp"
 #include "drawing/moments.hpp"
+#include "drawing/shapes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -36,6 +37,7 @@ class ContactPictures {
   void add() {
     for (const ContactPlaces& c : s_.tracks.contacts)
       if (c.places.size() == 1) add_surface(c);
+    for (const Line& line : lines_) cut(line);
     add_arrows();
     for (Outline& o : new_) outlines_.push_back(std::move(o));
   }
@@ -132,8 +134,35 @@ class ContactPictures {
       o.element.still = surface.still;
       o.element.shape = std::move(surface.shape);
       o.element.positions = std::move(surface.positions);
+      if (surface.straight && surface.still && !surface.stop) lines_.push_back({new_.size(), c.places[0].name});
       new_.push_back(std::move(o));
     }
+  }
+
+  /// A straight surface that stands still, and what touches it.
+  struct Line {
+    std::size_t outline;  // of the new ones
+    std::string place;
+  };
+
+  /// It ends where what touches it cannot be for another one: in the corners of a box.
+  void cut(const Line& line) {
+    Drawing::Element& e = new_[line.outline].element;
+    std::vector<double>& p = e.positions;
+    const double half = std::abs(e.shape.lines[0].points[0]), tx = p[2] - p[0], ty = p[3] - p[1];
+    double low = -half, high = half;
+    for (const Line& other : lines_) {
+      if (other.outline == line.outline || other.place != line.place) continue;
+      const std::vector<double>& w = new_[other.outline].element.positions;
+      const double nx = w[4] - w[0], ny = w[5] - w[1], slope = tx * nx + ty * ny;
+      const double end = -((p[0] - w[0]) * nx + (p[1] - w[1]) * ny) / slope;
+      if (std::abs(slope) < 0.05) continue;
+      (slope > 0 ? low : high) = slope > 0 ? std::max(low, end) : std::min(high, end);
+    }
+    if (!(high - low > 2 * s_.hatching) || high - low >= 2 * half) return;
+    const double middle = (low + high) / 2;
+    e.shape = shapes::ground_line((high - low) / 2, s_.hatching);
+    for (std::size_t i = 0; i < 6; i += 2) p[i] += middle * tx, p[i + 1] += middle * ty;
   }
 
   /// As much of it as shows what it is: all of a curve that closes or ends, of a longer one what the motion comes to.
@@ -319,6 +348,7 @@ class ContactPictures {
   const ContactSetting& s_;
   std::vector<Outline>& outlines_;
   std::vector<Outline> new_;
+  std::vector<Line> lines_;
   std::vector<std::vector<double>> still_;  // [n × 2] each
 };
 

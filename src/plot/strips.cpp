@@ -47,6 +47,18 @@ std::vector<Look> occurring(const Figure& figure) {
   return out;
 }
 
+/// A name that would take the room of the picture is cut.
+RichText shown_name(const std::string& name) {
+  constexpr std::size_t longest = 18;
+  std::size_t letters = 0, end = 0;
+  while (end < name.size() && letters <= longest) {
+    ++letters;
+    do ++end;
+    while (end < name.size() && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80);
+  }
+  return end == name.size() ? name_text(name) : RichText{{name.substr(0, end) + "…"}};
+}
+
 double x_of(const Figure& figure, const Axis& across, double t) {
   return figure.left + figure.frame_width() * std::clamp(across.position(figure.horizontal.factor * t), 0.0, 1.0);
 }
@@ -91,7 +103,7 @@ std::string draw_strip(const Figure& figure, const Axis& across, const PlotStrip
   }
   std::string svg;
   for (const auto& [name, path] : paths) svg += fmt::format("<path class=\"strip {}\" d=\"{}\"/>\n", name, path);
-  return svg + text_element(figure.left - 7, top + bar - 1, "end", tick_size, name_text(strip.name));
+  return svg + text_element(figure.left - 7, top + bar - 1, "end", tick_size, shown_name(strip.name));
 }
 
 std::string draw_legend(const Figure& figure) {
@@ -128,7 +140,7 @@ double widest_strip_name(const Figure& figure) {
   double widest = 0;
   if (has_strips(figure))
     for (const PlotStrip& strip : figure.options.strips)
-      widest = std::max(widest, text_width(name_text(strip.name), tick_size));
+      widest = std::max(widest, text_width(shown_name(strip.name), tick_size));
   return widest;
 }
 

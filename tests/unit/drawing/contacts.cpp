@@ -203,6 +203,40 @@ TEST_CASE("forces stand on the rim of what is pressed, along the normal; impulse
     CHECK((e.kind != Drawing::Kind::Arrow || e.names[0] == "floor"));
 }
 
+TEST_CASE("two walls of one contact, the corners of a box, a hoop that moves") {
+  const ModelText walls(std::string(ball) + "contact 1 [m^2] - x^2 >= 0 name walls\nrun 1 s\ndraw trail P\n");
+  const auto across = [](std::size_t i, double t) { return i == 0 ? 0.99 * std::cos(6 * t) : 0.3 * t; };
+  CHECK(grounds(evaluate_drawing(walls.model, contact_run(*walls.system, 1, across)).value()).size() == 2);
+
+  const ModelText box(std::string(ball) +
+                      "contact x >= 0 name left\ncontact x <= 2 [m] name right\ncontact z >= 0 name floor\n"
+                      "run 1 s\ndraw circle P r\n");
+  const auto inside = [](std::size_t i, double t) { return i == 0 ? 1 + std::sin(6 * t) : 0.5 * t; };
+  const auto found = evaluate_drawing(box.model, contact_run(*box.system, 1, inside)).value();
+  REQUIRE(grounds(found).size() == 3);
+  for (const Drawing::Element* e : grounds(found)) {
+    const auto line = world(*e, e->shape.lines[0]);
+    if (line[1] == doctest::Approx(line[3])) {  // the floor, from wall to wall
+      CHECK(std::min(line[0], line[2]) == doctest::Approx(-0.1));
+      CHECK(std::max(line[0], line[2]) == doctest::Approx(2.1));
+    } else  // a wall, from the floor on
+      CHECK(std::min(line[1], line[3]) == doctest::Approx(-0.1));
+  }
+
+  const ModelText hoop(std::string(ball) +
+                       "contact sqrt((x - 1 [m/s] t)^2 + z^2) <= 1 [m] name hoop\nrun 1 s\ndraw trail P\n");
+  const auto carried = [](std::size_t i, double t) { return i == 0 ? t + std::sin(t) : -std::cos(t); };
+  const Drawing moving = evaluate_drawing(hoop.model, contact_run(*hoop.system, 1, carried)).value();
+  REQUIRE(grounds(moving).size() == 1);
+  const Drawing::Element& e = *grounds(moving)[0];
+  REQUIRE_FALSE(e.still);
+  for (std::size_t f = 0; f < moving.times.size(); f += 100) {
+    const auto circle = world(e, e.shape.lines[0], f);
+    for (std::size_t i = 0; i < circle.size(); i += 20)
+      CHECK(std::hypot(circle[i] - moving.times[f], circle[i + 1]) == doctest::Approx(1).epsilon(1e-4));
+  }
+}
+
 TEST_CASE("two balls that touch push each other with opposite forces") {
   const ModelText m(
       "system s\nparam m = 1 kg, r = 0.1 m\ncoord a, b : length\n"

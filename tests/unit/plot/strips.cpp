@@ -67,6 +67,14 @@ TEST_CASE("strips: a bar a contact, as long as its state lasts; the legend names
   CHECK(number_after(path_of(svg, "strip s1"), 'h') == doctest::Approx(width).epsilon(1e-3));
 }
 
+TEST_CASE("a long name of a contact leaves room for the picture") {
+  PlotOptions options;
+  options.strips = {{std::string(200, 'w'), {{0, 10, PlotStrip::State::Closed}}}};
+  const std::string svg = plot_svg(ramp(), options);
+  CHECK(number_after(path_of(svg, "axis"), 'h') > 400);
+  CHECK(times_in(svg, "…") == 1);
+}
+
 TEST_CASE("over another axis than the time there are neither marks nor strips") {
   PlotOptions options;
   options.columns = {"x'"};
