@@ -314,9 +314,17 @@ class ContactPictures {
     for (std::size_t f = 0; f < frames(); ++f) {
       const double factor = std::isfinite(c.multiplier[f]) ? metres * c.multiplier[f] : 0;
       acts = acts || factor != 0;
-      put(o, foot(place, f), factor * place.push[2 * f], factor * place.push[2 * f + 1], f);
+      const Place rubs = friction_on(c, place, f);
+      put(o, foot(place, f), factor * place.push[2 * f] + metres * rubs[0],
+          factor * place.push[2 * f + 1] + metres * rubs[1], f);
     }
     if (acts) new_.push_back(std::move(o));
+  }
+
+  Place friction_on(const ContactPlaces& c, const ContactPlaces::Place& place, std::size_t f) const {
+    const double size = slope(place, f);
+    if (c.friction.empty() || !std::isfinite(c.friction[f]) || !(size > 0)) return {0, 0};
+    return {c.friction[f] * place.push[2 * f + 1] / size, -c.friction[f] * place.push[2 * f] / size};
   }
 
   /// At the place of the impact, the longer the larger; it shrinks until it is gone.

@@ -111,17 +111,21 @@ HybridMotion::ModeMotion& HybridMotion::motion_in(const ContactMode& mode) {
   watch_contacts(*slot, wanted.events);
   watch_frictions(*slot, wanted.events);
   ExprVector rubbed{context.number(0)}, damped{context.number(0)};
+  ExprMap open;  // forces that do not act in this mode, and friction that slides
   for (std::size_t i = 0; i < mode.friction.size(); ++i) {
-    if (mode.friction[i] != FrictionState::Forward && mode.friction[i] != FrictionState::Backward) continue;
     const Friction& f = friction_of(system_, i);
+    if (mode.friction[i] == FrictionState::Stick || !f.present()) continue;
+    open[f.multipliers[0]] = context.number(0);
+    if (mode.friction[i] == FrictionState::None) continue;
     const Expr normal = normal_force(system_, mode, i);
     const Expr force = normal ? f.kinetic * normal : f.kinetic;
-    rubbed.push_back(mode.friction[i] == FrictionState::Forward ? force * f.slip[0] : -(force * f.slip[0]));
+    const bool forward = mode.friction[i] == FrictionState::Forward;
+    rubbed.push_back(forward ? force * f.slip[0] : -(force * f.slip[0]));
+    open[f.multipliers[0]] = forward ? -force : force;
   }
   for (std::size_t i = 0; i < system_.coordinates.size(); ++i)
     damped.push_back(equations_.dissipative_terms[i] * system_.coordinates[i].velocity);
   wanted.integrands = {slot->equations->power, context.sum(rubbed), context.sum(damped)};
-  ExprMap open;  // forces that do not act in this mode
   for (std::size_t i = 0; i < mode.closed.size(); ++i)
     if (!mode.closed[i]) open[system_.contacts[i].multiplier] = context.number(0);
   for (auto* list : {&wanted.observables, &wanted.events, &wanted.integrands})

@@ -203,6 +203,43 @@ TEST_CASE("forces stand on the rim of what is pressed, along the normal; impulse
     CHECK((e.kind != Drawing::Kind::Arrow || e.names[0] == "floor"));
 }
 
+TEST_CASE(
+    "friction tilts the force of a contact; where a gap is written in a point its normal is that of the surface") {
+  const ModelText m(std::string(ball) + "contact z >= 0 friction 0.5 slip x' name floor\nrun 1 s\ndraw circle P r\n");
+  const auto resting = [](std::size_t i, double t) { return i == 0 ? t : 0.0; };
+  Trajectory run = contact_run(*m.system, 1, resting, {{"floor", 10}});
+  run.columns.push_back({"friction(floor)", "N"});
+  std::vector<double> values;
+  for (std::size_t row = 0; row < run.rows(); ++row) {
+    const auto begin = run.values.begin() + static_cast<std::ptrdiff_t>(row * (run.columns.size() - 1));
+    values.insert(values.end(), begin, begin + static_cast<std::ptrdiff_t>(run.columns.size() - 1));
+    values.push_back(-5);
+  }
+  run.values = values;
+  const Drawing drawing = evaluate_drawing(m.model, run, 6000, &m.equations).value();
+  const auto arrow = std::find_if(drawing.elements.begin(), drawing.elements.end(),
+                                  [](const Drawing::Element& e) { return e.kind == Drawing::Kind::Arrow; });
+  REQUIRE(arrow != drawing.elements.end());
+  CHECK((arrow->positions[2] - arrow->positions[0]) / (arrow->positions[3] - arrow->positions[1]) ==
+        doctest::Approx(-0.5));
+
+  // The shoe of a lever on a wheel: the lever moves it aslant to the normal.
+  const ModelText brake(
+      "system s\nparam J = 1 kg m^2\ncoord β : angle\nframe lever at (-1 [m], 1.2 [m]) rotation angle β\n"
+      "body arm inertia J at (-1 [m], 1.2 [m]) rotation angle β\n"
+      "point shoe in lever at (1 [m], -0.2 [m])\n"
+      "contact sqrt(shoe.x^2 + shoe.y^2) >= 1 [m] name block\nrun 1 s\ndraw (-1 [m], 1.2 [m]) - shoe\n");
+  const auto held = [](std::size_t, double) { return 0.0; };
+  const Drawing wheel =
+      evaluate_drawing(brake.model, contact_run(*brake.system, 1, held, {{"block", 10}}), 6000, &brake.equations)
+          .value();
+  const auto push = std::find_if(wheel.elements.begin(), wheel.elements.end(),
+                                 [](const Drawing::Element& e) { return e.kind == Drawing::Kind::Arrow; });
+  REQUIRE(push != wheel.elements.end());
+  CHECK(push->positions[2] == doctest::Approx(push->positions[0]));
+  CHECK(push->positions[3] > push->positions[1] + 0.01);
+}
+
 TEST_CASE("two walls of one contact, the corners of a box, a hoop that moves") {
   const ModelText walls(std::string(ball) + "contact 1 [m^2] - x^2 >= 0 name walls\nrun 1 s\ndraw trail P\n");
   const auto across = [](std::size_t i, double t) { return i == 0 ? 0.99 * std::cos(6 * t) : 0.3 * t; };
