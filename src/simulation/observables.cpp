@@ -28,13 +28,15 @@ void add_reactions(Observables& out, const EquationsOfMotion& equations) {
     return std::any_of(system.contacts.begin(), system.contacts.end(),
                        [&](const Contact& c) { return c.name == name && !name.empty(); });
   };
-  const bool named = !system.releases.empty() || !system.contacts.empty() || std::any_of(system.constraints.begin(), system.constraints.end(),
-                                                             [](const Constraint& c) { return !c.name.empty(); });
+  const bool named = !system.releases.empty() || !system.contacts.empty() ||
+                     std::any_of(system.constraints.begin(), system.constraints.end(),
+                                 [](const Constraint& c) { return !c.name.empty(); });
   if (!named) return;
   for (const Reaction& r : reactions(equations)) {
     const Constraint* constraint = system.find_constraint(r.name);
     const bool released = r.kind == Reaction::Kind::Released;
-    if (r.value && (released || constraint || find_contact(r.name))) add("reaction(" + r.name + ")", r.dimension, r.value);
+    if (r.value && (released || constraint || find_contact(r.name)))
+      add("reaction(" + r.name + ")", r.dimension, r.value);
   }
 }
 
