@@ -36,7 +36,8 @@ namespace {
 /// θ, θ', and what only a trajectory has names for. Any other name is a formula too, and is read as one.
 bool is_column_name(const std::string& name, const syntax::SyntaxTree* tree) {
   const auto begins = [&](std::string_view head) { return name.compare(0, head.size(), head) == 0; };
-  if (name == "t" || name == "energy" || begins("reaction(") || begins("error(") || begins("λ") || begins("Λ"))
+  if (name == "t" || name == "energy" || begins("reaction(") || begins("friction(") || begins("error(") ||
+      begins("λ") || begins("Λ"))
     return true;
   if (!tree) return false;
   for (const syntax::Statement& s : tree->statements) {

@@ -2,6 +2,7 @@
 
 #include "drawing/contact_surfaces.hpp"
 #include "drawing/moments.hpp"
+#include "drawing/shapes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -36,6 +37,7 @@ class ContactPictures {
   void add() {
     for (const ContactPlaces& c : s_.tracks.contacts)
       if (c.places.size() == 1) add_surface(c);
+    for (const Line& line : lines_) cut(line);
     add_arrows();
     for (Outline& o : new_) outlines_.push_back(std::move(o));
   }
@@ -132,8 +134,35 @@ class ContactPictures {
       o.element.still = surface.still;
       o.element.shape = std::move(surface.shape);
       o.element.positions = std::move(surface.positions);
+      if (surface.straight && surface.still && !surface.stop) lines_.push_back({new_.size(), c.places[0].name});
       new_.push_back(std::move(o));
     }
+  }
+
+  /// A straight surface that stands still, and what touches it.
+  struct Line {
+    std::size_t outline;  // of the new ones
+    std::string place;
+  };
+
+  /// It ends where what touches it cannot be for another one: in the corners of a box.
+  void cut(const Line& line) {
+    Drawing::Element& e = new_[line.outline].element;
+    std::vector<double>& p = e.positions;
+    const double half = std::abs(e.shape.lines[0].points[0]), tx = p[2] - p[0], ty = p[3] - p[1];
+    double low = -half, high = half;
+    for (const Line& other : lines_) {
+      if (other.outline == line.outline || other.place != line.place) continue;
+      const std::vector<double>& w = new_[other.outline].element.positions;
+      const double nx = w[4] - w[0], ny = w[5] - w[1], slope = tx * nx + ty * ny;
+      const double end = -((p[0] - w[0]) * nx + (p[1] - w[1]) * ny) / slope;
+      if (std::abs(slope) < 0.05) continue;
+      (slope > 0 ? low : high) = slope > 0 ? std::max(low, end) : std::min(high, end);
+    }
+    if (!(high - low > 2 * s_.hatching) || high - low >= 2 * half) return;
+    const double middle = (low + high) / 2;
+    e.shape = shapes::ground_line((high - low) / 2, s_.hatching);
+    for (std::size_t i = 0; i < 6; i += 2) p[i] += middle * tx, p[i + 1] += middle * ty;
   }
 
   /// As much of it as shows what it is: all of a curve that closes or ends, of a longer one what the motion comes to.
@@ -164,7 +193,7 @@ class ContactPictures {
   /// Whether ground, a wall, a circle or a line of the model shows it, as far as it is seen.
   bool is_shown(const Surface& surface) const {
     const double tolerance = surface.distance + 0.015 * s_.extent;
-    if (surface.stop) return is_near_line({surface.positions[0], surface.positions[1]}, tolerance);
+    if (surface.stop) return is_on_the_drawn({surface.positions[0], surface.positions[1]}, tolerance);
     const Place middle{(s_.low[0] + s_.high[0]) / 2, (s_.low[1] + s_.high[1]) / 2};
     Place nearest{HUGE_VAL, HUGE_VAL};
     for (std::size_t i = 0; i + 1 < surface.line.size(); i += 2) {
@@ -285,9 +314,17 @@ class ContactPictures {
     for (std::size_t f = 0; f < frames(); ++f) {
       const double factor = std::isfinite(c.multiplier[f]) ? metres * c.multiplier[f] : 0;
       acts = acts || factor != 0;
-      put(o, foot(place, f), factor * place.push[2 * f], factor * place.push[2 * f + 1], f);
+      const Place rubs = friction_on(c, place, f);
+      put(o, foot(place, f), factor * place.push[2 * f] + metres * rubs[0],
+          factor * place.push[2 * f + 1] + metres * rubs[1], f);
     }
     if (acts) new_.push_back(std::move(o));
+  }
+
+  Place friction_on(const ContactPlaces& c, const ContactPlaces::Place& place, std::size_t f) const {
+    const double size = slope(place, f);
+    if (c.friction.empty() || !std::isfinite(c.friction[f]) || !(size > 0)) return {0, 0};
+    return {c.friction[f] * place.push[2 * f + 1] / size, -c.friction[f] * place.push[2 * f] / size};
   }
 
   /// At the place of the impact, the longer the larger; it shrinks until it is gone.
@@ -319,6 +356,7 @@ class ContactPictures {
   const ContactSetting& s_;
   std::vector<Outline>& outlines_;
   std::vector<Outline> new_;
+  std::vector<Line> lines_;
   std::vector<std::vector<double>> still_;  // [n × 2] each
 };
 

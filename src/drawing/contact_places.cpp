@@ -293,6 +293,7 @@ void ContactTracks::add_formulas(const MechanicalSystem& system, const Trajector
       }
     f.values.push_back(share);
     f.slips = contact.friction.slip.size() == 1 && c.places.size() == 1;
+    if (f.slips && !contact.name.empty()) f.friction = run.column("friction(" + contact.name + ")");
     if (f.slips) {
       const Expr slip = in_terms_of_motion(system, {&contact.friction.slip[0], 1}).front();
       f.values.push_back(substitute(slip, at_rest));
@@ -329,11 +330,13 @@ void ContactTracks::add_frame(const Bindings& state, const std::function<double(
       c.places[0].push[c.places[0].push.size() - 2 + k] = values[values.size() - 2 + k];
     if (f.reaction) c.multiplier.push_back(values[after] != 0 ? column(*f.reaction) / values[after] : 0);
     if (!f.slips) continue;
-    Vector lever(static_cast<Eigen::Index>(n));  // ∂v_t/∂q' = s Jᵀ τ
+    Vector lever(static_cast<Eigen::Index>(n));  // ∂v_t/∂q' = s Jᵀ τ, but for what turns
     for (std::size_t k = 0; k < n; ++k) lever(static_cast<Eigen::Index>(k)) = values[after + 2 + k];
-    const Vector along = fit(jacobian, lever).push;
-    const double share = (push(1) * along(0) - push(0) * along(1)) / push.norm();
+    const double nx = c.places[0].push.end()[-2], ny = c.places[0].push.end()[-1], size = std::hypot(nx, ny);
+    const Vector across = jacobian.transpose() * Vector{{ny / size, -nx / size}};
+    const double square = across.squaredNorm(), share = square > 0 ? across.dot(lever) / square : 0;
     c.surface_speed.push_back(share != 0 ? -values[after + 1] / share : 0);
+    if (f.friction) c.friction.push_back(share * column(*f.friction));
   }
 }
 

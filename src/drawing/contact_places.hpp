@@ -23,6 +23,7 @@ struct ContactPlaces {
   std::size_t freedoms = 2;                // of one place: in the plane, or along a line
   std::vector<double> gap = {};            // [frames]
   std::vector<double> multiplier = {};     // [frames] λ; empty: the run does not tell it
+  std::vector<double> friction = {};       // [frames] N on the one place, to the right of the normal; empty: none
   std::vector<double> surface_speed = {};  // [frames] m/s along the surface, to the right of its normal; empty: at rest
 };
 
@@ -41,6 +42,7 @@ class ContactTracks {
   struct Formulas {
     ExprVector values;  // g, ∂g/∂q, P and ∂P/∂q of each place, λ for a reaction of 1, v_t at rest
     std::optional<std::size_t> reaction;  // column of the run
+    std::optional<std::size_t> friction;  // column of the run
     bool slips = false, written = false;  // written: at the end ∂g/∂P of the one place
   };
   void add_formulas(const MechanicalSystem& system, const Trajectory& run, const EquationsOfMotion* equations);

@@ -37,8 +37,9 @@ struct Figure {
   Series horizontal;
   std::vector<Panel> panels;
   double left = 0, right = 0, bottom = 0, height = 0;
-  double marks_top = 0;   // of the names of marks
-  double strips_top = 0;  // of the bars below the panels
+  double marks_top = 0;       // of the names of marks
+  std::size_t mark_rows = 1;  // lines that these take
+  double strips_top = 0;      // of the bars below the panels
   double frame_width() const { return right - left; }
 };
 
@@ -56,6 +57,8 @@ std::string draw_panel(const Figure& figure, const Panel& panel, const Axis& acr
 
 /// Room for the names of marks above the panels, for the bars below them, and for their legend below the axis.
 double names_of_marks_height(const Figure& figure);
+/// One, or two where different names would stand on each other. Precondition: the figure has its left and right.
+std::size_t rows_of_names(const Figure& figure, const Axis& across);
 double strips_height(const Figure& figure);
 double strips_legend_height(const Figure& figure);
 double widest_strip_name(const Figure& figure);

@@ -156,16 +156,8 @@ std::string plot_svg(const Trajectory& trajectory, const PlotOptions& options) {
   MAUP_REQUIRE(trajectory.values.size() == trajectory.rows() * trajectory.columns.size());
   MAUP_REQUIRE(trajectory.errors.empty() || trajectory.errors.size() == trajectory.values.size());
   MAUP_REQUIRE(options.outline.empty() || (options.columns.size() == 1 && !options.against.empty()));
-  Figure figure{trajectory,
-                options,
-                Series{trajectory.independent.name, trajectory.independent.unit, 1, 0, true},
-                group_by_unit(trajectory, options),
-                0,
-                0,
-                0,
-                0,
-                0,
-                0};
+  Figure figure{trajectory, options, Series{trajectory.independent.name, trajectory.independent.unit, 1, 0, true},
+                group_by_unit(trajectory, options)};
   if (!options.against.empty()) figure.horizontal = series_of(trajectory, options.against, options.degrees);
 
   // Ranges come first, then axes; their labels give the margin; with the margin the axes are final.
@@ -178,6 +170,8 @@ std::string plot_svg(const Trajectory& trajectory, const PlotOptions& options) {
   Axes axes = choose_axes(figure, across, up, options.width - 90, panel_height);
   arrange(figure, panel_height, widest_label(axes.up));
   axes = choose_axes(figure, across, up, figure.frame_width(), panel_height);
+  figure.mark_rows = rows_of_names(figure, axes.across);
+  if (figure.mark_rows > 1) arrange(figure, panel_height, widest_label(axes.up));
 
   std::string svg = opening(figure);
   if (!options.title.empty()) svg += text_element(options.width / 2, 24, "middle", title_size, {{options.title}});

@@ -14,7 +14,7 @@ namespace {
 
 using State = PlotStrip::State;
 
-constexpr double bar = 10, between_bars = 5, names_height = 17, legend_line = 20, least_distance = 1.5;
+constexpr double bar = 10, between_bars = 5, names_height = 16, legend_line = 20, least_distance = 1.5;
 
 bool over_time(const Figure& figure) { return figure.horizontal.is_time; }
 bool has_marks(const Figure& figure) { return over_time(figure) && !figure.options.marks.empty(); }
@@ -47,6 +47,18 @@ std::vector<Look> occurring(const Figure& figure) {
   return out;
 }
 
+/// A name that would take the room of the picture is cut.
+RichText shown_name(const std::string& name) {
+  constexpr std::size_t longest = 18;
+  std::size_t letters = 0, end = 0;
+  while (end < name.size() && letters <= longest) {
+    ++letters;
+    do ++end;
+    while (end < name.size() && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80);
+  }
+  return end == name.size() ? name_text(name) : RichText{{name.substr(0, end) + "…"}};
+}
+
 double x_of(const Figure& figure, const Axis& across, double t) {
   return figure.left + figure.frame_width() * std::clamp(across.position(figure.horizontal.factor * t), 0.0, 1.0);
 }
@@ -56,19 +68,43 @@ bool is_shown(const Axis& across, const Figure& figure, double t) {
   return u >= -1e-9 && u <= 1 + 1e-9;
 }
 
-/// Names in the order of the time; one that would stand on the last one is left out.
-std::string draw_names(const Figure& figure, const Axis& across) {
-  std::string svg;
-  double free_from = -HUGE_VAL;
+struct PlacedName {
+  RichText text;
+  double x = 0;
+  std::size_t row = 0;
+};
+
+/// Names in the order of the time; one that would stand on the last one goes below it if it is another, else it is left
+/// out.
+std::vector<PlacedName> placed_names(const Figure& figure, const Axis& across) {
+  constexpr std::size_t rows = 2;
+  std::vector<PlacedName> out;
+  double free_from[rows] = {-HUGE_VAL, -HUGE_VAL};
+  std::string last[rows];
   for (const PlotMark& mark : figure.options.marks) {
     if (mark.name.empty() || !is_shown(across, figure, mark.t)) continue;
     const RichText text = name_text(mark.name);
     const double half = text_width(text, tick_size) / 2, wanted = x_of(figure, across, mark.t),
                  x = std::clamp(wanted, half + 2, figure.options.width - half - 2);
-    if (x - half < free_from) continue;
-    free_from = x + half + 8;
-    svg += text_element(x, figure.marks_top + 11, "middle", tick_size, text, " class=\"tick\"");
+    for (std::size_t row = 0; row < rows; ++row) {
+      if (x - half >= free_from[row]) {
+        free_from[row] = x + half + 8;
+        last[row] = mark.name;
+        out.push_back({text, x, row});
+        break;
+      }
+      if (last[row] == mark.name) break;
+    }
   }
+  return out;
+}
+
+std::string draw_names(const Figure& figure, const Axis& across) {
+  std::string svg;
+  for (const PlacedName& name : placed_names(figure, across))
+    if (name.row < figure.mark_rows)
+      svg += text_element(name.x, figure.marks_top + 11 + names_height * static_cast<double>(name.row), "middle",
+                          tick_size, name.text, " class=\"tick\"");
   return svg;
 }
 
@@ -91,7 +127,7 @@ std::string draw_strip(const Figure& figure, const Axis& across, const PlotStrip
   }
   std::string svg;
   for (const auto& [name, path] : paths) svg += fmt::format("<path class=\"strip {}\" d=\"{}\"/>\n", name, path);
-  return svg + text_element(figure.left - 7, top + bar - 1, "end", tick_size, name_text(strip.name));
+  return svg + text_element(figure.left - 7, top + bar - 1, "end", tick_size, shown_name(strip.name));
 }
 
 std::string draw_legend(const Figure& figure) {
@@ -113,7 +149,16 @@ std::string draw_legend(const Figure& figure) {
 double names_of_marks_height(const Figure& figure) {
   const auto named = [](const PlotMark& mark) { return !mark.name.empty(); };
   const auto& marks = figure.options.marks;
-  return has_marks(figure) && std::any_of(marks.begin(), marks.end(), named) ? names_height : 0;
+  return has_marks(figure) && std::any_of(marks.begin(), marks.end(), named)
+             ? names_height * static_cast<double>(figure.mark_rows) + 1
+             : 0;
+}
+
+std::size_t rows_of_names(const Figure& figure, const Axis& across) {
+  std::size_t rows = 1;
+  if (has_marks(figure))
+    for (const PlacedName& name : placed_names(figure, across)) rows = std::max(rows, name.row + 1);
+  return rows;
 }
 
 double strips_height(const Figure& figure) {
@@ -128,7 +173,7 @@ double widest_strip_name(const Figure& figure) {
   double widest = 0;
   if (has_strips(figure))
     for (const PlotStrip& strip : figure.options.strips)
-      widest = std::max(widest, text_width(name_text(strip.name), tick_size));
+      widest = std::max(widest, text_width(shown_name(strip.name), tick_size));
   return widest;
 }
 

@@ -127,20 +127,28 @@ HybridMotion::ModeMotion& HybridMotion::motion_in(const ContactMode& mode) {
   watch_contacts(*slot, wanted.events);
   watch_frictions(*slot, wanted.events);
   ExprVector rubbed{context.number(0)}, damped{context.number(0)};
+  ExprMap open;  // forces that do not act in this mode, and friction that slides
   for (std::size_t i = 0; i < mode.friction.size(); ++i) {
-    const FrictionState state = mode.friction[i];
-    if (state == FrictionState::None || state == FrictionState::Stick) continue;
     const Friction& f = friction_of(system_, i);
+    const FrictionState state = mode.friction[i];
+    if (state == FrictionState::Stick || !f.present()) continue;
+    for (const Expr& multiplier : f.multipliers) open[multiplier] = context.number(0);
+    if (state == FrictionState::None) continue;
     const Expr normal = normal_force(system_, mode, i);
     const Expr force = normal ? f.kinetic * normal : f.kinetic;
-    rubbed.push_back(state == FrictionState::Slide     ? force * slip_speed(f)
-                     : state == FrictionState::Forward ? force * f.slip[0]
-                                                       : -(force * f.slip[0]));
+    if (state == FrictionState::Slide) {
+      const Expr speed = slip_speed(f);
+      rubbed.push_back(force * speed);
+      for (std::size_t k = 0; k < f.slip.size(); ++k) open[f.multipliers[k]] = -(force * f.slip[k] / speed);
+    } else {
+      const bool forward = state == FrictionState::Forward;
+      rubbed.push_back(forward ? force * f.slip[0] : -(force * f.slip[0]));
+      open[f.multipliers[0]] = forward ? -force : force;
+    }
   }
   for (std::size_t i = 0; i < system_.coordinates.size(); ++i)
     damped.push_back(equations_.dissipative_terms[i] * system_.coordinates[i].velocity);
   wanted.integrands = {slot->equations->power, context.sum(rubbed), context.sum(damped)};
-  ExprMap open;  // forces that do not act in this mode
   for (std::size_t i = 0; i < mode.closed.size(); ++i)
     if (!mode.closed[i]) open[system_.contacts[i].multiplier] = context.number(0);
   for (auto* list : {&wanted.observables, &wanted.events, &wanted.integrands})

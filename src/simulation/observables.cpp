@@ -28,14 +28,29 @@ void add_reactions(Observables& out, const EquationsOfMotion& equations) {
     return std::any_of(system.contacts.begin(), system.contacts.end(),
                        [&](const Contact& c) { return c.name == name && !name.empty(); });
   };
-  const bool named = !system.releases.empty() || !system.contacts.empty() || std::any_of(system.constraints.begin(), system.constraints.end(),
-                                                             [](const Constraint& c) { return !c.name.empty(); });
+  const bool named = !system.releases.empty() || !system.contacts.empty() ||
+                     std::any_of(system.constraints.begin(), system.constraints.end(),
+                                 [](const Constraint& c) { return !c.name.empty(); });
   if (!named) return;
   for (const Reaction& r : reactions(equations)) {
     const Constraint* constraint = system.find_constraint(r.name);
     const bool released = r.kind == Reaction::Kind::Released;
-    if (r.value && (released || constraint || find_contact(r.name))) add("reaction(" + r.name + ")", r.dimension, r.value);
+    if (r.value && (released || constraint || find_contact(r.name)))
+      add("reaction(" + r.name + ")", r.dimension, r.value);
   }
+}
+
+/// λ_t of each friction with one slip component; HybridMotion puts in what it is where it slides.
+void add_frictions(Observables& out, const MechanicalSystem& system) {
+  const auto add = [&](const Friction& f, const Dimension& dimension) {
+    if (f.name.empty() || f.slip.size() != 1) return;
+    out.expressions.push_back(f.multipliers[0]);
+    out.reactions.push_back({"friction(" + f.name + ")", dimension});
+  };
+  for (const Contact& c : system.contacts) add(c.friction, dimensions::force());
+  for (const Friction& f : system.frictions)
+    for (const Coordinate& c : system.coordinates)
+      if (c.name == f.name) add(f, system.lagrangian_dimension / c.dimension);
 }
 
 void find_dependences(Observables& out, const EquationsOfMotion& equations) {
@@ -59,6 +74,7 @@ Observables collect_observables(const EquationsOfMotion& equations, const Probe*
     out.expressions.insert(out.expressions.end(), point.position.begin(), point.position.end());
   out.points = out.expressions.size() - out.energy_terms;
   add_reactions(out, equations);
+  add_frictions(out, *equations.system);
   if (probe) {
     const std::vector<Expr> wanted = with_reactions(equations, probe->expressions);
     out.expressions.insert(out.expressions.end(), wanted.begin(), wanted.end());

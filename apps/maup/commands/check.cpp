@@ -205,7 +205,8 @@ Json friction_json(const Friction& f, const EquationsOfMotion& equations) {
   return {{"kinetic", value_of(f.kinetic, *equations.system)}, {"static", value_of(f.static_, *equations.system)}};
 }
 
-/// contacts: [{name, gap, restitution, friction, start: {gap, rate, closed, impact}}], first_mode
+/// contacts: [{name, gap, restitution, friction, start: {gap, rate, closed, impact}}], frictions: [{along, kinetic,
+/// static, normal}], first_mode
 void add_contacts(Json& document, const EquationsOfMotion& equations, const std::optional<ContactStart>& start) {
   const MechanicalSystem& system = *equations.system;
   document["contacts"] = Json::array();
@@ -226,6 +227,12 @@ void add_contacts(Json& document, const EquationsOfMotion& equations, const std:
     }
     document["contacts"].push_back(std::move(contact));
   }
+  document["frictions"] = Json::array();
+  for (const Friction& f : system.frictions)
+    document["frictions"].push_back({{"along", f.name},
+                                     {"kinetic", to_plain(f.kinetic, equations.order)},
+                                     {"static", to_plain(f.static_, equations.order)},
+                                     {"normal", f.normal ? Json(to_plain(f.normal, equations.order)) : Json()}});
   document["first_mode"] = start && start->trouble.empty() ? Json(mode_name(start->mode)) : Json();
 }
 

@@ -53,7 +53,7 @@ class RootSearchOf {
 
   /// [program.constants], under the sides in force.
   void set_constants(std::span<const T> constants, const double* rough) {
-    if (std::ranges::equal(constants, constants_)) return;
+    if (std::equal(constants.begin(), constants.end(), constants_.begin(), constants_.end())) return;
     constants_.assign(constants.begin(), constants.end());
     rough_.assign(rough, rough + constants.size());
     retrace_.set_constants(constants_.data());

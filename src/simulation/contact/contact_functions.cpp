@@ -136,7 +136,9 @@ void ContactFunctions::evaluate(FunctionWorkspace& work, std::vector<double>& ou
 }
 
 const ContactValues& ContactFunctions::at(double t, std::span<const double> q, std::span<const double> v) {
-  if (t == t_ && std::ranges::equal(q, q_) && std::ranges::equal(v, v_)) return values_;
+  if (t == t_ && std::equal(q.begin(), q.end(), q_.begin(), q_.end()) &&
+      std::equal(v.begin(), v.end(), v_.begin(), v_.end()))
+    return values_;
   t_ = t;
   q_.assign(q.begin(), q.end());
   v_.assign(v.begin(), v.end());

@@ -203,6 +203,77 @@ TEST_CASE("forces stand on the rim of what is pressed, along the normal; impulse
     CHECK((e.kind != Drawing::Kind::Arrow || e.names[0] == "floor"));
 }
 
+TEST_CASE(
+    "friction tilts the force of a contact; where a gap is written in a point its normal is that of the surface") {
+  const ModelText m(std::string(ball) + "contact z >= 0 friction 0.5 slip x' name floor\nrun 1 s\ndraw circle P r\n");
+  const auto resting = [](std::size_t i, double t) { return i == 0 ? t : 0.0; };
+  Trajectory run = contact_run(*m.system, 1, resting, {{"floor", 10}});
+  run.columns.push_back({"friction(floor)", "N"});
+  std::vector<double> values;
+  for (std::size_t row = 0; row < run.rows(); ++row) {
+    const auto begin = run.values.begin() + static_cast<std::ptrdiff_t>(row * (run.columns.size() - 1));
+    values.insert(values.end(), begin, begin + static_cast<std::ptrdiff_t>(run.columns.size() - 1));
+    values.push_back(-5);
+  }
+  run.values = values;
+  const Drawing drawing = evaluate_drawing(m.model, run, 6000, &m.equations).value();
+  const auto arrow = std::find_if(drawing.elements.begin(), drawing.elements.end(),
+                                  [](const Drawing::Element& e) { return e.kind == Drawing::Kind::Arrow; });
+  REQUIRE(arrow != drawing.elements.end());
+  CHECK((arrow->positions[2] - arrow->positions[0]) / (arrow->positions[3] - arrow->positions[1]) ==
+        doctest::Approx(-0.5));
+
+  // The shoe of a lever on a wheel: the lever moves it aslant to the normal.
+  const ModelText brake(
+      "system s\nparam J = 1 kg m^2\ncoord β : angle\nframe lever at (-1 [m], 1.2 [m]) rotation angle β\n"
+      "body arm inertia J at (-1 [m], 1.2 [m]) rotation angle β\n"
+      "point shoe in lever at (1 [m], -0.2 [m])\n"
+      "contact sqrt(shoe.x^2 + shoe.y^2) >= 1 [m] name block\nrun 1 s\ndraw (-1 [m], 1.2 [m]) - shoe\n");
+  const auto held = [](std::size_t, double) { return 0.0; };
+  const Drawing wheel =
+      evaluate_drawing(brake.model, contact_run(*brake.system, 1, held, {{"block", 10}}), 6000, &brake.equations)
+          .value();
+  const auto push = std::find_if(wheel.elements.begin(), wheel.elements.end(),
+                                 [](const Drawing::Element& e) { return e.kind == Drawing::Kind::Arrow; });
+  REQUIRE(push != wheel.elements.end());
+  CHECK(push->positions[2] == doctest::Approx(push->positions[0]));
+  CHECK(push->positions[3] > push->positions[1] + 0.01);
+}
+
+TEST_CASE("two walls of one contact, the corners of a box, a hoop that moves") {
+  const ModelText walls(std::string(ball) + "contact 1 [m^2] - x^2 >= 0 name walls\nrun 1 s\ndraw trail P\n");
+  const auto across = [](std::size_t i, double t) { return i == 0 ? 0.99 * std::cos(6 * t) : 0.3 * t; };
+  CHECK(grounds(evaluate_drawing(walls.model, contact_run(*walls.system, 1, across)).value()).size() == 2);
+
+  const ModelText box(std::string(ball) +
+                      "contact x >= 0 name left\ncontact x <= 2 [m] name right\ncontact z >= 0 name floor\n"
+                      "run 1 s\ndraw circle P r\n");
+  const auto inside = [](std::size_t i, double t) { return i == 0 ? 1 + std::sin(6 * t) : 0.5 * t; };
+  const auto found = evaluate_drawing(box.model, contact_run(*box.system, 1, inside)).value();
+  REQUIRE(grounds(found).size() == 3);
+  for (const Drawing::Element* e : grounds(found)) {
+    const auto line = world(*e, e->shape.lines[0]);
+    if (line[1] == doctest::Approx(line[3])) {  // the floor, from wall to wall
+      CHECK(std::min(line[0], line[2]) == doctest::Approx(-0.1));
+      CHECK(std::max(line[0], line[2]) == doctest::Approx(2.1));
+    } else  // a wall, from the floor on
+      CHECK(std::min(line[1], line[3]) == doctest::Approx(-0.1));
+  }
+
+  const ModelText hoop(std::string(ball) +
+                       "contact sqrt((x - 1 [m/s] t)^2 + z^2) <= 1 [m] name hoop\nrun 1 s\ndraw trail P\n");
+  const auto carried = [](std::size_t i, double t) { return i == 0 ? t + std::sin(t) : -std::cos(t); };
+  const Drawing moving = evaluate_drawing(hoop.model, contact_run(*hoop.system, 1, carried)).value();
+  REQUIRE(grounds(moving).size() == 1);
+  const Drawing::Element& e = *grounds(moving)[0];
+  REQUIRE_FALSE(e.still);
+  for (std::size_t f = 0; f < moving.times.size(); f += 100) {
+    const auto circle = world(e, e.shape.lines[0], f);
+    for (std::size_t i = 0; i < circle.size(); i += 20)
+      CHECK(std::hypot(circle[i] - moving.times[f], circle[i + 1]) == doctest::Approx(1).epsilon(1e-4));
+  }
+}
+
 TEST_CASE("two balls that touch push each other with opposite forces") {
   const ModelText m(
       "system s\nparam m = 1 kg, r = 0.1 m\ncoord a, b : length\n"

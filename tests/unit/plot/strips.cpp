@@ -38,13 +38,20 @@ double number_after(const std::string& text, char letter) { return std::stod(tex
 
 TEST_CASE("marks are thin lines through all panels at their times; names stand above where there is room") {
   PlotOptions options;
-  options.marks = {{2.5, "floor", false}, {5, "hit", true}, {5.001, "crowded", true}};
+  options.marks = {{2.5, "floor", false}, {5, "hit", true}, {5.001, "hit", true}};
   const std::string svg = plot_svg(ramp(), options), bare = plot_svg(ramp());
   CHECK(times_in(path_of(svg, "mark"), "M") == 2);        // two panels
   CHECK(times_in(path_of(svg, "mark event"), "M") == 2);  // the third is on the second
   CHECK(times_in(svg, "floor") == 1);
   CHECK(times_in(svg, "hit") == 1);
-  CHECK(times_in(svg, "crowded") == 0);
+  options.marks[2].name = "other";  // another name goes to a line of its own
+  const std::string two = plot_svg(ramp(), options);
+  CHECK(times_in(two, "other") == 1);
+  CHECK(times_in(two, "hit") == 1);
+  const auto height = [](const std::string& picture) {
+    return std::stod(picture.substr(picture.find(" height=\"") + 9));
+  };
+  CHECK(height(two) == doctest::Approx(height(svg) + 16));
   CHECK(times_in(bare, "<path class=\"mark") == 0);
   const std::string frame = path_of(svg, "axis");
   const double left = number_after(frame, 'M'), width = number_after(frame, 'h');
@@ -65,6 +72,14 @@ TEST_CASE("strips: a bar a contact, as long as its state lasts; the legend names
   const double width = number_after(path_of(svg, "axis"), 'h');
   CHECK(number_after(path_of(svg, "strip s3"), 'h') == doctest::Approx(width / 5).epsilon(1e-3));
   CHECK(number_after(path_of(svg, "strip s1"), 'h') == doctest::Approx(width).epsilon(1e-3));
+}
+
+TEST_CASE("a long name of a contact leaves room for the picture") {
+  PlotOptions options;
+  options.strips = {{std::string(200, 'w'), {{0, 10, PlotStrip::State::Closed}}}};
+  const std::string svg = plot_svg(ramp(), options);
+  CHECK(number_after(path_of(svg, "axis"), 'h') > 400);
+  CHECK(times_in(svg, "…") == 1);
 }
 
 TEST_CASE("over another axis than the time there are neither marks nor strips") {

@@ -97,6 +97,28 @@ TEST_CASE("modes to show: all where they are few, each once; else what one conta
         std::vector<std::string>{"floor sliding +", "", "floor sticking", "floor sliding −", "floor sliding +, wall"});
 }
 
+TEST_CASE("the column of friction: -μ N where it slides, what holds where it sticks, 0 in flight") {
+  const ModelText m(
+      "system s\nparam m = 2 kg, g = 10 m/s^2, α = 0.4 rad, μ = 0.5\ncoord s, n : length\n"
+      "point P mass m at s (cos α, sin α) + n (-sin α, cos α)\ngravity (0, -g)\n"
+      "contact n >= 0 friction μ slip s' name plane\nstart s' = 2 m/s, n = 1 cm\nrun 1 s\n");
+  Diagnostics diagnostics;
+  SimulationOptions options;
+  options.errors = ErrorEstimates::None;
+  const auto result = simulate(m.model, m.equations, options, diagnostics);
+  REQUIRE(result);
+  const Trajectory& rows = result->trajectory;
+  const std::size_t f = *rows.column("friction(plane)"), v = *rows.column("s'"), n = *rows.column("n");
+  int seen[3] = {0, 0, 0};
+  for (std::size_t r = 1; r + 1 < rows.rows(); ++r) {
+    const bool flies = rows.at(r, n) > 1e-9, slides = rows.at(r, v) > 1e-9;
+    if (rows.times[r] == rows.times[r + 1] || rows.times[r] == rows.times[r - 1]) continue;
+    ++seen[flies ? 0 : slides ? 1 : 2];
+    CHECK(rows.at(r, f) == doctest::Approx(flies ? 0 : slides ? -0.5 * 20 * std::cos(0.4) : 20 * std::sin(0.4)));
+  }
+  for (const int count : seen) CHECK(count > 10);
+}
+
 TEST_CASE("a run has the last row before an impact and the first one after it, at its time") {
   const ModelText m(
       "system s\nparam m = 1 kg, g = 10 m/s^2\ncoord z : length\npoint P mass m at (0, z)\n"
