@@ -62,7 +62,10 @@ struct HybridMotion::Settled {
   bool ends_bounces = false;
 };
 
-void HybridMotion::keep_instants() { derivative_ = std::make_shared<ImpactDerivative>(equations_, parameters_); }
+void HybridMotion::keep_instants() {
+  derivative_ = std::make_shared<ImpactDerivative>(equations_, parameters_);
+  for (const auto& [key, motion] : modes_) treat_events(*motion);
+}
 
 const ContactMode& HybridMotion::mode() const { return now_->mode; }
 const EquationsOfMotion& HybridMotion::equations_in(const ContactMode& mode) { return *motion_in(mode).equations; }

@@ -106,6 +106,17 @@ void HybridMotion::watch_frictions(ModeMotion& motion, std::vector<Expr>& events
   }
 }
 
+/// Recorded events end no step. Directions (keep_instants) have to know of gaps that are touched too.
+void HybridMotion::treat_events(ModeMotion& motion) const {
+  std::vector<TaylorStepper::EventTreatment> treatments;
+  for (const Watch& w : motion.watches) {
+    const bool is_recorded =
+        w.what == Watch::What::Event && model_.experiment.events[w.index].action == ModelEvent::Action::Record;
+    treatments.push_back({!is_recorded, w.touches_count() || derivative_});
+  }
+  motion.stepper->treat_events(treatments);
+}
+
 HybridMotion::ModeMotion& HybridMotion::motion_in(const ContactMode& mode) {
   std::string key = key_of(mode);
   for (std::size_t i = 0; i < mode.closed.size(); ++i)  // the motion knows at which slip friction in space stops
@@ -154,13 +165,7 @@ HybridMotion::ModeMotion& HybridMotion::motion_in(const ContactMode& mode) {
   for (auto* list : {&wanted.observables, &wanted.events, &wanted.integrands})
     if (!open.empty() && !list->empty()) *list = substitute(*list, open);
   slot->stepper = std::make_unique<TaylorStepper>(motion_kernel(*slot->equations, wanted), parameters_, options_);
-  std::vector<TaylorStepper::EventTreatment> treatments;
-  for (const Watch& w : slot->watches) {
-    const bool is_recorded =
-        w.what == Watch::What::Event && model_.experiment.events[w.index].action == ModelEvent::Action::Record;
-    treatments.push_back({!is_recorded, w.touches_count()});
-  }
-  slot->stepper->treat_events(treatments);
+  treat_events(*slot);
   return *slot;
 }
 

@@ -424,10 +424,11 @@ std::optional<Step> HybridMotion::settle(double bound) {
         return stopped(StepEnding::Paradox,
                        fmt::format("The start violates the contact {}.", system_.contact_label(i)));
   note_sizes(values);
-  if (!pending_->begins) come_to_rest();
+  begins_to_slide_.assign(system_.contacts.size(), false);
   std::vector<std::size_t> touch = touching(functions_.at(t_, q_, v_));
   if (!hit(touch, reason)) return stopped(StepEnding::Paradox, reason);
   if (!pending_->begins) close_lowest_flights(touch, bound);
+  come_to_rest(touch, bound);
   if (!choose_slips(touch, bound, reason)) return stopped(StepEnding::Paradox, reason);
   if (!choose_mode(touch, bound, reason)) return stopped(StepEnding::Paradox, reason);
   if (pending_->begins) tell_events_at_start(bound);

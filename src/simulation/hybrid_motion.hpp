@@ -7,6 +7,7 @@
 
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/contact_mode.hpp>
+#include <maupertuis/integrator.hpp>
 #include <maupertuis/motion_through_modes.hpp>
 #include <maupertuis/simulation.hpp>
 
@@ -83,6 +84,7 @@ class HybridMotion final : public Method {
   struct Settled;
 
   ModeMotion& motion_in(const ContactMode& mode);
+  void treat_events(ModeMotion& motion) const;
   void watch_contacts(ModeMotion& motion, std::vector<Expr>& events);
   void watch_frictions(ModeMotion& motion, std::vector<Expr>& events);
   void leave_mode();
@@ -124,7 +126,8 @@ class HybridMotion final : public Method {
   Cones cones_of(const std::vector<std::size_t>& touching, const ContactValues& values,
                  std::span<const double> accelerations);
   void move_on(double by, const Eigen::VectorXd& accelerations);
-  void come_to_rest();
+  std::optional<TaylorStepper::Outlook> outlook_without_contacts(const ContactValues& values, double bound);
+  void come_to_rest(const std::vector<std::size_t>& touching, double bound);
   bool choose_slips(const std::vector<std::size_t>& touching, double bound, std::string& reason);
   void close_lowest_flights(const std::vector<std::size_t>& touching, double bound);
   void order_by_forces(std::vector<Choice>& list, const ContactValues& values, double bound);

@@ -41,11 +41,8 @@ double HybridMotion::slip_speed_at(std::size_t i, const ContactValues& values) c
   return i < values.second_slip.size() ? std::hypot(values.slip[i], values.second_slip[i]) : std::abs(values.slip[i]);
 }
 
-/// Not where a slip has just come to rest.
 bool HybridMotion::slides_in_space(std::size_t i, const ContactValues& values) const {
-  const bool stops = std::any_of(pending_->left.begin(), pending_->left.end(),
-                                 [&](const Watch& w) { return w.what == Watch::What::Slip && w.index == i; });
-  return begins_to_slide_[i] || (!stops && slip_speed_at(i, values) > rest_slip(i, values));
+  return begins_to_slide_[i] || slip_speed_at(i, values) > rest_slip(i, values);
 }
 
 /// The speed at which a slip counts as stopped, in steps of ten so that the motion of a mode serves many of them.
@@ -121,42 +118,65 @@ void HybridMotion::move_on(double by, const VectorXd& accelerations) {
   t_ += by;
 }
 
-/// A slip that is slow comes to rest after v_t²/(−v_t·v̇_t): the motion moves on to there, where both components are 0.
-void HybridMotion::come_to_rest() {
-  double by = 0;
+/// Accelerations of the motion without contact forces, and how far it is looked at; nothing where there is none.
+std::optional<TaylorStepper::Outlook> HybridMotion::outlook_without_contacts(const ContactValues& values,
+                                                                             double bound) {
+  const ContactMode base = mode_without_contacts(choices({}, values));
+  TaylorStepper& stepper = *motion_in(base).stepper;
+  stepper.start(t_, q_, v_);
+  TaylorStepper::Outlook outlook = stepper.outlook(bound);
+  if (outlook.ending != StepEnding::None) return std::nullopt;
+  return outlook;
+}
+
+/// A slip that is slow and falls comes to rest after v_t²/(−v_t·v̇_t): the motion moves on to there, where both
+/// components are 0. One that grows has just begun.
+void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double bound) {
   const ContactValues values = functions_.at(t_, q_, v_);
-  const std::vector<double> a = now_->stepper->sample(t_).a;
-  const std::span<const double> drifts = functions_.drifts(t_, q_, v_);
-  const std::size_t contacts = values.gap.size(), seconds = drifts.size() - contacts;
-  for (const Watch& w : pending_->left) {
-    if (w.what != Watch::What::Slip || !friction_of(system_, w.index).in_space()) continue;
-    const std::size_t i = w.index;
-    const double first = drifts[contacts + i] + product(values.tangent[i], a),
-                 second = drifts[seconds + i] + product(values.second_tangent[i], a);
+  const auto is_slow = [&](std::size_t i) {
+    constexpr double rounding = 1 + 1e-6;
     const double speed = slip_speed_at(i, values);
-    const double falls = -(values.slip[i] * first + values.second_slip[i] * second);
-    if (falls > 0) by = std::max(by, speed * speed / falls);
+    return system_.contacts[i].friction.in_space() && !system_.contacts[i].friction.sticking &&
+           !(values.rate[i] > rest_speed(i, values)) && speed > rest_slip(i, values) &&
+           speed <= rounding * stop_slip(i);
+  };
+  if (std::none_of(touching.begin(), touching.end(), is_slow)) return;
+  const auto outlook = outlook_without_contacts(values, bound);
+  if (!outlook) return;
+  const Cones cones = cones_of(touching, values, outlook->accelerations);
+  const auto found = cone_forces(cones.problem);
+  if (!found) return;
+  const VectorXd changes = functions_.response(t_, q_, v_, cones.forces) * found->forces;
+  const VectorXd a = Eigen::Map<const VectorXd>(outlook->accelerations.data(), changes.size()) + changes;
+  const std::vector<double> drifts(functions_.drifts(t_, q_, v_).begin(), functions_.drifts(t_, q_, v_).end());
+  const std::size_t contacts = values.gap.size(), seconds = drifts.size() - contacts;
+  double by = 0;
+  for (const std::size_t i : touching) {
+    if (!is_slow(i)) continue;
+    const double speed = slip_speed_at(i, values);
+    const double falls = -(values.slip[i] * (drifts[contacts + i] + dot(values.tangent[i], a)) +
+                           values.second_slip[i] * (drifts[seconds + i] + dot(values.second_tangent[i], a)));
+    if (falls > 0)
+      by = std::max(by, speed * speed / falls);
+    else
+      begins_to_slide_[i] = true;
   }
-  if (by > 0) move_on(forwards_ ? by : -by, Eigen::Map<const VectorXd>(a.data(), at(a.size())));
+  if (by > 0) move_on(forwards_ ? by : -by, a);
 }
 
 /// Where contacts in space rest on friction: each sticks, or begins to slide. The direction of friction is that of the
 /// slip, and there is none yet: the motion moves on by a moment with the accelerations that the cones give. False, and
 /// why, where the cones have no solution that is found.
 bool HybridMotion::choose_slips(const std::vector<std::size_t>& touching, double bound, std::string& reason) {
-  begins_to_slide_.assign(system_.contacts.size(), false);
   const ContactValues values = functions_.at(t_, q_, v_);
   const auto may_begin = [&](std::size_t i) {
     const Friction& f = system_.contacts[i].friction;
     return f.in_space() && !f.sticking && !(values.rate[i] > rest_speed(i, values)) && !slides_in_space(i, values);
   };
   if (std::none_of(touching.begin(), touching.end(), may_begin)) return true;
-  const ContactMode base = mode_without_contacts(choices({}, values));
-  TaylorStepper& stepper = *motion_in(base).stepper;
-  stepper.start(t_, q_, v_);
-  const TaylorStepper::Outlook outlook = stepper.outlook(bound);
-  if (outlook.ending != StepEnding::None) return true;
-  Cones cones = cones_of(touching, values, outlook.accelerations);
+  const auto outlook = outlook_without_contacts(values, bound);
+  if (!outlook) return true;
+  Cones cones = cones_of(touching, values, outlook->accelerations);
   const auto reaches_limit = [&](std::size_t i) {
     return std::any_of(pending_->left.begin(), pending_->left.end(),
                        [&](const Watch& w) { return w.what == Watch::What::Hold && w.index == i; });
@@ -184,7 +204,7 @@ bool HybridMotion::choose_slips(const std::vector<std::size_t>& touching, double
       const bool is_at_limit = force.norm() >= most * (1 - small);
       slides[c] = found->forces(n) > 0 && is_at_limit && (reaches_limit(i) || slip.norm() > 0);
       if (!slides[c] || pass == 0) continue;
-      slip_scale_[i] = std::max({slip_scale_[i], fastest_slip_[i], slip.norm() * outlook.length});
+      slip_scale_[i] = std::max({slip_scale_[i], fastest_slip_[i], slip.norm() * outlook->length});
       begins_to_slide_[i] = true;
     }
     forces = found->forces;
@@ -192,8 +212,8 @@ bool HybridMotion::choose_slips(const std::vector<std::size_t>& touching, double
   if (std::find(slides.begin(), slides.end(), true) == slides.end()) return true;
   const VectorXd changes = functions_.response(t_, q_, v_, cones.forces) * forces;
   constexpr double told_apart = 1e-13;  // of t: two times are different
-  const double by = std::max(moment * outlook.length, told_apart * std::abs(t_));
-  move_on(forwards_ ? by : -by, Eigen::Map<const VectorXd>(outlook.accelerations.data(), changes.size()) + changes);
+  const double by = std::max(moment * outlook->length, told_apart * std::abs(t_));
+  move_on(forwards_ ? by : -by, Eigen::Map<const VectorXd>(outlook->accelerations.data(), changes.size()) + changes);
   return true;
 }
 
