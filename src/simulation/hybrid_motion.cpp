@@ -357,6 +357,18 @@ std::optional<std::size_t> HybridMotion::violated_constraint(const MotionState& 
   return std::nullopt;
 }
 
+/// h_E with the parameters of the run.
+double HybridMotion::energy_at(double t, std::span<const double> q, std::span<const double> v) const {
+  Bindings bindings;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    bindings[system_.coordinates[i].q] = q[i];
+    bindings[system_.coordinates[i].velocity] = v[i];
+  }
+  for (std::size_t i = 0; i < parameters_.size(); ++i) bindings[system_.parameters[i].symbol] = parameters_[i];
+  bindings[system_.context->time()] = t;
+  return evaluate(in_terms_of_motion(system_, {&equations_.energy_function, 1}).front(), bindings);
+}
+
 /// Assigns what events set, all from the values before.
 bool HybridMotion::carry_out_sets(std::string& reason) {
   Bindings bindings;
@@ -383,13 +395,7 @@ bool HybridMotion::carry_out_sets(std::string& reason) {
           fmt::format("The event `{}` sets a state that violates the contact {}.", before, system_.contact_label(i));
       return false;
     }
-  const Expr energy = in_terms_of_motion(system_, {&equations_.energy_function, 1}).front();
-  const double energy_before = evaluate(energy, bindings);
-  for (std::size_t i = 0; i < q.size(); ++i) {
-    bindings[system_.coordinates[i].q] = q[i];
-    bindings[system_.coordinates[i].velocity] = v[i];
-  }
-  carried_[0] += evaluate(energy, bindings) - energy_before;  // what a set puts in is work
+  carried_[0] += energy_at(t_, q, v) - energy_at(t_, q_, v_);  // what a set puts in is work
   q_ = q, v_ = v;
   return true;
 }

@@ -125,6 +125,7 @@ class HybridMotion final : public Method {
   SparseRow sliding_force(std::size_t contact, const ContactValues& values) const;
   Cones cones_of(const std::vector<std::size_t>& touching, const ContactValues& values,
                  std::span<const double> accelerations);
+  double energy_at(double t, std::span<const double> q, std::span<const double> v) const;
   void move_on(double by, const Eigen::VectorXd& accelerations);
   std::optional<TaylorStepper::Outlook> outlook_without_contacts(const ContactValues& values, double bound);
   void come_to_rest(const std::vector<std::size_t>& touching, double bound);

@@ -108,6 +108,7 @@ HybridMotion::Cones HybridMotion::cones_of(const std::vector<std::size_t>& touch
 
 /// On by a moment with these accelerations: what they leave out are third powers of it, rounding.
 void HybridMotion::move_on(double by, const VectorXd& accelerations) {
+  const double before = energy_at(t_, q_, v_);
   for (std::size_t i = 0; i < q_.size(); ++i) {
     q_[i] += by * (v_[i] + 0.5 * by * accelerations(at(i)));
     v_[i] += by * accelerations(at(i));
@@ -116,6 +117,9 @@ void HybridMotion::move_on(double by, const VectorXd& accelerations) {
   gap_begin_ = t_;
   just_moved_on_ = true;
   t_ += by;
+  const double gained = energy_at(t_, q_, v_) - before;  // what other contacts rub meanwhile, as a rule
+  carried_[0] += gained;
+  carried_[1] -= gained;
 }
 
 /// Accelerations of the motion without contact forces, and how far it is looked at; nothing where there is none.
@@ -161,7 +165,10 @@ void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double
     else
       begins_to_slide_[i] = true;
   }
-  if (by > 0) move_on(forwards_ ? by : -by, a);
+  if (!(by > 0)) return;
+  move_on(forwards_ ? by : -by, a);
+  for (std::size_t i = 0; i < v_.size(); ++i)  // what rounding leaves of all that stops is no motion
+    if (std::abs(v_[i]) <= rest_unit * speed_[kind_[i]]) v_[i] = 0;
 }
 
 /// Where contacts in space rest on friction: each sticks, or begins to slide. The direction of friction is that of the

@@ -56,7 +56,12 @@ class Course {
             s.work + h / 6 * (a.work + 2 * b.work + 2 * c.work + d.work)};
   }
 
-  bool at_rest() const { return state_.velocity.tail<2>().norm() <= accurate * scale_; }
+  /// A slip that has just left 0 is none that comes to rest.
+  bool at_rest() const {
+    const Vector2d slip = state_.velocity.tail<2>();
+    return slip.norm() <= accurate * scale_ &&
+           (slip.norm() == 0 || slip.dot(slope(state_).velocity.tail<2>()) < 0);
+  }
 
   /// At a slip of 0 friction holds it if it can; else it leaves where W_tt (−μ d) + w_tn points along d.
   void decide() {
@@ -67,10 +72,18 @@ class Course {
     holds_ = impact_.sticking || hold_.norm() <= impact_.static_friction;
     if (holds_) return;
     leaves_ = w / w.norm();
-    for (int turn = 0; turn < 500; ++turn) {
+    constexpr int turns = 400;
+    for (int turn = 0; turn < turns; ++turn) {  // as the direction of a small slip turns
       const Vector2d next = w - impact_.friction * (tangential * leaves_);
-      leaves_ = (leaves_ + next / std::max(next.norm(), 1e-300)).normalized();
+      leaves_ = (leaves_ + 0.25 * next / std::max(next.norm(), 1e-300)).normalized();
     }
+  }
+
+  /// No step goes through a slip of 0, where the force turns round: at most half of the way there.
+  double until_stop() const {
+    const Vector2d slip = state_.velocity.tail<2>();
+    const double rate = slope(state_).velocity.tail<2>().norm();
+    return holds_ || slip.norm() == 0 || rate == 0 ? HUGE_VAL : 0.5 * slip.norm() / rate;
   }
 
   /// Until the function rises to 0. False: it does not.
@@ -81,6 +94,7 @@ class Course {
     for (int turn = 0; turn < most; ++turn) {
       if (!holds_ && at_rest()) decide();
       if (until(state_) >= -accurate * accurate * scale_) return true;
+      h = std::min(h, until_stop());
       const State whole = step(state_, h), half = step(step(state_, h / 2), h / 2);
       const double off = (whole.velocity - half.velocity).norm();
       if (off > accurate * scale_ && h > 1e-16 * scale_ / impact_.response(0, 0)) {

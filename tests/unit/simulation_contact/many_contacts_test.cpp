@@ -1,9 +1,7 @@
 // Many contacts at once: closed forms, forces by complementarity, events that end no step.
 #include "simulation/contact/contact_forces.hpp"
 
-#include <maupertuis/simulation.hpp>
-
-#include "../model_text.hpp"
+#include "run_text.hpp"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -15,19 +13,6 @@
 using namespace maupertuis;
 
 namespace {
-
-SimulationResult run(const std::string& text, double end) {
-  ModelText m(text);
-  SimulationOptions options;
-  options.duration = end;
-  options.errors = ErrorEstimates::None;
-  auto result = simulate(m.model, m.equations, options, m.diagnostics);
-  INFO(render(m.diagnostics, m.source));
-  REQUIRE(result);
-  INFO(result->reason);
-  REQUIRE(result->ok());
-  return std::move(*result);
-}
 
 std::string sum_over(std::size_t n, const std::string& term) {
   std::string out;
@@ -62,7 +47,7 @@ TEST_CASE("a stack comes to rest at its heights, and its impacts took what it ha
     for (const std::size_t n : {std::size_t{3}, std::size_t{10}}) {
       CAPTURE(e);
       CAPTURE(n);
-      const auto r = run(stack(n, e), 12);
+      const auto r = run_text(stack(n, e), 12);
       double energy = 0;
       for (std::size_t i = 0; i < n; ++i) {
         const double k = static_cast<double>(i);
@@ -82,7 +67,7 @@ TEST_CASE("a plate on a hundred legs stands, and its motion is that without redu
   for (int i = 0; i < 100; ++i)
     text += fmt::format("contact z + {:.9f} [m] sin a + {:.9f} [m] sin b >= 0\n", std::cos(0.0628318530718 * i),
                         std::sin(0.0628318530718 * i));
-  const auto r = run(text, 1);
+  const auto r = run_text(text, 1);
   CHECK(r.happenings.empty());
   CHECK(std::abs(r.final.q[0]) < 1e-13);
   CHECK(std::abs(r.final.q[1]) < 1e-13);
@@ -102,7 +87,7 @@ TEST_CASE("sixty equal beads without loss go through each other but for their na
     start += fmt::format("{}x{} = {}, x{}' = {:.17g}", i == 0 ? "start " : ", ", i, i, i, v);
     free.push_back(static_cast<double>(i) + v * end);
   }
-  const auto r = run(text + start + "\n", end);
+  const auto r = run_text(text + start + "\n", end);
   std::size_t meetings = 0;
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t k = 0; k < i; ++k) meetings += free[k] > free[i];
@@ -189,12 +174,12 @@ const std::string oscillator = "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV
 
 TEST_CASE("recorded events end no step: the motion is the one without them, to the bit") {
   const std::string start = "start x' = 1\n";
-  const auto without = run(oscillator + start, 20);
-  const auto with = run(oscillator +
-                            "event zero when x = 0 rising : record\nevent half when x = 0.5 : record\n"
-                            "event peak when x = 1 : record\n" +
-                            start,
-                        20);
+  const auto without = run_text(oscillator + start, 20);
+  const auto with = run_text(oscillator +
+                                 "event zero when x = 0 rising : record\nevent half when x = 0.5 : record\n"
+                                 "event peak when x = 1 : record\n" +
+                                 start,
+                             20);
   CHECK(with.statistics.steps == without.statistics.steps);
   CHECK(with.final.q[0] == without.final.q[0]);
   CHECK(with.final.v[0] == without.final.v[0]);
@@ -217,7 +202,7 @@ TEST_CASE("recorded events end no step: the motion is the one without them, to t
 }
 
 TEST_CASE("an event that holds as the motion begins is told, and acts when it is met again") {
-  const auto r = run(oscillator + "event back when x = 0 : stop\nstart x' = 1\n", 20);
+  const auto r = run_text(oscillator + "event back when x = 0 : stop\nstart x' = 1\n", 20);
   REQUIRE(r.happenings.size() == 2);
   CHECK(r.happenings[0].t == 0);
   CHECK(r.final.t == doctest::Approx(std::acos(-1.0)).epsilon(1e-14));
@@ -228,7 +213,7 @@ TEST_CASE("an event that holds as the motion begins is told, and acts when it is
 TEST_CASE("a contact that is hit as the run ends is told") {
   const std::string ball =
       "dimensionless\ncoord z : number\nT = 1/2 z'^2\nV = 2 z\ncontact z >= 0 name floor\nstart z = 1\n";
-  const auto r = run(ball, 1);
+  const auto r = run_text(ball, 1);
   CHECK(r.final.v[0] == doctest::Approx(-2).epsilon(1e-14));
   CHECK(r.happenings.empty());
   REQUIRE(r.remarks.size() == 1);

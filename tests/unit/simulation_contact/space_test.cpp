@@ -1,0 +1,158 @@
+// Friction in the plane of a contact in space: closed forms, a second integrator, the cones' own conditions.
+#include "simulation/contact/cone_forces.hpp"
+#include "simulation/contact/impact.hpp"
+#include "simulation/contact/space_impulse.hpp"
+
+#include "run_text.hpp"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <random>
+
+using namespace maupertuis;
+
+namespace {
+
+std::string block(const std::string& mu, const std::string& start) {
+  return "param m = 1 kg, g = 10 m/s^2, α = 0.5 rad\ncoord x, y, z : length\nT = 1/2 m (x'^2 + y'^2 + z'^2)\n"
+         "V = m g (z cos α - x sin α)\ncontact z >= 0 friction " +
+         mu + " slip (x', y') name plane\n" + start + "\n";
+}
+
+const double downhill = 10 * std::sin(0.5), pressing = 10 * std::cos(0.5);
+
+}  // namespace
+
+TEST_CASE("a block pushed sideways on an incline with μ = tan α ends downhill, with half its speed") {
+  // |v| + v_x keeps its value: friction and gravity have the same size.
+  const auto r = run_text(block("tan α", "start y' = 2 m/s"), 60);
+  CHECK(r.final.v[0] == doctest::Approx(1).epsilon(1e-13));
+  CHECK(std::abs(r.final.v[1]) < 1e-13);
+  CHECK(r.books->friction == doctest::Approx(0.5 * (4 - 1) + downhill * r.final.q[0]).epsilon(1e-12));
+}
+
+TEST_CASE("a block let go on an incline sticks or slides down, from rest and to the last digits") {
+  CHECK(run_text(block("1.001 tan α", "start x = 0 m"), 5).first_mode == "plane sticking");
+  const auto r = run_text(block("0.3", "start x = 0 m"), 1);
+  CHECK(r.first_mode == "plane sliding");
+  CHECK(r.final.q[0] == doctest::Approx(0.5 * (downhill - 0.3 * pressing)).epsilon(1e-13));
+  CHECK(r.final.v[0] == doctest::Approx(downhill - 0.3 * pressing).epsilon(1e-13));
+}
+
+TEST_CASE("a block on a level floor stops after v²/(2 μ g), and stays") {
+  const auto r = run_text(
+      "param m = 1 kg, g = 10 m/s^2\ncoord x, y, z : length\nT = 1/2 m (x'^2 + y'^2 + z'^2)\nV = m g z\n"
+      "contact z >= 0 friction 0.3 static 0.4 slip (x', y') name floor\nstart x' = 3 m/s, y' = 4 m/s\n",
+      1000);
+  REQUIRE(r.happenings.size() == 1);
+  CHECK(r.happenings[0].kind == Happening::Kind::Stick);
+  CHECK(r.happenings[0].t == doctest::Approx(5 / 3.0).epsilon(1e-14));
+  CHECK(r.final.q[0] == doctest::Approx(2.5).epsilon(1e-14));
+  CHECK(r.final.q[1] == doctest::Approx(10 / 3.0).epsilon(1e-14));
+  CHECK(r.final.v[0] == 0);
+  CHECK(r.books->friction == doctest::Approx(12.5).epsilon(1e-13));
+}
+
+TEST_CASE(
+    "a tripod that slides and turns: as a second integrator has it, and at rest with all its energy rubbed away") {
+  std::string text =
+      "param m = 1 kg, g = 10 m/s^2, μ = 0.2, J = 0.01 kg m^2, s = 0.1 m\ncoord x, y, z : length, φ, a, b : angle\n"
+      "T = 1/2 m (x'^2 + y'^2 + z'^2) + 1/2 J (φ'^2 + a'^2 + b'^2)\nV = m g z\n";
+  for (int k = 0; k < 3; ++k)
+    text += fmt::format(
+        "contact z + {:.15f} s a + {:.15f} s b >= 0 friction μ slip (x' - s φ' sin(φ + {:.15f}), y' + s φ' cos(φ + "
+        "{:.15f})) name f{}\n",
+        std::cos(2.0943951023931953 * k), std::sin(2.0943951023931953 * k), 2.0943951023931953 * k,
+        2.0943951023931953 * k, k + 1);
+  text += "start x' = 1 m/s, φ' = 5 rad/s\n";
+  // A fourth-order Runge-Kutta method with steps of 1e-5 s, written apart from this program.
+  const auto before = run_text(text, 0.3);
+  CHECK(before.final.q[0] == doctest::Approx(0.21857624216959).epsilon(1e-11));
+  CHECK(before.final.q[3] == doctest::Approx(1.19906739969567).epsilon(1e-11));
+  CHECK(before.final.v[1] == doctest::Approx(-0.0115562536863).epsilon(1e-9));
+  const auto r = run_text(text, 2);
+  CHECK(r.books->friction == doctest::Approx(0.625).epsilon(1e-12));
+  CHECK(r.statistics.energy_drift < 1e-12);
+  for (const double v : r.final.v) CHECK(std::abs(v) < 1e-13);
+  CHECK(r.happenings.back().mode == "f1 sticking, f2 sticking, f3 sticking");
+}
+
+TEST_CASE("a ball with spin bounces to a roll, by impacts with friction in space") {
+  const auto r = run_text(
+      "param m = 1 kg, R = 0.1 m, g = 10 m/s^2, μ = 0.2, J = 0.004 kg m^2\ncoord x, y, z : length, a, b : angle\n"
+      "T = 1/2 m (x'^2 + y'^2 + z'^2) + 1/2 J (a'^2 + b'^2)\nV = m g z\n"
+      "contact z >= R restitution 0.6 friction μ slip (x' - R b', y' + R a') name floor\n"
+      "start x' = 1 m/s, y' = 2 m/s, z = 0.5 m, a' = 30 rad/s, b' = -20 rad/s\n",
+      4);
+  // What friction cannot change, m x' + J b'/R and m y' − J a'/R, with the slip 0.
+  CHECK(r.final.v[0] == doctest::Approx((1 - 0.8) / 1.4).epsilon(1e-10));
+  CHECK(r.final.v[1] == doctest::Approx((2 - 1.2) / 1.4).epsilon(1e-10));
+  // The first impact slides through: Λ = (1 + e) m √(2 g h), friction μ Λ against a slip of (3, 5).
+  REQUIRE(r.happenings[0].kind == Happening::Kind::Impact);
+  const double impulse = 1.6 * std::sqrt(8.0);
+  CHECK(r.happenings[0].impulse == doctest::Approx(impulse).epsilon(1e-12));
+  CHECK(r.happenings[0].v[0] == doctest::Approx(1 - 0.2 * impulse * 3 / std::sqrt(34.0)).epsilon(1e-12));
+  CHECK(r.happenings[0].v[1] == doctest::Approx(2 - 0.2 * impulse * 5 / std::sqrt(34.0)).epsilon(1e-12));
+}
+
+TEST_CASE("an impulse in space is that of the plane where nothing leaves the plane, and never adds energy") {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (int turn = 0; turn < 60; ++turn) {
+    Eigen::Matrix3d root;
+    for (int i = 0; i < 9; ++i) root(i / 3, i % 3) = number(random);
+    SpaceImpact impact;
+    impact.response = root * root.transpose() + 0.2 * Eigen::Matrix3d::Identity();
+    impact.velocity = {-1 - std::abs(number(random)), number(random), number(random)};
+    impact.friction = impact.static_friction = 0.1 + 0.4 * std::abs(number(random));
+    impact.restitution = std::abs(number(random));
+    const Eigen::Vector3d p = impulse_in_space(impact), after = impact.velocity + impact.response * p;
+    CHECK(p(0) > 0);
+    CHECK(after(0) >= -1e-12);
+    CHECK(0.5 * p.dot(impact.velocity + after) <= 1e-12);
+    CHECK(p.tail<2>().norm() <= impact.friction * p(0) * (1 + 1e-9));
+    // In a plane.
+    impact.response.row(2).head<2>().setZero();
+    impact.response.col(2).head<2>().setZero();
+    impact.velocity(2) = 0;
+    const Eigen::Vector3d flat = impulse_in_space(impact);
+    const PlaneImpulse plane =
+        frictional_impulse(impact.response(0, 0), impact.response(0, 1), impact.response(1, 1), impact.velocity(0),
+                           impact.velocity(1), impact.friction, impact.static_friction, false, impact.restitution);
+    CHECK(flat(0) == doctest::Approx(plane.normal).epsilon(1e-9));
+    CHECK(flat(1) == doctest::Approx(plane.tangential).epsilon(1e-9));
+    CHECK(std::abs(flat(2)) < 1e-12);
+  }
+}
+
+TEST_CASE("forces in cones keep Coulomb's law, redundant contacts too") {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (int turn = 0; turn < 60; ++turn) {
+    const int contacts = 1 + turn % 6, n = turn % 2 == 0 ? 18 : 6;
+    Eigen::MatrixXd rows(3 * contacts, n);
+    for (Eigen::Index i = 0; i < rows.size(); ++i) rows(i) = number(random);
+    ConeProblem p;
+    p.contacts.assign(static_cast<std::size_t>(contacts), {2, 0.2});
+    p.response = rows * rows.transpose();
+    Eigen::VectorXd pull(n);
+    for (Eigen::Index i = 0; i < n; ++i) pull(i) = number(random);
+    p.free = rows * pull;
+    const auto found = cone_forces(p);
+    REQUIRE(found);
+    for (int c = 0; c < contacts; ++c) {
+      const Eigen::Vector3d force = found->forces.segment<3>(3 * c), a = found->accelerations.segment<3>(3 * c);
+      const double size = found->forces.cwiseAbs().maxCoeff() + 1;
+      CHECK(force(0) >= -1e-9 * size);
+      CHECK(a(0) >= -1e-8 * size);
+      CHECK(std::abs(force(0) * a(0)) < 1e-7 * size * size);
+      CHECK(force.tail<2>().norm() <= 0.2 * force(0) + 1e-8 * size);
+      if (a.tail<2>().norm() > 1e-6 && force(0) > 1e-6) {
+        const Eigen::Vector2d against = -0.2 * force(0) * a.tail<2>().normalized();
+        CHECK((force.tail<2>() - against).norm() < 1e-5 * size);
+      }
+    }
+  }
+}
