@@ -70,6 +70,43 @@ void HybridMotion::keep_instants() {
 const ContactMode& HybridMotion::mode() const { return now_->mode; }
 const EquationsOfMotion& HybridMotion::equations_in(const ContactMode& mode) { return *motion_in(mode).equations; }
 
+/// An open contact whose gap comes down to rounding within a step and rises again: no sign of it is left to the motion,
+/// but neighbours hit it.
+void HybridMotion::note_touch(const Step& step) {
+  constexpr int pieces = 8, halvings = 60;
+  constexpr double away = 1e-9, touch = 8 * rest_unit;
+  touched_.clear();
+  std::vector<double> q(q_.size()), v(q_.size());
+  const auto at = [&](double t) -> const ContactValues& {
+    state(t, q, v);
+    return functions_.at(t, q, v);
+  };
+  const double length = (step.end - step.begin) / pieces;
+  ContactValues before = at(step.begin);
+  for (int k = 1; k <= pieces; ++k) {
+    const double begin = step.begin + (k - 1) * length, end = k == pieces ? step.end : begin + length;
+    const ContactValues after = at(end);
+    for (std::size_t i = 0; i < before.gap.size(); ++i) {
+      if (now_->mode.closed[i] || !(before.rate[i] < 0 && after.rate[i] > 0) || before.gap[i] <= away * widest_[i])
+        continue;
+      double low = begin, high = end;
+      for (int h = 0; h < halvings; ++h) {
+        const double middle = 0.5 * (low + high);
+        (at(middle).rate[i] < 0 ? low : high) = middle;
+      }
+      if (std::abs(at(high).gap[i]) > touch * widest_[i]) continue;
+      touched_ = touch_sentence(i, high);
+      return;
+    }
+    before = after;
+  }
+}
+
+std::string HybridMotion::touch_sentence(std::size_t contact, double t) const {
+  return fmt::format("The contact {} is only touched at t = {:.9g}: some neighbours hit it and others do not.",
+                     system_.contact_label(contact), t);
+}
+
 /// Before anything is settled. The mode before is asked once more, for the rates of what ends it.
 void HybridMotion::note_before(double bound) {
   settled_ = std::make_shared<Settled>();
@@ -207,7 +244,7 @@ void HybridMotion::add_impulses_in_order(const ImpactResult& ordered) {
     const std::size_t c = impulse.contact;
     const auto k = static_cast<std::size_t>(std::find(p.contacts.begin(), p.contacts.end(), c) - p.contacts.begin());
     const double rate = dot(p.normal[k], v) + p.drive[k];
-    const auto slopes = derivative_->one_impulse(c, {t_, at.q, at.v, s.ends_bounces});
+    const auto slopes = derivative_->one_impulse(c, {t_, at.q, at.v, p.restitution[k] == 0});
     if (!slopes) {
       s.instant.obstacle = fmt::format(
           "The contact {} is hit at t = {:.9g} without slip: neighbours that slide this way and that come out of the "
@@ -248,7 +285,8 @@ void HybridMotion::add_impulses_at_once() {
     return;
   }
   const auto k = static_cast<std::size_t>(std::find(p.contacts.begin(), p.contacts.end(), *met) - p.contacts.begin());
-  const MatrixXd slopes = derivative_->at_once(pressing, {t_, s.instant.before.q, s.instant.before.v, s.ends_bounces});
+  const MatrixXd slopes =
+      derivative_->at_once(pressing, {t_, s.instant.before.q, s.instant.before.v, p.restitution[k] == 0});
   s.instant.jumps.push_back({system_.contacts[*met].gap, dot(p.normal[k], s.v_before_impact) + p.drive[k],
                              slow * fastest_[*met], s.instant.mode_after, s.instant.after, slopes_of_velocities(slopes),
                              std::nullopt});
@@ -259,9 +297,7 @@ void HybridMotion::add_change_of_forces() {
   Settled& s = *settled_;
   const ModeInstant& i = s.instant;
   if (!s.hit.empty()) {
-    s.instant.obstacle =
-        fmt::format("The contact {} is only touched at t = {:.9g}: some neighbours hit it and others do not.",
-                    system_.contact_label(s.hit.front()), t_);
+    s.instant.obstacle = touch_sentence(s.hit.front(), t_);
     return;
   }
   bool goes_on = true;

@@ -65,7 +65,9 @@ void TangentFlow::ThroughModes::stand_at(const MotionState& state) {
 TangentFlow::ThroughModes::InMode& TangentFlow::ThroughModes::in(const ContactMode& mode) {
   for (const auto& m : modes_)
     if (m->mode == mode) return *m;
-  return *modes_.emplace_back(std::make_unique<InMode>(mode, motion_.equations_in(mode), options_));
+  InMode& made = *modes_.emplace_back(std::make_unique<InMode>(mode, motion_.equations_in(mode), options_));
+  if (!sizes_.empty()) made.flow.set_usual_sizes(sizes_);
+  return made;
 }
 
 TangentPoint TangentFlow::ThroughModes::all_directions(const MotionState& state) {
@@ -99,6 +101,7 @@ std::optional<TangentStop> TangentFlow::ThroughModes::advance(TangentPoint& poin
       if (auto stop = pass(here, *instant)) return stop;
     }
     if (step.ending != StepEnding::None) return TangentStop{step.ending, step.begin, step.reason, {}};
+    if (!motion_.touched().empty()) return TangentStop{StepEnding::None, step.begin, motion_.touched(), other_start};
     if (motion_.stopped_by())
       return TangentStop{StepEnding::Interrupted, step.end,
                          fmt::format("The event `{}` of the model stops it.", *motion_.stopped_by()),

@@ -26,7 +26,9 @@ struct TangentFlow::ThroughModes {
   const EquationsOfMotion& equations_at(const MotionState& state);
 
   void set_usual_sizes(std::span<const double> sizes) {
+    sizes_.assign(sizes.begin(), sizes.end());
     motion_.set_usual_sizes(sizes.first(freedoms), sizes.subspan(freedoms));
+    for (const auto& m : modes_) m->flow.set_usual_sizes(sizes);
   }
 
   // Of the last advance: what its jumps do to volumes, nothing where that is not known; the least number of directions
@@ -60,6 +62,7 @@ struct TangentFlow::ThroughModes {
   MotionThroughModes motion_;
   std::vector<std::unique_ptr<InMode>> modes_;
   std::optional<MotionState> at_;  // where the motion stands
+  std::vector<double> sizes_;      // [2n] of the motion, where they were told
 };
 
 }  // namespace maupertuis

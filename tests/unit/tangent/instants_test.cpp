@@ -166,7 +166,7 @@ TEST_CASE("a motion that only touches a contact has no derivative, nor one that 
       "contact x^2 + y^2 >= 1 restitution 1 name disk\nstart x = -3, y = 1, x' = 1\n");
   const TangentStop grazes = stop_of(touches, 5);
   CHECK(grazes.ending == StepEnding::None);
-  CHECK(grazes.t == doctest::Approx(3).epsilon(1e-6));
+  CHECK(grazes.reason.find("t = 3:") != std::string::npos);
   CHECK(grazes.reason.find("touched") != std::string::npos);
   ModelText corner(
       "dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n"
@@ -199,7 +199,9 @@ TEST_CASE("neighbours through the end of infinitely many bounces") {
   TangentPoint end = start;
   REQUIRE_FALSE(flow.advance(end, 5.5));
   CHECK(flow.fewest_directions() == 2);
-  CHECK(relative_difference(end.directions, differences(m, start, 5.5, 1e-4)) < 1e-5);
+  const double off = relative_difference(end.directions, differences(m, start, 5.5, 1e-4));
+  MESSAGE(off);
+  CHECK(off < 1e-5);
 }
 
 TEST_CASE("a stepper that has been elsewhere gives the motion of a new one, to the bit") {
