@@ -51,8 +51,8 @@ double exponent_of_stadium() {
   while (time < 300'000) {
     double t = ((v > 0 ? 1 : -1) - y) / v, centre = 0;
     bool cap = std::abs(x + u * t) > 1;
-    if (cap) {  // the half circle on the side that it goes to
-      centre = u > 0 ? 1 : -1;
+    if (cap) {  // the half circle on the side where it would leave
+      centre = x + u * t > 0 ? 1 : -1;
       const double b = (x - centre) * u + y * v, c = (x - centre) * (x - centre) + y * y - 1;
       t = -b + std::sqrt(std::max(0.0, b * b - c));
     }
