@@ -244,7 +244,10 @@ void HybridMotion::add_impulses_in_order(const ImpactResult& ordered) {
     const std::size_t c = impulse.contact;
     const auto k = static_cast<std::size_t>(std::find(p.contacts.begin(), p.contacts.end(), c) - p.contacts.begin());
     const double rate = dot(p.normal[k], v) + p.drive[k];
-    const auto slopes = derivative_->one_impulse(c, {t_, at.q, at.v, p.restitution[k] == 0});
+    // A contact that stays closed after its last impulse does not bounce: its flights would be lost in rounding.
+    const bool stays = &impulse == &ordered.impulses.back() && s.instant.mode_after.closed[c];
+    const bool plastic = stays || p.restitution[k] == 0;
+    const auto slopes = derivative_->one_impulse(c, {t_, at.q, at.v, plastic});
     if (!slopes) {
       s.instant.obstacle = fmt::format(
           "The contact {} is hit at t = {:.9g} without slip: neighbours that slide this way and that come out of the "
@@ -258,8 +261,7 @@ void HybridMotion::add_impulses_in_order(const ImpactResult& ordered) {
     mode.closed[c] = false;
     mode.friction[c] = FrictionState::None;
     const bool rubs = system_.contacts[c].friction.present();
-    const double e = p.restitution[k];
-    const auto volume = rubs || !(e > 0) ? std::nullopt : std::optional(2 * std::log(e));
+    const auto volume = rubs || plastic ? std::nullopt : std::optional(2 * std::log(p.restitution[k]));
     s.instant.jumps.push_back(
         {system_.contacts[c].gap, rate, slow * fastest_[c], mode, at, slopes_of_velocities(*slopes), volume});
   }
@@ -279,8 +281,7 @@ void HybridMotion::add_impulses_at_once() {
   if (s.ends_bounces || s.impact.bounded || !met) {
     s.instant.obstacle = fmt::format(
         "At t = {:.9g} infinitely many impacts of several contacts come to their end, and neighbours meet them in "
-        "another "
-        "order.",
+        "another order.",
         t_);
     return;
   }

@@ -263,7 +263,7 @@ std::optional<RestingMode> rest_with(const MechanicalSystem& system, const std::
   out.text = text_of(system, out.mode);
   out.equations = in->equations();
   for (const ModalEntry& e : out.study.entries) {
-    out.holds.push_back(rubs ? in->holds(e.linearization.point) : std::vector<StaticHold>{});
+    out.holds.push_back(in->holds(e.linearization.point));
     out.ranges.push_back(rubs ? RangeSearch(*sticking, system).about(e.linearization.point) : std::nullopt);
   }
   return out;
