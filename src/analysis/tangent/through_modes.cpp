@@ -122,6 +122,7 @@ std::optional<TangentStop> TangentFlow::ThroughModes::carry(TangentPoint& point,
 std::optional<TangentStop> TangentFlow::ThroughModes::pass(TangentPoint& point, const ModeInstant& instant) {
   if (!instant.obstacle.empty()) return TangentStop{StepEnding::None, instant.before.t, instant.obstacle, other_start};
   point.state = instant.before;
+  const double size = point.directions.empty() ? 0 : columns_of(point).cwiseAbs().maxCoeff();
   Vector f = flow_of(instant.before, instant.a_before);
   const ContactMode* mode = &instant.mode_before;
   for (std::size_t k = 0; k < instant.jumps.size(); ++k) {
@@ -139,7 +140,7 @@ std::optional<TangentStop> TangentFlow::ThroughModes::pass(TangentPoint& point, 
     log_volume = log_volume && j.log_volume ? std::optional(*log_volume + *j.log_volume) : std::nullopt;
   }
   point.state = instant.after;
-  return keep_constraints(point, instant.mode_after);
+  return keep_constraints(point, instant.mode_after, size);
 }
 
 std::optional<TangentStop> TangentFlow::ThroughModes::jump(TangentPoint& point, const InstantJump& j, InMode& before,
@@ -175,8 +176,10 @@ std::optional<TangentStop> TangentFlow::ThroughModes::jump(TangentPoint& point, 
                      other_start};
 }
 
-/// Directions after an instant are those of the mode after it, to rounding; what is left of it is taken away.
-std::optional<TangentStop> TangentFlow::ThroughModes::keep_constraints(TangentPoint& point, const ContactMode& mode) {
+/// Directions after an instant are those of the mode after it, to rounding; what is left of it is taken away. `size`:
+/// the largest of them before it.
+std::optional<TangentStop> TangentFlow::ThroughModes::keep_constraints(TangentPoint& point, const ContactMode& mode,
+                                                                       double size) {
   InMode& m = in(mode);
   if (!m.equations.system->constrained()) return std::nullopt;
   const std::vector<double> basis = m.geometry.basis(point.state);
@@ -185,8 +188,10 @@ std::optional<TangentStop> TangentFlow::ThroughModes::keep_constraints(TangentPo
   const Index width = columns.rows();
   const Matrix b = Eigen::Map<const Matrix>(basis.data(), width, static_cast<Index>(basis.size()) / width);
   const Matrix kept = b * (b.transpose() * columns);
-  const double largest = columns.cwiseAbs().maxCoeff(), outside = (columns - kept).cwiseAbs().maxCoeff();
-  if (columns.size() > 0 && !(outside <= most_outside * largest))
+  if (columns.size() == 0) return std::nullopt;
+  const double largest = std::max(size, columns.cwiseAbs().maxCoeff()),
+               outside = (columns - kept).cwiseAbs().maxCoeff();
+  if (!(outside <= most_outside * largest))
     return TangentStop{StepEnding::None, point.state.t,
                        fmt::format("Neighbours do not come into the same mode at t = {:.9g}.", point.state.t),
                        other_start};

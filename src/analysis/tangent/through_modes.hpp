@@ -55,7 +55,7 @@ struct TangentFlow::ThroughModes {
   std::optional<TangentStop> pass(TangentPoint& point, const ModeInstant& instant);
   std::optional<TangentStop> jump(TangentPoint& point, const InstantJump& jump, InMode& before,
                                   const Eigen::VectorXd& f_before, const Eigen::VectorXd& f_after);
-  std::optional<TangentStop> keep_constraints(TangentPoint& point, const ContactMode& mode);
+  std::optional<TangentStop> keep_constraints(TangentPoint& point, const ContactMode& mode, double size);
 
   TangentOptions options_;
   bool rubs_;

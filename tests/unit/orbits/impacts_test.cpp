@@ -206,3 +206,13 @@ TEST_CASE("a strobe and a section of a bouncing ball") {
               .epsilon(1e-12));
   }
 }
+
+TEST_CASE("a block that comes to rest on its plate in each period: nothing is left of neighbours") {
+  ModelText m(
+      "param m = 1 kg, g = 9.81 m/s^2, A = 10 mm, w = 40 rad/s\ncoord z : length\npoint block mass m at (0, z)\n"
+      "gravity (0, -g)\ncontact z >= A sin(w t) restitution 0.3 name table\nstart z' = A w\nrun 1 s\n");
+  const FloquetResult r = floquet_of(m);
+  CHECK(r.motion.period == doctest::Approx(2 * pi / 40).epsilon(1e-14));
+  CHECK(r.largest < 1e-10);
+  CHECK(r.stability == OrbitalStability::Attracting);
+}
