@@ -154,7 +154,12 @@ void HybridMotion::note_after(double bound) {
   out.mode_after = now_->mode;
   out.after = {t_, q_, v_};
   out.a_after = now_->stepper->outlook(bound).accelerations;
-  if (!s.events.empty())
+  if (changes_in_space())
+    out.obstacle = fmt::format(
+        "Friction in space is hit, begins or stops to slide at t = {:.9g}: neighbours are not carried through that "
+        "yet.",
+        t_);
+  else if (!s.events.empty())
     add_set_jump();
   else if (!s.impact.impulses.empty())
     add_impact_jumps();
@@ -166,6 +171,20 @@ void HybridMotion::note_after(double bound) {
 
 std::string HybridMotion::at_once_sentence() const {
   return fmt::format("Several things happen at t = {:.9g}, and neighbours meet them one after the other.", t_);
+}
+
+/// Friction with two components of slip that is met by an impact, or does something else from here on.
+bool HybridMotion::changes_in_space() const {
+  const Settled& s = *settled_;
+  for (const Impulse& i : s.impact.impulses)
+    if (system_.contacts[i.contact].friction.in_space()) return true;
+  for (std::size_t i = 0; i < s.instant.mode_before.friction.size(); ++i) {
+    const bool opens = i < system_.contacts.size() && !s.instant.mode_after.closed[i];
+    if (friction_of(system_, i).in_space() && !opens &&
+        s.instant.mode_before.friction[i] != s.instant.mode_after.friction[i])
+      return true;
+  }
+  return false;
 }
 
 /// An event that sets the state.
