@@ -39,7 +39,8 @@ std::vector<ContactMode> modes_of(const MechanicalSystem& system, std::size_t& l
     }
     out.insert(out.end(), more.begin(), more.end());
   };
-  for (const Contact& c : system.contacts) all *= !c.friction.present() ? 2 : c.friction.sticking ? 2 : 4;
+  for (const Contact& c : system.contacts)
+    all *= !c.friction.present() || c.friction.sticking ? 2 : c.friction.in_space() ? 3 : 4;
   for (const Friction& f : system.frictions) all *= f.present() ? 3 : 1;
   const bool alone = all > static_cast<double>(most_modes);
   for (std::size_t i = 0; i < contacts && out.size() <= most_modes; ++i)

@@ -89,6 +89,10 @@ std::optional<TangentStop> TangentFlow::ThroughModes::advance(TangentPoint& poin
   stand_at(point.state);
   log_volume = rubs_ ? std::nullopt : std::optional(0.0);
   fewest = point.width();
+  if (motion_.time() != point.state.t)
+    return TangentStop{StepEnding::None, point.state.t,
+                       "A slip in space begins at the start: neighbours are not carried through that yet.",
+                       "Start with a slip."};
   if (!same_state(motion_.state(), point.state))
     return TangentStop{StepEnding::None, point.state.t,
                        "The start is an impact, and neighbours have it at other times.",

@@ -223,3 +223,11 @@ TEST_CASE("a stepper that has been elsewhere gives the motion of a new one, to t
     CHECK(used.state().v == fresh.state().v);
   }
 }
+
+TEST_CASE("a slip in space that begins or stops, and its impacts, are refused with their reason") {
+  const std::string text =
+      "dimensionless\ncoord x, y, z : number\nT = 1/2 (x'^2 + y'^2 + z'^2)\nV = 2 x^2 + y^2 + z\n"
+      "contact z >= 0 friction 0.3 slip (x', y') name floor\n";
+  CHECK(stop_of(ModelText(text + "start x = 1, y = 0.5\n"), 3).reason.find("begins at the start") != std::string::npos);
+  CHECK(stop_of(ModelText(text + "start z = 1, x' = 1\n"), 3).reason.find("Friction in space") != std::string::npos);
+}
