@@ -66,8 +66,6 @@ class MotionThroughModes {
   MotionState state() const;
   /// What was settled as the last step began; null: nothing.
   const ModeInstant* instant() const;
-  /// Where instants are kept: a sentence if a gap came down to 0 within the last step and rose again; else empty.
-  const std::string& touched() const;
   const ContactMode& mode() const;
   /// Of the system in a mode; they stay as long as this.
   const EquationsOfMotion& equations_in(const ContactMode& mode);

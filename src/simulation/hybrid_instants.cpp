@@ -70,38 +70,6 @@ void HybridMotion::keep_instants() {
 const ContactMode& HybridMotion::mode() const { return now_->mode; }
 const EquationsOfMotion& HybridMotion::equations_in(const ContactMode& mode) { return *motion_in(mode).equations; }
 
-/// An open contact whose gap comes down to rounding within a step and rises again: no sign of it is left to the motion,
-/// but neighbours hit it.
-void HybridMotion::note_touch(const Step& step) {
-  constexpr int pieces = 8, halvings = 60;
-  constexpr double away = 1e-9, touch = 8 * rest_unit;
-  touched_.clear();
-  std::vector<double> q(q_.size()), v(q_.size());
-  const auto at = [&](double t) -> const ContactValues& {
-    state(t, q, v);
-    return functions_.at(t, q, v);
-  };
-  const double length = (step.end - step.begin) / pieces;
-  ContactValues before = at(step.begin);
-  for (int k = 1; k <= pieces; ++k) {
-    const double begin = step.begin + (k - 1) * length, end = k == pieces ? step.end : begin + length;
-    const ContactValues after = at(end);
-    for (std::size_t i = 0; i < before.gap.size(); ++i) {
-      if (now_->mode.closed[i] || !(before.rate[i] < 0 && after.rate[i] > 0) || before.gap[i] <= away * widest_[i])
-        continue;
-      double low = begin, high = end;
-      for (int h = 0; h < halvings; ++h) {
-        const double middle = 0.5 * (low + high);
-        (at(middle).rate[i] < 0 ? low : high) = middle;
-      }
-      if (std::abs(at(high).gap[i]) > touch * widest_[i]) continue;
-      touched_ = touch_sentence(i, high);
-      return;
-    }
-    before = after;
-  }
-}
-
 std::string HybridMotion::touch_sentence(std::size_t contact, double t) const {
   return fmt::format("The contact {} is only touched at t = {:.9g}: some neighbours hit it and others do not.",
                      system_.contact_label(contact), t);

@@ -97,7 +97,6 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   gap_begin_ = std::numeric_limits<double>::quiet_NaN();
   settled_.reset();
   instant_.reset();
-  touched_.clear();
   started_ = false;
   now_ = &motion_in(open_mode(system_));
   now_->stepper->start(t_, q_, v_);
@@ -174,7 +173,6 @@ Step HybridMotion::step(double bound) {
   just_moved_on_ = false;
   if (out.ending != StepEnding::None) return out;
   note_step();
-  if (derivative_ && !system_.contacts.empty()) note_touch(out);
   if (const auto contact = violated()) {
     const std::string label = system_.contact_label(*contact);
     if (!std::isfinite(functions_.at(t_, q_, v_).gap[*contact]))

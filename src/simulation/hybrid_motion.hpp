@@ -70,8 +70,6 @@ class HybridMotion final : public Method {
   /// For neighbours (motion_through_modes.hpp): from here on each instant is kept.
   void keep_instants();
   const ModeInstant* instant() const { return instant_ ? &*instant_ : nullptr; }
-  /// A sentence where a gap came to 0 within the last step and rose again; else empty.
-  const std::string& touched() const { return touched_; }
   const ContactMode& mode() const;
   const EquationsOfMotion& equations_in(const ContactMode& mode);
   /// Sizes that q and q' have elsewhere in the motion [n]: of later starts, what is much smaller is rounding.
@@ -160,7 +158,6 @@ class HybridMotion final : public Method {
   void add_impulses_in_order(const ImpactResult& ordered);
   void add_impulses_at_once();
   void add_change_of_forces();
-  void note_touch(const Step& step);
   bool changes_in_space() const;
   std::string at_once_sentence() const;
   std::string touch_sentence(std::size_t contact, double t) const;
@@ -221,7 +218,6 @@ class HybridMotion final : public Method {
   std::shared_ptr<ImpactDerivative> derivative_;                 // where instants are kept
   std::shared_ptr<Settled> settled_;                             // the instant that is being settled
   std::optional<ModeInstant> instant_;                           // the one at the beginning of the last step
-  std::string touched_;  // a sentence, of the last step
 };
 
 }  // namespace maupertuis

@@ -61,7 +61,6 @@ MotionState MotionThroughModes::state() const {
   return {here.t, here.q, here.v};
 }
 const ModeInstant* MotionThroughModes::instant() const { return impl_->motion.instant(); }
-const std::string& MotionThroughModes::touched() const { return impl_->motion.touched(); }
 const ContactMode& MotionThroughModes::mode() const { return impl_->motion.mode(); }
 const EquationsOfMotion& MotionThroughModes::equations_in(const ContactMode& mode) {
   return impl_->motion.equations_in(mode);

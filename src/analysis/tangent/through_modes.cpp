@@ -105,7 +105,6 @@ std::optional<TangentStop> TangentFlow::ThroughModes::advance(TangentPoint& poin
       if (auto stop = pass(here, *instant)) return stop;
     }
     if (step.ending != StepEnding::None) return TangentStop{step.ending, step.begin, step.reason, {}};
-    if (!motion_.touched().empty()) return TangentStop{StepEnding::None, step.begin, motion_.touched(), other_start};
     if (motion_.stopped_by())
       return TangentStop{StepEnding::Interrupted, step.end,
                          fmt::format("The event `{}` of the model stops it.", *motion_.stopped_by()),
