@@ -243,7 +243,9 @@ std::string through_text(const IntegralThroughModes& through) {
   impacts(Holds::Yes, "kept by impacts on");
   impacts(Holds::No, "changed by impacts on");
   impacts(Holds::Undecided, "undecided at impacts on");
-  if (through.left_out > 0) lines.push_back(fmt::format("{} modes were not looked at", through.left_out));
+  if (through.left_out > 0)
+    lines.push_back(fmt::format("{} not looked at",
+                                through.left_out == 1 ? "1 mode was" : fmt::format("{} modes were", through.left_out)));
   return fmt::format("{}", fmt::join(lines, "\n       "));
 }
 

@@ -519,6 +519,7 @@ std::string holds_text(const MechanicalSystem& system, const RestingMode& mode, 
     else
       out += fmt::format("  static friction of {} holds with {} (SI) of {} at most\n", h.friction, number(h.force),
                          number(h.limit));
+  if (std::all_of(holds.begin(), holds.end(), [](const StaticHold& h) { return std::isinf(h.limit); })) return out;
   out += "  rest is a set of points, not one: static friction holds neighbours as well";
   if (mode.ranges[entry]) out += ", here " + range_text(system, *mode.ranges[entry]);
   return out + "\n";
@@ -540,7 +541,9 @@ std::string resting_text(const RestingMode& mode, bool first) {
     ModalStudy one;
     one.entries = {mode.study.entries[i]};
     one.translations = mode.study.translations;
-    const bool held = !mode.frictionless && !mode.holds[i].empty();
+    const auto& modes = mode.study.entries[i].analysis.modes;
+    const bool held = !mode.frictionless && !mode.holds[i].empty() &&
+                      std::all_of(modes.begin(), modes.end(), [](const Mode& m) { return m.kind == Mode::Kind::Zero; });
     out += held ? held_text(system, one) : modes_text(system, one, {std::nullopt}, mode.equations->order, {}, {});
     out += holds_text(system, mode, i);
   }

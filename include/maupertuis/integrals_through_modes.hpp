@@ -30,7 +30,8 @@ struct IntegralThroughModes {
 
 /// In each mode by the zero test of dI/dt along its motion; at impacts by impacts at random states on the contact, near
 /// the start: a change of more than rounding is a proof that it is not kept, and none at `impact_samples` of them
-/// counts as kept. Of more than 64 modes those with at most one contact closed are looked at.
+/// counts as kept. Of more than 64 modes those with at most one contact closed are looked at, up to 64, and the impacts
+/// of the first 64 contacts.
 std::vector<IntegralThroughModes> integrals_through_modes(const Model& model, const EquationsOfMotion& equations,
                                                           const std::vector<Expr>& integrals);
 inline constexpr int impact_samples = 20;

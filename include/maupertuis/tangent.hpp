@@ -92,7 +92,7 @@ class TangentFlow {
   /// Columns are carried in groups, each with the motion itself: how far those copies of the motion came apart in the
   /// last advance, relative to the size of each coordinate. An estimate of the error of the motion; 0 for one group.
   double spread() const;
-  /// Sizes of the motion [2n], through modes: in later starts, what is much smaller is rounding.
+  /// Sizes of the motion [2n]: in later starts, what is much smaller is rounding.
   void set_usual_sizes(std::span<const double> sizes);
   /// q̈, λ and their changes at a point. Precondition: not through modes.
   TangentForces forces(const TangentPoint& point);

@@ -70,6 +70,11 @@ void HybridMotion::keep_instants() {
 const ContactMode& HybridMotion::mode() const { return now_->mode; }
 const EquationsOfMotion& HybridMotion::equations_in(const ContactMode& mode) { return *motion_in(mode).equations; }
 
+std::string HybridMotion::touch_sentence(std::size_t contact, double t) const {
+  return fmt::format("The contact {} is only touched at t = {:.9g}: some neighbours hit it and others do not.",
+                     system_.contact_label(contact), t);
+}
+
 /// Before anything is settled. The mode before is asked once more, for the rates of what ends it.
 void HybridMotion::note_before(double bound) {
   settled_ = std::make_shared<Settled>();
@@ -117,7 +122,12 @@ void HybridMotion::note_after(double bound) {
   out.mode_after = now_->mode;
   out.after = {t_, q_, v_};
   out.a_after = now_->stepper->outlook(bound).accelerations;
-  if (!s.events.empty())
+  if (changes_in_space())
+    out.obstacle = fmt::format(
+        "Friction in space is hit, begins or stops to slide at t = {:.9g}: neighbours are not carried through that "
+        "yet.",
+        t_);
+  else if (!s.events.empty())
     add_set_jump();
   else if (!s.impact.impulses.empty())
     add_impact_jumps();
@@ -129,6 +139,20 @@ void HybridMotion::note_after(double bound) {
 
 std::string HybridMotion::at_once_sentence() const {
   return fmt::format("Several things happen at t = {:.9g}, and neighbours meet them one after the other.", t_);
+}
+
+/// Friction with two components of slip that is met by an impact, or does something else from here on.
+bool HybridMotion::changes_in_space() const {
+  const Settled& s = *settled_;
+  for (const Impulse& i : s.impact.impulses)
+    if (system_.contacts[i.contact].friction.in_space()) return true;
+  for (std::size_t i = 0; i < s.instant.mode_before.friction.size(); ++i) {
+    const bool opens = i < system_.contacts.size() && !s.instant.mode_after.closed[i];
+    if (friction_of(system_, i).in_space() && !opens &&
+        s.instant.mode_before.friction[i] != s.instant.mode_after.friction[i])
+      return true;
+  }
+  return false;
 }
 
 /// An event that sets the state.
@@ -207,7 +231,10 @@ void HybridMotion::add_impulses_in_order(const ImpactResult& ordered) {
     const std::size_t c = impulse.contact;
     const auto k = static_cast<std::size_t>(std::find(p.contacts.begin(), p.contacts.end(), c) - p.contacts.begin());
     const double rate = dot(p.normal[k], v) + p.drive[k];
-    const auto slopes = derivative_->one_impulse(c, {t_, at.q, at.v, s.ends_bounces});
+    // A contact that stays closed after its last impulse does not bounce: its flights would be lost in rounding.
+    const bool stays = &impulse == &ordered.impulses.back() && s.instant.mode_after.closed[c];
+    const bool plastic = stays || p.restitution[k] == 0;
+    const auto slopes = derivative_->one_impulse(c, {t_, at.q, at.v, plastic});
     if (!slopes) {
       s.instant.obstacle = fmt::format(
           "The contact {} is hit at t = {:.9g} without slip: neighbours that slide this way and that come out of the "
@@ -221,8 +248,7 @@ void HybridMotion::add_impulses_in_order(const ImpactResult& ordered) {
     mode.closed[c] = false;
     mode.friction[c] = FrictionState::None;
     const bool rubs = system_.contacts[c].friction.present();
-    const double e = p.restitution[k];
-    const auto volume = rubs || !(e > 0) ? std::nullopt : std::optional(2 * std::log(e));
+    const auto volume = rubs || plastic ? std::nullopt : std::optional(2 * std::log(p.restitution[k]));
     s.instant.jumps.push_back(
         {system_.contacts[c].gap, rate, slow * fastest_[c], mode, at, slopes_of_velocities(*slopes), volume});
   }
@@ -242,13 +268,13 @@ void HybridMotion::add_impulses_at_once() {
   if (s.ends_bounces || s.impact.bounded || !met) {
     s.instant.obstacle = fmt::format(
         "At t = {:.9g} infinitely many impacts of several contacts come to their end, and neighbours meet them in "
-        "another "
-        "order.",
+        "another order.",
         t_);
     return;
   }
   const auto k = static_cast<std::size_t>(std::find(p.contacts.begin(), p.contacts.end(), *met) - p.contacts.begin());
-  const MatrixXd slopes = derivative_->at_once(pressing, {t_, s.instant.before.q, s.instant.before.v, s.ends_bounces});
+  const MatrixXd slopes =
+      derivative_->at_once(pressing, {t_, s.instant.before.q, s.instant.before.v, p.restitution[k] == 0});
   s.instant.jumps.push_back({system_.contacts[*met].gap, dot(p.normal[k], s.v_before_impact) + p.drive[k],
                              slow * fastest_[*met], s.instant.mode_after, s.instant.after, slopes_of_velocities(slopes),
                              std::nullopt});
@@ -259,9 +285,7 @@ void HybridMotion::add_change_of_forces() {
   Settled& s = *settled_;
   const ModeInstant& i = s.instant;
   if (!s.hit.empty()) {
-    s.instant.obstacle =
-        fmt::format("The contact {} is only touched at t = {:.9g}: some neighbours hit it and others do not.",
-                    system_.contact_label(s.hit.front()), t_);
+    s.instant.obstacle = touch_sentence(s.hit.front(), t_);
     return;
   }
   bool goes_on = true;

@@ -159,7 +159,9 @@ class HybridMotion final : public Method {
   void add_impulses_in_order(const ImpactResult& ordered);
   void add_impulses_at_once();
   void add_change_of_forces();
+  bool changes_in_space() const;
   std::string at_once_sentence() const;
+  std::string touch_sentence(std::size_t contact, double t) const;
   Expr function_of(const Watch& watch, bool second) const;
 
   Step ended(StepEnding ending, std::string reason) const;

@@ -100,7 +100,10 @@ std::vector<double> SingleImpact::after(std::size_t contact, const MotionState& 
   p.sticking = {system.contacts[contact].friction.sticking};
   p.rest = {0};
   p.response = impl_->functions.response(state.t, state.q, state.v, p.normal);
+  p.second_tangent = {values.second_tangent[contact]};
+  p.second_drive = {values.second_slip[contact] - dot(values.second_tangent[contact], v)};
   p.tangent_response = impl_->functions.response(state.t, state.q, state.v, p.tangent);
+  p.second_response = impl_->functions.response(state.t, state.q, state.v, p.second_tangent);
   const ImpactResult found = sequential_impact(p, v, ImpactOrder::FastestFirst);
   return {found.v.data(), found.v.data() + found.v.size()};
 }

@@ -39,10 +39,12 @@ std::vector<ContactMode> modes_of(const MechanicalSystem& system, std::size_t& l
     }
     out.insert(out.end(), more.begin(), more.end());
   };
-  for (const Contact& c : system.contacts) all *= !c.friction.present() ? 2 : c.friction.sticking ? 2 : 4;
+  for (const Contact& c : system.contacts)
+    all *= !c.friction.present() || c.friction.sticking ? 2 : c.friction.in_space() ? 3 : 4;
   for (const Friction& f : system.frictions) all *= f.present() ? 3 : 1;
   const bool alone = all > static_cast<double>(most_modes);
-  for (std::size_t i = 0; i < contacts; ++i) multiply(i, true, system.contacts[i].friction, alone);
+  for (std::size_t i = 0; i < contacts && out.size() <= most_modes; ++i)
+    multiply(i, true, system.contacts[i].friction, alone);
   for (std::size_t i = 0; i < system.frictions.size() && out.size() <= most_modes; ++i)
     multiply(contacts + i, false, system.frictions[i], alone);
   if (out.size() > most_modes) out.resize(most_modes);
@@ -178,7 +180,7 @@ std::vector<IntegralThroughModes> integrals_through_modes(const Model& model, co
   }
   if (system.contacts.empty() || integrals.empty()) return out;
   AtContacts at(model, equations);
-  for (std::size_t c = 0; c < system.contacts.size(); ++c) {
+  for (std::size_t c = 0; c < std::min(system.contacts.size(), most_modes); ++c) {
     const auto changes = at.changes(c, integrals);
     for (std::size_t k = 0; k < integrals.size(); ++k)
       out[k].impacts.push_back({system.contact_label(c),

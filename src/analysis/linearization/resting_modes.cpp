@@ -79,12 +79,15 @@ class AtRest {
       const double limit = f.sticking ? HUGE_VAL : value(f.static_, b) * (normal ? std::abs(value(normal, b)) : 1);
       const std::string name =
           i < system_.contacts.size() ? system_.contact_label(i) : system_.frictions[i - system_.contacts.size()].name;
-      out.push_back({name, std::abs(value(f.multipliers[0], b)), limit});
+      out.push_back({name, force_of(f, b), limit});
     }
     return out;
   }
-  static bool slides(FrictionState state) {
-    return state == FrictionState::Forward || state == FrictionState::Backward;
+  static bool slides(FrictionState state) { return state != FrictionState::None && state != FrictionState::Stick; }
+  double force_of(const Friction& f, const Bindings& b) const {
+    double square = 0;
+    for (const Expr& m : f.multipliers) square += std::pow(value(m, b), 2);
+    return std::sqrt(square);
   }
   bool friction_holds(const OperatingPoint& point) const {
     const auto all = holds(point);
@@ -126,7 +129,9 @@ double slip_at_rest(const MechanicalSystem& system, std::size_t i, const MotionS
     b[system.coordinates[k].velocity] = 0;
   }
   b[system.context->time()] = start.t;
-  return evaluate(in_terms_of_motion(system, {&friction_of(system, i).slip[0], 1}).front(), b);
+  std::vector<double> components;
+  for (const Expr& e : in_terms_of_motion(system, friction_of(system, i).slip)) components.push_back(evaluate(e, b));
+  return components.size() == 1 ? components.front() : std::hypot(components[0], components[1]);
 }
 
 /// At rest friction sticks, or is left out; on what moves by itself it slides.
@@ -139,10 +144,11 @@ ContactMode mode_with(const MechanicalSystem& system, const std::vector<bool>& c
     const Friction& f = friction_of(system, i);
     if (!f.present() || (i < closed.size() && !closed[i])) continue;
     const double slip = f.sticking ? 0 : slip_at_rest(system, i, start);
-    mode.friction[i] = slip > 0               ? FrictionState::Forward
-                       : slip < 0             ? FrictionState::Backward
-                       : sticks || f.sticking ? FrictionState::Stick
-                                              : FrictionState::None;
+    mode.friction[i] = slip != 0 && f.in_space() ? FrictionState::Slide
+                       : slip > 0                ? FrictionState::Forward
+                       : slip < 0                ? FrictionState::Backward
+                       : sticks || f.sticking    ? FrictionState::Stick
+                                                 : FrictionState::None;
   }
   return mode;
 }
@@ -235,6 +241,7 @@ std::string text_of(const MechanicalSystem& system, const ContactMode& mode) {
     out += out.empty() ? "" : ", ";
     out += contact ? system.contact_label(i) : system.frictions[i - mode.closed.size()].name;
     out += state == FrictionState::Stick     ? " sticking"
+           : state == FrictionState::Slide   ? " sliding"
            : state == FrictionState::Forward ? " sliding +"
            : state == FrictionState::None    ? ""
                                              : " sliding −";
@@ -263,7 +270,7 @@ std::optional<RestingMode> rest_with(const MechanicalSystem& system, const std::
   out.text = text_of(system, out.mode);
   out.equations = in->equations();
   for (const ModalEntry& e : out.study.entries) {
-    out.holds.push_back(rubs ? in->holds(e.linearization.point) : std::vector<StaticHold>{});
+    out.holds.push_back(in->holds(e.linearization.point));
     out.ranges.push_back(rubs ? RangeSearch(*sticking, system).about(e.linearization.point) : std::nullopt);
   }
   return out;

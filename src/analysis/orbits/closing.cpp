@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <utility>
 
@@ -127,7 +128,7 @@ class Closer {
   }
 
   /// At an impact the state has two values, and next to it a correction may throw the start through the contact: where
-  /// one is near, the orbit begins in the middle of the longest stretch without.
+  /// one is near, the orbit begins in the middle of a stretch without, the longest of those in which least is held.
   bool leave_impacts() {
     if (!out_.through_modes) return true;
     const double begin = at_.t, end = seen_.states.back().t;
@@ -135,10 +136,15 @@ class Closer {
     instants.push_back(end);
     if (!touches_contact() && instants.front() - begin > near_impact * (end - begin)) return true;
     double from = begin, middle = begin, longest = 0;
-    for (const double t : instants) {
-      if (t - from > longest) longest = t - from, middle = 0.5 * (from + t);
-      from = t;
+    std::size_t least = SIZE_MAX;
+    for (std::size_t k = 0; k < instants.size(); ++k) {
+      const double length = instants[k] - from;
+      const std::size_t held = k < seen_.held.size() ? seen_.held[k] : 0;
+      if (length > near_impact * (end - begin) && (held < least || (held == least && length > longest)))
+        least = held, longest = length, middle = from + 0.5 * length;
+      from = instants[k];
     }
+    if (longest == 0) return true;
     const auto later = [](const MotionState& s, double t) { return s.t < t; };
     at_ = *std::lower_bound(seen_.states.begin(), seen_.states.end(), middle, later);
     const double length = end - begin;

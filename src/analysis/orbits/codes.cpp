@@ -76,7 +76,7 @@ constexpr CodeEntry entries[] = {
      "Where a contact closes or friction sticks, neighbours that differ in the direction that is held from then on "
      "come "
      "into the same state. Their exponents are −∞, and there are numbers only for the directions that are left.",
-     "maup orbits stick_slip.lag --lyapunov", "maup orbits stick_slip.lag --lyapunov --exponents 1"},
+     "maup orbits bouncing_ball.lag --lyapunov", "maup orbits bouncing_ball.lag --lyapunov --exponents 2"},
     {"W1401", "Lyapunov exponents that do not add up",
      "The exponents add up to the mean rate at which the flow changes volumes: zero without dissipation, minus the "
      "damping rates else. If they "

@@ -73,9 +73,9 @@ bool contacts_repeat(const MechanicalSystem& system, const Survey& seen,
   ExprVector functions;
   for (const Contact& c : system.contacts) {
     functions.push_back(c.gap);
-    if (c.friction.present()) functions.push_back(c.friction.slip[0]);
+    functions.insert(functions.end(), c.friction.slip.begin(), c.friction.slip.end());
   }
-  for (const Friction& f : system.frictions) functions.push_back(f.slip[0]);
+  for (const Friction& f : system.frictions) functions.insert(functions.end(), f.slip.begin(), f.slip.end());
   const tangent::PointFunctions at(system, functions);
   const std::size_t stride = std::max<std::size_t>(1, seen.states.size() / 32);
   std::vector<double> largest(functions.size(), 0.0), difference(functions.size(), 0.0);

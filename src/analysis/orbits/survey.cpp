@@ -50,9 +50,21 @@ std::vector<double> sizes_of(const MechanicalSystem& system, const std::vector<M
   return sizes;
 }
 
+/// Closed contacts hold a place and its rate, friction that sticks a rate.
+std::size_t held_in(const ContactMode& mode) {
+  std::size_t held = 0;
+  for (const bool closed : mode.closed) held += closed ? 2 : 0;
+  for (const FrictionState f : mode.friction) held += f == FrictionState::Stick ? 1 : 0;
+  return held;
+}
+
 void note_instant(const TaylorStepper&, Survey&) {}
 void note_instant(const MotionThroughModes& motion, Survey& out) {
-  if (const ModeInstant* instant = motion.instant()) out.instants.push_back(instant->before.t);
+  if (out.held.empty()) out.held.push_back(held_in(motion.instant() ? motion.instant()->mode_before : motion.mode()));
+  if (const ModeInstant* instant = motion.instant()) {
+    out.instants.push_back(instant->before.t);
+    out.held.push_back(held_in(instant->mode_after));
+  }
   if (motion.stopped_by()) out.ended = "The event `" + *motion.stopped_by() + "` of the model stops it.";
 }
 

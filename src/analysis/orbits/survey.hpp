@@ -17,8 +17,9 @@ struct Survey {
                               // Of what rests its own value, or 1, and that in the time seen
   bool rests = false;         // nothing moves but by rounding
   std::size_t steps = 0;
-  std::string ended;             // why before the end; empty: it did not
-  std::vector<double> instants;  // s: of impacts, changes of mode, events that set the state
+  std::string ended;              // why before the end; empty: it did not
+  std::vector<double> instants;   // s: of impacts, changes of mode, events that set the state
+  std::vector<std::size_t> held;  // [instants + 1] how much contacts and friction hold before the first, after each
 };
 
 Survey survey(const MechanicalSystem& system, const MotionKernel& motion, const MotionState& start, double duration,

@@ -79,7 +79,9 @@ class Group {
                  {options.tolerance, 0, options.maximum_steps, options.interrupt, Backend::Automatic, true}) {}
 
   /// Columns first, first + 1, … of the point; where it has no more, the last one again.
-  void start(const TangentPoint& point, std::size_t first) {
+  /// `sizes` [2n] of the motion, or none: a direction that is small in some components was made of larger ones, and
+  /// their rounding is what its constraints can be met to.
+  void start(const TangentPoint& point, std::size_t first, std::span<const double> sizes) {
     std::copy_n(point.state.q.begin(), n_, q_.begin());
     std::copy_n(point.state.v.begin(), n_, v_.begin());
     for (std::size_t j = 0; j < columns_; ++j) {
@@ -91,6 +93,7 @@ class Group {
       }
     }
     stepper_.start(point.state.t, q_, v_);
+    if (!sizes.empty()) measure_by(sizes);
     jumps_ = JumpWatch(n_);
   }
 
@@ -133,6 +136,17 @@ class Group {
   }
 
  private:
+  void measure_by(std::span<const double> sizes) {
+    std::vector<double> q(q_.size(), 0.0), v(q_.size(), 0.0);
+    for (std::size_t j = 1; j <= columns_; ++j) {
+      double largest = 0;
+      for (std::size_t i = 0; i < n_; ++i)
+        largest = std::max({largest, std::abs(q_[j * n_ + i]) / sizes[i], std::abs(v_[j * n_ + i]) / sizes[n_ + i]});
+      for (std::size_t i = 0; i < n_; ++i) q[j * n_ + i] = largest * sizes[i], v[j * n_ + i] = largest * sizes[n_ + i];
+    }
+    stepper_.set_usual_sizes(q, v);
+  }
+
   std::optional<TangentStop> step(double t) {
     const Step step = stepper_.step(t);
     if (step.ending != StepEnding::None) return TangentStop{step.ending, step.begin, step.reason};
@@ -182,6 +196,7 @@ struct TangentFlow::Impl {
   std::optional<Kernel> motion;
   std::optional<KernelWorkspace> at_point;
   double spread = 0;
+  std::vector<double> sizes;  // [2n] of the motion, where they were told
 };
 
 Group& TangentFlow::Impl::group(std::size_t columns) {
@@ -275,7 +290,10 @@ double TangentFlow::spread() const { return modes_ ? 0 : impl_->spread; }
 std::optional<double> TangentFlow::log_volume_of_jumps() const { return modes_ ? modes_->log_volume : 0.0; }
 
 void TangentFlow::set_usual_sizes(std::span<const double> sizes) {
-  if (modes_) modes_->set_usual_sizes(sizes);
+  if (modes_)
+    modes_->set_usual_sizes(sizes);
+  else
+    impl_->sizes.assign(sizes.begin(), sizes.end());
 }
 
 std::size_t TangentFlow::fewest_directions() const { return modes_ ? modes_->fewest : 2 * impl_->n; }
@@ -290,7 +308,7 @@ TangentForces TangentFlow::forces(const TangentPoint& point) {
   Group& group = impl_->group(width);
   TangentForces out;
   for (std::size_t k = 0; k < count; ++k) {
-    group.start(point, k * width);
+    group.start(point, k * width, impl_->sizes);
     group.read_forces(out, k * width, point.columns());
   }
   return out;
@@ -322,7 +340,7 @@ std::optional<TangentStop> TangentFlow::along(const TangentPoint& start, std::sp
   if (stop) points.clear();
   for (std::size_t k = 0; k < count && !points.empty(); ++k) {
     Group& group = s.group(width);
-    group.start(start, k * width);
+    group.start(start, k * width, s.sizes);
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (auto failed = group.advance(times[i])) {
         stop = std::move(failed);

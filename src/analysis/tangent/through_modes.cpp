@@ -65,7 +65,9 @@ void TangentFlow::ThroughModes::stand_at(const MotionState& state) {
 TangentFlow::ThroughModes::InMode& TangentFlow::ThroughModes::in(const ContactMode& mode) {
   for (const auto& m : modes_)
     if (m->mode == mode) return *m;
-  return *modes_.emplace_back(std::make_unique<InMode>(mode, motion_.equations_in(mode), options_));
+  InMode& made = *modes_.emplace_back(std::make_unique<InMode>(mode, motion_.equations_in(mode), options_));
+  if (!sizes_.empty()) made.flow.set_usual_sizes(sizes_);
+  return made;
 }
 
 TangentPoint TangentFlow::ThroughModes::all_directions(const MotionState& state) {
@@ -87,6 +89,10 @@ std::optional<TangentStop> TangentFlow::ThroughModes::advance(TangentPoint& poin
   stand_at(point.state);
   log_volume = rubs_ ? std::nullopt : std::optional(0.0);
   fewest = point.width();
+  if (motion_.time() != point.state.t)
+    return TangentStop{StepEnding::None, point.state.t,
+                       "A slip in space begins at the start: neighbours are not carried through that yet.",
+                       "Start with a slip."};
   if (!same_state(motion_.state(), point.state))
     return TangentStop{StepEnding::None, point.state.t,
                        "The start is an impact, and neighbours have it at other times.",
@@ -119,6 +125,7 @@ std::optional<TangentStop> TangentFlow::ThroughModes::carry(TangentPoint& point,
 std::optional<TangentStop> TangentFlow::ThroughModes::pass(TangentPoint& point, const ModeInstant& instant) {
   if (!instant.obstacle.empty()) return TangentStop{StepEnding::None, instant.before.t, instant.obstacle, other_start};
   point.state = instant.before;
+  const double size = point.directions.empty() ? 0 : columns_of(point).cwiseAbs().maxCoeff();
   Vector f = flow_of(instant.before, instant.a_before);
   const ContactMode* mode = &instant.mode_before;
   for (std::size_t k = 0; k < instant.jumps.size(); ++k) {
@@ -136,7 +143,7 @@ std::optional<TangentStop> TangentFlow::ThroughModes::pass(TangentPoint& point, 
     log_volume = log_volume && j.log_volume ? std::optional(*log_volume + *j.log_volume) : std::nullopt;
   }
   point.state = instant.after;
-  return keep_constraints(point, instant.mode_after);
+  return keep_constraints(point, instant.mode_after, size);
 }
 
 std::optional<TangentStop> TangentFlow::ThroughModes::jump(TangentPoint& point, const InstantJump& j, InMode& before,
@@ -172,8 +179,10 @@ std::optional<TangentStop> TangentFlow::ThroughModes::jump(TangentPoint& point, 
                      other_start};
 }
 
-/// Directions after an instant are those of the mode after it, to rounding; what is left of it is taken away.
-std::optional<TangentStop> TangentFlow::ThroughModes::keep_constraints(TangentPoint& point, const ContactMode& mode) {
+/// Directions after an instant are those of the mode after it, to rounding; what is left of it is taken away. `size`:
+/// the largest of them before it.
+std::optional<TangentStop> TangentFlow::ThroughModes::keep_constraints(TangentPoint& point, const ContactMode& mode,
+                                                                       double size) {
   InMode& m = in(mode);
   if (!m.equations.system->constrained()) return std::nullopt;
   const std::vector<double> basis = m.geometry.basis(point.state);
@@ -182,8 +191,10 @@ std::optional<TangentStop> TangentFlow::ThroughModes::keep_constraints(TangentPo
   const Index width = columns.rows();
   const Matrix b = Eigen::Map<const Matrix>(basis.data(), width, static_cast<Index>(basis.size()) / width);
   const Matrix kept = b * (b.transpose() * columns);
-  const double largest = columns.cwiseAbs().maxCoeff(), outside = (columns - kept).cwiseAbs().maxCoeff();
-  if (columns.size() > 0 && !(outside <= most_outside * largest))
+  if (columns.size() == 0) return std::nullopt;
+  const double largest = std::max(size, columns.cwiseAbs().maxCoeff()),
+               outside = (columns - kept).cwiseAbs().maxCoeff();
+  if (!(outside <= most_outside * largest))
     return TangentStop{StepEnding::None, point.state.t,
                        fmt::format("Neighbours do not come into the same mode at t = {:.9g}.", point.state.t),
                        other_start};

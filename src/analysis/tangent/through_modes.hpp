@@ -26,7 +26,9 @@ struct TangentFlow::ThroughModes {
   const EquationsOfMotion& equations_at(const MotionState& state);
 
   void set_usual_sizes(std::span<const double> sizes) {
+    sizes_.assign(sizes.begin(), sizes.end());
     motion_.set_usual_sizes(sizes.first(freedoms), sizes.subspan(freedoms));
+    for (const auto& m : modes_) m->flow.set_usual_sizes(sizes);
   }
 
   // Of the last advance: what its jumps do to volumes, nothing where that is not known; the least number of directions
@@ -53,13 +55,14 @@ struct TangentFlow::ThroughModes {
   std::optional<TangentStop> pass(TangentPoint& point, const ModeInstant& instant);
   std::optional<TangentStop> jump(TangentPoint& point, const InstantJump& jump, InMode& before,
                                   const Eigen::VectorXd& f_before, const Eigen::VectorXd& f_after);
-  std::optional<TangentStop> keep_constraints(TangentPoint& point, const ContactMode& mode);
+  std::optional<TangentStop> keep_constraints(TangentPoint& point, const ContactMode& mode, double size);
 
   TangentOptions options_;
   bool rubs_;
   MotionThroughModes motion_;
   std::vector<std::unique_ptr<InMode>> modes_;
   std::optional<MotionState> at_;  // where the motion stands
+  std::vector<double> sizes_;      // [2n] of the motion, where they were told
 };
 
 }  // namespace maupertuis

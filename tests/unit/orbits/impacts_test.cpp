@@ -20,6 +20,58 @@ std::complex<double> product(const std::vector<std::complex<double>>& values) {
   return out;
 }
 
+/// Rays by hand: the curvature B of a wave front becomes B/(1 + B t) on the way, neighbours part by 1 + B t, and a
+/// reflection adds ±2/(R cos φ).
+double exponent_of_sinai() {
+  double x = 0.9, y = 0.2, u = -0.8, v = -0.6, curvature = 0, log_sum = 0, time = 0;
+  while (time < 300'000) {
+    const double to_side = ((u > 0 ? 1 : -1) - x) / u, to_floor = ((v > 0 ? 1 : -1) - y) / v;
+    double t = std::min(to_side, to_floor);
+    const double b = x * u + y * v, c = x * x + y * y - 0.16, d = b * b - c;
+    const bool disk = b < 0 && d > 0 && -b - std::sqrt(d) < t;
+    if (disk) t = -b - std::sqrt(d);
+    x += u * t, y += v * t, time += t;
+    log_sum += std::log1p(curvature * t);
+    curvature /= 1 + curvature * t;
+    if (!disk) {
+      (to_side <= to_floor ? u : v) *= -1;
+      continue;
+    }
+    const double r = std::hypot(x, y), normal = (x * u + y * v) / r;
+    u -= 2 * normal * x / r, v -= 2 * normal * y / r;
+    const double speed = std::hypot(u, v);
+    u /= speed, v /= speed;
+    curvature += 2 / (0.4 * -normal);
+  }
+  return log_sum / time;
+}
+
+double exponent_of_stadium() {
+  double x = 0.2, y = 0.1, u = 0.6, v = 0.8, curvature = 0, log_sum = 0, time = 0;
+  while (time < 300'000) {
+    double t = ((v > 0 ? 1 : -1) - y) / v, centre = 0;
+    bool cap = std::abs(x + u * t) > 1;
+    if (cap) {  // the half circle on the side where it would leave
+      centre = x + u * t > 0 ? 1 : -1;
+      const double b = (x - centre) * u + y * v, c = (x - centre) * (x - centre) + y * y - 1;
+      t = -b + std::sqrt(std::max(0.0, b * b - c));
+    }
+    x += u * t, y += v * t, time += t;
+    log_sum += std::log(std::abs(1 + curvature * t));
+    curvature /= 1 + curvature * t;
+    if (!cap) {
+      v = -v;
+      continue;
+    }
+    const double r = std::hypot(x - centre, y), normal = ((x - centre) * u + y * v) / r;
+    u -= 2 * normal * (x - centre) / r, v -= 2 * normal * y / r;
+    const double speed = std::hypot(u, v);
+    u /= speed, v /= speed;
+    curvature -= 2 / normal;
+  }
+  return log_sum / time;
+}
+
 }  // namespace
 
 TEST_CASE("the impact oscillator of Shaw and Holmes") {
@@ -102,30 +154,19 @@ TEST_CASE("exponents of billiards: none in a circle, those of Sinai's by reflect
       "contact y <= 1 restitution 1 name top\ncontact sqrt(x^2 + y^2) >= R restitution 1 name disk\n"
       "start x = 0.9, y = 0.2, x' = -0.8, y' = -0.6\nrun 3000\n");
   const LyapunovResult chaotic = lyapunov_of(sinai);
-  // Rays by hand: the curvature B of a front becomes B/(1 + B t) on the way, and grows by 2/(R cos φ) at the disk.
-  double x = 0.9, y = 0.2, u = -0.8, v = -0.6, curvature = 0, log_sum = 0, time = 0;
-  while (time < 300'000) {
-    double t = std::min(((u > 0 ? 1 : -1) - x) / u, ((v > 0 ? 1 : -1) - y) / v);
-    const double b = x * u + y * v, c = x * x + y * y - 0.16, d = b * b - c;
-    const bool disk = b < 0 && d > 0 && -b - std::sqrt(d) < t;
-    const bool side = ((u > 0 ? 1 : -1) - x) / u <= ((v > 0 ? 1 : -1) - y) / v;
-    if (disk) t = -b - std::sqrt(d);
-    x += u * t, y += v * t, time += t;
-    log_sum += std::log1p(curvature * t);
-    curvature /= 1 + curvature * t;
-    if (disk) {
-      const double r = std::hypot(x, y), normal = (x * u + y * v) / r;
-      u -= 2 * normal * x / r, v -= 2 * normal * y / r;
-      const double speed = std::hypot(u, v);
-      u /= speed, v /= speed;
-      curvature += 2 / (0.4 * -normal);
-    } else {
-      (side ? u : v) *= -1;
-    }
-  }
-  CHECK(chaotic.exponents[0] == doctest::Approx(log_sum / time).epsilon(0.03));
+  CHECK(chaotic.exponents[0] == doctest::Approx(exponent_of_sinai()).epsilon(0.03));
   CHECK(chaotic.exponents[3] == doctest::Approx(-chaotic.exponents[0]).epsilon(1e-2));
   CHECK(chaotic.sum_rule_residual.value() < 1e-6);
+}
+
+TEST_CASE("the stadium defocuses: its exponent is that of reflected wave fronts") {
+  ModelText m(
+      "dimensionless\nparam a = 1, R = 1\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n"
+      "contact max(abs(x) - a, 0)^2 + y^2 <= R^2 restitution 1 name wall\n"
+      "start x = 0.2, y = 0.1, x' = 0.6, y' = 0.8\nrun 3000\n");
+  const LyapunovResult r = lyapunov_of(m);
+  CHECK(r.exponents[0] == doctest::Approx(exponent_of_stadium()).epsilon(0.04));
+  CHECK(r.sum_rule_residual.value() < 1e-6);
 }
 
 TEST_CASE("directions that vanish are said, not averaged") {
@@ -164,4 +205,14 @@ TEST_CASE("a strobe and a section of a bouncing ball") {
           doctest::Approx(std::sqrt(2 / 9.81) * (2 - std::sqrt(0.5)) + period * static_cast<double>(c.number - 1))
               .epsilon(1e-12));
   }
+}
+
+TEST_CASE("a block that comes to rest on its plate in each period: nothing is left of neighbours") {
+  ModelText m(
+      "param m = 1 kg, g = 9.81 m/s^2, A = 10 mm, w = 40 rad/s\ncoord z : length\npoint block mass m at (0, z)\n"
+      "gravity (0, -g)\ncontact z >= A sin(w t) restitution 0.3 name table\nstart z' = A w\nrun 1 s\n");
+  const FloquetResult r = floquet_of(m);
+  CHECK(r.motion.period == doctest::Approx(2 * pi / 40).epsilon(1e-14));
+  CHECK(r.largest < 1e-10);
+  CHECK(r.stability == OrbitalStability::Attracting);
 }
