@@ -304,6 +304,7 @@ class LineEmitter {
       case Node::Lane:
         return values_[v] = lane(node);
       case Node::Unit:
+        if (line_.width(v) == 1) return values_[v] = number(1);
         return values_[v] = b_.CreateInsertElement(out_.number(0, type_of(v)), number(1), std::uint64_t{node.index});
       case Node::Sum:
       case Node::Magnitudes:
@@ -331,7 +332,8 @@ class LineEmitter {
   /// Of a wide value in memory that number alone.
   Value* lane(const Node& node) {
     if (!values_[node.a] && place_[node.a] != 0) return fetch(real_, line_.arrays, place_[node.a] + node.index);
-    return b_.CreateExtractElement(get(node.a), std::uint64_t{node.index});
+    Value* const all = get(node.a);  // wide values of one number are no vectors
+    return all->getType()->isVectorTy() ? b_.CreateExtractElement(all, std::uint64_t{node.index}) : all;
   }
 
   void keep(straight::Value v, Value* x) {
@@ -372,6 +374,7 @@ class LineEmitter {
   }
 
   Value* gathered(const Node& node, llvm::Type* type) {
+    if (!type->isVectorTy()) return get(line_.operands[node.first]);
     if (Value* const all = shuffled(node)) return all;
     Value* out = llvm::PoisonValue::get(type);
     for (std::uint32_t i = node.first; i < node.last; ++i)
