@@ -93,7 +93,7 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   left_out_remarks_ = 0;
   begins_to_slide_.assign(system_.contacts.size(), false);
   slip_scale_.assign(system_.contacts.size(), 0);
-  cone_residual_ = 0;
+  cone_residual_ = -1;
   gap_begin_ = std::numeric_limits<double>::quiet_NaN();
   settled_.reset();
   instant_.reset();
@@ -212,6 +212,8 @@ void HybridMotion::finish() {
     remark(fmt::format("The contact {} is hit as the run ends: the last state is the one before the impact.",
                        system_.contact_label(i)));
   }
+  if (cone_residual_ >= 0)
+    remark(fmt::format("Forces of friction in space: in their cones to {:.1e} of the largest.", cone_residual_));
 }
 
 /// Events that hold as the motion begins are told, but do not act: it leaves them.

@@ -79,6 +79,13 @@ bool refuse_order_of_coefficients(Elaboration& e, Expr kinetic, Expr static_, co
   return true;
 }
 
+bool are_independent(const ExprVector& a, const ExprVector& b) {
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (zero_test(a[i] * b[j] - a[j] * b[i]).verdict != Verdict::Zero) return true;
+  return false;
+}
+
 /// v_t: linear in the velocities, and not along the normal. Empty after a mistake.
 ExprVector slip_of(Elaboration& e, const ContactStatement& s, Expr gap) {
   Value v = evaluate_formula(e, *s.slip);
@@ -117,6 +124,12 @@ ExprVector slip_of(Elaboration& e, const ContactStatement& s, Expr gap) {
       return {};
     }
     out.push_back(slip);
+  }
+  if (out.size() == 2 && !are_independent(gradient(out[0], velocities), gradient(out[1], velocities))) {
+    e.diagnostics.error("E0265", s.slip->span, "the two components of this slip velocity are one",
+                        "Where friction acts in a plane they are those along two directions at right angles.",
+                        "Write two different components, such as slip (x', y'), or one alone.");
+    return {};
   }
   return out;
 }
