@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include <algorithm>
 
 #include <maupertuis/print.hpp>
@@ -95,13 +97,20 @@ std::string motion_text(const CanonicalMotion& motion, const SimulationResult& r
   const Trajectory& rows = motion.trajectory;
   std::string out = fmt::format("\nCanonical integration\n  {}\n", system.moment(exact(motion.final_time)));
   const std::size_t n = motion.final_q.size();
+  bool complete = std::isfinite(motion.difference);
   for (std::size_t i = 0; i < 2 * n; ++i) {
     const double value = i < n ? motion.final_q[i] : motion.final_p[i - n];
+    if (!std::isfinite(value)) {
+      out += fmt::format("  {:<8}  has no value\n", rows.columns[i].name);
+      complete = false;
+      continue;
+    }
     out += fmt::format("  {:<8} {: .17g}{}{}\n", rows.columns[i].name, value, rows.columns[i].unit.empty() ? "" : " ",
                        rows.columns[i].unit);
   }
   out += fmt::format("  {} steps of order {}; Lagrange's equations took {}\n", motion.steps, motion.order,
                      run.statistics.steps);
+  if (!complete) return out;
   return out + (motion.difference > 0
                     ? fmt::format("  the two motions differ by {} of its size in {}, at {}\n", brief(motion.difference),
                                   motion.difference_name, system.moment(brief(motion.difference_time)))
@@ -147,7 +156,8 @@ ExitCode hamiltonian_of(const HamiltonianOptions& options, Console& console) {
   put_in_run(options.run, study);
   for (const std::string& formula : options.bracket) study.ask("--bracket", formula);
   if (!options.integrate) study.admit_singular_mass_matrix();  // then there are primary constraints
-  if (!study.model() || study.refuse_held_integrals() || study.refuse_modes() || !study.certificate()) return finish(console, study, document);
+  if (!study.model() || study.refuse_held_integrals() || study.refuse_modes() || !study.certificate())
+    return finish(console, study, document);
   const PhaseSpace found = analyse(options, study);
   if (study.wrong()) return finish(console, study, document);
   if (!console.json()) {
