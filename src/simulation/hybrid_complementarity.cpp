@@ -8,7 +8,6 @@
 namespace maupertuis {
 namespace {
 
-constexpr double held_fast = 1e3;  // a coefficient of friction for contacts that never slide
 constexpr double small = 1e-10;    // of the largest
 
 ContactForceProblem::Contact contact_of(const ContactValues& values, std::span<const double> drifts,

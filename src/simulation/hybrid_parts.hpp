@@ -8,6 +8,9 @@
 /// What the parts of HybridMotion share.
 namespace maupertuis {
 
+/// A coefficient of friction for contacts that never slide, where their forces are sought.
+inline constexpr double held_fast = 1e3;
+
 /// a + factor b
 SparseRow sum_of(const SparseRow& a, const SparseRow& b, double factor);
 

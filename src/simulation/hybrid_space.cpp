@@ -89,7 +89,6 @@ HybridMotion::Cones HybridMotion::cones_of(const std::vector<std::size_t>& touch
     add(values.normal[i], slides && !f.sticking ? sliding_force(i, values) : values.normal[i], drifts[i]);
     ConeProblem::Contact contact{0, 0};
     if (f.present() && (!slides || f.sticking)) {
-      constexpr double held_fast = 1e3;
       contact = {f.in_space() ? 2 : 1, f.sticking ? held_fast : values.fixed[i]};
       add(values.tangent[i], values.tangent[i], drifts[contacts + i]);
       if (f.in_space()) add(values.second_tangent[i], values.second_tangent[i], drifts[seconds + i]);

@@ -116,6 +116,7 @@ ContactForceProblem random_problem(std::mt19937& random, std::size_t n, std::siz
     contact.gap_acceleration = number(random);
     contact.slip_acceleration = number(random);
     contact.friction = 0.05;
+    if (rubs && c % 3 == 2) contact.sliding = c % 2 == 0 ? 1 : -1;
     p.contacts.push_back(contact);
   }
   return p;
@@ -161,6 +162,7 @@ TEST_CASE("forces of contacts: they press or open, stick within friction or slid
         CHECK(forces->normal[c] >= 0);
         CHECK(opens >= -1e-9);
         CHECK(std::min(forces->normal[c], opens) < 1e-9);
+        if (p.contacts[c].sliding != 0) continue;  // it may slow down
         if (forces->normal[c] > 1e-9 && forces->friction[c] == FrictionState::Forward) CHECK(slides >= -1e-9);
         if (forces->normal[c] > 1e-9 && forces->friction[c] == FrictionState::Backward) CHECK(slides <= 1e-9);
       }
