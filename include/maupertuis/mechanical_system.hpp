@@ -127,9 +127,10 @@ struct Constraint {
   std::string name;                                                 // as written; empty if it has none
   Expr value;                                                       // φ or ψ; no TimeDerivative nodes
   Expr multiplier;                                                  // its λ, Role::Multiplier
-  Expr reaction;        // symbol, Role::Multiplier: what `reaction(name)` stands for; see `reactions`
-  Dimension dimension;  // of the value
-  std::string body;     // of the norm constraint that `rotation quaternion` adds: the body; else empty
+  Expr reaction;           // symbol, Role::Multiplier: what `reaction(name)` stands for; see `reactions`
+  Dimension dimension;     // of the value
+  std::string body;        // of the norm constraint that `rotation quaternion` adds: the body; else empty
+  bool forceless = false;  // asked of the state by a degenerate Lagrangian, or a gauge: see determined_equations
   Span span;
 };
 
@@ -141,6 +142,15 @@ struct Release {
   std::string name;
   std::size_t parameter = 0;  // index in MechanicalSystem::parameters
   Expr reaction;              // symbol, Role::Multiplier: what `reaction(name)` stands for
+  Span span;
+};
+
+/// gauge e = 1: fixes what a degenerate Lagrangian leaves open, without any force. The value is left − right, in SI
+/// units, in q, q', t.
+struct Gauge {
+  std::string text;  // as written
+  Expr value;
+  Dimension dimension;  // of the value
   Span span;
 };
 
@@ -192,6 +202,7 @@ struct MechanicalSystem {
   std::vector<EnergyClaim> claims;
   std::vector<AppliedForce> forces;
   std::vector<Constraint> constraints;  // as written; those of quaternions at the end
+  std::vector<Gauge> gauges;
   std::vector<Release> releases;
   std::vector<IntegralConstraint> integral_constraints;
   std::vector<Contact> contacts;    // inequalities; their equations are those of a mode (contact_mode.hpp)

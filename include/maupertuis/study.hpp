@@ -1,5 +1,6 @@
 #pragma once
 #include <maupertuis/certificate.hpp>
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/extended_simulation.hpp>
 #include <maupertuis/interrupt_scope.hpp>
@@ -68,6 +69,9 @@ class Study {
   /// Elaborated, with all that was said beside the text, and past the physics lint.
   const Model* model();
   const EquationsOfMotion* equations();
+  /// What a degenerate Lagrangian asks of the state and leaves open; null where M, with the constraints, determines the
+  /// accelerations.
+  const DegenerateAnalysis* degenerate();
   /// Readable form; `with_steps` adds the textbook path.
   const Derivation* derivation(bool with_steps);
   /// Certifies the equations, and the derivation if there is one. A failed check is an error (E0690): equations that
@@ -94,7 +98,9 @@ class Study {
   bool refuse_modes();
 
  private:
-  bool elaborate_model(Diagnostics& found, std::optional<Model>& model) const;
+  bool elaborate_model(Diagnostics& found, std::optional<Model>& model);
+  bool admit_degenerate(const Model& model, const Diagnostics& lints, Diagnostics& found);
+  void verify_with_other_values(const SimulationOptions& options, Verification& out);
   void report(const CertificateCheck& check);
   void enter_mode(Model& model, Diagnostics& found) const;
 
@@ -108,6 +114,7 @@ class Study {
   bool elaborated_ = false;
   bool admits_singular_ = false;
   std::optional<std::string> mode_;
+  std::shared_ptr<const DegenerateAnalysis> degenerate_;
   std::optional<EquationsOfMotion> equations_;
   bool derived_ = false;
   std::optional<Derivation> derivation_;

@@ -307,7 +307,15 @@ struct Routhian {
 };  // routhian of φ, ψ = R
 struct Bracket {
   ExpressionPtr a, b, value;
-};  // bracket (A, B) = C
+  bool dirac = false;
+};  // bracket (A, B) = C; dirac bracket (A, B) = C
+struct PhaseConstraints {
+  std::vector<std::vector<ExpressionPtr>> generations;
+};  // constraints : p_y ; z ; p_x
+struct ClassCount {
+  std::string what;
+  ExpressionPtr number;
+};  // first class = 3; second class, physical freedoms, motions, free functions
 struct Freedoms {
   ExpressionPtr number;
 };  // freedoms = 2
@@ -394,13 +402,15 @@ struct Error {
 using Kind = std::variant<ValueAt, ValueAtUntil, UntilAt, EnergyConserved, ConservedAlongRun, Conserved, NotConserved,
                           Integral, Equation, Hamiltonian, Routhian, Bracket, Freedoms, ConstraintClass, Frequencies,
                           Eigenvalues, Matrix, Equilibrium, Stable, Multipliers, Trace, Period, Action, ActionAlong,
-                          MorseIndex, PathAt, Event, EventCount, Error>;
+                          MorseIndex, PathAt, Event, EventCount, PhaseConstraints, ClassCount,
+                 Error>;
 
 }  // namespace expectation
 
 struct ExpectStatement {
   bool claim = false;
   expectation::Kind kind;
+  std::optional<Span> with = std::nullopt;  // … with s = -1: the values, as a text
 };
 
 /// constraint LEFT = RIGHT name rod,   constraint integral LEFT = RIGHT name length
@@ -408,6 +418,11 @@ struct ConstraintStatement {
   ExpressionPtr left, right;
   std::optional<Name> name;
   bool integral = false;  // ∫ left over the path = right
+};
+
+/// gauge LEFT = RIGHT
+struct GaugeStatement {
+  ExpressionPtr left, right;
 };
 
 /// sweep Ω = 0 .. 12 rad/s steps 121
@@ -472,7 +487,7 @@ using StatementBody =
                  DamperStatement, TorsionSpringStatement, EnergyStatement, ForceStatement, StartStatement, RunStatement,
                  OutputStatement, MethodStatement, PrecisionStatement, DrawStatement, ReactionStatement,
                  ExpectStatement, ConstraintStatement, SweepStatement, IndependentStatement, PathStatement,
-                 ContactStatement, FrictionStatement, EventStatement, ImpactStatement, LaterStatement>;
+                 ContactStatement, FrictionStatement, EventStatement, ImpactStatement, GaugeStatement, LaterStatement>;
 
 struct Statement {
   StatementBody body;

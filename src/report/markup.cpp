@@ -151,7 +151,7 @@ namespace {
 constexpr std::array statement_words{
     "system",   "source",     "dimensionless", "param",       "coord",       "let",     "input",   "frame",
     "point",    "body",       "gravity",       "spring",      "damper",      "torsion", "force",   "torque",
-    "friction", "constraint", "reaction",      "contact",     "impact",      "event",   "start",   "run",
+    "friction", "constraint", "gauge", "reaction",      "contact",     "impact",      "event",   "start",   "run",
     "output",   "sweep",      "draw",          "independent", "path",        "field",   "density", "expect",
     "claim",    "kinetic",    "potential",     "lagrangian",  "dissipation", "T",       "V",       "U",
     "L",        "D"};

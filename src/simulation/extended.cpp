@@ -1,3 +1,4 @@
+#include <maupertuis/degenerate.hpp>
 #include "simulation/ending.hpp"
 #include "simulation/extended_problem.hpp"
 
@@ -223,6 +224,8 @@ SimulationOptions in_double(const ExtendedSimulationOptions& options) {
 
 std::optional<ExtendedResult> simulate_extended(const Model& model, const EquationsOfMotion& equations,
                                                 const ExtendedSimulationOptions& options, Diagnostics& diagnostics) {
+  if (equations.determined)
+    return simulate_extended(with_determined_system(model, equations), *equations.determined, options, diagnostics);
   if (!has_method(model, options, diagnostics)) return std::nullopt;
   const SimulationOptions rough = in_double(options);
   const auto plan = plan_run(model, equations, rough, diagnostics);

@@ -1,5 +1,6 @@
 #include <maupertuis/across_switches.hpp>
 #include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/integrator.hpp>
 #include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/motion_through_modes.hpp>
@@ -414,6 +415,8 @@ void add_errors(SimulationResult& result, Probe* probe, const Model& model, cons
 
 std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMotion& equations,
                                          const SimulationOptions& asked, Diagnostics& diagnostics, Probe* probe) {
+  if (equations.determined)
+    return simulate(with_determined_system(model, equations), *equations.determined, asked, diagnostics, probe);
   const SimulationOptions options = with_method_of(model, asked);
   const auto plan = plan_run(model, equations, options, diagnostics);
   if (!plan || !requests_lie_ahead(model.system, *plan, options, diagnostics)) return std::nullopt;

@@ -199,11 +199,17 @@ class Dumper {
     head(expectation_, "event count"), word("name", x.name.text), word("change", x.change.text),
         child("value", x.number);
   }
+  void operator()(const expectation::PhaseConstraints& x) {
+    head(expectation_, "phase constraints");
+    for (const auto& generation : x.generations) children("generation", generation);
+  }
+  void operator()(const expectation::ClassCount& x) { head(expectation_, x.what), child("value", x.number); }
   void operator()(const expectation::Error& x) { head(expectation_, "error"), word("name", x.code.text); }
   void operator()(const ConstraintStatement& s) {
     head(s.integral ? "integral constraint" : "constraint", s.name ? s.name->text : ""), child("left", s.left),
         child("right", s.right);
   }
+  void operator()(const GaugeStatement& s) { head("gauge"), child("left", s.left), child("right", s.right); }
   void operator()(const SweepStatement& s) {
     head("sweep"), child("variable", s.variable), child("from", s.from), child("to", s.to), child("steps", s.steps);
   }

@@ -37,6 +37,7 @@ std::span<const StatementParser::Entry> StatementParser::table() {
       {"precision", &P::precision_statement},
       {"claim", &P::claim_statement},
       {"constraint", &P::constraint_statement},
+      {"gauge", &P::gauge_statement},
       {"contact", &P::contact_statement},
       {"friction", &P::friction_statement},
       {"event", &P::event_statement},

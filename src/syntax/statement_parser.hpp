@@ -64,6 +64,9 @@ class StatementParser : private ExpressionParser {
   StatementBody sweep_statement();
   // variational_statements.cpp
   StatementBody constraint_statement();
+  StatementBody gauge_statement();
+  bool opens_degenerate() const;
+  expectation::Kind expect_degenerate();
   StatementBody independent_statement();
   StatementBody path_statement();
   // contact_statements.cpp

@@ -185,6 +185,7 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText&
   for (const DeclarationId id : definition_order(e.table, tree, diagnostics)) elaborate_declaration(e, id);
   elaborate_forces(e);
   elaborate_constraints(e);
+  elaborate_gauges(e);
   elaborate_contacts(e);
   elaborate_experiment(e);
   override_start(e);

@@ -125,6 +125,7 @@ void elaborate_energy(Elaboration& e, syntax::EnergyStatement::Which which, Decl
 void elaborate_forces(Elaboration& e);
 /// Fills `constraints`, and names their multipliers.
 void elaborate_constraints(Elaboration& e);
+void elaborate_gauges(Elaboration& e);
 /// Contacts, friction and the law of impacts; after the constraints.
 void elaborate_contacts(Elaboration& e);
 /// `event` statements; after the contacts.

@@ -219,7 +219,7 @@ Expected meaning_of(Elaboration& e, const written::Bracket& x, Span) {
   if (!a || !b || !c) return std::nullopt;
   const Dimension dimension = a->dimension * b->dimension / (e.system().lagrangian_dimension * e.time());
   if (e.dimensionless || a->fits_any || b->fits_any || c->fits_any || c->dimension.same_as(dimension))
-    return expectation::Bracket{a->scalar(), b->scalar(), c->scalar()};
+    return expectation::Bracket{a->scalar(), b->scalar(), c->scalar(), x.dirac};
   e.diagnostics.error("E0304", x.value->span,
                       fmt::format("the bracket is {}, this is {}", describe(dimension), describe(c->dimension)),
                       "{A, B} has the dimension of A B divided by that of q p, an action.", "");
@@ -289,6 +289,31 @@ Expected meaning_of(Elaboration& e, const written::Integral& x, Span line) {
 Expected meaning_of(Elaboration& e, const written::Freedoms& x, Span) {
   const Value v = constant_of(e, *x.number, Dimension{}, "a number of freedoms");
   return v.poisoned ? std::nullopt : Expected(expectation::Freedoms{v.scalar()});
+}
+
+Expected meaning_of(Elaboration& e, const written::PhaseConstraints& x, Span) {
+  expectation::PhaseConstraints out;
+  for (const auto& generation : x.generations) {
+    out.generations.emplace_back();
+    for (const syntax::ExpressionPtr& function : generation) {
+      const std::optional<Value> v = number(e, *function, along_motion());
+      if (!v || refuse_acceleration(e, *v, *function, "a constraint of phase space")) return std::nullopt;
+      out.generations.back().push_back(v->scalar());
+    }
+  }
+  return out;
+}
+
+Expected meaning_of(Elaboration& e, const written::ClassCount& x, Span) {
+  using What = expectation::ClassCount::What;
+  const Value v = constant_of(e, *x.number, Dimension{}, "a number of constraints or freedoms");
+  if (v.poisoned) return std::nullopt;
+  const What what = x.what == "first class"         ? What::FirstClass
+                    : x.what == "second class"      ? What::SecondClass
+                    : x.what == "physical freedoms" ? What::PhysicalFreedoms
+                    : x.what == "motions"           ? What::Motions
+                                                    : What::FreeFunctions;
+  return expectation::ClassCount{what, v.scalar()};
 }
 
 Expected meaning_of(Elaboration& e, const written::ConstraintClass& x, Span) {
@@ -379,8 +404,7 @@ bool names_an_event(Elaboration& e, const syntax::Name& name, const syntax::Name
   }
   std::vector<std::string> names;
   for (const Declaration& other : e.table.declarations())
-    if (other.kind == Declaration::Kind::Event || other.kind == Declaration::Kind::Contact)
-      names.push_back(other.name);
+    if (other.kind == Declaration::Kind::Event || other.kind == Declaration::Kind::Contact) names.push_back(other.name);
   const std::string near = did_you_mean(name.text, names);
   e.diagnostics.error("E0261", name.span, fmt::format("the model has no event or contact `{}`", name.text),
                       "An event is named by its statement, a contact by the name at its end.",
@@ -421,7 +445,8 @@ bool refuse_motion_of_path(Elaboration& e, const written::Kind& kind, Span line)
 void elaborate_expectation(Elaboration& e, const syntax::ExpectStatement& s, Span line) {
   if (refuse_motion_of_path(e, s.kind, line)) return;
   if (auto kind = std::visit([&](const auto& x) { return meaning_of(e, x, line); }, s.kind))
-    e.experiment().expectations.push_back({std::string(e.texts.slice(line)), s.claim, line, std::move(*kind)});
+    e.experiment().expectations.push_back({std::string(e.texts.slice(line)), s.claim, line, std::move(*kind),
+                                           s.with ? std::string(e.texts.slice(*s.with)) : std::string()});
 }
 
 }  // namespace maupertuis::elaboration
