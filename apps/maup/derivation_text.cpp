@@ -1,5 +1,7 @@
 #include "derivation_text.hpp"
 
+#include <maupertuis/degenerate.hpp>
+
 #include "quantity.hpp"
 
 #include <fmt/format.h>
@@ -22,9 +24,9 @@ std::string step_text(const DerivationStep& step, const ReadingOrder& order) {
   return fmt::format("{} = {}    ({})", to_plain(step.left), to_plain(step.right, order), note);
 }
 
-std::string steps_text(const Derivation& derivation, const ReadingOrder& order) {
+std::string steps_text(const std::vector<DerivationStep>& steps, const ReadingOrder& order) {
   std::string out, section;
-  for (const DerivationStep& step : derivation.steps) {
+  for (const DerivationStep& step : steps) {
     if (step.section != section) {
       section = step.section;
       out += fmt::format("{}{}\n", out.empty() ? "" : "\n", section);
@@ -155,11 +157,12 @@ std::string lecture(Study& study, const EquationForm& form, const Certificate& c
   const EquationsOfMotion& equations = *study.equations();
   const ReadingOrder& order = equations.order;
   std::string out;
-  if (with_steps) out += steps_text(*study.derivation(true), order) + "\n";
+  if (with_steps) out += steps_text(study.derivation(true)->steps, order) + "\n";
   out += fmt::format("Equations of motion of {}\n", equations.system->name);
   out += equations_text(form, order);
   out += legend(*equations.system, order);
   out += reactions_text(equations);
+  if (study.degenerate()) out += "\n" + steps_text(degenerate_lines(*study.degenerate(), *equations.system), order);
   out += momenta_and_energy(equations, *study.derivation(false));
   return out + certificate_text(certificate);
 }

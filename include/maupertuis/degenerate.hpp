@@ -80,6 +80,9 @@ Model with_determined_system(const Model& model, const EquationsOfMotion& equati
 bool report_degenerate(const Model& model, const EquationsOfMotion& equations, const DegenerateAnalysis& analysis,
                        Diagnostics& diagnostics);
 
+/// What a textbook prints of it: the constraints, generation by generation, what stays free, the gauges, the count.
+std::vector<DerivationStep> degenerate_lines(const DegenerateAnalysis& analysis, const MechanicalSystem& system);
+
 /// The constraints, one a line: "z = 0". `with_derivatives`: also those that merely follow from another one.
 std::vector<std::string> constraint_lines(const DegenerateAnalysis& analysis, const ReadingOrder& order,
                                           bool with_derivatives);

@@ -110,16 +110,24 @@ constexpr std::array entries{
         "This one excludes motions: it says something about a quantity that has a value of its own.",
         "dimensionless\ncoord r, θ, z : number\nL = 1/2 r'^2 + 1/2 r^2 (θ' - z)^2 - r^2\ngauge r = 1\n",
         "dimensionless\ncoord r, θ, z : number\nL = 1/2 r'^2 + 1/2 r^2 (θ' - z)^2 - r^2\ngauge z = 0\n"},
-    CodeEntry{"W0627", "a gauge that leaves something open",
-              "Functions of time stay free with it. Each needs a condition of its own.",
-              "dimensionless\ncoord x, y, u, w : number\nL = 1/2 (x' - y)^2 + 1/2 (u' - w)^2\ngauge y = 0\n",
-              "dimensionless\ncoord x, y, u, w : number\nL = 1/2 (x' - y)^2 + 1/2 (u' - w)^2\ngauge y = 0\ngauge w = 0\n"},
+    CodeEntry{
+        "W0627", "a gauge that leaves something open",
+        "Functions of time stay free with it. Each needs a condition of its own.",
+        "dimensionless\ncoord x, y, u, w : number\nL = 1/2 (x' - y)^2 + 1/2 (u' - w)^2\ngauge y = 0\n",
+        "dimensionless\ncoord x, y, u, w : number\nL = 1/2 (x' - y)^2 + 1/2 (u' - w)^2\ngauge y = 0\ngauge w = 0\n"},
     CodeEntry{
         "E0629", "a start off the constraints of a degenerate Lagrangian",
         "The constraints leave fewer states than there are coordinates and velocities. What the start does not give "
         "follows from them; what it gives has to agree with them.",
         "dimensionless\ncoord x, y : number\nL = x y' - 1/2 (x^2 + y^2)\nstart exactly x = 1, y' = 3\nrun 1\n",
         "dimensionless\ncoord x, y : number\nL = x y' - 1/2 (x^2 + y^2)\nstart x = 1\nrun 1\n"},
+    CodeEntry{
+        "N0630", "what a run of a degenerate Lagrangian leaves out",
+        "Some accelerations are free. A run has to choose them, and shows only what is the same with every choice: "
+        "quantities that do not change along the orbits of the free functions.",
+        "", ""},
+    CodeEntry{"E0631", "a quantity without a value of its own",
+              "It depends on functions of time that the Lagrangian leaves open.", "", ""},
     CodeEntry{"N0628", "parameters with special values",
               "Ranks are taken at the values of the parameters. With these the class of the system is another one than "
               "for values nearby: a freedom, or a free function, more or less.",

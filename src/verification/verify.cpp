@@ -46,11 +46,17 @@ class Verifier {
 
  private:
   // By the motion: the runs are made when all lines are known.
-  void decide(const expectation::ValueAt& e, ExpectationResult&) { runs_.ask(e, line_); }
-  void decide(const expectation::ValueAtUntil& e, ExpectationResult&) { runs_.ask(e, line_); }
+  void decide(const expectation::ValueAt& e, ExpectationResult& result) {
+    if (has_value(e.subject, result)) runs_.ask(e, line_);
+  }
+  void decide(const expectation::ValueAtUntil& e, ExpectationResult& result) {
+    if (has_value(e.subject, result)) runs_.ask(e, line_);
+  }
   void decide(const expectation::UntilAt& e, ExpectationResult&) { runs_.ask(e, line_); }
   void decide(const expectation::EnergyConserved& e, ExpectationResult&) { runs_.ask(e, line_); }
-  void decide(const expectation::ConservedAlongRun& e, ExpectationResult&) { runs_.ask(e, line_); }
+  void decide(const expectation::ConservedAlongRun& e, ExpectationResult& result) {
+    if (has_value(e.subject, result)) runs_.ask(e, line_);
+  }
 
   void decide(const expectation::Event& e, ExpectationResult&) { runs_.ask(e, line_); }
   void decide(const expectation::EventCount& e, ExpectationResult&) { runs_.ask(e, line_); }
@@ -114,6 +120,14 @@ class Verifier {
     }
     return *constraints_;
   }
+  /// False, and said, where it depends on functions that a degenerate Lagrangian leaves free.
+  bool has_value(Expr subject, ExpectationResult& result) const {
+    if (!equations_.degenerate || equations_.degenerate->is_determined(subject)) return true;
+    result.actual = "any value";
+    result.message = "It depends on functions of time that the Lagrangian leaves free: choose them with `gauge`.";
+    return false;
+  }
+
   /// Where L is degenerate, what determines all accelerations.
   const EquationsOfMotion& solvable() const { return equations_.determined ? *equations_.determined : equations_; }
   const Model& solvable_model() {

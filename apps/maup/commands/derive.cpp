@@ -12,6 +12,7 @@
 #include <maupertuis/constraint_analysis.hpp>
 #include <maupertuis/contact_mode.hpp>
 #include <maupertuis/couplings.hpp>
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/print.hpp>
 #include <maupertuis/reactions.hpp>
 #include <maupertuis/simulation.hpp>
@@ -81,6 +82,19 @@ void add_constraints(Json& document, Study& study) {
   for (const Expr& b : constraint_bias(equations)) document["constraint_bias"].push_back(readable_text(b, order));
 }
 
+Json degenerate_json(const DegenerateAnalysis& analysis, const EquationsOfMotion& equations) {
+  Json constraints = Json::array(), free = Json::array();
+  for (const FoundConstraint& c : analysis.chain.constraints)
+    constraints.push_back({{"generation", c.generation},
+                           {"plain", to_plain(c.value, equations.order)},
+                           {"latex", to_latex(c.value, equations.order)}});
+  for (const std::size_t i : analysis.free) free.push_back(equations.system->coordinates[i].name);
+  return {{"constraints", std::move(constraints)},
+          {"free", std::move(free)},
+          {"manifold_dimension", analysis.chain.manifold_dimension},
+          {"motions", analysis.motions}};
+}
+
 Json reactions_json(const EquationsOfMotion& equations) {
   Json list = Json::array();
   for (const Reaction& r : reactions(equations)) {
@@ -138,6 +152,7 @@ Json document_of(const DeriveOptions& options, Study& study, const EquationForm&
   if (conserved.energy_conserved) names.push_back("energy");
   document["conserved"] = std::move(names);
   document["energy_is_t_plus_v"] = conserved.energy_is_t_plus_v;
+  if (study.degenerate()) document["degenerate"] = degenerate_json(*study.degenerate(), *equations);
   if (options.steps) document["steps"] = steps_json(*study.derivation(true), order);
   document["certificate"] = to_json(*certificate);
   return document;
@@ -157,6 +172,10 @@ std::string in_notation(const DeriveOptions& options, Notation notation, Study& 
   for (const auto* part : {&form.lines, &form.constraints})
     for (const EquationLine& line : *part)
       add(notation == Notation::Plain ? language_line(line, order) : shown_line(line, order));
+  if (study.degenerate() && notation != Notation::Plain)
+    for (FormulaLine& line :
+         step_lines(degenerate_lines(*study.degenerate(), *equations.system), *equations.system, order))
+      lines.push_back(std::move(line));
   for (const Intermediate& i : form.intermediates) add(definition_line(i, *equations.system, order));
   if (notation == Notation::Plain) return document(lines, notation);
   for (FormulaLine& line : symbol_legend(*equations.system, order)) add(std::move(line));

@@ -61,11 +61,16 @@ Json errors_json(const State& state, const SimulationResult& result, const Mecha
   return out;
 }
 
+bool is_determined(const SimulationResult& result, const std::string& name) {
+  return std::find(result.undetermined.begin(), result.undetermined.end(), name) == result.undetermined.end();
+}
+
 Json state_json(const State& state, const SimulationResult& result, const MechanicalSystem& system) {
   Json values = Json::object();
   for (std::size_t i = 0; i < state.q.size(); ++i) {
-    values[system.coordinates[i].name] = state.q[i];
-    values[system.coordinates[i].name + "'"] = state.v[i];
+    const std::string& name = system.coordinates[i].name;
+    if (is_determined(result, name)) values[name] = state.q[i];
+    if (is_determined(result, name + "'")) values[name + "'"] = state.v[i];
   }
   Json multipliers = Json::object(), reactions = Json::object();
   for (std::size_t i = 0; i < state.multipliers.size(); ++i)
@@ -161,9 +166,11 @@ std::string state_text(const State& state, const SimulationResult& result, const
   };
   for (std::size_t i = 0; i < state.q.size(); ++i) {
     const Coordinate& c = system.coordinates[i];
-    line(c.name, state.q[i], errors ? errors->q[i] : 0, system.dimensionless ? "" : to_string(c.dimension));
-    line(c.name + "'", state.v[i], errors ? errors->v[i] : 0,
-         system.dimensionless ? "" : to_string(c.dimension / system.independent_dimension));
+    if (is_determined(result, c.name))
+      line(c.name, state.q[i], errors ? errors->q[i] : 0, system.dimensionless ? "" : to_string(c.dimension));
+    if (is_determined(result, c.name + "'"))
+      line(c.name + "'", state.v[i], errors ? errors->v[i] : 0,
+           system.dimensionless ? "" : to_string(c.dimension / system.independent_dimension));
   }
   for (std::size_t i = 0; i < state.reactions.size(); ++i) {
     const Trajectory::Column& column = result.reactions[i];

@@ -82,6 +82,8 @@ namespace {
 /// Classes: the rank of the brackets of all constraints with each other.
 class Classes {
  public:
+  ExprVector primaries_of_first_class;  // where chains of generators begin
+
   Classes(const PhaseSpaceAlgebra& algebra, DiracAnalysis& out, const PointsWhere& where)
       : algebra_(algebra), out_(out), where_(where) {}
 
@@ -104,7 +106,7 @@ class Classes {
     for (const std::size_t i : set)
       for (const std::size_t j : set) out_.brackets.entries.push_back(rows[i].coefficients[j]);
     for (std::size_t i = 0; i < count; ++i)
-      if (std::find(set.begin(), set.end(), i) == set.end()) out_.first_class_functions.push_back(of_first_class(i));
+      if (std::find(set.begin(), set.end(), i) == set.end()) of_first_class(i);
   }
 
  private:
@@ -113,18 +115,25 @@ class Classes {
   }
 
   /// χ_i − {χ_i, χ_a} C⁻¹_ab χ_b over the second-class set.
-  Expr of_first_class(std::size_t i) const {
+  void of_first_class(std::size_t i) {
     const Expr own = out_.constraints[i].value;
-    if (out_.second_class_set.empty()) return own;
-    ExprVector right;
-    for (const std::size_t b : out_.second_class_set) right.push_back(-bracket_of(i, b));
-    // C is antisymmetric: {χ_i, χ_a} C⁻¹_ab = y_b with C y = −{χ_i, χ}.
-    const auto weights = solve_linear(augmented(out_.brackets, right));
-    if (!weights) return own;
     ExprVector terms{own};
-    for (std::size_t b = 0; b < weights->size(); ++b)
-      terms.push_back(-((*weights)[b] * out_.constraints[out_.second_class_set[b]].value));
-    return tidy(own.context().sum(terms), algebra_.order);
+    bool primary = out_.constraints[i].generation == 0;
+    if (!out_.second_class_set.empty()) {
+      ExprVector right;
+      for (const std::size_t b : out_.second_class_set) right.push_back(-bracket_of(i, b));
+      // C is antisymmetric: {χ_i, χ_a} C⁻¹_ab = y_b with C y = −{χ_i, χ}.
+      const auto weights = solve_linear(augmented(out_.brackets, right));
+      for (std::size_t b = 0; weights && b < weights->size(); ++b) {
+        const PhaseConstraint& other = out_.constraints[out_.second_class_set[b]];
+        terms.push_back(-((*weights)[b] * other.value));
+        primary = primary && (other.generation == 0 || vanishes((*weights)[b]));
+      }
+    }
+    const Expr combination = tidy(own.context().sum(terms), algebra_.order);
+    out_.first_class_functions.push_back(
+        split_coefficient(combination).coefficient.sign() < 0 ? tidy(-combination, algebra_.order) : combination);
+    if (primary) primaries_of_first_class.push_back(combination);
   }
 
   const PhaseSpaceAlgebra& algebra_;
@@ -202,16 +211,13 @@ std::optional<DiracAnalysis> dirac_analysis(const Hamiltonian& h, const Equation
   for (const Expr& c : algebra.of_model) out.constraints.push_back({c, 1});
   for (const FoundConstraint& c : chain.constraints) out.constraints.push_back({c.value, c.generation});
   if (out.outcome != ConstraintChain::Outcome::Closed) return out;
-  Classes(algebra, out, *chain.where).find();
+  Classes classes(algebra, out, *chain.where);
+  classes.find();
   out.physical_dimension = 2 * algebra.positions.size() - 2 * out.first_class - out.second_class;
   const Generators generators(algebra, h, equations);
   if (!equations.system->constrained())
-    for (const Expr& first_class : out.first_class_functions) {
-      const bool primary =
-          std::any_of(algebra.primary.begin(), algebra.primary.end(), [&](Expr c) { return c == first_class; });
-      if (!primary) continue;
-      if (auto g = generators.from(first_class, out.constraints.size())) out.generators.push_back(std::move(*g));
-    }
+    for (const Expr& primary : classes.primaries_of_first_class)
+      if (auto g = generators.from(primary, out.constraints.size())) out.generators.push_back(std::move(*g));
   return out;
 }
 
@@ -250,8 +256,10 @@ bool same_constraints(const std::vector<std::vector<Expr>>& generations, const D
     for (const PhaseConstraint& c : analysis.constraints)
       if (c.generation == static_cast<int>(g)) found.push_back(c.value);
     if (given.size() != found.size()) return false;
-    if (zero_test_where(given, found, algebra.states, near).verdict != Verdict::Zero ||
-        zero_test_where(found, given, algebra.states, near).verdict != Verdict::Zero)
+    ZeroTestOptions options;
+    options.hold_parameters = true;
+    if (zero_test_where(given, found, algebra.states, near, options).verdict != Verdict::Zero ||
+        zero_test_where(found, given, algebra.states, near, options).verdict != Verdict::Zero)
       return false;
   }
   return found.size() == analysis.constraints.size();

@@ -37,8 +37,8 @@ class DiracLines {
       return std::move(lines_);
     }
     classes();
-    generators();
     if (of_lagrange) counts(*of_lagrange);
+    generators();
     return std::move(lines_);
   }
 

@@ -160,8 +160,9 @@ class Messages {
                           : joined(special) + (special.size() == 1 ? " is a special value" : " are special values"),
                       fmt::format("For values nearby {} single{} out a motion, and {} free.",
                                   count(general.motions, "number"), general.motions == 1 ? "s" : "",
-                                  general.free.size() == 1 ? "one function of time is"
-                                                           : count(general.free.size(), "function") + " of time are"),
+                                  general.free.empty()       ? "no function of time is"
+                                  : general.free.size() == 1 ? "one function of time is"
+                                                             : count(general.free.size(), "function") + " of time are"),
                       "");
   }
 
