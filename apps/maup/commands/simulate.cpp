@@ -46,23 +46,24 @@ void check_endings(const SimulateOptions& options, Diagnostics& diagnostics) {
 Json number_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
 /// As numbers of `state`; null where no digit is certain.
+bool is_determined(const SimulationResult& result, const std::string& name) {
+  return std::find(result.undetermined.begin(), result.undetermined.end(), name) == result.undetermined.end();
+}
+
 Json errors_json(const State& state, const SimulationResult& result, const MechanicalSystem& system) {
   Json out = Json::object();
   const StateErrors& errors = *state.errors;
   if (errors.t != 0) out["t"] = number_or_null(errors.t);
   for (std::size_t i = 0; i < errors.q.size(); ++i) {
-    out[system.coordinates[i].name] = number_or_null(errors.q[i]);
-    out[system.coordinates[i].name + "'"] = number_or_null(errors.v[i]);
+    const std::string& name = system.coordinates[i].name;
+    if (is_determined(result, name)) out[name] = number_or_null(errors.q[i]);
+    if (is_determined(result, name + "'")) out[name + "'"] = number_or_null(errors.v[i]);
   }
   for (std::size_t i = 0; i < errors.multipliers.size(); ++i)
     out[system.constraints[i].multiplier.name()] = number_or_null(errors.multipliers[i]);
   for (std::size_t i = 0; i < errors.reactions.size(); ++i)
     out[result.reactions[i].name] = number_or_null(errors.reactions[i]);
   return out;
-}
-
-bool is_determined(const SimulationResult& result, const std::string& name) {
-  return std::find(result.undetermined.begin(), result.undetermined.end(), name) == result.undetermined.end();
 }
 
 Json state_json(const State& state, const SimulationResult& result, const MechanicalSystem& system) {

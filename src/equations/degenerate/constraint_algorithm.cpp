@@ -90,6 +90,20 @@ class Algorithm {
     }
     relations_.push_back(value);
     find_points();
+    keep_what_vanishes();
+  }
+
+  /// Of a product the factors that vanish at the states near the start: r²(θ' − z) = 0 means θ' = z where r is not 0.
+  void keep_what_vanishes() {
+    const Expr product = relations_.back();
+    if (!product.is(Kind::Product) || points_->points().empty()) return;
+    Expr kept = product.context().number(1);
+    for (std::size_t i = 0; i < product.size(); ++i)
+      if (points_->vanishes(product[i]) != Verdict::Nonzero) kept = kept * product[i];
+    if (kept == product || kept.is_one()) return;
+    relations_.back() = kept;
+    out_.constraints.back().value = kept;
+    find_points();
   }
 
   bool has_state(Expr value) const {

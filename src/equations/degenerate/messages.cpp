@@ -29,11 +29,13 @@ class Messages {
 
   bool tell() {
     using Outcome = ConstraintChain::Outcome;
+    if (!gauges()) return false;
     if (analysis_.chain.outcome == Outcome::Contradiction) return contradiction();
     if (analysis_.chain.outcome == Outcome::Unreached) return unreached();
-    if (!gauges()) return false;
-    degenerate();
-    free_functions();
+    if (analysis_.free.empty())
+      degenerate();
+    else
+      free_functions();
     special_values();
     return true;
   }
@@ -95,7 +97,7 @@ class Messages {
     }
     for (const Gauge& gauge : system().gauges)
       if (open.closed() && open.is_determined(gauge.value)) return fixes_too_much(gauge);
-    if (open.closed() && analysis_.motions < open.motions) return fixes_too_much(first);
+    if (open.closed() && analysis_.closed() && analysis_.motions < open.motions) return fixes_too_much(first);
     return true;
   }
 
@@ -106,16 +108,22 @@ class Messages {
     return false;
   }
 
-  void degenerate() {
-    std::vector<std::string> massless;
-    for (std::size_t i = 0; i < system().coordinates.size(); ++i)
-      if (has_no_inertia(i)) massless.push_back("`" + system().coordinates[i].name + "`");
+  /// "Every state of a motion has z = 0; 2 numbers single out a motion."
+  std::string asked_of_states() const {
     const std::vector<std::string> lines = constraint_lines(analysis_, equations_.order, false);
     std::string asked = lines.empty()       ? std::string("Nothing is asked of the state")
                         : lines.size() <= 3 ? "Every state of a motion has " + joined(lines)
                                             : "Every state of a motion fulfils " + count(lines.size(), "constraint");
     asked += fmt::format("; {} single{} out a motion.", count(analysis_.motions, "number"),
                          analysis_.motions == 1 ? "s" : "");
+    return asked;
+  }
+
+  void degenerate() {
+    std::vector<std::string> massless;
+    for (std::size_t i = 0; i < system().coordinates.size(); ++i)
+      if (has_no_inertia(i)) massless.push_back("`" + system().coordinates[i].name + "`");
+    const std::string asked = asked_of_states();
     if (system().lagrangian_given || massless.empty()) {
       diagnostics_.note("N0620", place(), "the Lagrangian is degenerate", asked, "");
       return;
@@ -137,7 +145,7 @@ class Messages {
                     analysis_.free.size() == 1 ? "one function of time is"
                                                : count(analysis_.free.size(), "function") + " of time are",
                     joined(names), names.size() == 1 ? "" : "s"),
-        "No equation gives the accelerations; what depends on them has no value of its own.",
+        asked_of_states() + " No equation gives the accelerations of what is free: what depends on it has no value.",
         "`gauge EXPR = EXPR` makes a choice; without one a run shows what does not depend on it.");
   }
 

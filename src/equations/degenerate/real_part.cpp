@@ -51,6 +51,25 @@ Expr without_bars(Expr e) {
   return e.context().sum(raised);
 }
 
+/// The factors that all terms have in common, as they stand in the first: r² of r² θ' − r² z.
+Expr common_factor(Expr e) {
+  const std::vector<Expr> terms = parts_of(e, Kind::Sum);
+  Expr out = e.context().number(1);
+  if (terms.size() < 2) return out;
+  for (const Expr& factor : parts_of(terms.front(), Kind::Product)) {
+    if (factor.is_number()) continue;
+    Rational least = exponent_of(factor);
+    for (const Expr& term : terms) {
+      Rational here = 0;
+      for (const Expr& other : parts_of(term, Kind::Product))
+        if (base_of(other) == base_of(factor)) here = exponent_of(other);
+      least = std::min(least, here);
+    }
+    if (least.sign() > 0) out = out * pow(base_of(factor), least);
+  }
+  return out;
+}
+
 /// Divides by the common number of all terms, with the first of them positive.
 Expr without_common_number(Expr e) {
   const std::vector<Expr> terms = parts_of(e, Kind::Sum);
@@ -91,8 +110,15 @@ ExprVector real_parts(Expr e, const ReadingOrder& order, const ExprVector& state
   Expr form = without_bars(first.intermediates.empty() ? first.value : e);
   const ReadableForm second = readable(form, order);
   if (second.intermediates.empty()) form = second.value;
+  std::vector<Expr> factors = parts_of(form, Kind::Product);
+  if (const Expr common = common_factor(form); !common.is_one()) {
+    std::vector<Expr> terms;
+    for (const Expr& term : parts_of(form, Kind::Sum)) terms.push_back(term / common);
+    factors = parts_of(common, Kind::Product);
+    factors.push_back(context.sum(terms));
+  }
   Expr product = context.number(1);
-  for (const Expr& factor : parts_of(form, Kind::Product)) {
+  for (const Expr& factor : factors) {
     if (!has_any(factor, states) || factor.is(Kind::Exp) || exponent_of(factor).sign() < 0) continue;
     product = product * base_of(factor);
   }
