@@ -29,7 +29,11 @@ void Study::fix_mode(std::string text) {
 
 void Study::enter_mode(Model& model, Diagnostics& found) const {
   std::string trouble;
-  const auto mode = read_mode(model.system, *mode_, trouble);
+  auto mode = read_mode(model.system, *mode_, trouble);
+  if (mode_->find_first_not_of(' ') == std::string::npos) {
+    mode.reset();
+    trouble = "It names nothing.";
+  }
   if (!mode) {
     found.error("E0269", std::nullopt, fmt::format("`{}` is no mode of this model", *mode_), trouble,
                 "`maup check` lists its contacts and frictions; `free` is the mode without any.");
@@ -134,7 +138,7 @@ std::optional<SimulationResult> Study::motion(const SimulationOptions& options) 
 }
 
 std::optional<ExtendedResult> Study::motion(const ExtendedSimulationOptions& options) {
-  if (wrong() || refuse_held_integrals() || refuse_modes() || !certificate()) return std::nullopt;
+  if (wrong() || refuse_held_integrals() || !certificate()) return std::nullopt;
   return simulate_extended(*model_, *equations_, options, diagnostics_);
 }
 
@@ -162,9 +166,10 @@ bool Study::refuse_modes() {
   const MechanicalSystem& system = model_->system;
   if (!system.has_modes()) return false;
   const Span span = system.contacts.empty() ? system.frictions.front().span : system.contacts.front().span;
-  diagnostics_.error("E0270", span, "this question is about one set of equations, and the model has several modes",
-                     "Contacts that open and close and friction that sticks and slides change the equations on the way.",
-                     "Ask it of one mode: --mode free, --mode \"floor\", or --mode \"floor sticking\" where there is friction.");
+  diagnostics_.error(
+      "E0270", span, "this question is about one set of equations, and the model has several modes",
+      "Contacts that open and close and friction that sticks and slides change the equations on the way.",
+      "Ask it of one mode: --mode free, --mode \"floor\", or --mode \"floor sticking\" where there is friction.");
   return true;
 }
 
