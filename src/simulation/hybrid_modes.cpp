@@ -242,9 +242,9 @@ std::vector<HybridMotion::Choice> HybridMotion::choices(const std::vector<std::s
 }
 
 /// Whether what a condition does over the length that is judged is lost in rounding.
-bool HybridMotion::vanishes(const Watch& watch, double size) const {
+bool HybridMotion::vanishes(const Watch& watch, double size, const ContactValues& values) const {
   constexpr double digits = 1e-12;
-  if (watch.what == Watch::What::Gap) return size <= digits * widest_[watch.index];
+  if (watch.what == Watch::What::Gap) return size <= digits * size_of_gap(watch.index, values);
   if (watch.what == Watch::What::Force) return size <= digits * hardest_[watch.index];
   return false;
 }
@@ -314,7 +314,7 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
     if (!w.keeps_sign()) continue;
     const bool zero = std::find(at_zero.begin(), at_zero.end(), k) != at_zero.end();
     const bool must_move = w.what == Watch::What::Slip && zero;
-    const bool lost = vanishes(w, outlook.reach[k]);
+    const bool lost = vanishes(w, outlook.reach[k], values);
     if (w.what == Watch::What::Gap && lost) continue;
     if (w.what == Watch::What::Gap && released_[w.index]) {
       if (presses_again(w.index, outlook.accelerations, values, located_force)) return false;
@@ -329,7 +329,8 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
       return false;
     }
     // Meeting the constraints of others may move a gap that opens through zero, by what they are known to.
-    const bool is_moved = w.what == Watch::What::Gap && outlook.sides[k] < 0 && outlook.slopes[k] > 0 &&
+    const bool is_moved = w.what == Watch::What::Gap && outlook.sides[k] < 0 &&
+                          outlook.slopes[k] > rest_speed(w.index, values) &&
                           -outlook.values[k] <= located * widest_[w.index];
     if (is_moved) {
       s.put_at_zero({&k, 1});

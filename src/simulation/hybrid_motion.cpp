@@ -327,9 +327,7 @@ std::optional<std::size_t> HybridMotion::violated() {
   const ContactValues& values = functions_.at(s.time(), s.q(), s.v());
   note_gaps(values);
   for (std::size_t i = 0; i < values.gap.size(); ++i) {
-    double size = widest_[i];  // and what rounding of the coordinates may make of it
-    for (const auto& [k, g] : values.normal[i]) size = std::max(size, std::abs(g) * place_[kind_[k]]);
-    if (!now_->mode.closed[i] && !(values.gap[i] >= -digits * size)) return i;
+    if (!now_->mode.closed[i] && !(values.gap[i] >= -digits * size_of_gap(i, values))) return i;
   }
   return std::nullopt;
 }

@@ -140,7 +140,8 @@ class HybridMotion final : public Method {
   bool interrupted() const;
   bool fits(const ContactMode& mode, const std::vector<std::size_t>& touching, double bound, Leniency leniency,
             std::vector<double>* accelerations);
-  bool vanishes(const Watch& watch, double size) const;
+  bool vanishes(const Watch& watch, double size, const ContactValues& values) const;
+  double size_of_gap(std::size_t contact, const ContactValues& values) const;
   void note_sizes(const ContactValues& values);
   void note_gaps(const ContactValues& values);
   void note_usual_gaps(const ContactValues& values);
