@@ -31,7 +31,11 @@ void Study::fix_mode(std::string text) {
 
 void Study::enter_mode(Model& model, Diagnostics& found) const {
   std::string trouble;
-  const auto mode = read_mode(model.system, *mode_, trouble);
+  auto mode = read_mode(model.system, *mode_, trouble);
+  if (mode_->find_first_not_of(' ') == std::string::npos) {
+    mode.reset();
+    trouble = "It names nothing.";
+  }
   if (!mode) {
     found.error("E0269", std::nullopt, fmt::format("`{}` is no mode of this model", *mode_), trouble,
                 "`maup check` lists its contacts and frictions; `free` is the mode without any.");
@@ -173,7 +177,7 @@ std::optional<SimulationResult> Study::motion(const SimulationOptions& options) 
 }
 
 std::optional<ExtendedResult> Study::motion(const ExtendedSimulationOptions& options) {
-  if (wrong() || refuse_held_integrals() || refuse_modes() || !certificate()) return std::nullopt;
+  if (wrong() || refuse_held_integrals() || !certificate()) return std::nullopt;
   return simulate_extended(*model_, *equations_, options, diagnostics_);
 }
 

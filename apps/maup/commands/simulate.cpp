@@ -213,7 +213,8 @@ std::string happenings_text(const SimulationResult& result, const MechanicalSyst
                              : std::isinf(h.error) ? exact(h.t) + " (no digit is certain)"
                                                    : with_uncertainty(h.t, h.error);
     out += fmt::format("  {}  {} {}", system.moment(time), h.name, word_of(h.kind));
-    if (h.kind == Happening::Kind::Impact) out += fmt::format(", impulse {:.6g}", h.impulse);
+    if (h.kind == Happening::Kind::Impact)
+      out += ", impulse " + impulse_text(fmt::format("{:.6g}", h.impulse), h.name, system);
     if (!h.remark.empty()) out += ": " + h.remark;
     if (system.has_modes() && !(h.kind == Happening::Kind::Event || h.kind == Happening::Kind::Impact))
       out += h.mode.empty() ? " → free" : " → " + h.mode;
@@ -328,7 +329,7 @@ ExitCode simulate_extended_model(const SimulateOptions& options, const std::stri
   if (!options.output.empty()) write_result(options.output, to_csv(*result), study.diagnostics());
   const MechanicalSystem& system = study.model()->system;
   if (!console.json()) {
-    console.print(extended_text(*result));
+    console.print(extended_text(*result, system));
     if (result->ending != Ending::Finished)
       console.say(fmt::format("The run ended at {}: {}\n", system.moment(exact(result->reached)), result->reason));
   }

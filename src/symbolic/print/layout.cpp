@@ -248,14 +248,16 @@ class Builder {
 };
 
 bool decimal_digits(std::string denominator, int& digits) {
-  // The denominator is 2^a 5^b: how many places the decimal has. Only short ones matter.
-  if (denominator.size() > 12) return false;
+  // The denominator is 2^a 5^b: how many places the decimal has. 1/4096 stays a fraction, 0.866025403784439 does not
+  // become one.
+  const bool is_long = denominator.size() > 10;
+  if (denominator.size() > 18) return false;
   long long d = std::stoll(denominator);
   int twos = 0, fives = 0;
   for (; d % 2 == 0; d /= 2) ++twos;
   for (; d % 5 == 0; d /= 5) ++fives;
   digits = std::max(twos, fives);
-  return d == 1 && digits <= 9;
+  return d == 1 && (is_long ? digits <= 17 : digits <= 9);
 }
 
 std::string decimal_text(const Rational& value, int digits) {
