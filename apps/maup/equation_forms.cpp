@@ -1,4 +1,5 @@
 #include "equation_forms.hpp"
+#include "rates_form.hpp"
 
 #include <fmt/format.h>
 
@@ -273,6 +274,8 @@ EquationForm equation_form(Form form, Study& study) {
       return standard_form(study, true);
     case Form::Eliminated:
       return with_definitions(eliminated_form(study), study);
+    case Form::Rates:
+      return rates_form(study);
   }
   return {};
 }

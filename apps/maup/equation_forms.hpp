@@ -2,12 +2,13 @@
 #include "notation.hpp"
 #include "open_study.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace maupertuis::app {
 
-enum class Form { Standard, Solved, Matrix, Residual, Eliminated };
+enum class Form { Standard, Solved, Matrix, Residual, Eliminated, Rates };
 
 /// One line `left = right` of a result; an empty left stands for `right = equal_to`, or `right = 0`.
 struct EquationLine {
@@ -23,11 +24,12 @@ struct EquationLine {
 
 /// The equations of motion in one of their forms, each proved equal to the residual by the zero test before it is
 /// shown; one that is not is an error (E0690) and the list is empty. E0692, E0693: too long for `Solved`, for
-/// `Eliminated`.
+/// `Eliminated`. E0694, E0695: no rates, or none in which the equations can be written.
 struct EquationForm {
   std::vector<EquationLine> lines;
   std::vector<EquationLine> constraints;  // as the model has them; in the forms that are equations of motion
   std::vector<Intermediate> intermediates;
+  std::optional<ReadingOrder> order;  // of the form in rates, which are names as well
 };
 EquationForm equation_form(Form form, Study& study);
 

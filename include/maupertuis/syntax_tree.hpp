@@ -119,6 +119,14 @@ struct LetStatement {
   };
   std::vector<Item> items;
 };
+/// rates ω1, ω2, ω3 = B.ω, v = x' cos ψ + y' sin ψ
+struct RatesStatement {
+  struct Group {
+    std::vector<Name> names;
+    ExpressionPtr value;  // one component a name
+  };
+  std::vector<Group> groups;
+};
 struct InputStatement {
   Name name;
   std::optional<UnitExpression> unit;
@@ -472,7 +480,7 @@ using StatementBody =
                  DamperStatement, TorsionSpringStatement, EnergyStatement, ForceStatement, StartStatement, RunStatement,
                  OutputStatement, MethodStatement, PrecisionStatement, DrawStatement, ReactionStatement,
                  ExpectStatement, ConstraintStatement, SweepStatement, IndependentStatement, PathStatement,
-                 ContactStatement, FrictionStatement, EventStatement, ImpactStatement, LaterStatement>;
+                 ContactStatement, FrictionStatement, EventStatement, ImpactStatement, RatesStatement, LaterStatement>;
 
 struct Statement {
   StatementBody body;

@@ -140,7 +140,7 @@ void replace_start(std::vector<StartValue>& list, StartValue value) {
 void override_start(Elaboration& e) {
   for (const syntax::StartStatement& part : e.overrides.start)
     for_each_item(e, part, [&](Elaboration& inner, const auto& item) {
-      if (is_body_rate(inner, *item.variable)) return override_rates(e, start_rates(inner, item));
+      if (is_rate(inner, *item.variable)) return override_rates(e, start_rates(inner, item));
       if (auto value = start_value(inner, item)) replace_start(e.experiment().start, std::move(*value));
     });
   for (const syntax::StartStatement& part : e.overrides.at)

@@ -30,7 +30,7 @@ struct DeriveOptions {
   Form chosen_form() const {
     if (eliminate) return Form::Eliminated;
     const std::map<std::string, Form> forms = {
-        {"standard", Form::Standard}, {"solved", Form::Solved}, {"matrix", Form::Matrix}, {"residual", Form::Residual}};
+        {"standard", Form::Standard}, {"solved", Form::Solved}, {"matrix", Form::Matrix}, {"residual", Form::Residual}, {"rates", Form::Rates}};
     return forms.at(form);
   }
 };
@@ -307,8 +307,8 @@ void add_derive(CommandLine& line) {
   Option* form = command
                      .add_option("--form", options->form,
                                  "standard: R = Aᵀλ; solved: q'' = …, λ = …; matrix: M, h, A and b of M q'' + h = Aᵀλ, "
-                                 "A q'' = b; residual: R")
-                     ->one_of({"standard", "solved", "matrix", "residual"})
+                                 "A q'' = b; residual: R; rates: in the rates of the model, without multipliers")
+                     ->one_of({"standard", "solved", "matrix", "residual", "rates"})
                      ->type_name("FORM");
   command
       .add_flag("--eliminate", options->eliminate,

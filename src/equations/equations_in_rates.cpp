@@ -1,0 +1,270 @@
+#include <maupertuis/integral_symbol.hpp>
+#include <maupertuis/print.hpp>
+#include <maupertuis/rates.hpp>
+
+#include "equations/rate_kinematics.hpp"
+#include "equations/simplified.hpp"
+
+#include <algorithm>
+
+/// The equations of Boltzmann and Hamel. With L̃(q,σ,t) = L, p = ∂L̃/∂σ over all σ, those of the constraints included,
+/// and D̃, Q likewise,
+///
+///     ṗ_a + Σ_c p_c X_ia w_ci − X_ia ∂L̃/∂q_i + ∂D̃/∂σ_a = X_ia Q_i
+///     w_ci = Σ_j (∂Y_ci/∂q_j − ∂Y_cj/∂q_i) q̇_j + ∂Y_ci/∂t − ∂y_c/∂q_i
+///
+/// which is Xᵀ R, since p_c w_ci is what d/dt and ∂/∂q of p_c σ_c leave. The σ of constraints are set to 0 only after
+/// differentiating. What comes out is compared with Xᵀ R itself, in which neither p nor w occurs.
+namespace maupertuis {
+namespace {
+
+class HamelEquations {
+ public:
+  HamelEquations(const EquationsOfMotion& equations, const RateKinematics& kinematics, const ReadingOrder& order,
+                 const UnitQuaternions& spheres)
+      : equations_(equations),
+        system_(*equations.system),
+        k_(kinematics),
+        order_(order),
+        spheres_(spheres),
+        held_(kinematics.on_constraints()),
+        velocities_(kinematics.replacements(system_)),
+        lagrangian_(tidied_lagrangian(in_rates(equations.lagrangian_expanded))) {
+    for (const Expr& s : k_.sigma) momenta_.push_back(differentiate(lagrangian_, s));
+    find_curls();
+  }
+
+  Expr lagrangian() const { return substitute(lagrangian_, held_); }
+  Expr momentum(std::size_t a) const { return substitute(momenta_[a], held_); }
+
+  /// The left side of row a, less its right side.
+  Expr row(std::size_t a) const {
+    ExprVector terms{substitute(total_time_derivative(momentum(a)), velocities_)};
+    for (std::size_t c = 0; c < k_.sigma.size(); ++c)
+      if (const Expr g = coefficient(c, a); !g.is_zero()) terms.push_back(momentum(c) * g);
+    const Expr l = lagrangian();
+    for (const Expr& part : split(l)) terms.push_back(-tidy(along(a, slopes(part))));
+    if (const Expr d = system_.dissipation_function(); !d.is_zero())
+      terms.push_back(tidy(substitute(differentiate(in_rates(expand_time_derivatives(d)), k_.sigma[a]), held_)));
+    ExprVector forces;
+    for (const Expr& q : equations_.generalized_forces) forces.push_back(substitute(in_rates(q), held_));
+    terms.push_back(-tidy(along(a, forces)));
+    return system_.context->sum(terms);
+  }
+
+ private:
+  Expr tidy(Expr e) const { return spheres_.shortest(e, order_); }
+
+  /// Velocities replaced by rates: a rate that stands there whole first, so that its formula need not be recognised.
+  Expr in_rates(Expr e) const {
+    ExprMap whole;
+    for (std::size_t a = 0; a < k_.sigma.size(); ++a)
+      if (!k_.values[a].is_symbol()) whole.emplace(k_.values[a], k_.sigma[a]);
+    ExprMap rest;
+    for (std::size_t i = 0; i < k_.velocities.size(); ++i)
+      if (k_.velocities[i] != system_.coordinates[i].velocity)
+        rest.emplace(system_.coordinates[i].velocity, k_.velocities[i]);
+    return substitute(substitute(e, whole), rest);
+  }
+
+  bool has_rate(Expr e) const {
+    const std::vector<Expr> symbols = symbols_of({&e, 1});
+    return std::any_of(k_.sigma.begin(), k_.sigma.end(),
+                       [&](Expr s) { return std::find(symbols.begin(), symbols.end(), s) != symbols.end(); });
+  }
+
+  /// L of degree two in σ with every coefficient in its best form; another L as it is.
+  Expr tidied_lagrangian(Expr l) const {
+    ExprMap at_rest;
+    for (const Expr& s : k_.sigma) at_rest.emplace(s, system_.context->number(0));
+    ExprVector terms{tidy(substitute(l, at_rest))};
+    for (std::size_t a = 0; a < k_.sigma.size(); ++a) {
+      const Expr p = differentiate(l, k_.sigma[a]);
+      if (p.is_zero()) continue;
+      terms.push_back(tidy(substitute(p, at_rest)) * k_.sigma[a]);
+      for (std::size_t b = 0; b <= a; ++b) {
+        const Expr m = differentiate(p, k_.sigma[b]);
+        if (has_rate(m)) return l;
+        const Expr coefficient = a == b ? Rational(1, 2) * tidy(m) : tidy(m);
+        terms.push_back(coefficient * k_.sigma[a] * k_.sigma[b]);
+      }
+    }
+    return system_.context->sum(terms);
+  }
+
+  /// w_c, a component a coordinate, in q̇; empty where it vanishes: integrable σ.
+  void find_curls() {
+    for (std::size_t c = 0; c < k_.sigma.size(); ++c) {
+      curls_.emplace_back();
+      if (k_.is_velocity[c]) continue;
+      ExprVector curl;
+      bool any = false;
+      for (const Coordinate& q : system_.coordinates) {
+        const Expr y = differentiate(k_.values[c], q.velocity);
+        const Expr w = tidy(total_time_derivative(y) - differentiate(k_.values[c], q.q));
+        any |= !w.is_zero();
+        curl.push_back(w);
+      }
+      if (any) curls_.back() = std::move(curl);
+    }
+  }
+
+  /// Σ_i X_ia w_ci on the constraints, linear in the rates; numbers where they are constant, as those of a group.
+  Expr coefficient(std::size_t c, std::size_t a) const {
+    if (curls_[c].empty()) return system_.context->number(0);
+    const Expr whole = substitute(along(a, curls_[c]), velocities_);
+    ExprMap at_rest;
+    for (const Expr& s : k_.sigma) at_rest.emplace(s, system_.context->number(0));
+    ExprVector terms{tidy(substitute(whole, at_rest))};
+    for (std::size_t b = 0; b < k_.free; ++b)
+      terms.push_back(constant_or_tidy(differentiate(whole, k_.sigma[b])) * k_.sigma[b]);
+    return system_.context->sum(terms);
+  }
+
+  /// A number, if it is one everywhere.
+  Expr constant_or_tidy(Expr e) const {
+    if (e.is_zero()) return e;
+    for (const int candidate : {0, 1, -1})
+      if (const Expr difference = substitute(e - Rational(candidate), spheres_.parametrization());
+          zero_test(difference).verdict == Verdict::Zero)
+        return system_.context->number(candidate);
+    return tidy(e);
+  }
+
+  /// Σ_i X_ia v_i
+  Expr along(std::size_t a, const ExprVector& v) const {
+    ExprVector terms;
+    for (std::size_t i = 0; i < v.size(); ++i) terms.push_back(k_.x.at(i, a) * v[i]);
+    return system_.context->sum(terms);
+  }
+
+  /// ∂/∂q
+  ExprVector slopes(Expr e) const {
+    ExprVector q;
+    for (const Coordinate& c : system_.coordinates) q.push_back(c.q);
+    return gradient(e, q);
+  }
+
+  /// The terms of different monomials in σ, whose coefficients have nothing in common; a sum of one otherwise.
+  ExprVector split(Expr l) const {
+    if (!l.is(Kind::Sum)) return {l};
+    ExprVector parts;
+    for (std::size_t i = 0; i < l.size(); ++i) parts.push_back(l[i]);
+    return parts;
+  }
+
+  const EquationsOfMotion& equations_;
+  const MechanicalSystem& system_;
+  const RateKinematics& k_;
+  const ReadingOrder& order_;
+  const UnitQuaternions& spheres_;
+  ExprMap held_, velocities_;
+  Expr lagrangian_;
+  ExprVector momenta_;             // [n] over all σ
+  std::vector<ExprVector> curls_;  // [n] of [n], or empty
+};
+
+/// q, then the rates in their order.
+ReadingOrder order_with(const EquationsOfMotion& equations, const std::vector<Rate>& rates) {
+  ReadingOrder order = equations.order;
+  order.places = nullptr;
+  for (const Rate& r : rates)
+    order.coordinates.push_back(equations.system->context->symbol(r.symbol.name(), Role::Coordinate));
+  return order;
+}
+
+Expr put_back(const ReadableForm& form) {
+  Expr e = form.value;
+  for (auto i = form.intermediates.rbegin(); i != form.intermediates.rend(); ++i)
+    e = substitute(e, {{i->symbol, i->value}});
+  return e;
+}
+
+/// Xᵀ R with q̇ and q̈ replaced, of which p and w know nothing; that σ(q, q̇) is σ, and that q̇ obeys the constraints.
+ZeroTest compared(const EquationsInRates& shown, const RateKinematics& k, const EquationsOfMotion& equations,
+                  const UnitQuaternions& spheres) {
+  const MechanicalSystem& system = *equations.system;
+  ExprMap motion = k.replacements(system);
+  const ExprMap velocities = motion;
+  for (const Coordinate& c : system.coordinates)
+    motion.emplace(c.acceleration, substitute(total_time_derivative(velocities.at(c.velocity)), velocities));
+  const ExprVector residual = substitute(expand_time_derivatives(equations.residual), motion);
+  ExprVector differences;
+  for (std::size_t a = 0; a < shown.rows.size(); ++a) {
+    ExprVector terms{put_back(shown.rows[a].form)};
+    for (std::size_t i = 0; i < residual.size(); ++i) terms.push_back(-(k.x.at(i, a) * residual[i]));
+    differences.push_back(system.context->sum(terms));
+  }
+  for (std::size_t a = 0; a < k.free; ++a) differences.push_back(substitute(k.values[a], velocities) - k.sigma[a]);
+  for (const Expr& c : expand_time_derivatives(equations.constraint_rates))
+    differences.push_back(substitute(c, velocities));
+  for (const EquationsInRates::Velocity& v : shown.kinematics)
+    differences.push_back(put_back(v.form) - velocities.at(system.coordinates[v.coordinate].velocity));
+  return zero_test(substitute(substitute(differences, system.definition_values()), spheres.parametrization()));
+}
+
+std::string shown_name(Expr sigma) { return symbol_to_plain(sigma); }
+
+}  // namespace
+
+RatesResult equations_in_rates(const EquationsOfMotion& equations) {
+  return equations_in_rates(equations, equations.shown().system->rates);
+}
+
+RatesResult equations_in_rates(const EquationsOfMotion& derived, const std::vector<Rate>& rates) {
+  const EquationsOfMotion& equations = derived.shown();
+  RatesResult result;
+  EquationsInRates out;
+  out.order = order_with(equations, rates);
+  const UnitQuaternions spheres(*equations.system);
+  const auto k = rate_kinematics(equations, rates, out.order, spheres, result.reason);
+  if (!k) return result;
+
+  const HamelEquations hamel(equations, *k, out.order, spheres);
+  out.lagrangian = hamel.lagrangian();
+  ExprVector rows;
+  for (std::size_t a = 0; a < k->free; ++a) {
+    rows.push_back(hamel.row(a));
+    out.rates.push_back(k->sigma[a]);
+    out.momenta.push_back(readable(hamel.momentum(a), out.order));
+  }
+  std::vector<ReadableForm> forms = readable_equations(rows, out.order);
+  for (std::size_t a = 0; a < forms.size(); ++a) {
+    forms[a].own = equations.system->context->symbol(k->sigma[a].name(), Role::Coordinate);
+    out.rows.push_back({shown_name(k->sigma[a]), std::move(forms[a])});
+  }
+  const ExprMap velocities = k->replacements(*equations.system);
+  for (std::size_t i = 0; i < k->velocities.size(); ++i) {
+    const Coordinate& c = equations.system->coordinates[i];
+    const bool stays = std::any_of(k->sigma.begin(), k->sigma.end(), [&](Expr s) { return s == c.velocity; });
+    if (!stays) out.kinematics.push_back({i, readable(velocities.at(c.velocity), out.order)});
+  }
+  out.certificate = compared(out, *k, equations, spheres);
+  if (out.certificate.verdict == Verdict::Nonzero) {
+    result.reason = "They differ from Lagrange's equations. Please report this model.";
+    return result;
+  }
+  ExprVector roots{out.lagrangian};
+  for (const auto& row : out.rows) roots.push_back(row.form.value);
+  for (const auto& velocity : out.kinematics) roots.push_back(velocity.form.value);
+  out.intermediates = definitions_used(*equations.system, roots);
+  result.equations = std::move(out);
+  return result;
+}
+
+std::vector<Rate> body_rates(const MechanicalSystem& system) {
+  std::vector<Rate> rates;
+  for (const Body& body : system.bodies) {
+    if (body.angular_velocity.size() != 3) continue;
+    const ExprVector omega = expand_time_derivatives(body.angular_velocity);
+    const char* axes[] = {".ω.x", ".ω.y", ".ω.z"};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::string name = body.name + axes[i];
+      const Dimension rate = system.dimensionless ? Dimension{} : dimensions::angle() / dimensions::time();
+      rates.push_back({name, rate_of_integral(*system.context, name), omega[i], rate, body.span});
+    }
+  }
+  return rates;
+}
+
+}  // namespace maupertuis
