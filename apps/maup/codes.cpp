@@ -26,7 +26,8 @@ constexpr CodeEntry own_codes[] = {
      "does not, they are the angular velocities of its bodies on body axes, of which this model has none.",
      "maup derive pendulum.lag --form rates", "maup derive satellite.lag --form rates"},
     {"E0695", "no equations in these rates",
-     "Velocities follow from rates and constraints by a linear system that is solved in formulas: constraints have to be "
+     "Velocities follow from rates and constraints by a linear system that is solved in formulas: constraints have to "
+     "be "
      "linear in q', and the system small enough that its solution can be read.",
      "maup derive satellites.lag --form rates", "maup derive satellites.lag --form standard"},
     {"E0801", "a file cannot be read",

@@ -1,6 +1,7 @@
 #include "derivation_text.hpp"
 
 #include "quantity.hpp"
+#include "rates_form.hpp"
 
 #include <fmt/format.h>
 
@@ -141,7 +142,7 @@ std::string certificate_text(const Certificate& certificate) {
 
 std::string equations_text(const EquationForm& form, const ReadingOrder& order) {
   std::string out;
-  for (const auto* lines : {&form.lines, &form.constraints})
+  for (const auto* lines : {&form.lines, &form.kinematics, &form.constraints})
     for (const EquationLine& line : *lines)
       out += fmt::format("  {}{}\n", plain_text(shown_line(line, order)),
                          line.note.empty() ? "" : "    (" + line.note + ")");
@@ -153,12 +154,13 @@ std::string equations_text(const EquationForm& form, const ReadingOrder& order) 
 
 std::string lecture(Study& study, const EquationForm& form, const Certificate& certificate, bool with_steps) {
   const EquationsOfMotion& equations = *study.equations();
-  const ReadingOrder& order = equations.order;
+  const ReadingOrder& order = form.order(equations);
   std::string out;
   if (with_steps) out += steps_text(*study.derivation(true), order) + "\n";
-  out += fmt::format("Equations of motion of {}\n", equations.system->name);
+  out += fmt::format("Equations of motion of {}{}\n", equations.system->name, form.in_rates ? " in rates" : "");
   out += equations_text(form, order);
   out += legend(*equations.system, order);
+  if (form.in_rates) return out + rates_text(form, equations) + certificate_text(with_rates_check(certificate, form));
   out += reactions_text(equations);
   out += momenta_and_energy(equations, *study.derivation(false));
   return out + certificate_text(certificate);

@@ -2,7 +2,9 @@
 #include "notation.hpp"
 #include "open_study.hpp"
 
-#include <optional>
+#include <maupertuis/rates.hpp>
+
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -29,7 +31,13 @@ struct EquationForm {
   std::vector<EquationLine> lines;
   std::vector<EquationLine> constraints;  // as the model has them; in the forms that are equations of motion
   std::vector<Intermediate> intermediates;
-  std::optional<ReadingOrder> order;  // of the form in rates, which are names as well
+  std::vector<EquationLine> kinematics;              // q' by rates
+  std::shared_ptr<const EquationsInRates> in_rates;  // of the form in rates
+
+  /// How its names are ordered: rates are names as well.
+  const ReadingOrder& order(const EquationsOfMotion& equations) const {
+    return in_rates ? in_rates->order : equations.order;
+  }
 };
 EquationForm equation_form(Form form, Study& study);
 

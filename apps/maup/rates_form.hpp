@@ -6,4 +6,11 @@ namespace maupertuis::app {
 /// The equations of motion in the rates of the model, or of its bodies where it names none, and q' by the rates.
 EquationForm rates_form(Study& study);
 
+/// What stands below them in the text: what the rates are, L and the momenta in them.
+std::string rates_text(const EquationForm& form, const EquationsOfMotion& equations);
+/// σ = Y q' + y, a line a rate.
+std::vector<FormulaLine> rate_definitions(const EquationForm& form, const EquationsOfMotion& equations);
+/// The certificate with what the zero test said of the form in rates.
+Certificate with_rates_check(Certificate certificate, const EquationForm& form);
+
 }  // namespace maupertuis::app

@@ -18,6 +18,7 @@ struct EquationsInRates {
   struct Row {
     std::string rate;   // ω1; θ' for a velocity that stays
     ReadableForm form;  // = 0
+    Expr factor;        // the form is so many times Xᵀ R
   };
   struct Velocity {
     std::size_t coordinate = 0;
@@ -25,6 +26,7 @@ struct EquationsInRates {
   };
   ReadingOrder order;                       // of the rates as well
   std::vector<Expr> rates;                  // σ [r], symbols of order 1
+  std::vector<Expr> definitions;            // of the rates in q, q', t [r]
   std::vector<Row> rows;                    // [r]
   std::vector<Velocity> kinematics;         // of the velocities that are no rates themselves
   Expr lagrangian;                          // L in rates, on the constraints

@@ -192,7 +192,8 @@ ZeroTest compared(const EquationsInRates& shown, const RateKinematics& k, const 
   ExprVector differences;
   for (std::size_t a = 0; a < shown.rows.size(); ++a) {
     ExprVector terms{put_back(shown.rows[a].form)};
-    for (std::size_t i = 0; i < residual.size(); ++i) terms.push_back(-(k.x.at(i, a) * residual[i]));
+    for (std::size_t i = 0; i < residual.size(); ++i)
+      terms.push_back(-(shown.rows[a].factor * k.x.at(i, a) * residual[i]));
     differences.push_back(system.context->sum(terms));
   }
   for (std::size_t a = 0; a < k.free; ++a) differences.push_back(substitute(k.values[a], velocities) - k.sigma[a]);
@@ -203,7 +204,48 @@ ZeroTest compared(const EquationsInRates& shown, const RateKinematics& k, const 
   return zero_test(substitute(substitute(differences, system.definition_values()), spheres.parametrization()));
 }
 
-std::string shown_name(Expr sigma) { return symbol_to_plain(sigma); }
+/// Half of a sum, or minus half, where that is shorter than halves in each term.
+ReadableForm readable_velocity(Expr e, const ReadingOrder& order) {
+  const auto cost = [&](const ReadableForm& form) {
+    const std::string text = to_plain(form, order);
+    return std::pair(text.size(), std::count(text.begin(), text.end(), '-'));
+  };
+  ReadableForm best = readable(e, order);
+  for (const int times : {2, -2}) {
+    ReadableForm form = readable(Rational(times) * e, order);
+    form.value = Rational(1, times) * form.value;
+    if (form.intermediates.empty() && cost(form) < cost(best)) best = std::move(form);
+  }
+  return best;
+}
+
+bool moves(Expr e) {
+  for (const Expr& s : symbols_of({&e, 1}))
+    if (s.role() == Role::Coordinate || s.role() == Role::Time || s.role() == Role::Input) return true;
+  return false;
+}
+
+/// 1/c for the one acceleration of a row, c σ_a' + … = 0, where c changes with the motion: momentum equations are
+/// written p' = …. Otherwise 1.
+Expr divisor(Expr row, std::size_t a, const RateKinematics& k, const ReadingOrder& order,
+             const UnitQuaternions& spheres) {
+  Context& context = row.context();
+  Expr factor = context.number(1);
+  for (std::size_t b = 0; b < k.free; ++b) {
+    const Expr acceleration = context.time_derivative(k.sigma[b]);
+    const Expr coefficient = differentiate(row, acceleration);
+    if (coefficient.is_zero()) continue;
+    const Expr best = spheres.shortest(coefficient, order);
+    if (best.is_zero()) continue;
+    if (a != b || !moves(best)) return context.number(1);
+    factor = context.number(1) / best;
+  }
+  return factor;
+}
+
+std::size_t length(const ReadableForm& form, const ReadingOrder& order) {
+  return form.intermediates.empty() ? to_plain(form, order).size() : std::string::npos;
+}
 
 }  // namespace
 
@@ -226,18 +268,29 @@ RatesResult equations_in_rates(const EquationsOfMotion& derived, const std::vect
   for (std::size_t a = 0; a < k->free; ++a) {
     rows.push_back(hamel.row(a));
     out.rates.push_back(k->sigma[a]);
+    out.definitions.push_back(k->values[a]);
     out.momenta.push_back(readable(hamel.momentum(a), out.order));
   }
   std::vector<ReadableForm> forms = readable_equations(rows, out.order);
   for (std::size_t a = 0; a < forms.size(); ++a) {
     forms[a].own = equations.system->context->symbol(k->sigma[a].name(), Role::Coordinate);
-    out.rows.push_back({shown_name(k->sigma[a]), std::move(forms[a])});
+    Expr factor = divisor(rows[a], a, *k, out.order, spheres);
+    if (!factor.is_one()) {
+      ReadableForm divided = readable_equations(ExprVector{factor * put_back(forms[a])}, out.order).front();
+      if (length(divided, out.order) < length(forms[a], out.order)) {
+        divided.own = forms[a].own;
+        forms[a] = std::move(divided);
+      } else {
+        factor = equations.system->context->number(1);
+      }
+    }
+    out.rows.push_back({symbol_to_plain(k->sigma[a]), std::move(forms[a]), factor});
   }
   const ExprMap velocities = k->replacements(*equations.system);
   for (std::size_t i = 0; i < k->velocities.size(); ++i) {
     const Coordinate& c = equations.system->coordinates[i];
     const bool stays = std::any_of(k->sigma.begin(), k->sigma.end(), [&](Expr s) { return s == c.velocity; });
-    if (!stays) out.kinematics.push_back({i, readable(velocities.at(c.velocity), out.order)});
+    if (!stays) out.kinematics.push_back({i, readable_velocity(velocities.at(c.velocity), out.order)});
   }
   out.certificate = compared(out, *k, equations, spheres);
   if (out.certificate.verdict == Verdict::Nonzero) {

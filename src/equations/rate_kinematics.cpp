@@ -92,9 +92,8 @@ class Choice {
     RateKinematics k;
     for (const Rate& r : rates)
       if (add(r.value)) take(k, r.symbol, r.value, false);
-    for (const bool named : {false, true})  // those that stand in no rate first
-      for (const Coordinate& c : system_.coordinates)
-        if (is_named(c, rates) == named && add(c.velocity)) take(k, c.velocity, c.velocity, true);
+    for (const Coordinate* c : by_entanglement(rates))
+      if (add(c->velocity)) take(k, c->velocity, c->velocity, true);
     k.free = k.sigma.size();
     for (std::size_t c = 0; c < held.size(); ++c)
       take(k, rate_of_integral(*system_.context, "σ_" + std::to_string(c + 1) + "∫"), held[c], false);
@@ -108,11 +107,20 @@ class Choice {
     k.values.push_back(value);
     k.is_velocity.push_back(is_velocity);
   }
-  static bool is_named(const Coordinate& c, const std::vector<Rate>& rates) {
-    return std::any_of(rates.begin(), rates.end(), [&](const Rate& r) {
-      const std::vector<Expr> symbols = symbols_of({&r.value, 1});
-      return std::find(symbols.begin(), symbols.end(), c.velocity) != symbols.end();
+  /// Velocities that stand in few rates and constraints first: they stay the better.
+  std::vector<const Coordinate*> by_entanglement(const std::vector<Rate>& rates) const {
+    std::map<NodeId, int> count;
+    const auto look = [&](Expr e) {
+      for (const Expr& s : symbols_of({&e, 1})) ++count[s.id()];
+    };
+    for (const Rate& r : rates) look(r.value);
+    for (const Expr& c : constraints_) look(c);
+    std::vector<const Coordinate*> out;
+    for (const Coordinate& c : system_.coordinates) out.push_back(&c);
+    std::stable_sort(out.begin(), out.end(), [&](const Coordinate* a, const Coordinate* b) {
+      return count[a->velocity.id()] < count[b->velocity.id()];
     });
+    return out;
   }
 
   const MechanicalSystem& system_;

@@ -46,7 +46,7 @@ TEST_CASE("A quaternion turns by half of q ω") {
   const ModelText m(body("body top inertia diag(A, B, C) rotation quaternion\n", "rates p, q, r = top.ω\n"));
   const EquationsInRates e = in_rates(m);
   REQUIRE(e.kinematics.size() == 4);
-  CHECK(velocity(e, 0) == "-1/2 top.qx p - 1/2 top.qy q - 1/2 top.qz r");
+  CHECK(velocity(e, 0) == "-1/2 (top.qx p + top.qy q + top.qz r)");
 }
 
 TEST_CASE("The weight of a top acts in its rows by the vertical on body axes") {
