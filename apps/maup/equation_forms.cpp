@@ -264,6 +264,8 @@ EquationForm with_definitions(EquationForm form, Study& study) {
 EquationForm equation_form(Form form, Study& study) {
   if (!study.equations()) return {};
   switch (form) {
+    case Form::Shortest:
+      return form_in_rates_if_shorter(study, standard_form(study, false));
     case Form::Standard:
       return standard_form(study, false);
     case Form::Solved:

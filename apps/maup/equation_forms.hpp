@@ -10,7 +10,8 @@
 
 namespace maupertuis::app {
 
-enum class Form { Standard, Solved, Matrix, Residual, Eliminated, Rates };
+/// Shortest: in rates where these are named or shorter to read, else Standard.
+enum class Form { Shortest, Standard, Solved, Matrix, Residual, Eliminated, Rates };
 
 /// One line `left = right` of a result; an empty left stands for `right = equal_to`, or `right = 0`.
 struct EquationLine {

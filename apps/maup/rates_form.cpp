@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <maupertuis/print.hpp>
 #include <maupertuis/rates.hpp>
 
@@ -15,39 +17,31 @@ std::string with_legend(const std::string& left, const ReadableForm& form, const
   return out;
 }
 
-}  // namespace
+std::vector<Rate> rates_of(const MechanicalSystem& system) {
+  return system.rates.empty() ? body_rates(system) : system.rates;
+}
 
-EquationForm rates_form(Study& study) {
-  const EquationsOfMotion& equations = *study.equations();
-  const MechanicalSystem& system = *equations.shown().system;
-  const std::vector<Rate> rates = system.rates.empty() ? body_rates(system) : system.rates;
-  if (rates.empty()) {
-    study.diagnostics().error("E0694", {}, "The model names no rates, and no body turns in space.",
-                              "The form in rates has other velocities than q': combinations of them that are given.",
-                              "Write for example `rates v = x' cos ψ + y' sin ψ, w = ψ'`.");
-    return {};
+/// Rows of one set of equations list the same names.
+void append(EquationForm& form, const ReadableForm& line) {
+  for (const Intermediate& i : line.intermediates) {
+    const bool known = std::any_of(form.intermediates.begin(), form.intermediates.end(),
+                                   [&](const Intermediate& other) { return other.symbol == i.symbol; });
+    if (!known) form.intermediates.push_back(i);
   }
-  const RatesResult result = equations_in_rates(equations, rates);
-  if (!result.equations) {
-    study.diagnostics().error("E0695", {}, "The equations cannot be written in these rates.", result.reason,
-                              "`--form standard` shows them in q''.");
-    return {};
-  }
+}
+
+EquationForm form_of(EquationsInRates found, Study& study) {
+  const MechanicalSystem& system = *study.equations()->shown().system;
   EquationForm form;
-  form.in_rates = std::make_shared<const EquationsInRates>(*result.equations);
-  const EquationsInRates& found = *form.in_rates;
-  if (found.certificate.verdict != Verdict::Zero)
-    study.diagnostics().warning("W0691", {}, "The form in rates could not be compared with the derivation.",
-                                found.certificate.reason, "It is shown, but it is not certified.");
   form.intermediates = found.intermediates;
   for (const EquationsInRates::Row& row : found.rows) {
     form.lines.push_back({row.rate, {}, row.form, {}, {}, {}, false});
-    form.intermediates.insert(form.intermediates.end(), row.form.intermediates.begin(), row.form.intermediates.end());
+    append(form, row.form);
   }
   for (const EquationsInRates::Velocity& v : found.kinematics) {
     const Coordinate& c = system.coordinates[v.coordinate];
     form.kinematics.push_back({c.name, lay_out(c.velocity, found.order), v.form, {}, {}, {}, false});
-    form.intermediates.insert(form.intermediates.end(), v.form.intermediates.begin(), v.form.intermediates.end());
+    append(form, v.form);
   }
   const Derivation& derivation = *study.derivation(false);
   for (std::size_t k = 0; k < derivation.constraints.size(); ++k) {
@@ -58,7 +52,74 @@ EquationForm rates_form(Study& study) {
     line.note = derivation.constraints[k].name;
     form.constraints.push_back(std::move(line));
   }
+  form.in_rates = std::make_shared<const EquationsInRates>(std::move(found));
   return form;
+}
+
+/// The width of all its lines, as a reader goes through them.
+double width_of(const EquationForm& form, const ReadingOrder& order) {
+  double all = 0;
+  for (const auto* lines : {&form.lines, &form.kinematics, &form.constraints})
+    for (const EquationLine& line : *lines) {
+      const FormulaLine shown = shown_line(line, order);
+      all += width(shown.left) + width(shown.right);
+    }
+  for (const Intermediate& i : form.intermediates) all += width(lay_out(i.value, order));
+  return all;
+}
+
+/// Bodies beyond which a comparison is not worth its time, and coordinates likewise.
+constexpr std::size_t most_bodies = 3, most_coordinates = 14;
+
+/// Whether the rates of the bodies may stand in the place of as many velocities. Constraints beside the norms of
+/// quaternions have forces that body rates do not shorten.
+bool may_be_shorter(const MechanicalSystem& system, const std::vector<Rate>& rates) {
+  const bool free = std::all_of(system.constraints.begin(), system.constraints.end(),
+                                [](const Constraint& c) { return !c.body.empty(); });
+  return free && !rates.empty() && rates.size() <= 3 * most_bodies && system.coordinates.size() <= most_coordinates &&
+         rates.size() + system.constraints.size() <= system.coordinates.size();
+}
+
+bool has_all(const EquationsInRates& found, const std::vector<Rate>& rates) {
+  for (const Rate& rate : rates)
+    if (std::find(found.rates.begin(), found.rates.end(), rate.symbol) == found.rates.end()) return false;
+  return true;
+}
+
+}  // namespace
+
+EquationForm rates_form(Study& study) {
+  const EquationsOfMotion& equations = *study.equations();
+  const std::vector<Rate> rates = rates_of(*equations.shown().system);
+  if (rates.empty()) {
+    study.diagnostics().error("E0694", {}, "The model names no rates, and no body turns in space.",
+                              "The form in rates has other velocities than q': combinations of them that are given.",
+                              "Write for example `rates v = x' cos ψ + y' sin ψ, w = ψ'`.");
+    return {};
+  }
+  RatesResult result = equations_in_rates(equations, rates);
+  if (!result.equations) {
+    study.diagnostics().error("E0695", {}, "The equations cannot be written in these rates.", result.reason,
+                              "`--form standard` shows them in q''.");
+    return {};
+  }
+  if (result.equations->certificate.verdict != Verdict::Zero)
+    study.diagnostics().warning("W0691", {}, "The form in rates could not be compared with the derivation.",
+                                result.equations->certificate.reason, "It is shown, but it is not certified.");
+  return form_of(*std::move(result.equations), study);
+}
+
+EquationForm form_in_rates_if_shorter(Study& study, const EquationForm& standard) {
+  const EquationsOfMotion& equations = *study.equations();
+  const MechanicalSystem& system = *equations.shown().system;
+  const std::vector<Rate> rates = rates_of(system);
+  const bool named = !system.rates.empty();
+  if (!named && !may_be_shorter(system, rates)) return standard;
+  RatesResult result = equations_in_rates(equations, rates);
+  if (!result.equations || result.equations->certificate.verdict != Verdict::Zero) return standard;
+  if (!named && !has_all(*result.equations, rates)) return standard;
+  EquationForm form = form_of(*std::move(result.equations), study);
+  return named || width_of(form, form.order(equations)) < width_of(standard, equations.order) ? form : standard;
 }
 
 std::vector<FormulaLine> rate_definitions(const EquationForm& form, const EquationsOfMotion& equations) {

@@ -5,6 +5,9 @@ namespace maupertuis::app {
 
 /// The equations of motion in the rates of the model, or of its bodies where it names none, and q' by the rates.
 EquationForm rates_form(Study& study);
+/// Where no form is asked for: that in the rates that the model names; that in the angular velocities of its bodies
+/// where it is shorter to read; else `standard`.
+EquationForm form_in_rates_if_shorter(Study& study, const EquationForm& standard);
 
 /// What stands below them in the text: what the rates are, L and the momenta in them.
 std::string rates_text(const EquationForm& form, const EquationsOfMotion& equations);

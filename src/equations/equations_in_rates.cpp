@@ -204,6 +204,25 @@ ZeroTest compared(const EquationsInRates& shown, const RateKinematics& k, const 
   return zero_test(substitute(substitute(differences, system.definition_values()), spheres.parametrization()));
 }
 
+bool has_denominator(Expr e) {
+  for (const Expr& node : topological_order({&e, 1}))
+    if (node.is(Kind::Power) && node[1].is_number() && node[1].number().sign() < 0) return true;
+  return false;
+}
+
+/// ω3 − cos θ (ω1 sin ψ + ω2 cos ψ)/sin θ: the terms with denominators together, and the others.
+ReadableForm by_denominators(const ReadableForm& form, const ReadingOrder& order) {
+  if (!form.value.is(Kind::Sum)) return form;
+  ExprVector with, without;
+  for (std::size_t i = 0; i < form.value.size(); ++i)
+    (has_denominator(form.value[i]) ? with : without).push_back(form.value[i]);
+  if (with.empty() || without.empty()) return form;
+  Context& context = form.value.context();
+  ReadableForm below = readable(context.sum(with), order);
+  below.value = context.sum(without) + below.value;
+  return below;
+}
+
 /// Half of a sum, or minus half, where that is shorter than halves in each term.
 ReadableForm readable_velocity(Expr e, const ReadingOrder& order) {
   const auto cost = [&](const ReadableForm& form) {
@@ -211,6 +230,8 @@ ReadableForm readable_velocity(Expr e, const ReadingOrder& order) {
     return std::pair(text.size(), std::count(text.begin(), text.end(), '-'));
   };
   ReadableForm best = readable(e, order);
+  if (ReadableForm form = by_denominators(best, order); form.intermediates.empty() && cost(form) < cost(best))
+    best = std::move(form);
   for (const int times : {2, -2}) {
     ReadableForm form = readable(Rational(times) * e, order);
     form.value = Rational(1, times) * form.value;

@@ -164,6 +164,8 @@ std::optional<StartValue> start_value(Elaboration& e, const syntax::StartStateme
 bool is_rate(Elaboration& e, const syntax::Expression& x);
 /// `sat.ω = (0, 2, 0) rad/s`: one rate a component; none, and a message, after a mistake.
 std::vector<StartRate> start_rates(Elaboration& e, const syntax::StartStatement::Item& item);
+/// The velocities that rates of a point ask for, added to its values. False, and a message, where none give them.
+bool add_velocities_of_rates(Elaboration& e, const std::vector<StartRate>& rates, std::vector<StartValue>& values);
 void elaborate_experiment(Elaboration& e);
 void elaborate_expectation(Elaboration& e, const syntax::ExpectStatement& s, Span span);
 /// What a line says; nothing after a mistake.

@@ -22,7 +22,7 @@ namespace {
 
 struct DeriveOptions {
   ModelOptions model;
-  std::string form = "standard";
+  std::string form;
   bool eliminate = false, steps = false, latex = false, mathml = false, plain = false;
   std::string certify = "standard";
   std::string emit;
@@ -30,6 +30,7 @@ struct DeriveOptions {
 
   Form chosen_form() const {
     if (eliminate) return Form::Eliminated;
+    if (form.empty()) return steps || modes ? Form::Standard : Form::Shortest;  // the steps lead to q''
     const std::map<std::string, Form> forms = {{"standard", Form::Standard},
                                                {"solved", Form::Solved},
                                                {"matrix", Form::Matrix},
@@ -115,7 +116,8 @@ Json document_of(const DeriveOptions& options, Study& study, const EquationForm&
   if (!equations || !certificate) return document;
   const ReadingOrder& order = equations->order;
   document["system"] = equations->system->name;
-  document["form"] = options.eliminate ? "eliminated" : options.form;
+  const std::string shown_form = form.in_rates ? "rates" : options.form.empty() ? "standard" : options.form;
+  document["form"] = options.eliminate ? "eliminated" : shown_form;
   document["coordinates"] = Json::array();
   for (const Coordinate& c : equations->system->coordinates) document["coordinates"].push_back(c.name);
   const ReadingOrder& rates = form.order(*equations);
@@ -318,12 +320,14 @@ void add_derive(CommandLine& line) {
   command.add_flag(
       "--modes", options->modes,
       "The equations of each mode of contacts and friction; of many those next to where the motion begins");
-  Option* form = command
-                     .add_option("--form", options->form,
-                                 "standard: R = Aᵀλ; solved: q'' = …, λ = …; matrix: M, h, A and b of M q'' + h = Aᵀλ, "
-                                 "A q'' = b; residual: R; rates: in the rates of the model, without multipliers")
-                     ->one_of({"standard", "solved", "matrix", "residual", "rates"})
-                     ->type_name("FORM");
+  Option* form =
+      command
+          .add_option("--form", options->form,
+                      "standard: R = Aᵀλ, in q''; solved: q'' = …, λ = …; matrix: M, h, A and b of M q'' + h = Aᵀλ, "
+                      "A q'' = b; residual: R; rates: in the rates of the model or of its bodies, without "
+                      "multipliers. Without it rates where the model names them or they are shorter to read")
+          ->one_of({"standard", "solved", "matrix", "residual", "rates"})
+          ->type_name("FORM");
   command
       .add_flag("--eliminate", options->eliminate,
                 "The equations without multipliers: combinations in which Aᵀλ cancels")
