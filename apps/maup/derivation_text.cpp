@@ -23,9 +23,9 @@ std::string step_text(const DerivationStep& step, const ReadingOrder& order) {
   return fmt::format("{} = {}    ({})", to_plain(step.left), to_plain(step.right, order), note);
 }
 
-std::string steps_text(const Derivation& derivation, const ReadingOrder& order) {
+std::string steps_text(const std::vector<DerivationStep>& steps, const ReadingOrder& order) {
   std::string out, section;
-  for (const DerivationStep& step : derivation.steps) {
+  for (const DerivationStep& step : steps) {
     if (step.section != section) {
       section = step.section;
       out += fmt::format("{}{}\n", out.empty() ? "" : "\n", section);
@@ -156,7 +156,7 @@ std::string lecture(Study& study, const EquationForm& form, const Certificate& c
   const EquationsOfMotion& equations = *study.equations();
   const ReadingOrder& order = form.order(equations);
   std::string out;
-  if (with_steps) out += steps_text(*study.derivation(true), order) + "\n";
+  if (with_steps) out += steps_text(steps_to(form, study), order) + "\n";
   out += fmt::format("Equations of motion of {}{}\n", equations.system->name, form.in_rates ? " in rates" : "");
   out += equations_text(form, order);
   out += legend(*equations.system, order);
@@ -187,9 +187,9 @@ std::vector<FormulaLine> step_lines(const std::vector<DerivationStep>& steps, co
   return lines;
 }
 
-Json steps_json(const Derivation& derivation, const ReadingOrder& order) {
+Json steps_json(const std::vector<DerivationStep>& steps, const ReadingOrder& order) {
   Json list = Json::array();
-  for (const DerivationStep& step : derivation.steps)
+  for (const DerivationStep& step : steps)
     list.push_back({{"section", step.section},
                     {"rule", step.rule},
                     {"left", to_plain(step.left)},

@@ -147,6 +147,18 @@ std::string rates_text(const EquationForm& form, const EquationsOfMotion& equati
   return out;
 }
 
+std::vector<DerivationStep> steps_to(const EquationForm& form, Study& study) {
+  std::vector<DerivationStep> steps = study.derivation(true)->steps;
+  if (!form.in_rates) return steps;
+  std::erase_if(steps, [](const DerivationStep& step) {
+    const std::string& s = step.section;
+    return s.substr(0, 12) == "Equation of " || s.substr(0, 6) == "Solved" || s == "Multipliers eliminated" ||
+           s == "Reactions" || s == "Constraints differentiated";
+  });
+  steps.insert(steps.end(), form.in_rates->steps.begin(), form.in_rates->steps.end());
+  return steps;
+}
+
 Certificate with_rates_check(Certificate certificate, const EquationForm& form) {
   if (!form.in_rates) return certificate;
   const ZeroTest& test = form.in_rates->certificate;

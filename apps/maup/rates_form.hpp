@@ -13,6 +13,8 @@ EquationForm form_in_rates_if_shorter(Study& study, const EquationForm& standard
 std::string rates_text(const EquationForm& form, const EquationsOfMotion& equations);
 /// σ = Y q' + y, a line a rate.
 std::vector<FormulaLine> rate_definitions(const EquationForm& form, const EquationsOfMotion& equations);
+/// The textbook path to the equations of the form: of that in rates up to L, and from there by its own steps.
+std::vector<DerivationStep> steps_to(const EquationForm& form, Study& study);
 /// The certificate with what the zero test said of the form in rates.
 Certificate with_rates_check(Certificate certificate, const EquationForm& form);
 

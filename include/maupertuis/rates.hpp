@@ -2,6 +2,7 @@
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/evaluate.hpp>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,7 @@ struct EquationsInRates {
   };
   struct Velocity {
     std::size_t coordinate = 0;
+    Expr velocity;      // q'
     ReadableForm form;  // q' = form, in rates, q, t
   };
   ReadingOrder order;                       // of the rates as well
@@ -32,6 +34,7 @@ struct EquationsInRates {
   Expr lagrangian;                          // L in rates, on the constraints
   std::vector<ReadableForm> momenta;        // ∂L/∂σ [r], on the constraints
   std::vector<Intermediate> intermediates;  // definitions of the model that are used
+  std::vector<DerivationStep> steps;        // from the rates to the rows
   ZeroTest certificate;  // that the rows are Xᵀ R, that Y X = 1, and that X keeps to the constraints
 };
 
@@ -45,6 +48,22 @@ struct RatesResult {
 /// for in formulas. Each result was compared with Lagrange's residual by the zero test: see `certificate`.
 RatesResult equations_in_rates(const EquationsOfMotion& equations);
 RatesResult equations_in_rates(const EquationsOfMotion& equations, const std::vector<Rate>& rates);
+
+/// Formulas of a system in its rates, on the constraints.
+class RateNotation {
+ public:
+  /// In the rates that the model names, else in those of its bodies, if they are as many as velocities are free.
+  explicit RateNotation(const EquationsOfMotion& equations);
+  ~RateNotation();
+
+  /// Where it is shorter to read than `shown`, which is the same in q and q'; nothing otherwise.
+  std::optional<ReadableForm> shorter(Expr e, const ReadableForm& shown) const;
+  const ReadingOrder& order() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+};
 
 /// The components on body axes of the angular velocities of the bodies that turn in space, `top.ω.x`, as rates: of
 /// those that have three independent ones. `system` may be the system as written.

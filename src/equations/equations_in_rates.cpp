@@ -29,7 +29,7 @@ class HamelEquations {
         spheres_(spheres),
         held_(kinematics.on_constraints()),
         velocities_(kinematics.replacements(system_)),
-        lagrangian_(tidied_lagrangian(in_rates(equations.lagrangian_expanded))) {
+        lagrangian_(k_.by_coefficients(in_rates(equations.lagrangian_expanded), order, spheres)) {
     for (const Expr& s : k_.sigma) momenta_.push_back(differentiate(lagrangian_, s));
     find_curls();
   }
@@ -37,60 +37,34 @@ class HamelEquations {
   Expr lagrangian() const { return substitute(lagrangian_, held_); }
   Expr momentum(std::size_t a) const { return substitute(momenta_[a], held_); }
 
-  /// The left side of row a, less its right side.
-  Expr row(std::size_t a) const {
-    ExprVector terms{substitute(total_time_derivative(momentum(a)), velocities_)};
+  /// The parts of row a: d/dt of its momentum; what the turning of the rates adds, Σ_c p_c X_ia w_ci; ∂L/∂q, ∂D/∂σ and
+  /// Q along the rate.
+  struct Parts {
+    Expr inertial, turning, potential, dissipative, forced;
+    Expr row() const { return inertial + turning - potential + dissipative - forced; }
+  };
+  Parts parts(std::size_t a) const {
+    Context& context = *system_.context;
+    Parts out;
+    out.inertial = substitute(total_time_derivative(momentum(a)), velocities_);
+    ExprVector turning, potential, forces;
     for (std::size_t c = 0; c < k_.sigma.size(); ++c)
-      if (const Expr g = coefficient(c, a); !g.is_zero()) terms.push_back(momentum(c) * g);
+      if (const Expr g = coefficient(c, a); !g.is_zero()) turning.push_back(momentum(c) * g);
+    out.turning = context.sum(turning);
     const Expr l = lagrangian();
-    for (const Expr& part : split(l)) terms.push_back(-tidy(along(a, slopes(part))));
-    if (const Expr d = system_.dissipation_function(); !d.is_zero())
-      terms.push_back(tidy(substitute(differentiate(in_rates(expand_time_derivatives(d)), k_.sigma[a]), held_)));
-    ExprVector forces;
+    for (const Expr& part : split(l)) potential.push_back(tidy(along(a, slopes(part))));
+    out.potential = context.sum(potential);
+    const Expr d = expand_time_derivatives(system_.dissipation_function());
+    out.dissipative = tidy(substitute(differentiate(in_rates(d), k_.sigma[a]), held_));
     for (const Expr& q : equations_.generalized_forces) forces.push_back(substitute(in_rates(q), held_));
-    terms.push_back(-tidy(along(a, forces)));
-    return system_.context->sum(terms);
+    out.forced = tidy(along(a, forces));
+    return out;
   }
 
  private:
   Expr tidy(Expr e) const { return spheres_.shortest(e, order_); }
 
-  /// Velocities replaced by rates: a rate that stands there whole first, so that its formula need not be recognised.
-  Expr in_rates(Expr e) const {
-    ExprMap whole;
-    for (std::size_t a = 0; a < k_.sigma.size(); ++a)
-      if (!k_.values[a].is_symbol()) whole.emplace(k_.values[a], k_.sigma[a]);
-    ExprMap rest;
-    for (std::size_t i = 0; i < k_.velocities.size(); ++i)
-      if (k_.velocities[i] != system_.coordinates[i].velocity)
-        rest.emplace(system_.coordinates[i].velocity, k_.velocities[i]);
-    return substitute(substitute(e, whole), rest);
-  }
-
-  bool has_rate(Expr e) const {
-    const std::vector<Expr> symbols = symbols_of({&e, 1});
-    return std::any_of(k_.sigma.begin(), k_.sigma.end(),
-                       [&](Expr s) { return std::find(symbols.begin(), symbols.end(), s) != symbols.end(); });
-  }
-
-  /// L of degree two in σ with every coefficient in its best form; another L as it is.
-  Expr tidied_lagrangian(Expr l) const {
-    ExprMap at_rest;
-    for (const Expr& s : k_.sigma) at_rest.emplace(s, system_.context->number(0));
-    ExprVector terms{tidy(substitute(l, at_rest))};
-    for (std::size_t a = 0; a < k_.sigma.size(); ++a) {
-      const Expr p = differentiate(l, k_.sigma[a]);
-      if (p.is_zero()) continue;
-      terms.push_back(tidy(substitute(p, at_rest)) * k_.sigma[a]);
-      for (std::size_t b = 0; b <= a; ++b) {
-        const Expr m = differentiate(p, k_.sigma[b]);
-        if (has_rate(m)) return l;
-        const Expr coefficient = a == b ? Rational(1, 2) * tidy(m) : tidy(m);
-        terms.push_back(coefficient * k_.sigma[a] * k_.sigma[b]);
-      }
-    }
-    return system_.context->sum(terms);
-  }
+  Expr in_rates(Expr e) const { return k_.in_rates(system_, e); }
 
   /// w_c, a component a coordinate, in q̇; empty where it vanishes: integrable σ.
   void find_curls() {
@@ -163,15 +137,6 @@ class HamelEquations {
   ExprVector momenta_;             // [n] over all σ
   std::vector<ExprVector> curls_;  // [n] of [n], or empty
 };
-
-/// q, then the rates in their order.
-ReadingOrder order_with(const EquationsOfMotion& equations, const std::vector<Rate>& rates) {
-  ReadingOrder order = equations.order;
-  order.places = nullptr;
-  for (const Rate& r : rates)
-    order.coordinates.push_back(equations.system->context->symbol(r.symbol.name(), Role::Coordinate));
-  return order;
-}
 
 Expr put_back(const ReadableForm& form) {
   Expr e = form.value;
@@ -264,6 +229,45 @@ Expr divisor(Expr row, std::size_t a, const RateKinematics& k, const ReadingOrde
   return factor;
 }
 
+/// The path to the rows: rates, velocities, L and then the parts of each row.
+std::vector<DerivationStep> steps_of(const EquationsInRates& e, const std::vector<HamelEquations::Parts>& parts) {
+  std::vector<DerivationStep> steps;
+  std::string section;
+  const auto add = [&](Layout left, ReadableForm right, const std::string& rule) {
+    steps.push_back({section, rule, std::move(left), right.value, {}, std::move(right.intermediates)});
+  };
+  const auto formula = [&](Layout left, Expr right, const std::string& rule) {
+    add(std::move(left), readable(right, e.order), rule);
+  };
+  section = "Rates";
+  for (std::size_t a = 0; a < e.rates.size(); ++a)
+    if (e.definitions[a] != e.rates[a])
+      formula(lay_out(e.rates[a], e.order), e.definitions[a], "definition of the rate");
+  section = "Velocities by the rates";
+  for (const EquationsInRates::Velocity& v : e.kinematics)
+    add(lay_out(v.velocity, e.order), v.form, "rates and constraints solved for the velocities");
+  section = "Lagrangian in rates";
+  formula(layouts::name("L"), e.lagrangian, "velocities replaced, constraints obeyed");
+  for (std::size_t a = 0; a < e.rows.size(); ++a) {
+    section = "Equation of " + e.rows[a].rate;
+    const Layout sigma = lay_out(e.rates[a], e.order), momentum = layouts::partial(layouts::name("L"), sigma);
+    add(momentum, e.momenta[a], "partial derivative; the constraints are put in after it");
+    formula(layouts::rate(momentum, layouts::name("t"), true), parts[a].inertial, "total time derivative");
+    if (!parts[a].turning.is_zero())
+      formula(layouts::words("turning of the rates"), parts[a].turning,
+              "Hamel: Σ p_c X_ia w_ci, w the curl of each rate");
+    if (!parts[a].potential.is_zero())
+      formula(layouts::words("slope of L along the rate"), parts[a].potential, "Σ X_ia ∂L/∂q_i");
+    if (!parts[a].dissipative.is_zero())
+      formula(layouts::partial(layouts::name("D"), sigma), parts[a].dissipative,
+              "partial derivative of the dissipation function");
+    if (!parts[a].forced.is_zero()) formula(layouts::words("force along the rate"), parts[a].forced, "Σ X_ia Q_i");
+    add(layouts::number("0"), e.rows[a].form,
+        "Boltzmann-Hamel: d/dt ∂L/∂σ + turning - slope of L + ∂D/∂σ - force = 0, collected and simplified");
+  }
+  return steps;
+}
+
 std::size_t length(const ReadableForm& form, const ReadingOrder& order) {
   return form.intermediates.empty() ? to_plain(form, order).size() : std::string::npos;
 }
@@ -278,7 +282,7 @@ RatesResult equations_in_rates(const EquationsOfMotion& derived, const std::vect
   const EquationsOfMotion& equations = derived.shown();
   RatesResult result;
   EquationsInRates out;
-  out.order = order_with(equations, rates);
+  out.order = order_with_rates(equations, rates);
   const UnitQuaternions spheres(*equations.system);
   const auto k = rate_kinematics(equations, rates, out.order, spheres, result.reason);
   if (!k) return result;
@@ -286,8 +290,10 @@ RatesResult equations_in_rates(const EquationsOfMotion& derived, const std::vect
   const HamelEquations hamel(equations, *k, out.order, spheres);
   out.lagrangian = hamel.lagrangian();
   ExprVector rows;
+  std::vector<HamelEquations::Parts> parts;
   for (std::size_t a = 0; a < k->free; ++a) {
-    rows.push_back(hamel.row(a));
+    parts.push_back(hamel.parts(a));
+    rows.push_back(parts.back().row());
     out.rates.push_back(k->sigma[a]);
     out.definitions.push_back(k->values[a]);
     out.momenta.push_back(readable(hamel.momentum(a), out.order));
@@ -311,7 +317,7 @@ RatesResult equations_in_rates(const EquationsOfMotion& derived, const std::vect
   for (std::size_t i = 0; i < k->velocities.size(); ++i) {
     const Coordinate& c = equations.system->coordinates[i];
     const bool stays = std::any_of(k->sigma.begin(), k->sigma.end(), [&](Expr s) { return s == c.velocity; });
-    if (!stays) out.kinematics.push_back({i, readable_velocity(velocities.at(c.velocity), out.order)});
+    if (!stays) out.kinematics.push_back({i, c.velocity, readable_velocity(velocities.at(c.velocity), out.order)});
   }
   out.certificate = compared(out, *k, equations, spheres);
   if (out.certificate.verdict == Verdict::Nonzero) {
@@ -322,6 +328,7 @@ RatesResult equations_in_rates(const EquationsOfMotion& derived, const std::vect
   for (const auto& row : out.rows) roots.push_back(row.form.value);
   for (const auto& velocity : out.kinematics) roots.push_back(velocity.form.value);
   out.intermediates = definitions_used(*equations.system, roots);
+  out.steps = steps_of(out, parts);
   result.equations = std::move(out);
   return result;
 }

@@ -353,6 +353,46 @@ ExprMap RateKinematics::on_constraints() const {
   return zero;
 }
 
+Expr RateKinematics::in_rates(const MechanicalSystem& system, Expr e) const {
+  ExprMap whole, rest;
+  for (std::size_t a = 0; a < sigma.size(); ++a)
+    if (!values[a].is_symbol()) whole.emplace(values[a], sigma[a]);
+  for (std::size_t i = 0; i < velocities.size(); ++i)
+    if (velocities[i] != system.coordinates[i].velocity) rest.emplace(system.coordinates[i].velocity, velocities[i]);
+  return substitute(substitute(e, whole), rest);
+}
+
+Expr RateKinematics::by_coefficients(Expr e, const ReadingOrder& order, const UnitQuaternions& spheres) const {
+  const auto has_rate = [&](Expr x) {
+    const std::vector<Expr> symbols = symbols_of({&x, 1});
+    return std::any_of(sigma.begin(), sigma.end(),
+                       [&](Expr s) { return std::find(symbols.begin(), symbols.end(), s) != symbols.end(); });
+  };
+  ExprMap at_rest;
+  for (const Expr& s : sigma) at_rest.emplace(s, e.context().number(0));
+  ExprVector terms{spheres.shortest(substitute(e, at_rest), order)};
+  for (std::size_t a = 0; a < sigma.size(); ++a) {
+    const Expr slope = differentiate(e, sigma[a]);
+    if (slope.is_zero()) continue;
+    terms.push_back(spheres.shortest(substitute(slope, at_rest), order) * sigma[a]);
+    for (std::size_t b = 0; b <= a; ++b) {
+      const Expr second = differentiate(slope, sigma[b]);
+      if (has_rate(second)) return e;
+      const Expr coefficient = spheres.shortest(second, order);
+      terms.push_back((a == b ? Rational(1, 2) * coefficient : coefficient) * sigma[a] * sigma[b]);
+    }
+  }
+  return e.context().sum(terms);
+}
+
+ReadingOrder order_with_rates(const EquationsOfMotion& equations, const std::vector<Rate>& rates) {
+  ReadingOrder order = equations.order;
+  order.places = nullptr;
+  for (const Rate& r : rates)
+    order.coordinates.push_back(equations.system->context->symbol(r.symbol.name(), Role::Coordinate));
+  return order;
+}
+
 ExprMap RateKinematics::replacements(const MechanicalSystem& system) const {
   ExprMap replaced;
   const ExprVector held = substitute(velocities, on_constraints());

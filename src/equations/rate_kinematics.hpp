@@ -20,7 +20,14 @@ struct RateKinematics {
   /// q' → its value; on the constraints, where the last σ are 0.
   ExprMap replacements(const MechanicalSystem& system) const;
   ExprMap on_constraints() const;
+  /// e(q, q̇, t) in all σ. A rate that stands there whole is replaced first, so that its formula need not be recognised.
+  Expr in_rates(const MechanicalSystem& system, Expr e) const;
+  /// Of degree two in σ with every coefficient in its best form; another expression as it is.
+  Expr by_coefficients(Expr e, const ReadingOrder& order, const UnitQuaternions& spheres) const;
 };
+
+/// q, then the rates in their order.
+ReadingOrder order_with_rates(const EquationsOfMotion& equations, const std::vector<Rate>& rates);
 
 /// Nothing, and `reason`, where constraints are not linear in q̇ or the velocities cannot be solved for.
 std::optional<RateKinematics> rate_kinematics(const EquationsOfMotion& equations, const std::vector<Rate>& rates,

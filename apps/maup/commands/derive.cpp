@@ -152,7 +152,7 @@ Json document_of(const DeriveOptions& options, Study& study, const EquationForm&
   if (conserved.energy_conserved) names.push_back("energy");
   document["conserved"] = std::move(names);
   document["energy_is_t_plus_v"] = conserved.energy_is_t_plus_v;
-  if (options.steps) document["steps"] = steps_json(*study.derivation(true), order);
+  if (options.steps) document["steps"] = steps_json(steps_to(form, study), rates);
   document["certificate"] = to_json(with_rates_check(*certificate, form));
   return document;
 }
@@ -162,7 +162,7 @@ std::string in_notation(const DeriveOptions& options, Notation notation, Study& 
   const EquationsOfMotion& equations = *study.equations();
   const ReadingOrder& order = form.order(equations);
   std::vector<FormulaLine> lines;
-  if (options.steps) lines = step_lines(study.derivation(true)->steps, *equations.system, order);
+  if (options.steps) lines = step_lines(steps_to(form, study), *equations.system, order);
   const std::string section = options.steps ? "Equations of motion" : "";
   const auto add = [&](FormulaLine line) {
     line.section = section;
