@@ -251,19 +251,17 @@ std::vector<DerivationStep> steps_of(const EquationsInRates& e, const std::vecto
   for (std::size_t a = 0; a < e.rows.size(); ++a) {
     section = "Equation of " + e.rows[a].rate;
     const Layout sigma = lay_out(e.rates[a], e.order), momentum = layouts::partial(layouts::name("L"), sigma);
-    add(momentum, e.momenta[a], "partial derivative; the constraints are put in after it");
+    add(momentum, e.momenta[a], "partial derivative");
     formula(layouts::rate(momentum, layouts::name("t"), true), parts[a].inertial, "total time derivative");
     if (!parts[a].turning.is_zero())
-      formula(layouts::words("turning of the rates"), parts[a].turning,
-              "Hamel: Σ p_c X_ia w_ci, w the curl of each rate");
+      formula(layouts::words("turning of the rates"), parts[a].turning, "Hamel: momenta times the curls of the rates");
     if (!parts[a].potential.is_zero())
-      formula(layouts::words("slope of L along the rate"), parts[a].potential, "Σ X_ia ∂L/∂q_i");
+      formula(layouts::words("slope of L along the rate"), parts[a].potential, "Xᵀ ∂L/∂q");
     if (!parts[a].dissipative.is_zero())
       formula(layouts::partial(layouts::name("D"), sigma), parts[a].dissipative,
               "partial derivative of the dissipation function");
-    if (!parts[a].forced.is_zero()) formula(layouts::words("force along the rate"), parts[a].forced, "Σ X_ia Q_i");
-    add(layouts::number("0"), e.rows[a].form,
-        "Boltzmann-Hamel: d/dt ∂L/∂σ + turning - slope of L + ∂D/∂σ - force = 0, collected and simplified");
+    if (!parts[a].forced.is_zero()) formula(layouts::words("force along the rate"), parts[a].forced, "Xᵀ Q");
+    add(layouts::number("0"), e.rows[a].form, "Boltzmann-Hamel, collected and simplified");
   }
   return steps;
 }
