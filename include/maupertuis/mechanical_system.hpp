@@ -54,6 +54,16 @@ struct Input {
   Span span;
 };
 
+/// A rate (quasi-velocity) σ = Y(q,t) q̇ + y(q,t) that `rates` names. Formulas hold its value; the form of the equations
+/// in rates holds its symbol.
+struct Rate {
+  std::string name;
+  Expr symbol;  // σ as the rate of its integral (integral_symbol.hpp): order 1; σ' is order 2
+  Expr value;   // in q, q', t
+  Dimension dimension;
+  Span span;
+};
+
 /// A `let`. One of parameters alone stays a symbol in print, with a legend; others are expanded at once.
 /// The expressions of a MechanicalSystem hold no such symbols: see MechanicalSystem::written.
 struct Definition {
@@ -187,6 +197,7 @@ struct MechanicalSystem {
   std::vector<Parameter> parameters;  // in the order of the text; anonymous constants at the end
   std::vector<Input> inputs;
   std::vector<Definition> definitions;
+  std::vector<Rate> rates;  // in the order of the text
   std::vector<Frame> frames;
   std::vector<Point> points;
   std::vector<Body> bodies;

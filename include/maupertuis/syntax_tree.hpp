@@ -119,6 +119,14 @@ struct LetStatement {
   };
   std::vector<Item> items;
 };
+/// rates ω1, ω2, ω3 = B.ω, v = x' cos ψ + y' sin ψ
+struct RatesStatement {
+  struct Group {
+    std::vector<Name> names;
+    ExpressionPtr value;  // one component a name
+  };
+  std::vector<Group> groups;
+};
 struct InputStatement {
   Name name;
   std::optional<UnitExpression> unit;
@@ -386,8 +394,8 @@ struct PathAt {
   Number expected;
 };  // path 2 x at 0.5 s = …
 struct Event {
-  Name name;             // of an event or a contact
-  Name change;           // of a contact: impact, made, lost, stick, slip; empty: any
+  Name name;    // of an event or a contact
+  Name change;  // of a contact: impact, made, lost, stick, slip; empty: any
   int occurrence = 1;
   Number time;
 };  // event hit 3 at 0.45 s ± 1e-11;  event floor lost at 0.9 s ± 1e-11
@@ -402,8 +410,7 @@ struct Error {
 using Kind = std::variant<ValueAt, ValueAtUntil, UntilAt, EnergyConserved, ConservedAlongRun, Conserved, NotConserved,
                           Integral, Equation, Hamiltonian, Routhian, Bracket, Freedoms, ConstraintClass, Frequencies,
                           Eigenvalues, Matrix, Equilibrium, Stable, Multipliers, Trace, Period, Action, ActionAlong,
-                          MorseIndex, PathAt, Event, EventCount, PhaseConstraints, ClassCount,
-                 Error>;
+                          MorseIndex, PathAt, Event, EventCount, PhaseConstraints, ClassCount, Error>;
 
 }  // namespace expectation
 
@@ -449,7 +456,7 @@ struct PathStatement {
 /// contact EXPR >= EXPR restitution e friction μ static μs slip EXPR name floor;  … slip EXPR sticking
 struct ContactStatement {
   ExpressionPtr left, right;
-  bool at_most = false;                                           // <=
+  bool at_most = false;                                        // <=
   ExpressionPtr restitution, friction, static_friction, slip;  // null: not written
   bool sticking = false;
   std::optional<Name> name;
@@ -474,7 +481,8 @@ struct ImpactStatement {
   bool simultaneous = false;
 };
 
-/// A statement of the grammar that a later version carries out: field, density. It is parsed whole (formatting and messages work) and kept as its expressions.
+/// A statement of the grammar that a later version carries out: field, density. It is parsed whole (formatting and
+/// messages work) and kept as its expressions.
 struct LaterStatement {
   std::string what;         // its first word
   std::vector<Name> names;  // that it declares: the field and its variable
@@ -487,7 +495,8 @@ using StatementBody =
                  DamperStatement, TorsionSpringStatement, EnergyStatement, ForceStatement, StartStatement, RunStatement,
                  OutputStatement, MethodStatement, PrecisionStatement, DrawStatement, ReactionStatement,
                  ExpectStatement, ConstraintStatement, SweepStatement, IndependentStatement, PathStatement,
-                 ContactStatement, FrictionStatement, EventStatement, ImpactStatement, GaugeStatement, LaterStatement>;
+                 ContactStatement, FrictionStatement, EventStatement, ImpactStatement, GaugeStatement, RatesStatement,
+                 LaterStatement>;
 
 struct Statement {
   StatementBody body;

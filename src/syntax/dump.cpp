@@ -50,6 +50,14 @@ class Dumper {
     head("let");
     for (const auto& item : s.items) child(item.name.text, item.value);
   }
+  void operator()(const RatesStatement& s) {
+    head("rates");
+    for (const auto& group : s.groups) {
+      std::string names;
+      for (const Name& n : group.names) names += (names.empty() ? "" : ", ") + n.text;
+      child(names, group.value);
+    }
+  }
   void operator()(const InputStatement& s) {
     head("input", s.name.text), word("unit", s.unit ? unit_text(*s.unit) : ""), child("value", s.value);
   }

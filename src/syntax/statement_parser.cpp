@@ -45,6 +45,7 @@ std::span<const StatementParser::Entry> StatementParser::table() {
       {"sweep", &P::sweep_statement},
       {"independent", &P::independent_statement},
       {"path", &P::path_statement},
+      {"rates", &P::rates_statement},
       {"field", &P::field_statement},
       {"density", &P::density_statement},
       {"T", &P::energy_statement},

@@ -74,6 +74,8 @@ class StatementParser : private ExpressionParser {
   StatementBody friction_statement();
   StatementBody event_statement();
   StatementBody impact_statement();
+  // rates_statement.cpp
+  StatementBody rates_statement();
   // later_statements.cpp
   StatementBody field_statement();
   StatementBody density_statement();

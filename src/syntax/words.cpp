@@ -53,6 +53,7 @@ constexpr std::array kStatementWords = {
     "draw"sv,
     "independent"sv,
     "path"sv,
+    "rates"sv,
     "field"sv,
     "density"sv,
     "expect"sv,

@@ -431,6 +431,22 @@ constexpr CodeEntry kEntries[] = {
      "coord x : length\nparam m = 1 kg, p = 1 N s\nT = 1/2 m x'^2\nU = p sqrt(x'^2 + 1e-6 [m^2/s^2])\n"},
     // ------------------------------------------------------------------------------------------------ not supported
     // yet
+    {"E0255", "as many names as components",
+     "Names before one sign of equality name the components of the vector behind it, one each.",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v, u = x' cos ψ + y' sin ψ\n",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' cos ψ + y' sin ψ, u = -x' sin ψ + y' cos ψ, w = ψ'\n"},
+    {"E0256", "a rate that is no linear combination of velocities",
+     "Rates (quasi-velocities) take the place of the velocities: σ = Y(q,t) q' + y(q,t), linear in q', so that q' follows from them. Accelerations and inputs stand in none.",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = sqrt(x'^2 + y'^2)\n",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' cos ψ + y' sin ψ, u = -x' sin ψ + y' cos ψ, w = ψ'\n"},
+    {"E0257", "rates that depend on each other",
+     "One of them follows from the others and from the constraints, so that they cannot be chosen independently.",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' cos ψ + y' sin ψ, u = 2 v, w = ψ'\n",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' cos ψ + y' sin ψ, u = -x' sin ψ + y' cos ψ, w = ψ'\n"},
+    {"E0258", "more rates than velocities left free",
+     "Constraints leave as many independent velocities as there are coordinates less independent constraints; there are no more rates than that.",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x', u = y', w = ψ', s = x' + y'\n",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' cos ψ + y' sin ψ, u = -x' sin ψ + y' cos ψ, w = ψ'\n"},
     {"E0261", "no such event",
      "What is expected of an event or a contact names it: the name behind `event`, or that at the end of a contact. A "
      "contact has an impact, is made and lost; friction sticks and slips.",

@@ -1,6 +1,7 @@
 #pragma once
 #include "system/value.hpp"
 
+#include <memory>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -23,6 +24,7 @@ struct Declaration {
     Contact,
     Event,
     Independent,
+    Rate,
     Energy
   };
   Kind kind = Kind::Parameter;
@@ -30,10 +32,12 @@ struct Declaration {
   Span span;
   const syntax::Statement* statement = nullptr;  // null for energies
   std::size_t item = 0;                          // of a statement that declares a list
+  std::size_t component = 0;                     // of a rate: which of its group
   std::size_t index = 0;  // in MechanicalSystem::coordinates: of a coordinate, of the first of a body's own quaternion
   bool used = false;
   bool done = false;  // `value` is there
   Value value;
+  std::shared_ptr<const Value> group;  // of a rate: the vector that it is a component of
 };
 
 using DeclarationId = std::size_t;
@@ -59,7 +63,8 @@ class SymbolTable {
   void adopt(const SymbolTable& other);
 
  private:
-  void add(Declaration::Kind kind, const syntax::Name& name, const syntax::Statement& statement, std::size_t item);
+  void add(Declaration::Kind kind, const syntax::Name& name, const syntax::Statement& statement, std::size_t item,
+           std::size_t component = 0);
 
   Diagnostics& diagnostics_;
   SourceTexts texts_;

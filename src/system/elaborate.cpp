@@ -101,6 +101,8 @@ void elaborate_declaration(Elaboration& e, DeclarationId id) {
       return elaborate_definition(e, d);
     case Kind::Input:
       return elaborate_input(e, d);
+    case Kind::Rate:
+      return elaborate_rate(e, d);
     case Kind::Frame:
       return elaborate_frame(e, d);
     case Kind::Point:
@@ -186,6 +188,7 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText&
   elaborate_forces(e);
   elaborate_constraints(e);
   elaborate_gauges(e);
+  check_rates(e);
   elaborate_contacts(e);
   elaborate_experiment(e);
   override_start(e);

@@ -16,6 +16,7 @@ void for_each_expression(MechanicalSystem& s, const std::function<void(Expr&)>& 
     for (EnergyTerm& t : list) visit(t.value);
   };
   for (Input& i : s.inputs) visit(i.formula);
+  for (Rate& r : s.rates) visit(r.value);
   for (Definition& d : s.definitions) vector(d.components);
   for (Frame& f : s.frames) {
     vector(f.origin);

@@ -66,9 +66,20 @@ std::optional<Value> number_of(Elaboration& e, const Expression& x, const Place&
 
 std::optional<std::vector<StartValue>> point_of_expectation(Elaboration& e, const written::Point& point) {
   std::vector<StartValue> out;
-  for (const auto& item : point)
-    if (auto value = start_value(e, item)) out.push_back(std::move(*value));
-  return out.size() == point.size() ? std::optional(std::move(out)) : std::nullopt;
+  std::vector<StartRate> rates;
+  bool good = true;
+  for (const auto& item : point) {
+    if (is_rate(e, *item.variable)) {
+      const std::vector<StartRate> given = start_rates(e, item);
+      good = good && !given.empty();
+      rates.insert(rates.end(), given.begin(), given.end());
+    } else if (auto value = start_value(e, item)) {
+      out.push_back(std::move(*value));
+    } else {
+      good = false;
+    }
+  }
+  return good && add_velocities_of_rates(e, rates, out) ? std::optional(std::move(out)) : std::nullopt;
 }
 
 namespace {
@@ -381,9 +392,15 @@ Expected meaning_of(Elaboration& e, const written::Equilibrium& x, Span) {
   if (!point || !known) return std::nullopt;
   expectation::Equilibrium out;
   out.word = word;
-  for (std::size_t i = 0; i < point->size(); ++i)
-    if (auto place = place_of_equilibrium(e, x.at[i], (*point)[i])) out.at.push_back(std::move(*place));
-  return out.at.size() == point->size() ? Expected(std::move(out)) : std::nullopt;
+  std::size_t next = 0;  // coordinates and velocities as written, then the velocities that rates ask for
+  for (const written::Place& place : x.at) {
+    const bool rate = is_rate(e, *place.value.variable);
+    auto of_place = place_of_equilibrium(e, place, rate ? StartValue{0, 1, {}, {}, {}, 1} : (*point)[next++]);
+    if (!of_place) return std::nullopt;
+    if (!rate) out.at.push_back(std::move(*of_place));
+  }
+  for (; next < point->size(); ++next) out.at.push_back({(*point)[next], std::nullopt, {}});
+  return out;
 }
 
 // ----------------------------------------------------------------------------------------------------------------
