@@ -339,7 +339,12 @@ std::vector<std::size_t> HybridMotion::touching(const ContactValues& values) con
     const bool hit = std::find(pending_->hit.begin(), pending_->hit.end(), i) != pending_->hit.end();
     // What has come through zero by more than rounding, unseen, and does not come back by itself, is hit too.
     const bool through = values.gap[i] < 0 && values.rate[i] < -rest_speed(i, values);
-    if (hit || through || now_->mode.closed[i] || std::abs(values.gap[i]) <= rest_unit * widest_[i]) out.push_back(i);
+    // Next to zero by the sizes of its coordinates: a body that lies at their zero has no other measure.
+    constexpr double next_to_zero = 1e-3 * rest_unit;
+    const bool lies =
+        !(values.rate[i] > rest_speed(i, values)) && std::abs(values.gap[i]) <= next_to_zero * size_of_gap(i, values);
+    if (hit || through || lies || now_->mode.closed[i] || std::abs(values.gap[i]) <= rest_unit * widest_[i])
+      out.push_back(i);
   }
   return out;
 }

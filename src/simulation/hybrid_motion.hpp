@@ -132,6 +132,7 @@ class HybridMotion final : public Method {
   double energy_at(double t, std::span<const double> q, std::span<const double> v) const;
   void move_on(double by, const Eigen::VectorXd& accelerations);
   std::optional<TaylorStepper::Outlook> outlook_without_contacts(const ContactValues& values, double bound);
+  void take_out_slips(const std::vector<std::size_t>& stopping, const std::vector<std::size_t>& touching);
   void come_to_rest(const std::vector<std::size_t>& touching, double bound);
   bool choose_slips(const std::vector<std::size_t>& touching, double bound, std::string& reason);
   void close_lowest_flights(const std::vector<std::size_t>& touching, double bound);
