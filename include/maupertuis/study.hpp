@@ -2,6 +2,7 @@
 #include <maupertuis/certificate.hpp>
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/extended_simulation.hpp>
+#include <maupertuis/fields.hpp>
 #include <maupertuis/interrupt_scope.hpp>
 #include <maupertuis/mechanical_system.hpp>
 #include <maupertuis/simulation.hpp>
@@ -68,6 +69,11 @@ class Study {
   /// Elaborated, with all that was said beside the text, and past the physics lint.
   const Model* model();
   const EquationsOfMotion* equations();
+  /// Of a model with fields: their equations, certified; null for any other model.
+  const FieldEquations* field_equations();
+  const Certificate* field_certificate() const { return field_certificate_ ? &*field_certificate_ : nullptr; }
+  /// Whether the model has fields.
+  bool has_fields() { return model() && model_->fields; }
   /// Readable form; `with_steps` adds the textbook path.
   const Derivation* derivation(bool with_steps);
   /// Certifies the equations, and the derivation if there is one. A failed check is an error (E0690): equations that
@@ -95,6 +101,7 @@ class Study {
 
  private:
   bool elaborate_model(Diagnostics& found, std::optional<Model>& model) const;
+  std::optional<Verification> field_verification(const SimulationOptions& options);
   void report(const CertificateCheck& check);
   void enter_mode(Model& model, Diagnostics& found) const;
 
@@ -109,6 +116,9 @@ class Study {
   bool admits_singular_ = false;
   std::optional<std::string> mode_;
   std::optional<EquationsOfMotion> equations_;
+  std::optional<FieldEquations> field_equations_;
+  std::optional<Certificate> field_certificate_;
+  bool fields_derived_ = false;
   bool derived_ = false;
   std::optional<Derivation> derivation_;
   bool has_steps_ = false;

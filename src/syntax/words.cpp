@@ -54,6 +54,7 @@ constexpr std::array kStatementWords = {
     "path"sv,
     "field"sv,
     "density"sv,
+    "boundary"sv,
     "expect"sv,
     "claim"sv,
 };

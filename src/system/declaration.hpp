@@ -23,6 +23,8 @@ struct Declaration {
     Contact,
     Event,
     Independent,
+    Field,
+    Space,
     Energy
   };
   Kind kind = Kind::Parameter;
@@ -59,6 +61,7 @@ class SymbolTable {
   void adopt(const SymbolTable& other);
 
  private:
+  void add_fields(const syntax::FieldStatement& field, const syntax::Statement& statement);
   void add(Declaration::Kind kind, const syntax::Name& name, const syntax::Statement& statement, std::size_t item);
 
   Diagnostics& diagnostics_;
