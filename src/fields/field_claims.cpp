@@ -1,4 +1,5 @@
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/field_run.hpp>
 #include <maupertuis/field_verification.hpp>
 
 #include "fields/on_shell.hpp"
@@ -32,12 +33,15 @@ class FieldVerifier {
     Verification out;
     for (const Expectation& e : model_.experiment.expectations) {
       add(out, source, e.span, e.text, e.claim);
+      line_ = out.results.size() - 1;
       std::visit([&](const auto& kind) { decide(kind, out.results.back()); }, e.kind);
     }
     for (const FieldExpectationLine& e : equations_.model->expectations) {
       add(out, source, e.span, e.text, false);
+      line_ = out.results.size() - 1;
       std::visit([&](const auto& kind) { decide(kind, out.results.back()); }, e.kind);
     }
+    carry_out_run(out);
     std::stable_sort(out.results.begin(), out.results.end(), [](const auto& a, const auto& b) { return a.line < b.line; });
     return out;
   }
@@ -103,6 +107,59 @@ class FieldVerifier {
     }
     result.passed = true;
     result.message = "The variation leaves these conditions at a free end.";
+  }
+
+  // ------------------------------------------------------------------------------------------------------ the run
+
+  double number_of(Expr e) const {
+    if (!e) return 0;
+    Bindings values;
+    for (const Parameter& p : equations_.model->parameters) values[p.symbol] = p.si_value;
+    return evaluate(s_.expanded(e), values);
+  }
+  void ask(Expr value, bool total, Expr time, const expectation::Number& expected) {
+    questions_.push_back({s_.expanded(value), total, number_of(time)});
+    asked_.push_back({line_, expected});
+  }
+  void decide(const expectation::ValueAt& e, ExpectationResult&) { ask(e.subject, false, e.time, e.expected); }
+  void decide(const fe::Total& e, ExpectationResult&) { ask(e.density, true, e.time, e.expected); }
+  void decide(const expectation::EnergyConserved& e, ExpectationResult&) { energy_.push_back({line_, e.tolerance}); }
+
+  double allowed(const expectation::Tolerance& t, double size) const {
+    if (!t.size) return 1e-9 * std::abs(size);
+    return number_of(t.size) * (t.relative ? std::abs(size) : 1);
+  }
+  void carry_out_run(Verification& out) {
+    if (questions_.empty() && energy_.empty()) return;
+    FieldRunOptions options;
+    options.interrupt = options_.interrupt;
+    options.duration = options_.duration ? *options_.duration : number_of(model_.experiment.duration);
+    for (const FieldQuestion& q : questions_) options.duration = std::max(options.duration, q.time);
+    const auto run = run_fields(equations_, questions_, options, diagnostics_);
+    if (!run) {
+      for (const auto& [line, expected] : asked_) out.results[line].message = "The run did not come to it.";
+      for (const auto& [line, tolerance] : energy_) out.results[line].message = "The run did not come to it.";
+      return;
+    }
+    for (std::size_t i = 0; i < asked_.size(); ++i) judge(out.results[asked_[i].line], asked_[i].expected, run->answers[i]);
+    for (const auto& [line, tolerance] : energy_) {
+      ExpectationResult& r = out.results[line];
+      const double limit = tolerance.size ? number_of(tolerance.size) : 1e-12;
+      r.actual = run->energy_drift < 0 ? "forces act: the energy is not conserved" : fmt::format("{:.3g}", run->energy_drift);
+      r.expected = fmt::format("at most {:.3g} of its terms", limit);
+      r.passed = run->energy_drift >= 0 && run->energy_drift <= limit;
+    }
+  }
+  void judge(ExpectationResult& r, const expectation::Number& e, const FieldRunResult::Value& value) const {
+    const double expected = number_of(e.value), tolerance = allowed(e.tolerance, expected);
+    const ValueVerdict verdict = value_verdict(value.value, expected, tolerance, value.error);
+    const std::string unit = e.unit.name.empty() ? "" : " " + e.unit.name;
+    r.passed = verdict.passed, r.beyond_digits = verdict.beyond_digits;
+    r.actual = fmt::format("{:.16g}{}", value.value / e.unit.factor, unit);
+    r.expected = fmt::format("{:.16g}{}", expected / e.unit.factor, unit);
+    r.tolerance = fmt::format("± {:.3g}{}", tolerance / e.unit.factor, unit);
+    r.uncertainty = fmt::format("± {:.2g}{}", value.error / e.unit.factor, unit);
+    if (!r.passed) r.message = fmt::format("It is off by {:.3g}{}; the error of mesh and steps is estimated as {:.2g}{}.", (value.value - expected) / e.unit.factor, unit, value.error / e.unit.factor, unit);
   }
 
   // ---------------------------------------------------------------------------------------------------- solutions
@@ -193,6 +250,18 @@ class FieldVerifier {
   OnShell shell_;
   const SimulationOptions& options_;
   Diagnostics& diagnostics_;
+  struct Asked {
+    std::size_t line = 0;
+    expectation::Number expected;
+  };
+  struct AskedEnergy {
+    std::size_t line = 0;
+    expectation::Tolerance tolerance;
+  };
+  std::size_t line_ = 0;
+  std::vector<FieldQuestion> questions_;
+  std::vector<Asked> asked_;
+  std::vector<AskedEnergy> energy_;
 };
 
 }  // namespace
