@@ -201,4 +201,43 @@ Json currents_json(Study& study) {
   return document;
 }
 
+std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOptions& settings, bool rows) {
+  const Model& model = *study.model();
+  const FieldSystem& s = equations_of(study).system();
+  Bindings values;
+  for (const Parameter& p : model.system.parameters) values[p.symbol] = p.si_value;
+  const auto number = [&](Expr e) { return e ? evaluate(s.expanded(e), values) : 0.0; };
+  FieldRunOptions options;
+  options.interrupt = settings.interrupt;
+  options.duration = settings.duration ? *settings.duration : number(model.experiment.duration);
+  options.every = settings.output_every ? *settings.output_every : number(model.experiment.output_every);
+  options.trajectory = rows;
+  options.errors = false;
+  if (!(options.duration > 0)) {
+    study.diagnostics().error("E0701", std::nullopt, "the model does not say how long it runs", "A run of a field goes on for a time.",
+                              "Add `run 10 s`, or give --duration.");
+    return std::nullopt;
+  }
+  const InterruptScope scope = study.interruptible();
+  return run_fields(equations_of(study), {}, options, study.diagnostics());
+}
+
+std::string field_run_text(const FieldRunResult& run) {
+  std::string out = fmt::format("{} cells of order {} ({} nodes), {} steps of order 8 to {:.10g} s\n", run.cells, run.order, run.nodes, run.steps, run.end);
+  out += fmt::format("  highest frequency of the mesh  {:.6g} rad/s, steps at most {:.4g} s\n", run.omega_max, run.step);
+  out += fmt::format("  energy                         {:.16g}\n", run.energy);
+  out += run.energy_drift < 0 ? std::string("  energy drift                   forces act: it is not conserved\n")
+                              : fmt::format("  energy drift                   {:.3g} of its terms\n", run.energy_drift);
+  return out + fmt::format("  computed in                    {:.3g} s\n", run.seconds);
+}
+
+Json field_run_json(const FieldRunResult& run) {
+  Json document = json_document("simulate");
+  document["statistics"] = {{"cells", run.cells}, {"element_order", run.order}, {"nodes", run.nodes}, {"steps", run.steps},
+                            {"step", run.step}, {"omega_max", run.omega_max}, {"energy", run.energy}, {"seconds", run.seconds}};
+  document["statistics"]["energy_drift"] = run.energy_drift < 0 ? Json(nullptr) : Json(run.energy_drift);
+  document["end"] = run.end;
+  return document;
+}
+
 }  // namespace maupertuis::app

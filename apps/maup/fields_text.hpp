@@ -3,6 +3,8 @@
 #include "notation.hpp"
 #include "open_study.hpp"
 
+#include <maupertuis/field_run.hpp>
+
 #include <string>
 #include <vector>
 
@@ -18,5 +20,10 @@ std::string fields_summary(Study& study);
 /// Conservation laws: `maup invariants`.
 std::string currents_text(Study& study);
 Json currents_json(Study& study);
+
+/// The run of the experiment; nothing where there is none, and the diagnostics say why. `rows`: with its trajectory.
+std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOptions& settings, bool rows);
+std::string field_run_text(const FieldRunResult& run);
+Json field_run_json(const FieldRunResult& run);
 
 }  // namespace maupertuis::app

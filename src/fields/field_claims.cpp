@@ -125,6 +125,21 @@ class FieldVerifier {
   void decide(const fe::Total& e, ExpectationResult&) { ask(e.density, true, e.time, e.expected); }
   void decide(const expectation::EnergyConserved& e, ExpectationResult&) { energy_.push_back({line_, e.tolerance}); }
 
+  void decide(const fe::Frequencies& e, ExpectationResult& r) {
+    const std::vector<double> found = field_frequencies(equations_, e.values.size(), diagnostics_);
+    r.passed = found.size() == e.values.size();
+    const std::string unit = e.unit.name.empty() ? " rad/s" : " " + e.unit.name;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const double expected = number_of(e.values[i]);
+      const bool close = std::abs(found[i] - expected) <= allowed(e.tolerance, expected);
+      if (!close && r.passed) r.message = fmt::format("Frequency {} is off by {:.3g}{}.", i + 1, (found[i] - expected) / e.unit.factor, unit);
+      r.passed = r.passed && close;
+      r.actual += fmt::format("{}{:.14g}", i ? ", " : "", found[i] / e.unit.factor);
+      r.expected += fmt::format("{}{:.14g}", i ? ", " : "", expected / e.unit.factor);
+    }
+    r.actual += unit, r.expected += unit;
+  }
+
   double allowed(const expectation::Tolerance& t, double size) const {
     if (!t.size) return 1e-9 * std::abs(size);
     return number_of(t.size) * (t.relative ? std::abs(size) : 1);

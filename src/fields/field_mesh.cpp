@@ -12,7 +12,6 @@ namespace maupertuis {
 namespace {
 
 constexpr std::size_t kOrder = 8;  // of Taylor steps: on the imaginary axis stable up to hω = 3.40
-constexpr double kPi = 3.14159265358979323846;
 
 using Side = BoundaryCondition::Side;
 
@@ -24,14 +23,6 @@ void unsupported(Diagnostics& diagnostics, Span span, const std::string& what) {
 }
 
 Expr jet_at(const FieldSystem& s, std::size_t field, int x, int t) { return s.jet_symbol({field, {x}, t}); }
-
-std::vector<Expr> terms_of_sum(Expr e) {
-  const Expr flat = expand(e);
-  if (!flat || !flat.is(Kind::Sum)) return {flat ? flat : e};
-  std::vector<Expr> out;
-  for (std::size_t i = 0; i < flat.size(); ++i) out.push_back(flat[i]);
-  return out;
-}
 
 }  // namespace
 
@@ -75,7 +66,6 @@ std::optional<PointForm> point_form(const FieldEquations& equations, Diagnostics
     energy.push_back(v * p);
   }
   out.energy = s.context->sum(energy);
-  out.terms = terms_of_sum(out.energy);
   bool forced = !dissipation.is_zero() || !differentiate(density, t).is_zero() || !s.end_forces.empty();
   for (const Expr& f : s.forces) forced = forced || static_cast<bool>(f);
   for (const BoundaryCondition& b : s.boundary) forced = forced || s.context->depends_on_time(b.value.id());
@@ -92,8 +82,7 @@ FieldMesh::FieldMesh(const FieldEquations& equations, const PointForm& form, int
   width_ = (value_of(s_.space.front().to, {}) - left_) / cells;
   std::vector<Expr> roots;
   for (const auto* part : {&form.a, &form.g, &form.s}) roots.insert(roots.end(), part->begin(), part->end());
-  std::vector<Expr> sizes{form.energy};
-  sizes.insert(sizes.end(), form.terms.begin(), form.terms.end());
+  const std::vector<Expr> sizes{form.energy};
   auto series = LaneSeries::make(roots, form.inputs, constants, trouble_);
   auto energies = LaneSeries::make(sizes, form.inputs, constants, trouble_);
   if (!series || !energies) return;
@@ -174,6 +163,7 @@ void FieldMesh::start() {
 double FieldMesh::boundary_coefficient(const std::vector<Expr>& derivatives, std::size_t k) const {
   double factorial = 1;
   for (std::size_t i = 2; i <= k; ++i) factorial *= static_cast<double>(i);
+  if (derivatives[k].is_zero()) return 0;
   return value_of(derivatives[k], {{s_.context->time(), t_}}) / factorial;
 }
 
@@ -191,6 +181,12 @@ MAUP_MESH void add_difference(double* __restrict to, const double* __restrict a,
 }
 MAUP_MESH void add_scaled(double* __restrict to, const double* __restrict a, double factor, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) to[i] += factor * a[i];
+}
+MAUP_MESH void set_product(double* __restrict to, const double* __restrict a, double factor, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) to[i] = factor * a[i];
+}
+MAUP_MESH void add_products(double* __restrict to, const double* __restrict a, const double* __restrict b, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) to[i] += a[i] * b[i];
 }
 MAUP_MESH void horner(double* __restrict to, const double* __restrict a, double h, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) to[i] = to[i] * h + a[i];
@@ -286,7 +282,7 @@ void FieldMesh::solve(std::size_t k) {
     std::fill(out.begin(), out.end(), 0.0);
     for (std::size_t o = 0; o < fields_; ++o) {
       const double* inverse = mass_.data() + (f * fields_ + o) * lanes_;
-      for (std::size_t n = 0; n < lanes_; ++n) out[n] += inverse[n] * force_[o][n];
+      add_products(out.data(), inverse, force_[o].data(), lanes_);
     }
   }
 }
@@ -314,10 +310,10 @@ void FieldMesh::coefficient(std::size_t k) {
     const double* a = past_[f * (kOrder + 2) + k].data();
     const auto next = static_cast<double>(k + 1);
     double* v = velocity(f, k + 1);
-    for (std::size_t n = 0; n < lanes_; ++n) v[n] = a[n] / next;
+    set_product(v, a, 1 / next, lanes_);
     if (k + 2 > kOrder + 1) continue;
     double* u = phi(f, k + 2);
-    for (std::size_t n = 0; n < lanes_; ++n) u[n] = a[n] / (next * (next + 1));
+    set_product(u, a, 1 / (next * (next + 1)), lanes_);
   }
 }
 
@@ -356,10 +352,10 @@ double FieldMesh::omega_max(const Interrupt& interrupt) {
     for (const double x : u) size = std::max(size, std::abs(x));
   const double epsilon = 1e-7 * size;
   std::vector<std::vector<double>> w(fields_, std::vector<double>(lanes_));
-  const auto accelerations = [&](double sign) {
+  const auto accelerations = [&](double by) {
     auto moved = u_;
     for (std::size_t f = 0; f < fields_; ++f)
-      for (std::size_t n = 0; n < lanes_; ++n) moved[f][n] += sign * epsilon * w[f][n];
+      for (std::size_t n = 0; n < lanes_; ++n) moved[f][n] += by * w[f][n];
     load(moved, v_);
     coefficient(0);
     std::vector<std::vector<double>> out;
@@ -374,6 +370,7 @@ double FieldMesh::omega_max(const Interrupt& interrupt) {
   }
   for (const Held& held : held_)
     if (!held.force) w[held.field][held.right ? local(p_, cells_ - 1) : local(0, 0)] = 0;
+  const auto at_rest = accelerations(0);
   double square = 0;
   constexpr int rounds = 60;
   for (int round = 0; round < rounds && trouble_.empty(); ++round) {
@@ -385,11 +382,11 @@ double FieldMesh::omega_max(const Interrupt& interrupt) {
     if (!(norm > 0)) return 0;
     for (auto& row : w)
       for (double& x : row) x /= norm;
-    const auto plus = accelerations(1), minus = accelerations(-1);
+    const auto moved = accelerations(epsilon);
     double next = 0;
     for (std::size_t f = 0; f < fields_; ++f)
       for (std::size_t n = 0; n < lanes_; ++n) {
-        w[f][n] = (plus[f][n] - minus[f][n]) / (2 * epsilon);
+        w[f][n] = (moved[f][n] - at_rest[f][n]) / epsilon;
         next += w[f][n] * w[f][n];
       }
     square = std::sqrt(next / static_cast<double>(lanes_ * fields_));
@@ -413,7 +410,7 @@ double FieldMesh::energy(double& size) {
     const double term = weight * energies_.root(0, 0)[n], total = sum + term;
     lost += std::abs(sum) >= std::abs(term) ? (sum - total) + term : (term - total) + sum;
     sum = total;
-    for (std::size_t i = 0; i < form_.terms.size(); ++i) size += weight * std::abs(energies_.root(1 + i, 0)[n]);
+    size += std::abs(term);
   }
   return sum + lost;
 }

@@ -22,8 +22,7 @@ struct PointForm {
   std::size_t fields = 0;
   std::vector<Expr> inputs;  // φ, φ', φ_x, φ_tx of each field, then x, t
   std::vector<Expr> a, g, s;  // [fields²], [fields], [fields]
-  Expr energy, energy_terms;  // density of h_E; the sum of the sizes of its terms is taken from the list
-  std::vector<Expr> terms;
+  Expr energy;  // density of h_E
   bool conserves = false;
 };
 std::optional<PointForm> point_form(const FieldEquations& equations, Diagnostics& diagnostics);
@@ -41,7 +40,7 @@ class FieldMesh {
   /// One Taylor step. False, and `trouble`, where it left the numbers.
   bool step(double h);
   double time() const { return t_; }
-  /// h_E of the mesh, and the sum of the sizes of its terms.
+  /// h_E of the mesh, and the integral of the size of its density.
   double energy(double& size);
   /// Of an expression in place values; of one in jets at a place or integrated.
   double answer(const FieldQuestion& question);

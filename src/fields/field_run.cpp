@@ -14,7 +14,7 @@
 namespace maupertuis {
 namespace {
 
-constexpr int usual_cells = 100, usual_order = 4;
+constexpr int usual_cells = 100, usual_order = 3;
 constexpr double stability = 3.2;  // h ω_max
 
 void refuse(const FieldMesh& mesh, const FieldEquations& equations, Diagnostics& diagnostics) {
