@@ -30,7 +30,7 @@ def needed(case):
     statement = case["statement"]
     if "data_file" in statement:
         return "URDF import"
-    if "fields" in statement:
+    if "fields" in statement or case.get("kind") == "field":
         return "fields"
     if "inequality" in statement.get("constraints", {}):
         return "contacts"
@@ -170,7 +170,7 @@ def convert_all():
             texts = urdf_model(case, CASES)
             passes = ["the accelerations that the torques of the inverse dynamics, and at rest M q̈ + g, give"]
             waits = [("reading the robot's file", "URDF import"), ("M entry by entry", WAITS["matrix"])]
-        elif missing == "contacts" and (MODELS / path.with_suffix(".lag").name).exists():
+        elif missing in ("contacts", "fields") and (MODELS / path.with_suffix(".lag").name).exists():
             rows.append((case, [path.with_suffix(".lag").name], ["all; the model is written by hand"], []))
             continue
         elif missing:

@@ -558,7 +558,16 @@ Value value_at_place(Elaboration& e, const syntax::Expression& x) {
   PlaceValue out{{}, system.jet_symbol(*jet), {}, x.span};
   for (std::size_t i = 0; i < x.arguments.size(); ++i) {
     const SpaceVariable& along = system.space[i];
-    const Value v = constant_of(e, *x.arguments[i], along.dimension, "a place");
+    Place quiet;
+    quiet.inline_constants = true;
+    const Value read = evaluate_formula(e, *x.arguments[i], quiet);
+    if (!read.poisoned && (read.is_vector || !constant_value(e, read.scalar()))) {
+      e.diagnostics.error("E0289", x.arguments[i]->span, "this place is not known before the run",
+                          fmt::format("`{}(…)` is the value of the field at a place, never a product.", x.text),
+                          fmt::format("Write the other factor first, or `{} * (…)`.", x.text));
+      return Value::poison();
+    }
+    const Value v = read.poisoned ? read : constant_of(e, *x.arguments[i], along.dimension, "a place");
     if (v.poisoned) return v;
     const double at = constant_value(e, v.scalar()).value_or(0);
     const bool outside = along.from && (at < *constant_value(e, along.from) || at > *constant_value(e, along.to));
