@@ -222,6 +222,16 @@ std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOption
   return run_fields(equations_of(study), {}, options, study.diagnostics());
 }
 
+std::string dispersion_text(Study& study, std::string& trouble) {
+  const FieldEquations& equations = equations_of(study);
+  const auto relation = dispersion(equations, trouble);
+  if (!relation) return {};
+  std::string out;
+  for (const Expr& part : {relation->re, relation->im})
+    if (const std::string text = plain_of(equations, part); text != "0") out += (out.empty() ? "" : "\n") + text + " = 0";
+  return out;
+}
+
 std::string field_run_text(const FieldRunResult& run) {
   std::string out = fmt::format("{} cells of order {} ({} nodes), {} steps of order 8 to {:.10g} s\n", run.cells, run.order, run.nodes, run.steps, run.end);
   out += fmt::format("  highest frequency of the mesh  {:.6g} rad/s, steps at most {:.4g} s\n", run.omega_max, run.step);

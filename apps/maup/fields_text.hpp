@@ -23,6 +23,8 @@ Json currents_json(Study& study);
 
 /// The run of the experiment; nothing where there is none, and the diagnostics say why. `rows`: with its trajectory.
 std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOptions& settings, bool rows);
+/// The dispersion relation; empty, and `trouble`, where there is none.
+std::string dispersion_text(Study& study, std::string& trouble);
 std::string field_run_text(const FieldRunResult& run);
 Json field_run_json(const FieldRunResult& run);
 

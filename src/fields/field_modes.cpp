@@ -157,18 +157,22 @@ std::vector<double> field_frequencies(const FieldEquations& equations, std::size
   }
   const Eigen::MatrixXd kk = symmetric_part(quadratic_form(basis, k)), mm = symmetric_part(quadratic_form(basis, m));
   // M c = μ (K + σ M) c, μ = 1/(ω² + σ): the lowest frequencies are the largest μ, which keep their digits.
-  const double shift = kk.trace() / static_cast<double>(kk.rows());
-  const Eigen::LLT<Eigen::MatrixXd> factor(symmetric_part(kk + shift * mm));
-  if (factor.info() != Eigen::Success || !(shift > 0))
-    return refuse_modes_of(equations, diagnostics, "Its energy is not positive."), std::vector<double>{};
-  const Eigen::MatrixXd inverse = factor.matrixL().solve(Eigen::MatrixXd::Identity(mm.rows(), mm.cols()));
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-  solver.compute(symmetric_part(product_transposed(product(inverse, mm), inverse)), Eigen::EigenvaluesOnly);
+  double shift = kk.trace() / static_cast<double>(kk.rows());
   std::vector<double> out;
-  const Eigen::VectorXd& mu = solver.eigenvalues();  // ascending
-  for (Eigen::Index i = mu.size(); i-- > 0 && out.size() < count;) {
-    const double square = 1 / mu(i) - shift, rounding = 1e-13 / mu(i);
-    out.push_back(square > rounding ? std::sqrt(square) : std::abs(square) <= rounding ? 0 : -std::sqrt(-square));
+  for (int pass = 0; pass < 2; ++pass) {  // the second with σ of the size of what is looked for
+    const Eigen::LLT<Eigen::MatrixXd> factor(symmetric_part(kk + shift * mm));
+    if (factor.info() != Eigen::Success || !(shift > 0))
+      return refuse_modes_of(equations, diagnostics, "Its energy is not positive."), std::vector<double>{};
+    const Eigen::MatrixXd inverse = factor.matrixL().solve(Eigen::MatrixXd::Identity(mm.rows(), mm.cols()));
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+    solver.compute(symmetric_part(product_transposed(product(inverse, mm), inverse)), Eigen::EigenvaluesOnly);
+    const Eigen::VectorXd& mu = solver.eigenvalues();  // ascending
+    out.clear();
+    for (Eigen::Index i = mu.size(); i-- > 0 && out.size() < count;) {
+      const double square = 1 / mu(i) - shift, rounding = 1e-12 / mu(i);
+      out.push_back(square > rounding ? std::sqrt(square) : std::abs(square) <= rounding ? 0 : -std::sqrt(-square));
+    }
+    if (!out.empty() && out.back() > 0) shift = out.back() * out.back();
   }
   return out;
 }

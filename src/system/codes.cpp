@@ -498,7 +498,7 @@ constexpr CodeEntry kEntries[] = {
     {"E0290", "a name that is a derivative of a field",
      "u_x is the derivative of the field u along x.",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nparam u_x = 1\n",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nparam u0 = 1\n"},
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},
     {"E0291", "an expectation that does not fit the fields",
      "A solution gives every field, a current one flux for each space variable.",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nexpect current ρ u' flux -T u_x, 0\n",
