@@ -168,7 +168,7 @@ double FieldMesh::boundary_coefficient(const std::vector<Expr>& derivatives, std
 }
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define MAUP_MESH __attribute__((target_clones("arch=x86-64-v3", "default"), optimize("O3")))
+#define MAUP_MESH __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"), optimize("O3")))
 #else
 #define MAUP_MESH
 #endif

@@ -9,20 +9,39 @@ namespace maupertuis {
 
 // The same instructions with wider vectors where the processor has them. Without contraction the numbers are the same.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define MAUP_LANES __attribute__((target_clones("arch=x86-64-v3", "default"), optimize("O3")))
+#define MAUP_LANES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"), optimize("O3")))
 #else
 #define MAUP_LANES
 #endif
 
 namespace {
 
-/// out += factor · a · b
-MAUP_LANES void add_product(double* __restrict out, const double* __restrict a, const double* __restrict b, double factor,
-                            std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) out[i] += factor * (a[i] * b[i]);
+constexpr std::size_t kBlock = 16;  // lanes that are summed in registers
+
+/// out = Σ_j factor_j a_j b_{k−j} for j = from … to; coefficients stand `stride` apart.
+MAUP_LANES void convolve(double* __restrict out, const double* a, const double* b, const double* factor, std::size_t from,
+                         std::size_t to, std::size_t k, std::size_t stride, std::size_t n) {
+  std::size_t i = 0;
+  for (; i + kBlock <= n; i += kBlock) {
+    double sum[kBlock] = {};
+    for (std::size_t j = from; j <= to; ++j) {
+      const double* x = a + j * stride + i;
+      const double* y = b + (k - j) * stride + i;
+      for (std::size_t l = 0; l < kBlock; ++l) sum[l] += factor[j] * (x[l] * y[l]);
+    }
+    for (std::size_t l = 0; l < kBlock; ++l) out[i + l] = sum[l];
+  }
+  for (; i < n; ++i) {
+    double sum = 0;
+    for (std::size_t j = from; j <= to; ++j) sum += factor[j] * (a[j * stride + i] * b[(k - j) * stride + i]);
+    out[i] = sum;
+  }
 }
 MAUP_LANES void add_to(double* __restrict out, const double* __restrict a, double factor, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) out[i] += factor * a[i];
+}
+MAUP_LANES void sum_of_two(double* __restrict out, const double* __restrict a, const double* __restrict b, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = a[i] + b[i];
 }
 MAUP_LANES void set_scaled(double* __restrict out, const double* __restrict a, double factor, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) out[i] = factor * a[i];
@@ -159,41 +178,37 @@ void LaneSeries::first(std::size_t i) {
   double* out = at(i, 0);
   const double* a = at(x.a, 0);
   const double* b = at(x.b, 0);
-  for (std::size_t n = 0; n < lanes_; ++n) switch (x.op) {
-      case Op::Input:
-      case Op::Constant:
-        return;
-      case Op::Add:
-        out[n] = a[n] + b[n];
-        break;
-      case Op::Multiply:
-        out[n] = a[n] * b[n];
-        break;
-      case Op::Scale:
-        out[n] = x.number * a[n];
-        break;
-      case Op::Power:
-        out[n] = x.number == -1 ? 1 / a[n] : x.number == 0.5 ? std::sqrt(a[n]) : std::pow(a[n], x.number);
-        break;
-      case Op::Exp:
-        out[n] = std::exp(a[n]);
-        break;
-      case Op::Log:
-        out[n] = std::log(a[n]);
-        break;
-      case Op::Sin:
-        out[n] = std::sin(a[n]);
-        break;
-      case Op::Cos:
-        out[n] = std::cos(a[n]);
-        break;
-      case Op::Sinh:
-        out[n] = std::sinh(a[n]);
-        break;
-      case Op::Cosh:
-        out[n] = std::cosh(a[n]);
-        break;
-    }
+  const auto each = [&](auto f) {
+    for (std::size_t n = 0; n < lanes_; ++n) out[n] = f(a[n]);
+  };
+  switch (x.op) {
+    case Op::Input:
+    case Op::Constant:
+      return;
+    case Op::Add:
+      return sum_of_two(out, a, b, lanes_);
+    case Op::Multiply:
+      for (std::size_t n = 0; n < lanes_; ++n) out[n] = a[n] * b[n];
+      return;
+    case Op::Scale:
+      return set_scaled(out, a, x.number, lanes_);
+    case Op::Power:
+      if (x.number == -1) return each([](double v) { return 1 / v; });
+      if (x.number == 0.5) return each([](double v) { return std::sqrt(v); });
+      return each([&](double v) { return std::pow(v, x.number); });
+    case Op::Exp:
+      return each([](double v) { return std::exp(v); });
+    case Op::Log:
+      return each([](double v) { return std::log(v); });
+    case Op::Sin:
+      return each([](double v) { return std::sin(v); });
+    case Op::Cos:
+      return each([](double v) { return std::cos(v); });
+    case Op::Sinh:
+      return each([](double v) { return std::sinh(v); });
+    case Op::Cosh:
+      return each([](double v) { return std::cosh(v); });
+  }
 }
 
 /// The recurrences of the series: f' = x' g for f = sin x, g = cos x; a f' = r f a' for f = a^r; …
@@ -201,41 +216,45 @@ void LaneSeries::higher(std::size_t i, std::size_t k) {
   const Instruction& x = code_[i];
   if (x.op == Op::Input || x.op == Op::Constant) return;
   double* out = at(i, k);
+  if (x.constant) return std::fill_n(out, lanes_, 0.0), void();
+  std::vector<double>& factor = factors_;
+  factor.assign(k + 1, 1);
   const double dk = static_cast<double>(k);
-  if (x.op == Op::Add) {
-    set_scaled(out, at(x.a, k), 1, lanes_);
-    return add_to(out, at(x.b, k), 1, lanes_);
-  }
-  if (x.op == Op::Scale) return set_scaled(out, at(x.a, k), x.number, lanes_);
-  std::fill_n(out, lanes_, 0.0);
-  if (x.constant) return;
+  const auto sum = [&](std::size_t b, std::size_t from, std::size_t to) {
+    convolve(out, at(x.a, 0), at(b, 0), factor.data(), from, to, k, lanes_, lanes_);
+  };
+  const auto shares = [&](double sign) {
+    for (std::size_t j = 1; j <= k; ++j) factor[j] = sign * static_cast<double>(j) / dk;
+  };
   switch (x.op) {
+    case Op::Add:
+      return sum_of_two(out, at(x.a, k), at(x.b, k), lanes_);
+    case Op::Scale:
+      return set_scaled(out, at(x.a, k), x.number, lanes_);
     case Op::Multiply:
-      for (std::size_t j = 0; j <= k; ++j) add_product(out, at(x.a, j), at(x.b, k - j), 1, lanes_);
-      return;
+      return sum(x.b, 0, k);
     case Op::Power:
-      for (std::size_t j = 1; j <= k; ++j)
-        add_product(out, at(x.a, j), at(i, k - j), (x.number * static_cast<double>(j) - static_cast<double>(k - j)) / dk, lanes_);
+      for (std::size_t j = 1; j <= k; ++j) factor[j] = (x.number * static_cast<double>(j) - static_cast<double>(k - j)) / dk;
+      sum(i, 1, k);
       return divide_by(out, at(x.a, 0), lanes_);
     case Op::Exp:
-      for (std::size_t j = 1; j <= k; ++j) add_product(out, at(x.a, j), at(i, k - j), static_cast<double>(j) / dk, lanes_);
-      return;
+      shares(1);
+      return sum(i, 1, k);
     case Op::Log:
-      set_scaled(out, at(x.a, k), 1, lanes_);
-      for (std::size_t j = 1; j < k; ++j) add_product(out, at(i, j), at(x.a, k - j), -static_cast<double>(j) / dk, lanes_);
+      for (std::size_t j = 1; j < k; ++j) factor[j] = -static_cast<double>(k - j) / dk;
+      sum(i, 1, k - 1);
+      add_to(out, at(x.a, k), 1, lanes_);
       return divide_by(out, at(x.a, 0), lanes_);
     case Op::Sin:
-    case Op::Cos:
     case Op::Sinh:
-    case Op::Cosh: {
-      const double sign = x.op == Op::Cos ? -1 : 1;
-      for (std::size_t j = 1; j <= k; ++j) add_product(out, at(x.a, j), at(x.b, k - j), sign * static_cast<double>(j) / dk, lanes_);
-      return;
-    }
+    case Op::Cosh:
+      shares(1);
+      return sum(x.b, 1, k);
+    case Op::Cos:
+      shares(-1);
+      return sum(x.b, 1, k);
     case Op::Input:
     case Op::Constant:
-    case Op::Add:
-    case Op::Scale:
       return;
   }
 }

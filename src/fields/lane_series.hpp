@@ -45,7 +45,7 @@ class LaneSeries {
   friend struct LaneCompiler;
   std::vector<Instruction> code_;
   std::vector<std::size_t> inputs_, roots_;
-  std::vector<double> data_;
+  std::vector<double> data_, factors_;
   std::size_t lanes_ = 0, orders_ = 0;
 };
 
