@@ -3,6 +3,8 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/repeated_evaluation.hpp>
 
+#include "fields/wide_lanes.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -167,28 +169,46 @@ double FieldMesh::boundary_coefficient(const std::vector<Expr>& derivatives, std
   return value_of(derivatives[k], {{s_.context->time(), t_}}) / factorial;
 }
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define MAUP_MESH __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"), optimize("O3")))
-#else
-#define MAUP_MESH
-#endif
-
 namespace {
 
-/// to += factor (a − b)
-MAUP_MESH void add_difference(double* __restrict to, const double* __restrict a, const double* __restrict b, double factor, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) to[i] += factor * (a[i] - b[i]);
+/// to = Σ_m c_m (u_m − base), the u_m `stride` apart.
+MAUP_LANES void differences(double* __restrict to, const double* u, const double* base, const double* c, std::size_t points,
+                            std::size_t stride, std::size_t n) {
+  std::size_t i = 0;
+  for (; i + kWide <= n; i += kWide) {
+    Lanes sum = {};
+    for (std::size_t m = 0; m < points; ++m) sum += c[m] * (lanes_at(u + m * stride + i) - lanes_at(base + i));
+    lanes_at(to + i) = sum;
+  }
+  for (; i < n; ++i) {
+    to[i] = 0;
+    for (std::size_t m = 0; m < points; ++m) to[i] += c[m] * (u[m * stride + i] - base[i]);
+  }
 }
-MAUP_MESH void add_scaled(double* __restrict to, const double* __restrict a, double factor, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) to[i] += factor * a[i];
+/// to = weight g + Σ_q c_q s_q
+MAUP_LANES void weighted(double* __restrict to, const double* g, double weight, const double* s, const double* c,
+                         std::size_t points, std::size_t stride, std::size_t n) {
+  std::size_t i = 0;
+  for (; i + kWide <= n; i += kWide) {
+    Lanes sum = weight * lanes_at(g + i);
+    for (std::size_t q = 0; q < points; ++q) sum += c[q] * lanes_at(s + q * stride + i);
+    lanes_at(to + i) = sum;
+  }
+  for (; i < n; ++i) {
+    to[i] = weight * g[i];
+    for (std::size_t q = 0; q < points; ++q) to[i] += c[q] * s[q * stride + i];
+  }
 }
-MAUP_MESH void set_product(double* __restrict to, const double* __restrict a, double factor, std::size_t n) {
+MAUP_LANES void set_product(double* __restrict to, const double* __restrict a, double factor, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) to[i] = factor * a[i];
 }
-MAUP_MESH void add_products(double* __restrict to, const double* __restrict a, const double* __restrict b, std::size_t n) {
+MAUP_LANES void set_products(double* __restrict to, const double* __restrict a, const double* __restrict b, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) to[i] = a[i] * b[i];
+}
+MAUP_LANES void add_products(double* __restrict to, const double* __restrict a, const double* __restrict b, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) to[i] += a[i] * b[i];
 }
-MAUP_MESH void horner(double* __restrict to, const double* __restrict a, double h, std::size_t n) {
+MAUP_LANES void horner(double* __restrict to, const double* __restrict a, double h, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) to[i] = to[i] * h + a[i];
 }
 
@@ -198,10 +218,11 @@ MAUP_MESH void horner(double* __restrict to, const double* __restrict a, double 
 void FieldMesh::differentiate_along_x(const double* from, double* to) const {
   const auto n = static_cast<std::size_t>(cells_), points = static_cast<std::size_t>(p_) + 1;
   const double scale = 2 / width_;
-  std::fill_n(to, lanes_, 0.0);
-  for (std::size_t j = 0; j < points; ++j)
-    for (std::size_t m = 0; m < points; ++m)
-      if (m != j) add_difference(to + j * n, from + m * n, from + j * n, scale * rule_.derivative[j * points + m], n);
+  std::vector<double> c(points);
+  for (std::size_t j = 0; j < points; ++j) {
+    for (std::size_t m = 0; m < points; ++m) c[m] = m == j ? 0 : scale * rule_.derivative[j * points + m];
+    differences(to + j * n, from, from + j * n, c.data(), points, n, n);
+  }
 }
 
 void FieldMesh::forces(std::size_t f, std::size_t k) {
@@ -209,11 +230,10 @@ void FieldMesh::forces(std::size_t f, std::size_t k) {
   const double* g = series_.root(fields_ * fields_ + f, k);
   const double* s = series_.root(fields_ * fields_ + fields_ + f, k);
   std::vector<double>& out = force_[f];
-  std::fill(out.begin(), out.end(), 0.0);
+  std::vector<double> c(points);
   for (std::size_t j = 0; j < points; ++j) {
-    add_scaled(out.data() + j * n, g + j * n, -rule_.w[j] * width_ / 2, n);
-    for (std::size_t q = 0; q < points; ++q)
-      add_scaled(out.data() + j * n, s + q * n, rule_.w[q] * rule_.derivative[q * points + j], n);
+    for (std::size_t q = 0; q < points; ++q) c[q] = rule_.w[q] * rule_.derivative[q * points + j];
+    weighted(out.data() + j * n, g + j * n, -rule_.w[j] * width_ / 2, s, c.data(), points, n, n);
   }
   for (const Held& held : held_)
     if (held.force && held.field == f) out[held.right ? local(p_, cells_ - 1) : local(0, 0)] += boundary_coefficient(held.derivatives, k);
@@ -279,10 +299,9 @@ void FieldMesh::solve(std::size_t k) {
   }
   for (std::size_t f = 0; f < fields_; ++f) {
     std::vector<double>& out = past_[f * (kOrder + 2) + k];
-    std::fill(out.begin(), out.end(), 0.0);
     for (std::size_t o = 0; o < fields_; ++o) {
       const double* inverse = mass_.data() + (f * fields_ + o) * lanes_;
-      add_products(out.data(), inverse, force_[o].data(), lanes_);
+      o == 0 ? set_products(out.data(), inverse, force_[o].data(), lanes_) : add_products(out.data(), inverse, force_[o].data(), lanes_);
     }
   }
 }
@@ -300,7 +319,7 @@ void FieldMesh::coefficient(std::size_t k) {
     differentiate_along_x(phi(f, k), slope(f, k));
     if (needs_rate_) differentiate_along_x(velocity(f, k), rate(f, k));
   }
-  std::fill_n(series_.input(4 * fields_ + 1, k), lanes_, k == 0 ? t_ : k == 1 ? 1.0 : 0.0);
+  if (k < 2) std::fill_n(series_.input(4 * fields_ + 1, k), lanes_, k == 0 ? t_ : 1.0);  // t; the rest of it is 0
   series_.advance(k);
   if (k == 0) masses();
   for (std::size_t f = 0; f < fields_; ++f) forces(f, k);

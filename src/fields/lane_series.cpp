@@ -2,34 +2,31 @@
 
 #include <maupertuis/kinds.hpp>
 
+#include "fields/wide_lanes.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace maupertuis {
 
-// The same instructions with wider vectors where the processor has them. Without contraction the numbers are the same.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define MAUP_LANES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"), optimize("O3")))
-#else
-#define MAUP_LANES
-#endif
-
 namespace {
 
-constexpr std::size_t kBlock = 16;  // lanes that are summed in registers
+constexpr std::size_t kBlock = 2 * kWide;  // lanes that are summed in registers
 
 /// out = Σ_j factor_j a_j b_{k−j} for j = from … to; coefficients stand `stride` apart.
 MAUP_LANES void convolve(double* __restrict out, const double* a, const double* b, const double* factor, std::size_t from,
                          std::size_t to, std::size_t k, std::size_t stride, std::size_t n) {
   std::size_t i = 0;
   for (; i + kBlock <= n; i += kBlock) {
-    double sum[kBlock] = {};
+    Lanes first = {}, second = {};
     for (std::size_t j = from; j <= to; ++j) {
       const double* x = a + j * stride + i;
       const double* y = b + (k - j) * stride + i;
-      for (std::size_t l = 0; l < kBlock; ++l) sum[l] += factor[j] * (x[l] * y[l]);
+      first += factor[j] * (lanes_at(x) * lanes_at(y));
+      second += factor[j] * (lanes_at(x + kWide) * lanes_at(y + kWide));
     }
-    for (std::size_t l = 0; l < kBlock; ++l) out[i + l] = sum[l];
+    lanes_at(out + i) = first;
+    lanes_at(out + i + kWide) = second;
   }
   for (; i < n; ++i) {
     double sum = 0;
