@@ -30,12 +30,14 @@ def needed(case):
     statement = case["statement"]
     if "data_file" in statement:
         return "URDF import"
-    if "fields" in statement:
+    if "fields" in statement or case.get("kind") == "field":
         return "fields"
     if "inequality" in statement.get("constraints", {}):
         return "contacts"
     if "quasi_velocities" in statement:
         return "rates"
+    if case.get("kind") == "degenerate":
+        return "degenerate"
     kinds = {e["kind"] for e in case["expected"]}
     return "" if kinds - set(WAITS) - {"note"} else WAITS[case["expected"][0]["kind"]]
 
@@ -172,9 +174,9 @@ def convert_all():
             texts = urdf_model(case, CASES)
             passes = ["the accelerations that the torques of the inverse dynamics, and at rest M q̈ + g, give"]
             waits = [("reading the robot's file", "URDF import"), ("M entry by entry", WAITS["matrix"])]
-        elif missing in ("contacts", "rates") and (MODELS / path.with_suffix(".lag").name).exists():
+        elif missing in ("contacts", "rates", "fields", "degenerate") and (MODELS / path.with_suffix(".lag").name).exists():
             models = sorted(p.name for p in MODELS.glob(f"{path.stem}*.lag"))
-            rows.append((case, models if missing == "rates" else models[:1], ["all; the model is written by hand"], []))
+            rows.append((case, models if missing in ("rates", "degenerate") else models[:1], ["all; the model is written by hand"], []))
             continue
         elif missing:
             texts, passes, waits = {}, [], [("all", missing)]

@@ -21,5 +21,6 @@ std::span<const CodeEntry> action_codes();
 std::span<const CodeEntry> linearization_codes();
 std::span<const CodeEntry> orbits_codes();
 std::span<const CodeEntry> study_codes();
+std::span<const CodeEntry> fields_codes();
 
 }  // namespace maupertuis

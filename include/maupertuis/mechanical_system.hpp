@@ -331,9 +331,13 @@ struct Experiment {
   std::optional<PathFormulas> given_path;
 };
 
+struct FieldModel;  // field_system.hpp
+
 struct Model {
   MechanicalSystem system;
   Experiment experiment;
+  /// The fields, where the model has some; else null. `system` has no coordinates then, and holds the parameters.
+  std::shared_ptr<const FieldModel> fields = nullptr;
 };
 
 /// Resolves names and units, infers dimensions, builds kinematics and energies. All mistakes go to `diagnostics`;

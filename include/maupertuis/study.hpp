@@ -3,6 +3,7 @@
 #include <maupertuis/degenerate.hpp>
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/extended_simulation.hpp>
+#include <maupertuis/fields.hpp>
 #include <maupertuis/interrupt_scope.hpp>
 #include <maupertuis/mechanical_system.hpp>
 #include <maupertuis/simulation.hpp>
@@ -72,6 +73,11 @@ class Study {
   /// What a degenerate Lagrangian asks of the state and leaves open; null where M, with the constraints, determines the
   /// accelerations.
   const DegenerateAnalysis* degenerate();
+  /// Of a model with fields: their equations, certified; null for any other model.
+  const FieldEquations* field_equations();
+  const Certificate* field_certificate() const { return field_certificate_ ? &*field_certificate_ : nullptr; }
+  /// Whether the model has fields.
+  bool has_fields() { return model() && model_->fields; }
   /// Readable form; `with_steps` adds the textbook path.
   const Derivation* derivation(bool with_steps);
   /// Certifies the equations, and the derivation if there is one. A failed check is an error (E0690): equations that
@@ -101,6 +107,7 @@ class Study {
   bool elaborate_model(Diagnostics& found, std::optional<Model>& model);
   bool admit_degenerate(const Model& model, const Diagnostics& lints, Diagnostics& found);
   void verify_with_other_values(const SimulationOptions& options, Verification& out);
+  std::optional<Verification> field_verification(const SimulationOptions& options);
   void report(const CertificateCheck& check);
   void enter_mode(Model& model, Diagnostics& found) const;
 
@@ -116,6 +123,9 @@ class Study {
   std::optional<std::string> mode_;
   std::shared_ptr<const DegenerateAnalysis> degenerate_;
   std::optional<EquationsOfMotion> equations_;
+  std::optional<FieldEquations> field_equations_;
+  std::optional<Certificate> field_certificate_;
+  bool fields_derived_ = false;
   bool derived_ = false;
   std::optional<Derivation> derivation_;
   bool has_steps_ = false;

@@ -129,6 +129,7 @@ struct RatesStatement {
 };
 struct InputStatement {
   Name name;
+  std::vector<Name> variables;  // input q(x): a given function of space variables and t; value null: any function
   std::optional<UnitExpression> unit;
   ExpressionPtr value;
 };
@@ -263,6 +264,9 @@ struct Tolerance {
   ExpressionPtr size;
   bool relative = false;
 };
+
+struct FieldClause;       // field_statements.hpp
+struct FieldExpectation;  // field_statements.hpp
 
 /// What stands behind `expect` and `claim`: a struct a kind.
 namespace expectation {
@@ -406,11 +410,14 @@ struct EventCount {
 struct Error {
   Name code;
 };  // error E0412
+struct OfField {
+  std::shared_ptr<const FieldExpectation> said;
+};  // natural …, solution …, current …, …: field_statements.hpp
 
 using Kind = std::variant<ValueAt, ValueAtUntil, UntilAt, EnergyConserved, ConservedAlongRun, Conserved, NotConserved,
                           Integral, Equation, Hamiltonian, Routhian, Bracket, Freedoms, ConstraintClass, Frequencies,
                           Eigenvalues, Matrix, Equilibrium, Stable, Multipliers, Trace, Period, Action, ActionAlong,
-                          MorseIndex, PathAt, Event, EventCount, PhaseConstraints, ClassCount, Error>;
+                          MorseIndex, PathAt, Event, EventCount, PhaseConstraints, ClassCount, Error, OfField>;
 
 }  // namespace expectation
 
@@ -481,12 +488,11 @@ struct ImpactStatement {
   bool simultaneous = false;
 };
 
-/// A statement of the grammar that a later version carries out: field, density. It is parsed whole (formatting and
-/// messages work) and kept as its expressions.
-struct LaterStatement {
-  std::string what;         // its first word
-  std::vector<Name> names;  // that it declares: the field and its variable
-  std::vector<ExpressionPtr> expressions;
+/// field, density, dissipation density, boundary, force density, force at a place of a field: what they say stands in
+/// field_statements.hpp.
+struct FieldStatement {
+  std::string what;  // its words: "field", "density", …
+  std::shared_ptr<const FieldClause> said;
 };
 
 using StatementBody =
@@ -496,7 +502,7 @@ using StatementBody =
                  OutputStatement, MethodStatement, PrecisionStatement, DrawStatement, ReactionStatement,
                  ExpectStatement, ConstraintStatement, SweepStatement, IndependentStatement, PathStatement,
                  ContactStatement, FrictionStatement, EventStatement, ImpactStatement, GaugeStatement, RatesStatement,
-                 LaterStatement>;
+                 FieldStatement>;
 
 struct Statement {
   StatementBody body;

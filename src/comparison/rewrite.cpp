@@ -282,6 +282,7 @@ class Rewriter {
   bool is_lost(const syntax::expectation::Event&) const { return false; }
   bool is_lost(const syntax::expectation::EventCount&) const { return false; }
   bool is_lost(const syntax::expectation::Error&) const { return false; }
+  bool is_lost(const syntax::expectation::OfField&) const { return true; }
 
   void expectation(Span span, const ExpectStatement& s) {
     if (std::visit([&](const auto& x) { return is_lost(x); }, s.kind)) leave_out(span);

@@ -26,6 +26,10 @@ constexpr CodeEntry entries[] = {
      "The page has the motion through all modes, but its equations are those without contact and dry friction, and "
      "what belongs to one set of equations is left out.",
      "", ""},
+    {"E0507", "a question about coordinates for a model with fields",
+     "Of fields there are derivations, certified conservation laws, waves and tests; Hamiltonians, paths, linearizations "
+     "and pictures are those of coordinates.",
+     "", ""},
     {"E0690", "a derivation failed its certificate",
      "Every derivation is checked by routes that share nothing with it: jets of L along random paths, d'Alembert's "
      "principle over the particles, the power balance. One of them found a different value, so the derived equations "

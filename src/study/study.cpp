@@ -1,4 +1,5 @@
 #include <maupertuis/contact_mode.hpp>
+#include <maupertuis/field_verification.hpp>
 #include <maupertuis/require.hpp>
 #include <maupertuis/study.hpp>
 
@@ -72,6 +73,7 @@ const syntax::SyntaxTree* Study::tree() {
 bool Study::elaborate_model(Diagnostics& found, std::optional<Model>& model) {
   model = elaborate(*tree_, source_, found, overrides_);
   if (!model || found.has_errors()) return false;
+  if (model->fields) return true;  // the lint is about coordinates
   const InterruptScope scope(*model->system.context, interrupt_);
   Diagnostics lints;
   lint(*model, source_, lints);
@@ -121,7 +123,28 @@ const Model* Study::model() {
   return model_.get();
 }
 
+const FieldEquations* Study::field_equations() {
+  if (!has_fields()) return nullptr;
+  if (!fields_derived_) {
+    fields_derived_ = true;
+    const InterruptScope scope = interruptible();
+    field_equations_ = maupertuis::field_equations(model_->fields, diagnostics_);
+    if (field_equations_) field_certificate_ = certify(*field_equations_);
+    if (field_certificate_)
+      for (const CertificateCheck& check : field_certificate_->checks) report(check);
+  }
+  return field_equations_ && !wrong() ? &*field_equations_ : nullptr;
+}
+
 const EquationsOfMotion* Study::equations() {
+  if (has_fields()) {
+    if (!derived_)
+      diagnostics_.error("E0507", model_->fields->system.density_span, "this question is about coordinates, and the model has fields",
+                         "Of fields there are derivations, conservation laws, waves and runs.",
+                         "`maup derive`, `maup check`, `maup invariants`, `maup simulate` and `maup test` work for fields.");
+    derived_ = true;
+    return nullptr;
+  }
   if (!derived_ && model()) {
     const InterruptScope scope = interruptible();
     equations_ = euler_lagrange(std::shared_ptr<const MechanicalSystem>(model_, &model_->system), diagnostics_);
@@ -183,6 +206,7 @@ std::optional<ExtendedResult> Study::motion(const ExtendedSimulationOptions& opt
 
 std::optional<Verification> Study::verification(const SimulationOptions& options) {
   if (!tree()) return std::nullopt;
+  if (has_fields()) return field_verification(options);
   equations();
   if (auto of_errors = verify_errors(*tree_, source_, diagnostics_)) return of_errors;
   if (wrong() || !certificate()) return std::nullopt;
@@ -210,6 +234,14 @@ void Study::verify_with_other_values(const SimulationOptions& options, Verificat
   }
   std::stable_sort(out.results.begin(), out.results.end(),
                    [](const ExpectationResult& a, const ExpectationResult& b) { return a.line < b.line; });
+}
+
+std::optional<Verification> Study::field_verification(const SimulationOptions& options) {
+  field_equations();
+  if (auto of_errors = verify_errors(*tree_, source_, diagnostics_)) return of_errors;
+  if (!field_equations()) return std::nullopt;
+  const InterruptScope scope = interruptible();
+  return verify_fields(*model_, *field_equations_, source_, options, diagnostics_);
 }
 
 bool Study::refuse_held_integrals() {

@@ -47,7 +47,12 @@ void scan(const TokenList& list, const StatementTokens& statement, std::vector<D
   };
   add(statement.begin + 1);
   if (kind != Kind::Field) return;
-  for (std::size_t i = statement.begin + 2; i < statement.end && !list.tokens[i].is(")"); ++i) add(i);
+  bool variables = false;  // field a(x), b(x, y) : …
+  for (std::size_t i = statement.begin + 2; i < statement.end && !list.tokens[i].is(":"); ++i) {
+    if (list.tokens[i].is("(") || list.tokens[i].is(")")) variables = list.tokens[i].is("(");
+    if (list.tokens[i].kind != Token::Kind::Name) continue;
+    found.push_back({name_of(list.tokens[i]), variables ? Kind::Space : Kind::Field});
+  }
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace maupertuis::syntax {
 /// unknown name before a bracket is no product.
 class Declarations {
  public:
-  enum class Kind { None, Parameter, Coordinate, Angle, Definition, Input, Place, Field };
+  enum class Kind { None, Parameter, Coordinate, Angle, Definition, Input, Place, Field, Space };
 
   Declarations(const TokenList& list, const std::vector<StatementTokens>& statements);
 

@@ -1,4 +1,4 @@
-#include <maupertuis/syntax_tree.hpp>
+#include <maupertuis/field_statements.hpp>
 
 #include <fmt/format.h>
 
@@ -212,6 +212,9 @@ class Dumper {
     for (const auto& generation : x.generations) children("generation", generation);
   }
   void operator()(const expectation::ClassCount& x) { head(expectation_, x.what), child("value", x.number); }
+  void operator()(const expectation::OfField& x) {
+    std::visit([this](const auto& said) { expected_field(said); }, x.said->body);
+  }
   void operator()(const expectation::Error& x) { head(expectation_, "error"), word("name", x.code.text); }
   void operator()(const ConstraintStatement& s) {
     head(s.integral ? "integral constraint" : "constraint", s.name ? s.name->text : ""), child("left", s.left),
@@ -249,15 +252,43 @@ class Dumper {
         assignments(s.sets);
   }
   void operator()(const ImpactStatement& s) { head("impact", s.simultaneous ? "simultaneous" : "sequential"); }
-  void operator()(const LaterStatement& s) {
-    head("later", s.what);
-    for (const Name& name : s.names) word("name", name.text);
-    children("expressions", s.expressions);
+  void operator()(const FieldStatement& s) {
+    head(s.what);
+    std::visit([this](const auto& said) { field(said); }, s.said->body);
   }
 
  private:
   void head(std::string_view kind, std::string_view what = {}) {
     text += what.empty() ? fmt::format("{}\n", kind) : fmt::format("{} {}\n", kind, what);
+  }
+
+  void field(const FieldDeclaration& s) {
+    for (const auto& item : s.items) word("name", item.name.text), word("kind", item.kind.text);
+    for (const auto& range : s.ranges) word("on", range.variable.text), child("from", range.from), child("to", range.to);
+    children("cells", s.cells), child("order", s.order);
+    if (s.periodic) word("boundary", "periodic");
+    equations(s.boundary);
+  }
+  void field(const DensityText& s) { child(s.adds ? "adds" : "value", s.value); }
+  void field(const BoundaryText& s) { word("side", s.side.text), equations(s.conditions); }
+  void field(const FieldForce& s) { child("on", s.on), child("value", s.value); }
+  void expected_field(const FieldExpectation::Natural& x) { head(expectation_, "natural"), equations(x.conditions); }
+  void expected_field(const FieldExpectation::Solution& x) { head(expectation_, "solution"), equations(x.fields); }
+  void expected_field(const FieldExpectation::Total& x) {
+    head(expectation_, "total"), child("density", x.density), child("time", x.time), expected(x.expected);
+  }
+  void expected_field(const FieldExpectation::Current& x) {
+    head(expectation_, "current"), child("density", x.density), children("flux", x.fluxes);
+  }
+  void expected_field(const FieldExpectation::Dispersion& x) {
+    head(expectation_, "dispersion"), child("left", x.left), child("right", x.right);
+  }
+  void expected_field(const FieldExpectation::Frequencies& x) {
+    head(expectation_, "frequencies of"), word("field", x.field.text), children("value", x.values),
+        tolerance(x.tolerance);
+  }
+  void equations(const std::vector<Equation>& list) {
+    for (const Equation& one : list) child("left", one.left), child("right", one.right);
   }
 
   void word(std::string_view label, std::string_view what) {

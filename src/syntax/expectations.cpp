@@ -86,6 +86,7 @@ expectation::Kind StatementParser::expected(bool claim) {
   if (!declared && opens_index(peek(), peek(1))) return expect_index();
   if (!declared && opens_path(peek(), peek(1))) return expect_path();
   if (!declared && opens_degenerate()) return expect_degenerate();
+  if (opens_field_expectation()) return expect_of_field();
   if (accept("constraint")) return expect_class();
   if (accept("integral")) return expectation::Integral{formula()};
   if (accept("frequencies")) return expect_frequencies();

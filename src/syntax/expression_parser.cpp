@@ -221,6 +221,8 @@ ExpressionParser::Node ExpressionParser::name() {
     fail("E0105", token.span, fmt::format("`{}` is not a number", token.text), "Every quantity of a model is finite.");
   }
   check_application(token);
+  if (peek().is("(") && context_.declarations.kind(token.text) == Declarations::Kind::Field)
+    return value_at_place(token);
   Node node = make(Kind::Name, token.span);
   node->text = token.text;
   node->name_span = token.span;
@@ -231,6 +233,21 @@ ExpressionParser::Node ExpressionParser::name() {
          "Write the unit after a number: 3 [J].");
   }
   return node;
+}
+
+// u(3 m), u_x(l), w(1 m, 2 m): the value of a field at a place.
+ExpressionParser::Node ExpressionParser::value_at_place(const Token& field) {
+  const Nesting nesting(*this);
+  next();
+  std::vector<Node> place;
+  do place.push_back(quantity());
+  while (accept(","));
+  if (!peek().is(")")) fail_expected("`,` or `)` after the place");
+  Node node = make(Kind::Call, cover(field.span, next().span));
+  node->text = field.text;
+  node->name_span = field.span;
+  node->arguments.assign(place.begin(), place.end());
+  return finish(node);
 }
 
 // p_θ in an expectation, for a coordinate θ; elsewhere `system` says that the name is not declared.

@@ -92,6 +92,7 @@ class ExpressionParser {
   Node primary();
   Node number();
   Node name();
+  Node value_at_place(const Token& field);
   /// `of_quantities`: its components are quantity places.
   Node bracket(bool of_quantities = false);
   Node with_bracketed_unit(Node value);

@@ -35,7 +35,8 @@ bool is_unary(std::span<const Token> tokens, std::size_t i) {
   constexpr std::array openings = {"conserved"sv, "equation"sv, "integral"sv};
   const bool opening = i == 2 && (tokens[0].is("expect") || tokens[0].is("claim") || tokens[0].is("constraint")) &&
                        std::find(openings.begin(), openings.end(), tokens[1].text) != openings.end();
-  return first_word || opening;
+  const bool flux = tokens[0].is("expect") && i > 2 && tokens[1].is("current") && tokens[i - 1].is("flux");
+  return first_word || opening || flux;
 }
 
 // sin, or the 2 of sin^2: what follows is its argument.
@@ -50,7 +51,10 @@ bool opens_arguments(std::span<const Token> tokens, std::size_t i) {
   if (before.kind != Token::Kind::Name) return false;
   if (find_function(before.text)) return true;
   const bool inertia = i >= 2 && tokens[i - 2].is("inertia") && (before.is("diag") || before.is("full"));
-  const bool field = i == 2 && tokens[0].is("field");
+  const auto declares = [](std::span<const Token> before_colon) {
+    return std::none_of(before_colon.begin(), before_colon.end(), [](const Token& t) { return t.is(":"); });
+  };
+  const bool field = tokens[0].is("field") && declares(tokens.first(i));
   return inertia || field;
 }
 

@@ -202,6 +202,8 @@ StatementBody StatementParser::torsion_statement() {
 }
 
 StatementBody StatementParser::force_statement() {
+  const bool at_place = peek(1).kind == Token::Kind::Name && peek(2).is("(") && !peek(1).is("on");
+  if (at_place || (peek(1).is("density") && peek(2).kind == Token::Kind::Name)) return field_force_statement();
   next();
   ForceStatement force;
   if (accept("on")) {

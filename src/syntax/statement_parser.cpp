@@ -48,6 +48,7 @@ std::span<const StatementParser::Entry> StatementParser::table() {
       {"rates", &P::rates_statement},
       {"field", &P::field_statement},
       {"density", &P::density_statement},
+      {"boundary", &P::boundary_statement},
       {"T", &P::energy_statement},
       {"V", &P::energy_statement},
       {"U", &P::energy_statement},
@@ -232,16 +233,23 @@ StatementBody StatementParser::input_statement() {
   next();
   InputStatement input;
   input.name = new_name("the name of an input");
+  if (accept("(")) {
+    do input.variables.push_back(used_name("a space variable"));
+    while (accept(","));
+    expect(")", "the space variables");
+  }
   if (accept(":")) {
     if (!peek().is("[")) fail_expected("a unit in square brackets", "Write for example input u : [N] = ….");
     input.unit = bracketed_unit();
   }
+  if (!input.variables.empty() && at_end()) return input;
   expect("=", "the name of an input");
   input.value = quantity();
   return input;
 }
 
 StatementBody StatementParser::energy_statement() {
+  if (peek().is("dissipation") && peek(1).is("density")) return density_statement();
   const Token& word = next();
   const auto which = *energy_of(word.text);
   if (is_short_energy(word.text) && context_.declarations.contains(word.text)) {

@@ -1,7 +1,11 @@
 #pragma once
 #include "syntax/expression_parser.hpp"
 
+#include <functional>
+
 namespace maupertuis::syntax {
+
+struct FieldDeclaration;  // field_statements.hpp
 
 /// Reads one statement. Throws Abandoned after a mistake was reported.
 class StatementParser : private ExpressionParser {
@@ -76,9 +80,17 @@ class StatementParser : private ExpressionParser {
   StatementBody impact_statement();
   // rates_statement.cpp
   StatementBody rates_statement();
-  // later_statements.cpp
+  // field_statements.cpp
   StatementBody field_statement();
   StatementBody density_statement();
+  StatementBody boundary_statement();
+  StatementBody field_force_statement();
+  void field_items(FieldDeclaration& field);
+  Equation boundary_condition();
+  ExpressionPtr before(std::string_view word, const std::function<ExpressionPtr()>& read);
+  bool opens_field_expectation() const;
+  std::vector<Equation> equations_of_list();
+  expectation::Kind expect_of_field();
 
   // parts
   Rotation rotation();

@@ -56,6 +56,7 @@ constexpr std::array kStatementWords = {
     "rates"sv,
     "field"sv,
     "density"sv,
+    "boundary"sv,
     "expect"sv,
     "claim"sv,
 };

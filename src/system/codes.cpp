@@ -433,20 +433,30 @@ constexpr CodeEntry kEntries[] = {
     // yet
     {"E0255", "as many names as components",
      "Names before one sign of equality name the components of the vector behind it, one each.",
-     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v, u = x' cos ψ + y' sin ψ\n",
-     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' cos ψ + y' sin ψ, u = -x' sin ψ + y' cos ψ, w = ψ'\n"},
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v, u = "
+     "x' cos ψ + y' sin ψ\n",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' "
+     "cos ψ + y' sin ψ, u = -x' sin ψ + y' cos ψ, w = ψ'\n"},
     {"E0256", "a rate that is no linear combination of velocities",
-     "Rates (quasi-velocities) take the place of the velocities: σ = Y(q,t) q' + y(q,t), linear in q', so that q' follows from them. Accelerations and inputs stand in none.",
-     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = sqrt(x'^2 + y'^2)\n",
-     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' cos ψ + y' sin ψ, u = -x' sin ψ + y' cos ψ, w = ψ'\n"},
+     "Rates (quasi-velocities) take the place of the velocities: σ = Y(q,t) q' + y(q,t), linear in q', so that q' "
+     "follows from them. Accelerations and inputs stand in none.",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = "
+     "sqrt(x'^2 + y'^2)\n",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' "
+     "cos ψ + y' sin ψ, u = -x' sin ψ + y' cos ψ, w = ψ'\n"},
     {"E0257", "rates that depend on each other",
      "One of them follows from the others and from the constraints, so that they cannot be chosen independently.",
-     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' cos ψ + y' sin ψ, u = 2 v, w = ψ'\n",
-     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' cos ψ + y' sin ψ, u = -x' sin ψ + y' cos ψ, w = ψ'\n"},
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' "
+     "cos ψ + y' sin ψ, u = 2 v, w = ψ'\n",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' "
+     "cos ψ + y' sin ψ, u = -x' sin ψ + y' cos ψ, w = ψ'\n"},
     {"E0258", "more rates than velocities left free",
-     "Constraints leave as many independent velocities as there are coordinates less independent constraints; there are no more rates than that.",
-     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x', u = y', w = ψ', s = x' + y'\n",
-     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' cos ψ + y' sin ψ, u = -x' sin ψ + y' cos ψ, w = ψ'\n"},
+     "Constraints leave as many independent velocities as there are coordinates less independent constraints; there "
+     "are no more rates than that.",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = "
+     "x', u = y', w = ψ', s = x' + y'\n",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' "
+     "cos ψ + y' sin ψ, u = -x' sin ψ + y' cos ψ, w = ψ'\n"},
     {"E0261", "no such event",
      "What is expected of an event or a contact names it: the name behind `event`, or that at the end of a contact. A "
      "contact has an impact, is made and lost; friction sticks and slips.",
@@ -496,15 +506,81 @@ constexpr CodeEntry kEntries[] = {
      "m/s^2 : record\n",
      "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\nevent hit when z = 0 m "
      ": record\n"},
-    {"E0501", "a statement that is not supported yet",
-     "The language describes fields. They are read and checked for their grammar, and carried out by a later version.",
-     "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nfield u(s) : angle\n",
-     "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\n"},
+    {"E0280", "a field without a density",
+     "The action of a field is the integral of its density over space and time; the field equations are its variation.",
+     "field u(x) : length\n",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},
+    {"E0281", "what belongs to a field, without one",
+     "A density, a boundary and natural conditions are parts of the action of a field.",
+     "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\ndensity = 1/2 m x'^2\n",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},
+    {"E0282", "a second time derivative in a density",
+     "A density depends on fields and their velocities, as a Lagrangian does; accelerations are what the equations "
+     "give.",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u u'' - 1/2 T u_x^2\n",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},
+    {"E0283", "a derivative above the second in a density",
+     "Densities hold derivatives up to the second: beams, plates, dispersive waves.",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nparam a = "
+     "1 N m^2\ndensity += a u_x u_xxx\n",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},
+    {"E0284", "a domain or a variable that does not fit",
+     "Each space variable of a field has two ends, which are known before the run; all fields of a model live on one "
+     "space.",
+     "field u(x) : length on x = 1 m .. 0 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},
+    {"E0285", "a boundary condition that is none",
+     "Given at a boundary are the field or its slope, each once. All other conditions are natural: they follow from "
+     "the density.",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nboundary "
+     "left : u = 0, u = 0\n",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nboundary "
+     "left : u = 0\n"},
+    {"E0286", "a boundary that the field does not have",
+     "A field of one space variable has the ends left and right, of two the sides left, right, bottom and top; a field "
+     "without a domain has none.",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nboundary "
+     "top : u = 0\n",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nboundary "
+     "right : u = 0\n"},
+    {"E0287", "a mesh that cannot be made",
+     "A mesh has a whole number of cells along each variable, and must fit into memory.",
+     "field u(x) : length on x = 0 m .. 1 m cells 2.5\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n",
+     "field u(x) : length on x = 0 m .. 1 m cells 20\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},
+    {"E0288", "a force on a field that acts nowhere",
+     "A force density acts in each piece of space, `force u(l) = F` at an end of the domain.",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nforce "
+     "density ρ = 1 N/m\n",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nforce "
+     "density u = 1 N/m\n"},
+    {"E0289", "a place where the field is not",
+     "The value of a field is asked for at a place of its domain, one number a space variable.",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nrun 1 "
+     "s\nexpect u(2 m) at 1 s = 0 m ± 1e-9\n",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},
+    {"E0290", "a name that is a derivative of a field", "u_x is the derivative of the field u along x.",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nparam u_x "
+     "= 1\n",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},
+    {"E0291", "an expectation that does not fit the fields",
+     "A solution gives every field, a current one flux for each space variable.",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nexpect "
+     "current ρ u' flux -T u_x, 0\n",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nexpect "
+     "current ρ u' flux -T u_x\n"},
     {"E0504", "a start that is not supported yet",
      "A start gives coordinates, their velocities, and the angular velocities of bodies, B.ω. What else follows from "
      "them, such as the velocity of a point, is solved for by a later version.",
      "coord x : length\nparam m = 1 kg\npoint P mass m at (x, x)\nstart P.x' = 1 m/s\n",
      "coord x : length\nparam m = 1 kg\npoint P mass m at (x, x)\nstart x' = 1 m/s\n"},
+    {"E0505", "fields together with coordinates",
+     "A model has fields, or coordinates and bodies. What couples them is carried out by a later version.",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\ncoord y : "
+     "length\n",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},
+    {"E0506", "a complex field", "Its real and imaginary parts are two real fields; the density is written in them.",
+     "dimensionless\nfield ψ(x) : complex\ndensity = ψ'^2\n",
+     "dimensionless\nfield a(x), b(x) : number\ndensity = b a' - a b' - 1/2 (a_x^2 + b_x^2)\n"},
 };
 
 }  // namespace

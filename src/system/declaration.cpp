@@ -1,5 +1,7 @@
 #include "system/declaration.hpp"
 
+#include <maupertuis/field_statements.hpp>
+
 #include <fmt/format.h>
 
 namespace maupertuis::elaboration {
@@ -35,6 +37,10 @@ const char* word_of(Kind kind) {
       return "variable";
     case Kind::Rate:
       return "rate";
+    case Kind::Field:
+      return "field";
+    case Kind::Space:
+      return "space variable";
     case Kind::Energy:
       return "energy";
   }
@@ -93,10 +99,23 @@ SymbolTable::SymbolTable(const syntax::SyntaxTree& tree, const SourceTexts& text
       if (c->name) add(Kind::Contact, *c->name, s, 0);
     if (const auto* v = std::get_if<syntax::EventStatement>(&s.body)) add(Kind::Event, v->name, s, 0);
     if (const auto* v = std::get_if<syntax::IndependentStatement>(&s.body)) add(Kind::Independent, v->name, s, 0);
-    if (const auto* later = std::get_if<syntax::LaterStatement>(&s.body))
-      for (const syntax::Name& n : later->names) lost_.emplace(n.text, true);
+    if (const auto* f = std::get_if<syntax::FieldStatement>(&s.body)) add_fields(*f, s);
   }
   for (const syntax::Name& n : tree.lost_names) lost_.emplace(n.text, true);
+}
+
+/// The variables of several fields are the same ones.
+void SymbolTable::add_fields(const syntax::FieldStatement& field, const syntax::Statement& statement) {
+  const auto* declared = std::get_if<syntax::FieldDeclaration>(&field.said->body);
+  if (!declared) return;
+  for (std::size_t i = 0; i < declared->items.size(); ++i) {
+    add(Kind::Field, declared->items[i].name, statement, i);
+    for (const syntax::Name& x : declared->items[i].variables) {
+      const auto found = by_name_.find(x.text);
+      const bool again = found != by_name_.end() && declarations_[found->second].kind == Kind::Space;
+      if (!again) add(Kind::Space, x, statement, i);
+    }
+  }
 }
 
 void SymbolTable::add(Kind kind, const syntax::Name& name, const syntax::Statement& statement, std::size_t item,

@@ -25,6 +25,8 @@ struct Declaration {
     Event,
     Independent,
     Rate,
+    Field,
+    Space,
     Energy
   };
   Kind kind = Kind::Parameter;
@@ -63,6 +65,7 @@ class SymbolTable {
   void adopt(const SymbolTable& other);
 
  private:
+  void add_fields(const syntax::FieldStatement& field, const syntax::Statement& statement);
   void add(Declaration::Kind kind, const syntax::Name& name, const syntax::Statement& statement, std::size_t item,
            std::size_t component = 0);
 

@@ -191,6 +191,7 @@ void elaborate_definition(Elaboration& e, Declaration& d) {
 
 void elaborate_input(Elaboration& e, Declaration& d) {
   const auto& s = std::get<syntax::InputStatement>(d.statement->body);
+  if (!s.variables.empty()) return;  // a given field
   d.done = true;
   d.value = Value::poison();
   const std::optional<Unit> unit = s.unit ? unit_of(e, *s.unit) : std::optional<Unit>(Unit{});

@@ -96,6 +96,8 @@ void elaborate_declaration(Elaboration& e, DeclarationId id) {
     case Kind::Parameter:
     case Kind::Coordinate:
     case Kind::Independent:
+    case Kind::Field:
+    case Kind::Space:
       return;  // they depend on nothing and came first
     case Kind::Definition:
       return elaborate_definition(e, d);
@@ -168,7 +170,6 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText&
   headings(e);
   name_independent(e);
   fix_space_dimension(e);
-  refuse_later_statements(e);
   check_statement_counts(e);
 
   bool any_coordinate = false;
@@ -183,6 +184,7 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText&
     return std::nullopt;
   }
   override_parameters(e);
+  any_coordinate = declare_fields(e) || any_coordinate;
 
   for (const DeclarationId id : definition_order(e.table, tree, diagnostics)) elaborate_declaration(e, id);
   elaborate_forces(e);
@@ -190,6 +192,7 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText&
   elaborate_gauges(e);
   check_rates(e);
   elaborate_contacts(e);
+  elaborate_fields(e);
   elaborate_experiment(e);
   override_start(e);
   start_quaternions(e);
@@ -199,7 +202,11 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText&
   diagnostics.sort_by_place();
   if (diagnostics.has_errors()) return std::nullopt;
   restore_order_of_text(e.system());
-  expand_definitions(e.model);
+  if (e.fields) {
+    e.fields->parameters = e.system().parameters;
+    e.model.fields = e.fields;
+  } else
+    expand_definitions(e.model);
   return std::move(e.model);
 }
 

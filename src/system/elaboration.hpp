@@ -3,6 +3,7 @@
 #include "system/pose.hpp"
 
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/field_system.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <map>
@@ -38,6 +39,7 @@ struct Elaboration {
   bool dimensionless = false;
   bool independent_is_time = true;     // else L has any dimension, and there are no masses and forces
   bool lagrangian_settled = false;     // its first part has said what dimension that is
+  std::shared_ptr<FieldModel> fields;  // null: the model has none
   std::optional<Span> dimension_from;  // the first vector: its length is the dimension of space
 
   Elaboration(const syntax::SyntaxTree& tree, const SourceTexts& texts, const ExperimentOverrides& overrides,
@@ -231,7 +233,18 @@ std::optional<Pose> pose_of(Elaboration& e, const Declaration& d, const syntax::
 /// ½ m v²
 Expr translational_energy(Expr mass, const ExprVector& position);
 
-void refuse_later_statements(Elaboration& e);
+// fields.cpp, field_expectations.cpp
+/// The space variables and the fields of the model, before anything is made of them. False where there are none.
+bool declare_fields(Elaboration& e);
+/// Densities, boundaries, forces; after the definitions.
+void elaborate_fields(Elaboration& e);
+/// start u = …
+bool start_of_field(Elaboration& e, const syntax::StartStatement::Item& item);
+/// u_x, u_tx of a field; nothing where the name is none.
+std::optional<Value> value_of_jet(Elaboration& e, const syntax::Expression& x);
+/// u(3 m)
+Value value_at_place(Elaboration& e, const syntax::Expression& x);
+Expected meaning_of(Elaboration& e, const written::OfField& x, Span line);
 void check_statement_counts(Elaboration& e);
 /// Parameters that nothing names, definitions that nothing uses.
 void warn_unused(Elaboration& e);

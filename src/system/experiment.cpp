@@ -155,6 +155,7 @@ void start(Elaboration& e, const syntax::StartStatement& s) {
     if (!t.poisoned) x.start_time = t.scalar();
   }
   for (const auto& item : s.items) {
+    if (start_of_field(e, item)) continue;
     if (is_rate(e, *item.variable)) {
       start_of_rates(e, item);
       continue;

@@ -1,5 +1,6 @@
 #include "system/elaboration.hpp"
 
+#include <maupertuis/field_system.hpp>
 #include <maupertuis/functions.hpp>
 #include <maupertuis/require.hpp>
 
@@ -131,6 +132,7 @@ Value of_vectors(Elaboration& e, const Expression& x, const std::vector<Value>& 
 }  // namespace
 
 Value value_of_call(Elaboration& e, const Expression& x, const Place& place) {
+  if (e.fields && e.fields->system.jet_of_name(x.text)) return value_at_place(e, x);
   if (x.text == "multiplier" || x.text == "reaction") return value_of_reaction(e, x, place);
   const bool vectors = x.text == "dot" || x.text == "cross" || x.text == "norm";
   const bool several = x.text == "min" || x.text == "max";

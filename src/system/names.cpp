@@ -199,7 +199,7 @@ Value value_of_name(Elaboration& e, const Expression& x, const Place& place) {
   Declaration* d = e.table.find(x.text);
   if (d) {
     if (refuse_high_order(e, x)) return Value::poison();
-    if (d->kind == Kind::Coordinate && d->done && !d->value.poisoned) {
+    if ((d->kind == Kind::Coordinate || d->kind == Kind::Field) && d->done && !d->value.poisoned) {
       d->used = true;
       return derivative_of_coordinate(e, d->value, x.primes);
     }
@@ -208,6 +208,7 @@ Value value_of_name(Elaboration& e, const Expression& x, const Place& place) {
     return time_derivative(e, meaning(*d, place), x.primes, x);
   }
   if (e.table.is_lost(x.text)) return Value::poison();
+  if (const std::optional<Value> jet = value_of_jet(e, x)) return *jet;
   if (x.text == "t" && e.system().independent == "t")
     return time_derivative(e, Value::of(e.context.time(), e.time()), x.primes, x);
   if (x.text == "pi") {

@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <set>
-
-/// Statements as a whole: those of a later version, those that may stand once.
+/// Statements as a whole: those that may stand once.
 namespace maupertuis::elaboration {
 namespace {
 
@@ -18,17 +16,6 @@ void once(Elaboration& e, std::optional<Span>& first, Span span, const char* wha
 }
 
 }  // namespace
-
-void refuse_later_statements(Elaboration& e) {
-  std::set<std::string> told;
-  for (const syntax::Statement& s : e.tree.statements) {
-    const auto* later = std::get_if<syntax::LaterStatement>(&s.body);
-    if (!later || !told.insert(later->what).second) continue;
-    if (later->what == "density" && told.count("field")) continue;  // it belongs to the field
-    e.diagnostics.error("E0501", s.span, fmt::format("not supported yet: {}", later->what), "Fields are carried out by a later version.",
-                        "Leave this statement out for now.");
-  }
-}
 
 void check_statement_counts(Elaboration& e) {
   std::optional<Span> gravity, run, output, method, precision, source, sweep, path, independent, impact;
@@ -48,14 +35,6 @@ void check_statement_counts(Elaboration& e) {
 
 namespace {
 
-/// A name in a quantity place may have been read as a unit; a name in a statement of a later version counts as used.
-void mark_used(Elaboration& e, const syntax::ExpressionPtr& x) {
-  if (!x) return;
-  if (x->kind == syntax::Expression::Kind::Name)
-    if (Declaration* d = e.table.find(x->text)) d->used = true;
-  for (const syntax::ExpressionPtr& a : x->arguments) mark_used(e, a);
-}
-
 /// `L = …` is the whole Lagrangian: a T or V beside it has an effect only if L names it.
 void warn_idle_energies(Elaboration& e) {
   using Which = syntax::EnergyStatement::Which;
@@ -73,9 +52,6 @@ void warn_idle_energies(Elaboration& e) {
 
 void warn_unused(Elaboration& e) {
   warn_idle_energies(e);
-  for (const syntax::Statement& s : e.tree.statements)
-    if (const auto* later = std::get_if<syntax::LaterStatement>(&s.body))
-      for (const syntax::ExpressionPtr& x : later->expressions) mark_used(e, x);
   for (const Declaration& d : e.table.declarations()) {
     if (d.kind != Declaration::Kind::Parameter && d.kind != Declaration::Kind::Definition) continue;
     if (d.used) continue;

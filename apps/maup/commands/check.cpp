@@ -1,3 +1,4 @@
+#include "fields_text.hpp"
 #include "command.hpp"
 #include "constraint_text.hpp"
 #include "interrupt.hpp"
@@ -243,6 +244,13 @@ void add_contacts(Json& document, const EquationsOfMotion& equations, const std:
 
 ExitCode check(const ModelOptions& options, Console& console) {
   Study study = open_study(options);
+  if (study.has_fields()) {
+    const bool good = study.field_equations() != nullptr;
+    if (!console.json() && good) console.print(fields_summary(study));
+    Json document = console.json() ? fields_json(study) : Json{};
+    if (console.json()) document["command"] = "check";
+    return finish(console, study, std::move(document));
+  }
   const Model* model = study.model();
   const EquationsOfMotion* equations = study.equations();  // a singular mass matrix is found here
   std::optional<Findings> findings;

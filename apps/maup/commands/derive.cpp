@@ -2,6 +2,7 @@
 #include "derivation_text.hpp"
 #include "emit.hpp"
 #include "equation_forms.hpp"
+#include "fields_text.hpp"
 #include "interrupt.hpp"
 #include "outcome.hpp"
 #include "rates_form.hpp"
@@ -289,8 +290,28 @@ ExitCode derive_modes(const DeriveOptions& options, Study& study, Console& conso
   return finish(console, study, document);
 }
 
+ExitCode derive_fields(const DeriveOptions& options, Study& study, Console& console) {
+  if (!options.emit.empty() || options.modes || options.eliminate || options.form != "standard") {
+    study.diagnostics().error("E0809", {}, "Equations of fields have one form.", {},
+                              "--steps, --latex, --mathml, --plain and --json show it.");
+    return finish_usage(console, study, "derive");
+  }
+  if (!study.field_equations()) return finish(console, study, json_document("derive"));
+  const InterruptScope scope = study.interruptible();
+  if (console.json()) return finish(console, study, fields_json(study));
+  const bool one_notation = options.latex || options.mathml || options.plain;
+  if (one_notation)
+    console.print(document(field_lines(study, options.steps), options.latex    ? Notation::Latex
+                                                              : options.mathml ? Notation::Mathml
+                                                                               : Notation::Plain));
+  else
+    console.print(fields_lecture(study, options.steps));
+  return finish(console, study, {});
+}
+
 ExitCode derive(const DeriveOptions& options, Console& console) {
   Study study = open_study(options.model);
+  if (study.has_fields() && options.emit != "syntax") return derive_fields(options, study, console);
   if (options.modes && (options.steps || options.latex || options.mathml || options.plain || !options.emit.empty() ||
                         options.model.mode)) {
     study.diagnostics().error("E0809", {}, "--modes goes with --form, --eliminate, --certify and --json alone.", {},

@@ -1,4 +1,5 @@
 #include "command.hpp"
+#include "fields_text.hpp"
 #include "invariants_text.hpp"
 #include "outcome.hpp"
 
@@ -14,6 +15,12 @@ struct CommandOptions {
 
 ExitCode invariants_of_model(const CommandOptions& options, Console& console) {
   Study study = open_study(options.model);
+  if (study.has_fields()) {
+    const bool good = study.field_equations() != nullptr;
+    const InterruptScope fields_scope = study.interruptible();
+    if (!console.json() && good) console.print(currents_text(study));
+    return finish(console, study, console.json() ? currents_json(study) : Json{});
+  }
   Json document = json_document("invariants");
   const EquationsOfMotion* equations = study.equations();
   if (!equations || study.refuse_held_integrals() || !study.certificate()) return finish(console, study, document);

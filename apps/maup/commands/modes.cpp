@@ -1,3 +1,4 @@
+#include "fields_text.hpp"
 #include "interrupt.hpp"
 #include "modes_text.hpp"
 #include "orbits_text.hpp"
@@ -24,7 +25,7 @@ namespace {
 struct ModesOptions {
   ModelOptions model;
   std::string at;
-  bool all = false;
+  bool all = false, dispersion = false;
   std::string q, r;  // weights, as written
   std::string sweep, plot, roots, csv;
   std::vector<std::string> outputs;  // what is measured, as written
@@ -275,6 +276,35 @@ bool check_usage(const ModesOptions& o, Diagnostics& diagnostics) {
   return false;
 }
 
+/// Frequencies of small motions, or the dispersion relation.
+ExitCode modes_of_fields(const ModesOptions& options, Study& study, Console& console) {
+  constexpr std::size_t shown = 8;
+  Json document = json_document("modes");
+  if (!study.field_equations()) return finish(console, study, std::move(document));
+  const InterruptScope scope = study.interruptible();
+  if (options.dispersion) {
+    std::string trouble;
+    const std::string relation = dispersion_text(study, trouble);
+    if (relation.empty()) {
+      study.diagnostics().error("E0644", study.field_equations()->system().density_span, "there is no dispersion relation",
+                                trouble, "Waves need a field at rest whose coefficients are the same everywhere and at all times.");
+      return finish(console, study, std::move(document));
+    }
+    document["dispersion"] = relation;
+    if (!console.json()) console.print(relation + "\n");
+    return finish(console, study, std::move(document));
+  }
+  const std::vector<double> found = field_frequencies(*study.field_equations(), shown, study.diagnostics());
+  std::string text = found.empty() ? "" : "Frequencies of small motions about rest\n";
+  document["frequencies"] = Json::array();
+  for (const double omega : found) {
+    document["frequencies"].push_back(omega);
+    text += omega < 0 ? fmt::format("  grows at the rate {:.12g} 1/s\n", -omega) : fmt::format("  {:.12g} rad/s  {:.12g} Hz\n", omega, omega / (2 * std::acos(-1.0)));
+  }
+  if (!console.json()) console.print(text);
+  return finish(console, study, std::move(document));
+}
+
 ExitCode modes(const ModesOptions& options, Console& console) {
   Study study = open_study(options.model);
   if (!study.wrong() && !check_usage(options, study.diagnostics())) {
@@ -284,6 +314,11 @@ ExitCode modes(const ModesOptions& options, Console& console) {
   if (!options.at.empty() && !parse_time(options.at)) study.override_with(OverrideKind::At, "--at", options.at);
   if (!options.sweep.empty()) study.override_with(OverrideKind::Sweep, "--sweep", options.sweep);
   for (const std::string& y : options.outputs) study.ask("--y", y);
+  if (study.has_fields()) return modes_of_fields(options, study, console);
+  if (options.dispersion && !study.wrong()) {
+    study.diagnostics().error("E0809", {}, "--dispersion asks for waves, and the model has no field.", {}, "Leave it out.");
+    return finish_usage(console, study, "modes");
+  }
   const EquationsOfMotion* equations = study.equations();
   if (!equations || study.refuse_held_integrals() || (options.asks_of_one_point() && study.refuse_modes()) ||
       study.refuse_without_time() || !study.certificate())
@@ -335,6 +370,7 @@ void add_modes(CommandLine& line) {
   command.add_option("--roots", options->roots, "The eigenvalues of the sweep in the complex plane: .svg")
       ->type_name("FILE");
   command.add_option("--csv", options->csv, "The locus as numbers: .csv")->type_name("FILE");
+  command.add_flag("--dispersion", options->dispersion, "The dispersion relation of a field, in symbols");
   command.add_flag("--all", options->all, "The modes of all points that were found, not of the first four alone");
 }
 

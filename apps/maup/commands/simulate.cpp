@@ -1,3 +1,4 @@
+#include "fields_text.hpp"
 #include "columns.hpp"
 #include "extended_text.hpp"
 #include "numbers.hpp"
@@ -339,8 +340,22 @@ ExitCode simulate_extended_model(const SimulateOptions& options, const std::stri
 }
 
 /// The precision of the command line, else that of the model. A word that is none is for the model to refuse.
+/// The run of fields.
+ExitCode simulate_fields(const SimulateOptions& options, Study& study, Console& console) {
+  Json document = json_document("simulate");
+  check_output_files({{"-o", options.output, FileKind::Table}}, options.model.path, study.diagnostics());
+  const SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
+  if (!study.field_equations()) return finish(console, study, std::move(document));
+  const auto run = run_of_fields(study, settings, !options.output.empty());
+  if (!run) return finish(console, study, std::move(document));
+  if (!options.output.empty()) write_rows(options.output, run->trajectory, study.diagnostics());
+  if (!console.json()) console.print(field_run_text(*run));
+  return finish(console, study, field_run_json(*run));
+}
+
 ExitCode simulate_in_any_precision(const SimulateOptions& options, Console& console) {
   Study study = open_study(options.model);
+  if (study.has_fields()) return simulate_fields(options, study, console);
   const std::string digits = options.precision ? *options.precision : precision_of(study.tree());
   return digits == "quad" || digits == "100" ? simulate_extended_model(options, digits, study, console)
                                              : simulate_model(options, study, console);

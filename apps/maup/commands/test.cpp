@@ -64,7 +64,7 @@ FileOutcome test_file(const std::string& path, const SimulationOptions& settings
     if (verification->failed() > 0) outcome.code = ExitCode::ExpectationFailed;
   }
   // Errors that the model expects are no errors of the test.
-  const bool expected_errors = verification && !study.equations();
+  const bool expected_errors = verification && !study.has_fields() && !study.equations();
   if (study.wrong() && !expected_errors)
     outcome.code = unreadable(study.diagnostics()) ? ExitCode::Usage : ExitCode::ModelWrong;
 

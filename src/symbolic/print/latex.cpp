@@ -219,6 +219,21 @@ std::string write_indexed(const Layout& l) {
   return (simple ? write(l.parts[0]) : bracketed(l.parts[0])) + "_" + braces(joined(below, ","));
 }
 
+/// ∂a/∂b; of several variables, those that follow each other alike: ∂³u/∂t∂x².
+std::string write_partial(const Layout& l) {
+  const std::size_t order = l.parts.size() - 1;
+  std::string below;
+  for (std::size_t i = 1; i <= order;) {
+    const std::string by = write(l.parts[i]);
+    std::size_t times = 1;
+    while (i + times <= order && write(l.parts[i + times]) == by) ++times;
+    below += (below.empty() ? "\\partial " : "\\, \\partial ") + by + (times > 1 ? "^{" + std::to_string(times) + "}" : "");
+    i += times;
+  }
+  const std::string power = order > 1 ? "^{" + std::to_string(order) + "} " : " ";
+  return "\\frac{\\partial" + power + write(l.parts[0]) + "}{" + below + "}";
+}
+
 std::string write_rate(const Layout& l) {
   const std::string d = "\\mathrm{d}";
   return "\\frac" + braces(l.parts[0].empty() ? d : d + " " + write(l.parts[0])) + braces(d + " " + write(l.parts[1]));
@@ -297,7 +312,7 @@ std::string write_unsigned(const Layout& l) {
     case Shape::Indexed:
       return write_indexed(l);
     case Shape::Partial:
-      return "\\frac{\\partial " + write(l.parts[0]) + "}{\\partial " + write(l.parts[1]) + "}";
+      return write_partial(l);
     case Shape::Rate:
       return write_rate(l);
     case Shape::Braces:

@@ -205,8 +205,19 @@ std::string write_indexed(const Layout& l) {
 }
 
 std::string write_partial(const Layout& l) {
-  const auto side = [](const Layout& part) { return row("<mo>∂</mo>" + write(part)); };
-  return tag("mfrac", side(l.parts[0]) + side(l.parts[1]));
+  const auto raised = [](const std::string& base, std::size_t times) {
+    return times > 1 ? tag("msup", base + "<mn>" + std::to_string(times) + "</mn>") : base;
+  };
+  const std::size_t order = l.parts.size() - 1;
+  std::string below;
+  for (std::size_t i = 1; i <= order;) {
+    const std::string by = write(l.parts[i]);
+    std::size_t times = 1;
+    while (i + times <= order && write(l.parts[i + times]) == by) ++times;
+    below += "<mo>∂</mo>" + raised(by, times);
+    i += times;
+  }
+  return tag("mfrac", row(raised("<mo>∂</mo>", order) + write(l.parts[0])) + row(below));
 }
 
 std::string write_rate(const Layout& l) {

@@ -125,8 +125,11 @@ double unsigned_width(const Layout& l) {
       return word_width(l.text);
     case Shape::Indexed:
       return width(l.parts[0]) + index_size * (sum_of_widths(l.parts, comma) - width(l.parts[0])) + 2 * bracket;
-    case Shape::Partial:
-      return bar_overhang + 0.6 + std::max(width(l.parts[0]), width(l.parts[1]));
+    case Shape::Partial: {
+      double below = 0;
+      for (std::size_t i = 1; i < l.parts.size(); ++i) below += 0.6 + width(l.parts[i]);
+      return bar_overhang + std::max(0.6 + width(l.parts[0]), below);
+    }
     case Shape::Rate:
       return bar_overhang + 0.6 + std::max(width(l.parts[0]), width(l.parts[1]));
     case Shape::Braces:

@@ -1,3 +1,4 @@
+#include <maupertuis/field_statements.hpp>
 #include <doctest/doctest.h>
 
 #include "support.hpp"
@@ -309,21 +310,35 @@ TEST_CASE("contacts, friction, events and impacts are read whole") {
   CHECK(codes("event hit when x = 0 : jump") == "E0111");
 }
 
-TEST_CASE("statements for later are read whole") {
+TEST_CASE("statements of fields are read whole") {
   const char* const texts[] = {
       "field u(x) : angle on x = -20 m .. 20 m cells 800 boundary u_x = 0",
+      "field a(x), b(x) : number on x = 0 .. 2 cells 8 order 7 boundary periodic",
       "density = 1/2 u'^2 - 1/2 c^2 u_x^2",
+      "density += 1/2 u_tx^2",
+      "dissipation density = 1/2 b u'^2",
+      "boundary left : u = 0, u_x = 0",
+      "force density u = f",
+      "expect natural T u_x = 0",
+      "expect solution u = sin(x - t)",
+      "expect total u'^2 at 2 s = 3 J ± 1e-9",
+      "expect current u' flux -u_x",
+      "expect dispersion ω^2 = c^2 k^2",
+      "expect frequencies of u : 1 rad/s, 2 rad/s rel 1e-9",
   };
   for (const char* text : texts) {
     CAPTURE(text);
     Parsed parsed(std::string(text) + "\n");
     CHECK_MESSAGE(parsed.fine(), parsed.messages());
     REQUIRE(parsed.tree.statements.size() == 1);
-    CHECK(std::holds_alternative<LaterStatement>(parsed.tree.statements[0].body));
     CHECK(formatted(std::string(text) + "\n") == std::string(text) + "\n");
   }
   CHECK(codes("sweep x = 0 .. 3") == "E0127");
-  CHECK(only<LaterStatement>("field u(x) : angle").names.size() == 2);
+  const auto field = only<FieldStatement>("field a(x, y), b(x, y) : angle");
+  const auto& declared = std::get<FieldDeclaration>(field.said->body);
+  CHECK(declared.items.size() == 2);
+  CHECK(declared.items[1].variables.size() == 2);
+  CHECK(declared.items[0].kind.text == "angle");
 }
 
 TEST_CASE("lines continue in brackets and by indentation") {

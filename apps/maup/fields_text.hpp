@@ -1,0 +1,31 @@
+#pragma once
+#include "json.hpp"
+#include "notation.hpp"
+#include "open_study.hpp"
+
+#include <maupertuis/field_run.hpp>
+
+#include <string>
+#include <vector>
+
+namespace maupertuis::app {
+
+/// What `maup derive` says of fields: density, equations, natural conditions, energy, certificate.
+std::string fields_lecture(Study& study, bool with_steps);
+/// The equations alone, then the natural conditions.
+std::vector<FormulaLine> field_lines(Study& study, bool with_steps);
+Json fields_json(Study& study);
+/// The summary of `maup check`.
+std::string fields_summary(Study& study);
+/// Conservation laws: `maup invariants`.
+std::string currents_text(Study& study);
+Json currents_json(Study& study);
+
+/// The run of the experiment; nothing where there is none, and the diagnostics say why. `rows`: with its trajectory.
+std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOptions& settings, bool rows);
+/// The dispersion relation; empty, and `trouble`, where there is none.
+std::string dispersion_text(Study& study, std::string& trouble);
+std::string field_run_text(const FieldRunResult& run);
+Json field_run_json(const FieldRunResult& run);
+
+}  // namespace maupertuis::app

@@ -1,0 +1,79 @@
+#pragma once
+#include <maupertuis/certificate.hpp>
+#include <maupertuis/field_system.hpp>
+#include <maupertuis/layout.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+/// fields : FieldModel → FieldEquations → Certificate, FieldCurrents, dispersion. docs/theory/fields.md.
+namespace maupertuis {
+
+/// What follows at an end x_i = const from the variation of a field: p + (what acts there) = 0, m = 0.
+struct NaturalCondition {
+  std::size_t field = 0, along = 0;  // space variable
+  bool moment = false;               // m, the factor of δφ_x; else p, the factor of δφ
+  Expr value;
+};
+
+/// The field equations of a density, each a residual as in mechanics:
+///
+///     ∂_μ (∂ℒ/∂φ_μ) − ∂_μ∂_ν (∂ℒ/∂φ_μν) − ∂ℒ/∂φ + ∂𝒟/∂φ' − f = 0
+///
+/// and B^μ of δℒ(η) − E·η = ∂_μ B^μ, E = δℒ/δφ, written out in the jets of fields η that have the names of the fields
+/// with a δ.
+struct FieldEquations {
+  std::shared_ptr<const FieldModel> model;
+  std::vector<std::size_t> varied;         // fields that are not given
+  std::vector<Expr> euler;                 // E_a = δℒ/δφ_a                                    [varied]
+  std::vector<Expr> residuals;             // [varied]
+  std::vector<NaturalCondition> natural;   // of all space variables; p before m
+  std::vector<Expr> boundary_terms;        // B^μ: space variables, then t
+  FieldSystem with_variations;             // the fields and, behind them, their variations η
+  ReadingOrder order;
+
+  const FieldSystem& system() const { return model->system; }
+  std::size_t variation_of(std::size_t varied_index) const { return system().fields.size() + varied_index; }
+};
+
+/// Derives them. N0640 where no derivative in time stands in them; error E0641 where short waves grow without bound (elliptic in time).
+std::optional<FieldEquations> field_equations(std::shared_ptr<const FieldModel> model, Diagnostics& diagnostics);
+
+/// Checks the equations and B against ℒ along random polynomial fields over prime fields.
+Certificate certify(const FieldEquations& equations, std::uint64_t seed = 0x6d617570);
+
+/// A conservation law ∂_t density + ∂_i flux_i = Σ Q_a E_a, identically.
+struct FieldCurrent {
+  std::string name;  // "energy", "momentum along x", "angular momentum about z", "boost along x", "charge", …
+  std::string meaning;
+  std::vector<Expr> characteristic;  // Q_a                                        [varied]
+  Expr density;
+  std::vector<Expr> fluxes;          // [space variables]
+  bool certified = false;            // by the zero test
+};
+
+struct FieldCurrents {
+  std::vector<FieldCurrent> currents;
+  std::string basis;            // what symmetries were looked for among
+  std::vector<Expr> symmetric;  // the symmetric stress-energy tensor T^{μν}, μ, ν over t, x, …; empty: none
+};
+FieldCurrents field_currents(const FieldEquations& equations);
+
+/// Whether ∂_t density + ∂_i flux_i vanishes on solutions, decided by its characteristic: the difference is written as
+/// Q·E with Q of the second derivatives in time; `trouble` says why it is not.
+bool is_current(const FieldEquations& equations, Expr density, const std::vector<Expr>& fluxes, std::string& trouble);
+
+/// A complex expression.
+struct ComplexExpr {
+  Expr re, im;
+};
+/// The determinant of the equations linearized about φ = 0 for waves exp(i(k·x − ω t)), in the symbols of the model.
+/// Nothing, and `trouble`, where φ = 0 is no solution or the coefficients depend on x or t.
+std::optional<ComplexExpr> dispersion(const FieldEquations& equations, std::string& trouble);
+
+/// e with derivatives of fields typeset with ∂, and named u_tx in plain text.
+Layout field_layout(const FieldSystem& system, Layout layout);
+ReadableForm readable_residual(const FieldEquations& equations, std::size_t varied_index);
+
+}  // namespace maupertuis

@@ -1,0 +1,329 @@
+#include <maupertuis/evaluate.hpp>
+#include <maupertuis/field_run.hpp>
+#include <maupertuis/field_verification.hpp>
+
+#include "fields/on_shell.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+/// expect and claim of fields.
+namespace maupertuis {
+namespace {
+
+namespace fe = field_expectation;
+
+void say(ExpectationResult& result, const ZeroTest& test, const char* proved, const char* failed) {
+  result.passed = test.verdict == Verdict::Zero;
+  result.message = test.verdict == Verdict::Zero      ? proved
+                   : test.verdict == Verdict::Nonzero ? failed
+                                                      : "It could not be decided: " + test.reason;
+}
+
+class FieldVerifier {
+ public:
+  FieldVerifier(const Model& model, const FieldEquations& equations, const SimulationOptions& options,
+                Diagnostics& diagnostics)
+      : model_(model), equations_(equations), s_(equations.system()), shell_(equations), options_(options), diagnostics_(diagnostics) {}
+
+  Verification carry_out(const SourceText& source) {
+    Verification out;
+    for (const Expectation& e : model_.experiment.expectations) {
+      add(out, source, e.span, e.text, e.claim);
+      line_ = out.results.size() - 1;
+      std::visit([&](const auto& kind) { decide(kind, out.results.back()); }, e.kind);
+    }
+    for (const FieldExpectationLine& e : equations_.model->expectations) {
+      add(out, source, e.span, e.text, false);
+      line_ = out.results.size() - 1;
+      std::visit([&](const auto& kind) { decide(kind, out.results.back()); }, e.kind);
+    }
+    carry_out_run(out);
+    std::stable_sort(out.results.begin(), out.results.end(), [](const auto& a, const auto& b) { return a.line < b.line; });
+    return out;
+  }
+
+ private:
+  static void add(Verification& out, const SourceText& source, Span span, const std::string& text, bool claim) {
+    ExpectationResult result;
+    result.line = source.locate(span.begin).line;
+    result.text = text;
+    result.claim = claim;
+    out.results.push_back(std::move(result));
+  }
+
+  std::string text_of(Expr e) const {
+    return to_plain(field_layout(s_, lay_out(readable(e, equations_.order), equations_.order)));
+  }
+
+  template <class Kind>
+  void decide(const Kind&, ExpectationResult& result) {
+    result.message = "Not supported yet for fields.";
+  }
+  void decide(const expectation::Error& e, ExpectationResult& result) {
+    result.expected = "error " + e.code;
+    result.actual = "no error";
+    result.message = "The model has no mistake that gives this error.";
+  }
+  void decide(const expectation::Equation& e, ExpectationResult& result) {
+    if (!shell_.complete()) {
+      result.message = "An equation cannot be solved for a derivative of its own.";
+      return;
+    }
+    const auto rest = shell_.reduced(expand_time_derivatives(e.left - e.right));
+    if (!rest) {
+      result.message = "It could not be decided: derivatives come up without end.";
+      return;
+    }
+    say(result, zero_test(*rest), "It follows from the field equations.", "It does not follow from the field equations.");
+    if (result.passed) return;
+    result.expected = "0";
+    result.actual = text_of(*rest);
+  }
+
+  /// Whether `c` is a natural condition up to a factor that no field stands in.
+  bool is_multiple(Expr c, Expr natural) const {
+    c = s_.expanded(expand_time_derivatives(c)), natural = s_.expanded(natural);
+    for (const Expr& jet : s_.jets_in(natural)) {
+      const Expr slope = differentiate(natural, jet), other = differentiate(c, jet);
+      if (slope.is_zero() || zero_test(other).verdict == Verdict::Zero) continue;
+      if (!s_.jets_in(readable(other / slope, equations_.order).value).empty()) continue;
+      if (zero_test(c * slope - natural * other).verdict == Verdict::Zero) return true;
+    }
+    return false;
+  }
+  void decide(const fe::Natural& e, ExpectationResult& result) {
+    for (const Expr& c : e.conditions) {
+      const bool found = std::any_of(equations_.natural.begin(), equations_.natural.end(),
+                                     [&](const NaturalCondition& n) { return is_multiple(c, n.value); });
+      if (found) continue;
+      result.actual = text_of(c) + " = 0 is none of";
+      for (const NaturalCondition& n : equations_.natural) result.expected += (result.expected.empty() ? "" : "; ") + text_of(n.value) + " = 0";
+      result.message = "The natural conditions are those that the variation leaves at a free end.";
+      return;
+    }
+    result.passed = true;
+    result.message = "The variation leaves these conditions at a free end.";
+  }
+
+  // ------------------------------------------------------------------------------------------------------ the run
+
+  double number_of(Expr e) const {
+    if (!e) return 0;
+    Bindings values;
+    for (const Parameter& p : equations_.model->parameters) values[p.symbol] = p.si_value;
+    return evaluate(s_.expanded(e), values);
+  }
+  void ask(Expr value, bool total, Expr time, const expectation::Number& expected) {
+    questions_.push_back({s_.expanded(value), total, number_of(time)});
+    asked_.push_back({line_, expected});
+  }
+  void decide(const expectation::ValueAt& e, ExpectationResult&) { ask(e.subject, false, e.time, e.expected); }
+  void decide(const fe::Total& e, ExpectationResult&) { ask(e.density, true, e.time, e.expected); }
+  void decide(const expectation::EnergyConserved& e, ExpectationResult&) { energy_.push_back({line_, e.tolerance}); }
+
+  void decide(const fe::Frequencies& e, ExpectationResult& r) {
+    const std::vector<double> found = field_frequencies(equations_, e.values.size(), diagnostics_);
+    r.passed = found.size() == e.values.size();
+    const std::string unit = e.unit.name.empty() ? " rad/s" : " " + e.unit.name;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const double expected = number_of(e.values[i]);
+      const bool close = std::abs(found[i] - expected) <= allowed(e.tolerance, expected);
+      if (!close && r.passed) r.message = fmt::format("Frequency {} is off by {:.3g}{}.", i + 1, (found[i] - expected) / e.unit.factor, unit);
+      r.passed = r.passed && close;
+      r.actual += fmt::format("{}{:.14g}", i ? ", " : "", found[i] / e.unit.factor);
+      r.expected += fmt::format("{}{:.14g}", i ? ", " : "", expected / e.unit.factor);
+    }
+    r.actual += unit, r.expected += unit;
+  }
+
+  double allowed(const expectation::Tolerance& t, double size) const {
+    if (!t.size) return 1e-9 * std::abs(size);
+    return number_of(t.size) * (t.relative ? std::abs(size) : 1);
+  }
+  void carry_out_run(Verification& out) {
+    if (questions_.empty() && energy_.empty()) return;
+    FieldRunOptions options;
+    options.interrupt = options_.interrupt;
+    options.duration = options_.duration ? *options_.duration : number_of(model_.experiment.duration);
+    for (const FieldQuestion& q : questions_) options.duration = std::max(options.duration, q.time);
+    const auto run = run_fields(equations_, questions_, options, diagnostics_);
+    if (!run) {
+      for (const auto& [line, expected] : asked_) out.results[line].message = "The run did not come to it.";
+      for (const auto& [line, tolerance] : energy_) out.results[line].message = "The run did not come to it.";
+      return;
+    }
+    for (std::size_t i = 0; i < asked_.size(); ++i) judge(out.results[asked_[i].line], asked_[i].expected, run->answers[i]);
+    for (const auto& [line, tolerance] : energy_) {
+      ExpectationResult& r = out.results[line];
+      const double limit = tolerance.size ? number_of(tolerance.size) : 1e-12;
+      r.actual = run->energy_drift < 0 ? "forces act: the energy is not conserved" : fmt::format("{:.3g}", run->energy_drift);
+      r.expected = fmt::format("at most {:.3g} of its terms", limit);
+      r.passed = run->energy_drift >= 0 && run->energy_drift <= limit;
+    }
+  }
+  void judge(ExpectationResult& r, const expectation::Number& e, const FieldRunResult::Value& value) const {
+    const double expected = number_of(e.value), tolerance = allowed(e.tolerance, expected);
+    const ValueVerdict verdict = value_verdict(value.value, expected, tolerance, value.error);
+    const std::string unit = e.unit.name.empty() ? "" : " " + e.unit.name;
+    r.passed = verdict.passed, r.beyond_digits = verdict.beyond_digits;
+    r.actual = fmt::format("{:.16g}{}", value.value / e.unit.factor, unit);
+    r.expected = fmt::format("{:.16g}{}", expected / e.unit.factor, unit);
+    r.tolerance = fmt::format("± {:.3g}{}", tolerance / e.unit.factor, unit);
+    r.uncertainty = fmt::format("± {:.2g}{}", value.error / e.unit.factor, unit);
+    if (!r.passed) r.message = fmt::format("It is off by {:.3g}{}; the error of mesh and steps is estimated as {:.2g}{}.", (value.value - expected) / e.unit.factor, unit, value.error / e.unit.factor, unit);
+  }
+
+  // ---------------------------------------------------------------------------------------------------- solutions
+
+  Expr inserted(Expr residual, const fe::Solution& e) const {
+    ExprMap map;
+    for (const Expr& symbol : s_.jets_in(residual)) {
+      const FieldJet jet = *s_.jet_of(symbol);
+      const auto at = std::find(e.fields.begin(), e.fields.end(), jet.field);
+      Expr value = at == e.fields.end() ? s_.fields[jet.field].formula : e.values[static_cast<std::size_t>(at - e.fields.begin())];
+      if (!value) continue;
+      for (std::size_t x = 0; x < s_.space.size(); ++x)
+        for (int k = 0; k < jet.space[x]; ++k) value = differentiate(value, s_.space[x].symbol);
+      for (int k = 0; k < jet.time; ++k) value = differentiate(value, s_.context->time());
+      map[symbol] = value;
+    }
+    return s_.expanded(substitute(s_.expanded(residual), map));
+  }
+  /// The largest residual at random places and times, as a part of the largest of its terms; −1: nowhere defined.
+  double largest_residual(const fe::Solution& e) const {
+    std::vector<std::vector<Expr>> residuals;  // term by term
+    for (const Expr& written : equations_.residuals) {
+      const Expr flat = expand(s_.expanded(written));
+      const Expr r = flat ? flat : s_.expanded(written);
+      residuals.emplace_back();
+      for (std::size_t i = 0; r.is(Kind::Sum) && i < r.size(); ++i) residuals.back().push_back(inserted(r[i], e));
+      if (residuals.back().empty()) residuals.back().push_back(inserted(r, e));
+    }
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> unit(0, 1);
+    Bindings values;
+    for (const Parameter& p : equations_.model->parameters) values[p.symbol] = p.si_value;
+    double worst = -1;
+    for (int point = 0; point < 24; ++point) {
+      values[s_.context->time()] = 0.5 + unit(random);
+      for (const SpaceVariable& x : s_.space) values[x.symbol] = x.from ? evaluate(s_.expanded(x.from), values) + (evaluate(s_.expanded(x.to), values) - evaluate(s_.expanded(x.from), values)) * unit(random) : 2 * unit(random) - 1;
+      for (const std::vector<Expr>& terms : residuals) {
+        double size = 1e-300, value = 0;
+        for (const Expr& term : terms) {
+          const double one = evaluate(term, values);
+          value += one;
+          size = std::max(size, std::abs(one));
+        }
+        if (std::isfinite(value)) worst = std::max(worst, std::abs(value) / size);
+      }
+    }
+    return worst;
+  }
+  void decide(const fe::Solution& e, ExpectationResult& result) {
+    std::vector<Expr> residuals;
+    for (const Expr& r : equations_.residuals) residuals.push_back(inserted(r, e));
+    const ZeroTest test = zero_test(residuals);
+    if (test.verdict == Verdict::Zero) {
+      result.passed = true;
+      result.message = "It solves the field equations identically.";
+      return;
+    }
+    const double worst = largest_residual(e);
+    result.expected = "residual below 1e-11 of its terms";
+    result.actual = worst < 0 ? "nothing" : fmt::format("{:.2g} of the largest term", worst);
+    result.passed = worst >= 0 && worst < 1e-11;
+    result.message = result.passed ? fmt::format("Inserted at 24 random places it leaves at most {:.1g} of its terms; no identity is proved.", worst)
+                                   : "It does not solve the field equations.";
+  }
+
+  void decide(const fe::Current& e, ExpectationResult& result) {
+    std::string trouble;
+    result.passed = is_current(equations_, e.density, e.fluxes, trouble);
+    result.message = trouble;
+  }
+
+  void decide(const fe::Dispersion& e, ExpectationResult& result) {
+    std::string trouble;
+    const auto relation = dispersion(equations_, trouble);
+    if (!relation) {
+      result.message = trouble;
+      return;
+    }
+    const Expr omega = equations_.model->omega;
+    const PowerOf left = split_power(e.left);
+    const Expr roots[] = {e.right};
+    const std::vector<Expr> below = symbols_of(roots);
+    if (left.base != omega || left.exponent == Rational(0) || std::find(below.begin(), below.end(), omega) != below.end()) {
+      result.message = "A dispersion relation is written ω = … or ω^2 = ….";
+      return;
+    }
+    const Expr root = pow(e.right, Rational(1) / left.exponent);
+    std::vector<Expr> parts;
+    for (const Expr& part : {relation->re, relation->im}) parts.push_back(s_.expanded(substitute(part, {{omega, root}})));
+    say(result, zero_test(parts), "Waves of the linearized equations obey it.", "Waves of the linearized equations do not obey it.");
+    if (!result.passed) result.actual = to_plain(lay_out(readable(relation->re, equations_.order), equations_.order)) + " = 0";
+    if (!result.passed) result.expected = to_plain(lay_out(readable(e.left - e.right, equations_.order), equations_.order)) + " = 0";
+  }
+
+  const Model& model_;
+  const FieldEquations& equations_;
+  const FieldSystem& s_;
+  OnShell shell_;
+  const SimulationOptions& options_;
+  Diagnostics& diagnostics_;
+  struct Asked {
+    std::size_t line = 0;
+    expectation::Number expected;
+  };
+  struct AskedEnergy {
+    std::size_t line = 0;
+    expectation::Tolerance tolerance;
+  };
+  std::size_t line_ = 0;
+  std::vector<FieldQuestion> questions_;
+  std::vector<Asked> asked_;
+  std::vector<AskedEnergy> energy_;
+};
+
+}  // namespace
+
+Verification verify_fields(const Model& model, const FieldEquations& equations, const SourceText& source,
+                           const SimulationOptions& options, Diagnostics& diagnostics) {
+  return FieldVerifier(model, equations, options, diagnostics).carry_out(source);
+}
+
+bool is_current(const FieldEquations& equations, Expr density, const std::vector<Expr>& fluxes, std::string& trouble) {
+  const FieldSystem& s = equations.system();
+  std::vector<Expr> parts{s.total_derivative(s.expanded(density), s.space.size())};
+  for (std::size_t x = 0; x < fluxes.size(); ++x) parts.push_back(s.total_derivative(s.expanded(fluxes[x]), x));
+  const Expr divergence = s.context->sum(parts);
+  const OnShell shell(equations);
+  const auto rest = shell.complete() ? shell.reduced(divergence) : std::nullopt;
+  if (!rest) {
+    trouble = "It could not be decided: the equations cannot be solved for derivatives of their own.";
+    return false;
+  }
+  const ZeroTest test = zero_test(*rest);
+  if (test.verdict != Verdict::Zero) {
+    trouble = test.verdict == Verdict::Nonzero ? "Its divergence does not vanish on solutions." : "It could not be decided: " + test.reason;
+    return false;
+  }
+  trouble = "Its divergence vanishes on all solutions.";
+  // ∂·j = Q·E with Q of the coefficients of the derivatives that the equations are solved for.
+  Expr difference = divergence;
+  std::string q;
+  for (std::size_t a = 0; a < equations.varied.size(); ++a) {
+    const Expr factor = differentiate(divergence, shell.leading(a)) / shell.coefficient(a);
+    difference = difference - factor * s.expanded(equations.residuals[a]);
+    q += (a ? ", " : "") + to_plain(field_layout(s, lay_out(readable(-factor, equations.order), equations.order)));
+  }
+  const bool forces = s.dissipation || std::any_of(s.forces.begin(), s.forces.end(), [](const Expr& f) { return static_cast<bool>(f); });
+  if (!forces && zero_test(difference).verdict == Verdict::Zero) trouble = "∂_μ j^μ = Q·E identically, Q = " + q + ".";
+  return true;
+}
+
+}  // namespace maupertuis

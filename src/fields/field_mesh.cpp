@@ -1,0 +1,485 @@
+#include "fields/field_mesh.hpp"
+
+#include <maupertuis/evaluate.hpp>
+#include <maupertuis/repeated_evaluation.hpp>
+
+#include "fields/wide_lanes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace maupertuis {
+namespace {
+
+constexpr std::size_t kOrder = 8;  // of Taylor steps: on the imaginary axis stable up to hω = 3.40
+
+using Side = BoundaryCondition::Side;
+
+void unsupported(Diagnostics& diagnostics, Span span, const std::string& what) {
+  diagnostics.error("E0508", span, fmt::format("not supported yet: a run of {}", what),
+                    "Runs are those of fields of one space variable on a bounded domain whose density holds u, u' and u_x, with "
+                    "u' in it squared.",
+                    "`maup derive`, `maup invariants` and expectations about formulas work for all fields.");
+}
+
+Expr jet_at(const FieldSystem& s, std::size_t field, int x, int t) { return s.jet_symbol({field, {x}, t}); }
+
+}  // namespace
+
+std::optional<PointForm> point_form(const FieldEquations& equations, Diagnostics& diagnostics) {
+  const FieldSystem& s = equations.system();
+  if (s.space.size() != 1) return unsupported(diagnostics, s.density_span, "fields of several space variables"), std::nullopt;
+  if (!s.space.front().from) return unsupported(diagnostics, s.density_span, "a field without a domain"), std::nullopt;
+  ExprMap given;
+  for (std::size_t f = 0; f < s.fields.size(); ++f) {
+    if (!s.fields[f].given) continue;
+    if (!s.fields[f].formula) return unsupported(diagnostics, s.fields[f].span, "an input without a formula"), std::nullopt;
+    given[jet_at(s, f, 0, 0)] = s.fields[f].formula;
+  }
+  const auto plain = [&](Expr e) { return s.expanded(substitute(s.expanded(e), given)); };
+  const Expr density = plain(s.density), dissipation = s.dissipation ? plain(s.dissipation) : s.context->number(0);
+  std::vector<Expr> both{density, dissipation};
+  for (const Expr& f : s.forces)
+    if (f) both.push_back(plain(f));
+  for (const Expr& e : both)
+    for (const Expr& jet : s.jets_in(e))
+      if (s.jet_of(jet)->space[0] > 1 || s.jet_of(jet)->order() > 2 || (e == density && s.jet_of(jet)->order() > 1))
+        return unsupported(diagnostics, s.density_span, "a density with second derivatives"), std::nullopt;
+  PointForm out;
+  out.fields = equations.varied.size();
+  const Expr x = s.space.front().symbol, t = s.context->time();
+  for (const std::size_t f : equations.varied)
+    for (const auto& [dx, dt] : {std::pair{0, 0}, {0, 1}, {1, 0}, {1, 1}}) out.inputs.push_back(jet_at(s, f, dx, dt));
+  out.inputs.push_back(x), out.inputs.push_back(t);
+  std::vector<Expr> energy{-density};
+  for (const std::size_t f : equations.varied) {
+    const Expr v = jet_at(s, f, 0, 1), p = differentiate(density, v);
+    std::vector<Expr> g{differentiate(p, t), -differentiate(density, jet_at(s, f, 0, 0)), differentiate(dissipation, v)};
+    for (const std::size_t other : equations.varied) {
+      out.a.push_back(differentiate(p, jet_at(s, other, 0, 1)));
+      g.push_back(differentiate(p, jet_at(s, other, 0, 0)) * jet_at(s, other, 0, 1));
+      g.push_back(differentiate(p, jet_at(s, other, 1, 0)) * jet_at(s, other, 1, 1));
+    }
+    if (s.forces[f]) g.push_back(-plain(s.forces[f]));
+    out.g.push_back(s.context->sum(g));
+    out.s.push_back(differentiate(density, jet_at(s, f, 1, 0)) - differentiate(dissipation, jet_at(s, f, 1, 1)));
+    energy.push_back(v * p);
+  }
+  out.energy = s.context->sum(energy);
+  bool forced = !dissipation.is_zero() || !differentiate(density, t).is_zero() || !s.end_forces.empty();
+  for (const Expr& f : s.forces) forced = forced || static_cast<bool>(f);
+  for (const BoundaryCondition& b : s.boundary) forced = forced || s.context->depends_on_time(b.value.id());
+  out.conserves = !forced;
+  return out;
+}
+
+FieldMesh::FieldMesh(const FieldEquations& equations, const PointForm& form, int cells, int order)
+    : equations_(equations), s_(equations.system()), form_(form), cells_(cells), p_(order),
+      lanes_(static_cast<std::size_t>(cells) * (static_cast<std::size_t>(order) + 1)), fields_(form.fields), rule_(order) {
+  std::unordered_map<Expr, double, ExprHash> constants;
+  for (const Parameter& p : equations.model->parameters) constants[p.symbol] = values_[p.symbol] = p.si_value;
+  left_ = value_of(s_.space.front().from, {});
+  width_ = (value_of(s_.space.front().to, {}) - left_) / cells;
+  std::vector<Expr> roots;
+  for (const auto* part : {&form.a, &form.g, &form.s}) roots.insert(roots.end(), part->begin(), part->end());
+  const std::vector<Expr> sizes{form.energy};
+  auto series = LaneSeries::make(roots, form.inputs, constants, trouble_);
+  auto energies = LaneSeries::make(sizes, form.inputs, constants, trouble_);
+  if (!series || !energies) return;
+  series_ = std::move(*series);
+  energies_ = std::move(*energies);
+  energies_.resize(lanes_, 1);
+  for (std::size_t f = 0; f < fields_; ++f)
+    for (const Expr& root : roots) {
+      const Expr one[] = {root};
+      const std::vector<Expr> below = symbols_of(one);
+      needs_rate_ = needs_rate_ || std::find(below.begin(), below.end(), form.inputs[4 * f + 3]) != below.end();
+    }
+  series_.resize(lanes_, kOrder + 2);
+  constant_mass_ = true;
+  for (std::size_t i = 0; i < form.a.size(); ++i) {
+    const Expr a[] = {form.a[i]};
+    for (const Expr& symbol : symbols_of(a)) constant_mass_ = constant_mass_ && !s_.jet_of(symbol) && symbol.role() != Role::Time;
+  }
+  double* x = series_.input(4 * fields_, 0);
+  for (int j = 0; j <= p_; ++j)
+    for (int e = 0; e < cells_; ++e) x[local(j, e)] = left_ + width_ * (e + 0.5 * (1 + rule_.x[static_cast<std::size_t>(j)]));
+  const auto hold = [&](Side side, std::size_t field, Expr value, bool force) {
+    Held held{side == Side::Right, 0, {}, force};
+    while (equations_.varied[held.field] != field) ++held.field;
+    held.derivatives.push_back(s_.expanded(value));
+    for (std::size_t k = 1; k <= kOrder + 2; ++k) held.derivatives.push_back(differentiate(held.derivatives.back(), s_.context->time()));
+    held_.push_back(std::move(held));
+  };
+  for (const EndForce& f : s_.end_forces) hold(f.side, f.jet.field, f.value, true);
+  for (const BoundaryCondition& b : s_.boundary) {
+    if (b.jet.order() == 0) {
+      hold(b.side, b.jet.field, b.value, false);
+      continue;
+    }
+    // u_x = a says what ∂ℒ/∂u_x is there: p + F = 0 on the right, −p + F = 0 on the left.
+    std::size_t a = 0;
+    while (equations_.varied[a] != b.jet.field) ++a;
+    const Expr p = substitute(form_.s[a], {{s_.jet_symbol(b.jet), b.value}, {s_.space.front().symbol, b.side == Side::Right ? s_.space.front().to : s_.space.front().from}});
+    if (!s_.jets_in(p).empty()) {
+      trouble_ = "slope";
+      return;
+    }
+    hold(b.side, b.jet.field, b.side == Side::Right ? -p : p, true);
+  }
+  force_.assign(fields_, std::vector<double>(lanes_));
+  mass_.assign(fields_ * fields_ * lanes_, 0);
+  past_.assign(fields_ * (kOrder + 2), std::vector<double>(lanes_));
+}
+
+double FieldMesh::value_of(Expr e, const Bindings& extra) const {
+  Bindings all = values_;
+  all.insert(extra.begin(), extra.end());
+  return evaluate(s_.expanded(e), all);
+}
+
+void FieldMesh::start() {
+  u_.assign(fields_, std::vector<double>(lanes_, 0));
+  v_ = u_;
+  const double* x = series_.input(4 * fields_, 0);
+  for (const FieldStart& start : equations_.model->start) {
+    std::size_t a = 0;
+    while (equations_.varied[a] != start.field) ++a;
+    const Expr value[] = {s_.expanded(start.value)};
+    const RepeatedEvaluation at(value);
+    for (std::size_t n = 0; n < lanes_; ++n)
+      (start.order == 0 ? u_ : v_)[a][n] =
+          at([&](Expr symbol) { return symbol == s_.space.front().symbol ? x[n] : values_.at(symbol); }).front();
+  }
+  t_ = 0;
+  for (const Held& held : held_) {
+    if (held.force) continue;
+    const std::size_t n = held.right ? local(p_, cells_ - 1) : local(0, 0);
+    u_[held.field][n] = boundary_coefficient(held.derivatives, 0);
+    v_[held.field][n] = boundary_coefficient(held.derivatives, 1);
+  }
+}
+
+double FieldMesh::boundary_coefficient(const std::vector<Expr>& derivatives, std::size_t k) const {
+  double factorial = 1;
+  for (std::size_t i = 2; i <= k; ++i) factorial *= static_cast<double>(i);
+  if (derivatives[k].is_zero()) return 0;
+  return value_of(derivatives[k], {{s_.context->time(), t_}}) / factorial;
+}
+
+namespace {
+
+/// to = Σ_m c_m (u_m − base), the u_m `stride` apart.
+MAUP_LANES void differences(double* __restrict to, const double* u, const double* base, const double* c, std::size_t points,
+                            std::size_t stride, std::size_t n) {
+  std::size_t i = 0;
+  for (; i + kWide <= n; i += kWide) {
+    Lanes sum = {};
+    for (std::size_t m = 0; m < points; ++m) sum += c[m] * (lanes_at(u + m * stride + i) - lanes_at(base + i));
+    lanes_at(to + i) = sum;
+  }
+  for (; i < n; ++i) {
+    to[i] = 0;
+    for (std::size_t m = 0; m < points; ++m) to[i] += c[m] * (u[m * stride + i] - base[i]);
+  }
+}
+/// to = weight g + Σ_q c_q s_q
+MAUP_LANES void weighted(double* __restrict to, const double* g, double weight, const double* s, const double* c,
+                         std::size_t points, std::size_t stride, std::size_t n) {
+  std::size_t i = 0;
+  for (; i + kWide <= n; i += kWide) {
+    Lanes sum = weight * lanes_at(g + i);
+    for (std::size_t q = 0; q < points; ++q) sum += c[q] * lanes_at(s + q * stride + i);
+    lanes_at(to + i) = sum;
+  }
+  for (; i < n; ++i) {
+    to[i] = weight * g[i];
+    for (std::size_t q = 0; q < points; ++q) to[i] += c[q] * s[q * stride + i];
+  }
+}
+MAUP_LANES void set_product(double* __restrict to, const double* __restrict a, double factor, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) to[i] = factor * a[i];
+}
+MAUP_LANES void set_products(double* __restrict to, const double* __restrict a, const double* __restrict b, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) to[i] = a[i] * b[i];
+}
+MAUP_LANES void add_products(double* __restrict to, const double* __restrict a, const double* __restrict b, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) to[i] += a[i] * b[i];
+}
+MAUP_LANES void horner(double* __restrict to, const double* __restrict a, double h, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) to[i] = to[i] * h + a[i];
+}
+
+}  // namespace
+
+/// Stiffness acts on differences u_m − u_j, which keeps digits.
+void FieldMesh::differentiate_along_x(const double* from, double* to) const {
+  const auto n = static_cast<std::size_t>(cells_), points = static_cast<std::size_t>(p_) + 1;
+  const double scale = 2 / width_;
+  std::vector<double> c(points);
+  for (std::size_t j = 0; j < points; ++j) {
+    for (std::size_t m = 0; m < points; ++m) c[m] = m == j ? 0 : scale * rule_.derivative[j * points + m];
+    differences(to + j * n, from, from + j * n, c.data(), points, n, n);
+  }
+}
+
+void FieldMesh::forces(std::size_t f, std::size_t k) {
+  const auto n = static_cast<std::size_t>(cells_), points = static_cast<std::size_t>(p_) + 1;
+  const double* g = series_.root(fields_ * fields_ + f, k);
+  const double* s = series_.root(fields_ * fields_ + fields_ + f, k);
+  std::vector<double>& out = force_[f];
+  std::vector<double> c(points);
+  for (std::size_t j = 0; j < points; ++j) {
+    for (std::size_t q = 0; q < points; ++q) c[q] = rule_.w[q] * rule_.derivative[q * points + j];
+    weighted(out.data() + j * n, g + j * n, -rule_.w[j] * width_ / 2, s, c.data(), points, n, n);
+  }
+  for (const Held& held : held_)
+    if (held.force && held.field == f) out[held.right ? local(p_, cells_ - 1) : local(0, 0)] += boundary_coefficient(held.derivatives, k);
+  share(out);
+}
+
+/// Neighbours have one node in common: the sum of both stands in both.
+void FieldMesh::share(std::vector<double>& lanes) const {
+  double* first = lanes.data();
+  double* last = lanes.data() + local(p_, 0);
+  for (int e = 0; e + 1 < cells_; ++e) first[e + 1] = last[e] = last[e] + first[e + 1];
+  if (s_.periodic) first[0] = last[cells_ - 1] = last[cells_ - 1] + first[0];
+}
+
+/// M⁻¹ at each node.
+void FieldMesh::masses() {
+  if (constant_mass_ && mass_known_) return;
+  std::vector<std::vector<double>> m(fields_ * fields_, std::vector<double>(lanes_));
+  for (std::size_t i = 0; i < m.size(); ++i) {
+    const double* a = series_.root(i, 0);
+    for (std::size_t n = 0; n < lanes_; ++n) m[i][n] = a[n] * rule_.w[n / static_cast<std::size_t>(cells_)] * width_ / 2;
+    share(m[i]);
+  }
+  for (std::size_t n = 0; n < lanes_; ++n) {
+    std::vector<double> a(fields_ * fields_), inverse(fields_ * fields_, 0);
+    for (std::size_t i = 0; i < a.size(); ++i) a[i] = m[i][n];
+    for (std::size_t i = 0; i < fields_; ++i) inverse[i * fields_ + i] = 1;
+    for (std::size_t c = 0; c < fields_; ++c) {
+      std::size_t pivot = c;
+      for (std::size_t r = c; r < fields_; ++r)
+        if (std::abs(a[r * fields_ + c]) > std::abs(a[pivot * fields_ + c])) pivot = r;
+      if (!(std::abs(a[pivot * fields_ + c]) > 0)) {
+        trouble_ = "mass";
+        return;
+      }
+      for (std::size_t j = 0; j < fields_; ++j) std::swap(a[c * fields_ + j], a[pivot * fields_ + j]), std::swap(inverse[c * fields_ + j], inverse[pivot * fields_ + j]);
+      const double d = a[c * fields_ + c];
+      for (std::size_t j = 0; j < fields_; ++j) a[c * fields_ + j] /= d, inverse[c * fields_ + j] /= d;
+      for (std::size_t r = 0; r < fields_; ++r) {
+        const double factor = a[r * fields_ + c];
+        if (r == c || factor == 0) continue;
+        for (std::size_t j = 0; j < fields_; ++j) a[r * fields_ + j] -= factor * a[c * fields_ + j], inverse[r * fields_ + j] -= factor * inverse[c * fields_ + j];
+      }
+    }
+    for (std::size_t i = 0; i < inverse.size(); ++i) mass_[i * lanes_ + n] = inverse[i];
+  }
+  mass_known_ = true;
+}
+
+/// φ''_k = M₀⁻¹ (F_k − Σ_i M_i φ''_{k−i})
+void FieldMesh::solve(std::size_t k) {
+  if (!constant_mass_) {
+    std::vector<double> part(lanes_);
+    for (std::size_t f = 0; f < fields_; ++f)
+      for (std::size_t i = 1; i <= k; ++i)
+        for (std::size_t o = 0; o < fields_; ++o) {
+          const double* a = series_.root(f * fields_ + o, i);
+          for (std::size_t n = 0; n < lanes_; ++n) part[n] = a[n] * rule_.w[n / static_cast<std::size_t>(cells_)] * width_ / 2;
+          share(part);
+          const std::vector<double>& before = past_[o * (kOrder + 2) + k - i];
+          for (std::size_t n = 0; n < lanes_; ++n) force_[f][n] -= part[n] * before[n];
+        }
+  }
+  for (std::size_t f = 0; f < fields_; ++f) {
+    std::vector<double>& out = past_[f * (kOrder + 2) + k];
+    for (std::size_t o = 0; o < fields_; ++o) {
+      const double* inverse = mass_.data() + (f * fields_ + o) * lanes_;
+      o == 0 ? set_products(out.data(), inverse, force_[o].data(), lanes_) : add_products(out.data(), inverse, force_[o].data(), lanes_);
+    }
+  }
+}
+
+void FieldMesh::hold_ends(std::size_t f, std::size_t k) {
+  for (const Held& held : held_) {
+    if (held.force || held.field != f) continue;
+    const std::size_t n = held.right ? local(p_, cells_ - 1) : local(0, 0);
+    past_[f * (kOrder + 2) + k][n] = boundary_coefficient(held.derivatives, k + 2) * static_cast<double>((k + 1) * (k + 2));
+  }
+}
+
+void FieldMesh::coefficient(std::size_t k) {
+  for (std::size_t f = 0; f < fields_; ++f) {
+    differentiate_along_x(phi(f, k), slope(f, k));
+    if (needs_rate_) differentiate_along_x(velocity(f, k), rate(f, k));
+  }
+  if (k < 2) std::fill_n(series_.input(4 * fields_ + 1, k), lanes_, k == 0 ? t_ : 1.0);  // t; the rest of it is 0
+  series_.advance(k);
+  if (k == 0) masses();
+  for (std::size_t f = 0; f < fields_; ++f) forces(f, k);
+  solve(k);
+  for (std::size_t f = 0; f < fields_; ++f) {
+    hold_ends(f, k);
+    const double* a = past_[f * (kOrder + 2) + k].data();
+    const auto next = static_cast<double>(k + 1);
+    double* v = velocity(f, k + 1);
+    set_product(v, a, 1 / next, lanes_);
+    if (k + 2 > kOrder + 1) continue;
+    double* u = phi(f, k + 2);
+    set_product(u, a, 1 / (next * (next + 1)), lanes_);
+  }
+}
+
+void FieldMesh::load(const std::vector<std::vector<double>>& u, const std::vector<std::vector<double>>& v) {
+  for (std::size_t f = 0; f < fields_; ++f) {
+    std::copy(u[f].begin(), u[f].end(), phi(f, 0));
+    std::copy(v[f].begin(), v[f].end(), velocity(f, 0));
+    std::copy(v[f].begin(), v[f].end(), phi(f, 1));
+  }
+}
+
+bool FieldMesh::step(double h) {
+  load(u_, v_);
+  for (std::size_t k = 0; k < kOrder && trouble_.empty(); ++k) coefficient(k);
+  if (!trouble_.empty()) return false;
+  for (std::size_t f = 0; f < fields_; ++f) {
+    std::copy_n(phi(f, kOrder), lanes_, u_[f].begin());
+    std::copy_n(velocity(f, kOrder), lanes_, v_[f].begin());
+    for (std::size_t k = kOrder; k-- > 0;) {
+      horner(u_[f].data(), phi(f, k), h, lanes_);
+      horner(v_[f].data(), velocity(f, k), h, lanes_);
+    }
+  }
+  t_ += h;
+  for (std::size_t f = 0; f < fields_; ++f)
+    if (!std::isfinite(u_[f][lanes_ / 2]) || !std::isfinite(u_[f][0]) || !std::isfinite(u_[f][lanes_ - 1])) {
+      trouble_ = "overflow";
+      return false;
+    }
+  return true;
+}
+
+double FieldMesh::omega_max(const Interrupt& interrupt) {
+  double size = 1;
+  for (const auto& u : u_)
+    for (const double x : u) size = std::max(size, std::abs(x));
+  const double epsilon = 1e-7 * size;
+  std::vector<std::vector<double>> w(fields_, std::vector<double>(lanes_));
+  const auto accelerations = [&](double by) {
+    auto moved = u_;
+    for (std::size_t f = 0; f < fields_; ++f)
+      for (std::size_t n = 0; n < lanes_; ++n) moved[f][n] += by * w[f][n];
+    load(moved, v_);
+    coefficient(0);
+    std::vector<std::vector<double>> out;
+    for (std::size_t f = 0; f < fields_; ++f) out.push_back(past_[f * (kOrder + 2)]);
+    return out;
+  };
+  std::uint64_t seed = 1;
+  for (auto& row : w) {
+    for (double& x : row) x = (seed = seed * 6364136223846793005ull + 1442695040888963407ull, static_cast<double>(seed >> 33) / 4e9 - 0.5);
+    for (int e = 0; e + 1 < cells_; ++e) row[local(0, e + 1)] = row[local(p_, e)];
+    if (s_.periodic) row[local(0, 0)] = row[local(p_, cells_ - 1)];
+  }
+  for (const Held& held : held_)
+    if (!held.force) w[held.field][held.right ? local(p_, cells_ - 1) : local(0, 0)] = 0;
+  const auto at_rest = accelerations(0);
+  double square = 0;
+  constexpr int rounds = 60;
+  for (int round = 0; round < rounds && trouble_.empty(); ++round) {
+    interrupt.throw_if_asked();
+    double norm = 0;
+    for (const auto& row : w)
+      for (const double x : row) norm += x * x;
+    norm = std::sqrt(norm / static_cast<double>(lanes_ * fields_));
+    if (!(norm > 0)) return 0;
+    for (auto& row : w)
+      for (double& x : row) x /= norm;
+    const auto moved = accelerations(epsilon);
+    double next = 0;
+    for (std::size_t f = 0; f < fields_; ++f)
+      for (std::size_t n = 0; n < lanes_; ++n) {
+        w[f][n] = (moved[f][n] - at_rest[f][n]) / epsilon;
+        next += w[f][n] * w[f][n];
+      }
+    square = std::sqrt(next / static_cast<double>(lanes_ * fields_));
+  }
+  return std::sqrt(square);
+}
+
+double FieldMesh::energy(double& size) {
+  load(u_, v_);
+  for (std::size_t f = 0; f < fields_; ++f) {
+    differentiate_along_x(phi(f, 0), slope(f, 0));
+    differentiate_along_x(velocity(f, 0), rate(f, 0));
+  }
+  std::fill_n(series_.input(4 * fields_ + 1, 0), lanes_, t_);
+  for (std::size_t i = 0; i < 4 * fields_ + 2; ++i) std::copy_n(series_.input(i, 0), lanes_, energies_.input(i, 0));
+  energies_.advance(0);
+  double sum = 0, lost = 0;  // with what each addition loses (Neumaier)
+  size = 0;
+  for (std::size_t n = 0; n < lanes_; ++n) {
+    const double weight = rule_.w[n / static_cast<std::size_t>(cells_)] * width_ / 2;
+    const double term = weight * energies_.root(0, 0)[n], total = sum + term;
+    lost += std::abs(sum) >= std::abs(term) ? (sum - total) + term : (term - total) + sum;
+    sum = total;
+    size += std::abs(term);
+  }
+  return sum + lost;
+}
+
+double FieldMesh::field_at(std::size_t field, int by_time, int by_space, double x) const {
+  const double cell = (x - left_) / width_;
+  const int e = std::clamp(static_cast<int>(std::floor(cell + 1e-9)), 0, cells_ - 1);
+  std::vector<double> value, slope;
+  rule_.at(2 * (cell - e) - 1, value, slope);
+  double out = 0;
+  for (int j = 0; j <= p_; ++j) {
+    const double node = (by_time == 0 ? u_ : v_)[field][local(j, e)];
+    out += node * (by_space == 0 ? value : slope)[static_cast<std::size_t>(j)];
+  }
+  return by_space == 0 ? out : out * 2 / width_;
+}
+
+double FieldMesh::answer(const FieldQuestion& question) {
+  const auto varied = [&](std::size_t field) {
+    std::size_t a = 0;
+    while (a < equations_.varied.size() && equations_.varied[a] != field) ++a;
+    return a;
+  };
+  Bindings extra{{s_.context->time(), t_}};
+  if (!question.total) {
+    for (const PlaceValue& place : equations_.model->places) {
+      const FieldJet jet = *s_.jet_of(place.jet);
+      const std::size_t a = varied(jet.field);
+      extra[place.symbol] = a < fields_ && jet.time <= 1 && jet.space[0] <= 1 ? field_at(a, jet.time, jet.space[0], value_of(place.place[0], {})) : std::nan("");
+    }
+    return value_of(question.value, extra);
+  }
+  const Expr root[] = {s_.expanded(question.value)};
+  const RepeatedEvaluation at(root);
+  double ignored = 0;
+  energy(ignored);  // fills slopes and rates
+  double sum = 0;
+  for (std::size_t n = 0; n < lanes_; ++n) {
+    const double value = at([&](Expr symbol) {
+      if (symbol == s_.space.front().symbol) return series_.input(4 * fields_, 0)[n];
+      if (const auto jet = s_.jet_of(symbol)) {
+        const std::size_t a = varied(jet->field);
+        if (a >= fields_ || jet->time > 1 || jet->space[0] > 1) return std::nan("");
+        return series_.input(4 * a + static_cast<std::size_t>(jet->time + 2 * jet->space[0]), 0)[n];
+      }
+      return symbol.role() == Role::Time ? t_ : values_.at(symbol);
+    }).front();
+    sum += rule_.w[n / static_cast<std::size_t>(cells_)] * width_ / 2 * value;
+  }
+  return sum;
+}
+
+}  // namespace maupertuis

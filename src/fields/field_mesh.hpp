@@ -1,0 +1,94 @@
+#pragma once
+#include <maupertuis/field_run.hpp>
+
+#include "fields/lane_series.hpp"
+#include "fields/lobatto.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace maupertuis {
+
+/// ℒ at the points of a mesh, as a function of what the fields are there.
+///
+/// Discretised with Gauss-Lobatto points both as nodes and for the integral, δ∫ℒ dx = 0 says at each node
+///
+///     w J (A φ'' + g) = Σ_q w_q ℓ'(x_q) s_q,   A = ∂²ℒ/∂φ'∂φ', s = ∂ℒ/∂φ_x − ∂𝒟/∂φ_tx,
+///     g = (∂²ℒ/∂φ'∂φ) φ' + (∂²ℒ/∂φ'∂φ_x) φ_tx + ∂²ℒ/∂φ'∂t − ∂ℒ/∂φ + ∂𝒟/∂φ' − f
+///
+/// A is that of the point alone, so that M is diagonal but for the fields among themselves.
+struct PointForm {
+  std::size_t fields = 0;
+  std::vector<Expr> inputs;  // φ, φ', φ_x, φ_tx of each field, then x, t
+  std::vector<Expr> a, g, s;  // [fields²], [fields], [fields]
+  Expr energy;  // density of h_E
+  bool conserves = false;
+};
+std::optional<PointForm> point_form(const FieldEquations& equations, Diagnostics& diagnostics);
+
+/// One discretisation and its state. Lanes are [local node × cells], so that what belongs to one local node of all cells
+/// lies together.
+class FieldMesh {
+ public:
+  FieldMesh(const FieldEquations& equations, const PointForm& form, int cells, int order);
+
+  const std::string& trouble() const { return trouble_; }
+  void start();
+  /// Largest frequency of small motions about the present state, by power iteration.
+  double omega_max(const Interrupt& interrupt);
+  /// One Taylor step. False, and `trouble`, where it left the numbers.
+  bool step(double h);
+  double time() const { return t_; }
+  /// h_E of the mesh, and the integral of the size of its density.
+  double energy(double& size);
+  /// Of an expression in place values; of one in jets at a place or integrated.
+  double answer(const FieldQuestion& question);
+  double field_at(std::size_t field, int derivatives_in_time, int derivatives_in_space, double x) const;
+  std::size_t nodes() const { return static_cast<std::size_t>(cells_) * static_cast<std::size_t>(p_); }
+  double place_of_cell(int cell) const { return left_ + cell * width_; }
+
+ private:
+  std::size_t local(int j, int e) const { return static_cast<std::size_t>(j) * static_cast<std::size_t>(cells_) + static_cast<std::size_t>(e); }
+  double* phi(std::size_t f, std::size_t k) { return series_.input(4 * f, k); }
+  double* velocity(std::size_t f, std::size_t k) { return series_.input(4 * f + 1, k); }
+  double* slope(std::size_t f, std::size_t k) { return series_.input(4 * f + 2, k); }
+  double* rate(std::size_t f, std::size_t k) { return series_.input(4 * f + 3, k); }
+  /// Coefficient k of all that follows from φ_0..k and φ'_0..k: the accelerations.
+  void coefficient(std::size_t k);
+  void differentiate_along_x(const double* from, double* to) const;
+  void forces(std::size_t f, std::size_t k);
+  void share(std::vector<double>& lanes) const;
+  void masses();
+  void solve(std::size_t k);
+  void hold_ends(std::size_t f, std::size_t k);
+  void load(const std::vector<std::vector<double>>& u, const std::vector<std::vector<double>>& v);
+  double value_of(Expr e, const Bindings& extra) const;
+  double boundary_coefficient(const std::vector<Expr>& derivatives, std::size_t k) const;
+
+  const FieldEquations& equations_;
+  const FieldSystem& s_;
+  const PointForm& form_;
+  int cells_, p_;
+  std::size_t lanes_ = 0, fields_ = 0;
+  double left_ = 0, width_ = 0, t_ = 0;
+  Lobatto rule_;
+  LaneSeries series_, energies_;  // of the equations; of the energy at one moment
+  bool needs_rate_ = false;
+  Bindings values_;
+  std::vector<std::vector<double>> u_, v_;   // [fields][lanes]
+  std::vector<std::vector<double>> force_;   // [fields][lanes]
+  std::vector<double> mass_;                 // [fields² × lanes], inverse
+  std::vector<std::vector<double>> past_;    // accelerations by order [fields · orders][lanes]
+  bool constant_mass_ = false, mass_known_ = false;
+  struct Held {
+    bool right = false;
+    std::size_t field = 0;
+    std::vector<Expr> derivatives;  // of the value at the end
+    bool force = false;             // else the field itself
+  };
+  std::vector<Held> held_;
+  std::string trouble_;
+};
+
+}  // namespace maupertuis

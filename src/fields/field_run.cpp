@@ -1,0 +1,143 @@
+#include <maupertuis/evaluate.hpp>
+#include <maupertuis/field_run.hpp>
+
+#include "fields/field_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <cmath>
+
+/// The run of a field, and of a second mesh of half the cells that tells how far off it is.
+namespace maupertuis {
+namespace {
+
+constexpr int usual_cells = 100, usual_order = 3;
+constexpr double stability = 3.2;  // h ω_max
+
+void refuse(const FieldMesh& mesh, const FieldEquations& equations, Diagnostics& diagnostics) {
+  const FieldSystem& s = equations.system();
+  const std::string& what = mesh.trouble();
+  if (what == "slope") {
+    Span span = s.density_span;
+    for (const BoundaryCondition& b : s.boundary)
+      if (b.jet.order() == 1) span = b.span;
+    std::string natural;
+    for (const NaturalCondition& n : equations.natural)
+      natural += (natural.empty() ? "" : ", ") + to_plain(field_layout(s, lay_out(readable(n.value, equations.order), equations.order))) + " = 0";
+    diagnostics.error("E0292", span, "this condition clashes with the natural one",
+                      fmt::format("What the variation leaves at a free end is {}; a given slope does not say what it is.", natural),
+                      "Give the field itself, or leave the end natural.");
+  } else if (what == "mass") {
+    diagnostics.error("E0642", s.density_span, "the accelerations are not determined",
+                      "∂²ℒ/∂φ'∂φ' is singular: a density linear in the velocities gives equations of first order.",
+                      "`maup derive` shows them; runs of such fields are carried out by a later version.");
+  } else if (what == "overflow") {
+    diagnostics.error("E0643", s.density_span, "the field grew beyond all numbers",
+                      fmt::format("At t = {:.6g} s a value of the field is no number any more.", mesh.time()),
+                      "The start, or an unstable density, lets it grow.");
+  } else {
+    diagnostics.error("E0508", s.density_span, fmt::format("not supported yet: a run of a density with `{}`", what),
+                      "Its Taylor series over a mesh has no rule yet.", "Write it with sums, products, powers, exp, log, sin, cos, sinh, cosh or tanh.");
+  }
+}
+
+struct OneRun {
+  std::vector<double> answers;
+  std::size_t steps = 0;
+  double h = 0, omega = 0, energy = 0, drift = 0;
+  Trajectory trajectory;
+};
+
+void add_row(const FieldMesh& mesh, const FieldEquations& equations, int cells, Trajectory& rows) {
+  const FieldSystem& s = equations.system();
+  const bool first = rows.columns.empty();
+  rows.times.push_back(mesh.time());
+  for (std::size_t a = 0; a < equations.varied.size(); ++a)
+    for (int order = 0; order < 2; ++order)
+      for (int e = 0; e <= cells; ++e) {
+        const double x = mesh.place_of_cell(e);
+        const Field& f = s.fields[equations.varied[a]];
+        if (first) rows.columns.push_back({fmt::format("{}{}({:.10g})", f.name, order ? "'" : "", x), to_string(s.dimension_of({equations.varied[a], {0}, order}))});
+        rows.values.push_back(mesh.field_at(a, order, 0, x));
+      }
+}
+
+std::optional<OneRun> run_on(const FieldEquations& equations, const PointForm& form, int cells, int order,
+                             const std::vector<FieldQuestion>& questions, const FieldRunOptions& options, bool rows,
+                             Diagnostics& diagnostics) {
+  FieldMesh mesh(equations, form, cells, order);
+  OneRun out;
+  if (mesh.trouble().empty()) mesh.start();
+  if (mesh.trouble().empty()) out.omega = mesh.omega_max(options.interrupt);
+  if (!mesh.trouble().empty()) return refuse(mesh, equations, diagnostics), std::nullopt;
+  const double longest = out.omega > 0 ? stability / out.omega : options.duration;
+  std::vector<double> stops;
+  for (const FieldQuestion& q : questions) stops.push_back(q.time);
+  stops.push_back(options.duration);
+  const double every = options.every > 0 ? options.every : options.duration / 100;
+  for (double t = 0; t < options.duration; t += every) stops.push_back(t);
+  std::sort(stops.begin(), stops.end());
+  double size = 0;
+  const double start = mesh.energy(size);
+  out.energy = start;
+  out.answers.assign(questions.size(), std::nan(""));
+  for (const double stop : stops) {
+    const double way = stop - mesh.time();
+    const auto steps = static_cast<std::size_t>(std::ceil(way / longest - 1e-9));
+    for (std::size_t k = 0; way > 0 && k < std::max<std::size_t>(steps, 1); ++k) {
+      options.interrupt.throw_if_asked();
+      if (!mesh.step(way / static_cast<double>(std::max<std::size_t>(steps, 1)))) return refuse(mesh, equations, diagnostics), std::nullopt;
+      ++out.steps;
+    }
+    double now = 0;
+    if (way > 0 || stop == 0) out.energy = mesh.energy(now), size = std::max(size, now);
+    out.drift = std::max(out.drift, std::abs(out.energy - start));
+    for (std::size_t i = 0; i < questions.size(); ++i)
+      if (questions[i].time == stop) out.answers[i] = mesh.answer(questions[i]);
+    if (rows && (out.trajectory.times.empty() || mesh.time() > out.trajectory.times.back())) add_row(mesh, equations, cells, out.trajectory);
+  }
+  out.h = longest;
+  if (size > 0) out.drift /= size;
+  return out;
+}
+
+}  // namespace
+
+std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const std::vector<FieldQuestion>& questions,
+                                         const FieldRunOptions& options, Diagnostics& diagnostics) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto form = point_form(equations, diagnostics);
+  if (!form) return std::nullopt;
+  const FieldSystem& s = equations.system();
+  const int cells = s.space.front().cells ? s.space.front().cells : usual_cells;
+  const int order = s.element_order ? s.element_order : usual_order;
+  auto fine = run_on(equations, *form, cells, order, questions, options, options.trajectory, diagnostics);
+  if (!fine) return std::nullopt;
+  FieldRunResult out;
+  out.cells = cells, out.order = order;
+  out.nodes = static_cast<std::size_t>(cells) * static_cast<std::size_t>(order) + 1;
+  out.steps = fine->steps, out.step = fine->h, out.omega_max = fine->omega;
+  out.energy = fine->energy, out.energy_drift = form->conserves ? fine->drift : -1;
+  out.end = options.duration;
+  out.trajectory = std::move(fine->trajectory);
+  std::optional<OneRun> coarse;
+  if (options.errors && !questions.empty() && cells > 1)
+    coarse = run_on(equations, *form, std::max(cells / 2, 1), order, questions, options, false, diagnostics);
+  // Both meshes and their steps are off by the power 2p of the width of a cell, but never by less than rounding.
+  const double ratio = cells > 1 ? static_cast<double>(cells) / std::max(cells / 2, 1) : 2;
+  const double gain = std::pow(ratio, std::min(2 * order, 8)) - 1;
+  const double rounding = 2.2e-16 * std::sqrt(static_cast<double>(out.steps) + 1);
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    const double value = fine->answers[i];
+    const double error = coarse ? std::abs(value - coarse->answers[i]) / gain + rounding * std::max(std::abs(value), 1e-300)
+                                : std::numeric_limits<double>::infinity();
+    out.answers.push_back({value, error});
+  }
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return out;
+}
+
+}  // namespace maupertuis

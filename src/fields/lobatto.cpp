@@ -1,0 +1,72 @@
+#include "fields/lobatto.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+namespace maupertuis {
+namespace {
+
+/// P_n and P_n' at x.
+std::pair<double, double> legendre(int n, double x) {
+  double before = 1, p = x;
+  if (n == 0) return {1, 0};
+  for (int k = 2; k <= n; ++k) {
+    const double next = ((2 * k - 1) * x * p - (k - 1) * before) / k;
+    before = p;
+    p = next;
+  }
+  return {p, n * (before - x * p) / (1 - x * x)};
+}
+
+}  // namespace
+
+Lobatto::Lobatto(int p) : order(p), x(static_cast<std::size_t>(p) + 1), w(x.size()), derivative(x.size() * x.size()) {
+  const std::size_t n = x.size();
+  x.front() = -1, x.back() = 1;
+  for (std::size_t i = 1; i + 1 < n; ++i) {  // zeros of P_p' by Newton's method on (1 − x²) P_p'
+    double at = -std::cos(std::numbers::pi * static_cast<double>(i) / p);
+    for (int k = 0; k < 100; ++k) {
+      const auto [value, slope] = legendre(p, at);
+      const double change = (1 - at * at) * slope / (p * (p + 1) * value);
+      at += change;
+      if (std::abs(change) < 1e-17) break;
+    }
+    x[i] = at;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const double value = i == 0 ? (p % 2 ? -1.0 : 1.0) : i + 1 == n ? 1.0 : legendre(p, x[i]).first;
+    w[i] = 2 / (p * (p + 1) * value * value);
+  }
+  for (std::size_t j = 0; j < n; ++j) {
+    double sum = 0;
+    for (std::size_t m = 0; m < n; ++m) {
+      if (m == j) continue;
+      double product = 1 / (x[m] - x[j]);
+      for (std::size_t k = 0; k < n; ++k)
+        if (k != m && k != j) product *= (x[j] - x[k]) / (x[m] - x[k]);
+      sum += derivative[j * n + m] = product;
+    }
+    derivative[j * n + j] = -sum;
+  }
+}
+
+void Lobatto::at(double xi, std::vector<double>& value, std::vector<double>& slope) const {
+  const std::size_t n = x.size();
+  value.assign(n, 0), slope.assign(n, 0);
+  for (std::size_t m = 0; m < n; ++m) {
+    double product = 1;
+    for (std::size_t k = 0; k < n; ++k)
+      if (k != m) product *= (xi - x[k]) / (x[m] - x[k]);
+    value[m] = product;
+    for (std::size_t l = 0; l < n; ++l) {
+      if (l == m) continue;
+      double term = 1 / (x[m] - x[l]);
+      for (std::size_t k = 0; k < n; ++k)
+        if (k != m && k != l) term *= (xi - x[k]) / (x[m] - x[k]);
+      slope[m] += term;
+    }
+  }
+}
+
+}  // namespace maupertuis

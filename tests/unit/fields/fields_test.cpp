@@ -1,0 +1,140 @@
+#include <maupertuis/evaluate.hpp>
+#include <maupertuis/field_run.hpp>
+#include <maupertuis/study.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace maupertuis;
+
+namespace {
+
+Study study_of(const std::string& text) { return Study(SourceText("field.lag", text)); }
+
+const std::string kink = R"(dimensionless
+param v = 0.5
+field u(x) : number on x = -15 .. 15 cells 300 boundary u_x = 0
+density = 1/2 u'^2 - 1/2 u_x^2 - (1 - cos u)
+start u = 4 atan(exp(x/sqrt(1 - v^2))), u' = -2 v/sqrt(1 - v^2) sech(x/sqrt(1 - v^2))
+run 2
+)";
+
+}  // namespace
+
+TEST_CASE("the certificate sees a wrong equation, a wrong boundary term and a wrong sign") {
+  Study study = study_of(
+      "dimensionless\nparam a = 2\nfield w(x, y) : number\n"
+      "density = 1/2 w'^2 - 1/2 a (w_xx + w_yy)^2 + w_xy^2 w - w_tx w_x^2 + cos(w x) exp(w_y t)\n");
+  REQUIRE_MESSAGE(study.field_equations(), "no equations");
+  CHECK(study.field_certificate()->passed());
+  const auto fails = [&](FieldEquations wrong) { return certify(wrong).checks[0].verdict == Verdict::Nonzero; };
+  FieldEquations wrong = *study.field_equations();
+  wrong.euler[0] = wrong.euler[0] + wrong.system().jet_symbol({0, {0, 0}, 0});
+  CHECK(fails(wrong));
+  for (std::size_t mu = 0; mu < 3; ++mu) {
+    wrong = *study.field_equations();
+    wrong.boundary_terms[mu] = -wrong.boundary_terms[mu];
+    CHECK(fails(wrong));
+  }
+}
+
+TEST_CASE("total derivatives commute") {
+  Study study = study_of("dimensionless\nfield w(x, y) : number\ndensity = 1/2 w'^2 - 1/2 w_x^2 - sin(w w_y x) t\n");
+  REQUIRE(study.field_equations());
+  const FieldSystem& s = study.field_equations()->system();
+  const Expr there = s.total_derivative(s.total_derivative(s.density, 0), 2);
+  const Expr back = s.total_derivative(s.total_derivative(s.density, 2), 0);
+  CHECK(zero_test(there - back).verdict == Verdict::Zero);
+}
+
+TEST_CASE("currents of a Lorentz-invariant field, and none more") {
+  Study study = study_of("dimensionless\nparam c = 2\nfield u(x) : number\ndensity = 1/2 u'^2 - 1/2 c^2 u_x^2 - u^4\n");
+  REQUIRE(study.field_equations());
+  const FieldCurrents found = field_currents(*study.field_equations());
+  REQUIRE(found.currents.size() == 3);  // energy, momentum, boost
+  for (const FieldCurrent& c : found.currents) {
+    CHECK(c.certified);
+    std::string trouble;
+    CHECK(is_current(*study.field_equations(), c.density, c.fluxes, trouble));
+    std::vector<Expr> wrong{c.fluxes[0] + study.field_equations()->system().jet_symbol({0, {1}, 0})};
+    CHECK_FALSE(is_current(*study.field_equations(), c.density, wrong, trouble));
+  }
+}
+
+TEST_CASE("the quartic field in space has the Poincaré group and a dilation, with a mass no dilation") {
+  const auto count = [](const std::string& mass) {
+    Study study = study_of("dimensionless\nparam c = 2\nfield u(x, y, z) : number\ndensity = 1/2 u'^2/c^2 - 1/2 (u_x^2 + u_y^2 + u_z^2) - u^4" + mass + "\n");
+    REQUIRE(study.field_equations());
+    return field_currents(*study.field_equations()).currents.size();
+  };
+  CHECK(count("") == 11);
+  CHECK(count(" - u^2") == 10);
+}
+
+TEST_CASE("a kink moves as its closed form, and the estimate tells the error") {
+  Study study = study_of(kink + "expect u(1) at 2 = 0 ± 1\nexpect u(0.3) at 2 = 0 ± 1\n");
+  REQUIRE(study.field_equations());
+  const auto& places = study.model()->fields->places;
+  REQUIRE(places.size() == 2);
+  Diagnostics diagnostics;
+  FieldRunOptions options;
+  options.duration = 2;
+  const auto run = run_fields(*study.field_equations(), {{places[0].symbol, false, 2}, {places[1].symbol, false, 2}}, options, diagnostics);
+  REQUIRE(run);
+  const double gamma = 1 / std::sqrt(0.75);
+  const double x[] = {1, 0.3};
+  for (int i = 0; i < 2; ++i) {
+    const double error = std::abs(run->answers[static_cast<std::size_t>(i)].value - 4 * std::atan(std::exp(gamma * (x[i] - 1))));
+    CHECK(error < 2e-9);
+    CHECK(error < 10 * run->answers[static_cast<std::size_t>(i)].error);
+  }
+  CHECK(run->energy_drift < 1e-13);
+}
+
+TEST_CASE("the discrete field converges with the power 2p at the borders of cells") {
+  const auto error = [](int cells) {
+    Study study = study_of("dimensionless\nfield u(x) : number on x = 0 .. 1 cells " + std::to_string(cells) +
+                           " order 2 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\nstart u = sin(pi x)\nrun 1\nexpect u(0.5) at 1 = 0 ± 1\n");
+    REQUIRE(study.field_equations());
+    Diagnostics diagnostics;
+    FieldRunOptions options;
+    options.duration = 1;
+    options.errors = false;
+    const auto run = run_fields(*study.field_equations(), {{study.model()->fields->places[0].symbol, false, 1}}, options, diagnostics);
+    return std::abs(run->answers[0].value + 1);
+  };
+  // u(1/2, 1) = cos π: the error of the frequency enters squared there, of the shape linearly
+  const double order = std::log2(error(8) / error(16));
+  CHECK(order > 3.7);
+}
+
+TEST_CASE("two coupled fields, damping and a force at an end") {
+  // rest under an end force: u = F x/T; the damped motion comes to it
+  Study study = study_of(
+      "dimensionless\nparam F = 0.3\nfield u(x) : number on x = 0 .. 1 cells 4 order 5\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
+      "dissipation density = 2 u'^2\nboundary left : u = 0\nforce u(1) = F\nrun 30\nexpect u(1) at 30 = 0.3 ± 1e-9\n");
+  const auto verification = study.verification();
+  REQUIRE(verification);
+  CHECK(verification->failed() == 0);
+  // a = u + v and d = u − v move as free fields of their own
+  Study two = study_of(
+      "dimensionless\nfield u(x), v(x) : number on x = 0 .. 1 cells 6 order 8 boundary u = 0, v = 0\n"
+      "density = 1/2 (u'^2 + v'^2) - 1/2 (u_x^2 + v_x^2) - 3/2 (u - v)^2\nstart u = sin(pi x)\nrun 1\n"
+      "expect u(0.5) at 1 = 1/2 (cos(pi) + cos(sqrt(pi^2 + 6))) ± 1e-10\n");
+  const auto both = two.verification();
+  REQUIRE(both);
+  CHECK(both->failed() == 0);
+}
+
+TEST_CASE("frequencies: free beam with its two rigid motions, hinged Rayleigh beam") {
+  Study study = study_of("dimensionless\nfield w(x) : number on x = 0 .. 1\ndensity = 1/2 w'^2 - 1/2 w_xx^2\n");
+  REQUIRE(study.field_equations());
+  Diagnostics diagnostics;
+  const std::vector<double> found = field_frequencies(*study.field_equations(), 4, diagnostics);
+  REQUIRE(found.size() == 4);
+  CHECK(found[0] == doctest::Approx(0).epsilon(1e-3));
+  CHECK(found[1] == doctest::Approx(0).epsilon(1e-3));
+  CHECK(found[2] == doctest::Approx(22.37328544806).epsilon(1e-9));  // 4.730040744862704²
+  CHECK(found[3] == doctest::Approx(61.67282286792).epsilon(1e-9));  // 7.853204624095838²
+}
