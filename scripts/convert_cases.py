@@ -34,6 +34,8 @@ def needed(case):
         return "fields"
     if "inequality" in statement.get("constraints", {}):
         return "contacts"
+    if "quasi_velocities" in statement:
+        return "rates"
     kinds = {e["kind"] for e in case["expected"]}
     return "" if kinds - set(WAITS) - {"note"} else WAITS[case["expected"][0]["kind"]]
 
@@ -170,8 +172,9 @@ def convert_all():
             texts = urdf_model(case, CASES)
             passes = ["the accelerations that the torques of the inverse dynamics, and at rest M q̈ + g, give"]
             waits = [("reading the robot's file", "URDF import"), ("M entry by entry", WAITS["matrix"])]
-        elif missing in ("contacts", "fields") and (MODELS / path.with_suffix(".lag").name).exists():
-            rows.append((case, [path.with_suffix(".lag").name], ["all; the model is written by hand"], []))
+        elif missing in ("contacts", "rates", "fields") and (MODELS / path.with_suffix(".lag").name).exists():
+            models = sorted(p.name for p in MODELS.glob(f"{path.stem}*.lag"))
+            rows.append((case, models if missing == "rates" else models[:1], ["all; the model is written by hand"], []))
             continue
         elif missing:
             texts, passes, waits = {}, [], [("all", missing)]

@@ -112,4 +112,35 @@ def rattleback():
         yield "reaction(floor)", f"{t} s", dot(forces(y)[3], y[3:6])
 
 
-MODELS = [rolling_disk, leaning_disk, ball_on_turntable, chaplygin_sleigh, knife_edge, rattleback]
+def snakeboard():
+    """The momentum equation p' = 2 J0 cos² φ φ' ψ' − tan φ φ' p and θ' by p, as published; J0 (ψ' + θ')' is the torque of the rotor."""
+    m, r, j0, j1 = D(6), D("0.2"), D("0.016"), D("1.3e-3")
+    a, b, w, k, c = D("0.7"), D("0.5"), D(2), D(40), D(2)
+
+    def turning(p, phi, psi_rate):
+        s = sin(2 * phi)
+        return (p * s - j0 * s * s * psi_rate) / (4 * m * r * r * cos(phi) ** 2)
+
+    def rotor(p, total, phi):
+        """ψ' of ψ' + θ' = total."""
+        by_momentum = turning(p, phi, D(0))
+        return (total - by_momentum) / (1 + turning(D(0), phi, D(1)))
+
+    def rates(t, y):
+        p, psi, total, phi, phi_rate, _, _, theta = y
+        psi_rate = rotor(p, total, phi)
+        theta_rate = turning(p, phi, psi_rate)
+        s = sin(2 * phi)
+        along = (m * r * r * s * theta_rate + j0 * s * psi_rate - p) / (2 * m * r * cos(phi) ** 2)
+        drive = sin(w * t)
+        return [2 * j0 * cos(phi) ** 2 * phi_rate * psi_rate - sin(phi) / cos(phi) * phi_rate * p, psi_rate,
+                (k * (a * drive - psi) - c * psi_rate) / j0, phi_rate,
+                (k * (-b * drive - phi) - c * phi_rate) / (2 * j1), along * cos(theta), along * sin(theta), theta_rate]
+
+    for t, y in zip((1, 3), integrate(rates, [D(0)] * 8, (1, 3), tolerance=D("1e-13"))):
+        for name, value in zip(("p", "ψ", None, "φ", None, "x", "y", "θ"), y):
+            if name:
+                yield name, f"{t} s", value
+
+
+MODELS = [rolling_disk, leaning_disk, ball_on_turntable, chaplygin_sleigh, knife_edge, rattleback, snakeboard]

@@ -150,10 +150,10 @@ def satellite():
     assert abs(a2 - w2) < D("1e-38")
     for t in (5, 10, 60):
         sn, cn, dn = jacobi(quarter + rate * t, m)
-        yield "sat.ω.x", f"{t} s", a1 * cn
-        yield "sat.ω.y", f"{t} s", a2 * sn
-        yield "sat.ω.z", f"{t} s", a3 * dn
-    yield "sat.ω.y", f"{2 * quarter / rate:.16f} s", -w2
+        yield "ω1", f"{t} s", a1 * cn
+        yield "ω2", f"{t} s", a2 * sn
+        yield "ω3", f"{t} s", a3 * dn
+    yield "ω2", f"{2 * quarter / rate:.16f} s", -w2
 
 
 def ion_in_fields():

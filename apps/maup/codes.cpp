@@ -21,6 +21,15 @@ constexpr CodeEntry own_codes[] = {
      "many "
      "constraints, or where one constraint repeats others so that A has no full rank, they are not.",
      "maup derive linkage.lag --eliminate", "maup derive linkage.lag --form matrix"},
+    {"E0694", "no rates to write the equations in",
+     "The form in rates has combinations of velocities in the place of q'. The model names them with `rates`; where it "
+     "does not, they are the angular velocities of its bodies on body axes, of which this model has none.",
+     "maup derive pendulum.lag --form rates", "maup derive satellite.lag --form rates"},
+    {"E0695", "no equations in these rates",
+     "Velocities follow from rates and constraints by a linear system that is solved in formulas: constraints have to "
+     "be "
+     "linear in q', and the system small enough that its solution can be read.",
+     "maup derive satellites.lag --form rates", "maup derive satellites.lag --form standard"},
     {"E0801", "a file cannot be read",
      "The operating system refused to open or read the file; its reason is quoted. Check the spelling of the path and "
      "the permission of the file. `-` stands for standard input.",

@@ -1,6 +1,9 @@
 #include "derivation_text.hpp"
 
+#include <maupertuis/degenerate.hpp>
+
 #include "quantity.hpp"
+#include "rates_form.hpp"
 
 #include <fmt/format.h>
 
@@ -22,9 +25,9 @@ std::string step_text(const DerivationStep& step, const ReadingOrder& order) {
   return fmt::format("{} = {}    ({})", to_plain(step.left), to_plain(step.right, order), note);
 }
 
-std::string steps_text(const Derivation& derivation, const ReadingOrder& order) {
+std::string steps_text(const std::vector<DerivationStep>& steps, const ReadingOrder& order) {
   std::string out, section;
-  for (const DerivationStep& step : derivation.steps) {
+  for (const DerivationStep& step : steps) {
     if (step.section != section) {
       section = step.section;
       out += fmt::format("{}{}\n", out.empty() ? "" : "\n", section);
@@ -141,7 +144,7 @@ std::string certificate_text(const Certificate& certificate) {
 
 std::string equations_text(const EquationForm& form, const ReadingOrder& order) {
   std::string out;
-  for (const auto* lines : {&form.lines, &form.constraints})
+  for (const auto* lines : {&form.lines, &form.kinematics, &form.constraints})
     for (const EquationLine& line : *lines)
       out += fmt::format("  {}{}\n", plain_text(shown_line(line, order)),
                          line.note.empty() ? "" : "    (" + line.note + ")");
@@ -153,13 +156,15 @@ std::string equations_text(const EquationForm& form, const ReadingOrder& order) 
 
 std::string lecture(Study& study, const EquationForm& form, const Certificate& certificate, bool with_steps) {
   const EquationsOfMotion& equations = *study.equations();
-  const ReadingOrder& order = equations.order;
+  const ReadingOrder& order = form.order(equations);
   std::string out;
-  if (with_steps) out += steps_text(*study.derivation(true), order) + "\n";
-  out += fmt::format("Equations of motion of {}\n", equations.system->name);
+  if (with_steps) out += steps_text(steps_to(form, study), order) + "\n";
+  out += fmt::format("Equations of motion of {}{}\n", equations.system->name, form.in_rates ? " in rates" : "");
   out += equations_text(form, order);
   out += legend(*equations.system, order);
+  if (form.in_rates) return out + rates_text(form, equations) + certificate_text(with_rates_check(certificate, form));
   out += reactions_text(equations);
+  if (study.degenerate()) out += "\n" + steps_text(degenerate_lines(*study.degenerate(), *equations.system), order);
   out += momenta_and_energy(equations, *study.derivation(false));
   return out + certificate_text(certificate);
 }
@@ -185,9 +190,9 @@ std::vector<FormulaLine> step_lines(const std::vector<DerivationStep>& steps, co
   return lines;
 }
 
-Json steps_json(const Derivation& derivation, const ReadingOrder& order) {
+Json steps_json(const std::vector<DerivationStep>& steps, const ReadingOrder& order) {
   Json list = Json::array();
-  for (const DerivationStep& step : derivation.steps)
+  for (const DerivationStep& step : steps)
     list.push_back({{"section", step.section},
                     {"rule", step.rule},
                     {"left", to_plain(step.left)},

@@ -18,6 +18,6 @@ std::string certificate_text(const Certificate& certificate);
 std::vector<FormulaLine> step_lines(const std::vector<DerivationStep>& steps, const MechanicalSystem& system,
                                     const ReadingOrder& order);
 /// [{section, rule, left, right, latex, sentence}]
-Json steps_json(const Derivation& derivation, const ReadingOrder& order);
+Json steps_json(const std::vector<DerivationStep>& steps, const ReadingOrder& order);
 
 }  // namespace maupertuis::app

@@ -1,4 +1,5 @@
 #include "equation_forms.hpp"
+#include "rates_form.hpp"
 
 #include <fmt/format.h>
 
@@ -263,6 +264,8 @@ EquationForm with_definitions(EquationForm form, Study& study) {
 EquationForm equation_form(Form form, Study& study) {
   if (!study.equations()) return {};
   switch (form) {
+    case Form::Shortest:
+      return form_in_rates_if_shorter(study, standard_form(study, false));
     case Form::Standard:
       return standard_form(study, false);
     case Form::Solved:
@@ -273,6 +276,8 @@ EquationForm equation_form(Form form, Study& study) {
       return standard_form(study, true);
     case Form::Eliminated:
       return with_definitions(eliminated_form(study), study);
+    case Form::Rates:
+      return rates_form(study);
   }
   return {};
 }

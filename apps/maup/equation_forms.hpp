@@ -2,12 +2,16 @@
 #include "notation.hpp"
 #include "open_study.hpp"
 
+#include <maupertuis/rates.hpp>
+
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace maupertuis::app {
 
-enum class Form { Standard, Solved, Matrix, Residual, Eliminated };
+/// Shortest: in rates where these are named or shorter to read, else Standard.
+enum class Form { Shortest, Standard, Solved, Matrix, Residual, Eliminated, Rates };
 
 /// One line `left = right` of a result; an empty left stands for `right = equal_to`, or `right = 0`.
 struct EquationLine {
@@ -23,11 +27,18 @@ struct EquationLine {
 
 /// The equations of motion in one of their forms, each proved equal to the residual by the zero test before it is
 /// shown; one that is not is an error (E0690) and the list is empty. E0692, E0693: too long for `Solved`, for
-/// `Eliminated`.
+/// `Eliminated`. E0694, E0695: no rates, or none in which the equations can be written.
 struct EquationForm {
   std::vector<EquationLine> lines;
   std::vector<EquationLine> constraints;  // as the model has them; in the forms that are equations of motion
   std::vector<Intermediate> intermediates;
+  std::vector<EquationLine> kinematics;              // q' by rates
+  std::shared_ptr<const EquationsInRates> in_rates;  // of the form in rates
+
+  /// How its names are ordered: rates are names as well.
+  const ReadingOrder& order(const EquationsOfMotion& equations) const {
+    return in_rates ? in_rates->order : equations.order;
+  }
 };
 EquationForm equation_form(Form form, Study& study);
 

@@ -42,6 +42,30 @@ std::string state_text(const ExtendedState& state, const ExtendedResult& result)
   return out;
 }
 
+std::string happening_text(const ExtendedHappening& h, const ExtendedResult& result, const MechanicalSystem& system) {
+  const std::string& second = result.independent.unit;
+  std::string out = fmt::format("  {} = {}{}{}  {}", result.independent.name, number_text(h.t),
+                                second.empty() ? "" : " ", second, h.name);
+  if (h.kind == Happening::Kind::Impact)
+    out += " impact, impulse " + impulse_text(number_text(h.impulse), h.name, system);
+  return out + "\n";
+}
+
+/// The first and the last of them, a line each.
+std::string happenings_text(const ExtendedResult& result, const MechanicalSystem& system) {
+  constexpr std::size_t most = 24, first = 16;
+  const std::size_t count = result.happenings.size();
+  std::string out;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (count > most && k == first) {
+      k = count - (most - first);
+      out += fmt::format("  … {} more, all with --json …\n", k - first);
+    }
+    out += happening_text(result.happenings[k], result, system);
+  }
+  return out;
+}
+
 Json number_json(const AgreedNumber& x) { return x.digits > 0 ? Json(x.text) : Json(nullptr); }
 
 Json state_json(const ExtendedState& state, const ExtendedResult& result) {
@@ -70,8 +94,18 @@ Json state_json(const ExtendedState& state, const ExtendedResult& result) {
 
 }  // namespace
 
-std::string extended_text(const ExtendedResult& result) {
+std::string impulse_text(const std::string& number, const std::string& contact, const MechanicalSystem& system) {
+  if (system.dimensionless) return number;
+  for (std::size_t i = 0; i < system.contacts.size(); ++i)
+    if (system.contact_label(i) == contact)
+      return fmt::format("{} {}", number,
+                         to_string(dimensions::energy() * system.independent_dimension / system.contacts[i].dimension));
+  return number;
+}
+
+std::string extended_text(const ExtendedResult& result, const MechanicalSystem& system) {
   std::string out;
+  out += happenings_text(result, system);
   for (const ExtendedState& state : result.at)
     out += state.reached ? state_text(state, result) : "a time asked for was not reached\n";
   const bool told = !result.at.empty() && result.at.back().reached && result.at.back().t.text == result.final.t.text;
@@ -91,6 +125,14 @@ Json extended_document(const ExtendedResult& result, const std::string& precisio
   document["final"] = state_json(result.final, result);
   document["at"] = Json::array();
   for (const ExtendedState& state : result.at) document["at"].push_back(state_json(state, result));
+  document["happenings"] = Json::array();
+  for (const ExtendedHappening& h : result.happenings) {
+    Json entry = {
+        {"kind", std::string(word_of(h.kind))}, {"name", h.name}, {"t", number_json(h.t)}, {"digits", h.t.digits}};
+    if (h.kind == Happening::Kind::Impact)
+      entry["impulse"] = number_json(h.impulse), entry["speed"] = number_json(h.speed);
+    document["happenings"].push_back(std::move(entry));
+  }
   const ExtendedStatistics& s = result.statistics;
   document["statistics"] = {{"steps", s.steps},
                             {"order", s.order},

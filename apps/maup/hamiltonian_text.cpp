@@ -29,7 +29,7 @@ std::vector<DerivationStep> all_lines(const PhaseSpace& found) {
   const ReadingOrder& order = found.hamiltonian.order;
   std::vector<DerivationStep> lines = found.lines;
   for (const Bracket& b : found.brackets)
-    lines.push_back({"Poisson brackets",
+    lines.push_back({b.dirac ? "Dirac brackets" : "Poisson brackets",
                      {},
                      layouts::braces(lay_out(b.a, order), lay_out(b.b, order)),
                      b.value.value,
@@ -116,6 +116,25 @@ Json routhian_json(const Routhian& r, const Hamiltonian& h) {
           {"equations", std::move(rows)}};
 }
 
+Json dirac_json(const DiracAnalysis& dirac, const Hamiltonian& h) {
+  Json constraints = Json::array(), generators = Json::array();
+  for (const PhaseConstraint& c : dirac.constraints)
+    constraints.push_back({{"generation", c.generation}, {"plain", to_plain(c.value, h.order)}});
+  for (const GaugeGenerator& g : dirac.generators) {
+    Json parts = Json::array();
+    for (const Expr& part : g.parts) parts.push_back(to_plain(part, h.order));
+    generators.push_back(std::move(parts));
+  }
+  const bool closed = dirac.outcome == ConstraintChain::Outcome::Closed;
+  return {{"closed", closed},
+          {"constraints", std::move(constraints)},
+          {"first_class", dirac.first_class},
+          {"second_class", dirac.second_class},
+          {"physical_dimension", dirac.physical_dimension},
+          {"free_multipliers", dirac.primary_first_class},
+          {"gauge_generators", std::move(generators)}};
+}
+
 }  // namespace
 
 std::string phase_space_text(const PhaseSpace& found) {
@@ -171,9 +190,10 @@ void add_to(Json& document, const PhaseSpace& found) {
   document["velocities"] = velocities_json(h);
   document["forces"] = equations_json(h.forces, h.order);
   document["routhian"] = found.routhian ? routhian_json(*found.routhian, h) : Json();
+  document["dirac"] = found.dirac ? dirac_json(*found.dirac, h) : Json();
   document["brackets"] = Json::array();
   for (const Bracket& b : found.brackets) {
-    Json one{{"a", to_plain(b.a, h.order)}, {"b", to_plain(b.b, h.order)}};
+    Json one{{"a", to_plain(b.a, h.order)}, {"b", to_plain(b.b, h.order)}, {"kind", b.dirac ? "dirac" : "poisson"}};
     one.update(form_json(b.value, h.order));
     document["brackets"].push_back(std::move(one));
   }

@@ -2,6 +2,7 @@
 #include "json.hpp"
 #include "notation.hpp"
 
+#include <maupertuis/dirac.hpp>
 #include <maupertuis/hamiltonian.hpp>
 
 #include <string>
@@ -13,12 +14,14 @@ namespace maupertuis::app {
 struct Bracket {
   Expr a, b;
   ReadableForm value;
+  bool dirac = false;
 };
 
 /// All that `maup hamiltonian` found, but the integration.
 struct PhaseSpace {
   Hamiltonian hamiltonian;
   std::optional<Routhian> routhian;
+  std::optional<DiracAnalysis> dirac;  // where the Legendre transform is singular
   std::vector<Bracket> brackets;
   std::vector<DerivationStep> lines;  // but the brackets
   Certificate certificate;            // of both

@@ -1,6 +1,7 @@
 #include "invariants_text.hpp"
 
 #include <maupertuis/print.hpp>
+#include <maupertuis/rates.hpp>
 
 #include <fmt/format.h>
 
@@ -60,9 +61,10 @@ std::string origin(const ConservedFunction& integral, const EquationsOfMotion& e
 }
 
 std::string integral_text(const std::string& symbol, const ConservedFunction& integral,
-                          const EquationsOfMotion& equations) {
-  const ReadingOrder& order = equations.order;
-  std::string text = fmt::format("{:<4} {}\n", symbol, formula(integral.readable, order));
+                          const EquationsOfMotion& equations, const RateNotation& rates) {
+  const auto in_rates = rates.shorter(integral.value, integral.readable);
+  const std::string shown = in_rates ? formula(*in_rates, rates.order()) : formula(integral.readable, equations.order);
+  std::string text = fmt::format("{:<4} {}\n", symbol, shown);
   if (!integral.name.empty()) text += fmt::format("     {}\n", integral.name);
   text += fmt::format("     from: {}\n     {}", origin(integral, equations),
                       ground(integral.certificate, *equations.system));
@@ -144,8 +146,10 @@ std::string completeness_text(const Invariants& found) {
 std::string invariants_text(const Invariants& found, const EquationsOfMotion& equations, bool all) {
   const ReadingOrder& order = equations.order;
   const std::size_t count = all ? found.integrals.size() : found.shown;
+  const RateNotation rates(equations);
   std::string text;
-  for (std::size_t i = 0; i < count; ++i) text += integral_text(found.symbols[i].name(), found.integrals[i], equations);
+  for (std::size_t i = 0; i < count; ++i)
+    text += integral_text(found.symbols[i].name(), found.integrals[i], equations, rates);
   if (found.integrals.empty()) text += "No integral was found.\n";
   if (count < found.integrals.size())
     text += fmt::format("{} more {} of these: --all\n", found.integrals.size() - count,
@@ -162,7 +166,8 @@ std::string invariants_text(const Invariants& found, const EquationsOfMotion& eq
 
 namespace {
 
-Json integral_json(const ConservedFunction& integral, const ReadingOrder& order) {
+Json integral_json(const ConservedFunction& integral, const ReadingOrder& order, const RateNotation& rates) {
+  const auto in_rates = rates.shorter(integral.value, integral.readable);
   Json intermediates = Json::array(), characteristic = Json::array();
   for (const Intermediate& i : integral.readable.intermediates)
     intermediates.push_back({{"name", to_plain(i.symbol, order)}, {"plain", to_plain(i.value, order)}});
@@ -170,6 +175,7 @@ Json integral_json(const ConservedFunction& integral, const ReadingOrder& order)
   return {{"name", integral.name},
           {"plain", to_plain(integral.readable, order)},
           {"latex", to_latex(integral.readable, order)},
+          {"in_rates", in_rates ? Json(formula(*in_rates, rates.order())) : Json()},
           {"intermediates", std::move(intermediates)},
           {"kind", kind_name(integral.kind)},
           {"symmetry", integral.symmetry},
@@ -188,8 +194,9 @@ Json integral_json(const ConservedFunction& integral, const ReadingOrder& order)
 
 void add_invariants_json(Json& document, const Invariants& found, const EquationsOfMotion& equations) {
   const ReadingOrder& order = equations.order;
+  const RateNotation rates(equations);
   document["integrals"] = Json::array();
-  for (const ConservedFunction& i : found.integrals) document["integrals"].push_back(integral_json(i, order));
+  for (const ConservedFunction& i : found.integrals) document["integrals"].push_back(integral_json(i, order, rates));
   document["shown"] = found.shown;
   document["independent"] = found.rank;
   document["independent_without_time"] = found.autonomous_rank;

@@ -14,7 +14,8 @@ std::string ground_of(const ZeroTest& test, bool constrained);
 
 /// Proofs about functions along the motion. Without constraints q̈ is replaced by −M⁻¹ h as a shared DAG, and the rest
 /// is the zero test's. With constraints nothing is put in: the test looks at points that satisfy the constraints and
-/// the equations with their multipliers, near the start, to 60 digits.
+/// the equations with their multipliers, near the start, to 60 digits. So with degenerate Lagrangians, at points that
+/// fulfil all that the constraint algorithm found.
 class AlongMotion {
  public:
   explicit AlongMotion(const EquationsOfMotion& equations);
@@ -37,7 +38,7 @@ class AlongMotion {
   void set_start(const MotionState& start) { start_ = start; }
 
  private:
-  bool constrained() const { return equations_.system->constrained(); }
+  bool constrained() const { return equations_.system->constrained() || equations_.degenerate; }
   std::vector<Expr> relations() const;
   Bindings center() const;
 

@@ -9,6 +9,8 @@
 
 namespace maupertuis {
 
+struct DegenerateAnalysis;  // degenerate.hpp
+
 /// Lagrange's equations of a system in two forms. Rows follow system.coordinates.
 ///
 ///     R(q,q̇,q̈,u,t) = d/dt ∂L/∂q̇ − ∂L/∂q + ∂D/∂q̇ − Q = M q̈ + h = Aᵀλ,   A q̈ = b
@@ -32,6 +34,10 @@ struct EquationsOfMotion {
 
   /// The same with the symbols of parameter definitions kept (`let I = 1/2 m R^2`); null if the model has none.
   std::shared_ptr<const EquationsOfMotion> written;
+  /// Where M is singular and the constraints of the model do not make up for it: equations of the same motion that
+  /// determine all accelerations (degenerate.hpp). Runs and linearizations take them. Null for all other systems.
+  std::shared_ptr<const EquationsOfMotion> determined;
+  std::shared_ptr<const DegenerateAnalysis> degenerate;  // from which they are
   /// What is shown to a reader: `written` where it exists. Computations and proofs use *this.
   const EquationsOfMotion& shown() const { return written ? *written : *this; }
   /// R − Aᵀλ [n]: vanishes along the motion. What kernels lower.

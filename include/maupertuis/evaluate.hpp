@@ -2,6 +2,7 @@
 #include <maupertuis/expression.hpp>
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -31,6 +32,7 @@ struct ZeroTest {
 struct ZeroTestOptions {
   int points = 3;  // per prime
   std::uint64_t seed = 0x6d617570;
+  bool hold_parameters = false;  // of points on relations: only the unknowns and the time vary
 };
 
 /// Decides e = 0 as a function of all its symbols (decision 4 of ARCHITECTURE.md). TimeDerivative nodes are expanded.
@@ -46,5 +48,25 @@ ZeroTest zero_test(std::span<const Expr> differences, const ZeroTestOptions& opt
 /// some hundred evaluations.
 ZeroTest zero_test_where(std::span<const Expr> differences, std::span<const Expr> relations,
                          std::span<const Expr> unknowns, const Bindings& center, const ZeroTestOptions& options = {});
+
+/// The points of zero_test_where, for many questions: random points near `center` on relations, to 100 digits, where
+/// the rank of the relations is as large as it gets. Cost: the symbolic rows of the relations, and some hundred
+/// evaluations of them.
+class PointsWhere {
+ public:
+  PointsWhere(std::span<const Expr> relations, std::span<const Expr> unknowns, const Bindings& center,
+              const ZeroTestOptions& options = {});
+  ~PointsWhere();
+  PointsWhere(PointsWhere&&) noexcept;
+
+  /// Rounded to double; fewer than asked for, or none, where they were not found.
+  const std::vector<Bindings>& points() const;
+  /// Zero: at each point below 1e-60 of the sizes of its terms, evidence and no proof. Undecided: defined at none.
+  Verdict vanishes(Expr e) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace maupertuis

@@ -106,7 +106,20 @@ struct Routhian {
 };  // without these
 struct Bracket {
   Expr a, b, value;
-};  // {a, b} = value
+  bool dirac = false;
+};  // {a, b} = value, Poisson's or Dirac's
+
+// --------------------------------------------------------------------------------------------- degenerate Lagrangians
+
+/// constraints : p_y ; z ; p_x: primary, secondary, … of phase space, up to invertible combinations.
+struct PhaseConstraints {
+  std::vector<std::vector<Expr>> generations;
+};
+/// first class = 3, of phase space; motions = 2, of Lagrange's equations.
+struct ClassCount {
+  enum class What { FirstClass, SecondClass, PhysicalFreedoms, Motions, FreeFunctions } what = What::FirstClass;
+  Expr number;
+};
 
 // -------------------------------------------------------------------------------------------------------- constraints
 
@@ -212,7 +225,7 @@ using Kind =
     std::variant<ValueAt, ValueAtUntil, UntilAt, EnergyConserved, ConservedAlongRun, Conserved, NotConserved, Integral,
                  Equation, Hamiltonian, Routhian, Bracket, Freedoms, ConstraintClass, Frequencies, Eigenvalues, Matrix,
                  Equilibrium, Stable, Multipliers, Trace, Period, Action, ActionAlong, MorseIndex, PathAt, Event,
-                 EventCount, Error>;
+                 EventCount, PhaseConstraints, ClassCount, Error>;
 
 }  // namespace expectation
 
@@ -221,6 +234,7 @@ struct Expectation {
   bool claim = false;
   Span span;
   expectation::Kind kind;
+  std::string with = {};  // "s = -1": parameters that have other values for it; empty: none
 };
 
 }  // namespace maupertuis

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,12 @@ namespace maupertuis {
 
 /// Bits of the mantissa that a run calculates with. Words are 64 bits: the two of a pair differ by one word or more.
 enum class Mantissa { Bits113, Bits192, Bits384, Bits448 };
+
+/// What a root of an event function of the kernel does.
+struct ExtendedEvent {
+  enum class Action { Record, Stop, Hit } action = Action::Record;  // Hit: a gap that falls to 0, and an impact there
+  int direction = 0;  // of time: 1 rising, −1 falling, 0 both; a Hit is always one that falls
+};
 
 /// What is to be computed. Every number of it is an expression in a kernel of its own, so that 9.81 is the decimal and
 /// π is π.
@@ -25,9 +32,11 @@ struct ExtendedProblem {
   std::vector<bool> fixed_q, fixed_v;     // [n] not to be moved when the start is brought onto the constraints
   std::size_t first_rate = 0, rates = 0;  // observables of `kernel` that q̇ must bring to zero at the start, each
                                           // followed by its derivatives by q̇: [rates × (1 + n)]
-  std::size_t rows = 0;   // states wanted at begin, begin ± every, …, this many; then one at the end
-  std::size_t times = 0;  // states wanted at the times asked for, in the order of the run
-  bool until = false;     // the first event of the kernel ends the run
+  std::size_t rows = 0;                   // states wanted at begin, begin ± every, …, this many; then one at the end
+  std::size_t times = 0;                  // states wanted at the times asked for, in the order of the run
+  bool until = false;                     // the first event of the kernel ends the run
+  std::vector<ExtendedEvent> events{};    // what the others of the kernel do, in its order
+  std::size_t first_contact = 0;  // observables of `kernel` for each Hit: ∂g/∂t, restitution, ∂g/∂q [2 + n]
 };
 
 struct ExtendedOptions {
@@ -47,7 +56,16 @@ struct ExtendedSample {
   std::vector<std::string> multipliers;  // [constraints]; empty text where the equations do not determine λ
 };
 
+/// An event that was met, or one impulse of an impact.
+struct ExtendedRoot {
+  std::size_t event = 0;       // of ExtendedProblem::events
+  ExtendedSample state;        // before an impact
+  std::string impulse, speed;  // Hit: Λ, and −ġ before it
+};
+
 struct ExtendedMotion {
+  std::vector<ExtendedRoot> roots;
+  std::optional<std::size_t> trouble;    // of ExtendedProblem::events: where it could not go on; `reason` is said of it
   std::vector<ExtendedSample> rows, at;  // at: [times]
   ExtendedSample final;
   StepEnding ending = StepEnding::None;

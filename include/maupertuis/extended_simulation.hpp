@@ -32,6 +32,15 @@ struct ExtendedState {
   AgreedNumber energy;  // J
 };
 
+/// An event of the model, or an impulse of a contact that is hit, as Happening.
+struct ExtendedHappening {
+  Happening::Kind kind = Happening::Kind::Event;
+  std::string name;
+  AgreedNumber t;
+  std::vector<AgreedNumber> q, v;  // [n] before it
+  AgreedNumber impulse, speed;     // Impact
+};
+
 struct ExtendedStatistics {
   std::size_t steps = 0, check_steps = 0, switches = 0;
   int order = 0, check_order = 0, bits = 0, check_bits = 0;
@@ -45,14 +54,15 @@ struct ExtendedResult {
   Trajectory::Column independent{"t", "s"};
   std::vector<Trajectory::Column> columns;  // q, q', points, reactions, energy
   std::vector<Trajectory::Column> reactions;
-  std::vector<ExtendedState> rows;  // empty if none were wanted
-  std::vector<ExtendedState> at;    // in the order asked
-  ExtendedState final;              // not reached: it was not checked
-  double reached = 0;               // s: how far the run came
+  std::vector<ExtendedState> rows;            // empty if none were wanted
+  std::vector<ExtendedState> at;              // in the order asked
+  ExtendedState final;                        // not reached: it was not checked
+  std::vector<ExtendedHappening> happenings;  // as far as all runs meet the same
+  double reached = 0;                         // s: how far the run came
   ExtendedStatistics statistics;
   Ending ending = Ending::Finished;
   std::string reason;
-  bool ok() const { return ending == Ending::Finished || ending == Ending::UntilReached; }
+  bool ok() const { return ending == Ending::Finished || ending == Ending::UntilReached || ending == Ending::Stopped; }
 };
 
 /// Runs the experiment of a model in many digits, three times: a companion has another order, other steps, and numbers

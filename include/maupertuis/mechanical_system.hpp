@@ -54,6 +54,16 @@ struct Input {
   Span span;
 };
 
+/// A rate (quasi-velocity) σ = Y(q,t) q̇ + y(q,t) that `rates` names. Formulas hold its value; the form of the equations
+/// in rates holds its symbol.
+struct Rate {
+  std::string name;
+  Expr symbol;  // σ as the rate of its integral (integral_symbol.hpp): order 1; σ' is order 2
+  Expr value;   // in q, q', t
+  Dimension dimension;
+  Span span;
+};
+
 /// A `let`. One of parameters alone stays a symbol in print, with a legend; others are expanded at once.
 /// The expressions of a MechanicalSystem hold no such symbols: see MechanicalSystem::written.
 struct Definition {
@@ -127,9 +137,10 @@ struct Constraint {
   std::string name;                                                 // as written; empty if it has none
   Expr value;                                                       // φ or ψ; no TimeDerivative nodes
   Expr multiplier;                                                  // its λ, Role::Multiplier
-  Expr reaction;        // symbol, Role::Multiplier: what `reaction(name)` stands for; see `reactions`
-  Dimension dimension;  // of the value
-  std::string body;     // of the norm constraint that `rotation quaternion` adds: the body; else empty
+  Expr reaction;           // symbol, Role::Multiplier: what `reaction(name)` stands for; see `reactions`
+  Dimension dimension;     // of the value
+  std::string body;        // of the norm constraint that `rotation quaternion` adds: the body; else empty
+  bool forceless = false;  // asked of the state by a degenerate Lagrangian, or a gauge: see determined_equations
   Span span;
 };
 
@@ -141,6 +152,15 @@ struct Release {
   std::string name;
   std::size_t parameter = 0;  // index in MechanicalSystem::parameters
   Expr reaction;              // symbol, Role::Multiplier: what `reaction(name)` stands for
+  Span span;
+};
+
+/// gauge e = 1: fixes what a degenerate Lagrangian leaves open, without any force. The value is left − right, in SI
+/// units, in q, q', t.
+struct Gauge {
+  std::string text;  // as written
+  Expr value;
+  Dimension dimension;  // of the value
   Span span;
 };
 
@@ -177,6 +197,7 @@ struct MechanicalSystem {
   std::vector<Parameter> parameters;  // in the order of the text; anonymous constants at the end
   std::vector<Input> inputs;
   std::vector<Definition> definitions;
+  std::vector<Rate> rates;  // in the order of the text
   std::vector<Frame> frames;
   std::vector<Point> points;
   std::vector<Body> bodies;
@@ -192,6 +213,7 @@ struct MechanicalSystem {
   std::vector<EnergyClaim> claims;
   std::vector<AppliedForce> forces;
   std::vector<Constraint> constraints;  // as written; those of quaternions at the end
+  std::vector<Gauge> gauges;
   std::vector<Release> releases;
   std::vector<IntegralConstraint> integral_constraints;
   std::vector<Contact> contacts;    // inequalities; their equations are those of a mode (contact_mode.hpp)

@@ -121,6 +121,8 @@ struct EnergyBooks {
 struct SimulationResult {
   Trajectory trajectory;
   std::vector<Trajectory::Column> reactions;  // names and units: columns of the trajectory as well
+  /// What depends on functions that a degenerate Lagrangian leaves free, "y", "y'": no columns of the trajectory.
+  std::vector<std::string> undetermined{};
   State start, final;
   std::vector<State> at;  // in the order asked; q is empty where the run ended before
   SimulationStatistics statistics;

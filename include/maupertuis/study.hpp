@@ -1,5 +1,6 @@
 #pragma once
 #include <maupertuis/certificate.hpp>
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/extended_simulation.hpp>
 #include <maupertuis/fields.hpp>
@@ -74,6 +75,9 @@ class Study {
   const Certificate* field_certificate() const { return field_certificate_ ? &*field_certificate_ : nullptr; }
   /// Whether the model has fields.
   bool has_fields() { return model() && model_->fields; }
+  /// What a degenerate Lagrangian asks of the state and leaves open; null where M, with the constraints, determines the
+  /// accelerations.
+  const DegenerateAnalysis* degenerate();
   /// Readable form; `with_steps` adds the textbook path.
   const Derivation* derivation(bool with_steps);
   /// Certifies the equations, and the derivation if there is one. A failed check is an error (E0690): equations that
@@ -100,8 +104,10 @@ class Study {
   bool refuse_modes();
 
  private:
-  bool elaborate_model(Diagnostics& found, std::optional<Model>& model) const;
+  bool elaborate_model(Diagnostics& found, std::optional<Model>& model);
   std::optional<Verification> field_verification(const SimulationOptions& options);
+  bool admit_degenerate(const Model& model, const Diagnostics& lints, Diagnostics& found);
+  void verify_with_other_values(const SimulationOptions& options, Verification& out);
   void report(const CertificateCheck& check);
   void enter_mode(Model& model, Diagnostics& found) const;
 
@@ -115,6 +121,7 @@ class Study {
   bool elaborated_ = false;
   bool admits_singular_ = false;
   std::optional<std::string> mode_;
+  std::shared_ptr<const DegenerateAnalysis> degenerate_;
   std::optional<EquationsOfMotion> equations_;
   std::optional<FieldEquations> field_equations_;
   std::optional<Certificate> field_certificate_;

@@ -119,6 +119,14 @@ struct LetStatement {
   };
   std::vector<Item> items;
 };
+/// rates ω1, ω2, ω3 = B.ω, v = x' cos ψ + y' sin ψ
+struct RatesStatement {
+  struct Group {
+    std::vector<Name> names;
+    ExpressionPtr value;  // one component a name
+  };
+  std::vector<Group> groups;
+};
 struct InputStatement {
   Name name;
   std::vector<Name> variables;  // input q(x): a given function of space variables and t; value null: any function
@@ -311,7 +319,15 @@ struct Routhian {
 };  // routhian of φ, ψ = R
 struct Bracket {
   ExpressionPtr a, b, value;
-};  // bracket (A, B) = C
+  bool dirac = false;
+};  // bracket (A, B) = C; dirac bracket (A, B) = C
+struct PhaseConstraints {
+  std::vector<std::vector<ExpressionPtr>> generations;
+};  // constraints : p_y ; z ; p_x
+struct ClassCount {
+  std::string what;
+  ExpressionPtr number;
+};  // first class = 3; second class, physical freedoms, motions, free functions
 struct Freedoms {
   ExpressionPtr number;
 };  // freedoms = 2
@@ -382,8 +398,8 @@ struct PathAt {
   Number expected;
 };  // path 2 x at 0.5 s = …
 struct Event {
-  Name name;             // of an event or a contact
-  Name change;           // of a contact: impact, made, lost, stick, slip; empty: any
+  Name name;    // of an event or a contact
+  Name change;  // of a contact: impact, made, lost, stick, slip; empty: any
   int occurrence = 1;
   Number time;
 };  // event hit 3 at 0.45 s ± 1e-11;  event floor lost at 0.9 s ± 1e-11
@@ -401,13 +417,14 @@ struct OfField {
 using Kind = std::variant<ValueAt, ValueAtUntil, UntilAt, EnergyConserved, ConservedAlongRun, Conserved, NotConserved,
                           Integral, Equation, Hamiltonian, Routhian, Bracket, Freedoms, ConstraintClass, Frequencies,
                           Eigenvalues, Matrix, Equilibrium, Stable, Multipliers, Trace, Period, Action, ActionAlong,
-                          MorseIndex, PathAt, Event, EventCount, Error, OfField>;
+                          MorseIndex, PathAt, Event, EventCount, PhaseConstraints, ClassCount, Error, OfField>;
 
 }  // namespace expectation
 
 struct ExpectStatement {
   bool claim = false;
   expectation::Kind kind;
+  std::optional<Span> with = std::nullopt;  // … with s = -1: the values, as a text
 };
 
 /// constraint LEFT = RIGHT name rod,   constraint integral LEFT = RIGHT name length
@@ -415,6 +432,11 @@ struct ConstraintStatement {
   ExpressionPtr left, right;
   std::optional<Name> name;
   bool integral = false;  // ∫ left over the path = right
+};
+
+/// gauge LEFT = RIGHT
+struct GaugeStatement {
+  ExpressionPtr left, right;
 };
 
 /// sweep Ω = 0 .. 12 rad/s steps 121
@@ -441,7 +463,7 @@ struct PathStatement {
 /// contact EXPR >= EXPR restitution e friction μ static μs slip EXPR name floor;  … slip EXPR sticking
 struct ContactStatement {
   ExpressionPtr left, right;
-  bool at_most = false;                                           // <=
+  bool at_most = false;                                        // <=
   ExpressionPtr restitution, friction, static_friction, slip;  // null: not written
   bool sticking = false;
   std::optional<Name> name;
@@ -479,7 +501,8 @@ using StatementBody =
                  DamperStatement, TorsionSpringStatement, EnergyStatement, ForceStatement, StartStatement, RunStatement,
                  OutputStatement, MethodStatement, PrecisionStatement, DrawStatement, ReactionStatement,
                  ExpectStatement, ConstraintStatement, SweepStatement, IndependentStatement, PathStatement,
-                 ContactStatement, FrictionStatement, EventStatement, ImpactStatement, FieldStatement>;
+                 ContactStatement, FrictionStatement, EventStatement, ImpactStatement, GaugeStatement, RatesStatement,
+                 FieldStatement>;
 
 struct Statement {
   StatementBody body;

@@ -41,9 +41,10 @@ struct ValueVerdict {
 ValueVerdict value_verdict(double actual, double expected, double tolerance, double error);
 
 /// Carries out the `expect` and `claim` lines of a model: identities by the zero test, values by runs that land exactly
-/// on the times asked. A run that ends early fails the lines that need it, with its reason.
+/// on the times asked. A run that ends early fails the lines that need it, with its reason. Of lines that hold with
+/// other values of parameters (`… with s = -1`) those of one such text, which `model` was elaborated with.
 Verification verify(const Model& model, const EquationsOfMotion& equations, const SourceText& source,
-                    const SimulationOptions& options, Diagnostics& diagnostics);
+                    const SimulationOptions& options, Diagnostics& diagnostics, const std::string& with = {});
 
 /// For a model whose text expects an error (`expect error E0412`): compares with what was found.
 /// Returns nothing if the text has no such line.

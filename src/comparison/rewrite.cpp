@@ -259,6 +259,8 @@ class Rewriter {
   bool is_lost(const syntax::expectation::Hamiltonian&) const { return true; }
   bool is_lost(const syntax::expectation::Routhian&) const { return true; }
   bool is_lost(const syntax::expectation::Bracket&) const { return true; }
+  bool is_lost(const syntax::expectation::PhaseConstraints&) const { return true; }
+  bool is_lost(const syntax::expectation::ClassCount&) const { return true; }
   bool is_lost(const syntax::expectation::Matrix&) const { return !gone_.empty(); }
   bool is_lost(const syntax::expectation::Action&) const { return !gone_.empty(); }
   bool is_lost(const syntax::expectation::ActionAlong&) const { return !gone_.empty(); }

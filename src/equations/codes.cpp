@@ -67,6 +67,71 @@ constexpr std::array entries{
               "No single one of these constraints can be integrated, but a combination can: the wheels of an axle roll "
               "non-holonomically, and the difference of their angles is still a function of the heading.",
               "", ""},
+    CodeEntry{
+        "N0620", "a degenerate Lagrangian",
+        "∂²L/∂q̇∂q̇ is singular: some of Lagrange's equations hold no acceleration that the others do not hold. They are "
+        "constraints on the state, and so are their derivatives, until nothing new comes (Gotay and Nester). A "
+        "Lagrangian that is linear in the velocities has nothing but such constraints: ω q̇ = ∂H/∂q + ∂a/∂t. A start "
+        "has to fulfil them; what it does not say follows from them.",
+        "", ""},
+    CodeEntry{
+        "W0621", "a coordinate without kinetic energy",
+        "Its equation holds no acceleration: it is a constraint on the others, as for a joint without mass between two "
+        "springs. That may be meant. Often a mass was forgotten.",
+        "coord x, y : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\nV = 1/2 k (x - y)^2\n",
+        "coord x, y : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m (x'^2 + y'^2)\nV = 1/2 k (x - y)^2\n"},
+    CodeEntry{
+        "W0622", "functions of time that the Lagrangian leaves open",
+        "A degenerate Lagrangian may leave some accelerations undetermined: any function of time will do, and what "
+        "depends on it has no value of its own (a gauge freedom, as of the potentials of electrodynamics). A run shows "
+        "what does not depend on the choice. `gauge EXPR = EXPR` makes a choice.",
+        "dimensionless\ncoord r, θ, z : number\nL = 1/2 r'^2 + 1/2 r^2 (θ' - z)^2 - r^2\n",
+        "dimensionless\ncoord r, θ, z : number\nL = 1/2 r'^2 + 1/2 r^2 (θ' - z)^2 - r^2\ngauge z = 0\n"},
+    CodeEntry{
+        "E0623", "a Lagrangian without any motion",
+        "Its equations ask for something that nothing fulfils: L = q gives 1 = 0. The message names the condition "
+        "and where it comes from.",
+        "dimensionless\ncoord q : number\nL = q\n", "dimensionless\ncoord q : number\nL = 1/2 q'^2 + q\n"},
+    CodeEntry{
+        "E0624", "constraints of a degenerate Lagrangian that no state was found to fulfil",
+        "Newton's method, from random states near the start, found none. Perhaps there is none, perhaps all lie far "
+        "from the start: give a start near one.",
+        "dimensionless\ncoord x, y : number\nL = 1/2 x'^2 + y (x^2 + 1)\n",
+        "dimensionless\ncoord x, y : number\nL = 1/2 x'^2 + y (x^2 - 1)\nstart x = 1\n"},
+    CodeEntry{
+        "E0625", "a gauge where nothing is open",
+        "The equations determine every acceleration: a further condition on the motion would be a constraint, with "
+        "a force.",
+        "dimensionless\ncoord x : number\nL = 1/2 x'^2\ngauge x = 0\n",
+        "dimensionless\ncoord x : number\nL = 1/2 x'^2\n"},
+    CodeEntry{
+        "E0626", "a gauge that fixes too much",
+        "A gauge chooses among states that differ by the free functions alone, and leaves the motions as they are. "
+        "This one excludes motions: it says something about a quantity that has a value of its own.",
+        "dimensionless\ncoord r, θ, z : number\nL = 1/2 r'^2 + 1/2 r^2 (θ' - z)^2 - r^2\ngauge r = 1\n",
+        "dimensionless\ncoord r, θ, z : number\nL = 1/2 r'^2 + 1/2 r^2 (θ' - z)^2 - r^2\ngauge z = 0\n"},
+    CodeEntry{
+        "W0627", "a gauge that leaves something open",
+        "Functions of time stay free with it. Each needs a condition of its own.",
+        "dimensionless\ncoord x, y, u, w : number\nL = 1/2 (x' - y)^2 + 1/2 (u' - w)^2\ngauge y = 0\n",
+        "dimensionless\ncoord x, y, u, w : number\nL = 1/2 (x' - y)^2 + 1/2 (u' - w)^2\ngauge y = 0\ngauge w = 0\n"},
+    CodeEntry{
+        "E0629", "a start off the constraints of a degenerate Lagrangian",
+        "The constraints leave fewer states than there are coordinates and velocities. What the start does not give "
+        "follows from them; what it gives has to agree with them.",
+        "dimensionless\ncoord x, y : number\nL = x y' - 1/2 (x^2 + y^2)\nstart exactly x = 1, y' = 3\nrun 1\n",
+        "dimensionless\ncoord x, y : number\nL = x y' - 1/2 (x^2 + y^2)\nstart x = 1\nrun 1\n"},
+    CodeEntry{
+        "N0630", "what a run of a degenerate Lagrangian leaves out",
+        "Some accelerations are free. A run has to choose them, and shows only what is the same with every choice: "
+        "quantities that do not change along the orbits of the free functions.",
+        "", ""},
+    CodeEntry{"E0631", "a quantity without a value of its own",
+              "It depends on functions of time that the Lagrangian leaves open.", "", ""},
+    CodeEntry{"N0628", "parameters with special values",
+              "Ranks are taken at the values of the parameters. With these the class of the system is another one than "
+              "for values nearby: a freedom, or a free function, more or less.",
+              "", ""},
 };
 
 }  // namespace

@@ -125,15 +125,23 @@ Eigen::VectorXd refined(const Eigen::MatrixXd& w, const Eigen::VectorXd& q, cons
 
 std::optional<Eigen::VectorXd> linear_complementarity(const Eigen::MatrixXd& w, const Eigen::VectorXd& q) {
   if (q.size() == 0) return Eigen::VectorXd();
-  if (const auto z = Tableau(w, q).solve()) return z;
+  const auto solves = [&](const Eigen::VectorXd& z) {
+    constexpr double allowed = 1e-9;
+    const Eigen::VectorXd slack = q + w * z;
+    const double most = allowed * q.cwiseAbs().maxCoeff(), some = allowed * z.maxCoeff();
+    for (Index i = 0; i < z.size(); ++i)
+      if (!(slack(i) >= -most) || (z(i) > some && slack(i) > most)) return false;
+    return true;
+  };
+  const auto direct = Tableau(w, q).solve();
+  if (direct && solves(*direct)) return direct;
   // Redundant rows make pivots of rounding alone: a little on the diagonal tells them apart.
   constexpr double little = 1e-11;
   const double size = w.cwiseAbs().maxCoeff();
   const auto z = Tableau(w + little * size * Eigen::MatrixXd::Identity(w.rows(), w.cols()), q).solve();
-  if (!z) return z;
+  if (!z) return direct;
   const Eigen::VectorXd out = refined(w, q, *z);
-  const double allowed = 1e-9 * q.cwiseAbs().maxCoeff();
-  return (q + w * out).minCoeff() >= -allowed ? std::optional(out) : std::nullopt;
+  return solves(out) ? std::optional(out) : direct;
 }
 
 }  // namespace maupertuis

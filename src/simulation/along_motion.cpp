@@ -1,5 +1,6 @@
 #include <maupertuis/along_motion.hpp>
 
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/simulation.hpp>
 
 #include <fmt/format.h>
@@ -73,6 +74,7 @@ AcrossSwitches AlongMotion::across(Expr integral) const {
 
 /// φ, dφ/dt or ψ, A q̈ − b, and R − Aᵀλ: what the motion satisfies at each point.
 std::vector<Expr> AlongMotion::relations() const {
+  if (equations_.degenerate) return relations_of_motion(equations_, *equations_.degenerate);
   const MechanicalSystem& system = *equations_.system;
   std::vector<Expr> out;
   for (const Constraint& c : system.constraints)

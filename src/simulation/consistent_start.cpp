@@ -1,3 +1,4 @@
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/simulation.hpp>
 
 #include <fmt/format.h>
@@ -37,6 +38,7 @@ class Start {
 
   std::optional<ConsistentStart> find() {
     if (!read()) return std::nullopt;
+    if (equations_.degenerate) return find_on_degenerate();
     if (!system_.constrained() && model_.experiment.start_rates.empty()) return ConsistentStart{state_, {}, false};
     const ConstraintManifold manifold(equations_, rates());
     if (!place(manifold) || !set_going(manifold)) return std::nullopt;
@@ -48,6 +50,28 @@ class Start {
   }
 
  private:
+  /// Positions and velocities together: a constraint of a degenerate Lagrangian may tie a coordinate to velocities.
+  std::optional<ConsistentStart> find_on_degenerate() {
+    const StateRelations relations(equations_, *equations_.degenerate);
+    ConsistentStart out;
+    out.searched = relations.settle(state_, written_q_, written_v_) == Settled::Elsewhere;
+    if (!out.searched && !relations.hold(state_)) {
+      if (model_.experiment.start_exactly || relations.settle(state_, nothing(), nothing()) == Settled::Nowhere) {
+        const std::string worst = relations.worst_at(written_state_);
+        diagnostics_.error("E0629", span(), fmt::format("the start does not fulfil {}", worst),
+                           "A degenerate Lagrangian asks this of every state of a motion, and no choice of the values "
+                           "that the start leaves open fulfils it.",
+                           "`maup derive` shows the constraints; correct the start, or give less of it.");
+        return std::nullopt;
+      }
+    }
+    out.state = state_;
+    list(out.adjustments, state_.q, written_state_.q, written_q_, 0);
+    list(out.adjustments, state_.v, written_state_.v, written_v_, 1);
+    warn(out);
+    return out;
+  }
+
   double value_of(Expr e) const { return evaluate(in_terms_of_motion(system_, {&e, 1}).front(), bindings_); }
 
   bool read() {

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace maupertuis {
@@ -47,6 +48,39 @@ bool contacts_are_smooth(const EquationsOfMotion& equations, Diagnostics& diagno
   return smooth;
 }
 
+/// Coordinates that are lengths, have the same mass and are not coupled move a body along directions at right angles,
+/// and the point where it touches with it: there the gradients of two components of slip are at right angles too.
+bool slips_are_at_right_angles(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
+  const MechanicalSystem& system = *equations.system;
+  const auto is_in_space = [](const Contact& c) { return c.friction.in_space(); };
+  if (system.dimensionless || std::none_of(system.contacts.begin(), system.contacts.end(), is_in_space)) return true;
+  const ExprMatrix mass = mass_matrix(equations);
+  const std::size_t n = system.coordinates.size();
+  const auto m = [&](std::size_t i, std::size_t j) { return mass.entries[i * n + j]; };
+  const auto is_length = [&](std::size_t i) { return system.coordinates[i].dimension.same_as(dimensions::length()); };
+  bool good = true;
+  for (const Contact& c : system.contacts) {
+    if (!c.friction.in_space()) continue;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!is_length(i)) continue;
+      ExprVector terms;
+      for (std::size_t j = 0; j < n; ++j) {
+        if (!is_length(j) || m(i, i) != m(j, j) || (i != j && !m(i, j).is_zero())) continue;
+        const Expr velocity = system.coordinates[j].velocity;
+        terms.push_back(differentiate(c.friction.slip[0], velocity) * differentiate(c.friction.slip[1], velocity));
+      }
+      if (zero_test(system.context->sum(terms)).verdict != Verdict::Nonzero) continue;
+      diagnostics.error("E0265", c.friction.span, "the two components of this slip velocity are not at right angles",
+                        "Friction acts against the slip as a whole, √(v₁² + v₂²), which is its speed only where the "
+                        "components are along two directions at right angles.",
+                        "Write the components along two such directions, each a velocity: slip (x', y').");
+      good = false;
+      break;
+    }
+  }
+  return good;
+}
+
 }  // namespace
 
 bool can_go_through_modes(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
@@ -58,7 +92,7 @@ bool can_go_through_modes(const EquationsOfMotion& equations, Diagnostics& diagn
                       "Leave the contacts out, or use a Lagrangian that is quadratic in the velocities.");
     return false;
   }
-  return contacts_are_smooth(equations, diagnostics);
+  return contacts_are_smooth(equations, diagnostics) && slips_are_at_right_angles(equations, diagnostics);
 }
 
 bool start_keeps_contacts(const Model& model, double t, std::span<const double> q, Diagnostics& diagnostics) {

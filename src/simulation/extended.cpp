@@ -1,3 +1,4 @@
+#include <maupertuis/degenerate.hpp>
 #include "simulation/ending.hpp"
 #include "simulation/extended_problem.hpp"
 
@@ -129,11 +130,20 @@ class ExtendedRun {
     return run_extended(problem, level_.check, settings);
   }
 
+  bool is_stop(std::size_t event) const { return plan_.problem.events[event].action == ExtendedEvent::Action::Stop; }
+
   void tell_ending(const ExtendedMotion& motion) {
     out_.ending = ending_of(motion.ending);
     out_.reason = motion.reason;
+    if (motion.trouble) out_.reason = fmt::format("Contact {}: {}", plan_.watched[*motion.trouble].name, motion.reason);
     if (!motion.final.t.empty()) out_.reached = Rational::parse(motion.final.t)->to_double();
-    if (motion.ending != StepEnding::None || !plan_.problem.until) return;
+    if (motion.ending != StepEnding::None) return;
+    if (motion.met && !motion.roots.empty() && is_stop(motion.roots.back().event)) {
+      out_.ending = Ending::Stopped;
+      out_.reason = fmt::format("the event `{}` stopped the run", plan_.watched[motion.roots.back().event].name);
+      return;
+    }
+    if (!plan_.problem.until) return;
     out_.ending = motion.met ? Ending::UntilReached : Ending::UntilNotReached;
     out_.reason = motion.met ? "the condition of `run until` was met"
                              : "the condition of `run until` was not met within the time given";
@@ -149,8 +159,33 @@ class ExtendedRun {
         return;
       }
     out_.final = agreed({rough.final, companion.final, fine.final});
+    add_happenings(rough, companion, fine);
     for (std::size_t i = 0; i < std::min({rough.rows.size(), companion.rows.size(), fine.rows.size()}); ++i)
       out_.rows.push_back(agreed({rough.rows[i], companion.rows[i], fine.rows[i]}));
+  }
+
+  /// As far as all meet the same in the same order.
+  void add_happenings(const ExtendedMotion& rough, const ExtendedMotion& companion, const ExtendedMotion& fine) {
+    const std::size_t n = system_.coordinates.size();
+    for (std::size_t i = 0; i < rough.roots.size(); ++i) {
+      const std::size_t event = rough.roots[i].event;
+      const auto is_same = [&](const ExtendedMotion& m) { return i < m.roots.size() && m.roots[i].event == event; };
+      if (!is_same(companion) || !is_same(fine)) break;
+      const Samples s{rough.roots[i].state, companion.roots[i].state, fine.roots[i].state};
+      const auto number = [&](const std::string ExtendedRoot::*value) {
+        return agreed(rough.roots[i].*value, companion.roots[i].*value, fine.roots[i].*value);
+      };
+      ExtendedHappening h{plan_.watched[event].kind,
+                          plan_.watched[event].name,
+                          agreed(s.rough.t, s.companion.t, s.fine.t),
+                          agreed(s, &ExtendedSample::q, 0, n),
+                          agreed(s, &ExtendedSample::v, 0, n),
+                          {},
+                          {}};
+      if (h.kind == Happening::Kind::Impact)
+        h.impulse = number(&ExtendedRoot::impulse), h.speed = number(&ExtendedRoot::speed);
+      out_.happenings.push_back(std::move(h));
+    }
   }
 
   /// One state, three times.
@@ -223,7 +258,10 @@ SimulationOptions in_double(const ExtendedSimulationOptions& options) {
 
 std::optional<ExtendedResult> simulate_extended(const Model& model, const EquationsOfMotion& equations,
                                                 const ExtendedSimulationOptions& options, Diagnostics& diagnostics) {
-  if (!has_method(model, options, diagnostics)) return std::nullopt;
+  if (equations.determined)
+    return simulate_extended(with_determined_system(model, equations), *equations.determined, options, diagnostics);
+  if (!has_method(model, options, diagnostics) || !goes_in_many_digits(model, equations, diagnostics))
+    return std::nullopt;
   const SimulationOptions rough = in_double(options);
   const auto plan = plan_run(model, equations, rough, diagnostics);
   if (!plan || !requests_lie_ahead(model.system, *plan, rough, diagnostics)) return std::nullopt;

@@ -1,8 +1,10 @@
 #include "simulation/extended_problem.hpp"
 
+#include "simulation/ending.hpp"
 #include "simulation/motion_kernel.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/motion_through_modes.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <algorithm>
@@ -62,7 +64,42 @@ class ExactPlanner {
     }
     if (plan_.until) wanted.events.push_back(plan_.condition);
     out_.problem.until = plan_.until;
+    watch_events(wanted);
+    watch_contacts(wanted);
+    without_forces(wanted);
     out_.problem.kernel = motion_kernel(equations_, wanted);
+  }
+
+  void watch_events(WantedFunctions& wanted) {
+    for (const ModelEvent& e : model_.experiment.events) {
+      wanted.events.push_back(with_reactions(equations_, {&e.function, 1}).front());
+      const bool stops = e.action == ModelEvent::Action::Stop;
+      out_.problem.events.push_back({stops ? ExtendedEvent::Action::Stop : ExtendedEvent::Action::Record, e.direction});
+      out_.watched.push_back({Happening::Kind::Event, e.name});
+    }
+  }
+
+  void watch_contacts(WantedFunctions& wanted) {
+    ExprVector q;
+    for (const Coordinate& c : system_.coordinates) q.push_back(c.q);
+    out_.problem.first_contact = wanted.observables.size();
+    for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
+      const Contact& c = system_.contacts[i];
+      wanted.events.push_back(c.gap);
+      out_.problem.events.push_back({ExtendedEvent::Action::Hit, -1});
+      out_.watched.push_back({Happening::Kind::Impact, system_.contact_label(i)});
+      wanted.observables.push_back(differentiate(c.gap, context_.time()));
+      wanted.observables.push_back(c.restitution);
+      for (const Expr& slope : gradient(c.gap, q)) wanted.observables.push_back(slope);
+    }
+  }
+
+  /// Contacts are open between impacts.
+  void without_forces(WantedFunctions& wanted) const {
+    ExprMap open;
+    for (const Contact& c : system_.contacts) open[c.multiplier] = number(0);
+    for (auto* list : {&wanted.observables, &wanted.events})
+      if (!open.empty() && !list->empty()) *list = substitute(*list, open);
   }
 
   void add_times() {
@@ -140,7 +177,7 @@ class ExactPlanner {
   const RunPlan& plan_;
   Context& context_;
   ExprMap values_;
-  ExtendedPlan out_{{Kernel(nullptr), Kernel(nullptr), {}, {}, 0, 0, 0, 0, false}, {}, 0, {}, 0, 0};
+  ExtendedPlan out_{{Kernel(nullptr), Kernel(nullptr), {}, {}, 0, 0, 0, 0, false}, {}, 0, {}, 0, 0, {}};
 };
 
 }  // namespace
@@ -149,6 +186,26 @@ Kernel kernel_of_numbers(const std::vector<Expr>& numbers) {
   KernelSource source;
   source.observables = numbers;
   return build_kernel(source);
+}
+
+bool goes_in_many_digits(const Model& model, const EquationsOfMotion& equations, Diagnostics& diagnostics) {
+  const MechanicalSystem& system = model.system;
+  if (!goes_through_modes(model)) return true;
+  const auto refuse = [&](Span span, const std::string& what) {
+    diagnostics.error("E0725", span, what + " is not carried through in many digits",
+                      "There the motion goes through flights, impacts without friction and events that record or stop; "
+                      "contacts that stay closed, friction and states that are set have equations of their own.",
+                      "Leave --precision out, or ask one mode: --mode \"…\".");
+    return false;
+  };
+  for (const Contact& c : system.contacts)
+    if (c.friction.present()) return refuse(c.span, "friction");
+  if (!system.frictions.empty()) return refuse(system.frictions.front().span, "friction");
+  if (system.contacts.size() > 1 && system.impact_law == ImpactLaw::Simultaneous)
+    return refuse(system.contacts.front().span, "`impact simultaneous`");
+  for (const ModelEvent& e : model.experiment.events)
+    if (e.action == ModelEvent::Action::Set) return refuse(e.span, "an event that sets the state");
+  return can_go_through_modes(equations, diagnostics);
 }
 
 ExtendedPlan plan_extended(const Model& model, const EquationsOfMotion& equations,

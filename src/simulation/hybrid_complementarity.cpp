@@ -8,7 +8,7 @@
 namespace maupertuis {
 namespace {
 
-constexpr double small = 1e-10;    // of the largest
+constexpr double small = 1e-10;  // of the largest
 
 ContactForceProblem::Contact contact_of(const ContactValues& values, std::span<const double> drifts,
                                         std::span<const double> accelerations, std::size_t i) {
@@ -108,22 +108,32 @@ void HybridMotion::close_lowest_flights(const std::vector<std::size_t>& touching
   std::vector<Choice> list;
   for (const std::size_t i : touching)
     if (values.rate[i] <= slow * fastest_[i]) list.push_back(choice_of_contact(i, values));
-  const auto problem = force_problem(list, values, bound);
-  const auto forces = problem ? contact_forces(*problem) : std::nullopt;
-  if (!forces) return;
   std::vector<std::size_t> pressed;
-  bool found = false;
-  for (std::size_t k = 0; k < list.size(); ++k) {
-    const std::size_t i = list[k].contact;
-    const double falls = forces->normal[k] * dot(problem->contacts[k].normal, problem->response.col(at(k)));
-    const bool is_low = values.rate[i] * values.rate[i] <= 2 * falls * rest_unit * widest_[i];
-    if (!(forces->normal[k] > 0) || (is_slow(i) && !is_low)) continue;
-    pressed.push_back(i);
-    found = found || is_slow(i);
+  // One that flies higher presses on nothing: the forces of the others are sought without it.
+  for (bool all_are_low = false; !all_are_low;) {
+    const auto problem = force_problem(list, values, bound);
+    const auto forces = problem ? contact_forces(*problem) : std::nullopt;
+    if (!forces) return;
+    pressed.clear();
+    std::vector<Choice> low;
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      const std::size_t i = list[k].contact;
+      const double falls = forces->normal[k] * dot(problem->contacts[k].normal, problem->response.col(at(k)));
+      const bool presses = forces->normal[k] > 0;
+      if (presses && is_slow(i) && values.rate[i] * values.rate[i] > 2 * falls * rest_unit * widest_[i]) continue;
+      low.push_back(list[k]);
+      if (presses) pressed.push_back(i);
+    }
+    all_are_low = low.size() == list.size();
+    list = std::move(low);
   }
-  if (!found) return;
-  const ImpactResult closed =
-      end_of_bounces(impact_problem(pressed, values), Eigen::Map<const Eigen::VectorXd>(v_.data(), at(v_.size())));
+  if (std::none_of(pressed.begin(), pressed.end(), is_slow)) return;
+  const Eigen::VectorXd v = Eigen::Map<const Eigen::VectorXd>(v_.data(), at(v_.size()));
+  ImpactResult closed = end_of_bounces(impact_problem(pressed, values), v);
+  if (pressed.size() < touching.size()) {  // what touches beside them is not pressed through
+    const ImpactResult all = simultaneous_impact(impact_problem(touching, values), closed.v, true);
+    if (!all.unsolved) closed.v = all.v;
+  }
   v_.assign(closed.v.data(), closed.v.data() + closed.v.size());
 }
 

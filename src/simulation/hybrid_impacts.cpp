@@ -179,6 +179,9 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
                     "without bounce.",
                     t_));
   v_.assign(result.v.data(), result.v.data() + result.v.size());
+  // Forces after an impact are others: what came to 0 before it may press.
+  if (!result.impulses.empty())
+    std::erase_if(pending_->left, [](const Watch& w) { return w.what == Watch::What::Force; });
   record_impulses(result);
   if (end) {
     accumulated_ = fmt::format("the end of infinitely many bounces at t = {:.12g}", *end);

@@ -13,8 +13,10 @@
 namespace maupertuis {
 namespace {
 
-constexpr std::size_t most_choices = 1024;  // modes that are tried
-constexpr std::size_t most_kept = 32;       // motions of modes that were tried in vain at an instant
+constexpr double rounding_of_forces = 1e-13;  // of the terms of g̈
+constexpr std::size_t most_choices = 1024;    // modes that are tried
+constexpr std::size_t most_modes = 128;       // whose motions are kept
+constexpr std::size_t most_kept = 32;         // motions of modes that were tried in vain at an instant
 
 std::string key_of(const ContactMode& mode) {
   std::string key;
@@ -117,14 +119,30 @@ void HybridMotion::treat_events(ModeMotion& motion) const {
   motion.stepper->treat_events(treatments);
 }
 
+/// A heap goes through thousands of modes: those that were last asked for stay. Neighbours hold the equations of all.
+void HybridMotion::forget_oldest() {
+  if (modes_.size() <= most_modes || derivative_) return;
+  const auto older = [this](const auto& a, const auto& b) {
+    if ((a.second.get() == now_) != (b.second.get() == now_)) return b.second.get() == now_;
+    return a.second->asked_for < b.second->asked_for;
+  };
+  modes_.erase(std::min_element(modes_.begin(), modes_.end(), older));
+}
+
 HybridMotion::ModeMotion& HybridMotion::motion_in(const ContactMode& mode) {
   std::string key = key_of(mode);
   for (std::size_t i = 0; i < mode.closed.size(); ++i)  // the motion knows at which slip friction in space stops
     if (mode.friction[i] == FrictionState::Slide) key += fmt::format(" {}", stop_slip(i));
   std::unique_ptr<ModeMotion>& slot = modes_[key];
-  if (slot) return *slot;
+  ++asked_for_;
+  if (slot) {
+    slot->asked_for = asked_for_;
+    return *slot;
+  }
   slot = std::make_unique<ModeMotion>();
   slot->mode = mode;
+  slot->asked_for = asked_for_;
+  forget_oldest();
   Diagnostics unheard;  // the system passed its checks with its contacts
   MechanicalSystem in_mode = system_in_mode(system_, mode);
   in_mode.written = nullptr;
@@ -224,18 +242,30 @@ std::vector<HybridMotion::Choice> HybridMotion::choices(const std::vector<std::s
 }
 
 /// Whether what a condition does over the length that is judged is lost in rounding.
-bool HybridMotion::vanishes(const Watch& watch, double size) const {
+bool HybridMotion::vanishes(const Watch& watch, double size, const ContactValues& values) const {
   constexpr double digits = 1e-12;
-  if (watch.what == Watch::What::Gap) return size <= digits * widest_[watch.index];
+  if (watch.what == Watch::What::Gap) return size <= digits * size_of_gap(watch.index, values);
   if (watch.what == Watch::What::Force) return size <= digits * hardest_[watch.index];
   return false;
+}
+
+/// Whether these accelerations close the gap of a contact beyond so many digits of the terms of g̈.
+bool HybridMotion::presses_again(std::size_t contact, std::span<const double> accelerations,
+                                 const ContactValues& values, double digits) {
+  double sum = functions_.drifts(t_, q_, v_)[contact], size = std::abs(sum);
+  for (const auto& [k, g] : values.normal[contact]) {
+    sum += g * accelerations[k];
+    size += std::abs(g) * acceleration_[kind_[k]];
+  }
+  return sum < -digits * size;
 }
 
 /// Whether the motion in a mode keeps its conditions: gaps that do not close, forces that press, friction that holds
 /// or opposes. A condition that is 0 here counts by the first of its derivatives that is not. Lenient: what is violated
 /// at once is 0 here to rounding.
-bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>& touching, double bound, bool lenient,
-                        std::vector<double>* accelerations) {
+bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>& touching, double bound,
+                        Leniency leniency, std::vector<double>* accelerations) {
+  const bool lenient = leniency != Leniency::None;
   ModeMotion& motion = motion_in(mode);
   TaylorStepper& s = *motion.stepper;
   s.start(t_, q_, v_);
@@ -255,6 +285,12 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
     if (touches || starts_to_slide || (left && w.what == Watch::What::Force)) at_zero.push_back(k);
   }
   s.put_at_zero(at_zero);
+  // A gap whose rate is rounding begins with the second power of time.
+  for (const std::size_t k : at_zero) {
+    const Watch& w = motion.watches[k];
+    if (w.what == Watch::What::Gap && std::abs(values.rate[w.index]) <= rest_speed(w.index, values))
+      s.put_at_zero({&k, 1}, 2);
+  }
   // λ falls through 0, and so does g̈ rise from it: the gap begins with the third power of time.
   for (std::size_t k = 0; k < motion.watches.size(); ++k)
     if (motion.watches[k].what == Watch::What::Gap && released_[motion.watches[k].index]) s.put_at_zero({&k, 1}, 3);
@@ -278,8 +314,12 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
     if (!w.keeps_sign()) continue;
     const bool zero = std::find(at_zero.begin(), at_zero.end(), k) != at_zero.end();
     const bool must_move = w.what == Watch::What::Slip && zero;
-    const bool lost = vanishes(w, outlook.reach[k]);
-    if (w.what == Watch::What::Gap && (lost || released_[w.index])) continue;
+    const bool lost = vanishes(w, outlook.reach[k], values);
+    if (w.what == Watch::What::Gap && lost) continue;
+    if (w.what == Watch::What::Gap && released_[w.index]) {
+      if (presses_again(w.index, outlook.accelerations, values, located_force)) return false;
+      continue;
+    }
     if (w.what == Watch::What::Force && lost && !lenient) return false;  // what does not press needs not be closed
     if (w.what == Watch::What::Force && std::abs(outlook.values[k]) <= located * hardest_[w.index]) {
       // λ was located to rounding of the time alone: what it does next counts, and where it falls the contact opens
@@ -289,7 +329,8 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
       return false;
     }
     // Meeting the constraints of others may move a gap that opens through zero, by what they are known to.
-    const bool is_moved = w.what == Watch::What::Gap && outlook.sides[k] < 0 && outlook.slopes[k] > 0 &&
+    const bool is_moved = w.what == Watch::What::Gap && outlook.sides[k] < 0 &&
+                          outlook.slopes[k] > rest_speed(w.index, values) &&
                           -outlook.values[k] <= located * widest_[w.index];
     if (is_moved) {
       s.put_at_zero({&k, 1});
@@ -302,7 +343,10 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
     if (!wrong) continue;
     const bool is_force = w.what == Watch::What::Force || w.what == Watch::What::Hold;
     const double size_of_force = is_squared(w) ? largest_force * largest_force : largest_force;
-    const bool rounding = (is_force && std::abs(outlook.values[k]) <= 1e-12 * size_of_force) ||
+    const bool rests = leniency == Leniency::Gaps && w.what == Watch::What::Gap && zero &&
+                       std::abs(values.rate[w.index]) <= rest_speed(w.index, values) &&
+                       !presses_again(w.index, outlook.accelerations, values, rounding_of_forces);
+    const bool rounding = rests || (is_force && std::abs(outlook.values[k]) <= 1e-12 * size_of_force) ||
                           (is_force && std::abs(outlook.values[k]) < 1e-280);
     if (!lenient || !rounding || must_move) return false;
   }
@@ -356,20 +400,20 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
   for (const Watch& w : pending_->left)
     if (w.what == Watch::What::Force) released_[w.index] = true;
   if (std::vector<double> free; !started_) {  // what acts without contact is a first measure of forces
-    static_cast<void>(fits(open_mode(system_), touching, bound, true, &free));
+    static_cast<void>(fits(open_mode(system_), touching, bound, Leniency::Forces, &free));
     if (!free.empty()) note_accelerations(free, values);
     std::fill(released_.begin(), released_.end(), false);
   }
   std::optional<ContactMode> found;
   ContactMode last;  // whose motion was begun last
   std::vector<double> first;
-  for (const bool lenient : {false, true}) {
+  for (const Leniency leniency : {Leniency::None, Leniency::Forces, Leniency::Gaps}) {
     for (std::size_t turn = 0; const std::vector<std::size_t>* taken = tries.number(turn); ++turn) {
       if (interrupted()) return true;  // the step that follows says so
       const ContactMode mode = mode_of(list, *taken);
       std::vector<double> accelerations;
       last = mode;
-      if (!fits(mode, touching, bound, lenient, &accelerations)) {
+      if (!fits(mode, touching, bound, leniency, &accelerations)) {
         if (turn >= most_kept) forget(mode);
         continue;
       }
@@ -405,7 +449,7 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
     return false;
   }
   note_accelerations(first, values);  // those of modes that do not fit are no measure
-  if (last != *found) static_cast<void>(fits(*found, touching, bound, true, nullptr));
+  if (last != *found) static_cast<void>(fits(*found, touching, bound, Leniency::Gaps, nullptr));
   for (std::size_t i = 0; i < released_.size(); ++i)
     if (released_[i] && !found->closed[i]) released_at_[i] = t_;
   note_indeterminate(list, values);

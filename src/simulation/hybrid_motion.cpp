@@ -255,7 +255,10 @@ bool HybridMotion::is_just_released(std::size_t contact) {
   constexpr double short_way = 1e-6, slow = 1e-9;
   const double since = std::abs(t_ - released_at_[contact]);
   if (!(since * fastest_[contact] <= short_way * widest_[contact])) return false;
-  return std::abs(functions_.at(t_, q_, v_).rate[contact]) <= slow * fastest_[contact];
+  const ContactValues& values = functions_.at(t_, q_, v_);
+  if (!(std::abs(values.rate[contact]) <= slow * fastest_[contact])) return false;
+  // Another change of contacts may have turned it back since.
+  return !presses_again(contact, now_->stepper->sample(now_->stepper->time()).a, values, located_force);
 }
 
 /// Whether the conditions of the mode hold as the next step begins.
@@ -324,9 +327,7 @@ std::optional<std::size_t> HybridMotion::violated() {
   const ContactValues& values = functions_.at(s.time(), s.q(), s.v());
   note_gaps(values);
   for (std::size_t i = 0; i < values.gap.size(); ++i) {
-    double size = widest_[i];  // and what rounding of the coordinates may make of it
-    for (const auto& [k, g] : values.normal[i]) size = std::max(size, std::abs(g) * place_[kind_[k]]);
-    if (!now_->mode.closed[i] && !(values.gap[i] >= -digits * size)) return i;
+    if (!now_->mode.closed[i] && !(values.gap[i] >= -digits * size_of_gap(i, values))) return i;
   }
   return std::nullopt;
 }
@@ -336,7 +337,14 @@ std::vector<std::size_t> HybridMotion::touching(const ContactValues& values) con
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < values.gap.size(); ++i) {
     const bool hit = std::find(pending_->hit.begin(), pending_->hit.end(), i) != pending_->hit.end();
-    if (hit || now_->mode.closed[i] || std::abs(values.gap[i]) <= rest_unit * widest_[i]) out.push_back(i);
+    // What has come through zero by more than rounding, unseen, and does not come back by itself, is hit too.
+    const bool through = values.gap[i] < 0 && values.rate[i] < -rest_speed(i, values);
+    // Next to zero by the sizes of its coordinates: a body that lies at their zero has no other measure.
+    constexpr double next_to_zero = 1e-3 * rest_unit;
+    const bool lies =
+        !(values.rate[i] > rest_speed(i, values)) && std::abs(values.gap[i]) <= next_to_zero * size_of_gap(i, values);
+    if (hit || through || lies || now_->mode.closed[i] || std::abs(values.gap[i]) <= rest_unit * widest_[i])
+      out.push_back(i);
   }
   return out;
 }

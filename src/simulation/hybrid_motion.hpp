@@ -82,8 +82,10 @@ class HybridMotion final : public Method {
   struct Choice;
   struct Cones;
   struct Settled;
+  enum class Leniency { None, Forces, Gaps };  // what may be violated by rounding
 
   ModeMotion& motion_in(const ContactMode& mode);
+  void forget_oldest();
   void treat_events(ModeMotion& motion) const;
   void watch_contacts(ModeMotion& motion, std::vector<Expr>& events);
   void watch_frictions(ModeMotion& motion, std::vector<Expr>& events);
@@ -98,6 +100,8 @@ class HybridMotion final : public Method {
   void forget(const ContactMode& mode);
   void record_event(const std::string& name, double t);
   bool is_just_released(std::size_t contact);
+  bool presses_again(std::size_t contact, std::span<const double> accelerations, const ContactValues& values,
+                     double digits);
   std::optional<Step> settle(double bound);
   bool carry_out_sets(std::string& reason);
   std::vector<std::size_t> touching(const ContactValues& values) const;
@@ -128,15 +132,17 @@ class HybridMotion final : public Method {
   double energy_at(double t, std::span<const double> q, std::span<const double> v) const;
   void move_on(double by, const Eigen::VectorXd& accelerations);
   std::optional<TaylorStepper::Outlook> outlook_without_contacts(const ContactValues& values, double bound);
+  void take_out_slips(const std::vector<std::size_t>& stopping, const std::vector<std::size_t>& touching);
   void come_to_rest(const std::vector<std::size_t>& touching, double bound);
   bool choose_slips(const std::vector<std::size_t>& touching, double bound, std::string& reason);
   void close_lowest_flights(const std::vector<std::size_t>& touching, double bound);
   void order_by_forces(std::vector<Choice>& list, const ContactValues& values, double bound);
   ContactMode mode_of(const std::vector<Choice>& list, const std::vector<std::size_t>& taken) const;
   bool interrupted() const;
-  bool fits(const ContactMode& mode, const std::vector<std::size_t>& touching, double bound, bool lenient,
+  bool fits(const ContactMode& mode, const std::vector<std::size_t>& touching, double bound, Leniency leniency,
             std::vector<double>* accelerations);
-  bool vanishes(const Watch& watch, double size) const;
+  bool vanishes(const Watch& watch, double size, const ContactValues& values) const;
+  double size_of_gap(std::size_t contact, const ContactValues& values) const;
   void note_sizes(const ContactValues& values);
   void note_gaps(const ContactValues& values);
   void note_usual_gaps(const ContactValues& values);
@@ -181,6 +187,7 @@ class HybridMotion final : public Method {
   ContactFunctions functions_;
   std::map<std::string, std::unique_ptr<ModeMotion>> modes_;
   ModeMotion* now_ = nullptr;
+  std::size_t asked_for_ = 0;  // modes so far
   std::unique_ptr<Pending> pending_;
   std::optional<Step> failed_;  // the start allows no motion
 

@@ -17,6 +17,9 @@ SparseRow sum_of(const SparseRow& a, const SparseRow& b, double factor);
 /// Of the sizes of terms: below, a gap or a speed is 0.
 inline constexpr double rest_unit = 64 * std::numeric_limits<double>::epsilon();
 
+/// Of the terms of g̈: what a located instant leaves of a force that falls through 0.
+inline constexpr double located_force = 1e-9;
+
 /// An event function of a mode, and what a root of it means.
 struct HybridMotion::Watch {
   enum class What { Until, Event, Gap, Force, Hold, Slip, Normal } what = What::Event;
@@ -31,6 +34,7 @@ struct HybridMotion::ModeMotion {
   std::unique_ptr<EquationsOfMotion> equations;
   std::vector<Watch> watches;
   std::unique_ptr<TaylorStepper> stepper;
+  std::size_t asked_for = 0;  // the last time, in turns of asking
 };
 
 /// What a step has met, to be settled before the next one.

@@ -13,6 +13,13 @@ double HybridMotion::rest_speed(std::size_t contact, const ContactValues& values
   return rest_unit * (std::max(values.rate_scale[contact], fastest_[contact]) + 0.25 * std::abs(t_) * acceleration);
 }
 
+/// Of the terms of g so far, and of what rounding of its coordinates may make of it.
+double HybridMotion::size_of_gap(std::size_t contact, const ContactValues& values) const {
+  double size = widest_[contact];
+  for (const auto& [k, g] : values.normal[contact]) size = std::max(size, std::abs(g) * place_[kind_[k]]);
+  return size;
+}
+
 double HybridMotion::rest_slip(std::size_t friction, const ContactValues& values) const {
   return rest_unit * std::max(values.slip_scale[friction], fastest_slip_[friction]);
 }

@@ -132,6 +132,31 @@ std::optional<TaylorStepper::Outlook> HybridMotion::outlook_without_contacts(con
   return outlook;
 }
 
+/// What the moment leaves of slips that stop: the least change of velocities that ends them and opens no contact.
+void HybridMotion::take_out_slips(const std::vector<std::size_t>& stopping, const std::vector<std::size_t>& touching) {
+  constexpr double part = 0.1;  // of the speed at which they count as stopped
+  const ContactValues values = functions_.at(t_, q_, v_);
+  std::vector<SparseRow> rows;
+  std::vector<double> rates;
+  for (const std::size_t i : stopping) {
+    if (slip_speed_at(i, values) > part * stop_slip(i)) continue;
+    rows.push_back(values.tangent[i]), rates.push_back(-values.slip[i]);
+    rows.push_back(values.second_tangent[i]), rates.push_back(-values.second_slip[i]);
+  }
+  if (rows.empty()) return;
+  for (const std::size_t i : touching)
+    if (!(values.rate[i] > rest_speed(i, values))) rows.push_back(values.normal[i]), rates.push_back(0);
+  const Eigen::MatrixXd response = functions_.response(t_, q_, v_, rows);
+  Eigen::MatrixXd w(at(rows.size()), at(rows.size()));
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    for (Index c = 0; c < w.cols(); ++c) w(at(r), c) = dot(rows[r], response.col(c));
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+  solver.setThreshold(1e-10);
+  const VectorXd right = Eigen::Map<const VectorXd>(rates.data(), at(rates.size()));
+  const VectorXd change = response * VectorXd(solver.compute(w).solve(right));
+  for (std::size_t i = 0; i < v_.size(); ++i) v_[i] += change(at(i));
+}
+
 /// A slip that is slow and falls comes to rest after v_t²/(−v_t·v̇_t): the motion moves on to there, where both
 /// components are 0. One that grows has just begun.
 void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double bound) {
@@ -153,19 +178,27 @@ void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double
   const VectorXd a = Eigen::Map<const VectorXd>(outlook->accelerations.data(), changes.size()) + changes;
   const std::vector<double> drifts(functions_.drifts(t_, q_, v_).begin(), functions_.drifts(t_, q_, v_).end());
   const std::size_t contacts = values.gap.size(), seconds = drifts.size() - contacts;
-  double by = 0;
-  for (const std::size_t i : touching) {
-    if (!is_slow(i)) continue;
+  const auto time_to_stop = [&](std::size_t i) {  // 0: it does not
     const double speed = slip_speed_at(i, values);
     const double falls = -(values.slip[i] * (drifts[contacts + i] + dot(values.tangent[i], a)) +
                            values.second_slip[i] * (drifts[seconds + i] + dot(values.second_tangent[i], a)));
-    if (falls > 0)
-      by = std::max(by, speed * speed / falls);
-    else
-      begins_to_slide_[i] = true;
+    return falls > 0 ? speed * speed / falls : 0;
+  };
+  double by = 0;
+  for (const std::size_t i : touching) {
+    if (!is_slow(i)) continue;
+    by = std::max(by, time_to_stop(i));
+    if (time_to_stop(i) == 0) begins_to_slide_[i] = true;
   }
   if (!(by > 0)) return;
+  std::vector<std::size_t> stopping;  // feet of one body stop together, though their slips are not equal
+  constexpr double together = 0.05, near = 1e3;
+  for (const std::size_t i : touching)
+    if (system_.contacts[i].friction.in_space() && slip_speed_at(i, values) <= near * stop_slip(i) &&
+        std::abs(time_to_stop(i) - by) <= together * by)
+      stopping.push_back(i);
   move_on(forwards_ ? by : -by, a);
+  take_out_slips(stopping, touching);
   for (std::size_t i = 0; i < v_.size(); ++i)  // what rounding leaves of all that stops is no motion
     if (std::abs(v_[i]) <= rest_unit * speed_[kind_[i]]) v_[i] = 0;
 }

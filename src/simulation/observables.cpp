@@ -30,10 +30,11 @@ void add_reactions(Observables& out, const EquationsOfMotion& equations) {
   };
   const bool named = !system.releases.empty() || !system.contacts.empty() ||
                      std::any_of(system.constraints.begin(), system.constraints.end(),
-                                 [](const Constraint& c) { return !c.name.empty(); });
+                                 [](const Constraint& c) { return !c.name.empty() && !c.forceless; });
   if (!named) return;
   for (const Reaction& r : reactions(equations)) {
     const Constraint* constraint = system.find_constraint(r.name);
+    if (constraint && constraint->forceless) continue;
     const bool released = r.kind == Reaction::Kind::Released;
     if (r.value && (released || constraint || find_contact(r.name)))
       add("reaction(" + r.name + ")", r.dimension, r.value);

@@ -1,5 +1,6 @@
 #include <maupertuis/across_switches.hpp>
 #include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/integrator.hpp>
 #include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/motion_through_modes.hpp>
@@ -17,6 +18,7 @@
 #include "simulation/observables.hpp"
 #include "simulation/run_plan.hpp"
 #include "simulation/stiffness.hpp"
+#include "simulation/undetermined.hpp"
 
 #include <fmt/format.h>
 
@@ -414,6 +416,12 @@ void add_errors(SimulationResult& result, Probe* probe, const Model& model, cons
 
 std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMotion& equations,
                                          const SimulationOptions& asked, Diagnostics& diagnostics, Probe* probe) {
+  if (equations.determined) {
+    if (probe && refuse_undetermined(*probe, equations, diagnostics)) return std::nullopt;
+    auto result = simulate(with_determined_system(model, equations), *equations.determined, asked, diagnostics, probe);
+    if (result) in_terms_of_system(*result, equations, diagnostics);
+    return result;
+  }
   const SimulationOptions options = with_method_of(model, asked);
   const auto plan = plan_run(model, equations, options, diagnostics);
   if (!plan || !requests_lie_ahead(model.system, *plan, options, diagnostics)) return std::nullopt;

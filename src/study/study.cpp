@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace maupertuis {
 
 Study::Study(SourceText source, const Interrupt& interrupt) : source_(std::move(source)), interrupt_(interrupt) {}
@@ -30,7 +32,11 @@ void Study::fix_mode(std::string text) {
 
 void Study::enter_mode(Model& model, Diagnostics& found) const {
   std::string trouble;
-  const auto mode = read_mode(model.system, *mode_, trouble);
+  auto mode = read_mode(model.system, *mode_, trouble);
+  if (mode_->find_first_not_of(' ') == std::string::npos) {
+    mode.reset();
+    trouble = "It names nothing.";
+  }
   if (!mode) {
     found.error("E0269", std::nullopt, fmt::format("`{}` is no mode of this model", *mode_), trouble,
                 "`maup check` lists its contacts and frictions; `free` is the mode without any.");
@@ -42,6 +48,12 @@ void Study::enter_mode(Model& model, Diagnostics& found) const {
     if (f.normal) f.normal = with_reactions(*free, {&f.normal, 1}).front();
   model.system = system_in_mode(model.system, *mode);
 }
+
+namespace {
+
+bool is_singular_mass(const Diagnostic& d) { return d.code == "E0407" || d.code == "E0408" || d.code == "E0417"; }
+
+}  // namespace
 
 void Study::admit_singular_mass_matrix() {
   MAUP_REQUIRE(!elaborated_);
@@ -58,16 +70,41 @@ const syntax::SyntaxTree* Study::tree() {
 
 /// All mistakes of a text at once: after a wrong statement the others are still looked at. The tree knows the names
 /// that were lost with it, so that their absence is not reported again.
-bool Study::elaborate_model(Diagnostics& found, std::optional<Model>& model) const {
+bool Study::elaborate_model(Diagnostics& found, std::optional<Model>& model) {
   model = elaborate(*tree_, source_, found, overrides_);
   if (!model || found.has_errors()) return false;
   if (model->fields) return true;  // the lint is about coordinates
   const InterruptScope scope(*model->system.context, interrupt_);
   Diagnostics lints;
   lint(*model, source_, lints);
+  Diagnostics unheard;
+  const bool degenerate = admit_degenerate(*model, lints, admits_singular_ ? unheard : found);
+  const bool admitted = admits_singular_ || degenerate;
   for (const Diagnostic& d : lints.items())
-    if (!admits_singular_ || (d.code != "E0407" && d.code != "E0408")) found.append(d);
+    if (!admitted || !is_singular_mass(d)) found.append(d);
   return !found.has_errors();
+}
+
+/// A singular M is no mistake where the constraint algorithm finds a motion all the same. Masses that were forgotten
+/// are one: where points and bodies alone give T, what they leave open stays an error.
+bool Study::admit_degenerate(const Model& model, const Diagnostics& lints, Diagnostics& found) {
+  const bool singular = std::any_of(lints.items().begin(), lints.items().end(), is_singular_mass);
+  const MechanicalSystem& system = model.system;
+  if (!singular && system.gauges.empty()) return false;
+  const bool other = std::any_of(lints.items().begin(), lints.items().end(), [](const Diagnostic& d) {
+    return d.severity == Severity::Error && !is_singular_mass(d);
+  });
+  if (other || system.has_modes() || !system.integral_constraints.empty()) return false;
+  const auto equations = euler_lagrange(std::make_shared<const MechanicalSystem>(system), found);
+  if (!equations) return false;
+  DegenerateAnalysis analysis = analyse_degenerate(*equations, generic_state(model), true);
+  const bool from_masses =
+      !system.lagrangian_given && system.lagrangian_extra.empty() &&
+      std::none_of(system.kinetic.begin(), system.kinetic.end(), [](const EnergyTerm& t) { return t.origin == "T"; });
+  if (singular && from_masses && (!analysis.closed() || !analysis.free.empty())) return false;
+  if (report_degenerate(model, *equations, analysis, found))
+    degenerate_ = std::make_shared<const DegenerateAnalysis>(std::move(analysis));
+  return true;
 }
 
 const Model* Study::model() {
@@ -111,10 +148,16 @@ const EquationsOfMotion* Study::equations() {
   if (!derived_ && model()) {
     const InterruptScope scope = interruptible();
     equations_ = euler_lagrange(std::shared_ptr<const MechanicalSystem>(model_, &model_->system), diagnostics_);
+    if (equations_) equations_->degenerate = degenerate_;
+    if (equations_ && degenerate_)
+      if (auto determined = determined_equations(*equations_, *degenerate_))
+        equations_->determined = std::make_shared<const EquationsOfMotion>(std::move(*determined));
     derived_ = true;
   }
   return equations_ && !wrong() ? &*equations_ : nullptr;
 }
+
+const DegenerateAnalysis* Study::degenerate() { return model() ? degenerate_.get() : nullptr; }
 
 const Derivation* Study::derivation(bool with_steps) {
   if (!equations()) return nullptr;
@@ -157,7 +200,7 @@ std::optional<SimulationResult> Study::motion(const SimulationOptions& options) 
 }
 
 std::optional<ExtendedResult> Study::motion(const ExtendedSimulationOptions& options) {
-  if (wrong() || refuse_held_integrals() || refuse_modes() || !certificate()) return std::nullopt;
+  if (wrong() || refuse_held_integrals() || !certificate()) return std::nullopt;
   return simulate_extended(*model_, *equations_, options, diagnostics_);
 }
 
@@ -168,7 +211,29 @@ std::optional<Verification> Study::verification(const SimulationOptions& options
   if (auto of_errors = verify_errors(*tree_, source_, diagnostics_)) return of_errors;
   if (wrong() || !certificate()) return std::nullopt;
   const InterruptScope scope = interruptible();
-  return verify(*model_, *equations_, source_, options, diagnostics_);
+  Verification out = verify(*model_, *equations_, source_, options, diagnostics_);
+  verify_with_other_values(options, out);
+  return out;
+}
+
+/// `expect … with s = -1`: a study of its own for each such text, whose lines take their places among the others.
+void Study::verify_with_other_values(const SimulationOptions& options, Verification& out) {
+  std::vector<std::string> texts;
+  for (const Expectation& e : model_->experiment.expectations)
+    if (!e.with.empty() && std::find(texts.begin(), texts.end(), e.with) == texts.end()) texts.push_back(e.with);
+  for (const std::string& with : texts) {
+    Study other(source_, interrupt_);
+    other.override_with(OverrideKind::Parameters, "with", with);
+    other.equations();
+    std::optional<Verification> found;
+    if (!other.wrong() && other.certificate())
+      found = verify(*other.model_, *other.equations_, source_, options, other.diagnostics_, with);
+    for (const Diagnostic& d : other.diagnostics_.items())
+      if (d.severity == Severity::Error) diagnostics_.append(d);
+    if (found) out.results.insert(out.results.end(), found->results.begin(), found->results.end());
+  }
+  std::stable_sort(out.results.begin(), out.results.end(),
+                   [](const ExpectationResult& a, const ExpectationResult& b) { return a.line < b.line; });
 }
 
 std::optional<Verification> Study::field_verification(const SimulationOptions& options) {
@@ -194,9 +259,10 @@ bool Study::refuse_modes() {
   const MechanicalSystem& system = model_->system;
   if (!system.has_modes()) return false;
   const Span span = system.contacts.empty() ? system.frictions.front().span : system.contacts.front().span;
-  diagnostics_.error("E0270", span, "this question is about one set of equations, and the model has several modes",
-                     "Contacts that open and close and friction that sticks and slides change the equations on the way.",
-                     "Ask it of one mode: --mode free, --mode \"floor\", or --mode \"floor sticking\" where there is friction.");
+  diagnostics_.error(
+      "E0270", span, "this question is about one set of equations, and the model has several modes",
+      "Contacts that open and close and friction that sticks and slides change the equations on the way.",
+      "Ask it of one mode: --mode free, --mode \"floor\", or --mode \"floor sticking\" where there is friction.");
   return true;
 }
 

@@ -14,7 +14,7 @@ struct Declared {
 
 Name name_of(const Token& token) { return {std::string(token.text), token.span}; }
 
-// param, coord, let: the names at depth 0 that stand before `=`, `:` or `,` and after the first word or a comma.
+// param, coord, let, rates: the names at depth 0 that stand before `=`, `:` or `,` and after the first word or a comma.
 void scan_list(const TokenList& list, const StatementTokens& statement, Kind kind, std::vector<Declared>& found) {
   int depth = 0;
   std::size_t unnamed = found.size();  // coord x, y : length — the kind comes after the names
@@ -35,7 +35,7 @@ void scan(const TokenList& list, const StatementTokens& statement, std::vector<D
   const Token& first = list.tokens[statement.begin];
   if (first.is("param")) return scan_list(list, statement, Kind::Parameter, found);
   if (first.is("coord")) return scan_list(list, statement, Kind::Coordinate, found);
-  if (first.is("let")) return scan_list(list, statement, Kind::Definition, found);
+  if (first.is("let") || first.is("rates")) return scan_list(list, statement, Kind::Definition, found);
   const Kind kind = first.is("input")                                            ? Kind::Input
                     : first.is("frame") || first.is("point") || first.is("body") ? Kind::Place
                     : first.is("field")                                          ? Kind::Field

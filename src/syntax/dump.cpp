@@ -50,6 +50,14 @@ class Dumper {
     head("let");
     for (const auto& item : s.items) child(item.name.text, item.value);
   }
+  void operator()(const RatesStatement& s) {
+    head("rates");
+    for (const auto& group : s.groups) {
+      std::string names;
+      for (const Name& n : group.names) names += (names.empty() ? "" : ", ") + n.text;
+      child(names, group.value);
+    }
+  }
   void operator()(const InputStatement& s) {
     head("input", s.name.text), word("unit", s.unit ? unit_text(*s.unit) : ""), child("value", s.value);
   }
@@ -202,11 +210,17 @@ class Dumper {
   void operator()(const expectation::OfField& x) {
     std::visit([this](const auto& said) { expected_field(said); }, x.said->body);
   }
+  void operator()(const expectation::PhaseConstraints& x) {
+    head(expectation_, "phase constraints");
+    for (const auto& generation : x.generations) children("generation", generation);
+  }
+  void operator()(const expectation::ClassCount& x) { head(expectation_, x.what), child("value", x.number); }
   void operator()(const expectation::Error& x) { head(expectation_, "error"), word("name", x.code.text); }
   void operator()(const ConstraintStatement& s) {
     head(s.integral ? "integral constraint" : "constraint", s.name ? s.name->text : ""), child("left", s.left),
         child("right", s.right);
   }
+  void operator()(const GaugeStatement& s) { head("gauge"), child("left", s.left), child("right", s.right); }
   void operator()(const SweepStatement& s) {
     head("sweep"), child("variable", s.variable), child("from", s.from), child("to", s.to), child("steps", s.steps);
   }

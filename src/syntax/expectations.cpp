@@ -7,7 +7,14 @@ namespace maupertuis::syntax {
 
 StatementBody StatementParser::expect_statement() {
   next();
-  return ExpectStatement{false, expected(false)};
+  ExpectStatement statement{false, expected(false)};
+  if (accept("with")) {
+    const std::size_t first = index_;
+    do assignment();
+    while (accept(","));
+    statement.with = cover(context_.list.tokens[first].span, previous().span);
+  }
+  return statement;
 }
 
 StatementBody StatementParser::claim_statement() {
@@ -20,7 +27,7 @@ namespace {
 /// What a model expects of its phase space is an equation whose left side is one of these words.
 bool opens_phase_space(const Token& word, const Token& after) {
   return (word.is("hamiltonian") && after.is("=")) || (word.is("routhian") && after.is("of")) ||
-         (word.is("bracket") && after.is("("));
+         (word.is("bracket") && after.is("(")) || (word.is("dirac") && after.is("bracket"));
 }
 
 /// Words of variational problems are ordinary names where the model declares them.
@@ -79,6 +86,7 @@ expectation::Kind StatementParser::expected(bool claim) {
   if (!declared && opens_index(peek(), peek(1))) return expect_index();
   if (!declared && opens_path(peek(), peek(1))) return expect_path();
   if (opens_field_expectation()) return expect_of_field();
+  if (!declared && opens_degenerate()) return expect_degenerate();
   if (accept("constraint")) return expect_class();
   if (accept("integral")) return expectation::Integral{formula()};
   if (accept("frequencies")) return expect_frequencies();
@@ -201,14 +209,42 @@ expectation::Kind StatementParser::expect_phase_space() {
     routhian.value = right_side();
     return routhian;
   }
-  next(), next();
   expectation::Bracket bracket;
+  bracket.dirac = accept("dirac");
+  next(), next();
   bracket.a = formula();
   expect(",", "the first function of the bracket");
   bracket.b = formula();
   expect(")", "the second function of the bracket");
   bracket.value = right_side();
   return bracket;
+}
+
+bool StatementParser::opens_degenerate() const {
+  const Token &word = peek(), &after = peek(1);
+  return (word.is("constraints") && after.is(":")) || (word.is("motions") && after.is("=")) ||
+         (word.is("physical") && after.is("freedoms")) || (word.is("free") && after.is("functions")) ||
+         ((word.is("first") || word.is("second")) && after.is("class")) || word.is("contradiction");
+}
+
+// constraints : p_y ; z ; p_x,   first class = 3,   motions = 2,   contradiction
+expectation::Kind StatementParser::expect_degenerate() {
+  const Token& word = next();
+  if (word.is("contradiction")) return expectation::Error{{"E0623", word.span}};
+  if (word.is("constraints")) {
+    next();
+    expectation::PhaseConstraints out;
+    do {
+      out.generations.emplace_back();
+      do out.generations.back().push_back(formula());
+      while (accept(","));
+    } while (accept(";"));
+    return out;
+  }
+  std::string what(word.text);
+  if (!word.is("motions")) what += " " + std::string(next().text);
+  expect("=", what);
+  return expectation::ClassCount{what, quantity()};
 }
 
 // hit 3 at 0.45 s ± 1e-11

@@ -362,8 +362,23 @@ class Lexer {
     for (int i = 0; i < count; ++i) emit(Token::Kind::Sign, "'", begin, i > 0);
   }
 
+  /// `expect constraints : p_y ; z`: there alone `;` is a sign, between generations.
+  bool separates_generations(std::size_t at) const {
+    const std::size_t line = text_.rfind('\n', at) + 1;  // 0 where there is none
+    const std::size_t first = text_.find_first_not_of(" \t", line);
+    constexpr std::string_view word = "expect";
+    if (text_.substr(first, word.size()) != word) return false;
+    const std::size_t second = text_.find_first_not_of(" \t", first + word.size());
+    constexpr std::string_view kind = "constraints";
+    return second > first + word.size() && text_.substr(second, kind.size()) == kind;
+  }
+
   void read_sign(CodePoint c) {
     const std::size_t begin = position_;
+    if (text_[begin] == ';' && separates_generations(begin)) {
+      ++position_;
+      return emit(Token::Kind::Sign, ";", begin);
+    }
     const auto sign =
         std::find_if(kSigns.begin(), kSigns.end(), [&](const Spelling& s) { return starts_with(s.written); });
     if (sign != kSigns.end() && !sign->canonical.empty()) {

@@ -68,6 +68,9 @@ class StatementParser : private ExpressionParser {
   StatementBody sweep_statement();
   // variational_statements.cpp
   StatementBody constraint_statement();
+  StatementBody gauge_statement();
+  bool opens_degenerate() const;
+  expectation::Kind expect_degenerate();
   StatementBody independent_statement();
   StatementBody path_statement();
   // contact_statements.cpp
@@ -75,6 +78,8 @@ class StatementParser : private ExpressionParser {
   StatementBody friction_statement();
   StatementBody event_statement();
   StatementBody impact_statement();
+  // rates_statement.cpp
+  StatementBody rates_statement();
   // field_statements.cpp
   StatementBody field_statement();
   StatementBody density_statement();

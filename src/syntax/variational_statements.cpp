@@ -18,6 +18,16 @@ StatementBody StatementParser::constraint_statement() {
   return constraint;
 }
 
+// gauge e = 1
+StatementBody StatementParser::gauge_statement() {
+  next();
+  GaugeStatement gauge;
+  gauge.left = formula();
+  expect("=", "the left side of the gauge");
+  gauge.right = quantity();
+  return gauge;
+}
+
 // independent x,   independent x : length
 StatementBody StatementParser::independent_statement() {
   next();

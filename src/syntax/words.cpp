@@ -39,6 +39,7 @@ constexpr std::array kStatementWords = {
     "torque"sv,
     "friction"sv,
     "constraint"sv,
+    "gauge"sv,
     "reaction"sv,
     "contact"sv,
     "impact"sv,
@@ -52,6 +53,7 @@ constexpr std::array kStatementWords = {
     "draw"sv,
     "independent"sv,
     "path"sv,
+    "rates"sv,
     "field"sv,
     "density"sv,
     "boundary"sv,
@@ -65,7 +67,7 @@ constexpr std::array kClauseWords = {
     "rising"sv,   "falling"sv,     "within"sv,   "rel"sv,    "on"sv,     "from"sv,      "to"sv,          "by"sv,
     "steps"sv,    "cells"sv,       "boundary"sv, "rest"sv,   "angle"sv,  "axis"sv,      "until"sv,       "every"sv,
     "exactly"sv,  "is"sv,          "not"sv,      "and"sv,    "or"sv,     "else"sv,      "where"sv,
-    "sticking"sv,
+    "sticking"sv, "with"sv,
 };
 
 constexpr Function kFunctions[] = {

@@ -296,15 +296,23 @@ constexpr CodeEntry kEntries[] = {
      "No energy and no force depends on the coordinate, so that nothing determines its motion.",
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m x'^2\n", "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\n"},
     {"E0407", "a coordinate has no kinetic energy",
-     "Its velocity does not enter the Lagrangian quadratically, so that the mass matrix has a row of zeros, and no "
-     "equation gives its acceleration. Often a mass was forgotten.",
-     "coord x, y : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\nV = 1/2 k (x - y)^2\n",
-     "coord x, y : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m (x'^2 + y'^2)\nV = 1/2 k (x - y)^2\n"},
+     "No mass moves when it changes, and what else the model says leaves its motion open, or contradicts itself: a "
+     "constant force on a point without mass. Where its equation determines it all the same, there is a warning, "
+     "W0621.",
+     "coord x, y : length\nparam m = 1 kg, F = 1 N\npoint P mass m at (x, 0)\npoint Q at (x, y)\nforce on Q = (0, F)\n",
+     "coord x, y : length\nparam m = 1 kg, F = 1 N\npoint P mass m at (x, 0)\npoint Q mass m at (x, y)\nforce on Q = "
+     "(0, "
+     "F)\n"},
     {"E0408", "the mass matrix is singular",
-     "The kinetic energy depends on a combination of velocities only, such as x' + y': a motion that keeps it costs "
-     "nothing, and its acceleration is not determined.",
-     "coord x, y : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m (x' + y')^2\nV = 1/2 k x^2\n",
-     "coord x, y : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m (x' + y')^2 + 1/2 m y'^2\nV = 1/2 k x^2\n"},
+     "The kinetic energy of points and bodies depends on a combination of velocities only: a motion that keeps it "
+     "costs "
+     "nothing, and its acceleration is not determined. So with four components of a quaternion of which nothing holds "
+     "the "
+     "norm.",
+     "coord w, x, y, z : number\nparam I = 1 kg m^2\nbody B inertia diag(I, I, 2 I) rotation quaternion (w, x, y, z)\n"
+     "start w = 1\n",
+     "coord w, x, y, z : number\nparam I = 1 kg m^2\nbody B inertia diag(I, I, 2 I) rotation quaternion (w, x, y, z)\n"
+     "constraint w^2 + x^2 + y^2 + z^2 = 1\nstart w = 1\n"},
     {"E0409", "a parameter is zero where motion needs it",
      "With the value zero the kinetic energy of a motion vanishes: a pendulum of length zero cannot swing.",
      "coord θ : angle\nparam m = 1 kg, l = 0 m\nT = 1/2 m l^2 θ'^2\n",
@@ -423,38 +431,71 @@ constexpr CodeEntry kEntries[] = {
      "coord x : length\nparam m = 1 kg, p = 1 N s\nT = 1/2 m x'^2\nU = p sqrt(x'^2 + 1e-6 [m^2/s^2])\n"},
     // ------------------------------------------------------------------------------------------------ not supported
     // yet
+    {"E0255", "as many names as components",
+     "Names before one sign of equality name the components of the vector behind it, one each.",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v, u = x' cos ψ + y' sin ψ\n",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' cos ψ + y' sin ψ, u = -x' sin ψ + y' cos ψ, w = ψ'\n"},
+    {"E0256", "a rate that is no linear combination of velocities",
+     "Rates (quasi-velocities) take the place of the velocities: σ = Y(q,t) q' + y(q,t), linear in q', so that q' follows from them. Accelerations and inputs stand in none.",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = sqrt(x'^2 + y'^2)\n",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' cos ψ + y' sin ψ, u = -x' sin ψ + y' cos ψ, w = ψ'\n"},
+    {"E0257", "rates that depend on each other",
+     "One of them follows from the others and from the constraints, so that they cannot be chosen independently.",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' cos ψ + y' sin ψ, u = 2 v, w = ψ'\n",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' cos ψ + y' sin ψ, u = -x' sin ψ + y' cos ψ, w = ψ'\n"},
+    {"E0258", "more rates than velocities left free",
+     "Constraints leave as many independent velocities as there are coordinates less independent constraints; there are no more rates than that.",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x', u = y', w = ψ', s = x' + y'\n",
+     "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' cos ψ + y' sin ψ, u = -x' sin ψ + y' cos ψ, w = ψ'\n"},
     {"E0261", "no such event",
-     "What is expected of an event or a contact names it: the name behind `event`, or that at the end of a contact. A contact has an impact, is made and lost; friction sticks and slips.",
-     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 name floor\nrun 1 s\nexpect event flor at 1 s ± 1e-9\n",
-     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 name floor\nstart z = 1 m\nrun 1 s\nexpect event floor = 1\n"},
+     "What is expected of an event or a contact names it: the name behind `event`, or that at the end of a contact. A "
+     "contact has an impact, is made and lost; friction sticks and slips.",
+     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 name "
+     "floor\nrun 1 s\nexpect event flor at 1 s ± 1e-9\n",
+     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 name "
+     "floor\nstart z = 1 m\nrun 1 s\nexpect event floor = 1\n"},
     {"E0262", "a velocity in a contact",
      "A contact bounds positions. While it is closed its velocities and accelerations follow from that.",
      "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z' >= 0\n",
-     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 restitution 0.5 friction 0.2 slip x' name floor\n"},
+     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 "
+     "restitution 0.5 friction 0.2 slip x' name floor\n"},
     {"E0263", "a coefficient of contact out of its range",
-     "Restitution lies between 0 and 1: it is the part of the speed that an impact gives back. A coefficient or limit of friction is not negative.",
-     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 restitution 1.5\n",
-     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 restitution 0.5 friction 0.2 slip x' name floor\n"},
+     "Restitution lies between 0 and 1: it is the part of the speed that an impact gives back. A coefficient or limit "
+     "of friction is not negative.",
+     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 "
+     "restitution 1.5\n",
+     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 "
+     "restitution 0.5 friction 0.2 slip x' name floor\n"},
     {"E0264", "static friction below kinetic friction",
      "What holds a body that rests is at least what brakes one that slides; else it would neither rest nor slide.",
-     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 friction 0.4 static 0.3 slip x'\n",
-     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 restitution 0.5 friction 0.2 slip x' name floor\n"},
+     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 friction "
+     "0.4 static 0.3 slip x'\n",
+     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 "
+     "restitution 0.5 friction 0.2 slip x' name floor\n"},
     {"E0265", "friction without the velocity that it acts against",
-     "Friction needs the velocity of the touching point along the surface: linear in the velocities, and not the velocity along the normal, at which the contact opens and closes.",
-     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 friction 0.3 slip z'\n",
-     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 restitution 0.5 friction 0.2 slip x' name floor\n"},
+     "Friction needs the velocity of the touching point along the surface: linear in the velocities, and not the "
+     "velocity along the normal, at which the contact opens and closes.",
+     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 friction "
+     "0.3 slip z'\n",
+     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 "
+     "restitution 0.5 friction 0.2 slip x' name floor\n"},
     {"E0266", "friction at a gap that is no length",
-     "Friction is μ times the normal force. The multiplier of a contact is that force only where g is the distance to the surface.",
-     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact x^2 + z^2 >= 1 m^2 friction 0.3 slip x'\n",
-     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\nparam R = 1 m\ncontact sqrt(x^2 + z^2) >= R friction 0.3 slip (z x' - x z')/sqrt(x^2 + z^2)\nstart z = R\n"},
-    {"E0267", "a contact without a coordinate",
-     "Its two sides are known for all times, whatever the motion.",
+     "Friction is μ times the normal force. The multiplier of a contact is that force only where g is the distance to "
+     "the surface.",
+     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact x^2 + z^2 >= 1 "
+     "m^2 friction 0.3 slip x'\n",
+     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\nparam R = 1 m\ncontact "
+     "sqrt(x^2 + z^2) >= R friction 0.3 slip (z x' - x z')/sqrt(x^2 + z^2)\nstart z = R\n"},
+    {"E0267", "a contact without a coordinate", "Its two sides are known for all times, whatever the motion.",
      "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact 2 m >= 1 m\n",
-     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 restitution 0.5 friction 0.2 slip x' name floor\n"},
+     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 "
+     "restitution 0.5 friction 0.2 slip x' name floor\n"},
     {"E0268", "an event on constants",
      "The two sides of its condition are known before the motion, so that they never cross.",
-     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\nevent hit when g = 9.8 m/s^2 : record\n",
-     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\nevent hit when z = 0 m : record\n"},
+     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\nevent hit when g = 9.8 "
+     "m/s^2 : record\n",
+     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\nevent hit when z = 0 m "
+     ": record\n"},
     {"E0280", "a field without a density",
      "The action of a field is the integral of its density over space and time; the field equations are its variation.",
      "field u(x) : length\n",

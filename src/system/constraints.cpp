@@ -39,7 +39,8 @@ bool refuse_acceleration_in_constraint(Elaboration& e, const Value& v, const syn
 }
 
 /// Both sides of the constraint; nothing after a mistake.
-std::optional<Value> difference(Elaboration& e, const ConstraintStatement& s) {
+template <class Statement>
+std::optional<Value> difference(Elaboration& e, const Statement& s) {
   const Value left = evaluate_formula(e, *s.left);
   Place place;
   if (!left.poisoned && !left.fits_any) place.expected = left.dimension;
@@ -98,6 +99,20 @@ Expr with_inputs_as_formulas(const MechanicalSystem& s, Expr value) {
     }
   }
   return formulas.empty() ? value : substitute(value, formulas);
+}
+
+void elaborate_gauges(Elaboration& e) {
+  for (const syntax::Statement& statement : e.tree.statements) {
+    const auto* s = std::get_if<syntax::GaugeStatement>(&statement.body);
+    const std::optional<Value> v = s ? difference(e, *s) : std::nullopt;
+    if (!v) continue;
+    Gauge gauge;
+    gauge.text = e.texts.slice(cover(s->left->span, s->right->span));
+    gauge.value = with_inputs_as_formulas(e.system(), expand_time_derivatives(v->scalar()));
+    gauge.dimension = v->dimension;
+    gauge.span = statement.span;
+    e.system().gauges.push_back(std::move(gauge));
+  }
 }
 
 void elaborate_constraints(Elaboration& e) {

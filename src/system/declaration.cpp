@@ -39,6 +39,8 @@ const char* word_of(Kind kind) {
       return "field";
     case Kind::Space:
       return "space variable";
+    case Kind::Rate:
+      return "rate";
     case Kind::Energy:
       return "energy";
   }
@@ -84,6 +86,9 @@ SymbolTable::SymbolTable(const syntax::SyntaxTree& tree, const SourceTexts& text
     if (const auto* c = std::get_if<syntax::CoordStatement>(&s.body)) list(c->items, Kind::Coordinate);
     if (const auto* l = std::get_if<syntax::LetStatement>(&s.body)) list(l->items, Kind::Definition);
     if (const auto* i = std::get_if<syntax::InputStatement>(&s.body)) add(Kind::Input, i->name, s, 0);
+    if (const auto* r = std::get_if<syntax::RatesStatement>(&s.body))
+      for (std::size_t g = 0; g < r->groups.size(); ++g)
+        for (std::size_t k = 0; k < r->groups[g].names.size(); ++k) add(Kind::Rate, r->groups[g].names[k], s, g, k);
     if (const auto* f = std::get_if<syntax::FrameStatement>(&s.body)) add(Kind::Frame, f->name, s, 0);
     if (const auto* p = std::get_if<syntax::PointStatement>(&s.body)) add(Kind::Point, p->name, s, 0);
     if (const auto* b = std::get_if<syntax::BodyStatement>(&s.body)) add(Kind::Body, b->name, s, 0);
@@ -113,13 +118,15 @@ void SymbolTable::add_fields(const syntax::FieldStatement& field, const syntax::
   }
 }
 
-void SymbolTable::add(Kind kind, const syntax::Name& name, const syntax::Statement& statement, std::size_t item) {
+void SymbolTable::add(Kind kind, const syntax::Name& name, const syntax::Statement& statement, std::size_t item,
+                      std::size_t component) {
   Declaration d;
   d.kind = kind;
   d.name = name.text;
   d.span = name.span;
   d.statement = &statement;
   d.item = item;
+  d.component = component;
   const bool stands_in_no_formula =
       kind == Kind::Constraint || kind == Kind::Reaction || kind == Kind::Contact || kind == Kind::Event;
   if (stands_in_no_formula)  // T and V do

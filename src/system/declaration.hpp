@@ -1,6 +1,7 @@
 #pragma once
 #include "system/value.hpp"
 
+#include <memory>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -25,6 +26,7 @@ struct Declaration {
     Independent,
     Field,
     Space,
+    Rate,
     Energy
   };
   Kind kind = Kind::Parameter;
@@ -32,10 +34,12 @@ struct Declaration {
   Span span;
   const syntax::Statement* statement = nullptr;  // null for energies
   std::size_t item = 0;                          // of a statement that declares a list
+  std::size_t component = 0;                     // of a rate: which of its group
   std::size_t index = 0;  // in MechanicalSystem::coordinates: of a coordinate, of the first of a body's own quaternion
   bool used = false;
   bool done = false;  // `value` is there
   Value value;
+  std::shared_ptr<const Value> group;  // of a rate: the vector that it is a component of
 };
 
 using DeclarationId = std::size_t;
@@ -62,7 +66,8 @@ class SymbolTable {
 
  private:
   void add_fields(const syntax::FieldStatement& field, const syntax::Statement& statement);
-  void add(Declaration::Kind kind, const syntax::Name& name, const syntax::Statement& statement, std::size_t item);
+  void add(Declaration::Kind kind, const syntax::Name& name, const syntax::Statement& statement, std::size_t item,
+           std::size_t component = 0);
 
   Diagnostics& diagnostics_;
   SourceTexts texts_;

@@ -68,6 +68,10 @@ class Dependencies {
     Ids& out = of_[id];
     if (const auto* l = std::get_if<syntax::LetStatement>(&d.statement->body)) expression(out, l->items[d.item].value);
     if (const auto* i = std::get_if<syntax::InputStatement>(&d.statement->body)) expression(out, i->value);
+    if (const auto* r = std::get_if<syntax::RatesStatement>(&d.statement->body)) {
+      expression(out, r->groups[d.item].value);
+      if (d.component > 0) name(out, r->groups[d.item].names.front().text);
+    }
     if (const auto* f = std::get_if<syntax::FrameStatement>(&d.statement->body)) {
       expression(out, f->at);
       rotation(out, f->rotation);

@@ -103,6 +103,8 @@ void elaborate_declaration(Elaboration& e, DeclarationId id) {
       return elaborate_definition(e, d);
     case Kind::Input:
       return elaborate_input(e, d);
+    case Kind::Rate:
+      return elaborate_rate(e, d);
     case Kind::Frame:
       return elaborate_frame(e, d);
     case Kind::Point:
@@ -187,6 +189,8 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText&
   for (const DeclarationId id : definition_order(e.table, tree, diagnostics)) elaborate_declaration(e, id);
   elaborate_forces(e);
   elaborate_constraints(e);
+  elaborate_gauges(e);
+  check_rates(e);
   elaborate_contacts(e);
   elaborate_fields(e);
   elaborate_experiment(e);

@@ -119,6 +119,9 @@ void elaborate_parameter(Elaboration& e, Declaration& d);
 void elaborate_coordinate(Elaboration& e, Declaration& d);
 void elaborate_definition(Elaboration& e, Declaration& d);
 void elaborate_input(Elaboration& e, Declaration& d);
+void elaborate_rate(Elaboration& e, Declaration& d);
+/// E0257, E0258: rates that depend on each other, or are more than the constraints leave.
+void check_rates(Elaboration& e);
 void elaborate_frame(Elaboration& e, Declaration& d);
 void elaborate_point(Elaboration& e, Declaration& d);
 void elaborate_body(Elaboration& e, Declaration& d);
@@ -127,6 +130,7 @@ void elaborate_energy(Elaboration& e, syntax::EnergyStatement::Which which, Decl
 void elaborate_forces(Elaboration& e);
 /// Fills `constraints`, and names their multipliers.
 void elaborate_constraints(Elaboration& e);
+void elaborate_gauges(Elaboration& e);
 /// Contacts, friction and the law of impacts; after the constraints.
 void elaborate_contacts(Elaboration& e);
 /// `event` statements; after the contacts.
@@ -159,10 +163,12 @@ Value constant_vector_of(Elaboration& e, const syntax::Expression& x, const Dime
                          const std::string& what);
 /// `θ' = 2 rad/s` of a start; nothing, and a message, if it is none.
 std::optional<StartValue> start_value(Elaboration& e, const syntax::StartStatement::Item& item);
-/// Whether a start gives a body rate: `sat.ω`, `sat.ω_world`, `sat.ω.x`.
-bool is_body_rate(Elaboration& e, const syntax::Expression& x);
+/// Whether a start gives a rate: `v` of `rates v = …`, or that of a body: `sat.ω`, `sat.ω_world`, `sat.ω.x`.
+bool is_rate(Elaboration& e, const syntax::Expression& x);
 /// `sat.ω = (0, 2, 0) rad/s`: one rate a component; none, and a message, after a mistake.
 std::vector<StartRate> start_rates(Elaboration& e, const syntax::StartStatement::Item& item);
+/// The velocities that rates of a point ask for, added to its values. False, and a message, where none give them.
+bool add_velocities_of_rates(Elaboration& e, const std::vector<StartRate>& rates, std::vector<StartValue>& values);
 void elaborate_experiment(Elaboration& e);
 void elaborate_expectation(Elaboration& e, const syntax::ExpectStatement& s, Span span);
 /// What a line says; nothing after a mistake.

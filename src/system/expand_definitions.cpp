@@ -16,6 +16,7 @@ void for_each_expression(MechanicalSystem& s, const std::function<void(Expr&)>& 
     for (EnergyTerm& t : list) visit(t.value);
   };
   for (Input& i : s.inputs) visit(i.formula);
+  for (Rate& r : s.rates) visit(r.value);
   for (Definition& d : s.definitions) vector(d.components);
   for (Frame& f : s.frames) {
     vector(f.origin);
@@ -48,6 +49,7 @@ void for_each_expression(MechanicalSystem& s, const std::function<void(Expr&)>& 
     vector(f.lever);
   }
   for (Constraint& c : s.constraints) visit(c.value);
+  for (Gauge& g : s.gauges) visit(g.value);
   const auto friction = [&](Friction& f) {
     vector(f.slip);
     for (Expr* x : {&f.kinetic, &f.static_, &f.normal})
@@ -91,6 +93,10 @@ struct ExpectationVisitor {
   void operator()(expectation::Hamiltonian& x) const { visit(x.value); }
   void operator()(expectation::Routhian& x) const { visit(x.value); }
   void operator()(expectation::Bracket& x) const { visit(x.a), visit(x.b), visit(x.value); }
+  void operator()(expectation::PhaseConstraints& x) const {
+    for (std::vector<Expr>& generation : x.generations) all(generation);
+  }
+  void operator()(expectation::ClassCount& x) const { visit(x.number); }
   void operator()(expectation::Freedoms& x) const { visit(x.number); }
   void operator()(expectation::ConstraintClass&) const {}
   void operator()(expectation::Frequencies& x) const { starts(x.at), all(x.values), present(x.tolerance.size); }

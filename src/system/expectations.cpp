@@ -66,9 +66,20 @@ std::optional<Value> number_of(Elaboration& e, const Expression& x, const Place&
 
 std::optional<std::vector<StartValue>> point_of_expectation(Elaboration& e, const written::Point& point) {
   std::vector<StartValue> out;
-  for (const auto& item : point)
-    if (auto value = start_value(e, item)) out.push_back(std::move(*value));
-  return out.size() == point.size() ? std::optional(std::move(out)) : std::nullopt;
+  std::vector<StartRate> rates;
+  bool good = true;
+  for (const auto& item : point) {
+    if (is_rate(e, *item.variable)) {
+      const std::vector<StartRate> given = start_rates(e, item);
+      good = good && !given.empty();
+      rates.insert(rates.end(), given.begin(), given.end());
+    } else if (auto value = start_value(e, item)) {
+      out.push_back(std::move(*value));
+    } else {
+      good = false;
+    }
+  }
+  return good && add_velocities_of_rates(e, rates, out) ? std::optional(std::move(out)) : std::nullopt;
 }
 
 namespace {
@@ -219,7 +230,7 @@ Expected meaning_of(Elaboration& e, const written::Bracket& x, Span) {
   if (!a || !b || !c) return std::nullopt;
   const Dimension dimension = a->dimension * b->dimension / (e.system().lagrangian_dimension * e.time());
   if (e.dimensionless || a->fits_any || b->fits_any || c->fits_any || c->dimension.same_as(dimension))
-    return expectation::Bracket{a->scalar(), b->scalar(), c->scalar()};
+    return expectation::Bracket{a->scalar(), b->scalar(), c->scalar(), x.dirac};
   e.diagnostics.error("E0304", x.value->span,
                       fmt::format("the bracket is {}, this is {}", describe(dimension), describe(c->dimension)),
                       "{A, B} has the dimension of A B divided by that of q p, an action.", "");
@@ -291,6 +302,31 @@ Expected meaning_of(Elaboration& e, const written::Freedoms& x, Span) {
   return v.poisoned ? std::nullopt : Expected(expectation::Freedoms{v.scalar()});
 }
 
+Expected meaning_of(Elaboration& e, const written::PhaseConstraints& x, Span) {
+  expectation::PhaseConstraints out;
+  for (const auto& generation : x.generations) {
+    out.generations.emplace_back();
+    for (const syntax::ExpressionPtr& function : generation) {
+      const std::optional<Value> v = number(e, *function, along_motion());
+      if (!v || refuse_acceleration(e, *v, *function, "a constraint of phase space")) return std::nullopt;
+      out.generations.back().push_back(v->scalar());
+    }
+  }
+  return out;
+}
+
+Expected meaning_of(Elaboration& e, const written::ClassCount& x, Span) {
+  using What = expectation::ClassCount::What;
+  const Value v = constant_of(e, *x.number, Dimension{}, "a number of constraints or freedoms");
+  if (v.poisoned) return std::nullopt;
+  const What what = x.what == "first class"         ? What::FirstClass
+                    : x.what == "second class"      ? What::SecondClass
+                    : x.what == "physical freedoms" ? What::PhysicalFreedoms
+                    : x.what == "motions"           ? What::Motions
+                                                    : What::FreeFunctions;
+  return expectation::ClassCount{what, v.scalar()};
+}
+
 Expected meaning_of(Elaboration& e, const written::ConstraintClass& x, Span) {
   if (!check_class_of_constraint(e, x)) return std::nullopt;
   return expectation::ConstraintClass{x.constraint.text, x.word.text};
@@ -356,9 +392,15 @@ Expected meaning_of(Elaboration& e, const written::Equilibrium& x, Span) {
   if (!point || !known) return std::nullopt;
   expectation::Equilibrium out;
   out.word = word;
-  for (std::size_t i = 0; i < point->size(); ++i)
-    if (auto place = place_of_equilibrium(e, x.at[i], (*point)[i])) out.at.push_back(std::move(*place));
-  return out.at.size() == point->size() ? Expected(std::move(out)) : std::nullopt;
+  std::size_t next = 0;  // coordinates and velocities as written, then the velocities that rates ask for
+  for (const written::Place& place : x.at) {
+    const bool rate = is_rate(e, *place.value.variable);
+    auto of_place = place_of_equilibrium(e, place, rate ? StartValue{0, 1, {}, {}, {}, 1} : (*point)[next++]);
+    if (!of_place) return std::nullopt;
+    if (!rate) out.at.push_back(std::move(*of_place));
+  }
+  for (; next < point->size(); ++next) out.at.push_back({(*point)[next], std::nullopt, {}});
+  return out;
 }
 
 // ----------------------------------------------------------------------------------------------------------------
@@ -379,8 +421,7 @@ bool names_an_event(Elaboration& e, const syntax::Name& name, const syntax::Name
   }
   std::vector<std::string> names;
   for (const Declaration& other : e.table.declarations())
-    if (other.kind == Declaration::Kind::Event || other.kind == Declaration::Kind::Contact)
-      names.push_back(other.name);
+    if (other.kind == Declaration::Kind::Event || other.kind == Declaration::Kind::Contact) names.push_back(other.name);
   const std::string near = did_you_mean(name.text, names);
   e.diagnostics.error("E0261", name.span, fmt::format("the model has no event or contact `{}`", name.text),
                       "An event is named by its statement, a contact by the name at its end.",
@@ -421,7 +462,8 @@ bool refuse_motion_of_path(Elaboration& e, const written::Kind& kind, Span line)
 void elaborate_expectation(Elaboration& e, const syntax::ExpectStatement& s, Span line) {
   if (refuse_motion_of_path(e, s.kind, line)) return;
   if (auto kind = std::visit([&](const auto& x) { return meaning_of(e, x, line); }, s.kind))
-    e.experiment().expectations.push_back({std::string(e.texts.slice(line)), s.claim, line, std::move(*kind)});
+    e.experiment().expectations.push_back({std::string(e.texts.slice(line)), s.claim, line, std::move(*kind),
+                                           s.with ? std::string(e.texts.slice(*s.with)) : std::string()});
 }
 
 }  // namespace maupertuis::elaboration

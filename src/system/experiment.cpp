@@ -156,7 +156,7 @@ void start(Elaboration& e, const syntax::StartStatement& s) {
   }
   for (const auto& item : s.items) {
     if (start_of_field(e, item)) continue;
-    if (is_body_rate(e, *item.variable)) {
+    if (is_rate(e, *item.variable)) {
       start_of_rates(e, item);
       continue;
     }

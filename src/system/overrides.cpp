@@ -140,13 +140,20 @@ void replace_start(std::vector<StartValue>& list, StartValue value) {
 void override_start(Elaboration& e) {
   for (const syntax::StartStatement& part : e.overrides.start)
     for_each_item(e, part, [&](Elaboration& inner, const auto& item) {
-      if (is_body_rate(inner, *item.variable)) return override_rates(e, start_rates(inner, item));
+      if (is_rate(inner, *item.variable)) return override_rates(e, start_rates(inner, item));
       if (auto value = start_value(inner, item)) replace_start(e.experiment().start, std::move(*value));
     });
+  std::vector<StartRate> rates;
   for (const syntax::StartStatement& part : e.overrides.at)
     for_each_item(e, part, [&](Elaboration& inner, const auto& item) {
+      if (is_rate(inner, *item.variable)) {
+        const std::vector<StartRate> given = start_rates(inner, item);
+        rates.insert(rates.end(), given.begin(), given.end());
+        return;
+      }
       if (auto value = start_value(inner, item)) replace_start(e.experiment().at, std::move(*value));
     });
+  add_velocities_of_rates(e, rates, e.experiment().at);
 }
 
 }  // namespace maupertuis::elaboration

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-/// start sat.ω = (0.01, 2, 0.01) rad/s: what an angular velocity is at the start. The velocities that give it are found
-/// later.
+/// start sat.ω = (0.01, 2, 0.01) rad/s, start v = 1 m/s: what an angular velocity or another rate is at the start. The
+/// velocities that give it are found later.
 namespace maupertuis::elaboration {
 namespace {
 
@@ -32,7 +32,11 @@ std::vector<StartRate> refuse_fixed(Elaboration& e, const Expression& x, const s
 
 }  // namespace
 
-bool is_body_rate(Elaboration& e, const Expression& x) {
+bool is_rate(Elaboration& e, const Expression& x) {
+  if (x.kind == Expression::Kind::Name) {
+    const Declaration* d = e.table.find(x.text);
+    return d && d->kind == Declaration::Kind::Rate;
+  }
   return is_rate_of_body(e, x) || (x.kind == Expression::Kind::Member && is_rate_of_body(e, *x.arguments[0]));
 }
 
@@ -40,8 +44,8 @@ std::vector<StartRate> start_rates(Elaboration& e, const syntax::StartStatement:
   const Expression& x = *item.variable;
   const std::string name(e.texts.slice(x.span));
   const Value rate = evaluate_formula(e, x);
-  const Dimension expected = e.dimension(dimensions::angle()) / e.time();
   if (rate.poisoned) return {};
+  const Dimension expected = rate.dimension;
   if (rate.order > 1) {
     e.diagnostics.error("E0223", x.span, fmt::format("the acceleration `{}` cannot be chosen", name),
                         "The equations of motion give it from positions and velocities.", "Leave it out.");

@@ -2,12 +2,15 @@
 
 #include "verification/action_claims.hpp"
 #include "verification/constraint_claims.hpp"
+#include "verification/degenerate_claims.hpp"
 #include "verification/identity_claims.hpp"
 #include "verification/judge.hpp"
 #include "verification/mode_claims.hpp"
 #include "verification/orbit_claims.hpp"
 #include "verification/phase_space_claims.hpp"
 #include "verification/run_claims.hpp"
+
+#include <maupertuis/degenerate.hpp>
 
 #include <algorithm>
 
@@ -25,9 +28,10 @@ class Verifier {
         identities_(model, equations, diagnostics),
         runs_(model, equations, options, diagnostics) {}
 
-  Verification carry_out(const SourceText& source) {
+  Verification carry_out(const SourceText& source, const std::string& with) {
     Verification verification;
     for (const Expectation& e : model_.experiment.expectations) {
+      if (e.with != with) continue;
       ExpectationResult result;
       result.line = source.locate(e.span.begin).line;
       result.text = e.text;
@@ -42,11 +46,17 @@ class Verifier {
 
  private:
   // By the motion: the runs are made when all lines are known.
-  void decide(const expectation::ValueAt& e, ExpectationResult&) { runs_.ask(e, line_); }
-  void decide(const expectation::ValueAtUntil& e, ExpectationResult&) { runs_.ask(e, line_); }
+  void decide(const expectation::ValueAt& e, ExpectationResult& result) {
+    if (has_value(e.subject, result)) runs_.ask(e, line_);
+  }
+  void decide(const expectation::ValueAtUntil& e, ExpectationResult& result) {
+    if (has_value(e.subject, result)) runs_.ask(e, line_);
+  }
   void decide(const expectation::UntilAt& e, ExpectationResult&) { runs_.ask(e, line_); }
   void decide(const expectation::EnergyConserved& e, ExpectationResult&) { runs_.ask(e, line_); }
-  void decide(const expectation::ConservedAlongRun& e, ExpectationResult&) { runs_.ask(e, line_); }
+  void decide(const expectation::ConservedAlongRun& e, ExpectationResult& result) {
+    if (has_value(e.subject, result)) runs_.ask(e, line_);
+  }
 
   void decide(const expectation::Event& e, ExpectationResult&) { runs_.ask(e, line_); }
   void decide(const expectation::EventCount& e, ExpectationResult&) { runs_.ask(e, line_); }
@@ -60,8 +70,19 @@ class Verifier {
     decide_phase_space(e, equations_, result);
   }
   void decide(const expectation::Routhian& e, ExpectationResult& result) { decide_phase_space(e, equations_, result); }
-  void decide(const expectation::Bracket& e, ExpectationResult& result) { decide_phase_space(e, equations_, result); }
+  void decide(const expectation::Bracket& e, ExpectationResult& result) {
+    if (e.dirac)
+      decide_degenerate(e, model_, equations_, result);
+    else
+      decide_phase_space(e, equations_, result);
+  }
 
+  void decide(const expectation::PhaseConstraints& e, ExpectationResult& result) {
+    decide_degenerate(e, model_, equations_, result);
+  }
+  void decide(const expectation::ClassCount& e, ExpectationResult& result) {
+    decide_degenerate(e, model_, equations_, result);
+  }
   void decide(const expectation::Freedoms& e, ExpectationResult& result) {
     decide_freedoms(number_of(model_.system, e.number), constraints(), result);
   }
@@ -99,12 +120,27 @@ class Verifier {
     }
     return *constraints_;
   }
+  /// False, and said, where it depends on functions that a degenerate Lagrangian leaves free.
+  bool has_value(Expr subject, ExpectationResult& result) const {
+    if (!equations_.degenerate || equations_.degenerate->is_determined(subject)) return true;
+    result.actual = "any value";
+    result.message = "It depends on functions of time that the Lagrangian leaves free: choose them with `gauge`.";
+    return false;
+  }
+
+  /// Where L is degenerate, what determines all accelerations.
+  const EquationsOfMotion& solvable() const { return equations_.determined ? *equations_.determined : equations_; }
+  const Model& solvable_model() {
+    if (!equations_.determined) return model_;
+    if (!solvable_model_) solvable_model_ = with_determined_system(model_, equations_);
+    return *solvable_model_;
+  }
   ModeClaims& modes() {
-    if (!modes_) modes_.emplace(model_, equations_);
+    if (!modes_) modes_.emplace(solvable_model(), solvable());
     return *modes_;
   }
   OrbitClaims& orbits() {
-    if (!orbits_) orbits_.emplace(model_, equations_, interrupt_);
+    if (!orbits_) orbits_.emplace(solvable_model(), solvable(), interrupt_);
     return *orbits_;
   }
   ActionClaims& paths() {
@@ -119,6 +155,7 @@ class Verifier {
   IdentityClaims identities_;
   RunClaims runs_;
   std::optional<ConstraintAnalysis> constraints_;
+  std::optional<Model> solvable_model_;
   std::optional<ModeClaims> modes_;
   std::optional<OrbitClaims> orbits_;
   std::optional<ActionClaims> paths_;
@@ -132,8 +169,8 @@ std::size_t Verification::passed() const {
 }
 
 Verification verify(const Model& model, const EquationsOfMotion& equations, const SourceText& source,
-                    const SimulationOptions& options, Diagnostics& diagnostics) {
-  return Verifier(model, equations, options, diagnostics).carry_out(source);
+                    const SimulationOptions& options, Diagnostics& diagnostics, const std::string& with) {
+  return Verifier(model, equations, options, diagnostics).carry_out(source, with);
 }
 
 }  // namespace maupertuis

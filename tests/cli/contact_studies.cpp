@@ -59,6 +59,21 @@ TEST_CASE("what is expected of a model with contacts holds in all of its modes")
   CHECK_MESSAGE(frequency.code == 0, frequency.out);
 }
 
+TEST_CASE("an empty mode is none, and impulses are told with their unit") {
+  const Outcome none = maup({"simulate", gallery + "bouncing_ball.lag", "--mode", "", "--json"});
+  CHECK(none.code != 0);
+  CHECK(json_of(none).at("diagnostics")[0].at("code") == "E0269");
+  CHECK(maup({"simulate", gallery + "bouncing_ball.lag"}).out.find("impulse 7.973 kg m/s\n") != std::string::npos);
+}
+
+TEST_CASE("impacts in many digits are told with their digits") {
+  const Json run = json_of(maup({"simulate", gallery + "bouncing_ball.lag", "--precision", "quad", "--json"}));
+  const Json& first = run.at("happenings")[0];
+  CHECK(first.at("kind") == "impact");
+  CHECK(first.at("digits").get<int>() > 30);
+  CHECK(std::abs(std::stod(first.at("t").get<std::string>()) - std::sqrt(2 / 9.81)) < 1e-15);
+}
+
 TEST_CASE("hamiltonian, action, compare and reduce want one mode") {
   const std::string ball = gallery + "bouncing_ball.lag";
   for (const std::vector<std::string>& command :

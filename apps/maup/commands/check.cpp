@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/print.hpp>
 #include <maupertuis/simulation.hpp>
 
@@ -156,6 +157,10 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
   if (const std::string unit = system.independent_unit(); system.independent != "t")
     line("independent variable", unit.empty() ? system.independent : fmt::format("{} in {}", system.independent, unit));
   summarise_constraints(equations, findings.analysis, line);
+  if (equations.degenerate)
+    line("degenerate", fmt::format("{} of the {} numbers of a state are left, {} single{} out a motion",
+                                   equations.degenerate->chain.manifold_dimension, 2 * system.coordinates.size(),
+                                   equations.degenerate->motions, equations.degenerate->motions == 1 ? "s" : ""));
   words.clear();
   for (const Parameter& p : system.parameters)
     if (p.symbol.role() == Role::Parameter) words.push_back(fmt::format("{} = {}", p.name, parameter_text(p, system)));

@@ -5,6 +5,7 @@
 #include "fields_text.hpp"
 #include "interrupt.hpp"
 #include "outcome.hpp"
+#include "rates_form.hpp"
 
 #include <fmt/format.h>
 
@@ -13,6 +14,7 @@
 #include <maupertuis/constraint_analysis.hpp>
 #include <maupertuis/contact_mode.hpp>
 #include <maupertuis/couplings.hpp>
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/print.hpp>
 #include <maupertuis/reactions.hpp>
 #include <maupertuis/simulation.hpp>
@@ -22,7 +24,7 @@ namespace {
 
 struct DeriveOptions {
   ModelOptions model;
-  std::string form = "standard";
+  std::string form;
   bool eliminate = false, steps = false, latex = false, mathml = false, plain = false;
   std::string certify = "standard";
   std::string emit;
@@ -30,15 +32,19 @@ struct DeriveOptions {
 
   Form chosen_form() const {
     if (eliminate) return Form::Eliminated;
-    const std::map<std::string, Form> forms = {
-        {"standard", Form::Standard}, {"solved", Form::Solved}, {"matrix", Form::Matrix}, {"residual", Form::Residual}};
+    if (form.empty()) return steps || modes ? Form::Standard : Form::Shortest;  // the steps lead to q''
+    const std::map<std::string, Form> forms = {{"standard", Form::Standard},
+                                               {"solved", Form::Solved},
+                                               {"matrix", Form::Matrix},
+                                               {"residual", Form::Residual},
+                                               {"rates", Form::Rates}};
     return forms.at(form);
   }
 };
 
-Json equations_json(const EquationForm& form, const ReadingOrder& order) {
+Json lines_json(const std::vector<EquationLine>& lines, const ReadingOrder& order) {
   Json list = Json::array();
-  for (const EquationLine& line : form.lines)
+  for (const EquationLine& line : lines)
     list.push_back({{"coordinate", line.coordinate},
                     {"plain", plain_text(shown_line(line, order))},
                     {"latex", latex_text(shown_line(line, order))}});
@@ -82,6 +88,19 @@ void add_constraints(Json& document, Study& study) {
   for (const Expr& b : constraint_bias(equations)) document["constraint_bias"].push_back(readable_text(b, order));
 }
 
+Json degenerate_json(const DegenerateAnalysis& analysis, const EquationsOfMotion& equations) {
+  Json constraints = Json::array(), free = Json::array();
+  for (const FoundConstraint& c : analysis.chain.constraints)
+    constraints.push_back({{"generation", c.generation},
+                           {"plain", to_plain(c.value, equations.order)},
+                           {"latex", to_latex(c.value, equations.order)}});
+  for (const std::size_t i : analysis.free) free.push_back(equations.system->coordinates[i].name);
+  return {{"constraints", std::move(constraints)},
+          {"free", std::move(free)},
+          {"manifold_dimension", analysis.chain.manifold_dimension},
+          {"motions", analysis.motions}};
+}
+
 Json reactions_json(const EquationsOfMotion& equations) {
   Json list = Json::array();
   for (const Reaction& r : reactions(equations)) {
@@ -112,10 +131,19 @@ Json document_of(const DeriveOptions& options, Study& study, const EquationForm&
   if (!equations || !certificate) return document;
   const ReadingOrder& order = equations->order;
   document["system"] = equations->system->name;
-  document["form"] = options.eliminate ? "eliminated" : options.form;
+  const std::string shown_form = form.in_rates ? "rates" : options.form.empty() ? "standard" : options.form;
+  document["form"] = options.eliminate ? "eliminated" : shown_form;
   document["coordinates"] = Json::array();
   for (const Coordinate& c : equations->system->coordinates) document["coordinates"].push_back(c.name);
-  document["equations"] = equations_json(form, order);
+  const ReadingOrder& rates = form.order(*equations);
+  document["equations"] = lines_json(form.lines, rates);
+  if (form.in_rates) {
+    document["kinematics"] = lines_json(form.kinematics, rates);
+    document["rates"] = Json::array();
+    for (const FormulaLine& line : rate_definitions(form, *equations))
+      document["rates"].push_back(
+          {{"name", to_plain(line.left)}, {"plain", plain_text(line)}, {"latex", latex_text(line)}});
+  }
   document["intermediates"] = Json::array();
   for (const Intermediate& i : form.intermediates)
     document["intermediates"].push_back({{"name", to_plain(i.symbol, order)}, {"plain", to_plain(i.value, order)}});
@@ -139,26 +167,33 @@ Json document_of(const DeriveOptions& options, Study& study, const EquationForm&
   if (conserved.energy_conserved) names.push_back("energy");
   document["conserved"] = std::move(names);
   document["energy_is_t_plus_v"] = conserved.energy_is_t_plus_v;
-  if (options.steps) document["steps"] = steps_json(*study.derivation(true), order);
-  document["certificate"] = to_json(*certificate);
+  if (study.degenerate()) document["degenerate"] = degenerate_json(*study.degenerate(), *equations);
+  if (options.steps) document["steps"] = steps_json(steps_to(form, study), rates);
+  document["certificate"] = to_json(with_rates_check(*certificate, form));
   return document;
 }
 
 /// In one notation alone, for another program: the steps if asked for, the equations, what their names stand for.
 std::string in_notation(const DeriveOptions& options, Notation notation, Study& study, const EquationForm& form) {
   const EquationsOfMotion& equations = *study.equations();
-  const ReadingOrder& order = equations.order;
+  const ReadingOrder& order = form.order(equations);
   std::vector<FormulaLine> lines;
-  if (options.steps) lines = step_lines(study.derivation(true)->steps, *equations.system, order);
+  if (options.steps) lines = step_lines(steps_to(form, study), *equations.system, order);
   const std::string section = options.steps ? "Equations of motion" : "";
   const auto add = [&](FormulaLine line) {
     line.section = section;
     lines.push_back(std::move(line));
   };
-  for (const auto* part : {&form.lines, &form.constraints})
+  for (const auto* part : {&form.lines, &form.kinematics, &form.constraints})
     for (const EquationLine& line : *part)
       add(notation == Notation::Plain ? language_line(line, order) : shown_line(line, order));
+  if (study.degenerate() && notation != Notation::Plain)
+    for (FormulaLine& line :
+         step_lines(degenerate_lines(*study.degenerate(), *equations.system), *equations.system, order))
+      lines.push_back(std::move(line));
   for (const Intermediate& i : form.intermediates) add(definition_line(i, *equations.system, order));
+  if (form.in_rates && notation != Notation::Plain)
+    for (FormulaLine& line : rate_definitions(form, equations)) add(std::move(line));
   if (notation == Notation::Plain) return document(lines, notation);
   for (FormulaLine& line : symbol_legend(*equations.system, order)) add(std::move(line));
   return document(lines, notation);
@@ -325,12 +360,14 @@ void add_derive(CommandLine& line) {
   command.add_flag(
       "--modes", options->modes,
       "The equations of each mode of contacts and friction; of many those next to where the motion begins");
-  Option* form = command
-                     .add_option("--form", options->form,
-                                 "standard: R = Aᵀλ; solved: q'' = …, λ = …; matrix: M, h, A and b of M q'' + h = Aᵀλ, "
-                                 "A q'' = b; residual: R")
-                     ->one_of({"standard", "solved", "matrix", "residual"})
-                     ->type_name("FORM");
+  Option* form =
+      command
+          .add_option("--form", options->form,
+                      "standard: R = Aᵀλ, in q''; solved: q'' = …, λ = …; matrix: M, h, A and b of M q'' + h = Aᵀλ, "
+                      "A q'' = b; residual: R; rates: in the rates of the model or of its bodies, without "
+                      "multipliers. Without it rates where the model names them or they are shorter to read")
+          ->one_of({"standard", "solved", "matrix", "residual", "rates"})
+          ->type_name("FORM");
   command
       .add_flag("--eliminate", options->eliminate,
                 "The equations without multipliers: combinations in which Aᵀλ cancels")

@@ -19,7 +19,7 @@ namespace {
 struct HamiltonianOptions {
   ModelOptions model;
   RunOptions run;
-  std::vector<std::string> routhian, bracket;
+  std::vector<std::string> routhian, bracket, dirac_bracket;
   bool latex = false, mathml = false, plain = false, integrate = false;
   std::string output;
 };
@@ -47,18 +47,27 @@ std::vector<std::size_t> coordinates_named(const std::vector<std::string>& names
 }
 
 /// Of the formulas of --bracket, two for each.
-std::vector<Bracket> brackets_of(const Hamiltonian& h, Study& study) {
+std::vector<Bracket> brackets_of(const HamiltonianOptions& options, const Hamiltonian& h,
+                                 const std::optional<DiracAnalysis>& dirac, Study& study) {
   const std::vector<AskedFormula>& asked = study.model()->experiment.asked;
   std::vector<Bracket> found;
   for (std::size_t i = 0; i + 1 < asked.size(); i += 2) {
     const Expr a = asked[i].value, b = asked[i + 1].value;
-    const auto value = poisson_bracket(a, b, h);
+    const bool of_dirac = i >= options.bracket.size();
+    if (of_dirac && (!dirac || dirac->outcome != ConstraintChain::Outcome::Closed)) {
+      study.diagnostics().error("E1106", asked[i].span, "this system has no Dirac bracket",
+                                "It belongs to constraints of the second class in phase space, of a singular Legendre "
+                                "transform that can be written out.",
+                                "--bracket gives Poisson's.");
+      continue;
+    }
+    const auto value = of_dirac ? dirac_bracket(a, b, h, *dirac) : poisson_bracket(a, b, h);
     if (!value)
       study.diagnostics().error("E1104", asked[i].span, "this bracket cannot be formed",
                                 "A velocity stands in it that does not follow from the momenta, or an acceleration.",
                                 "Write it in coordinates, momenta and t.");
     else
-      found.push_back({a, b, *value});
+      found.push_back({a, b, *value, of_dirac});
   }
   return found;
 }
@@ -83,13 +92,18 @@ PhaseSpace analyse(const HamiltonianOptions& options, Study& study) {
   report_legendre(found.hamiltonian, study.diagnostics());
   const std::vector<std::size_t> replaced = coordinates_named(options.routhian, study);
   found.routhian = routhian(equations, found.hamiltonian, replaced.empty() ? nullptr : &replaced);
-  found.brackets = brackets_of(found.hamiltonian, study);
+  if (found.hamiltonian.legendre.has(LegendreKind::Singular))
+    found.dirac = dirac_analysis(found.hamiltonian, equations, generic_state(*study.model()));
+  found.brackets = brackets_of(options, found.hamiltonian, found.dirac, study);
   found.certificate = certify(found.hamiltonian, equations);
   if (found.routhian)
     for (CertificateCheck& check : certify(*found.routhian, found.hamiltonian, equations).checks)
       found.certificate.checks.push_back(std::move(check));
   judge(found.certificate, study.diagnostics());
   found.lines = phase_space_lines(found.hamiltonian, found.routhian ? &*found.routhian : nullptr, equations);
+  if (found.dirac)
+    for (DerivationStep& line : dirac_lines(*found.dirac, found.hamiltonian, study.degenerate()))
+      found.lines.push_back(std::move(line));
   return found;
 }
 
@@ -155,6 +169,7 @@ ExitCode hamiltonian_of(const HamiltonianOptions& options, Console& console) {
   Json document = json_document("hamiltonian");
   put_in_run(options.run, study);
   for (const std::string& formula : options.bracket) study.ask("--bracket", formula);
+  for (const std::string& formula : options.dirac_bracket) study.ask("--dirac-bracket", formula);
   if (!options.integrate) study.admit_singular_mass_matrix();  // then there are primary constraints
   if (!study.model() || study.refuse_held_integrals() || study.refuse_modes() || !study.certificate())
     return finish(console, study, document);
@@ -194,6 +209,12 @@ void add_hamiltonian(CommandLine& line) {
   command
       .add_option("--bracket", options->bracket,
                   "{A, B} of two formulas in coordinates, momenta and t, e.g. x p_x; may be repeated")
+      ->type_size(2)
+      ->allow_extra_args(false)
+      ->type_name("A B");
+  command
+      .add_option("--dirac-bracket", options->dirac_bracket,
+                  "{A, B} of Dirac, in which constraints of the second class may be put to 0; may be repeated")
       ->type_size(2)
       ->allow_extra_args(false)
       ->type_name("A B");

@@ -47,13 +47,18 @@ void check_endings(const SimulateOptions& options, Diagnostics& diagnostics) {
 Json number_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
 /// As numbers of `state`; null where no digit is certain.
+bool is_determined(const SimulationResult& result, const std::string& name) {
+  return std::find(result.undetermined.begin(), result.undetermined.end(), name) == result.undetermined.end();
+}
+
 Json errors_json(const State& state, const SimulationResult& result, const MechanicalSystem& system) {
   Json out = Json::object();
   const StateErrors& errors = *state.errors;
   if (errors.t != 0) out["t"] = number_or_null(errors.t);
   for (std::size_t i = 0; i < errors.q.size(); ++i) {
-    out[system.coordinates[i].name] = number_or_null(errors.q[i]);
-    out[system.coordinates[i].name + "'"] = number_or_null(errors.v[i]);
+    const std::string& name = system.coordinates[i].name;
+    if (is_determined(result, name)) out[name] = number_or_null(errors.q[i]);
+    if (is_determined(result, name + "'")) out[name + "'"] = number_or_null(errors.v[i]);
   }
   for (std::size_t i = 0; i < errors.multipliers.size(); ++i)
     out[system.constraints[i].multiplier.name()] = number_or_null(errors.multipliers[i]);
@@ -65,8 +70,9 @@ Json errors_json(const State& state, const SimulationResult& result, const Mecha
 Json state_json(const State& state, const SimulationResult& result, const MechanicalSystem& system) {
   Json values = Json::object();
   for (std::size_t i = 0; i < state.q.size(); ++i) {
-    values[system.coordinates[i].name] = state.q[i];
-    values[system.coordinates[i].name + "'"] = state.v[i];
+    const std::string& name = system.coordinates[i].name;
+    if (is_determined(result, name)) values[name] = state.q[i];
+    if (is_determined(result, name + "'")) values[name + "'"] = state.v[i];
   }
   Json multipliers = Json::object(), reactions = Json::object();
   for (std::size_t i = 0; i < state.multipliers.size(); ++i)
@@ -162,9 +168,11 @@ std::string state_text(const State& state, const SimulationResult& result, const
   };
   for (std::size_t i = 0; i < state.q.size(); ++i) {
     const Coordinate& c = system.coordinates[i];
-    line(c.name, state.q[i], errors ? errors->q[i] : 0, system.dimensionless ? "" : to_string(c.dimension));
-    line(c.name + "'", state.v[i], errors ? errors->v[i] : 0,
-         system.dimensionless ? "" : to_string(c.dimension / system.independent_dimension));
+    if (is_determined(result, c.name))
+      line(c.name, state.q[i], errors ? errors->q[i] : 0, system.dimensionless ? "" : to_string(c.dimension));
+    if (is_determined(result, c.name + "'"))
+      line(c.name + "'", state.v[i], errors ? errors->v[i] : 0,
+           system.dimensionless ? "" : to_string(c.dimension / system.independent_dimension));
   }
   for (std::size_t i = 0; i < state.reactions.size(); ++i) {
     const Trajectory::Column& column = result.reactions[i];
@@ -206,7 +214,8 @@ std::string happenings_text(const SimulationResult& result, const MechanicalSyst
                              : std::isinf(h.error) ? exact(h.t) + " (no digit is certain)"
                                                    : with_uncertainty(h.t, h.error);
     out += fmt::format("  {}  {} {}", system.moment(time), h.name, word_of(h.kind));
-    if (h.kind == Happening::Kind::Impact) out += fmt::format(", impulse {:.6g}", h.impulse);
+    if (h.kind == Happening::Kind::Impact)
+      out += ", impulse " + impulse_text(fmt::format("{:.6g}", h.impulse), h.name, system);
     if (!h.remark.empty()) out += ": " + h.remark;
     if (system.has_modes() && !(h.kind == Happening::Kind::Event || h.kind == Happening::Kind::Impact))
       out += h.mode.empty() ? " → free" : " → " + h.mode;
@@ -321,7 +330,7 @@ ExitCode simulate_extended_model(const SimulateOptions& options, const std::stri
   if (!options.output.empty()) write_result(options.output, to_csv(*result), study.diagnostics());
   const MechanicalSystem& system = study.model()->system;
   if (!console.json()) {
-    console.print(extended_text(*result));
+    console.print(extended_text(*result, system));
     if (result->ending != Ending::Finished)
       console.say(fmt::format("The run ended at {}: {}\n", system.moment(exact(result->reached)), result->reason));
   }

@@ -196,8 +196,7 @@ void report_legendre(const Hamiltonian& h, Diagnostics& diagnostics) {
                           "the momenta obey primary constraints.",
                           h.system->constrained() ? "Lagrange's equations with their multipliers need no inverse: "
                                                     "`maup derive` and `maup simulate` are unaffected."
-                                                  : "Lagrange's equations hold as well, but do not determine every "
-                                                    "acceleration: `maup simulate` has no motion to follow.");
+                                                  : "`maup derive` shows what Lagrange's equations make of it.");
     if (block.kind == LegendreKind::Unsolved)
       diagnostics.warning(
           "W1103", std::nullopt, fmt::format("the velocities of {} are not written in terms of the momenta", names),

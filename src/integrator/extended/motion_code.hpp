@@ -1,4 +1,5 @@
 #pragma once
+#include "integrator/extended/impact_code.hpp"
 #include "integrator/extended/motion.hpp"
 #include "integrator/extended/start.hpp"
 #include "integrator/extended/stepper_code.hpp"
@@ -69,17 +70,101 @@ class Motion {
       Start<T>(work, problem_).improve(numbers_.begin, numbers_.q, numbers_.v);
     }
     stepper_.start(numbers_.begin, numbers_.q, numbers_.v);
+    std::size_t contacts = 0;
+    for (const ExtendedEvent& e : problem_.events) {
+      contact_.push_back(e.action == ExtendedEvent::Action::Hit ? contacts++ : no_contact);
+      if (contact_.back() != no_contact) event_.push_back(contact_.size() - 1);
+    }
+    fastest_.assign(contacts, T(0));
     record_covered();
+    if (contacts > 0) settle(touching_at_start());
+  }
+
+  /// Contacts with g = 0 at the start.
+  std::vector<std::size_t> touching_at_start() {
+    std::vector<std::size_t> out;
+    const Workspace<T>* const here = stepper_.here();
+    for (std::size_t c = 0; here && c < event_.size(); ++c) {
+      const std::size_t event = event_[c] + problem_.until;
+      if (abs(here->event(event, 0)) <= 64 * epsilon<T>() * here->event_scale(event)) out.push_back(c);
+    }
+    return out;
   }
 
   bool advance() {
+    if (out_.ending != StepEnding::None) return false;
     const auto outcome = stepper_.step(numbers_.end);
     out_.ending = outcome.ending;
     out_.reason = outcome.reason;
-    out_.met = outcome.event && problem_.until;
+    if (outcome.ending == StepEnding::None && !outcome.events.empty()) meet(outcome.events);
     if (options_.progress && stepper_.steps() % 16 == 0)
       options_.progress(static_cast<double>((stepper_.time() - numbers_.begin) / (numbers_.end - numbers_.begin)));
-    return outcome.ending == StepEnding::None && !out_.met;
+    return out_.ending == StepEnding::None && !out_.met;
+  }
+
+  void meet(const std::vector<typename Stepper<T>::Root>& roots) {
+    const bool forwards = numbers_.begin <= numbers_.end;
+    record_covered();
+    std::vector<std::size_t> hit;
+    for (const auto& root : roots) {
+      if (root.event < problem_.until) {
+        out_.met = true;
+        continue;
+      }
+      const std::size_t i = root.event - problem_.until;
+      const ExtendedEvent& event = problem_.events[i];
+      if (event.action == ExtendedEvent::Action::Hit) {
+        if (root.direction < 0) hit.push_back(contact_[i]);
+        continue;
+      }
+      if (event.direction != 0 && root.direction != (forwards ? event.direction : -event.direction)) continue;
+      out_.roots.push_back({i, stepper_.sample(stepper_.time()), {}, {}});
+      out_.met = out_.met || event.action == ExtendedEvent::Action::Stop;
+    }
+    if (hit.empty() || out_.met) return;
+    if (forwards)
+      settle(hit);
+    else
+      stop(StepEnding::Paradox, hit.front(),
+           "backwards in time the motion meets an impact, and what was before it does not follow from what is after "
+           "it.");
+  }
+
+  void stop(StepEnding ending, std::size_t contact, std::string reason) {
+    out_.ending = ending;
+    out_.trouble = event_[contact];
+    out_.reason = std::move(reason);
+  }
+
+  /// Impulses of the contacts that touch and close. The motion goes on only where all of them open then.
+  void settle(const std::vector<std::size_t>& touching) {
+    if (touching.empty()) return;
+    constexpr int roundings = 64;
+    const Workspace<T>* const here = stepper_.here();
+    if (!here) return;  // the next step says why
+    const Impact<T> impact(problem_, *here, touching);
+    std::vector<T> v(stepper_.v().begin(), stepper_.v().end()), rest;
+    for (std::size_t k = 0; k < touching.size(); ++k) {
+      T& fastest = fastest_[touching[k]];
+      fastest = std::max(fastest, impact.scale(k, v));
+      rest.push_back(roundings * epsilon<T>() * fastest);
+    }
+    const ExtendedSample before = stepper_.sample(stepper_.time());
+    const auto blows = impact.carry_out(v, rest);
+    if (!blows) return stop(StepEnding::Unending, touching.front(), "impacts follow each other without an end.");
+    for (const auto& blow : *blows)
+      out_.roots.push_back({event_[blow.contact], before, text_of(blow.impulse), text_of(blow.speed)});
+    for (std::size_t k = 0; k < touching.size(); ++k)
+      if (!(impact.rate(k, v) > rest[k]))
+        return stop(StepEnding::Unending, touching[k],
+                    "it stays closed from here on, which is not carried through in many digits.");
+    stepper_.set_velocities(v);
+    const bool is_short = abs(stepper_.time() - last_impact_) <= roundings * epsilon<T>() * abs(stepper_.time());
+    short_flights_ = is_short ? short_flights_ + 1 : 0;
+    last_impact_ = stepper_.time();
+    if (short_flights_ > 3)
+      stop(StepEnding::Unending, touching.front(),
+           "the flights between impacts have become too short to be told apart in so many digits.");
   }
 
   void record_covered() {
@@ -99,6 +184,11 @@ class Motion {
   Stepper<T> stepper_;
   ExtendedMotion out_;
   std::size_t next_row_ = 0, next_time_ = 0;
+  static constexpr std::size_t no_contact = ~std::size_t{0};
+  std::vector<std::size_t> contact_, event_;  // [events] its contact; [contacts] its event
+  std::vector<T> fastest_;                    // [contacts] terms of ġ so far: what is much smaller is rounding
+  T last_impact_ = T(0);
+  int short_flights_ = 0;
 };
 
 template <class T>

@@ -21,13 +21,25 @@ class Stepper {
 
   int order() const { return control_.order; }
   void start(const T& t, std::vector<T> q, std::vector<T> v);
+  /// An event at the end of the step: 1 rising, −1 falling, 0 where it comes to zero and goes back.
+  struct Root {
+    std::size_t event;
+    int direction;
+  };
   struct Outcome {
     StepEnding ending = StepEnding::None;
     std::string reason;
-    bool event = false;
+    std::vector<Root> events{};
   };
   /// One step towards `bound`, at most up to it; time() == bound exactly when it is reached.
   Outcome step(const T& bound);
+
+  /// The motion goes on with these velocities.
+  void set_velocities(const std::vector<T>& v) { v_ = v; }
+  std::span<const T> q() const { return q_; }
+  std::span<const T> v() const { return v_; }
+  /// The kernel at the present state; nullptr where it has no value there.
+  const Workspace<T>* here() { return probe_.evaluate(t_, q_, v_) == KernelStatus::Ok ? &probe_ : nullptr; }
 
   const T& time() const { return t_; }
   std::size_t steps() const { return steps_; }
@@ -42,7 +54,8 @@ class Stepper {
   struct Crossing {
     T x = T(1);  // fraction of the step
     bool found = false;
-    std::vector<std::size_t> roots;      // switches, then the event
+    std::vector<std::size_t> roots;      // switches, then events
+    std::vector<int> directions;         // [roots]
     std::vector<taylor::Watched> after;  // the same, as the step leaves them
   };
 
@@ -57,7 +70,7 @@ class Stepper {
   std::optional<Outcome> decide_sides(const T& bound);
   bool watches() const { return !switch_state_.empty() || !event_state_.empty(); }
   bool begins_past_root(std::size_t index, const T& h, taylor::Watched& watched) const;
-  void note(Crossing& crossing, const T& x, std::size_t index, const T& together) const;
+  void note(Crossing& crossing, const T& x, std::size_t index, const T& together, int direction) const;
   Crossing first_crossing(const T& h);
   void leave(const Crossing& crossing);
   double safe_length(double log2_wanted, double log2_left);

@@ -193,12 +193,13 @@ bool Stepper<T>::begins_past_root(std::size_t index, const T& h, taylor::Watched
 
 /// Roots that rounding does not tell apart are one crossing.
 template <class T>
-void Stepper<T>::note(Crossing& crossing, const T& x, std::size_t index, const T& together) const {
+void Stepper<T>::note(Crossing& crossing, const T& x, std::size_t index, const T& together, int direction) const {
   if (crossing.found && x > crossing.x * (1 + together) + together) return;
-  if (x < crossing.x * (1 - together) - together) crossing.roots.clear();
+  if (x < crossing.x * (1 - together) - together) crossing.roots.clear(), crossing.directions.clear();
   crossing.x = std::min(crossing.x, x);
   crossing.found = true;
   crossing.roots.push_back(index);
+  crossing.directions.push_back(direction);
 }
 
 template <class T>
@@ -217,10 +218,11 @@ typename Stepper<T>::Crossing Stepper<T>::first_crossing(const T& h) {
     const bool is_switch = i < count;
     taylor::Watched& watched = first.after[i];
     if (is_switch && watched.side == 0) continue;  // it vanishes along the motion
-    if (!is_switch && !roots_->is_clear(i) && begins_past_root(i - count, h, watched)) note(first, T(0), i, together);
+    if (!is_switch && !roots_->is_clear(i) && begins_past_root(i - count, h, watched))
+      note(first, T(0), i, together, watched.side);
     const T until = std::min(roots_->window(), T(first.x * (1 + together) + together));
     const auto root = roots_->first(i, watched, T(0), until, !is_switch, is_switch);
-    if (root) note(first, root->x, i, together);
+    if (root) note(first, root->x, i, together, root->kind == taylor::RootKind::Touching ? 0 : -watched.side);
   }
   // A step of no length leaves the others where they were.
   for (std::size_t i = 0; i < count && first.x == 0; ++i) first.after[i].at_zero = switch_state_[i].at_zero;
@@ -255,9 +257,11 @@ std::optional<typename Stepper<T>::Outcome> Stepper<T>::advance(const T& bound, 
   leave(crossing);
   first_ = false;
   ++steps_;
-  return Outcome{StepEnding::None, {}, std::any_of(crossing.roots.begin(), crossing.roots.end(), [&](std::size_t i) {
-                   return i >= switch_state_.size();
-                 })};
+  Outcome out;
+  for (std::size_t k = 0; k < crossing.roots.size(); ++k)
+    if (crossing.roots[k] >= switch_state_.size())
+      out.events.push_back({crossing.roots[k] - switch_state_.size(), crossing.directions[k]});
+  return out;
 }
 
 /// The end of a step as a check: see integrator/taylor/end_check.hpp. The mode is that of the step.

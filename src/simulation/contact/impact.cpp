@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 namespace maupertuis {
@@ -47,7 +48,9 @@ void apply_in_space(const ImpactProblem& p, std::size_t i, VectorXd& v, Impulse&
   const SparseRow* const rows[] = {&p.normal[i], &p.tangent[i], &p.second_tangent[i]};
   const VectorXd responses[] = {p.response.col(at(i)), p.tangent_response.col(at(i)), p.second_response.col(at(i))};
   const Eigen::Vector3d drive(p.drive[i], p.slip_drive[i], p.second_drive[i]);
-  const auto rates = [&]() -> Eigen::Vector3d { return Eigen::Vector3d(dot(*rows[0], v), dot(*rows[1], v), dot(*rows[2], v)) + drive; };
+  const auto rates = [&]() -> Eigen::Vector3d {
+    return Eigen::Vector3d(dot(*rows[0], v), dot(*rows[1], v), dot(*rows[2], v)) + drive;
+  };
   SpaceImpact impact;
   impact.velocity = rates();
   for (int a = 0; a < 3; ++a)
@@ -91,6 +94,14 @@ Impulse apply(const ImpactProblem& p, std::size_t i, VectorXd& v, ImpactResult& 
   return impulse;
 }
 
+/// The least impulses that do it: contacts that depend on others share them, and no pivot of rounding is divided by.
+VectorXd least_solution(const Eigen::MatrixXd& w, const VectorXd& right) {
+  constexpr double dependent = 1e-11;
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+  solver.setThreshold(dependent);
+  return solver.compute(w).solve(right);
+}
+
 /// Rates of these contacts as they are to be, but for the rounding of the velocities as they are now: what solving left
 /// of larger ones is taken out once more.
 void polish(const ImpactProblem& p, const std::vector<std::size_t>& contacts, const std::vector<double>& rates,
@@ -103,7 +114,7 @@ void polish(const ImpactProblem& p, const std::vector<std::size_t>& contacts, co
     off(at(a)) = rates[a] - rate(p, contacts[a], v);
   }
   if (contacts.empty() || !(off.cwiseAbs().maxCoeff() > 0)) return;
-  const VectorXd more = Eigen::FullPivLU<Eigen::MatrixXd>(w).solve(off);
+  const VectorXd more = least_solution(w, off);
   for (std::size_t a = 0; a < contacts.size(); ++a) v += more(at(a)) * p.response.col(at(contacts[a]));
 }
 
@@ -139,9 +150,9 @@ ImpactResult simultaneous_impact(const ImpactProblem& p, const VectorXd& v, bool
   ImpactResult out;
   out.v = v;
   const std::size_t count = p.contacts.size();
-  std::vector<std::size_t> in;  // closing, or at rest
-  for (std::size_t i = 0; i < count; ++i)
-    if (rate(p, i, v) <= p.rest[i]) in.push_back(i);
+  // Those that open too: what is hit beside them may turn them round.
+  std::vector<std::size_t> in(count);
+  std::iota(in.begin(), in.end(), std::size_t{0});
   Eigen::MatrixXd w(at(in.size()), at(in.size()));
   VectorXd q(at(in.size()));
   for (std::size_t a = 0; a < in.size(); ++a) {
@@ -158,7 +169,8 @@ ImpactResult simultaneous_impact(const ImpactProblem& p, const VectorXd& v, bool
   std::vector<double> rates;
   for (std::size_t a = 0; a < in.size(); ++a) {
     out.v += (*found)(at(a)) * p.response.col(at(in[a]));
-    if (!((*found)(at(a)) > 0)) continue;
+    constexpr double rounding = 1e-9;  // what is left of a force where the contact opens
+    if (!((*found)(at(a)) > rounding * found->maxCoeff())) continue;
     pressed.push_back(in[a]);
     rates.push_back(rate(p, in[a], v) - q(at(a)));
   }
@@ -184,8 +196,7 @@ ImpactResult end_of_bounces(const ImpactProblem& p, const VectorXd& v) {
     for (std::size_t b = 0; b < count; ++b) w(at(a), at(b)) = dot(p.normal[a], p.response.col(at(b)));
     q(at(a)) = -rate(p, a, v);
   }
-  const Eigen::FullPivLU<Eigen::MatrixXd> lu(w);
-  const VectorXd impulses = lu.solve(q);
+  const VectorXd impulses = least_solution(w, q);
   std::vector<std::size_t> all;
   for (std::size_t a = 0; a < count; ++a) out.v += impulses(at(a)) * p.response.col(at(a)), all.push_back(a);
   polish(p, all, std::vector<double>(count, 0.0), out.v);

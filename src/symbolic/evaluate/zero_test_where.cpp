@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <random>
+#include <type_traits>
 
 /// Identities on a manifold. No exact arithmetic reaches its points, so that these are found to double precision by
 /// Newton's method and then to 100 digits by the same method with the Jacobian held: each turn adds some fifteen
@@ -117,19 +118,24 @@ class OnRelations {
   }
 
   /// A point on the relations to 100 digits, or nothing.
-  std::optional<Precise> point(std::mt19937_64& random) {
+  std::optional<Precise> point(std::mt19937_64& random, bool hold_parameters) {
     Bindings at = center_;
-    for (auto& [symbol, value] : at) value += spread(symbol, value) * uniform(random);
+    for (auto& [symbol, value] : at) {
+      const double by = spread(symbol, value) * uniform(random);
+      if (!hold_parameters || is_variable(symbol)) value += by;
+    }
     if (!approach(at)) return std::nullopt;
     return refine(at);
   }
 
  private:
   static double uniform(std::mt19937_64& random) { return 2 * std::generate_canonical<double, 53>(random) - 1; }
+  bool is_variable(Expr symbol) const {
+    return symbol.role() == Role::Time || std::find(unknowns_.begin(), unknowns_.end(), symbol) != unknowns_.end();
+  }
   double spread(Expr symbol, double value) const {
-    const bool moves = std::find(unknowns_.begin(), unknowns_.end(), symbol) != unknowns_.end();
     if (symbol.role() == Role::Time) return 1;
-    return moves ? 0.3 * own_size(value) : 0.01 * std::abs(value);
+    return is_variable(symbol) ? 0.3 * own_size(value) : 0.01 * std::abs(value);
   }
   static double own_size(double value) { return std::abs(value) > 1e-12 ? std::abs(value) : 1; }
 
@@ -278,6 +284,27 @@ std::optional<Judged> judge(const Precise& point, const Sums& sums, const std::v
   return out;
 }
 
+/// Points where the rank of the relations is as large as it gets: where coordinates fail (Euler angles at θ = 0) the
+/// relations hold for accelerations that no motion has. `judge` gives nothing for a point that does not count.
+template <class Judge>
+auto regular_points(OnRelations& manifold, const ZeroTestOptions& options, Judge judge) {
+  std::mt19937_64 random(options.seed);
+  Index rank = 0;
+  std::vector<typename std::invoke_result_t<Judge, const Precise&>::value_type> regular;
+  const auto wanted = static_cast<std::size_t>(options.points);
+  for (int attempt = 0; attempt < options.points * attempts_per_point && regular.size() < wanted; ++attempt) {
+    const auto point = manifold.point(random, options.hold_parameters);
+    if (!point) continue;
+    auto judged = judge(*point);
+    const Index here = judged ? manifold.rank(judged->point) : 0;
+    if (!judged || here < rank) continue;
+    if (here > rank) regular.clear();
+    rank = here;
+    regular.push_back(std::move(*judged));
+  }
+  return regular;
+}
+
 }  // namespace
 
 ZeroTest zero_test_where(std::span<const Expr> differences, std::span<const Expr> relations,
@@ -285,22 +312,8 @@ ZeroTest zero_test_where(std::span<const Expr> differences, std::span<const Expr
   OnRelations manifold(relations, unknowns, center);
   const Sums sums(differences);
   const std::vector<Expr> rows = manifold.rows_of(differences);
-  std::mt19937_64 random(options.seed);
-  // Where coordinates fail (Euler angles at θ = 0) the relations hold for accelerations that no motion has: points
-  // count where their rank is as large as it gets.
-  Index rank = 0;
-  std::vector<Judged> regular;
-  const auto wanted = static_cast<std::size_t>(options.points);
-  for (int attempt = 0; attempt < options.points * attempts_per_point && regular.size() < wanted; ++attempt) {
-    const auto point = manifold.point(random);
-    if (!point) continue;
-    std::optional<Judged> judged = judge(*point, sums, rows, manifold);
-    const Index here = judged ? manifold.rank(judged->point) : 0;
-    if (!judged || here < rank) continue;
-    if (here > rank) regular.clear();
-    rank = here;
-    regular.push_back(std::move(*judged));
-  }
+  const std::vector<Judged> regular =
+      regular_points(manifold, options, [&](const Precise& point) { return judge(point, sums, rows, manifold); });
   ZeroTest test;
   test.points = static_cast<int>(regular.size());
   for (const Judged& judged : regular) {
@@ -311,11 +324,55 @@ ZeroTest zero_test_where(std::span<const Expr> differences, std::span<const Expr
     test.witness = judged.point;
     return test;
   }
-  if (regular.size() == wanted)
+  if (regular.size() == static_cast<std::size_t>(options.points))
     test.verdict = Verdict::Zero;
   else
     test.reason = "no point was found at which the constraints hold";
   return test;
+}
+
+// --------------------------------------------------------------------------------------------------------- the points
+
+struct PointsWhere::Impl {
+  struct Point {
+    Bindings point;
+    Precise precise;
+  };
+  Bindings center;
+  OnRelations manifold;
+  std::vector<Point> points;
+  std::vector<Bindings> rounded;
+
+  Impl(std::span<const Expr> relations, std::span<const Expr> unknowns, const Bindings& near)
+      : center(near), manifold(relations, unknowns, center) {}
+};
+
+PointsWhere::PointsWhere(std::span<const Expr> relations, std::span<const Expr> unknowns, const Bindings& center,
+                         const ZeroTestOptions& options)
+    : impl_(std::make_unique<Impl>(relations, unknowns, center)) {
+  impl_->points = regular_points(impl_->manifold, options, [](const Precise& precise) {
+    Impl::Point out{{}, precise};
+    for (const auto& [symbol, x] : precise) out.point.emplace(symbol, static_cast<double>(x));
+    return std::optional(std::move(out));
+  });
+  for (const Impl::Point& p : impl_->points) impl_->rounded.push_back(p.point);
+}
+PointsWhere::~PointsWhere() = default;
+PointsWhere::PointsWhere(PointsWhere&&) noexcept = default;
+
+const std::vector<Bindings>& PointsWhere::points() const { return impl_->rounded; }
+
+Verdict PointsWhere::vanishes(Expr e) const {
+  const Sums sums({&e, 1});
+  const std::vector<Expr> rows = impl_->manifold.rows_of({&e, 1});
+  bool judged_any = false;
+  for (const Impl::Point& p : impl_->points) {
+    const std::optional<Judged> judged = judge(p.precise, sums, rows, impl_->manifold);
+    if (!judged) continue;
+    if (judged->difference) return Verdict::Nonzero;
+    judged_any = true;
+  }
+  return judged_any ? Verdict::Zero : Verdict::Undecided;
 }
 
 }  // namespace maupertuis

@@ -31,21 +31,25 @@ Layout number_text(std::string text) { return with_text(Shape::Number, std::move
 /// Turning the argument around turns the value around, or leaves it. sign keeps its argument as it was written.
 Parity parity_of(Kind kind) { return kind == Kind::Sign ? Parity::None : kind_info(kind).parity; }
 
-/// The only body or frame with coordinates of its own, ball.qw, …; empty where there are none or several.
-std::string lone_body(const ReadingOrder& order) {
+/// The only body or frame with coordinates of its own, ball.qw, …, or with `rates`, ∫ball.ω.x; empty where there are
+/// none or several.
+std::string lone_body(const ReadingOrder& order, bool rates) {
   std::string found;
   for (const Expr& q : order.coordinates) {
-    const std::size_t dot = q.name().find('.');
-    if (dot == std::string::npos) continue;
-    if (!found.empty() && found != q.name().substr(0, dot)) return {};
-    found = q.name().substr(0, dot);
+    if (is_integral(q.name()) != rates) continue;
+    const std::string_view name = std::string_view(q.name()).substr(rates ? integral_sign.size() : 0);
+    const std::size_t dot = name.find('.');
+    if (dot == std::string_view::npos) continue;
+    if (!found.empty() && found != name.substr(0, dot)) return {};
+    found = name.substr(0, dot);
   }
   return found;
 }
 
 class Builder {
  public:
-  explicit Builder(const ReadingOrder& order) : ranks_(order), body_(lone_body(order)) {}
+  explicit Builder(const ReadingOrder& order)
+      : ranks_(order), body_(lone_body(order, false)), turning_(lone_body(order, true)) {}
 
   /// The whole expression: only here does the row's own coordinate come first.
   Layout build_top(Expr e) const { return e.is(Kind::Sum) ? sum(e, SumPlace::Top) : build(e); }
@@ -84,6 +88,8 @@ class Builder {
     if (e.is(Kind::Pi)) return combined(Shape::Pi, {});
     Layout layout = layouts::symbol(e);
     if (!body_.empty()) layout.text = name_within_body(e.name(), body_);
+    if (layout.text.empty() && !turning_.empty() && is_integral(e.name()))
+      layout.text = name_within_body(e.name(), turning_);
     return layout;
   }
 
@@ -244,18 +250,21 @@ class Builder {
   }
 
   ReadingRanks ranks_;
-  std::string body_;  // ball.qw is shown as q_w where no other body has such coordinates
+  std::string body_;     // ball.qw is shown as q_w where no other body has such coordinates
+  std::string turning_;  // ball.ω.x as ω_1 where no other body has rates
 };
 
 bool decimal_digits(std::string denominator, int& digits) {
-  // The denominator is 2^a 5^b: how many places the decimal has. Only short ones matter.
-  if (denominator.size() > 12) return false;
+  // The denominator is 2^a 5^b: how many places the decimal has. 1/4096 stays a fraction, 0.866025403784439 does not
+  // become one.
+  const bool is_long = denominator.size() > 10;
+  if (denominator.size() > 18) return false;
   long long d = std::stoll(denominator);
   int twos = 0, fives = 0;
   for (; d % 2 == 0; d /= 2) ++twos;
   for (; d % 5 == 0; d /= 5) ++fives;
   digits = std::max(twos, fives);
-  return d == 1 && digits <= 9;
+  return d == 1 && (is_long ? digits <= 17 : digits <= 9);
 }
 
 std::string decimal_text(const Rational& value, int digits) {

@@ -85,6 +85,11 @@ void take_index(SymbolName& name, std::string_view head) {
 
 SymbolName split_name(std::string_view name) {
   SymbolName result;
+  // Components on body axes have numbers, as in Euler's equations: ω.x is ω_1.
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 3> on_axes{
+      {{"ω.x", "1"}, {"ω.y", "2"}, {"ω.z", "3"}}};
+  for (const auto& [component, number] : on_axes)
+    if (name == component) return {"ω", {std::string(number)}};
   if (const std::size_t dot = name.find('.'); dot != std::string_view::npos && dot > 0 && dot + 1 < name.size()) {
     result = split_name(name.substr(dot + 1));
     result.below.emplace_back(name.substr(0, dot));

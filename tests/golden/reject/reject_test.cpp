@@ -3,6 +3,7 @@
 #include <maupertuis/codes.hpp>
 #include <maupertuis/constraint_analysis.hpp>
 #include <maupertuis/simulation.hpp>
+#include <maupertuis/study.hpp>
 
 #include <algorithm>
 #include <cstdlib>
@@ -31,13 +32,11 @@ std::vector<fs::path> models() {
 }
 
 Diagnostics check(const SourceText& source) {
-  Diagnostics diagnostics;
-  const syntax::SyntaxTree tree = syntax::parse(source, diagnostics);
-  const std::optional<Model> model = elaborate(tree, source, diagnostics);
-  if (model) lint(*model, source, diagnostics);
-  if (!model || diagnostics.has_errors()) return diagnostics;
-  const auto equations = euler_lagrange(std::make_shared<const MechanicalSystem>(model->system), diagnostics);
-  if (!equations) return diagnostics;
+  Study study(source);
+  const Model* model = study.model();
+  const EquationsOfMotion* equations = study.equations();
+  if (!model || !equations) return study.diagnostics();
+  Diagnostics& diagnostics = study.diagnostics();
   const auto begin = consistent_start(*model, *equations, diagnostics);
   const MotionState* start = begin ? &begin->state : nullptr;
   report_constraints(analyse_constraints(*equations, start), *equations, start, diagnostics);

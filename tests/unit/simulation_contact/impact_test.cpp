@@ -39,6 +39,13 @@ Eigen::VectorXd velocities(std::initializer_list<double> v) {
 
 }  // namespace
 
+TEST_CASE("a contact that opens is turned round by what is hit beside it, and is not pressed through") {
+  // A wall of great mass, a ball that leaves it, another that hits this one.
+  const ImpactResult r = simultaneous_impact(row_of_balls({1e30, 1, 1}, 0), velocities({0, 0.1, -1}), true);
+  CHECK(r.v[1] == doctest::Approx(0).epsilon(1e-13));
+  CHECK(r.v[2] == doctest::Approx(0).epsilon(1e-13));
+}
+
 TEST_CASE("Newton's cradle of five sends out as many as come in, one impact after the other") {
   const ImpactProblem p = row_of_balls({1, 1, 1, 1, 1}, 1);
   for (int in = 1; in <= 4; ++in) {

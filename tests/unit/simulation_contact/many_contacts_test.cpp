@@ -73,6 +73,36 @@ TEST_CASE("a plate on a hundred legs stands, and its motion is that without redu
   CHECK(std::abs(r.final.q[1]) < 1e-13);
 }
 
+TEST_CASE("nine discs fall into a box, settle to a heap, and the floor carries them") {
+  const double speeds[9][2] = {{-0.731272, 0.694867}, {0.527549, -0.489862},  {-0.009130, -0.101018},
+                               {0.303186, 0.577447},  {-0.812281, -0.943305}, {0.671530, -0.134466},
+                               {0.524560, -0.995788}, {-0.109226, 0.443080},  {-0.542476, 0.890541}};
+  std::string text = "dimensionless\ncoord ", energy, potential, contacts, start;
+  for (std::size_t i = 0; i < 9; ++i) {
+    const char* const comma = i > 0 ? ", " : "";
+    text += fmt::format("{0}x{1}, y{1}", comma, i);
+    energy += fmt::format("{0}1/2 (x{1}'^2 + y{1}'^2)", i > 0 ? " + " : "", i);
+    potential += fmt::format("{}9.81 y{}", i > 0 ? " + " : "", i);
+    start +=
+        fmt::format("{0}x{1} = {2}, y{1} = {3}, x{1}' = {4}, y{1}' = {5}", comma, i, static_cast<double>(i % 3) + 0.5,
+                    static_cast<double>(i / 3) + 0.5, speeds[i][0], speeds[i][1]);
+    for (const char c : {'x', 'y'})
+      contacts += fmt::format("contact {0}{1} >= 0.3 restitution 0.3\ncontact {0}{1} <= {2} restitution 0.3\n", c, i,
+                              c == 'x' ? 2.8 : 9.0);
+    for (std::size_t j = 0; j < i; ++j)
+      contacts += fmt::format("contact sqrt((x{0} - x{1})^2 + (y{0} - y{1})^2) >= 0.6 restitution 0.3\n", i, j);
+  }
+  const auto r = run_text(
+      text + " : number\nT = " + energy + "\nV = " + potential + "\n" + contacts + "start " + start + "\n", 1.6);
+  CHECK(r.statistics.energy_drift < 1e-9);
+  double closest = 1;
+  for (std::size_t i = 0; i < 9; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      closest = std::min(
+          closest, std::hypot(r.final.q[2 * i] - r.final.q[2 * j], r.final.q[2 * i + 1] - r.final.q[2 * j + 1]) - 0.6);
+  CHECK(closest > -1e-10);
+}
+
 TEST_CASE("sixty equal beads without loss go through each other but for their names") {
   constexpr std::size_t n = 60;
   constexpr double end = 3;

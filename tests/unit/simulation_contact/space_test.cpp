@@ -156,3 +156,22 @@ TEST_CASE("forces in cones keep Coulomb's law, redundant contacts too") {
     }
   }
 }
+
+TEST_CASE("a table on four feet slides, turns and stops: friction takes all its energy") {
+  const auto table = [](const std::string& tilt, const std::string& start) {
+    std::string text =
+        "param m = 1 kg, g = 9.81 m/s^2, a = 0.5 m, J = 0.1 kg m^2\ncoord x, y, z : length, ψ, α, β : angle\n"
+        "T = 1/2 m (x'^2 + y'^2 + z'^2) + 1/2 J (ψ'^2 + α'^2 + β'^2)\nV = m g (z + 0.3 * " +
+        tilt + " sin α)\n";
+    const char* const signs[4][2] = {{"+", "+"}, {"-", "+"}, {"-", "-"}, {"+", "-"}};
+    for (const auto& [s, c] : signs)
+      text += fmt::format(
+          "contact z {0} a sin α {1} a sin β >= 0 friction 0.3 slip (x' + {2} β' - a ({3} sin ψ {1} cos ψ) ψ', "
+          "y' + {2} α' + a ({3} cos ψ - ({4} sin ψ)) ψ')\n",
+          s, c, tilt, *s == '-' ? "-" : "", *c == '-' ? "-" : "");
+    return text + "start " + start + "\n";
+  };
+  const auto level = run_text(table("0 [m]", "x' = 1 m/s, y' = 0.3 m/s, ψ' = 3 rad/s"), 1);
+  CHECK(level.books->friction == doctest::Approx(0.5 * 1.09 + 0.05 * 9).epsilon(1e-12));
+  for (const double v : level.final.v) CHECK(std::abs(v) < 1e-12);
+}

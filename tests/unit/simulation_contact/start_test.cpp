@@ -141,3 +141,21 @@ TEST_CASE("a run has the last row before an impact and the first one after it, a
     CHECK(rows.at(row + 1, v) == doctest::Approx(1).epsilon(1e-12));
   }
 }
+
+TEST_CASE("two components of slip that are not at right angles are refused, turned ones are not") {
+  const auto code_of = [](const std::string& slip) {
+    ModelText m(
+        "param m = 1 kg, g = 10 m/s^2, R = 0.1 m\ncoord x, y, z : length, ψ : angle\n"
+        "T = 1/2 m (x'^2 + y'^2 + z'^2 + R^2 ψ'^2)\nV = m g z\n"
+        "contact z >= 0 friction 0.3 slip " +
+        slip + " name floor\nstart x' = 1 m/s\n");
+    SimulationOptions options;
+    options.duration = 0.1;
+    options.errors = ErrorEstimates::None;
+    static_cast<void>(simulate(m.model, m.equations, options, m.diagnostics));
+    return m.diagnostics.items().empty() ? std::string() : m.diagnostics.items().back().code;
+  };
+  CHECK(code_of("(x', (x' + y')/sqrt(2))") == "E0265");
+  CHECK(code_of("(x' cos ψ + y' sin ψ, y' cos ψ - x' sin ψ)").empty());
+  CHECK(code_of("(x' - R sin ψ ψ', y' + R cos ψ ψ')").empty());
+}

@@ -1,0 +1,90 @@
+#pragma once
+#include <maupertuis/constraint_algorithm.hpp>
+#include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/equations_of_motion.hpp>
+
+#include <optional>
+#include <vector>
+
+/// Lagrangians of which det ∂²L/∂q̇∂q̇ = 0 (docs/theory/degenerate.md): what they ask of the state, what they leave
+/// open, and equations that determine the motion all the same.
+namespace maupertuis {
+
+/// A direction in the space of states, by components: of q [n], then of q̇ [n].
+using StateDirection = ExprVector;
+
+struct DegenerateAnalysis {
+  /// States are (q, q̇), unknowns (q̈, λ); the conditions are Lagrange's equations, then those of the constraints
+  /// A q̈ = b, then of the gauges, then the derivatives of what was found.
+  ConstraintChain chain;
+  ExprVector states;                   // q [n], then q̇ [n]
+  std::size_t gauges = 0;              // relations of `gauge` statements, taken into account
+  std::vector<std::size_t> free;       // coordinates whose accelerations nothing determines, as many as functions
+  std::size_t motions = 0;             // numbers that single out a motion, apart from the free functions
+  std::vector<StateDirection> orbits;  // along which the free functions move a state, independent on the manifold
+
+  bool closed() const { return chain.outcome == ConstraintChain::Outcome::Closed; }
+  /// Whether e(q, q̇, t) is the same whatever the free functions are.
+  bool is_determined(Expr e) const;
+};
+
+/// The Lagrangian constraint algorithm (Gotay and Nester) for the equations of a system, near `center`, which binds
+/// every symbol of coordinates and velocities; parameters have the values of the model. `with_gauges`: the gauge
+/// statements count as constraints. Cost: see constraint_algorithm.
+DegenerateAnalysis analyse_degenerate(const EquationsOfMotion& equations, const Bindings& center, bool with_gauges,
+                                      bool hold_parameters = true);
+
+/// A state near the start of an experiment, away from special places: for analyses by points.
+Bindings generic_state(const Model& model);
+
+/// Equations that determine all accelerations: some rows of Lagrange's are replaced by the derivatives of the
+/// constraints that were found, each with a multiplier of its own, which is what remains of the replaced row and
+/// vanishes along the motion; accelerations that are free are 0. Constraints that were found are constraints of the
+/// new system, whose forces are none. Nothing where the analysis did not close.
+std::optional<EquationsOfMotion> determined_equations(const EquationsOfMotion& equations,
+                                                      const DegenerateAnalysis& analysis);
+
+/// All that a motion satisfies at each point, in q, q̇, q̈, λ, t: the relations between states, and the rows that are
+/// linear in q̈ and λ.
+ExprVector relations_of_motion(const EquationsOfMotion& equations, const DegenerateAnalysis& analysis);
+
+enum class Settled {
+  Near,       // from the state that was given
+  Elsewhere,  // from scattered states
+  Nowhere,
+};
+
+/// What every state of a motion fulfils: the relations of the model, its gauges, and the constraints that were found.
+class StateRelations {
+ public:
+  StateRelations(const EquationsOfMotion& equations, const DegenerateAnalysis& analysis);
+  ~StateRelations();
+
+  /// Moves what is not fixed by Gauss and Newton; where that fails, from scattered values of it. Unchanged if nowhere.
+  Settled settle(MotionState& state, const std::vector<bool>& fixed_q, const std::vector<bool>& fixed_v) const;
+  bool hold(const MotionState& state) const;
+  /// The relation that is violated most, "x' - y = 0".
+  std::string worst_at(const MotionState& state) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The model with the determined equations' system, for computations that take both. Precondition: determined.
+Model with_determined_system(const Model& model, const EquationsOfMotion& equations);
+
+/// What there is to say of a degenerate system: a note, a warning where a kinetic energy may have been forgotten, free
+/// functions, contradictions, gauges that fix nothing, too much or too little, parameters with special values. False
+/// where there is no motion to be computed, and the error says why.
+bool report_degenerate(const Model& model, const EquationsOfMotion& equations, const DegenerateAnalysis& analysis,
+                       Diagnostics& diagnostics);
+
+/// What a textbook prints of it: the constraints, generation by generation, what stays free, the gauges, the count.
+std::vector<DerivationStep> degenerate_lines(const DegenerateAnalysis& analysis, const MechanicalSystem& system);
+
+/// The constraints, one a line: "z = 0". `with_derivatives`: also those that merely follow from another one.
+std::vector<std::string> constraint_lines(const DegenerateAnalysis& analysis, const ReadingOrder& order,
+                                          bool with_derivatives);
+
+}  // namespace maupertuis

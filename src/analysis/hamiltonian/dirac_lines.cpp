@@ -1,0 +1,124 @@
+#include <maupertuis/dirac.hpp>
+#include <maupertuis/print.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace maupertuis {
+namespace {
+
+std::string plural(std::size_t number, const char* one, const char* many) {
+  return fmt::format("{} {}", number, number == 1 ? one : many);
+}
+
+/// "Secondary constraints"
+std::string title(int generation) {
+  static constexpr std::array words{"Primary", "Secondary", "Tertiary", "Quaternary"};
+  return generation < static_cast<int>(words.size())
+             ? fmt::format("{} constraints", words[static_cast<std::size_t>(generation)])
+             : fmt::format("Constraints of generation {}", generation + 1);
+}
+
+std::string epsilon(std::size_t order) { return "ε" + std::string(order, '\''); }
+
+class DiracLines {
+ public:
+  DiracLines(const DiracAnalysis& found, const Hamiltonian& h) : found_(found), h_(h) {}
+
+  std::vector<DerivationStep> write(const DegenerateAnalysis* of_lagrange) {
+    for (const PhaseConstraint& c : found_.constraints)
+      if (c.generation > 0) formula(title(c.generation), "dφ/dt = 0 of those before", layouts::number("0"), c.value);
+    if (found_.outcome != ConstraintChain::Outcome::Closed) {
+      sentence("Classes", found_.outcome == ConstraintChain::Outcome::Contradiction
+                              ? "The last constraint cannot be fulfilled: there is no motion."
+                              : "No state near the start was found that fulfils the last constraint.");
+      return std::move(lines_);
+    }
+    classes();
+    if (of_lagrange) counts(*of_lagrange);
+    generators();
+    return std::move(lines_);
+  }
+
+ private:
+  void formula(const std::string& section, const std::string& rule, Layout left, Expr right) {
+    lines_.push_back({section, rule, std::move(left), right, {}, {}});
+  }
+  void sentence(const std::string& section, std::string text) {
+    lines_.push_back({section, {}, {}, {}, std::move(text), {}});
+  }
+
+  void classes() {
+    const std::string section = "Classes";
+    sentence(section, fmt::format("{} of the first class, {} of the second: phase space has 2·{} − 2·{} − {} = {} "
+                                  "physical dimensions, {}.",
+                                  plural(found_.first_class, "constraint", "constraints"), found_.second_class,
+                                  h_.momenta.size(), found_.first_class, found_.second_class, found_.physical_dimension,
+                                  freedoms()));
+    if (found_.second_class > 0)
+      for (const Expr& f : found_.first_class_functions)
+        formula(section, "of the first class", layouts::number("0"), f);
+    if (found_.primary_first_class > 0)
+      sentence(section, fmt::format("{} of the total Hamiltonian H + u φ stay{} free.",
+                                    plural(found_.primary_first_class, "multiplier", "multipliers"),
+                                    found_.primary_first_class == 1 ? "s" : ""));
+  }
+
+  std::string freedoms() const {
+    const std::size_t d = found_.physical_dimension;
+    return d % 2 == 0 ? plural(d / 2, "freedom", "freedoms") : fmt::format("{}/2 freedoms", d);
+  }
+
+  /// δq = {q, G}, coordinate by coordinate: ε' + ε x.
+  void generators() {
+    for (std::size_t g = 0; g < found_.generators.size(); ++g) {
+      const GaugeGenerator& generator = found_.generators[g];
+      const std::string section =
+          found_.generators.size() == 1 ? "Gauge transformation" : fmt::format("Gauge transformation {}", g + 1);
+      formula(section, "generator", layouts::name("G"), with_epsilon(generator.parts));
+      for (std::size_t i = 0; i < generator.changes.size(); ++i) {
+        const Expr change = with_epsilon(generator.changes[i]);
+        if (!change.is_zero())
+          formula(section, "δq = {q, G}", layouts::name("δ" + h_.system->coordinates[i].name), change);
+      }
+      sentence(section, "With any function ε(t) it turns motions into motions: proved by Noether's identity.");
+    }
+  }
+
+  Expr with_epsilon(const ExprVector& parts) const {
+    Context& context = *h_.system->context;
+    ExprVector terms;
+    for (std::size_t k = 0; k < parts.size(); ++k)
+      terms.push_back(context.symbol(epsilon(k), Role::Auxiliary) * parts[k]);
+    return context.sum(terms);
+  }
+
+  void counts(const DegenerateAnalysis& lagrange) {
+    if (!lagrange.closed()) return;
+    const std::string section = "Classes";
+    if (lagrange.motions == found_.physical_dimension) {
+      sentence(section, fmt::format("Lagrange's equations count alike: {} out a motion.",
+                                    plural(lagrange.motions, "number singles", "numbers single")));
+      return;
+    }
+    sentence(section,
+             fmt::format("Lagrange's equations count otherwise: {} out a motion, not {}. Some constraint of "
+                         "the first class moves no motion: Dirac's conjecture, that all of them do, fails here.",
+                         plural(lagrange.motions, "number singles", "numbers single"), found_.physical_dimension));
+  }
+
+  const DiracAnalysis& found_;
+  const Hamiltonian& h_;
+  std::vector<DerivationStep> lines_;
+};
+
+}  // namespace
+
+std::vector<DerivationStep> dirac_lines(const DiracAnalysis& analysis, const Hamiltonian& hamiltonian,
+                                        const DegenerateAnalysis* of_lagrange) {
+  return DiracLines(analysis, hamiltonian).write(of_lagrange);
+}
+
+}  // namespace maupertuis

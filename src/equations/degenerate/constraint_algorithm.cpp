@@ -1,0 +1,208 @@
+#include <maupertuis/constraint_algorithm.hpp>
+#include <maupertuis/linear_system.hpp>
+#include <maupertuis/transform.hpp>
+
+#include "equations/degenerate/real_part.hpp"
+#include "equations/row_reduction.hpp"
+#include "linear_algebra/dense.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace maupertuis {
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+using Index = Eigen::Index;
+
+constexpr int most_generations = 40;
+constexpr double small = 1e-9;  // of a coefficient, beside the largest
+
+/// The coefficients at a point, each row divided by its largest; rows that vanish there, as far as rounding lets one
+/// see, are 0.
+Matrix coefficients_at(const std::vector<LinearCondition>& conditions, const Bindings& point) {
+  const std::size_t columns = conditions.front().coefficients.size();
+  ExprVector entries;
+  for (const LinearCondition& c : conditions)
+    entries.insert(entries.end(), c.coefficients.begin(), c.coefficients.end());
+  const std::vector<double> values = evaluate(entries, point);
+  Matrix m(static_cast<Index>(conditions.size()), static_cast<Index>(columns));
+  for (Index i = 0; i < m.rows(); ++i)
+    for (Index j = 0; j < m.cols(); ++j)
+      m(i, j) = values[static_cast<std::size_t>(i) * columns + static_cast<std::size_t>(j)];
+  return m;
+}
+
+/// Rows scaled by their own sizes; what is below rounding of the whole counts as 0.
+Matrix scaled_rows(Matrix m) {
+  const double largest = m.size() ? m.cwiseAbs().maxCoeff() : 0;
+  for (Index i = 0; i < m.rows(); ++i) {
+    const double size = m.row(i).cwiseAbs().maxCoeff();
+    if (size > 1e-12 * largest)
+      m.row(i) /= size;
+    else
+      m.row(i).setZero();
+  }
+  return m;
+}
+
+class Algorithm {
+ public:
+  explicit Algorithm(const ConstraintProblem& problem) : problem_(problem), relations_(problem.relations) {
+    out_.conditions = problem.conditions;
+  }
+
+  ConstraintChain run() {
+    find_points();
+    for (int generation = 1; generation <= most_generations; ++generation) {
+      if (out_.outcome != ConstraintChain::Outcome::Closed) return std::move(out_);
+      if (!next(generation)) break;
+    }
+    finish();
+    return std::move(out_);
+  }
+
+ private:
+  /// One generation: the conditions on states that the rows leave. False where there is no new one.
+  bool next(int generation) {
+    const std::size_t before = out_.constraints.size();
+    const std::vector<std::size_t> chosen = independent_conditions(out_.conditions, points_->points());
+    std::vector<std::pair<Expr, bool>> left;
+    for (std::size_t r = 0; r < out_.conditions.size(); ++r)
+      if (std::find(chosen.begin(), chosen.end(), r) == chosen.end()) left.push_back(remainder(r, chosen));
+    for (const auto& [value, follows] : left) {
+      if (value.is_zero() || points_->vanishes(value) != Verdict::Nonzero) continue;
+      for (const Expr& part : real_parts(value, problem_.order, problem_.states)) add(part, generation, follows);
+      if (out_.outcome != ConstraintChain::Outcome::Closed) return true;
+    }
+    for (std::size_t k = before; k < out_.constraints.size(); ++k)
+      out_.conditions.push_back(problem_.derivative(out_.constraints[k].value));
+    return out_.constraints.size() > before;
+  }
+
+  void add(Expr value, int generation, bool follows) {
+    if (points_->vanishes(value) == Verdict::Zero) return;  // another one of this generation says it
+    out_.constraints.push_back({value, generation, follows});
+    if (!has_state(value)) {
+      out_.outcome = ConstraintChain::Outcome::Contradiction;
+      return;
+    }
+    relations_.push_back(value);
+    find_points();
+    keep_what_vanishes();
+  }
+
+  /// Of a product the factors that vanish at the states near the start: r²(θ' − z) = 0 means θ' = z where r is not 0.
+  void keep_what_vanishes() {
+    const Expr product = relations_.back();
+    if (!product.is(Kind::Product) || points_->points().empty()) return;
+    Expr kept = product.context().number(1);
+    for (std::size_t i = 0; i < product.size(); ++i)
+      if (points_->vanishes(product[i]) != Verdict::Nonzero) kept = kept * product[i];
+    if (kept == product || kept.is_one()) return;
+    relations_.back() = kept;
+    out_.constraints.back().value = kept;
+    find_points();
+  }
+
+  bool has_state(Expr value) const {
+    for (const Expr& s : symbols_of({&value, 1}))
+      if (std::find(problem_.states.begin(), problem_.states.end(), s) != problem_.states.end()) return true;
+    return false;
+  }
+
+  /// Row r as a combination of the chosen ones: what is left of its right side, and whether r has no unknown at all.
+  std::pair<Expr, bool> remainder(std::size_t r, const std::vector<std::size_t>& chosen) {
+    const LinearCondition& row = out_.conditions[r];
+    const std::vector<std::size_t> part = taking_part(r, chosen);
+    if (part.empty()) return {row.rest, row.is_derivative};
+    const std::vector<std::size_t> columns = pivots(part);
+    Context& context = row.rest.context();
+    ExprMatrix system{part.size(), part.size() + 1, {}};  // Σ_k c_k B_kj = r_j
+    for (const std::size_t j : columns) {
+      for (const std::size_t k : part) system.entries.push_back(out_.conditions[k].coefficients[j]);
+      system.entries.push_back(row.coefficients[j]);
+    }
+    const auto weights = solve_linear(system);
+    if (!weights) throw std::logic_error("rows that are independent at points have no solution; please report");
+    ExprVector terms{row.rest};
+    for (std::size_t k = 0; k < part.size(); ++k) terms.push_back(-((*weights)[k] * out_.conditions[part[k]].rest));
+    return {context.sum(terms), false};
+  }
+
+  /// The chosen rows of which r is a combination, at any of the points.
+  std::vector<std::size_t> taking_part(std::size_t r, const std::vector<std::size_t>& chosen) const {
+    std::vector<bool> takes(chosen.size(), false);
+    for (const Bindings& point : points_->points()) {
+      const Matrix m = scaled_rows(coefficients_at(out_.conditions, point));
+      if (chosen.empty() || m.row(static_cast<Index>(r)).isZero()) continue;
+      Matrix basis(m.cols(), static_cast<Index>(chosen.size()));
+      for (std::size_t k = 0; k < chosen.size(); ++k)
+        basis.col(static_cast<Index>(k)) = m.row(static_cast<Index>(chosen[k])).transpose();
+      const Vector weights = least_squares(basis, m.row(static_cast<Index>(r)).transpose());
+      for (std::size_t k = 0; k < chosen.size(); ++k)
+        if (std::abs(weights[static_cast<Index>(k)]) > small) takes[k] = true;
+    }
+    std::vector<std::size_t> out;
+    for (std::size_t k = 0; k < chosen.size(); ++k)
+      if (takes[k]) out.push_back(chosen[k]);
+    return out;
+  }
+
+  /// As many columns as rows in which these are regular at the first point.
+  std::vector<std::size_t> pivots(const std::vector<std::size_t>& rows) const {
+    const Matrix all = scaled_rows(coefficients_at(out_.conditions, points_->points().front()));
+    Matrix m(all.cols(), static_cast<Index>(rows.size()));
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      m.col(static_cast<Index>(k)) = all.row(static_cast<Index>(rows[k])).transpose();
+    return independent_rows(m);
+  }
+
+  void find_points() {
+    ZeroTestOptions options;
+    options.hold_parameters = problem_.hold_parameters;
+    points_ = std::make_shared<const PointsWhere>(relations_, problem_.states, problem_.center, options);
+    if (points_->points().empty()) out_.outcome = ConstraintChain::Outcome::Unreached;
+  }
+
+  void finish() {
+    out_.where = points_;
+    std::vector<LinearCondition> gradients;
+    for (const Expr& relation : relations_) gradients.push_back({gradient(relation, problem_.states), relation});
+    const std::size_t bound = gradients.empty() ? 0 : independent_conditions(gradients, points_->points()).size();
+    out_.manifold_dimension = problem_.states.size() - bound;
+    out_.rank = independent_conditions(out_.conditions, points_->points()).size();
+  }
+
+  const ConstraintProblem& problem_;
+  ExprVector relations_;
+  std::shared_ptr<const PointsWhere> points_;
+  ConstraintChain out_;
+};
+
+}  // namespace
+
+std::vector<std::size_t> independent_conditions(const std::vector<LinearCondition>& conditions,
+                                                const std::vector<Bindings>& points) {
+  std::vector<std::size_t> most;
+  for (const Bindings& point : points) {
+    const std::vector<std::size_t> here = independent_rows(scaled_rows(coefficients_at(conditions, point)));
+    if (here.size() > most.size()) most = here;
+  }
+  return most;
+}
+
+std::vector<std::size_t> open_unknowns(const std::vector<LinearCondition>& conditions,
+                                       const std::vector<Bindings>& points) {
+  const Matrix m = scaled_rows(coefficients_at(conditions, points.front()));
+  std::vector<std::size_t> open;
+  const std::vector<std::size_t> bound = independent_rows(m.transpose());
+  for (std::size_t j = 0; j < static_cast<std::size_t>(m.cols()); ++j)
+    if (std::find(bound.begin(), bound.end(), j) == bound.end()) open.push_back(j);
+  return open;
+}
+
+ConstraintChain constraint_algorithm(const ConstraintProblem& problem) { return Algorithm(problem).run(); }
+
+}  // namespace maupertuis

@@ -1,0 +1,174 @@
+#include "equations/degenerate/lagrange_problem.hpp"
+
+#include <maupertuis/degenerate.hpp>
+#include <maupertuis/transform.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace maupertuis {
+namespace {
+
+bool has_velocity(Expr e) {
+  for (const Expr& s : symbols_of({&e, 1}))
+    if (s.role() == Role::Coordinate && s.order() > 0) return true;
+  return false;
+}
+
+/// What the new system holds as constraints: the gauges and what was found, without what follows from another one.
+struct Held {
+  std::string name;
+  Expr value;
+  Constraint::Level level;
+  Span span;
+};
+
+std::vector<Held> held_relations(const MechanicalSystem& system, const DegenerateAnalysis& analysis,
+                                 const ExprVector& gauge_values) {
+  std::vector<Held> out;
+  const auto add = [&](std::string name, Expr value, Span span) {
+    using Level = Constraint::Level;
+    out.push_back({std::move(name), value, has_velocity(value) ? Level::Velocity : Level::Position, span});
+  };
+  for (std::size_t k = 0; k < analysis.gauges; ++k)
+    add("the gauge " + system.gauges[k].text, gauge_values[k], system.gauges[k].span);
+  std::size_t number = 0;
+  for (const FoundConstraint& c : analysis.chain.constraints) {
+    ++number;
+    if (!c.follows) add(fmt::format("constraint {} of L", number), c.value, {});
+  }
+  return out;
+}
+
+/// The row of A that a kernel makes of a relation: ∂φ/∂q or ∂ψ/∂q̇, and 0 for the multipliers.
+LinearCondition row_of(const Held& held, const MechanicalSystem& system, std::size_t multipliers) {
+  ExprVector symbols;
+  for (const Coordinate& c : system.coordinates)
+    symbols.push_back(held.level == Constraint::Level::Position ? c.q : c.velocity);
+  LinearCondition row{gradient(held.value, symbols), held.value};
+  row.coefficients.resize(symbols.size() + multipliers, held.value.context().number(0));
+  return row;
+}
+
+/// Which relations are independent of those of the model, and which of Lagrange's rows determine what they leave.
+struct Choice {
+  std::vector<Held> held;
+  std::vector<bool> keeps_row;  // [n]
+};
+
+/// Whether the rows are independent at each of the points where they are defined.
+bool independent_at_all(const std::vector<LinearCondition>& rows, const std::vector<Bindings>& points) {
+  for (const Bindings& point : points)
+    if (independent_conditions(rows, {point}).size() < rows.size()) return false;
+  return true;
+}
+
+/// The points, and the same with all velocities 0, where a row like that of v² + … vanishes: what it says is then left
+/// to the motion, which keeps it.
+std::vector<Bindings> with_rest(const std::vector<Bindings>& points) {
+  std::vector<Bindings> out;
+  for (Bindings point : points) {
+    for (auto& [symbol, value] : point)
+      if (symbol.role() == Role::Coordinate && symbol.order() == 1) value = 0;
+    out.push_back(std::move(point));
+  }
+  return out;
+}
+
+Choice choose_rows(const EquationsOfMotion& equations, const DegenerateAnalysis& analysis, std::vector<Held> held) {
+  const std::size_t n = equations.system->coordinates.size(), m = equations.multipliers.size();
+  const auto& all = analysis.chain.conditions;
+  std::vector<LinearCondition> rows(all.begin() + static_cast<std::ptrdiff_t>(n),
+                                    all.begin() + static_cast<std::ptrdiff_t>(n + m));
+  const auto& points = analysis.chain.where->points();
+  std::vector<Held> safe;
+  for (const Held& h : held) {
+    std::vector<LinearCondition> with_it = rows;
+    with_it.push_back(row_of(h, *equations.system, m));
+    const bool everywhere = independent_at_all(with_it, points) && independent_at_all(with_it, with_rest(points));
+    if (!everywhere && h.level == Constraint::Level::Velocity) continue;
+    rows = std::move(with_it);
+    safe.push_back(h);
+  }
+  held = std::move(safe);
+  rows.insert(rows.end(), all.begin(), all.begin() + static_cast<std::ptrdiff_t>(n));
+  Choice out;
+  out.keeps_row.assign(n, false);
+  for (const std::size_t r : independent_conditions(rows, analysis.chain.where->points())) {
+    if (r < m) continue;
+    if (r < m + held.size())
+      out.held.push_back(held[r - m]);
+    else
+      out.keeps_row[r - m - held.size()] = true;
+  }
+  return out;
+}
+
+Constraint as_constraint(const Held& held, std::size_t number, Context& context) {
+  Constraint c;
+  c.level = held.level;
+  c.name = held.name;
+  c.value = held.value;
+  c.multiplier = context.symbol(fmt::format("rest {}", number), Role::Multiplier);
+  c.reaction = context.symbol(fmt::format("reaction(rest {})", number), Role::Multiplier);
+  c.span = held.span;
+  c.forceless = true;
+  return c;
+}
+
+void hold(EquationsOfMotion& out, MechanicalSystem& system, const Constraint& c) {
+  Context& context = *system.context;
+  const Expr rate = c.level == Constraint::Level::Position ? context.time_derivative(c.value) : c.value;
+  out.multipliers.push_back(c.multiplier);
+  out.constraint_rates.push_back(rate);
+  out.constraint_accelerations.push_back(context.time_derivative(rate));
+  system.constraints.push_back(c);
+}
+
+}  // namespace
+
+std::optional<EquationsOfMotion> determined_equations(const EquationsOfMotion& equations,
+                                                      const DegenerateAnalysis& analysis) {
+  if (!analysis.closed()) return std::nullopt;
+  const ConstraintProblem problem = lagrange_problem(equations, analysis.gauges > 0);
+  const ExprVector gauge_values(problem.relations.end() - static_cast<std::ptrdiff_t>(analysis.gauges),
+                                problem.relations.end());
+  const Choice choice = choose_rows(equations, analysis, held_relations(*equations.system, analysis, gauge_values));
+  EquationsOfMotion out = equations;
+  out.written = nullptr;
+  auto system = std::make_shared<MechanicalSystem>(*equations.system);
+  Context& context = *system->context;
+  const std::size_t n = system->coordinates.size();
+  if (out.constraint_forces.empty()) out.constraint_forces.assign(n, context.number(0));
+
+  std::vector<std::size_t> dropped;
+  for (std::size_t i = 0; i < n; ++i)
+    if (!choice.keeps_row[i]) dropped.push_back(i);
+  // A free acceleration takes a row that is dropped, its own where that is one.
+  for (const std::size_t f : analysis.free) {
+    if (dropped.empty()) return std::nullopt;
+    const auto own = std::find(dropped.begin(), dropped.end(), f);
+    const std::size_t row = own == dropped.end() ? dropped.back() : f;
+    dropped.erase(own == dropped.end() ? dropped.end() - 1 : own);
+    out.residual[row] = system->coordinates[f].acceleration;
+    out.constraint_forces[row] = context.number(0);
+  }
+  for (std::size_t k = 0; k < choice.held.size(); ++k) {
+    const Constraint c = as_constraint(choice.held[k], k + 1, context);
+    hold(out, *system, c);
+    if (k < dropped.size()) out.constraint_forces[dropped[k]] = out.constraint_forces[dropped[k]] + c.multiplier;
+  }
+  system->written = nullptr;
+  system->gauges.clear();
+  out.system = std::move(system);
+  return out;
+}
+
+Model with_determined_system(const Model& model, const EquationsOfMotion& equations) {
+  Model out = model;
+  out.system = *equations.determined->system;
+  return out;
+}
+
+}  // namespace maupertuis

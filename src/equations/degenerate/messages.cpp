@@ -1,0 +1,205 @@
+#include <maupertuis/degenerate.hpp>
+#include <maupertuis/print.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace maupertuis {
+namespace {
+
+constexpr std::size_t longest_line = 100;
+constexpr std::size_t most_parameters = 8;  // that are moved one by one to see which of them has a special value
+
+std::string joined(const std::vector<std::string>& parts, const char* last = " and ") {
+  std::string out;
+  for (std::size_t i = 0; i < parts.size(); ++i) out += (i == 0 ? "" : i + 1 == parts.size() ? last : ", ") + parts[i];
+  return out;
+}
+
+std::string count(std::size_t number, const char* what) {
+  return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+}
+
+class Messages {
+ public:
+  Messages(const Model& model, const EquationsOfMotion& equations, const DegenerateAnalysis& analysis,
+           Diagnostics& diagnostics)
+      : model_(model), equations_(equations), analysis_(analysis), diagnostics_(diagnostics) {}
+
+  bool tell() {
+    using Outcome = ConstraintChain::Outcome;
+    if (!gauges()) return false;
+    if (analysis_.chain.outcome == Outcome::Contradiction) return contradiction();
+    if (analysis_.chain.outcome == Outcome::Unreached) return unreached();
+    if (analysis_.free.empty())
+      degenerate();
+    else
+      free_functions();
+    special_values();
+    return true;
+  }
+
+ private:
+  const MechanicalSystem& system() const { return model_.system; }
+
+  Span place() const {
+    if (system().lagrangian_given) return system().lagrangian_given->span;
+    for (std::size_t i = 0; i < system().coordinates.size(); ++i)
+      if (has_no_inertia(i)) return system().coordinates[i].span;
+    return system().kinetic.empty() ? system().coordinates.front().span : system().kinetic.front().span;
+  }
+
+  bool has_no_inertia(std::size_t i) const {
+    const Expr momentum = equations_.momenta[i];
+    for (const Coordinate& c : system().coordinates)
+      if (!differentiate(momentum, c.velocity).is_zero()) return false;
+    return true;
+  }
+
+  std::string line(const FoundConstraint& c) const {
+    const std::string text = to_plain(c.value, equations_.order);
+    return text.size() <= longest_line ? text + " = 0" : std::string("a long condition");
+  }
+
+  bool contradiction() {
+    const FoundConstraint& last = analysis_.chain.constraints.back();
+    const std::string from =
+        last.generation == 1 ? std::string("a combination of Lagrange's equations without accelerations")
+                             : fmt::format("the derivatives of the constraints of generation {}", last.generation - 1);
+    diagnostics_.error("E0623", place(), fmt::format("no motion obeys this Lagrangian: {}", line(last)),
+                       fmt::format("That follows from {}, whatever the state is.", from),
+                       "Check L for a missing kinetic energy or a potential without equilibrium.");
+    return false;
+  }
+
+  bool unreached() {
+    const std::vector<std::string> lines = constraint_lines(analysis_, equations_.order, false);
+    diagnostics_.error("E0624", place(),
+                       lines.empty() ? std::string("no state near the start lies where this Lagrangian is defined")
+                                     : "no state near the start fulfils " + joined(lines),
+                       "A degenerate Lagrangian asks this of every state of a motion.",
+                       "Give a start near a state that fulfils it.");
+    return false;
+  }
+
+  /// False where a gauge excludes motions.
+  bool gauges() {
+    if (analysis_.gauges == 0) return true;
+    Bindings center = generic_state(model_);
+    const DegenerateAnalysis open = analyse_degenerate(equations_, center, false);
+    const Gauge& first = system().gauges.front();
+    if (open.closed() && open.free.empty()) {
+      diagnostics_.error("E0625", first.span, "there is nothing for a gauge to fix",
+                         "The equations determine every acceleration.",
+                         "Leave it out; `constraint` holds a relation with a force.");
+      return false;
+    }
+    for (const Gauge& gauge : system().gauges)
+      if (open.closed() && open.is_determined(gauge.value)) return fixes_too_much(gauge);
+    if (open.closed() && analysis_.closed() && analysis_.motions < open.motions) return fixes_too_much(first);
+    return true;
+  }
+
+  bool fixes_too_much(const Gauge& gauge) {
+    diagnostics_.error("E0626", gauge.span, "this gauge excludes motions",
+                       "It says something about a quantity that does not depend on the free functions.",
+                       "Ask for something that the free functions can bring about.");
+    return false;
+  }
+
+  /// "Every state of a motion has z = 0; 2 numbers single out a motion."
+  std::string asked_of_states() const {
+    const std::vector<std::string> lines = constraint_lines(analysis_, equations_.order, false);
+    std::string asked = lines.empty()       ? std::string("Nothing is asked of the state")
+                        : lines.size() <= 3 ? "Every state of a motion has " + joined(lines)
+                                            : "Every state of a motion fulfils " + count(lines.size(), "constraint");
+    asked += fmt::format("; {} single{} out a motion.", count(analysis_.motions, "number"),
+                         analysis_.motions == 1 ? "s" : "");
+    return asked;
+  }
+
+  void degenerate() {
+    std::vector<std::string> massless;
+    for (std::size_t i = 0; i < system().coordinates.size(); ++i)
+      if (has_no_inertia(i)) massless.push_back("`" + system().coordinates[i].name + "`");
+    const std::string asked = asked_of_states();
+    if (system().lagrangian_given || massless.empty()) {
+      diagnostics_.note("N0620", place(), "the Lagrangian is degenerate", asked, "");
+      return;
+    }
+    diagnostics_.warning("W0621", place(),
+                         fmt::format("the coordinate{} {} {} no kinetic energy", massless.size() == 1 ? "" : "s",
+                                     joined(massless), massless.size() == 1 ? "has" : "have"),
+                         asked, "If a mass was forgotten, give it; else this is as it should be.");
+  }
+
+  void free_functions() {
+    if (analysis_.free.empty()) return;
+    std::vector<std::string> names;
+    for (const std::size_t i : analysis_.free) names.push_back(system().coordinates[i].name + "(t)");
+    const bool chosen = analysis_.gauges > 0;
+    diagnostics_.warning(
+        chosen ? "W0627" : "W0622", chosen ? system().gauges.front().span : place(),
+        fmt::format("{} free: {} may be any function{}",
+                    analysis_.free.size() == 1 ? "one function of time is"
+                                               : count(analysis_.free.size(), "function") + " of time are",
+                    joined(names), names.size() == 1 ? "" : "s"),
+        asked_of_states() + " No equation gives the accelerations of what is free: what depends on it has no value.",
+        "`gauge EXPR = EXPR` makes a choice; without one a run shows what does not depend on it.");
+  }
+
+  /// Whether the class is that of general values of the parameters, and if not, which of them is special.
+  void special_values() {
+    const Bindings center = generic_state(model_);
+    const DegenerateAnalysis general = analyse_degenerate(equations_, center, analysis_.gauges > 0, false);
+    if (!general.closed() || same_class(general)) return;
+    std::vector<std::string> special;
+    for (const Parameter& p : system().parameters) {
+      if (!p.used || p.si_value == 0 || system().parameters.size() > most_parameters) continue;
+      Bindings moved = center;
+      moved[p.symbol] *= 1.0078125;
+      const DegenerateAnalysis other = analyse_degenerate(equations_, moved, analysis_.gauges > 0);
+      if (other.closed() && !same_class(other)) special.push_back(fmt::format("{} = {:g}", p.name, p.si_value));
+    }
+    diagnostics_.note("N0628", place(),
+                      special.empty()
+                          ? std::string("the parameters have special values")
+                          : joined(special) + (special.size() == 1 ? " is a special value" : " are special values"),
+                      fmt::format("For values nearby {} single{} out a motion, and {} free.",
+                                  count(general.motions, "number"), general.motions == 1 ? "s" : "",
+                                  general.free.empty()       ? "no function of time is"
+                                  : general.free.size() == 1 ? "one function of time is"
+                                                             : count(general.free.size(), "function") + " of time are"),
+                      "");
+  }
+
+  bool same_class(const DegenerateAnalysis& other) const {
+    return other.free.size() == analysis_.free.size() && other.motions == analysis_.motions;
+  }
+
+  const Model& model_;
+  const EquationsOfMotion& equations_;
+  const DegenerateAnalysis& analysis_;
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace
+
+std::vector<std::string> constraint_lines(const DegenerateAnalysis& analysis, const ReadingOrder& order,
+                                          bool with_derivatives) {
+  std::vector<std::string> out;
+  for (const FoundConstraint& c : analysis.chain.constraints) {
+    if (c.follows && !with_derivatives) continue;
+    const std::string text = to_plain(c.value, order);
+    out.push_back(text.size() <= longest_line ? text + " = 0" : std::string("a long condition"));
+  }
+  return out;
+}
+
+bool report_degenerate(const Model& model, const EquationsOfMotion& equations, const DegenerateAnalysis& analysis,
+                       Diagnostics& diagnostics) {
+  return Messages(model, equations, analysis, diagnostics).tell();
+}
+
+}  // namespace maupertuis

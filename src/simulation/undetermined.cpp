@@ -1,0 +1,102 @@
+#include "simulation/undetermined.hpp"
+
+#include <maupertuis/degenerate.hpp>
+#include <maupertuis/print.hpp>
+#include <maupertuis/transform.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace maupertuis {
+namespace {
+
+/// The names of columns that depend on the free functions.
+std::vector<std::string> undetermined_names(const EquationsOfMotion& equations) {
+  const MechanicalSystem& system = *equations.system;
+  const DegenerateAnalysis& analysis = *equations.degenerate;
+  std::vector<std::string> out;
+  for (const Coordinate& c : system.coordinates) {
+    if (!analysis.is_determined(c.q)) out.push_back(c.name);
+    if (!analysis.is_determined(c.velocity)) out.push_back(c.name + "'");
+  }
+  static constexpr const char* axes[] = {".x", ".y", ".z"};
+  for (const Point& p : system.points)
+    for (std::size_t k = 0; k < p.position.size(); ++k)
+      if (!analysis.is_determined(p.position[k])) out.push_back(p.name + axes[k]);
+  if (!analysis.is_determined(equations.energy_function)) out.push_back("energy");
+  return out;
+}
+
+bool holds(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void leave_out_columns(SimulationResult& result, const std::vector<std::string>& names) {
+  Trajectory& t = result.trajectory;
+  const std::size_t width = t.columns.size();
+  std::vector<std::size_t> kept;
+  for (std::size_t j = 0; j < width; ++j)
+    if (!holds(names, t.columns[j].name)) kept.push_back(j);
+  const auto narrowed = [&](const std::vector<double>& rows) {
+    std::vector<double> out;
+    out.reserve(rows.size() / width * kept.size());
+    for (std::size_t row = 0; row + width <= rows.size(); row += width)
+      for (const std::size_t j : kept) out.push_back(rows[row + j]);
+    return out;
+  };
+  t.values = narrowed(t.values);
+  t.errors = narrowed(t.errors);
+  std::vector<std::size_t> uncertain;
+  for (const std::size_t j : result.uncertain.columns)
+    if (const auto place = std::find(kept.begin(), kept.end(), j); place != kept.end())
+      uncertain.push_back(static_cast<std::size_t>(place - kept.begin()));
+  result.uncertain.columns = std::move(uncertain);
+  std::vector<Trajectory::Column> columns;
+  for (const std::size_t j : kept) columns.push_back(t.columns[j]);
+  t.columns = std::move(columns);
+}
+
+void without_rests(State& state, std::size_t multipliers) {
+  if (state.multipliers.size() > multipliers) state.multipliers.resize(multipliers);
+  if (state.errors && state.errors->multipliers.size() > multipliers) state.errors->multipliers.resize(multipliers);
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string out;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    out += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  return out;
+}
+
+}  // namespace
+
+void in_terms_of_system(SimulationResult& result, const EquationsOfMotion& equations, Diagnostics& diagnostics) {
+  const std::size_t multipliers = equations.multipliers.size();
+  for (State* state : {&result.start, &result.final}) without_rests(*state, multipliers);
+  for (State& state : result.at) without_rests(state, multipliers);
+  if (equations.degenerate->free.empty()) return;
+  result.undetermined = undetermined_names(equations);
+  if (result.undetermined.empty()) return;
+  leave_out_columns(result, result.undetermined);
+  diagnostics.note(
+      "N0630", std::nullopt,
+      fmt::format("left out, since {} on functions that are free: {}",
+                  result.undetermined.size() == 1 ? "it depends" : "they depend", joined(result.undetermined)),
+      "The motion was computed with one choice of them; what is shown is the same with any other.",
+      "`gauge EXPR = EXPR` makes a choice of your own.");
+}
+
+bool refuse_undetermined(const Probe& probe, const EquationsOfMotion& equations, Diagnostics& diagnostics) {
+  if (!equations.degenerate || equations.degenerate->free.empty()) return false;
+  for (const Expr& e : probe.expressions) {
+    if (equations.degenerate->is_determined(e)) continue;
+    diagnostics.error(
+        "E0631", std::nullopt, fmt::format("{} depends on functions that are free", to_plain(e, equations.order)),
+        "The Lagrangian leaves them open, so that it has no value of its own.", "`gauge EXPR = EXPR` makes a choice.");
+    return true;
+  }
+  return false;
+}
+
+}  // namespace maupertuis

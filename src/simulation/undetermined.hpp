@@ -1,0 +1,14 @@
+#pragma once
+#include <maupertuis/equations_of_motion.hpp>
+#include <maupertuis/simulation.hpp>
+
+namespace maupertuis {
+
+/// The result of a run of determined equations as one of the system itself: without the multipliers that stand for
+/// what remains of replaced rows, and without what depends on the free functions, which a run had to choose (N0630).
+void in_terms_of_system(SimulationResult& result, const EquationsOfMotion& equations, Diagnostics& diagnostics);
+
+/// E0631 where a formula that was asked for depends on the free functions.
+bool refuse_undetermined(const Probe& probe, const EquationsOfMotion& equations, Diagnostics& diagnostics);
+
+}  // namespace maupertuis

@@ -1,0 +1,130 @@
+#include "system/elaboration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+/// A point of steady motion that gives rates: `at θ = 90 deg, ω1 = 2 rad/s`. The velocities follow from them, from the
+/// other rates of the model and the constraints, which are 0 there, and from velocities that stay 0.
+namespace maupertuis::elaboration {
+namespace {
+
+/// Σ_j slopes_j q̇_j = value, in parameters and numbers.
+struct PointRow {
+  ExprVector slopes;  // [n]
+  Expr value;
+};
+
+/// Rows for the velocities, brought to a form with a pivot column each.
+class PointRows {
+ public:
+  explicit PointRows(Elaboration& e) : e_(e) {}
+
+  /// False where it is a combination of the rows before it.
+  bool add(PointRow row) {
+    for (const auto& [column, other] : rows_) reduce(row, other, column);
+    std::size_t best = 0;
+    double largest = 0, size = 1e-300;
+    for (std::size_t j = 0; j < row.slopes.size(); ++j) {
+      const double x = std::abs(number_at(row.slopes[j]));
+      if (x > largest) largest = x, best = j;
+      size = std::max(size, x);
+    }
+    constexpr double rounding = 1e-12;
+    if (!(largest > rounding)) return false;
+    const Expr pivot = row.slopes[best];
+    for (Expr& s : row.slopes) s = s / pivot;
+    row.value = row.value / pivot;
+    for (auto& [column, other] : rows_) reduce(other, row, best);
+    rows_.emplace_back(best, std::move(row));
+    return true;
+  }
+
+  /// q̇, once there are as many rows as velocities.
+  std::vector<std::pair<std::size_t, Expr>> velocities() const {
+    std::vector<std::pair<std::size_t, Expr>> out;
+    for (const auto& [column, row] : rows_) out.emplace_back(column, row.value);
+    return out;
+  }
+
+  double number_at(Expr e) const { return maupertuis::evaluate(e, e_.values); }
+
+ private:
+  void reduce(PointRow& row, const PointRow& by, std::size_t column) const {
+    const Expr factor = row.slopes[column];
+    constexpr double rounding = 1e-14;
+    if (std::abs(number_at(factor)) < rounding) {
+      row.slopes[column] = e_.context.number(0);
+      return;
+    }
+    for (std::size_t j = 0; j < row.slopes.size(); ++j)
+      row.slopes[j] = j == column ? e_.context.number(0) : row.slopes[j] - factor * by.slopes[j];
+    row.value = row.value - factor * by.value;
+  }
+
+  Elaboration& e_;
+  std::vector<std::pair<std::size_t, PointRow>> rows_;
+};
+
+/// The coordinates of the point; where it says nothing 0, and the axes of a body as they are drawn.
+ExprMap configuration(Elaboration& e, const std::vector<StartValue>& values) {
+  ExprMap at;
+  for (const Coordinate& c : e.system().coordinates) {
+    const bool is_real_part = c.name.size() > 3 && c.name.substr(c.name.size() - 3) == ".qw";
+    at.emplace(c.q, e.context.number(is_real_part ? 1 : 0));
+  }
+  for (const StartValue& v : values)
+    if (v.order == 0) at.insert_or_assign(e.system().coordinates[v.coordinate].q, v.value);
+  at.emplace(e.context.time(), e.context.number(0));
+  return at;
+}
+
+PointRow row_at(Elaboration& e, Expr rate, Expr value, const ExprMap& at) {
+  ExprVector velocities;
+  ExprMap at_rest;
+  for (const Coordinate& c : e.system().coordinates) {
+    velocities.push_back(c.velocity);
+    at_rest.emplace(c.velocity, e.context.number(0));
+  }
+  const Expr expanded = expand_time_derivatives(rate);
+  return {substitute(substitute(gradient(expanded, velocities), at_rest), at),
+          value - substitute(substitute(expanded, at_rest), at)};
+}
+
+Expr rate_of(Elaboration&, const Constraint& c) {
+  return c.level == Constraint::Level::Velocity ? c.value : total_time_derivative(c.value);
+}
+
+}  // namespace
+
+bool add_velocities_of_rates(Elaboration& e, const std::vector<StartRate>& rates, std::vector<StartValue>& values) {
+  if (rates.empty()) return true;
+  const ExprMap at = configuration(e, values);
+  PointRows rows(e);
+  for (const StartRate& r : rates)
+    if (!rows.add(row_at(e, r.rate, r.value, at))) {
+      e.diagnostics.error("E0223", r.span,
+                          fmt::format("no velocity gives `{}` this value there", e.texts.slice(r.span)),
+                          "At this configuration it is a combination of the other rates that are given, or no velocity "
+                          "changes it.",
+                          "Leave it out, or give another configuration: at a pole of angles rates fail.");
+      return false;
+    }
+  for (const StartValue& v : values)
+    if (v.order == 1) rows.add(row_at(e, e.system().coordinates[v.coordinate].velocity, v.value, at));
+  const Expr zero = e.number(0);
+  for (const Constraint& c : e.system().constraints) rows.add(row_at(e, rate_of(e, c), zero, at));
+  for (const Rate& r : e.system().rates) rows.add(row_at(e, r.value, zero, at));
+  for (const Coordinate& c : e.system().coordinates) rows.add(row_at(e, c.velocity, zero, at));
+  for (const auto& [coordinate, velocity] : rows.velocities()) {
+    const bool given = std::any_of(values.begin(), values.end(),
+                                   [c = coordinate](const StartValue& v) { return v.order == 1 && v.coordinate == c; });
+    constexpr double rounding = 1e-14;
+    if (!given && std::abs(rows.number_at(velocity)) > rounding)
+      values.push_back({coordinate, 1, velocity, rates.front().span, {}, 1});
+  }
+  return true;
+}
+
+}  // namespace maupertuis::elaboration

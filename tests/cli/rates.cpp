@@ -1,0 +1,94 @@
+// Rates: derivations in them in every notation, and rates as names wherever a velocity is.
+#include "json.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace cli_test;
+
+namespace {
+
+const std::string quaternion_top = R"(system top
+param A = 1 kg m^2, B = 2 kg m^2, C = 2.5 kg m^2
+body sat inertia diag(A, B, C) rotation quaternion
+)";
+const std::string with_rates = "rates ω1, ω2, ω3 = sat.ω\nstart ω2 = 1 rad/s, ω3 = 0.01 rad/s\nrun 20 s\n";
+const std::string without_rates = "system p\nparam m = 1 kg, l = 1 m\ncoord θ : angle\nT = 1/2 m l^2 θ'^2\nrun 1 s\n";
+
+}  // namespace
+
+TEST_CASE("a body whose equations are shorter in its rates is shown so, in q'' on request") {
+  const auto shown = json_of(maup({"derive", "-", "--json"}, quaternion_top));
+  CHECK(shown["form"] == "rates");
+  REQUIRE(shown["equations"].size() == 3);
+  CHECK(shown["equations"][0]["coordinate"] == "sat.ω.x");
+  CHECK(shown["equations"][0]["plain"] == "A sat.ω.x' - (B - C) sat.ω.y sat.ω.z = 0");
+  CHECK(shown["equations"][0]["latex"] == "A\\, \\dot{\\omega}_1 - (B - C)\\, \\omega_2\\, \\omega_3 = 0");
+  CHECK(shown["kinematics"].size() == 4);
+  CHECK(shown["kinematics"][0]["plain"] == "sat.qw' = -1/2 (sat.qx sat.ω.x + sat.qy sat.ω.y + sat.qz sat.ω.z)");
+  CHECK(shown["certificate"]["checks"].back()["name"] == "rates_form");
+  CHECK(shown["certificate"]["checks"].back()["verdict"] == "zero");
+  const auto standard = json_of(maup({"derive", "-", "--json", "--form", "standard"}, quaternion_top));
+  CHECK(standard["form"] == "standard");
+  CHECK(standard["equations"].size() == 4);
+}
+
+TEST_CASE("rates that the model names are names in its equations") {
+  const Outcome plain = maup({"derive", "-", "--plain"}, quaternion_top + with_rates);
+  CHECK(contains(plain.out, "B ω2' + (A - C) ω1 ω3 = 0\n"));
+  const Outcome text = maup({"derive", "-"}, quaternion_top + with_rates);
+  CHECK(contains(text.out, "  L = 1/2 A ω1^2 + 1/2 B ω2^2 + 1/2 C ω3^2\n"));
+  CHECK(contains(text.out, "  ∂L/∂ω2 = B ω2\n"));
+  CHECK(contains(text.out, "rates_form "));
+}
+
+TEST_CASE("every line in rates passes as an expectation of the model") {
+  std::string model = quaternion_top + with_rates, line;
+  std::istringstream lines(maup({"derive", "-", "--plain"}, model).out);
+  int count = 0;
+  while (std::getline(lines, line)) {
+    model += "expect equation " + line + "\n";
+    ++count;
+  }
+  CHECK(count == 8);
+  CHECK(maup({"test", "-"}, model).code == 0);
+}
+
+TEST_CASE("the path to the equations in rates goes by L in rates") {
+  const Outcome steps = maup({"derive", "-", "--form", "rates", "--steps"}, quaternion_top + with_rates);
+  CHECK(contains(steps.out, "\nLagrangian in rates\n  L = 1/2 A ω1^2 + 1/2 B ω2^2 + 1/2 C ω3^2 "));
+  CHECK(contains(steps.out, "\nEquation of ω1\n  ∂L/∂ω1 = A ω1 "));
+  CHECK(!contains(steps.out, "Equation of sat.qw"));
+}
+
+TEST_CASE("where there are no rates the form in them is refused") {
+  CHECK(contains(maup({"derive", "-", "--form", "rates"}, without_rates).err, "E0694"));
+  const std::string wind =
+      "system wind\nparam m = 1 kg, c = 1 m/s\ncoord x, y, z : length\nT = 1/2 m (x'^2 + y'^2 + z'^2)\n"
+      "constraint x'^2 + y'^2 = c^2\nrates v = z'\nstart x' = 1 m/s\n";
+  CHECK(contains(maup({"derive", "-", "--form", "rates"}, wind).err, "E0695"));
+  CHECK(json_of(maup({"derive", "-", "--json"}, wind))["form"] == "standard");
+}
+
+TEST_CASE("integrals are written in rates where these are shorter") {
+  const Outcome found = maup({"invariants", "-"}, quaternion_top + with_rates);
+  CHECK(contains(found.out, "1/2 A ω1^2 + 1/2 B ω2^2 + 1/2 C ω3^2\n     energy"));
+  CHECK(!contains(found.out, "sat.qw'"));
+}
+
+TEST_CASE("rates are starts, columns, events and points of modes") {
+  const Folder folder;
+  const std::string csv = folder.path("rates.csv");
+  const std::string model = quaternion_top + with_rates + "event turn when ω2 = 0 falling : record\n";
+  const Outcome run = maup({"simulate", "-", "--start", "ω2=2rad/s", "--columns", "ω2,ω1", "-o", csv}, model);
+  CHECK(run.code == 0);
+  CHECK(contains(run.out, "turn event"));
+  const std::string rows = shell("head -2 " + csv).out;
+  CHECK(rows == "t [s],ω2 [rad/s],ω1 [rad/s]\r\n0,2,0\r\n");
+  const std::string euler =
+      "system top\nparam A = 1 kg m^2, B = 2 kg m^2, C = 3 kg m^2\ncoord φ, θ, ψ : angle\n"
+      "body sat inertia diag(A, B, C) rotation euler zxz (φ, θ, ψ)\nrates ω1, ω2, ω3 = sat.ω\n";
+  const Outcome modes = maup({"modes", "-", "--at", "θ=90deg, ω2=1rad/s"}, euler);
+  CHECK(contains(modes.out, "growth"));
+  CHECK(contains(modes.out, " 0.57735 "));  // √((B − A)(C − B)/(A C))
+  CHECK(contains(maup({"modes", "-", "--at", "θ=0, ω2=1rad/s"}, euler).err, "E0223"));
+}

@@ -1,0 +1,126 @@
+// Degenerate Lagrangians: what the constraint algorithm finds, against closed forms.
+#include "../model_text.hpp"
+
+#include "equations/degenerate/real_part.hpp"
+
+#include <maupertuis/degenerate.hpp>
+#include <maupertuis/print.hpp>
+
+#include <cmath>
+#include <random>
+
+using namespace maupertuis;
+
+namespace {
+
+std::vector<std::string> parts(const ModelText& m, Expr e) {
+  ExprVector states;
+  for (std::size_t i = 0; i < m.system->coordinates.size(); ++i) states.push_back(m.q(i)), states.push_back(m.v(i));
+  std::vector<std::string> out;
+  for (const Expr& part : real_parts(e, m.equations.order, states)) out.push_back(to_plain(part, m.equations.order));
+  return out;
+}
+
+DegenerateAnalysis analysis_of(const ModelText& m) {
+  return analyse_degenerate(m.equations, generic_state(m.model), true);
+}
+
+using Strings = std::vector<std::string>;
+
+}  // namespace
+
+TEST_CASE("zeros are written as regular equations") {
+  const ModelText m("dimensionless\nparam a = 2\ncoord x, y : number\nL = x'^2/2 + y'^2/2\n");
+  const Expr x = m.q(0), y = m.q(1), a = m.p("a");
+  CHECK(parts(m, Rational(1, 2) * x * x) == Strings{"x"});
+  CHECK(parts(m, x * x + Rational(3) * pow(y, 4)) == Strings{"x", "y"});
+  CHECK(parts(m, x * x - y * y).size() == 1);  // two lines, no point
+  CHECK(parts(m, a * x * apply(Kind::Exp, y)) == Strings{"x"});
+  CHECK(parts(m, x / y) == Strings{"x"});
+  CHECK(parts(m, -x - y) == Strings{"x + y"});
+  CHECK(parts(m, x.context().number(-1)) == Strings{"1"});
+}
+
+TEST_CASE("a regular Lagrangian asks nothing, a massless joint is where its springs hold it") {
+  const ModelText regular("dimensionless\ncoord x : number\nL = x'^2/2 - x^2/2\n");
+  const DegenerateAnalysis none = analysis_of(regular);
+  CHECK(none.closed());
+  CHECK(none.chain.constraints.empty());
+  CHECK(none.motions == 2);
+  const ModelText joint("dimensionless\ncoord x, y : number\nL = x'^2/2 - (x - y)^2/2 - 3 y^2/2\n");
+  const DegenerateAnalysis found = analysis_of(joint);
+  REQUIRE(found.closed());
+  REQUIRE(found.chain.constraints.size() == 2);
+  CHECK(found.chain.constraints[1].follows);
+  CHECK(found.motions == 2);
+  CHECK(found.free.empty());
+}
+
+TEST_CASE("a sign decides about the class") {
+  const auto counts = [](const char* s) {
+    const ModelText m(std::string("dimensionless\nparam s = ") + s +
+                      "\ncoord x, y : number\nL = x'^2/2 + x' y + s (x - y)^2/2\n");
+    const DegenerateAnalysis a = analysis_of(m);
+    return std::pair(a.motions, a.free.size());
+  };
+  CHECK(counts("1") == std::pair<std::size_t, std::size_t>(0, 1));
+  CHECK(counts("-1") == std::pair<std::size_t, std::size_t>(2, 0));
+  CHECK(counts("0.99") == std::pair<std::size_t, std::size_t>(2, 0));
+}
+
+TEST_CASE("a gauge freedom moves what depends on it, and nothing else") {
+  const ModelText m("dimensionless\ncoord r, θ, z : number\nL = r'^2/2 + r^2 (θ' - z)^2/2 - r^2/2\n");
+  const DegenerateAnalysis a = analysis_of(m);
+  REQUIRE(a.closed());
+  CHECK(a.free.size() == 1);
+  CHECK(a.motions == 2);  // Christ and Lee: r alone moves
+  CHECK(a.is_determined(m.q(0)));
+  CHECK(a.is_determined(m.v(0)));
+  CHECK_FALSE(a.is_determined(m.q(1)));
+  CHECK_FALSE(a.is_determined(m.q(2)));
+  CHECK(a.is_determined(m.v(1) - m.q(2)));
+}
+
+TEST_CASE("first-order Lagrangians: the constraints are ω q̇ = ∇H, with any symplectic form") {
+  std::mt19937_64 random(7);
+  std::uniform_int_distribution<int> digit(1, 9);
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    const int a = digit(random), b = digit(random), c = digit(random);
+    const ModelText m("dimensionless\ncoord x, y : number\nL = (" + std::to_string(a) + " + x^2) y' - " +
+                      std::to_string(b) + " x^2/2 - " + std::to_string(c) + " y^2/2\nstart x = 1, y = 1\n");
+    const DegenerateAnalysis found = analysis_of(m);
+    REQUIRE(found.closed());
+    CHECK(found.motions == 2);
+    // ω_xy = 2x: 2x y' = b x, −2x x' = c y.
+    const Expr x = m.q(0), y = m.q(1);
+    for (const Expr& claim : ExprVector{m.v(1) - Rational(b, 2), Rational(2) * x * m.v(0) + Rational(c) * y})
+      CHECK(found.chain.where->vanishes(claim) == Verdict::Zero);
+    CHECK(found.chain.where->vanishes(m.v(1) - Rational(b + 1, 2)) == Verdict::Nonzero);
+  }
+}
+
+TEST_CASE("contradictions are found in every generation") {
+  CHECK(analysis_of(ModelText("dimensionless\ncoord q : number\nL = q\n")).chain.outcome ==
+        ConstraintChain::Outcome::Contradiction);
+  // y asks for x = 1, x' = 0, and x'' = 3 − y …: consistent; with L = x'^2/2 + y (x − t²) it drives x.
+  CHECK(analysis_of(ModelText("dimensionless\ncoord x, y : number\nL = x'^2/2 + y (x - t^2)\n")).closed());
+  CHECK(analysis_of(ModelText("dimensionless\ncoord x, y, z : number\nL = y x + z (x - 1)\n")).chain.outcome !=
+        ConstraintChain::Outcome::Closed);
+}
+
+TEST_CASE("determined equations hold every row that they replaced") {
+  const ModelText m(
+      "dimensionless\nparam g = 9.81\ncoord x, y, z, u : number\n"
+      "L = (x'^2 + y'^2 + z'^2)/2 - g z + u (x^2 + y^2 + z^2 - 1)/2\nstart x = 0.6, z = -0.8, y' = 0.5\n");
+  const DegenerateAnalysis a = analysis_of(m);
+  REQUIRE(a.closed());
+  const auto determined = determined_equations(m.equations, a);
+  REQUIRE(determined);
+  const auto solved = accelerations_and_multipliers(*determined);
+  REQUIRE(solved);
+  // At consistent states the multipliers, what remains of the replaced rows, vanish.
+  for (const Expr& rest : solved->multipliers) CHECK(a.chain.where->vanishes(rest) == Verdict::Zero);
+  // q̈ of the sphere: x'' = u x.
+  CHECK(a.chain.where->vanishes(solved->accelerations[0] - m.q(3) * m.q(0)) == Verdict::Zero);
+  CHECK(a.chain.where->vanishes(solved->accelerations[0] + m.q(3) * m.q(0)) == Verdict::Nonzero);
+}
