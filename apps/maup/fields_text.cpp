@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <maupertuis/diagram.hpp>
 #include <maupertuis/print.hpp>
 
 namespace maupertuis::app {
@@ -37,7 +38,9 @@ std::string where_natural(const FieldSystem& s, const NaturalCondition& n) {
   const bool left = !is_essential(s, n, false), right = !is_essential(s, n, true);
   if (!s.space[n.along].from) return fmt::format("at an end of {} where {} is free", x, name);
   if (left && right) return fmt::format("at both ends of {}, where {} is free", x, name);
-  if (left || right) return fmt::format("at the {} end of {}, where {} is free", n.along == 0 ? (left ? "left" : "right") : (left ? "bottom" : "top"), x, name);
+  if (left || right)
+    return fmt::format("at the {} end of {}, where {} is free",
+                       n.along == 0 ? (left ? "left" : "right") : (left ? "bottom" : "top"), x, name);
   return fmt::format("nowhere: {} is given at both ends of {}", name, x);
 }
 
@@ -52,6 +55,16 @@ FormulaLine line_of(Layout left, Layout right, std::string section, std::string 
 
 Layout zero() { return layouts::number("0"); }
 
+/// u_tx with subscripts, below a fraction bar.
+Layout with_subscripts(const FieldSystem& s, const FieldJet& jet) {
+  const Layout field = layouts::symbol(s.jet_symbol({jet.field, std::vector<int>(s.space.size(), 0), 0}));
+  std::vector<Layout> below;
+  for (int k = 0; k < jet.time; ++k) below.push_back(layouts::name("t"));
+  for (std::size_t x = 0; x < s.space.size(); ++x)
+    for (int k = 0; k < jet.space[x]; ++k) below.push_back(layouts::symbol(s.space[x].symbol));
+  return below.empty() ? field : layouts::indexed(field, {layouts::product(std::move(below))});
+}
+
 /// δℒ/δφ step by step: the partial derivatives of ℒ, their total derivatives, the equation.
 void add_steps(const FieldEquations& equations, std::vector<FormulaLine>& out) {
   const FieldSystem& s = equations.system();
@@ -60,8 +73,9 @@ void add_steps(const FieldEquations& equations, std::vector<FormulaLine>& out) {
   for (const Expr& symbol : s.jets_in(s.density)) {
     if (s.fields[s.jet_of(symbol)->field].given) continue;
     const Expr slope = differentiate(s.density, symbol);
-    Layout by = field_layout(s, layouts::symbol(symbol));
-    out.push_back(line_of(layouts::labelled(fmt::format("∂ℒ/∂{}", to_plain(by)), layouts::partial(layouts::name("ℒ"), by)),
+    const FieldJet jet = *s.jet_of(symbol);
+    out.push_back(line_of(layouts::labelled(fmt::format("∂ℒ/∂{}", s.jet_name(jet)),
+                                            layouts::partial(layouts::name("ℒ"), with_subscripts(s, jet))),
                           shown(equations, slope), section, "all other derivatives held fixed"));
   }
 }
@@ -79,7 +93,8 @@ std::vector<FormulaLine> field_lines(Study& study, bool with_steps) {
     order.own = s.jet_symbol({equations.varied[a], std::vector<int>(s.space.size(), 0), 0});
     out.push_back(line_of(field_layout(s, lay_out(form, order)), zero(), "Field equations", ""));
     for (const Intermediate& i : form.intermediates)
-      out.push_back(line_of(layouts::symbol(i.symbol), field_layout(s, lay_out(i.value, order)), "Field equations", ""));
+      out.push_back(
+          line_of(layouts::symbol(i.symbol), field_layout(s, lay_out(i.value, order)), "Field equations", ""));
   }
   for (const NaturalCondition& n : equations.natural)
     out.push_back(line_of(shown(equations, n.value), zero(), "Natural boundary conditions", where_natural(s, n)));
@@ -97,7 +112,10 @@ std::string fields_lecture(Study& study, bool with_steps) {
   for (std::size_t mu = 0; mu < equations.boundary_terms.size(); ++mu) {
     const FieldSystem& s = equations.system();
     const std::string name = mu == s.space.size() ? "t" : s.space[mu].name;
-    b += fmt::format("  B^{} = {}\n", name, to_plain(field_layout(equations.with_variations, lay_out(readable(equations.boundary_terms[mu], equations.order), equations.order))));
+    b += fmt::format(
+        "  B^{} = {}\n", name,
+        to_plain(field_layout(equations.with_variations,
+                              lay_out(readable(equations.boundary_terms[mu], equations.order), equations.order))));
   }
   out += fmt::format("\nWhat the variation leaves, δℒ = E·δφ + ∂_μ B^μ\n{}", b);
   return out + "\n" + certificate_text(*study.field_certificate());
@@ -143,24 +161,32 @@ std::string fields_summary(Study& study) {
     if (!text.empty()) out += fmt::format("  {:<22} {}\n", head, text);
   };
   std::string names, domain;
-  for (const std::size_t f : equations.varied) names += fmt::format("{}{} : {}", names.empty() ? "" : ", ", s.fields[f].name, s.fields[f].kind.empty() ? to_string(s.fields[f].dimension) : s.fields[f].kind);
+  for (const std::size_t f : equations.varied)
+    names += fmt::format("{}{} : {}", names.empty() ? "" : ", ", s.fields[f].name,
+                         s.fields[f].kind.empty() ? to_string(s.fields[f].dimension) : s.fields[f].kind);
   line("fields", names);
   Bindings values;
   for (const Parameter& p : system.parameters) values[p.symbol] = p.si_value;
   for (const SpaceVariable& x : s.space) {
     if (!x.from) continue;
     const std::string cells = x.cells ? fmt::format(", {} cells", x.cells) : "";
-    domain += fmt::format("{}{} from {} to {} {}{}", domain.empty() ? "" : "; ", x.name, number_text(evaluate(s.expanded(x.from), values)), number_text(evaluate(s.expanded(x.to), values)), system.dimensionless ? "" : to_string(x.dimension), cells);
+    domain +=
+        fmt::format("{}{} from {} to {} {}{}", domain.empty() ? "" : "; ", x.name,
+                    number_text(evaluate(s.expanded(x.from), values)), number_text(evaluate(s.expanded(x.to), values)),
+                    system.dimensionless ? "" : to_string(x.dimension), cells);
   }
   line("domain", domain.empty() ? "all space" : domain);
   std::string boundary = s.periodic ? "periodic" : "";
   constexpr const char* sides[] = {"left", "right", "bottom", "top"};
   for (const BoundaryCondition& b : s.boundary)
-    boundary += fmt::format("{}{} at the {}", boundary.empty() ? "" : ", ", s.jet_name(b.jet) + " = " + plain_of(equations, b.value), sides[static_cast<int>(b.side)]);
+    boundary += fmt::format("{}{} at the {}", boundary.empty() ? "" : ", ",
+                            s.jet_name(b.jet) + " = " + plain_of(equations, b.value), sides[static_cast<int>(b.side)]);
   line("boundary", boundary.empty() ? "natural" : boundary);
   std::string parameters;
   for (const Parameter& p : system.parameters)
-    if (p.symbol.role() == Role::Parameter) parameters += fmt::format("{}{} = {} {}", parameters.empty() ? "" : ", ", p.name, number_text(p.si_value / p.unit_factor), p.unit);
+    if (p.symbol.role() == Role::Parameter)
+      parameters += fmt::format("{}{} = {} {}", parameters.empty() ? "" : ", ", p.name,
+                                number_text(p.si_value / p.unit_factor), p.unit);
   line("parameters", parameters);
   line("density", plain_of(equations, s.density));
   const std::size_t expectations = study.model()->experiment.expectations.size() + equations.model->expectations.size();
@@ -195,7 +221,12 @@ Json currents_json(Study& study) {
     Json fluxes = Json::array(), q = Json::array();
     for (const Expr& one : c.fluxes) fluxes.push_back(plain_of(equations, one));
     for (const Expr& one : c.characteristic) q.push_back(plain_of(equations, one));
-    document["currents"].push_back({{"name", c.name}, {"meaning", c.meaning}, {"density", plain_of(equations, c.density)}, {"fluxes", fluxes}, {"characteristic", q}, {"certified", c.certified}});
+    document["currents"].push_back({{"name", c.name},
+                                    {"meaning", c.meaning},
+                                    {"density", plain_of(equations, c.density)},
+                                    {"fluxes", fluxes},
+                                    {"characteristic", q},
+                                    {"certified", c.certified}});
   }
   document["basis"] = found.basis;
   return document;
@@ -214,8 +245,8 @@ std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOption
   options.trajectory = rows;
   options.errors = false;
   if (!(options.duration > 0)) {
-    study.diagnostics().error("E0701", std::nullopt, "the model does not say how long it runs", "A run of a field goes on for a time.",
-                              "Add `run 10 s`, or give --duration.");
+    study.diagnostics().error("E0701", std::nullopt, "the model does not say how long it runs",
+                              "A run of a field goes on for a time.", "Add `run 10 s`, or give --duration.");
     return std::nullopt;
   }
   const InterruptScope scope = study.interruptible();
@@ -228,13 +259,57 @@ std::string dispersion_text(Study& study, std::string& trouble) {
   if (!relation) return {};
   std::string out;
   for (const Expr& part : {relation->re, relation->im})
-    if (const std::string text = plain_of(equations, part); text != "0") out += (out.empty() ? "" : "\n") + text + " = 0";
+    if (const std::string text = plain_of(equations, part); text != "0")
+      out += (out.empty() ? "" : "\n") + text + " = 0";
   return out;
 }
 
+namespace {
+
+/// At most this many moments are drawn, the first and the last among them.
+constexpr std::size_t most_moments = 6;
+
+}  // namespace
+
+std::string field_picture(Study& study, const FieldRunResult& run) {
+  const FieldEquations& equations = equations_of(study);
+  const FieldSystem& s = equations.system();
+  const MechanicalSystem& system = study.model()->system;
+  const auto unit = [&](const Dimension& d) {
+    const std::string text = to_string(d);
+    return system.dimensionless || text == "1" ? std::string() : text;
+  };
+  Diagram out;
+  out.title = system.title.empty() ? system.name : system.title;
+  out.x_name = s.space.front().name;
+  out.x_unit = unit(s.space.front().dimension);
+  for (std::size_t a = 0; a < equations.varied.size(); ++a)
+    out.y_name += (a ? ", " : "") + s.fields[equations.varied[a]].name;
+  out.y_unit = unit(s.fields[equations.varied.front()].dimension);
+  const Trajectory& rows = run.trajectory;
+  const std::size_t shown = std::min(most_moments, rows.rows());
+  for (std::size_t i = 0; i < shown; ++i) {
+    const std::size_t row = shown == 1 ? 0 : i * (rows.rows() - 1) / (shown - 1);
+    for (std::size_t a = 0; a < equations.varied.size(); ++a) {
+      Diagram::Curve curve;
+      curve.series = i;
+      curve.dashed = a % 2 == 1;
+      curve.x = run.places;
+      for (std::size_t e = 0; e < run.places.size(); ++e)
+        curve.y.push_back(rows.at(row, 2 * a * run.places.size() + e));
+      out.curves.push_back(std::move(curve));
+    }
+    out.legend.push_back(
+        {fmt::format("t = {:.4g}{}", rows.times[row], system.dimensionless ? "" : " s"), i, false, false});
+  }
+  return diagram_svg(out);
+}
+
 std::string field_run_text(const FieldRunResult& run) {
-  std::string out = fmt::format("{} cells of order {} ({} nodes), {} steps of order 8 to {:.10g} s\n", run.cells, run.order, run.nodes, run.steps, run.end);
-  out += fmt::format("  highest frequency of the mesh  {:.6g} rad/s, steps at most {:.4g} s\n", run.omega_max, run.step);
+  std::string out = fmt::format("{} cells of order {} ({} nodes), {} steps of order 8 to {:.10g} s\n", run.cells,
+                                run.order, run.nodes, run.steps, run.end);
+  out +=
+      fmt::format("  highest frequency of the mesh  {:.6g} rad/s, steps at most {:.4g} s\n", run.omega_max, run.step);
   out += fmt::format("  energy                         {:.16g}\n", run.energy);
   out += run.energy_drift < 0 ? std::string("  energy drift                   forces act: it is not conserved\n")
                               : fmt::format("  energy drift                   {:.3g} of its terms\n", run.energy_drift);
@@ -243,8 +318,9 @@ std::string field_run_text(const FieldRunResult& run) {
 
 Json field_run_json(const FieldRunResult& run) {
   Json document = json_document("simulate");
-  document["statistics"] = {{"cells", run.cells}, {"element_order", run.order}, {"nodes", run.nodes}, {"steps", run.steps},
-                            {"step", run.step}, {"omega_max", run.omega_max}, {"energy", run.energy}, {"seconds", run.seconds}};
+  document["statistics"] = {{"cells", run.cells},   {"element_order", run.order}, {"nodes", run.nodes},
+                            {"steps", run.steps},   {"step", run.step},           {"omega_max", run.omega_max},
+                            {"energy", run.energy}, {"seconds", run.seconds}};
   document["statistics"]["energy_drift"] = run.energy_drift < 0 ? Json(nullptr) : Json(run.energy_drift);
   document["end"] = run.end;
   return document;

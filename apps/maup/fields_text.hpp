@@ -25,6 +25,8 @@ Json currents_json(Study& study);
 std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOptions& settings, bool rows);
 /// The dispersion relation; empty, and `trouble`, where there is none.
 std::string dispersion_text(Study& study, std::string& trouble);
+/// φ(x) at up to six moments of a run with rows, as SVG; of several fields the second is dashed.
+std::string field_picture(Study& study, const FieldRunResult& run);
 std::string field_run_text(const FieldRunResult& run);
 Json field_run_json(const FieldRunResult& run);
 

@@ -29,7 +29,8 @@ std::string unicode_declarations() {
       {"2261", "\\equiv"},      {"2260", "\\ne"},    {"1E59", "\\dot{r}"}, {"1E8B", "\\dot{x}"},
       {"1E8F", "\\dot{y}"},     {"0307", "\\dot{}"}, {"0308", "\\ddot{}"}, {"2080", "{}_0"},
       {"2081", "{}_1"},         {"2082", "{}_2"},    {"1D40", "{}^{T}"},   {"207B", "{}^{-}"},
-      {"00B9", "{}^{1}"},       {"1D62", "{}_i"},    {"2C7C", "{}_j"},     {"2192", "\\to"}};
+      {"00B9", "{}^{1}"},       {"1D62", "{}_i"},    {"2C7C", "{}_j"},     {"2192", "\\to"},
+      {"2112", "\\mathcal{L}"}};
   std::string out;
   for (const auto& [code, command] : signs)
     out += fmt::format("\\DeclareUnicodeCharacter{{{}}}{{\\ensuremath{{{}}}}}\n", code, command);

@@ -15,12 +15,13 @@ struct FieldRunResult {
   struct Value {
     double value = 0, error = 0;  // SI; the error is estimated from a second mesh of half the cells
   };
-  std::vector<Value> answers;   // to the questions, in their order
-  Trajectory trajectory;        // fields and velocities at the borders of cells
-  double end = 0;               // s
+  std::vector<Value> answers;  // to the questions, in their order
+  Trajectory trajectory;       // fields and velocities at the borders of cells
+  std::vector<double> places;  // those borders, where there are rows
+  double end = 0;              // s
   std::size_t steps = 0, nodes = 0;
   int order = 0, cells = 0;
-  double step = 0, omega_max = 0;  // s, rad/s
+  double step = 0, omega_max = 0;        // s, rad/s
   double energy = 0, energy_drift = -1;  // J; relative to the terms of the energy; −1: forces act, none is conserved
   double seconds = 0;
   std::string trouble;  // why the run ended early; empty: it did not

@@ -8,7 +8,8 @@
 #include <variant>
 #include <vector>
 
-/// Fields as physics: densities in the fields and their derivatives, the boundary, what a run does and what is expected.
+/// Fields as physics: densities in the fields and their derivatives, the boundary, what a run does and what is
+/// expected.
 ///
 /// A derivative of a field is a symbol, a coordinate of the jet: u, u', u_x, u_xx, u_x' (which texts write u_tx). Space
 /// derivatives stand in its name, time derivatives are its order, so that d/dt is that of mechanics.
@@ -34,7 +35,7 @@ struct Field {
 
 /// A derivative of a field: how often by each space variable and by t.
 struct FieldJet {
-  std::size_t field = 0;  // index in FieldSystem::fields
+  std::size_t field = 0;   // index in FieldSystem::fields
   std::vector<int> space;  // [space variables]
   int time = 0;
   int order() const;  // of all derivatives
@@ -43,8 +44,8 @@ struct FieldJet {
 /// φ = value or its normal derivative = value at an end, in one space variable or on a side of a rectangle.
 struct BoundaryCondition {
   enum class Side { Left, Right, Bottom, Top } side = Side::Left;
-  FieldJet jet;     // u or u_x
-  Expr value;  // in t and parameters
+  FieldJet jet;  // u or u_x
+  Expr value;    // in t and parameters
   Span span;
 };
 
@@ -69,9 +70,9 @@ struct FieldSystem {
   std::vector<SpaceVariable> space;
   Dimension time_dimension;
   std::vector<Field> fields;  // the given ones last
-  Expr density;      // ℒ in jets, x and t; definitions of parameters are symbols in it
-  Expr dissipation;  // 𝒟, or empty
-  std::vector<Expr> forces;  // [fields] per volume; an empty handle: none
+  Expr density;               // ℒ in jets, x and t; definitions of parameters are symbols in it
+  Expr dissipation;           // 𝒟, or empty
+  std::vector<Expr> forces;   // [fields] per volume; an empty handle: none
   std::vector<EndForce> end_forces;
   std::vector<BoundaryCondition> boundary;
   bool periodic = false;
@@ -145,7 +146,7 @@ struct FieldModel {
   std::vector<FieldStart> start;
   std::vector<PlaceValue> places;
   std::vector<FieldExpectationLine> expectations;
-  Expr omega;                     // ω of dispersion relations
+  Expr omega;  // ω of dispersion relations
   std::vector<Parameter> parameters;
   std::vector<Expr> wave_numbers;  // k, or k_x, k_y, k_z [space variables]
 };

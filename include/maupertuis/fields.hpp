@@ -25,19 +25,20 @@ struct NaturalCondition {
 /// with a δ.
 struct FieldEquations {
   std::shared_ptr<const FieldModel> model;
-  std::vector<std::size_t> varied;         // fields that are not given
-  std::vector<Expr> euler;                 // E_a = δℒ/δφ_a                                    [varied]
-  std::vector<Expr> residuals;             // [varied]
-  std::vector<NaturalCondition> natural;   // of all space variables; p before m
-  std::vector<Expr> boundary_terms;        // B^μ: space variables, then t
-  FieldSystem with_variations;             // the fields and, behind them, their variations η
+  std::vector<std::size_t> varied;        // fields that are not given
+  std::vector<Expr> euler;                // E_a = δℒ/δφ_a                                    [varied]
+  std::vector<Expr> residuals;            // [varied]
+  std::vector<NaturalCondition> natural;  // of all space variables; p before m
+  std::vector<Expr> boundary_terms;       // B^μ: space variables, then t
+  FieldSystem with_variations;            // the fields and, behind them, their variations η
   ReadingOrder order;
 
   const FieldSystem& system() const { return model->system; }
   std::size_t variation_of(std::size_t varied_index) const { return system().fields.size() + varied_index; }
 };
 
-/// Derives them. N0640 where no derivative in time stands in them; error E0641 where short waves grow without bound (elliptic in time).
+/// Derives them. N0640 where no derivative in time stands in them; error E0641 where short waves grow without bound
+/// (elliptic in time).
 std::optional<FieldEquations> field_equations(std::shared_ptr<const FieldModel> model, Diagnostics& diagnostics);
 
 /// Checks the equations and B against ℒ along random polynomial fields over prime fields.
@@ -49,8 +50,8 @@ struct FieldCurrent {
   std::string meaning;
   std::vector<Expr> characteristic;  // Q_a                                        [varied]
   Expr density;
-  std::vector<Expr> fluxes;          // [space variables]
-  bool certified = false;            // by the zero test
+  std::vector<Expr> fluxes;  // [space variables]
+  bool certified = false;    // by the zero test
 };
 
 struct FieldCurrents {

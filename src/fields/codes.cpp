@@ -5,27 +5,30 @@ namespace {
 
 constexpr CodeEntry kEntries[] = {
     {"E0292", "a slope that clashes with the natural condition",
-     "At a free end the variation leaves ∂ℒ/∂u_x = 0. A given slope is an end force only where it says by itself what ∂ℒ/∂u_x is there.",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u^2/(1 [m^2]) u_x^2\nboundary left : u_x = 1\nrun 1 s\n",
+     "At a free end the variation leaves ∂ℒ/∂u_x = 0. A given slope is an end force only where it says by itself what "
+     "∂ℒ/∂u_x is there.",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u^2/(1 [m^2]) "
+     "u_x^2\nboundary left : u_x = 1\nrun 1 s\n",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},
     {"E0508", "a run of fields that is not supported yet",
-     "Runs are those of fields of one space variable on a domain, of densities that hold u, u' squared and u_x. All fields have derivations, conservation laws and waves.",
+     "Runs are those of fields of one space variable on a domain, of densities that hold u, u' squared and u_x. All "
+     "fields have derivations, conservation laws and waves.",
      "field u(x) : length \nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nrun 1 s\n",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nrun 1 s\n"},
     {"E0642", "accelerations of a field that are not determined",
-     "Where the density is linear in the velocities the equations are of first order, and the velocity cannot be chosen.",
+     "Where the density is linear in the velocities the equations are of first order, and the velocity cannot be "
+     "chosen.",
      "dimensionless\nfield a(x), b(x) : number on x = 0 .. 1\ndensity = b a' - a b' - 1/2 (a_x^2 + b_x^2)\nrun 1\n",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nrun 1 s\n"},
     {"E0643", "a field that grows beyond all numbers",
-     "The run met an infinity: an unstable density, or a start that grows.",
-     "",
-     ""},
+     "The run met an infinity: an unstable density, or a start that grows.", "", ""},
     {"E0644", "no modes of a field",
-     "Frequencies are those of small motions about φ = 0 of a field of one space variable with a domain, with constant coefficients in time and a positive energy.",
-     "",
-     ""},
+     "Frequencies are those of small motions about φ = 0 of a field of one space variable with a domain, with constant "
+     "coefficients in time and a positive energy.",
+     "", ""},
     {"E0641", "an ill-posed field equation",
-     "Where the parts of the density in u' and in u_x have the same sign, the equation is elliptic in time: waves grow, the shorter the faster, so that no start determines what follows.",
+     "Where the parts of the density in u' and in u_x have the same sign, the equation is elliptic in time: waves "
+     "grow, the shorter the faster, so that no start determines what follows.",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 + 1/2 T u_x^2\n",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},
     {"N0640", "field equations without the time",

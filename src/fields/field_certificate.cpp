@@ -10,7 +10,8 @@
 
 /// δℒ(η) − E·η = ∂_μ B^μ at random points of prime fields, along fields φ and η whose derivatives there are random
 /// numbers: those of random polynomials. Nothing is differentiated as an expression here: δℒ is the part of ℒ(φ + ε η)
-/// linear in ε, ∂_μ B^μ that of B(φ, η) along the line x + s e_μ linear in s, both by the arithmetic of truncated series.
+/// linear in ε, ∂_μ B^μ that of B(φ, η) along the line x + s e_μ linear in s, both by the arithmetic of truncated
+/// series.
 namespace maupertuis {
 namespace {
 
@@ -38,7 +39,8 @@ FieldRoots roots_of(const FieldEquations& equations) {
 /// One point of one prime field.
 class FieldPoint {
  public:
-  FieldPoint(const FieldEquations& equations, const FieldRoots& roots, const evaluation::Tape& tape, FieldNumbers& numbers)
+  FieldPoint(const FieldEquations& equations, const FieldRoots& roots, const evaluation::Tape& tape,
+             FieldNumbers& numbers)
       : equations_(equations), s_(equations.with_variations), roots_(roots), tape_(tape), numbers_(numbers) {}
 
   Scalar difference() {
@@ -56,13 +58,15 @@ class FieldPoint {
   Scalar varied_density() {
     run([&](Expr symbol) {
       Numbers::Value out = constant(value(symbol));
-      if (const auto jet = s_.jet_of(symbol); jet && varies(jet->field)) out(1, 0) = value(s_.jet_symbol(variation(*jet)));
+      if (const auto jet = s_.jet_of(symbol); jet && varies(jet->field))
+        out(1, 0) = value(s_.jet_symbol(variation(*jet)));
       return out;
     });
     Scalar out = at(0)(1, 0);
     for (std::size_t a = 0; a < equations_.varied.size(); ++a) {
       const FieldJet eta{equations_.variation_of(a), std::vector<int>(s_.space.size(), 0), 0};
-      out = numbers_.add(out, numbers_.negate(numbers_.multiply(at(roots_.euler + a)(0, 0), value(s_.jet_symbol(eta)))));
+      out =
+          numbers_.add(out, numbers_.negate(numbers_.multiply(at(roots_.euler + a)(0, 0), value(s_.jet_symbol(eta)))));
     }
     return out;
   }

@@ -27,7 +27,12 @@ class FieldVerifier {
  public:
   FieldVerifier(const Model& model, const FieldEquations& equations, const SimulationOptions& options,
                 Diagnostics& diagnostics)
-      : model_(model), equations_(equations), s_(equations.system()), shell_(equations), options_(options), diagnostics_(diagnostics) {}
+      : model_(model),
+        equations_(equations),
+        s_(equations.system()),
+        shell_(equations),
+        options_(options),
+        diagnostics_(diagnostics) {}
 
   Verification carry_out(const SourceText& source) {
     Verification out;
@@ -42,7 +47,8 @@ class FieldVerifier {
       std::visit([&](const auto& kind) { decide(kind, out.results.back()); }, e.kind);
     }
     carry_out_run(out);
-    std::stable_sort(out.results.begin(), out.results.end(), [](const auto& a, const auto& b) { return a.line < b.line; });
+    std::stable_sort(out.results.begin(), out.results.end(),
+                     [](const auto& a, const auto& b) { return a.line < b.line; });
     return out;
   }
 
@@ -78,7 +84,8 @@ class FieldVerifier {
       result.message = "It could not be decided: derivatives come up without end.";
       return;
     }
-    say(result, zero_test(*rest), "It follows from the field equations.", "It does not follow from the field equations.");
+    say(result, zero_test(*rest), "It follows from the field equations.",
+        "It does not follow from the field equations.");
     if (result.passed) return;
     result.expected = "0";
     result.actual = text_of(*rest);
@@ -101,7 +108,8 @@ class FieldVerifier {
                                      [&](const NaturalCondition& n) { return is_multiple(c, n.value); });
       if (found) continue;
       result.actual = text_of(c) + " = 0 is none of";
-      for (const NaturalCondition& n : equations_.natural) result.expected += (result.expected.empty() ? "" : "; ") + text_of(n.value) + " = 0";
+      for (const NaturalCondition& n : equations_.natural)
+        result.expected += (result.expected.empty() ? "" : "; ") + text_of(n.value) + " = 0";
       result.message = "The natural conditions are those that the variation leaves at a free end.";
       return;
     }
@@ -132,7 +140,8 @@ class FieldVerifier {
     for (std::size_t i = 0; i < found.size(); ++i) {
       const double expected = number_of(e.values[i]);
       const bool close = std::abs(found[i] - expected) <= allowed(e.tolerance, expected);
-      if (!close && r.passed) r.message = fmt::format("Frequency {} is off by {:.3g}{}.", i + 1, (found[i] - expected) / e.unit.factor, unit);
+      if (!close && r.passed)
+        r.message = fmt::format("Frequency {} is off by {:.3g}{}.", i + 1, (found[i] - expected) / e.unit.factor, unit);
       r.passed = r.passed && close;
       r.actual += fmt::format("{}{:.14g}", i ? ", " : "", found[i] / e.unit.factor);
       r.expected += fmt::format("{}{:.14g}", i ? ", " : "", expected / e.unit.factor);
@@ -156,11 +165,13 @@ class FieldVerifier {
       for (const auto& [line, tolerance] : energy_) out.results[line].message = "The run did not come to it.";
       return;
     }
-    for (std::size_t i = 0; i < asked_.size(); ++i) judge(out.results[asked_[i].line], asked_[i].expected, run->answers[i]);
+    for (std::size_t i = 0; i < asked_.size(); ++i)
+      judge(out.results[asked_[i].line], asked_[i].expected, run->answers[i]);
     for (const auto& [line, tolerance] : energy_) {
       ExpectationResult& r = out.results[line];
       const double limit = tolerance.size ? number_of(tolerance.size) : 1e-12;
-      r.actual = run->energy_drift < 0 ? "forces act: the energy is not conserved" : fmt::format("{:.3g}", run->energy_drift);
+      r.actual =
+          run->energy_drift < 0 ? "forces act: the energy is not conserved" : fmt::format("{:.3g}", run->energy_drift);
       r.expected = fmt::format("at most {:.3g} of its terms", limit);
       r.passed = run->energy_drift >= 0 && run->energy_drift <= limit;
     }
@@ -174,7 +185,9 @@ class FieldVerifier {
     r.expected = fmt::format("{:.16g}{}", expected / e.unit.factor, unit);
     r.tolerance = fmt::format("± {:.3g}{}", tolerance / e.unit.factor, unit);
     r.uncertainty = fmt::format("± {:.2g}{}", value.error / e.unit.factor, unit);
-    if (!r.passed) r.message = fmt::format("It is off by {:.3g}{}; the error of mesh and steps is estimated as {:.2g}{}.", (value.value - expected) / e.unit.factor, unit, value.error / e.unit.factor, unit);
+    if (!r.passed)
+      r.message = fmt::format("It is off by {:.3g}{}; the error of mesh and steps is estimated as {:.2g}{}.",
+                              (value.value - expected) / e.unit.factor, unit, value.error / e.unit.factor, unit);
   }
 
   // ---------------------------------------------------------------------------------------------------- solutions
@@ -184,7 +197,8 @@ class FieldVerifier {
     for (const Expr& symbol : s_.jets_in(residual)) {
       const FieldJet jet = *s_.jet_of(symbol);
       const auto at = std::find(e.fields.begin(), e.fields.end(), jet.field);
-      Expr value = at == e.fields.end() ? s_.fields[jet.field].formula : e.values[static_cast<std::size_t>(at - e.fields.begin())];
+      Expr value = at == e.fields.end() ? s_.fields[jet.field].formula
+                                        : e.values[static_cast<std::size_t>(at - e.fields.begin())];
       if (!value) continue;
       for (std::size_t x = 0; x < s_.space.size(); ++x)
         for (int k = 0; k < jet.space[x]; ++k) value = differentiate(value, s_.space[x].symbol);
@@ -210,7 +224,11 @@ class FieldVerifier {
     double worst = -1;
     for (int point = 0; point < 24; ++point) {
       values[s_.context->time()] = 0.5 + unit(random);
-      for (const SpaceVariable& x : s_.space) values[x.symbol] = x.from ? evaluate(s_.expanded(x.from), values) + (evaluate(s_.expanded(x.to), values) - evaluate(s_.expanded(x.from), values)) * unit(random) : 2 * unit(random) - 1;
+      for (const SpaceVariable& x : s_.space)
+        values[x.symbol] =
+            x.from ? evaluate(s_.expanded(x.from), values) +
+                         (evaluate(s_.expanded(x.to), values) - evaluate(s_.expanded(x.from), values)) * unit(random)
+                   : 2 * unit(random) - 1;
       for (const std::vector<Expr>& terms : residuals) {
         double size = 1e-300, value = 0;
         for (const Expr& term : terms) {
@@ -236,8 +254,11 @@ class FieldVerifier {
     result.expected = "residual below 1e-11 of its terms";
     result.actual = worst < 0 ? "nothing" : fmt::format("{:.2g} of the largest term", worst);
     result.passed = worst >= 0 && worst < 1e-11;
-    result.message = result.passed ? fmt::format("Inserted at 24 random places it leaves at most {:.1g} of its terms; no identity is proved.", worst)
-                                   : "It does not solve the field equations.";
+    result.message =
+        result.passed
+            ? fmt::format("Inserted at 24 random places it leaves at most {:.1g} of its terms; no identity is proved.",
+                          worst)
+            : "It does not solve the field equations.";
   }
 
   void decide(const fe::Current& e, ExpectationResult& result) {
@@ -257,16 +278,21 @@ class FieldVerifier {
     const PowerOf left = split_power(e.left);
     const Expr roots[] = {e.right};
     const std::vector<Expr> below = symbols_of(roots);
-    if (left.base != omega || left.exponent == Rational(0) || std::find(below.begin(), below.end(), omega) != below.end()) {
+    if (left.base != omega || left.exponent == Rational(0) ||
+        std::find(below.begin(), below.end(), omega) != below.end()) {
       result.message = "A dispersion relation is written ω = … or ω^2 = ….";
       return;
     }
     const Expr root = pow(e.right, Rational(1) / left.exponent);
     std::vector<Expr> parts;
-    for (const Expr& part : {relation->re, relation->im}) parts.push_back(s_.expanded(substitute(part, {{omega, root}})));
-    say(result, zero_test(parts), "Waves of the linearized equations obey it.", "Waves of the linearized equations do not obey it.");
-    if (!result.passed) result.actual = to_plain(lay_out(readable(relation->re, equations_.order), equations_.order)) + " = 0";
-    if (!result.passed) result.expected = to_plain(lay_out(readable(e.left - e.right, equations_.order), equations_.order)) + " = 0";
+    for (const Expr& part : {relation->re, relation->im})
+      parts.push_back(s_.expanded(substitute(part, {{omega, root}})));
+    say(result, zero_test(parts), "Waves of the linearized equations obey it.",
+        "Waves of the linearized equations do not obey it.");
+    if (!result.passed)
+      result.actual = to_plain(lay_out(readable(relation->re, equations_.order), equations_.order)) + " = 0";
+    if (!result.passed)
+      result.expected = to_plain(lay_out(readable(e.left - e.right, equations_.order), equations_.order)) + " = 0";
   }
 
   const Model& model_;
@@ -309,7 +335,8 @@ bool is_current(const FieldEquations& equations, Expr density, const std::vector
   }
   const ZeroTest test = zero_test(*rest);
   if (test.verdict != Verdict::Zero) {
-    trouble = test.verdict == Verdict::Nonzero ? "Its divergence does not vanish on solutions." : "It could not be decided: " + test.reason;
+    trouble = test.verdict == Verdict::Nonzero ? "Its divergence does not vanish on solutions."
+                                               : "It could not be decided: " + test.reason;
     return false;
   }
   trouble = "Its divergence vanishes on all solutions.";
@@ -321,7 +348,8 @@ bool is_current(const FieldEquations& equations, Expr density, const std::vector
     difference = difference - factor * s.expanded(equations.residuals[a]);
     q += (a ? ", " : "") + to_plain(field_layout(s, lay_out(readable(-factor, equations.order), equations.order)));
   }
-  const bool forces = s.dissipation || std::any_of(s.forces.begin(), s.forces.end(), [](const Expr& f) { return static_cast<bool>(f); });
+  const bool forces = s.dissipation ||
+                      std::any_of(s.forces.begin(), s.forces.end(), [](const Expr& f) { return static_cast<bool>(f); });
   if (!forces && zero_test(difference).verdict == Verdict::Zero) trouble = "∂_μ j^μ = Q·E identically, Q = " + q + ".";
   return true;
 }

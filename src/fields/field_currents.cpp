@@ -25,14 +25,15 @@ using Scalar = FieldNumbers::Value;
 /// One generator of the ansatz: ξ^μ = factor, or η_a = factor.
 struct Generator {
   bool moves_space = false;
-  std::size_t index = 0;  // μ (space variables, then t), or a
-  Expr factor;            // 1, t, x, φ_b
+  std::size_t index = 0;             // μ (space variables, then t), or a
+  Expr factor;                       // 1, t, x, φ_b
   std::vector<Expr> characteristic;  // [varied]
 };
 
 class Ansatz {
  public:
-  explicit Ansatz(const FieldEquations& equations) : equations_(equations), s_(equations.system()), n_(s_.space.size()) {
+  explicit Ansatz(const FieldEquations& equations)
+      : equations_(equations), s_(equations.system()), n_(s_.space.size()) {
     std::vector<Expr> places{s_.context->number(1), s_.context->time()};
     for (const SpaceVariable& x : s_.space) places.push_back(x.symbol);
     for (std::size_t mu = 0; mu <= n_; ++mu)
@@ -48,7 +49,8 @@ class Ansatz {
   Expr field(std::size_t f) const { return s_.jet_symbol({f, std::vector<int>(n_, 0), 0}); }
   void add_motion(std::size_t mu, Expr factor) {
     Generator g{true, mu, factor, {}};
-    for (const std::size_t f : equations_.varied) g.characteristic.push_back(-(factor * s_.total_derivative(field(f), mu)));
+    for (const std::size_t f : equations_.varied)
+      g.characteristic.push_back(-(factor * s_.total_derivative(field(f), mu)));
     generators.push_back(std::move(g));
   }
   void add_shift(std::size_t a, Expr factor) {
@@ -103,7 +105,10 @@ using Matrix = std::vector<std::vector<Scalar>>;
 class PrimeRows {
  public:
   PrimeRows(const std::vector<std::vector<Expr>>& table)
-      : columns_(table.size()), fields_(table.front().size()), tape_(tape_of(table)), hints_(evaluation::field_hints(tape_)),
+      : columns_(table.size()),
+        fields_(table.front().size()),
+        tape_(tape_of(table)),
+        hints_(evaluation::field_hints(tape_)),
         primes_(evaluation::random_prime_triple(hints_.m, 0x6e6f6574686572)) {}
 
   /// The parameters keep their values from point to point: the seed draws symbols by name, so only jets and places are
@@ -130,7 +135,8 @@ class PrimeRows {
 
  private:
   struct Numbers : FieldNumbers {
-    Numbers(const FieldNumbers& base, const FieldSystem& s, std::uint64_t point) : FieldNumbers(base), system(s), point(point) {}
+    Numbers(const FieldNumbers& base, const FieldSystem& s, std::uint64_t point)
+        : FieldNumbers(base), system(s), point(point) {}
     Value symbol(Expr e) {
       bool varies = e.role() == Role::Time || system.jet_of(e).has_value();
       for (const SpaceVariable& x : system.space) varies = varies || e == x.symbol;
@@ -151,7 +157,8 @@ class PrimeRows {
 };
 
 /// Reduced row echelon form; the pivot columns.
-std::vector<std::size_t> reduce(Matrix& m, std::size_t columns, const evaluation::PrimeField& f, const std::vector<std::size_t>& order) {
+std::vector<std::size_t> reduce(Matrix& m, std::size_t columns, const evaluation::PrimeField& f,
+                                const std::vector<std::size_t>& order) {
   std::vector<std::size_t> pivots;
   std::size_t row = 0;
   for (const std::size_t c : order) {
@@ -173,8 +180,8 @@ std::vector<std::size_t> reduce(Matrix& m, std::size_t columns, const evaluation
   return pivots;
 }
 
-/// The generators of each symmetry that stand in it with a factor other than 0. Shifts and motions that are simplest come
-/// last in the elimination, so that they stay free and each vector has few others.
+/// The generators of each symmetry that stand in it with a factor other than 0. Shifts and motions that are simplest
+/// come last in the elimination, so that they stay free and each vector has few others.
 std::vector<std::vector<std::size_t>> supports(Matrix rows, std::size_t columns, const evaluation::PrimeField& f) {
   std::vector<std::size_t> order;
   for (std::size_t c = columns; c-- > 0;) order.push_back(c);
@@ -236,7 +243,8 @@ std::vector<Expr> coefficients(const FieldEquations& equations, const std::vecto
       for (Expr& x : row) x = readable(x / divisor, equations.order).value;
       for (auto& other : rows) {
         const Expr factor = other[pivot];
-        for (std::size_t j = 0; j <= unknowns; ++j) other[j] = readable(other[j] - factor * row[j], equations.order).value;
+        for (std::size_t j = 0; j <= unknowns; ++j)
+          other[j] = readable(other[j] - factor * row[j], equations.order).value;
       }
       rows.push_back(std::move(row));
     }
@@ -339,7 +347,8 @@ struct NamedCurrent {
   bool reversed = false;  // −T^0_i is the density of momentum
 };
 
-NamedCurrent name_of(const FieldEquations& equations, const std::vector<Generator>& g, const std::vector<std::size_t>& support) {
+NamedCurrent name_of(const FieldEquations& equations, const std::vector<Generator>& g,
+                     const std::vector<std::size_t>& support) {
   const FieldSystem& s = equations.system();
   const std::size_t n = s.space.size();
   const Generator& first = g[support[0]];
@@ -349,18 +358,25 @@ NamedCurrent name_of(const FieldEquations& equations, const std::vector<Generato
   for (const std::size_t i : support) (g[i].moves_space ? motions : shifts).push_back(&g[i]);
   if (motions.size() == 1 && motions[0]->factor.is_one() && shifts.empty())
     return motions[0]->index == n ? NamedCurrent{"energy", "translations in time", 1}
-                                  : NamedCurrent{"momentum along " + variable(motions[0]->index), "translations along " + variable(motions[0]->index), true};
+                                  : NamedCurrent{"momentum along " + variable(motions[0]->index),
+                                                 "translations along " + variable(motions[0]->index), true};
   if (motions.size() == 2) {
     const std::size_t a = motions[0]->index, b = motions[1]->index;
-    if (a < n && b < n) return {"angular momentum", fmt::format("rotations in the plane of {} and {}", variable(a), variable(b))};
+    if (a < n && b < n)
+      return {"angular momentum", fmt::format("rotations in the plane of {} and {}", variable(a), variable(b))};
     if (a != b) return {"boost along " + variable(std::min(a, b)), "motions at constant speed"};
   }
-  if (motions.size() == 1 && motions[0]->index < n && motions[0]->factor.role() == Role::Time && motions[0]->factor.is_symbol())
+  if (motions.size() == 1 && motions[0]->index < n && motions[0]->factor.role() == Role::Time &&
+      motions[0]->factor.is_symbol())
     return {"boost along " + variable(motions[0]->index), "motions at constant speed"};
   if (!motions.empty() && motions.size() >= n) return {"dilation", "a change of scale"};
   if (motions.empty() && shifts.size() == 1 && !s.jet_of(first.factor))
-    return {"shift of " + field(first.index), fmt::format("{} + ε {}", field(first.index), first.factor.is_one() ? "1" : to_plain(lay_out(first.factor, equations.order)))};
-  if (motions.empty() && shifts.size() == 2) return {"charge", fmt::format("rotations of {} and {} into each other", field(shifts[0]->index), field(shifts[1]->index))};
+    return {"shift of " + field(first.index),
+            fmt::format("{} + ε {}", field(first.index),
+                        first.factor.is_one() ? "1" : to_plain(lay_out(first.factor, equations.order)))};
+  if (motions.empty() && shifts.size() == 2)
+    return {"charge",
+            fmt::format("rotations of {} and {} into each other", field(shifts[0]->index), field(shifts[1]->index))};
   if (motions.empty()) return {"inner symmetry", "changes of the fields alone"};
   return {"symmetry", "motions of space and time with a change of the fields"};
 }
@@ -407,8 +423,11 @@ std::optional<FieldCurrent> current_of(const FieldEquations& equations, const st
 FieldCurrents field_currents(const FieldEquations& equations) {
   FieldCurrents out;
   const FieldSystem& s = equations.system();
-  const bool forced = s.dissipation || std::any_of(s.forces.begin(), s.forces.end(), [](const Expr& f) { return static_cast<bool>(f); });
-  out.basis = "Looked for among symmetries ξ ∂ + η ∂/∂φ with ξ affine in space and time, η affine in space, time and the fields; each is certified by ∂_μ j^μ = Q·E.";
+  const bool forced = s.dissipation ||
+                      std::any_of(s.forces.begin(), s.forces.end(), [](const Expr& f) { return static_cast<bool>(f); });
+  out.basis =
+      "Looked for among symmetries ξ ∂ + η ∂/∂φ with ξ affine in space and time, η affine in space, time and the "
+      "fields; each is certified by ∂_μ j^μ = Q·E.";
   if (forced) out.basis += " Forces and dissipation do not come from the density: what they change is not booked here.";
   const std::vector<Generator> generators = Ansatz(equations).generators;
   const std::vector<std::vector<Expr>> table = conditions(equations, generators);
@@ -429,7 +448,8 @@ FieldCurrents field_currents(const FieldEquations& equations) {
   };
   std::stable_sort(out.currents.begin(), out.currents.end(),
                    [&](const FieldCurrent& a, const FieldCurrent& b) { return place(a) < place(b); });
-  if (unwritten) out.basis += fmt::format(" {} more symmetries were found whose currents are not written out here.", unwritten);
+  if (unwritten)
+    out.basis += fmt::format(" {} more symmetries were found whose currents are not written out here.", unwritten);
   return out;
 }
 

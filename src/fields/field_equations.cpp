@@ -112,11 +112,13 @@ ReadingOrder reading_order(const FieldModel& model, const std::vector<Expr>& exp
   ReadingOrder order;
   std::vector<Expr> symbols = symbols_of(expressions);
   for (const Expr& s : symbols)
-    if (s.role() == Role::Parameter || s.role() == Role::Constant || (s.role() == Role::Auxiliary && model.system.definitions.count(s)))
+    if (s.role() == Role::Parameter || s.role() == Role::Constant ||
+        (s.role() == Role::Auxiliary && model.system.definitions.count(s)))
       order.parameters.push_back(s);
   std::vector<std::pair<int, Expr>> jets;
   for (const Expr& s : symbols)
-    if (const auto jet = model.system.jet_of(s)) jets.push_back({jet->order() - jet->time, model.system.context->symbol(s.name(), s.role(), 0)});
+    if (const auto jet = model.system.jet_of(s))
+      jets.push_back({jet->order() - jet->time, model.system.context->symbol(s.name(), s.role(), 0)});
   std::stable_sort(jets.begin(), jets.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   for (const auto& [depth, symbol] : jets)
     if (std::find(order.coordinates.begin(), order.coordinates.end(), symbol) == order.coordinates.end())
@@ -141,7 +143,8 @@ double growth(const FieldEquations& equations, double k) {
     Expr at_rest = slopes[n];
     Bindings values;
     const Expr roots[] = {at_rest};
-    for (const Expr& symbol : symbols_of(roots)) values[symbol] = s.jet_of(symbol) || symbol.role() == Role::Time ? 0 : 1;
+    for (const Expr& symbol : symbols_of(roots))
+      values[symbol] = s.jet_of(symbol) || symbol.role() == Role::Time ? 0 : 1;
     for (const Parameter& p : equations.model->parameters) values[p.symbol] = p.si_value;
     const double c = evaluate(at_rest, values);
     if (!std::isfinite(c)) return 0;
@@ -153,7 +156,8 @@ double growth(const FieldEquations& equations, double k) {
   }
   if (by_power[2] == 0.0) return by_power[1] == 0.0 ? 0 : (-by_power[0] / by_power[1]).imag();
   const auto root = std::sqrt(by_power[1] * by_power[1] - 4.0 * by_power[2] * by_power[0]);
-  return std::max(((-by_power[1] + root) / (2.0 * by_power[2])).imag(), ((-by_power[1] - root) / (2.0 * by_power[2])).imag());
+  return std::max(((-by_power[1] + root) / (2.0 * by_power[2])).imag(),
+                  ((-by_power[1] - root) / (2.0 * by_power[2])).imag());
 }
 
 void refuse_ill_posed(const FieldEquations& equations, Diagnostics& diagnostics) {
@@ -164,11 +168,14 @@ void refuse_ill_posed(const FieldEquations& equations, Diagnostics& diagnostics)
   std::string trouble;
   std::string relation;
   if (const auto d = dispersion(equations, trouble); d && d->im.is_zero())
-    relation = fmt::format(" Its dispersion relation is {} = 0.", to_plain(lay_out(readable(d->re, equations.order), equations.order)));
-  diagnostics.error("E0641", s.density_span, "the field equation is ill-posed: short waves grow without bound",
-                    fmt::format("A wave of wave number 1e6 grows at the rate {:.3g}, one of 1e4 at {:.3g}: the shorter, "
-                                "the faster (elliptic in time).{}", many, few, relation),
-                    "The parts of u' and of u_x have opposite signs in the density of a wave.");
+    relation = fmt::format(" Its dispersion relation is {} = 0.",
+                           to_plain(lay_out(readable(d->re, equations.order), equations.order)));
+  diagnostics.error(
+      "E0641", s.density_span, "the field equation is ill-posed: short waves grow without bound",
+      fmt::format("A wave of wave number 1e6 grows at the rate {:.3g}, one of 1e4 at {:.3g}: the shorter, "
+                  "the faster (elliptic in time).{}",
+                  many, few, relation),
+      "The parts of u' and of u_x have opposite signs in the density of a wave.");
 }
 
 /// N0640 where no equation moves a field.

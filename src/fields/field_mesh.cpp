@@ -18,10 +18,11 @@ constexpr std::size_t kOrder = 8;  // of Taylor steps: on the imaginary axis sta
 using Side = BoundaryCondition::Side;
 
 void unsupported(Diagnostics& diagnostics, Span span, const std::string& what) {
-  diagnostics.error("E0508", span, fmt::format("not supported yet: a run of {}", what),
-                    "Runs are those of fields of one space variable on a bounded domain whose density holds u, u' and u_x, with "
-                    "u' in it squared.",
-                    "`maup derive`, `maup invariants` and expectations about formulas work for all fields.");
+  diagnostics.error(
+      "E0508", span, fmt::format("not supported yet: a run of {}", what),
+      "Runs are those of fields of one space variable on a bounded domain whose density holds u, u' and u_x, with "
+      "u' in it squared.",
+      "`maup derive`, `maup invariants` and expectations about formulas work for all fields.");
 }
 
 Expr jet_at(const FieldSystem& s, std::size_t field, int x, int t) { return s.jet_symbol({field, {x}, t}); }
@@ -30,12 +31,14 @@ Expr jet_at(const FieldSystem& s, std::size_t field, int x, int t) { return s.je
 
 std::optional<PointForm> point_form(const FieldEquations& equations, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
-  if (s.space.size() != 1) return unsupported(diagnostics, s.density_span, "fields of several space variables"), std::nullopt;
+  if (s.space.size() != 1)
+    return unsupported(diagnostics, s.density_span, "fields of several space variables"), std::nullopt;
   if (!s.space.front().from) return unsupported(diagnostics, s.density_span, "a field without a domain"), std::nullopt;
   ExprMap given;
   for (std::size_t f = 0; f < s.fields.size(); ++f) {
     if (!s.fields[f].given) continue;
-    if (!s.fields[f].formula) return unsupported(diagnostics, s.fields[f].span, "an input without a formula"), std::nullopt;
+    if (!s.fields[f].formula)
+      return unsupported(diagnostics, s.fields[f].span, "an input without a formula"), std::nullopt;
     given[jet_at(s, f, 0, 0)] = s.fields[f].formula;
   }
   const auto plain = [&](Expr e) { return s.expanded(substitute(s.expanded(e), given)); };
@@ -56,7 +59,8 @@ std::optional<PointForm> point_form(const FieldEquations& equations, Diagnostics
   std::vector<Expr> energy{-density};
   for (const std::size_t f : equations.varied) {
     const Expr v = jet_at(s, f, 0, 1), p = differentiate(density, v);
-    std::vector<Expr> g{differentiate(p, t), -differentiate(density, jet_at(s, f, 0, 0)), differentiate(dissipation, v)};
+    std::vector<Expr> g{differentiate(p, t), -differentiate(density, jet_at(s, f, 0, 0)),
+                        differentiate(dissipation, v)};
     for (const std::size_t other : equations.varied) {
       out.a.push_back(differentiate(p, jet_at(s, other, 0, 1)));
       g.push_back(differentiate(p, jet_at(s, other, 0, 0)) * jet_at(s, other, 0, 1));
@@ -76,8 +80,14 @@ std::optional<PointForm> point_form(const FieldEquations& equations, Diagnostics
 }
 
 FieldMesh::FieldMesh(const FieldEquations& equations, const PointForm& form, int cells, int order)
-    : equations_(equations), s_(equations.system()), form_(form), cells_(cells), p_(order),
-      lanes_(static_cast<std::size_t>(cells) * (static_cast<std::size_t>(order) + 1)), fields_(form.fields), rule_(order) {
+    : equations_(equations),
+      s_(equations.system()),
+      form_(form),
+      cells_(cells),
+      p_(order),
+      lanes_(static_cast<std::size_t>(cells) * (static_cast<std::size_t>(order) + 1)),
+      fields_(form.fields),
+      rule_(order) {
   std::unordered_map<Expr, double, ExprHash> constants;
   for (const Parameter& p : equations.model->parameters) constants[p.symbol] = values_[p.symbol] = p.si_value;
   left_ = value_of(s_.space.front().from, {});
@@ -101,16 +111,19 @@ FieldMesh::FieldMesh(const FieldEquations& equations, const PointForm& form, int
   constant_mass_ = true;
   for (std::size_t i = 0; i < form.a.size(); ++i) {
     const Expr a[] = {form.a[i]};
-    for (const Expr& symbol : symbols_of(a)) constant_mass_ = constant_mass_ && !s_.jet_of(symbol) && symbol.role() != Role::Time;
+    for (const Expr& symbol : symbols_of(a))
+      constant_mass_ = constant_mass_ && !s_.jet_of(symbol) && symbol.role() != Role::Time;
   }
   double* x = series_.input(4 * fields_, 0);
   for (int j = 0; j <= p_; ++j)
-    for (int e = 0; e < cells_; ++e) x[local(j, e)] = left_ + width_ * (e + 0.5 * (1 + rule_.x[static_cast<std::size_t>(j)]));
+    for (int e = 0; e < cells_; ++e)
+      x[local(j, e)] = left_ + width_ * (e + 0.5 * (1 + rule_.x[static_cast<std::size_t>(j)]));
   const auto hold = [&](Side side, std::size_t field, Expr value, bool force) {
     Held held{side == Side::Right, 0, {}, force};
     while (equations_.varied[held.field] != field) ++held.field;
     held.derivatives.push_back(s_.expanded(value));
-    for (std::size_t k = 1; k <= kOrder + 2; ++k) held.derivatives.push_back(differentiate(held.derivatives.back(), s_.context->time()));
+    for (std::size_t k = 1; k <= kOrder + 2; ++k)
+      held.derivatives.push_back(differentiate(held.derivatives.back(), s_.context->time()));
     held_.push_back(std::move(held));
   };
   for (const EndForce& f : s_.end_forces) hold(f.side, f.jet.field, f.value, true);
@@ -122,7 +135,9 @@ FieldMesh::FieldMesh(const FieldEquations& equations, const PointForm& form, int
     // u_x = a says what ∂ℒ/∂u_x is there: p + F = 0 on the right, −p + F = 0 on the left.
     std::size_t a = 0;
     while (equations_.varied[a] != b.jet.field) ++a;
-    const Expr p = substitute(form_.s[a], {{s_.jet_symbol(b.jet), b.value}, {s_.space.front().symbol, b.side == Side::Right ? s_.space.front().to : s_.space.front().from}});
+    const Expr p = substitute(
+        form_.s[a], {{s_.jet_symbol(b.jet), b.value},
+                     {s_.space.front().symbol, b.side == Side::Right ? s_.space.front().to : s_.space.front().from}});
     if (!s_.jets_in(p).empty()) {
       trouble_ = "slope";
       return;
@@ -172,8 +187,8 @@ double FieldMesh::boundary_coefficient(const std::vector<Expr>& derivatives, std
 namespace {
 
 /// to = Σ_m c_m (u_m − base), the u_m `stride` apart.
-MAUP_LANES void differences(double* __restrict to, const double* u, const double* base, const double* c, std::size_t points,
-                            std::size_t stride, std::size_t n) {
+MAUP_LANES void differences(double* __restrict to, const double* u, const double* base, const double* c,
+                            std::size_t points, std::size_t stride, std::size_t n) {
   std::size_t i = 0;
   for (; i + kWide <= n; i += kWide) {
     Lanes sum = {};
@@ -202,10 +217,12 @@ MAUP_LANES void weighted(double* __restrict to, const double* g, double weight, 
 MAUP_LANES void set_product(double* __restrict to, const double* __restrict a, double factor, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) to[i] = factor * a[i];
 }
-MAUP_LANES void set_products(double* __restrict to, const double* __restrict a, const double* __restrict b, std::size_t n) {
+MAUP_LANES void set_products(double* __restrict to, const double* __restrict a, const double* __restrict b,
+                             std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) to[i] = a[i] * b[i];
 }
-MAUP_LANES void add_products(double* __restrict to, const double* __restrict a, const double* __restrict b, std::size_t n) {
+MAUP_LANES void add_products(double* __restrict to, const double* __restrict a, const double* __restrict b,
+                             std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) to[i] += a[i] * b[i];
 }
 MAUP_LANES void horner(double* __restrict to, const double* __restrict a, double h, std::size_t n) {
@@ -236,7 +253,8 @@ void FieldMesh::forces(std::size_t f, std::size_t k) {
     weighted(out.data() + j * n, g + j * n, -rule_.w[j] * width_ / 2, s, c.data(), points, n, n);
   }
   for (const Held& held : held_)
-    if (held.force && held.field == f) out[held.right ? local(p_, cells_ - 1) : local(0, 0)] += boundary_coefficient(held.derivatives, k);
+    if (held.force && held.field == f)
+      out[held.right ? local(p_, cells_ - 1) : local(0, 0)] += boundary_coefficient(held.derivatives, k);
   share(out);
 }
 
@@ -254,7 +272,8 @@ void FieldMesh::masses() {
   std::vector<std::vector<double>> m(fields_ * fields_, std::vector<double>(lanes_));
   for (std::size_t i = 0; i < m.size(); ++i) {
     const double* a = series_.root(i, 0);
-    for (std::size_t n = 0; n < lanes_; ++n) m[i][n] = a[n] * rule_.w[n / static_cast<std::size_t>(cells_)] * width_ / 2;
+    for (std::size_t n = 0; n < lanes_; ++n)
+      m[i][n] = a[n] * rule_.w[n / static_cast<std::size_t>(cells_)] * width_ / 2;
     share(m[i]);
   }
   for (std::size_t n = 0; n < lanes_; ++n) {
@@ -269,13 +288,17 @@ void FieldMesh::masses() {
         trouble_ = "mass";
         return;
       }
-      for (std::size_t j = 0; j < fields_; ++j) std::swap(a[c * fields_ + j], a[pivot * fields_ + j]), std::swap(inverse[c * fields_ + j], inverse[pivot * fields_ + j]);
+      for (std::size_t j = 0; j < fields_; ++j)
+        std::swap(a[c * fields_ + j], a[pivot * fields_ + j]),
+            std::swap(inverse[c * fields_ + j], inverse[pivot * fields_ + j]);
       const double d = a[c * fields_ + c];
       for (std::size_t j = 0; j < fields_; ++j) a[c * fields_ + j] /= d, inverse[c * fields_ + j] /= d;
       for (std::size_t r = 0; r < fields_; ++r) {
         const double factor = a[r * fields_ + c];
         if (r == c || factor == 0) continue;
-        for (std::size_t j = 0; j < fields_; ++j) a[r * fields_ + j] -= factor * a[c * fields_ + j], inverse[r * fields_ + j] -= factor * inverse[c * fields_ + j];
+        for (std::size_t j = 0; j < fields_; ++j)
+          a[r * fields_ + j] -= factor * a[c * fields_ + j],
+              inverse[r * fields_ + j] -= factor * inverse[c * fields_ + j];
       }
     }
     for (std::size_t i = 0; i < inverse.size(); ++i) mass_[i * lanes_ + n] = inverse[i];
@@ -291,7 +314,8 @@ void FieldMesh::solve(std::size_t k) {
       for (std::size_t i = 1; i <= k; ++i)
         for (std::size_t o = 0; o < fields_; ++o) {
           const double* a = series_.root(f * fields_ + o, i);
-          for (std::size_t n = 0; n < lanes_; ++n) part[n] = a[n] * rule_.w[n / static_cast<std::size_t>(cells_)] * width_ / 2;
+          for (std::size_t n = 0; n < lanes_; ++n)
+            part[n] = a[n] * rule_.w[n / static_cast<std::size_t>(cells_)] * width_ / 2;
           share(part);
           const std::vector<double>& before = past_[o * (kOrder + 2) + k - i];
           for (std::size_t n = 0; n < lanes_; ++n) force_[f][n] -= part[n] * before[n];
@@ -301,7 +325,8 @@ void FieldMesh::solve(std::size_t k) {
     std::vector<double>& out = past_[f * (kOrder + 2) + k];
     for (std::size_t o = 0; o < fields_; ++o) {
       const double* inverse = mass_.data() + (f * fields_ + o) * lanes_;
-      o == 0 ? set_products(out.data(), inverse, force_[o].data(), lanes_) : add_products(out.data(), inverse, force_[o].data(), lanes_);
+      o == 0 ? set_products(out.data(), inverse, force_[o].data(), lanes_)
+             : add_products(out.data(), inverse, force_[o].data(), lanes_);
     }
   }
 }
@@ -310,7 +335,8 @@ void FieldMesh::hold_ends(std::size_t f, std::size_t k) {
   for (const Held& held : held_) {
     if (held.force || held.field != f) continue;
     const std::size_t n = held.right ? local(p_, cells_ - 1) : local(0, 0);
-    past_[f * (kOrder + 2) + k][n] = boundary_coefficient(held.derivatives, k + 2) * static_cast<double>((k + 1) * (k + 2));
+    past_[f * (kOrder + 2) + k][n] =
+        boundary_coefficient(held.derivatives, k + 2) * static_cast<double>((k + 1) * (k + 2));
   }
 }
 
@@ -383,7 +409,8 @@ double FieldMesh::omega_max(const Interrupt& interrupt) {
   };
   std::uint64_t seed = 1;
   for (auto& row : w) {
-    for (double& x : row) x = (seed = seed * 6364136223846793005ull + 1442695040888963407ull, static_cast<double>(seed >> 33) / 4e9 - 0.5);
+    for (double& x : row)
+      x = (seed = seed * 6364136223846793005ull + 1442695040888963407ull, static_cast<double>(seed >> 33) / 4e9 - 0.5);
     for (int e = 0; e + 1 < cells_; ++e) row[local(0, e + 1)] = row[local(p_, e)];
     if (s_.periodic) row[local(0, 0)] = row[local(p_, cells_ - 1)];
   }
@@ -458,7 +485,9 @@ double FieldMesh::answer(const FieldQuestion& question) {
     for (const PlaceValue& place : equations_.model->places) {
       const FieldJet jet = *s_.jet_of(place.jet);
       const std::size_t a = varied(jet.field);
-      extra[place.symbol] = a < fields_ && jet.time <= 1 && jet.space[0] <= 1 ? field_at(a, jet.time, jet.space[0], value_of(place.place[0], {})) : std::nan("");
+      extra[place.symbol] = a < fields_ && jet.time <= 1 && jet.space[0] <= 1
+                                ? field_at(a, jet.time, jet.space[0], value_of(place.place[0], {}))
+                                : std::nan("");
     }
     return value_of(question.value, extra);
   }
@@ -468,15 +497,16 @@ double FieldMesh::answer(const FieldQuestion& question) {
   energy(ignored);  // fills slopes and rates
   double sum = 0;
   for (std::size_t n = 0; n < lanes_; ++n) {
-    const double value = at([&](Expr symbol) {
-      if (symbol == s_.space.front().symbol) return series_.input(4 * fields_, 0)[n];
-      if (const auto jet = s_.jet_of(symbol)) {
-        const std::size_t a = varied(jet->field);
-        if (a >= fields_ || jet->time > 1 || jet->space[0] > 1) return std::nan("");
-        return series_.input(4 * a + static_cast<std::size_t>(jet->time + 2 * jet->space[0]), 0)[n];
-      }
-      return symbol.role() == Role::Time ? t_ : values_.at(symbol);
-    }).front();
+    const double value =
+        at([&](Expr symbol) {
+          if (symbol == s_.space.front().symbol) return series_.input(4 * fields_, 0)[n];
+          if (const auto jet = s_.jet_of(symbol)) {
+            const std::size_t a = varied(jet->field);
+            if (a >= fields_ || jet->time > 1 || jet->space[0] > 1) return std::nan("");
+            return series_.input(4 * a + static_cast<std::size_t>(jet->time + 2 * jet->space[0]), 0)[n];
+          }
+          return symbol.role() == Role::Time ? t_ : values_.at(symbol);
+        }).front();
     sum += rule_.w[n / static_cast<std::size_t>(cells_)] * width_ / 2 * value;
   }
   return sum;

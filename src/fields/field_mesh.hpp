@@ -20,15 +20,15 @@ namespace maupertuis {
 /// A is that of the point alone, so that M is diagonal but for the fields among themselves.
 struct PointForm {
   std::size_t fields = 0;
-  std::vector<Expr> inputs;  // φ, φ', φ_x, φ_tx of each field, then x, t
+  std::vector<Expr> inputs;   // φ, φ', φ_x, φ_tx of each field, then x, t
   std::vector<Expr> a, g, s;  // [fields²], [fields], [fields]
-  Expr energy;  // density of h_E
+  Expr energy;                // density of h_E
   bool conserves = false;
 };
 std::optional<PointForm> point_form(const FieldEquations& equations, Diagnostics& diagnostics);
 
-/// One discretisation and its state. Lanes are [local node × cells], so that what belongs to one local node of all cells
-/// lies together.
+/// One discretisation and its state. Lanes are [local node × cells], so that what belongs to one local node of all
+/// cells lies together.
 class FieldMesh {
  public:
   FieldMesh(const FieldEquations& equations, const PointForm& form, int cells, int order);
@@ -49,7 +49,9 @@ class FieldMesh {
   double place_of_cell(int cell) const { return left_ + cell * width_; }
 
  private:
-  std::size_t local(int j, int e) const { return static_cast<std::size_t>(j) * static_cast<std::size_t>(cells_) + static_cast<std::size_t>(e); }
+  std::size_t local(int j, int e) const {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(cells_) + static_cast<std::size_t>(e);
+  }
   double* phi(std::size_t f, std::size_t k) { return series_.input(4 * f, k); }
   double* velocity(std::size_t f, std::size_t k) { return series_.input(4 * f + 1, k); }
   double* slope(std::size_t f, std::size_t k) { return series_.input(4 * f + 2, k); }
@@ -76,10 +78,10 @@ class FieldMesh {
   LaneSeries series_, energies_;  // of the equations; of the energy at one moment
   bool needs_rate_ = false;
   Bindings values_;
-  std::vector<std::vector<double>> u_, v_;   // [fields][lanes]
-  std::vector<std::vector<double>> force_;   // [fields][lanes]
-  std::vector<double> mass_;                 // [fields² × lanes], inverse
-  std::vector<std::vector<double>> past_;    // accelerations by order [fields · orders][lanes]
+  std::vector<std::vector<double>> u_, v_;  // [fields][lanes]
+  std::vector<std::vector<double>> force_;  // [fields][lanes]
+  std::vector<double> mass_;                // [fields² × lanes], inverse
+  std::vector<std::vector<double>> past_;   // accelerations by order [fields · orders][lanes]
   bool constant_mass_ = false, mass_known_ = false;
   struct Held {
     bool right = false;

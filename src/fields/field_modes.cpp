@@ -28,7 +28,8 @@ struct BasisValues {
   BasisValues(double x, std::size_t depth) {
     std::vector<double> p(degree + 4);
     p[0] = 1, p[1] = x;
-    for (std::size_t n = 2; n < p.size(); ++n) p[n] = ((2.0 * n - 1) * x * p[n - 1] - (n - 1.0) * p[n - 2]) / static_cast<double>(n);
+    for (std::size_t n = 2; n < p.size(); ++n)
+      p[n] = ((2.0 * n - 1) * x * p[n - 1] - (n - 1.0) * p[n - 2]) / static_cast<double>(n);
     // ∫P_n = (P_{n+1} − P_{n−1})/(2n + 1), ∫P_0 = P_1; integrals[d][n] is the d-fold one
     std::vector<std::vector<double>> integrals{p};
     const auto once = [&](const std::vector<double>& next, const std::vector<double>& before, std::size_t n) {
@@ -50,22 +51,26 @@ struct BasisValues {
 
 bool refuse_modes_of(const FieldEquations& equations, Diagnostics& diagnostics, const std::string& why) {
   diagnostics.error("E0644", equations.system().density_span, "this field has no modes to be computed", why,
-                    "Modes are those of one space variable with a domain, about φ = 0, with coefficients that do not change in time.");
+                    "Modes are those of one space variable with a domain, about φ = 0, with coefficients that do not "
+                    "change in time.");
   return false;
 }
 
 bool has_modes_at_rest(const FieldEquations& equations, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
-  if (s.space.size() != 1 || !s.space.front().from) return refuse_modes_of(equations, diagnostics, "It has several space variables, or no domain.");
+  if (s.space.size() != 1 || !s.space.front().from)
+    return refuse_modes_of(equations, diagnostics, "It has several space variables, or no domain.");
   ExprMap rest;
   for (const Expr& r : equations.residuals)
     for (const Expr& jet : s.jets_in(r)) rest[jet] = s.context->number(0);
   for (const Expr& r : equations.residuals) {
     const Expr at_rest = s.expanded(substitute(r, rest));
-    if (zero_test(at_rest).verdict != Verdict::Zero) return refuse_modes_of(equations, diagnostics, "φ = 0 is no rest of it.");
+    if (zero_test(at_rest).verdict != Verdict::Zero)
+      return refuse_modes_of(equations, diagnostics, "φ = 0 is no rest of it.");
   }
   for (const BoundaryCondition& b : s.boundary)
-    if (!s.expanded(b.value).is_zero()) return refuse_modes_of(equations, diagnostics, "Its ends are held away from φ = 0.");
+    if (!s.expanded(b.value).is_zero())
+      return refuse_modes_of(equations, diagnostics, "Its ends are held away from φ = 0.");
   return true;
 }
 
@@ -83,15 +88,18 @@ bool entries_of(const FieldEquations& equations, std::vector<Entry>& out, Diagno
   ExprMap rest;
   for (const Expr& jet : s.jets_in(density)) rest[jet] = s.context->number(0);
   const auto place = [&](std::size_t field) {
-    return static_cast<std::size_t>(std::find(equations.varied.begin(), equations.varied.end(), field) - equations.varied.begin());
+    return static_cast<std::size_t>(std::find(equations.varied.begin(), equations.varied.end(), field) -
+                                    equations.varied.begin());
   };
   for (const Expr& one : s.jets_in(density))
     for (const Expr& two : s.jets_in(density)) {
       const FieldJet a = *s.jet_of(one), b = *s.jet_of(two);
       const Expr value = substitute(differentiate(differentiate(density, one), two), rest);
       if (value.is_zero() || s.fields[a.field].given || s.fields[b.field].given) continue;
-      if (a.time != b.time) return refuse_modes_of(equations, diagnostics, "Its density has gyroscopic terms, velocities times fields.");
-      if (s.context->depends_on_time(value.id())) return refuse_modes_of(equations, diagnostics, "Its coefficients change in time.");
+      if (a.time != b.time)
+        return refuse_modes_of(equations, diagnostics, "Its density has gyroscopic terms, velocities times fields.");
+      if (s.context->depends_on_time(value.id()))
+        return refuse_modes_of(equations, diagnostics, "Its coefficients change in time.");
       out.push_back({place(a.field), place(b.field), a.space[0], b.space[0], a.time == 1, value});
     }
   return true;
@@ -105,7 +113,8 @@ std::vector<double> field_frequencies(const FieldEquations& equations, std::size
   const FieldSystem& s = equations.system();
   Bindings values;
   for (const Parameter& p : equations.model->parameters) values[p.symbol] = p.si_value;
-  const double left = evaluate(s.expanded(s.space.front().from), values), right = evaluate(s.expanded(s.space.front().to), values);
+  const double left = evaluate(s.expanded(s.space.front().from), values),
+               right = evaluate(s.expanded(s.space.front().to), values);
   const double scale = 2 / (right - left);
   bool bends = false;
   for (const Entry& e : entries) bends = bends || e.da == 2;
@@ -118,7 +127,8 @@ std::vector<double> field_frequencies(const FieldEquations& equations, std::size
   const RepeatedEvaluation at(roots);
   for (std::size_t q = 0; q < rule.x.size(); ++q) {
     const double x = left + (rule.x[q] + 1) / scale;
-    const std::vector<double> c = at([&](Expr symbol) { return symbol == s.space.front().symbol ? x : values.at(symbol); });
+    const std::vector<double> c =
+        at([&](Expr symbol) { return symbol == s.space.front().symbol ? x : values.at(symbol); });
     const BasisValues p(rule.x[q], depth);
     for (std::size_t i = 0; i < entries.size(); ++i) {
       const Entry& e = entries[i];
@@ -126,7 +136,8 @@ std::vector<double> field_frequencies(const FieldEquations& equations, std::size
       Eigen::MatrixXd& to = e.kinetic ? m : k;
       for (std::size_t r = 0; r < n; ++r)
         for (std::size_t j = 0; j < n; ++j)
-          to(static_cast<Eigen::Index>(e.a * n + r), static_cast<Eigen::Index>(e.b * n + j)) += (e.kinetic ? weight : -weight) * p.of[e.da][r] * p.of[e.db][j];
+          to(static_cast<Eigen::Index>(e.a * n + r), static_cast<Eigen::Index>(e.b * n + j)) +=
+              (e.kinetic ? weight : -weight) * p.of[e.da][r] * p.of[e.db][j];
     }
   }
   // What the ends hold: rows of a matrix C, C c = 0.
@@ -134,7 +145,8 @@ std::vector<double> field_frequencies(const FieldEquations& equations, std::size
   const auto hold = [&](std::size_t a, int derivative, double end, double other) {
     held.emplace_back(size, 0.0);
     const BasisValues here(end, depth), there(-end, depth);
-    for (std::size_t r = 0; r < n; ++r) held.back()[a * n + r] = here.of[derivative][r] - other * there.of[derivative][r];
+    for (std::size_t r = 0; r < n; ++r)
+      held.back()[a * n + r] = here.of[derivative][r] - other * there.of[derivative][r];
   };
   for (std::size_t a = 0; a < equations.varied.size(); ++a) {
     if (s.periodic) hold(a, 0, 1, 1);
@@ -149,7 +161,8 @@ std::vector<double> field_frequencies(const FieldEquations& equations, std::size
     for (std::size_t j = 0; j < held.size(); ++j) {
       double norm = 0;
       for (const double v : held[j]) norm += v * v;
-      for (std::size_t i = 0; i < size; ++i) c(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = held[j][i] / std::sqrt(norm);
+      for (std::size_t i = 0; i < size; ++i)
+        c(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = held[j][i] / std::sqrt(norm);
     }
     const Eigen::HouseholderQR<Eigen::MatrixXd> qr(c);
     const Eigen::MatrixXd whole = columns_of_q(qr, dim);

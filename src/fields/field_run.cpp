@@ -7,8 +7,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <cmath>
+#include <limits>
 
 /// The run of a field, and of a second mesh of half the cells that tells how far off it is.
 namespace maupertuis {
@@ -26,10 +26,12 @@ void refuse(const FieldMesh& mesh, const FieldEquations& equations, Diagnostics&
       if (b.jet.order() == 1) span = b.span;
     std::string natural;
     for (const NaturalCondition& n : equations.natural)
-      natural += (natural.empty() ? "" : ", ") + to_plain(field_layout(s, lay_out(readable(n.value, equations.order), equations.order))) + " = 0";
-    diagnostics.error("E0292", span, "this condition clashes with the natural one",
-                      fmt::format("What the variation leaves at a free end is {}; a given slope does not say what it is.", natural),
-                      "Give the field itself, or leave the end natural.");
+      natural += (natural.empty() ? "" : ", ") +
+                 to_plain(field_layout(s, lay_out(readable(n.value, equations.order), equations.order))) + " = 0";
+    diagnostics.error(
+        "E0292", span, "this condition clashes with the natural one",
+        fmt::format("What the variation leaves at a free end is {}; a given slope does not say what it is.", natural),
+        "Give the field itself, or leave the end natural.");
   } else if (what == "mass") {
     diagnostics.error("E0642", s.density_span, "the accelerations are not determined",
                       "∂²ℒ/∂φ'∂φ' is singular: a density linear in the velocities gives equations of first order.",
@@ -40,7 +42,8 @@ void refuse(const FieldMesh& mesh, const FieldEquations& equations, Diagnostics&
                       "The start, or an unstable density, lets it grow.");
   } else {
     diagnostics.error("E0508", s.density_span, fmt::format("not supported yet: a run of a density with `{}`", what),
-                      "Its Taylor series over a mesh has no rule yet.", "Write it with sums, products, powers, exp, log, sin, cos, sinh, cosh or tanh.");
+                      "Its Taylor series over a mesh has no rule yet.",
+                      "Write it with sums, products, powers, exp, log, sin, cos, sinh, cosh or tanh.");
   }
 }
 
@@ -60,7 +63,9 @@ void add_row(const FieldMesh& mesh, const FieldEquations& equations, int cells, 
       for (int e = 0; e <= cells; ++e) {
         const double x = mesh.place_of_cell(e);
         const Field& f = s.fields[equations.varied[a]];
-        if (first) rows.columns.push_back({fmt::format("{}{}({:.10g})", f.name, order ? "'" : "", x), to_string(s.dimension_of({equations.varied[a], {0}, order}))});
+        if (first)
+          rows.columns.push_back({fmt::format("{}{}({:.10g})", f.name, order ? "'" : "", x),
+                                  to_string(s.dimension_of({equations.varied[a], {0}, order}))});
         rows.values.push_back(mesh.field_at(a, order, 0, x));
       }
 }
@@ -89,7 +94,8 @@ std::optional<OneRun> run_on(const FieldEquations& equations, const PointForm& f
     const auto steps = static_cast<std::size_t>(std::ceil(way / longest - 1e-9));
     for (std::size_t k = 0; way > 0 && k < std::max<std::size_t>(steps, 1); ++k) {
       options.interrupt.throw_if_asked();
-      if (!mesh.step(way / static_cast<double>(std::max<std::size_t>(steps, 1)))) return refuse(mesh, equations, diagnostics), std::nullopt;
+      if (!mesh.step(way / static_cast<double>(std::max<std::size_t>(steps, 1))))
+        return refuse(mesh, equations, diagnostics), std::nullopt;
       ++out.steps;
     }
     double now = 0;
@@ -97,7 +103,8 @@ std::optional<OneRun> run_on(const FieldEquations& equations, const PointForm& f
     out.drift = std::max(out.drift, std::abs(out.energy - start));
     for (std::size_t i = 0; i < questions.size(); ++i)
       if (questions[i].time == stop) out.answers[i] = mesh.answer(questions[i]);
-    if (rows && (out.trajectory.times.empty() || mesh.time() > out.trajectory.times.back())) add_row(mesh, equations, cells, out.trajectory);
+    if (rows && (out.trajectory.times.empty() || mesh.time() > out.trajectory.times.back()))
+      add_row(mesh, equations, cells, out.trajectory);
   }
   out.h = longest;
   if (size > 0) out.drift /= size;
@@ -123,6 +130,10 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   out.energy = fine->energy, out.energy_drift = form->conserves ? fine->drift : -1;
   out.end = options.duration;
   out.trajectory = std::move(fine->trajectory);
+  if (options.trajectory) {
+    const FieldMesh mesh(equations, *form, cells, order);
+    for (int e = 0; e <= cells; ++e) out.places.push_back(mesh.place_of_cell(e));
+  }
   std::optional<OneRun> coarse;
   if (options.errors && !questions.empty() && cells > 1)
     coarse = run_on(equations, *form, std::max(cells / 2, 1), order, questions, options, false, diagnostics);
@@ -132,8 +143,9 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   const double rounding = 2.2e-16 * std::sqrt(static_cast<double>(out.steps) + 1);
   for (std::size_t i = 0; i < questions.size(); ++i) {
     const double value = fine->answers[i];
-    const double error = coarse ? std::abs(value - coarse->answers[i]) / gain + rounding * std::max(std::abs(value), 1e-300)
-                                : std::numeric_limits<double>::infinity();
+    const double error =
+        coarse ? std::abs(value - coarse->answers[i]) / gain + rounding * std::max(std::abs(value), 1e-300)
+               : std::numeric_limits<double>::infinity();
     out.answers.push_back({value, error});
   }
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -48,7 +48,8 @@ ComplexExpr determinant(const Rows& rows, Context& context) {
       minor.back().erase(minor.back().begin() + static_cast<std::ptrdiff_t>(j));
     }
     const ComplexExpr part = times(head, determinant(minor, context));
-    sum = j % 2 == 0 ? ComplexExpr{sum.re + part.re, sum.im + part.im} : ComplexExpr{sum.re - part.re, sum.im - part.im};
+    sum =
+        j % 2 == 0 ? ComplexExpr{sum.re + part.re, sum.im + part.im} : ComplexExpr{sum.re - part.re, sum.im - part.im};
   }
   return sum;
 }

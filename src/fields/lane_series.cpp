@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t kBlock = 2 * kWide;  // lanes that are summed in registers
 
 /// out = Σ_j factor_j a_j b_{k−j} for j = from … to; coefficients stand `stride` apart.
-MAUP_LANES void convolve(double* __restrict out, const double* a, const double* b, const double* factor, std::size_t from,
-                         std::size_t to, std::size_t k, std::size_t stride, std::size_t n) {
+MAUP_LANES void convolve(double* __restrict out, const double* a, const double* b, const double* factor,
+                         std::size_t from, std::size_t to, std::size_t k, std::size_t stride, std::size_t n) {
   std::size_t i = 0;
   for (; i + kBlock <= n; i += kBlock) {
     Lanes first = {}, second = {};
@@ -37,7 +37,8 @@ MAUP_LANES void convolve(double* __restrict out, const double* a, const double* 
 MAUP_LANES void add_to(double* __restrict out, const double* __restrict a, double factor, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) out[i] += factor * a[i];
 }
-MAUP_LANES void sum_of_two(double* __restrict out, const double* __restrict a, const double* __restrict b, std::size_t n) {
+MAUP_LANES void sum_of_two(double* __restrict out, const double* __restrict a, const double* __restrict b,
+                           std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) out[i] = a[i] + b[i];
 }
 MAUP_LANES void set_scaled(double* __restrict out, const double* __restrict a, double factor, std::size_t n) {
@@ -231,7 +232,8 @@ void LaneSeries::higher(std::size_t i, std::size_t k) {
     case Op::Multiply:
       return sum(x.b, 0, k);
     case Op::Power:
-      for (std::size_t j = 1; j <= k; ++j) factor[j] = (x.number * static_cast<double>(j) - static_cast<double>(k - j)) / dk;
+      for (std::size_t j = 1; j <= k; ++j)
+        factor[j] = (x.number * static_cast<double>(j) - static_cast<double>(k - j)) / dk;
       sum(i, 1, k);
       return divide_by(out, at(x.a, 0), lanes_);
     case Op::Exp:

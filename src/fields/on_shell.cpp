@@ -41,7 +41,8 @@ OnShell::OnShell(const FieldEquations& equations) : equations_(equations), s_(eq
     for (std::size_t i = 0; i < jets.size(); ++i) {
       const FieldJet jet = *s_.jet_of(jets[i]);
       if (s_.fields[jet.field].given || jet.order() == 0 || !is_linear_in(residual, slopes[i], jets[i])) continue;
-      const bool taken = std::any_of(solved_.begin(), solved_.end(), [&](const Solved& o) { return beyond(jet, o.jet) || beyond(o.jet, jet); });
+      const bool taken = std::any_of(solved_.begin(), solved_.end(),
+                                     [&](const Solved& o) { return beyond(jet, o.jet) || beyond(o.jet, jet); });
       if (!taken && (!best || is_higher(jet, *s_.jet_of(jets[*best])))) best = i;
     }
     if (!best) {

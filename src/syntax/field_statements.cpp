@@ -135,10 +135,10 @@ bool StatementParser::opens_field_expectation() const {
   if (word.is("frequencies")) return peek(1).is("of");
   if (context_.declarations.contains(word.text)) return false;
   const Token& after = peek(1);
-  const bool operand = after.kind == Token::Kind::Name || after.kind == Token::Kind::Number || after.is("(") ||
-                       after.is("-");
-  return operand && (word.is("natural") || word.is("solution") || word.is("total") || word.is("current") ||
-                     word.is("dispersion"));
+  const bool operand =
+      after.kind == Token::Kind::Name || after.kind == Token::Kind::Number || after.is("(") || after.is("-");
+  return operand &&
+         (word.is("natural") || word.is("solution") || word.is("total") || word.is("current") || word.is("dispersion"));
 }
 
 std::vector<Equation> StatementParser::equations_of_list() {

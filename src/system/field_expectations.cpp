@@ -39,7 +39,8 @@ FieldMeaning field_meaning(Elaboration& e, const written_field::Solution& x) {
                          : std::nullopt;
     if (!jet || jet->order() != 0) {
       e.diagnostics.error("E0291", one.left->span, fmt::format("`{}` is no field", e.texts.slice(one.left->span)),
-                          "A solution gives every field as a formula of space and time.", "Write for example u = sin(k x) cos(ω t).");
+                          "A solution gives every field as a formula of space and time.",
+                          "Write for example u = sin(k x) cos(ω t).");
       return std::nullopt;
     }
     const Value v = scalar_of(e, *one.right, system.dimension_of(*jet), fmt::format("`{}`", one.left->text));
@@ -51,8 +52,8 @@ FieldMeaning field_meaning(Elaboration& e, const written_field::Solution& x) {
   for (const Field& f : system.fields) varied += !f.given;
   if (out.fields.size() == varied) return out;
   e.diagnostics.error("E0291", cover(x.fields.front().left->span, x.fields.back().right->span),
-                      "a solution gives every field of the model",
-                      "The equations of one field hold the others.", "Separate them by commas: a = …, b = ….");
+                      "a solution gives every field of the model", "The equations of one field hold the others.",
+                      "Separate them by commas: a = …, b = ….");
   return std::nullopt;
 }
 
@@ -78,8 +79,10 @@ FieldMeaning field_meaning(Elaboration& e, const written_field::Total& x) {
 FieldMeaning field_meaning(Elaboration& e, const written_field::Current& x) {
   const FieldSystem& system = e.fields->system;
   if (x.fluxes.size() != system.space.size()) {
-    e.diagnostics.error("E0291", x.density->span, fmt::format("a current has {} flux{} here", system.space.size(), system.space.size() == 1 ? "" : "es"),
-                        "What is conserved flows along each space variable.", "Write one flux a space variable, separated by commas.");
+    e.diagnostics.error(
+        "E0291", x.density->span,
+        fmt::format("a current has {} flux{} here", system.space.size(), system.space.size() == 1 ? "" : "es"),
+        "What is conserved flows along each space variable.", "Write one flux a space variable, separated by commas.");
     return std::nullopt;
   }
   const Value density = evaluate_formula(e, *x.density, Place{});
@@ -87,7 +90,8 @@ FieldMeaning field_meaning(Elaboration& e, const written_field::Current& x) {
   field_expectation::Current out{expand_time_derivatives(density.scalar()), {}};
   for (std::size_t i = 0; i < x.fluxes.size(); ++i) {
     const Dimension flux = density.dimension * system.space[i].dimension / system.time_dimension;
-    const Value v = density.fits_any ? evaluate_formula(e, *x.fluxes[i], Place{}) : scalar_of(e, *x.fluxes[i], flux, "a flux");
+    const Value v =
+        density.fits_any ? evaluate_formula(e, *x.fluxes[i], Place{}) : scalar_of(e, *x.fluxes[i], flux, "a flux");
     if (v.poisoned || v.is_vector) return std::nullopt;
     out.fluxes.push_back(expand_time_derivatives(v.scalar()));
   }
@@ -137,7 +141,8 @@ Value WaveNames::combined(const syntax::Expression& x) {
   if (x.op == Operator::Add || x.op == Operator::Subtract) {
     Value sum = add(e_, parts[0], parts[1], x.op == Operator::Subtract, x, Place{});
     if (!sum.poisoned)
-      sum.parts = {x.op == Operator::Add ? parts[0].scalar() + parts[1].scalar() : parts[0].scalar() - parts[1].scalar()};
+      sum.parts = {x.op == Operator::Add ? parts[0].scalar() + parts[1].scalar()
+                                         : parts[0].scalar() - parts[1].scalar()};
     return sum;
   }
   if (x.op == Operator::Divide) return divide(e_, parts[0], parts[1], x);
@@ -150,9 +155,10 @@ FieldMeaning field_meaning(Elaboration& e, const written_field::Dispersion& x) {
   const Value left = names.value(*x.left), right = names.value(*x.right);
   if (left.poisoned || right.poisoned) return std::nullopt;
   if (!e.dimensionless && !left.fits_any && !right.fits_any && !left.dimension.same_as(right.dimension)) {
-    e.diagnostics.error("E0304", x.right->span,
-                        fmt::format("the left side is {}, this is {}", describe(left.dimension), describe(right.dimension)),
-                        "Both sides of an equation have one dimension.", "");
+    e.diagnostics.error(
+        "E0304", x.right->span,
+        fmt::format("the left side is {}, this is {}", describe(left.dimension), describe(right.dimension)),
+        "Both sides of an equation have one dimension.", "");
     return std::nullopt;
   }
   return field_expectation::Dispersion{left.scalar(), right.scalar()};

@@ -53,7 +53,8 @@ void range_of(Elaboration& e, const FieldDeclaration::Range& range) {
   for (SpaceVariable& x : system_of(e).space)
     if (x.name == range.variable.text) variable = &x;
   if (!variable) {
-    e.diagnostics.error("E0284", range.variable.span, fmt::format("`{}` is no variable of this field", range.variable.text),
+    e.diagnostics.error("E0284", range.variable.span,
+                        fmt::format("`{}` is no variable of this field", range.variable.text),
                         "A domain gives each space variable of the field its two ends.", "");
     return;
   }
@@ -88,7 +89,8 @@ void declare_space(Elaboration& e, const FieldDeclaration& s) {
   for (const syntax::Name& x : s.items.front().variables) {
     Declaration* d = e.table.find(x.text);
     if (!d || d->kind != Kind::Space) continue;
-    system.space.push_back({x.text, e.context.symbol(x.text, Role::Auxiliary), e.dimension(dimensions::length()), {}, {}, 0, x.span});
+    system.space.push_back(
+        {x.text, e.context.symbol(x.text, Role::Auxiliary), e.dimension(dimensions::length()), {}, {}, 0, x.span});
   }
   if (system.space.size() > 3)
     e.diagnostics.error("E0284", s.items.front().variables[3].span, "a field of more than three space variables",
@@ -126,9 +128,10 @@ bool check_variables(Elaboration& e, const std::vector<syntax::Name>& variables)
   if (same_variables(system_of(e), variables)) return true;
   std::string names;
   for (const SpaceVariable& x : system_of(e).space) names += (names.empty() ? "" : ", ") + x.name;
-  e.diagnostics.error("E0284", cover(variables.front().span, variables.back().span), "fields of different variables",
-                      fmt::format("One density holds all fields of a model, so that they live on the same space: {}.", names),
-                      fmt::format("Write ({}).", names));
+  e.diagnostics.error(
+      "E0284", cover(variables.front().span, variables.back().span), "fields of different variables",
+      fmt::format("One density holds all fields of a model, so that they live on the same space: {}.", names),
+      fmt::format("Write ({}).", names));
   return false;
 }
 
@@ -151,9 +154,10 @@ void declare_field(Elaboration& e, const FieldDeclaration::Item& item) {
   d->used = true;
   d->value = Value::poison();
   if (item.kind.text == "complex") {
-    e.diagnostics.error("E0506", item.kind.span, "not supported yet: a complex field",
-                        "Its real and imaginary part are two real fields.",
-                        fmt::format("Write two fields, such as {0}_r and {0}_i, and the density in them.", item.name.text));
+    e.diagnostics.error(
+        "E0506", item.kind.span, "not supported yet: a complex field",
+        "Its real and imaginary part are two real fields.",
+        fmt::format("Write two fields, such as {0}_r and {0}_i, and the density in them.", item.name.text));
     return;
   }
   if (!check_variables(e, item.variables)) return;
@@ -186,10 +190,10 @@ void check_reserved(Elaboration& e) {
     if (d.kind == Kind::Field || d.kind == Kind::Energy || !d.statement) continue;
     const std::optional<FieldJet> jet = system_of(e).jet_of_name(d.name);
     if (!jet || jet->order() == 0) continue;
-    e.diagnostics.error("E0290", d.span, fmt::format("`{}` is a derivative of the field {}", d.name,
-                                                     system_of(e).fields[jet->field].name),
-                        "The name of a field with an underscore and variables is its derivative.",
-                        "Give it another name.");
+    e.diagnostics.error(
+        "E0290", d.span,
+        fmt::format("`{}` is a derivative of the field {}", d.name, system_of(e).fields[jet->field].name),
+        "The name of a field with an underscore and variables is its derivative.", "Give it another name.");
   }
 }
 
@@ -204,9 +208,10 @@ void refuse_mechanics(Elaboration& e) {
         std::get_if<syntax::OutputStatement>(&s.body) || std::get_if<syntax::ExpectStatement>(&s.body) ||
         std::get_if<syntax::SweepStatement>(&s.body) || std::get_if<syntax::FieldStatement>(&s.body);
     if (allowed) continue;
-    e.diagnostics.error("E0505", s.span, "not supported yet: fields together with coordinates and bodies",
-                        "A model has fields, or coordinates and bodies; what couples the two is carried out by a later version.",
-                        "Leave this statement out.");
+    e.diagnostics.error(
+        "E0505", s.span, "not supported yet: fields together with coordinates and bodies",
+        "A model has fields, or coordinates and bodies; what couples the two is carried out by a later version.",
+        "Leave this statement out.");
     return;
   }
 }
@@ -238,10 +243,11 @@ bool check_jets(Elaboration& e, Expr value, const Expression& x, int time, int s
     if (system_of(e).fields[jet.field].given) continue;
     if (jet.time > time) {
       Span at = culprit_of_order(e, x, time + 1);
-      e.diagnostics.error("E0282", at.end > at.begin ? at : x.span,
-                          fmt::format("`{}` stands in the density", system_of(e).jet_name(jet)),
-                          "A density depends on fields and their velocities; accelerations are what the field equations give.",
-                          "Write it with first derivatives in time.");
+      e.diagnostics.error(
+          "E0282", at.end > at.begin ? at : x.span,
+          fmt::format("`{}` stands in the density", system_of(e).jet_name(jet)),
+          "A density depends on fields and their velocities; accelerations are what the field equations give.",
+          "Write it with first derivatives in time.");
       return false;
     }
     if (jet.order() <= space) continue;
@@ -333,19 +339,20 @@ void condition_at(Elaboration& e, Side side, const syntax::Equation& s) {
   const std::size_t along = side == Side::Left || side == Side::Right ? 0 : 1;
   const bool normal = jet && jet->time == 0 && jet->order() <= 1 && (jet->order() == 0 || jet->space[along] == 1);
   if (!normal || s.left->kind != Expression::Kind::Name) {
-    e.diagnostics.error("E0285", s.left->span, "this is no condition at a boundary",
-                        "A boundary condition gives the field or its slope: u = …, u_x = …. All others are natural: they "
-                        "follow from the density.",
-                        "`maup derive` shows the natural conditions.");
+    e.diagnostics.error(
+        "E0285", s.left->span, "this is no condition at a boundary",
+        "A boundary condition gives the field or its slope: u = …, u_x = …. All others are natural: they "
+        "follow from the density.",
+        "`maup derive` shows the natural conditions.");
     return;
   }
   const Expr value = boundary_value(e, *s.right, system.dimension_of(*jet), "a value at the boundary");
   if (!value) return;
   for (const BoundaryCondition& other : system.boundary) {
     if (other.side != side || other.jet.field != jet->field || other.jet.order() != jet->order()) continue;
-    e.diagnostics.error("E0285", s.left->span,
-                        fmt::format("`{}` is given twice at the {} end", system.jet_name(*jet), name_of(side)),
-                        fmt::format("It is already given in line {}.", e.texts.locate(other.span).line), "Keep one of them.");
+    e.diagnostics.error(
+        "E0285", s.left->span, fmt::format("`{}` is given twice at the {} end", system.jet_name(*jet), name_of(side)),
+        fmt::format("It is already given in line {}.", e.texts.locate(other.span).line), "Keep one of them.");
     return;
   }
   system.boundary.push_back({side, *jet, value, cover(s.left->span, s.right->span)});
@@ -363,8 +370,7 @@ std::optional<Side> side_named(Elaboration& e, const syntax::Name& name) {
 }
 
 void refuse_without_domain(Elaboration& e, Span span) {
-  e.diagnostics.error("E0286", span, "a boundary without a domain",
-                      "Without ends the field fills all space.",
+  e.diagnostics.error("E0286", span, "a boundary without a domain", "Without ends the field fills all space.",
                       "Give the domain of the field: `on x = 0 .. l`.");
 }
 
@@ -518,7 +524,8 @@ bool start_of_field(Elaboration& e, const syntax::StartStatement::Item& item) {
   const std::string text(e.texts.slice(item.variable->span));
   if (jet->time > 1 || jet->order() > jet->time) {
     e.diagnostics.error("E0223", item.variable->span, fmt::format("`{}` cannot be chosen", text),
-                        "A start gives the field and its velocity everywhere; their derivatives follow.", "Leave it out.");
+                        "A start gives the field and its velocity everywhere; their derivatives follow.",
+                        "Leave it out.");
     return true;
   }
   if (v.poisoned) return true;
@@ -530,7 +537,8 @@ bool start_of_field(Elaboration& e, const syntax::StartStatement::Item& item) {
   for (const FieldStart& other : e.fields->start)
     if (other.field == jet->field && other.order == jet->time) {
       e.diagnostics.error("E0208", item.variable->span, fmt::format("`{}` starts twice", text),
-                          fmt::format("Its start is already given in line {}.", e.texts.locate(other.span).line), "Keep one of them.");
+                          fmt::format("Its start is already given in line {}.", e.texts.locate(other.span).line),
+                          "Keep one of them.");
       return true;
     }
   e.fields->start.push_back({jet->field, jet->time, v.scalar(), item.variable->span});
@@ -551,8 +559,10 @@ Value value_at_place(Elaboration& e, const syntax::Expression& x) {
   std::optional<FieldJet> jet = system.jet_of_name(x.text);
   jet->time += x.primes;
   if (x.arguments.size() != system.space.size()) {
-    e.diagnostics.error("E0289", x.span, fmt::format("a place has {} coordinate{}", system.space.size(), system.space.size() == 1 ? "" : "s"),
-                        "It gives each space variable of the field its value.", "");
+    e.diagnostics.error(
+        "E0289", x.span,
+        fmt::format("a place has {} coordinate{}", system.space.size(), system.space.size() == 1 ? "" : "s"),
+        "It gives each space variable of the field its value.", "");
     return Value::poison();
   }
   PlaceValue out{{}, system.jet_symbol(*jet), {}, x.span};

@@ -343,12 +343,16 @@ ExitCode simulate_extended_model(const SimulateOptions& options, const std::stri
 /// The run of fields.
 ExitCode simulate_fields(const SimulateOptions& options, Study& study, Console& console) {
   Json document = json_document("simulate");
-  check_output_files({{"-o", options.output, FileKind::Table}}, options.model.path, study.diagnostics());
+  check_output_files({{"-o", options.output, FileKind::Table}, {"--plot", options.plot, FileKind::Picture}},
+                     options.model.path, study.diagnostics());
   const SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
+  if (options.precision && *options.precision != "double")
+    study.diagnostics().error("E0809", {}, "Fields are run in double.", "The mesh limits the digits, not the numbers.", "Leave --precision out.");
   if (!study.field_equations()) return finish(console, study, std::move(document));
-  const auto run = run_of_fields(study, settings, !options.output.empty());
+  const auto run = run_of_fields(study, settings, !options.output.empty() || !options.plot.empty());
   if (!run) return finish(console, study, std::move(document));
   if (!options.output.empty()) write_rows(options.output, run->trajectory, study.diagnostics());
+  if (!options.plot.empty()) write_picture(options.plot, field_picture(study, *run), study.diagnostics());
   if (!console.json()) console.print(field_run_text(*run));
   return finish(console, study, field_run_json(*run));
 }

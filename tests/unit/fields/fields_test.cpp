@@ -64,7 +64,10 @@ TEST_CASE("currents of a Lorentz-invariant field, and none more") {
 
 TEST_CASE("the quartic field in space has the Poincaré group and a dilation, with a mass no dilation") {
   const auto count = [](const std::string& mass) {
-    Study study = study_of("dimensionless\nparam c = 2\nfield u(x, y, z) : number\ndensity = 1/2 u'^2/c^2 - 1/2 (u_x^2 + u_y^2 + u_z^2) - u^4" + mass + "\n");
+    Study study = study_of(
+        "dimensionless\nparam c = 2\nfield u(x, y, z) : number\ndensity = 1/2 u'^2/c^2 - 1/2 (u_x^2 + u_y^2 + u_z^2) - "
+        "u^4" +
+        mass + "\n");
     REQUIRE(study.field_equations());
     return field_currents(*study.field_equations()).currents.size();
   };
@@ -80,12 +83,14 @@ TEST_CASE("a kink moves as its closed form, and the estimate tells the error") {
   Diagnostics diagnostics;
   FieldRunOptions options;
   options.duration = 2;
-  const auto run = run_fields(*study.field_equations(), {{places[0].symbol, false, 2}, {places[1].symbol, false, 2}}, options, diagnostics);
+  const auto run = run_fields(*study.field_equations(), {{places[0].symbol, false, 2}, {places[1].symbol, false, 2}},
+                              options, diagnostics);
   REQUIRE(run);
   const double gamma = 1 / std::sqrt(0.75);
   const double x[] = {1, 0.3};
   for (int i = 0; i < 2; ++i) {
-    const double error = std::abs(run->answers[static_cast<std::size_t>(i)].value - 4 * std::atan(std::exp(gamma * (x[i] - 1))));
+    const double error =
+        std::abs(run->answers[static_cast<std::size_t>(i)].value - 4 * std::atan(std::exp(gamma * (x[i] - 1))));
     CHECK(error < 2e-9);
     CHECK(error < 10 * run->answers[static_cast<std::size_t>(i)].error);
   }
@@ -95,13 +100,15 @@ TEST_CASE("a kink moves as its closed form, and the estimate tells the error") {
 TEST_CASE("the discrete field converges with the power 2p at the borders of cells") {
   const auto error = [](int cells) {
     Study study = study_of("dimensionless\nfield u(x) : number on x = 0 .. 1 cells " + std::to_string(cells) +
-                           " order 2 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\nstart u = sin(pi x)\nrun 1\nexpect u(0.5) at 1 = 0 ± 1\n");
+                           " order 2 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\nstart u = sin(pi x)\nrun "
+                           "1\nexpect u(0.5) at 1 = 0 ± 1\n");
     REQUIRE(study.field_equations());
     Diagnostics diagnostics;
     FieldRunOptions options;
     options.duration = 1;
     options.errors = false;
-    const auto run = run_fields(*study.field_equations(), {{study.model()->fields->places[0].symbol, false, 1}}, options, diagnostics);
+    const auto run = run_fields(*study.field_equations(), {{study.model()->fields->places[0].symbol, false, 1}},
+                                options, diagnostics);
     return std::abs(run->answers[0].value + 1);
   };
   // u(1/2, 1) = cos π: the error of the frequency enters squared there, of the shape linearly
@@ -112,7 +119,8 @@ TEST_CASE("the discrete field converges with the power 2p at the borders of cell
 TEST_CASE("two coupled fields, damping and a force at an end") {
   // rest under an end force: u = F x/T; the damped motion comes to it
   Study study = study_of(
-      "dimensionless\nparam F = 0.3\nfield u(x) : number on x = 0 .. 1 cells 4 order 5\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
+      "dimensionless\nparam F = 0.3\nfield u(x) : number on x = 0 .. 1 cells 4 order 5\ndensity = 1/2 u'^2 - 1/2 "
+      "u_x^2\n"
       "dissipation density = 2 u'^2\nboundary left : u = 0\nforce u(1) = F\nrun 30\nexpect u(1) at 30 = 0.3 ± 1e-9\n");
   const auto verification = study.verification();
   REQUIRE(verification);
