@@ -10,9 +10,9 @@ constexpr CodeEntry kEntries[] = {
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u^2/(1 [m^2]) "
      "u_x^2\nboundary left : u_x = 1\nrun 1 s\n",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},
-    {"E0508", "a run of fields that is not supported yet",
+    {"E0508", "a run or an expectation of fields that is not supported yet",
      "Runs are those of fields of one space variable on a domain, of densities that hold u, u' squared and u_x. All "
-     "fields have derivations, conservation laws and waves.",
+     "fields have derivations, conservation laws and waves. Expectations of fields hold at the values of the model.",
      "field u(x) : length \nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nrun 1 s\n",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nrun 1 s\n"},
     {"E0642", "accelerations of a field that are not determined",
