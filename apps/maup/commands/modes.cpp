@@ -328,7 +328,8 @@ ExitCode modes(const ModesOptions& options, Console& console) {
   const auto start = consistent_start(*study.model(), *equations, study.diagnostics());
   if (!start) return finish(console, study, json_document("modes"));
   if (study.model()->system.has_modes()) return rest(study, start->state, console);
-  PointEquations at_points(*equations, measured(*study.model()));
+  const EquationsOfMotion& solvable = equations->determined ? *equations->determined : *equations;
+  PointEquations at_points(solvable, measured(*study.model()));
   return options.locus() ? locus(options, study, at_points, start->state, console)
                          : points(options, study, at_points, start->state, console);
 }

@@ -4,6 +4,8 @@
 #include "analysis/tangent/point_functions.hpp"
 #include "linear_algebra/dense.hpp"
 
+#include <maupertuis/degenerate.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -132,6 +134,8 @@ void check(const EquationsOfMotion& equations, const Closed& closed, const Multi
 
 std::optional<FloquetResult> floquet(const Model& model, const EquationsOfMotion& equations,
                                      const FloquetOptions& options, Diagnostics& diagnostics) {
+  if (equations.determined)
+    return floquet(with_determined_system(model, equations), *equations.determined, options, diagnostics);
   if (jumps_on_its_way(model) && !can_go_through_modes(equations, diagnostics)) return std::nullopt;
   const auto closed = orbits::close_motion(model, equations, options, diagnostics);
   if (!closed) return std::nullopt;

@@ -3,6 +3,8 @@
 #include "analysis/orbits/survey.hpp"
 #include "linear_algebra/dense.hpp"
 
+#include <maupertuis/degenerate.hpp>
+
 #include <maupertuis/orbits.hpp>
 
 #include <fmt/format.h>
@@ -339,6 +341,8 @@ class LyapunovRun {
 
 std::optional<LyapunovResult> lyapunov_exponents(const Model& model, const EquationsOfMotion& equations,
                                                  const LyapunovOptions& options, Diagnostics& diagnostics) {
+  if (equations.determined)
+    return lyapunov_exponents(with_determined_system(model, equations), *equations.determined, options, diagnostics);
   if (jumps_on_its_way(model) && !can_go_through_modes(equations, diagnostics)) return std::nullopt;
   return LyapunovRun(model, equations, options, diagnostics).carry_out();
 }

@@ -4,6 +4,8 @@
 #include "analysis/orbits/section_starts.hpp"
 #include "analysis/orbits/survey.hpp"
 
+#include <maupertuis/degenerate.hpp>
+
 #include <maupertuis/integrator.hpp>
 #include <maupertuis/transform.hpp>
 
@@ -239,6 +241,8 @@ class SectionRun {
 
 std::optional<SectionResult> poincare_section(const Model& model, const EquationsOfMotion& equations,
                                               const SectionOptions& options, Diagnostics& diagnostics) {
+  if (equations.determined)
+    return poincare_section(with_determined_system(model, equations), *equations.determined, options, diagnostics);
   if (jumps_on_its_way(model) && !can_go_through_modes(equations, diagnostics)) return std::nullopt;
   return SectionRun(model, equations, options, diagnostics).carry_out();
 }
