@@ -226,7 +226,8 @@ std::string verdict(const StabilityReport& s) { return fmt::format("{}: {}", sta
 
 std::string multipliers_text(const MechanicalSystem& system, const OperatingPoint& point) {
   std::string out;
-  for (std::size_t i = 0; i < point.multipliers.size(); ++i)
+  // Determined equations have further ones, which vanish.
+  for (std::size_t i = 0; i < std::min(point.multipliers.size(), system.constraints.size()); ++i)
     out += fmt::format("{}{} {}", out.empty() ? "" : ", ", system.constraint_label(i), number(point.multipliers[i]));
   return out.empty() ? out : "  multipliers (SI): " + out + "\n";
 }
@@ -374,7 +375,7 @@ Json point_json(const MechanicalSystem& system, const OperatingPoint& point) {
     state[system.coordinates[i].name] = point.q[i];
     state[system.coordinates[i].name + "'"] = point.v[i];
   }
-  for (std::size_t i = 0; i < point.multipliers.size(); ++i)
+  for (std::size_t i = 0; i < std::min(point.multipliers.size(), system.constraints.size()); ++i)
     multipliers[system.constraints[i].multiplier.name()] = point.multipliers[i];
   for (std::size_t i = 0; i < point.inputs.size(); ++i) inputs[system.inputs[i].name] = point.inputs[i];
   return {{"t", point.t}, {"state", state}, {"multipliers", multipliers}, {"inputs", inputs}};

@@ -56,8 +56,7 @@ struct FieldCurrent {
 
 struct FieldCurrents {
   std::vector<FieldCurrent> currents;
-  std::string basis;            // what symmetries were looked for among
-  std::vector<Expr> symmetric;  // the symmetric stress-energy tensor T^{μν}, μ, ν over t, x, …; empty: none
+  std::string basis;  // what symmetries were looked for among
 };
 FieldCurrents field_currents(const FieldEquations& equations);
 

@@ -134,5 +134,5 @@ TEST_CASE("a Lagrangian whose mass matrix is singular has primary constraints, a
   CHECK(contains(one.out, "p_x^2/(2 m)"));
   const Outcome run = maup({"hamiltonian", "-", "--integrate"}, linear);
   CHECK(run.code != 0);
-  CHECK(contains(run.err, "E0407"));
+  CHECK(contains(run.err, "E1102"));
 }

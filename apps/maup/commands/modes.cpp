@@ -286,8 +286,9 @@ ExitCode modes_of_fields(const ModesOptions& options, Study& study, Console& con
     std::string trouble;
     const std::string relation = dispersion_text(study, trouble);
     if (relation.empty()) {
-      study.diagnostics().error("E0644", study.field_equations()->system().density_span, "there is no dispersion relation",
-                                trouble, "Waves need a field at rest whose coefficients are the same everywhere and at all times.");
+      study.diagnostics().error(
+          "E0644", study.field_equations()->system().density_span, "there is no dispersion relation", trouble,
+          "Waves need a field at rest whose coefficients are the same everywhere and at all times.");
       return finish(console, study, std::move(document));
     }
     document["dispersion"] = relation;
@@ -299,7 +300,8 @@ ExitCode modes_of_fields(const ModesOptions& options, Study& study, Console& con
   document["frequencies"] = Json::array();
   for (const double omega : found) {
     document["frequencies"].push_back(omega);
-    text += omega < 0 ? fmt::format("  grows at the rate {:.12g} 1/s\n", -omega) : fmt::format("  {:.12g} rad/s  {:.12g} Hz\n", omega, omega / (2 * std::acos(-1.0)));
+    text += omega < 0 ? fmt::format("  grows at the rate {:.12g} 1/s\n", -omega)
+                      : fmt::format("  {:.12g} rad/s  {:.12g} Hz\n", omega, omega / (2 * std::acos(-1.0)));
   }
   if (!console.json()) console.print(text);
   return finish(console, study, std::move(document));
@@ -316,7 +318,8 @@ ExitCode modes(const ModesOptions& options, Console& console) {
   for (const std::string& y : options.outputs) study.ask("--y", y);
   if (study.has_fields()) return modes_of_fields(options, study, console);
   if (options.dispersion && !study.wrong()) {
-    study.diagnostics().error("E0809", {}, "--dispersion asks for waves, and the model has no field.", {}, "Leave it out.");
+    study.diagnostics().error("E0809", {}, "--dispersion asks for waves, and the model has no field.", {},
+                              "Leave it out.");
     return finish_usage(console, study, "modes");
   }
   const EquationsOfMotion* equations = study.equations();

@@ -1,0 +1,74 @@
+// Degenerate Lagrangians from outside: what is told, what is left out, what every command makes of them.
+#include "json.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace cli_test;
+
+namespace {
+
+const std::string predators = R"(dimensionless
+param a = 1, b = 0.1, c = 1.5, d = 0.075
+coord x, y : number
+L = 1/2 (log(x) y'/y - log(y) x'/x) - (d x - c log(x) + b y - a log(y))
+start x = 10, y = 5
+run 6
+)";
+const std::string cawley =
+    "dimensionless\ncoord x, y, z : number\nL = x' z' + 1/2 y z^2\nstart x = 0.3, x' = 0.7\nrun 1\n";
+
+}  // namespace
+
+TEST_CASE("a Lagrangian of the first order has equilibria, frequencies, periods and runs") {
+  const auto modes = json_of(maup({"modes", "-", "--at", "x=20, y=10", "--json"}, predators));
+  REQUIRE(modes["entries"].size() == 1);
+  CHECK(modes["entries"][0]["point"]["multipliers"].empty());
+  const Outcome text = maup({"modes", "-", "--at", "x=20, y=10"}, predators);
+  CHECK_MESSAGE(text.code == 0, text.err);
+  CHECK(contains(text.out, "1.2247448"));
+  const Outcome orbit = maup({"orbits", "-", "--floquet", "--period", "5.4"}, predators);
+  CHECK_MESSAGE(orbit.code == 0, orbit.err);
+  CHECK(contains(orbit.out, "5.479716342"));
+  const auto run = json_of(maup({"simulate", "-", "--json", "--duration", "15"}, predators));
+  CHECK(std::abs(run["final"]["state"]["x"].get<double>() - 9.780002256569053638767) < 1e-10);
+  CHECK(run["final"]["multipliers"].empty());
+  const Outcome quad = maup({"simulate", "-", "--duration", "15", "--precision", "quad"}, predators);
+  CHECK(contains(quad.out, "x = 9.780002256569053638"));
+}
+
+TEST_CASE("what depends on free functions is left out, and said") {
+  const Outcome run = maup({"simulate", "-", "-o", "-"}, cawley);
+  CHECK(contains(run.err, "W0622"));
+  CHECK(contains(run.err, "N0630"));
+  const auto json = json_of(maup({"simulate", "-", "--json"}, cawley));
+  CHECK(json["final"]["state"].contains("x"));
+  CHECK_FALSE(json["final"]["state"].contains("y"));
+  CHECK_FALSE(json["final"]["errors"].contains("y'"));
+  const Outcome many = maup({"simulate", "-", "--precision", "quad"}, cawley);
+  CHECK(many.code != 0);
+  CHECK(contains(many.err, "E0631"));
+  const Outcome chosen = maup({"simulate", "-"}, cawley + "gauge y = 1 + t\n");
+  CHECK(contains(chosen.out, "y = 2"));
+}
+
+TEST_CASE("derive and hamiltonian tell the constraints of both sides") {
+  const Outcome derived = maup({"derive", "-"}, cawley);
+  CHECK(contains(derived.out, "Constraints of the Lagrangian\n  0 = z    (first generation)\n"));
+  CHECK(contains(derived.out, "2 single out a motion"));
+  const auto json = json_of(maup({"derive", "-", "--json"}, cawley));
+  CHECK(json["degenerate"]["free"].size() == 1);
+  CHECK(json["degenerate"]["motions"] == 2);
+  const Outcome dirac = maup({"hamiltonian", "-"}, cawley);
+  CHECK(contains(dirac.out, "Secondary constraints\n  z = 0\n"));
+  CHECK(contains(dirac.out, "Dirac's conjecture"));
+  const auto phase = json_of(maup({"hamiltonian", "-", "--json", "--dirac-bracket", "x", "y"}, predators));
+  CHECK(phase["dirac"]["second_class"] == 2);
+  CHECK(phase["brackets"][0]["kind"] == "dirac");
+  CHECK(phase["brackets"][0]["plain"] == "-x y");
+  const Outcome none = maup({"hamiltonian", "-", "--dirac-bracket", "x", "p_x"},
+                            "dimensionless\ncoord x : number\nL = 1/2 x'^2\nrun 1\n");
+  CHECK(none.code != 0);
+  CHECK(contains(none.err, "E1106"));
+}
