@@ -199,6 +199,8 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText&
   diagnostics.sort_by_place();
   if (diagnostics.has_errors()) return std::nullopt;
   restore_order_of_text(e.system());
+  replace_higher_derivatives(e);
+  if (diagnostics.has_errors()) return std::nullopt;
   expand_definitions(e.model);
   return std::move(e.model);
 }
