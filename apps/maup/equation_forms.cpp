@@ -69,11 +69,16 @@ Layout constraint_force(const Coordinate& c, const ReadingOrder& order) {
   return layouts::labelled(fmt::format("(Aᵀλ)[{}]", c.name), layouts::indexed(both, {lay_out(c.q, order)}));
 }
 
-/// R of a coordinate of which q'' stands in L begins with −∂²L/∂q''² q'''': such an equation is shown as −R = 0.
-bool shown_negative(const EquationsOfMotion& equations, std::size_t coordinate, bool as_residual) {
+/// R begins with −∂²L/∂q''² q'''': where that is negative the equation is shown as −R = 0.
+bool shown_negative(const EquationsOfMotion& equations, std::size_t coordinate, Expr residual) {
   const auto& higher = equations.system->higher;
-  return !as_residual && std::any_of(higher.begin(), higher.end(),
-                                     [&](const HigherDerivative& h) { return h.coordinate == coordinate; });
+  const auto h =
+      std::find_if(higher.begin(), higher.end(), [&](const HigherDerivative& x) { return x.coordinate == coordinate; });
+  if (h == higher.end()) return false;
+  const Coordinate& c = equations.system->coordinates[coordinate];
+  const Expr fourth = residual.context().symbol(c.name, Role::Coordinate, 4);
+  const Expr slope = readable(differentiate(residual, fourth), equations.order).value;
+  return split_coefficient(slope).coefficient < Rational(0);
 }
 
 /// Equations of up to the fourth order, of the coordinates of the text alone.
@@ -82,8 +87,8 @@ EquationForm higher_order_rows(const EquationsOfMotion& equations, bool as_resid
   EquationForm form;
   for (std::size_t k = 0; k < shown.coordinates.size(); ++k) {
     const Coordinate& c = equations.system->coordinates[shown.coordinates[k]];
-    const Expr row =
-        shown_negative(equations, shown.coordinates[k], as_residual) ? -shown.residual[k] : shown.residual[k];
+    const bool negative = !as_residual && shown_negative(equations, shown.coordinates[k], shown.residual[k]);
+    const Expr row = negative ? -shown.residual[k] : shown.residual[k];
     EquationLine line{c.name, {}, readable(row, equations.order), {}, {}, {}, false};
     append(form.intermediates, line.right.intermediates);
     if (as_residual) {
@@ -99,12 +104,12 @@ EquationForm higher_order_rows(const EquationsOfMotion& equations, bool as_resid
 EquationForm fourth_order_form(Study& study, bool as_residual) {
   const EquationsOfMotion& equations = *study.equations();
   EquationForm form = higher_order_rows(equations, as_residual);
-  const HigherOrderForm derived = higher_order_form(equations);
+  const HigherOrderForm derived = higher_order_form(equations), written = higher_order_form(equations.shown());
   std::vector<Expr> differences;
   for (std::size_t k = 0; k < form.lines.size(); ++k) {
     const ReadableForm& line = form.lines[k].right;
     const Expr value = without_intermediates(line.value, line.intermediates);
-    const bool negative = shown_negative(equations, derived.coordinates[k], as_residual);
+    const bool negative = !as_residual && shown_negative(equations, derived.coordinates[k], written.residual[k]);
     differences.push_back(negative ? value + derived.residual[k] : value - derived.residual[k]);
   }
   return proved(differences, as_residual ? "residual" : "standard", study) ? form : EquationForm{};
