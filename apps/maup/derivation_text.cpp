@@ -1,6 +1,7 @@
 #include "derivation_text.hpp"
 
 #include <maupertuis/degenerate.hpp>
+#include <maupertuis/higher_order.hpp>
 
 #include "quantity.hpp"
 #include "rates_form.hpp"
@@ -164,6 +165,8 @@ std::string lecture(Study& study, const EquationForm& form, const Certificate& c
   out += legend(*equations.system, order);
   if (form.in_rates) return out + rates_text(form, equations) + certificate_text(with_rates_check(certificate, form));
   out += reactions_text(equations);
+  if (!equations.system->higher.empty())
+    return out + "\n" + steps_text(higher_order_lines(equations), order) + certificate_text(certificate);
   if (study.degenerate()) out += "\n" + steps_text(degenerate_lines(*study.degenerate(), *equations.system), order);
   out += momenta_and_energy(equations, *study.derivation(false));
   return out + certificate_text(certificate);

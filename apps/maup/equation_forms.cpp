@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include <maupertuis/higher_order.hpp>
 #include <maupertuis/print.hpp>
 
 namespace maupertuis::app {
@@ -66,6 +67,52 @@ std::string free_name(const std::string& wanted, const MechanicalSystem& system)
 Layout constraint_force(const Coordinate& c, const ReadingOrder& order) {
   const Layout both = layouts::product({layouts::power(layouts::name("A"), layouts::name("T")), layouts::name("λ")});
   return layouts::labelled(fmt::format("(Aᵀλ)[{}]", c.name), layouts::indexed(both, {lay_out(c.q, order)}));
+}
+
+/// R begins with −∂²L/∂q''² q'''': where that is negative the equation is shown as −R = 0.
+bool shown_negative(const EquationsOfMotion& equations, std::size_t coordinate, Expr residual) {
+  const auto& higher = equations.system->higher;
+  const auto h =
+      std::find_if(higher.begin(), higher.end(), [&](const HigherDerivative& x) { return x.coordinate == coordinate; });
+  if (h == higher.end()) return false;
+  const Coordinate& c = equations.system->coordinates[coordinate];
+  const Expr fourth = residual.context().symbol(c.name, Role::Coordinate, 4);
+  const Expr slope = readable(differentiate(residual, fourth), equations.order).value;
+  return split_coefficient(slope).coefficient < Rational(0);
+}
+
+/// Equations of up to the fourth order, of the coordinates of the text alone.
+EquationForm higher_order_rows(const EquationsOfMotion& equations, bool as_residual) {
+  const HigherOrderForm shown = higher_order_form(equations.shown());
+  EquationForm form;
+  for (std::size_t k = 0; k < shown.coordinates.size(); ++k) {
+    const Coordinate& c = equations.system->coordinates[shown.coordinates[k]];
+    const bool negative = !as_residual && shown_negative(equations, shown.coordinates[k], shown.residual[k]);
+    const Expr row = negative ? -shown.residual[k] : shown.residual[k];
+    EquationLine line{c.name, {}, readable(row, equations.order), {}, {}, {}, false};
+    append(form.intermediates, line.right.intermediates);
+    if (as_residual) {
+      line.left = layouts::indexed(layouts::name("R"), {lay_out(c.q, equations.order)});
+      line.name = free_name("R_" + c.name, *equations.system);
+    }
+    form.lines.push_back(std::move(line));
+  }
+  return form;
+}
+
+/// Their readable forms are proved here; the certificate holds those of the system that is computed with.
+EquationForm fourth_order_form(Study& study, bool as_residual) {
+  const EquationsOfMotion& equations = *study.equations();
+  EquationForm form = higher_order_rows(equations, as_residual);
+  const HigherOrderForm derived = higher_order_form(equations), written = higher_order_form(equations.shown());
+  std::vector<Expr> differences;
+  for (std::size_t k = 0; k < form.lines.size(); ++k) {
+    const ReadableForm& line = form.lines[k].right;
+    const Expr value = without_intermediates(line.value, line.intermediates);
+    const bool negative = !as_residual && shown_negative(equations, derived.coordinates[k], written.residual[k]);
+    differences.push_back(negative ? value + derived.residual[k] : value - derived.residual[k]);
+  }
+  return proved(differences, as_residual ? "residual" : "standard", study) ? form : EquationForm{};
 }
 
 EquationForm standard_form(Study& study, bool as_residual) {
@@ -263,16 +310,20 @@ EquationForm with_definitions(EquationForm form, Study& study) {
 
 EquationForm equation_form(Form form, Study& study) {
   if (!study.equations()) return {};
+  const bool higher = !study.equations()->system->higher.empty();
   switch (form) {
     case Form::Shortest:
+      if (higher) return with_definitions(fourth_order_form(study, false), study);
       return form_in_rates_if_shorter(study, standard_form(study, false));
     case Form::Standard:
+      if (higher) return with_definitions(fourth_order_form(study, false), study);
       return standard_form(study, false);
     case Form::Solved:
       return with_definitions(solved_form(study), study);
     case Form::Matrix:
       return with_definitions(matrix_form(study), study);
     case Form::Residual:
+      if (higher) return with_definitions(fourth_order_form(study, true), study);
       return standard_form(study, true);
     case Form::Eliminated:
       return with_definitions(eliminated_form(study), study);

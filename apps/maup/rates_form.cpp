@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include <maupertuis/higher_order.hpp>
 #include <maupertuis/print.hpp>
 #include <maupertuis/rates.hpp>
 
@@ -148,6 +149,7 @@ std::string rates_text(const EquationForm& form, const EquationsOfMotion& equati
 }
 
 std::vector<DerivationStep> steps_to(const EquationForm& form, Study& study) {
+  if (!study.equations()->system->higher.empty()) return higher_order_steps(*study.equations());
   std::vector<DerivationStep> steps = study.derivation(true)->steps;
   if (!form.in_rates) return steps;
   std::erase_if(steps, [](const DerivationStep& step) {

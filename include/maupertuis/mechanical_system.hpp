@@ -164,6 +164,14 @@ struct Gauge {
   Span span;
 };
 
+/// A coordinate whose q'' stands in L (docs/theory/degenerate.md). The system holds L* = L(q, v, v', t) + p (q' − v)
+/// in its place, with coordinates of its own for v = q' and for Ostrogradsky's first momentum p.
+struct HigherDerivative {
+  std::size_t coordinate = 0, rate = 0, momentum = 0;  // of q, v, p
+  Expr acceleration_momentum;                          // p₂ = ∂L/∂q'', in q, q', q''
+  Expr velocity_momentum;                              // p₁ = ∂L/∂q' − dp₂/dt, in q, q', q'', q'''
+};
+
 /// constraint integral G = value: ∫ G dt over the path from end to end has this value (isoperimetric problems). It
 /// restricts the paths of `maup action` and enters the equations as those of L + λ G with one λ for the whole path.
 struct IntegralConstraint {
@@ -214,6 +222,8 @@ struct MechanicalSystem {
   std::vector<AppliedForce> forces;
   std::vector<Constraint> constraints;  // as written; those of quaternions at the end
   std::vector<Gauge> gauges;
+  std::vector<HigherDerivative> higher;  // in the order of the coordinates
+  Expr higher_lagrangian;                // L as written, in q, q', q'', t; empty where `higher` is
   std::vector<Release> releases;
   std::vector<IntegralConstraint> integral_constraints;
   std::vector<Contact> contacts;    // inequalities; their equations are those of a mode (contact_mode.hpp)

@@ -128,6 +128,11 @@ constexpr std::array entries{
         "", ""},
     CodeEntry{"E0631", "a quantity without a value of its own",
               "It depends on functions of time that the Lagrangian leaves open.", "", ""},
+    CodeEntry{
+        "N0632", "a Lagrangian that holds accelerations",
+        "Its equation d/dt ∂L/∂q' − ∂L/∂q − d²/dt² ∂L/∂q'' = 0 is of the fourth order (Ostrogradsky). A run takes "
+        "L(q, v, v', t) + p (q' − v) in its place.",
+        "dimensionless\ncoord q : number\nL = 1/2 q''^2 - 1/2 q^2\n", ""},
     CodeEntry{"N0628", "parameters with special values",
               "Ranks are taken at the values of the parameters. With these the class of the system is another one than "
               "for values nearby: a freedom, or a free function, more or less.",

@@ -1,5 +1,6 @@
 #include <maupertuis/contact_mode.hpp>
 #include <maupertuis/field_verification.hpp>
+#include <maupertuis/higher_order.hpp>
 #include <maupertuis/require.hpp>
 #include <maupertuis/study.hpp>
 
@@ -187,6 +188,12 @@ const Certificate* Study::certificate(const CertifyOptions& options) {
   if (certificate_ || !equations()) return certificate_ ? &*certificate_ : nullptr;
   const InterruptScope scope = interruptible();
   certificate_ = certify(*equations_, derivation_ ? &*derivation_ : nullptr, options);
+  if (!model_->system.higher.empty())
+    for (const HigherOrderProof& proof : higher_order_proofs(*equations_)) {
+      const ZeroTest& test = proof.test;
+      certificate_->checks.push_back({proof.name, proof.statement, test.verdict, true, test.points, test.error_bound,
+                                      test.reason, model_->system.coordinates.size()});
+    }
   for (const CertificateCheck& check : certificate_->checks) report(check);
   return wrong() ? nullptr : &*certificate_;
 }

@@ -92,8 +92,15 @@ Span culprit_of_order(Elaboration& e, const Expression& x, int order) {
 
 bool refuse_acceleration(Elaboration& e, const Value& v, const Expression& x, const std::string& where) {
   if (v.poisoned || v.order < 2) return false;
-  Span at = culprit_of_order(e, x, 2);
+  Span at = culprit_of_order(e, x, v.order > 2 ? 3 : 2);
   if (at.end <= at.begin) at = x.span;
+  if (v.order > 2) {
+    e.diagnostics.error("E0401", at, fmt::format("a derivative of order {} stands in {}", v.order, where),
+                        "Energies and forces depend on positions, velocities and time, a Lagrangian perhaps on "
+                        "accelerations.",
+                        "Write it with lower derivatives.");
+    return true;
+  }
   e.diagnostics.error(
       "E0401", at, fmt::format("an acceleration stands in {}", where),
       "Energies and forces depend on positions, velocities and time; accelerations are what the equations give.",

@@ -457,6 +457,11 @@ constexpr CodeEntry kEntries[] = {
      "x', u = y', w = ψ', s = x' + y'\n",
      "coord x, y : length, ψ : angle\nparam m = 1 kg, I = 1 kg m^2\nT = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\nrates v = x' "
      "cos ψ + y' sin ψ, u = -x' sin ψ + y' cos ψ, w = ψ'\n"},
+    {"E0259", "an acceleration in the Lagrangian beside what does not go with it",
+     "Where accelerations stand in L a state goes up to the third derivatives. Constraints, contacts, gauges, rates, "
+     "masses and events that set values take it to be positions and velocities.",
+     "dimensionless\ncoord x, y : number\nL = 1/2 x''^2 + 1/2 y'^2\nconstraint x = y\n",
+     "dimensionless\ncoord x, y : number\nL = 1/2 x''^2 + 1/2 y'^2\n"},
     {"E0261", "no such event",
      "What is expected of an event or a contact names it: the name behind `event`, or that at the end of a contact. A "
      "contact has an impact, is made and lost; friction sticks and slips.",

@@ -202,6 +202,8 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText&
   diagnostics.sort_by_place();
   if (diagnostics.has_errors()) return std::nullopt;
   restore_order_of_text(e.system());
+  replace_higher_derivatives(e);
+  if (diagnostics.has_errors()) return std::nullopt;
   if (e.fields) {
     e.fields->parameters = e.system().parameters;
     e.model.fields = e.fields;

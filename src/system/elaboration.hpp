@@ -6,7 +6,9 @@
 #include <maupertuis/field_system.hpp>
 #include <maupertuis/transform.hpp>
 
+#include <functional>
 #include <map>
+#include <set>
 #include <unordered_set>
 
 /// The state of one `elaborate`, passed through its parts, and the parts themselves (a file each).
@@ -40,6 +42,7 @@ struct Elaboration {
   bool independent_is_time = true;     // else L has any dimension, and there are no masses and forces
   bool lagrangian_settled = false;     // its first part has said what dimension that is
   std::shared_ptr<FieldModel> fields;  // null: the model has none
+  std::set<std::size_t> higher;        // coordinates of which q'' stands in L
   std::optional<Span> dimension_from;  // the first vector: its length is the dimension of space
 
   Elaboration(const syntax::SyntaxTree& tree, const SourceTexts& texts, const ExperimentOverrides& overrides,
@@ -250,6 +253,11 @@ void check_statement_counts(Elaboration& e);
 void warn_unused(Elaboration& e);
 /// Replaces the symbols of definitions everywhere and keeps the system as written beside it.
 void expand_definitions(Model& model);
+/// Calls `visit` on every expression of an experiment, and `starts` first on each list of values of a state.
+void visit_experiment(Experiment& x, const std::function<void(Expr&)>& visit,
+                      const std::function<void(std::vector<StartValue>&)>& starts);
+/// Where q'' stands in L: the equivalent system without it (HigherDerivative). E0259 beside what does not go with it.
+void replace_higher_derivatives(Elaboration& e);
 
 /// Values of parameters in the place of the model's, before anything is made of them; overrides.cpp.
 void override_parameters(Elaboration& e);

@@ -148,13 +148,29 @@ Value lagrangian_of_any_dimension(Elaboration& e, const syntax::Expression& x, c
   return v;
 }
 
+/// Whether L may hold the accelerations that stand in it; their coordinates are noted.
+bool note_higher(Elaboration& e, const Value& v) {
+  if (v.poisoned || v.is_vector || v.order < 2) return false;
+  std::set<std::size_t> found;
+  const Expr value = expand_time_derivatives(v.scalar());
+  for (const Expr& symbol : symbols_of({&value, 1})) {
+    if (symbol.order() < 2 || symbol.role() != Role::Coordinate) continue;
+    const Coordinate* c = e.system().find_coordinate(symbol.name());
+    if (symbol.order() > 2 || !c) return false;
+    found.insert(static_cast<std::size_t>(c - e.system().coordinates.data()));
+  }
+  e.higher.insert(found.begin(), found.end());
+  return true;
+}
+
 /// The value of a given energy, with what each of them may depend on; nothing after a mistake.
 std::optional<Expr> given_value(Elaboration& e, const EnergyStatement& s) {
   const std::string name = fmt::format("the {}", name_of_energy(s.which));
   const bool any = s.which == Which::L && !e.independent_is_time;
   const Value v =
       any ? lagrangian_of_any_dimension(e, *s.value, name) : scalar_of(e, *s.value, dimension_of(s.which), name);
-  if (v.poisoned || refuse_acceleration(e, v, *s.value, name)) return std::nullopt;
+  const bool higher = s.which == Which::L && note_higher(e, v);
+  if (v.poisoned || (!higher && refuse_acceleration(e, v, *s.value, name))) return std::nullopt;
   if (s.which != Which::V || v.order < 1) return v.scalar();
   e.diagnostics.error("E0405", culprit_of_order(e, *s.value, 1), "a velocity stands in the potential energy V",
                       "A potential energy depends on positions (and perhaps on time); what depends on velocities is a "

@@ -50,6 +50,8 @@ void for_each_expression(MechanicalSystem& s, const std::function<void(Expr&)>& 
   }
   for (Constraint& c : s.constraints) visit(c.value);
   for (Gauge& g : s.gauges) visit(g.value);
+  for (HigherDerivative& h : s.higher) visit(h.acceleration_momentum), visit(h.velocity_momentum);
+  if (s.higher_lagrangian) visit(s.higher_lagrangian);
   const auto friction = [&](Friction& f) {
     vector(f.slip);
     for (Expr* x : {&f.kinetic, &f.static_, &f.normal})
@@ -67,6 +69,7 @@ void for_each_expression(MechanicalSystem& s, const std::function<void(Expr&)>& 
 /// Calls `visit` on every expression of an expectation.
 struct ExpectationVisitor {
   const std::function<void(Expr&)>& visit;
+  const std::function<void(std::vector<StartValue>&)>& visit_starts;
 
   void present(Expr& e) const {
     if (e) visit(e);
@@ -75,6 +78,7 @@ struct ExpectationVisitor {
     for (Expr& e : list) visit(e);
   }
   void starts(std::vector<StartValue>& list) const {
+    visit_starts(list);
     for (StartValue& s : list) visit(s.value);
   }
   void number(expectation::Number& n) const { visit(n.value), present(n.tolerance.size); }
@@ -121,12 +125,15 @@ struct ExpectationVisitor {
   void operator()(expectation::Error&) const {}
 };
 
-void for_each_expression(Experiment& x, const std::function<void(Expr&)>& visit) {
+}  // namespace
+
+void visit_experiment(Experiment& x, const std::function<void(Expr&)>& visit,
+                      const std::function<void(std::vector<StartValue>&)>& starts) {
+  const ExpectationVisitor of_expectation{visit, starts};
   const auto present = [&](Expr& e) {
     if (e) visit(e);
   };
-  for (auto* list : {&x.start, &x.at})
-    for (StartValue& s : *list) visit(s.value);
+  for (auto* list : {&x.start, &x.at}) of_expectation.starts(*list);
   if (x.path) {
     for (ExprVector* end : {&x.path->from, &x.path->to})
       for (Expr& component : *end) present(component);
@@ -148,11 +155,16 @@ void for_each_expression(Experiment& x, const std::function<void(Expr&)>& visit)
     for (Expr& e : d.sizes) visit(e);
     for (Expr& e : d.direction) visit(e);
   }
-  const ExpectationVisitor of_expectation{visit};
   for (Expectation& p : x.expectations) std::visit(of_expectation, p.kind);
   for (AskedFormula& f : x.asked) visit(f.value);
   present(x.section);
   if (x.given_path) of_expectation.path(*x.given_path);
+}
+
+namespace {
+
+void for_each_expression(Experiment& x, const std::function<void(Expr&)>& visit) {
+  visit_experiment(x, visit, [](std::vector<StartValue>&) {});
 }
 
 }  // namespace

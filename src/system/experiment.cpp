@@ -55,7 +55,8 @@ std::optional<StartValue> start_variable(Elaboration& e, const Expression& x) {
     return std::nullopt;
   }
   d->used = true;
-  if (refuse_acceleration_of_start(e, x)) return std::nullopt;
+  const bool higher = x.primes <= 3 && e.higher.count(d->index);  // a state is (q, q', q'', q''') then
+  if (!higher && refuse_acceleration_of_start(e, x)) return std::nullopt;
   if (d->value.poisoned) return std::nullopt;
   StartValue s;
   s.order = x.primes;
@@ -126,7 +127,7 @@ std::optional<StartValue> start_value(Elaboration& e, const syntax::StartStateme
     return std::nullopt;
   }
   const Coordinate& c = e.system().coordinates[s->coordinate];
-  const Dimension expected = s->order == 0 ? c.dimension : c.dimension / e.time();
+  const Dimension expected = c.dimension / pow(e.time(), s->order);
   const Value v = constant_of(e, *item.value, expected, fmt::format("`{}`", e.texts.slice(item.variable->span)));
   if (v.poisoned) return std::nullopt;
   warn_of_degrees(e, v, expected, *item.value);

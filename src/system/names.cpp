@@ -58,12 +58,18 @@ Value refuse_as_quantity(Elaboration& e, Declaration& d, const Expression& x) {
   return Value::poison();
 }
 
+/// Third and fourth derivatives have a meaning where the second stands in L.
 bool refuse_high_order(Elaboration& e, const Expression& x) {
   if (x.primes <= 2) return false;
+  const Declaration* d = x.kind == Expression::Kind::Name ? e.table.find(x.text) : nullptr;
+  const bool higher = d && d->kind == Kind::Coordinate && d->done && e.higher.count(d->index);
+  if (higher && x.primes <= 4) return false;
   constexpr int shown = 8;  // a thousand primes are not read, they are counted
   const std::string written = x.primes <= shown ? std::string(e.texts.slice(x.span)) : x.text + "''…";
   e.diagnostics.error("E0401", x.span, fmt::format("`{}` is a derivative of order {}", written, x.primes),
-                      "Mechanics knows positions, velocities and accelerations.", "");
+                      higher ? "Its equation of motion is of the fourth order."
+                             : "Mechanics knows positions, velocities and accelerations.",
+                      "");
   return true;
 }
 

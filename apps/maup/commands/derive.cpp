@@ -15,6 +15,7 @@
 #include <maupertuis/contact_mode.hpp>
 #include <maupertuis/couplings.hpp>
 #include <maupertuis/degenerate.hpp>
+#include <maupertuis/higher_order.hpp>
 #include <maupertuis/print.hpp>
 #include <maupertuis/reactions.hpp>
 #include <maupertuis/simulation.hpp>
@@ -134,7 +135,11 @@ Json document_of(const DeriveOptions& options, Study& study, const EquationForm&
   const std::string shown_form = form.in_rates ? "rates" : options.form.empty() ? "standard" : options.form;
   document["form"] = options.eliminate ? "eliminated" : shown_form;
   document["coordinates"] = Json::array();
-  for (const Coordinate& c : equations->system->coordinates) document["coordinates"].push_back(c.name);
+  const bool higher = !equations->system->higher.empty();
+  for (const EquationLine& line : form.lines)
+    if (higher) document["coordinates"].push_back(line.coordinate);
+  for (const Coordinate& c : equations->system->coordinates)
+    if (!higher) document["coordinates"].push_back(c.name);
   const ReadingOrder& rates = form.order(*equations);
   document["equations"] = lines_json(form.lines, rates);
   if (form.in_rates) {
@@ -147,6 +152,12 @@ Json document_of(const DeriveOptions& options, Study& study, const EquationForm&
   document["intermediates"] = Json::array();
   for (const Intermediate& i : form.intermediates)
     document["intermediates"].push_back({{"name", to_plain(i.symbol, order)}, {"plain", to_plain(i.value, order)}});
+  if (higher) {
+    document["higher_order"] = steps_json(higher_order_lines(*equations), order);
+    if (options.steps) document["steps"] = steps_json(steps_to(form, study), order);
+    document["certificate"] = to_json(*certificate);
+    return document;
+  }
   const bool entry_by_entry = options.form == "matrix" || !couples_too_much_to_read(*equations);
   if (entry_by_entry)
     add_mass_matrix(document, *equations);
@@ -189,7 +200,9 @@ std::string in_notation(const DeriveOptions& options, Notation notation, Study& 
       add(notation == Notation::Plain ? language_line(line, order) : shown_line(line, order));
   if (study.degenerate() && notation != Notation::Plain)
     for (FormulaLine& line :
-         step_lines(degenerate_lines(*study.degenerate(), *equations.system), *equations.system, order))
+         step_lines(equations.system->higher.empty() ? degenerate_lines(*study.degenerate(), *equations.system)
+                                                     : higher_order_lines(equations),
+                    *equations.system, order))
       lines.push_back(std::move(line));
   for (const Intermediate& i : form.intermediates) add(definition_line(i, *equations.system, order));
   if (form.in_rates && notation != Notation::Plain)

@@ -119,7 +119,25 @@ class Messages {
     return asked;
   }
 
+  /// "the Lagrangian holds q''": its order, and what a run carries for it.
+  void higher() {
+    const auto& all = system().coordinates;
+    std::vector<std::string> names, rates;
+    for (const HigherDerivative& h : system().higher) {
+      names.push_back(fmt::format("{}''", all[h.coordinate].name));
+      rates.push_back(
+          fmt::format("{} = {}' and its momentum {}", all[h.rate].name, all[h.coordinate].name, all[h.momentum].name));
+    }
+    diagnostics_.note(
+        "N0632", place(), "the Lagrangian holds " + joined(names),
+        fmt::format("{} of order {}: {} single{} out a motion.",
+                    all.size() == 3 ? "The equation of motion is" : "The equations of motion are together",
+                    analysis_.motions, count(analysis_.motions, "number"), analysis_.motions == 1 ? "s" : ""),
+        fmt::format("A run carries {}.", joined(rates)));
+  }
+
   void degenerate() {
+    if (!system().higher.empty()) return higher();
     std::vector<std::string> massless;
     for (std::size_t i = 0; i < system().coordinates.size(); ++i)
       if (has_no_inertia(i)) massless.push_back("`" + system().coordinates[i].name + "`");
