@@ -21,8 +21,6 @@ std::string title(int generation) {
              : fmt::format("Constraints of generation {}", generation + 1);
 }
 
-std::string epsilon(std::size_t order) { return "ε" + std::string(order, '\''); }
-
 class DiracLines {
  public:
   DiracLines(const DiracAnalysis& found, const Hamiltonian& h) : found_(found), h_(h) {}
@@ -90,8 +88,8 @@ class DiracLines {
   Expr with_epsilon(const ExprVector& parts) const {
     Context& context = *h_.system->context;
     ExprVector terms;
-    for (std::size_t k = 0; k < parts.size(); ++k)
-      terms.push_back(context.symbol(epsilon(k), Role::Auxiliary) * parts[k]);
+    for (std::size_t k = 0; k < parts.size(); ++k)  // a function of t alone, as an input is
+      terms.push_back(context.symbol("ε", Role::Input, static_cast<int>(k)) * parts[k]);
     return context.sum(terms);
   }
 
