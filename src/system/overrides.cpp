@@ -87,7 +87,8 @@ Elaboration::Elaboration(const Elaboration& outer, const syntax::SyntaxTree& tre
       context(outer.context),
       values(outer.values),
       exact_values(outer.exact_values),
-      dimensionless(outer.dimensionless) {
+      dimensionless(outer.dimensionless),
+      higher(outer.higher) {
   model.system.context = outer.model.system.context;
   model.system.space_dimension = outer.model.system.space_dimension;
   model.system.independent = outer.model.system.independent;

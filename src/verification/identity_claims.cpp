@@ -219,6 +219,7 @@ void IdentityClaims::decide(const expectation::Equation& e, ExpectationResult& r
   result.actual = test.verdict == Verdict::Undecided ? "undecided" : "does not follow";
   result.message = failure(test, {"Along the motion, left side − right side", along().put_in(difference)});
   if (test.verdict != Verdict::Nonzero) return;
+  if (!equations_.system->higher.empty()) return;  // its rows are not those that a reader writes
   const auto resemblance = resembled_equation(difference, equations_);
   if (resemblance) result.message = resemblance->text;
   result.pitfall = diagnose_claim(difference, equations_, resemblance ? &*resemblance : nullptr);

@@ -244,7 +244,7 @@ Rank ReadingRanks::term(Expr term, bool own_first) const {
     for (const Expr& s : symbols_of({&term, 1}))
       if (s.role() == Role::Multiplier) rank.push_back(symbol_rank(s));
   } else if (contents.highest_order >= 2) {
-    rank = {0};
+    rank = {0, static_cast<std::uint32_t>(4 - std::min(contents.highest_order, 4))};  // q'''' first
     std::uint32_t first = ~0u;
     for (const Expr& s : symbols_of({&term, 1}))
       if (s.role() == Role::Coordinate && s.order() >= 2) first = std::min(first, rate_rank(s, own_first));

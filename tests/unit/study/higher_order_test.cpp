@@ -81,6 +81,21 @@ TEST_CASE("a term linear in q'' leaves an equation of the second order") {
   CHECK(result->final.q[0] == doctest::Approx(2).epsilon(1e-14));
 }
 
+TEST_CASE("a start beside the text gives second and third derivatives as well; energies by parts and friction") {
+  Study study =
+      study_of("coord q : number\nT = 1/2 q'^2\nV = 1/2 q^2\nL += -1/2 q''^2\nD = 1/2 q'^2\nrun 1\nstart q = 1\n");
+  study.override_with(OverrideKind::Start, "--start", "q'' = 2, q''' = -3");
+  const auto result = study.motion();
+  REQUIRE_MESSAGE(result, messages_of(study));
+  CHECK(study.diagnostics().items().size() == 1);  // N0632
+  // q'''' + q'' + q' + q = 0 by its power series
+  double c[40] = {1, 0, 1, -0.5}, q = 0;
+  for (int k = 0; k + 4 < 40; ++k)
+    c[k + 4] = -((k + 2) * (k + 1) * c[k + 2] + (k + 1) * c[k + 1] + c[k]) / ((k + 4.0) * (k + 3) * (k + 2) * (k + 1));
+  for (const double x : c) q += x;
+  CHECK(result->final.q[0] == doctest::Approx(q).epsilon(1e-14));
+}
+
 TEST_CASE("expectations about fourth derivatives can fail") {
   const auto verdict = [](const std::string& line) {
     Study study = study_of(kPaisUhlenbeck + "start q = 1, q'' = -1\nrun 1\nexpect " + line + "\n");
