@@ -16,7 +16,7 @@ namespace {
 // A second is promised; a loaded machine may take several times that.
 constexpr double soon = 20, moment = 0.25;
 
-const char* const henon = PROJECT_DIR "/models/henon_heiles.lag";
+const char* const star_in_a_galaxy = PROJECT_DIR "/models/henon_heiles.lag";
 const char* const driven = PROJECT_DIR "/models/double_pendulum.lag";
 
 /// A chain of pendulums: its equations are far longer than its text.
@@ -54,8 +54,8 @@ TEST_CASE("every command ends soon after the signal") {
       {"invariants", links},
       {"hamiltonian", model, "--integrate", "--duration", "100000000s"},
       {"orbits", driven, "--lyapunov", "--duration", "100000000s"},
-      {"orbits", henon, "--section", "x = 0 rising", "--crossings", "1000000000"},
-      {"orbits", henon, "--section", "x = 0 rising", "--starts", "100000", "--energy", "0.125"},
+      {"orbits", star_in_a_galaxy, "--section", "x = 0 rising", "--crossings", "1000000000"},
+      {"orbits", star_in_a_galaxy, "--section", "x = 0 rising", "--starts", "100000", "--energy", "0.125"},
       {"orbits", driven, "--strobe", "1000s", "--crossings", "1000000000"},
       {"modes", model, "--at", "100000000s"},
       {"compare", model, model, "--duration", "100000000s"},
@@ -74,7 +74,7 @@ TEST_CASE("every command ends soon after the signal") {
 TEST_CASE("what was found until then is printed and called partial") {
   const Folder folder;
   const Outcome section = interrupted(
-      {"orbits", henon, "--section", "x = 0 rising", "--crossings", "1000000000", "--json"}, SIGINT, moment);
+      {"orbits", star_in_a_galaxy, "--section", "x = 0 rising", "--crossings", "1000000000", "--json"}, SIGINT, moment);
   check_end(section);
   const auto document = nlohmann::json::parse(section.out, nullptr, false);
   REQUIRE_FALSE(document.is_discarded());

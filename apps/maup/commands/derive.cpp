@@ -304,7 +304,8 @@ ExitCode derive_modes(const DeriveOptions& options, Study& study, Console& conso
 }
 
 ExitCode derive_fields(const DeriveOptions& options, Study& study, Console& console) {
-  if (!options.emit.empty() || options.modes || options.eliminate || (!options.form.empty() && options.form != "standard")) {
+  if (!options.emit.empty() || options.modes || options.eliminate ||
+      (!options.form.empty() && options.form != "standard")) {
     study.diagnostics().error("E0809", {}, "Equations of fields have one form.", {},
                               "--steps, --latex, --mathml, --plain and --json show it.");
     return finish_usage(console, study, "derive");
