@@ -38,9 +38,9 @@ DegenerateAnalysis analyse_degenerate(const EquationsOfMotion& equations, const 
 Bindings generic_state(const Model& model);
 
 /// Equations that determine all accelerations: some rows of Lagrange's are replaced by the derivatives of the
-/// constraints that were found, each with a multiplier of its own, which is what remains of the replaced row and
-/// vanishes along the motion; accelerations that are free are 0. Constraints that were found are constraints of the
-/// new system, whose forces are none. Nothing where the analysis did not close.
+/// constraints that were found, on which they hold by themselves. In their place stands that the multipliers of these
+/// constraints, whose forces are none, vanish; accelerations that are free are 0. Nothing where the analysis did not
+/// close.
 std::optional<EquationsOfMotion> determined_equations(const EquationsOfMotion& equations,
                                                       const DegenerateAnalysis& analysis);
 

@@ -157,7 +157,9 @@ std::optional<EquationsOfMotion> determined_equations(const EquationsOfMotion& e
   for (std::size_t k = 0; k < choice.held.size(); ++k) {
     const Constraint c = as_constraint(choice.held[k], k + 1, context);
     hold(out, *system, c);
-    if (k < dropped.size()) out.constraint_forces[dropped[k]] = out.constraint_forces[dropped[k]] + c.multiplier;
+    if (k >= dropped.size()) continue;
+    out.residual[dropped[k]] = c.multiplier;
+    out.constraint_forces[dropped[k]] = context.number(0);
   }
   system->written = nullptr;
   system->gauges.clear();
