@@ -230,7 +230,7 @@ bool StatementParser::opens_degenerate() const {
 // constraints : p_y ; z ; p_x,   first class = 3,   motions = 2,   contradiction
 expectation::Kind StatementParser::expect_degenerate() {
   const Token& word = next();
-  if (word.is("contradiction")) return expectation::Error{{"E0623", word.span}};
+  if (word.is("contradiction")) return expectation::Error{{"contradiction", word.span}};
   if (word.is("constraints")) {
     next();
     expectation::PhaseConstraints out;

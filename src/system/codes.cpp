@@ -461,7 +461,7 @@ constexpr CodeEntry kEntries[] = {
      "Where accelerations stand in L a state goes up to the third derivatives. Constraints, contacts, gauges, rates, "
      "masses and events that set values take it to be positions and velocities.",
      "dimensionless\ncoord x, y : number\nL = 1/2 x''^2 + 1/2 y'^2\nconstraint x = y\n",
-     "dimensionless\ncoord x, y : number\nL = 1/2 x''^2 + 1/2 y'^2\n"},
+     "dimensionless\ncoord x, y : number\nL = 1/2 x'^2 + 1/2 y'^2\nconstraint x = y\n"},
     {"E0261", "no such event",
      "What is expected of an event or a contact names it: the name behind `event`, or that at the end of a contact. A "
      "contact has an impact, is made and lost; friction sticks and slips.",
@@ -573,6 +573,9 @@ constexpr CodeEntry kEntries[] = {
      "current ρ u' flux -T u_x, 0\n",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nexpect "
      "current ρ u' flux -T u_x\n"},
+    {"E0509", "an expectation of fields at other values of parameters",
+     "`expect … with a = 2` is carried out for models of coordinates; one with fields is verified at its own values.",
+     "", ""},
     {"E0504", "a start that is not supported yet",
      "A start gives coordinates, their velocities, and the angular velocities of bodies, B.ω. What else follows from "
      "them, such as the velocity of a point, is solved for by a later version.",

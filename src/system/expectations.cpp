@@ -462,7 +462,7 @@ bool refuse_motion_of_path(Elaboration& e, const written::Kind& kind, Span line)
 void elaborate_expectation(Elaboration& e, const syntax::ExpectStatement& s, Span line) {
   if (refuse_motion_of_path(e, s.kind, line)) return;
   if (e.fields && s.with) {
-    e.diagnostics.error("E0508", *s.with, "not supported yet: an expectation of fields at other values of parameters",
+    e.diagnostics.error("E0509", *s.with, "not supported yet: an expectation of fields at other values of parameters",
                         "The expectations of fields are those at the values of the model.",
                         "Leave `with` out, or give another model these values.");
     return;

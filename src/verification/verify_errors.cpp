@@ -11,7 +11,8 @@ std::optional<Verification> verify_errors(const syntax::SyntaxTree& tree, const 
     const auto* expect = std::get_if<syntax::ExpectStatement>(&statement.body);
     const auto* error = expect ? std::get_if<syntax::expectation::Error>(&expect->kind) : nullptr;
     if (!error) continue;
-    const std::string& code = error->code.text;
+    // `expect contradiction`: no motion obeys the Lagrangian.
+    const std::string code = error->code.text == "contradiction" ? "E0623" : error->code.text;
     ExpectationResult result;
     result.line = source.locate(statement.span.begin).line;
     result.text = std::string(source.slice(statement.span));

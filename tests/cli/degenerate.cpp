@@ -23,8 +23,8 @@ const std::string cawley =
 
 TEST_CASE("a Lagrangian of the first order has equilibria, frequencies, periods and runs") {
   const auto modes = json_of(maup({"modes", "-", "--at", "x=20, y=10", "--json"}, predators));
-  REQUIRE(modes["entries"].size() == 1);
-  CHECK(modes["entries"][0]["point"]["multipliers"].empty());
+  REQUIRE(modes["points"].size() == 1);
+  CHECK(modes["points"][0]["multipliers"].empty());
   const Outcome text = maup({"modes", "-", "--at", "x=20, y=10"}, predators);
   CHECK_MESSAGE(text.code == 0, text.err);
   CHECK(contains(text.out, "1.2247448"));
@@ -39,7 +39,7 @@ TEST_CASE("a Lagrangian of the first order has equilibria, frequencies, periods 
 }
 
 TEST_CASE("what depends on free functions is left out, and said") {
-  const Outcome run = maup({"simulate", "-", "-o", "-"}, cawley);
+  const Outcome run = maup({"simulate", "-"}, cawley);
   CHECK(contains(run.err, "W0622"));
   CHECK(contains(run.err, "N0630"));
   const auto json = json_of(maup({"simulate", "-", "--json"}, cawley));

@@ -1,6 +1,6 @@
-#include "fields_text.hpp"
 #include "columns.hpp"
 #include "extended_text.hpp"
+#include "fields_text.hpp"
 #include "numbers.hpp"
 #include "outcome.hpp"
 #include "output_files.hpp"
@@ -347,7 +347,8 @@ ExitCode simulate_fields(const SimulateOptions& options, Study& study, Console& 
                      options.model.path, study.diagnostics());
   const SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
   if (options.precision && *options.precision != "double")
-    study.diagnostics().error("E0809", {}, "Fields are run in double.", "The mesh limits the digits, not the numbers.", "Leave --precision out.");
+    study.diagnostics().error("E0809", {}, "Fields are run in double.", "The mesh limits the digits, not the numbers.",
+                              "Leave --precision out.");
   if (!study.field_equations()) return finish(console, study, std::move(document));
   const auto run = run_of_fields(study, settings, !options.output.empty() || !options.plot.empty());
   if (!run) return finish(console, study, std::move(document));
@@ -357,9 +358,17 @@ ExitCode simulate_fields(const SimulateOptions& options, Study& study, Console& 
   return finish(console, study, field_run_json(*run));
 }
 
+/// By the text alone: what options say beside the model has to be said before it is elaborated.
+bool declares_fields(const syntax::SyntaxTree* tree) {
+  return tree && std::any_of(tree->statements.begin(), tree->statements.end(), [](const syntax::Statement& s) {
+           const auto* of_field = std::get_if<syntax::FieldStatement>(&s.body);
+           return of_field && of_field->what == "field";
+         });
+}
+
 ExitCode simulate_in_any_precision(const SimulateOptions& options, Console& console) {
   Study study = open_study(options.model);
-  if (study.has_fields()) return simulate_fields(options, study, console);
+  if (declares_fields(study.tree())) return simulate_fields(options, study, console);
   const std::string digits = options.precision ? *options.precision : precision_of(study.tree());
   return digits == "quad" || digits == "100" ? simulate_extended_model(options, digits, study, console)
                                              : simulate_model(options, study, console);
