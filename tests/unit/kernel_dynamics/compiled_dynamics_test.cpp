@@ -55,6 +55,9 @@ TEST_CASE("models of the gallery: as the interpreter") {
     for (const auto& file : std::filesystem::directory_iterator(std::string(PROJECT_DIR "/") + folder)) {
       if (file.path().extension() != ".lag") continue;
       ModelText model(text_of(file.path()));
+      const std::string name = file.path().filename().string();
+      // Their mass matrix alone does not determine the motion.
+      if (name.starts_with("degen_") || name.starts_with("field_") || !model.system->higher.empty()) continue;
       Dynamics a(model.equations, compiled);
       CAPTURE(file.path().filename().string());
       if (model.system->constrained() || a.n() == 0) {
