@@ -45,8 +45,10 @@ struct ConstraintChain {
     Closed,         // nothing new comes
     Contradiction,  // the last constraint cannot be fulfilled
     Unreached,      // no state was found that fulfils the last constraint together with those before it
+    Varies,         // what vanishes near the start does not vanish elsewhere: the class is that of one region
   };
   Outcome outcome = Outcome::Closed;
+  Expr varying;  // Varies: the function
   std::vector<FoundConstraint> constraints;
   std::vector<LinearCondition> conditions;   // those of the problem, then the derivatives of the constraints
   std::shared_ptr<const PointsWhere> where;  // points of the final manifold; null where there are none

@@ -133,6 +133,13 @@ constexpr std::array entries{
         "Its equation d/dt ∂L/∂q' − ∂L/∂q − d²/dt² ∂L/∂q'' = 0 is of the fourth order (Ostrogradsky). A run takes "
         "L(q, v, v', t) + p (q' − v) in its place.",
         "dimensionless\ncoord q : number\nL = 1/2 q''^2 - 1/2 q^2\n", ""},
+    CodeEntry{
+        "E0633", "a Lagrangian whose class is not the same everywhere",
+        "What vanishes near the start, a coefficient of an acceleration or what would be a constraint, does not "
+        "vanish elsewhere: behind a switch, or where a narrow bump of inertia lies. A motion that goes there would "
+        "obey other equations, and a run from here would not know.",
+        "dimensionless\ncoord x, y : number\nL = 1/2 max(x - 3, 0)^2 x'^2 + x y' - 1/2 (x^2 + y^2)\nstart x = 1\n",
+        "dimensionless\ncoord x, y : number\nL = x y' - 1/2 (x^2 + y^2) - max(x - 3, 0)^2\nstart x = 1\n"},
     CodeEntry{"N0628", "parameters with special values",
               "Ranks are taken at the values of the parameters. With these the class of the system is another one than "
               "for values nearby: a freedom, or a free function, more or less.",

@@ -31,6 +31,9 @@ class DiracLines {
     if (found_.outcome != ConstraintChain::Outcome::Closed) {
       sentence("Classes", found_.outcome == ConstraintChain::Outcome::Contradiction
                               ? "The last constraint cannot be fulfilled: there is no motion."
+                          : found_.outcome == ConstraintChain::Outcome::Varies
+                              ? "What vanishes near the start does not vanish elsewhere: the classes are not the same "
+                                "everywhere."
                               : "No state near the start was found that fulfils the last constraint.");
       return std::move(lines_);
     }

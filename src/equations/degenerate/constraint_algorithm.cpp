@@ -1,5 +1,6 @@
 #include <maupertuis/constraint_algorithm.hpp>
 #include <maupertuis/linear_system.hpp>
+#include <maupertuis/switches.hpp>
 #include <maupertuis/transform.hpp>
 
 #include "equations/degenerate/real_part.hpp"
@@ -71,8 +72,13 @@ class Algorithm {
     std::vector<std::pair<Expr, bool>> left;
     for (std::size_t r = 0; r < out_.conditions.size(); ++r)
       if (std::find(chosen.begin(), chosen.end(), r) == chosen.end()) left.push_back(remainder(r, chosen));
+    if (out_.outcome != ConstraintChain::Outcome::Closed) return true;
     for (const auto& [value, follows] : left) {
-      if (value.is_zero() || points_->vanishes(value) != Verdict::Nonzero) continue;
+      if (value.is_zero()) continue;
+      if (points_->vanishes(value) != Verdict::Nonzero) {
+        if (!vanishes_everywhere(value)) return true;
+        continue;
+      }
       for (const Expr& part : real_parts(value, problem_.order, problem_.states)) add(part, generation, follows);
       if (out_.outcome != ConstraintChain::Outcome::Closed) return true;
     }
@@ -116,7 +122,11 @@ class Algorithm {
   std::pair<Expr, bool> remainder(std::size_t r, const std::vector<std::size_t>& chosen) {
     const LinearCondition& row = out_.conditions[r];
     const std::vector<std::size_t> part = taking_part(r, chosen);
-    if (part.empty()) return {row.rest, row.is_derivative};
+    if (part.empty()) {
+      for (const Expr& coefficient : row.coefficients)
+        if (!vanishes_everywhere(coefficient)) break;
+      return {row.rest, row.is_derivative};
+    }
     const std::vector<std::size_t> columns = pivots(part);
     Context& context = row.rest.context();
     ExprMatrix system{part.size(), part.size() + 1, {}};  // Σ_k c_k B_kj = r_j
@@ -126,9 +136,44 @@ class Algorithm {
     }
     const auto weights = solve_linear(system);
     if (!weights) throw std::logic_error("rows that are independent at points have no solution; please report");
-    ExprVector terms{row.rest};
-    for (std::size_t k = 0; k < part.size(); ++k) terms.push_back(-((*weights)[k] * out_.conditions[part[k]].rest));
-    return {context.sum(terms), false};
+    const auto less_combination = [&](const std::function<Expr(const LinearCondition&)>& entry) {
+      ExprVector terms{entry(row)};
+      for (std::size_t k = 0; k < part.size(); ++k) terms.push_back(-((*weights)[k] * entry(out_.conditions[part[k]])));
+      return context.sum(terms);
+    };
+    for (std::size_t j = 0; j < row.coefficients.size(); ++j) {
+      if (std::find(columns.begin(), columns.end(), j) != columns.end()) continue;
+      if (!vanishes_everywhere(less_combination([j](const LinearCondition& c) { return c.coefficients[j]; }))) break;
+    }
+    return {less_combination([](const LinearCondition& c) { return c.rest; }), false};
+  }
+
+  /// What is 0 at the states near the start must be so wherever a motion may go: identically, or on the constraints by
+  /// more than 60 digits, with the formulas of both sides of each of its switches. max(x − 3, 0)² is 0 at x = 1, and an
+  /// inertia beyond 3. Else the outcome is Varies.
+  bool vanishes_everywhere(Expr e) {
+    if (e.is_zero() || zero_test(e).verdict == Verdict::Zero) return true;
+    bool everywhere = points_->vanishes(e) == Verdict::Zero;
+    for (const Expr& g : switches_of({&e, 1}))
+      for (const bool above : {true, false}) everywhere = everywhere && vanishes_on_side(e, g, above);
+    if (everywhere) return true;
+    out_.outcome = ConstraintChain::Outcome::Varies;
+    out_.varying = e;
+    return false;
+  }
+
+  /// With the formulas that are in force where g has this sign, in the constraints as well.
+  bool vanishes_on_side(Expr e, Expr g, bool above) const {
+    ExprVector all = relations_;
+    all.push_back(e);
+    all = on_side(all, g, above);
+    const Expr there = all.back();
+    all.pop_back();
+    if (there.is_zero()) return true;
+    ZeroTestOptions options;
+    options.hold_parameters = problem_.hold_parameters;
+    const PointsWhere points(all, problem_.states, problem_.center, options);
+    return points.vanishes(there) == Verdict::Zero;
   }
 
   /// The chosen rows of which r is a combination, at any of the points.

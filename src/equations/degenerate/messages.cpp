@@ -32,6 +32,7 @@ class Messages {
     if (!gauges()) return false;
     if (analysis_.chain.outcome == Outcome::Contradiction) return contradiction();
     if (analysis_.chain.outcome == Outcome::Unreached) return unreached();
+    if (analysis_.chain.outcome == Outcome::Varies) return varies();
     if (analysis_.free.empty())
       degenerate();
     else
@@ -80,6 +81,17 @@ class Messages {
                                      : "no state near the start fulfils " + joined(lines),
                        "A degenerate Lagrangian asks this of every state of a motion.",
                        "Give a start near a state that fulfils it.");
+    return false;
+  }
+
+  bool varies() {
+    const std::string text = to_plain(analysis_.chain.varying, equations_.order);
+    diagnostics_.error(
+        "E0633", place(), "this Lagrangian is degenerate in one region and of another class elsewhere",
+        fmt::format("{} is 0, or next to nothing, near the start and something else beyond. There the equations hold "
+                    "another acceleration, and the constraints of the one region are wrong in the other.",
+                    text.size() <= longest_line ? text : std::string("A coefficient of an acceleration")),
+        "Let an inertia act everywhere, or leave it out.");
     return false;
   }
 

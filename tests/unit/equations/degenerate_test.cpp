@@ -128,3 +128,18 @@ TEST_CASE("determined equations hold every row that they replaced") {
   CHECK(a.chain.where->vanishes(solved->accelerations[0] - m.q(3) * m.q(0)) == Verdict::Zero);
   CHECK(a.chain.where->vanishes(solved->accelerations[0] + m.q(3) * m.q(0)) == Verdict::Nonzero);
 }
+
+TEST_CASE("what vanishes near the start alone is no ground for a constraint") {
+  const auto outcome = [](const std::string& lagrangian) {
+    return analysis_of(ModelText("dimensionless\ncoord x, y : number\nL = " + lagrangian + "\nstart x = 1\n"))
+        .chain.outcome;
+  };
+  using Outcome = ConstraintChain::Outcome;
+  const std::string first_order = "x y' - (x^2 + y^2)/2";
+  CHECK(outcome(first_order) == Outcome::Closed);
+  CHECK(outcome(first_order + " - max(x - 3, 0)^2") == Outcome::Closed);  // a wall, no inertia
+  CHECK(outcome(first_order + " + max(x - 3, 0)^2 x'^2/2") == Outcome::Varies);
+  CHECK(outcome(first_order + " + exp(-1000 (x - 5)^2) x'^2/2") == Outcome::Varies);   // 1e-6949 at the start
+  CHECK(outcome("x'^2/2 + max(x - 3, 0)^2 y'^2/2 - (x - y)^2/2") == Outcome::Varies);  // a mass beyond
+  CHECK(outcome("x'^2/2 + max(x - 3, 0)^2 y") == Outcome::Varies);                     // a constraint beyond
+}
