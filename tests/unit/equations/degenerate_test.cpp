@@ -81,6 +81,31 @@ TEST_CASE("a gauge freedom moves what depends on it, and nothing else") {
   CHECK(a.is_determined(m.v(1) - m.q(2)));
 }
 
+TEST_CASE("reparametrizations leave the world line as it is") {
+  const ModelText m(
+      "dimensionless\nparam m = 1.1\ncoord T, x, e : number\nL = (x'^2 - T'^2)/(2 e) - e m^2/2\nstart e = 1\n");
+  const DegenerateAnalysis a = analysis_of(m);
+  REQUIRE(a.closed());
+  CHECK(a.motions == 2);
+  const Expr slope = m.v(1) / m.v(0);
+  CHECK(a.is_determined(slope));
+  CHECK(a.is_determined(m.q(1) - slope * m.q(0)));  // where the line meets T = 0
+  CHECK_FALSE(a.is_determined(m.q(1) + slope * m.q(0)));
+  CHECK_FALSE(a.is_determined(m.v(1)));
+  CHECK(a.is_determined(m.v(1) / m.q(2)));  // the momentum
+}
+
+TEST_CASE("a freedom whose direction depends on the state: scaling") {
+  // x → x e^ε, z → z + ε with any ε(t): x e^−z alone has a value, and it stays.
+  const ModelText m("dimensionless\ncoord x, z : number\nL = (x' - x z')^2/2\nstart x = 1\n");
+  const DegenerateAnalysis a = analysis_of(m);
+  REQUIRE(a.closed());
+  CHECK(a.orbits.size() == 2);
+  CHECK(a.motions == 1);
+  CHECK(a.is_determined(m.q(0) * apply(Kind::Exp, -m.q(1))));
+  CHECK_FALSE(a.is_determined(m.q(0) * apply(Kind::Exp, m.q(1))));
+}
+
 TEST_CASE("first-order Lagrangians: the constraints are ω q̇ = ∇H, with any symplectic form") {
   std::mt19937_64 random(7);
   std::uniform_int_distribution<int> digit(1, 9);
