@@ -1,5 +1,6 @@
 #include "equations/rate_kinematics.hpp"
 #include "equations/simplified.hpp"
+#include "linear_algebra/independent_rows.hpp"
 
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/integral_symbol.hpp>
@@ -16,31 +17,6 @@ namespace {
 constexpr std::size_t most_coordinates = 40;
 
 // -------------------------------------------------------------------------------------------------- the choice of σ
-
-/// Whether rows of numbers are combinations of those before them.
-class NumericRows {
- public:
-  bool add(std::vector<double> row) {
-    double size = 0;
-    for (const double x : row) size = std::max(size, std::abs(x));
-    for (const auto& [pivot, other] : rows_) {
-      const double factor = row[pivot];
-      for (std::size_t k = 0; k < row.size(); ++k) row[k] -= factor * other[k];
-    }
-    const auto largest =
-        std::max_element(row.begin(), row.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-    constexpr double rounding = 1e-9;
-    if (largest == row.end() || !(std::abs(*largest) > rounding * size)) return false;
-    const auto pivot = static_cast<std::size_t>(largest - row.begin());
-    const double scale = row[pivot];
-    for (double& x : row) x /= scale;
-    rows_.emplace_back(pivot, std::move(row));
-    return true;
-  }
-
- private:
-  std::vector<std::pair<std::size_t, std::vector<double>>> rows_;
-};
 
 ExprVector velocity_symbols(const MechanicalSystem& system) {
   ExprVector out;
@@ -126,7 +102,7 @@ class Choice {
   const MechanicalSystem& system_;
   ExprVector velocities_, constraints_, roots_;
   Bindings at_;
-  NumericRows rows_;
+  IndependentRows rows_;
 };
 
 // ----------------------------------------------------------------------------------------------------- solving for q̇

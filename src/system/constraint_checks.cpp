@@ -10,6 +10,20 @@
 #include <cmath>
 
 namespace maupertuis::elaboration {
+
+Bindings scattered_state(Elaboration& e, double shift) {
+  Bindings b = e.values;
+  double next = shift;
+  const auto bind = [&](Expr symbol) {
+    next = std::fmod(next + 0.6180339887498949, 1.0);
+    b[symbol] = 0.3 + next;
+  };
+  for (const Coordinate& c : e.system().coordinates) bind(c.q), bind(c.velocity);
+  for (const Input& u : e.system().inputs) bind(u.symbol);
+  bind(e.context.time());
+  return b;
+}
+
 namespace {
 
 using syntax::Expression;
@@ -39,19 +53,6 @@ Span culprit_of_switch(Elaboration& e, const Expression& x, const std::string& w
     if (s.end > s.begin) return s;
   }
   return {};
-}
-
-/// Every quantity of the model at a scattered value, the parameters at theirs.
-Bindings scattered_state(Elaboration& e, double shift) {
-  Bindings b = e.values;
-  double next = shift;
-  const auto bind = [&](Expr symbol) {
-    next = std::fmod(next + 0.6180339887498949, 1.0);
-    b[symbol] = 0.3 + next;
-  };
-  for (const Coordinate& c : e.system().coordinates) bind(c.q), bind(c.velocity);
-  bind(e.context.time());
-  return b;
 }
 
 /// Values at two states. Constraints that are equal, or opposite, have the same up to the sign.

@@ -1,3 +1,5 @@
+#include "linear_algebra/independent_rows.hpp"
+#include "system/constraint_checks.hpp"
 #include "system/elaboration.hpp"
 
 #include <maupertuis/integral_symbol.hpp>
@@ -76,33 +78,6 @@ bool check_value(Elaboration& e, const Expression& x, const std::string& name, E
 
 // ------------------------------------------------------------------------------------------------------ independence
 
-/// Rows by elimination: whether another one is a combination of those before it, in numbers.
-class Rows {
- public:
-  /// True where it is no combination of the others; then it is one of them.
-  bool add(std::vector<double> row) {
-    double size = 0;
-    for (const double x : row) size = std::max(size, std::abs(x));
-    for (const auto& [pivot, other] : rows_) {
-      const double factor = row[pivot];
-      for (std::size_t k = 0; k < row.size(); ++k) row[k] -= factor * other[k];
-    }
-    std::size_t pivot = 0;
-    for (std::size_t k = 0; k < row.size(); ++k)
-      if (std::abs(row[k]) > std::abs(row[pivot])) pivot = k;
-    constexpr double rounding = 1e-9;
-    if (row.empty() || !(std::abs(row[pivot]) > rounding * size)) return false;
-    const double scale = row[pivot];
-    for (double& x : row) x /= scale;
-    rows_.emplace_back(pivot, std::move(row));
-    return true;
-  }
-  std::size_t rank() const { return rows_.size(); }
-
- private:
-  std::vector<std::pair<std::size_t, std::vector<double>>> rows_;
-};
-
 /// ∂/∂q̇ of a rate or of a constraint between velocities, ∂/∂q of one between positions.
 ExprVector row_of(Elaboration& e, const Constraint& c) {
   if (c.level == Constraint::Level::Velocity) return gradient(c.value, velocities_of(e));
@@ -111,28 +86,14 @@ ExprVector row_of(Elaboration& e, const Constraint& c) {
   return gradient(c.value, positions);
 }
 
-/// Every quantity at a scattered value, parameters at theirs.
-Bindings somewhere(Elaboration& e, double shift) {
-  Bindings b = e.values;
-  double next = shift;
-  const auto bind = [&](Expr symbol) {
-    next = std::fmod(next + 0.6180339887498949, 1.0);
-    b[symbol] = 0.3 + next;
-  };
-  for (const Coordinate& c : e.system().coordinates) bind(c.q), bind(c.velocity);
-  for (const Input& u : e.system().inputs) bind(u.symbol);
-  bind(e.context.time());
-  return b;
-}
-
 struct Independence {
   std::size_t left_free = 0;         // velocities that the constraints leave
   std::vector<std::size_t> surplus;  // rates that are combinations of earlier ones and of the constraints
 };
 
 Independence independence_at(Elaboration& e, double shift) {
-  const Bindings at = somewhere(e, shift);
-  Rows rows;
+  const Bindings at = scattered_state(e, shift);
+  IndependentRows rows;
   for (const Constraint& c : e.system().constraints) rows.add(evaluate(row_of(e, c), at));
   Independence out;
   out.left_free = e.system().coordinates.size() - rows.rank();

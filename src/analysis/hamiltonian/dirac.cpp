@@ -41,13 +41,7 @@ PhaseSpaceAlgebra::PhaseSpaceAlgebra(const Hamiltonian& h, const EquationsOfMoti
   for (const Constraint& c : equations.system->constraints) of_model.push_back(in_motion(c.value));
 }
 
-Expr PhaseSpaceAlgebra::bracket(Expr a, Expr b) const {
-  const ExprVector a_q = gradient(a, positions), a_p = gradient(a, momenta);
-  const ExprVector b_q = gradient(b, positions), b_p = gradient(b, momenta);
-  ExprVector terms;
-  for (std::size_t i = 0; i < positions.size(); ++i) terms.push_back(a_q[i] * b_p[i] - a_p[i] * b_q[i]);
-  return a.context().sum(terms);
-}
+Expr PhaseSpaceAlgebra::bracket(Expr a, Expr b) const { return bracket_of(a, b, positions, momenta); }
 
 /// dφ/dt = {φ, H} + ∂φ/∂t + Σ u_b {φ, φ_b} − Σ λ_k {φ, φ_k}, the signs of the unknowns being free.
 LinearCondition PhaseSpaceAlgebra::rate(Expr constraint) const {
@@ -91,7 +85,7 @@ class Classes {
     const std::size_t count = out_.constraints.size();
     std::vector<LinearCondition> rows(count);
     for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t j = 0; j < count; ++j) rows[i].coefficients.push_back(bracket_of(i, j));
+      for (std::size_t j = 0; j < count; ++j) rows[i].coefficients.push_back(between(i, j));
     out_.second_class_set = count == 0 ? std::vector<std::size_t>{} : independent_conditions(rows, where_.points());
     out_.second_class = out_.second_class_set.size();
     out_.first_class = count - out_.second_class;
@@ -110,7 +104,7 @@ class Classes {
   }
 
  private:
-  Expr bracket_of(std::size_t i, std::size_t j) const {
+  Expr between(std::size_t i, std::size_t j) const {
     return algebra_.bracket(out_.constraints[i].value, out_.constraints[j].value);
   }
 
@@ -121,7 +115,7 @@ class Classes {
     bool primary = out_.constraints[i].generation == 0;
     if (!out_.second_class_set.empty()) {
       ExprVector right;
-      for (const std::size_t b : out_.second_class_set) right.push_back(-bracket_of(i, b));
+      for (const std::size_t b : out_.second_class_set) right.push_back(-between(i, b));
       // C is antisymmetric: {χ_i, χ_a} C⁻¹_ab = y_b with C y = −{χ_i, χ}.
       const auto weights = solve_linear(augmented(out_.brackets, right));
       for (std::size_t b = 0; weights && b < weights->size(); ++b) {
@@ -236,12 +230,7 @@ std::optional<ReadableForm> dirac_bracket(Expr a, Expr b, const Hamiltonian& h, 
     if (!weights) return std::nullopt;
     for (std::size_t k = 0; k < left.size(); ++k) terms.push_back(-(left[k] * (*weights)[k]));
   }
-  const Expr value = h.system->context->sum(terms);
-  if (value.is_zero() || zero_test(value).verdict == Verdict::Zero)
-    return ReadableForm{h.system->context->number(0), {}, {}};
-  ReadableForm form = readable(value, h.order);
-  if (form.intermediates.empty()) form.value = tidy(value, h.order);
-  return form;
+  return shown_bracket(h.system->context->sum(terms), h.order);
 }
 
 bool same_constraints(const std::vector<std::vector<Expr>>& generations, const DiracAnalysis& analysis,

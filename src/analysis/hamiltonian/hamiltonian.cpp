@@ -140,20 +140,28 @@ Expr in_phase_space(Expr e, const Hamiltonian& h) {
   return has_velocities(out) ? Expr() : out;
 }
 
+Expr phase_space::bracket_of(Expr a, Expr b, const ExprVector& positions, const ExprVector& momenta) {
+  const ExprVector a_q = gradient(a, positions), a_p = gradient(a, momenta);
+  const ExprVector b_q = gradient(b, positions), b_p = gradient(b, momenta);
+  ExprVector terms;
+  for (std::size_t i = 0; i < positions.size(); ++i) terms.push_back(a_q[i] * b_p[i] - a_p[i] * b_q[i]);
+  return a.context().sum(terms);
+}
+
+ReadableForm phase_space::shown_bracket(Expr bracket, const ReadingOrder& order) {
+  if (bracket.is_zero() || zero_test(bracket).verdict == Verdict::Zero)
+    return ReadableForm{bracket.context().number(0), {}, {}};
+  ReadableForm form = readable(bracket, order);
+  if (form.intermediates.empty()) form.value = tidy(bracket, order);
+  return form;
+}
+
 std::optional<ReadableForm> poisson_bracket(Expr a, Expr b, const Hamiltonian& h) {
   const Expr both[] = {in_phase_space(a, h), in_phase_space(b, h)};
   if (!both[0] || !both[1]) return std::nullopt;
-  ExprVector positions, terms;
+  ExprVector positions;
   for (const Coordinate& c : h.system->coordinates) positions.push_back(c.q);
-  const ExprVector a_q = gradient(both[0], positions), a_p = gradient(both[0], h.momenta);
-  const ExprVector b_q = gradient(both[1], positions), b_p = gradient(both[1], h.momenta);
-  for (std::size_t i = 0; i < positions.size(); ++i) terms.push_back(a_q[i] * b_p[i] - a_p[i] * b_q[i]);
-  const Expr value = h.system->context->sum(terms);
-  if (value.is_zero() || zero_test(value).verdict == Verdict::Zero)
-    return ReadableForm{h.system->context->number(0), {}, {}};
-  ReadableForm form = readable(value, h.order);
-  if (form.intermediates.empty()) form.value = tidy(value, h.order);
-  return form;
+  return shown_bracket(bracket_of(both[0], both[1], positions, h.momenta), h.order);
 }
 
 }  // namespace maupertuis

@@ -37,6 +37,10 @@ void transform_root(LegendreBlock& block, const RootLagrangian& root, const Lege
 bool vanishes(Expr e);
 /// p_i − b_i of a group.
 ExprVector reduced_momenta(const LegendreBlock& block, const LegendreProblem& problem);
+/// {a, b} = Σ ∂a/∂q ∂b/∂p − ∂a/∂p ∂b/∂q of functions of q, p and t; a shared DAG.
+Expr bracket_of(Expr a, Expr b, const ExprVector& positions, const ExprVector& momenta);
+/// A bracket as it is shown: 0 where it vanishes identically.
+ReadableForm shown_bracket(Expr bracket, const ReadingOrder& order);
 /// [N | c]
 ExprMatrix augmented(const ExprMatrix& matrix, const ExprVector& column);
 
