@@ -198,9 +198,9 @@ std::string currents_text(Study& study) {
   const FieldEquations& equations = equations_of(study);
   const FieldSystem& s = equations.system();
   const FieldCurrents found = field_currents(equations);
-  std::string out = "Conservation laws ∂_t ρ + ∂_i j^i = Q·E\n";
+  std::string out = "Conservation laws ∂_t j^t + ∂_i j^i = Q·E\n";
   for (const FieldCurrent& c : found.currents) {
-    out += fmt::format("\n{}: {}\n  ρ   = {}\n", c.name, c.meaning, plain_of(equations, c.density));
+    out += fmt::format("\n{}: {}\n  j^t = {}\n", c.name, c.meaning, plain_of(equations, c.density));
     for (std::size_t x = 0; x < c.fluxes.size(); ++x)
       out += fmt::format("  j^{} = {}\n", s.space[x].name, plain_of(equations, c.fluxes[x]));
     std::string q;
@@ -244,6 +244,11 @@ std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOption
   options.every = settings.output_every ? *settings.output_every : number(model.experiment.output_every);
   options.trajectory = rows;
   options.errors = false;
+  if (settings.duration && !(*settings.duration > 0)) {
+    study.diagnostics().error("E0809", std::nullopt, "a run of a field goes forward",
+                              "Its mesh is started at t = 0 and steps on from there.", "Give a positive --duration.");
+    return std::nullopt;
+  }
   if (!(options.duration > 0)) {
     study.diagnostics().error("E0701", std::nullopt, "the model does not say how long it runs",
                               "A run of a field goes on for a time.", "Add `run 10 s`, or give --duration.");

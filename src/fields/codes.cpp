@@ -22,6 +22,20 @@ constexpr CodeEntry kEntries[] = {
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nrun 1 s\n"},
     {"E0643", "a field that grows beyond all numbers",
      "The run met an infinity: an unstable density, or a start that grows.", "", ""},
+    {"E0645", "a start of a field that is no number",
+     "Somewhere in the domain the formula of the start has no finite value.",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N, l = 1 m\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"
+     "start u = l log(x/l - 2)\nrun 1 s\n",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N, l = 1 m\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"
+     "start u = l log(x/l + 2)\nrun 1 s\n"},
+    {"W0646", "a start of a field that does not fit its boundary condition",
+     "At an end the field has the value of the condition from the beginning on. Another value beside it is a jump, "
+     "which "
+     "runs into the domain and which no mesh resolves.",
+     "field u(x) : length on x = 0 m .. 1 m boundary u = 0\nparam ρ = 1 kg/m, T = 1 N, l = 1 m\n"
+     "density = 1/2 ρ u'^2 - 1/2 T u_x^2\nstart u = l\nrun 1 s\n",
+     "field u(x) : length on x = 0 m .. 1 m boundary u = 0\nparam ρ = 1 kg/m, T = 1 N, l = 1 m\n"
+     "density = 1/2 ρ u'^2 - 1/2 T u_x^2\nstart u = l sin(pi x/l)\nrun 1 s\n"},
     {"E0644", "no modes of a field",
      "Frequencies are those of small motions about φ = 0 of a field of one space variable with a domain, with constant "
      "coefficients in time and a positive energy.",

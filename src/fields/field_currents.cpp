@@ -357,7 +357,7 @@ NamedCurrent name_of(const FieldEquations& equations, const std::vector<Generato
   std::vector<const Generator*> motions, shifts;
   for (const std::size_t i : support) (g[i].moves_space ? motions : shifts).push_back(&g[i]);
   if (motions.size() == 1 && motions[0]->factor.is_one() && shifts.empty())
-    return motions[0]->index == n ? NamedCurrent{"energy", "translations in time", 1}
+    return motions[0]->index == n ? NamedCurrent{"energy", "translations in time"}
                                   : NamedCurrent{"momentum along " + variable(motions[0]->index),
                                                  "translations along " + variable(motions[0]->index), true};
   if (motions.size() == 2) {

@@ -167,13 +167,23 @@ void FieldMesh::start() {
     for (std::size_t n = 0; n < lanes_; ++n)
       (start.order == 0 ? u_ : v_)[a][n] =
           at([&](Expr symbol) { return symbol == s_.space.front().symbol ? x[n] : values_.at(symbol); }).front();
+    for (const double value : (start.order == 0 ? u_ : v_)[a])
+      if (!std::isfinite(value)) trouble_ = "start";
   }
   t_ = 0;
   for (const Held& held : held_) {
     if (held.force) continue;
     const std::size_t n = held.right ? local(p_, cells_ - 1) : local(0, 0);
-    u_[held.field][n] = boundary_coefficient(held.derivatives, 0);
-    v_[held.field][n] = boundary_coefficient(held.derivatives, 1);
+    for (int order = 0; order < 2; ++order) {
+      std::vector<double>& values = (order == 0 ? u_ : v_)[held.field];
+      const double condition = boundary_coefficient(held.derivatives, static_cast<std::size_t>(order));
+      double size = std::abs(condition);
+      for (const double value : values) size = std::max(size, std::abs(value));
+      constexpr double rounding = 1e-9;
+      if (std::abs(values[n] - condition) > rounding * size)
+        clashes_.push_back({held.field, order, held.right, values[n], condition});
+      values[n] = condition;
+    }
   }
 }
 

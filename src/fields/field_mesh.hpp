@@ -34,6 +34,14 @@ class FieldMesh {
   FieldMesh(const FieldEquations& equations, const PointForm& form, int cells, int order);
 
   const std::string& trouble() const { return trouble_; }
+  /// Where the start says something else than a boundary condition, which is followed.
+  struct StartClash {
+    std::size_t field = 0;  // of those that are varied
+    int order = 0;          // 0: u, 1: u'
+    bool right = false;
+    double start = 0, condition = 0;
+  };
+  const std::vector<StartClash>& start_clashes() const { return clashes_; }
   void start();
   /// Largest frequency of small motions about the present state, by power iteration.
   double omega_max(const Interrupt& interrupt);
@@ -91,6 +99,7 @@ class FieldMesh {
   };
   std::vector<Held> held_;
   std::string trouble_;
+  std::vector<StartClash> clashes_;
 };
 
 }  // namespace maupertuis

@@ -36,6 +36,11 @@ void refuse(const FieldMesh& mesh, const FieldEquations& equations, Diagnostics&
     diagnostics.error("E0642", s.density_span, "the accelerations are not determined",
                       "∂²ℒ/∂φ'∂φ' is singular: a density linear in the velocities gives equations of first order.",
                       "`maup derive` shows them; runs of such fields are carried out by a later version.");
+  } else if (what == "start") {
+    diagnostics.error("E0645", equations.model->start.empty() ? s.density_span : equations.model->start.front().span,
+                      "the start of a field is not a finite number somewhere in its domain",
+                      "A run can only begin from definite values at all places.",
+                      "Look for a logarithm or a root of a negative number in it, or a division by zero.");
   } else if (what == "overflow") {
     diagnostics.error("E0643", s.density_span, "the field grew beyond all numbers",
                       fmt::format("At t = {:.6g} s a value of the field is no number any more.", mesh.time()),
@@ -70,14 +75,28 @@ void add_row(const FieldMesh& mesh, const FieldEquations& equations, int cells, 
       }
 }
 
+/// W0646: the end of the mesh is put to its condition, and what the start says beside it runs in as a wave.
+void warn_of_clashes(const FieldMesh& mesh, const FieldEquations& equations, Diagnostics& diagnostics) {
+  const FieldSystem& s = equations.system();
+  for (const FieldMesh::StartClash& c : mesh.start_clashes())
+    diagnostics.warning(
+        "W0646", equations.model->start.empty() ? s.density_span : equations.model->start.front().span,
+        fmt::format("the start does not fit the condition at the {} end: {}{} = {:.6g} beside {:.6g} (SI units)",
+                    c.right ? "right" : "left", s.fields[equations.varied[c.field]].name, c.order ? "'" : "", c.start,
+                    c.condition),
+        "The condition is followed, so that a jump runs into the field, which no mesh resolves.",
+        "Give a start that has the value of the condition there.");
+}
+
 std::optional<OneRun> run_on(const FieldEquations& equations, const PointForm& form, int cells, int order,
                              const std::vector<FieldQuestion>& questions, const FieldRunOptions& options, bool rows,
-                             Diagnostics& diagnostics) {
+                             bool warns, Diagnostics& diagnostics) {
   FieldMesh mesh(equations, form, cells, order);
   OneRun out;
   if (mesh.trouble().empty()) mesh.start();
   if (mesh.trouble().empty()) out.omega = mesh.omega_max(options.interrupt);
   if (!mesh.trouble().empty()) return refuse(mesh, equations, diagnostics), std::nullopt;
+  if (warns) warn_of_clashes(mesh, equations, diagnostics);
   const double longest = out.omega > 0 ? stability / out.omega : options.duration;
   std::vector<double> stops;
   for (const FieldQuestion& q : questions) stops.push_back(q.time);
@@ -121,7 +140,7 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   const FieldSystem& s = equations.system();
   const int cells = s.space.front().cells ? s.space.front().cells : usual_cells;
   const int order = s.element_order ? s.element_order : usual_order;
-  auto fine = run_on(equations, *form, cells, order, questions, options, options.trajectory, diagnostics);
+  auto fine = run_on(equations, *form, cells, order, questions, options, options.trajectory, true, diagnostics);
   if (!fine) return std::nullopt;
   FieldRunResult out;
   out.cells = cells, out.order = order;
@@ -136,7 +155,7 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   }
   std::optional<OneRun> coarse;
   if (options.errors && !questions.empty() && cells > 1)
-    coarse = run_on(equations, *form, std::max(cells / 2, 1), order, questions, options, false, diagnostics);
+    coarse = run_on(equations, *form, std::max(cells / 2, 1), order, questions, options, false, false, diagnostics);
   // Both meshes and their steps are off by the power 2p of the width of a cell, but never by less than rounding.
   const double ratio = cells > 1 ? static_cast<double>(cells) / std::max(cells / 2, 1) : 2;
   const double gain = std::pow(ratio, std::min(2 * order, 8)) - 1;

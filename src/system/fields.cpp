@@ -284,10 +284,12 @@ void densities(Elaboration& e) {
     if (check_jets(e, value, *s.value, 1, 2)) parts[s.dissipation].push_back(value);
   });
   if (!first[0]) {
-    e.diagnostics.error("E0280", system.fields.empty() ? std::nullopt : std::optional<Span>(system.fields.front().span),
-                        "the field has no density",
-                        "The action of a field is the integral of its Lagrangian density over space and time.",
-                        "Write it, for example `density = 1/2 ρ u'^2 - 1/2 T u_x^2`.");
+    if (!e.diagnostics.has_errors())  // else it was lost with a mistake of its own
+      e.diagnostics.error("E0280",
+                          system.fields.empty() ? std::nullopt : std::optional<Span>(system.fields.front().span),
+                          "the field has no density",
+                          "The action of a field is the integral of its Lagrangian density over space and time.",
+                          "Write it, for example `density = 1/2 ρ u'^2 - 1/2 T u_x^2`.");
     return;
   }
   system.density_span = *first[0];

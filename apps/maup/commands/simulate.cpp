@@ -341,11 +341,27 @@ ExitCode simulate_extended_model(const SimulateOptions& options, const std::stri
 
 /// The precision of the command line, else that of the model. A word that is none is for the model to refuse.
 /// The run of fields.
+/// What is said of motions of coordinates and has no meaning for fields is not passed over in silence.
+void refuse_options_of_motions(const SimulateOptions& options, Diagnostics& diagnostics) {
+  const RunOptions& run = options.run;
+  const std::pair<const char*, bool> given[] = {
+      {"--until", !run.until.empty()},      {"--within", !run.within.empty()},       {"--at", !run.at.empty()},
+      {"--method", run.method.has_value()}, {"--step", run.step.has_value()},        {"--order", run.order.has_value()},
+      {"--tol", run.tolerance.has_value()}, {"--columns", !options.columns.empty()}, {"--errors", options.errors}};
+  for (const auto& [name, is_given] : given)
+    if (is_given)
+      diagnostics.error("E0809", {}, fmt::format("{} is about motions of coordinates, and the model has fields.", name),
+                        "A field runs over its mesh for a time, by Taylor steps within the stability limit.",
+                        "Leave it out; `expect u(3 m) at 2 s = …` asks for values.");
+}
+
 ExitCode simulate_fields(const SimulateOptions& options, Study& study, Console& console) {
   Json document = json_document("simulate");
   check_output_files({{"-o", options.output, FileKind::Table}, {"--plot", options.plot, FileKind::Picture}},
                      options.model.path, study.diagnostics());
+  refuse_options_of_motions(options, study.diagnostics());
   const SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
+  if (study.wrong()) return finish_usage(console, study, "simulate");
   if (options.precision && *options.precision != "double")
     study.diagnostics().error("E0809", {}, "Fields are run in double.", "The mesh limits the digits, not the numbers.",
                               "Leave --precision out.");

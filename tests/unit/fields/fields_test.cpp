@@ -53,6 +53,15 @@ TEST_CASE("currents of a Lorentz-invariant field, and none more") {
   REQUIRE(study.field_equations());
   const FieldCurrents found = field_currents(*study.field_equations());
   REQUIRE(found.currents.size() == 3);  // energy, momentum, boost
+  // The charge of a translation in time is +energy, the density of momentum −T^0_x = −∂ℒ/∂u' u_x.
+  const FieldSystem& system = study.field_equations()->system();
+  const Expr u = system.jet_symbol({0, {0}, 0}), rate = system.jet_symbol({0, {0}, 1}),
+             slope = system.jet_symbol({0, {1}, 0});
+  const Bindings at{{u, 0.3}, {rate, 0.7}, {slope, -0.4}, {study.model()->system.parameters[0].symbol, 2.0}};
+  REQUIRE(found.currents[0].name == "energy");
+  CHECK(evaluate(found.currents[0].density, at) == doctest::Approx(0.49 / 2 + 4 * 0.16 / 2 + 0.0081));
+  REQUIRE(found.currents[1].name == "momentum along x");
+  CHECK(evaluate(found.currents[1].density, at) == doctest::Approx(0.7 * 0.4));
   for (const FieldCurrent& c : found.currents) {
     CHECK(c.certified);
     std::string trouble;
@@ -145,4 +154,21 @@ TEST_CASE("frequencies: free beam with its two rigid motions, hinged Rayleigh be
   CHECK(found[1] == doctest::Approx(0).epsilon(1e-3));
   CHECK(found[2] == doctest::Approx(22.37328544806).epsilon(1e-9));  // 4.730040744862704²
   CHECK(found[3] == doctest::Approx(61.67282286792).epsilon(1e-9));  // 7.853204624095838²
+}
+
+TEST_CASE("a start that is no number is refused, one that does not fit a condition is warned of") {
+  const std::string head =
+      "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 20 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\nrun "
+      "1\n";
+  const auto codes = [&](const std::string& start) {
+    Study study = study_of(head + "start " + start + "\nexpect u(0.5) at 1 = 0 ± 1\n");
+    study.verification();
+    std::string out;
+    for (const Diagnostic& d : study.diagnostics().items()) out += d.code + " ";
+    return out;
+  };
+  CHECK(codes("u = sin(pi x)") == "");
+  CHECK(codes("u = log(x - 2)") == "E0645 ");
+  CHECK(codes("u = 1") == "W0646 W0646 ");  // both ends
+  CHECK(codes("u' = x") == "W0646 ");
 }
