@@ -36,6 +36,14 @@ constexpr CodeEntry kEntries[] = {
      "density = 1/2 ρ u'^2 - 1/2 T u_x^2\nstart u = l\nrun 1 s\n",
      "field u(x) : length on x = 0 m .. 1 m boundary u = 0\nparam ρ = 1 kg/m, T = 1 N, l = 1 m\n"
      "density = 1/2 ρ u'^2 - 1/2 T u_x^2\nstart u = l sin(pi x/l)\nrun 1 s\n"},
+    {"E0647", "a mesh that passes something by",
+     "A bump, a layer or a jump of the density or of the start lies between the nodes of the mesh. Values on it, and "
+     "on a "
+     "second mesh, would be those of a system without it.",
+     "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 20\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
+     "start u = exp(-((x - 0.4877)/1e-4)^2)\nrun 1\n",
+     "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 20\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
+     "start u = exp(-((x - 0.4877)/0.1)^2)\nrun 1\n"},
     {"E0644", "no modes of a field",
      "Frequencies are those of small motions about φ = 0 of a field of one space variable with a domain, with constant "
      "coefficients in time and a positive energy.",

@@ -2,6 +2,7 @@
 #include <maupertuis/field_run.hpp>
 
 #include "fields/field_mesh.hpp"
+#include "fields/resolution.hpp"
 
 #include <fmt/format.h>
 
@@ -75,6 +76,24 @@ void add_row(const FieldMesh& mesh, const FieldEquations& equations, int cells, 
       }
 }
 
+/// E0647 where both meshes would pass something by, and their difference would tell nothing of it.
+bool refuse_coarse_mesh(const FieldEquations& equations, const PointForm& form, int cells, int order,
+                        Diagnostics& diagnostics) {
+  const auto found = unresolved_feature(equations, form, cells, order);
+  if (!found) return false;
+  const FieldSystem& s = equations.system();
+  const bool at_start = found->of_start && !equations.model->start.empty();
+  diagnostics.error(
+      "E0647", at_start ? equations.model->start.front().span : s.density_span,
+      fmt::format("the mesh is too coarse for what {} has at {} = {:.6g}",
+                  found->of_start ? "the start" : "the density", s.space.front().name, found->place),
+      fmt::format("Elements are {:.3g} wide (SI units), and what lies between their nodes is not seen by a "
+                  "second mesh either: no value of this run could be trusted.",
+                  found->element),
+      "Take more `cells`, or make it wider.");
+  return true;
+}
+
 /// W0646: the end of the mesh is put to its condition, and what the start says beside it runs in as a wave.
 void warn_of_clashes(const FieldMesh& mesh, const FieldEquations& equations, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
@@ -140,6 +159,7 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   const FieldSystem& s = equations.system();
   const int cells = s.space.front().cells ? s.space.front().cells : usual_cells;
   const int order = s.element_order ? s.element_order : usual_order;
+  if (refuse_coarse_mesh(equations, *form, cells, order, diagnostics)) return std::nullopt;
   auto fine = run_on(equations, *form, cells, order, questions, options, options.trajectory, true, diagnostics);
   if (!fine) return std::nullopt;
   FieldRunResult out;

@@ -172,3 +172,21 @@ TEST_CASE("a start that is no number is refused, one that does not fit a conditi
   CHECK(codes("u = 1") == "W0646 W0646 ");  // both ends
   CHECK(codes("u' = x") == "W0646 ");
 }
+
+TEST_CASE("what lies between the nodes of both meshes is no secret of theirs") {
+  const auto codes = [](const std::string& more, const std::string& start, int cells) {
+    Study study = study_of("dimensionless\nfield u(x) : number on x = 0 .. 1 cells " + std::to_string(cells) +
+                           "\ndensity = 1/2 u'^2 - 1/2 u_x^2" + more + "\nrun 0.1\nstart u = " + start +
+                           "\nexpect u(0.5) at 0.1 = 0 ± 10\n");
+    study.verification();
+    std::string out;
+    for (const Diagnostic& d : study.diagnostics().items()) out += d.code;
+    return out;
+  };
+  CHECK(codes("", "sin(9 x)", 20) == "");
+  CHECK(codes("", "exp(-((x - 0.4877)/1e-4)^2)", 20) == "E0647");
+  CHECK(codes("", "exp(-((x - 0.4877)/0.05)^2)", 20) == "");
+  CHECK(codes(" - 500 exp(-((x - 0.4877)/1e-4)^2) u^2", "sin(pi x)", 20) == "E0647");
+  CHECK(codes(" - exp(-((x - 0.9137)/1e-6)^2) u^2", "sin(pi x)", 50) == "E0647");
+  CHECK(codes(" - 1/2 (1 + x^2) u^2", "sin(pi x)", 20) == "");
+}
