@@ -115,6 +115,10 @@ class EnergyBalance {
     overflows_ = overflows_ || std::isinf(scale);
     if (!std::isfinite(energy))
       return;  // a point at which the formula has no value, though the motion passes it; or the ending tells
+    if (!std::isfinite(work_of(sample))) {  // an integral never comes back from there
+      overflows_ = true;
+      return;
+    }
     if (!begun_) first_ = energy;
     begun_ = true;
     largest_scale_ = std::max(largest_scale_, scale);

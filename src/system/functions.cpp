@@ -1,3 +1,4 @@
+#include "syntax/words.hpp"
 #include "system/elaboration.hpp"
 
 #include <maupertuis/field_system.hpp>
@@ -134,6 +135,7 @@ Value of_vectors(Elaboration& e, const Expression& x, const std::vector<Value>& 
 Value value_of_call(Elaboration& e, const Expression& x, const Place& place) {
   if (e.fields && e.fields->system.jet_of_name(x.text)) return value_at_place(e, x);
   if (x.text == "multiplier" || x.text == "reaction") return value_of_reaction(e, x, place);
+  if (!syntax::find_function(x.text)) return Value::poison();  // of a field that was refused: that was told
   const bool vectors = x.text == "dot" || x.text == "cross" || x.text == "norm";
   const bool several = x.text == "min" || x.text == "max";
   const bool two = x.text == "dot" || x.text == "cross" || x.text == "atan2";

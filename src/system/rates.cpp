@@ -115,7 +115,8 @@ void elaborate_rate(Elaboration& e, Declaration& d) {
     d.group = std::make_shared<const Value>(all);
   } else {
     const Declaration* first = e.table.find(group.names.front().text);  // which came before (definition_order)
-    if (!first || !first->group) return;
+    // A name that was taken leads to another declaration, and that was told.
+    if (!first || first->statement != d.statement || first->item != d.item || !first->group) return;
     d.group = first->group;
   }
   const Value& v = *d.group;
