@@ -319,7 +319,9 @@ std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOption
     return std::nullopt;
   }
   const InterruptScope scope = study.interruptible();
-  return run_fields(equations_of(study), {}, options, study.diagnostics());
+  return s.space.size() == 1 && study.model()->fields->coupled
+             ? run_coupled(model, equations_of(study), {}, options, study.diagnostics())
+             : run_fields(equations_of(study), {}, options, study.diagnostics());
 }
 
 std::string dispersion_text(Study& study, std::string& trouble) {
@@ -337,6 +339,22 @@ namespace {
 
 /// At most this many moments are drawn, the first and the last among them.
 constexpr std::size_t most_moments = 6;
+
+}  // namespace
+
+namespace {
+
+std::string coupled_run_text(const FieldRunResult& run) {
+  std::string out = fmt::format("{} elements of order {} ({} unknowns), {} steps to {:.10g} s\n", run.cells, run.order,
+                                run.nodes, run.steps, run.end);
+  for (const FieldRunResult::Coordinate& c : run.final_coordinates)
+    out += fmt::format("  {:<30} {:.10g}, {}' {:.10g}\n", c.name, c.q, c.name, c.v);
+  out += fmt::format("  energy                         {:.16g}\n", run.energy);
+  out += run.energy_drift < 0 ? std::string("  energy drift                   forces act on the field: not measured\n")
+                              : fmt::format("  energy drift                   {:.3g} of its terms\n", run.energy_drift);
+  if (!run.trouble.empty()) out += fmt::format("  it ended early                 {}\n", run.trouble);
+  return out + fmt::format("  computed in                    {:.3g} s\n", run.seconds);
+}
 
 }  // namespace
 
@@ -375,6 +393,7 @@ std::string field_picture(Study& study, const FieldRunResult& run) {
 }
 
 std::string field_run_text(const FieldRunResult& run) {
+  if (run.coupled) return coupled_run_text(run);
   std::string out = fmt::format("{} cells of order {} ({} nodes), {} steps of order 8 to {:.10g} s\n", run.cells,
                                 run.order, run.nodes, run.steps, run.end);
   out +=
@@ -392,6 +411,12 @@ Json field_run_json(const FieldRunResult& run) {
                             {"energy", run.energy}, {"seconds", run.seconds}};
   document["statistics"]["energy_drift"] = run.energy_drift < 0 ? Json(nullptr) : Json(run.energy_drift);
   document["end"] = run.end;
+  if (run.coupled) {
+    document["final"] = Json::object();
+    for (const FieldRunResult::Coordinate& c : run.final_coordinates)
+      document["final"][c.name] = c.q, document["final"][c.name + "'"] = c.v;
+    if (!run.trouble.empty()) document["trouble"] = run.trouble;
+  }
   return document;
 }
 

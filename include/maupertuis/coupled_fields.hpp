@@ -5,8 +5,8 @@
 namespace maupertuis {
 
 /// Derives the equations of the coordinates and bodies beside the fields, and what holds where they meet: fills
-/// `bodies` and `interfaces`. `system` is that of the model, with values at places among its coordinates.
-void attach_bodies(FieldEquations& equations, std::shared_ptr<const MechanicalSystem> system, Diagnostics& diagnostics);
+/// `bodies`, `body_start` and `interfaces`. The system of the model has the values at places among its coordinates.
+void attach_bodies(FieldEquations& equations, std::shared_ptr<const Model> model, Diagnostics& diagnostics);
 
 /// A place where the density, the dissipation or a force density goes over from one formula to another.
 struct DensityBorder {

@@ -48,6 +48,7 @@ struct FieldEquations {
   /// Lagrange's equations of the coordinates and bodies beside the fields, the values of fields at places among the
   /// coordinates; null where there are none. See coupled_fields.hpp.
   std::shared_ptr<const EquationsOfMotion> bodies;
+  std::vector<StartValue> body_start;  // of the coordinates, where the model gives one
   std::vector<InterfaceCondition> interfaces;
 
   const FieldSystem& system() const { return model->system; }

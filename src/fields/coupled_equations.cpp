@@ -122,11 +122,11 @@ std::vector<DensityBorder> density_borders(const FieldEquations& equations) {
   return out;
 }
 
-void attach_bodies(FieldEquations& equations, std::shared_ptr<const MechanicalSystem> system,
-                   Diagnostics& diagnostics) {
+void attach_bodies(FieldEquations& equations, std::shared_ptr<const Model> model, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
   if (equations.model->coupled) {
-    auto bodies = euler_lagrange(std::move(system), diagnostics);
+    equations.body_start = model->experiment.start;
+    auto bodies = euler_lagrange(std::shared_ptr<const MechanicalSystem>(model, &model->system), diagnostics);
     if (!bodies) return;
     equations.bodies = std::make_shared<const EquationsOfMotion>(std::move(*bodies));
   }

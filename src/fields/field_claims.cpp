@@ -159,8 +159,9 @@ class FieldVerifier {
     options.interrupt = options_.interrupt;
     options.duration = options_.duration ? *options_.duration : number_of(model_.experiment.duration);
     for (const FieldQuestion& q : questions_) options.duration = std::max(options.duration, q.time);
-    const auto run = run_fields(equations_, questions_, options, diagnostics_);
-    if (!run) {
+    const auto run = equations_.model->coupled ? run_coupled(model_, equations_, questions_, options, diagnostics_)
+                                               : run_fields(equations_, questions_, options, diagnostics_);
+    if (!run || !run->trouble.empty()) {
       for (const auto& [line, expected] : asked_) out.results[line].message = "The run did not come to it.";
       for (const auto& [line, tolerance] : energy_) out.results[line].message = "The run did not come to it.";
       return;

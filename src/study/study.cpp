@@ -132,7 +132,7 @@ const FieldEquations* Study::field_equations() {
     const InterruptScope scope = interruptible();
     field_equations_ = maupertuis::field_equations(model_->fields, diagnostics_);
     if (field_equations_)
-      attach_bodies(*field_equations_, std::shared_ptr<const MechanicalSystem>(model_, &model_->system), diagnostics_);
+      attach_bodies(*field_equations_, model_, diagnostics_);
     if (field_equations_ && !wrong()) field_certificate_ = certify(*field_equations_);
     if (field_certificate_)
       for (const CertificateCheck& check : field_certificate_->checks) report(check);
