@@ -26,8 +26,7 @@ bool is_essential(const FieldEquations& equations, const NaturalCondition& n, bo
   const FieldSystem& s = equations.system();
   if (s.periodic) return true;
   for (const InterfaceCondition& c : equations.interfaces)
-    if (c.field == n.field && c.moment == n.moment && c.end &&
-        (*c.end == BoundaryCondition::Side::Right) == right)
+    if (c.field == n.field && c.moment == n.moment && c.end && (*c.end == BoundaryCondition::Side::Right) == right)
       return true;
   for (const BoundaryCondition& b : s.boundary) {
     const bool side = (b.side == BoundaryCondition::Side::Right || b.side == BoundaryCondition::Side::Top) == right;
@@ -94,7 +93,7 @@ constexpr const char* constraint_section = "Constraints";
 
 std::string where_interface(const FieldEquations& equations, const InterfaceCondition& c) {
   const FieldSystem& s = equations.system();
-  const std::string place = fmt::format("{} = {}", s.space.front().name, plain_of(equations, c.place));
+  const std::string place = fmt::format("{} = {}", s.space.front().name, place_text(equations, c.place));
   if (!c.coordinate) return fmt::format("at {}, where the density changes", place);
   return fmt::format("at {}{}", place, c.end ? "" : ", from both sides");
 }
@@ -104,9 +103,7 @@ void add_row(const FieldEquations& equations, Expr row, Expr own, const char* se
              std::vector<FormulaLine>& out) {
   ReadingOrder order = coupled_order(equations);
   order.own = own;
-  const auto page = [&](Layout l) {
-    return field_layout(equations.system(), coupled_layout(equations, std::move(l)));
-  };
+  const auto page = [&](Layout l) { return field_layout(equations.system(), coupled_layout(equations, std::move(l))); };
   const ReadableForm form = readable_row(equations, row, own);
   out.push_back(line_of(page(lay_out(form, order)), zero(), section, note));
   for (const Intermediate& i : form.intermediates)
@@ -319,7 +316,7 @@ std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOption
     return std::nullopt;
   }
   const InterruptScope scope = study.interruptible();
-  return s.space.size() == 1 && study.model()->fields->coupled
+  return runs_as_one_system(equations_of(study))
              ? run_coupled(model, equations_of(study), {}, options, study.diagnostics())
              : run_fields(equations_of(study), {}, options, study.diagnostics());
 }
@@ -390,6 +387,28 @@ std::string field_picture(Study& study, const FieldRunResult& run) {
         {fmt::format("t = {:.4g}{}", rows.times[row], system.dimensionless ? "" : " s"), i, false, false});
   }
   return diagram_svg(out);
+}
+
+std::string shape_of_bodies(const FieldEquations& equations, const FieldModes& modes, std::size_t index) {
+  if (!equations.bodies || index >= modes.shapes.size()) return {};
+  std::string out;
+  const auto& coordinates = equations.bodies->system->coordinates;
+  for (std::size_t i = 0; i < coordinates.size(); ++i)
+    out += fmt::format("{}{} {:.4g}", i ? ", " : "   ", coordinates[i].name, modes.shapes[index].coordinates[i]);
+  return out;
+}
+
+Json shapes_json(const FieldEquations& equations, const FieldModes& modes) {
+  Json out{{"places", modes.places}, {"modes", Json::array()}};
+  for (const FieldModes::Shape& shape : modes.shapes) {
+    Json one = Json::object();
+    for (std::size_t a = 0; a < shape.fields.size(); ++a)
+      one[equations.system().fields[equations.varied[a]].name] = shape.fields[a];
+    for (std::size_t i = 0; i < shape.coordinates.size(); ++i)
+      one[equations.bodies->system->coordinates[i].name] = shape.coordinates[i];
+    out["modes"].push_back(one);
+  }
+  return out;
 }
 
 std::string field_run_text(const FieldRunResult& run) {

@@ -10,13 +10,16 @@ void attach_bodies(FieldEquations& equations, std::shared_ptr<const Model> model
 
 /// A place where the density, the dissipation or a force density goes over from one formula to another.
 struct DensityBorder {
-  Expr place;     // SI, parameters and numbers only
-  double at = 0;  // its value
-  Expr switching;     // changes its sign there
+  Expr place;          // SI, parameters and numbers only
+  double at = 0;       // its value
+  Expr switching;      // changes its sign there
   bool rising = true;  // with x
 };
 /// In ascending order, without the ends; of one space variable.
 std::vector<DensityBorder> density_borders(const FieldEquations& equations);
+
+/// The place as it stands in names: l of u(l).
+std::string place_text(const FieldEquations& equations, Expr place);
 
 /// A jet of a field at a place, as it is named in interface conditions. `side`: 0, or the limit from the left (−1) or
 /// right (+1) where the jet may jump.
@@ -28,6 +31,10 @@ struct CoordinateRow {
   Expr value;
 };
 std::vector<CoordinateRow> coordinate_rows(const FieldEquations& equations);
+
+/// Whether `difference` = 0 is a condition at a place or a row of a coordinate up to a factor of parameters. Nothing
+/// where neither coordinates nor values at places stand in it.
+std::optional<bool> row_of_bodies(const FieldEquations& equations, Expr difference);
 
 /// Adds to the certificate: that of the bodies, and that interface rows and B leave nothing of the variation.
 void certify_bodies(const FieldEquations& equations, Certificate& certificate);

@@ -54,6 +54,8 @@ struct FieldRunOptions {
 std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const std::vector<FieldQuestion>& questions,
                                          const FieldRunOptions& options, Diagnostics& diagnostics);
 
+/// Whether a run is one of run_coupled: bodies stand beside the fields, or the density changes at a place.
+bool runs_as_one_system(const FieldEquations& equations);
 /// The run of a model in which fields are coupled with coordinates and bodies: elements of continuous fields, or of
 /// continuous slopes where the density bends, as one system of at most 200 unknowns that `simulate` runs. Columns of
 /// the trajectory: fields and velocities at `places`, then the coordinates. Errors as above; E0656: too many elements.

@@ -28,18 +28,6 @@ bool has_derivative(const FieldSystem& s, std::size_t field, int order) {
   return false;
 }
 
-/// The place as it stands in names: l of u(l).
-std::string text_of_place(const FieldEquations& equations, Expr place) {
-  const FieldModel& model = *equations.model;
-  for (const PlaceCoordinate& p : model.attached)
-    if (p.place == place && equations.bodies) {
-      const std::string& name = equations.bodies->system->coordinates[p.coordinate].name;
-      const std::size_t open = name.find('(');
-      return name.substr(open + 1, name.size() - open - 2);
-    }
-  return to_plain(lay_out(place, equations.order));
-}
-
 const PlaceCoordinate* attached_at(const FieldEquations& equations, const FieldJet& jet, Expr place) {
   for (const PlaceCoordinate& p : equations.model->attached)
     if (p.place == place && p.jet.field == jet.field && p.jet.space == jet.space) return &p;
@@ -82,6 +70,17 @@ void add_interface(FieldEquations& out, std::size_t field, bool moment, Expr pla
 
 }  // namespace
 
+std::string place_text(const FieldEquations& equations, Expr place) {
+  const FieldModel& model = *equations.model;
+  for (const PlaceCoordinate& p : model.attached)
+    if (p.place == place && equations.bodies) {
+      const std::string& name = equations.bodies->system->coordinates[p.coordinate].name;
+      const std::size_t open = name.find('(');
+      return name.substr(open + 1, name.size() - open - 2);
+    }
+  return to_plain(lay_out(place, equations.order));
+}
+
 Expr jet_at_place(const FieldEquations& equations, const FieldJet& jet, Expr place, int side) {
   const FieldSystem& s = equations.with_variations;
   if (const PlaceCoordinate* p = attached_at(equations, {jet.field, jet.space, 0}, place))
@@ -92,7 +91,7 @@ Expr jet_at_place(const FieldEquations& equations, const FieldJet& jet, Expr pla
   const bool continuous = jet.space[0] == 0 || (jet.space[0] == 1 && has_derivative(s, varied, 2));
   const char* mark = side == 0 || continuous ? "" : side > 0 ? "+" : "-";
   const std::string name =
-      fmt::format("{}({}{})", s.jet_name({jet.field, jet.space, 0}), text_of_place(equations, place), mark);
+      fmt::format("{}({}{})", s.jet_name({jet.field, jet.space, 0}), place_text(equations, place), mark);
   return s.context->symbol(name, Role::Coordinate, jet.time);
 }
 
@@ -142,11 +141,11 @@ void attach_bodies(FieldEquations& equations, std::shared_ptr<const Model> model
     if (std::any_of(done.begin(), done.end(), same)) continue;
     done.push_back(b.at);
     for (const NaturalCondition& n : equations.natural) {
-      const bool attached = std::any_of(
-          equations.model->attached.begin(), equations.model->attached.end(), [&](const PlaceCoordinate& p) {
-            return p.jet.field == n.field && (p.jet.space[0] == 1) == n.moment &&
-                   same(evaluate(s.expanded(p.place), values));
-          });
+      const bool attached = std::any_of(equations.model->attached.begin(), equations.model->attached.end(),
+                                        [&](const PlaceCoordinate& p) {
+                                          return p.jet.field == n.field && (p.jet.space[0] == 1) == n.moment &&
+                                                 same(evaluate(s.expanded(p.place), values));
+                                        });
       if (!attached) add_interface(equations, n.field, n.moment, b.place, {}, {}, borders, b.at);
     }
   }
@@ -164,7 +163,45 @@ std::vector<CoordinateRow> coordinate_rows(const FieldEquations& equations) {
   return out;
 }
 
-// ---------------------------------------------------------------------------------------------------------- certificate
+std::optional<bool> row_of_bodies(const FieldEquations& equations, Expr difference) {
+  const FieldSystem& s = equations.system();
+  Expr e = s.expanded(expand_time_derivatives(difference));
+  ExprMap places;
+  for (const PlaceValue& p : equations.model->places) {
+    const FieldJet jet = *s.jet_of(p.jet);
+    Expr place = p.place.front();
+    for (const InterfaceCondition& c : equations.interfaces)
+      if (zero_test(c.place - place).verdict == Verdict::Zero) place = c.place;
+    places[p.symbol] = jet_at_place(equations, jet, place, 0);
+  }
+  const Expr roots[] = {e};
+  bool of_bodies = false;
+  for (const Expr& symbol : symbols_of(roots))
+    of_bodies = of_bodies || places.count(symbol) || (symbol.role() == Role::Coordinate && !s.jet_of(symbol));
+  if (!of_bodies) return std::nullopt;
+  e = substitute(e, places);
+  std::vector<Expr> rows;
+  for (const InterfaceCondition& c : equations.interfaces) rows.push_back(c.value);
+  for (const CoordinateRow& r : coordinate_rows(equations)) rows.push_back(r.value);
+  for (const Expr& written : rows) {
+    const Expr row = s.expanded(expand_time_derivatives(written));
+    const Expr of_row[] = {row};
+    for (const Expr& symbol : symbols_of(of_row)) {
+      if (symbol.role() != Role::Coordinate) continue;
+      const Expr slope = differentiate(row, symbol), other = differentiate(e, symbol);
+      const Expr factors[] = {slope, other};
+      const std::vector<Expr> in_factors = symbols_of(factors);
+      const bool of_parameters = std::none_of(in_factors.begin(), in_factors.end(),
+                                              [](const Expr& f) { return f.role() == Role::Coordinate; });
+      if (!of_parameters || zero_test(other).verdict != Verdict::Nonzero) continue;
+      if (zero_test(e * slope - row * other).verdict == Verdict::Zero) return true;
+    }
+  }
+  return false;
+}
+
+// ----------------------------------------------------------------------------------------------------------
+// certificate
 
 namespace {
 
@@ -202,7 +239,9 @@ CertificateCheck interface_identity(const FieldEquations& equations) {
         else
           silent[eta] = s.context->number(0);
         for (const int side : {-1, 1})  // δu_x of a field without bending energy stands in no B
-          if (!row) silent[jet_at_place(equations, {equations.variation_of(a), {order}, 0}, place, side)] = s.context->number(0);
+          if (!row)
+            silent[jet_at_place(equations, {equations.variation_of(a), {order}, 0}, place, side)] =
+                s.context->number(0);
       }
     differences.push_back(s.expanded(substitute(left, silent)));
   }

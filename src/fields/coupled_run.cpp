@@ -103,7 +103,8 @@ class Rows {
     const Expr roots[] = {e};
     for (const Expr& symbol : symbols_of(roots))
       if (symbol.role() == Role::Coordinate)
-        if (const auto column = rows.column(symbol.name() + std::string(static_cast<std::size_t>(symbol.order()), '\'')))
+        if (const auto column =
+                rows.column(symbol.name() + std::string(static_cast<std::size_t>(symbol.order()), '\'')))
           at[symbol] = rows.at(row, *column);
     return evaluate(e, at);
   }
@@ -144,6 +145,10 @@ std::vector<double> errors_of(const CoupledRun& fine, const std::optional<Couple
 }
 
 }  // namespace
+
+bool runs_as_one_system(const FieldEquations& equations) {
+  return equations.model->coupled || !density_borders(equations).empty();
+}
 
 std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquations& equations,
                                           const std::vector<FieldQuestion>& questions, const FieldRunOptions& options,
@@ -196,8 +201,7 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
   const std::vector<double> errors = errors_of(*fine, half, quarter);
   const double rounding = 2.2e-16 * std::sqrt(static_cast<double>(out.steps) + 1);
   for (std::size_t i = 0; i < questions.size(); ++i)
-    out.answers.push_back(
-        {fine->answers[i], errors[i] + rounding * std::max(std::abs(fine->answers[i]), 1e-300)});
+    out.answers.push_back({fine->answers[i], errors[i] + rounding * std::max(std::abs(fine->answers[i]), 1e-300)});
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;
 }

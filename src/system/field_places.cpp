@@ -9,9 +9,9 @@
 #include <algorithm>
 #include <cmath>
 
-/// Values of fields at places: what couples fields with coordinates and bodies. Such a value that stands in T, V, L, D, a
-/// point, a constraint or a force is a coordinate of the mechanical system: its row of Lagrange's equations is what the
-/// bodies do at that place, to which the density adds its p or m.
+/// Values of fields at places: what couples fields with coordinates and bodies. Such a value that stands in T, V, L, D,
+/// a point, a constraint or a force is a coordinate of the mechanical system: its row of Lagrange's equations is what
+/// the bodies do at that place, to which the density adds its p or m.
 namespace maupertuis::elaboration {
 namespace {
 
@@ -39,12 +39,6 @@ bool goes_with_fields(const syntax::Statement& s) {
          std::get_if<syntax::RunStatement>(&s.body) || std::get_if<syntax::OutputStatement>(&s.body) ||
          std::get_if<syntax::ExpectStatement>(&s.body) || std::get_if<syntax::SweepStatement>(&s.body) ||
          std::get_if<syntax::FieldStatement>(&s.body);
-}
-
-std::string text_of_place(Elaboration& e, const Expression& x) {
-  std::string out;
-  for (const auto& a : x.arguments) out += (out.empty() ? "" : ", ") + std::string(e.texts.slice(a->span));
-  return out;
 }
 
 /// Where in the domain `at` lies: an end of it, or nothing for the inside.
@@ -91,6 +85,12 @@ bool refuse_as_coordinate(Elaboration& e, const Expression& x, const FieldJet& j
 
 }  // namespace
 
+std::string name_of_place_value(Elaboration& e, const Expression& x, const FieldJet& jet) {
+  std::string place;
+  for (const auto& a : x.arguments) place += (place.empty() ? "" : ", ") + std::string(e.texts.slice(a->span));
+  return fmt::format("{}({})", fields_of(e).jet_name({jet.field, jet.space, 0}), place);
+}
+
 bool couples_mechanics(Elaboration& e) {
   bool any = false;
   for (const syntax::Statement& s : e.tree.statements) any = any || is_mechanics(s);
@@ -116,7 +116,7 @@ Value coordinate_at_place(Elaboration& e, const Expression& x, const FieldJet& j
   const PlaceCoordinate* known = find_attached(e, still, at);
   if (!known) {
     Coordinate c;
-    c.name = fmt::format("{}({})", s.jet_name(still), text_of_place(e, x));
+    c.name = name_of_place_value(e, x, still);
     c.q = e.context.symbol(c.name, Role::Coordinate, 0);
     c.velocity = e.context.symbol(c.name, Role::Coordinate, 1);
     c.acceleration = e.context.symbol(c.name, Role::Coordinate, 2);
@@ -170,7 +170,8 @@ void refuse_held_place(Elaboration& e, Side side, const FieldJet& jet, Span span
           "E0297", span,
           fmt::format("{} is given at the {} end, and {} there", s.jet_name(jet), end,
                       is_force ? "a force acts on it" : "bodies take hold of it"),
-          fmt::format("Line {} says what it is at every time: whatever acts on it there is borne by the support.", line),
+          fmt::format("Line {} says what it is at every time: whatever acts on it there is borne by the support.",
+                      line),
           is_force ? "Leave the force or the boundary condition out."
                    : "Write the given value in its place, or leave the boundary condition out.");
       return;
@@ -218,8 +219,9 @@ void refuse_loose_fields(Elaboration& e, Expr value, Span span, const std::strin
     if (!space && !jet) continue;
     const std::string name = jet ? s.jet_name(*jet) : symbol.name();
     e.diagnostics.error("E0299", span, fmt::format("`{}` stands in {} without a place", name, where),
-                        "A density is integrated over the field; all else of a model is there or not at one place.",
-                        jet ? fmt::format("Write the value at a place, such as `{}(0)`, or put it into the density.", name)
+                        "The density alone is integrated over the field; bodies, springs and forces act at places.",
+                        jet ? fmt::format("Write the value at a place, such as `{}(0 m)`, or put it into the density.",
+                                          s.fields[jet->field].name)
                             : "Write a place of the field.");
     return;
   }
@@ -231,9 +233,9 @@ void refuse_coordinates_in(Elaboration& e, Expr value, Span span) {
   const Expr roots[] = {value};
   for (const Expr& symbol : symbols_of(roots)) {
     if (symbol.role() != Role::Coordinate || fields_of(e).jet_of(symbol)) continue;
-    e.diagnostics.error("E0299", span, fmt::format("not supported yet: the coordinate `{}` in a density", symbol.name()),
-                        "It would act on every piece of the field at once.",
-                        "Couple it with values of the field at places: u(l).");
+    e.diagnostics.error(
+        "E0299", span, fmt::format("not supported yet: the coordinate `{}` in a density", symbol.name()),
+        "It would act on every piece of the field at once.", "Couple it with values of the field at places: u(l).");
     return;
   }
 }
@@ -262,7 +264,8 @@ void check_places(Elaboration& e) {
   check_terms(e, system.kinetic, "T"), check_terms(e, system.potential, "V");
   check_terms(e, system.generalized_potential, "U"), check_terms(e, system.dissipation, "D");
   check_terms(e, system.lagrangian_extra, "L");
-  if (system.lagrangian_given) refuse_loose_fields(e, system.lagrangian_given->value, system.lagrangian_given->span, "L");
+  if (system.lagrangian_given)
+    refuse_loose_fields(e, system.lagrangian_given->value, system.lagrangian_given->span, "L");
   for (const AppliedForce& f : system.forces)
     for (const Expr& c : f.components) refuse_loose_fields(e, c, f.span, "a force");
   for (const Constraint& c : system.constraints) refuse_loose_fields(e, c.value, c.span, "a constraint");

@@ -5,6 +5,7 @@
 #include "system/value.hpp"
 
 #include <optional>
+#include <string>
 
 namespace maupertuis::elaboration {
 
@@ -16,6 +17,8 @@ bool couples_mechanics(Elaboration& e);
 void refuse_beside_fields(Elaboration& e);
 /// The coordinate of the mechanical system that is a jet of a field at a place, made where it is new.
 Value coordinate_at_place(Elaboration& e, const syntax::Expression& x, const FieldJet& jet, Expr place);
+/// u_x(l) of u_tx(l): what the symbols of a value at a place are called, the time derivatives being their order.
+std::string name_of_place_value(Elaboration& e, const syntax::Expression& x, const FieldJet& jet);
 /// Its symbol where it is known; nothing where no body takes hold of the field there.
 std::optional<Expr> attached_symbol(Elaboration& e, const FieldJet& jet, Expr place);
 /// force u(l) = F, of anything

@@ -590,7 +590,7 @@ Value value_at_place(Elaboration& e, const syntax::Expression& x) {
   if (e.fields->coupled)
     if (const auto q = attached_symbol(e, *jet, out.place.front()))
       return Value::of(*q, system.dimension_of(*jet), jet->time);
-  out.symbol = e.context.symbol(fmt::format("{}", e.texts.slice(x.span)), Role::Auxiliary);
+  out.symbol = e.context.symbol(name_of_place_value(e, x, *jet), Role::Coordinate, jet->time);
   const Expr symbol = out.symbol;
   const bool known = std::any_of(e.fields->places.begin(), e.fields->places.end(),
                                  [&](const PlaceValue& p) { return p.symbol == symbol; });
