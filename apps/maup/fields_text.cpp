@@ -8,6 +8,8 @@
 #include <maupertuis/diagram.hpp>
 #include <maupertuis/print.hpp>
 
+#include <cmath>
+
 namespace maupertuis::app {
 namespace {
 
@@ -393,8 +395,11 @@ std::string shape_of_bodies(const FieldEquations& equations, const FieldModes& m
   if (!equations.bodies || index >= modes.shapes.size()) return {};
   std::string out;
   const auto& coordinates = equations.bodies->system->coordinates;
-  for (std::size_t i = 0; i < coordinates.size(); ++i)
-    out += fmt::format("{}{} {:.4g}", i ? ", " : "   ", coordinates[i].name, modes.shapes[index].coordinates[i]);
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    constexpr double rounding = 1e-10;  // beside 1
+    const double value = modes.shapes[index].coordinates[i];
+    out += fmt::format("{}{} {:.4g}", i ? ", " : "   ", coordinates[i].name, std::abs(value) < rounding ? 0 : value);
+  }
   return out;
 }
 

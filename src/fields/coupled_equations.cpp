@@ -312,15 +312,20 @@ Layout place_layout(const FieldEquations& equations, Layout layout) {
   if (open == std::string::npos || name.back() != ')') return layout;
   const auto jet = s.jet_of_name(std::string_view(name).substr(0, open));
   if (!jet) return layout;
-  std::vector<Layout> below;
-  for (int k = 0; k < layout.symbol.order(); ++k) below.push_back(layouts::name("t"));
+  const auto as_written = [](std::string text) {
+    Layout out;
+    out.shape = Shape::Sign;
+    out.text = std::move(text);
+    return out;
+  };
+  std::string below(static_cast<std::size_t>(layout.symbol.order()), 't');
   for (std::size_t x = 0; x < s.space.size(); ++x)
-    for (int k = 0; k < jet->space[x]; ++k) below.push_back(layouts::symbol(s.space[x].symbol));
+    for (int k = 0; k < jet->space[x]; ++k) below += s.space[x].name;
   const Layout field = layouts::symbol(s.jet_symbol({jet->field, std::vector<int>(s.space.size(), 0), 0}));
   Layout typeset;
   typeset.shape = Shape::Row;
-  typeset.parts.push_back(below.empty() ? field : layouts::indexed(field, {layouts::product(std::move(below))}));
-  typeset.parts.push_back(layouts::words(name.substr(open)));
+  typeset.parts.push_back(below.empty() ? field : layouts::indexed(field, {as_written(below)}));
+  typeset.parts.push_back(as_written(name.substr(open)));
   std::string plain = name + std::string(static_cast<std::size_t>(layout.symbol.order()), '\'');
   return layouts::labelled(std::move(plain), std::move(typeset));
 }

@@ -1,5 +1,6 @@
 #include <maupertuis/coupled_fields.hpp>
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/repeated_evaluation.hpp>
 
 #include "fields/semi_discrete.hpp"
 
@@ -9,13 +10,14 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 
 /// The run of fields with coordinates and bodies, and of coarser meshes that tell how far off it is.
 namespace maupertuis {
 namespace {
 
 constexpr int usual_coupled_cells = 6, usual_coupled_order = 8;
-constexpr int shown_in_element = 8;  // places of rows and pictures
+constexpr int usual_places = 200;  // of rows and pictures, about
 
 struct CoupledRun {
   SimulationResult result;
@@ -61,19 +63,28 @@ std::optional<CoupledRun> run_once(const SemiDiscrete& mesh, const std::vector<F
 class Rows {
  public:
   Rows(const SemiDiscrete& mesh, const Model& model, const FieldEquations& equations, const std::vector<double>& places)
-      : model_(model), s_(equations.system()), equations_(equations), mesh_(mesh), places_(places) {}
+      : model_(model), s_(equations.system()), equations_(equations), mesh_(mesh), places_(places) {
+    for (const Parameter& p : model.system.parameters) parameters_[p.symbol] = p.si_value;
+  }
 
   Trajectory of(const SimulationResult& run) const {
     Trajectory out;
     out.independent = run.trajectory.independent;
     out.times = run.trajectory.times;
     out.metadata = run.trajectory.metadata;
-    const auto weights = columns(out);
+    const std::vector<Expr> values = columns(out);
+    const RepeatedEvaluation at(values);
+    const std::unordered_map<Expr, std::size_t, ExprHash> columns_of_symbols = symbol_columns(values, run.trajectory);
     for (std::size_t row = 0; row < run.trajectory.rows(); ++row) {
-      for (const Expr& e : weights) out.values.push_back(value(e, run.trajectory, row));
-      for (std::size_t c = 0; c < model_.system.coordinates.size(); ++c)
+      const std::vector<double> here = at([&](Expr symbol) {
+        if (symbol.role() == Role::Time) return run.trajectory.times[row];
+        const auto column = columns_of_symbols.find(symbol);
+        return column == columns_of_symbols.end() ? parameters_.at(symbol) : run.trajectory.at(row, column->second);
+      });
+      out.values.insert(out.values.end(), here.begin(), here.end());
+      for (const Coordinate& c : model_.system.coordinates)
         for (const char* prime : {"", "'"})
-          if (const auto column = run.trajectory.column(model_.system.coordinates[c].name + prime))
+          if (const auto column = run.trajectory.column(c.name + prime))
             out.values.push_back(run.trajectory.at(row, *column));
     }
     for (const Coordinate& c : model_.system.coordinates)
@@ -96,17 +107,15 @@ class Rows {
         }
     return values;
   }
-  double value(Expr e, const Trajectory& rows, std::size_t row) const {
-    Bindings at;
-    for (const Parameter& p : model_.system.parameters) at[p.symbol] = p.si_value;
-    at[s_.context->time()] = rows.times[row];
-    const Expr roots[] = {e};
-    for (const Expr& symbol : symbols_of(roots))
+  static std::unordered_map<Expr, std::size_t, ExprHash> symbol_columns(const std::vector<Expr>& values,
+                                                                        const Trajectory& rows) {
+    std::unordered_map<Expr, std::size_t, ExprHash> out;
+    for (const Expr& symbol : symbols_of(values))
       if (symbol.role() == Role::Coordinate)
         if (const auto column =
                 rows.column(symbol.name() + std::string(static_cast<std::size_t>(symbol.order()), '\'')))
-          at[symbol] = rows.at(row, *column);
-    return evaluate(e, at);
+          out[symbol] = *column;
+    return out;
   }
 
   const Model& model_;
@@ -114,13 +123,15 @@ class Rows {
   const FieldEquations& equations_;
   const SemiDiscrete& mesh_;
   const std::vector<double>& places_;
+  Bindings parameters_;
 };
 
 std::vector<double> shown_places(const SemiDiscrete& mesh) {
   std::vector<double> out;
   const std::vector<double>& b = mesh.borders();
+  const int in_element = std::max(4, usual_places / static_cast<int>(mesh.elements()));
   for (std::size_t e = 0; e + 1 < b.size(); ++e)
-    for (int k = 0; k < shown_in_element; ++k) out.push_back(b[e] + (b[e + 1] - b[e]) * k / shown_in_element);
+    for (int k = 0; k < in_element; ++k) out.push_back(b[e] + (b[e + 1] - b[e]) * k / in_element);
   out.push_back(b.back());
   return out;
 }
@@ -129,7 +140,7 @@ std::vector<double> shown_places(const SemiDiscrete& mesh) {
 /// since a start or a load with a kink lets no high order come about.
 std::vector<double> errors_of(const CoupledRun& fine, const std::optional<CoupledRun>& half,
                               const std::optional<CoupledRun>& quarter) {
-  constexpr double least = 1.5, most = 256;
+  constexpr double least = 1.5, most = 33;  // of a gain that two differences show
   std::vector<double> out;
   for (std::size_t i = 0; i < fine.answers.size(); ++i) {
     if (!half) {

@@ -139,7 +139,8 @@ class ModeProblem {
     for (const Entry& e : entries_.list) smooth[e.a] = smooth[e.a] || e.da == 2;
     mesh_.borders = element_borders(equations_, 1);
     const std::size_t elements = mesh_.borders.size() - 1;
-    mesh_.degree = elements == 1 ? 40 : elements == 2 ? 30 : elements <= 5 ? 24 : 16;
+    const std::size_t unknowns = 160;  // so that all is done in a fraction of a second
+    mesh_.degree = static_cast<int>(std::clamp<std::size_t>(unknowns / (elements * equations_.varied.size()), 10, 40));
     mesh_.points = 2 * mesh_.degree;
     mesh_.periodic = s_.periodic;
     for (std::size_t a = 0; a < equations_.varied.size(); ++a) {
@@ -186,8 +187,7 @@ class ModeProblem {
       const double inside = std::clamp(points[q].x, a + 1e-13 * (b - a), b - 1e-13 * (b - a));
       const std::vector<double> c =
           at([&](Expr symbol) { return symbol == s_.space.front().symbol ? inside : values_.at(symbol); });
-      for (std::size_t i = 0; i < entries_.list.size(); ++i)
-        add_entry(entries_.list[i], points[q].weight * c[i], q);
+      for (std::size_t i = 0; i < entries_.list.size(); ++i) add_entry(entries_.list[i], points[q].weight * c[i], q);
     }
   }
   /// d/dt ∂ℒ/∂v − ∂ℒ/∂u: mass from v v, stiffness from u u, and from v u a force sideways.
@@ -262,7 +262,8 @@ class ModeProblem {
         skew = std::max(skew, std::abs(k[i * n + j] - k[j * n + i]));
       }
     if (sideways > 1e-12 * size)
-      return refuse_modes_of(equations_, diagnostics_, "A force on its bodies grows with their velocity: motions are damped or driven.");
+      return refuse_modes_of(equations_, diagnostics_,
+                             "A force on its bodies grows with their velocity: motions are damped or driven.");
     if (skew > 1e-12 * size_of_k)
       return refuse_modes_of(equations_, diagnostics_, "The forces on its bodies have no potential.");
     return true;
@@ -296,8 +297,7 @@ class ModeProblem {
       if (!z.allFinite()) break;
       if (step.cwiseAbs().maxCoeff() <= 1e-13 * std::max(z.cwiseAbs().maxCoeff(), 1e-300)) return true;
     }
-    return refuse_modes_of(equations_, diagnostics_,
-                           "No rest of its bodies was found near the start of the model.");
+    return refuse_modes_of(equations_, diagnostics_, "No rest of its bodies was found near the start of the model.");
   }
   /// ∂ℒ at rest and force densities, on each unknown of the fields.
   Eigen::VectorXd static_load() const {
