@@ -312,7 +312,8 @@ std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOption
                               "Its mesh is started at t = 0 and steps on from there.", "Give a positive --duration.");
     return std::nullopt;
   }
-  if (!(options.duration > 0)) {
+  const bool until = model.experiment.until && runs_as_one_system(equations_of(study)) && !settings.duration;
+  if (!(options.duration > 0) && !until) {
     study.diagnostics().error("E0701", std::nullopt, "the model does not say how long it runs",
                               "A run of a field goes on for a time.", "Add `run 10 s`, or give --duration.");
     return std::nullopt;
@@ -348,6 +349,8 @@ std::string coupled_run_text(const FieldRunResult& run) {
                                 run.nodes, run.steps, run.end);
   for (const FieldRunResult::Coordinate& c : run.final_coordinates)
     out += fmt::format("  {:<30} {:.10g}, {}' {:.10g}\n", c.name, c.q, c.name, c.v);
+  for (const FieldRunResult::Happening& h : run.happenings)
+    out += fmt::format("  {:<30} at {:.12g} s\n", h.name, h.time);
   out += fmt::format("  energy                         {:.16g}\n", run.energy);
   out += run.energy_drift < 0 ? std::string("  energy drift                   forces act on the field: not measured\n")
                               : fmt::format("  energy drift                   {:.3g} of its terms\n", run.energy_drift);
@@ -439,6 +442,9 @@ Json field_run_json(const FieldRunResult& run) {
     document["final"] = Json::object();
     for (const FieldRunResult::Coordinate& c : run.final_coordinates)
       document["final"][c.name] = c.q, document["final"][c.name + "'"] = c.v;
+    document["events"] = Json::array();
+    for (const FieldRunResult::Happening& h : run.happenings)
+      document["events"].push_back({{"name", h.name}, {"time", h.time}});
     if (!run.trouble.empty()) document["trouble"] = run.trouble;
   }
   return document;

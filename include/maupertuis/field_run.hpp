@@ -32,6 +32,11 @@ struct FieldRunResult {
     double q = 0, v = 0;  // SI
   };
   std::vector<Coordinate> final_coordinates;  // values of fields at places among them
+  struct Happening {
+    std::string name;  // of the event
+    double time = 0;   // s
+  };
+  std::vector<Happening> happenings;
 };
 
 /// What is asked of a run: an expression of jets at a place, or of place values; or integrated over space.

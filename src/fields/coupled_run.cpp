@@ -191,6 +191,7 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
     if (i >= fine->result.final.q.size()) break;
     out.final_coordinates.push_back({system.coordinates[i].name, fine->result.final.q[i], fine->result.final.v[i]});
   }
+  for (const Happening& h : fine->result.happenings) out.happenings.push_back({h.name, h.t});
   if (options.trajectory) {
     out.places = shown_places(*mesh);
     out.trajectory = Rows(*mesh, model, equations, out.places).of(fine->result);

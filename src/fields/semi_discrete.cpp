@@ -109,16 +109,17 @@ bool SemiDiscrete::set_mesh(int cells, int order, Diagnostics& diagnostics) {
   mesh_.points = bends ? mesh_.degree + 2 : mesh_.degree;
   mesh_.periodic = s.periodic;
   for (const std::size_t f : equations_->varied)
-    spaces_.emplace_back(mesh_, depth_of(*equations_, f) > 1 ? EKind::Smooth : bends ? EKind::Continuous : EKind::Nodal);
+    spaces_.emplace_back(mesh_, depth_of(*equations_, f) > 1 ? EKind::Smooth
+                                : bends                      ? EKind::Continuous
+                                                             : EKind::Nodal);
   for (const ElementSpace& space : spaces_) dofs_ += space.size();
   if (dofs_ <= most_degrees_of_freedom) return true;
-  diagnostics.error(
-      "E0656", s.density_span,
-      fmt::format("{} elements of order {} have {} unknowns, too many for a run with bodies", elements(), mesh_.degree,
-                  dofs_),
-      fmt::format("Fields with bodies run as one system of at most {} coordinates of elements.",
-                  most_degrees_of_freedom),
-      "Write fewer cells; elements of a higher order need fewer of them.");
+  diagnostics.error("E0656", s.density_span,
+                    fmt::format("{} elements of order {} have {} unknowns, too many for a run with bodies", elements(),
+                                mesh_.degree, dofs_),
+                    fmt::format("Fields with bodies run as one system of at most {} coordinates of elements.",
+                                most_degrees_of_freedom),
+                    "Write fewer cells; elements of a higher order need fewer of them.");
   return false;
 }
 
@@ -164,7 +165,8 @@ void SemiDiscrete::hold_ends() {
     while (equations_->varied[a] != b.jet.field) ++a;
     const std::size_t border = b.side == Side::Right ? mesh_.borders.size() - 1 : 0;
     if (b.jet.order() == 1 && spaces_[a].kind() != EKind::Smooth) continue;
-    const std::size_t dof = b.jet.order() == 0 ? spaces_[a].value_at_border(border) : spaces_[a].slope_at_border(border);
+    const std::size_t dof =
+        b.jet.order() == 0 ? spaces_[a].value_at_border(border) : spaces_[a].slope_at_border(border);
     if (coordinates_[a][dof]) gone.insert(*coordinates_[a][dof]);
     coordinates_[a][dof].reset();
     values_[a][dof] = s.expanded(b.value);
@@ -219,8 +221,7 @@ ExprMap SemiDiscrete::at_point(const std::vector<Expr>& jets, std::size_t point,
     const FieldJet jet = *s.jet_of(symbol);
     std::size_t a = 0;
     while (a < spaces_.size() && equations_->varied[a] != jet.field) ++a;
-    if (a < spaces_.size())
-      map[symbol] = combination(a, spaces_[a].points()[point].parts, jet.space[0], jet.time);
+    if (a < spaces_.size()) map[symbol] = combination(a, spaces_[a].points()[point].parts, jet.space[0], jet.time);
   }
   return map;
 }
@@ -238,7 +239,8 @@ Expr SemiDiscrete::integral(Expr density) const {
     element = q / per_element;
     // A border belongs to the element that is summed: the formulas of its own side hold there.
     const double width = borders[element + 1] - borders[element];
-    const double inside = std::clamp(points[q].x, borders[element] + 1e-13 * width, borders[element + 1] - 1e-13 * width);
+    const double inside =
+        std::clamp(points[q].x, borders[element] + 1e-13 * width, borders[element + 1] - 1e-13 * width);
     terms.push_back(constant(points[q].weight) * substitute(e, at_point(jets, q, inside)));
   }
   return s.context->sum(terms);
@@ -320,8 +322,8 @@ bool SemiDiscrete::add_given_slopes(Diagnostics& diagnostics) {
                         "Give the field itself, or leave the end natural.");
       return false;
     }
-    generalized_force(a, spaces_[a].value_at_border(right ? mesh_.borders.size() - 1 : 0),
-                      s.expanded(right ? -p : p), b.span);
+    generalized_force(a, spaces_[a].value_at_border(right ? mesh_.borders.size() - 1 : 0), s.expanded(right ? -p : p),
+                      b.span);
   }
   return true;
 }
@@ -335,8 +337,10 @@ std::vector<double> projected(const ElementSpace& space, const std::vector<doubl
   std::vector<double> out(space.size(), 0);
   std::vector<std::size_t> free;
   for (std::size_t j = 0; j < out.size(); ++j)
-    if (given[j]) out[j] = *given[j];
-    else free.push_back(j);
+    if (given[j])
+      out[j] = *given[j];
+    else
+      free.push_back(j);
   if (space.kind() == EKind::Nodal) {
     for (std::size_t q = 0; q < points.size(); ++q)
       for (const ElementSpace::Part& part : points[q].parts)
@@ -361,7 +365,8 @@ std::vector<double> projected(const ElementSpace& space, const std::vector<doubl
     bb(i) = b(row);
     for (Eigen::Index j = 0; j < n; ++j)
       if (given[static_cast<std::size_t>(j)]) bb(i) -= m(row, j) * out[static_cast<std::size_t>(j)];
-    for (Eigen::Index j = 0; j < f; ++j) mm(i, j) = m(row, static_cast<Eigen::Index>(free[static_cast<std::size_t>(j)]));
+    for (Eigen::Index j = 0; j < f; ++j)
+      mm(i, j) = m(row, static_cast<Eigen::Index>(free[static_cast<std::size_t>(j)]));
   }
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(mm);
   const Eigen::VectorXd c = qr.solve(bb);
@@ -370,6 +375,31 @@ std::vector<double> projected(const ElementSpace& space, const std::vector<doubl
 }
 
 }  // namespace
+
+/// E0647 where a start is another function between the nodes than what the elements make of it.
+bool SemiDiscrete::refuse_unresolved(std::size_t a, const std::vector<double>& c, const RepeatedEvaluation& start,
+                                     Diagnostics& diagnostics) const {
+  constexpr int looks = 101;  // in an element, at places that share no pattern with the nodes
+  double size = 0, worst = 0, place = 0;
+  for (std::size_t e = 0; e + 1 < mesh_.borders.size(); ++e)
+    for (int k = 0; k < looks; ++k) {
+      const double x = mesh_.borders[e] + (mesh_.borders[e + 1] - mesh_.borders[e]) * (k + 0.5) / looks;
+      const double value = start([&](Expr symbol) {
+                             return symbol == equations_->system().space.front().symbol ? x : numbers_.at(symbol);
+                           }).front();
+      double here = 0;
+      for (const ElementSpace::Part& part : spaces_[a].at(x)) here += part.of[0] * c[part.dof];
+      size = std::max(size, std::abs(value));
+      if (std::abs(value - here) > worst) worst = std::abs(value - here), place = x;
+    }
+  if (worst <= size / 4) return false;
+  diagnostics.error("E0647", equations_->model->start.front().span,
+                    fmt::format("the mesh passes something of the start by, at {} = {:.6g}",
+                                equations_->system().space.front().name, place),
+                    "Between the nodes the start is another function than the polynomials through them.",
+                    "Write more cells, or a higher order of the elements.");
+  return true;
+}
 
 bool SemiDiscrete::set_start(Diagnostics& diagnostics) {
   const FieldSystem& s = equations_->system();
@@ -406,6 +436,7 @@ bool SemiDiscrete::set_start(Diagnostics& diagnostics) {
           clashes_ = true;
       }
       const std::vector<double> c = projected(spaces_[a], function, given);
+      if (!clashes_ && refuse_unresolved(a, c, at, diagnostics)) return false;
       for (std::size_t j = 0; j < c.size(); ++j)
         if (coordinates_[a][j]) {
           StartValue v;

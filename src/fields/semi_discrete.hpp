@@ -1,5 +1,6 @@
 #pragma once
 #include <maupertuis/field_run.hpp>
+#include <maupertuis/repeated_evaluation.hpp>
 
 #include "fields/field_elements.hpp"
 
@@ -8,8 +9,8 @@
 
 namespace maupertuis {
 
-/// The borders of elements: the ends, each place that bodies hold, each change of the density, and what makes `cells` of
-/// the whole.
+/// The borders of elements: the ends, each place that bodies hold, each change of the density, and what makes `cells`
+/// of the whole.
 std::vector<double> element_borders(const FieldEquations& equations, int cells);
 
 /// Fields with coordinates and bodies as one ordinary mechanical system, by Galerkin's method in space:
@@ -48,6 +49,8 @@ class SemiDiscrete {
   void add_force_densities();
   void add_end_forces();
   bool set_start(Diagnostics& diagnostics);
+  bool refuse_unresolved(std::size_t a, const std::vector<double>& c, const RepeatedEvaluation& start,
+                         Diagnostics& diagnostics) const;
   Expr constant(double value) const;
   Expr combination(std::size_t a, const std::vector<ElementSpace::Part>& parts, int by_space, int by_time) const;
   ExprMap at_point(const std::vector<Expr>& jets, std::size_t point, double x) const;
@@ -58,11 +61,11 @@ class SemiDiscrete {
   Model model_;
   const FieldEquations* equations_;
   ElementMesh mesh_;
-  std::vector<ElementSpace> spaces_;                        // [varied]
-  std::vector<std::vector<Expr>> values_;                   // [varied][dof] u of it: a coordinate, or what is given
+  std::vector<ElementSpace> spaces_;       // [varied]
+  std::vector<std::vector<Expr>> values_;  // [varied][dof] u of it: a coordinate, or what is given
   std::vector<std::vector<std::optional<std::size_t>>> coordinates_;  // [varied][dof]
-  Bindings numbers_;                                        // of parameters
-  ExprMap given_;                                           // inputs by their formulas
+  Bindings numbers_;                                                  // of parameters
+  ExprMap given_;                                                     // inputs by their formulas
   std::size_t dofs_ = 0;
   bool forced_ = false, clashes_ = false;
 };

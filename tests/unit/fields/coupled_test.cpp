@@ -118,12 +118,11 @@ TEST_CASE("frequencies of a cantilever with a tip mass, with its rotary inertia,
                     squares(first_roots(5, 0.01, [&](double b) { return determinant(b, mu, j); })));
   // An oscillator m2 on a spring k at the tip acts as the mass m2 k/(k − m2 ω²).
   const double m2 = 0.3, k = 20;
-  check_frequencies(beam + "coord y : number\nT = 0.15 y'^2\nV = 10 (y - w(1))^2\n",
-                    squares(first_roots(4, 0.0101, [&](double b) {
-                      const double omega2 = b * b * b * b;
-                      return (k - m2 * omega2) * determinant(b, 0, 0) +
-                             (determinant(b, m2 * k, 0) - determinant(b, 0, 0));
-                    })));
+  check_frequencies(
+      beam + "coord y : number\nT = 0.15 y'^2\nV = 10 (y - w(1))^2\n", squares(first_roots(4, 0.0101, [&](double b) {
+        const double omega2 = b * b * b * b;
+        return (k - m2 * omega2) * determinant(b, 0, 0) + (determinant(b, m2 * k, 0) - determinant(b, 0, 0));
+      })));
 }
 
 TEST_CASE("whirling of an overhung rotor: the gyroscopic moment splits its frequencies") {
@@ -220,4 +219,62 @@ TEST_CASE("a force at a place inside, and a mesh too large for one system") {
   large.verification();
   CHECK(large.wrong());
   CHECK(large.diagnostics().items().back().code == "E0656");
+}
+
+TEST_CASE("the shape of a mode is the sine that the mass leaves") {
+  Study study = coupled_study(mass_at_end);
+  REQUIRE(study.field_equations());
+  const FieldModes modes = field_modes(*study.field_equations(), 2, study.diagnostics());
+  const double k = first_roots(1, 0.01, [](double k) { return std::cos(k) - 0.5 * k * std::sin(k); }).front();
+  REQUIRE(modes.shapes.size() == 2);
+  for (std::size_t i = 0; i < modes.places.size(); ++i)
+    CHECK(std::abs(modes.shapes[0].fields[0][i] - std::sin(k * modes.places[i]) / std::sin(k)) < 1e-10);
+  CHECK(modes.shapes[0].coordinates == std::vector<double>{1});
+}
+
+TEST_CASE("constraints tie fields and coordinates, and a pendulum rests below its string") {
+  // Two strings and a mass as one: k tan k = 2 ρ l/m = 10; against each other they have a node at the rod.
+  const std::string tied =
+      "dimensionless\nfield u(x), v(x) : number on x = 0 .. 1 cells 2 order 8\nboundary left : u = 0, v = 0\n"
+      "coord y : number\ndensity = 1/2 (u'^2 + v'^2) - 1/2 (u_x^2 + v_x^2)\nT = 0.1 y'^2\n"
+      "constraint u(1) = v(1) name rod\nconstraint y = u(1) name pin\n";
+  const double together = first_roots(1, 0.01, [](double k) { return k * std::sin(k) - 10 * std::cos(k); }).front();
+  check_frequencies(tied, {together, std::acos(-1.0)});
+  Study study = coupled_study(tied +
+                              "start u = sin(1.5 x), v = sin(1.5 x)\nrun 1\nexpect y - v(1) at 1 = 0 ± 1e-12\n"
+                              "expect energy conserved rel 1e-12\n");
+  const auto verification = study.verification();
+  REQUIRE(verification);
+  CHECK(verification->passed());
+  // The bob swings with sqrt(g/b); up and down both masses move with the string, ρ sin k = ½ (m + M) k sin²(k/2).
+  const double up =
+      first_roots(1, 0.01, [](double k) { return std::sin(k) - 0.5 * k * std::sin(k / 2) * std::sin(k / 2); }).front();
+  check_frequencies(
+      "dimensionless\nparam g = 1, b = 0.2\nfield u(x) : number on x = 0 .. 1 boundary u = 0\ncoord θ : number\n"
+      "density = 1/2 u'^2 - 1/2 u_x^2 - g u\npoint slider mass 0.2 at (0, u(1/2))\n"
+      "point bob mass 0.3 at slider + b (sin(θ), -cos(θ))\ngravity (0, -g)\nstart θ = 0.4\n",
+      {up, std::sqrt(5.0)});
+}
+
+TEST_CASE("a run of a field and bodies ends where a place says so, and events are told") {
+  const double k = first_roots(1, 0.01, [](double k) { return std::cos(k) - 0.5 * k * std::sin(k); }).front();
+  Study study = coupled_study(mass_at_end + "param k = " + std::to_string(k) +
+                              "\nstart u = sin(k x)\nevent through when u(l) = 0 falling : record\nrun 1\n");
+  REQUIRE(study.field_equations());
+  FieldRunOptions options;
+  options.duration = 1;
+  const auto run = run_coupled(*study.model(), *study.field_equations(), {}, options, study.diagnostics());
+  REQUIRE(run);
+  REQUIRE(run->happenings.size() == 1);
+  CHECK(run->happenings[0].name == "through");
+  CHECK(std::abs(run->happenings[0].time - std::acos(-1.0) / 2 / (2 * k)) < 1e-5);
+}
+
+TEST_CASE("a start between the nodes is refused, given ends and bodies clash") {
+  Study narrow = coupled_study(
+      "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 4 order 6\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
+      "T = 1/2 u(1)'^2\nstart u = exp(-((x - 0.137)/0.002)^2)\nrun 1\nexpect u(1) at 1 = 0 ± 1\n");
+  narrow.verification();
+  REQUIRE(narrow.wrong());
+  CHECK(narrow.diagnostics().items().back().code == "E0647");
 }
