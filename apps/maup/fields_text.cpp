@@ -352,7 +352,7 @@ std::string coupled_run_text(const FieldRunResult& run) {
   for (const FieldRunResult::Happening& h : run.happenings)
     out += fmt::format("  {:<30} at {:.12g} s\n", h.name, h.time);
   out += fmt::format("  energy                         {:.16g}\n", run.energy);
-  out += run.energy_drift < 0 ? std::string("  energy drift                   forces act on the field: not measured\n")
+  out += run.energy_drift < 0 ? std::string("  energy drift                   forces act: it is not conserved\n")
                               : fmt::format("  energy drift                   {:.3g} of its terms\n", run.energy_drift);
   if (!run.trouble.empty()) out += fmt::format("  it ended early                 {}\n", run.trouble);
   return out + fmt::format("  computed in                    {:.3g} s\n", run.seconds);

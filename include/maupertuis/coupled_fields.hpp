@@ -41,7 +41,7 @@ void certify_bodies(const FieldEquations& equations, Certificate& certificate);
 
 /// Symbols of parameters first, then coordinates, places and jets: of rows that bodies and fields share.
 ReadingOrder coupled_order(const FieldEquations& equations);
-/// A row = 0 in readable form.
+/// A row = 0 in readable form, perhaps with the other sign.
 ReadableForm readable_row(const FieldEquations& equations, Expr row, Expr own);
 /// Places typeset as subscripts: u_x(l).
 Layout coupled_layout(const FieldEquations& equations, Layout layout);

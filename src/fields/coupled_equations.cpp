@@ -264,7 +264,8 @@ CertificateCheck rows_agree(const FieldEquations& equations) {
     Expr shown = form.value;
     for (auto i = form.intermediates.rbegin(); i != form.intermediates.rend(); ++i)
       shown = substitute(shown, {{i->symbol, i->value}});
-    differences.push_back(equations.system().expanded(shown - row));
+    const Expr same = equations.system().expanded(shown - row), turned = equations.system().expanded(shown + row);
+    differences.push_back(zero_test(turned).verdict == Verdict::Zero ? turned : same);
   }
   const ZeroTest test = zero_test(differences);
   check.verdict = test.verdict, check.points = test.points, check.error_bound = test.error_bound;
@@ -299,7 +300,11 @@ ReadableForm readable_row(const FieldEquations& equations, Expr row, Expr own) {
   ReadingOrder order = coupled_order(equations);
   order.own = own;
   const Expr rows[] = {row};
-  return readable_equations(rows, order).front();
+  ReadableForm form = readable_equations(rows, order).front();
+  const Layout page = lay_out(form, order);
+  if (!page.negative && (page.shape != Shape::Sum || !page.minus.front())) return form;
+  const Expr turned[] = {-row};  // the first term of an equation is read without a sign
+  return readable_equations(turned, order).front();
 }
 
 namespace {

@@ -155,6 +155,18 @@ std::vector<double> errors_of(const CoupledRun& fine, const std::optional<Couple
   return out;
 }
 
+/// Whether forces or what changes in time feed the bodies, or friction takes from them.
+bool bodies_are_forced(const FieldEquations& equations) {
+  if (!equations.bodies) return false;
+  const EquationsOfMotion& bodies = *equations.bodies;
+  const Expr t = bodies.system->context->time();
+  std::vector<Expr> feeding = bodies.generalized_forces;
+  feeding.insert(feeding.end(), bodies.dissipative_terms.begin(), bodies.dissipative_terms.end());
+  feeding.push_back(differentiate(bodies.lagrangian_expanded, t));
+  for (const Constraint& c : bodies.system->constraints) feeding.push_back(differentiate(c.value, t));
+  return std::any_of(feeding.begin(), feeding.end(), [](const Expr& e) { return !e.is_zero(); });
+}
+
 }  // namespace
 
 bool runs_as_one_system(const FieldEquations& equations) {
@@ -183,7 +195,7 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
   out.steps = fine->result.statistics.steps;
   out.end = fine->result.final.t;
   out.energy = fine->energy;
-  out.energy_drift = mesh->forced() ? -1 : fine->result.statistics.energy_drift;
+  out.energy_drift = mesh->forced() || bodies_are_forced(equations) ? -1 : fine->result.statistics.energy_drift;
   out.coupled = true;
   if (!fine->result.ok()) out.trouble = fine->result.reason;
   const MechanicalSystem& system = model.system;

@@ -278,3 +278,23 @@ TEST_CASE("a start between the nodes is refused, given ends and bodies clash") {
   REQUIRE(narrow.wrong());
   CHECK(narrow.diagnostics().items().back().code == "E0647");
 }
+
+TEST_CASE("a damper of the impedance at the end of a string swallows a pulse, and a force at the end drives its wave") {
+  Study absorbed = coupled_study(
+      "dimensionless\nfield u(x) : number on x = 0 .. 4 cells 16 order 8\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
+      "D = 1/2 u(4)'^2\nstart u = exp(-((x - 2)/0.3)^2), u' = 2 (x - 2)/0.3^2 exp(-((x - 2)/0.3)^2)\nrun 5\n"
+      "expect u(2) at 5 = 0 ± 1e-8\nexpect u(4) at 5 = 0 ± 1e-8\nexpect u(4) at 2 = 1 ± 1e-8\n"
+      "expect equation u(4)' + u_x(4) = 0\n");
+  auto verification = absorbed.verification();
+  REQUIRE(verification);
+  CHECK(verification->passed());
+  // u = F/(ω cos ω) sin(ω x) cos(ω t)
+  Study driven = coupled_study(
+      "dimensionless\nparam ω = 1.3, F = 0.7\nfield u(x) : number on x = 0 .. 1 cells 4 order 8\ncoord y : number\n"
+      "boundary left : u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\nT = 1/2 y'^2\nforce u(1) = F cos(ω t)\n"
+      "start u = F/(ω cos(ω)) sin(ω x)\nrun 2\n"
+      "expect u(1/2) at 2 = -1.04386998398164 ± 1e-9\n");
+  verification = driven.verification();
+  REQUIRE(verification);
+  CHECK(verification->passed());
+}
