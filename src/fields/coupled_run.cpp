@@ -45,7 +45,10 @@ std::optional<CoupledRun> run_once(const SemiDiscrete& mesh, const std::vector<F
   settings.errors = ErrorEstimates::None;
   settings.interrupt = options.interrupt;
   Probe probe;
-  for (const FieldQuestion& q : questions) probe.expressions.push_back(mesh.discretised(q));
+  for (const FieldQuestion& q : questions) {
+    probe.expressions.push_back(mesh.discretised(q, diagnostics));
+    if (!probe.expressions.back()) return std::nullopt;
+  }
   probe.expressions.push_back(equations->energy_function);
   for (Expr& e : probe.expressions) e = expand_time_derivatives(e);
   auto result = simulate(mesh.model(), *equations, settings, diagnostics, &probe);
