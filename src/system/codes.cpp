@@ -429,6 +429,14 @@ constexpr CodeEntry kEntries[] = {
      "sides do not say so.",
      "coord x : length\nparam m = 1 kg, p = 1 N s\nT = 1/2 m x'^2\nU = p abs(x')\n",
      "coord x : length\nparam m = 1 kg, p = 1 N s\nT = 1/2 m x'^2\nU = p sqrt(x'^2 + 1e-6 [m^2/s^2])\n"},
+    {"E0433", "a mass depends on a coordinate",
+     "Lagrange's equations of a body with a mass m(q) are not Newton's: what the body gains or loses as it moves "
+     "brings "
+     "momentum of its own, of which its T knows nothing (Pesce, J. Appl. Mech. 70, 2003). A rope that runs over a "
+     "table "
+     "has one T for all its parts, and that is right.",
+     "coord x : length\nparam ρ = 1 kg/m\npoint P mass ρ x at (x, 0)\nstart x = 1 m\n",
+     "coord x : length\nparam ρ = 1 kg/m, l = 2 m\nT = 1/2 ρ l x'^2\nstart x = 1 m\n"},
     // ------------------------------------------------------------------------------------------------ not supported
     // yet
     {"E0255", "as many names as components",
