@@ -73,6 +73,7 @@ CollocationMotion::CollocationMotion(const FieldEquations& equations, const Dens
   if (!take_conditions()) return;
   field_of_ = mesh_.fields_of_coefficients();
   is_first_order_.assign(n, false);
+  all_first_order_ = std::find(form.first_order.begin(), form.first_order.end(), false) == form.first_order.end();
   for (std::size_t i = 0; i < n; ++i) is_first_order_[i] = form.first_order[field_of_[i]];
   for (auto* all : {&stage_v_, &stage_q_, &residual_}) all->assign(tableau_.stages, std::vector<double>(n, 0));
   rates_.assign(n, 0);
@@ -159,8 +160,8 @@ void CollocationMotion::start() {
   mesh_.set(state_.c.data(), v.data(), t_);
   mesh_.momenta(state_.p.data());
   rates_ = v;
-  find_null_vectors();
   refresh_matrices(state_.c, v, t_);
+  find_null_vectors();
 }
 
 void CollocationMotion::add_end_forces(double t, double* f) const {
@@ -196,6 +197,10 @@ const CollocationMotion::Factors* CollocationMotion::factors_for(double h) {
       return nullptr;
     }
     out.of.back() = std::move(matrix);
+    for (const std::vector<double>& v : null_) {
+      out.null.emplace_back(v.begin(), v.end());
+      out.of.back().solve(out.null.back().data());
+    }
   }
   return &factors_.emplace(h, std::move(out)).first->second;
 }
@@ -223,6 +228,27 @@ void CollocationMotion::residuals(double h) {
     }
 }
 
+/// w −= Y (NᵀY)⁻¹ Nᵀ w, Y = J⁻¹ N: the null vectors N take a force that keeps them where they are.
+void CollocationMotion::leave_null_vectors_out(const Factors& factors, std::size_t stage,
+                                               std::vector<std::complex<double>>& w) const {
+  const std::size_t m = null_.size();
+  if (m == 0) return;
+  std::size_t first = 0;  // of Y of this stage
+  for (std::size_t k = 0; k < stage; ++k)
+    if (tableau_.lambda[k].imag() >= 0) first += m;
+  BandedMatrix<std::complex<double>> small(m, m, m);
+  std::vector<std::complex<double>> parts(m, 0);
+  for (std::size_t i = 0; i < m; ++i)
+    for (std::size_t x = 0; x < w.size(); ++x) {
+      parts[i] += null_[i][x] * w[x];
+      for (std::size_t j = 0; j < m; ++j) small.at(i, j) += null_[i][x] * factors.null[first + j][x];
+    }
+  if (!small.factor()) return;
+  small.solve(parts.data());
+  for (std::size_t j = 0; j < m; ++j)
+    for (std::size_t x = 0; x < w.size(); ++x) w[x] -= factors.null[first + j][x] * parts[j];
+}
+
 /// V −= J⁻¹ r. The largest change of h V beside the size of its field.
 double CollocationMotion::correct(double h, const Factors& factors) {
   using Complex = std::complex<double>;
@@ -238,6 +264,7 @@ double CollocationMotion::correct(double h, const Factors& factors) {
       w[x] = sum;
     }
     factors.of[k].solve(w.data());
+    leave_null_vectors_out(factors, k, w);
     for (std::size_t i = 0; i < s; ++i) {
       const Complex t = tableau_.basis[i * s + k];
       for (std::size_t x = 0; x < n; ++x)
@@ -246,11 +273,6 @@ double CollocationMotion::correct(double h, const Factors& factors) {
   }
   std::vector<double> size(form_.smooth.size(), 1e-300), largest(form_.smooth.size(), 0);
   for (std::size_t i = 0; i < s; ++i) {
-    for (const std::vector<double>& v : null_) {
-      double part = 0;
-      for (std::size_t x = 0; x < n; ++x) part += v[x] * change[i][x];
-      for (std::size_t x = 0; x < n; ++x) change[i][x] -= part * v[x];
-    }
     for (std::size_t x = 0; x < n; ++x) {
       if (is_held_[x]) continue;
       stage_v_[i][x] -= change[i][x];
@@ -339,9 +361,7 @@ bool CollocationMotion::step(double h) {
   for (const Held& held : held_)
     if (!held.force)
       state_.c[held.coefficient] = held.scale * value_of(held.derivatives.front(), {{s_.context->time(), t_}});
-  bool first_order = true;
-  for (const bool one : form_.first_order) first_order = first_order && one;
-  if (first_order) {  // p is a function of c: no error gathers between them
+  if (all_first_order_) {  // p is a function of c: no error gathers between them
     mesh_.set(state_.c.data(), rates_.data(), t_);
     mesh_.momenta(state_.p.data());
     std::fill(state_.p_lost.begin(), state_.p_lost.end(), 0);
@@ -360,6 +380,7 @@ double CollocationMotion::choose_step(double longest, double duration, double go
   const std::vector<double> rates = rates_;
   const double gain = std::pow(2, 2 * static_cast<double>(tableau_.stages)) - 1;
   double h = longest, before = 0;
+  int stays = 0;
   constexpr int most_halvings = 40;
   for (int k = 0; k < most_halvings; ++k, h /= 2) {
     interrupt.throw_if_asked();
@@ -384,8 +405,11 @@ double CollocationMotion::choose_step(double longest, double duration, double go
     }
     const double expected = error / gain * (duration / h);
     if (expected <= goal) break;
-    // Motions that no step resolves (a start that fits no smooth motion) do not fall with the power: no shorter steps.
-    if (k > 3 && error > before / 4 && error < 1e-6) break;
+    // What the mesh adds to the start moves with its highest frequencies, which no step resolves: where the error does
+    // not fall any more, shorter steps would follow the mesh, not the field.
+    constexpr double small = 1e-6;
+    stays = before > 0 && error > before / 4 ? stays + 1 : 0;
+    if (stays > (error < small ? 0 : 1)) break;
     before = error;
   }
   restore(begin);
@@ -395,7 +419,74 @@ double CollocationMotion::choose_step(double longest, double duration, double go
   return h;
 }
 
-void CollocationMotion::find_null_vectors() {}
+/// Where all fields are of first order: the null vectors of ω = G. A constant that ℒ does not see (a potential is given
+/// by its derivatives) is fixed at the left end, which the other equations allow; what else ω does not move is a shape
+/// that the mesh alone has, and is left out of the motion.
+void CollocationMotion::find_null_vectors() {
+  null_.clear();
+  if (!all_first_order_) return;
+  const std::size_t n = mesh_.size(), band = mesh_.bandwidth();
+  double size_g = 0, size_k = 0;
+  for (std::size_t j = 0; j < n; ++j)
+    for (std::size_t i = matrices_.g.first_row(j); i < matrices_.g.end_row(j); ++i)
+      size_g = std::max(size_g, std::abs(matrices_.g.at(i, j))),
+      size_k = std::max(size_k, std::abs(matrices_.k.at(i, j)));
+  constexpr double rounding = 1e-10;
+  const auto vanishes = [&](const BandedMatrix<double>& matrix, const std::vector<double>& v, double size) {
+    std::vector<double> product(n, 0);
+    matrix.add_product(v.data(), product.data());
+    for (std::size_t i = 0; i < n; ++i)
+      if (!is_held_[i] && !(std::abs(product[i]) <= rounding * size)) return false;
+    return true;
+  };
+  for (std::size_t f = 0; f < form_.smooth.size(); ++f) {
+    const std::vector<double> constant = mesh_.constant(f);
+    bool free = true;
+    for (std::size_t i = 0; i < n; ++i) free = free && !(is_held_[i] && constant[i] != 0);
+    if (!free || !vanishes(matrices_.g, constant, size_g) || !vanishes(matrices_.k, constant, size_k)) continue;
+    is_held_[mesh_.end_coefficient(f, false, 0)] = true;
+    fixed_.push_back(f);
+  }
+  // (G + ε)⁻¹ makes what ω does not move large: its real part is ε, so that it exists.
+  const double epsilon = 1e-9 * size_g;
+  BandedMatrix<double> shifted(n, band, band);
+  for (std::size_t j = 0; j < n; ++j)
+    for (std::size_t i = shifted.first_row(j); i < shifted.end_row(j); ++i)
+      shifted.at(i, j) = (is_held_[i] || is_held_[j] ? 0 : matrices_.g.at(i, j)) + (i != j        ? 0
+                                                                                    : is_held_[i] ? size_g
+                                                                                                  : epsilon);
+  if (!shifted.factor()) return;
+  std::uint64_t seed = 1;
+  constexpr int most = 4, rounds = 4;
+  for (int k = 0; k < most; ++k) {
+    std::vector<double> v(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      seed = seed * 6364136223846793005ull + 1442695040888963407ull;
+      v[i] = is_held_[i] ? 0 : static_cast<double>(seed >> 33) / 4e9 - 0.5;
+    }
+    for (int round = 0; round < rounds; ++round) {
+      shifted.solve(v.data());
+      for (const std::vector<double>& other : null_) {
+        double part = 0;
+        for (std::size_t i = 0; i < n; ++i) part += other[i] * v[i];
+        for (std::size_t i = 0; i < n; ++i) v[i] -= part * other[i];
+      }
+      double square = 0;
+      for (const double x : v) square += x * x;
+      for (double& x : v) x /= std::sqrt(square);
+    }
+    constexpr double small = 1e-7;
+    std::vector<double> product(n, 0);
+    matrices_.g.add_product(v.data(), product.data());
+    for (std::size_t i = 0; i < n; ++i)
+      if (!is_held_[i] && std::abs(product[i]) > small * size_g) return;
+    if (!mesh_.is_rough(v)) {
+      trouble_ = "ends";
+      return;
+    }
+    null_.push_back(std::move(v));
+  }
+}
 
 void CollocationMotion::find_rates() const {
   if (rates_known_) return;
@@ -412,6 +503,12 @@ void CollocationMotion::find_rates() const {
   for (std::size_t j = 0; j < n; ++j)  // velocities of fields with mass do not depend on the others
     for (std::size_t i = matrix.first_row(j); i < matrix.end_row(j); ++i)
       if (!is_first_order_[i] && is_first_order_[j]) matrix.at(i, j) = 0;
+  // ω has no inverse on null vectors: a small part of the identity, and they are left out of what it gives.
+  double largest = 0;
+  for (std::size_t j = 0; !null_.empty() && j < n; ++j)
+    for (std::size_t i = matrix.first_row(j); i < matrix.end_row(j); ++i)
+      largest = std::max(largest, std::abs(matrix.at(i, j)));
+  for (std::size_t j = 0; !null_.empty() && j < n; ++j) matrix.at(j, j) += 1e-9 * largest;
   if (!matrix.factor()) {
     std::fill(rates_.begin(), rates_.end(), std::nan(""));
     return;
@@ -429,6 +526,11 @@ void CollocationMotion::find_rates() const {
     for (std::size_t i = 0; i < n; ++i)
       r[i] = is_held_[i] ? 0 : is_first_order_[i] ? change_of_p[i] - f[i] : (p[i] - state_.p[i]) - state_.p_lost[i];
     matrix.solve(r.data());
+    for (const std::vector<double>& v : null_) {
+      double part = 0;
+      for (std::size_t i = 0; i < n; ++i) part += v[i] * r[i];
+      for (std::size_t i = 0; i < n; ++i) r[i] -= part * v[i];
+    }
     double change = 0, size = 1e-300;
     for (std::size_t i = 0; i < n; ++i) {
       rates_[i] -= r[i];

@@ -40,13 +40,11 @@ class CollocationMotion final : public FieldMotion {
   double choose_step(double longest, double duration, double goal, const Interrupt& interrupt);
   /// After `step`: Newton's rounds of all steps so far, for the cost.
   std::size_t rounds() const { return rounds_; }
-  /// What was fixed of null vectors of ω, in words; empty: nothing.
-  const std::string& fixed() const { return fixed_; }
-  double highest_frequency(const Interrupt& interrupt);
 
  private:
   struct Factors {
-    std::vector<BandedMatrix<std::complex<double>>> of;  // [stages with Im λ ≥ 0]
+    std::vector<BandedMatrix<std::complex<double>>> of;   // [stages], empty where Im λ < 0
+    std::vector<std::vector<std::complex<double>>> null;  // J⁻¹ of each null vector, by stages with Im λ ≥ 0
   };
   struct Held {
     std::size_t coefficient = 0, field = 0;
@@ -68,6 +66,7 @@ class CollocationMotion final : public FieldMotion {
   bool newton(double h);
   void residuals(double h);
   double correct(double h, const Factors& factors);
+  void leave_null_vectors_out(const Factors& factors, std::size_t stage, std::vector<std::complex<double>>& w) const;
   void add_end_forces(double t, double* f) const;
   void restore(const State& s) { state_ = s, t_ = s.t, rates_known_ = false, have_stages_ = false; }
   /// c' at the present moment, from the momenta, or from the equations of first order.
@@ -90,7 +89,7 @@ class CollocationMotion final : public FieldMotion {
   mutable bool matrices_known_ = false;
   std::map<double, Factors> factors_;
   std::vector<std::vector<double>> null_;  // orthonormal vectors that are left out of the motion
-  std::string fixed_;
+  bool all_first_order_ = false;
   std::size_t rounds_ = 0;
   bool slow_ = false;  // Newton's last step took many rounds: new matrices for the next
 };

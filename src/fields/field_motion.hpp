@@ -27,6 +27,9 @@ class FieldMotion {
   double time() const { return t_; }
   double place_of_cell(int cell) const { return left_ + cell * width_; }
 
+  /// Fields (of those that are varied) whose value at the left end stands still, since ℒ holds their derivatives alone.
+  const std::vector<std::size_t>& fixed_fields() const { return fixed_; }
+
   virtual void start() = 0;
   /// False, and `trouble`, where it left the numbers.
   virtual bool step(double h) = 0;
@@ -49,6 +52,7 @@ class FieldMotion {
   Bindings values_;  // of parameters
   std::string trouble_;
   std::vector<StartClash> clashes_;
+  std::vector<std::size_t> fixed_;
 };
 
 }  // namespace maupertuis

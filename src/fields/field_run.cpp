@@ -46,6 +46,12 @@ void refuse(const FieldMotion& mesh, const FieldEquations& equations, Diagnostic
                       "not supported yet: a moment on a field without curvature",
                       "A moment acts on the slope, which has no part in the energy of this field at its end.",
                       "Give a force on the field itself, or a density with its second derivative.");
+  } else if (what == "ends") {
+    diagnostics.error("E0642", s.boundary.empty() ? s.density_span : s.boundary.front().span,
+                      "the conditions at the ends do not determine the motion",
+                      "The part of the density that is linear in the velocities leaves a shape of the field without an "
+                      "equation of motion of its own: a free end asks for more than the start can give.",
+                      "Hold the field at both ends, or make the domain periodic.");
   } else if (what == "step") {
     diagnostics.error(
         "E0643", s.density_span, "no step leads on from here",
@@ -110,11 +116,21 @@ struct Method {
     return step = motion.choose_step(std::min(every, options.duration), options.duration, goal, options.interrupt);
   }
   bool conserves() const { return waves ? waves->conserves : stiff->conserves; }
-  /// The power of the width of a cell by which both meshes and their steps are off.
-  int power() const {
+  /// The power of the width of a cell by which a value is off on both meshes with their steps.
+  int power(const FieldEquations& equations, const FieldQuestion& question) const {
     if (waves) return std::min(2 * order, 8);
     const bool smooth = std::find(stiff->smooth.begin(), stiff->smooth.end(), true) != stiff->smooth.end();
-    return std::min(2 * (smooth ? std::max(order, 3) - 1 : order), 2 * stages);
+    const int degree = smooth ? std::max(order, 3) : order;
+    int lost = smooth ? 2 : 0;  // of the whole, energies for example: twice what the derivatives in ℒ leave
+    if (question.total) return std::min(2 * degree - lost, 2 * stages);
+    lost = 0;
+    for (const PlaceValue& place : equations.model->places) {
+      const Expr value[] = {question.value};
+      const std::vector<Expr> symbols = symbols_of(value);
+      if (std::find(symbols.begin(), symbols.end(), place.symbol) != symbols.end())
+        lost = std::max(lost, equations.system().jet_of(place.jet)->space[0]);
+    }
+    return std::min(std::max(degree + 1 - lost, 1), 2 * stages);
   }
 };
 
@@ -166,6 +182,20 @@ void warn_of_clashes(const FieldMotion& mesh, const FieldEquations& equations, D
         "Give a start that has the value of the condition there.");
 }
 
+/// N0648: what no equation says of a potential.
+void tell_what_is_fixed(const FieldMotion& mesh, const FieldEquations& equations, Diagnostics& diagnostics) {
+  const FieldSystem& s = equations.system();
+  for (const std::size_t a : mesh.fixed_fields()) {
+    const std::string& name = s.fields[equations.varied[a]].name;
+    diagnostics.note("N0648", s.fields[equations.varied[a]].span,
+                     fmt::format("a constant in {} is not determined by the density", name),
+                     fmt::format("It holds derivatives of {0} alone, so that {0} plus any function of t is the same "
+                                 "motion. The run keeps {0} as it starts at the left end.",
+                                 name),
+                     fmt::format("Ask for {}_{}, or for what is made of it.", name, s.space.front().name));
+  }
+}
+
 /// Of a run on one mesh: with rows and warnings the first, without the second, which is there for the error.
 std::optional<OneRun> run_on(const FieldEquations& equations, Method& method, int cells,
                              const std::vector<FieldQuestion>& questions, const FieldRunOptions& options, bool first,
@@ -177,7 +207,7 @@ std::optional<OneRun> run_on(const FieldEquations& equations, Method& method, in
   if (mesh.trouble().empty()) mesh.start();
   if (mesh.trouble().empty()) longest = method.longest_step(mesh, out, options);
   if (!mesh.trouble().empty()) return refuse(mesh, equations, diagnostics), std::nullopt;
-  if (first) warn_of_clashes(mesh, equations, diagnostics);
+  if (first) warn_of_clashes(mesh, equations, diagnostics), tell_what_is_fixed(mesh, equations, diagnostics);
   std::vector<double> stops;
   for (const FieldQuestion& q : questions) stops.push_back(q.time);
   stops.push_back(options.duration);
@@ -241,10 +271,9 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
     coarse = run_on(equations, *method, std::max(cells / 2, 1), questions, options, false, diagnostics);
   // Both meshes and their steps are off by a power of the width of a cell, but never by less than rounding.
   const double ratio = cells > 1 ? static_cast<double>(cells) / std::max(cells / 2, 1) : 2;
-  const double gain = std::pow(ratio, method->power()) - 1;
   const double rounding = 2.2e-16 * std::sqrt(static_cast<double>(out.steps) + 1);
   for (std::size_t i = 0; i < questions.size(); ++i) {
-    const double value = fine->answers[i];
+    const double value = fine->answers[i], gain = std::pow(ratio, method->power(equations, questions[i])) - 1;
     const double error =
         coarse ? std::abs(value - coarse->answers[i]) / gain + rounding * std::max(std::abs(value), 1e-300)
                : std::numeric_limits<double>::infinity();

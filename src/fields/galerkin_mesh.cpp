@@ -249,6 +249,32 @@ std::vector<std::size_t> GalerkinMesh::fields_of_coefficients() const {
   return out;
 }
 
+bool GalerkinMesh::is_rough(const std::vector<double>& c) const {
+  double all = 0, slow = 0;
+  for (std::size_t f = 0; f < fields_; ++f) {
+    const Element& e = elements_[f];
+    for (std::size_t cell = 0; cell < cells(); ++cell) {
+      double mean = 0;
+      for (std::size_t q = 0; q < rule_.x.size(); ++q) {
+        const double* n = table(f, 0, q);
+        double u = 0;
+        for (std::size_t i = 0; i < e.size(); ++i) u += n[i] * c[index(f, cell, i)];
+        mean += rule_.w[q] / 2 * u, all += rule_.w[q] / 2 * u * u;
+      }
+      slow += mean * mean;
+    }
+  }
+  constexpr double little = 0.05;
+  return slow < little * all;
+}
+
+std::vector<double> GalerkinMesh::constant(std::size_t field) const {
+  std::vector<double> out(size_, 0);
+  for (std::size_t cell = 0; cell < cells(); ++cell)
+    for (const std::size_t i : {std::size_t{0}, elements_[field].at_end()}) out[index(field, cell, i)] = 1;
+  return out;
+}
+
 // ------------------------------------------------------------------------------------------------ the density's form
 
 namespace {

@@ -78,6 +78,11 @@ class GalerkinMesh {
   double largest_end(const double* c, std::size_t field) const;
   std::size_t cells() const { return static_cast<std::size_t>(cells_); }
   std::vector<std::size_t> fields_of_coefficients() const;
+  /// Whether a function has all but nothing in common with those that change slowly over an element: its mean over each
+  /// element, beside its size.
+  bool is_rough(const std::vector<double>& c) const;
+  /// Coefficients of u = 1.
+  std::vector<double> constant(std::size_t field) const;
 
  private:
   std::size_t index(std::size_t field, std::size_t cell, std::size_t i) const {
