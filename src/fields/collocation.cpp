@@ -166,7 +166,7 @@ void CollocationMotion::start() {
 
 void CollocationMotion::add_end_forces(double t, double* f) const {
   for (const Held& held : held_)
-    if (held.force) f[held.coefficient] += value_of(held.derivatives.front(), {{s_.context->time(), t}}) * held.scale;
+    if (held.force) f[held.coefficient] += value_of(held.derivatives.front(), {{s_.context->time(), t}}) / held.scale;
 }
 
 void CollocationMotion::refresh_matrices(const std::vector<double>& c, const std::vector<double>& v, double t) {
@@ -274,9 +274,9 @@ double CollocationMotion::correct(double h, const Factors& factors) {
   std::vector<double> size(form_.smooth.size(), 1e-300), largest(form_.smooth.size(), 0);
   for (std::size_t i = 0; i < s; ++i) {
     for (std::size_t x = 0; x < n; ++x) {
+      size[field_of_[x]] = std::max(size[field_of_[x]], std::abs(stage_q_[i][x]));
       if (is_held_[x]) continue;
       stage_v_[i][x] -= change[i][x];
-      size[field_of_[x]] = std::max(size[field_of_[x]], std::abs(stage_q_[i][x]));
       largest[field_of_[x]] = std::max(largest[field_of_[x]], std::abs(h * change[i][x]));
     }
   }
@@ -380,7 +380,7 @@ double CollocationMotion::choose_step(double longest, double duration, double go
   const std::vector<double> rates = rates_;
   const double gain = std::pow(2, 2 * static_cast<double>(tableau_.stages)) - 1;
   double h = longest, before = 0;
-  int stays = 0;
+  int stays = 0, falls_slowly = 0;
   constexpr int most_halvings = 40;
   for (int k = 0; k < most_halvings; ++k, h /= 2) {
     interrupt.throw_if_asked();
@@ -406,10 +406,11 @@ double CollocationMotion::choose_step(double longest, double duration, double go
     const double expected = error / gain * (duration / h);
     if (expected <= goal) break;
     // What the mesh adds to the start moves with its highest frequencies, which no step resolves: where the error does
-    // not fall any more, shorter steps would follow the mesh, not the field.
+    // not fall any more, shorter steps would follow the mesh, not the field. After a jump it falls slowly for ever.
     constexpr double small = 1e-6;
-    stays = before > 0 && error > before / 4 ? stays + 1 : 0;
-    if (stays > (error < small ? 0 : 1)) break;
+    stays = before > 0 && error > 0.7 * before ? stays + 1 : 0;
+    falls_slowly = before > 0 && error > before / 8 ? falls_slowly + 1 : 0;
+    if (stays > (error < small ? 0 : 1) || falls_slowly > 3) break;
     before = error;
   }
   restore(begin);
@@ -475,7 +476,7 @@ void CollocationMotion::find_null_vectors() {
       for (const double x : v) square += x * x;
       for (double& x : v) x /= std::sqrt(square);
     }
-    constexpr double small = 1e-7;
+    constexpr double small = 1e-11;  // rounding
     std::vector<double> product(n, 0);
     matrices_.g.add_product(v.data(), product.data());
     for (std::size_t i = 0; i < n; ++i)

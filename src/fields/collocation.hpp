@@ -50,7 +50,7 @@ class CollocationMotion final : public FieldMotion {
     std::size_t coefficient = 0, field = 0;
     int space = 0;
     bool right = false, force = false;
-    double scale = 1;               // coefficient / value
+    double scale = 1;               // coefficient / value; a moment does work on the value
     std::vector<Expr> derivatives;  // of the value: itself, once by t
   };
   struct State {

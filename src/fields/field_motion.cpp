@@ -2,6 +2,7 @@
 
 #include <maupertuis/evaluate.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace maupertuis {
@@ -18,13 +19,18 @@ std::size_t FieldMotion::varied(std::size_t field) const {
   return a;
 }
 
-double FieldMotion::answer_at_places(Expr value) const {
+double FieldMotion::answer_at_places(Expr value, double shift) const {
   Bindings extra{{s_.context->time(), t_}};
   for (const PlaceValue& place : equations_.model->places) {
     const FieldJet jet = *s_.jet_of(place.jet);
     const std::size_t a = varied(jet.field);
-    extra[place.symbol] =
-        a < equations_.varied.size() ? field_at(a, jet.time, jet.space[0], value_of(place.place[0], {})) : std::nan("");
+    if (a == equations_.varied.size()) {
+      extra[place.symbol] = std::nan("");
+      continue;
+    }
+    const double x = value_of(place.place[0], {}), right = value_of(s_.space.front().to, {});
+    const double moved = shift == 0 ? x : std::min(std::max(x + shift, left_), right);
+    extra[place.symbol] = field_at(a, jet.time, jet.space[0], moved);
   }
   return value_of(value, extra);
 }

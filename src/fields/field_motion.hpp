@@ -37,14 +37,18 @@ class FieldMotion {
   virtual double energy(double& size) = 0;
   /// Of an expression in place values; of one in jets at a place or integrated.
   virtual double answer(const FieldQuestion& question) = 0;
+  /// The same at places shifted along x, within the domain.
+  double answer_beside(const FieldQuestion& question, double shift) const {
+    return answer_at_places(question.value, shift);
+  }
   virtual double field_at(std::size_t field, int derivatives_in_time, int derivatives_in_space, double x) const = 0;
 
  protected:
   double value_of(Expr e, const Bindings& extra) const;
   /// The index among the varied fields, or their number.
   std::size_t varied(std::size_t field) const;
-  /// Of an expression in place values, now.
-  double answer_at_places(Expr value) const;
+  /// Of an expression in place values, now; at places that are shifted along x where `shift` is not 0.
+  double answer_at_places(Expr value, double shift = 0) const;
 
   const FieldEquations& equations_;
   const FieldSystem& s_;

@@ -51,7 +51,7 @@ void refuse(const FieldMotion& mesh, const FieldEquations& equations, Diagnostic
                       "the conditions at the ends do not determine the motion",
                       "The part of the density that is linear in the velocities leaves a shape of the field without an "
                       "equation of motion of its own: a free end asks for more than the start can give.",
-                      "Hold the field at both ends, or make the domain periodic.");
+                      "Hold the field at both ends and take elements of an odd order, or make the domain periodic.");
   } else if (what == "step") {
     diagnostics.error(
         "E0643", s.density_span, "no step leads on from here",
@@ -73,8 +73,13 @@ void refuse(const FieldMotion& mesh, const FieldEquations& equations, Diagnostic
   }
 }
 
+/// Where a value of smooth elements is looked at beside its place, in widths of the first mesh's cells: the error
+/// inside an element goes through zero several times.
+constexpr double beside[] = {-1, -0.7, -0.4, 0.4, 0.7, 1};
+
 struct OneRun {
   std::vector<double> answers;
+  std::vector<std::vector<double>> near;  // [questions]: the same beside their places
   std::size_t steps = 0;
   double h = 0, omega = 0, energy = 0, drift = 0;
   Trajectory trajectory;
@@ -86,7 +91,7 @@ struct Method {
   std::optional<PointForm> waves;
   std::optional<DensityForm> stiff;
   int order = 0;
-  double step = 0;  // of the first mesh by collocation
+  double step = 0, width = 0;  // of the first mesh by collocation
 
   static std::optional<Method> of(const FieldEquations& equations, Diagnostics& diagnostics) {
     Method out;
@@ -104,14 +109,17 @@ struct Method {
     if (waves) return std::make_unique<FieldMesh>(equations, *waves, cells, order);
     return std::make_unique<CollocationMotion>(equations, *stiff, cells, order, stages);
   }
-  /// Twice of the first mesh's on the second by collocation, so that their difference tells the error of steps as well.
+  /// By collocation as much longer on the other meshes as their cells are wider, so that their difference tells the
+  /// error of steps as well.
   double longest_step(FieldMotion& mesh, OneRun& run, const FieldRunOptions& options) {
     if (auto* wave = dynamic_cast<FieldMesh*>(&mesh)) {
       run.omega = wave->omega_max(options.interrupt);
       return run.omega > 0 ? stability / run.omega : options.duration;
     }
     auto& motion = dynamic_cast<CollocationMotion&>(mesh);
-    if (step > 0) return 2 * step;
+    const double cell = mesh.place_of_cell(1) - mesh.place_of_cell(0);
+    if (step > 0) return step * std::round(cell / width);
+    width = cell;
     const double every = options.every > 0 ? options.every : options.duration / 100;
     return step = motion.choose_step(std::min(every, options.duration), options.duration, goal, options.interrupt);
   }
@@ -218,6 +226,7 @@ std::optional<OneRun> run_on(const FieldEquations& equations, Method& method, in
   const double start = mesh.energy(size);
   out.energy = start;
   out.answers.assign(questions.size(), std::nan(""));
+  out.near.resize(questions.size());
   for (const double stop : stops) {
     const double way = stop - mesh.time();
     const auto steps = static_cast<std::size_t>(std::ceil(way / longest - 1e-9));
@@ -231,12 +240,26 @@ std::optional<OneRun> run_on(const FieldEquations& equations, Method& method, in
     if (way > 0 || stop == 0) out.energy = mesh.energy(now), size = std::max(size, now);
     out.drift = std::max(out.drift, std::abs(out.energy - start));
     for (std::size_t i = 0; i < questions.size(); ++i)
-      if (questions[i].time == stop) out.answers[i] = mesh.answer(questions[i]);
+      if (questions[i].time == stop) {
+        out.answers[i] = mesh.answer(questions[i]);
+        out.near[i].clear();
+        for (const double shift : beside)
+          if (method.stiff && !questions[i].total)
+            out.near[i].push_back(mesh.answer_beside(questions[i], shift * method.width));
+      }
     if (first && options.trajectory && (out.trajectory.times.empty() || mesh.time() > out.trajectory.times.back()))
       add_row(mesh, equations, cells, out.trajectory);
   }
   out.h = longest;
   if (size > 0) out.drift /= size;
+  return out;
+}
+
+/// Of an answer on two meshes: the largest at and beside its place.
+double difference(const OneRun& one, const OneRun& other, std::size_t question) {
+  double out = std::abs(one.answers[question] - other.answers[question]);
+  const std::vector<double>&a = one.near[question], &b = other.near[question];
+  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) out = std::max(out, std::abs(a[k] - b[k]));
   return out;
 }
 
@@ -266,17 +289,27 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
     const auto mesh = method->mesh(equations, cells);
     for (int e = 0; e <= cells; ++e) out.places.push_back(mesh->place_of_cell(e));
   }
-  std::optional<OneRun> coarse;
+  std::optional<OneRun> coarse, coarser;
   if (options.errors && !questions.empty() && cells > 1)
     coarse = run_on(equations, *method, std::max(cells / 2, 1), questions, options, false, diagnostics);
-  // Both meshes and their steps are off by a power of the width of a cell, but never by less than rounding.
+  if (method->stiff && coarse && cells / 4 > 0) {
+    Diagnostics ignored;  // without it there is a broader estimate
+    coarser = run_on(equations, *method, cells / 4, questions, options, false, ignored);
+  }
+  // Meshes and their steps are off by a power of the width of a cell, but never by less than rounding. Where a third
+  // mesh shows that the difference falls more slowly, by that.
   const double ratio = cells > 1 ? static_cast<double>(cells) / std::max(cells / 2, 1) : 2;
   const double rounding = 2.2e-16 * std::sqrt(static_cast<double>(out.steps) + 1);
   for (std::size_t i = 0; i < questions.size(); ++i) {
-    const double value = fine->answers[i], gain = std::pow(ratio, method->power(equations, questions[i])) - 1;
-    const double error =
-        coarse ? std::abs(value - coarse->answers[i]) / gain + rounding * std::max(std::abs(value), 1e-300)
-               : std::numeric_limits<double>::infinity();
+    const double value = fine->answers[i];
+    double gain = std::pow(ratio, method->power(equations, questions[i]));
+    if (method->stiff) {
+      const double seen = coarser ? difference(*coarser, *coarse, i) / difference(*coarse, *fine, i) : 2;
+      gain = std::isfinite(seen) ? std::min(gain, std::max(seen, 2.0)) : gain;
+    }
+    const double error = coarse
+                             ? difference(*coarse, *fine, i) / (gain - 1) + rounding * std::max(std::abs(value), 1e-300)
+                             : std::numeric_limits<double>::infinity();
     out.answers.push_back({value, error});
   }
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
