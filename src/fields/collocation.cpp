@@ -543,7 +543,7 @@ void CollocationMotion::find_rates() const {
 
 double CollocationMotion::energy(double& size) {
   find_rates();
-  mesh_.set(state_.c.data(), rates_.data(), t_);
+  mesh_.set(state_.c.data(), rates_.data(), t_, true);
   return mesh_.energy(size);
 }
 
@@ -556,7 +556,7 @@ double CollocationMotion::field_at(std::size_t field, int by_time, int by_space,
 double CollocationMotion::answer(const FieldQuestion& question) {
   if (!question.total) return answer_at_places(question.value);
   find_rates();
-  mesh_.set(state_.c.data(), rates_.data(), t_);
+  mesh_.set(state_.c.data(), rates_.data(), t_, true);
   const Expr root[] = {s_.expanded(question.value)};
   const RepeatedEvaluation at(root);
   std::vector<double> values(mesh_.lanes());

@@ -3,6 +3,8 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/repeated_evaluation.hpp>
 
+#include "fields/wide_lanes.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -38,8 +40,8 @@ GalerkinMesh::GalerkinMesh(const FieldEquations& equations, const DensityForm& f
       }
       tables_.push_back(std::move(table));
     }
-  for (int e = 0; e < cells; ++e)
-    for (const double xi : rule_.x) points_.push_back(left_ + width_ * (e + 0.5 * (1 + xi)));
+  for (const double xi : rule_.x)
+    for (int e = 0; e < cells; ++e) points_.push_back(left_ + width_ * (e + 0.5 * (1 + xi)));
   std::unordered_map<Expr, double, ExprHash> constants(values.begin(), values.end());
   std::vector<Expr> seconds;
   for (const DensityForm::Entry& e : form.hessian) seconds.push_back(e.value);
@@ -89,24 +91,39 @@ const double* GalerkinMesh::table(std::size_t field, int k, std::size_t q) const
   return tables_[3 * field + static_cast<std::size_t>(k)].data() + q * elements_[field].size();
 }
 
-void GalerkinMesh::set(const double* c, const double* rates, double t) {
-  const std::size_t points = rule_.x.size();
-  std::vector<double> local(local_);
+namespace {
+
+/// to = Σ_m c_m from_m, the from_m `stride` apart.
+MAUP_LANES void combine(double* __restrict to, const double* from, const double* c, std::size_t count,
+                        std::size_t stride, std::size_t n) {
+  std::size_t i = 0;
+  for (; i + kWide <= n; i += kWide) {
+    Lanes sum = {};
+    for (std::size_t m = 0; m < count; ++m) sum += c[m] * lanes_at(from + m * stride + i);
+    lanes_at(to + i) = sum;
+  }
+  for (; i < n; ++i) {
+    to[i] = 0;
+    for (std::size_t m = 0; m < count; ++m) to[i] += c[m] * from[m * stride + i];
+  }
+}
+
+}  // namespace
+
+void GalerkinMesh::set(const double* c, const double* rates, double t, bool all) {
+  const std::size_t n = cells();
+  std::vector<double> local(local_ * n);
   for (std::size_t slot = 0; slot < form_.slots.size(); ++slot) {
     const DensityForm::Slot& s = form_.slots[slot];
+    if (!s.stands && !all) continue;
     const Element& e = elements_[s.field];
-    double* out = series_.input(slot, 0);
     const double* from = s.rate ? rates : c;
-    for (std::size_t cell = 0; cell < cells(); ++cell) {
-      for (std::size_t i = 0; i < e.size(); ++i) local[i] = from[index(s.field, cell, i)];
-      if (s.space > 0) local[e.at_end()] -= local[0], local[0] = 0;
-      for (std::size_t q = 0; q < points; ++q) {
-        const double* n = table(s.field, s.space, q);
-        double sum = 0;
-        for (std::size_t i = 0; i < e.size(); ++i) sum += n[i] * local[i];
-        out[cell * points + q] = sum;
-      }
-    }
+    for (std::size_t cell = 0; cell < n; ++cell)
+      for (std::size_t i = 0; i < e.size(); ++i) local[i * n + cell] = from[index(s.field, cell, i)];
+    if (s.space > 0)
+      for (std::size_t cell = 0; cell < n; ++cell) local[e.at_end() * n + cell] -= local[cell], local[cell] = 0;
+    for (std::size_t q = 0; q < rule_.x.size(); ++q)
+      combine(series_.input(slot, 0) + q * n, local.data(), table(s.field, s.space, q), e.size(), n, n);
   }
   std::fill_n(series_.input(form_.slots.size() + 1, 0), lanes(), t);
   series_.advance(0);
@@ -114,21 +131,15 @@ void GalerkinMesh::set(const double* c, const double* rates, double t) {
 
 void GalerkinMesh::assemble(double* out, bool rates) const {
   std::fill_n(out, size_, 0.0);
-  const std::size_t points = rule_.x.size();
-  std::vector<double> local(local_);
+  const std::size_t points = rule_.x.size(), n = cells();
+  std::vector<double> local(n), c(points);
   for (std::size_t slot = 0; slot < form_.slots.size(); ++slot) {
     const DensityForm::Slot& s = form_.slots[slot];
     if (s.rate != rates || form_.by_slot[slot].is_zero()) continue;
-    const Element& e = elements_[s.field];
-    const double* value = series_.root(slot, 0);
-    for (std::size_t cell = 0; cell < cells(); ++cell) {
-      std::fill(local.begin(), local.end(), 0.0);
-      for (std::size_t q = 0; q < points; ++q) {
-        const double* n = table(s.field, s.space, q);
-        const double weight = rule_.w[q] * width_ / 2 * value[cell * points + q];
-        for (std::size_t i = 0; i < e.size(); ++i) local[i] += weight * n[i];
-      }
-      for (std::size_t i = 0; i < e.size(); ++i) out[index(s.field, cell, i)] += local[i];
+    for (std::size_t i = 0; i < elements_[s.field].size(); ++i) {
+      for (std::size_t q = 0; q < points; ++q) c[q] = rule_.w[q] * width_ / 2 * table(s.field, s.space, q)[i];
+      combine(local.data(), series_.root(slot, 0), c.data(), points, n, n);
+      for (std::size_t cell = 0; cell < n; ++cell) out[index(s.field, cell, i)] += local[cell];
     }
   }
 }
@@ -152,7 +163,7 @@ GalerkinMesh::Matrices GalerkinMesh::matrices() {
     for (std::size_t cell = 0; cell < cells(); ++cell) {
       std::fill(local.begin(), local.end(), 0.0);
       for (std::size_t q = 0; q < points; ++q) {
-        const double weight = sign * rule_.w[q] * width_ / 2 * value[cell * points + q];
+        const double weight = sign * rule_.w[q] * width_ / 2 * value[q * cells() + cell];
         const double *a = table(row.field, row.space, q), *b = table(column.field, column.space, q);
         for (std::size_t i = 0; i < r.size(); ++i)
           for (std::size_t j = 0; j < c.size(); ++j) local[i * local_ + j] += weight * a[i] * b[j];
@@ -183,7 +194,7 @@ double GalerkinMesh::energy(double& size) {
 double GalerkinMesh::integral(const std::vector<double>& f) const {
   double sum = 0, lost = 0;  // with what each addition loses (Neumaier)
   for (std::size_t n = 0; n < f.size(); ++n) {
-    const double term = rule_.w[n % rule_.x.size()] * width_ / 2 * f[n], total = sum + term;
+    const double term = rule_.w[n / cells()] * width_ / 2 * f[n], total = sum + term;
     lost += std::abs(sum) >= std::abs(term) ? (sum - total) + term : (term - total) + sum;
     sum = total;
   }
@@ -326,7 +337,8 @@ struct FormBuilder {
     // A field whose u_tx has a kinetic energy has slopes of its own too: its highest derivatives are those of a beam.
     for (std::size_t a = 0; a < n; ++a)
       for (const bool rate : {false, true})
-        for (int k = 0; k <= (out.smooth[a] && !rate ? 2 : 1); ++k) out.slots.push_back({a, k, rate, jet(a, k, rate)});
+        for (int k = 0; k <= (out.smooth[a] && !rate ? 2 : 1); ++k)
+          out.slots.push_back({a, k, rate, false, jet(a, k, rate)});
     for (const DensityForm::Slot& slot : out.slots) out.inputs.push_back(slot.jet);
     out.inputs.push_back(s.space.front().symbol);
     out.inputs.push_back(s.context->time());
@@ -345,6 +357,9 @@ struct FormBuilder {
       out.by_slot.push_back(e);
     }
     out.energy = s.context->sum(energy);
+    const std::vector<Expr> standing = symbols_of(out.by_slot);
+    for (DensityForm::Slot& slot : out.slots)
+      slot.stands = std::find(standing.begin(), standing.end(), slot.jet) != standing.end();
     out.linear = true;
     out.first_order.assign(out.smooth.size(), true);
     for (std::size_t row = 0; row < out.slots.size(); ++row)

@@ -17,6 +17,7 @@ struct DensityForm {
     std::size_t field = 0;  // of those that are varied
     int space = 0;
     bool rate = false;
+    bool stands = false;  // in a momentum or a force
     Expr jet;
   };
   struct Entry {  // ∂ of a momentum (row.rate) or of a force by a slot
@@ -49,8 +50,9 @@ class GalerkinMesh {
   std::size_t bandwidth() const { return band_; }
   double left() const { return left_; }
   double width() const { return width_; }
-  /// Values of all jets at the quadrature points: to be called before what follows.
-  void set(const double* c, const double* rates, double t);
+  /// Values of the jets at the quadrature points: to be called before what follows, and with `all` before energies and
+  /// integrals, which hold more of them than forces do.
+  void set(const double* c, const double* rates, double t, bool all = false);
   void momenta(double* out) const;
   void forces(double* out) const;  // without forces at ends
   double energy(double& size);
@@ -100,7 +102,7 @@ class GalerkinMesh {
   std::vector<Element> elements_;            // [fields]
   std::vector<std::size_t> map_;             // [cells × fields × functions]
   std::vector<std::vector<double>> tables_;  // [smooth][derivative] → [points × functions]
-  std::vector<double> points_;               // x of the lanes: [cells × points]
+  std::vector<double> points_;               // x of the lanes: [points × cells]
   mutable LaneSeries series_, hessian_, energies_;
   Bindings values_;
   Expr x_;

@@ -11,6 +11,11 @@ double product(double a, double b) { return a * b; }
 std::complex<double> product(std::complex<double> a, std::complex<double> b) {
   return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
+double inverse_of(double a) { return 1 / a; }
+std::complex<double> inverse_of(std::complex<double> a) {
+  const double square = a.real() * a.real() + a.imag() * a.imag();
+  return {a.real() / square, -a.imag() / square};
+}
 double size_of(double a) { return std::abs(a); }
 double size_of(std::complex<double> a) { return std::abs(a.real()) + std::abs(a.imag()); }
 
@@ -55,7 +60,7 @@ bool BandedMatrix<T>::factor() {
     last = std::max(last, std::min(k + pivot + above_, n_ - 1));
     if (pivot != 0)
       for (std::size_t j = k; j <= last; ++j) std::swap(at(k, j), at(k + pivot, j));
-    const T inverse = T(1) / column[0];
+    const T inverse = inverse_of(column[0]);
     for (std::size_t i = 1; i <= rows; ++i) column[i] = product(column[i], inverse);
     for (std::size_t j = k + 1; j <= last; ++j) {
       T* other = &at(k, j);
@@ -79,7 +84,7 @@ void BandedMatrix<T>::solve(T* x) const {
   }
   for (std::size_t k = n_; k-- > 0;) {
     const T* column = &data_[k * rows_ + lift_];
-    x[k] = x[k] / column[0];
+    x[k] = product(x[k], inverse_of(column[0]));
     const T value = x[k];
     const std::size_t rows = std::min(lift_, k);
     for (std::size_t i = 1; i <= rows; ++i) x[k - i] -= product(column[-static_cast<std::ptrdiff_t>(i)], value);
