@@ -564,6 +564,22 @@ std::optional<Value> value_of_jet(Elaboration& e, const syntax::Expression& x) {
   return Value::of(system_of(e).jet_symbol(*jet), system_of(e).dimension_of(*jet), given ? -1 : jet->time);
 }
 
+bool refuse_without_place(Elaboration& e, Expr value, const syntax::Expression& x) {
+  if (!e.fields) return false;
+  const FieldSystem& system = system_of(e);
+  std::string name;
+  for (const Expr& symbol : symbols_of({&value, 1})) {
+    if (const auto jet = system.jet_of(symbol)) name = system.jet_name(*jet);
+    for (const SpaceVariable& v : system.space)
+      if (v.symbol == symbol) name = v.name;
+  }
+  if (name.empty()) return false;
+  e.diagnostics.error("E0289", x.span, fmt::format("`{}` stands without a place", name),
+                      "A field has a value at each place; a value that is asked for needs one.",
+                      "Write u(3 m), u_x(3 m), or for the velocity u_t(3 m); or `total` for the integral.");
+  return true;
+}
+
 Value value_at_place(Elaboration& e, const syntax::Expression& x) {
   FieldSystem& system = system_of(e);
   std::optional<FieldJet> jet = system.jet_of_name(x.text);
