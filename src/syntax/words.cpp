@@ -232,6 +232,13 @@ const Function* find_function(std::string_view word) {
   return found == std::end(kFunctions) ? nullptr : &*found;
 }
 
+const Function* find_complex_function(std::string_view word) {
+  static constexpr Function functions[] = {{"conj"}, {"re"}, {"im"}};
+  const auto found =
+      std::find_if(std::begin(functions), std::end(functions), [&](const Function& f) { return f.name == word; });
+  return found == std::end(functions) ? nullptr : &*found;
+}
+
 std::optional<EnergyStatement::Which> energy_of(std::string_view word) {
   for (const auto& [name, which] : kEnergies) {
     if (name == word) return which;

@@ -594,9 +594,18 @@ constexpr CodeEntry kEntries[] = {
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\ncoord y : "
      "length\n",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},
-    {"E0506", "a complex field", "Its real and imaginary parts are two real fields; the density is written in them.",
-     "dimensionless\nfield ψ(x) : complex\ndensity = ψ'^2\n",
-     "dimensionless\nfield a(x), b(x) : number\ndensity = b a' - a b' - 1/2 (a_x^2 + b_x^2)\n"},
+    {"E0293", "a density that is not real",
+     "The action is a real number, and so is its density. i conj(ψ) ψ' alone is not: its imaginary part is half the "
+     "derivative of |ψ|² by t.",
+     "dimensionless\nfield ψ(x) : complex\ndensity = i conj(ψ) ψ' - 1/2 abs(ψ_x)^2\n",
+     "dimensionless\nfield ψ(x) : complex\ndensity = i/2 (conj(ψ) ψ' - ψ conj(ψ')) - 1/2 abs(ψ_x)^2\n"},
+    {"E0294", "a complex value in a place for real ones",
+     "Formulas with a complex field ψ fall apart into their real and imaginary parts, in ψ_r and ψ_i. What is measured "
+     "or conserved is real: re(…), im(…), abs(…). Functions of complex values are exp and whole powers.",
+     "dimensionless\nfield ψ(x) : complex\ndensity = i/2 (conj(ψ) ψ' - ψ conj(ψ')) - 1/2 abs(ψ_x)^2\n"
+     "expect current ψ flux ψ_x\n",
+     "dimensionless\nfield ψ(x) : complex\ndensity = i/2 (conj(ψ) ψ' - ψ conj(ψ')) - 1/2 abs(ψ_x)^2\n"
+     "expect current abs(ψ)^2 flux im(conj(ψ) ψ_x)\n"},
 };
 
 }  // namespace
