@@ -4,8 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <maupertuis/coupled_fields.hpp>
 #include <maupertuis/diagram.hpp>
 #include <maupertuis/print.hpp>
+
+#include <cmath>
 
 namespace maupertuis::app {
 namespace {
@@ -20,8 +23,13 @@ Layout shown(const FieldEquations& equations, Expr e) {
 
 std::string plain_of(const FieldEquations& equations, Expr e) { return to_plain(shown(equations, e)); }
 
-bool is_essential(const FieldSystem& s, const NaturalCondition& n, bool right) {
+/// Whether the condition is no natural one at this end: the field is given there, or bodies take hold of it.
+bool is_essential(const FieldEquations& equations, const NaturalCondition& n, bool right) {
+  const FieldSystem& s = equations.system();
   if (s.periodic) return true;
+  for (const InterfaceCondition& c : equations.interfaces)
+    if (c.field == n.field && c.moment == n.moment && c.end && (*c.end == BoundaryCondition::Side::Right) == right)
+      return true;
   for (const BoundaryCondition& b : s.boundary) {
     const bool side = (b.side == BoundaryCondition::Side::Right || b.side == BoundaryCondition::Side::Top) == right;
     const bool along = (static_cast<int>(b.side) / 2) == static_cast<int>(n.along);
@@ -31,17 +39,18 @@ bool is_essential(const FieldSystem& s, const NaturalCondition& n, bool right) {
 }
 
 /// "at both ends of x", "where u is not given"
-std::string where_natural(const FieldSystem& s, const NaturalCondition& n) {
+std::string where_natural(const FieldEquations& equations, const NaturalCondition& n) {
+  const FieldSystem& s = equations.system();
   const std::string& x = s.space[n.along].name;
   const std::string name = s.fields[n.field].name + (n.moment ? "_" + x : "");
   if (s.periodic) return fmt::format("where δ{} is free; the domain is periodic and has no end", name);
-  const bool left = !is_essential(s, n, false), right = !is_essential(s, n, true);
+  const bool left = !is_essential(equations, n, false), right = !is_essential(equations, n, true);
   if (!s.space[n.along].from) return fmt::format("at an end of {} where {} is free", x, name);
   if (left && right) return fmt::format("at both ends of {}, where {} is free", x, name);
   if (left || right)
     return fmt::format("at the {} end of {}, where {} is free",
                        n.along == 0 ? (left ? "left" : "right") : (left ? "bottom" : "top"), x, name);
-  return fmt::format("nowhere: {} is given at both ends of {}", name, x);
+  return fmt::format("nowhere: {} is given or held at both ends of {}", name, x);
 }
 
 FormulaLine line_of(Layout left, Layout right, std::string section, std::string note) {
@@ -80,6 +89,41 @@ void add_steps(const FieldEquations& equations, std::vector<FormulaLine>& out) {
   }
 }
 
+constexpr const char* interface_section = "Conditions where fields and bodies meet";
+constexpr const char* coordinate_section = "Equations of the coordinates";
+constexpr const char* constraint_section = "Constraints";
+
+std::string where_interface(const FieldEquations& equations, const InterfaceCondition& c) {
+  const FieldSystem& s = equations.system();
+  const std::string place = fmt::format("{} = {}", s.space.front().name, place_text(equations, c.place));
+  if (!c.coordinate) return fmt::format("at {}, where the density changes", place);
+  return fmt::format("at {}{}", place, c.end ? "" : ", from both sides");
+}
+
+/// A row = 0 and what its names stand for.
+void add_row(const FieldEquations& equations, Expr row, Expr own, const char* section, const std::string& note,
+             std::vector<FormulaLine>& out) {
+  ReadingOrder order = coupled_order(equations);
+  order.own = own;
+  const auto page = [&](Layout l) { return field_layout(equations.system(), coupled_layout(equations, std::move(l))); };
+  const ReadableForm form = readable_row(equations, row, own);
+  out.push_back(line_of(page(lay_out(form, order)), zero(), section, note));
+  for (const Intermediate& i : form.intermediates)
+    out.push_back(line_of(layouts::symbol(i.symbol), page(lay_out(i.value, order)), section, ""));
+}
+
+void add_coupled_lines(const FieldEquations& equations, std::vector<FormulaLine>& out) {
+  for (const InterfaceCondition& c : equations.interfaces)
+    add_row(equations, c.value, jet_at_place(equations, {c.field, {c.moment}, 0}, c.place, 0), interface_section,
+            where_interface(equations, c), out);
+  if (!equations.bodies) return;
+  const MechanicalSystem& system = *equations.bodies->shown().system;
+  for (const CoordinateRow& r : coordinate_rows(equations))
+    add_row(equations, r.value, system.coordinates[r.coordinate].q, coordinate_section, "", out);
+  for (std::size_t i = 0; i < system.constraints.size(); ++i)
+    add_row(equations, system.constraints[i].value, {}, constraint_section, system.constraint_label(i), out);
+}
+
 }  // namespace
 
 std::vector<FormulaLine> field_lines(Study& study, bool with_steps) {
@@ -97,7 +141,9 @@ std::vector<FormulaLine> field_lines(Study& study, bool with_steps) {
           line_of(layouts::symbol(i.symbol), field_layout(s, lay_out(i.value, order)), "Field equations", ""));
   }
   for (const NaturalCondition& n : equations.natural)
-    out.push_back(line_of(shown(equations, n.value), zero(), "Natural boundary conditions", where_natural(s, n)));
+    out.push_back(
+        line_of(shown(equations, n.value), zero(), "Natural boundary conditions", where_natural(equations, n)));
+  add_coupled_lines(equations, out);
   return out;
 }
 
@@ -133,10 +179,17 @@ Json fields_json(Study& study) {
   for (const SpaceVariable& x : s.space) document["independent"].push_back(x.name);
   document["equations"] = Json::array();
   document["natural"] = Json::array();
+  if (equations.bodies || !equations.interfaces.empty())
+    for (const char* name : {"interfaces", "coordinates", "constraints"}) document[name] = Json::array();
   std::size_t a = 0;
   for (const FormulaLine& line : field_lines(study, false)) {
     const Json one{{"plain", plain_text(line)}, {"latex", latex_text(line)}};
-    if (line.section == "Field equations") {
+    if (line.section == interface_section) {
+      document["interfaces"].push_back(one);
+      document["interfaces"].back()["where"] = line.note;
+    } else if (line.section == coordinate_section || line.section == constraint_section) {
+      document[line.section == coordinate_section ? "coordinates" : "constraints"].push_back(one);
+    } else if (line.section == "Field equations") {
       document["equations"].push_back(one);
       if (a < equations.varied.size()) document["equations"].back()["field"] = s.fields[equations.varied[a++]].name;
     } else {
@@ -165,6 +218,16 @@ std::string fields_summary(Study& study) {
     names += fmt::format("{}{} : {}", names.empty() ? "" : ", ", s.fields[f].name,
                          s.fields[f].kind.empty() ? to_string(s.fields[f].dimension) : s.fields[f].kind);
   line("fields", names);
+  if (equations.bodies) {
+    std::string coordinates, places;
+    for (const Coordinate& c : system.coordinates) {
+      const bool place = s.jet_of_name(std::string_view(c.name).substr(0, c.name.find('('))).has_value();
+      std::string& list = place ? places : coordinates;
+      list += fmt::format("{}{}", list.empty() ? "" : ", ", c.name);
+    }
+    line("coordinates", coordinates);
+    line("held at places", places);
+  }
   Bindings values;
   for (const Parameter& p : system.parameters) values[p.symbol] = p.si_value;
   for (const SpaceVariable& x : s.space) {
@@ -249,13 +312,16 @@ std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOption
                               "Its mesh is started at t = 0 and steps on from there.", "Give a positive --duration.");
     return std::nullopt;
   }
-  if (!(options.duration > 0)) {
+  const bool until = model.experiment.until && runs_as_one_system(equations_of(study)) && !settings.duration;
+  if (!(options.duration > 0) && !until) {
     study.diagnostics().error("E0701", std::nullopt, "the model does not say how long it runs",
                               "A run of a field goes on for a time.", "Add `run 10 s`, or give --duration.");
     return std::nullopt;
   }
   const InterruptScope scope = study.interruptible();
-  return run_fields(equations_of(study), {}, options, study.diagnostics());
+  return runs_as_one_system(equations_of(study))
+             ? run_coupled(model, equations_of(study), {}, options, study.diagnostics())
+             : run_fields(equations_of(study), {}, options, study.diagnostics());
 }
 
 std::string dispersion_text(Study& study, std::string& trouble) {
@@ -273,6 +339,24 @@ namespace {
 
 /// At most this many moments are drawn, the first and the last among them.
 constexpr std::size_t most_moments = 6;
+
+}  // namespace
+
+namespace {
+
+std::string coupled_run_text(const FieldRunResult& run) {
+  std::string out = fmt::format("{} elements of order {} ({} unknowns), {} steps to {:.10g} s\n", run.cells, run.order,
+                                run.nodes, run.steps, run.end);
+  for (const FieldRunResult::Coordinate& c : run.final_coordinates)
+    out += fmt::format("  {:<30} {:.10g}, {}' {:.10g}\n", c.name, c.q, c.name, c.v);
+  for (const FieldRunResult::Happening& h : run.happenings)
+    out += fmt::format("  {:<30} at {:.12g} s\n", h.name, h.time);
+  out += fmt::format("  energy                         {:.16g}\n", run.energy);
+  out += run.energy_drift < 0 ? std::string("  energy drift                   forces act: it is not conserved\n")
+                              : fmt::format("  energy drift                   {:.3g} of its terms\n", run.energy_drift);
+  if (!run.trouble.empty()) out += fmt::format("  it ended early                 {}\n", run.trouble);
+  return out + fmt::format("  computed in                    {:.3g} s\n", run.seconds);
+}
 
 }  // namespace
 
@@ -310,7 +394,33 @@ std::string field_picture(Study& study, const FieldRunResult& run) {
   return diagram_svg(out);
 }
 
+std::string shape_of_bodies(const FieldEquations& equations, const FieldModes& modes, std::size_t index) {
+  if (!equations.bodies || index >= modes.shapes.size()) return {};
+  std::string out;
+  const auto& coordinates = equations.bodies->system->coordinates;
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    constexpr double rounding = 1e-10;  // beside 1
+    const double value = modes.shapes[index].coordinates[i];
+    out += fmt::format("{}{} {:.4g}", i ? ", " : "   ", coordinates[i].name, std::abs(value) < rounding ? 0 : value);
+  }
+  return out;
+}
+
+Json shapes_json(const FieldEquations& equations, const FieldModes& modes) {
+  Json out{{"places", modes.places}, {"modes", Json::array()}};
+  for (const FieldModes::Shape& shape : modes.shapes) {
+    Json one = Json::object();
+    for (std::size_t a = 0; a < shape.fields.size(); ++a)
+      one[equations.system().fields[equations.varied[a]].name] = shape.fields[a];
+    for (std::size_t i = 0; i < shape.coordinates.size(); ++i)
+      one[equations.bodies->system->coordinates[i].name] = shape.coordinates[i];
+    out["modes"].push_back(one);
+  }
+  return out;
+}
+
 std::string field_run_text(const FieldRunResult& run) {
+  if (run.coupled) return coupled_run_text(run);
   std::string out = fmt::format("{} cells of order {} ({} nodes), {} {} to {:.10g} s\n", run.cells, run.order,
                                 run.nodes, run.steps, run.method, run.end);
   out += run.omega_max > 0 ? fmt::format("  highest frequency of the mesh  {:.6g} rad/s, steps at most {:.4g} s\n",
@@ -329,6 +439,15 @@ Json field_run_json(const FieldRunResult& run) {
                             {"omega_max", run.omega_max}, {"energy", run.energy},       {"seconds", run.seconds}};
   document["statistics"]["energy_drift"] = run.energy_drift < 0 ? Json(nullptr) : Json(run.energy_drift);
   document["end"] = run.end;
+  if (run.coupled) {
+    document["final"] = Json::object();
+    for (const FieldRunResult::Coordinate& c : run.final_coordinates)
+      document["final"][c.name] = c.q, document["final"][c.name + "'"] = c.v;
+    document["events"] = Json::array();
+    for (const FieldRunResult::Happening& h : run.happenings)
+      document["events"].push_back({{"name", h.name}, {"time", h.time}});
+    if (!run.trouble.empty()) document["trouble"] = run.trouble;
+  }
   return document;
 }
 

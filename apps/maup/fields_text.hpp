@@ -27,6 +27,11 @@ std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOption
 std::string dispersion_text(Study& study, std::string& trouble);
 /// φ(x) at up to six moments of a run with rows, as SVG; of several fields the second is dashed.
 std::string field_picture(Study& study, const FieldRunResult& run);
+/// "   u(l) 1, y 0.3": how coordinates and places move in a mode, the largest value of the field being 1; empty
+/// without.
+std::string shape_of_bodies(const FieldEquations& equations, const FieldModes& modes, std::size_t index);
+/// [{field: [values at places], coordinate: value}], with the places.
+Json shapes_json(const FieldEquations& equations, const FieldModes& modes);
 std::string field_run_text(const FieldRunResult& run);
 Json field_run_json(const FieldRunResult& run);
 

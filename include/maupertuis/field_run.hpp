@@ -27,6 +27,18 @@ struct FieldRunResult {
   double energy = 0, energy_drift = -1;  // J; relative to the terms of the energy; −1: forces act, none is conserved
   double seconds = 0;
   std::string trouble;  // why the run ended early; empty: it did not
+  // With coordinates and bodies:
+  bool coupled = false;
+  struct Coordinate {
+    std::string name;
+    double q = 0, v = 0;  // SI
+  };
+  std::vector<Coordinate> final_coordinates;  // values of fields at places among them
+  struct Happening {
+    std::string name;  // of the event
+    double time = 0;   // s
+  };
+  std::vector<Happening> happenings;
 };
 
 /// What is asked of a run: an expression of jets at a place, or of place values; or integrated over space.
@@ -49,9 +61,32 @@ struct FieldRunOptions {
 std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const std::vector<FieldQuestion>& questions,
                                          const FieldRunOptions& options, Diagnostics& diagnostics);
 
-/// The lowest `count` angular frequencies of small motions about φ = 0, ascending: Ritz's method with Legendre
-/// polynomials over the whole domain, for densities of first and second derivatives. Empty, and a diagnostic, where
-/// there are none.
+/// Whether a run is one of run_coupled: bodies stand beside the fields, or the density changes at a place.
+bool runs_as_one_system(const FieldEquations& equations);
+/// The run of a model in which fields are coupled with coordinates and bodies: elements of continuous fields, or of
+/// continuous slopes where the density bends, as one system of at most 200 unknowns that `simulate` runs. Columns of
+/// the trajectory: fields and velocities at `places`, then the coordinates. Errors as above; E0656: too many elements.
+std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquations& equations,
+                                          const std::vector<FieldQuestion>& questions, const FieldRunOptions& options,
+                                          Diagnostics& diagnostics);
+
+/// Small motions about rest, of fields with the coordinates and bodies beside them.
+struct FieldModes {
+  std::vector<double> frequencies;  // rad/s, ascending; below 0: the rate of growth of an unstable one, negative
+  /// The shape of each, its largest value 1; none where velocities act sideways (gyroscopic terms).
+  struct Shape {
+    std::vector<std::vector<double>> fields;  // [varied][places]
+    std::vector<double> coordinates;          // [coordinates of `bodies`], SI
+  };
+  std::vector<Shape> shapes;
+  std::vector<double> places;
+};
+
+/// The lowest `count`: Ritz's method with Legendre polynomials on elements between the places of bodies and the borders
+/// of the density, for densities of first and second derivatives. Friction is left out. Empty, and E0644, where there
+/// are none.
+FieldModes field_modes(const FieldEquations& equations, std::size_t count, Diagnostics& diagnostics);
+/// Their frequencies alone.
 std::vector<double> field_frequencies(const FieldEquations& equations, std::size_t count, Diagnostics& diagnostics);
 
 }  // namespace maupertuis

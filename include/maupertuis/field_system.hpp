@@ -65,6 +65,16 @@ struct PlaceValue {
   Span span;
 };
 
+/// A value of a field at a place that stands in T, V, L, D, positions, constraints or forces: u(l), u_x(l). It is a
+/// coordinate of the mechanical system beside the fields.
+struct PlaceCoordinate {
+  std::size_t coordinate = 0;  // in MechanicalSystem::coordinates
+  FieldJet jet;                // u or u_x
+  Expr place;                  // SI, parameters and numbers only
+  std::optional<BoundaryCondition::Side> end;  // nothing: inside, or of a periodic domain
+  Span span;
+};
+
 struct FieldSystem {
   std::shared_ptr<Context> context;
   std::vector<SpaceVariable> space;
@@ -145,6 +155,11 @@ struct FieldModel {
   FieldSystem system;
   std::vector<FieldStart> start;
   std::vector<PlaceValue> places;
+  /// Whether coordinates and bodies stand beside the fields, or forces at places inside: Model::system is what they are
+  /// then, with the values of fields at places among its coordinates.
+  bool coupled = false;
+  std::vector<PlaceCoordinate> attached;
+  bool complete = false;  // energies, constraints and forces are read: further values at places take part in nothing
   std::vector<FieldExpectationLine> expectations;
   Expr omega;  // ω of dispersion relations
   std::vector<Parameter> parameters;

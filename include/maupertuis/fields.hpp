@@ -4,6 +4,7 @@
 #include <maupertuis/layout.hpp>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,18 @@ namespace maupertuis {
 struct NaturalCondition {
   std::size_t field = 0, along = 0;  // space variable
   bool moment = false;               // m, the factor of δφ_x; else p, the factor of δφ
+  Expr value;
+};
+
+/// What holds at a place where bodies take hold of a field, or where its density goes over from one formula to another.
+struct InterfaceCondition {
+  std::size_t field = 0;
+  bool moment = false;  // of φ_x: m; else of φ: p
+  Expr place;
+  std::optional<BoundaryCondition::Side> end;  // nothing: inside, p or m on both sides
+  std::optional<std::size_t> coordinate;       // of `bodies`; nothing: the border of a density
+  /// R − p on the right, R + p on the left, R + p(x+) − p(x−) inside, with R of the bodies there: vanishes. In the
+  /// coordinates of `bodies` and symbols of jets at the place: u_x(l), u_x(a+), u_x(a-).
   Expr value;
 };
 
@@ -32,6 +45,11 @@ struct FieldEquations {
   std::vector<Expr> boundary_terms;       // B^μ: space variables, then t
   FieldSystem with_variations;            // the fields and, behind them, their variations η
   ReadingOrder order;
+  /// Lagrange's equations of the coordinates and bodies beside the fields, the values of fields at places among the
+  /// coordinates; null where there are none. See coupled_fields.hpp.
+  std::shared_ptr<const EquationsOfMotion> bodies;
+  std::vector<StartValue> body_start;  // of the coordinates, where the model gives one
+  std::vector<InterfaceCondition> interfaces;
 
   const FieldSystem& system() const { return model->system; }
   std::size_t variation_of(std::size_t varied_index) const { return system().fields.size() + varied_index; }

@@ -51,6 +51,13 @@ constexpr CodeEntry kEntries[] = {
      "same "
      "motion, and a run keeps w at the left end of a periodic domain, or of free ends, as it starts.",
      "", ""},
+    {"E0656", "a mesh too large for a run with bodies",
+     "Fields that bodies take hold of run as one system with the bodies, of at most 200 unknowns of elements. Elements "
+     "of high order need few of them.",
+     "field u(x) : length on x = 0 m .. 1 m cells 400\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\n"
+     "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nT = 1/2 m u(1 m)'^2\nrun 1 s\n",
+     "field u(x) : length on x = 0 m .. 1 m cells 10\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\n"
+     "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nT = 1/2 m u(1 m)'^2\nrun 1 s\n"},
     {"E0644", "no modes of a field",
      "Frequencies are those of small motions about φ = 0 of a field of one space variable with a domain, with constant "
      "coefficients in time and a positive energy.",

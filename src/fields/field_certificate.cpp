@@ -1,3 +1,4 @@
+#include <maupertuis/coupled_fields.hpp>
 #include <maupertuis/fields.hpp>
 #include <maupertuis/interrupt_scope.hpp>
 
@@ -182,7 +183,9 @@ CertificateCheck readable_forms(const FieldEquations& equations) {
 }  // namespace
 
 Certificate certify(const FieldEquations& equations, std::uint64_t seed) {
-  return {{boundary_identity(equations, seed), readable_forms(equations)}};
+  Certificate out{{boundary_identity(equations, seed), readable_forms(equations)}};
+  certify_bodies(equations, out);
+  return out;
 }
 
 }  // namespace maupertuis

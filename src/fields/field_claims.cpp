@@ -1,3 +1,4 @@
+#include <maupertuis/coupled_fields.hpp>
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/field_run.hpp>
 #include <maupertuis/field_verification.hpp>
@@ -75,6 +76,12 @@ class FieldVerifier {
     result.message = "The model has no mistake that gives this error.";
   }
   void decide(const expectation::Equation& e, ExpectationResult& result) {
+    if (const auto row = row_of_bodies(equations_, e.left - e.right)) {
+      result.passed = *row;
+      result.message = *row ? "It is a condition or an equation of the coordinates of this model."
+                            : "It is none of the conditions and equations of the coordinates, up to a factor.";
+      return;
+    }
     if (!shell_.complete()) {
       result.message = "An equation cannot be solved for a derivative of its own.";
       return;
@@ -159,8 +166,9 @@ class FieldVerifier {
     options.interrupt = options_.interrupt;
     options.duration = options_.duration ? *options_.duration : number_of(model_.experiment.duration);
     for (const FieldQuestion& q : questions_) options.duration = std::max(options.duration, q.time);
-    const auto run = run_fields(equations_, questions_, options, diagnostics_);
-    if (!run) {
+    const auto run = runs_as_one_system(equations_) ? run_coupled(model_, equations_, questions_, options, diagnostics_)
+                                                    : run_fields(equations_, questions_, options, diagnostics_);
+    if (!run || !run->trouble.empty()) {
       for (const auto& [line, expected] : asked_) out.results[line].message = "The run did not come to it.";
       for (const auto& [line, tolerance] : energy_) out.results[line].message = "The run did not come to it.";
       return;

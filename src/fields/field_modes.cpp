@@ -1,8 +1,10 @@
+#include <maupertuis/coupled_fields.hpp>
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/field_run.hpp>
 #include <maupertuis/repeated_evaluation.hpp>
 
-#include "fields/lobatto.hpp"
+#include "fields/field_elements.hpp"
+#include "fields/semi_discrete.hpp"
 #include "linear_algebra/dense.hpp"
 #include "linear_algebra/products.hpp"
 
@@ -11,55 +13,63 @@
 #include <algorithm>
 #include <cmath>
 
-/// Small motions about φ = 0 by Ritz's method with polynomials over the whole domain, integrals of Legendre's, which
+/// Small motions about rest by Ritz's method with polynomials of high degree between the places where bodies sit, which
 /// converge exponentially where the coefficients are smooth. K and M are sums over Gauss-Lobatto points of second
-/// derivatives of ℒ at rest; what the ends hold is put in by an orthonormal basis of the polynomials that obey it.
+/// derivatives of ℒ at rest, and of the linearized equations of the bodies.
 namespace maupertuis {
 namespace {
 
-constexpr int degree = 40;
-
-/// The basis functions with two derivatives at x: the lowest polynomials, and integrals of Legendre's polynomials, once
-/// where ℒ holds slopes, twice where it holds curvatures. So K is a sum of products of orthonormal functions, and keeps
-/// the digits of the lowest modes, which second derivatives of high polynomials would drown.
-struct BasisValues {
-  std::vector<double> of[3];
-
-  BasisValues(double x, std::size_t depth) {
-    std::vector<double> p(degree + 4);
-    p[0] = 1, p[1] = x;
-    for (std::size_t n = 2; n < p.size(); ++n)
-      p[n] = ((2.0 * n - 1) * x * p[n - 1] - (n - 1.0) * p[n - 2]) / static_cast<double>(n);
-    // ∫P_n = (P_{n+1} − P_{n−1})/(2n + 1), ∫P_0 = P_1; integrals[d][n] is the d-fold one
-    std::vector<std::vector<double>> integrals{p};
-    const auto once = [&](const std::vector<double>& next, const std::vector<double>& before, std::size_t n) {
-      return n == 0 ? next[1] : (next[n + 1] - before[n - 1]) / (2.0 * n + 1);
-    };
-    integrals.emplace_back(degree + 3);
-    for (std::size_t n = 0; n < degree + 3; ++n) integrals[1][n] = once(p, p, n);
-    integrals.emplace_back(degree + 2);
-    for (std::size_t n = 0; n < degree + 2; ++n)  // ∬P_0 = ∫P_1
-      integrals[2][n] = n == 0 ? integrals[1][1] : (integrals[1][n + 1] - integrals[1][n - 1]) / (2.0 * n + 1);
-    for (std::size_t d = 0; d < 3; ++d) {
-      of[d].assign(degree + 1, 0);
-      for (std::size_t n = 0; n < depth; ++n) of[d][n] = d == 0 ? p[n] : d == 1 && n == 1 ? 1 : 0;
-      for (std::size_t n = depth; n <= degree; ++n)
-        of[d][n] = d <= depth ? std::sqrt(n - depth + 0.5) * integrals[depth - d][n - depth] : 0;
-    }
-  }
-};
+using Side = BoundaryCondition::Side;
+using SpaceKind = ElementSpace::Kind;
 
 bool refuse_modes_of(const FieldEquations& equations, Diagnostics& diagnostics, const std::string& why) {
   diagnostics.error("E0644", equations.system().density_span, "this field has no modes to be computed", why,
-                    "Modes are those of one space variable with a domain, about φ = 0, with coefficients that do not "
+                    "Modes are those of one space variable with a domain, about a rest, with coefficients that do not "
                     "change in time.");
   return false;
 }
 
-bool has_modes_at_rest(const FieldEquations& equations, Diagnostics& diagnostics) {
+/// A second derivative of ℒ at rest, by two jets, as a function of x.
+struct Entry {
+  std::size_t a = 0, b = 0;
+  int da = 0, db = 0;  // derivatives by x
+  int ta = 0, tb = 0;  // by t
+  Expr value;
+};
+
+struct DensityEntries {
+  std::vector<Entry> list;
+  bool linear = true;  // constant second derivatives: the same about every rest
+};
+
+bool entries_of(const FieldEquations& equations, DensityEntries& out, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
-  if (s.space.size() != 1 || !s.space.front().from)
-    return refuse_modes_of(equations, diagnostics, "It has several space variables, or no domain.");
+  const Expr density = s.expanded(s.density);
+  ExprMap rest;
+  for (const Expr& jet : s.jets_in(density))
+    if (!s.fields[s.jet_of(jet)->field].given) rest[jet] = s.context->number(0);
+  const auto place = [&](std::size_t field) {
+    return static_cast<std::size_t>(std::find(equations.varied.begin(), equations.varied.end(), field) -
+                                    equations.varied.begin());
+  };
+  for (const Expr& one : s.jets_in(density))
+    for (const Expr& two : s.jets_in(density)) {
+      const FieldJet a = *s.jet_of(one), b = *s.jet_of(two);
+      if (s.fields[a.field].given || s.fields[b.field].given) continue;
+      const Expr second = differentiate(differentiate(density, one), two);
+      if (!s.jets_in(second).empty()) out.linear = false;
+      const Expr value = substitute(second, rest);
+      if (value.is_zero()) continue;
+      if (s.context->depends_on_time(value.id()))
+        return refuse_modes_of(equations, diagnostics, "Its coefficients change in time.");
+      out.list.push_back({place(a.field), place(b.field), a.space[0], b.space[0], a.time, b.time, value});
+    }
+  return true;
+}
+
+bool has_modes_at_rest(const FieldEquations& equations, bool linear, Diagnostics& diagnostics) {
+  const FieldSystem& s = equations.system();
+  if (linear) return true;
   ExprMap rest;
   for (const Expr& r : equations.residuals)
     for (const Expr& jet : s.jets_in(r)) rest[jet] = s.context->number(0);
@@ -74,120 +84,405 @@ bool has_modes_at_rest(const FieldEquations& equations, Diagnostics& diagnostics
   return true;
 }
 
-/// A second derivative of ℒ at rest, by two jets, as a function of x.
-struct Entry {
-  std::size_t a = 0, b = 0;
-  int da = 0, db = 0;  // derivatives by x
-  bool kinetic = false;
-  Expr value;
+/// M c̈ + G ċ + K c = 0 in the free unknowns, those that constraints tie together replaced.
+struct SmallMotions {
+  Eigen::MatrixXd mass, gyroscopic, stiffness;
+  Eigen::MatrixXd from_free;  // all unknowns from the free ones
 };
 
-bool entries_of(const FieldEquations& equations, std::vector<Entry>& out, Diagnostics& diagnostics) {
-  const FieldSystem& s = equations.system();
-  const Expr density = s.expanded(s.density);
-  ExprMap rest;
-  for (const Expr& jet : s.jets_in(density)) rest[jet] = s.context->number(0);
-  const auto place = [&](std::size_t field) {
-    return static_cast<std::size_t>(std::find(equations.varied.begin(), equations.varied.end(), field) -
-                                    equations.varied.begin());
-  };
-  for (const Expr& one : s.jets_in(density))
-    for (const Expr& two : s.jets_in(density)) {
-      const FieldJet a = *s.jet_of(one), b = *s.jet_of(two);
-      const Expr value = substitute(differentiate(differentiate(density, one), two), rest);
-      if (value.is_zero() || s.fields[a.field].given || s.fields[b.field].given) continue;
-      if (a.time != b.time)
-        return refuse_modes_of(equations, diagnostics, "Its density has gyroscopic terms, velocities times fields.");
-      if (s.context->depends_on_time(value.id()))
-        return refuse_modes_of(equations, diagnostics, "Its coefficients change in time.");
-      out.push_back({place(a.field), place(b.field), a.space[0], b.space[0], a.time == 1, value});
+class ModeProblem {
+ public:
+  ModeProblem(const FieldEquations& equations, const DensityEntries& entries, Diagnostics& diagnostics)
+      : equations_(equations), s_(equations.system()), entries_(entries), diagnostics_(diagnostics) {
+    for (const Parameter& p : equations.model->parameters) values_[p.symbol] = p.si_value;
+    if (equations.bodies)
+      for (const Parameter& p : equations.bodies->system->parameters) values_[p.symbol] = p.si_value;
+    lay_out_unknowns();
+  }
+
+  std::optional<SmallMotions> assemble() {
+    mass_ = gyroscopic_ = stiffness_ = Eigen::MatrixXd::Zero(size_, size_);
+    add_density();
+    if (equations_.bodies && !add_bodies()) return std::nullopt;
+    if (!hold()) return std::nullopt;
+    SmallMotions out;
+    out.from_free = free_;
+    out.mass = symmetric_part(quadratic_form(free_, mass_));
+    out.stiffness = symmetric_part(quadratic_form(free_, stiffness_));
+    out.gyroscopic = quadratic_form(free_, gyroscopic_);
+    return out;
+  }
+
+  std::vector<double> places() const {
+    constexpr int shown = 20;
+    std::vector<double> out;
+    const std::vector<double>& b = mesh_.borders;
+    for (int k = 0; k <= shown; ++k) out.push_back(b.front() + (b.back() - b.front()) * k / shown);
+    return out;
+  }
+  FieldModes::Shape shape(Eigen::VectorXd c) const {
+    FieldModes::Shape out;
+    double largest = 0;
+    for (const std::vector<double>& field : values_of(c))
+      for (const double v : field)
+        if (std::abs(v) > std::abs(largest)) largest = v;
+    if (largest == 0) largest = c.cwiseAbs().maxCoeff();
+    if (largest != 0) c /= largest;
+    out.fields = values_of(c);
+    for (const Eigen::Index i : body_unknowns_) out.coordinates.push_back(c(i));
+    return out;
+  }
+
+ private:
+  void lay_out_unknowns() {
+    std::vector<bool> smooth(equations_.varied.size(), false);
+    for (const Entry& e : entries_.list) smooth[e.a] = smooth[e.a] || e.da == 2;
+    mesh_.borders = element_borders(equations_, 1);
+    const std::size_t elements = mesh_.borders.size() - 1;
+    const std::size_t unknowns = 160;  // so that all is done in a fraction of a second
+    mesh_.degree = static_cast<int>(std::clamp<std::size_t>(unknowns / (elements * equations_.varied.size()), 10, 40));
+    mesh_.points = 2 * mesh_.degree;
+    mesh_.periodic = s_.periodic;
+    for (std::size_t a = 0; a < equations_.varied.size(); ++a) {
+      spaces_.emplace_back(mesh_, smooth[a] ? SpaceKind::Smooth : SpaceKind::Continuous);
+      first_.push_back(size_);
+      size_ += static_cast<Eigen::Index>(spaces_.back().size());
     }
+    if (!equations_.bodies) return;
+    for (std::size_t i = 0; i < equations_.bodies->system->coordinates.size(); ++i) {
+      const Eigen::Index at = unknown_of_place(i);
+      body_unknowns_.push_back(at >= 0 ? at : size_++);
+    }
+  }
+  Eigen::Index unknown_of_place(std::size_t coordinate) const {
+    for (const PlaceCoordinate& p : equations_.model->attached) {
+      if (p.coordinate != coordinate) continue;
+      const std::size_t a = varied_index(p.jet.field), border = border_at(number(p.place));
+      return first_[a] + static_cast<Eigen::Index>(p.jet.space[0] == 0 ? spaces_[a].value_at_border(border)
+                                                                       : spaces_[a].slope_at_border(border));
+    }
+    return -1;
+  }
+  std::size_t varied_index(std::size_t field) const {
+    std::size_t a = 0;
+    while (equations_.varied[a] != field) ++a;
+    return a;
+  }
+  std::size_t border_at(double x) const {
+    std::size_t best = 0;
+    for (std::size_t b = 0; b < mesh_.borders.size(); ++b)
+      if (std::abs(mesh_.borders[b] - x) < std::abs(mesh_.borders[best] - x)) best = b;
+    return best;
+  }
+  double number(Expr e) const { return evaluate(s_.expanded(e), values_); }
+
+  void add_density() {
+    std::vector<Expr> roots;
+    for (const Entry& e : entries_.list) roots.push_back(e.value);
+    const RepeatedEvaluation at(roots);
+    const std::vector<ElementSpace::Point>& points = spaces_.front().points();
+    const std::size_t in_element = points.size() / (mesh_.borders.size() - 1);
+    for (std::size_t q = 0; q < points.size(); ++q) {
+      const double a = mesh_.borders[q / in_element], b = mesh_.borders[q / in_element + 1];
+      const double inside = std::clamp(points[q].x, a + 1e-13 * (b - a), b - 1e-13 * (b - a));
+      const std::vector<double> c =
+          at([&](Expr symbol) { return symbol == s_.space.front().symbol ? inside : values_.at(symbol); });
+      for (std::size_t i = 0; i < entries_.list.size(); ++i) add_entry(entries_.list[i], points[q].weight * c[i], q);
+    }
+  }
+  /// d/dt ∂ℒ/∂v − ∂ℒ/∂u: mass from v v, stiffness from u u, and from v u a force sideways.
+  void add_entry(const Entry& e, double weight, std::size_t q) {
+    for (const ElementSpace::Part& r : spaces_[e.a].points()[q].parts)
+      for (const ElementSpace::Part& j : spaces_[e.b].points()[q].parts) {
+        const Eigen::Index row = first_[e.a] + static_cast<Eigen::Index>(r.dof),
+                           column = first_[e.b] + static_cast<Eigen::Index>(j.dof);
+        const double v = weight * r.of[e.da] * j.of[e.db];
+        if (e.ta == 1 && e.tb == 1) mass_(row, column) += v;
+        if (e.ta == 0 && e.tb == 0) stiffness_(row, column) -= v;
+        if (e.ta == 1 && e.tb == 0) gyroscopic_(row, column) += v;
+        if (e.ta == 0 && e.tb == 1) gyroscopic_(row, column) -= v;
+      }
+  }
+
+  // -------------------------------------------------------------------------------------------------------- bodies
+
+  /// Rows of the bodies without friction, in q, q', q''.
+  std::vector<Expr> body_rows() const {
+    const EquationsOfMotion& bodies = *equations_.bodies;
+    std::vector<Expr> out;
+    for (std::size_t i = 0; i < bodies.residual.size(); ++i)
+      out.push_back(expand_time_derivatives(bodies.residual[i] - bodies.dissipative_terms[i]));
+    return out;
+  }
+  bool add_bodies() {
+    const MechanicalSystem& system = *equations_.bodies->system;
+    const std::vector<Expr> rows = body_rows();
+    const std::size_t n = rows.size();
+    Bindings at = values_;
+    at[s_.context->time()] = 0;
+    for (const Coordinate& c : system.coordinates) at[c.q] = at[c.velocity] = at[c.acceleration] = 0;
+    for (const StartValue& v : equations_.body_start)
+      if (v.order == 0 && v.coordinate < n) at[system.coordinates[v.coordinate].q] = number(v.value);
+    std::vector<Expr> slopes[3];
+    bool linear = true;
+    for (const Expr& row : rows)
+      for (int order = 0; order < 3; ++order)
+        for (const Coordinate& c : system.coordinates) {
+          const Expr slope = differentiate(row, order == 0 ? c.q : order == 1 ? c.velocity : c.acceleration);
+          if (s_.context->depends_on_time(slope.id()) && !holds_coordinates(slope))
+            return refuse_modes_of(equations_, diagnostics_, "The coefficients of its bodies change in time.");
+          linear = linear && !holds_coordinates(slope);
+          slopes[order].push_back(slope);
+        }
+    if (!linear && !find_rest(rows, slopes[0], at)) return false;
+    return add_linearized(slopes, at);
+  }
+  bool holds_coordinates(Expr e) const {
+    const Expr roots[] = {e};
+    for (const Expr& symbol : symbols_of(roots))
+      if (symbol.role() == Role::Coordinate) return true;
+    return false;
+  }
+  bool add_linearized(const std::vector<Expr> (&slopes)[3], const Bindings& at) {
+    const std::size_t n = body_unknowns_.size();
+    double sideways = 0, size = 0, skew = 0, size_of_k = 0;
+    std::vector<double> k(n * n), c(n * n);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) {
+        const Eigen::Index row = body_unknowns_[i], column = body_unknowns_[j];
+        k[i * n + j] = evaluate(slopes[0][i * n + j], at), c[i * n + j] = evaluate(slopes[1][i * n + j], at);
+        stiffness_(row, column) += k[i * n + j];
+        gyroscopic_(row, column) += c[i * n + j];
+        mass_(row, column) += evaluate(slopes[2][i * n + j], at);
+      }
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) {
+        size = std::max(size, std::abs(c[i * n + j])), size_of_k = std::max(size_of_k, std::abs(k[i * n + j]));
+        sideways = std::max(sideways, std::abs(c[i * n + j] + c[j * n + i]));
+        skew = std::max(skew, std::abs(k[i * n + j] - k[j * n + i]));
+      }
+    if (sideways > 1e-12 * size)
+      return refuse_modes_of(equations_, diagnostics_,
+                             "A force on its bodies grows with their velocity: motions are damped or driven.");
+    if (skew > 1e-12 * size_of_k)
+      return refuse_modes_of(equations_, diagnostics_, "The forces on its bodies have no potential.");
+    return true;
+  }
+
+  /// Newton's method from the start of the model for the rest that the bodies and the field have together.
+  bool find_rest(const std::vector<Expr>& rows, const std::vector<Expr>& slopes, Bindings& at) {
+    const MechanicalSystem& system = *equations_.bodies->system;
+    const std::size_t n = rows.size();
+    const Eigen::MatrixXd field = stiffness_;
+    const Eigen::VectorXd load = static_load();
+    Eigen::VectorXd z = Eigen::VectorXd::Zero(size_);
+    for (std::size_t i = 0; i < n; ++i) z(body_unknowns_[i]) = at.at(system.coordinates[i].q);
+    if (!hold()) return false;
+    constexpr int most_rounds = 60;
+    for (int round = 0; round < most_rounds; ++round) {
+      Eigen::VectorXd force = -load;
+      Eigen::MatrixXd k = field;
+      for (Eigen::Index i = 0; i < size_; ++i)
+        for (Eigen::Index j = 0; j < size_; ++j) force(i) += field(i, j) * z(j);
+      for (std::size_t i = 0; i < n; ++i) {
+        force(body_unknowns_[i]) += evaluate(rows[i], at);
+        for (std::size_t j = 0; j < n; ++j) k(body_unknowns_[i], body_unknowns_[j]) += evaluate(slopes[i * n + j], at);
+      }
+      const Eigen::MatrixXd kk = quadratic_form(free_, k);
+      const Eigen::VectorXd right = transposed_product(free_, -force);
+      const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(kk);
+      const Eigen::VectorXd step = product(free_, solver.solve(right));
+      z += step;
+      for (std::size_t i = 0; i < n; ++i) at[system.coordinates[i].q] = z(body_unknowns_[i]);
+      if (!z.allFinite()) break;
+      if (step.cwiseAbs().maxCoeff() <= 1e-13 * std::max(z.cwiseAbs().maxCoeff(), 1e-300)) return true;
+    }
+    return refuse_modes_of(equations_, diagnostics_, "No rest of its bodies was found near the start of the model.");
+  }
+  /// ∂ℒ at rest and force densities, on each unknown of the fields.
+  Eigen::VectorXd static_load() const {
+    Eigen::VectorXd out = Eigen::VectorXd::Zero(size_);
+    const Expr density = s_.expanded(s_.density);
+    struct Load {
+      std::size_t a;
+      int derivative;
+      Expr value;
+    };
+    std::vector<Load> loads;
+    std::vector<Expr> roots;
+    ExprMap rest;
+    for (const Expr& jet : s_.jets_in(density)) rest[jet] = s_.context->number(0);
+    const auto add = [&](std::size_t field, int derivative, Expr e) {
+      const Expr value = s_.expanded(substitute(e, rest));
+      if (value.is_zero() || s_.context->depends_on_time(value.id())) return;
+      loads.push_back({varied_index(field), derivative, value});
+      roots.push_back(value);
+    };
+    for (const Expr& one : s_.jets_in(density))
+      if (const FieldJet jet = *s_.jet_of(one); jet.time == 0 && !s_.fields[jet.field].given)
+        add(jet.field, jet.space[0], differentiate(density, one));
+    for (const std::size_t f : equations_.varied)
+      if (s_.forces[f] && s_.jets_in(s_.forces[f]).empty()) add(f, 0, s_.forces[f]);
+    const RepeatedEvaluation at(roots);
+    for (std::size_t q = 0; q < spaces_.front().points().size(); ++q) {
+      const double x = spaces_.front().points()[q].x;
+      const auto c = at([&](Expr symbol) { return symbol == s_.space.front().symbol ? x : values_.at(symbol); });
+      for (std::size_t i = 0; i < loads.size(); ++i)
+        for (const ElementSpace::Part& part : spaces_[loads[i].a].points()[q].parts)
+          out(first_[loads[i].a] + static_cast<Eigen::Index>(part.dof)) +=
+              spaces_.front().points()[q].weight * c[i] * part.of[loads[i].derivative];
+    }
+    return out;
+  }
+
+  // ---------------------------------------------------------------------------------------------------------- ends
+
+  /// What ends hold and constraints tie: an orthonormal basis of what is left free.
+  bool hold() {
+    std::vector<bool> held(static_cast<std::size_t>(size_), false);
+    for (const BoundaryCondition& b : s_.boundary) {
+      const std::size_t a = varied_index(b.jet.field);
+      const bool smooth = spaces_[a].kind() == SpaceKind::Smooth;
+      if (b.jet.order() == 1 && !smooth) continue;
+      const std::size_t border = b.side == Side::Right ? mesh_.borders.size() - 1 : 0;
+      const std::size_t dof =
+          b.jet.order() == 0 ? spaces_[a].value_at_border(border) : spaces_[a].slope_at_border(border);
+      held[static_cast<std::size_t>(first_[a]) + dof] = true;
+    }
+    std::vector<Eigen::Index> kept;
+    for (std::size_t i = 0; i < held.size(); ++i)
+      if (!held[i]) kept.push_back(static_cast<Eigen::Index>(i));
+    free_ = Eigen::MatrixXd::Zero(size_, static_cast<Eigen::Index>(kept.size()));
+    for (std::size_t j = 0; j < kept.size(); ++j) free_(kept[j], static_cast<Eigen::Index>(j)) = 1;
+    return !equations_.bodies || equations_.bodies->system->constraints.empty() || tie();
+  }
+  /// Constraints that are linear: A z = 0.
+  bool tie() {
+    const EquationsOfMotion& bodies = *equations_.bodies;
+    const ExprMatrix a = constraint_matrix(bodies);
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(a.rows), size_);
+    for (std::size_t r = 0; r < a.rows; ++r)
+      for (std::size_t c = 0; c < a.columns; ++c) {
+        const Expr e = expand_time_derivatives(a.at(r, c));
+        if (holds_coordinates(e) || s_.context->depends_on_time(e.id()))
+          return refuse_modes_of(equations_, diagnostics_, "A constraint of its bodies is not linear.");
+        rows(static_cast<Eigen::Index>(r), body_unknowns_[c]) = evaluate(e, values_);
+      }
+    const Eigen::MatrixXd on_free = product(rows, free_);
+    const Eigen::MatrixXd transposed = on_free.transpose();
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(transposed);
+    const Eigen::MatrixXd whole = columns_of_q(qr, free_.cols());
+    free_ = product(free_, whole.rightCols(free_.cols() - transposed.cols()));
+    return true;
+  }
+
+  std::vector<std::vector<double>> values_of(const Eigen::VectorXd& c) const {
+    std::vector<std::vector<double>> out(spaces_.size());
+    for (std::size_t a = 0; a < spaces_.size(); ++a)
+      for (const double x : places()) {
+        double sum = 0;
+        for (const ElementSpace::Part& part : spaces_[a].at(x, x >= mesh_.borders.back()))
+          sum += part.of[0] * c(first_[a] + static_cast<Eigen::Index>(part.dof));
+        out[a].push_back(sum);
+      }
+    return out;
+  }
+
+  const FieldEquations& equations_;
+  const FieldSystem& s_;
+  const DensityEntries& entries_;
+  Diagnostics& diagnostics_;
+  Bindings values_;
+  ElementMesh mesh_;
+  std::vector<ElementSpace> spaces_;
+  std::vector<Eigen::Index> first_, body_unknowns_;
+  Eigen::Index size_ = 0;
+  Eigen::MatrixXd mass_, gyroscopic_, stiffness_, free_;
+};
+
+/// M c = μ (K + σ M) c, μ = 1/(ω² + σ): the lowest frequencies are the largest μ, which keep their digits.
+bool solve_conservative(const SmallMotions& motions, std::size_t count, std::vector<double>& out,
+                        std::vector<Eigen::VectorXd>& shapes) {
+  const Eigen::MatrixXd &kk = motions.stiffness, &mm = motions.mass;
+  double shift = kk.trace() / static_cast<double>(kk.rows());
+  for (int pass = 0; pass < 2; ++pass) {  // the second with σ of the size of what is looked for
+    const Eigen::LLT<Eigen::MatrixXd> factor(symmetric_part(kk + shift * mm));
+    if (factor.info() != Eigen::Success || !(shift > 0)) return false;
+    const Eigen::MatrixXd inverse = factor.matrixL().solve(Eigen::MatrixXd::Identity(mm.rows(), mm.cols()));
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+    solver.compute(symmetric_part(product_transposed(product(inverse, mm), inverse)), Eigen::ComputeEigenvectors);
+    const Eigen::VectorXd& mu = solver.eigenvalues();  // ascending
+    out.clear(), shapes.clear();
+    const Eigen::MatrixXd vectors = product(motions.from_free, transposed_product(inverse, solver.eigenvectors()));
+    for (Eigen::Index i = mu.size(); i-- > 0 && out.size() < count;) {
+      const double square = 1 / mu(i) - shift, rounding = 1e-12 / mu(i);
+      out.push_back(square > rounding ? std::sqrt(square) : std::abs(square) <= rounding ? 0 : -std::sqrt(-square));
+      shapes.push_back(vectors.col(i));
+    }
+    if (!out.empty() && out.back() > 0) shift = out.back() * out.back();
+  }
+  return true;
+}
+
+/// (μ² + iμ Ĝ − M̂) y = 0 with μ = 1/ω, K = L Lᵀ, c = L⁻ᵀ y: with N² = M̂ the Hermitian matrix ((−iĜ, N), (N, 0)) has the
+/// eigenvalues μ. As a real symmetric matrix of twice the size it has each of them twice.
+bool solve_gyroscopic(const SmallMotions& motions, std::size_t count, std::vector<double>& out) {
+  const Eigen::LLT<Eigen::MatrixXd> factor(motions.stiffness);
+  if (factor.info() != Eigen::Success) return false;
+  const Eigen::Index n = motions.mass.rows();
+  const Eigen::MatrixXd inverse = factor.matrixL().solve(Eigen::MatrixXd::Identity(n, n));
+  const Eigen::MatrixXd m = symmetric_part(product_transposed(product(inverse, motions.mass), inverse));
+  const Eigen::MatrixXd g = product_transposed(product(inverse, motions.gyroscopic), inverse);
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> of_mass;
+  of_mass.compute(m, Eigen::ComputeEigenvectors);
+  Eigen::MatrixXd scaled = of_mass.eigenvectors();
+  for (Eigen::Index j = 0; j < n; ++j) scaled.col(j) *= std::sqrt(std::max(of_mass.eigenvalues()(j), 0.0));
+  const Eigen::MatrixXd root = product_transposed(scaled, of_mass.eigenvectors());
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(4 * n, 4 * n);
+  // H = S + i A with S = ((0, N), (N, 0)), A = ((−Ĝ, 0), (0, 0)): ((S, −A), (A, S))
+  for (const Eigen::Index at : {Eigen::Index{0}, 2 * n}) {
+    whole.block(at, at + n, n, n) = root;
+    whole.block(at + n, at, n, n) = root;
+  }
+  whole.block(0, 2 * n, n, n) = g;
+  whole.block(2 * n, 0, n, n) = -g;
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  solver.compute(symmetric_part(whole), Eigen::EigenvaluesOnly);
+  out.clear();
+  for (Eigen::Index i = 4 * n - 1; i > 0 && out.size() < count; i -= 2)
+    if (solver.eigenvalues()(i) > 0) out.push_back(1 / solver.eigenvalues()(i));
   return true;
 }
 
 }  // namespace
 
-std::vector<double> field_frequencies(const FieldEquations& equations, std::size_t count, Diagnostics& diagnostics) {
-  std::vector<Entry> entries;
-  if (!has_modes_at_rest(equations, diagnostics) || !entries_of(equations, entries, diagnostics)) return {};
+FieldModes field_modes(const FieldEquations& equations, std::size_t count, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
-  Bindings values;
-  for (const Parameter& p : equations.model->parameters) values[p.symbol] = p.si_value;
-  const double left = evaluate(s.expanded(s.space.front().from), values),
-               right = evaluate(s.expanded(s.space.front().to), values);
-  const double scale = 2 / (right - left);
-  bool bends = false;
-  for (const Entry& e : entries) bends = bends || e.da == 2;
-  const std::size_t depth = bends ? 2 : 1, n = degree + 1, size = n * equations.varied.size();
-  const auto dim = static_cast<Eigen::Index>(size);
-  Eigen::MatrixXd k = Eigen::MatrixXd::Zero(dim, dim), m = k;
-  const Lobatto rule(2 * degree);
-  std::vector<Expr> roots;
-  for (const Entry& e : entries) roots.push_back(e.value);
-  const RepeatedEvaluation at(roots);
-  for (std::size_t q = 0; q < rule.x.size(); ++q) {
-    const double x = left + (rule.x[q] + 1) / scale;
-    const std::vector<double> c =
-        at([&](Expr symbol) { return symbol == s.space.front().symbol ? x : values.at(symbol); });
-    const BasisValues p(rule.x[q], depth);
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-      const Entry& e = entries[i];
-      const double weight = rule.w[q] / scale * c[i] * std::pow(scale, e.da + e.db);
-      Eigen::MatrixXd& to = e.kinetic ? m : k;
-      for (std::size_t r = 0; r < n; ++r)
-        for (std::size_t j = 0; j < n; ++j)
-          to(static_cast<Eigen::Index>(e.a * n + r), static_cast<Eigen::Index>(e.b * n + j)) +=
-              (e.kinetic ? weight : -weight) * p.of[e.da][r] * p.of[e.db][j];
-    }
+  FieldModes out;
+  if (s.space.size() != 1 || !s.space.front().from) {
+    refuse_modes_of(equations, diagnostics, "It has several space variables, or no domain.");
+    return out;
   }
-  // What the ends hold: rows of a matrix C, C c = 0.
-  std::vector<std::vector<double>> held;
-  const auto hold = [&](std::size_t a, int derivative, double end, double other) {
-    held.emplace_back(size, 0.0);
-    const BasisValues here(end, depth), there(-end, depth);
-    for (std::size_t r = 0; r < n; ++r)
-      held.back()[a * n + r] = here.of[derivative][r] - other * there.of[derivative][r];
-  };
-  for (std::size_t a = 0; a < equations.varied.size(); ++a) {
-    if (s.periodic) hold(a, 0, 1, 1);
-    if (s.periodic && bends) hold(a, 1, 1, 1);
-    for (const BoundaryCondition& b : s.boundary)
-      if (equations.varied[a] == b.jet.field && (b.jet.order() == 0 || bends))
-        hold(a, b.jet.order(), b.side == BoundaryCondition::Side::Right ? 1 : -1, 0);
+  DensityEntries entries;
+  if (!entries_of(equations, entries, diagnostics) || !has_modes_at_rest(equations, entries.linear, diagnostics))
+    return out;
+  ModeProblem problem(equations, entries, diagnostics);
+  const auto motions = problem.assemble();
+  if (!motions) return out;
+  const bool sideways = motions->gyroscopic.cwiseAbs().maxCoeff() > 0;
+  std::vector<Eigen::VectorXd> shapes;
+  if (sideways ? !solve_gyroscopic(*motions, count, out.frequencies)
+               : !solve_conservative(*motions, count, out.frequencies, shapes)) {
+    refuse_modes_of(equations, diagnostics, "Its energy is not positive.");
+    return {};
   }
-  Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(dim, dim);
-  if (!held.empty()) {
-    Eigen::MatrixXd c(dim, static_cast<Eigen::Index>(held.size()));
-    for (std::size_t j = 0; j < held.size(); ++j) {
-      double norm = 0;
-      for (const double v : held[j]) norm += v * v;
-      for (std::size_t i = 0; i < size; ++i)
-        c(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = held[j][i] / std::sqrt(norm);
-    }
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(c);
-    const Eigen::MatrixXd whole = columns_of_q(qr, dim);
-    basis = whole.rightCols(dim - c.cols());
-  }
-  const Eigen::MatrixXd kk = symmetric_part(quadratic_form(basis, k)), mm = symmetric_part(quadratic_form(basis, m));
-  // M c = μ (K + σ M) c, μ = 1/(ω² + σ): the lowest frequencies are the largest μ, which keep their digits.
-  double shift = kk.trace() / static_cast<double>(kk.rows());
-  std::vector<double> out;
-  for (int pass = 0; pass < 2; ++pass) {  // the second with σ of the size of what is looked for
-    const Eigen::LLT<Eigen::MatrixXd> factor(symmetric_part(kk + shift * mm));
-    if (factor.info() != Eigen::Success || !(shift > 0))
-      return refuse_modes_of(equations, diagnostics, "Its energy is not positive."), std::vector<double>{};
-    const Eigen::MatrixXd inverse = factor.matrixL().solve(Eigen::MatrixXd::Identity(mm.rows(), mm.cols()));
-    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-    solver.compute(symmetric_part(product_transposed(product(inverse, mm), inverse)), Eigen::EigenvaluesOnly);
-    const Eigen::VectorXd& mu = solver.eigenvalues();  // ascending
-    out.clear();
-    for (Eigen::Index i = mu.size(); i-- > 0 && out.size() < count;) {
-      const double square = 1 / mu(i) - shift, rounding = 1e-12 / mu(i);
-      out.push_back(square > rounding ? std::sqrt(square) : std::abs(square) <= rounding ? 0 : -std::sqrt(-square));
-    }
-    if (!out.empty() && out.back() > 0) shift = out.back() * out.back();
-  }
+  out.places = problem.places();
+  for (Eigen::VectorXd& c : shapes) out.shapes.push_back(problem.shape(std::move(c)));
   return out;
+}
+
+std::vector<double> field_frequencies(const FieldEquations& equations, std::size_t count, Diagnostics& diagnostics) {
+  return field_modes(equations, count, diagnostics).frequencies;
 }
 
 }  // namespace maupertuis

@@ -1,4 +1,5 @@
 #include <maupertuis/contact_mode.hpp>
+#include <maupertuis/coupled_fields.hpp>
 #include <maupertuis/field_verification.hpp>
 #include <maupertuis/higher_order.hpp>
 #include <maupertuis/require.hpp>
@@ -130,7 +131,9 @@ const FieldEquations* Study::field_equations() {
     fields_derived_ = true;
     const InterruptScope scope = interruptible();
     field_equations_ = maupertuis::field_equations(model_->fields, diagnostics_);
-    if (field_equations_) field_certificate_ = certify(*field_equations_);
+    if (field_equations_)
+      attach_bodies(*field_equations_, model_, diagnostics_);
+    if (field_equations_ && !wrong()) field_certificate_ = certify(*field_equations_);
     if (field_certificate_)
       for (const CertificateCheck& check : field_certificate_->checks) report(check);
   }

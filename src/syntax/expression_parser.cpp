@@ -158,7 +158,9 @@ ExpressionParser::Node ExpressionParser::postfix() {
       node->name_span = member.span;
     } else if (token.is("'")) {
       next();
-      const bool named = (node->kind == Kind::Name || node->kind == Kind::Member) && !node->bracketed;
+      const bool at_place =  // u(l)'
+          node->kind == Kind::Call && context_.declarations.kind(node->text) == Declarations::Kind::Field;
+      const bool named = (node->kind == Kind::Name || node->kind == Kind::Member || at_place) && !node->bracketed;
       if (!named && !node->bracketed && node->kind != Kind::TimeDerivative && node->kind != Kind::Vector) {
         fail("E0125", token.span,
              fmt::format("`{}` has no time derivative that could be written with '", text_of(*node)),

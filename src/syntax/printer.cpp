@@ -113,7 +113,7 @@ class Printer {
       case Kind::Member:
         return print(*e.arguments[0], Level::Postfix), sign("."), name(e.text), primes(e.primes);
       case Kind::Call:
-        return call(e, nullptr);
+        return call(e, nullptr), primes(e.primes);
       case Kind::Vector:
         return list(e.arguments);
       case Kind::Binary:

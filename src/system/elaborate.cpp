@@ -210,8 +210,8 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& written, const SourceTe
   if (e.fields) {
     e.fields->parameters = e.system().parameters;
     e.model.fields = e.fields;
-  } else
-    expand_definitions(e.model);
+  }
+  if (!e.fields || e.fields->coupled) expand_definitions(e.model);
   return std::move(e.model);
 }
 

@@ -3,6 +3,7 @@
 #include <maupertuis/print.hpp>
 
 #include "system/elaboration.hpp"
+#include "system/field_places.hpp"
 #include "system/unit_expression.hpp"
 
 #include <fmt/format.h>
@@ -188,25 +189,6 @@ void check_reserved(Elaboration& e) {
         "E0290", d.span,
         fmt::format("`{}` is a derivative of the field {}", d.name, system_of(e).fields[jet->field].name),
         "The name of a field with an underscore and variables is its derivative.", "Give it another name.");
-  }
-}
-
-/// E0505 where coordinates or bodies stand beside fields.
-void refuse_mechanics(Elaboration& e) {
-  for (const syntax::Statement& s : e.tree.statements) {
-    const bool allowed =
-        std::get_if<syntax::SystemStatement>(&s.body) || std::get_if<syntax::SourceStatement>(&s.body) ||
-        std::get_if<syntax::DimensionlessStatement>(&s.body) || std::get_if<syntax::ParamStatement>(&s.body) ||
-        std::get_if<syntax::LetStatement>(&s.body) || std::get_if<syntax::InputStatement>(&s.body) ||
-        std::get_if<syntax::StartStatement>(&s.body) || std::get_if<syntax::RunStatement>(&s.body) ||
-        std::get_if<syntax::OutputStatement>(&s.body) || std::get_if<syntax::ExpectStatement>(&s.body) ||
-        std::get_if<syntax::SweepStatement>(&s.body) || std::get_if<syntax::FieldStatement>(&s.body);
-    if (allowed) continue;
-    e.diagnostics.error(
-        "E0505", s.span, "not supported yet: fields together with coordinates and bodies",
-        "A model has fields, or coordinates and bodies; what couples the two is carried out by a later version.",
-        "Leave this statement out.");
-    return;
   }
 }
 
@@ -422,25 +404,23 @@ void force_density(Elaboration& e, const syntax::FieldForce& s, const FieldJet& 
   force = force ? force + value : value;
 }
 
-/// force u(l) = F at an end of the domain
-void force_at_end(Elaboration& e, const syntax::FieldForce& s, const FieldJet& jet, Span span) {
+/// force u(l) = F at an end of the domain; beside bodies, or inside, a force on a coordinate
+void force_at_place(Elaboration& e, const syntax::FieldForce& s, const FieldJet& jet, Span span) {
   FieldSystem& system = system_of(e);
   const SpaceVariable& x = system.space.front();
-  Dimension dimension = e.dimension(dimensions::energy());
-  dimension = dimension / system.dimension_of(jet);
-  const Expr value = boundary_value(e, *s.value, dimension, "a force at an end");
   const Value place = constant_of(e, *s.on->arguments.front(), x.dimension, "a place");
-  if (!value || place.poisoned || !x.from) return;
-  const double at = constant_value(e, place.scalar()).value_or(0), a = *constant_value(e, x.from),
-               b = *constant_value(e, x.to);
+  if (place.poisoned) return;
+  const double at = constant_value(e, place.scalar()).value_or(0);
+  const double a = x.from ? *constant_value(e, x.from) : 0, b = x.from ? *constant_value(e, x.to) : 0;
   const double near = 1e-12 * (b - a);
-  if (std::abs(at - a) > near && std::abs(at - b) > near) {
-    e.diagnostics.error("E0288", s.on->span, "not supported yet: a force at a place inside",
-                        "Forces at the ends of the domain enter the natural conditions there.",
-                        "Write a force density, or a force at an end.");
-    return;
+  const bool at_end = x.from && !system.periodic && (std::abs(at - a) <= near || std::abs(at - b) <= near);
+  if (e.fields->coupled || !at_end) {
+    e.fields->coupled = true;
+    return force_on_place(e, s, jet, span);
   }
-  system.end_forces.push_back({std::abs(at - a) <= near ? Side::Left : Side::Right, jet, value, span});
+  const Dimension dimension = e.dimension(dimensions::energy()) / system.dimension_of(jet);
+  const Expr value = boundary_value(e, *s.value, dimension, "a force at an end");
+  if (value) system.end_forces.push_back({std::abs(at - a) <= near ? Side::Left : Side::Right, jet, value, span});
 }
 
 void forces(Elaboration& e) {
@@ -450,7 +430,7 @@ void forces(Elaboration& e) {
     const bool place = s.on->kind == Expression::Kind::Call;
     if (jet && jet->time == 0 && !place && jet->order() == 0) return force_density(e, s, *jet);
     if (jet && jet->time == 0 && place && jet->order() <= 1 && system_of(e).space.size() == 1)
-      return force_at_end(e, s, *jet, span);
+      return force_at_place(e, s, *jet, span);
     e.diagnostics.error("E0288", s.on->span, "a force acts on a field or at its end",
                         "The virtual work of a force density is f δu in each piece of space, of an end force F δu.",
                         "Write `force density u = …` or `force u(l) = …`.");
@@ -508,7 +488,8 @@ bool declare_fields(Elaboration& e) {
     if (d.kind == Kind::Space && !d.done) d.done = true, d.value = Value::poison();
   system_of(e).density_dimension = density_dimension(e);
   check_reserved(e);
-  refuse_mechanics(e);
+  e.fields->coupled = couples_mechanics(e);
+  refuse_beside_fields(e);
   name_waves(e);
   return true;
 }
@@ -521,12 +502,21 @@ void elaborate_fields(Elaboration& e) {
   forces(e);
   for (const Definition& d : e.system().definitions)
     if (d.symbol) system_of(e).definitions[d.symbol] = d.value;
+  check_places(e);
+  e.fields->complete = true;
 }
 
 bool start_of_field(Elaboration& e, const syntax::StartStatement::Item& item) {
   if (!e.fields) return false;
   const auto jet = jet_named(e, *item.variable);
   if (!jet) return false;
+  if (item.variable->kind == Expression::Kind::Call) {
+    e.diagnostics.error("E0223", item.variable->span,
+                        fmt::format("`{}` cannot be chosen", e.texts.slice(item.variable->span)),
+                        "A start gives the field and its velocity everywhere, and so at each place.",
+                        fmt::format("Write `start {} = …` as a formula of space.", item.variable->text));
+    return true;
+  }
   const Dimension dimension = system_of(e).dimension_of(*jet);
   Place place;
   place.inline_constants = true;
@@ -597,6 +587,12 @@ Value value_at_place(Elaboration& e, const syntax::Expression& x) {
     Place quiet;
     quiet.inline_constants = true;
     const Value read = evaluate_formula(e, *x.arguments[i], quiet);
+    if (!read.poisoned && !read.is_vector && read.order >= 0) {
+      e.diagnostics.error("E0289", x.arguments[i]->span, "this place moves",
+                          "Places are constant: a field is asked for, and held, at one place for the whole motion.",
+                          "Write a number or parameters.");
+      return Value::poison();
+    }
     if (!read.poisoned && (read.is_vector || !constant_value(e, read.scalar()))) {
       e.diagnostics.error("E0289", x.arguments[i]->span, "this place is not known before the run",
                           fmt::format("`{}(…)` is the value of the field at a place, never a product.", x.text),
@@ -614,9 +610,11 @@ Value value_at_place(Elaboration& e, const syntax::Expression& x) {
     }
     out.place.push_back(v.scalar());
   }
-  // Its name as the model has it: ψ(1) of a complex field is written once for ψ_r(1) and ψ_i(1).
-  const std::string place(e.texts.slice({x.name_span.end, x.span.end, x.span.source}));
-  out.symbol = e.context.symbol(x.text + place, Role::Auxiliary);
+  if (e.fields->coupled && !e.fields->complete) return coordinate_at_place(e, x, *jet, out.place.front());
+  if (e.fields->coupled)
+    if (const auto q = attached_symbol(e, *jet, out.place.front()))
+      return Value::of(*q, system.dimension_of(*jet), jet->time);
+  out.symbol = e.context.symbol(name_of_place_value(e, x, *jet), Role::Coordinate, jet->time);
   const Expr symbol = out.symbol;
   const bool known = std::any_of(e.fields->places.begin(), e.fields->places.end(),
                                  [&](const PlaceValue& p) { return p.symbol == symbol; });

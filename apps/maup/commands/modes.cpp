@@ -295,14 +295,18 @@ ExitCode modes_of_fields(const ModesOptions& options, Study& study, Console& con
     if (!console.json()) console.print(relation + "\n");
     return finish(console, study, std::move(document));
   }
-  const std::vector<double> found = field_frequencies(*study.field_equations(), shown, study.diagnostics());
+  const FieldModes modes = field_modes(*study.field_equations(), shown, study.diagnostics());
+  const std::vector<double>& found = modes.frequencies;
   std::string text = found.empty() ? "" : "Frequencies of small motions about rest\n";
   document["frequencies"] = Json::array();
-  for (const double omega : found) {
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const double omega = found[i];
     document["frequencies"].push_back(omega);
-    text += omega < 0 ? fmt::format("  grows at the rate {:.12g} 1/s\n", -omega)
-                      : fmt::format("  {:.12g} rad/s  {:.12g} Hz\n", omega, omega / (2 * std::acos(-1.0)));
+    text += omega < 0 ? fmt::format("  grows at the rate {:.12g} 1/s", -omega)
+                      : fmt::format("  {:.12g} rad/s  {:.12g} Hz", omega, omega / (2 * std::acos(-1.0)));
+    text += shape_of_bodies(*study.field_equations(), modes, i) + "\n";
   }
+  document["shapes"] = shapes_json(*study.field_equations(), modes);
   if (!console.json()) console.print(text);
   return finish(console, study, std::move(document));
 }

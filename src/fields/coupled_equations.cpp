@@ -1,0 +1,346 @@
+#include <maupertuis/coupled_fields.hpp>
+#include <maupertuis/evaluate.hpp>
+#include <maupertuis/switches.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+/// Where fields and bodies meet. The variation of the action at a place is −R δu of the bodies and ±B of the density on
+/// each side; it vanishes for every δu there.
+namespace maupertuis {
+namespace {
+
+using Side = BoundaryCondition::Side;
+
+Bindings parameter_values(const FieldEquations& equations) {
+  Bindings out;
+  for (const Parameter& p : equations.model->parameters) out[p.symbol] = p.si_value;
+  return out;
+}
+
+bool has_derivative(const FieldSystem& s, std::size_t field, int order) {
+  for (const Expr& one : s.jets_in(s.density)) {
+    const FieldJet jet = *s.jet_of(one);
+    if (jet.field == field && jet.space[0] >= order) return true;
+  }
+  return false;
+}
+
+const PlaceCoordinate* attached_at(const FieldEquations& equations, const FieldJet& jet, Expr place) {
+  for (const PlaceCoordinate& p : equations.model->attached)
+    if (p.place == place && p.jet.field == jet.field && p.jet.space == jet.space) return &p;
+  return nullptr;
+}
+
+/// e as it is at a place, in the limit from one side.
+Expr limit_at(const FieldEquations& equations, Expr e, Expr place, int side, const std::vector<DensityBorder>& borders,
+              double at) {
+  const FieldSystem& s = equations.with_variations;
+  for (const DensityBorder& b : borders)
+    if (std::abs(b.at - at) <= 1e-12 * (1 + std::abs(at)) && side != 0)
+      e = on_side({&e, 1}, b.switching, b.rising == (side > 0)).front();
+  ExprMap map{{s.space.front().symbol, place}};
+  for (const Expr& symbol : s.jets_in(e)) map[symbol] = jet_at_place(equations, *s.jet_of(symbol), place, side);
+  return substitute(e, map);
+}
+
+Expr natural_of(const FieldEquations& equations, std::size_t field, bool moment) {
+  for (const NaturalCondition& n : equations.natural)
+    if (n.field == field && n.moment == moment) return n.value;
+  return equations.system().context->number(0);
+}
+
+/// What the density adds to the row of a place: ∓p at ends, the jump inside.
+Expr share_of_density(const FieldEquations& equations, Expr p, Expr place, std::optional<Side> end,
+                      const std::vector<DensityBorder>& borders, double at) {
+  if (end == Side::Right) return -limit_at(equations, p, place, 0, borders, at);
+  if (end == Side::Left) return limit_at(equations, p, place, 0, borders, at);
+  return limit_at(equations, p, place, 1, borders, at) - limit_at(equations, p, place, -1, borders, at);
+}
+
+void add_interface(FieldEquations& out, std::size_t field, bool moment, Expr place, std::optional<Side> end,
+                   std::optional<std::size_t> coordinate, const std::vector<DensityBorder>& borders, double at) {
+  const Expr p = natural_of(out, field, moment);
+  Expr value = share_of_density(out, p, place, end, borders, at);
+  if (coordinate) value = out.bodies->shown().balance()[*coordinate] + value;
+  out.interfaces.push_back({field, moment, place, end, coordinate, value});
+}
+
+}  // namespace
+
+std::string place_text(const FieldEquations& equations, Expr place) {
+  const FieldModel& model = *equations.model;
+  for (const PlaceCoordinate& p : model.attached)
+    if (p.place == place && equations.bodies) {
+      const std::string& name = equations.bodies->system->coordinates[p.coordinate].name;
+      const std::size_t open = name.find('(');
+      return name.substr(open + 1, name.size() - open - 2);
+    }
+  return to_plain(lay_out(place, equations.order));
+}
+
+Expr jet_at_place(const FieldEquations& equations, const FieldJet& jet, Expr place, int side) {
+  const FieldSystem& s = equations.with_variations;
+  if (const PlaceCoordinate* p = attached_at(equations, {jet.field, jet.space, 0}, place))
+    return s.context->symbol(equations.bodies->system->coordinates[p->coordinate].name, Role::Coordinate, jet.time);
+  const std::size_t varied = jet.field < equations.system().fields.size()
+                                 ? jet.field
+                                 : equations.varied[jet.field - equations.system().fields.size()];
+  const bool continuous = jet.space[0] == 0 || (jet.space[0] == 1 && has_derivative(s, varied, 2));
+  const char* mark = side == 0 || continuous ? "" : side > 0 ? "+" : "-";
+  const std::string name =
+      fmt::format("{}({}{})", s.jet_name({jet.field, jet.space, 0}), place_text(equations, place), mark);
+  return s.context->symbol(name, Role::Coordinate, jet.time);
+}
+
+std::vector<DensityBorder> density_borders(const FieldEquations& equations) {
+  const FieldSystem& s = equations.system();
+  if (s.space.size() != 1) return {};
+  std::vector<Expr> roots{expand_time_derivatives(s.density)};
+  if (s.dissipation) roots.push_back(s.dissipation);
+  for (const Expr& f : s.forces)
+    if (f) roots.push_back(f);
+  const Expr x = s.space.front().symbol;
+  Bindings values = parameter_values(equations);
+  std::vector<DensityBorder> out;
+  for (const Expr& g : switches_of(roots)) {
+    const Expr slope = differentiate(g, x), rest = substitute(g, {{x, s.context->number(0)}});
+    const Expr parts[] = {s.expanded(slope), s.expanded(rest)};
+    bool constant = !slope.is_zero();
+    for (const Expr& symbol : symbols_of(parts)) constant = constant && values.count(symbol);
+    if (!constant) continue;
+    const Expr place = readable(-rest / slope, equations.order).value;
+    const double at = evaluate(s.expanded(place), values), up = evaluate(s.expanded(slope), values);
+    const bool inside = !s.space.front().from || (at > evaluate(s.expanded(s.space.front().from), values) &&
+                                                  at < evaluate(s.expanded(s.space.front().to), values));
+    if (std::isfinite(at) && inside) out.push_back({place, at, g, up > 0});
+  }
+  std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.at < b.at; });
+  return out;
+}
+
+void attach_bodies(FieldEquations& equations, std::shared_ptr<const Model> model, Diagnostics& diagnostics) {
+  const FieldSystem& s = equations.system();
+  if (equations.model->coupled) {
+    equations.body_start = model->experiment.start;
+    auto bodies = euler_lagrange(std::shared_ptr<const MechanicalSystem>(model, &model->system), diagnostics);
+    if (!bodies) return;
+    equations.bodies = std::make_shared<const EquationsOfMotion>(std::move(*bodies));
+  }
+  if (s.space.size() != 1) return;
+  const Bindings values = parameter_values(equations);
+  const std::vector<DensityBorder> borders = density_borders(equations);
+  for (const PlaceCoordinate& p : equations.model->attached)
+    add_interface(equations, p.jet.field, p.jet.space[0] == 1, p.place, p.end, p.coordinate, borders,
+                  evaluate(s.expanded(p.place), values));
+  std::vector<double> done;  // a place may be the border of several formulas
+  for (const DensityBorder& b : borders) {
+    const auto same = [&](double at) { return std::abs(at - b.at) <= 1e-12 * (1 + std::abs(at)); };
+    if (std::any_of(done.begin(), done.end(), same)) continue;
+    done.push_back(b.at);
+    for (const NaturalCondition& n : equations.natural) {
+      const bool attached = std::any_of(equations.model->attached.begin(), equations.model->attached.end(),
+                                        [&](const PlaceCoordinate& p) {
+                                          return p.jet.field == n.field && (p.jet.space[0] == 1) == n.moment &&
+                                                 same(evaluate(s.expanded(p.place), values));
+                                        });
+      if (!attached) add_interface(equations, n.field, n.moment, b.place, {}, {}, borders, b.at);
+    }
+  }
+}
+
+std::vector<CoordinateRow> coordinate_rows(const FieldEquations& equations) {
+  std::vector<CoordinateRow> out;
+  if (!equations.bodies) return out;
+  const ExprVector rows = equations.bodies->shown().balance();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const bool place = std::any_of(equations.model->attached.begin(), equations.model->attached.end(),
+                                   [&](const PlaceCoordinate& p) { return p.coordinate == i; });
+    if (!place) out.push_back({i, rows[i]});
+  }
+  return out;
+}
+
+std::optional<bool> row_of_bodies(const FieldEquations& equations, Expr difference) {
+  const FieldSystem& s = equations.system();
+  Expr e = s.expanded(expand_time_derivatives(difference));
+  ExprMap places;
+  for (const PlaceValue& p : equations.model->places) {
+    const FieldJet jet = *s.jet_of(p.jet);
+    Expr place = p.place.front();
+    for (const InterfaceCondition& c : equations.interfaces)
+      if (zero_test(c.place - place).verdict == Verdict::Zero) place = c.place;
+    places[p.symbol] = jet_at_place(equations, jet, place, 0);
+  }
+  const Expr roots[] = {e};
+  bool of_bodies = false;
+  for (const Expr& symbol : symbols_of(roots))
+    of_bodies = of_bodies || places.count(symbol) || (symbol.role() == Role::Coordinate && !s.jet_of(symbol));
+  if (!of_bodies) return std::nullopt;
+  e = substitute(e, places);
+  std::vector<Expr> rows;
+  for (const InterfaceCondition& c : equations.interfaces) rows.push_back(c.value);
+  for (const CoordinateRow& r : coordinate_rows(equations)) rows.push_back(r.value);
+  for (const Expr& written : rows) {
+    const Expr row = s.expanded(expand_time_derivatives(written));
+    const Expr of_row[] = {row};
+    for (const Expr& symbol : symbols_of(of_row)) {
+      if (symbol.role() != Role::Coordinate) continue;
+      const Expr slope = differentiate(row, symbol), other = differentiate(e, symbol);
+      const Expr factors[] = {slope, other};
+      const std::vector<Expr> in_factors = symbols_of(factors);
+      const bool of_parameters = std::none_of(in_factors.begin(), in_factors.end(),
+                                              [](const Expr& f) { return f.role() == Role::Coordinate; });
+      if (!of_parameters || zero_test(other).verdict != Verdict::Nonzero) continue;
+      if (zero_test(e * slope - row * other).verdict == Verdict::Zero) return true;
+    }
+  }
+  return false;
+}
+
+// ----------------------------------------------------------------------------------------------------------
+// certificate
+
+namespace {
+
+/// −R η of the bodies and B(η) of the density on each side, against −(the row) η, for any η and η_x at the place.
+CertificateCheck interface_identity(const FieldEquations& equations) {
+  CertificateCheck check;
+  check.name = "interface_identity";
+  check.statement = "What the variation leaves at each place, -R·δu and B of both sides, is the conditions times δu.";
+  const FieldSystem& s = equations.with_variations;
+  const std::vector<DensityBorder> borders = density_borders(equations);
+  const Bindings values = parameter_values(equations);
+  std::vector<Expr> differences;
+  std::vector<std::pair<Expr, std::optional<Side>>> places;
+  for (const InterfaceCondition& c : equations.interfaces)
+    if (std::none_of(places.begin(), places.end(), [&](const auto& p) { return p.first == c.place; }))
+      places.push_back({c.place, c.end});
+  const Expr b = equations.boundary_terms.front();
+  for (const auto& [place, end] : places) {
+    const double at = evaluate(s.expanded(place), values);
+    Expr left = s.context->number(0);
+    if (end != Side::Left) left = left + limit_at(equations, b, place, end ? 0 : -1, borders, at);
+    if (end != Side::Right) left = left - limit_at(equations, b, place, end ? 0 : 1, borders, at);
+    // Variations that no condition of this place is about stay in the natural conditions.
+    ExprMap silent;
+    for (std::size_t a = 0; a < equations.varied.size(); ++a)
+      for (int order = 0; order <= 1; ++order) {
+        const Expr eta = jet_at_place(equations, {equations.variation_of(a), {order}, 0}, place, 0);
+        Expr row;
+        for (const InterfaceCondition& c : equations.interfaces) {
+          if (c.place != place || c.field != equations.varied[a] || c.moment != (order == 1)) continue;
+          row = c.coordinate ? c.value - equations.bodies->shown().balance()[*c.coordinate] : c.value;
+        }
+        if (row)
+          left = left + row * eta;
+        else
+          silent[eta] = s.context->number(0);
+        for (const int side : {-1, 1})  // δu_x of a field without bending energy stands in no B
+          if (!row)
+            silent[jet_at_place(equations, {equations.variation_of(a), {order}, 0}, place, side)] =
+                s.context->number(0);
+      }
+    differences.push_back(s.expanded(substitute(left, silent)));
+  }
+  const ZeroTest test = zero_test(differences);
+  check.verdict = test.verdict, check.points = test.points, check.error_bound = test.error_bound;
+  check.reason = test.reason;
+  return check;
+}
+
+CertificateCheck rows_agree(const FieldEquations& equations) {
+  CertificateCheck check;
+  check.name = "rows_agree";
+  check.statement = "The conditions and rows of coordinates shown are the computed ones.";
+  std::vector<std::pair<Expr, Expr>> rows;
+  for (const InterfaceCondition& c : equations.interfaces) rows.push_back({c.value, {}});
+  for (const CoordinateRow& r : coordinate_rows(equations)) rows.push_back({r.value, {}});
+  std::vector<Expr> differences;
+  for (const auto& [row, own] : rows) {
+    const ReadableForm form = readable_row(equations, row, own);
+    Expr shown = form.value;
+    for (auto i = form.intermediates.rbegin(); i != form.intermediates.rend(); ++i)
+      shown = substitute(shown, {{i->symbol, i->value}});
+    const Expr same = equations.system().expanded(shown - row), turned = equations.system().expanded(shown + row);
+    differences.push_back(zero_test(turned).verdict == Verdict::Zero ? turned : same);
+  }
+  const ZeroTest test = zero_test(differences);
+  check.verdict = test.verdict, check.points = test.points, check.error_bound = test.error_bound;
+  check.reason = test.reason;
+  return check;
+}
+
+}  // namespace
+
+void certify_bodies(const FieldEquations& equations, Certificate& certificate) {
+  if (equations.bodies)
+    for (CertificateCheck& check : certify(*equations.bodies, nullptr).checks) certificate.checks.push_back(check);
+  if (equations.interfaces.empty() && !equations.bodies) return;
+  if (!equations.interfaces.empty()) certificate.checks.push_back(interface_identity(equations));
+  certificate.checks.push_back(rows_agree(equations));
+}
+
+// --------------------------------------------------------------------------------------------------------------- print
+
+ReadingOrder coupled_order(const FieldEquations& equations) {
+  ReadingOrder order = equations.bodies ? reading_order(*equations.bodies->shown().system) : equations.order;
+  const auto add = [](std::vector<Expr>& list, Expr e) {
+    if (std::find(list.begin(), list.end(), e) == list.end()) list.push_back(e);
+  };
+  for (const Expr& p : equations.order.parameters) add(order.parameters, p);
+  for (const Expr& q : equations.order.coordinates) add(order.coordinates, q);
+  order.places.reset();
+  return order;
+}
+
+ReadableForm readable_row(const FieldEquations& equations, Expr row, Expr own) {
+  ReadingOrder order = coupled_order(equations);
+  order.own = own;
+  const Expr rows[] = {row};
+  ReadableForm form = readable_equations(rows, order).front();
+  const Layout page = lay_out(form, order);
+  if (!page.negative && (page.shape != Shape::Sum || !page.minus.front())) return form;
+  const Expr turned[] = {-row};  // the first term of an equation is read without a sign
+  return readable_equations(turned, order).front();
+}
+
+namespace {
+
+/// u_x(l+) of a symbol of that name: the field, what it is differentiated by, the place.
+Layout place_layout(const FieldEquations& equations, Layout layout) {
+  const FieldSystem& s = equations.system();
+  const std::string& name = layout.symbol.name();
+  const std::size_t open = name.find('(');
+  if (open == std::string::npos || name.back() != ')') return layout;
+  const auto jet = s.jet_of_name(std::string_view(name).substr(0, open));
+  if (!jet) return layout;
+  const auto as_written = [](std::string text) {
+    Layout out;
+    out.shape = Shape::Sign;
+    out.text = std::move(text);
+    return out;
+  };
+  std::string below(static_cast<std::size_t>(layout.symbol.order()), 't');
+  for (std::size_t x = 0; x < s.space.size(); ++x)
+    for (int k = 0; k < jet->space[x]; ++k) below += s.space[x].name;
+  const Layout field = layouts::symbol(s.jet_symbol({jet->field, std::vector<int>(s.space.size(), 0), 0}));
+  Layout typeset;
+  typeset.shape = Shape::Row;
+  typeset.parts.push_back(below.empty() ? field : layouts::indexed(field, {as_written(below)}));
+  typeset.parts.push_back(as_written(name.substr(open)));
+  std::string plain = name + std::string(static_cast<std::size_t>(layout.symbol.order()), '\'');
+  return layouts::labelled(std::move(plain), std::move(typeset));
+}
+
+}  // namespace
+
+Layout coupled_layout(const FieldEquations& equations, Layout layout) {
+  if (layout.shape == Shape::Symbol) return place_layout(equations, std::move(layout));
+  for (Layout& part : layout.parts) part = coupled_layout(equations, std::move(part));
+  return layout;
+}
+
+}  // namespace maupertuis

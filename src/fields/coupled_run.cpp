@@ -1,0 +1,233 @@
+#include <maupertuis/coupled_fields.hpp>
+#include <maupertuis/evaluate.hpp>
+#include <maupertuis/repeated_evaluation.hpp>
+
+#include "fields/semi_discrete.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+/// The run of fields with coordinates and bodies, and of coarser meshes that tell how far off it is.
+namespace maupertuis {
+namespace {
+
+constexpr int usual_coupled_cells = 6, usual_coupled_order = 8;
+constexpr int usual_places = 200;  // of rows and pictures, about
+
+struct CoupledRun {
+  SimulationResult result;
+  std::vector<double> answers;
+  double energy = 0;
+};
+
+std::vector<double> times_of(const std::vector<FieldQuestion>& questions) {
+  std::vector<double> out;
+  for (const FieldQuestion& q : questions)
+    if (std::find(out.begin(), out.end(), q.time) == out.end()) out.push_back(q.time);
+  return out;
+}
+
+std::optional<CoupledRun> run_once(const SemiDiscrete& mesh, const std::vector<FieldQuestion>& questions,
+                                   const FieldRunOptions& options, Diagnostics& diagnostics) {
+  const auto system = std::make_shared<const MechanicalSystem>(mesh.model().system);
+  const auto equations = euler_lagrange(system, diagnostics);
+  if (!equations) return std::nullopt;
+  SimulationOptions settings;
+  settings.at = times_of(questions);
+  if (settings.at.empty()) settings.at.push_back(options.duration);
+  if (options.duration > 0) settings.duration = options.duration;
+  if (options.every > 0) settings.output_every = options.every;
+  settings.errors = ErrorEstimates::None;
+  settings.interrupt = options.interrupt;
+  Probe probe;
+  for (const FieldQuestion& q : questions) probe.expressions.push_back(mesh.discretised(q));
+  probe.expressions.push_back(equations->energy_function);
+  for (Expr& e : probe.expressions) e = expand_time_derivatives(e);
+  auto result = simulate(mesh.model(), *equations, settings, diagnostics, &probe);
+  if (!result) return std::nullopt;
+  CoupledRun out{std::move(*result), {}, 0};
+  out.answers.assign(questions.size(), std::nan(""));
+  for (std::size_t i = 0; i < questions.size(); ++i)
+    for (std::size_t k = 0; k < settings.at.size() && k < probe.values.size(); ++k)
+      if (settings.at[k] == questions[i].time && i < probe.values[k].size()) out.answers[i] = probe.values[k][i];
+  if (!probe.values.empty() && !probe.values.back().empty()) out.energy = probe.values.back().back();
+  return out;
+}
+
+/// Rows of fields at the places, then of the coordinates of the model.
+class Rows {
+ public:
+  Rows(const SemiDiscrete& mesh, const Model& model, const FieldEquations& equations, const std::vector<double>& places)
+      : model_(model), s_(equations.system()), equations_(equations), mesh_(mesh), places_(places) {
+    for (const Parameter& p : model.system.parameters) parameters_[p.symbol] = p.si_value;
+  }
+
+  Trajectory of(const SimulationResult& run) const {
+    Trajectory out;
+    out.independent = run.trajectory.independent;
+    out.times = run.trajectory.times;
+    out.metadata = run.trajectory.metadata;
+    const std::vector<Expr> values = columns(out);
+    const RepeatedEvaluation at(values);
+    const std::unordered_map<Expr, std::size_t, ExprHash> columns_of_symbols = symbol_columns(values, run.trajectory);
+    for (std::size_t row = 0; row < run.trajectory.rows(); ++row) {
+      const std::vector<double> here = at([&](Expr symbol) {
+        if (symbol.role() == Role::Time) return run.trajectory.times[row];
+        const auto column = columns_of_symbols.find(symbol);
+        return column == columns_of_symbols.end() ? parameters_.at(symbol) : run.trajectory.at(row, column->second);
+      });
+      out.values.insert(out.values.end(), here.begin(), here.end());
+      for (const Coordinate& c : model_.system.coordinates)
+        for (const char* prime : {"", "'"})
+          if (const auto column = run.trajectory.column(c.name + prime))
+            out.values.push_back(run.trajectory.at(row, *column));
+    }
+    for (const Coordinate& c : model_.system.coordinates)
+      for (const char* prime : {"", "'"})
+        if (const auto column = run.trajectory.column(c.name + prime))
+          out.columns.push_back(run.trajectory.columns[*column]);
+    return out;
+  }
+
+ private:
+  std::vector<Expr> columns(Trajectory& out) const {
+    std::vector<Expr> values;
+    for (std::size_t a = 0; a < equations_.varied.size(); ++a)
+      for (int order = 0; order < 2; ++order)
+        for (const double x : places_) {
+          const Field& f = s_.fields[equations_.varied[a]];
+          out.columns.push_back({fmt::format("{}{}({:.10g})", f.name, order ? "'" : "", x),
+                                 to_string(s_.dimension_of({equations_.varied[a], {0}, order}))});
+          values.push_back(mesh_.value_at(a, order, 0, x));
+        }
+    return values;
+  }
+  static std::unordered_map<Expr, std::size_t, ExprHash> symbol_columns(const std::vector<Expr>& values,
+                                                                        const Trajectory& rows) {
+    std::unordered_map<Expr, std::size_t, ExprHash> out;
+    for (const Expr& symbol : symbols_of(values))
+      if (symbol.role() == Role::Coordinate)
+        if (const auto column =
+                rows.column(symbol.name() + std::string(static_cast<std::size_t>(symbol.order()), '\'')))
+          out[symbol] = *column;
+    return out;
+  }
+
+  const Model& model_;
+  const FieldSystem& s_;
+  const FieldEquations& equations_;
+  const SemiDiscrete& mesh_;
+  const std::vector<double>& places_;
+  Bindings parameters_;
+};
+
+std::vector<double> shown_places(const SemiDiscrete& mesh) {
+  std::vector<double> out;
+  const std::vector<double>& b = mesh.borders();
+  const int in_element = std::max(4, usual_places / static_cast<int>(mesh.elements()));
+  for (std::size_t e = 0; e + 1 < b.size(); ++e)
+    for (int k = 0; k < in_element; ++k) out.push_back(b[e] + (b[e + 1] - b[e]) * k / in_element);
+  out.push_back(b.back());
+  return out;
+}
+
+/// The error of each answer from runs on two coarser meshes: what halving the elements gains is measured, not believed,
+/// since a start or a load with a kink lets no high order come about.
+std::vector<double> errors_of(const CoupledRun& fine, const std::optional<CoupledRun>& half,
+                              const std::optional<CoupledRun>& quarter) {
+  constexpr double least = 1.5, most = 33;  // of a gain that two differences show
+  std::vector<double> out;
+  for (std::size_t i = 0; i < fine.answers.size(); ++i) {
+    if (!half) {
+      out.push_back(std::numeric_limits<double>::infinity());
+      continue;
+    }
+    const double first = std::abs(fine.answers[i] - half->answers[i]);
+    const double second = quarter ? std::abs(half->answers[i] - quarter->answers[i]) : 0;
+    const double gain = first > 0 ? std::clamp(second / first, least, most) - 1 : 1;
+    out.push_back(first / gain);
+  }
+  return out;
+}
+
+/// Whether forces or what changes in time feed the bodies, or friction takes from them.
+bool bodies_are_forced(const FieldEquations& equations) {
+  if (!equations.bodies) return false;
+  const EquationsOfMotion& bodies = *equations.bodies;
+  const Expr t = bodies.system->context->time();
+  std::vector<Expr> feeding = bodies.generalized_forces;
+  feeding.insert(feeding.end(), bodies.dissipative_terms.begin(), bodies.dissipative_terms.end());
+  feeding.push_back(differentiate(bodies.lagrangian_expanded, t));
+  for (const Constraint& c : bodies.system->constraints) feeding.push_back(differentiate(c.value, t));
+  return std::any_of(feeding.begin(), feeding.end(), [](const Expr& e) { return !e.is_zero(); });
+}
+
+}  // namespace
+
+bool runs_as_one_system(const FieldEquations& equations) {
+  return equations.model->coupled || !density_borders(equations).empty();
+}
+
+std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquations& equations,
+                                          const std::vector<FieldQuestion>& questions, const FieldRunOptions& options,
+                                          Diagnostics& diagnostics) {
+  const auto begin = std::chrono::steady_clock::now();
+  const FieldSystem& s = equations.system();
+  const int cells = s.space.front().cells ? s.space.front().cells : usual_coupled_cells;
+  const int order = s.element_order ? s.element_order : usual_coupled_order;
+  const auto mesh = SemiDiscrete::make(model, equations, cells, order, diagnostics);
+  if (!mesh) return std::nullopt;
+  if (mesh->start_clashes())
+    diagnostics.warning("W0646", equations.model->start.empty() ? s.density_span : equations.model->start.front().span,
+                        "the start does not fit the condition at an end",
+                        "The condition is followed, so that a jump runs into the field, which no mesh resolves.",
+                        "Give a start that has the value of the condition there.");
+  const auto fine = run_once(*mesh, questions, options, diagnostics);
+  if (!fine) return std::nullopt;
+  FieldRunResult out;
+  out.cells = static_cast<int>(mesh->elements()), out.order = mesh->order();
+  out.nodes = mesh->degrees_of_freedom();
+  out.steps = fine->result.statistics.steps;
+  out.end = fine->result.final.t;
+  out.energy = fine->energy;
+  out.energy_drift = mesh->forced() || bodies_are_forced(equations) ? -1 : fine->result.statistics.energy_drift;
+  out.coupled = true;
+  if (!fine->result.ok()) out.trouble = fine->result.reason;
+  const MechanicalSystem& system = model.system;
+  for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
+    if (i >= fine->result.final.q.size()) break;
+    out.final_coordinates.push_back({system.coordinates[i].name, fine->result.final.q[i], fine->result.final.v[i]});
+  }
+  for (const Happening& h : fine->result.happenings) out.happenings.push_back({h.name, h.t});
+  if (options.trajectory) {
+    out.places = shown_places(*mesh);
+    out.trajectory = Rows(*mesh, model, equations, out.places).of(fine->result);
+  }
+  std::optional<CoupledRun> half, quarter;
+  if (options.errors && !questions.empty() && out.trouble.empty()) {
+    // Where a place asks for more elements than half of them, the order is lowered instead.
+    FieldRunOptions quiet = options;
+    quiet.trajectory = false;
+    const auto coarser = [&](int by) {
+      Diagnostics unheard;
+      auto other = SemiDiscrete::make(model, equations, std::max(cells / by, 1), order, unheard);
+      if (other && other->elements() == mesh->elements())
+        other = SemiDiscrete::make(model, equations, cells, std::max(order - by, 2), unheard);
+      return other ? run_once(*other, questions, quiet, unheard) : std::nullopt;
+    };
+    half = coarser(2), quarter = coarser(4);
+  }
+  const std::vector<double> errors = errors_of(*fine, half, quarter);
+  const double rounding = 2.2e-16 * std::sqrt(static_cast<double>(out.steps) + 1);
+  for (std::size_t i = 0; i < questions.size(); ++i)
+    out.answers.push_back({fine->answers[i], errors[i] + rounding * std::max(std::abs(fine->answers[i]), 1e-300)});
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return out;
+}
+
+}  // namespace maupertuis

@@ -1,0 +1,469 @@
+#include "fields/semi_discrete.hpp"
+
+#include <maupertuis/coupled_fields.hpp>
+#include <maupertuis/evaluate.hpp>
+#include <maupertuis/repeated_evaluation.hpp>
+
+#include "linear_algebra/dense.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace maupertuis {
+namespace {
+
+using Side = BoundaryCondition::Side;
+using EKind = ElementSpace::Kind;
+
+constexpr std::size_t most_degrees_of_freedom = 200;
+
+std::nullopt_t refuse_run(Diagnostics& diagnostics, Span span, const std::string& what) {
+  diagnostics.error("E0508", span, fmt::format("not supported yet: a run of {}", what),
+                    "Fields with bodies run on one space variable with a bounded domain.",
+                    "`maup derive` and expectations about formulas work for all fields.");
+  return std::nullopt;
+}
+
+/// The highest space derivative of a field in the density, the dissipation and the forces.
+int depth_of(const FieldEquations& equations, std::size_t field) {
+  const FieldSystem& s = equations.system();
+  int depth = 1;
+  const auto look = [&](Expr e) {
+    if (!e) return;
+    for (const Expr& one : s.jets_in(e))
+      if (const FieldJet jet = *s.jet_of(one); jet.field == field) depth = std::max(depth, jet.space[0]);
+  };
+  look(s.density), look(s.dissipation);
+  for (const Expr& f : s.forces) look(f);
+  return depth;
+}
+
+/// `cells` elements over the whole, at least one between two neighbours of `fixed`.
+std::vector<double> borders_of(const std::vector<double>& fixed, int cells) {
+  const double whole = fixed.back() - fixed.front();
+  std::vector<double> out{fixed.front()};
+  for (std::size_t i = 0; i + 1 < fixed.size(); ++i) {
+    const double width = fixed[i + 1] - fixed[i];
+    const int n = std::max(1, static_cast<int>(std::lround(cells * width / whole)));
+    for (int k = 1; k < n; ++k) out.push_back(fixed[i] + width * k / n);
+    out.push_back(fixed[i + 1]);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<double> element_borders(const FieldEquations& equations, int cells) {
+  const FieldSystem& s = equations.system();
+  Bindings values;
+  for (const Parameter& p : equations.model->parameters) values[p.symbol] = p.si_value;
+  const double left = evaluate(s.expanded(s.space.front().from), values),
+               right = evaluate(s.expanded(s.space.front().to), values), near = 1e-12 * (right - left);
+  std::vector<double> fixed{left, right};
+  for (const PlaceCoordinate& p : equations.model->attached) fixed.push_back(evaluate(s.expanded(p.place), values));
+  for (const DensityBorder& b : density_borders(equations)) fixed.push_back(b.at);
+  std::sort(fixed.begin(), fixed.end());
+  fixed.erase(std::unique(fixed.begin(), fixed.end(), [&](double a, double b) { return b - a <= near; }), fixed.end());
+  return borders_of(fixed, cells);
+}
+
+SemiDiscrete::SemiDiscrete(const Model& model, const FieldEquations& equations)
+    : model_(model), equations_(&equations) {
+  for (const Parameter& p : model.system.parameters) numbers_[p.symbol] = p.si_value;
+}
+
+std::optional<SemiDiscrete> SemiDiscrete::make(const Model& model, const FieldEquations& equations, int cells,
+                                               int order, Diagnostics& diagnostics) {
+  const FieldSystem& s = equations.system();
+  if (s.space.size() != 1) return refuse_run(diagnostics, s.density_span, "fields of several space variables");
+  if (!s.space.front().from) return refuse_run(diagnostics, s.density_span, "a field without a domain");
+  SemiDiscrete out(model, equations);
+  out.model_.system.written = nullptr;
+  out.model_.fields = nullptr;
+  out.model_.experiment.expectations.clear();
+  for (std::size_t f = 0; f < s.fields.size(); ++f) {
+    if (!s.fields[f].given) continue;
+    if (!s.fields[f].formula) return refuse_run(diagnostics, s.fields[f].span, "an input without a formula");
+    out.given_[s.jet_symbol({f, {0}, 0})] = s.fields[f].formula;
+  }
+  if (!out.set_mesh(cells, order, diagnostics)) return std::nullopt;
+  out.set_degrees_of_freedom();
+  out.hold_ends();
+  if (!out.add_lagrangian(diagnostics) || !out.add_given_slopes(diagnostics)) return std::nullopt;
+  out.add_force_densities();
+  out.add_end_forces();
+  if (!out.set_start(diagnostics)) return std::nullopt;
+  return out;
+}
+
+bool SemiDiscrete::set_mesh(int cells, int order, Diagnostics& diagnostics) {
+  const FieldSystem& s = equations_->system();
+  mesh_.borders = element_borders(*equations_, cells);
+  bool bends = false;
+  for (const std::size_t f : equations_->varied) bends = bends || depth_of(*equations_, f) > 1;
+  mesh_.degree = bends ? std::max(order, 5) : order;
+  // Lobatto's rule of the nodes where masses are to be diagonal; else one that is exact for products.
+  mesh_.points = bends ? mesh_.degree + 2 : mesh_.degree;
+  mesh_.periodic = s.periodic;
+  for (const std::size_t f : equations_->varied)
+    spaces_.emplace_back(mesh_, depth_of(*equations_, f) > 1 ? EKind::Smooth
+                                : bends                      ? EKind::Continuous
+                                                             : EKind::Nodal);
+  for (const ElementSpace& space : spaces_) dofs_ += space.size();
+  if (dofs_ <= most_degrees_of_freedom) return true;
+  diagnostics.error("E0656", s.density_span,
+                    fmt::format("{} elements of order {} have {} unknowns, too many for a run with bodies", elements(),
+                                mesh_.degree, dofs_),
+                    fmt::format("Fields with bodies run as one system of at most {} coordinates of elements.",
+                                most_degrees_of_freedom),
+                    "Write fewer cells; elements of a higher order need fewer of them.");
+  return false;
+}
+
+void SemiDiscrete::set_degrees_of_freedom() {
+  const FieldSystem& s = equations_->system();
+  MechanicalSystem& system = model_.system;
+  for (std::size_t a = 0; a < spaces_.size(); ++a) {
+    const std::size_t field = equations_->varied[a];
+    const ElementSpace& space = spaces_[a];
+    values_.emplace_back(space.size());
+    coordinates_.emplace_back(space.size());
+    const double near = 1e-12 * (mesh_.borders.back() - mesh_.borders.front());
+    for (const PlaceCoordinate& p : equations_->model->attached) {
+      if (p.jet.field != field) continue;
+      const double at = number(p.place);
+      std::size_t border = 0;
+      while (std::abs(mesh_.borders[border] - at) > near) ++border;
+      const std::size_t dof = p.jet.space[0] == 0 ? space.value_at_border(border) : space.slope_at_border(border);
+      coordinates_[a][dof] = p.coordinate;
+      values_[a][dof] = system.coordinates[p.coordinate].q;
+    }
+    for (std::size_t j = 0; j < space.size(); ++j) {
+      if (values_[a][j]) continue;
+      Coordinate c;
+      c.name = fmt::format("{}[{}]", s.fields[field].name, j);
+      c.q = s.context->symbol(c.name, Role::Coordinate, 0);
+      c.velocity = s.context->symbol(c.name, Role::Coordinate, 1);
+      c.acceleration = s.context->symbol(c.name, Role::Coordinate, 2);
+      c.dimension = s.fields[field].dimension;
+      values_[a][j] = c.q;
+      coordinates_[a][j] = system.coordinates.size();
+      system.coordinates.push_back(std::move(c));
+    }
+  }
+}
+
+/// What is given at an end takes the place of its degree of freedom, whose coordinate goes.
+void SemiDiscrete::hold_ends() {
+  const FieldSystem& s = equations_->system();
+  std::set<std::size_t> gone;
+  for (const BoundaryCondition& b : s.boundary) {
+    std::size_t a = 0;
+    while (equations_->varied[a] != b.jet.field) ++a;
+    const std::size_t border = b.side == Side::Right ? mesh_.borders.size() - 1 : 0;
+    if (b.jet.order() == 1 && spaces_[a].kind() != EKind::Smooth) continue;
+    const std::size_t dof =
+        b.jet.order() == 0 ? spaces_[a].value_at_border(border) : spaces_[a].slope_at_border(border);
+    if (coordinates_[a][dof]) gone.insert(*coordinates_[a][dof]);
+    coordinates_[a][dof].reset();
+    values_[a][dof] = s.expanded(b.value);
+    forced_ = forced_ || s.context->depends_on_time(b.value.id());
+  }
+  std::vector<Coordinate>& list = model_.system.coordinates;
+  std::vector<Coordinate> kept;
+  std::vector<std::size_t> now(list.size());
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    now[i] = kept.size();
+    if (!gone.count(i)) kept.push_back(list[i]);
+  }
+  list = std::move(kept);  // those of the model stand before all that can go
+  for (auto& row : coordinates_)
+    for (auto& c : row)
+      if (c) c = now[*c];
+}
+
+Expr SemiDiscrete::constant(double value) const {
+  return equations_->system().context->number(Rational::from_double(value));
+}
+
+double SemiDiscrete::number(Expr e) const { return evaluate(equations_->system().expanded(e), numbers_); }
+
+Expr SemiDiscrete::combination(std::size_t a, const std::vector<ElementSpace::Part>& parts, int by_space,
+                               int by_time) const {
+  Context& context = *equations_->system().context;
+  std::vector<Expr> terms;
+  const auto value = [&](std::size_t dof) {
+    Expr v = values_[a][dof];
+    for (int k = 0; k < by_time; ++k) v = total_time_derivative(v);
+    return v;
+  };
+  // Slopes of nodal elements act on differences, which keeps the digits of small ones on a large value.
+  const bool differences = by_space == 1 && spaces_[a].kind() == EKind::Nodal;
+  std::size_t base = 0;
+  for (std::size_t m = 1; m < parts.size(); ++m)
+    if (std::abs(parts[m].of[0]) > std::abs(parts[base].of[0])) base = m;
+  for (std::size_t m = 0; m < parts.size(); ++m) {
+    const double c = parts[m].of[by_space];
+    if (c == 0 || (differences && m == base)) continue;
+    const Expr v = value(parts[m].dof);
+    terms.push_back(constant(c) * (differences ? v - value(parts[base].dof) : v));
+  }
+  return context.sum(terms);
+}
+
+ExprMap SemiDiscrete::at_point(const std::vector<Expr>& jets, std::size_t point, double x) const {
+  const FieldSystem& s = equations_->system();
+  ExprMap map{{s.space.front().symbol, constant(x)}};
+  for (const Expr& symbol : jets) {
+    const FieldJet jet = *s.jet_of(symbol);
+    std::size_t a = 0;
+    while (a < spaces_.size() && equations_->varied[a] != jet.field) ++a;
+    if (a < spaces_.size()) map[symbol] = combination(a, spaces_[a].points()[point].parts, jet.space[0], jet.time);
+  }
+  return map;
+}
+
+Expr SemiDiscrete::integral(Expr density) const {
+  const FieldSystem& s = equations_->system();
+  const Expr e = s.expanded(substitute(s.expanded(density), given_));
+  const std::vector<Expr> jets = s.jets_in(e);
+  const std::vector<ElementSpace::Point>& points = spaces_.front().points();
+  const std::vector<double>& borders = mesh_.borders;
+  std::vector<Expr> terms;
+  std::size_t element = 0;
+  const std::size_t per_element = points.size() / elements();
+  for (std::size_t q = 0; q < points.size(); ++q) {
+    element = q / per_element;
+    // A border belongs to the element that is summed: the formulas of its own side hold there.
+    const double width = borders[element + 1] - borders[element];
+    const double inside =
+        std::clamp(points[q].x, borders[element] + 1e-13 * width, borders[element + 1] - 1e-13 * width);
+    terms.push_back(constant(points[q].weight) * substitute(e, at_point(jets, q, inside)));
+  }
+  return s.context->sum(terms);
+}
+
+bool SemiDiscrete::add_lagrangian(Diagnostics&) {
+  const FieldSystem& s = equations_->system();
+  MechanicalSystem& system = model_.system;
+  const Expr l = integral(s.density);
+  if (system.lagrangian_given)
+    system.lagrangian_given->value = system.lagrangian_given->value + l;
+  else
+    system.lagrangian_extra.push_back({l, "density", s.density_span});
+  const Expr density = s.expanded(substitute(s.expanded(s.density), given_));
+  forced_ = forced_ || !differentiate(density, s.context->time()).is_zero();
+  if (!s.dissipation) return true;
+  system.dissipation.push_back({integral(s.dissipation), "dissipation density", s.density_span});
+  forced_ = true;
+  return true;
+}
+
+void SemiDiscrete::generalized_force(std::size_t a, std::size_t dof, Expr force, Span span) {
+  if (!coordinates_[a][dof] || force.is_zero()) return;
+  AppliedForce f;
+  f.kind = AppliedForce::Kind::Generalized;
+  f.coordinate = *coordinates_[a][dof];
+  f.target = model_.system.coordinates[f.coordinate].name;
+  f.components = {force};
+  f.span = span;
+  model_.system.forces.push_back(std::move(f));
+  forced_ = true;
+}
+
+void SemiDiscrete::add_force_densities() {
+  const FieldSystem& s = equations_->system();
+  const std::vector<ElementSpace::Point>& points = spaces_.front().points();
+  for (std::size_t a = 0; a < spaces_.size(); ++a) {
+    if (!s.forces[equations_->varied[a]]) continue;
+    const Expr f = s.expanded(substitute(s.expanded(s.forces[equations_->varied[a]]), given_));
+    const std::vector<Expr> jets = s.jets_in(f);
+    std::vector<std::vector<Expr>> sums(spaces_[a].size());
+    for (std::size_t q = 0; q < points.size(); ++q) {
+      const Expr here = substitute(f, at_point(jets, q, points[q].x));
+      for (const ElementSpace::Part& part : spaces_[a].points()[q].parts)
+        if (part.of[0] != 0) sums[part.dof].push_back(constant(points[q].weight * part.of[0]) * here);
+    }
+    for (std::size_t j = 0; j < sums.size(); ++j) generalized_force(a, j, s.context->sum(sums[j]), s.density_span);
+  }
+}
+
+void SemiDiscrete::add_end_forces() {
+  const FieldSystem& s = equations_->system();
+  for (const EndForce& f : s.end_forces) {
+    std::size_t a = 0;
+    while (equations_->varied[a] != f.jet.field) ++a;
+    const std::size_t border = f.side == Side::Right ? mesh_.borders.size() - 1 : 0;
+    const bool slope = f.jet.order() == 1;
+    if (slope && spaces_[a].kind() != EKind::Smooth) continue;
+    generalized_force(a, slope ? spaces_[a].slope_at_border(border) : spaces_[a].value_at_border(border),
+                      s.expanded(f.value), f.span);
+  }
+}
+
+/// u_x = a of a field without bending energy: the end force that ∂ℒ/∂u_x balances, p + F = 0 on the right.
+bool SemiDiscrete::add_given_slopes(Diagnostics& diagnostics) {
+  const FieldSystem& s = equations_->system();
+  for (const BoundaryCondition& b : s.boundary) {
+    std::size_t a = 0;
+    while (equations_->varied[a] != b.jet.field) ++a;
+    if (b.jet.order() != 1 || spaces_[a].kind() == EKind::Smooth) continue;
+    const bool right = b.side == Side::Right;
+    const Expr slope = differentiate(s.expanded(s.density), s.jet_symbol(b.jet));
+    const Expr p = substitute(slope, {{s.jet_symbol(b.jet), s.expanded(b.value)},
+                                      {s.space.front().symbol, right ? s.space.front().to : s.space.front().from}});
+    if (!s.jets_in(p).empty()) {
+      diagnostics.error("E0292", b.span, "this condition clashes with the natural one",
+                        "What the variation leaves at a free end is ∂ℒ/∂u_x = 0; a given slope does not say what "
+                        "∂ℒ/∂u_x is, as other derivatives stand in it.",
+                        "Give the field itself, or leave the end natural.");
+      return false;
+    }
+    generalized_force(a, spaces_[a].value_at_border(right ? mesh_.borders.size() - 1 : 0), s.expanded(right ? -p : p),
+                      b.span);
+  }
+  return true;
+}
+
+namespace {
+
+/// Coefficients of the functions of a space that come nearest to a function, what is given at ends kept.
+std::vector<double> projected(const ElementSpace& space, const std::vector<double>& function,
+                              const std::vector<std::optional<double>>& given) {
+  const std::vector<ElementSpace::Point>& points = space.points();
+  std::vector<double> out(space.size(), 0);
+  std::vector<std::size_t> free;
+  for (std::size_t j = 0; j < out.size(); ++j)
+    if (given[j])
+      out[j] = *given[j];
+    else
+      free.push_back(j);
+  if (space.kind() == EKind::Nodal) {
+    for (std::size_t q = 0; q < points.size(); ++q)
+      for (const ElementSpace::Part& part : points[q].parts)
+        if (part.of[0] == 1 && !given[part.dof]) out[part.dof] = function[q];
+    return out;
+  }
+  const auto n = static_cast<Eigen::Index>(out.size());
+  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(n);
+  for (std::size_t q = 0; q < points.size(); ++q) {
+    for (const ElementSpace::Part& i : points[q].parts) {
+      b(static_cast<Eigen::Index>(i.dof)) += points[q].weight * i.of[0] * function[q];
+      for (const ElementSpace::Part& j : points[q].parts)
+        m(static_cast<Eigen::Index>(i.dof), static_cast<Eigen::Index>(j.dof)) += points[q].weight * i.of[0] * j.of[0];
+    }
+  }
+  const auto f = static_cast<Eigen::Index>(free.size());
+  Eigen::MatrixXd mm(f, f);
+  Eigen::VectorXd bb(f);
+  for (Eigen::Index i = 0; i < f; ++i) {
+    const auto row = static_cast<Eigen::Index>(free[static_cast<std::size_t>(i)]);
+    bb(i) = b(row);
+    for (Eigen::Index j = 0; j < n; ++j)
+      if (given[static_cast<std::size_t>(j)]) bb(i) -= m(row, j) * out[static_cast<std::size_t>(j)];
+    for (Eigen::Index j = 0; j < f; ++j)
+      mm(i, j) = m(row, static_cast<Eigen::Index>(free[static_cast<std::size_t>(j)]));
+  }
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(mm);
+  const Eigen::VectorXd c = qr.solve(bb);
+  for (Eigen::Index i = 0; i < f; ++i) out[free[static_cast<std::size_t>(i)]] = c(i);
+  return out;
+}
+
+}  // namespace
+
+/// E0647 where a start is another function between the nodes than what the elements make of it.
+bool SemiDiscrete::refuse_unresolved(std::size_t a, const std::vector<double>& c, const RepeatedEvaluation& start,
+                                     Diagnostics& diagnostics) const {
+  constexpr int looks = 101;  // in an element, at places that share no pattern with the nodes
+  double size = 0, worst = 0, place = 0;
+  for (std::size_t e = 0; e + 1 < mesh_.borders.size(); ++e)
+    for (int k = 0; k < looks; ++k) {
+      const double x = mesh_.borders[e] + (mesh_.borders[e + 1] - mesh_.borders[e]) * (k + 0.5) / looks;
+      const double value = start([&](Expr symbol) {
+                             return symbol == equations_->system().space.front().symbol ? x : numbers_.at(symbol);
+                           }).front();
+      double here = 0;
+      for (const ElementSpace::Part& part : spaces_[a].at(x)) here += part.of[0] * c[part.dof];
+      size = std::max(size, std::abs(value));
+      if (std::abs(value - here) > worst) worst = std::abs(value - here), place = x;
+    }
+  if (worst <= size / 4) return false;
+  diagnostics.error("E0647", equations_->model->start.front().span,
+                    fmt::format("the mesh passes something of the start by, at {} = {:.6g}",
+                                equations_->system().space.front().name, place),
+                    "Between the nodes the start is another function than the polynomials through them.",
+                    "Write more cells, or a higher order of the elements.");
+  return true;
+}
+
+bool SemiDiscrete::set_start(Diagnostics& diagnostics) {
+  const FieldSystem& s = equations_->system();
+  Bindings at_start = numbers_;
+  at_start[s.context->time()] = 0;
+  for (std::size_t a = 0; a < spaces_.size(); ++a)
+    for (int order = 0; order < 2; ++order) {
+      Expr start = s.context->number(0);
+      for (const FieldStart& one : equations_->model->start)
+        if (one.field == equations_->varied[a] && one.order == order) start = s.expanded(one.value);
+      const Expr root[] = {start};
+      const RepeatedEvaluation at(root);
+      std::vector<double> function;
+      for (const ElementSpace::Point& p : spaces_[a].points())
+        function.push_back(
+            at([&](Expr symbol) { return symbol == s.space.front().symbol ? p.x : numbers_.at(symbol); }).front());
+      for (const double v : function)
+        if (!std::isfinite(v)) {
+          diagnostics.error("E0645", equations_->model->start.front().span,
+                            "the start of a field is not a finite number somewhere in its domain",
+                            "A run can only begin from definite values at all places.",
+                            "Look for a logarithm or a root of a negative number in it, or a division by zero.");
+          return false;
+        }
+      std::vector<std::optional<double>> given(spaces_[a].size());
+      for (std::size_t j = 0; j < given.size(); ++j)
+        if (!coordinates_[a][j])
+          given[j] = evaluate(order ? total_time_derivative(values_[a][j]) : values_[a][j], at_start);
+      double size = 0;
+      for (const double v : function) size = std::max(size, std::abs(v));
+      for (const bool right : {false, true}) {
+        const auto& g = given[spaces_[a].value_at_border(right ? mesh_.borders.size() - 1 : 0)];
+        if (g && std::abs(*g - (right ? function.back() : function.front())) > 1e-9 * std::max(size, std::abs(*g)))
+          clashes_ = true;
+      }
+      const std::vector<double> c = projected(spaces_[a], function, given);
+      if (!clashes_ && refuse_unresolved(a, c, at, diagnostics)) return false;
+      for (std::size_t j = 0; j < c.size(); ++j)
+        if (coordinates_[a][j]) {
+          StartValue v;
+          v.coordinate = *coordinates_[a][j];
+          v.order = order;
+          v.value = constant(c[j]);
+          model_.experiment.start.push_back(std::move(v));
+        }
+    }
+  return true;
+}
+
+Expr SemiDiscrete::value_at(std::size_t a, int by_time, int by_space, double x) const {
+  return combination(a, spaces_[a].at(x, x >= mesh_.borders.back()), by_space, by_time);
+}
+
+Expr SemiDiscrete::discretised(const FieldQuestion& question) const {
+  const FieldSystem& s = equations_->system();
+  if (question.total) return integral(question.value);
+  ExprMap map;
+  for (const PlaceValue& place : equations_->model->places) {
+    const FieldJet jet = *s.jet_of(place.jet);
+    for (std::size_t a = 0; a < spaces_.size(); ++a)
+      if (equations_->varied[a] == jet.field && jet.space[0] <= 2)
+        map[place.symbol] = value_at(a, jet.time, jet.space[0], number(place.place[0]));
+  }
+  return s.expanded(substitute(s.expanded(question.value), map));
+}
+
+}  // namespace maupertuis

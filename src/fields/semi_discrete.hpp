@@ -1,0 +1,73 @@
+#pragma once
+#include <maupertuis/field_run.hpp>
+#include <maupertuis/repeated_evaluation.hpp>
+
+#include "fields/field_elements.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace maupertuis {
+
+/// The borders of elements: the ends, each place that bodies hold, each change of the density, and what makes `cells`
+/// of the whole.
+std::vector<double> element_borders(const FieldEquations& equations, int cells);
+
+/// Fields with coordinates and bodies as one ordinary mechanical system, by Galerkin's method in space:
+///
+///     L_h(c, q) = Σ_points w ℒ(Σ N_j c_j, …) + L of the bodies
+///
+/// Its coordinates are those of the model, the values of fields at places among them, and the further degrees of
+/// freedom of the elements, so that it runs, with constraints, forces and events, as any other system.
+class SemiDiscrete {
+ public:
+  /// Elements have borders at each place and each change of the density; `cells` of them over the whole domain, rounded
+  /// up between these. Errors (in `diagnostics`): E0508, E0292, E0656 as for run_fields and for a mesh too large.
+  static std::optional<SemiDiscrete> make(const Model& model, const FieldEquations& equations, int cells, int order,
+                                          Diagnostics& diagnostics);
+
+  const Model& model() const { return model_; }
+  /// An expression of the questions of a run, in the coordinates: places and jets replaced.
+  Expr discretised(const FieldQuestion& question) const;
+  /// u or u' of a field at x, in the coordinates.
+  Expr value_at(std::size_t varied_index, int by_time, int by_space, double x) const;
+  std::size_t degrees_of_freedom() const { return dofs_; }
+  std::size_t elements() const { return mesh_.borders.size() - 1; }
+  int order() const { return mesh_.degree; }
+  bool forced() const { return forced_; }
+  const std::vector<double>& borders() const { return mesh_.borders; }
+  /// Where a start does not fit what is given at an end.
+  bool start_clashes() const { return clashes_; }
+
+ private:
+  SemiDiscrete(const Model& model, const FieldEquations& equations);
+  bool set_mesh(int cells, int order, Diagnostics& diagnostics);
+  void set_degrees_of_freedom();
+  void hold_ends();
+  bool add_lagrangian(Diagnostics& diagnostics);
+  bool add_given_slopes(Diagnostics& diagnostics);
+  void add_force_densities();
+  void add_end_forces();
+  bool set_start(Diagnostics& diagnostics);
+  bool refuse_unresolved(std::size_t a, const std::vector<double>& c, const RepeatedEvaluation& start,
+                         Diagnostics& diagnostics) const;
+  Expr constant(double value) const;
+  Expr combination(std::size_t a, const std::vector<ElementSpace::Part>& parts, int by_space, int by_time) const;
+  ExprMap at_point(const std::vector<Expr>& jets, std::size_t point, double x) const;
+  Expr integral(Expr density) const;
+  void generalized_force(std::size_t a, std::size_t dof, Expr force, Span span);
+  double number(Expr e) const;
+
+  Model model_;
+  const FieldEquations* equations_;
+  ElementMesh mesh_;
+  std::vector<ElementSpace> spaces_;       // [varied]
+  std::vector<std::vector<Expr>> values_;  // [varied][dof] u of it: a coordinate, or what is given
+  std::vector<std::vector<std::optional<std::size_t>>> coordinates_;  // [varied][dof]
+  Bindings numbers_;                                                  // of parameters
+  ExprMap given_;                                                     // inputs by their formulas
+  std::size_t dofs_ = 0;
+  bool forced_ = false, clashes_ = false;
+};
+
+}  // namespace maupertuis
