@@ -125,8 +125,7 @@ std::span<const CodeEntry> all_codes() {
     std::vector<CodeEntry> codes(std::begin(own_codes), std::end(own_codes));
     for (const auto entries : {syntax_codes(), system_codes(), equations_codes(), simulation_codes(),
                                verification_codes(), comparison_codes(), invariants_codes(), hamiltonian_codes(),
-                               action_codes(), linearization_codes(), orbits_codes(), study_codes(),
-                               fields_codes()})
+                               action_codes(), linearization_codes(), orbits_codes(), study_codes(), fields_codes()})
       codes.insert(codes.end(), entries.begin(), entries.end());
     // By number, so that E0301 and W0302 stand together.
     std::sort(codes.begin(), codes.end(),

@@ -421,10 +421,11 @@ Json shapes_json(const FieldEquations& equations, const FieldModes& modes) {
 
 std::string field_run_text(const FieldRunResult& run) {
   if (run.coupled) return coupled_run_text(run);
-  std::string out = fmt::format("{} cells of order {} ({} nodes), {} steps of order 8 to {:.10g} s\n", run.cells,
-                                run.order, run.nodes, run.steps, run.end);
-  out +=
-      fmt::format("  highest frequency of the mesh  {:.6g} rad/s, steps at most {:.4g} s\n", run.omega_max, run.step);
+  std::string out = fmt::format("{} cells of order {} ({} nodes), {} {} to {:.10g} s\n", run.cells, run.order,
+                                run.nodes, run.steps, run.method, run.end);
+  out += run.omega_max > 0 ? fmt::format("  highest frequency of the mesh  {:.6g} rad/s, steps at most {:.4g} s\n",
+                                         run.omega_max, run.step)
+                           : fmt::format("  steps                          at most {:.4g} s\n", run.step);
   out += fmt::format("  energy                         {:.16g}\n", run.energy);
   out += run.energy_drift < 0 ? std::string("  energy drift                   forces act: it is not conserved\n")
                               : fmt::format("  energy drift                   {:.3g} of its terms\n", run.energy_drift);
@@ -433,9 +434,9 @@ std::string field_run_text(const FieldRunResult& run) {
 
 Json field_run_json(const FieldRunResult& run) {
   Json document = json_document("simulate");
-  document["statistics"] = {{"cells", run.cells},   {"element_order", run.order}, {"nodes", run.nodes},
-                            {"steps", run.steps},   {"step", run.step},           {"omega_max", run.omega_max},
-                            {"energy", run.energy}, {"seconds", run.seconds}};
+  document["statistics"] = {{"cells", run.cells},         {"element_order", run.order}, {"nodes", run.nodes},
+                            {"steps", run.steps},         {"method", run.method},       {"step", run.step},
+                            {"omega_max", run.omega_max}, {"energy", run.energy},       {"seconds", run.seconds}};
   document["statistics"]["energy_drift"] = run.energy_drift < 0 ? Json(nullptr) : Json(run.energy_drift);
   document["end"] = run.end;
   if (run.coupled) {

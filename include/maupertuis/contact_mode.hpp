@@ -48,8 +48,9 @@ std::vector<ContactMode> modes_to_show(const MechanicalSystem& system, const Con
 
 /// The system as it moves in a mode, without inequalities: closed contacts are constraints g = 0 at the end of its
 /// constraints, sticking ones constraints between velocities v_t = 0 after them; sliding ones have the generalized
-/// force −σ μ N ∂v_t/∂q̇ with σ = ±1, in space −μ N Σ_k v_tk/|v_t| ∂v_tk/∂q̇, which holds the multiplier of the contact. Its equations are those of any system,
-/// and are certified as such. Reactions in normal forces have been replaced (see contact_normals).
+/// force −σ μ N ∂v_t/∂q̇ with σ = ±1, in space −μ N Σ_k v_tk/|v_t| ∂v_tk/∂q̇, which holds the multiplier of the contact.
+/// Its equations are those of any system, and are certified as such. Reactions in normal forces have been replaced (see
+/// contact_normals).
 MechanicalSystem system_in_mode(const MechanicalSystem& system, const ContactMode& mode);
 
 }  // namespace maupertuis

@@ -120,8 +120,8 @@ class Disks {
   std::vector<std::uint32_t> alone_;     // slots with a series beyond the stored ones
   std::vector<std::uint32_t> few_;       // those with a series that are needed, where bound_only() left few of them
   bool only_few_ = false;
-  std::vector<int> degree_;              // [slots] of polynomials in t; very large for all else
-  std::vector<bool> linear_;             // [slots] in coordinates and polynomials in t
+  std::vector<int> degree_;   // [slots] of polynomials in t; very large for all else
+  std::vector<bool> linear_;  // [slots] in coordinates and polynomials in t
   bool residual_has_tails_ = false;
   const double* constants_ = nullptr;
 

@@ -64,8 +64,8 @@ struct ValueAtUntil {
 };  // θ at until = …: when `run until` ends
 struct UntilAt {
   Number expected;
-};  // until at 1.2 s ± 1e-9
-struct Event {  // event hit 3 at 0.45 s ± 1e-11: the third time it happens
+};                           // until at 1.2 s ± 1e-9
+struct Event {               // event hit 3 at 0.45 s ± 1e-11: the third time it happens
   std::string name, change;  // change of a contact: impact, made, lost, stick, slip; empty: any
   int occurrence = 1;
   Number time;
@@ -221,11 +221,10 @@ struct Error {
   std::string code;
 };
 
-using Kind =
-    std::variant<ValueAt, ValueAtUntil, UntilAt, EnergyConserved, ConservedAlongRun, Conserved, NotConserved, Integral,
-                 Equation, Hamiltonian, Routhian, Bracket, Freedoms, ConstraintClass, Frequencies, Eigenvalues, Matrix,
-                 Equilibrium, Stable, Multipliers, Trace, Period, Action, ActionAlong, MorseIndex, PathAt, Event,
-                 EventCount, PhaseConstraints, ClassCount, Error>;
+using Kind = std::variant<ValueAt, ValueAtUntil, UntilAt, EnergyConserved, ConservedAlongRun, Conserved, NotConserved,
+                          Integral, Equation, Hamiltonian, Routhian, Bracket, Freedoms, ConstraintClass, Frequencies,
+                          Eigenvalues, Matrix, Equilibrium, Stable, Multipliers, Trace, Period, Action, ActionAlong,
+                          MorseIndex, PathAt, Event, EventCount, PhaseConstraints, ClassCount, Error>;
 
 }  // namespace expectation
 

@@ -9,8 +9,9 @@
 
 namespace maupertuis {
 
-/// The motion of fields of one space variable whose density holds first derivatives: Galerkin's method with
-/// Gauss-Lobatto elements, Taylor steps of order 8 within h ω_max ≤ 3.2 (docs/theory/fields.md).
+/// The motion of fields of one space variable by Galerkin's method. Waves, whose density holds first derivatives with
+/// the velocities squared: Gauss-Lobatto elements, Taylor steps of order 8 within h ω_max ≤ 3.2. Beams and fields of
+/// first order in t: smooth elements where ℒ holds u_xx, Gauss's collocation (docs/theory/fields.md).
 struct FieldRunResult {
   struct Value {
     double value = 0, error = 0;  // SI; the error is estimated from a second mesh of half the cells
@@ -21,7 +22,8 @@ struct FieldRunResult {
   double end = 0;              // s
   std::size_t steps = 0, nodes = 0;
   int order = 0, cells = 0;
-  double step = 0, omega_max = 0;        // s, rad/s
+  std::string method;                    // of the steps, in words
+  double step = 0, omega_max = 0;        // s, rad/s; 0: not known, no step depends on it
   double energy = 0, energy_drift = -1;  // J; relative to the terms of the energy; −1: forces act, none is conserved
   double seconds = 0;
   std::string trouble;  // why the run ended early; empty: it did not

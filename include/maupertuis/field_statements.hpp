@@ -34,6 +34,7 @@ struct FieldDeclaration {
 struct DensityText {
   bool dissipation = false, adds = false;
   ExpressionPtr value;
+  ExpressionPtr imaginary;  // of a density in complex fields, which must vanish; null: it is real as it is written
   Span name_span;
 };
 

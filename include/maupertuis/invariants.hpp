@@ -92,6 +92,7 @@ struct Invariants {
 /// q', t), with accelerations (and multipliers) from the equations over the same field; parameters stay symbols. What
 /// is found is certified by the zero test of dI/dt on the symbolic accelerations; what does not pass is not shown.
 ///
+/// Degenerate systems: by their determined equations; what depends on free functions of time is left out.
 /// With constraints the points lie on the leaves φ(q,t) = const: what is found holds on each of them.
 /// Errors: E1001 (the basis asked for is larger than largest_basis; said before anything is computed), E1002 (singular
 /// mass matrix), E1003 (constraints that are not linear in the velocities), W1004 (the run for the drift failed). Cost:

@@ -38,7 +38,7 @@ struct StabilityReport {
   double growth_rate = 0;       // 1/s, the largest real part
   std::vector<double> hessian;  // eigenvalues, ascending, of the Hessian of the (effective) potential in coordinates
                                 // with unit mass, rad²/s²; empty where there is no potential
-  bool effective = false;  // momenta of translations are kept: it is the effective potential
+  bool effective = false;       // momenta of translations are kept: it is the effective potential
 };
 
 struct ModalAnalysis {

@@ -188,8 +188,8 @@ struct ContactStart {
   std::string trouble{};             // a sentence why no motion begins here; empty: one does
 };
 
-/// Of a model with contacts or friction; W0731 where no motion begins. Nothing where the start violates a contact (E0728), or where contacts are such
-/// that no motion is carried out with them (E0729, E0730).
+/// Of a model with contacts or friction; W0731 where no motion begins. Nothing where the start violates a contact
+/// (E0728), or where contacts are such that no motion is carried out with them (E0729, E0730).
 std::optional<ContactStart> contact_start(const Model& model, const EquationsOfMotion& equations,
                                           const MotionState& start, Diagnostics& diagnostics);
 

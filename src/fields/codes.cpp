@@ -11,15 +11,17 @@ constexpr CodeEntry kEntries[] = {
      "u_x^2\nboundary left : u_x = 1\nrun 1 s\n",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},
     {"E0508", "a run or an expectation of fields that is not supported yet",
-     "Runs are those of fields of one space variable on a domain, of densities that hold u, u' squared and u_x. All "
-     "fields have derivations, conservation laws and waves. Expectations of fields hold at the values of the model.",
+     "Runs are those of fields of one space variable on a domain. All fields have derivations, conservation laws and "
+     "waves. Expectations of fields hold at the values of the model.",
      "field u(x) : length \nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nrun 1 s\n",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nrun 1 s\n"},
-    {"E0642", "accelerations of a field that are not determined",
-     "Where the density is linear in the velocities the equations are of first order, and the velocity cannot be "
-     "chosen.",
-     "dimensionless\nfield a(x), b(x) : number on x = 0 .. 1\ndensity = b a' - a b' - 1/2 (a_x^2 + b_x^2)\nrun 1\n",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nrun 1 s\n"},
+    {"E0642", "a motion of a field that is not determined",
+     "Each field needs an equation with its derivative by t. Where the density is linear in the velocities the "
+     "equations are of first order: the field alone determines how it goes on, and its velocity cannot be chosen.",
+     "dimensionless\nfield a(x), b(x) : number on x = 0 .. 1 cells 10 boundary a = 0, b = 0\n"
+     "density = b a' - a b' - 1/2 (a_x^2 + b_x^2)\nstart a = sin(pi x), a' = 1\nrun 1\n",
+     "dimensionless\nfield a(x), b(x) : number on x = 0 .. 1 cells 10 boundary a = 0, b = 0\n"
+     "density = b a' - a b' - 1/2 (a_x^2 + b_x^2)\nstart a = sin(pi x)\nrun 1\n"},
     {"E0643", "a field that grows beyond all numbers",
      "The run met an infinity: an unstable density, or a start that grows.", "", ""},
     {"E0645", "a start of a field that is no number",
@@ -44,6 +46,11 @@ constexpr CodeEntry kEntries[] = {
      "start u = exp(-((x - 0.4877)/1e-4)^2)\nrun 1\n",
      "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 20\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
      "start u = exp(-((x - 0.4877)/0.1)^2)\nrun 1\n"},
+    {"N0648", "a constant of a field that no equation determines",
+     "A potential w of u = w_x stands in the density by its derivatives alone. Then w plus any function of t is the "
+     "same "
+     "motion, and a run keeps w at the left end of a periodic domain, or of free ends, as it starts.",
+     "", ""},
     {"E0656", "a mesh too large for a run with bodies",
      "Fields that bodies take hold of run as one system with the bodies, of at most 200 unknowns of elements. Elements "
      "of high order need few of them.",

@@ -80,8 +80,7 @@ std::optional<PointForm> point_form(const FieldEquations& equations, Diagnostics
 }
 
 FieldMesh::FieldMesh(const FieldEquations& equations, const PointForm& form, int cells, int order)
-    : equations_(equations),
-      s_(equations.system()),
+    : FieldMotion(equations),
       form_(form),
       cells_(cells),
       p_(order),
@@ -149,12 +148,6 @@ FieldMesh::FieldMesh(const FieldEquations& equations, const PointForm& form, int
   past_.assign(fields_ * (kOrder + 2), std::vector<double>(lanes_));
 }
 
-double FieldMesh::value_of(Expr e, const Bindings& extra) const {
-  Bindings all = values_;
-  all.insert(extra.begin(), extra.end());
-  return evaluate(s_.expanded(e), all);
-}
-
 void FieldMesh::start() {
   u_.assign(fields_, std::vector<double>(lanes_, 0));
   v_ = u_;
@@ -181,7 +174,7 @@ void FieldMesh::start() {
       for (const double value : values) size = std::max(size, std::abs(value));
       constexpr double rounding = 1e-9;
       if (std::abs(values[n] - condition) > rounding * size)
-        clashes_.push_back({held.field, order, held.right, values[n], condition});
+        clashes_.push_back({held.field, 0, order, held.right, values[n], condition});
       values[n] = condition;
     }
   }
@@ -472,6 +465,7 @@ double FieldMesh::energy(double& size) {
 }
 
 double FieldMesh::field_at(std::size_t field, int by_time, int by_space, double x) const {
+  if (by_time > 1 || by_space > 1) return std::nan("");
   const double cell = (x - left_) / width_;
   const int e = std::clamp(static_cast<int>(std::floor(cell + 1e-9)), 0, cells_ - 1);
   std::vector<double> value, slope;
@@ -485,22 +479,7 @@ double FieldMesh::field_at(std::size_t field, int by_time, int by_space, double 
 }
 
 double FieldMesh::answer(const FieldQuestion& question) {
-  const auto varied = [&](std::size_t field) {
-    std::size_t a = 0;
-    while (a < equations_.varied.size() && equations_.varied[a] != field) ++a;
-    return a;
-  };
-  Bindings extra{{s_.context->time(), t_}};
-  if (!question.total) {
-    for (const PlaceValue& place : equations_.model->places) {
-      const FieldJet jet = *s_.jet_of(place.jet);
-      const std::size_t a = varied(jet.field);
-      extra[place.symbol] = a < fields_ && jet.time <= 1 && jet.space[0] <= 1
-                                ? field_at(a, jet.time, jet.space[0], value_of(place.place[0], {}))
-                                : std::nan("");
-    }
-    return value_of(question.value, extra);
-  }
+  if (!question.total) return answer_at_places(question.value);
   const Expr root[] = {s_.expanded(question.value)};
   const RepeatedEvaluation at(root);
   double ignored = 0;

@@ -1,6 +1,5 @@
 #pragma once
-#include <maupertuis/field_run.hpp>
-
+#include "fields/field_motion.hpp"
 #include "fields/lane_series.hpp"
 #include "fields/lobatto.hpp"
 
@@ -29,32 +28,21 @@ std::optional<PointForm> point_form(const FieldEquations& equations, Diagnostics
 
 /// One discretisation and its state. Lanes are [local node × cells], so that what belongs to one local node of all
 /// cells lies together.
-class FieldMesh {
+class FieldMesh final : public FieldMotion {
  public:
   FieldMesh(const FieldEquations& equations, const PointForm& form, int cells, int order);
 
-  const std::string& trouble() const { return trouble_; }
-  /// Where the start says something else than a boundary condition, which is followed.
-  struct StartClash {
-    std::size_t field = 0;  // of those that are varied
-    int order = 0;          // 0: u, 1: u'
-    bool right = false;
-    double start = 0, condition = 0;
-  };
-  const std::vector<StartClash>& start_clashes() const { return clashes_; }
-  void start();
+  void start() override;
   /// Largest frequency of small motions about the present state, by power iteration.
   double omega_max(const Interrupt& interrupt);
   /// One Taylor step. False, and `trouble`, where it left the numbers.
-  bool step(double h);
-  double time() const { return t_; }
+  bool step(double h) override;
   /// h_E of the mesh, and the integral of the size of its density.
-  double energy(double& size);
+  double energy(double& size) override;
   /// Of an expression in place values; of one in jets at a place or integrated.
-  double answer(const FieldQuestion& question);
-  double field_at(std::size_t field, int derivatives_in_time, int derivatives_in_space, double x) const;
+  double answer(const FieldQuestion& question) override;
+  double field_at(std::size_t field, int derivatives_in_time, int derivatives_in_space, double x) const override;
   std::size_t nodes() const { return static_cast<std::size_t>(cells_) * static_cast<std::size_t>(p_); }
-  double place_of_cell(int cell) const { return left_ + cell * width_; }
 
  private:
   std::size_t local(int j, int e) const {
@@ -73,19 +61,14 @@ class FieldMesh {
   void solve(std::size_t k);
   void hold_ends(std::size_t f, std::size_t k);
   void load(const std::vector<std::vector<double>>& u, const std::vector<std::vector<double>>& v);
-  double value_of(Expr e, const Bindings& extra) const;
   double boundary_coefficient(const std::vector<Expr>& derivatives, std::size_t k) const;
 
-  const FieldEquations& equations_;
-  const FieldSystem& s_;
   const PointForm& form_;
   int cells_, p_;
   std::size_t lanes_ = 0, fields_ = 0;
-  double left_ = 0, width_ = 0, t_ = 0;
   Lobatto rule_;
   LaneSeries series_, energies_;  // of the equations; of the energy at one moment
   bool needs_rate_ = false;
-  Bindings values_;
   std::vector<std::vector<double>> u_, v_;  // [fields][lanes]
   std::vector<std::vector<double>> force_;  // [fields][lanes]
   std::vector<double> mass_;                // [fields² × lanes], inverse
@@ -98,8 +81,6 @@ class FieldMesh {
     bool force = false;             // else the field itself
   };
   std::vector<Held> held_;
-  std::string trouble_;
-  std::vector<StartClash> clashes_;
 };
 
 }  // namespace maupertuis

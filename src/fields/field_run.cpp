@@ -1,6 +1,7 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/field_run.hpp>
 
+#include "fields/collocation.hpp"
 #include "fields/field_mesh.hpp"
 #include "fields/resolution.hpp"
 
@@ -10,15 +11,18 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 /// The run of a field, and of a second mesh of half the cells that tells how far off it is.
 namespace maupertuis {
 namespace {
 
-constexpr int usual_cells = 100, usual_order = 3;
+constexpr int usual_cells = 100, usual_order = 3, usual_smooth_order = 7;
 constexpr double stability = 3.2;  // h ω_max
+constexpr int stages = 4;          // of Gauss's collocation
+constexpr double goal = 1e-12;     // of its steps, beside the field, over the whole run
 
-void refuse(const FieldMesh& mesh, const FieldEquations& equations, Diagnostics& diagnostics) {
+void refuse(const FieldMotion& mesh, const FieldEquations& equations, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
   const std::string& what = mesh.trouble();
   if (what == "slope") {
@@ -34,9 +38,25 @@ void refuse(const FieldMesh& mesh, const FieldEquations& equations, Diagnostics&
         fmt::format("What the variation leaves at a free end is {}; a given slope does not say what it is.", natural),
         "Give the field itself, or leave the end natural.");
   } else if (what == "mass") {
-    diagnostics.error("E0642", s.density_span, "the accelerations are not determined",
-                      "∂²ℒ/∂φ'∂φ' is singular: a density linear in the velocities gives equations of first order.",
-                      "`maup derive` shows them; runs of such fields are carried out by a later version.");
+    diagnostics.error("E0642", s.density_span, "the motion of the field is not determined",
+                      "The equations do not hold enough derivatives by t to go on from a start.",
+                      "`maup derive` shows them.");
+  } else if (what == "moment") {
+    diagnostics.error("E0508", s.end_forces.empty() ? s.density_span : s.end_forces.front().span,
+                      "not supported yet: a moment on a field without curvature",
+                      "A moment acts on the slope, which has no part in the energy of this field at its end.",
+                      "Give a force on the field itself, or a density with its second derivative.");
+  } else if (what == "ends") {
+    diagnostics.error("E0642", s.boundary.empty() ? s.density_span : s.boundary.front().span,
+                      "the conditions at the ends do not determine the motion",
+                      "The part of the density that is linear in the velocities leaves a shape of the field without an "
+                      "equation of motion of its own: a free end asks for more than the start can give.",
+                      "Hold the field at both ends and take elements of an odd order, or make the domain periodic.");
+  } else if (what == "step") {
+    diagnostics.error(
+        "E0643", s.density_span, "no step leads on from here",
+        fmt::format("At t = {:.6g} s the equations of a step have no solution near, however short it is.", mesh.time()),
+        "The field grows beyond all bounds, or comes to where its equations are singular.");
   } else if (what == "start") {
     diagnostics.error("E0645", equations.model->start.empty() ? s.density_span : equations.model->start.front().span,
                       "the start of a field is not a finite number somewhere in its domain",
@@ -53,14 +73,76 @@ void refuse(const FieldMesh& mesh, const FieldEquations& equations, Diagnostics&
   }
 }
 
+/// Where a value of smooth elements is looked at beside its place, in widths of the first mesh's cells: the error
+/// inside an element goes through zero several times.
+constexpr double beside[] = {-1, -0.7, -0.4, 0.4, 0.7, 1};
+
 struct OneRun {
   std::vector<double> answers;
+  std::vector<std::vector<double>> near;  // [questions]: the same beside their places
   std::size_t steps = 0;
   double h = 0, omega = 0, energy = 0, drift = 0;
   Trajectory trajectory;
 };
 
-void add_row(const FieldMesh& mesh, const FieldEquations& equations, int cells, Trajectory& rows) {
+/// How the fields of a density are put on a mesh and moved: waves by Taylor steps, where ω_max grows like 1/h;
+/// densities of second derivatives or linear in the velocities, where it grows like 1/h² to 1/h⁴, by collocation.
+struct Method {
+  std::optional<PointForm> waves;
+  std::optional<DensityForm> stiff;
+  int order = 0;
+  double step = 0, width = 0;  // of the first mesh by collocation
+
+  static std::optional<Method> of(const FieldEquations& equations, Diagnostics& diagnostics) {
+    Method out;
+    const int written = equations.system().element_order;
+    if (needs_collocation(equations)) {
+      out.stiff = density_form(equations, diagnostics);
+      out.order = written ? written : usual_smooth_order;
+    } else {
+      out.waves = point_form(equations, diagnostics);
+      out.order = written ? written : usual_order;
+    }
+    return out.waves || out.stiff ? std::optional(std::move(out)) : std::nullopt;
+  }
+  std::unique_ptr<FieldMotion> mesh(const FieldEquations& equations, int cells) const {
+    if (waves) return std::make_unique<FieldMesh>(equations, *waves, cells, order);
+    return std::make_unique<CollocationMotion>(equations, *stiff, cells, order, stages);
+  }
+  /// By collocation as much longer on the other meshes as their cells are wider, so that their difference tells the
+  /// error of steps as well.
+  double longest_step(FieldMotion& mesh, OneRun& run, const FieldRunOptions& options) {
+    if (auto* wave = dynamic_cast<FieldMesh*>(&mesh)) {
+      run.omega = wave->omega_max(options.interrupt);
+      return run.omega > 0 ? stability / run.omega : options.duration;
+    }
+    auto& motion = dynamic_cast<CollocationMotion&>(mesh);
+    const double cell = mesh.place_of_cell(1) - mesh.place_of_cell(0);
+    if (step > 0) return step * std::round(cell / width);
+    width = cell;
+    const double every = options.every > 0 ? options.every : options.duration / 100;
+    return step = motion.choose_step(std::min(every, options.duration), options.duration, goal, options.interrupt);
+  }
+  bool conserves() const { return waves ? waves->conserves : stiff->conserves; }
+  /// The power of the width of a cell by which a value is off on both meshes with their steps.
+  int power(const FieldEquations& equations, const FieldQuestion& question) const {
+    if (waves) return std::min(2 * order, 8);
+    const bool smooth = std::find(stiff->smooth.begin(), stiff->smooth.end(), true) != stiff->smooth.end();
+    const int degree = smooth ? std::max(order, 3) : order;
+    int lost = smooth ? 2 : 0;  // of the whole, energies for example: twice what the derivatives in ℒ leave
+    if (question.total) return std::min(2 * degree - lost, 2 * stages);
+    lost = 0;
+    for (const PlaceValue& place : equations.model->places) {
+      const Expr value[] = {question.value};
+      const std::vector<Expr> symbols = symbols_of(value);
+      if (std::find(symbols.begin(), symbols.end(), place.symbol) != symbols.end())
+        lost = std::max(lost, equations.system().jet_of(place.jet)->space[0]);
+    }
+    return std::min(std::max(degree + 1 - lost, 1), 2 * stages);
+  }
+};
+
+void add_row(const FieldMotion& mesh, const FieldEquations& equations, int cells, Trajectory& rows) {
   const FieldSystem& s = equations.system();
   const bool first = rows.columns.empty();
   rows.times.push_back(mesh.time());
@@ -77,9 +159,10 @@ void add_row(const FieldMesh& mesh, const FieldEquations& equations, int cells, 
 }
 
 /// E0647 where both meshes would pass something by, and their difference would tell nothing of it.
-bool refuse_coarse_mesh(const FieldEquations& equations, const PointForm& form, int cells, int order,
-                        Diagnostics& diagnostics) {
-  const auto found = unresolved_feature(equations, form, cells, order);
+bool refuse_coarse_mesh(const FieldEquations& equations, const Method& method, int cells, Diagnostics& diagnostics) {
+  PointForm of_density;
+  if (method.stiff) of_density.inputs = method.stiff->inputs, of_density.g = method.stiff->by_slot;
+  const auto found = unresolved_feature(equations, method.waves ? *method.waves : of_density, cells, method.order);
   if (!found) return false;
   const FieldSystem& s = equations.system();
   const bool at_start = found->of_start && !equations.model->start.empty();
@@ -95,38 +178,55 @@ bool refuse_coarse_mesh(const FieldEquations& equations, const PointForm& form, 
 }
 
 /// W0646: the end of the mesh is put to its condition, and what the start says beside it runs in as a wave.
-void warn_of_clashes(const FieldMesh& mesh, const FieldEquations& equations, Diagnostics& diagnostics) {
+void warn_of_clashes(const FieldMotion& mesh, const FieldEquations& equations, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
-  for (const FieldMesh::StartClash& c : mesh.start_clashes())
+  for (const FieldMotion::StartClash& c : mesh.start_clashes())
     diagnostics.warning(
         "W0646", equations.model->start.empty() ? s.density_span : equations.model->start.front().span,
-        fmt::format("the start does not fit the condition at the {} end: {}{} = {:.6g} beside {:.6g} (SI units)",
-                    c.right ? "right" : "left", s.fields[equations.varied[c.field]].name, c.order ? "'" : "", c.start,
+        fmt::format("the start does not fit the condition at the {} end: {} = {:.6g} beside {:.6g} (SI units)",
+                    c.right ? "right" : "left", s.jet_name({equations.varied[c.field], {c.space}, c.time}), c.start,
                     c.condition),
         "The condition is followed, so that a jump runs into the field, which no mesh resolves.",
         "Give a start that has the value of the condition there.");
 }
 
-std::optional<OneRun> run_on(const FieldEquations& equations, const PointForm& form, int cells, int order,
-                             const std::vector<FieldQuestion>& questions, const FieldRunOptions& options, bool rows,
-                             bool warns, Diagnostics& diagnostics) {
-  FieldMesh mesh(equations, form, cells, order);
+/// N0648: what no equation says of a potential.
+void tell_what_is_fixed(const FieldMotion& mesh, const FieldEquations& equations, Diagnostics& diagnostics) {
+  const FieldSystem& s = equations.system();
+  for (const std::size_t a : mesh.fixed_fields()) {
+    const std::string& name = s.fields[equations.varied[a]].name;
+    diagnostics.note("N0648", s.fields[equations.varied[a]].span,
+                     fmt::format("a constant in {} is not determined by the density", name),
+                     fmt::format("It holds derivatives of {0} alone, so that {0} plus any function of t is the same "
+                                 "motion. The run keeps {0} as it starts at the left end.",
+                                 name),
+                     fmt::format("Ask for {}_{}, or for what is made of it.", name, s.space.front().name));
+  }
+}
+
+/// Of a run on one mesh: with rows and warnings the first, without the second, which is there for the error.
+std::optional<OneRun> run_on(const FieldEquations& equations, Method& method, int cells,
+                             const std::vector<FieldQuestion>& questions, const FieldRunOptions& options, bool first,
+                             Diagnostics& diagnostics) {
+  const auto owner = method.mesh(equations, cells);
+  FieldMotion& mesh = *owner;
   OneRun out;
+  double longest = options.duration;
   if (mesh.trouble().empty()) mesh.start();
-  if (mesh.trouble().empty()) out.omega = mesh.omega_max(options.interrupt);
+  if (mesh.trouble().empty()) longest = method.longest_step(mesh, out, options);
   if (!mesh.trouble().empty()) return refuse(mesh, equations, diagnostics), std::nullopt;
-  if (warns) warn_of_clashes(mesh, equations, diagnostics);
-  const double longest = out.omega > 0 ? stability / out.omega : options.duration;
+  if (first) warn_of_clashes(mesh, equations, diagnostics), tell_what_is_fixed(mesh, equations, diagnostics);
   std::vector<double> stops;
   for (const FieldQuestion& q : questions) stops.push_back(q.time);
   stops.push_back(options.duration);
   const double every = options.every > 0 ? options.every : options.duration / 100;
-  for (double t = 0; t < options.duration; t += every) stops.push_back(t);
+  for (double t = 0; (first || method.waves) && t < options.duration; t += every) stops.push_back(t);
   std::sort(stops.begin(), stops.end());
   double size = 0;
   const double start = mesh.energy(size);
   out.energy = start;
   out.answers.assign(questions.size(), std::nan(""));
+  out.near.resize(questions.size());
   for (const double stop : stops) {
     const double way = stop - mesh.time();
     const auto steps = static_cast<std::size_t>(std::ceil(way / longest - 1e-9));
@@ -140,12 +240,26 @@ std::optional<OneRun> run_on(const FieldEquations& equations, const PointForm& f
     if (way > 0 || stop == 0) out.energy = mesh.energy(now), size = std::max(size, now);
     out.drift = std::max(out.drift, std::abs(out.energy - start));
     for (std::size_t i = 0; i < questions.size(); ++i)
-      if (questions[i].time == stop) out.answers[i] = mesh.answer(questions[i]);
-    if (rows && (out.trajectory.times.empty() || mesh.time() > out.trajectory.times.back()))
+      if (questions[i].time == stop) {
+        out.answers[i] = mesh.answer(questions[i]);
+        out.near[i].clear();
+        for (const double shift : beside)
+          if (method.stiff && !questions[i].total)
+            out.near[i].push_back(mesh.answer_beside(questions[i], shift * method.width));
+      }
+    if (first && options.trajectory && (out.trajectory.times.empty() || mesh.time() > out.trajectory.times.back()))
       add_row(mesh, equations, cells, out.trajectory);
   }
   out.h = longest;
   if (size > 0) out.drift /= size;
+  return out;
+}
+
+/// Of an answer on two meshes: the largest at and beside its place.
+double difference(const OneRun& one, const OneRun& other, std::size_t question) {
+  double out = std::abs(one.answers[question] - other.answers[question]);
+  const std::vector<double>&a = one.near[question], &b = other.near[question];
+  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) out = std::max(out, std::abs(a[k] - b[k]));
   return out;
 }
 
@@ -154,37 +268,48 @@ std::optional<OneRun> run_on(const FieldEquations& equations, const PointForm& f
 std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const std::vector<FieldQuestion>& questions,
                                          const FieldRunOptions& options, Diagnostics& diagnostics) {
   const auto begin = std::chrono::steady_clock::now();
-  const auto form = point_form(equations, diagnostics);
-  if (!form) return std::nullopt;
+  auto method = Method::of(equations, diagnostics);
+  if (!method) return std::nullopt;
   const FieldSystem& s = equations.system();
   const int cells = s.space.front().cells ? s.space.front().cells : usual_cells;
-  const int order = s.element_order ? s.element_order : usual_order;
-  if (refuse_coarse_mesh(equations, *form, cells, order, diagnostics)) return std::nullopt;
-  auto fine = run_on(equations, *form, cells, order, questions, options, options.trajectory, true, diagnostics);
+  const int order = method->order;
+  if (refuse_coarse_mesh(equations, *method, cells, diagnostics)) return std::nullopt;
+  auto fine = run_on(equations, *method, cells, questions, options, true, diagnostics);
   if (!fine) return std::nullopt;
   FieldRunResult out;
   out.cells = cells, out.order = order;
+  out.method =
+      method->waves ? "Taylor steps of order 8" : fmt::format("steps of Gauss's collocation of order {}", 2 * stages);
   out.nodes = static_cast<std::size_t>(cells) * static_cast<std::size_t>(order) + 1;
   out.steps = fine->steps, out.step = fine->h, out.omega_max = fine->omega;
-  out.energy = fine->energy, out.energy_drift = form->conserves ? fine->drift : -1;
+  out.energy = fine->energy, out.energy_drift = method->conserves() ? fine->drift : -1;
   out.end = options.duration;
   out.trajectory = std::move(fine->trajectory);
   if (options.trajectory) {
-    const FieldMesh mesh(equations, *form, cells, order);
-    for (int e = 0; e <= cells; ++e) out.places.push_back(mesh.place_of_cell(e));
+    const auto mesh = method->mesh(equations, cells);
+    for (int e = 0; e <= cells; ++e) out.places.push_back(mesh->place_of_cell(e));
   }
-  std::optional<OneRun> coarse;
+  std::optional<OneRun> coarse, coarser;
   if (options.errors && !questions.empty() && cells > 1)
-    coarse = run_on(equations, *form, std::max(cells / 2, 1), order, questions, options, false, false, diagnostics);
-  // Both meshes and their steps are off by the power 2p of the width of a cell, but never by less than rounding.
+    coarse = run_on(equations, *method, std::max(cells / 2, 1), questions, options, false, diagnostics);
+  if (method->stiff && coarse && cells / 4 > 0) {
+    Diagnostics ignored;  // without it there is a broader estimate
+    coarser = run_on(equations, *method, cells / 4, questions, options, false, ignored);
+  }
+  // Meshes and their steps are off by a power of the width of a cell, but never by less than rounding. Where a third
+  // mesh shows that the difference falls more slowly, by that.
   const double ratio = cells > 1 ? static_cast<double>(cells) / std::max(cells / 2, 1) : 2;
-  const double gain = std::pow(ratio, std::min(2 * order, 8)) - 1;
   const double rounding = 2.2e-16 * std::sqrt(static_cast<double>(out.steps) + 1);
   for (std::size_t i = 0; i < questions.size(); ++i) {
     const double value = fine->answers[i];
-    const double error =
-        coarse ? std::abs(value - coarse->answers[i]) / gain + rounding * std::max(std::abs(value), 1e-300)
-               : std::numeric_limits<double>::infinity();
+    double gain = std::pow(ratio, method->power(equations, questions[i]));
+    if (method->stiff) {
+      const double seen = coarser ? difference(*coarser, *coarse, i) / difference(*coarse, *fine, i) : 2;
+      gain = std::isfinite(seen) ? std::min(gain, std::max(seen, 2.0)) : gain;
+    }
+    const double error = coarse
+                             ? difference(*coarse, *fine, i) / (gain - 1) + rounding * std::max(std::abs(value), 1e-300)
+                             : std::numeric_limits<double>::infinity();
     out.answers.push_back({value, error});
   }
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

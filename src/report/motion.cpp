@@ -25,7 +25,9 @@ void add_certainty(ReportContent& content, const SimulationResult& run, const Me
   const auto& errors = run.final.errors;
   for (std::size_t i = 0;
        errors && i < std::min(run.final.q.size(), run.final.q.size() > most_coordinates ? 0 : most_coordinates); ++i) {
-    const Trajectory::Column& column = run.trajectory.columns[i];
+    const auto place = run.trajectory.column(system.coordinates[i].name);
+    if (!place) continue;  // it depends on functions that are free
+    const Trajectory::Column& column = run.trajectory.columns[*place];
     add(column.name + " at the end", std::isinf(errors->q[i]) ? "no digit is certain"
                                                               : with_uncertainty(run.final.q[i], errors->q[i]) +
                                                                     (column.unit.empty() ? "" : " " + column.unit));

@@ -29,7 +29,7 @@ struct CompanionPlan {
 struct CompanionRun {
   std::vector<double> rows;  // [grid × columns]; NaN at times that it did not come to; empty once they are added up
   std::vector<Happening> happenings;
-  std::vector<Sample> at;    // [options.at]; q is empty where it did not come to
+  std::vector<Sample> at;  // [options.at]; q is empty where it did not come to
   std::optional<Sample>
       final;  // at the end of the run that counts, or where it met the condition of `run until` itself
 };

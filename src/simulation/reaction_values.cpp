@@ -12,7 +12,8 @@ std::vector<Expr> with_reactions(const EquationsOfMotion& equations, std::span<c
   const bool any =
       std::any_of(system.constraints.begin(), system.constraints.end(),
                   [&](const Constraint& c) { return stands(c.reaction); }) ||
-      std::any_of(system.contacts.begin(), system.contacts.end(), [&](const Contact& c) { return stands(c.reaction); }) ||
+      std::any_of(system.contacts.begin(), system.contacts.end(),
+                  [&](const Contact& c) { return stands(c.reaction); }) ||
       std::any_of(system.releases.begin(), system.releases.end(), [&](const Release& r) { return stands(r.reaction); });
   if (!any) return {expressions.begin(), expressions.end()};
   ExprMap values;

@@ -27,7 +27,8 @@ constexpr CodeEntry entries[] = {
      "what belongs to one set of equations is left out.",
      "", ""},
     {"E0507", "a question about coordinates for a model with fields",
-     "Of fields there are derivations, certified conservation laws, waves and tests; Hamiltonians, paths, linearizations "
+     "Of fields there are derivations, certified conservation laws, waves and tests; Hamiltonians, paths, "
+     "linearizations "
      "and pictures are those of coordinates.",
      "", ""},
     {"E0690", "a derivation failed its certificate",

@@ -143,9 +143,10 @@ const FieldEquations* Study::field_equations() {
 const EquationsOfMotion* Study::equations() {
   if (has_fields()) {
     if (!derived_)
-      diagnostics_.error("E0507", model_->fields->system.density_span, "this question is about coordinates, and the model has fields",
-                         "Of fields there are derivations, conservation laws, waves and runs.",
-                         "`maup derive`, `maup check`, `maup invariants`, `maup simulate` and `maup test` work for fields.");
+      diagnostics_.error(
+          "E0507", model_->fields->system.density_span, "this question is about coordinates, and the model has fields",
+          "Of fields there are derivations, conservation laws, waves and runs.",
+          "`maup derive`, `maup check`, `maup invariants`, `maup simulate` and `maup test` work for fields.");
     derived_ = true;
     return nullptr;
   }

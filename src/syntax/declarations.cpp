@@ -63,6 +63,8 @@ Declarations::Declarations(const TokenList& list, const std::vector<StatementTok
     scan(list, statement, found);
     const Token& first = list.tokens[statement.begin];
     dimensionless_ = dimensionless_ || first.is("dimensionless");
+    for (std::size_t i = statement.begin + 1; first.is("field") && i < statement.end; ++i)
+      complex_ = complex_ || (list.tokens[i].is("complex") && list.tokens[i - 1].is(":"));
     const Token* second = statement.begin + 1 < statement.end ? &list.tokens[statement.begin + 1] : nullptr;
     if (first.is("independent") && second && second->kind == Token::Kind::Name) independent_ = second->text;
   }

@@ -18,6 +18,8 @@ class Declarations {
   Kind kind(std::string_view name) const;
   bool contains(std::string_view name) const { return kind(name) != Kind::None; }
   std::vector<std::string> names() const;
+  /// field ψ(x) : complex: conj, re and im are functions then.
+  bool complex() const { return complex_; }
   bool dimensionless() const { return dimensionless_; }
   /// What stands in the place of t: `independent x`.
   const std::string& independent() const { return independent_; }
@@ -26,7 +28,7 @@ class Declarations {
 
  private:
   std::unordered_map<std::string, Kind> names_;
-  bool dimensionless_ = false;
+  bool dimensionless_ = false, complex_ = false;
   std::string independent_ = "t";
 };
 

@@ -264,7 +264,8 @@ class Dumper {
 
   void field(const FieldDeclaration& s) {
     for (const auto& item : s.items) word("name", item.name.text), word("kind", item.kind.text);
-    for (const auto& range : s.ranges) word("on", range.variable.text), child("from", range.from), child("to", range.to);
+    for (const auto& range : s.ranges)
+      word("on", range.variable.text), child("from", range.from), child("to", range.to);
     children("cells", s.cells), child("order", s.order);
     if (s.periodic) word("boundary", "periodic");
     equations(s.boundary);

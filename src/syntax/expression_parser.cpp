@@ -187,6 +187,8 @@ ExpressionParser::Node ExpressionParser::primary() {
                   token.is("[") ? "A unit in square brackets stands directly after a number: 3 [J]." : "");
   }
   if (const Function* function = find_function(token.text)) return call(*function);
+  if (context_.declarations.complex() && peek(1).is("(") && !context_.declarations.contains(token.text))
+    if (const Function* function = find_complex_function(token.text)) return call(*function);
   return name();
 }
 
@@ -280,6 +282,7 @@ void ExpressionParser::check_application(const Token& name) {
   if (name.is("dt") && previous().is("dt") && context_.list.tokens[index_ - 2].is("/"))
     return;  // d/dt (…): `system` tells it
   if (kind != Declared::None || is_predefined(name.text) || energy_of(name.text) || is_momentum(name.text)) return;
+  if (name.is("i") && context_.declarations.complex()) return;
   unknown_before_bracket(name);
 }
 

@@ -62,12 +62,12 @@ constexpr std::array kStatementWords = {
 };
 
 constexpr std::array kClauseWords = {
-    "name"sv,     "at"sv,          "in"sv,       "mass"sv,   "length"sv, "stiffness"sv, "coefficient"sv, "inertia"sv,
-    "rotation"sv, "restitution"sv, "friction"sv, "static"sv, "slip"sv,   "normal"sv,    "limit"sv,       "when"sv,
-    "rising"sv,   "falling"sv,     "within"sv,   "rel"sv,    "on"sv,     "from"sv,      "to"sv,          "by"sv,
-    "steps"sv,    "cells"sv,       "boundary"sv, "rest"sv,   "angle"sv,  "axis"sv,      "until"sv,       "every"sv,
-    "exactly"sv,  "is"sv,          "not"sv,      "and"sv,    "or"sv,     "else"sv,      "where"sv,
-    "sticking"sv, "with"sv,
+    "name"sv,    "at"sv,       "in"sv,          "mass"sv,     "length"sv,   "stiffness"sv, "coefficient"sv,
+    "inertia"sv, "rotation"sv, "restitution"sv, "friction"sv, "static"sv,   "slip"sv,      "normal"sv,
+    "limit"sv,   "when"sv,     "rising"sv,      "falling"sv,  "within"sv,   "rel"sv,       "on"sv,
+    "from"sv,    "to"sv,       "by"sv,          "steps"sv,    "cells"sv,    "boundary"sv,  "rest"sv,
+    "angle"sv,   "axis"sv,     "until"sv,       "every"sv,    "exactly"sv,  "is"sv,        "not"sv,
+    "and"sv,     "or"sv,       "else"sv,        "where"sv,    "sticking"sv, "with"sv,
 };
 
 constexpr Function kFunctions[] = {
@@ -230,6 +230,13 @@ const Function* find_function(std::string_view word) {
   const auto found =
       std::find_if(std::begin(kFunctions), std::end(kFunctions), [&](const Function& f) { return f.name == word; });
   return found == std::end(kFunctions) ? nullptr : &*found;
+}
+
+const Function* find_complex_function(std::string_view word) {
+  static constexpr Function functions[] = {{"conj"}, {"re"}, {"im"}};
+  const auto found =
+      std::find_if(std::begin(functions), std::end(functions), [&](const Function& f) { return f.name == word; });
+  return found == std::end(functions) ? nullptr : &*found;
 }
 
 std::optional<EnergyStatement::Which> energy_of(std::string_view word) {

@@ -30,6 +30,8 @@ std::string_view formula_of_habit(std::string_view word);
 bool is_statement_word(std::string_view word);
 bool is_clause_word(std::string_view word);
 const Function* find_function(std::string_view word);
+/// conj, re, im: functions in models with complex fields alone.
+const Function* find_complex_function(std::string_view word);
 
 /// T, V, U, L, D and their long names.
 std::optional<EnergyStatement::Which> energy_of(std::string_view word);

@@ -429,6 +429,14 @@ constexpr CodeEntry kEntries[] = {
      "sides do not say so.",
      "coord x : length\nparam m = 1 kg, p = 1 N s\nT = 1/2 m x'^2\nU = p abs(x')\n",
      "coord x : length\nparam m = 1 kg, p = 1 N s\nT = 1/2 m x'^2\nU = p sqrt(x'^2 + 1e-6 [m^2/s^2])\n"},
+    {"E0433", "a mass depends on a coordinate",
+     "Lagrange's equations of a body with a mass m(q) are not Newton's: what the body gains or loses as it moves "
+     "brings "
+     "momentum of its own, of which its T knows nothing (Pesce, J. Appl. Mech. 70, 2003). A rope that runs over a "
+     "table "
+     "has one T for all its parts, and that is right.",
+     "coord x : length\nparam ρ = 1 kg/m\npoint P mass ρ x at (x, 0)\nstart x = 1 m\n",
+     "coord x : length\nparam ρ = 1 kg/m, l = 2 m\nT = 1/2 ρ l x'^2\nstart x = 1 m\n"},
     // ------------------------------------------------------------------------------------------------ not supported
     // yet
     {"E0255", "as many names as components",
@@ -581,6 +589,18 @@ constexpr CodeEntry kEntries[] = {
      "them, such as the velocity of a point, is solved for by a later version.",
      "coord x : length\nparam m = 1 kg\npoint P mass m at (x, x)\nstart P.x' = 1 m/s\n",
      "coord x : length\nparam m = 1 kg\npoint P mass m at (x, x)\nstart x' = 1 m/s\n"},
+    {"E0293", "a density that is not real",
+     "The action is a real number, and so is its density. i conj(ψ) ψ' alone is not: its imaginary part is half the "
+     "derivative of |ψ|² by t.",
+     "dimensionless\nfield ψ(x) : complex\ndensity = i conj(ψ) ψ' - 1/2 abs(ψ_x)^2\n",
+     "dimensionless\nfield ψ(x) : complex\ndensity = i/2 (conj(ψ) ψ' - ψ conj(ψ')) - 1/2 abs(ψ_x)^2\n"},
+    {"E0294", "a complex value in a place for real ones",
+     "Formulas with a complex field ψ fall apart into their real and imaginary parts, in ψ_r and ψ_i. What is measured "
+     "or conserved is real: re(…), im(…), abs(…). Functions of complex values are exp and whole powers.",
+     "dimensionless\nfield ψ(x) : complex\ndensity = i/2 (conj(ψ) ψ' - ψ conj(ψ')) - 1/2 abs(ψ_x)^2\n"
+     "expect current ψ flux ψ_x\n",
+     "dimensionless\nfield ψ(x) : complex\ndensity = i/2 (conj(ψ) ψ' - ψ conj(ψ')) - 1/2 abs(ψ_x)^2\n"
+     "expect current abs(ψ)^2 flux im(conj(ψ) ψ_x)\n"},
     {"E0296", "a derivative at a place that nothing holds",
      "At a place a body is held by the value of the field, with a force, and by its slope, with a moment.",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nV = 1 [N m^3] u_xx(1 m)^2\n",
@@ -601,9 +621,6 @@ constexpr CodeEntry kEntries[] = {
      "Beside fields stand coordinates, points and bodies, energies, constraints, forces and events. Contacts, friction, rates, gauges and paths belong to models of coordinates alone.",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 u_x^2\ncoord y : length\nT = 1/2 m y'^2\nfriction y limit 1 N\n",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 u_x^2\ncoord y : length\nT = 1/2 m y'^2\n"},
-    {"E0506", "a complex field", "Its real and imaginary parts are two real fields; the density is written in them.",
-     "dimensionless\nfield ψ(x) : complex\ndensity = ψ'^2\n",
-     "dimensionless\nfield a(x), b(x) : number\ndensity = b a' - a b' - 1/2 (a_x^2 + b_x^2)\n"},
 };
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include "system/complex_fields.hpp"
 #include "system/elaboration.hpp"
 
 #include <fmt/format.h>
@@ -163,9 +164,11 @@ void fix_space_dimension(Elaboration& e) {
 
 }  // namespace elaboration
 
-std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText& source, Diagnostics& diagnostics,
+std::optional<Model> elaborate(const syntax::SyntaxTree& written, const SourceText& source, Diagnostics& diagnostics,
                                const ExperimentOverrides& overrides) {
   using namespace elaboration;
+  const std::optional<syntax::SyntaxTree> real_fields = in_real_fields(written, diagnostics);
+  const syntax::SyntaxTree& tree = real_fields ? *real_fields : written;
   Elaboration e(tree, SourceTexts(source, overrides.texts()), overrides, diagnostics);
   headings(e);
   name_independent(e);

@@ -246,6 +246,8 @@ bool start_of_field(Elaboration& e, const syntax::StartStatement::Item& item);
 /// u_x, u_tx of a field; nothing where the name is none.
 std::optional<Value> value_of_jet(Elaboration& e, const syntax::Expression& x);
 /// u(3 m)
+/// E0289 where a field or a space variable stands in a value that is asked at a time: no place says where.
+bool refuse_without_place(Elaboration& e, Expr value, const syntax::Expression& x);
 Value value_at_place(Elaboration& e, const syntax::Expression& x);
 Expected meaning_of(Elaboration& e, const written::OfField& x, Span line);
 void check_statement_counts(Elaboration& e);

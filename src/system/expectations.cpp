@@ -139,7 +139,7 @@ Expected meaning_of(Elaboration& e, const written::ValueAt& x, Span) {
     if (time.poisoned) return std::nullopt;
     at = time.scalar();
   }
-  if (!subject) return std::nullopt;
+  if (!subject || refuse_without_place(e, subject->scalar(), *x.subject)) return std::nullopt;
   const auto expected = number_beside(e, *subject, *x.subject, x.expected);
   return expected ? Expected(expectation::ValueAt{subject->scalar(), at, *expected}) : std::nullopt;
 }

@@ -1,5 +1,6 @@
 #include <maupertuis/field_statements.hpp>
 #include <maupertuis/field_system.hpp>
+#include <maupertuis/print.hpp>
 
 #include "system/elaboration.hpp"
 #include "system/field_places.hpp"
@@ -154,13 +155,6 @@ void declare_field(Elaboration& e, const FieldDeclaration::Item& item) {
   d->done = true;
   d->used = true;
   d->value = Value::poison();
-  if (item.kind.text == "complex") {
-    e.diagnostics.error(
-        "E0506", item.kind.span, "not supported yet: a complex field",
-        "Its real and imaginary part are two real fields.",
-        fmt::format("Write two fields, such as {0}_r and {0}_i, and the density in them.", item.name.text));
-    return;
-  }
   if (!check_variables(e, item.variables)) return;
   d->index = system_of(e).fields.size();
   Field f{item.name.text, dimension_of_field(e, item), item.kind.text, false, {}, item.name.span};
@@ -245,6 +239,19 @@ Expr drives_as_formulas(Elaboration& e, Expr value) {
   return expand_time_derivatives(with_inputs_as_formulas(e.system(), value));
 }
 
+/// E0293: a density in complex fields has no imaginary part.
+bool check_real(Elaboration& e, const syntax::DensityText& s, const Dimension& dimension) {
+  const Value v = scalar_of(e, *s.imaginary, dimension, "the imaginary part of the density");
+  if (v.poisoned) return false;
+  const Expr imaginary = drives_as_formulas(e, v.scalar());
+  if (zero_test(imaginary).verdict == Verdict::Zero) return true;
+  e.diagnostics.error(
+      "E0293", s.value->span, "this density is not real",
+      fmt::format("Its imaginary part is {}; an action is a real number.", to_plain(imaginary, ReadingOrder{})),
+      "Write for example i/2 (conj(ψ) ψ' - ψ conj(ψ')) in the place of i conj(ψ) ψ'.");
+  return false;
+}
+
 void densities(Elaboration& e) {
   FieldSystem& system = system_of(e);
   std::optional<Span> first[2];
@@ -263,6 +270,7 @@ void densities(Elaboration& e) {
     const Value v = scalar_of(e, *s.value, dimension, what);
     if (v.poisoned) return;
     const Expr value = drives_as_formulas(e, v.scalar());
+    if (s.imaginary && !check_real(e, s, dimension)) return;
     if (check_jets(e, value, *s.value, 1, 2)) parts[s.dissipation].push_back(value);
   });
   if (!first[0]) {
@@ -545,6 +553,22 @@ std::optional<Value> value_of_jet(Elaboration& e, const syntax::Expression& x) {
   jet->time += x.primes;
   const bool given = system_of(e).fields[jet->field].given;
   return Value::of(system_of(e).jet_symbol(*jet), system_of(e).dimension_of(*jet), given ? -1 : jet->time);
+}
+
+bool refuse_without_place(Elaboration& e, Expr value, const syntax::Expression& x) {
+  if (!e.fields) return false;
+  const FieldSystem& system = system_of(e);
+  std::string name;
+  for (const Expr& symbol : symbols_of({&value, 1})) {
+    if (const auto jet = system.jet_of(symbol)) name = system.jet_name(*jet);
+    for (const SpaceVariable& v : system.space)
+      if (v.symbol == symbol) name = v.name;
+  }
+  if (name.empty()) return false;
+  e.diagnostics.error("E0289", x.span, fmt::format("`{}` stands without a place", name),
+                      "A field has a value at each place; a value that is asked for needs one.",
+                      "Write u(3 m), u_x(3 m), or for the velocity u_t(3 m); or `total` for the integral.");
+  return true;
 }
 
 Value value_at_place(Elaboration& e, const syntax::Expression& x) {

@@ -199,6 +199,7 @@ class Continuity {
     std::optional<Decided> decided;
     for (std::size_t k = 0; k < switches.size(); ++k) {
       decide(uses.terms_with(places[k]), decided);
+      if (decided->rows.empty()) continue;  // times a factor that is 0 for these parameters
       const Slopes::Formulas slopes = slope_formulas(places[k]);
       std::vector<SwitchSample> found;
       const auto take = [&](SwitchSample x) {

@@ -115,7 +115,8 @@ void gravity_twice(Subject& s) {
 
 void energies_without_velocity(Subject& s) {
   for (const EnergyTerm& t : s.system.kinetic)  // where q'' stands in L, v stands in T for q'
-    if (t.origin == "T" && s.system.higher.empty() && !s.system.lagrangian_given && !has_velocity(s.system.kinetic_energy()))
+    if (t.origin == "T" && s.system.higher.empty() && !s.system.lagrangian_given &&
+        !has_velocity(s.system.kinetic_energy()))
       s.diagnostics.warning("W0421", t.span, "no velocity stands in the kinetic energy",
                             "A kinetic energy is made of velocities: 1/2 m x'^2.",
                             "Write x' for a velocity; a potential energy belongs in V.");

@@ -11,10 +11,24 @@ namespace {
 using syntax::Expression;
 using Inertia = syntax::BodyStatement::Inertia;
 
+/// What flows into or out of a body carries momentum, which Lagrange's equations of a mass m(q) leave out (Pesce 2003,
+/// J. Appl. Mech. 70, 751): they are not Newton's.
+bool refuse_coordinate(Elaboration& e, const Expression& x, const std::string& what, int order) {
+  if (order < 0) return false;
+  e.diagnostics.error(
+      "E0433", x.span, fmt::format("{} depends on a coordinate", what),
+      "What a body gains or loses as it moves brings momentum of its own, which Lagrange's equations of "
+      "such a mass leave out.",
+      "Describe the bodies that exchange it, or write T and V of the whole system.");
+  return true;
+}
+
 /// A mass in kg; poisoned with a message if its value cannot be one.
 Value mass_of(Elaboration& e, const Expression& x, const std::string& name) {
-  Value m = scalar_of(e, x, dimensions::mass(), fmt::format("the mass of {}", name));
+  const std::string what = fmt::format("the mass of {}", name);
+  Value m = scalar_of(e, x, dimensions::mass(), what);
   if (m.poisoned || m.scalar().is_zero()) return m;  // `mass 0` says that it has none
+  if (refuse_coordinate(e, x, what, m.order)) return Value::poison();
   const std::optional<double> size = constant_value(e, m.scalar());
   if (!size || *size > 0) return m;
   const bool zero = *size == 0;
@@ -91,7 +105,7 @@ std::optional<ExprMatrix> inertia_of(Elaboration& e, const syntax::BodyStatement
   bool poisoned = false;
   for (const syntax::ExpressionPtr& x : s.inertia) {
     const Value v = scalar_of(e, *x, dimensions::moment_of_inertia(), "a moment of inertia");
-    poisoned = poisoned || v.poisoned;
+    poisoned = poisoned || v.poisoned || refuse_coordinate(e, *x, fmt::format("the inertia of {}", name), v.order);
     if (!v.poisoned) values.push_back(v.scalar());
   }
   if (poisoned) return std::nullopt;

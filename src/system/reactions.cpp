@@ -60,7 +60,8 @@ Declaration* find_named(Elaboration& e, const syntax::Name& name) {
   if (d && (d->kind == Kind::Constraint || d->kind == Kind::Reaction || d->kind == Kind::Contact)) return d;
   std::vector<std::string> names;
   for (const Declaration& other : e.table.declarations())
-    if (other.kind == Kind::Constraint || other.kind == Kind::Reaction || other.kind == Kind::Contact) names.push_back(other.name);
+    if (other.kind == Kind::Constraint || other.kind == Kind::Reaction || other.kind == Kind::Contact)
+      names.push_back(other.name);
   const std::string near = did_you_mean(name.text, names);
   e.diagnostics.error("E0226", name.span,
                       d && d->statement ? fmt::format("`{}` is a {}, not a constraint", name.text, word_of(d->kind))

@@ -88,6 +88,11 @@ void judge_number(const expectation::Number& e, const MechanicalSystem& system, 
   result.actual = fmt::format("{:.17g}{}", actual / e.unit.factor, unit_after(e.unit));
   result.expected = fmt::format("{:.17g}{}", expected / e.unit.factor, unit_after(e.unit));
   result.tolerance = tolerance_text(e.tolerance, e.unit, system);
+  if (!std::isfinite(actual)) {
+    result.actual = "no value";
+    result.message = "It is infinite or undefined there.";
+    return;
+  }
   result.passed = error <= allowed_difference(e.tolerance, system, expected);
   result.message = fmt::format("off by {:.2g}{}", error / e.unit.factor, unit_after(e.unit));
 }

@@ -178,6 +178,7 @@ void RunClaims::judge_values(const std::vector<Value>& values, const std::vector
 void RunClaims::judge_value(const expectation::Number& e, double actual, double uncertainty,
                             ExpectationResult& result) const {
   judge_number(e, model_.system, actual, result);
+  if (!std::isfinite(actual)) return;
   const double expected = number(e.value);
   const ValueVerdict verdict =
       value_verdict(actual, expected, allowed_difference(e.tolerance, model_.system, expected), uncertainty);

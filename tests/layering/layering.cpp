@@ -60,12 +60,10 @@ Names reach(const std::string& module, const Table& table) {
 }
 
 /// Readers of private headers from outside the family, each with its reason in ARCHITECTURE.md.
-const std::set<std::pair<std::string, std::string>> confidants{{"certificate", "symbolic/evaluate"},
-                                                               {"analysis/invariants", "symbolic/evaluate"},
-                                                               {"fields", "symbolic/evaluate"},
-                                                               {"integrator/extended", "kernel/extended"},
-                                                               {"integrator/taylor", "kernel/disks"},
-                                                               {"integrator/extended", "kernel/disks"}};
+const std::set<std::pair<std::string, std::string>> confidants{
+    {"certificate", "symbolic/evaluate"},  {"analysis/invariants", "symbolic/evaluate"},
+    {"fields", "symbolic/evaluate"},       {"integrator/extended", "kernel/extended"},
+    {"integrator/taylor", "kernel/disks"}, {"integrator/extended", "kernel/disks"}};
 
 std::string top_folder(const std::string& module) { return module.substr(0, module.find('/')); }
 

@@ -1,6 +1,6 @@
-#include "fields_text.hpp"
 #include "command.hpp"
 #include "constraint_text.hpp"
+#include "fields_text.hpp"
 #include "interrupt.hpp"
 #include "open_study.hpp"
 #include "outcome.hpp"

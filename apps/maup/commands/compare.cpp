@@ -187,8 +187,8 @@ ExitCode compare_models(const CompareOptions& options, Console& console) {
   if (of_map.has_errors()) return end(json_document("compare"), ExitCode::Usage);
   const bool readable = !unreadable(a.diagnostics()) && !unreadable(b.diagnostics());
   const EquationsOfMotion* a_equations = a.equations();
-  if (!b.equations() || !a_equations || a.refuse_held_integrals() || a.refuse_modes() || b.refuse_modes() || b.refuse_held_integrals() || !a.certificate() ||
-      !b.certificate())
+  if (!b.equations() || !a_equations || a.refuse_held_integrals() || a.refuse_modes() || b.refuse_modes() ||
+      b.refuse_held_integrals() || !a.certificate() || !b.certificate())
     return end(json_document("compare"), readable ? ExitCode::ModelWrong : ExitCode::Usage);
 
   const InterruptScope of_a = a.interruptible(), of_b = b.interruptible();

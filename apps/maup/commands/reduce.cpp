@@ -38,7 +38,8 @@ ExitCode reduce_model(const ReduceOptions& options, Console& console) {
   check_output_files({{"-o", output, FileKind::Model}}, options.path, study.diagnostics());
   if (readable_model && study.wrong()) return finish_usage(console, study, "reduce");
   const EquationsOfMotion* equations = study.equations();
-  if (!equations || study.refuse_held_integrals() || study.refuse_modes() || !study.certificate()) return finish(console, study, document);
+  if (!equations || study.refuse_held_integrals() || study.refuse_modes() || !study.certificate())
+    return finish(console, study, document);
   const InterruptScope scope = study.interruptible();
   const Reduction r = reduce(*study.model(), *equations, *study.tree(), study.source(), study.diagnostics());
   document["dependent"] = r.dependent;

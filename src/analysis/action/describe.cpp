@@ -107,7 +107,14 @@ StationaryPath describe(Problem& problem, const Refined& refined, const ActionEn
     return out;
   }
   fill_second(problem, refined, fixed, least, singular, options, out);
-  if (out.second.by_inertia && out.second.by_fields && !out.second.index)
+  constexpr double usual_miss = 1e-3;  // beyond, Jacobi fields along the path are those of some other motion
+  const bool disagree = out.second.by_inertia && out.second.by_fields && !out.second.index;
+  if (disagree && out.check.done && out.check.missed > usual_miss)
+    out.second.reason += fmt::format(
+        " The motion, carried from stretch to stretch, misses the path by {:.1g} of its size: it is too sensitive "
+        "here for either count.",
+        out.check.missed);
+  else if (disagree)
     diagnostics.warning("W1201", {}, "the two counts of a Morse index disagree", out.second.reason,
                         "No index is given for this path. Please report the model.");
   if (options.variations) out.second.variations = test_variations(problem, refined.coarse, fixed, least);

@@ -320,8 +320,7 @@ std::optional<GivenPath> action_of_path(const Model& model, const EquationsOfMot
   const Sums whole = integrator.over(start, end);
   Vector total = Vector::Zero(1 + problem.functional.integrals());
   if (!whole.finite || !integrator.add(start, end, whole, whole.size, deepest, total, out.action_error)) {
-    diagnostics.error("E1206", {}, "L has no finite value along the path",
-                      "The integral of L is taken at points inside of the path.", "Give a path on which L is defined.");
+    diagnose_infinite_lagrangian("path", diagnostics);
     return std::nullopt;
   }
   out.action = total[0];

@@ -75,13 +75,18 @@ ActionEnds ends_of_trial(const Trial& trial) {
 }
 
 /// A motion is stationary as it is: the mesh is not moved, only compared with its halves.
-Refined as_refined(Problem& problem, const Trial& trial) {
+std::optional<Refined> as_refined(Problem& problem, const Trial& trial, Diagnostics& diagnostics) {
   Refined out;
   out.coarse = trial;
   out.fine = trial;
   const Assembly a = assemble(problem.functional, trial, 0);
   const Trial halves = halved(trial, std::vector<bool>(static_cast<std::size_t>(trial.mesh.elements()), true));
-  out.action = assemble(problem.functional, halves, 0).action;
+  const Assembly finer = assemble(problem.functional, halves, 0);
+  if (!a.finite || !finer.finite) {
+    diagnose_infinite_lagrangian("motion", diagnostics);
+    return std::nullopt;
+  }
+  out.action = finer.action;
   out.action_error = std::abs(out.action - a.action) + rounding_of_action(problem.functional, halves);
   return out;
 }
@@ -129,8 +134,10 @@ std::optional<MotionAction> action_of_motion(const Model& model, const Equations
   if (!start) return std::nullopt;
   const auto trial = follow(problem, start->state, *length, options, diagnostics);
   if (!trial) return std::nullopt;
+  const auto refined = as_refined(problem, *trial, diagnostics);
+  if (!refined) return std::nullopt;
   MotionAction out;
-  out.path = describe(problem, as_refined(problem, *trial), ends_of_trial(*trial), {}, options, diagnostics);
+  out.path = describe(problem, *refined, ends_of_trial(*trial), {}, options, diagnostics);
   if (interrupted(options, diagnostics)) return std::nullopt;
   out.path.found_from = "the model's start";
   out.rows = rows_of(problem, *trial);
@@ -162,8 +169,10 @@ std::optional<PeriodicAction> action_of_orbit(const Model& model, const Equation
   trial->q.conservativeResize(Eigen::NoChange, trial->mesh.nodes());
   ActionEnds ends = ends_of_trial(*trial);
   ends.closed = true;
+  const auto refined = as_refined(problem, *trial, diagnostics);
+  if (!refined) return std::nullopt;
   PeriodicAction out;
-  out.path = describe(problem, as_refined(problem, *trial), ends, {}, options, diagnostics);
+  out.path = describe(problem, *refined, ends, {}, options, diagnostics);
   if (interrupted(options, diagnostics)) return std::nullopt;
   out.path.found_from = "the periodic motion next to the model's start";
   out.period = found->motion.period;

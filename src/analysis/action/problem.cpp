@@ -61,6 +61,12 @@ bool interrupted(const ActionOptions& options, Diagnostics& diagnostics) {
   return true;
 }
 
+void diagnose_infinite_lagrangian(std::string_view curve, Diagnostics& diagnostics) {
+  diagnostics.error("E1206", {}, fmt::format("L has no finite value along the {}", curve),
+                    fmt::format("The integral of L is taken at points inside of the {}.", curve),
+                    fmt::format("Give a {} on which L is defined.", curve));
+}
+
 Problem::Problem(const Model& m, const EquationsOfMotion& e)
     : model(m),
       equations(e),

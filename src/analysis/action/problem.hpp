@@ -12,6 +12,9 @@ namespace maupertuis::action {
 /// Whether the study is to end at once: then E1210.
 bool interrupted(const ActionOptions& options, Diagnostics& diagnostics);
 
+/// E1206: L is infinite or no number on the `curve`, "path" or "motion".
+void diagnose_infinite_lagrangian(std::string_view curve, Diagnostics& diagnostics);
+
 /// False with E1201: forces that no Lagrangian gives, constraints between velocities.
 bool has_action(const EquationsOfMotion& equations, Diagnostics& diagnostics);
 

@@ -36,10 +36,11 @@ constexpr std::array entries{
               "--routhian takes the names of coordinates of the model, separated by commas: those whose velocities are "
               "replaced by their momenta.",
               "maup hamiltonian top.lag --routhian p_φ", "maup hamiltonian top.lag --routhian φ"},
-    CodeEntry{"E1106", "a Dirac bracket where there is none",
-              "{A, B}_D = {A, B} − {A, χ_i} C⁻¹_ij {χ_j, B} belongs to constraints χ of the second class, which a singular "
-              "Legendre transform leaves in phase space. Forces, dissipation and velocity constraints have no place in it.",
-              "", ""},
+    CodeEntry{
+        "E1106", "a Dirac bracket where there is none",
+        "{A, B}_D = {A, B} − {A, χ_i} C⁻¹_ij {χ_j, B} belongs to constraints χ of the second class, which a singular "
+        "Legendre transform leaves in phase space. Forces, dissipation and velocity constraints have no place in it.",
+        "", ""},
 };
 
 }  // namespace

@@ -10,6 +10,7 @@ namespace maupertuis::invariants {
 namespace {
 
 constexpr int samples = 200;
+constexpr std::size_t most_steps = 500'000;  // some seconds: a check beside the answer is not what one waits for
 
 /// Σ term² of an integral written as a sum.
 Expr sum_of_squares(Expr integral) {
@@ -46,6 +47,7 @@ void measure_drift(Invariants& result, const Model& model, const EquationsOfMoti
   SimulationOptions options;
   options.duration = duration;
   options.errors = ErrorEstimates::None;
+  options.maximum_steps = most_steps;
   options.interrupt = interrupt_of(*model.system.context);
   for (int k = 0; k <= samples; ++k) options.at.push_back(begin + duration * k / samples);
   Probe probe;

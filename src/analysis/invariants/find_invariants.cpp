@@ -1,5 +1,6 @@
 #include <maupertuis/along_motion.hpp>
 #include <maupertuis/constraint_analysis.hpp>
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/invariants.hpp>
 #include <maupertuis/print.hpp>
 
@@ -27,22 +28,26 @@ class Finder {
          Diagnostics& diagnostics)
       : model_(model),
         equations_(equations),
+        solvable_(equations.determined ? *equations.determined : equations),
         system_(*equations.system),
         options_(options),
         diagnostics_(diagnostics),
-        rows_(motion_rows(equations)),
+        rows_(motion_rows(solvable_)),
         ansatz_(make_ansatz(equations, rows_)),
         along_(equations) {
     Diagnostics unheard;
     const auto start = consistent_start(model, equations, unheard);
     if (start) along_.set_start(start->state);
-    result_.freedoms = system_.constrained()
-                           ? analyse_constraints(equations, start ? &start->state : nullptr).configuration_freedoms
-                           : system_.coordinates.size();
+    if (equations.degenerate)
+      result_.freedoms = equations.degenerate->motions / 2;
+    else
+      result_.freedoms = system_.constrained()
+                             ? analyse_constraints(equations, start ? &start->state : nullptr).configuration_freedoms
+                             : system_.coordinates.size();
     const auto acts = [](const ExprVector& v) {
       return std::any_of(v.begin(), v.end(), [](const Expr& e) { return !e.is_zero(); });
     };
-    hamiltonian_ = !system_.constrained() && !acts(equations.generalized_forces) && !acts(equations.dissipative_terms);
+    hamiltonian_ = !system_.constrained() && !equations.degenerate && !acts(equations.generalized_forces) && !acts(equations.dissipative_terms);
   }
 
   std::optional<Invariants> carry_out() {
@@ -56,7 +61,7 @@ class Finder {
     remove_functions_of_others();
     put_shown_first();
     number_them();
-    if (options_.relations) add_algebra(result_, rows_, equations_, options_.seed + 5);
+    if (options_.relations) add_algebra(result_, rows_, solvable_, options_.seed + 5);
     add_balance_laws(result_, ansatz_, equations_, options_);
     if (options_.completeness && hamiltonian_)
       result_.symmetry_bound =
@@ -103,6 +108,11 @@ class Finder {
   }
 
   bool singular() {
+    if (equations_.degenerate && !equations_.degenerate->free.empty()) {
+      diagnostics_.error("E1002", {}, "functions of time are free, so that the accelerations are not determined",
+                         "The search needs a rate of change at each point.", "`gauge EXPR = EXPR` makes a choice.");
+      return false;
+    }
     diagnostics_.error("E1002", {}, "the equations do not determine the accelerations",
                        "At random points the mass matrix, bordered by the constraints, was singular: conservation "
                        "along the motion has no "
@@ -146,6 +156,7 @@ class Finder {
 
   /// Certifies, names and keeps.
   void take(Expr value, IntegralKind kind) {
+    if (equations_.degenerate && !equations_.degenerate->is_determined(value)) return;  // it moves with the gauge
     ConservedFunction integral;
     integral.certificate = along_.vanishes(along_.rate(value));
     if (integral.certificate.verdict != Verdict::Zero) {
@@ -219,7 +230,7 @@ class Finder {
       if (!i.explicit_time) autonomous.push_back(i.value);
     const auto marks = autonomous.empty()
                            ? std::vector<bool>()
-                           : independent_functions_of_state(rows_, equations_, autonomous, options_.seed + 8);
+                           : independent_functions_of_state(rows_, solvable_, autonomous, options_.seed + 8);
     std::size_t next = 0;
     std::vector<ConservedFunction> kept;
     for (ConservedFunction& i : result_.integrals) {
@@ -265,15 +276,16 @@ class Finder {
       if (!i.explicit_time) autonomous.push_back(i.value);
     }
     if (values.empty()) return;
-    const auto marks = independent_functions_of_state(rows_, equations_, values, options_.seed + 8);
+    const auto marks = independent_functions_of_state(rows_, solvable_, values, options_.seed + 8);
     for (std::size_t i = 0; i < marks.size(); ++i) result_.integrals[i].independent = marks[i];
     result_.rank = static_cast<std::size_t>(std::count(marks.begin(), marks.end(), true));
-    const auto without_time = independent_functions_of_state(rows_, equations_, autonomous, options_.seed + 8);
+    const auto without_time = independent_functions_of_state(rows_, solvable_, autonomous, options_.seed + 8);
     result_.autonomous_rank = static_cast<std::size_t>(std::count(without_time.begin(), without_time.end(), true));
   }
 
   const Model& model_;
   const EquationsOfMotion& equations_;
+  const EquationsOfMotion& solvable_;  // equations of the same motion that determine all accelerations
   const MechanicalSystem& system_;
   const InvariantsOptions& options_;
   Diagnostics& diagnostics_;
@@ -289,7 +301,7 @@ class Finder {
 
 std::optional<Invariants> find_invariants(const Model& model, const EquationsOfMotion& equations,
                                           const InvariantsOptions& options, Diagnostics& diagnostics) {
-  if (is_nonlinear_in_velocities(equations)) {
+  if (is_nonlinear_in_velocities(equations.determined ? *equations.determined : equations)) {
     diagnostics.error(
         "E1003", {}, "a constraint is not linear in the velocities",
         "The search draws velocities that satisfy the constraints over a prime field, which needs linear equations.",
@@ -315,7 +327,8 @@ bool is_constant_along_motion(Expr e, const MotionRows& rows) {
 
 }  // namespace
 
-bool is_function_of(Expr e, const Invariants& found, const EquationsOfMotion& equations) {
+bool is_function_of(Expr e, const Invariants& found, const EquationsOfMotion& given) {
+  const EquationsOfMotion& equations = given.determined ? *given.determined : given;
   const MotionRows rows = motion_rows(equations);
   if (!is_constant_along_motion(e, rows)) return false;
   std::vector<Expr> functions;

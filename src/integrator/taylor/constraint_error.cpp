@@ -51,8 +51,9 @@ double constraint_error(const KernelWorkspace& work, std::size_t freedoms, std::
   for (std::size_t j = 0; j < constraints; ++j) {
     const double rate = rate_bound(work, j, freedoms, h) + along(j, usual.v);
     const double unseen = h > 0 ? rounding_of_position(work, j, freedoms) / h : 0;
-    largest = std::max({largest, ratio(work.constraint_value(j), work.constraint_scale(j) + h * rate + along(j, usual.q)),
-                        ratio(beyond(work.constraint_rate(j), unseen), work.constraint_rate_scale(j) + rate)});
+    largest =
+        std::max({largest, ratio(work.constraint_value(j), work.constraint_scale(j) + h * rate + along(j, usual.q)),
+                  ratio(beyond(work.constraint_rate(j), unseen), work.constraint_rate_scale(j) + rate)});
   }
   return largest;
 }

@@ -57,7 +57,9 @@ struct VariationalStepper::Impl {
   void add_integrals(StageSolver& stages, double h, std::vector<Compensated>& sums) const;
   Sample sample(double t) const;
   Sample sample_at(const Phase& phase, const std::vector<Compensated>& sums) const;
-  Step ended(StepEnding ending, std::string reason) const { return {now.t, now.t, ending, std::move(reason), {}, {}, 0}; }
+  Step ended(StepEnding ending, std::string reason) const {
+    return {now.t, now.t, ending, std::move(reason), {}, {}, 0};
+  }
 
   MotionFunctions functions;
   VariationalOptions options;

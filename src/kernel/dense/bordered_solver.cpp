@@ -53,6 +53,7 @@ struct BorderedSolver::Impl {
   bool whole = true;
   Eigen::PartialPivLU<Matrix> lu;
   mutable Vector scratch;
+  mutable Matrix inverse;
 };
 
 /// A second way, where the masses are small against A: coordinates by their inertia, constraints by their rows in that
@@ -220,6 +221,17 @@ void BorderedSolver::solve(std::span<double> b) const {
     for (std::size_t i = 0; i < s.rows.size(); ++i) all[s.rows[i]] = s.scratch[static_cast<Index>(i)];
   }
   for (std::size_t i = 0; i < s.size; ++i) b[i] *= s.scale[i];
+}
+
+bool BorderedSolver::negative_inverse(double* inverse, std::size_t stride) const {
+  constexpr double least_ratio = 1e-4;
+  const Impl& s = *impl_;
+  if (s.m == 0 || !s.whole || pivot_ratio() < least_ratio) return false;
+  s.inverse.noalias() = s.lu.inverse();
+  for (std::size_t d = 0; d < s.size; ++d)
+    for (std::size_t i = 0; i < s.size; ++i)
+      inverse[d * stride + i] = -s.scale[i] * s.scale[d] * s.inverse(static_cast<Index>(i), static_cast<Index>(d));
+  return true;
 }
 
 double BorderedSolver::pivot_ratio() const { return impl_->m == 0 ? 1.0 : ratio_of_pivots(impl_->lu); }

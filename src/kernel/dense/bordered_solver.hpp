@@ -26,6 +26,9 @@ class BorderedSolver {
   /// b → (x, λ) in place; the entries of dropped rows are ignored, and their λ is 0.
   /// Precondition: factor() returned nothing.
   void solve(std::span<double> b) const;
+  /// −K⁻¹ of the bordered matrix K, column d from inverse[d · stride] on. False: rows were dropped, or K is so badly
+  /// conditioned that a product with its inverse loses digits that the factors keep; then nothing is written.
+  bool negative_inverse(double* inverse, std::size_t stride) const;
   /// The smallest pivot of the equilibrated matrix against the largest: what it is worth; 1 without constraints.
   double pivot_ratio() const;
   /// Whether this row of A is in force, and whether its λ is determined: not where it takes part in a dependence.

@@ -18,7 +18,7 @@ using packed::rolled_group;
 /// what they read. (Strands belong to solutions in parts.)
 bool RolledEmitter::has_later() const {
   const auto stands_apart = [](const Pack& pack) { return pack.kind == Pack::Scalar || pack.kind == Pack::Strand; };
-  return program_.unknowns == program_.freedoms && program_.unknowns <= packed::most_by_inverse &&
+  return packed::solves_by_inverse(program_.unknowns, program_.freedoms) &&
          std::none_of(p_.packs.begin(), p_.packs.end(), stands_apart) &&
          std::all_of(classes_.begin(), classes_.end(), [](const auto& c) { return adds_late(c.first); });
 }

@@ -13,7 +13,7 @@ using llvm::Value;
 using packed::lanes;
 
 void RolledEmitter::solution() {
-  if (program_.unknowns != program_.freedoms || program_.unknowns > packed::most_by_inverse) return;
+  if (!packed::solves_by_inverse(program_.unknowns, program_.freedoms)) return;
   open_stage("solve");
   solve_by(field(offsetof(packed::CompiledArguments, inverse)),
            field(offsetof(packed::CompiledArguments, tangent_row)));

@@ -9,8 +9,12 @@ namespace maupertuis::packed {
 /// Rolled code adds up the products of so many stages at once.
 inline constexpr int rolled_group = 4;
 
-/// Unknowns up to which rolled code solves by −M₀⁻¹.
-inline constexpr std::size_t most_by_inverse = 48;
+/// Unknowns up to which rolled code solves by −M₀⁻¹; with constraints, whose bordered matrix has no code to invert it.
+inline constexpr std::size_t most_by_inverse = 48, most_bordered_by_inverse = 16;
+
+constexpr bool solves_by_inverse(std::size_t unknowns, std::size_t freedoms) {
+  return unknowns <= (unknowns == freedoms ? most_by_inverse : most_bordered_by_inverse);
+}
 
 /// Of rolled code.
 struct CompiledArguments {

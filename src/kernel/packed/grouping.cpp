@@ -244,8 +244,10 @@ class Grouping {
     for (Group& group : groups_) {
       const bool pair = step(group.steps[0]).head.second != no_slot;
       const std::size_t terms = std::max<std::size_t>(pair ? 2 : 1, step(group.steps[0]).products.size());
-      // Rolled code calls back for what stands alone; straight-line code writes it out.
-      group.packs = can_pack(step(group.steps[0])) && (group.steps.size() * terms >= 2 || in_.unknowns > lanes);
+      // Rolled code calls back for what stands alone; straight-line code, of few unknowns without constraints, writes
+      // it out.
+      const bool written_out = in_.unknowns <= lanes && in_.unknowns == in_.freedoms;
+      group.packs = can_pack(step(group.steps[0])) && (group.steps.size() * terms >= 2 || !written_out);
     }
   }
 

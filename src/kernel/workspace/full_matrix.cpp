@@ -93,6 +93,12 @@ KernelStatus StageSolver::factor_full() {
   return KernelStatus::Ok;
 }
 
+/// The first stage is solved by the factors, which constraints need to be met; the later ones are products.
+bool StageSolver::inverts_bordered() {
+  return by_matrix_ && x_.unknowns > x_.program.freedoms &&
+         solver_->negative_inverse(inverse_.data(), x_.padded_unknowns());
+}
+
 /// Whether the rows of A that were dropped as dependent hold for the accelerations of the others.
 bool StageSolver::constraints_agree() {
   const std::size_t n = x_.program.freedoms;

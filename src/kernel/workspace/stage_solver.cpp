@@ -79,7 +79,8 @@ KernelStatus StageSolver::factor(int stages) {
     return KernelStatus::Ok;
   }
   const KernelStatus status = factor_full();
-  if (stages > 1 && by_inverse_ && x_.unknowns > 0 && (in_code_.code.solve || !in_code_.code.stage))
+  if (status == KernelStatus::Ok && stages > 1 && x_.unknowns > 0 && (in_code_.code.solve || !in_code_.code.stage) &&
+      (by_inverse_ || inverts_bordered()))
     later_ = LaterStages::ByInverse;
   return status;
 }
@@ -120,7 +121,7 @@ KernelStatus StageSolver::solve(int stage) {
     return x_.engine.are_finite(unknown_.data(), x_.unknowns, 1, x_.unknowns) ? KernelStatus::Ok
                                                                               : KernelStatus::NonFinite;
   };
-  if (later_ == LaterStages::ByInverse && stage == 0) {
+  if (later_ == LaterStages::ByInverse && stage == 0 && lifted_) {
     if (solve_twice_by_inverse(stage)) return finite();
     if (const KernelStatus status = factor_anew(); status != KernelStatus::Ok) return status;
   }

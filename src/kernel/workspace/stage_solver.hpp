@@ -16,7 +16,7 @@ namespace maupertuis::workspace {
 ///     by matrix    up to 16 unknowns: the tangents of all slots in the direction of each unknown are kept, so that
 ///                  corrections are products
 ///     by inverse   −M₀⁻¹, of up to 16 unknowns where M₀ is positive definite, or of up to 48 where there is code that
-///                  finds it
+///                  finds it; with constraints of up to 16 unknowns, in the stages after the first
 ///     lifted       more unknowns, without constraints: through the tangents (LiftedSolve)
 ///     bordered     with constraints, and wherever else the others do not hold: factors of the full matrix, with pivots
 class StageSolver {
@@ -76,6 +76,7 @@ class StageSolver {
   void fetch_mass(std::size_t i, const double* column, std::size_t step, std::size_t first, std::size_t last);
   KernelStatus factor_full();
   bool has_symmetric_pattern();
+  bool inverts_bordered();
   bool constraints_agree();
 
   // Inverse (inverse_solution.cpp).

@@ -151,7 +151,8 @@ const ContactValues& ContactFunctions::at(double t, std::span<const double> q, s
   out.normal = rows_of(gaps_, gaps_out_, 0);
   out.tangent = rows_of(slips_, slips_out_, n_);
   const auto second = static_cast<std::ptrdiff_t>(frictions_);
-  out.second_slip.assign(slips_out_.begin() + second, slips_out_.begin() + second + static_cast<std::ptrdiff_t>(contacts_));
+  out.second_slip.assign(slips_out_.begin() + second,
+                         slips_out_.begin() + second + static_cast<std::ptrdiff_t>(contacts_));
   out.second_tangent.assign(out.tangent.begin() + second, out.tangent.end());
   out.tangent.resize(frictions_);
   for (auto* list : {&out.gap_scale, &out.rate, &out.drive, &out.rate_scale, &out.restitution}) list->clear();

@@ -21,11 +21,11 @@ struct ContactValues {
   std::vector<double> rate_scale;      // [contacts] Σ |∂g/∂q_i q̇_i| + |∂g/∂t|
   std::vector<SparseRow> normal;       // [contacts] ∂g/∂q
   std::vector<double> slip, slip_scale;  // [contacts + frictions] v_t, Σ |∂v_t/∂q̇_i q̇_i| + |rest|; 0 without friction
-  std::vector<SparseRow> tangent;      // [contacts + frictions] ∂v_t/∂q̇
-  std::vector<double> second_slip;         // [contacts] of friction in space the second component of v_t; else 0
-  std::vector<SparseRow> second_tangent;   // [contacts] and its ∂v_t/∂q̇; else empty
-  std::vector<double> kinetic, fixed;  // [contacts + frictions] μ and μ_s, or the limits of the force
-  std::vector<double> restitution;     // [contacts]
+  std::vector<SparseRow> tangent;         // [contacts + frictions] ∂v_t/∂q̇
+  std::vector<double> second_slip;        // [contacts] of friction in space the second component of v_t; else 0
+  std::vector<SparseRow> second_tangent;  // [contacts] and its ∂v_t/∂q̇; else empty
+  std::vector<double> kinetic, fixed;     // [contacts + frictions] μ and μ_s, or the limits of the force
+  std::vector<double> restitution;        // [contacts]
 };
 
 /// The functions of contacts and frictions, and M and A, at points. Inputs: q, q̇, t.
@@ -40,8 +40,8 @@ class ContactFunctions {
   /// `held`: rows h besides those of A, with h x = 0.
   Eigen::MatrixXd response(double t, std::span<const double> q, std::span<const double> v,
                            std::span<const SparseRow> rows, std::span<const SparseRow> held = {});
-  /// What g̈ and v̇_t are where q̈ = 0: [contacts], then [contacts + frictions], then second components [contacts]. Cost of the first call: the second
-  /// derivatives of all gaps.
+  /// What g̈ and v̇_t are where q̈ = 0: [contacts], then [contacts + frictions], then second components [contacts]. Cost
+  /// of the first call: the second derivatives of all gaps.
   std::span<const double> drifts(double t, std::span<const double> q, std::span<const double> v);
 
  private:

@@ -59,8 +59,7 @@ class Course {
   /// A slip that has just left 0 is none that comes to rest.
   bool at_rest() const {
     const Vector2d slip = state_.velocity.tail<2>();
-    return slip.norm() <= accurate * scale_ &&
-           (slip.norm() == 0 || slip.dot(slope(state_).velocity.tail<2>()) < 0);
+    return slip.norm() <= accurate * scale_ && (slip.norm() == 0 || slip.dot(slope(state_).velocity.tail<2>()) < 0);
   }
 
   /// At a slip of 0 friction holds it if it can; else it leaves where W_tt (−μ d) + w_tn points along d.

@@ -227,7 +227,8 @@ std::string write_partial(const Layout& l) {
     const std::string by = write(l.parts[i]);
     std::size_t times = 1;
     while (i + times <= order && write(l.parts[i + times]) == by) ++times;
-    below += (below.empty() ? "\\partial " : "\\, \\partial ") + by + (times > 1 ? "^{" + std::to_string(times) + "}" : "");
+    below +=
+        (below.empty() ? "\\partial " : "\\, \\partial ") + by + (times > 1 ? "^{" + std::to_string(times) + "}" : "");
     i += times;
   }
   const std::string power = order > 1 ? "^{" + std::to_string(order) + "} " : " ";

@@ -164,8 +164,7 @@ TEST_CASE("the end of a rod is found on its body; a string that a line shows is 
   const ModelText string(std::string(ball) + "contact sqrt(x^2 + z^2) <= 1 [m] name string\nrun 1 s\ndraw O - P\n");
   const auto round = [](std::size_t i, double t) { return i == 0 ? std::sin(t) : -std::cos(t); };
   const Drawing slack = evaluate_drawing(string.model, contact_run(*string.system, 1, round)).value();
-  for (const Drawing::Element* e : grounds(slack))
-    CHECK(e->shape.faces.size() == 1);  // the pivot of O
+  for (const Drawing::Element* e : grounds(slack)) CHECK(e->shape.faces.size() == 1);  // the pivot of O
 
   const ModelText joint(
       "system s\nparam m = 1 kg\ncoord θ1, θ2 : angle\n"
@@ -173,8 +172,7 @@ TEST_CASE("the end of a rod is found on its body; a string that a line shows is 
       "contact θ2 - θ1 <= 0.5 [rad] name knee\nrun 1 s\ndraw O - A - B\n");
   const auto bend = [](std::size_t i, double t) { return i == 0 ? t : 1.2 * t; };
   const Drawing bent = evaluate_drawing(joint.model, contact_run(*joint.system, 1, bend)).value();
-  for (const Drawing::Element* e : grounds(bent))
-    CHECK(e->shape.faces.size() == 1);
+  for (const Drawing::Element* e : grounds(bent)) CHECK(e->shape.faces.size() == 1);
 }
 
 TEST_CASE("forces stand on the rim of what is pressed, along the normal; impulses shrink and are gone") {

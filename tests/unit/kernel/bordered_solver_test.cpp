@@ -104,3 +104,21 @@ TEST_CASE("what neither M nor A determines is named") {
   REQUIRE(undetermined);
   CHECK(*undetermined == 1);
 }
+
+TEST_CASE("the negative inverse, where no row was dropped and the pivots are good") {
+  const Problem p{3, 1, {4, 1, 0, 1, 3e6, 0, 0, 0, 2}, {1, 2e3, -1}};
+  constexpr std::size_t size = 4, stride = 8;
+  std::vector<double> inverse(size * stride, 7.0);
+  REQUIRE(p.factored().negative_inverse(inverse.data(), stride));
+  for (std::size_t d = 0; d < size; ++d) {
+    std::vector<double> x(size), b(size, 0.0);
+    for (std::size_t i = 0; i < size; ++i) x[i] = -inverse[d * stride + i];
+    b[d] = 1;
+    CHECK(p.residual(x, b) < 1e-12);
+    CHECK(inverse[d * stride + size] == 7.0);
+  }
+  std::fill(inverse.begin(), inverse.end(), 7.0);
+  const Problem dependent{2, 2, {1, 0, 0, 1}, {1, 2, 2, 4}}, nearly{2, 1, {1, 1, 1, 1 + 1e-6}, {1, 1}};
+  for (const Problem& bad : {dependent, nearly}) CHECK_FALSE(bad.factored().negative_inverse(inverse.data(), stride));
+  CHECK(inverse == std::vector<double>(size * stride, 7.0));
+}

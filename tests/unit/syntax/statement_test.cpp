@@ -1,5 +1,5 @@
-#include <maupertuis/field_statements.hpp>
 #include <doctest/doctest.h>
+#include <maupertuis/field_statements.hpp>
 
 #include "support.hpp"
 

@@ -1,0 +1,97 @@
+#pragma once
+#include "fields/galerkin_mesh.hpp"
+
+#include <complex>
+#include <map>
+#include <memory>
+
+namespace maupertuis {
+
+/// Gauss's collocation with s stages: order 2s, symplectic and symmetric. A is diagonal in a complex basis, so that the
+/// equations of all stages fall apart into s banded systems, of which one of each conjugate pair is solved.
+struct GaussTableau {
+  explicit GaussTableau(int stages);
+  std::size_t stages;
+  std::vector<double> c, b, a;                               // [s], [s], [s × s]
+  std::vector<double> d;                                     // bᵀA⁻¹: Σ b_j F_j h = Σ d_i (P_i − p_0)
+  std::vector<std::complex<double>> lambda, basis, inverse;  // A = T diag(λ) T⁻¹
+  /// Σ_i weights_i f_i at 1 + c_j continues the polynomial through f_i at c_i: [s × s].
+  std::vector<double> continuation;
+};
+
+/// A discrete Lagrangian L(c, c') in steps of Gauss's collocation:
+///
+///     ∂L/∂c'(Q_i, V_i) = p_0 + h Σ a_ij F(Q_j, V_j),   Q_i = c_0 + h Σ a_ij V_j
+///
+/// which needs no regular mass matrix: where ℒ is linear in the velocities, p = ∂L/∂c' is a function of c, and this is
+/// ω(c) c' = ∇H. Solved by Newton's method with the matrices M + hλ G + (hλ)² K of one moment.
+class CollocationMotion final : public FieldMotion {
+ public:
+  CollocationMotion(const FieldEquations& equations, const DensityForm& form, int cells, int degree, int stages);
+
+  void start() override;
+  bool step(double h) override;
+  double energy(double& size) override;
+  double answer(const FieldQuestion& question) override;
+  double field_at(std::size_t field, int by_time, int by_space, double x) const override;
+
+  /// The longest step whose error, summed over the duration, is `goal` of the field's size; found by comparing a step
+  /// with two of half of it from the start on. Leaves the state as it was.
+  double choose_step(double longest, double duration, double goal, const Interrupt& interrupt);
+  /// After `step`: Newton's rounds of all steps so far, for the cost.
+  std::size_t rounds() const { return rounds_; }
+
+ private:
+  struct Factors {
+    std::vector<BandedMatrix<std::complex<double>>> of;   // [stages], empty where Im λ < 0
+    std::vector<std::vector<std::complex<double>>> null;  // J⁻¹ of each null vector, by stages with Im λ ≥ 0
+  };
+  struct Held {
+    std::size_t coefficient = 0, field = 0;
+    int space = 0;
+    bool right = false, force = false;
+    double scale = 1;               // coefficient / value; a moment does work on the value
+    std::vector<Expr> derivatives;  // of the value: itself, once by t
+  };
+  struct State {
+    std::vector<double> c, c_lost, p, p_lost;
+    double t = 0;
+  };
+  void hold(bool right, std::size_t field, int space, Expr value, bool force);
+  bool take_conditions();
+  void start_field(std::size_t field, bool rate, std::vector<double>& to);
+  void find_null_vectors();
+  const Factors* factors_for(double h);
+  void refresh_matrices(const std::vector<double>& c, const std::vector<double>& v, double t);
+  bool newton(double h);
+  void residuals(double h);
+  double correct(double h, const Factors& factors);
+  void leave_null_vectors_out(const Factors& factors, std::size_t stage, std::vector<std::complex<double>>& w) const;
+  void add_end_forces(double t, double* f) const;
+  void restore(const State& s) { state_ = s, t_ = s.t, rates_known_ = false, have_stages_ = false; }
+  /// c' at the present moment, from the momenta, or from the equations of first order.
+  void find_rates() const;
+
+  const DensityForm& form_;
+  mutable GalerkinMesh mesh_;
+  GaussTableau tableau_;
+  std::vector<Held> held_;
+  std::vector<bool> is_held_;          // [size]: no unknown of Newton's method
+  std::vector<bool> is_first_order_;   // [size]: of a field whose momenta hold no velocity
+  std::vector<std::size_t> field_of_;  // [size]
+  State state_;
+  mutable std::vector<double> rates_;
+  mutable bool rates_known_ = false;
+  std::vector<std::vector<double>> stage_v_, stage_q_, residual_;  // [stages][size]
+  bool have_stages_ = false;
+  double last_h_ = 0;
+  mutable GalerkinMesh::Matrices matrices_;
+  mutable bool matrices_known_ = false;
+  std::map<double, Factors> factors_;
+  std::vector<std::vector<double>> null_;  // orthonormal vectors that are left out of the motion
+  bool all_first_order_ = false;
+  std::size_t rounds_ = 0;
+  bool slow_ = false;  // Newton's last step took many rounds: new matrices for the next
+};
+
+}  // namespace maupertuis

@@ -1,0 +1,62 @@
+#pragma once
+#include <maupertuis/field_run.hpp>
+
+#include <string>
+#include <vector>
+
+namespace maupertuis {
+
+/// A discrete field in motion: what a run asks of it, whatever its elements and its steps are.
+class FieldMotion {
+ public:
+  explicit FieldMotion(const FieldEquations& equations) : equations_(equations), s_(equations.system()) {}
+  virtual ~FieldMotion() = default;
+  FieldMotion(const FieldMotion&) = delete;
+  FieldMotion& operator=(const FieldMotion&) = delete;
+
+  /// Why it cannot go on; empty: it can.
+  const std::string& trouble() const { return trouble_; }
+  /// Where the start says something else than a boundary condition, which is followed.
+  struct StartClash {
+    std::size_t field = 0;    // of those that are varied
+    int space = 0, time = 0;  // derivatives: u, u_x; u', u_tx
+    bool right = false;
+    double start = 0, condition = 0;
+  };
+  const std::vector<StartClash>& start_clashes() const { return clashes_; }
+  double time() const { return t_; }
+  double place_of_cell(int cell) const { return left_ + cell * width_; }
+
+  /// Fields (of those that are varied) whose value at the left end stands still, since ℒ holds their derivatives alone.
+  const std::vector<std::size_t>& fixed_fields() const { return fixed_; }
+
+  virtual void start() = 0;
+  /// False, and `trouble`, where it left the numbers.
+  virtual bool step(double h) = 0;
+  /// h_E of the mesh, and the integral of the size of its density.
+  virtual double energy(double& size) = 0;
+  /// Of an expression in place values; of one in jets at a place or integrated.
+  virtual double answer(const FieldQuestion& question) = 0;
+  /// The same at places shifted along x, within the domain.
+  double answer_beside(const FieldQuestion& question, double shift) const {
+    return answer_at_places(question.value, shift);
+  }
+  virtual double field_at(std::size_t field, int derivatives_in_time, int derivatives_in_space, double x) const = 0;
+
+ protected:
+  double value_of(Expr e, const Bindings& extra) const;
+  /// The index among the varied fields, or their number.
+  std::size_t varied(std::size_t field) const;
+  /// Of an expression in place values, now; at places that are shifted along x where `shift` is not 0.
+  double answer_at_places(Expr value, double shift = 0) const;
+
+  const FieldEquations& equations_;
+  const FieldSystem& s_;
+  double left_ = 0, width_ = 0, t_ = 0;
+  Bindings values_;  // of parameters
+  std::string trouble_;
+  std::vector<StartClash> clashes_;
+  std::vector<std::size_t> fixed_;
+};
+
+}  // namespace maupertuis

@@ -1,0 +1,234 @@
+#include <maupertuis/field_run.hpp>
+#include <maupertuis/study.hpp>
+
+#include "fields/collocation.hpp"
+#include "fields/element.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+using namespace maupertuis;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+Study study_of_text(const std::string& text) { return Study(SourceText("field.lag", text)); }
+
+/// The value of the only place of a model, at the end of its run.
+FieldRunResult::Value value_at_end(const std::string& text, double end, bool errors = false) {
+  Study study = study_of_text(text);
+  REQUIRE(study.field_equations());
+  REQUIRE(study.model()->fields->places.size() == 1);
+  Diagnostics diagnostics;
+  FieldRunOptions options;
+  options.duration = end, options.errors = errors;
+  const auto run = run_fields(*study.field_equations(), {{study.model()->fields->places[0].symbol, false, end}},
+                              options, diagnostics);
+  REQUIRE(run);
+  return run->answers[0];
+}
+
+/// All expectations of a model hold.
+void holds(const std::string& text) {
+  Study study = study_of_text(text);
+  const auto verification = study.verification();
+  REQUIRE(verification);
+  for (const ExpectationResult& r : verification->results)
+    CHECK_MESSAGE(r.passed, r.text << ": " << r.actual << " for " << r.expected << ". " << r.message);
+  for (const Diagnostic& d : study.diagnostics().items()) CHECK_MESSAGE(d.code == "", d.code << " " << d.message);
+}
+
+std::string codes_of_run(const std::string& text) {
+  Study study = study_of_text(text);
+  study.verification();
+  std::string out;
+  for (const Diagnostic& d : study.diagnostics().items()) out += d.code;
+  return out;
+}
+
+/// A travelling wave of a hinged beam w'' + w_xxxx = 0.
+std::string beam(int cells, int order) {
+  return "dimensionless\nfield w(x) : number on x = 0 .. 1 cells " + std::to_string(cells) + " order " +
+         std::to_string(order) +
+         " boundary w = 0\ndensity = 1/2 w'^2 - 1/2 w_xx^2\nstart w = sin(pi x)\nrun 1\nexpect w(0.5) at 0.2 = 0 ± 9\n";
+}
+
+/// A discrete field in motion, by hand.
+struct Motion {
+  Study study;
+  std::optional<DensityForm> form;
+  std::unique_ptr<CollocationMotion> motion;
+  Motion(const std::string& text, int cells, int degree, int stages) : study(study_of_text(text)) {
+    REQUIRE(study.field_equations());
+    Diagnostics diagnostics;
+    form = density_form(*study.field_equations(), diagnostics);
+    REQUIRE(form);
+    motion = std::make_unique<CollocationMotion>(*study.field_equations(), *form, cells, degree, stages);
+    motion->start();
+    REQUIRE(motion->trouble() == "");
+  }
+  double at_end(int steps, double end, double x) {
+    for (int i = 0; i < steps; ++i) REQUIRE(motion->step(end / steps));
+    return motion->field_at(0, 0, 0, x);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("functions of elements: derivatives, shared ends, projection of polynomials") {
+  for (const bool smooth : {false, true})
+    for (const int degree : {3, 7, 10}) {
+      const Element e(smooth, degree);
+      std::vector<double> low(e.size()), high(e.size()), slope(e.size());
+      for (int k = 0; k < 3; ++k) {
+        constexpr double x = 0.37, h = 1e-5;
+        e.at(x - h, k, low.data()), e.at(x + h, k, high.data()), e.at(x, k + 1, slope.data());
+        for (std::size_t i = 0; i < e.size(); ++i)
+          CHECK((high[i] - low[i]) / (2 * h) == doctest::Approx(slope[i]).epsilon(1e-6).scale(10));
+      }
+      for (const double end : {-1.0, 1.0})
+        for (int k = 0; k < (smooth ? 2 : 1); ++k) {
+          e.at(end, k, low.data());
+          for (std::size_t i = 0; i < e.size(); ++i) {
+            const std::size_t own = (end < 0 ? 0 : e.at_end()) + static_cast<std::size_t>(k);
+            CHECK(std::abs(low[i] - (i == own ? 1 : 0)) < 1e-13);
+          }
+        }
+      // u = ξ^degree
+      const GaussRule rule(degree + 2);
+      std::vector<double> highest, c(e.size(), 0);
+      const int order = smooth ? 2 : 1;
+      for (const double x : rule.x)
+        highest.push_back((smooth ? degree * (degree - 1) : degree) * std::pow(x, degree - order));
+      c[0] = degree % 2 ? -1 : 1, c[e.at_end()] = 1;
+      if (smooth) c[1] = degree * (degree % 2 ? 1 : -1), c[3] = degree;
+      e.project(rule, highest, c.data() + 2 * e.at_end());
+      e.at(0.61, 0, low.data());
+      double u = 0;
+      for (std::size_t i = 0; i < e.size(); ++i) u += c[i] * low[i];
+      CHECK(u == doctest::Approx(std::pow(0.61, degree)).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("banded factors with pivoting solve what a dense product made") {
+  constexpr std::size_t n = 23, below = 3, above = 2;
+  BandedMatrix<std::complex<double>> a(n, below, above);
+  std::vector<std::complex<double>> x(n), b(n, 0);
+  for (std::size_t j = 0; j < n; ++j) {
+    x[j] = {std::sin(3.0 * j), std::cos(2.0 * j)};
+    for (std::size_t i = a.first_row(j); i < a.end_row(j); ++i)  // small on the diagonal
+      a.at(i, j) = {i == j ? 1e-9 : std::cos(7.0 * i + j), std::sin(1.0 * i * j)};
+  }
+  a.add_product(x.data(), b.data());
+  REQUIRE(a.factor());
+  a.solve(b.data());
+  for (std::size_t i = 0; i < n; ++i) CHECK(std::abs(b[i] - x[i]) < 1e-11);
+  BandedMatrix<double> singular(2, 1, 1);
+  singular.at(0, 0) = singular.at(0, 1) = singular.at(1, 0) = singular.at(1, 1) = 1;
+  CHECK_FALSE(singular.factor());
+}
+
+TEST_CASE("collocation is of order 2s in the step, and its coefficients are Gauss's") {
+  for (const int stages : {1, 2, 3, 4}) {
+    const GaussTableau t(stages);
+    const auto s = static_cast<std::size_t>(stages);
+    double ends = 1;  // R(∞) = 1 − Σ d = (−1)^s
+    for (std::size_t i = 0; i < s; ++i) {
+      ends -= t.d[i];
+      for (std::size_t j = 0; j < s; ++j)  // symplectic: b_i a_ij + b_j a_ji = b_i b_j
+        CHECK(std::abs(t.b[i] * t.a[i * s + j] + t.b[j] * t.a[j * s + i] - t.b[i] * t.b[j]) < 1e-15);
+    }
+    CHECK(ends == doctest::Approx(stages % 2 ? -1 : 1));
+  }
+  for (const int stages : {2, 3}) {
+    const auto error = [&](int steps) {
+      return Motion(beam(4, 9), 4, 9, stages).at_end(steps, 0.8, 0.5) - std::cos(pi * pi * 0.8);
+    };
+    CHECK(std::log2(std::abs(error(16) / error(32))) == doctest::Approx(2 * stages).epsilon(0.1));
+  }
+}
+
+TEST_CASE("a beam converges with the power 2p − 2 at the borders of elements") {
+  const double exact = std::cos(pi * pi * 0.2);
+  const double coarse = value_at_end(beam(2, 4), 0.2).value - exact;
+  const double fine = value_at_end(beam(4, 4), 0.2).value - exact;
+  CHECK(std::log2(std::abs(coarse / fine)) == doctest::Approx(6).epsilon(0.1));
+  const auto told = value_at_end(beam(4, 7), 0.2, true);
+  CHECK(std::abs(told.value - exact) < 1e-11);
+  CHECK(std::abs(told.value - exact) < 5 * told.error);
+}
+
+TEST_CASE("beams in motion: clamped and free end, rotary inertia, moment and force at an end") {
+  holds(
+      "dimensionless\nparam b = 1.87510406871196116645\n"
+      "field w(x) : number on x = 0 .. 1 cells 8 order 8\ndensity = 1/2 w'^2 - 1/2 w_xx^2\n"
+      "boundary left : w = 0, w_x = 0\nlet s = (cosh(b) + cos(b))/(sinh(b) + sin(b))\n"
+      "start w = cosh(b x) - cos(b x) - s (sinh(b x) - sin(b x))\nrun 2\n"
+      "expect w(1) at 2 = 2 cos(2*b^2) ± 1e-9\nexpect energy conserved rel 1e-13\n");
+  holds(
+      "dimensionless\nparam ρ = 1.1, I = 0.02, B = 0.9\nlet k = 3*pi/2, ω1 = k^2 sqrt(B/(ρ + I k^2))\n"
+      "field w(x) : number on x = 0 .. 2 cells 8 order 9 boundary w = 0\n"
+      "density = 1/2 ρ w'^2 + 1/2 I w_tx^2 - 1/2 B w_xx^2\nstart w = sin(k x)\nrun 1\n"
+      "expect w(1) at 1 = -cos(ω1) ± 1e-9\nexpect energy conserved rel 1e-13\n");
+  // Damped to rest under a force and a moment at the free end, w = F x²(3 − x)/6 + m x²/2. The force comes suddenly:
+  // the highest frequencies are not damped away, which the estimates tell.
+  const std::string loaded =
+      "dimensionless\nfield w(x) : number on x = 0 .. 1 cells 4 order 5\ndensity = 1/2 w'^2 - 1/2 w_xx^2\n"
+      "dissipation density = 4 w'^2\nboundary left : w = 0, w_x = 0\nforce w(1) = 0.3\nforce w_x(1) = 0.7\nrun 30\n";
+  const auto end = value_at_end(loaded + "expect w(1) at 30 = 0 ± 9\n", 30, true);
+  const auto slope = value_at_end(loaded + "expect w_x(1) at 30 = 0 ± 9\n", 30, true);
+  CHECK(end.value == doctest::Approx(0.3 / 3 + 0.7 / 2).epsilon(1e-3));
+  CHECK(slope.value == doctest::Approx(0.3 / 2 + 0.7).epsilon(1e-2));
+  CHECK(std::abs(end.value - 0.45) < 3 * end.error);
+  CHECK(std::abs(slope.value - 0.85) < 3 * slope.error);
+  // An end that is moved: w = x² t² needs the force 2 x² along the beam
+  holds(
+      "dimensionless\nfield w(x) : number on x = 0 .. 1 cells 2 order 5\ndensity = 1/2 w'^2 - 1/2 w_xx^2\n"
+      "force density w = 2 x^2\nboundary left : w = 0, w_x = 0\nboundary right : w = t^2, w_x = 2*t^2\nrun 1\n"
+      "expect w(0.5) at 1 = 0.25 ± 1e-11\nexpect w_x(0.5) at 1 = 1 ± 1e-10\n");
+}
+
+TEST_CASE("solitons of fields of first order in time, with their charges") {
+  holds(
+      "dimensionless\nparam η = 1.3, v = 0.4\nfield a(x), b(x) : number on x = -16 .. 18 cells 60 order 9\n"
+      "density = b a' - a b' - 1/2 (a_x^2 + b_x^2) + 1/2 (a^2 + b^2)^2\n"
+      "start a = η sech(η x) cos(v x), b = η sech(η x) sin(v x)\nrun 2\n"
+      "expect a(1) at 2 = η sech(η (1 - 2*v)) cos(v + η^2 - v^2) ± 1e-8\n"
+      "expect b(1) at 2 = η sech(η (1 - 2*v)) sin(v + η^2 - v^2) ± 1e-8\n"
+      "expect total a^2 + b^2 at 2 = 2*η ± 1e-8\nexpect total a b_x - b a_x at 2 = 2*η v ± 1e-8\n"
+      "expect total a_x^2 + b_x^2 at 2 = 2*η v^2 + 2/3 η^3 ± 1e-8\nexpect energy conserved rel 1e-13\n");
+  holds(
+      "dimensionless\nfield w(x) : number on x = -36 .. 40 cells 76 order 9\ndensity = 1/2 w' w_x + w_x^3 - 1/2 "
+      "w_xx^2\n"
+      "boundary left : w = 0, w_x = 0\nboundary right : w = 2, w_x = 0\nstart w = 2/(1 + exp(-x))\nrun 2\n"
+      "expect w(3) at 2 = 2/(1 + exp(-1)) ± 1e-8\nexpect w_x(3) at 2 = 1/2 sech(1/2)^2 ± 1e-7\n"
+      "expect energy conserved rel 1e-13\n");
+}
+
+TEST_CASE("a potential on a ring keeps its constant, which is told") {
+  // w_tx + w_xxxx = 0, waves ω = −k³: of u = w_x
+  const std::string ring =
+      "dimensionless\nfield w(x) : number on x = 0 .. 2*pi cells 6 order 9 boundary periodic\n"
+      "density = 1/2 w' w_x - 1/2 w_xx^2\nstart w = cos(2*x)\nrun 1\nexpect w_x(1) at 1 = -2 sin(2 + 8) ± 1e-8\n";
+  CHECK(codes_of_run(ring) == "N0648");
+  Study study = study_of_text(ring);
+  REQUIRE(study.verification());
+  CHECK(study.verification()->failed() == 0);
+  CHECK(codes_of_run("dimensionless\nfield w(x) : number on x = -20 .. 20 cells 40 order 7\n"
+                     "density = 1/2 w' w_x + w_x^3 - 1/2 w_xx^2\nboundary left : w = 0, w_x = 0\n"
+                     "boundary right : w_x = 0\nstart w = 2/(1 + exp(-x)) - 2/(1 + exp(20))\nrun 1\n"
+                     "expect w_x(1) at 1 = 0 ± 9\n")
+            .find("E0642") != std::string::npos);
+}
+
+TEST_CASE("a velocity that cannot be chosen and fields without motion are refused") {
+  const std::string head = "dimensionless\nfield a(x), b(x) : number on x = 0 .. 1 cells 4 boundary a = 0, b = 0\n";
+  const std::string ask = "start a = sin(pi x)\nrun 1\nexpect a(0.5) at 1 = 0 ± 9\n";
+  CHECK(codes_of_run(head + "density = b a' - a b' - 1/2 (a_x^2 + b_x^2)\n" + ask) == "");
+  CHECK(codes_of_run(head + "density = b a' - a b' - 1/2 (a_x^2 + b_x^2)\nstart b' = 1\n" + ask) == "E0642");
+  CHECK(codes_of_run(head + "density = 1/2 a'^2 - 1/2 a_xx^2 - b a - b^2\n" + ask) == "E0642");
+  CHECK(codes_of_run(head + "density = a^2 (b a' - a b') - 1/2 (a_x^2 + b_x^2)\n" + ask) == "E0508");
+}
