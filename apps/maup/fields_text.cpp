@@ -311,8 +311,9 @@ std::string field_picture(Study& study, const FieldRunResult& run) {
 }
 
 std::string field_run_text(const FieldRunResult& run) {
-  std::string out = fmt::format("{} cells of order {} ({} nodes), {} steps of order 8 to {:.10g} s\n", run.cells,
-                                run.order, run.nodes, run.steps, run.end);
+  const std::string upwards = run.cells_upwards ? fmt::format(" × {}", run.cells_upwards) : std::string();
+  std::string out = fmt::format("{}{} cells of order {} ({} nodes), {} steps of order 8 to {:.10g} s\n", run.cells,
+                                upwards, run.order, run.nodes, run.steps, run.end);
   out +=
       fmt::format("  highest frequency of the mesh  {:.6g} rad/s, steps at most {:.4g} s\n", run.omega_max, run.step);
   out += fmt::format("  energy                         {:.16g}\n", run.energy);
@@ -328,6 +329,7 @@ Json field_run_json(const FieldRunResult& run) {
                             {"energy", run.energy}, {"seconds", run.seconds}};
   document["statistics"]["energy_drift"] = run.energy_drift < 0 ? Json(nullptr) : Json(run.energy_drift);
   document["end"] = run.end;
+  if (run.cells_upwards) document["statistics"]["cells_y"] = run.cells_upwards;
   return document;
 }
 

@@ -9,18 +9,20 @@
 
 namespace maupertuis {
 
-/// The motion of fields of one space variable whose density holds first derivatives: Galerkin's method with
+/// The motion of fields of one or two space variables whose density holds first derivatives: Galerkin's method with
 /// Gauss-Lobatto elements, Taylor steps of order 8 within h ω_max ≤ 3.2 (docs/theory/fields.md).
 struct FieldRunResult {
   struct Value {
     double value = 0, error = 0;  // SI; the error is estimated from a second mesh of half the cells
   };
-  std::vector<Value> answers;  // to the questions, in their order
-  Trajectory trajectory;       // fields and velocities at the borders of cells
-  std::vector<double> places;  // those borders, where there are rows
-  double end = 0;              // s
+  std::vector<Value> answers;   // to the questions, in their order
+  Trajectory trajectory;        // fields and velocities at the borders of cells
+  std::vector<double> places;   // those borders, where there are rows
+  std::vector<double> upwards;  // in the plane those of y; columns go along x first
+  double end = 0;               // s
   std::size_t steps = 0, nodes = 0;
   int order = 0, cells = 0;
+  int cells_upwards = 0;                 // in the plane
   double step = 0, omega_max = 0;        // s, rad/s
   double energy = 0, energy_drift = -1;  // J; relative to the terms of the energy; −1: forces act, none is conserved
   double seconds = 0;

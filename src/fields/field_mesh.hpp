@@ -3,6 +3,7 @@
 
 #include "fields/lane_series.hpp"
 #include "fields/lobatto.hpp"
+#include "fields/moving_mesh.hpp"
 
 #include <optional>
 #include <string>
@@ -18,40 +19,31 @@ namespace maupertuis {
 ///     g = (∂²ℒ/∂φ'∂φ) φ' + (∂²ℒ/∂φ'∂φ_x) φ_tx + ∂²ℒ/∂φ'∂t − ∂ℒ/∂φ + ∂𝒟/∂φ' − f
 ///
 /// A is that of the point alone, so that M is diagonal but for the fields among themselves.
+///
+/// In the plane s has a component along each space variable.
 struct PointForm {
-  std::size_t fields = 0;
-  std::vector<Expr> inputs;   // φ, φ', φ_x, φ_tx of each field, then x, t
-  std::vector<Expr> a, g, s;  // [fields²], [fields], [fields]
+  std::size_t fields = 0, directions = 1;
+  std::vector<Expr> inputs;  // φ, φ', φ_x, φ_tx (in the plane φ_x, φ_y, φ_tx, φ_ty) of each field, then x (, y), t
+  std::vector<Expr> a, g, s;  // [fields²], [fields], [directions × fields]
   Expr energy;                // density of h_E
   bool conserves = false;
+  bool constant_mass = true;  // A changes neither in time nor with the fields
 };
 std::optional<PointForm> point_form(const FieldEquations& equations, Diagnostics& diagnostics);
 
 /// One discretisation and its state. Lanes are [local node × cells], so that what belongs to one local node of all
 /// cells lies together.
-class FieldMesh {
+class FieldMesh : public MovingMesh {
  public:
   FieldMesh(const FieldEquations& equations, const PointForm& form, int cells, int order);
 
-  const std::string& trouble() const { return trouble_; }
-  /// Where the start says something else than a boundary condition, which is followed.
-  struct StartClash {
-    std::size_t field = 0;  // of those that are varied
-    int order = 0;          // 0: u, 1: u'
-    bool right = false;
-    double start = 0, condition = 0;
-  };
-  const std::vector<StartClash>& start_clashes() const { return clashes_; }
-  void start();
-  /// Largest frequency of small motions about the present state, by power iteration.
-  double omega_max(const Interrupt& interrupt);
-  /// One Taylor step. False, and `trouble`, where it left the numbers.
-  bool step(double h);
-  double time() const { return t_; }
-  /// h_E of the mesh, and the integral of the size of its density.
-  double energy(double& size);
-  /// Of an expression in place values; of one in jets at a place or integrated.
-  double answer(const FieldQuestion& question);
+  void start() override;
+  double omega_max(const Interrupt& interrupt) override;
+  bool step(double h) override;
+  double time() const override { return t_; }
+  double energy(double& size) override;
+  double answer(const FieldQuestion& question) override;
+  void add_row(Trajectory& rows) const override;
   double field_at(std::size_t field, int derivatives_in_time, int derivatives_in_space, double x) const;
   std::size_t nodes() const { return static_cast<std::size_t>(cells_) * static_cast<std::size_t>(p_); }
   double place_of_cell(int cell) const { return left_ + cell * width_; }
@@ -98,8 +90,6 @@ class FieldMesh {
     bool force = false;             // else the field itself
   };
   std::vector<Held> held_;
-  std::string trouble_;
-  std::vector<StartClash> clashes_;
 };
 
 }  // namespace maupertuis

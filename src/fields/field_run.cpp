@@ -1,7 +1,7 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/field_run.hpp>
 
-#include "fields/field_mesh.hpp"
+#include "fields/plane_mesh.hpp"
 #include "fields/resolution.hpp"
 
 #include <fmt/format.h>
@@ -10,15 +10,20 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
+
+#if __has_include(<unistd.h>)
+#include <unistd.h>
+#endif
 
 /// The run of a field, and of a second mesh of half the cells that tells how far off it is.
 namespace maupertuis {
 namespace {
 
-constexpr int usual_cells = 100, usual_order = 3;
+constexpr int usual_cells = 100, usual_cells_of_plane = 32, usual_order = 3;
 constexpr double stability = 3.2;  // h ω_max
 
-void refuse(const FieldMesh& mesh, const FieldEquations& equations, Diagnostics& diagnostics) {
+void refuse(const MovingMesh& mesh, const FieldEquations& equations, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
   const std::string& what = mesh.trouble();
   if (what == "slope") {
@@ -60,57 +65,81 @@ struct OneRun {
   Trajectory trajectory;
 };
 
-void add_row(const FieldMesh& mesh, const FieldEquations& equations, int cells, Trajectory& rows) {
-  const FieldSystem& s = equations.system();
-  const bool first = rows.columns.empty();
-  rows.times.push_back(mesh.time());
-  for (std::size_t a = 0; a < equations.varied.size(); ++a)
-    for (int order = 0; order < 2; ++order)
-      for (int e = 0; e <= cells; ++e) {
-        const double x = mesh.place_of_cell(e);
-        const Field& f = s.fields[equations.varied[a]];
-        if (first)
-          rows.columns.push_back({fmt::format("{}{}({:.10g})", f.name, order ? "'" : "", x),
-                                  to_string(s.dimension_of({equations.varied[a], {0}, order}))});
-        rows.values.push_back(mesh.field_at(a, order, 0, x));
-      }
-}
-
 /// E0647 where both meshes would pass something by, and their difference would tell nothing of it.
-bool refuse_coarse_mesh(const FieldEquations& equations, const PointForm& form, int cells, int order,
-                        Diagnostics& diagnostics) {
+bool refuse_coarse_mesh(const FieldEquations& equations, const PointForm& form, const std::vector<int>& cells,
+                        int order, Diagnostics& diagnostics) {
   const auto found = unresolved_feature(equations, form, cells, order);
   if (!found) return false;
   const FieldSystem& s = equations.system();
   const bool at_start = found->of_start && !equations.model->start.empty();
+  std::string place, width;
+  for (std::size_t i = 0; i < found->place.size(); ++i) {
+    place += fmt::format("{}{} = {:.6g}", i ? ", " : "", s.space[i].name, found->place[i]);
+    width += fmt::format("{}{:.3g}", i ? " × " : "", found->element[i]);
+  }
   diagnostics.error(
       "E0647", at_start ? equations.model->start.front().span : s.density_span,
-      fmt::format("the mesh is too coarse for what {} has at {} = {:.6g}",
-                  found->of_start ? "the start" : "the density", s.space.front().name, found->place),
-      fmt::format("Elements are {:.3g} wide (SI units), and what lies between their nodes is not seen by a "
+      fmt::format("the mesh is too coarse for what {} has at {}", found->of_start ? "the start" : "the density", place),
+      fmt::format("Elements are {} wide (SI units), and what lies between their nodes is not seen by a "
                   "second mesh either: no value of this run could be trusted.",
-                  found->element),
+                  width),
       "Take more `cells`, or make it wider.");
   return true;
 }
 
+const char* side_name(BoundaryCondition::Side side, const FieldSystem& s) {
+  constexpr const char* names[] = {"left", "right", "bottom", "top"};
+  constexpr const char* ends[] = {"left end", "right end", "bottom", "top"};
+  return (s.space.size() == 1 ? ends : names)[static_cast<int>(side)];
+}
+
 /// W0646: the end of the mesh is put to its condition, and what the start says beside it runs in as a wave.
-void warn_of_clashes(const FieldMesh& mesh, const FieldEquations& equations, Diagnostics& diagnostics) {
+void warn_of_clashes(const MovingMesh& mesh, const FieldEquations& equations, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
-  for (const FieldMesh::StartClash& c : mesh.start_clashes())
+  for (const MovingMesh::StartClash& c : mesh.start_clashes())
     diagnostics.warning(
         "W0646", equations.model->start.empty() ? s.density_span : equations.model->start.front().span,
-        fmt::format("the start does not fit the condition at the {} end: {}{} = {:.6g} beside {:.6g} (SI units)",
-                    c.right ? "right" : "left", s.fields[equations.varied[c.field]].name, c.order ? "'" : "", c.start,
+        fmt::format("the start does not fit the condition at the {}: {}{} = {:.6g} beside {:.6g} (SI units)",
+                    side_name(c.side, s), s.fields[equations.varied[c.field]].name, c.order ? "'" : "", c.start,
                     c.condition),
         "The condition is followed, so that a jump runs into the field, which no mesh resolves.",
         "Give a start that has the value of the condition there.");
 }
 
-std::optional<OneRun> run_on(const FieldEquations& equations, const PointForm& form, int cells, int order,
-                             const std::vector<FieldQuestion>& questions, const FieldRunOptions& options, bool rows,
-                             bool warns, Diagnostics& diagnostics) {
-  FieldMesh mesh(equations, form, cells, order);
+/// The memory of this machine in bytes; 0 where it does not say.
+double memory_of_machine() {
+#if defined(_SC_PHYS_PAGES) && defined(_SC_PAGESIZE)
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+#else
+  return 0;
+#endif
+}
+
+/// E0648 before anything of a mesh is made that the machine has no room for.
+bool refuse_large_mesh(const FieldEquations& equations, const PointForm& form, const std::vector<int>& cells, int order,
+                       Diagnostics& diagnostics) {
+  if (cells.size() != 2) return false;  // a million cells of a line fit anywhere
+  const double bytes = PlaneMesh::bytes(equations, form, cells[0], cells[1], order), memory = memory_of_machine();
+  if (!(memory > 0) || bytes < 0.8 * memory) return false;
+  diagnostics.error(
+      "E0648", equations.system().space.front().span,
+      fmt::format("{} × {} cells of order {} do not fit into the memory of this machine", cells[0], cells[1], order),
+      fmt::format("Its Taylor series would take {:.3g} GB; there are {:.3g} GB.", bytes / 1e9, memory / 1e9),
+      "Write fewer cells, or a lower order of the elements.");
+  return true;
+}
+
+std::unique_ptr<MovingMesh> make_mesh(const FieldEquations& equations, const PointForm& form,
+                                      const std::vector<int>& cells, int order) {
+  if (cells.size() == 2) return std::make_unique<PlaneMesh>(equations, form, cells[0], cells[1], order);
+  return std::make_unique<FieldMesh>(equations, form, cells[0], order);
+}
+
+std::optional<OneRun> run_on(const FieldEquations& equations, const PointForm& form, const std::vector<int>& cells,
+                             int order, const std::vector<FieldQuestion>& questions, const FieldRunOptions& options,
+                             bool rows, bool warns, Diagnostics& diagnostics) {
+  const std::unique_ptr<MovingMesh> made = make_mesh(equations, form, cells, order);
+  MovingMesh& mesh = *made;
   OneRun out;
   if (mesh.trouble().empty()) mesh.start();
   if (mesh.trouble().empty()) out.omega = mesh.omega_max(options.interrupt);
@@ -142,11 +171,47 @@ std::optional<OneRun> run_on(const FieldEquations& equations, const PointForm& f
     for (std::size_t i = 0; i < questions.size(); ++i)
       if (questions[i].time == stop) out.answers[i] = mesh.answer(questions[i]);
     if (rows && (out.trajectory.times.empty() || mesh.time() > out.trajectory.times.back()))
-      add_row(mesh, equations, cells, out.trajectory);
+      mesh.add_row(out.trajectory);
   }
   out.h = longest;
   if (size > 0) out.drift /= size;
   return out;
+}
+
+/// The power of the width of a cell by which an answer is off: 2p (up to that of the steps) where elements meet and in
+/// integrals, p + 1 between, p of a slope.
+int power_of(const FieldEquations& equations, const FieldQuestion& question, const std::vector<int>& half, int order) {
+  int power = std::min(2 * order, static_cast<int>(kOrder));
+  if (question.total) return power;
+  const FieldSystem& s = equations.system();
+  Bindings values;
+  for (const Parameter& p : equations.model->parameters) values[p.symbol] = p.si_value;
+  const auto number = [&](Expr e) { return evaluate(s.expanded(e), values); };
+  const std::vector<Expr> asked = symbols_of({&question.value, 1});
+  for (const PlaceValue& place : equations.model->places) {
+    if (std::find(asked.begin(), asked.end(), place.symbol) == asked.end()) continue;
+    const FieldJet jet = *s.jet_of(place.jet);
+    if (jet.order() > jet.time) power = std::min(power, order);
+    for (std::size_t i = 0; i < half.size(); ++i) {
+      const double from = number(s.space[i].from), width = number(s.space[i].to) - from;
+      const double cell = (number(place.place[i]) - from) / width * half[i];
+      if (std::abs(cell - std::round(cell)) > 1e-9 * half[i]) power = std::min(power, order + 1);
+    }
+  }
+  return power;
+}
+
+/// The borders of cells that rows have values at.
+void name_places(const FieldEquations& equations, const std::vector<int>& cells, FieldRunResult& out) {
+  const FieldSystem& s = equations.system();
+  Bindings values;
+  for (const Parameter& p : equations.model->parameters) values[p.symbol] = p.si_value;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const double from = evaluate(s.expanded(s.space[i].from), values),
+                 width = (evaluate(s.expanded(s.space[i].to), values) - from) / cells[i];
+    const int stride = cells.size() == 2 ? PlaneMesh::stride_of_rows(cells[i]) : 1;
+    for (int e = 0; e <= cells[i]; e += stride) (i == 0 ? out.places : out.upwards).push_back(from + e * width);
+  }
 }
 
 }  // namespace
@@ -157,31 +222,37 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   const auto form = point_form(equations, diagnostics);
   if (!form) return std::nullopt;
   const FieldSystem& s = equations.system();
-  const int cells = s.space.front().cells ? s.space.front().cells : usual_cells;
+  std::vector<int> cells, half;
+  for (const SpaceVariable& x : s.space) {
+    const int usual = s.space.size() == 1 ? usual_cells : usual_cells_of_plane;
+    cells.push_back(x.cells ? x.cells : s.space.front().cells ? s.space.front().cells : usual);
+    half.push_back(std::max(cells.back() / 2, 1));
+  }
   const int order = s.element_order ? s.element_order : usual_order;
+  if (refuse_large_mesh(equations, *form, cells, order, diagnostics)) return std::nullopt;
   if (refuse_coarse_mesh(equations, *form, cells, order, diagnostics)) return std::nullopt;
   auto fine = run_on(equations, *form, cells, order, questions, options, options.trajectory, true, diagnostics);
   if (!fine) return std::nullopt;
   FieldRunResult out;
-  out.cells = cells, out.order = order;
-  out.nodes = static_cast<std::size_t>(cells) * static_cast<std::size_t>(order) + 1;
+  out.cells = cells.front(), out.order = order, out.nodes = 1;
+  if (cells.size() == 2) out.cells_upwards = cells[1];
+  for (const int n : cells) out.nodes *= static_cast<std::size_t>(n) * static_cast<std::size_t>(order) + 1;
   out.steps = fine->steps, out.step = fine->h, out.omega_max = fine->omega;
   out.energy = fine->energy, out.energy_drift = form->conserves ? fine->drift : -1;
   out.end = options.duration;
   out.trajectory = std::move(fine->trajectory);
-  if (options.trajectory) {
-    const FieldMesh mesh(equations, *form, cells, order);
-    for (int e = 0; e <= cells; ++e) out.places.push_back(mesh.place_of_cell(e));
-  }
+  if (options.trajectory) name_places(equations, cells, out);
+  const bool halved = half != cells;
   std::optional<OneRun> coarse;
-  if (options.errors && !questions.empty() && cells > 1)
-    coarse = run_on(equations, *form, std::max(cells / 2, 1), order, questions, options, false, false, diagnostics);
-  // Both meshes and their steps are off by the power 2p of the width of a cell, but never by less than rounding.
-  const double ratio = cells > 1 ? static_cast<double>(cells) / std::max(cells / 2, 1) : 2;
-  const double gain = std::pow(ratio, std::min(2 * order, 8)) - 1;
+  if (options.errors && !questions.empty() && halved)
+    coarse = run_on(equations, *form, half, order, questions, options, false, false, diagnostics);
+  double ratio = halved ? 1e9 : 2;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (cells[i] > 1) ratio = std::min(ratio, static_cast<double>(cells[i]) / half[i]);
   const double rounding = 2.2e-16 * std::sqrt(static_cast<double>(out.steps) + 1);
   for (std::size_t i = 0; i < questions.size(); ++i) {
     const double value = fine->answers[i];
+    const double gain = std::pow(ratio, power_of(equations, questions[i], half, order)) - 1;
     const double error =
         coarse ? std::abs(value - coarse->answers[i]) / gain + rounding * std::max(std::abs(value), 1e-300)
                : std::numeric_limits<double>::infinity();
