@@ -16,7 +16,7 @@ struct FieldRunResult {
     double value = 0, error = 0;  // SI; the error is estimated from a second mesh of half the cells
   };
   std::vector<Value> answers;   // to the questions, in their order
-  Trajectory trajectory;        // fields and velocities at the borders of cells
+  Trajectory trajectory;        // fields and velocities at the borders of cells, or at as many parts of them
   std::vector<double> places;   // those borders, where there are rows
   std::vector<double> upwards;  // in the plane those of y; columns go along x first
   double end = 0;               // s
@@ -40,6 +40,7 @@ struct FieldRunOptions {
   double duration = 0;      // s
   double every = 0;         // s; 0: a hundredth of the run
   bool trajectory = false;  // keep rows
+  int least_values = 0;     // along a direction of a row: more than the borders of cells where those are few
   bool errors = true;       // a second run on a mesh of half the cells
   Interrupt interrupt;
 };

@@ -449,13 +449,12 @@ double FieldMesh::field_at(std::size_t field, int by_time, int by_space, double 
   return by_space == 0 ? out : out * 2 / width_;
 }
 
-void FieldMesh::add_row(Trajectory& rows) const {
+void FieldMesh::add_row(Trajectory& rows, const std::vector<std::vector<double>>& places) const {
   const bool first = rows.columns.empty();
   rows.times.push_back(t_);
   for (std::size_t a = 0; a < fields_; ++a)
     for (int order = 0; order < 2; ++order)
-      for (int e = 0; e <= cells_; ++e) {
-        const double x = place_of_cell(e);
+      for (const double x : places.front()) {
         const std::size_t f = equations_.varied[a];
         if (first)
           rows.columns.push_back({fmt::format("{}{}({:.10g})", s_.fields[f].name, order ? "'" : "", x),

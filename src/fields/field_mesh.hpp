@@ -43,7 +43,7 @@ class FieldMesh : public MovingMesh {
   double time() const override { return t_; }
   double energy(double& size) override;
   double answer(const FieldQuestion& question) override;
-  void add_row(Trajectory& rows) const override;
+  void add_row(Trajectory& rows, const std::vector<std::vector<double>>& places) const override;
   double field_at(std::size_t field, int derivatives_in_time, int derivatives_in_space, double x) const;
   std::size_t nodes() const { return static_cast<std::size_t>(cells_) * static_cast<std::size_t>(p_); }
   double place_of_cell(int cell) const { return left_ + cell * width_; }

@@ -135,9 +135,28 @@ std::unique_ptr<MovingMesh> make_mesh(const FieldEquations& equations, const Poi
   return std::make_unique<FieldMesh>(equations, form, cells[0], order);
 }
 
+/// The places of each direction that rows have values at: borders of cells, in the plane not more than some hundred,
+/// and between them where those are few.
+std::vector<std::vector<double>> places_of_rows(const FieldEquations& equations, const std::vector<int>& cells,
+                                                int least) {
+  const FieldSystem& s = equations.system();
+  Bindings values;
+  for (const Parameter& p : equations.model->parameters) values[p.symbol] = p.si_value;
+  std::vector<std::vector<double>> out(cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    constexpr int most_of_plane = 128;
+    const double from = evaluate(s.expanded(s.space[i].from), values),
+                 width = (evaluate(s.expanded(s.space[i].to), values) - from) / cells[i];
+    const int stride = cells.size() == 2 ? (cells[i] + most_of_plane - 1) / most_of_plane : 1;
+    const int parts = std::max((least + cells[i] - 1) / cells[i], 1);
+    for (int e = 0; e <= cells[i] * parts; e += stride) out[i].push_back(from + e * width / parts);
+  }
+  return out;
+}
+
 std::optional<OneRun> run_on(const FieldEquations& equations, const PointForm& form, const std::vector<int>& cells,
                              int order, const std::vector<FieldQuestion>& questions, const FieldRunOptions& options,
-                             bool rows, bool warns, Diagnostics& diagnostics) {
+                             const std::vector<std::vector<double>>& rows, bool warns, Diagnostics& diagnostics) {
   const std::unique_ptr<MovingMesh> made = make_mesh(equations, form, cells, order);
   MovingMesh& mesh = *made;
   OneRun out;
@@ -170,8 +189,8 @@ std::optional<OneRun> run_on(const FieldEquations& equations, const PointForm& f
     out.drift = std::max(out.drift, std::abs(out.energy - start));
     for (std::size_t i = 0; i < questions.size(); ++i)
       if (questions[i].time == stop) out.answers[i] = mesh.answer(questions[i]);
-    if (rows && (out.trajectory.times.empty() || mesh.time() > out.trajectory.times.back()))
-      mesh.add_row(out.trajectory);
+    if (!rows.empty() && (out.trajectory.times.empty() || mesh.time() > out.trajectory.times.back()))
+      mesh.add_row(out.trajectory, rows);
   }
   out.h = longest;
   if (size > 0) out.drift /= size;
@@ -201,19 +220,6 @@ int power_of(const FieldEquations& equations, const FieldQuestion& question, con
   return power;
 }
 
-/// The borders of cells that rows have values at.
-void name_places(const FieldEquations& equations, const std::vector<int>& cells, FieldRunResult& out) {
-  const FieldSystem& s = equations.system();
-  Bindings values;
-  for (const Parameter& p : equations.model->parameters) values[p.symbol] = p.si_value;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const double from = evaluate(s.expanded(s.space[i].from), values),
-                 width = (evaluate(s.expanded(s.space[i].to), values) - from) / cells[i];
-    const int stride = cells.size() == 2 ? PlaneMesh::stride_of_rows(cells[i]) : 1;
-    for (int e = 0; e <= cells[i]; e += stride) (i == 0 ? out.places : out.upwards).push_back(from + e * width);
-  }
-}
-
 }  // namespace
 
 std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const std::vector<FieldQuestion>& questions,
@@ -231,7 +237,9 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   const int order = s.element_order ? s.element_order : usual_order;
   if (refuse_large_mesh(equations, *form, cells, order, diagnostics)) return std::nullopt;
   if (refuse_coarse_mesh(equations, *form, cells, order, diagnostics)) return std::nullopt;
-  auto fine = run_on(equations, *form, cells, order, questions, options, options.trajectory, true, diagnostics);
+  std::vector<std::vector<double>> rows;
+  if (options.trajectory) rows = places_of_rows(equations, cells, options.least_values);
+  auto fine = run_on(equations, *form, cells, order, questions, options, rows, true, diagnostics);
   if (!fine) return std::nullopt;
   FieldRunResult out;
   out.cells = cells.front(), out.order = order, out.nodes = 1;
@@ -241,11 +249,12 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   out.energy = fine->energy, out.energy_drift = form->conserves ? fine->drift : -1;
   out.end = options.duration;
   out.trajectory = std::move(fine->trajectory);
-  if (options.trajectory) name_places(equations, cells, out);
+  if (!rows.empty()) out.places = rows[0];
+  if (rows.size() == 2) out.upwards = rows[1];
   const bool halved = half != cells;
   std::optional<OneRun> coarse;
   if (options.errors && !questions.empty() && halved)
-    coarse = run_on(equations, *form, half, order, questions, options, false, false, diagnostics);
+    coarse = run_on(equations, *form, half, order, questions, options, {}, false, diagnostics);
   double ratio = halved ? 1e9 : 2;
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (cells[i] > 1) ratio = std::min(ratio, static_cast<double>(cells[i]) / half[i]);

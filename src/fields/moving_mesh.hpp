@@ -36,8 +36,8 @@ class MovingMesh {
   virtual double energy(double& size) = 0;
   /// Of an expression in place values; of one in jets at a place or integrated.
   virtual double answer(const FieldQuestion& question) = 0;
-  /// Fields and velocities at the borders of cells, as a row; columns are named by the first one.
-  virtual void add_row(Trajectory& rows) const = 0;
+  /// Fields and velocities at these places of each direction, as a row; columns are named by the first one.
+  virtual void add_row(Trajectory& rows, const std::vector<std::vector<double>>& places) const = 0;
 
  protected:
   std::string trouble_;

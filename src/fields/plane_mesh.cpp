@@ -533,20 +533,13 @@ double PlaneMesh::answer(const FieldQuestion& question) {
   return sum.value();
 }
 
-int PlaneMesh::stride_of_rows(int cells) {
-  constexpr int most = 128;  // values along a side
-  return (cells + most - 1) / most;
-}
-
-void PlaneMesh::add_row(Trajectory& rows) const {
+void PlaneMesh::add_row(Trajectory& rows, const std::vector<std::vector<double>>& places) const {
   const bool first = rows.columns.empty();
   rows.times.push_back(t_);
-  const int stride_x = stride_of_rows(axes_[0].cells), stride_y = stride_of_rows(axes_[1].cells);
   for (std::size_t a = 0; a < fields_; ++a)
     for (int order = 0; order < 2; ++order)
-      for (int j = 0; j <= axes_[1].cells; j += stride_y)
-        for (int i = 0; i <= axes_[0].cells; i += stride_x) {
-          const double x = axes_[0].at(i), y = axes_[1].at(j);
+      for (const double y : places[1])
+        for (const double x : places[0]) {
           const FieldJet jet{equations_.varied[a], {0, 0}, order};
           if (first)
             rows.columns.push_back(

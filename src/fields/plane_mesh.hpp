@@ -29,14 +29,12 @@ class PlaneMesh : public MovingMesh {
   double time() const override { return t_; }
   double energy(double& size) override;
   double answer(const FieldQuestion& question) override;
-  void add_row(Trajectory& rows) const override;
+  void add_row(Trajectory& rows, const std::vector<std::vector<double>>& places) const override;
 
   /// Bytes that a mesh takes.
   static double bytes(const FieldEquations& equations, const PointForm& form, double cells_x, double cells_y,
                       int order);
   double field_at(std::size_t field, const FieldJet& jet, double x, double y) const;
-  /// Every how many borders of cells a row of a trajectory has a value.
-  static int stride_of_rows(int cells);
 
  private:
   using Rows = std::vector<double>;  // [rows of cells × lanes]
