@@ -295,7 +295,7 @@ Json currents_json(Study& study) {
   return document;
 }
 
-std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOptions& settings, bool rows) {
+std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOptions& settings, bool rows, bool pictured) {
   const Model& model = *study.model();
   const FieldSystem& s = equations_of(study).system();
   Bindings values;
@@ -307,6 +307,10 @@ std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOption
   options.every = settings.output_every ? *settings.output_every : number(model.experiment.output_every);
   options.trajectory = rows;
   options.errors = false;
+  // A map over time shows what happens between a hundred moments.
+  const bool line = s.space.size() == 1;
+  if (pictured && !(options.every > 0)) options.every = options.duration / (line ? 240 : 60);
+  if (pictured) options.least_values = line ? 480 : 64;
   if (settings.duration && !(*settings.duration > 0)) {
     study.diagnostics().error("E0809", std::nullopt, "a run of a field goes forward",
                               "Its mesh is started at t = 0 and steps on from there.", "Give a positive --duration.");
@@ -337,13 +341,6 @@ std::string dispersion_text(Study& study, std::string& trouble) {
 
 namespace {
 
-/// At most this many moments are drawn, the first and the last among them.
-constexpr std::size_t most_moments = 6;
-
-}  // namespace
-
-namespace {
-
 std::string coupled_run_text(const FieldRunResult& run) {
   std::string out = fmt::format("{} elements of order {} ({} unknowns), {} steps to {:.10g} s\n", run.cells, run.order,
                                 run.nodes, run.steps, run.end);
@@ -359,40 +356,6 @@ std::string coupled_run_text(const FieldRunResult& run) {
 }
 
 }  // namespace
-
-std::string field_picture(Study& study, const FieldRunResult& run) {
-  const FieldEquations& equations = equations_of(study);
-  const FieldSystem& s = equations.system();
-  const MechanicalSystem& system = study.model()->system;
-  const auto unit = [&](const Dimension& d) {
-    const std::string text = to_string(d);
-    return system.dimensionless || text == "1" ? std::string() : text;
-  };
-  Diagram out;
-  out.title = system.title.empty() ? system.name : system.title;
-  out.x_name = s.space.front().name;
-  out.x_unit = unit(s.space.front().dimension);
-  for (std::size_t a = 0; a < equations.varied.size(); ++a)
-    out.y_name += (a ? ", " : "") + s.fields[equations.varied[a]].name;
-  out.y_unit = unit(s.fields[equations.varied.front()].dimension);
-  const Trajectory& rows = run.trajectory;
-  const std::size_t shown = std::min(most_moments, rows.rows());
-  for (std::size_t i = 0; i < shown; ++i) {
-    const std::size_t row = shown == 1 ? 0 : i * (rows.rows() - 1) / (shown - 1);
-    for (std::size_t a = 0; a < equations.varied.size(); ++a) {
-      Diagram::Curve curve;
-      curve.series = i;
-      curve.dashed = a % 2 == 1;
-      curve.x = run.places;
-      for (std::size_t e = 0; e < run.places.size(); ++e)
-        curve.y.push_back(rows.at(row, 2 * a * run.places.size() + e));
-      out.curves.push_back(std::move(curve));
-    }
-    out.legend.push_back(
-        {fmt::format("t = {:.4g}{}", rows.times[row], system.dimensionless ? "" : " s"), i, false, false});
-  }
-  return diagram_svg(out);
-}
 
 std::string shape_of_bodies(const FieldEquations& equations, const FieldModes& modes, std::size_t index) {
   if (!equations.bodies || index >= modes.shapes.size()) return {};
@@ -421,7 +384,8 @@ Json shapes_json(const FieldEquations& equations, const FieldModes& modes) {
 
 std::string field_run_text(const FieldRunResult& run) {
   if (run.coupled) return coupled_run_text(run);
-  std::string out = fmt::format("{} cells of order {} ({} nodes), {} {} to {:.10g} s\n", run.cells, run.order,
+  const std::string upwards = run.cells_upwards ? fmt::format(" × {}", run.cells_upwards) : std::string();
+  std::string out = fmt::format("{}{} cells of order {} ({} nodes), {} {} to {:.10g} s\n", run.cells, upwards, run.order,
                                 run.nodes, run.steps, run.method, run.end);
   out += run.omega_max > 0 ? fmt::format("  highest frequency of the mesh  {:.6g} rad/s, steps at most {:.4g} s\n",
                                          run.omega_max, run.step)
@@ -448,6 +412,7 @@ Json field_run_json(const FieldRunResult& run) {
       document["events"].push_back({{"name", h.name}, {"time", h.time}});
     if (!run.trouble.empty()) document["trouble"] = run.trouble;
   }
+  if (run.cells_upwards) document["statistics"]["cells_y"] = run.cells_upwards;
   return document;
 }
 

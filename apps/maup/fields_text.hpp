@@ -21,12 +21,12 @@ std::string fields_summary(Study& study);
 std::string currents_text(Study& study);
 Json currents_json(Study& study);
 
-/// The run of the experiment; nothing where there is none, and the diagnostics say why. `rows`: with its trajectory.
-std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOptions& settings, bool rows);
+/// The run of the experiment; nothing where there is none, and the diagnostics say why. `rows`: with its trajectory,
+/// `pictured`: as many as a picture wants.
+std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOptions& settings, bool rows,
+                                            bool pictured = false);
 /// The dispersion relation; empty, and `trouble`, where there is none.
 std::string dispersion_text(Study& study, std::string& trouble);
-/// φ(x) at up to six moments of a run with rows, as SVG; of several fields the second is dashed.
-std::string field_picture(Study& study, const FieldRunResult& run);
 /// "   u(l) 1, y 0.3": how coordinates and places move in a mode, the largest value of the field being 1; empty
 /// without.
 std::string shape_of_bodies(const FieldEquations& equations, const FieldModes& modes, std::size_t index);

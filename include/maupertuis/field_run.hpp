@@ -9,19 +9,22 @@
 
 namespace maupertuis {
 
-/// The motion of fields of one space variable by Galerkin's method. Waves, whose density holds first derivatives with
-/// the velocities squared: Gauss-Lobatto elements, Taylor steps of order 8 within h ω_max ≤ 3.2. Beams and fields of
-/// first order in t: smooth elements where ℒ holds u_xx, Gauss's collocation (docs/theory/fields.md).
+/// The motion of fields by Galerkin's method. Waves of one or two space variables, whose density holds first derivatives
+/// with the velocities squared: Gauss-Lobatto elements, Taylor steps of order 8 within h ω_max ≤ 3.2. Beams and fields of
+/// first order in t, of one space variable: smooth elements where ℒ holds u_xx, Gauss's collocation
+/// (docs/theory/fields.md).
 struct FieldRunResult {
   struct Value {
     double value = 0, error = 0;  // SI; the error is estimated from a second mesh of half the cells
   };
-  std::vector<Value> answers;  // to the questions, in their order
-  Trajectory trajectory;       // fields and velocities at the borders of cells
-  std::vector<double> places;  // those borders, where there are rows
-  double end = 0;              // s
+  std::vector<Value> answers;   // to the questions, in their order
+  Trajectory trajectory;        // fields and velocities at the borders of cells, or at as many parts of them
+  std::vector<double> places;   // those borders, where there are rows
+  std::vector<double> upwards;  // in the plane those of y; columns go along x first
+  double end = 0;               // s
   std::size_t steps = 0, nodes = 0;
   int order = 0, cells = 0;
+  int cells_upwards = 0;                 // in the plane
   std::string method;                    // of the steps, in words
   double step = 0, omega_max = 0;        // s, rad/s; 0: not known, no step depends on it
   double energy = 0, energy_drift = -1;  // J; relative to the terms of the energy; −1: forces act, none is conserved
@@ -52,6 +55,7 @@ struct FieldRunOptions {
   double duration = 0;      // s
   double every = 0;         // s; 0: a hundredth of the run
   bool trajectory = false;  // keep rows
+  int least_values = 0;     // along a direction of a row: more than the borders of cells where those are few
   bool errors = true;       // a second run on a mesh of half the cells
   Interrupt interrupt;
 };

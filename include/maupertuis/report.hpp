@@ -94,6 +94,7 @@ struct ReportContent {
   std::vector<Parameter> parameters;
   std::vector<Formula> definitions;  // the legend of lets that stay symbols in print
   std::vector<Formula> energies;     // T, V, U, D, L
+  std::string energies_title = "Energies";
   std::vector<Formula> equations;  // left = right, with right 0 or Aᵀλ; then the constraints, `sentence` their names
   std::vector<Formula> intermediates;  // what the names in the equations stand for
   std::vector<Section> derivation;
@@ -107,6 +108,7 @@ struct ReportContent {
   std::vector<ExpectationResult> expectations;
   Trajectory trajectory;
   std::vector<Picture> pictures;
+  std::vector<std::pair<std::string, std::string>> figures;  // captions and pictures in SVG, in the page's theme
   std::string mode_search;  // how equilibria were sought
   std::vector<ModePoint> mode_points;
   std::vector<Locus> loci;

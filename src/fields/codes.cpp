@@ -11,8 +11,9 @@ constexpr CodeEntry kEntries[] = {
      "u_x^2\nboundary left : u_x = 1\nrun 1 s\n",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},
     {"E0508", "a run or an expectation of fields that is not supported yet",
-     "Runs are those of fields of one space variable on a domain. All fields have derivations, conservation laws and "
-     "waves. Expectations of fields hold at the values of the model.",
+     "Runs are those of fields of one space variable on a domain, or of two where the density holds u, u' squared, u_x "
+     "and u_y. All fields have derivations, conservation laws and waves. Expectations of fields hold at the values of "
+     "the model.",
      "field u(x) : length \nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nrun 1 s\n",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nrun 1 s\n"},
     {"E0642", "a motion of a field that is not determined",
@@ -58,6 +59,13 @@ constexpr CodeEntry kEntries[] = {
      "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nT = 1/2 m u(1 m)'^2\nrun 1 s\n",
      "field u(x) : length on x = 0 m .. 1 m cells 10\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\n"
      "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nT = 1/2 m u(1 m)'^2\nrun 1 s\n"},
+    {"E0649", "a mesh that does not fit into the memory",
+     "The Taylor coefficients of all nodes stand in the memory at once: some hundred bytes a node and operation of the "
+     "density. What a mesh takes is known before it is made.",
+     "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 1000, 1000 order 20\n"
+     "density = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2) - (1 - cos u)\nrun 1\n",
+     "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 20, 20 order 6\n"
+     "density = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2) - (1 - cos u)\nrun 1\n"},
     {"E0644", "no modes of a field",
      "Frequencies are those of small motions about φ = 0 of a field of one space variable with a domain, with constant "
      "coefficients in time and a positive energy.",

@@ -67,7 +67,6 @@ CollocationMotion::CollocationMotion(const FieldEquations& equations, const Dens
           trouble_),
       tableau_(stages) {
   if (!trouble_.empty()) return;
-  left_ = mesh_.left(), width_ = mesh_.width();
   const std::size_t n = mesh_.size();
   is_held_.assign(n, false);
   if (!take_conditions()) return;
@@ -152,8 +151,9 @@ void CollocationMotion::start() {
         if (field_of_[i] == held.field) size = std::max(size, std::abs(to[i]));
       constexpr double rounding = 1e-9;
       if (std::abs(to[held.coefficient] - condition) > rounding * size)
-        clashes_.push_back(
-            {held.field, held.space, order, held.right, to[held.coefficient] / held.scale, condition / held.scale});
+        clashes_.push_back({held.field, held.space, order,
+                            held.right ? BoundaryCondition::Side::Right : BoundaryCondition::Side::Left,
+                            to[held.coefficient] / held.scale, condition / held.scale});
       to[held.coefficient] = condition;
     }
   }
@@ -547,10 +547,10 @@ double CollocationMotion::energy(double& size) {
   return mesh_.energy(size);
 }
 
-double CollocationMotion::field_at(std::size_t field, int by_time, int by_space, double x) const {
-  if (by_time > 1 || by_space > (form_.smooth[field] ? 3 : 1)) return std::nan("");
-  if (by_time == 1) find_rates();
-  return mesh_.value(by_time == 0 ? state_.c.data() : rates_.data(), field, by_space, x);
+double CollocationMotion::field_at(std::size_t field, const FieldJet& jet, const std::vector<double>& place) const {
+  if (jet.time > 1 || jet.space[0] > (form_.smooth[field] ? 3 : 1)) return std::nan("");
+  if (jet.time == 1) find_rates();
+  return mesh_.value(jet.time == 0 ? state_.c.data() : rates_.data(), field, jet.space[0], place[0]);
 }
 
 double CollocationMotion::answer(const FieldQuestion& question) {

@@ -33,7 +33,8 @@ class CollocationMotion final : public FieldMotion {
   bool step(double h) override;
   double energy(double& size) override;
   double answer(const FieldQuestion& question) override;
-  double field_at(std::size_t field, int by_time, int by_space, double x) const override;
+  double field_at(std::size_t field, const FieldJet& jet, const std::vector<double>& place) const override;
+  double width_of_cell() const { return mesh_.width(); }
 
   /// The longest step whose error, summed over the duration, is `goal` of the field's size; found by comparing a step
   /// with two of half of it from the start on. Leaves the state as it was.

@@ -13,33 +13,37 @@
 namespace maupertuis {
 namespace {
 
-constexpr std::size_t kOrder = 8;  // of Taylor steps: on the imaginary axis stable up to hω = 3.40
-
 using Side = BoundaryCondition::Side;
 
 void unsupported(Diagnostics& diagnostics, Span span, const std::string& what) {
   diagnostics.error(
       "E0508", span, fmt::format("not supported yet: a run of {}", what),
-      "Runs are those of fields of one space variable on a bounded domain whose density holds u, u' and u_x, with "
-      "u' in it squared.",
+      "Runs are those of fields of one or two space variables on a bounded domain whose density holds u, u' and u_x, "
+      "with u' in it squared.",
       "`maup derive`, `maup invariants` and expectations about formulas work for all fields.");
 }
 
-Expr jet_at(const FieldSystem& s, std::size_t field, int x, int t) { return s.jet_symbol({field, {x}, t}); }
+/// φ or φ' where `along` is beyond the space variables, else its derivative along one.
+Expr jet_at(const FieldSystem& s, std::size_t field, std::size_t along, int t) {
+  FieldJet jet{field, std::vector<int>(s.space.size(), 0), t};
+  if (along < s.space.size()) jet.space[along] = 1;
+  return s.jet_symbol(jet);
+}
 
 }  // namespace
 
 std::optional<PointForm> point_form(const FieldEquations& equations, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
-  if (s.space.size() != 1)
-    return unsupported(diagnostics, s.density_span, "fields of several space variables"), std::nullopt;
-  if (!s.space.front().from) return unsupported(diagnostics, s.density_span, "a field without a domain"), std::nullopt;
+  const std::size_t d = s.space.size(), itself = d;
+  if (d > 2) return unsupported(diagnostics, s.density_span, "fields of three space variables"), std::nullopt;
+  for (const SpaceVariable& x : s.space)
+    if (!x.from) return unsupported(diagnostics, s.density_span, "a field without a domain"), std::nullopt;
   ExprMap given;
   for (std::size_t f = 0; f < s.fields.size(); ++f) {
     if (!s.fields[f].given) continue;
     if (!s.fields[f].formula)
       return unsupported(diagnostics, s.fields[f].span, "an input without a formula"), std::nullopt;
-    given[jet_at(s, f, 0, 0)] = s.fields[f].formula;
+    given[jet_at(s, f, itself, 0)] = s.fields[f].formula;
   }
   const auto plain = [&](Expr e) { return s.expanded(substitute(s.expanded(e), given)); };
   const Expr density = plain(s.density), dissipation = s.dissipation ? plain(s.dissipation) : s.context->number(0);
@@ -47,40 +51,51 @@ std::optional<PointForm> point_form(const FieldEquations& equations, Diagnostics
   for (const Expr& f : s.forces)
     if (f) both.push_back(plain(f));
   for (const Expr& e : both)
-    for (const Expr& jet : s.jets_in(e))
-      if (s.jet_of(jet)->space[0] > 1 || s.jet_of(jet)->order() > 2 || (e == density && s.jet_of(jet)->order() > 1))
+    for (const Expr& symbol : s.jets_in(e)) {
+      const FieldJet jet = *s.jet_of(symbol);
+      if (jet.order() - jet.time > 1 || jet.order() > 2 || (e == density && jet.order() > 1))
         return unsupported(diagnostics, s.density_span, "a density with second derivatives"), std::nullopt;
+    }
   PointForm out;
-  out.fields = equations.varied.size();
-  const Expr x = s.space.front().symbol, t = s.context->time();
-  for (const std::size_t f : equations.varied)
-    for (const auto& [dx, dt] : {std::pair{0, 0}, {0, 1}, {1, 0}, {1, 1}}) out.inputs.push_back(jet_at(s, f, dx, dt));
-  out.inputs.push_back(x), out.inputs.push_back(t);
+  out.fields = equations.varied.size(), out.directions = d;
+  const Expr t = s.context->time();
+  for (const std::size_t f : equations.varied) {
+    for (const int by_time : {0, 1}) out.inputs.push_back(jet_at(s, f, itself, by_time));
+    for (std::size_t x = 0; x < 2 * d; ++x) out.inputs.push_back(jet_at(s, f, x % d, x < d ? 0 : 1));
+  }
+  for (const SpaceVariable& x : s.space) out.inputs.push_back(x.symbol);
+  out.inputs.push_back(t);
   std::vector<Expr> energy{-density};
   for (const std::size_t f : equations.varied) {
-    const Expr v = jet_at(s, f, 0, 1), p = differentiate(density, v);
-    std::vector<Expr> g{differentiate(p, t), -differentiate(density, jet_at(s, f, 0, 0)),
+    const Expr v = jet_at(s, f, itself, 1), p = differentiate(density, v);
+    std::vector<Expr> g{differentiate(p, t), -differentiate(density, jet_at(s, f, itself, 0)),
                         differentiate(dissipation, v)};
     for (const std::size_t other : equations.varied) {
-      out.a.push_back(differentiate(p, jet_at(s, other, 0, 1)));
-      g.push_back(differentiate(p, jet_at(s, other, 0, 0)) * jet_at(s, other, 0, 1));
-      g.push_back(differentiate(p, jet_at(s, other, 1, 0)) * jet_at(s, other, 1, 1));
+      out.a.push_back(differentiate(p, jet_at(s, other, itself, 1)));
+      g.push_back(differentiate(p, jet_at(s, other, itself, 0)) * jet_at(s, other, itself, 1));
+      for (std::size_t x = 0; x < d; ++x)
+        g.push_back(differentiate(p, jet_at(s, other, x, 0)) * jet_at(s, other, x, 1));
     }
     if (s.forces[f]) g.push_back(-plain(s.forces[f]));
     out.g.push_back(s.context->sum(g));
-    out.s.push_back(differentiate(density, jet_at(s, f, 1, 0)) - differentiate(dissipation, jet_at(s, f, 1, 1)));
     energy.push_back(v * p);
   }
+  for (std::size_t x = 0; x < d; ++x)
+    for (const std::size_t f : equations.varied)
+      out.s.push_back(differentiate(density, jet_at(s, f, x, 0)) - differentiate(dissipation, jet_at(s, f, x, 1)));
   out.energy = s.context->sum(energy);
   bool forced = !dissipation.is_zero() || !differentiate(density, t).is_zero() || !s.end_forces.empty();
   for (const Expr& f : s.forces) forced = forced || static_cast<bool>(f);
   for (const BoundaryCondition& b : s.boundary) forced = forced || s.context->depends_on_time(b.value.id());
   out.conserves = !forced;
+  for (const Expr& a : out.a)
+    for (const Expr& symbol : symbols_of({&a, 1}))
+      out.constant_mass = out.constant_mass && !s.jet_of(symbol) && symbol.role() != Role::Time;
   return out;
 }
 
 FieldMesh::FieldMesh(const FieldEquations& equations, const PointForm& form, int cells, int order)
-    : FieldMotion(equations),
+    : WaveMesh(equations),
       form_(form),
       cells_(cells),
       p_(order),
@@ -106,13 +121,11 @@ FieldMesh::FieldMesh(const FieldEquations& equations, const PointForm& form, int
       const std::vector<Expr> below = symbols_of(one);
       needs_rate_ = needs_rate_ || std::find(below.begin(), below.end(), form.inputs[4 * f + 3]) != below.end();
     }
+  std::vector<std::size_t> read{4 * fields_, 4 * fields_ + 1};
+  for (std::size_t f = 0; f < fields_; ++f) read.push_back(4 * f), read.push_back(4 * f + 1);
+  series_.keep(read, form.a.size());
   series_.resize(lanes_, kOrder + 2);
-  constant_mass_ = true;
-  for (std::size_t i = 0; i < form.a.size(); ++i) {
-    const Expr a[] = {form.a[i]};
-    for (const Expr& symbol : symbols_of(a))
-      constant_mass_ = constant_mass_ && !s_.jet_of(symbol) && symbol.role() != Role::Time;
-  }
+  constant_mass_ = form.constant_mass;
   double* x = series_.input(4 * fields_, 0);
   for (int j = 0; j <= p_; ++j)
     for (int e = 0; e < cells_; ++e)
@@ -174,7 +187,7 @@ void FieldMesh::start() {
       for (const double value : values) size = std::max(size, std::abs(value));
       constexpr double rounding = 1e-9;
       if (std::abs(values[n] - condition) > rounding * size)
-        clashes_.push_back({held.field, 0, order, held.right, values[n], condition});
+        clashes_.push_back({held.field, 0, order, held.right ? Side::Right : Side::Left, values[n], condition});
       values[n] = condition;
     }
   }
@@ -279,30 +292,12 @@ void FieldMesh::masses() {
       m[i][n] = a[n] * rule_.w[n / static_cast<std::size_t>(cells_)] * width_ / 2;
     share(m[i]);
   }
+  std::vector<double> a(fields_ * fields_), inverse;
   for (std::size_t n = 0; n < lanes_; ++n) {
-    std::vector<double> a(fields_ * fields_), inverse(fields_ * fields_, 0);
     for (std::size_t i = 0; i < a.size(); ++i) a[i] = m[i][n];
-    for (std::size_t i = 0; i < fields_; ++i) inverse[i * fields_ + i] = 1;
-    for (std::size_t c = 0; c < fields_; ++c) {
-      std::size_t pivot = c;
-      for (std::size_t r = c; r < fields_; ++r)
-        if (std::abs(a[r * fields_ + c]) > std::abs(a[pivot * fields_ + c])) pivot = r;
-      if (!(std::abs(a[pivot * fields_ + c]) > 0)) {
-        trouble_ = "mass";
-        return;
-      }
-      for (std::size_t j = 0; j < fields_; ++j)
-        std::swap(a[c * fields_ + j], a[pivot * fields_ + j]),
-            std::swap(inverse[c * fields_ + j], inverse[pivot * fields_ + j]);
-      const double d = a[c * fields_ + c];
-      for (std::size_t j = 0; j < fields_; ++j) a[c * fields_ + j] /= d, inverse[c * fields_ + j] /= d;
-      for (std::size_t r = 0; r < fields_; ++r) {
-        const double factor = a[r * fields_ + c];
-        if (r == c || factor == 0) continue;
-        for (std::size_t j = 0; j < fields_; ++j)
-          a[r * fields_ + j] -= factor * a[c * fields_ + j],
-              inverse[r * fields_ + j] -= factor * inverse[c * fields_ + j];
-      }
+    if (!invert_mass(a, inverse, fields_)) {
+      trouble_ = "mass";
+      return;
     }
     for (std::size_t i = 0; i < inverse.size(); ++i) mass_[i * lanes_ + n] = inverse[i];
   }
@@ -395,52 +390,23 @@ bool FieldMesh::step(double h) {
 }
 
 double FieldMesh::omega_max(const Interrupt& interrupt) {
-  double size = 1;
-  for (const auto& u : u_)
-    for (const double x : u) size = std::max(size, std::abs(x));
-  const double epsilon = 1e-7 * size;
-  std::vector<std::vector<double>> w(fields_, std::vector<double>(lanes_));
-  const auto accelerations = [&](double by) {
-    auto moved = u_;
-    for (std::size_t f = 0; f < fields_; ++f)
-      for (std::size_t n = 0; n < lanes_; ++n) moved[f][n] += by * w[f][n];
-    load(moved, v_);
-    coefficient(0);
-    std::vector<std::vector<double>> out;
-    for (std::size_t f = 0; f < fields_; ++f) out.push_back(past_[f * (kOrder + 2)]);
-    return out;
-  };
-  std::uint64_t seed = 1;
+  FieldValues w(fields_, std::vector<double>(lanes_));
+  fill_randomly(w);
   for (auto& row : w) {
-    for (double& x : row)
-      x = (seed = seed * 6364136223846793005ull + 1442695040888963407ull, static_cast<double>(seed >> 33) / 4e9 - 0.5);
     for (int e = 0; e + 1 < cells_; ++e) row[local(0, e + 1)] = row[local(p_, e)];
     if (s_.periodic) row[local(0, 0)] = row[local(p_, cells_ - 1)];
   }
   for (const Held& held : held_)
     if (!held.force) w[held.field][held.right ? local(p_, cells_ - 1) : local(0, 0)] = 0;
-  const auto at_rest = accelerations(0);
-  double square = 0;
+  const auto accelerations = [&](const FieldValues& u) {
+    load(u, v_);
+    coefficient(0);
+    FieldValues out;
+    for (std::size_t f = 0; f < fields_; ++f) out.push_back(past_[f * (kOrder + 2)]);
+    return out;
+  };
   constexpr int rounds = 60;
-  for (int round = 0; round < rounds && trouble_.empty(); ++round) {
-    interrupt.throw_if_asked();
-    double norm = 0;
-    for (const auto& row : w)
-      for (const double x : row) norm += x * x;
-    norm = std::sqrt(norm / static_cast<double>(lanes_ * fields_));
-    if (!(norm > 0)) return 0;
-    for (auto& row : w)
-      for (double& x : row) x /= norm;
-    const auto moved = accelerations(epsilon);
-    double next = 0;
-    for (std::size_t f = 0; f < fields_; ++f)
-      for (std::size_t n = 0; n < lanes_; ++n) {
-        w[f][n] = (moved[f][n] - at_rest[f][n]) / epsilon;
-        next += w[f][n] * w[f][n];
-      }
-    square = std::sqrt(next / static_cast<double>(lanes_ * fields_));
-  }
-  return std::sqrt(square);
+  return largest_frequency(u_, std::move(w), accelerations, rounds, trouble_, interrupt);
 }
 
 double FieldMesh::energy(double& size) {
@@ -452,27 +418,27 @@ double FieldMesh::energy(double& size) {
   std::fill_n(series_.input(4 * fields_ + 1, 0), lanes_, t_);
   for (std::size_t i = 0; i < 4 * fields_ + 2; ++i) std::copy_n(series_.input(i, 0), lanes_, energies_.input(i, 0));
   energies_.advance(0);
-  double sum = 0, lost = 0;  // with what each addition loses (Neumaier)
+  CarefulSum sum;
   size = 0;
   for (std::size_t n = 0; n < lanes_; ++n) {
     const double weight = rule_.w[n / static_cast<std::size_t>(cells_)] * width_ / 2;
-    const double term = weight * energies_.root(0, 0)[n], total = sum + term;
-    lost += std::abs(sum) >= std::abs(term) ? (sum - total) + term : (term - total) + sum;
-    sum = total;
+    const double term = weight * energies_.root(0, 0)[n];
+    sum.add(term);
     size += std::abs(term);
   }
-  return sum + lost;
+  return sum.value();
 }
 
-double FieldMesh::field_at(std::size_t field, int by_time, int by_space, double x) const {
-  if (by_time > 1 || by_space > 1) return std::nan("");
-  const double cell = (x - left_) / width_;
+double FieldMesh::field_at(std::size_t field, const FieldJet& jet, const std::vector<double>& place) const {
+  const int by_space = jet.space[0];
+  if (jet.time > 1 || by_space > 1) return std::nan("");
+  const double cell = (place[0] - left_) / width_;
   const int e = std::clamp(static_cast<int>(std::floor(cell + 1e-9)), 0, cells_ - 1);
   std::vector<double> value, slope;
   rule_.at(2 * (cell - e) - 1, value, slope);
   double out = 0;
   for (int j = 0; j <= p_; ++j) {
-    const double node = (by_time == 0 ? u_ : v_)[field][local(j, e)];
+    const double node = (jet.time == 0 ? u_ : v_)[field][local(j, e)];
     out += node * (by_space == 0 ? value : slope)[static_cast<std::size_t>(j)];
   }
   return by_space == 0 ? out : out * 2 / width_;

@@ -1,7 +1,7 @@
 #pragma once
-#include "fields/field_motion.hpp"
 #include "fields/lane_series.hpp"
 #include "fields/lobatto.hpp"
+#include "fields/wave_mesh.hpp"
 
 #include <optional>
 #include <string>
@@ -17,31 +17,30 @@ namespace maupertuis {
 ///     g = (∂²ℒ/∂φ'∂φ) φ' + (∂²ℒ/∂φ'∂φ_x) φ_tx + ∂²ℒ/∂φ'∂t − ∂ℒ/∂φ + ∂𝒟/∂φ' − f
 ///
 /// A is that of the point alone, so that M is diagonal but for the fields among themselves.
+///
+/// In the plane s has a component along each space variable.
 struct PointForm {
-  std::size_t fields = 0;
-  std::vector<Expr> inputs;   // φ, φ', φ_x, φ_tx of each field, then x, t
-  std::vector<Expr> a, g, s;  // [fields²], [fields], [fields]
+  std::size_t fields = 0, directions = 1;
+  std::vector<Expr> inputs;  // φ, φ', φ_x, φ_tx (in the plane φ_x, φ_y, φ_tx, φ_ty) of each field, then x (, y), t
+  std::vector<Expr> a, g, s;  // [fields²], [fields], [directions × fields]
   Expr energy;                // density of h_E
   bool conserves = false;
+  bool constant_mass = true;  // A changes neither in time nor with the fields
 };
 std::optional<PointForm> point_form(const FieldEquations& equations, Diagnostics& diagnostics);
 
 /// One discretisation and its state. Lanes are [local node × cells], so that what belongs to one local node of all
 /// cells lies together.
-class FieldMesh final : public FieldMotion {
+class FieldMesh final : public WaveMesh {
  public:
   FieldMesh(const FieldEquations& equations, const PointForm& form, int cells, int order);
 
   void start() override;
-  /// Largest frequency of small motions about the present state, by power iteration.
-  double omega_max(const Interrupt& interrupt);
-  /// One Taylor step. False, and `trouble`, where it left the numbers.
+  double omega_max(const Interrupt& interrupt) override;
   bool step(double h) override;
-  /// h_E of the mesh, and the integral of the size of its density.
   double energy(double& size) override;
-  /// Of an expression in place values; of one in jets at a place or integrated.
   double answer(const FieldQuestion& question) override;
-  double field_at(std::size_t field, int derivatives_in_time, int derivatives_in_space, double x) const override;
+  double field_at(std::size_t field, const FieldJet& jet, const std::vector<double>& place) const override;
   std::size_t nodes() const { return static_cast<std::size_t>(cells_) * static_cast<std::size_t>(p_); }
 
  private:
@@ -64,6 +63,7 @@ class FieldMesh final : public FieldMotion {
   double boundary_coefficient(const std::vector<Expr>& derivatives, std::size_t k) const;
 
   const PointForm& form_;
+  double left_ = 0, width_ = 0;  // of the domain, of a cell
   int cells_, p_;
   std::size_t lanes_ = 0, fields_ = 0;
   Lobatto rule_;

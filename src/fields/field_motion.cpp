@@ -2,6 +2,8 @@
 
 #include <maupertuis/evaluate.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -28,11 +30,31 @@ double FieldMotion::answer_at_places(Expr value, double shift) const {
       extra[place.symbol] = std::nan("");
       continue;
     }
-    const double x = value_of(place.place[0], {}), right = value_of(s_.space.front().to, {});
-    const double moved = shift == 0 ? x : std::min(std::max(x + shift, left_), right);
-    extra[place.symbol] = field_at(a, jet.time, jet.space[0], moved);
+    std::vector<double> at;
+    for (const Expr& x : place.place) at.push_back(value_of(x, {}));
+    const SpaceVariable& x = s_.space.front();
+    if (shift != 0) at[0] = std::clamp(at[0] + shift, value_of(x.from, {}), value_of(x.to, {}));
+    extra[place.symbol] = field_at(a, jet, at);
   }
   return value_of(value, extra);
+}
+
+void FieldMotion::add_row(Trajectory& rows, const std::vector<std::vector<double>>& places) const {
+  const bool first = rows.columns.empty(), plane = places.size() == 2;
+  rows.times.push_back(t_);
+  for (std::size_t a = 0; a < equations_.varied.size(); ++a)
+    for (int order = 0; order < 2; ++order) {
+      const FieldJet jet{equations_.varied[a], std::vector<int>(places.size(), 0), order};
+      for (std::size_t j = 0; j < (plane ? places[1].size() : 1); ++j)
+        for (const double x : places[0]) {
+          const std::vector<double> at = plane ? std::vector<double>{x, places[1][j]} : std::vector<double>{x};
+          if (first)
+            rows.columns.push_back({plane ? fmt::format("{}({:.10g}, {:.10g})", s_.jet_name(jet), x, at[1])
+                                          : fmt::format("{}({:.10g})", s_.jet_name(jet), x),
+                                    to_string(s_.dimension_of(jet))});
+          rows.values.push_back(field_at(a, jet, at));
+        }
+    }
 }
 
 }  // namespace maupertuis

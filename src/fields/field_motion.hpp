@@ -20,13 +20,11 @@ class FieldMotion {
   struct StartClash {
     std::size_t field = 0;    // of those that are varied
     int space = 0, time = 0;  // derivatives: u, u_x; u', u_tx
-    bool right = false;
+    BoundaryCondition::Side side = BoundaryCondition::Side::Left;
     double start = 0, condition = 0;
   };
   const std::vector<StartClash>& start_clashes() const { return clashes_; }
   double time() const { return t_; }
-  double place_of_cell(int cell) const { return left_ + cell * width_; }
-
   /// Fields (of those that are varied) whose value at the left end stands still, since ℒ holds their derivatives alone.
   const std::vector<std::size_t>& fixed_fields() const { return fixed_; }
 
@@ -41,7 +39,10 @@ class FieldMotion {
   double answer_beside(const FieldQuestion& question, double shift) const {
     return answer_at_places(question.value, shift);
   }
-  virtual double field_at(std::size_t field, int derivatives_in_time, int derivatives_in_space, double x) const = 0;
+  /// A derivative of a varied field at a place of each direction; that of `jet` counts, not its field.
+  virtual double field_at(std::size_t field, const FieldJet& jet, const std::vector<double>& place) const = 0;
+  /// Fields and velocities at these places of each direction, x first, as a row; columns are named by the first one.
+  void add_row(Trajectory& rows, const std::vector<std::vector<double>>& places) const;
 
  protected:
   double value_of(Expr e, const Bindings& extra) const;
@@ -52,7 +53,7 @@ class FieldMotion {
 
   const FieldEquations& equations_;
   const FieldSystem& s_;
-  double left_ = 0, width_ = 0, t_ = 0;
+  double t_ = 0;
   Bindings values_;  // of parameters
   std::string trouble_;
   std::vector<StartClash> clashes_;

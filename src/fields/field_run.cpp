@@ -1,8 +1,7 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/field_run.hpp>
 
-#include "fields/collocation.hpp"
-#include "fields/field_mesh.hpp"
+#include "fields/field_method.hpp"
 #include "fields/resolution.hpp"
 
 #include <fmt/format.h>
@@ -11,16 +10,16 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <memory>
 
-/// The run of a field, and of a second mesh of half the cells that tells how far off it is.
+#if __has_include(<unistd.h>)
+#include <unistd.h>
+#endif
+
+/// The run of a field, and of meshes of half and a quarter of the cells that tell how far off it is.
 namespace maupertuis {
 namespace {
 
-constexpr int usual_cells = 100, usual_order = 3, usual_smooth_order = 7;
-constexpr double stability = 3.2;  // h ω_max
-constexpr int stages = 4;          // of Gauss's collocation
-constexpr double goal = 1e-12;     // of its steps, beside the field, over the whole run
+constexpr int usual_cells = 100, usual_cells_of_plane = 32;
 
 void refuse(const FieldMotion& mesh, const FieldEquations& equations, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
@@ -85,96 +84,38 @@ struct OneRun {
   Trajectory trajectory;
 };
 
-/// How the fields of a density are put on a mesh and moved: waves by Taylor steps, where ω_max grows like 1/h;
-/// densities of second derivatives or linear in the velocities, where it grows like 1/h² to 1/h⁴, by collocation.
-struct Method {
-  std::optional<PointForm> waves;
-  std::optional<DensityForm> stiff;
-  int order = 0;
-  double step = 0, width = 0;  // of the first mesh by collocation
-
-  static std::optional<Method> of(const FieldEquations& equations, Diagnostics& diagnostics) {
-    Method out;
-    const int written = equations.system().element_order;
-    if (needs_collocation(equations)) {
-      out.stiff = density_form(equations, diagnostics);
-      out.order = written ? written : usual_smooth_order;
-    } else {
-      out.waves = point_form(equations, diagnostics);
-      out.order = written ? written : usual_order;
-    }
-    return out.waves || out.stiff ? std::optional(std::move(out)) : std::nullopt;
-  }
-  std::unique_ptr<FieldMotion> mesh(const FieldEquations& equations, int cells) const {
-    if (waves) return std::make_unique<FieldMesh>(equations, *waves, cells, order);
-    return std::make_unique<CollocationMotion>(equations, *stiff, cells, order, stages);
-  }
-  /// By collocation as much longer on the other meshes as their cells are wider, so that their difference tells the
-  /// error of steps as well.
-  double longest_step(FieldMotion& mesh, OneRun& run, const FieldRunOptions& options) {
-    if (auto* wave = dynamic_cast<FieldMesh*>(&mesh)) {
-      run.omega = wave->omega_max(options.interrupt);
-      return run.omega > 0 ? stability / run.omega : options.duration;
-    }
-    auto& motion = dynamic_cast<CollocationMotion&>(mesh);
-    const double cell = mesh.place_of_cell(1) - mesh.place_of_cell(0);
-    if (step > 0) return step * std::round(cell / width);
-    width = cell;
-    const double every = options.every > 0 ? options.every : options.duration / 100;
-    return step = motion.choose_step(std::min(every, options.duration), options.duration, goal, options.interrupt);
-  }
-  bool conserves() const { return waves ? waves->conserves : stiff->conserves; }
-  /// The power of the width of a cell by which a value is off on both meshes with their steps.
-  int power(const FieldEquations& equations, const FieldQuestion& question) const {
-    if (waves) return std::min(2 * order, 8);
-    const bool smooth = std::find(stiff->smooth.begin(), stiff->smooth.end(), true) != stiff->smooth.end();
-    const int degree = smooth ? std::max(order, 3) : order;
-    int lost = smooth ? 2 : 0;  // of the whole, energies for example: twice what the derivatives in ℒ leave
-    if (question.total) return std::min(2 * degree - lost, 2 * stages);
-    lost = 0;
-    for (const PlaceValue& place : equations.model->places) {
-      const Expr value[] = {question.value};
-      const std::vector<Expr> symbols = symbols_of(value);
-      if (std::find(symbols.begin(), symbols.end(), place.symbol) != symbols.end())
-        lost = std::max(lost, equations.system().jet_of(place.jet)->space[0]);
-    }
-    return std::min(std::max(degree + 1 - lost, 1), 2 * stages);
-  }
-};
-
-void add_row(const FieldMotion& mesh, const FieldEquations& equations, int cells, Trajectory& rows) {
-  const FieldSystem& s = equations.system();
-  const bool first = rows.columns.empty();
-  rows.times.push_back(mesh.time());
-  for (std::size_t a = 0; a < equations.varied.size(); ++a)
-    for (int order = 0; order < 2; ++order)
-      for (int e = 0; e <= cells; ++e) {
-        const double x = mesh.place_of_cell(e);
-        const Field& f = s.fields[equations.varied[a]];
-        if (first)
-          rows.columns.push_back({fmt::format("{}{}({:.10g})", f.name, order ? "'" : "", x),
-                                  to_string(s.dimension_of({equations.varied[a], {0}, order}))});
-        rows.values.push_back(mesh.field_at(a, order, 0, x));
-      }
-}
-
 /// E0647 where both meshes would pass something by, and their difference would tell nothing of it.
-bool refuse_coarse_mesh(const FieldEquations& equations, const Method& method, int cells, Diagnostics& diagnostics) {
-  PointForm of_density;
-  if (method.stiff) of_density.inputs = method.stiff->inputs, of_density.g = method.stiff->by_slot;
-  const auto found = unresolved_feature(equations, method.waves ? *method.waves : of_density, cells, method.order);
+bool refuse_coarse_mesh(const FieldEquations& equations, const FieldMethod& method, const Cells& cells,
+                        Diagnostics& diagnostics) {
+  const auto found = unresolved_feature(equations, method.functions(), cells, method.order());
   if (!found) return false;
   const FieldSystem& s = equations.system();
   const bool at_start = found->of_start && !equations.model->start.empty();
+  std::string place, width;
+  for (std::size_t i = 0; i < found->place.size(); ++i) {
+    place += fmt::format("{}{} = {:.6g}", i ? ", " : "", s.space[i].name, found->place[i]);
+    width += fmt::format("{}{:.3g}", i ? " × " : "", found->element[i]);
+  }
   diagnostics.error(
       "E0647", at_start ? equations.model->start.front().span : s.density_span,
-      fmt::format("the mesh is too coarse for what {} has at {} = {:.6g}",
-                  found->of_start ? "the start" : "the density", s.space.front().name, found->place),
-      fmt::format("Elements are {:.3g} wide (SI units), and what lies between their nodes is not seen by a "
+      fmt::format("the mesh is too coarse for what {} has at {}", found->of_start ? "the start" : "the density", place),
+      fmt::format("Elements are {} wide (SI units), and what lies between their nodes is not seen by a "
                   "second mesh either: no value of this run could be trusted.",
-                  found->element),
+                  width),
       "Take more `cells`, or make it wider.");
   return true;
+}
+
+const char* side_name(BoundaryCondition::Side side, const FieldSystem& s) {
+  constexpr const char* names[] = {"left", "right", "bottom", "top"};
+  constexpr const char* ends[] = {"left end", "right end", "bottom", "top"};
+  return (s.space.size() == 1 ? ends : names)[static_cast<int>(side)];
+}
+
+std::string jet_name(const FieldMotion::StartClash& c, const FieldEquations& equations) {
+  std::vector<int> space(equations.system().space.size(), 0);
+  space[0] = c.space;
+  return equations.system().jet_name({equations.varied[c.field], std::move(space), c.time});
 }
 
 /// W0646: the end of the mesh is put to its condition, and what the start says beside it runs in as a wave.
@@ -183,9 +124,8 @@ void warn_of_clashes(const FieldMotion& mesh, const FieldEquations& equations, D
   for (const FieldMotion::StartClash& c : mesh.start_clashes())
     diagnostics.warning(
         "W0646", equations.model->start.empty() ? s.density_span : equations.model->start.front().span,
-        fmt::format("the start does not fit the condition at the {} end: {} = {:.6g} beside {:.6g} (SI units)",
-                    c.right ? "right" : "left", s.jet_name({equations.varied[c.field], {c.space}, c.time}), c.start,
-                    c.condition),
+        fmt::format("the start does not fit the condition at the {}: {} = {:.6g} beside {:.6g} (SI units)",
+                    side_name(c.side, s), jet_name(c, equations), c.start, c.condition),
         "The condition is followed, so that a jump runs into the field, which no mesh resolves.",
         "Give a start that has the value of the condition there.");
 }
@@ -204,23 +144,65 @@ void tell_what_is_fixed(const FieldMotion& mesh, const FieldEquations& equations
   }
 }
 
-/// Of a run on one mesh: with rows and warnings the first, without the second, which is there for the error.
-std::optional<OneRun> run_on(const FieldEquations& equations, Method& method, int cells,
-                             const std::vector<FieldQuestion>& questions, const FieldRunOptions& options, bool first,
-                             Diagnostics& diagnostics) {
+/// The memory of this machine in bytes; 0 where it does not say.
+double memory_of_machine() {
+#if defined(_SC_PHYS_PAGES) && defined(_SC_PAGESIZE)
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+#else
+  return 0;
+#endif
+}
+
+/// E0649 before anything of a mesh is made that the machine has no room for.
+bool refuse_large_mesh(const FieldEquations& equations, const FieldMethod& method, const Cells& cells,
+                       Diagnostics& diagnostics) {
+  const double bytes = method.bytes(equations, cells), memory = memory_of_machine();
+  if (!(memory > 0) || bytes < 0.8 * memory) return false;
+  diagnostics.error(
+      "E0649", equations.system().space.front().span,
+      fmt::format("{} × {} cells of order {} do not fit into the memory of this machine", cells[0], cells[1], method.order()),
+      fmt::format("Its Taylor series would take {:.3g} GB; there are {:.3g} GB.", bytes / 1e9, memory / 1e9),
+      "Write fewer cells, or a lower order of the elements.");
+  return true;
+}
+
+/// The places of each direction that rows have values at: borders of cells, in the plane not more than some hundred,
+/// and between them where those are few.
+std::vector<std::vector<double>> places_of_rows(const FieldEquations& equations, const Cells& cells,
+                                                int least) {
+  const FieldSystem& s = equations.system();
+  Bindings values;
+  for (const Parameter& p : equations.model->parameters) values[p.symbol] = p.si_value;
+  std::vector<std::vector<double>> out(cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    constexpr int most_of_plane = 128;
+    const double from = evaluate(s.expanded(s.space[i].from), values),
+                 width = (evaluate(s.expanded(s.space[i].to), values) - from) / cells[i];
+    const int stride = cells.size() == 2 ? (cells[i] + most_of_plane - 1) / most_of_plane : 1;
+    const int parts = std::max((least + cells[i] - 1) / cells[i], 1);
+    for (int e = 0; e <= cells[i] * parts; e += stride) out[i].push_back(from + e * width / parts);
+  }
+  return out;
+}
+
+/// On one mesh: with rows and warnings the first, without the others, which are there for the error.
+std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& method, const Cells& cells,
+                             const std::vector<FieldQuestion>& questions, const FieldRunOptions& options,
+                             const std::vector<std::vector<double>>& rows, bool first, Diagnostics& diagnostics) {
   const auto owner = method.mesh(equations, cells);
   FieldMotion& mesh = *owner;
   OneRun out;
   double longest = options.duration;
   if (mesh.trouble().empty()) mesh.start();
-  if (mesh.trouble().empty()) longest = method.longest_step(mesh, out, options);
+  const double every = options.every > 0 ? options.every : options.duration / 100;
+  if (mesh.trouble().empty())
+    longest = method.longest_step(mesh, options.duration, every, options.interrupt, out.omega);
   if (!mesh.trouble().empty()) return refuse(mesh, equations, diagnostics), std::nullopt;
   if (first) warn_of_clashes(mesh, equations, diagnostics), tell_what_is_fixed(mesh, equations, diagnostics);
   std::vector<double> stops;
   for (const FieldQuestion& q : questions) stops.push_back(q.time);
   stops.push_back(options.duration);
-  const double every = options.every > 0 ? options.every : options.duration / 100;
-  for (double t = 0; (first || method.waves) && t < options.duration; t += every) stops.push_back(t);
+  for (double t = 0; (first || method.is_wave()) && t < options.duration; t += every) stops.push_back(t);
   std::sort(stops.begin(), stops.end());
   double size = 0;
   const double start = mesh.energy(size);
@@ -244,11 +226,11 @@ std::optional<OneRun> run_on(const FieldEquations& equations, Method& method, in
         out.answers[i] = mesh.answer(questions[i]);
         out.near[i].clear();
         for (const double shift : beside)
-          if (method.stiff && !questions[i].total)
-            out.near[i].push_back(mesh.answer_beside(questions[i], shift * method.width));
+          if (!method.is_wave() && !questions[i].total)
+            out.near[i].push_back(mesh.answer_beside(questions[i], shift * method.width()));
       }
-    if (first && options.trajectory && (out.trajectory.times.empty() || mesh.time() > out.trajectory.times.back()))
-      add_row(mesh, equations, cells, out.trajectory);
+    if (!rows.empty() && (out.trajectory.times.empty() || mesh.time() > out.trajectory.times.back()))
+      mesh.add_row(out.trajectory, rows);
   }
   out.h = longest;
   if (size > 0) out.drift /= size;
@@ -263,55 +245,75 @@ double difference(const OneRun& one, const OneRun& other, std::size_t question) 
   return out;
 }
 
+/// Of so many parts the cells of the first mesh.
+Cells divided(const Cells& cells, int parts) {
+  Cells out = cells;
+  for (int& n : out) n = std::max(n / parts, 1);
+  return out;
+}
+
+/// The other meshes, and how far off the answers on the first are.
+///
+/// Meshes and their steps are off by a power of the width of a cell, but never by less than rounding. Where a third
+/// mesh shows that the difference falls more slowly, by that.
+std::vector<double> errors_of(const OneRun& fine, const FieldEquations& equations, FieldMethod& method,
+                              const Cells& cells, const std::vector<FieldQuestion>& questions,
+                              const FieldRunOptions& options, Diagnostics& diagnostics) {
+  std::vector<double> out(questions.size(), std::numeric_limits<double>::infinity());
+  const Cells half = divided(cells, 2), quarter = divided(cells, 4);
+  if (!options.errors || questions.empty() || half == cells) return out;
+  const auto coarse = run_on(equations, method, half, questions, options, {}, false, diagnostics);
+  if (!coarse) return out;
+  std::optional<OneRun> coarser;
+  Diagnostics ignored;  // without the third there is a broader estimate
+  if (!method.is_wave() && cells[0] >= 4)
+    coarser = run_on(equations, method, quarter, questions, options, {}, false, ignored);
+  double ratio = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (cells[i] > 1) ratio = std::min(ratio, static_cast<double>(cells[i]) / half[i]);
+  const double rounding = 2.2e-16 * std::sqrt(static_cast<double>(fine.steps) + 1);
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    double gain = std::pow(ratio, method.power(equations, questions[i], half));
+    if (!method.is_wave()) {
+      const double seen = coarser ? difference(*coarser, *coarse, i) / difference(*coarse, fine, i) : 2;
+      gain = std::isfinite(seen) ? std::min(gain, std::max(seen, 2.0)) : gain;
+    }
+    out[i] = difference(*coarse, fine, i) / (gain - 1) + rounding * std::max(std::abs(fine.answers[i]), 1e-300);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const std::vector<FieldQuestion>& questions,
                                          const FieldRunOptions& options, Diagnostics& diagnostics) {
   const auto begin = std::chrono::steady_clock::now();
-  auto method = Method::of(equations, diagnostics);
+  auto method = FieldMethod::of(equations, diagnostics);
   if (!method) return std::nullopt;
   const FieldSystem& s = equations.system();
-  const int cells = s.space.front().cells ? s.space.front().cells : usual_cells;
-  const int order = method->order;
+  Cells cells;
+  for (const SpaceVariable& x : s.space) {
+    const int usual = s.space.size() == 1 ? usual_cells : usual_cells_of_plane;
+    cells.push_back(x.cells ? x.cells : s.space.front().cells ? s.space.front().cells : usual);
+  }
+  if (refuse_large_mesh(equations, *method, cells, diagnostics)) return std::nullopt;
   if (refuse_coarse_mesh(equations, *method, cells, diagnostics)) return std::nullopt;
-  auto fine = run_on(equations, *method, cells, questions, options, true, diagnostics);
+  std::vector<std::vector<double>> rows;
+  if (options.trajectory) rows = places_of_rows(equations, cells, options.least_values);
+  auto fine = run_on(equations, *method, cells, questions, options, rows, true, diagnostics);
   if (!fine) return std::nullopt;
   FieldRunResult out;
-  out.cells = cells, out.order = order;
-  out.method =
-      method->waves ? "Taylor steps of order 8" : fmt::format("steps of Gauss's collocation of order {}", 2 * stages);
-  out.nodes = static_cast<std::size_t>(cells) * static_cast<std::size_t>(order) + 1;
+  out.cells = cells.front(), out.order = method->order(), out.method = method->name(), out.nodes = 1;
+  if (cells.size() == 2) out.cells_upwards = cells[1];
+  for (const int n : cells) out.nodes *= static_cast<std::size_t>(n) * static_cast<std::size_t>(out.order) + 1;
   out.steps = fine->steps, out.step = fine->h, out.omega_max = fine->omega;
   out.energy = fine->energy, out.energy_drift = method->conserves() ? fine->drift : -1;
   out.end = options.duration;
   out.trajectory = std::move(fine->trajectory);
-  if (options.trajectory) {
-    const auto mesh = method->mesh(equations, cells);
-    for (int e = 0; e <= cells; ++e) out.places.push_back(mesh->place_of_cell(e));
-  }
-  std::optional<OneRun> coarse, coarser;
-  if (options.errors && !questions.empty() && cells > 1)
-    coarse = run_on(equations, *method, std::max(cells / 2, 1), questions, options, false, diagnostics);
-  if (method->stiff && coarse && cells / 4 > 0) {
-    Diagnostics ignored;  // without it there is a broader estimate
-    coarser = run_on(equations, *method, cells / 4, questions, options, false, ignored);
-  }
-  // Meshes and their steps are off by a power of the width of a cell, but never by less than rounding. Where a third
-  // mesh shows that the difference falls more slowly, by that.
-  const double ratio = cells > 1 ? static_cast<double>(cells) / std::max(cells / 2, 1) : 2;
-  const double rounding = 2.2e-16 * std::sqrt(static_cast<double>(out.steps) + 1);
-  for (std::size_t i = 0; i < questions.size(); ++i) {
-    const double value = fine->answers[i];
-    double gain = std::pow(ratio, method->power(equations, questions[i]));
-    if (method->stiff) {
-      const double seen = coarser ? difference(*coarser, *coarse, i) / difference(*coarse, *fine, i) : 2;
-      gain = std::isfinite(seen) ? std::min(gain, std::max(seen, 2.0)) : gain;
-    }
-    const double error = coarse
-                             ? difference(*coarse, *fine, i) / (gain - 1) + rounding * std::max(std::abs(value), 1e-300)
-                             : std::numeric_limits<double>::infinity();
-    out.answers.push_back({value, error});
-  }
+  if (!rows.empty()) out.places = rows[0];
+  if (rows.size() == 2) out.upwards = rows[1];
+  const std::vector<double> errors = errors_of(*fine, equations, *method, cells, questions, options, diagnostics);
+  for (std::size_t i = 0; i < questions.size(); ++i) out.answers.push_back({fine->answers[i], errors[i]});
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;
 }

@@ -64,8 +64,19 @@ struct LaneCompiler {
   }
   bool constant(std::size_t i) const { return out.code_[i].constant; }
   std::size_t number(double value) { return push({Op::Constant, 0, 0, value, true}); }
-  std::size_t binary(Op op, std::size_t a, std::size_t b) { return push({op, a, b, 0, constant(a) && constant(b)}); }
-  std::size_t unary(Op op, std::size_t a, double n = 0) { return push({op, a, 0, n, constant(a)}); }
+  bool is_number(std::size_t i) const { return out.code_[i].op == Op::Constant; }
+  std::size_t binary(Op op, std::size_t a, std::size_t b) {
+    const double x = out.code_[a].number, y = out.code_[b].number;
+    if (is_number(a) && is_number(b)) return number(op == Op::Add ? x + y : x * y);
+    if (op == Op::Add && ((is_number(a) && x == 0) || (is_number(b) && y == 0))) return is_number(a) ? b : a;
+    return push({op, a, b, 0, constant(a) && constant(b)});
+  }
+  std::size_t unary(Op op, std::size_t a, double n = 0) {
+    const double x = out.code_[a].number;
+    if (is_number(a) && op == Op::Scale) return number(n * x);
+    if (is_number(a) && op == Op::Power) return number(std::pow(x, n));
+    return push({op, a, 0, n, constant(a)});
+  }
   std::size_t pair(Op wanted, Op first, Op second, std::size_t a) {
     const std::size_t s = unary(first, a);
     const std::size_t c = unary(second, a);
@@ -114,13 +125,25 @@ struct LaneCompiler {
         return base;
       }
       const Rational& r = e[1].number();
-      if (r == Rational(2)) return binary(Op::Multiply, base, base);
-      return unary(Op::Power, base, r.to_double());
+      const double n = r.to_double();
+      // The recurrence of powers divides by the base, which a field may have as 0.
+      if (std::abs(n) == std::floor(std::abs(n)) && std::abs(n) <= most_factors) {
+        const std::size_t product = whole_power(base, static_cast<unsigned>(std::abs(n)));
+        return n < 0 ? unary(Op::Power, product, -1) : product;
+      }
+      return unary(Op::Power, base, n);
     }
     const bool sum = e.is(Kind::Sum);
     std::size_t total = visit(e[0]);
     for (std::size_t i = 1; i < e.size(); ++i) total = combine(sum, total, visit(e[i]));
     return total;
+  }
+  static constexpr double most_factors = 64;
+  std::size_t whole_power(std::size_t base, unsigned n) {
+    if (n == 0) return number(1);
+    if (n == 1) return base;
+    const std::size_t root = whole_power(base, n / 2), square = binary(Op::Multiply, root, root);
+    return n % 2 ? binary(Op::Multiply, square, base) : square;
   }
   std::size_t combine(bool sum, std::size_t a, std::size_t b) {
     if (sum) return binary(Op::Add, a, b);
@@ -164,9 +187,33 @@ std::optional<LaneSeries> LaneSeries::make(const std::vector<Expr>& roots, const
   return trouble.empty() ? std::optional(std::move(out)) : std::nullopt;
 }
 
-void LaneSeries::resize(std::size_t lanes, std::size_t orders) {
-  lanes_ = lanes, orders_ = orders;
-  data_.assign(code_.size() * lanes * orders, 0);
+void LaneSeries::keep(const std::vector<std::size_t>& inputs, std::size_t roots) {
+  for (Instruction& x : code_) x.kept = x.op == Op::Constant;
+  for (const std::size_t i : inputs) code_[inputs_[i]].kept = true;
+  for (std::size_t i = 0; i < roots; ++i) code_[roots_[i]].kept = true;
+  for (std::size_t i = 0; i < code_.size(); ++i) {
+    const Instruction x = code_[i];
+    if (x.op == Op::Input || x.op == Op::Constant || x.op == Op::Add || x.op == Op::Scale) continue;
+    code_[x.a].kept = true;
+    if (x.op == Op::Multiply || x.op >= Op::Sin) code_[x.b].kept = true;
+    if (x.op != Op::Multiply) code_[i].kept = true;
+  }
+}
+
+double LaneSeries::bytes(double lanes, std::size_t orders) const {
+  double pasts = 0;
+  for (std::size_t i = 0; i < code_.size(); ++i) pasts += own_past(i) ? 1 : 0;
+  return pasts * lanes * static_cast<double>(orders * sizeof(double));
+}
+
+void LaneSeries::resize(std::size_t lanes, std::size_t orders, std::size_t blocks) {
+  lanes_ = lanes, orders_ = orders, block_ = 0, block_size_ = 0;
+  std::size_t shared = 0;
+  for (Instruction& x : code_)
+    if (!x.kept || x.op == Op::Constant) x.place = shared, shared += lanes * (x.kept ? orders : 1);
+  for (std::size_t i = 0; i < code_.size(); ++i)
+    if (own_past(i)) code_[i].place = shared + block_size_, block_size_ += lanes * orders;
+  data_.assign(shared + blocks * block_size_, 0);
   for (std::size_t i = 0; i < code_.size(); ++i)
     if (code_[i].op == Op::Constant) std::fill_n(at(i, 0), lanes, code_[i].number);
 }
@@ -230,7 +277,8 @@ void LaneSeries::higher(std::size_t i, std::size_t k) {
     case Op::Scale:
       return set_scaled(out, at(x.a, k), x.number, lanes_);
     case Op::Multiply:
-      return sum(x.b, 0, k);
+      if (code_[x.a].constant) return sum(x.b, 0, 0);
+      return code_[x.b].constant ? sum(x.b, k, k) : sum(x.b, 0, k);
     case Op::Power:
       for (std::size_t j = 1; j <= k; ++j)
         factor[j] = (x.number * static_cast<double>(j) - static_cast<double>(k - j)) / dk;

@@ -15,58 +15,112 @@ constexpr int most_pieces = 4096;    // of an element
 constexpr double settled = 0.125;    // change within a piece, of the function's size
 constexpr double unresolved = 0.25;  // off from the polynomial, of the function's size
 
-/// One function of x and parameters.
+using Place = std::vector<double>;  // [space variables]
+
+/// The elements of a mesh with their nodes.
+struct Elements {
+  const Lobatto& rule;
+  Place from, width;
+  std::vector<int> cells;
+
+  std::size_t directions() const { return cells.size(); }
+  std::size_t count() const {
+    return counted([](int n) { return n; });
+  }
+  std::size_t nodes() const {
+    return counted([this](int) { return rule.order + 1; });
+  }
+  Place corner(std::size_t element) const {
+    Place out = from;
+    for (std::size_t i = 0; i < directions(); element /= static_cast<std::size_t>(cells[i++]))
+      out[i] += width[i] * static_cast<double>(element % static_cast<std::size_t>(cells[i]));
+    return out;
+  }
+  Place node(const Place& corner, std::size_t n) const {
+    Place out = corner;
+    for (std::size_t i = 0; i < directions(); ++i, n /= rule.x.size())
+      out[i] += width[i] * 0.5 * (1 + rule.x[n % rule.x.size()]);
+    return out;
+  }
+  /// The polynomial through the values at the nodes.
+  double between(const std::vector<double>& values, const Place& corner, const Place& at) const {
+    std::vector<std::vector<double>> factor(directions());
+    std::vector<double> slope;
+    for (std::size_t i = 0; i < directions(); ++i) rule.at(2 * (at[i] - corner[i]) / width[i] - 1, factor[i], slope);
+    double sum = 0;
+    for (std::size_t n = 0; n < values.size(); ++n) {
+      double product = values[n];
+      for (std::size_t i = 0, rest = n; i < directions(); ++i, rest /= rule.x.size())
+        product *= factor[i][rest % rule.x.size()];
+      sum += product;
+    }
+    return sum;
+  }
+
+ private:
+  template <class F>
+  std::size_t counted(F&& f) const {
+    std::size_t out = 1;
+    for (const int n : cells) out *= static_cast<std::size_t>(f(n));
+    return out;
+  }
+};
+
+/// One function of places and parameters.
 class Scan {
  public:
-  Scan(Expr f, Expr x, const std::vector<Expr>& parameters, const std::vector<double>& values)
-      : kernel_(build_function({{x}, parameters, {f}})), work_(kernel_), disks_(kernel_, values) {
+  Scan(Expr f, const std::vector<Expr>& x, const std::vector<Expr>& parameters, const std::vector<double>& values)
+      : kernel_(build_function({x, parameters, {f}})), work_(kernel_), disks_(kernel_, values) {
     work_.set_parameters(values);
   }
 
-  double at(double x) {
-    double out = 0;
-    work_.evaluate({&x, 1}, {&out, 1});
-    return out;
-  }
-
   /// The place of what the polynomials through the nodes do not follow; nothing where there is none.
-  std::optional<double> find(double left, double width, int cells, const Lobatto& rule) {
-    const auto points = static_cast<std::size_t>(rule.order) + 1;
-    std::vector<double> nodes(points);
+  std::optional<Place> find(const Elements& mesh) {
     size_ = 0;
-    for (int e = 0; e < cells; ++e)
-      for (std::size_t j = 0; j < points; ++j) size_ = std::max(size_, std::abs(at(node(left, width, e, rule.x[j]))));
-    for (int e = 0; e < cells; ++e) {
-      for (std::size_t j = 0; j < points; ++j) nodes[j] = at(node(left, width, e, rule.x[j]));
-      if (const auto place = find_in(left + width * e, width, nodes, rule)) return place;
-    }
+    for (std::size_t e = 0; e < mesh.count(); ++e)
+      for (const double f : values_at_nodes(mesh, mesh.corner(e))) size_ = std::max(size_, std::abs(f));
+    for (std::size_t e = 0; e < mesh.count(); ++e)
+      if (const auto place = find_in(mesh, mesh.corner(e))) return place;
     return std::nullopt;
   }
 
  private:
-  static double node(double left, double width, int e, double xi) { return left + width * (e + 0.5 * (1 + xi)); }
+  double at(const Place& x) {
+    double out = 0;
+    work_.evaluate(x, {&out, 1});
+    return out;
+  }
+  const std::vector<double>& values_at_nodes(const Elements& mesh, const Place& corner) {
+    nodes_.resize(mesh.nodes());
+    for (std::size_t n = 0; n < nodes_.size(); ++n) nodes_[n] = at(mesh.node(corner, n));
+    return nodes_;
+  }
 
   struct Piece {
-    double middle, half;
+    Place middle, half;
     int halvings;
   };
 
-  std::optional<double> find_in(double left, double width, const std::vector<double>& nodes, const Lobatto& rule) {
-    std::vector<Piece> open{{left + width / 2, width / 2, 0}};
-    std::vector<double> value, slope;
+  std::optional<Place> find_in(const Elements& mesh, const Place& corner) {
+    const std::vector<double>& nodes = values_at_nodes(mesh, corner);
+    Piece whole{corner, mesh.width, 0};
+    for (std::size_t i = 0; i < corner.size(); ++i) whole.middle[i] += whole.half[i] /= 2;
+    std::vector<Piece> open{whole};
     for (int seen = 0; !open.empty() && seen < most_pieces; ++seen) {
       const Piece piece = open.back();
       open.pop_back();
       const double f = at(piece.middle);
-      rule.at(2 * (piece.middle - left) / width - 1, value, slope);
-      double polynomial = 0;
-      for (std::size_t j = 0; j < nodes.size(); ++j) polynomial += value[j] * nodes[j];
-      if (std::abs(f - polynomial) > unresolved * std::max(size_, std::abs(f))) return piece.middle;
-      disks_.set_centre({&piece.middle, 1});
-      disks_.evaluate({&piece.half, 1});
+      if (std::abs(f - mesh.between(nodes, corner, piece.middle)) > unresolved * std::max(size_, std::abs(f)))
+        return piece.middle;
+      disks_.set_centre(piece.middle);
+      disks_.evaluate(piece.half);
       if (disks_.reach(0) <= settled * size_ || piece.halvings == most_halvings) continue;
-      for (const double side : {-0.5, 0.5})
-        open.push_back({piece.middle + side * piece.half, piece.half / 2, piece.halvings + 1});
+      for (std::size_t part = 0; part < std::size_t(1) << corner.size(); ++part) {
+        Piece smaller{piece.middle, piece.half, piece.halvings + 1};
+        for (std::size_t i = 0; i < corner.size(); ++i)
+          smaller.middle[i] += (part >> i & 1 ? 1 : -1) * (smaller.half[i] /= 2);
+        open.push_back(std::move(smaller));
+      }
     }
     return std::nullopt;
   }
@@ -74,6 +128,7 @@ class Scan {
   FunctionKernel kernel_;
   FunctionWorkspace work_;
   FunctionDisks disks_;
+  std::vector<double> nodes_;
   double size_ = 0;  // largest modulus at the nodes
 };
 
@@ -84,11 +139,12 @@ bool stands_in(Expr symbol, Expr e) {
 
 }  // namespace
 
-std::optional<Unresolved> unresolved_feature(const FieldEquations& equations, const PointForm& form, int cells,
-                                             int order) {
+std::optional<Unresolved> unresolved_feature(const FieldEquations& equations, const PointForm& form,
+                                             const std::vector<int>& cells, int order) {
   const FieldSystem& s = equations.system();
   Context& context = *s.context;
-  const Expr x = s.space.front().symbol;
+  std::vector<Expr> x;
+  for (const SpaceVariable& one : s.space) x.push_back(one.symbol);
   std::vector<Expr> parameters;
   std::vector<double> values;
   Bindings known;
@@ -97,20 +153,23 @@ std::optional<Unresolved> unresolved_feature(const FieldEquations& equations, co
     values.push_back(p.si_value);
     known[p.symbol] = p.si_value;
   }
-  const double left = evaluate(s.expanded(s.space.front().from), known);
-  const double width = (evaluate(s.expanded(s.space.front().to), known) - left) / cells;
   const Lobatto rule(order);
+  Elements mesh{rule, {}, {}, cells};
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    mesh.from.push_back(evaluate(s.expanded(s.space[i].from), known));
+    mesh.width.push_back((evaluate(s.expanded(s.space[i].to), known) - mesh.from.back()) / cells[i]);
+  }
   const auto look = [&](Expr f, bool of_start) -> std::optional<Unresolved> {
-    if (!stands_in(x, f)) return std::nullopt;
-    const auto place = Scan(f, x, parameters, values).find(left, width, cells, rule);
-    return place ? std::optional(Unresolved{*place, width, of_start}) : std::nullopt;
+    if (std::none_of(x.begin(), x.end(), [&](Expr one) { return stands_in(one, f); })) return std::nullopt;
+    const auto place = Scan(f, x, parameters, values).find(mesh);
+    return place ? std::optional(Unresolved{*place, mesh.width, of_start}) : std::nullopt;
   };
   for (const FieldStart& start : equations.model->start)
     if (const auto found = look(s.expanded(start.value), true)) return found;
   ExprMap fixed{{context.time(), context.number(0)}};
   const Expr number = context.number(Rational(618034, 1000000));  // any value of φ, φ', φ_x, φ_tx
   for (const Expr& input : form.inputs)
-    if (input != x && input != context.time()) fixed.emplace(input, number);
+    if (std::find(x.begin(), x.end(), input) == x.end() && input != context.time()) fixed.emplace(input, number);
   for (const auto* part : {&form.a, &form.g, &form.s})
     for (const Expr& f : *part)
       if (const auto found = look(substitute(f, fixed), false)) return found;

@@ -8,17 +8,17 @@ namespace maupertuis {
 /// Something in x that the nodes of a mesh pass by: a bump or a jump of the density, or of the start, inside an
 /// element.
 struct Unresolved {
-  double place = 0;       // where
-  double element = 0;     // the width of an element
-  bool of_start = false;  // else of the density
+  std::vector<double> place;    // [space variables] where
+  std::vector<double> element;  // the widths of an element
+  bool of_start = false;        // else of the density
 };
 
-/// Looks at what stands in x between the nodes, where both meshes of an error estimate may be blind alike: pieces of an
-/// element are halved until a disk that contains one bounds the change of the function there (function_disks.hpp), and
-/// each is compared with the polynomial through the element's nodes. Nothing where that is off by less than a quarter
-/// of the function's size at all pieces. Coefficients of the density are looked at for one set of values of the field.
-/// Cost: some evaluations an element; more where something narrow is.
-std::optional<Unresolved> unresolved_feature(const FieldEquations& equations, const PointForm& form, int cells,
-                                             int order);
+/// Looks at what stands in x (and y) between the nodes, where both meshes of an error estimate may be blind alike:
+/// pieces of an element are halved along each direction until a disk that contains one bounds the change of the
+/// function there (function_disks.hpp), and each is compared with the polynomial through the element's nodes. Nothing
+/// where that is off by less than a quarter of the function's size at all pieces. Coefficients of the density are
+/// looked at for one set of values of the field. Cost: some evaluations an element; more where something narrow is.
+std::optional<Unresolved> unresolved_feature(const FieldEquations& equations, const PointForm& form,
+                                             const std::vector<int>& cells, int order);
 
 }  // namespace maupertuis

@@ -159,6 +159,8 @@ std::string_view verdict_word(Verdict verdict) {
   return verdict == Verdict::Zero ? "agrees" : verdict == Verdict::Nonzero ? "differs" : "undecided";
 }
 
+}  // namespace
+
 void add_certificate(ReportContent& content, const Certificate& certificate) {
   content.certified = certificate.passed();
   for (const CertificateCheck& check : certificate.checks) {
@@ -168,8 +170,6 @@ void add_certificate(ReportContent& content, const Certificate& certificate) {
                                    check.verdict == Verdict::Zero, check.applies, check.points, check.error_bound});
   }
 }
-
-}  // namespace
 
 void add_messages(ReportContent& content, const Diagnostics& diagnostics, const SourceText& source) {
   for (const Diagnostic& d : diagnostics.items()) {

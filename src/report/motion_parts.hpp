@@ -20,4 +20,7 @@ void add_values_along_run(ReportContent::Conserved& row, const EquationsOfMotion
 void add_motion(ReportContent& content, const Model& model, const EquationsOfMotion& equations, bool energy_conserved,
                 const SimulationResult& run);
 
+/// What was checked of the equations, line by line.
+void add_certificate(ReportContent& content, const Certificate& certificate);
+
 }  // namespace maupertuis

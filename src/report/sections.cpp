@@ -101,7 +101,7 @@ std::string equations_section(const ReportContent& content) {
   if (!content.intermediates.empty()) html += "<p>with</p>\n";
   for (const auto& intermediate : content.intermediates)
     html += fmt::format("<div class=\"where\">{}</div>\n", formula_block(intermediate));
-  if (!content.energies.empty()) html += "<h3>Energies</h3>\n";
+  if (!content.energies.empty()) html += fmt::format("<h3>{}</h3>\n", escape_html(content.energies_title));
   for (const auto& energy : content.energies)
     html += fmt::format("<div class=\"where\">{}</div>\n", formula_block(energy));
   return section("equations", "Equations of motion", html);
@@ -235,6 +235,8 @@ std::string motion_section(const ReportContent& content) {
     plots += fmt::format("<figure>\n{}<figcaption>{}</figcaption></figure>\n", plot_svg(content.trajectory, options),
                          sentence_html(picture.caption));
   }
+  for (const auto& [caption, svg] : content.figures)
+    html += fmt::format("<figure>\n{}<figcaption>{}</figcaption></figure>\n", svg, sentence_html(caption));
   if (!plots.empty()) html += "<div class=\"plots\">\n" + plots + "</div>\n";
   return section("motion", "Motion", html);
 }

@@ -1,4 +1,6 @@
 #include "columns.hpp"
+#include "field_views.hpp"
+#include "fields_text.hpp"
 #include "numbers.hpp"
 #include "outcome.hpp"
 #include "output_files.hpp"
@@ -18,13 +20,58 @@ struct PlotCommandOptions {
   PlotOptions picture;
   std::vector<std::string> y, x;  // lists of columns, as written
   std::string output = "-";
+  bool map = false, curves = false;  // of fields: one of both alone
 };
+
+ExitCode write_svg(const PlotCommandOptions& options, const std::string& svg, Study& study, Json& document,
+                   Console& console) {
+  if (options.output != "-")
+    write_picture(options.output, svg, study.diagnostics());
+  else if (console.json())
+    document["svg"] = svg;
+  else
+    console.print(svg);
+  return study.wrong() ? ExitCode::RunFailed : ExitCode::Fine;
+}
+
+/// u(x) at moments, the space-time map, the plane at moments.
+ExitCode plot_fields(const PlotCommandOptions& options, Study& study, Console& console) {
+  Json document = json_document("plot");
+  document["file"] = options.output;
+  refuse_options_of_motions(options.run, {{"--x", !options.x.empty()}}, study.diagnostics());
+  if (options.map && options.curves)
+    study.diagnostics().error("E0809", {}, "--map and --curves exclude each other.", {},
+                              "Both stand in one picture where neither is given.");
+  const SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
+  if (options.output != "-")
+    check_output_files({{"-o", options.output, FileKind::Picture}}, options.model.path, study.diagnostics());
+  if (study.wrong()) return finish_usage(console, study, "plot");
+  if (!study.field_equations()) return finish(console, study, document);
+  if (study.model()->fields->system.space.size() > 1 && (options.map || options.curves))
+    study.diagnostics().error("E0809", {}, "--map and --curves are for fields of one space variable.",
+                              "In the plane u(x, y) is drawn at moments.", "Leave them out.");
+  FieldPictureOptions like;
+  like.curves = !options.map, like.map = !options.curves;
+  like.degrees = options.picture.degrees, like.theme = options.picture.theme, like.title = options.picture.title;
+  const auto pictures = field_pictures_of(study, options.y, like);
+  if (study.wrong()) return finish_usage(console, study, "plot");
+  const auto run = run_of_fields(study, settings, true, true);
+  if (!run) return finish(console, study, document);
+  const ExitCode written = write_svg(options, pictures_of_fields(study, *run, pictures), study, document, console);
+  finish(console, study, document);
+  return written;
+}
 
 ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
   Study study = open_study(options.model);
   Json document = json_document("plot");
   document["file"] = options.output;
   const bool readable_model = !study.wrong();
+  if (declares_fields(study.tree())) return plot_fields(options, study, console);
+  for (const auto& [name, given] : {std::pair{"--map", options.map}, {"--curves", options.curves}})
+    if (given)
+      study.diagnostics().error("E0809", {}, fmt::format("{} is for fields, and the model has none.", name),
+                                "It chooses between u(x) at moments and the space-time map.", "Leave it out.");
   const AskedColumns y("--y", options.y, study), x("--x", options.x, study);
   SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
   if (settings.errors != ErrorEstimates::None) settings.errors = ErrorEstimates::Rows;
@@ -56,13 +103,7 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
   check_numbers(result->trajectory, study.diagnostics());
   show_happenings(picture, *result, study.model()->system);
   const std::string svg = plot_svg(result->trajectory, picture);
-  if (options.output != "-")
-    write_picture(options.output, svg, study.diagnostics());
-  else if (console.json())
-    document["svg"] = svg;
-  else
-    console.print(svg);
-  const bool written = !study.wrong();
+  const bool written = write_svg(options, svg, study, document, console) == ExitCode::Fine;
   if (!result->ok()) console.say(fmt::format("The run ended early: {}\n", result->reason));
   finish(console, study, document);
   return written ? exit_code(result->ending) : ExitCode::RunFailed;
@@ -94,6 +135,8 @@ void add_plot(CommandLine& line) {
       ->type_name("FORMULA");
   command.add_option("--title", picture.title, "Title (default: that of the system)");
   command.add_flag("--degrees", picture.degrees, "Angles in degrees");
+  command.add_flag("--map", options->map, "Of fields: the space-time map alone");
+  command.add_flag("--curves", options->curves, "Of fields: u(x) at moments alone");
   command.add_flag_callback(
       "--dark", [&picture] { picture.theme = PlotTheme::Dark; }, "Light on dark");
 }

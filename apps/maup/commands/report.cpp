@@ -1,3 +1,5 @@
+#include "field_report.hpp"
+#include "field_views.hpp"
 #include "interrupt.hpp"
 #include "orbits_options.hpp"
 #include "outcome.hpp"
@@ -262,8 +264,9 @@ void check_sections(const std::vector<std::string>& chosen, Diagnostics& diagnos
   }
 }
 
-ExitCode write_page(const std::string& page, Page& built, const ReportOptions& options, Study& study, Json& document,
-                    Console& console) {
+/// `result`: of the run, if the page has one that may have ended early.
+ExitCode write_page(const std::string& page, const std::optional<SimulationResult>& result,
+                    const ReportOptions& options, Study& study, Json& document, Console& console) {
   const std::string& name = study.model()->system.name;  // empty without a line `system`
   const std::string path = options.output.empty() ? (name.empty() ? "report" : name) + ".html" : options.output;
   if (path == "-")
@@ -273,7 +276,6 @@ ExitCode write_page(const std::string& page, Page& built, const ReportOptions& o
   document["file"] = path;
   document["bytes"] = page.size();
   const bool written = !study.wrong();
-  const auto& result = built.result();
   if (written && path != "-" && !console.json())
     console.say(fmt::format("Wrote {} ({} kB). Open it in any browser.\n", path, (page.size() + 999) / 1000));
   if (result && !result->ok() && !console.json()) console.say(fmt::format("The run ended early: {}\n", result->reason));
@@ -282,8 +284,33 @@ ExitCode write_page(const std::string& page, Page& built, const ReportOptions& o
   return !result || result->ending == Ending::Interrupted ? ExitCode::Fine : exit_code(result->ending);
 }
 
+/// Density, equations, currents, waves and runs of fields.
+ExitCode report_fields(const ReportOptions& options, Study& study, Console& console) {
+  Json document = json_document("report");
+  const OrbitsOptions& o = options.orbits;
+  refuse_options_of_motions(options.run,
+                            {{"--floquet", o.floquet}, {"--lyapunov", o.lyapunov}, {"--section", o.has_section()}},
+                            study.diagnostics());
+  const SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
+  check_sections(options.sections, study.diagnostics());
+  check_field_sections(options.sections, study.diagnostics());
+  const auto seconds = budget_seconds(options.budget, study.diagnostics());
+  if (options.output != "-")
+    check_output_files({{"-o", options.output, FileKind::Page}}, options.model.path, study.diagnostics());
+  if (study.wrong()) return finish_usage(console, study, "report");
+  if (!study.model()) return finish(console, study, document);
+  std::optional<SectionBudget> budget(std::in_place, seconds, options.sections, console);
+  const auto html = page_of_fields(study, settings, !options.without_run, *budget);
+  if (!html) return finish(console, study, document);
+  document["sections"] = budget->written();
+  document["left_out"] = budget->left_out();
+  budget.reset();  // wipes the line of progress
+  return write_page(*html, std::nullopt, options, study, document, console);
+}
+
 ExitCode report(const ReportOptions& options, Console& console) {
   Study study = open_study(options.model);
+  if (declares_fields(study.tree())) return report_fields(options, study, console);
   Json document = json_document("report");
   const bool readable_model = !study.wrong();
   const SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
@@ -307,7 +334,7 @@ ExitCode report(const ReportOptions& options, Console& console) {
   document["sections"] = budget->written();
   document["left_out"] = budget->left_out();
   budget.reset();  // wipes the line of progress
-  return write_page(html, page, options, study, document, console);
+  return write_page(html, page.result(), options, study, document, console);
 }
 
 }  // namespace

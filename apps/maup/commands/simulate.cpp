@@ -1,5 +1,6 @@
 #include "columns.hpp"
 #include "extended_text.hpp"
+#include "field_views.hpp"
 #include "fields_text.hpp"
 #include "numbers.hpp"
 #include "outcome.hpp"
@@ -339,49 +340,28 @@ ExitCode simulate_extended_model(const SimulateOptions& options, const std::stri
   return files_written && told != ExitCode::RunFailed ? exit_code(result->ending) : ExitCode::RunFailed;
 }
 
-/// The precision of the command line, else that of the model. A word that is none is for the model to refuse.
-/// The run of fields.
-/// What is said of motions of coordinates and has no meaning for fields is not passed over in silence.
-void refuse_options_of_motions(const SimulateOptions& options, Diagnostics& diagnostics) {
-  const RunOptions& run = options.run;
-  const std::pair<const char*, bool> given[] = {
-      {"--until", !run.until.empty()},      {"--within", !run.within.empty()},       {"--at", !run.at.empty()},
-      {"--method", run.method.has_value()}, {"--step", run.step.has_value()},        {"--order", run.order.has_value()},
-      {"--tol", run.tolerance.has_value()}, {"--columns", !options.columns.empty()}, {"--errors", options.errors}};
-  for (const auto& [name, is_given] : given)
-    if (is_given)
-      diagnostics.error("E0809", {}, fmt::format("{} is about motions of coordinates, and the model has fields.", name),
-                        "A field runs over its mesh for a time, by Taylor steps within the stability limit.",
-                        "Leave it out; `expect u(3 m) at 2 s = …` asks for values.");
-}
-
 ExitCode simulate_fields(const SimulateOptions& options, Study& study, Console& console) {
   Json document = json_document("simulate");
   check_output_files({{"-o", options.output, FileKind::Table}, {"--plot", options.plot, FileKind::Picture}},
                      options.model.path, study.diagnostics());
-  refuse_options_of_motions(options, study.diagnostics());
+  refuse_options_of_motions(options.run, {{"--columns", !options.columns.empty()}, {"--errors", options.errors}},
+                            study.diagnostics());
   const SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
   if (study.wrong()) return finish_usage(console, study, "simulate");
   if (options.precision && *options.precision != "double")
     study.diagnostics().error("E0809", {}, "Fields are run in double.", "The mesh limits the digits, not the numbers.",
                               "Leave --precision out.");
   if (!study.field_equations()) return finish(console, study, std::move(document));
-  const auto run = run_of_fields(study, settings, !options.output.empty() || !options.plot.empty());
+  const auto run =
+      run_of_fields(study, settings, !options.output.empty() || !options.plot.empty(), options.output.empty());
   if (!run) return finish(console, study, std::move(document));
   if (!options.output.empty()) write_rows(options.output, run->trajectory, study.diagnostics());
-  if (!options.plot.empty()) write_picture(options.plot, field_picture(study, *run), study.diagnostics());
+  if (!options.plot.empty()) write_picture(options.plot, pictures_of_fields(study, *run, {}), study.diagnostics());
   if (!console.json()) console.print(field_run_text(*run));
   return finish(console, study, field_run_json(*run));
 }
 
-/// By the text alone: what options say beside the model has to be said before it is elaborated.
-bool declares_fields(const syntax::SyntaxTree* tree) {
-  return tree && std::any_of(tree->statements.begin(), tree->statements.end(), [](const syntax::Statement& s) {
-           const auto* of_field = std::get_if<syntax::FieldStatement>(&s.body);
-           return of_field && of_field->what == "field";
-         });
-}
-
+/// The precision of the command line, else that of the model. A word that is none is for the model to refuse.
 ExitCode simulate_in_any_precision(const SimulateOptions& options, Console& console) {
   Study study = open_study(options.model);
   if (declares_fields(study.tree())) return simulate_fields(options, study, console);

@@ -1,0 +1,35 @@
+#pragma once
+#include <maupertuis/field_map.hpp>
+#include <maupertuis/field_run.hpp>
+
+#include <string>
+#include <vector>
+
+namespace maupertuis {
+
+/// What of a run of fields is drawn.
+struct FieldPictureOptions {
+  std::size_t field = 0;  // of those that are varied
+  int order = 0;          // 0: u, 1: u'
+  bool curves = true;     // of one variable: u(x) at moments
+  bool map = true;        // of one variable: the space-time map
+  bool degrees = false;   // angles
+  bool dimensionless = false;
+  std::string title;
+  PlotTheme theme = PlotTheme::Light;
+  double width = 720;
+};
+
+/// A field over space and time as an SVG picture: of one variable u(x) at six moments above the space-time map (x
+/// across, t upwards), or one of both alone; in the plane u(x, y) at six moments.
+/// Precondition: the run has rows.
+std::string field_picture_svg(const FieldEquations& equations, const FieldRunResult& run,
+                              const FieldPictureOptions& options);
+
+/// The value of a field at the places of row `row`, [upwards ×] places.
+std::vector<double> field_values(const FieldRunResult& run, std::size_t row, std::size_t field, int order);
+
+/// The moments that are drawn, rows of the trajectory: the first and the last among them.
+std::vector<std::size_t> drawn_moments(const FieldRunResult& run, std::size_t most);
+
+}  // namespace maupertuis

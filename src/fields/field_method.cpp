@@ -1,0 +1,108 @@
+#include "fields/field_method.hpp"
+
+#include "fields/plane_mesh.hpp"
+
+#include <maupertuis/evaluate.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace maupertuis {
+namespace {
+
+constexpr int usual_order = 3, usual_smooth_order = 7;
+constexpr double stability = 3.2;  // h ω_max
+constexpr int stages = 4;          // of Gauss's collocation
+constexpr double goal = 1e-12;     // of its steps, beside the field, over the whole run
+
+}  // namespace
+
+std::optional<FieldMethod> FieldMethod::of(const FieldEquations& equations, Diagnostics& diagnostics) {
+  FieldMethod out;
+  const int written = equations.system().element_order;
+  if (needs_collocation(equations)) {
+    out.stiff_ = density_form(equations, diagnostics);
+    out.order_ = written ? written : usual_smooth_order;
+  } else {
+    out.waves_ = point_form(equations, diagnostics);
+    out.order_ = written ? written : usual_order;
+  }
+  return out.waves_ || out.stiff_ ? std::optional(std::move(out)) : std::nullopt;
+}
+
+std::string FieldMethod::name() const {
+  return waves_ ? fmt::format("Taylor steps of order {}", kOrder)
+                : fmt::format("steps of Gauss's collocation of order {}", 2 * stages);
+}
+
+std::unique_ptr<FieldMotion> FieldMethod::mesh(const FieldEquations& equations, const Cells& cells) const {
+  if (stiff_) return std::make_unique<CollocationMotion>(equations, *stiff_, cells[0], order_, stages);
+  if (cells.size() == 2) return std::make_unique<PlaneMesh>(equations, *waves_, cells[0], cells[1], order_);
+  return std::make_unique<FieldMesh>(equations, *waves_, cells[0], order_);
+}
+
+double FieldMethod::bytes(const FieldEquations& equations, const Cells& cells) const {
+  return cells.size() == 2 ? PlaneMesh::bytes(equations, *waves_, cells[0], cells[1], order_) : 0;
+}
+
+PointForm FieldMethod::functions() const {
+  if (waves_) return *waves_;
+  PointForm out;
+  out.inputs = stiff_->inputs, out.g = stiff_->by_slot;
+  return out;
+}
+
+double FieldMethod::longest_step(FieldMotion& mesh, double duration, double every, const Interrupt& interrupt,
+                                 double& omega) {
+  if (waves_) {
+    omega = dynamic_cast<WaveMesh&>(mesh).omega_max(interrupt);
+    return omega > 0 ? stability / omega : duration;
+  }
+  auto& motion = dynamic_cast<CollocationMotion&>(mesh);
+  if (step_ > 0) return step_ * std::round(motion.width_of_cell() / width_);
+  width_ = motion.width_of_cell();
+  return step_ = motion.choose_step(std::min(every, duration), duration, goal, interrupt);
+}
+
+int FieldMethod::power(const FieldEquations& equations, const FieldQuestion& question, const Cells& half) const {
+  if (waves_) return power_of_waves(equations, question, half);
+  const bool smooth = std::find(stiff_->smooth.begin(), stiff_->smooth.end(), true) != stiff_->smooth.end();
+  const int degree = smooth ? std::max(order_, 3) : order_;
+  int lost = smooth ? 2 : 0;  // of the whole, energies for example: twice what the derivatives in ℒ leave
+  if (question.total) return std::min(2 * degree - lost, 2 * stages);
+  lost = 0;
+  for (const PlaceValue& place : equations.model->places) {
+    const Expr value[] = {question.value};
+    const std::vector<Expr> symbols = symbols_of(value);
+    if (std::find(symbols.begin(), symbols.end(), place.symbol) != symbols.end())
+      lost = std::max(lost, equations.system().jet_of(place.jet)->space[0]);
+  }
+  return std::min(std::max(degree + 1 - lost, 1), 2 * stages);
+}
+
+/// 2p (up to that of the steps) where elements meet and in integrals, p + 1 between, p of a slope.
+int FieldMethod::power_of_waves(const FieldEquations& equations, const FieldQuestion& question,
+                                const Cells& half) const {
+  int power = std::min(2 * order_, static_cast<int>(kOrder));
+  if (question.total) return power;
+  const FieldSystem& s = equations.system();
+  Bindings values;
+  for (const Parameter& p : equations.model->parameters) values[p.symbol] = p.si_value;
+  const auto number = [&](Expr e) { return evaluate(s.expanded(e), values); };
+  const std::vector<Expr> asked = symbols_of({&question.value, 1});
+  for (const PlaceValue& place : equations.model->places) {
+    if (std::find(asked.begin(), asked.end(), place.symbol) == asked.end()) continue;
+    const FieldJet jet = *s.jet_of(place.jet);
+    if (jet.order() > jet.time) power = std::min(power, order_);
+    for (std::size_t i = 0; i < half.size(); ++i) {
+      const double from = number(s.space[i].from), width = number(s.space[i].to) - from;
+      const double cell = (number(place.place[i]) - from) / width * half[i];
+      if (std::abs(cell - std::round(cell)) > 1e-9 * half[i]) power = std::min(power, order_ + 1);
+    }
+  }
+  return power;
+}
+
+}  // namespace maupertuis

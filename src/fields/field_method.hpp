@@ -1,0 +1,46 @@
+#pragma once
+#include "fields/collocation.hpp"
+#include "fields/field_mesh.hpp"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace maupertuis {
+
+using Cells = std::vector<int>;  // [space variables]
+
+/// How the fields of a density are put on a mesh and moved: waves by Taylor steps, where ω_max grows like 1/h;
+/// densities of second derivatives or linear in the velocities, where it grows like 1/h² to 1/h⁴, by collocation.
+class FieldMethod {
+ public:
+  /// Nothing, and the diagnostics, where there is none for this density.
+  static std::optional<FieldMethod> of(const FieldEquations& equations, Diagnostics& diagnostics);
+
+  bool is_wave() const { return waves_.has_value(); }
+  int order() const { return order_; }  // of the elements
+  bool conserves() const { return waves_ ? waves_->conserves : stiff_->conserves; }
+  std::string name() const;  // of the steps, in words
+  std::unique_ptr<FieldMotion> mesh(const FieldEquations& equations, const Cells& cells) const;
+  /// Bytes that a mesh takes; 0: it is small.
+  double bytes(const FieldEquations& equations, const Cells& cells) const;
+  /// Functions of the density and their inputs, for a look at what a mesh resolves.
+  PointForm functions() const;
+  /// By collocation as much longer on the other meshes as their cells are wider, so that their difference tells the
+  /// error of steps as well. `omega` is set where steps depend on it.
+  double longest_step(FieldMotion& mesh, double duration, double every, const Interrupt& interrupt, double& omega);
+  /// Of a cell of the first mesh by collocation.
+  double width() const { return width_; }
+  /// The power of the width of a cell by which an answer is off on two meshes with their steps; `half`: the coarser.
+  int power(const FieldEquations& equations, const FieldQuestion& question, const Cells& half) const;
+
+ private:
+  int power_of_waves(const FieldEquations& equations, const FieldQuestion& question, const Cells& half) const;
+
+  std::optional<PointForm> waves_;
+  std::optional<DensityForm> stiff_;
+  int order_ = 0;
+  double step_ = 0, width_ = 0;  // of the first mesh by collocation
+};
+
+}  // namespace maupertuis

@@ -1,0 +1,69 @@
+#include "fields/wave_mesh.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace maupertuis {
+
+void fill_randomly(FieldValues& w) {
+  std::uint64_t seed = 1;
+  for (auto& row : w)
+    for (double& x : row)
+      x = (seed = seed * 6364136223846793005ull + 1442695040888963407ull, static_cast<double>(seed >> 33) / 4e9 - 0.5);
+}
+
+double largest_frequency(const FieldValues& u, FieldValues w,
+                         const std::function<FieldValues(const FieldValues&)>& accelerations, int rounds,
+                         const std::string& trouble, const Interrupt& interrupt) {
+  double size = 1, count = 0;
+  for (const auto& row : u) {
+    count += static_cast<double>(row.size());
+    for (const double x : row) size = std::max(size, std::abs(x));
+  }
+  const double epsilon = 1e-7 * size;
+  const auto norm_of = [&](const FieldValues& x) {
+    double sum = 0;
+    for (const auto& row : x)
+      for (const double value : row) sum += value * value;
+    return std::sqrt(sum / count);
+  };
+  const FieldValues at_rest = accelerations(u);
+  double square = 0;
+  for (int round = 0; round < rounds && trouble.empty(); ++round) {
+    interrupt.throw_if_asked();
+    const double norm = norm_of(w);
+    if (!(norm > 0)) return 0;
+    FieldValues moved = u;
+    for (std::size_t f = 0; f < w.size(); ++f)
+      for (std::size_t n = 0; n < w[f].size(); ++n) moved[f][n] += epsilon * (w[f][n] /= norm);
+    const FieldValues there = accelerations(moved);
+    for (std::size_t f = 0; f < w.size(); ++f)
+      for (std::size_t n = 0; n < w[f].size(); ++n) w[f][n] = (there[f][n] - at_rest[f][n]) / epsilon;
+    square = norm_of(w);
+  }
+  return std::sqrt(square);
+}
+
+bool invert_mass(std::vector<double> a, std::vector<double>& inverse, std::size_t n) {
+  inverse.assign(n * n, 0);
+  for (std::size_t i = 0; i < n; ++i) inverse[i * n + i] = 1;
+  for (std::size_t c = 0; c < n; ++c) {
+    std::size_t pivot = c;
+    for (std::size_t r = c; r < n; ++r)
+      if (std::abs(a[r * n + c]) > std::abs(a[pivot * n + c])) pivot = r;
+    if (!(std::abs(a[pivot * n + c]) > 0)) return false;
+    for (std::size_t j = 0; j < n; ++j)
+      std::swap(a[c * n + j], a[pivot * n + j]), std::swap(inverse[c * n + j], inverse[pivot * n + j]);
+    const double d = a[c * n + c];
+    for (std::size_t j = 0; j < n; ++j) a[c * n + j] /= d, inverse[c * n + j] /= d;
+    for (std::size_t r = 0; r < n; ++r) {
+      const double factor = a[r * n + c];
+      if (r == c || factor == 0) continue;
+      for (std::size_t j = 0; j < n; ++j)
+        a[r * n + j] -= factor * a[c * n + j], inverse[r * n + j] -= factor * inverse[c * n + j];
+    }
+  }
+  return true;
+}
+
+}  // namespace maupertuis

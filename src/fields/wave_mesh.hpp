@@ -1,0 +1,47 @@
+#pragma once
+#include "fields/field_motion.hpp"
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace maupertuis {
+
+constexpr std::size_t kOrder = 8;  // of Taylor steps: on the imaginary axis stable up to hω = 3.40
+
+/// A discrete field whose motion is a wave: the highest frequency of the mesh bounds its Taylor steps.
+class WaveMesh : public FieldMotion {
+ public:
+  using FieldMotion::FieldMotion;
+  /// Largest frequency of small motions about the present state, by power iteration.
+  virtual double omega_max(const Interrupt& interrupt) = 0;
+};
+
+/// The largest frequency of small motions about u by power iteration from the direction w.
+/// accelerations(u) is φ'' at a state; `trouble` ends the iteration.
+using FieldValues = std::vector<std::vector<double>>;  // [fields][lanes]
+double largest_frequency(const FieldValues& u, FieldValues w,
+                         const std::function<FieldValues(const FieldValues&)>& accelerations, int rounds,
+                         const std::string& trouble, const Interrupt& interrupt);
+/// Numbers of −1/2 .. 1/2, always the same.
+void fill_randomly(FieldValues& w);
+
+/// A⁻¹ of one point, [n²]; false where it is singular.
+bool invert_mass(std::vector<double> a, std::vector<double>& inverse, std::size_t n);
+
+/// A sum with what each addition loses (Neumaier).
+class CarefulSum {
+ public:
+  void add(double term) {
+    const double total = sum_ + term;
+    lost_ += std::abs(sum_) >= std::abs(term) ? (sum_ - total) + term : (term - total) + sum_;
+    sum_ = total;
+  }
+  double value() const { return sum_ + lost_; }
+
+ private:
+  double sum_ = 0, lost_ = 0;
+};
+
+}  // namespace maupertuis

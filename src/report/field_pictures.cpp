@@ -1,0 +1,140 @@
+#include <maupertuis/diagram.hpp>
+#include <maupertuis/field_pictures.hpp>
+#include <maupertuis/require.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+/// Runs of fields as pictures.
+namespace maupertuis {
+namespace {
+
+constexpr std::size_t most_moments = 6;
+constexpr double turn_degrees = 180 / 3.14159265358979323846;
+
+/// At most this many values along x and t are drawn: finer ones change nothing that could be seen.
+constexpr std::size_t most_across = 500, most_up = 320;
+
+std::vector<std::size_t> thinned(std::size_t count, std::size_t most) {
+  std::vector<std::size_t> out;
+  const std::size_t shown = std::min(count, most);
+  for (std::size_t i = 0; i < shown; ++i) out.push_back(shown == 1 ? 0 : i * (count - 1) / (shown - 1));
+  return out;
+}
+
+class FieldPainter {
+ public:
+  FieldPainter(const FieldEquations& equations, const FieldRunResult& run, const FieldPictureOptions& options)
+      : s_(equations.system()), run_(run), o_(options), field_(equations.varied[options.field]) {}
+
+  std::string svg() const {
+    if (s_.space.size() == 2) return plane();
+    return o_.map ? space_time() : curves();
+  }
+
+ private:
+  std::string unit_of(const Dimension& d) const {
+    const std::string text = to_string(d);
+    return o_.dimensionless || text == "1" ? std::string() : text;
+  }
+  Dimension dimension() const { return s_.dimension_of({field_, std::vector<int>(s_.space.size(), 0), o_.order}); }
+  bool in_degrees() const { return o_.degrees && unit_of(dimension()).compare(0, 3, "rad") == 0; }
+  std::string value_unit() const {
+    const std::string unit = unit_of(dimension());
+    return in_degrees() ? "°" + unit.substr(3) : unit;
+  }
+  std::string value_name() const { return s_.fields[field_].name + (o_.order ? "'" : ""); }
+  std::string moment(std::size_t row) const {
+    return fmt::format("t = {:.4g}{}", run_.trajectory.times[row], o_.dimensionless ? "" : " s");
+  }
+  std::vector<double> values(std::size_t row) const {
+    std::vector<double> out = field_values(run_, row, o_.field, o_.order);
+    if (in_degrees())
+      for (double& v : out) v *= turn_degrees;
+    return out;
+  }
+
+  FieldMap frame_of_map() const {
+    FieldMap map;
+    map.title = o_.title, map.theme = o_.theme, map.width = o_.width;
+    map.x_name = s_.space.front().name, map.x_unit = unit_of(s_.space.front().dimension);
+    map.value_name = value_name(), map.value_unit = value_unit();
+    return map;
+  }
+
+  std::string space_time() const {
+    FieldMap map = frame_of_map();
+    map.y_name = "t", map.y_unit = o_.dimensionless ? "" : "s";
+    const auto across = thinned(run_.places.size(), most_across);
+    std::vector<std::size_t> up = thinned(run_.trajectory.rows(), most_up);
+    const auto moments = drawn_moments(run_, most_moments);
+    up.insert(up.end(), moments.begin(), moments.end());
+    std::sort(up.begin(), up.end());
+    up.erase(std::unique(up.begin(), up.end()), up.end());
+    for (const std::size_t i : across) map.x.push_back(run_.places[i]);
+    map.sheets.emplace_back();
+    for (const std::size_t row : up) {
+      map.y.push_back(run_.trajectory.times[row]);
+      const std::vector<double> all = values(row);
+      for (const std::size_t i : across) map.sheets.back().values.push_back(all[i]);
+    }
+    for (const std::size_t row : moments)
+      if (o_.curves)
+        map.lines.push_back({static_cast<std::size_t>(std::find(up.begin(), up.end(), row) - up.begin()), moment(row)});
+    return field_map_svg(map);
+  }
+
+  std::string curves() const {
+    Diagram out;
+    out.title = o_.title, out.theme = o_.theme, out.width = o_.width;
+    out.x_name = s_.space.front().name, out.x_unit = unit_of(s_.space.front().dimension);
+    out.y_name = value_name(), out.y_unit = value_unit();
+    std::size_t series = 0;
+    for (const std::size_t row : drawn_moments(run_, most_moments)) {
+      Diagram::Curve curve;
+      curve.series = series;
+      curve.x = run_.places, curve.y = values(row);
+      out.curves.push_back(std::move(curve));
+      out.legend.push_back({moment(row), series++, false, false});
+    }
+    return diagram_svg(out);
+  }
+
+  std::string plane() const {
+    FieldMap map = frame_of_map();
+    map.y_name = s_.space[1].name, map.y_unit = unit_of(s_.space[1].dimension);
+    map.x = run_.places, map.y = run_.upwards;
+    map.equal_scales = s_.space[0].dimension == s_.space[1].dimension;
+    for (const std::size_t row : drawn_moments(run_, most_moments)) map.sheets.push_back({moment(row), values(row)});
+    return field_map_svg(map);
+  }
+
+  const FieldSystem& s_;
+  const FieldRunResult& run_;
+  const FieldPictureOptions& o_;
+  std::size_t field_;
+};
+
+}  // namespace
+
+std::vector<double> field_values(const FieldRunResult& run, std::size_t row, std::size_t field, int order) {
+  const std::size_t count = run.places.size() * std::max<std::size_t>(run.upwards.size(), 1);
+  const std::size_t first = (2 * field + static_cast<std::size_t>(order)) * count;
+  std::vector<double> out(count);
+  for (std::size_t i = 0; i < count; ++i) out[i] = run.trajectory.at(row, first + i);
+  return out;
+}
+
+std::vector<std::size_t> drawn_moments(const FieldRunResult& run, std::size_t most) {
+  return thinned(run.trajectory.rows(), most);
+}
+
+std::string field_picture_svg(const FieldEquations& equations, const FieldRunResult& run,
+                              const FieldPictureOptions& options) {
+  MAUP_REQUIRE(run.trajectory.rows() > 1 && !run.places.empty());
+  return FieldPainter(equations, run, options).svg();
+}
+
+}  // namespace maupertuis

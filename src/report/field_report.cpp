@@ -1,0 +1,191 @@
+#include "report/motion_parts.hpp"
+#include "report/notation.hpp"
+
+#include <maupertuis/field_pictures.hpp>
+#include <maupertuis/field_report.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+/// A study of fields as plain data for a page.
+namespace maupertuis {
+namespace {
+
+using Formula = ReportContent::Formula;
+
+class FieldComposer {
+ public:
+  FieldComposer(const Model& model, const FieldEquations& equations)
+      : model_(model), e_(equations), s_(equations.system()) {}
+
+  void add_model(ReportContent& out, const SourceText& source) const {
+    out.name = model_.system.name;
+    out.title = model_.system.title.empty() ? model_.system.name : model_.system.title;
+    out.source = model_.system.source;
+    out.file = source.name() == "-" ? "" : source.name().substr(source.name().rfind('/') + 1);
+    out.model_text = source.text();
+    if (model_.system.dimensionless) out.summary.emplace_back("units", "dimensionless");
+    Bindings values;
+    for (const Parameter& p : model_.system.parameters) values[p.symbol] = p.si_value;
+    for (const SpaceVariable& x : s_.space)
+      out.summary.emplace_back(x.name,
+                               x.from ? fmt::format("{} … {}", short_number(evaluate(s_.expanded(x.from), values), 8),
+                                                    quantity(evaluate(s_.expanded(x.to), values), unit(x.dimension), 8))
+                                      : std::string("all space"));
+    if (s_.space.front().from) out.summary.emplace_back("boundary", boundary());
+    for (const std::size_t f : e_.varied) {
+      const FieldJet field{f, std::vector<int>(s_.space.size(), 0), 0};
+      const std::string of = unit(s_.fields[f].dimension);
+      out.coordinates.push_back({lay_out(s_.jet_symbol(field), e_.order),
+                                 {},
+                                 "",
+                                 s_.fields[f].kind.empty() || s_.fields[f].kind == "number"
+                                     ? (of.empty() || of == "1" ? "field" : "field in " + of)
+                                     : "field, " + s_.fields[f].kind,
+                                 "",
+                                 ""});
+    }
+    for (const Parameter& p : model_.system.parameters)
+      if (p.symbol.role() == Role::Parameter)
+        out.parameters.push_back({lay_out(p.symbol, e_.order), short_number(p.si_value / p.unit_factor, 10),
+                                  p.unit.empty() ? unit(p.dimension) : p.unit,
+                                  p.unit_factor == 1 ? "" : quantity(p.si_value, unit(p.dimension), 10)});
+    for (const Definition& d : model_.system.definitions)
+      if (d.symbol) out.definitions.push_back({lay_out(d.symbol, e_.order), shown(d.value), "", ""});
+  }
+
+  void add_equations(ReportContent& out) const {
+    for (std::size_t a = 0; a < e_.varied.size(); ++a) {
+      const ReadableForm form = readable_residual(e_, a);
+      ReadingOrder order = e_.order;
+      order.own = s_.jet_symbol({e_.varied[a], std::vector<int>(s_.space.size(), 0), 0});
+      out.equations.push_back({field_layout(s_, lay_out(form, order)), layouts::number("0"), "", ""});
+      for (const Intermediate& i : form.intermediates)
+        out.intermediates.push_back({layouts::symbol(i.symbol), field_layout(s_, lay_out(i.value, order)), "", ""});
+    }
+    out.energies_title = "Density";
+    out.energies.push_back({layouts::name("ℒ"), shown(s_.density), "", ""});
+    if (s_.dissipation) out.energies.push_back({layouts::name("𝒟"), shown(s_.dissipation), "", ""});
+  }
+
+  void add_derivation(ReportContent& out) const {
+    ReportContent::Section slopes{"Partial derivatives of the density", {}}, natural{"Natural boundary conditions", {}},
+        left{"What the variation leaves: δℒ = E·δφ + ∂_μ B^μ", {}};
+    for (const Expr& symbol : s_.jets_in(s_.density)) {
+      if (s_.fields[s_.jet_of(symbol)->field].given) continue;
+      const FieldJet jet = *s_.jet_of(symbol);
+      slopes.lines.push_back({layouts::partial(layouts::name("ℒ"), layouts::name(s_.jet_name(jet))),
+                              shown(differentiate(s_.density, symbol)), "all other derivatives held fixed", ""});
+    }
+    for (const NaturalCondition& n : e_.natural)
+      natural.lines.push_back({shown(n.value), layouts::number("0"),
+                               fmt::format("at an end {} = const. where {} is free", s_.space[n.along].name,
+                                           n.moment ? "the slope" : "the field"),
+                               ""});
+    for (std::size_t mu = 0; mu < e_.boundary_terms.size(); ++mu)
+      left.lines.push_back(
+          {layouts::name("B^" + (mu == s_.space.size() ? "t" : s_.space[mu].name)),
+           field_layout(e_.with_variations, lay_out(readable(e_.boundary_terms[mu], e_.order), e_.order)), "", ""});
+    for (ReportContent::Section* part : {&slopes, &natural, &left})
+      if (!part->lines.empty()) out.derivation.push_back(std::move(*part));
+  }
+
+  void add_currents(ReportContent& out, const FieldCurrents& found) const {
+    for (const FieldCurrent& c : found.currents) {
+      out.conserved.push_back({c.name + ": " + c.meaning, {layouts::name("j^t"), shown(c.density), "", ""}, "", ""});
+      for (std::size_t x = 0; x < c.fluxes.size(); ++x)
+        out.conserved.push_back({"", {layouts::name("j^" + s_.space[x].name), shown(c.fluxes[x]), "", ""}, "", ""});
+    }
+    if (!found.basis.empty()) out.conserved.push_back({found.basis, {}, "", ""});
+  }
+
+  void add_waves(ReportContent& out, const FieldReportParts& parts) const {
+    if (!parts.dispersion && (!parts.frequencies || parts.frequencies->empty())) return;
+    ReportContent::ModePoint rest;
+    rest.name = "Waves and modes about the field at rest";
+    rest.stability = parts.dispersion ? "Waves exp(i(k·x − ω t)) of the linearized equations obey" : "";
+    if (parts.dispersion)
+      for (const Expr& part : {parts.dispersion->re, parts.dispersion->im})
+        if (!part.is_zero()) rest.formulas.push_back({shown(part), layouts::number("0"), "", ""});
+    const bool bare = model_.system.dimensionless;
+    if (parts.frequencies)
+      for (const double w : *parts.frequencies) {
+        const double hertz = w / (2 * 3.14159265358979323846);
+        rest.rows.push_back({w > 0   ? "oscillation"
+                             : w < 0 ? "grows"
+                                     : "free",
+                             quantity(std::abs(w),
+                                      bare    ? ""
+                                      : w < 0 ? "1/s"
+                                              : "rad/s",
+                                      10),
+                             w > 0 ? quantity(hertz, bare ? "" : "Hz", 8) : "",
+                             w > 0 ? quantity(1 / hertz, bare ? "" : "s", 8) : "", ""});
+      }
+    out.mode_points.push_back(std::move(rest));
+  }
+
+  void add_run(ReportContent& out, const FieldRunResult& run) const {
+    const bool bare = model_.system.dimensionless;
+    const auto add = [&](const char* name, std::string value) { out.statistics.emplace_back(name, std::move(value)); };
+    add("mesh", run.cells_upwards ? fmt::format("{} × {} cells of order {}, {} nodes", run.cells, run.cells_upwards,
+                                                run.order, run.nodes)
+                                  : fmt::format("{} cells of order {}, {} nodes", run.cells, run.order, run.nodes));
+    add("steps", fmt::format("{} of order 8 to {}", run.steps, quantity(run.end, bare ? "" : "s", 10)));
+    add("highest frequency of the mesh", quantity(run.omega_max, bare ? "" : "rad/s", 6));
+    add("energy", quantity(run.energy, bare ? "" : "J", 12));
+    add("energy drift", run.energy_drift < 0 ? std::string("forces act: it is not conserved")
+                                             : fmt::format("{:.3g} of its terms", run.energy_drift));
+    for (std::size_t a = 0; a < e_.varied.size(); ++a) {
+      FieldPictureOptions options;
+      options.field = a, options.theme = PlotTheme::Page, options.dimensionless = bare;
+      const std::string& name = s_.fields[e_.varied[a]].name;
+      out.figures.emplace_back(
+          s_.space.size() == 1 ? fmt::format("{} at moments, and over space and time; marks at the right of the map "
+                                             "say when the curves are taken",
+                                             name)
+                               : name + " at moments",
+          field_picture_svg(e_, run, options));
+    }
+  }
+
+ private:
+  std::string unit(const Dimension& d) const {
+    const std::string text = to_string(d);
+    return model_.system.dimensionless || text == "1" ? std::string() : text;
+  }
+  Layout shown(Expr e) const { return field_layout(s_, lay_out(readable(e, e_.order), e_.order)); }
+  std::string boundary() const {
+    if (s_.periodic) return "periodic";
+    constexpr const char* sides[] = {"left", "right", "bottom", "top"};
+    std::string out;
+    for (const BoundaryCondition& b : s_.boundary)
+      out += fmt::format("{}{}: {} = {}", out.empty() ? "" : ", ", sides[static_cast<int>(b.side)], s_.jet_name(b.jet),
+                         to_plain(shown(b.value)));
+    return out.empty() ? "natural" : out;
+  }
+
+  const Model& model_;
+  const FieldEquations& e_;
+  const FieldSystem& s_;
+};
+
+}  // namespace
+
+ReportContent compose_field_report(const Model& model, const SourceText& source, const FieldEquations& equations,
+                                   const Certificate& certificate, const FieldReportParts& parts) {
+  ReportContent out;
+  const FieldComposer composer(model, equations);
+  composer.add_model(out, source);
+  if (parts.with_equations) composer.add_equations(out);
+  if (parts.with_derivation) composer.add_derivation(out);
+  add_certificate(out, certificate);
+  if (parts.currents) composer.add_currents(out, *parts.currents);
+  composer.add_waves(out, parts);
+  if (parts.run) composer.add_run(out, *parts.run);
+  if (parts.verification) out.expectations = parts.verification->results;
+  return out;
+}
+
+}  // namespace maupertuis

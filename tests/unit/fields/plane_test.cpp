@@ -1,0 +1,186 @@
+#include <maupertuis/field_run.hpp>
+#include <maupertuis/study.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+/// Fields in the plane against closed forms, and against fields of one variable where nothing changes along the other.
+using namespace maupertuis;
+
+namespace {
+
+struct Answers {
+  std::vector<double> values, errors;
+  double drift = 0;
+};
+
+/// Values of what the `expect` lines name as places, in their order.
+Answers answers_of(const std::string& text, double time, bool errors = false) {
+  Study study(SourceText("field.lag", text));
+  const FieldEquations* equations = study.field_equations();
+  REQUIRE_MESSAGE(equations, text);
+  std::vector<FieldQuestion> questions;
+  for (const PlaceValue& place : study.model()->fields->places) questions.push_back({place.symbol, false, time});
+  FieldRunOptions options;
+  options.duration = time, options.errors = errors;
+  Diagnostics diagnostics;
+  const auto run = run_fields(*equations, questions, options, diagnostics);
+  REQUIRE_MESSAGE(run, text);
+  Answers out;
+  for (const auto& answer : run->answers) out.values.push_back(answer.value), out.errors.push_back(answer.error);
+  out.drift = run->energy_drift;
+  return out;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+constexpr double pi = 3.14159265358979323846;
+
+}  // namespace
+
+TEST_CASE("a membrane swings with its closed form, and the estimate tells the error") {
+  const Answers found = answers_of(
+      "dimensionless\nparam c = 2\nfield u(x, y) : number on x = 0 .. 1, y = -1 .. 0.5 cells 9, 12 order 4 boundary u "
+      "= 0\ndensity = 1/2 u'^2 - 1/2 c^2 (u_x^2 + u_y^2)\nstart u = sin(2 pi x) sin(2 pi (y + 1)/3)\nrun 1\n"
+      "expect u(0.3, 0.2) at 1 = 0 ± 1\nexpect u(1/3, -0.5) at 1 = 0 ± 1\nexpect u_y(0.3, 0.2) at 1 = 0 ± 1\n",
+      1, true);
+  const double swing = std::cos(2 * pi * std::sqrt(4 + 4.0 / 9));
+  const double expected[] = {std::sin(0.6 * pi) * std::sin(0.8 * pi) * swing,
+                             std::sin(2 * pi / 3) * std::sin(pi / 3) * swing,
+                             std::sin(0.6 * pi) * 2 * pi / 3 * std::cos(0.8 * pi) * swing};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double error = std::abs(found.values[i] - expected[i]);
+    CHECK(error < (i == 1 ? 1e-6 : 1e-4));
+    CHECK(error < 5 * found.errors[i]);
+  }
+  CHECK(found.drift < 1e-14);
+}
+
+TEST_CASE("the plane converges with the power 2p where elements meet") {
+  const auto error = [](int cells) {
+    const Answers found = answers_of(
+        "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells " + std::to_string(cells) + ", " +
+            std::to_string(cells) +
+            " order 2 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2)\nstart u = sin(pi x) sin(pi y)\nrun "
+            "1\nexpect u(0.5, 0.5) at 0.5 = 0 ± 1\n",
+        0.5);
+    return std::abs(found.values[0] - std::cos(pi / std::sqrt(2)));
+  };
+  CHECK(std::log2(error(8) / error(16)) > 3.7);
+}
+
+TEST_CASE("a wave runs around a periodic plane") {
+  const Answers found = answers_of(
+      "dimensionless\nparam m = 3\nlet w = sqrt(20 pi^2 + m^2)\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells "
+      "8, "
+      "12 order 6 boundary periodic\ndensity = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2 + m^2 u^2)\n"
+      "start u = cos(2 pi (x + 2 y)), u' = w sin(2 pi (x + 2 y))\nrun 1\nexpect u(0, 0) at 0.7 = 0 ± 1\n"
+      "expect u(0.125, 0.5) at 0.7 = 0 ± 1\n",
+      0.7);
+  const double w = std::sqrt(20 * pi * pi + 9);
+  CHECK(std::abs(found.values[0] - std::cos(0.7 * w)) < 1e-7);
+  CHECK(std::abs(found.values[1] - std::cos(2 * pi * 1.125 - 0.7 * w)) < 1e-7);
+  CHECK(found.drift < 1e-12);
+}
+
+TEST_CASE("a mass that changes with the field: e^u is a free wave") {
+  const Answers found = answers_of(
+      "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 6, 5 order 6 boundary u = log(2)\n"
+      "density = 1/2 exp(2 u) (u'^2 - u_x^2 - u_y^2)\nstart u = log(2 + sin(pi x) sin(pi y))\nrun 1\n"
+      "expect u(0.5, 0.4) at 0.6 = 0 ± 1\n",
+      0.6);
+  const double phi = 2 + std::sin(0.4 * pi) * std::cos(0.6 * pi * std::sqrt(2));
+  CHECK(std::abs(found.values[0] - std::log(phi)) < 1e-7);
+  CHECK(found.drift < 1e-12);
+}
+
+TEST_CASE("two fields with a common kinetic term swing in their sum and their difference") {
+  const Answers found = answers_of(
+      "dimensionless\nfield a(x, y), b(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 6, 6 order 6\n"
+      "boundary left : a = 0, b = 0\nboundary right : a = 0, b = 0\nboundary bottom : a = 0, b = 0\n"
+      "boundary top : a = 0, b = 0\n"
+      "density = 1/2 a'^2 + 1/2 b'^2 + 1/2 a' b' - 1/2 (a_x^2 + a_y^2 + b_x^2 + b_y^2)\n"
+      "start a = sin(pi x) sin(pi y)\nrun 1\nexpect a(0.5, 0.5) at 0.8 = 0 ± 1\nexpect b(0.5, 0.5) at 0.8 = 0 ± 1\n",
+      0.8);
+  const double sum = std::cos(0.8 * pi * std::sqrt(2 / 1.5)), difference = std::cos(0.8 * pi * std::sqrt(2 / 0.5));
+  CHECK(std::abs(found.values[0] - (sum + difference) / 2) < 1e-7);
+  CHECK(std::abs(found.values[1] - (sum - difference) / 2) < 1e-7);
+}
+
+TEST_CASE("what does not change along one direction is the field of the other") {
+  const std::string line[] = {
+      // a kink
+      "dimensionless\nfield u(x) : number on x = -6 .. 6 cells 60 order 4\ndensity = 1/2 u'^2 - 1/2 u_x^2 - (1 - cos "
+      "u)\n"
+      "start u = 4 atan(exp(x/0.8)), u' = -1.5 sech(x/0.8)\nrun 2\nexpect u(0.4) at 2 = 0 ± 1\n"
+      "expect u(6) at 2 = 0 ± 1\n",
+      // a density that changes along x, internal and external friction, a force, ends that are driven and pulled
+      "dimensionless\nfield u(x) : number on x = -6 .. 6 cells 20 order 5\nboundary left : u = 1/10 sin(2 t)^2\n"
+      "boundary right : u_x = 1/5 sin(t)\ndensity = 1/2 (2 + sin(x)) u'^2 - 1/2 (1 + x^2/40) u_x^2 - u^4\n"
+      "dissipation density = 1/20 u'^2\nforce density u = x cos(t)\nrun 2\n"
+      "expect u(0.4) at 2 = 0 ± 1\nexpect u(6) at 2 = 0 ± 1\n",
+      // inertia that changes with the slope and the place
+      "dimensionless\nfield u(x) : number on x = -6 .. 6 cells 20 order 5 boundary u = 0\n"
+      "density = 1/2 (1 + x^2/50 + u_x^2/5) u'^2 - 1/2 u_x^2\ndissipation density = 1/200 u_tx^2\nstart u = sin(pi "
+      "x/6)\nrun 2\n"
+      "expect u(0.4) at 2 = 0 ± 1\nexpect u(3) at 2 = 0 ± 1\n"};
+  for (const std::string& text : line) {
+    const Answers along = answers_of(text, 2);
+    // Both ends of the line are given where it says `boundary u = 0`; in the plane two sides stay natural.
+    std::string plane = replaced(replaced(text, "u(x)", "u(x, y)"), " cells ", ", y = 0 .. 3 cells ");
+    plane = replaced(replaced(plane, "60 order", "60, 5 order"), "20 order", "20, 3 order");
+    plane = replaced(plane, " boundary u = 0", "\nboundary left : u = 0\nboundary right : u = 0");
+    for (const char* place : {"0.4", "6", "3"})
+      plane = replaced(plane, "u(" + std::string(place) + ")", "u(" + std::string(place) + ", 1.1)");
+    plane = replaced(plane, "- 1/2 u_x^2", "- 1/2 (u_x^2 + u_y^2)");
+    plane = replaced(plane, "+ u_x^2/5", "+ u_x^2/5 + u_y^2/5");
+    plane = replaced(plane, "1/200 u_tx^2", "1/200 (u_tx^2 + u_ty^2)");
+    plane = replaced(plane, "x^2/40) u_x^2", "x^2/40) (u_x^2 + u_y^2)");
+    const Answers across = answers_of(plane, 2);
+    // The same with x and y exchanged.
+    std::string turned = replaced(replaced(replaced(plane, "left", "bottom"), "right", "top"), "exp(", "EXP(");
+    turned = replaced(replaced(turned, "boundary top : u_x", "boundary top : u_y"), "x", "X");
+    turned =
+        replaced(replaced(turned, "y = 0 .. 3", "x = 0 .. 3"), "X = -6 .. 6, x = 0 .. 3", "x = 0 .. 3, y = -6 .. 6");
+    turned = replaced(replaced(turned, "u(X, y)", "u(x, y)"), "u_X^2 + u_y^2", "u_x^2 + u_y^2");
+    turned = replaced(replaced(turned, "u_X^2/5 + u_y^2/5", "u_x^2/5 + u_y^2/5"), "u_tX^2 + u_ty^2", "u_tx^2 + u_ty^2");
+    turned = replaced(replaced(turned, "EXP(", "exp("), "eXpect", "expect");
+    for (const char* place : {"0.4", "6", "3"})
+      turned = replaced(turned, "u(" + std::string(place) + ", 1.1)", "u(1.1, " + std::string(place) + ")");
+    turned = replaced(replaced(turned, "cells 60, 5", "cells 5, 60"), "cells 20, 3", "cells 3, 20");
+    turned = replaced(turned, "X", "y");
+    const Answers upwards = answers_of(turned, 2);
+    REQUIRE(along.values.size() == 2);
+    for (std::size_t i = 0; i < 2; ++i) {
+      CAPTURE(text);
+      CHECK(std::abs(along.values[i]) > 1e-3);
+      CHECK(std::abs(across.values[i] - along.values[i]) < 2e-10);
+      CHECK(std::abs(upwards.values[i] - along.values[i]) < 2e-10);
+    }
+  }
+}
+
+TEST_CASE("a plane that does not fit into the memory is told before it is made, and narrow bumps are") {
+  const auto code_of = [](const std::string& text) {
+    Study study(SourceText("field.lag", "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 " + text));
+    const FieldEquations* equations = study.field_equations();
+    REQUIRE(equations);
+    FieldRunOptions options;
+    options.duration = 0.01;
+    Diagnostics diagnostics;
+    const auto run = run_fields(*equations, {}, options, diagnostics);
+    return run ? std::string() : diagnostics.items().front().code;
+  };
+  // sixty fields' worth of pasts: terabytes
+  std::string density = "density = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2)";
+  for (int i = 1; i < 60; ++i) density += " + cos(" + std::to_string(i) + " u)";
+  CHECK(code_of("cells 1000, 1000 order 20\n" + density + "\n") == "E0649");
+  const std::string wave = "density = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2)\nstart u = ";
+  CHECK(code_of("cells 10, 10\n" + wave + "exp(-((x - 0.4877)^2 + (y - 0.2311)^2)/1e-6)\n") == "E0647");
+  CHECK(code_of("cells 10, 10\n" + wave + "exp(-((x - 0.4877)^2 + (y - 0.2311)^2)/0.05)\n").empty());
+}
