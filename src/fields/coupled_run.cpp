@@ -216,6 +216,9 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
   out.energy = fine->energy;
   out.energy_drift = mesh->forced() || bodies_are_forced(equations) ? -1 : fine->result.statistics.energy_drift;
   out.coupled = true;
+  out.method = fine->result.statistics.method == "stiff"
+                   ? "steps of backward differentiation formulas"
+                   : fmt::format("Taylor steps of order {}", fine->result.statistics.order);
   if (!fine->result.ok()) out.trouble = fine->result.reason;
   const MechanicalSystem& system = model.system;
   for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
