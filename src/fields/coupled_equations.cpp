@@ -218,7 +218,11 @@ CertificateCheck interface_identity(const FieldEquations& equations) {
   for (const InterfaceCondition& c : equations.interfaces)
     if (std::none_of(places.begin(), places.end(), [&](const auto& p) { return p.first == c.place; }))
       places.push_back({c.place, c.end});
-  const Expr b = equations.boundary_terms.front();
+  Expr b = equations.boundary_terms.front();
+  if (s.dissipation)  // internal friction does virtual work along δφ_x: at an end −∂𝒟/∂φ_tx δφ
+    for (std::size_t a = 0; a < equations.varied.size(); ++a)
+      b = b - differentiate(s.dissipation, s.jet_symbol({equations.varied[a], {1}, 1})) *
+                  s.jet_symbol({equations.variation_of(a), {0}, 0});
   for (const auto& [place, end] : places) {
     const double at = evaluate(s.expanded(place), values);
     Expr left = s.context->number(0);

@@ -108,6 +108,18 @@ Expr residual_of(const FieldSystem& s, std::size_t field, Expr euler) {
   return s.forces[field] ? out - s.forces[field] : out;
 }
 
+/// Internal friction 𝒟(φ_tx) acts at an end as well: p − ∂𝒟/∂φ_tx is what is left there.
+void add_friction_at_ends(FieldEquations& out) {
+  const FieldSystem& s = out.model->system;
+  if (!s.dissipation) return;
+  for (NaturalCondition& n : out.natural) {
+    if (n.moment) continue;
+    FieldJet strain{n.field, std::vector<int>(s.space.size(), 0), 1};
+    ++strain.space[n.along];
+    n.value = n.value - differentiate(s.dissipation, s.jet_symbol(strain));
+  }
+}
+
 ReadingOrder reading_order(const FieldModel& model, const std::vector<Expr>& expressions) {
   ReadingOrder order;
   std::vector<Expr> symbols = symbols_of(expressions);
@@ -206,6 +218,7 @@ std::optional<FieldEquations> field_equations(std::shared_ptr<const FieldModel> 
     variation.field(a);
     out.residuals.push_back(residual_of(model->system, out.varied[a], out.euler[a]));
   }
+  add_friction_at_ends(out);
   std::vector<Expr> all = out.residuals;
   all.push_back(model->system.density);
   for (const NaturalCondition& c : out.natural) all.push_back(c.value);

@@ -312,8 +312,11 @@ bool SemiDiscrete::add_given_slopes(Diagnostics& diagnostics) {
     while (equations_->varied[a] != b.jet.field) ++a;
     if (b.jet.order() != 1 || spaces_[a].kind() == EKind::Smooth) continue;
     const bool right = b.side == Side::Right;
-    const Expr slope = differentiate(s.expanded(s.density), s.jet_symbol(b.jet));
+    const FieldJet strain{b.jet.field, b.jet.space, 1};
+    Expr slope = differentiate(s.expanded(s.density), s.jet_symbol(b.jet));
+    if (s.dissipation) slope = slope - differentiate(s.expanded(s.dissipation), s.jet_symbol(strain));
     const Expr p = substitute(slope, {{s.jet_symbol(b.jet), s.expanded(b.value)},
+                                      {s.jet_symbol(strain), total_time_derivative(s.expanded(b.value))},
                                       {s.space.front().symbol, right ? s.space.front().to : s.space.front().from}});
     if (!s.jets_in(p).empty()) {
       diagnostics.error("E0292", b.span, "this condition clashes with the natural one",

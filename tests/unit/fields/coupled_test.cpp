@@ -320,3 +320,14 @@ TEST_CASE("both routes of a beam without bodies agree: Gauss's collocation, and 
     CHECK(off < 1e-6);
   }
 }
+
+TEST_CASE("internal friction pulls at the mass at the end of a bar") {
+  Study study = coupled_study(
+      "dimensionless\nparam η = 0.3\nfield u(x) : number on x = 0 .. 1 cells 4 order 8\nboundary left : u = 0\n"
+      "density = 1/2 u'^2 - 1/2 u_x^2\ndissipation density = 1/2 η u_tx^2\nT = 0.25 u(1)'^2\n"
+      "expect equation 1/2 u(1)'' + u_x(1) + η u_tx(1) = 0\n");
+  const auto verification = study.verification();
+  REQUIRE(verification);
+  CHECK(verification->passed());
+  CHECK(study.field_certificate()->passed());
+}
