@@ -342,8 +342,8 @@ std::string dispersion_text(Study& study, std::string& trouble) {
 namespace {
 
 std::string coupled_run_text(const FieldRunResult& run) {
-  std::string out = fmt::format("{} elements of order {} ({} unknowns), {} steps to {:.10g} s\n", run.cells, run.order,
-                                run.nodes, run.steps, run.end);
+  std::string out = fmt::format("{} elements of order {} ({} unknowns), {} {} to {:.10g} s\n", run.cells, run.order,
+                                run.nodes, run.steps, run.method, run.end);
   for (const FieldRunResult::Coordinate& c : run.final_coordinates)
     out += fmt::format("  {:<30} {:.10g}, {}' {:.10g}\n", c.name, c.q, c.name, c.v);
   for (const FieldRunResult::Happening& h : run.happenings)
@@ -385,8 +385,8 @@ Json shapes_json(const FieldEquations& equations, const FieldModes& modes) {
 std::string field_run_text(const FieldRunResult& run) {
   if (run.coupled) return coupled_run_text(run);
   const std::string upwards = run.cells_upwards ? fmt::format(" × {}", run.cells_upwards) : std::string();
-  std::string out = fmt::format("{}{} cells of order {} ({} nodes), {} {} to {:.10g} s\n", run.cells, upwards, run.order,
-                                run.nodes, run.steps, run.method, run.end);
+  std::string out = fmt::format("{}{} cells of order {} ({} nodes), {} {} to {:.10g} s\n", run.cells, upwards,
+                                run.order, run.nodes, run.steps, run.method, run.end);
   out += run.omega_max > 0 ? fmt::format("  highest frequency of the mesh  {:.6g} rad/s, steps at most {:.4g} s\n",
                                          run.omega_max, run.step)
                            : fmt::format("  steps                          at most {:.4g} s\n", run.step);

@@ -32,6 +32,23 @@ std::vector<double> times_of(const std::vector<FieldQuestion>& questions) {
   return out;
 }
 
+/// h_E of a state.
+double energy_at(const EquationsOfMotion& equations, const State& state) {
+  const MechanicalSystem& system = *equations.system;
+  Bindings at{{system.context->time(), state.t}};
+  for (const Parameter& p : system.parameters) at[p.symbol] = p.si_value;
+  for (std::size_t i = 0; i < system.coordinates.size() && i < state.q.size(); ++i)
+    at[system.coordinates[i].q] = state.q[i], at[system.coordinates[i].velocity] = state.v[i];
+  for (const Input& input : system.inputs)
+    if (input.formula) at[input.symbol] = evaluate(input.formula, at);
+  const Expr h[] = {expand_time_derivatives(equations.energy_function)};
+  return RepeatedEvaluation(h)([&](Expr symbol) {
+           const auto value = at.find(symbol);
+           return value == at.end() ? std::nan("") : value->second;
+         })
+      .front();
+}
+
 std::optional<CoupledRun> run_once(const SemiDiscrete& mesh, const std::vector<FieldQuestion>& questions,
                                    const FieldRunOptions& options, Diagnostics& diagnostics) {
   const auto system = std::make_shared<const MechanicalSystem>(mesh.model().system);
@@ -45,8 +62,10 @@ std::optional<CoupledRun> run_once(const SemiDiscrete& mesh, const std::vector<F
   settings.errors = ErrorEstimates::None;
   settings.interrupt = options.interrupt;
   Probe probe;
-  for (const FieldQuestion& q : questions) probe.expressions.push_back(mesh.discretised(q));
-  probe.expressions.push_back(equations->energy_function);
+  for (const FieldQuestion& q : questions) {
+    probe.expressions.push_back(mesh.discretised(q, diagnostics));
+    if (!probe.expressions.back()) return std::nullopt;
+  }
   for (Expr& e : probe.expressions) e = expand_time_derivatives(e);
   auto result = simulate(mesh.model(), *equations, settings, diagnostics, &probe);
   if (!result) return std::nullopt;
@@ -55,7 +74,7 @@ std::optional<CoupledRun> run_once(const SemiDiscrete& mesh, const std::vector<F
   for (std::size_t i = 0; i < questions.size(); ++i)
     for (std::size_t k = 0; k < settings.at.size() && k < probe.values.size(); ++k)
       if (settings.at[k] == questions[i].time && i < probe.values[k].size()) out.answers[i] = probe.values[k][i];
-  if (!probe.values.empty() && !probe.values.back().empty()) out.energy = probe.values.back().back();
+  out.energy = energy_at(*equations, out.result.final);
   return out;
 }
 
@@ -197,6 +216,9 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
   out.energy = fine->energy;
   out.energy_drift = mesh->forced() || bodies_are_forced(equations) ? -1 : fine->result.statistics.energy_drift;
   out.coupled = true;
+  out.method = fine->result.statistics.method == "stiff"
+                   ? "steps of backward differentiation formulas"
+                   : fmt::format("Taylor steps of order {}", fine->result.statistics.order);
   if (!fine->result.ok()) out.trouble = fine->result.reason;
   const MechanicalSystem& system = model.system;
   for (std::size_t i = 0; i < system.coordinates.size(); ++i) {

@@ -23,8 +23,7 @@ struct LegendreIntegrals {
       of[times].assign(last + 3 - static_cast<std::size_t>(times), 0);
       // Below n = times the integral is none of the functions of an element.
       for (std::size_t n = static_cast<std::size_t>(times); n < of[times].size(); ++n)
-        of[times][n] =
-            (of[times - 1][n + 1] - of[times - 1][n - 1]) / (2.0 * static_cast<double>(n) + 1);
+        of[times][n] = (of[times - 1][n + 1] - of[times - 1][n - 1]) / (2.0 * static_cast<double>(n) + 1);
     }
     // ∫∫P_n for n ≥ 2 needs ∫P_1 = (P_2 − P_0)/3, which is there.
   }

@@ -42,12 +42,30 @@ struct DensityEntries {
   bool linear = true;  // constant second derivatives: the same about every rest
 };
 
+/// The density with given fields by their formulas; an empty handle where one has none.
+Expr density_of(const FieldEquations& equations) {
+  const FieldSystem& s = equations.system();
+  Expr out = s.expanded(s.density);
+  ExprMap given;
+  for (const Expr& symbol : s.jets_in(out)) {
+    const FieldJet jet = *s.jet_of(symbol);
+    if (!s.fields[jet.field].given) continue;
+    Expr value = s.fields[jet.field].formula;
+    if (!value) return {};
+    for (std::size_t x = 0; x < s.space.size(); ++x)
+      for (int k = 0; k < jet.space[x]; ++k) value = differentiate(value, s.space[x].symbol);
+    for (int k = 0; k < jet.time; ++k) value = differentiate(value, s.context->time());
+    given[symbol] = value;
+  }
+  return s.expanded(substitute(out, given));
+}
+
 bool entries_of(const FieldEquations& equations, DensityEntries& out, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
-  const Expr density = s.expanded(s.density);
+  const Expr density = density_of(equations);
+  if (!density) return refuse_modes_of(equations, diagnostics, "A given field has no formula.");
   ExprMap rest;
-  for (const Expr& jet : s.jets_in(density))
-    if (!s.fields[s.jet_of(jet)->field].given) rest[jet] = s.context->number(0);
+  for (const Expr& jet : s.jets_in(density)) rest[jet] = s.context->number(0);
   const auto place = [&](std::size_t field) {
     return static_cast<std::size_t>(std::find(equations.varied.begin(), equations.varied.end(), field) -
                                     equations.varied.begin());
@@ -55,7 +73,6 @@ bool entries_of(const FieldEquations& equations, DensityEntries& out, Diagnostic
   for (const Expr& one : s.jets_in(density))
     for (const Expr& two : s.jets_in(density)) {
       const FieldJet a = *s.jet_of(one), b = *s.jet_of(two);
-      if (s.fields[a.field].given || s.fields[b.field].given) continue;
       const Expr second = differentiate(differentiate(density, one), two);
       if (!s.jets_in(second).empty()) out.linear = false;
       const Expr value = substitute(second, rest);
@@ -302,7 +319,7 @@ class ModeProblem {
   /// ∂ℒ at rest and force densities, on each unknown of the fields.
   Eigen::VectorXd static_load() const {
     Eigen::VectorXd out = Eigen::VectorXd::Zero(size_);
-    const Expr density = s_.expanded(s_.density);
+    const Expr density = density_of(equations_);
     struct Load {
       std::size_t a;
       int derivative;
@@ -319,7 +336,7 @@ class ModeProblem {
       roots.push_back(value);
     };
     for (const Expr& one : s_.jets_in(density))
-      if (const FieldJet jet = *s_.jet_of(one); jet.time == 0 && !s_.fields[jet.field].given)
+      if (const FieldJet jet = *s_.jet_of(one); jet.time == 0)
         add(jet.field, jet.space[0], differentiate(density, one));
     for (const std::size_t f : equations_.varied)
       if (s_.forces[f] && s_.jets_in(s_.forces[f]).empty()) add(f, 0, s_.forces[f]);

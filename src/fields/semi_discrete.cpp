@@ -95,7 +95,7 @@ std::optional<SemiDiscrete> SemiDiscrete::make(const Model& model, const FieldEq
   if (!out.add_lagrangian(diagnostics) || !out.add_given_slopes(diagnostics)) return std::nullopt;
   out.add_force_densities();
   out.add_end_forces();
-  if (!out.set_start(diagnostics)) return std::nullopt;
+  if (!out.set_start(diagnostics) || !out.replace_places(diagnostics)) return std::nullopt;
   return out;
 }
 
@@ -453,17 +453,45 @@ Expr SemiDiscrete::value_at(std::size_t a, int by_time, int by_space, double x) 
   return combination(a, spaces_[a].at(x, x >= mesh_.borders.back()), by_space, by_time);
 }
 
-Expr SemiDiscrete::discretised(const FieldQuestion& question) const {
+Expr SemiDiscrete::discretised(const FieldQuestion& question, Diagnostics& diagnostics) const {
   const FieldSystem& s = equations_->system();
   if (question.total) return integral(question.value);
+  const Expr roots[] = {question.value};
+  const std::vector<Expr> asked = symbols_of(roots);
   ExprMap map;
   for (const PlaceValue& place : equations_->model->places) {
+    if (std::find(asked.begin(), asked.end(), place.symbol) == asked.end()) continue;
     const FieldJet jet = *s.jet_of(place.jet);
-    for (std::size_t a = 0; a < spaces_.size(); ++a)
-      if (equations_->varied[a] == jet.field && jet.space[0] <= 2)
-        map[place.symbol] = value_at(a, jet.time, jet.space[0], number(place.place[0]));
+    std::size_t a = 0;
+    while (a < spaces_.size() && equations_->varied[a] != jet.field) ++a;
+    const int known = a < spaces_.size() && spaces_[a].kind() == EKind::Smooth ? 2 : 1;
+    if (a < spaces_.size() && jet.space[0] <= known && jet.time <= 2) {
+      map[place.symbol] = value_at(a, jet.time, jet.space[0], number(place.place[0]));
+      continue;
+    }
+    diagnostics.error(
+        "E0508", place.span, fmt::format("not supported yet: the value of `{}` at a place", s.jet_name(jet)),
+        "Runs have the fields, their slopes and, where the density bends, their curvatures at places.", "");
+    return {};
   }
   return s.expanded(substitute(s.expanded(question.value), map));
+}
+
+/// Values at places in events and in the end of the run.
+bool SemiDiscrete::replace_places(Diagnostics& diagnostics) {
+  bool good = true;
+  const auto replace = [&](Expr& e) {
+    if (!e || !good) return;
+    const Expr replaced = discretised({e, false, 0}, diagnostics);
+    good = static_cast<bool>(replaced);
+    if (good) e = replaced;
+  };
+  for (ModelEvent& event : model_.experiment.events) {
+    replace(event.function);
+    for (ModelEvent::Assignment& a : event.sets) replace(a.value);
+  }
+  replace(model_.experiment.until);
+  return good;
 }
 
 }  // namespace maupertuis

@@ -27,8 +27,9 @@ class SemiDiscrete {
                                           Diagnostics& diagnostics);
 
   const Model& model() const { return model_; }
-  /// An expression of the questions of a run, in the coordinates: places and jets replaced.
-  Expr discretised(const FieldQuestion& question) const;
+  /// An expression of the questions of a run, in the coordinates: places and jets replaced. An empty handle, and E0508,
+  /// where a derivative is asked for that the elements do not have.
+  Expr discretised(const FieldQuestion& question, Diagnostics& diagnostics) const;
   /// u or u' of a field at x, in the coordinates.
   Expr value_at(std::size_t varied_index, int by_time, int by_space, double x) const;
   std::size_t degrees_of_freedom() const { return dofs_; }
@@ -49,6 +50,7 @@ class SemiDiscrete {
   void add_force_densities();
   void add_end_forces();
   bool set_start(Diagnostics& diagnostics);
+  bool replace_places(Diagnostics& diagnostics);
   bool refuse_unresolved(std::size_t a, const std::vector<double>& c, const RepeatedEvaluation& start,
                          Diagnostics& diagnostics) const;
   Expr constant(double value) const;

@@ -1,6 +1,7 @@
 #include "report/motion_parts.hpp"
 #include "report/notation.hpp"
 
+#include <maupertuis/coupled_fields.hpp>
 #include <maupertuis/field_pictures.hpp>
 #include <maupertuis/field_report.hpp>
 
@@ -55,6 +56,17 @@ class FieldComposer {
       if (d.symbol) out.definitions.push_back({lay_out(d.symbol, e_.order), shown(d.value), "", ""});
   }
 
+  /// A condition where fields and bodies meet, or the row of a coordinate.
+  void add_row(ReportContent& out, Expr row, Expr own, std::string note) const {
+    ReadingOrder order = coupled_order(e_);
+    order.own = own;
+    const auto page = [&](Layout l) { return field_layout(s_, coupled_layout(e_, std::move(l))); };
+    const ReadableForm form = readable_row(e_, row, own);
+    out.equations.push_back({page(lay_out(form, order)), layouts::number("0"), std::move(note), ""});
+    for (const Intermediate& i : form.intermediates)
+      out.intermediates.push_back({layouts::symbol(i.symbol), page(lay_out(i.value, order)), "", ""});
+  }
+
   void add_equations(ReportContent& out) const {
     for (std::size_t a = 0; a < e_.varied.size(); ++a) {
       const ReadableForm form = readable_residual(e_, a);
@@ -64,6 +76,14 @@ class FieldComposer {
       for (const Intermediate& i : form.intermediates)
         out.intermediates.push_back({layouts::symbol(i.symbol), field_layout(s_, lay_out(i.value, order)), "", ""});
     }
+    for (const InterfaceCondition& c : e_.interfaces)
+      add_row(out, c.value, jet_at_place(e_, {c.field, {c.moment}, 0}, c.place, 0),
+              fmt::format("at {} = {}{}", s_.space.front().name, place_text(e_, c.place),
+                          c.end ? "" : ", from both sides"));
+    for (const CoordinateRow& r : coordinate_rows(e_))
+      add_row(out, r.value, e_.bodies->shown().system->coordinates[r.coordinate].q, "");
+    if (e_.bodies)
+      for (const Constraint& c : e_.bodies->shown().system->constraints) add_row(out, c.value, {}, "constraint");
     out.energies_title = "Density";
     out.energies.push_back({layouts::name("ℒ"), shown(s_.density), "", ""});
     if (s_.dissipation) out.energies.push_back({layouts::name("𝒟"), shown(s_.dissipation), "", ""});
@@ -132,8 +152,10 @@ class FieldComposer {
     add("mesh", run.cells_upwards ? fmt::format("{} × {} cells of order {}, {} nodes", run.cells, run.cells_upwards,
                                                 run.order, run.nodes)
                                   : fmt::format("{} cells of order {}, {} nodes", run.cells, run.order, run.nodes));
-    add("steps", fmt::format("{} of order 8 to {}", run.steps, quantity(run.end, bare ? "" : "s", 10)));
-    add("highest frequency of the mesh", quantity(run.omega_max, bare ? "" : "rad/s", 6));
+    add("steps", run.method.empty()
+                     ? fmt::format("{} to {}", run.steps, quantity(run.end, bare ? "" : "s", 10))
+                     : fmt::format("{} {} to {}", run.steps, run.method, quantity(run.end, bare ? "" : "s", 10)));
+    if (run.omega_max > 0) add("highest frequency of the mesh", quantity(run.omega_max, bare ? "" : "rad/s", 6));
     add("energy", quantity(run.energy, bare ? "" : "J", 12));
     add("energy drift", run.energy_drift < 0 ? std::string("forces act: it is not conserved")
                                              : fmt::format("{:.3g} of its terms", run.energy_drift));

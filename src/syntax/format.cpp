@@ -1,3 +1,4 @@
+#include "syntax/declarations.hpp"
 #include "syntax/layout.hpp"
 #include "syntax/lexer.hpp"
 #include "syntax/unicode.hpp"
@@ -163,7 +164,10 @@ std::string format(const SyntaxTree& tree, const SourceText& source) {
   std::vector<Line> lines;
   for (const StatementTokens& statement : split_statements(*list, source, diagnostics)) {
     const std::span<const Token> tokens(list->tokens);
-    add_lines(with_primes(tokens.subspan(statement.begin, statement.end - statement.begin)), lines);
+    auto printed = with_primes(tokens.subspan(statement.begin, statement.end - statement.begin));
+    for (Token& token : printed)
+      token.field = token.kind == Token::Kind::Name && tree.declarations->kind(token.text) == Declarations::Kind::Field;
+    add_lines(printed, lines);
   }
   MAUP_REQUIRE(!diagnostics.has_errors());
   return Layout(std::move(lines), tree.comments, source.text()).run();

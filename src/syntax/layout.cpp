@@ -49,7 +49,7 @@ bool opens_arguments(std::span<const Token> tokens, std::size_t i) {
   const Token& before = tokens[i - 1];
   if (ends_function_head(tokens, i - 1)) return true;
   if (before.kind != Token::Kind::Name) return false;
-  if (find_function(before.text)) return true;
+  if (find_function(before.text) || before.field) return true;
   const bool inertia = i >= 2 && tokens[i - 2].is("inertia") && (before.is("diag") || before.is("full"));
   const auto declares = [](std::span<const Token> before_colon) {
     return std::none_of(before_colon.begin(), before_colon.end(), [](const Token& t) { return t.is(":"); });

@@ -164,6 +164,7 @@ class Printer {
 
   void call(const Expression& e, const Expression* exponent) {
     name(e.text);
+    tokens.back().field = true;  // no blank before the bracket
     if (exponent) sign("^"), put(Token::Kind::Number, exponent->text);
     if (e.bare)
       print(*e.arguments[0], Level::Product);

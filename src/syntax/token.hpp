@@ -15,6 +15,7 @@ struct Token {
   Kind kind = Kind::End;
   bool attached = false;    // no blank between the token before and this one
   bool line_start = false;  // first of its line
+  bool field = false;       // names a field of the model: a bracket behind it opens a place. Known to printers alone
   Span span;
   std::string_view text;  // points into the source or into TokenList::spellings
 

@@ -406,6 +406,7 @@ void force_density(Elaboration& e, const syntax::FieldForce& s, const FieldJet& 
 
 /// force u(l) = F at an end of the domain; beside bodies, or inside, a force on a coordinate
 void force_at_place(Elaboration& e, const syntax::FieldForce& s, const FieldJet& jet, Span span) {
+  if (e.fields->coupled) return force_on_place(e, s, jet, span);
   FieldSystem& system = system_of(e);
   const SpaceVariable& x = system.space.front();
   const Value place = constant_of(e, *s.on->arguments.front(), x.dimension, "a place");
@@ -414,7 +415,7 @@ void force_at_place(Elaboration& e, const syntax::FieldForce& s, const FieldJet&
   const double a = x.from ? *constant_value(e, x.from) : 0, b = x.from ? *constant_value(e, x.to) : 0;
   const double near = 1e-12 * (b - a);
   const bool at_end = x.from && !system.periodic && (std::abs(at - a) <= near || std::abs(at - b) <= near);
-  if (e.fields->coupled || !at_end) {
+  if (!at_end) {
     e.fields->coupled = true;
     return force_on_place(e, s, jet, span);
   }

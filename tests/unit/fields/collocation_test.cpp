@@ -13,7 +13,7 @@ using namespace maupertuis;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+constexpr double fundamental = std::numbers::pi * std::numbers::pi;  // frequency of the hinged beam of length 1
 
 Study study_of_text(const std::string& text) { return Study(SourceText("field.lag", text)); }
 
@@ -72,7 +72,7 @@ struct Motion {
   }
   double at_end(int steps, double end, double x) {
     for (int i = 0; i < steps; ++i) REQUIRE(motion->step(end / steps));
-    return motion->field_at(0, 0, 0, x);
+    return motion->field_at(0, {0, {0}, 0}, {x});
   }
 };
 
@@ -145,14 +145,14 @@ TEST_CASE("collocation is of order 2s in the step, and its coefficients are Gaus
   }
   for (const int stages : {2, 3}) {
     const auto error = [&](int steps) {
-      return Motion(beam(4, 9), 4, 9, stages).at_end(steps, 0.8, 0.5) - std::cos(pi * pi * 0.8);
+      return Motion(beam(4, 9), 4, 9, stages).at_end(steps, 0.8, 0.5) - std::cos(fundamental * 0.8);
     };
     CHECK(std::log2(std::abs(error(16) / error(32))) == doctest::Approx(2 * stages).epsilon(0.1));
   }
 }
 
 TEST_CASE("a beam converges with the power 2p − 2 at the borders of elements") {
-  const double exact = std::cos(pi * pi * 0.2);
+  const double exact = std::cos(fundamental * 0.2);
   const double coarse = value_at_end(beam(2, 4), 0.2).value - exact;
   const double fine = value_at_end(beam(4, 4), 0.2).value - exact;
   CHECK(std::log2(std::abs(coarse / fine)) == doctest::Approx(6).epsilon(0.1));

@@ -298,3 +298,25 @@ TEST_CASE("a damper of the impedance at the end of a string swallows a pulse, an
   REQUIRE(verification);
   CHECK(verification->passed());
 }
+
+TEST_CASE("both routes of a beam without bodies agree: Gauss's collocation, and Taylor steps of one system") {
+  Study study = coupled_study(
+      "dimensionless\nfield w(x) : number on x = 0 .. 1 cells 4 order 9\ndensity = 1/2 w'^2 - 1/2 w_xx^2\n"
+      "boundary left : w = 0, w_x = 0\nstart w = x^2 - x^3/3 + x^4/15\nrun 0.05\nexpect w(1) at 0.05 = 0 ± 1\n"
+      "expect w(0.6) at 0.05 = 0 ± 1\n");
+  REQUIRE(study.field_equations());
+  std::vector<FieldQuestion> questions;
+  for (const Expectation& e : study.model()->experiment.expectations)
+    questions.push_back({std::get<expectation::ValueAt>(e.kind).subject, false, 0.05});
+  FieldRunOptions options;
+  options.duration = 0.05;
+  const auto implicit = run_fields(*study.field_equations(), questions, options, study.diagnostics());
+  const auto whole = run_coupled(*study.model(), *study.field_equations(), questions, options, study.diagnostics());
+  REQUIRE(implicit);
+  REQUIRE(whole);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double off = std::abs(implicit->answers[i].value - whole->answers[i].value);
+    CHECK(off <= implicit->answers[i].error + whole->answers[i].error);
+    CHECK(off < 1e-6);
+  }
+}
