@@ -50,6 +50,7 @@ ExitCode plot_fields(const PlotCommandOptions& options, Study& study, Console& c
   if (study.model()->fields->system.space.size() > 1 && (options.map || options.curves))
     study.diagnostics().error("E0809", {}, "--map and --curves are for fields of one space variable.",
                               "In the plane u(x, y) is drawn at moments.", "Leave them out.");
+  if (study.wrong()) return finish_usage(console, study, "plot");
   FieldPictureOptions like;
   like.curves = !options.map, like.map = !options.curves;
   like.degrees = options.picture.degrees, like.theme = options.picture.theme, like.title = options.picture.title;
