@@ -272,7 +272,8 @@ ExitCode animate_fields(AnimateOptions o, Study& study, Console& console) {
                      diagnostics);
   check_tools(o, diagnostics);
   if (study.wrong()) return finish_usage(console, study, "animate");
-  if (!study.field_equations()) return finish(console, study, document);
+  const FieldEquations* equations = study.field_equations();
+  if (!equations) return finish(console, study, document);
   if (o.output.empty()) o.output = study.model()->system.name + (o.still.empty() ? ".html" : ".svg");
   std::vector<double> asked;
   if (const auto t = o.still.empty() ? std::nullopt : parse_exact_time(o.still)) asked.push_back(t->to_double());
@@ -293,13 +294,13 @@ ExitCode animate_fields(AnimateOptions o, Study& study, Console& console) {
   like.theme = film.picture.theme;
   const bool plane = study.model()->fields->system.space.size() == 2;
   like.width = !o.size.empty() ? std::max(film.picture.width, 240.0) : plane ? 480 : 720;
-  like = field_pictures_of(study, {}, like).front();
+  like = field_pictures_of(study, *equations, {}, like).front();
   const std::string title = like.title;
   if (const std::string e = ending_of(o); e == ".html" || e == ".htm") like.title.clear();  // the page has it
   std::vector<std::string> frames;
   for (const std::size_t row : rows_of_frames(*run, film)) {
     if (interrupt_flag().load()) break;
-    frames.push_back(field_frame_svg(*study.field_equations(), *run, like, row));
+    frames.push_back(field_frame_svg(*equations, *run, like, row));
   }
   std::string bytes;
   const std::string ending = ending_of(o);
