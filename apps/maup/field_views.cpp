@@ -30,9 +30,9 @@ void refuse_options_of_motions(const RunOptions& run, const std::vector<std::pai
                         "Leave it out; `expect u(3 m) at 2 s = …` asks for values.");
 }
 
-std::vector<FieldPictureOptions> field_pictures_of(Study& study, const std::vector<std::string>& names,
+std::vector<FieldPictureOptions> field_pictures_of(Study& study, const FieldEquations& equations,
+                                                   const std::vector<std::string>& names,
                                                    const FieldPictureOptions& like) {
-  const FieldEquations& equations = *study.field_equations();
   const MechanicalSystem& system = study.model()->system;
   std::vector<FieldPictureOptions> out;
   const auto add = [&](std::size_t a, int order) {
@@ -61,14 +61,15 @@ std::vector<FieldPictureOptions> field_pictures_of(Study& study, const std::vect
   return out;
 }
 
-std::string pictures_of_fields(Study& study, const FieldRunResult& run, std::vector<FieldPictureOptions> pictures) {
-  if (pictures.empty()) pictures = field_pictures_of(study, {}, {});
+std::string pictures_of_fields(Study& study, const FieldEquations& equations, const FieldRunResult& run,
+                               std::vector<FieldPictureOptions> pictures) {
+  if (pictures.empty()) pictures = field_pictures_of(study, equations, {}, {});
   std::vector<std::string> all;
   double width = 0, height = 0;
   std::string inside;
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     if (i > 0) pictures[i].title.clear();  // one for all
-    std::string one = field_picture_svg(*study.field_equations(), run, pictures[i]);
+    std::string one = field_picture_svg(equations, run, pictures[i]);
     if (pictures.size() == 1) return one;
     double across = 0, up = 0;  // it says its size itself
     if (const std::size_t at = one.find(" width=\""); at != std::string::npos)

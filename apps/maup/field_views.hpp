@@ -19,10 +19,12 @@ void refuse_options_of_motions(const RunOptions& run, const std::vector<std::pai
                                Diagnostics& diagnostics);
 
 /// What is drawn, by names: "u", "u'", …; all fields where none is named. E0811 where one is no field.
-std::vector<FieldPictureOptions> field_pictures_of(Study& study, const std::vector<std::string>& names,
+std::vector<FieldPictureOptions> field_pictures_of(Study& study, const FieldEquations& equations,
+                                                   const std::vector<std::string>& names,
                                                    const FieldPictureOptions& like);
 
 /// The pictures of the fields of a run below each other.
-std::string pictures_of_fields(Study& study, const FieldRunResult& run, std::vector<FieldPictureOptions> pictures);
+std::string pictures_of_fields(Study& study, const FieldEquations& equations, const FieldRunResult& run,
+                               std::vector<FieldPictureOptions> pictures);
 
 }  // namespace maupertuis::app

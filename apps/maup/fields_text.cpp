@@ -295,7 +295,8 @@ Json currents_json(Study& study) {
   return document;
 }
 
-std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOptions& settings, bool rows, bool pictured) {
+std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOptions& settings, bool rows, bool pictured,
+                                            const std::vector<double>& moments) {
   const Model& model = *study.model();
   const FieldSystem& s = equations_of(study).system();
   Bindings values;
@@ -307,9 +308,10 @@ std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOption
   options.every = settings.output_every ? *settings.output_every : number(model.experiment.output_every);
   options.trajectory = rows;
   options.errors = false;
+  options.moments = moments;
   // A map over time shows what happens between a hundred moments.
   const bool line = s.space.size() == 1;
-  if (pictured && !(options.every > 0)) options.every = options.duration / (line ? 240 : 60);
+  if (pictured && !(options.every > 0)) options.every = options.duration / (line ? 240 : 120);
   if (pictured) options.least_values = line ? 480 : 64;
   if (settings.duration && !(*settings.duration > 0)) {
     study.diagnostics().error("E0809", std::nullopt, "a run of a field goes forward",

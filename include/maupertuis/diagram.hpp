@@ -31,7 +31,8 @@ struct Diagram {
   std::vector<Mark> marks;
   std::vector<Key> legend;
   std::vector<std::pair<double, std::string>> x_labels;  // names at places of the horizontal axis instead of numbers
-  bool zero_line = false;                                // the axes x = 0 and y = 0 are drawn where they are inside
+  std::vector<double> include_y = {};  // places that the vertical axis reaches whatever the curves are
+  bool zero_line = false;              // the axes x = 0 and y = 0 are drawn where they are inside
   PlotTheme theme = PlotTheme::Light;
   double width = 720;       // px, at least 240
   double frame_height = 0;  // px; 0: chosen from the width

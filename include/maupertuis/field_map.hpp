@@ -22,7 +22,8 @@ struct FieldMap {
     std::string name;
   };
   std::vector<Line> lines;
-  bool equal_scales = false;  // one unit of x is as long as one of y
+  std::vector<double> include = {};  // values that the colours reach whatever the sheets hold
+  bool equal_scales = false;         // one unit of x is as long as one of y
   PlotTheme theme = PlotTheme::Light;
   double width = 720;  // px, at least 240
 };

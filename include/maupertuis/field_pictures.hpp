@@ -26,6 +26,15 @@ struct FieldPictureOptions {
 std::string field_picture_svg(const FieldEquations& equations, const FieldRunResult& run,
                               const FieldPictureOptions& options);
 
+/// One moment, row `row` of the run, alone: the curve u(x), or the plane; on the scales of the whole run.
+std::string field_frame_svg(const FieldEquations& equations, const FieldRunResult& run,
+                            const FieldPictureOptions& options, std::size_t row);
+
+/// Pictures of one size, each with its style, turned like pages in `seconds`.
+std::string turned_pictures_svg(const std::vector<std::string>& frames, double seconds, bool loop);
+/// The same on a page that needs nothing else, with controls.
+std::string turned_pictures_html(const std::vector<std::string>& frames, double seconds, const std::string& title);
+
 /// The value of a field at the places of row `row`, [upwards ×] places.
 std::vector<double> field_values(const FieldRunResult& run, std::size_t row, std::size_t field, int order);
 

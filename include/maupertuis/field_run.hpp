@@ -52,11 +52,12 @@ struct FieldQuestion {
 };
 
 struct FieldRunOptions {
-  double duration = 0;      // s
-  double every = 0;         // s; 0: a hundredth of the run
-  bool trajectory = false;  // keep rows
-  int least_values = 0;     // along a direction of a row: more than the borders of cells where those are few
-  bool errors = true;       // a second run on a mesh of half the cells
+  double duration = 0;               // s
+  double every = 0;                  // s; 0: a hundredth of the run
+  bool trajectory = false;           // keep rows
+  int least_values = 0;              // along a direction of a row: more than the borders of cells where those are few
+  std::vector<double> moments = {};  // s; rows at these times beside the others
+  bool errors = true;                // a second run on a mesh of half the cells
   Interrupt interrupt;
 };
 

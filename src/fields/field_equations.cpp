@@ -1,6 +1,8 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/fields.hpp>
 
+#include "fields/well_posed.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -136,58 +138,6 @@ ReadingOrder reading_order(const FieldModel& model, const std::vector<Expr>& exp
     if (std::find(order.coordinates.begin(), order.coordinates.end(), symbol) == order.coordinates.end())
       order.coordinates.push_back(symbol);
   return order;
-}
-
-// ------------------------------------------------------------------------------------------------- well-posedness
-
-/// Growth rate of the wave with this wave number for one field of second order in t; 0 where nothing is decided.
-double growth(const FieldEquations& equations, double k) {
-  const FieldSystem& s = equations.system();
-  const Expr residual = s.expanded(equations.residuals.front());
-  const std::vector<Expr> jets = s.jets_in(residual);
-  const std::vector<Expr> slopes = gradient(residual, jets);
-  std::complex<double> by_power[3] = {};
-  const std::complex<double> i(0, 1);
-  for (std::size_t n = 0; n < jets.size(); ++n) {
-    const FieldJet jet = *s.jet_of(jets[n]);
-    if (s.fields[jet.field].given) continue;
-    if (jet.time > 2) return 0;
-    Expr at_rest = slopes[n];
-    Bindings values;
-    const Expr roots[] = {at_rest};
-    for (const Expr& symbol : symbols_of(roots))
-      values[symbol] = s.jet_of(symbol) || symbol.role() == Role::Time ? 0 : 1;
-    for (const Parameter& p : equations.model->parameters) values[p.symbol] = p.si_value;
-    const double c = evaluate(at_rest, values);
-    if (!std::isfinite(c)) return 0;
-    std::complex<double> factor = c;
-    for (const int m : jet.space)
-      for (int j = 0; j < m; ++j) factor *= i * k;
-    for (int j = 0; j < jet.time; ++j) factor *= -i;
-    by_power[jet.time] += factor;
-  }
-  if (by_power[2] == 0.0) return by_power[1] == 0.0 ? 0 : (-by_power[0] / by_power[1]).imag();
-  const auto root = std::sqrt(by_power[1] * by_power[1] - 4.0 * by_power[2] * by_power[0]);
-  return std::max(((-by_power[1] + root) / (2.0 * by_power[2])).imag(),
-                  ((-by_power[1] - root) / (2.0 * by_power[2])).imag());
-}
-
-void refuse_ill_posed(const FieldEquations& equations, Diagnostics& diagnostics) {
-  const FieldSystem& s = equations.system();
-  if (equations.varied.size() != 1) return;
-  const double few = growth(equations, 1e4), many = growth(equations, 1e6);
-  if (!(many > 8 * std::max(few, 0.0)) || !(many > 1e3)) return;
-  std::string trouble;
-  std::string relation;
-  if (const auto d = dispersion(equations, trouble); d && d->im.is_zero())
-    relation = fmt::format(" Its dispersion relation is {} = 0.",
-                           to_plain(lay_out(readable(d->re, equations.order), equations.order)));
-  diagnostics.error(
-      "E0641", s.density_span, "the field equation is ill-posed: short waves grow without bound",
-      fmt::format("A wave of wave number 1e6 grows at the rate {:.3g}, one of 1e4 at {:.3g}: the shorter, "
-                  "the faster (elliptic in time).{}",
-                  many, few, relation),
-      "The parts of u' and of u_x have opposite signs in the density of a wave.");
 }
 
 /// N0640 where no equation moves a field.

@@ -202,6 +202,8 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
   std::vector<double> stops;
   for (const FieldQuestion& q : questions) stops.push_back(q.time);
   stops.push_back(options.duration);
+  for (const double t : options.moments)
+    if (first && t >= 0 && t <= options.duration) stops.push_back(t);
   for (double t = 0; (first || method.is_wave()) && t < options.duration; t += every) stops.push_back(t);
   std::sort(stops.begin(), stops.end());
   double size = 0;

@@ -59,7 +59,9 @@ class Picture {
     return Axis(r, {length, 78, 0.04, d_.degrees_x});
   }
   Axis make_up(double length) const {
-    return Axis(range([&](double, double y) { return factor_y() * y; }), {length, 38, 0.06, d_.degrees_y});
+    Range r = range([&](double, double y) { return factor_y() * y; });
+    for (const double y : d_.include_y) r.include(factor_y() * y);
+    return Axis(r, {length, 38, 0.06, d_.degrees_y});
   }
 
   double bottom() const { return top_ + height_; }

@@ -53,6 +53,7 @@ class MapPicture {
       MAUP_REQUIRE(sheet.values.size() == m_.x.size() * m_.y.size());
       for (const double v : sheet.values) values_.include(v);
     }
+    for (const double v : m_.include) values_.include(v);
     choose_colours();
     const std::size_t count = m_.sheets.size();
     columns_ = count <= 1 ? 1 : count == 2 || count == 4 ? 2 : 3;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 /// Runs of fields as pictures.
 namespace maupertuis {
@@ -32,6 +33,30 @@ class FieldPainter {
   std::string svg() const {
     if (s_.space.size() == 2) return plane();
     return o_.map ? space_time() : curves();
+  }
+
+  std::string frame(std::size_t row) const {
+    std::vector<double> reached(2);
+    bool any = false;
+    for (std::size_t r = 0; r < run_.trajectory.rows(); ++r)
+      for (const double v : values(r))
+        if (std::isfinite(v))
+          reached[0] = any ? std::min(reached[0], v) : v, reached[1] = any ? std::max(reached[1], v) : v, any = true;
+    if (s_.space.size() == 2) {
+      FieldMap map = frame_of_map();
+      map.y_name = s_.space[1].name, map.y_unit = unit_of(s_.space[1].dimension);
+      map.x = run_.places, map.y = run_.upwards, map.include = reached;
+      map.equal_scales = s_.space[0].dimension == s_.space[1].dimension;
+      map.sheets.push_back({moment(row), values(row)});
+      return field_map_svg(map);
+    }
+    Diagram out;
+    out.title = o_.title, out.theme = o_.theme, out.width = o_.width, out.include_y = reached;
+    out.x_name = s_.space.front().name, out.x_unit = unit_of(s_.space.front().dimension);
+    out.y_name = value_name(), out.y_unit = value_unit();
+    out.curves.push_back({run_.places, values(row), 0, false, false});
+    out.legend.push_back({moment(row), 0, false, false});
+    return diagram_svg(out);
   }
 
  private:
@@ -129,6 +154,36 @@ std::vector<double> field_values(const FieldRunResult& run, std::size_t row, std
 
 std::vector<std::size_t> drawn_moments(const FieldRunResult& run, std::size_t most) {
   return thinned(run.trajectory.rows(), most);
+}
+
+std::string field_frame_svg(const FieldEquations& equations, const FieldRunResult& run,
+                            const FieldPictureOptions& options, std::size_t row) {
+  MAUP_REQUIRE(row < run.trajectory.rows() && !run.places.empty());
+  return FieldPainter(equations, run, options).frame(row);
+}
+
+std::string turned_pictures_svg(const std::vector<std::string>& frames, double seconds, bool loop) {
+  MAUP_REQUIRE(!frames.empty());
+  double width = 0, height = 0;
+  if (const std::size_t at = frames.front().find(" width=\""); at != std::string::npos)
+    std::sscanf(frames.front().c_str() + at, " width=\"%lf\" height=\"%lf\"", &width, &height);
+  std::string out = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 "
+      "{0:.0f} {1:.0f}\">\n",
+      width, height);
+  const double n = static_cast<double>(frames.size());
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    const bool last = f + 1 == frames.size();
+    std::string times = "0", values = f == 0 ? "visible" : "hidden";
+    if (f > 0) times += fmt::format(";{:.6g}", static_cast<double>(f) / n), values += ";visible";
+    if (!last) times += fmt::format(";{:.6g}", static_cast<double>(f + 1) / n), values += ";hidden";
+    out += fmt::format(
+        "<g visibility=\"{}\"><animate attributeName=\"visibility\" calcMode=\"discrete\" dur=\"{:.6g}s\" {} "
+        "keyTimes=\"{}\" values=\"{}\"/>\n{}</g>\n",
+        f == 0 ? "visible" : "hidden", seconds, loop ? "repeatCount=\"indefinite\"" : "fill=\"freeze\"", times, values,
+        frames[f]);
+  }
+  return out + "</svg>\n";
 }
 
 std::string field_picture_svg(const FieldEquations& equations, const FieldRunResult& run,

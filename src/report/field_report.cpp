@@ -105,7 +105,7 @@ class FieldComposer {
                                ""});
     for (std::size_t mu = 0; mu < e_.boundary_terms.size(); ++mu)
       left.lines.push_back(
-          {layouts::name("B^" + (mu == s_.space.size() ? "t" : s_.space[mu].name)),
+          {layouts::power(layouts::name("B"), layouts::name(mu == s_.space.size() ? "t" : s_.space[mu].name)),
            field_layout(e_.with_variations, lay_out(readable(e_.boundary_terms[mu], e_.order), e_.order)), "", ""});
     for (ReportContent::Section* part : {&slopes, &natural, &left})
       if (!part->lines.empty()) out.derivation.push_back(std::move(*part));
@@ -113,9 +113,9 @@ class FieldComposer {
 
   void add_currents(ReportContent& out, const FieldCurrents& found) const {
     for (const FieldCurrent& c : found.currents) {
-      out.conserved.push_back({c.name + ": " + c.meaning, {layouts::name("j^t"), shown(c.density), "", ""}, "", ""});
+      out.conserved.push_back({c.name + ": " + c.meaning, {current("t"), shown(c.density), "", ""}, "", ""});
       for (std::size_t x = 0; x < c.fluxes.size(); ++x)
-        out.conserved.push_back({"", {layouts::name("j^" + s_.space[x].name), shown(c.fluxes[x]), "", ""}, "", ""});
+        out.conserved.push_back({"", {current(s_.space[x].name), shown(c.fluxes[x]), "", ""}, "", ""});
     }
     if (!found.basis.empty()) out.conserved.push_back({found.basis, {}, "", ""});
   }
@@ -178,6 +178,7 @@ class FieldComposer {
     return model_.system.dimensionless || text == "1" ? std::string() : text;
   }
   Layout shown(Expr e) const { return field_layout(s_, lay_out(readable(e, e_.order), e_.order)); }
+  static Layout current(const std::string& along) { return layouts::power(layouts::name("j"), layouts::name(along)); }
   std::string boundary() const {
     if (s_.periodic) return "periodic";
     constexpr const char* sides[] = {"left", "right", "bottom", "top"};

@@ -2,6 +2,8 @@
 #include "report/page.hpp"
 #include "report/sections.hpp"
 
+#include <maupertuis/field_pictures.hpp>
+
 #include <fmt/format.h>
 
 namespace maupertuis {
@@ -103,6 +105,47 @@ std::string report_html(const ReportContent& content) {
                      body.find("<figure class=\"mode\"") != std::string::npos;
   if (moves) page += fmt::format("<script>\n{}</script>\n", animation_script);
   return page + "</body>\n</html>\n";
+}
+
+std::string turned_pictures_html(const std::vector<std::string>& frames, double seconds, const std::string& title) {
+  ReportContent content;
+  content.title = title;
+  return head(escape_html(title)) + header(content) + "</header>\n<main>\n<figure id=\"film\">\n" +
+         turned_pictures_svg(frames, seconds, true) +
+         fmt::format(R"(<div class="controls">
+<button id="film-play" type="button">pause</button>
+<input id="film-scrub" type="range" min="0" max="{:.6g}" step="any" value="0" aria-label="Time">
+</div>
+</figure>
+</main>
+<footer>Made by Maupertuis. Everything on this page is contained in it.</footer>
+<script>
+{}</script>
+<script>
+{{
+  const film = document.querySelector("#film > svg"), play = document.getElementById("film-play"),
+        scrub = document.getElementById("film-scrub"), length = {:.6g};
+  film.removeAttribute("width"), film.removeAttribute("height"), film.style.maxWidth = "100%";
+  const turn = () => {{
+    film.animationsPaused() ? film.unpauseAnimations() : film.pauseAnimations();
+    play.textContent = film.animationsPaused() ? "play" : "pause";
+  }};
+  play.onclick = turn;
+  scrub.oninput = () => {{
+    if (!film.animationsPaused()) turn();
+    film.setCurrentTime(Math.min(+scrub.value, length * 0.9999));
+  }};
+  const follow = () => {{
+    if (!film.animationsPaused()) scrub.value = film.getCurrentTime() % length;
+    requestAnimationFrame(follow);
+  }};
+  follow();
+}}
+</script>
+</body>
+</html>
+)",
+                     seconds, page_script, seconds);
 }
 
 std::string animation_html(const Drawing& drawing, const std::string& title) {

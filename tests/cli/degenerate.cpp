@@ -72,3 +72,22 @@ TEST_CASE("derive and hamiltonian tell the constraints of both sides") {
   CHECK(none.code != 0);
   CHECK(contains(none.err, "E1106"));
 }
+
+TEST_CASE("invariants of a degenerate system, and where functions of time leave it without rates") {
+  const Outcome found = maup({"invariants", "-", "--no-drift"}, predators);
+  CHECK(found.code == 0);
+  CHECK(contains(found.out, "energy"));
+  const Outcome open = maup({"invariants", "-", "--no-drift"},
+                            "dimensionless\nparam k = 2\ncoord r, θ, z : number\n"
+                            "L = 1/2 r'^2 + 1/2 r^2 (θ' - z)^2 - 1/2 k r^2\nstart r = 1\n");
+  CHECK(contains(open.err, "E1002"));
+  CHECK(contains(open.err, "gauge"));
+}
+
+TEST_CASE("check lists rates by what they are") {
+  const std::string text = "param m = 1 kg, I = 1 kg m^2\ncoord x, y : length, ψ : angle\n"
+                           "T = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\n"
+                           "rates v = x' cos ψ + y' sin ψ, s = y' cos ψ - x' sin ψ, w = ψ'\n";
+  CHECK(contains(maup({"check", "-"}, text).out, "rates                 v = x' cos ψ + y' sin ψ\n"));
+  CHECK(json_of(maup({"check", "-", "--json"}, text))["rates"].size() == 3);
+}

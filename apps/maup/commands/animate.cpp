@@ -1,3 +1,5 @@
+#include "field_views.hpp"
+#include "fields_text.hpp"
 #include "interrupt.hpp"
 #include "outcome.hpp"
 #include "output_files.hpp"
@@ -223,8 +225,113 @@ std::optional<Drawing> drawing_of(Study& study, const SimulationOptions& setting
   return drawing;
 }
 
+/// Frame by frame.
+std::string video_of(const AnimateOptions& o, const Film& film, const std::vector<std::string>& frames,
+                     Diagnostics& diagnostics) {
+  const PictureSize size = size_of_picture(frames.front());
+  Video::Options options;
+  options.format = ending_of(o) == ".gif" ? Video::Format::Gif : Video::Format::Mp4;
+  options.width = 2 * static_cast<int>(std::lround(size.width / 2));
+  options.height = 2 * static_cast<int>(std::lround(size.height / 2));
+  options.fps = film.fps, options.loop = !o.once;
+  Video video(find_ffmpeg(), options);
+  for (const std::string& frame : frames)
+    if (interrupt_flag().load() || !video.add(pixels_of(frame, options.width, options.height))) break;
+  if (interrupt_flag().load()) return {};
+  const Video::Film made = video.finish();
+  if (!made.problem.empty())
+    diagnostics.error("E0841", {}, fmt::format("ffmpeg did not make {}.", o.output),
+                      fmt::format("It says: {}.", made.problem), "An .html or .svg needs no ffmpeg.");
+  return made.bytes;
+}
+
+/// The rows of a run that are nearest to the times of the frames.
+std::vector<std::size_t> rows_of_frames(const FieldRunResult& run, const Film& film) {
+  std::vector<std::size_t> out;
+  std::size_t row = 0;
+  const std::vector<double>& times = run.trajectory.times;
+  for (const double t : film.elapsed) {
+    while (row + 1 < times.size() && std::abs(times[row + 1] - t) <= std::abs(times[row] - t)) ++row;
+    out.push_back(row);
+  }
+  return out;
+}
+
+/// A field in motion: u(x), or the plane in colours.
+ExitCode animate_fields(AnimateOptions o, Study& study, Console& console) {
+  Json document = json_document("animate");
+  Diagnostics& diagnostics = study.diagnostics();
+  refuse_options_of_motions(
+      o.run, {{"--view", !o.view.empty()}, {"--trail", o.trail != "fading"}, {"--plain", o.plain}}, diagnostics);
+  const SimulationOptions settings = simulation_options(o.run, diagnostics, study.tree());
+  Film film = read_options(o, diagnostics);
+  if (film.height_given)
+    diagnostics.error("E0809", {}, fmt::format("--size {} gives a height.", o.size),
+                      "The height of a picture of fields follows from its width.", "Give the width alone.");
+  check_output_files({{"-o", o.output, o.still.empty() ? FileKind::Animation : FileKind::Picture}}, o.model.path,
+                     diagnostics);
+  check_tools(o, diagnostics);
+  if (study.wrong()) return finish_usage(console, study, "animate");
+  const FieldEquations* equations = study.field_equations();
+  if (!equations) return finish(console, study, document);
+  if (o.output.empty()) o.output = study.model()->system.name + (o.still.empty() ? ".html" : ".svg");
+  std::vector<double> asked;
+  if (const auto t = o.still.empty() ? std::nullopt : parse_exact_time(o.still)) asked.push_back(t->to_double());
+  const auto run = run_of_fields(study, settings, true, true, asked);
+  if (!run) return finish(console, study, document);
+
+  Drawing times;  // of the run
+  times.times = run->trajectory.times;
+  film.height_given = true;
+  constexpr double pleasant_seconds = 10;
+  if (!(o.speed > 0)) o.speed = run->end / pleasant_seconds;
+  if (o.still.empty())
+    choose_frames(o, times, film, diagnostics);
+  else
+    film.elapsed = {moment("--still", o.still, times, 0, diagnostics)};
+  if (study.wrong()) return finish_usage(console, study, "animate");
+  FieldPictureOptions like;
+  like.theme = film.picture.theme;
+  const bool plane = study.model()->fields->system.space.size() == 2;
+  like.width = !o.size.empty() ? std::max(film.picture.width, 240.0) : plane ? 480 : 720;
+  like = field_pictures_of(study, *equations, {}, like).front();
+  const std::string title = like.title;
+  if (const std::string e = ending_of(o); e == ".html" || e == ".htm") like.title.clear();  // the page has it
+  std::vector<std::string> frames;
+  for (const std::size_t row : rows_of_frames(*run, film)) {
+    if (interrupt_flag().load()) break;
+    frames.push_back(field_frame_svg(*equations, *run, like, row));
+  }
+  std::string bytes;
+  const std::string ending = ending_of(o);
+  if (interrupt_flag().load()) {
+    if (!console.json()) console.say(fmt::format("Interrupted: {} was not written.\n", o.output));
+    finish(console, study, document);
+    return ExitCode::Interrupted;
+  }
+  if (!o.still.empty())
+    write_picture(o.output, frames.front(), diagnostics);
+  else {
+    bytes = ending == ".mp4" || ending == ".gif"    ? video_of(o, film, frames, diagnostics)
+            : ending == ".html" || ending == ".htm" ? turned_pictures_html(frames, film.seconds(), title)
+                                                    : turned_pictures_svg(frames, film.seconds(), !o.once);
+    if (!study.wrong()) write_result(o.output, bytes, diagnostics);
+  }
+  document["file"] = o.output;
+  document["frames"] = frames.size();
+  if (o.still.empty()) document["fps"] = film.fps, document["speed"] = film.speed, document["seconds"] = film.seconds();
+  const bool written = !study.wrong();
+  if (written && !console.json())
+    console.say(o.still.empty() ? fmt::format("Wrote {} ({} frames, {:.3g} s, {} kB).\n", o.output, frames.size(),
+                                              film.seconds(), (bytes.size() + 999) / 1000)
+                                : fmt::format("Wrote {}.\n", o.output));
+  finish(console, study, document);
+  return written ? ExitCode::Fine : ExitCode::RunFailed;
+}
+
 ExitCode animate(AnimateOptions o, Console& console) {
   Study study = open_study(o.model);
+  if (declares_fields(study.tree())) return animate_fields(std::move(o), study, console);
   Json document = json_document("animate");
   const bool readable_model = !study.wrong();
   const SimulationOptions settings = simulation_options(o.run, study.diagnostics(), study.tree());

@@ -108,6 +108,13 @@ std::string friction_of_coordinate(const Friction& f, const MechanicalSystem& sy
                      f.static_ == f.kinetic ? "" : ", static " + to_plain(f.static_, order));
 }
 
+/// "v = x' cos ψ + y' sin ψ"; the name alone where that is long.
+std::string rate_text(const Rate& rate, const ReadingOrder& order) {
+  constexpr std::size_t longest = 90;
+  const std::string value = to_plain(rate.value, order);
+  return value.size() > longest ? rate.name : rate.name + " = " + value;
+}
+
 std::string mode_name(const std::string& mode) { return mode.empty() ? "free" : mode; }
 
 /// What the check finds out beyond the text: the start on the constraints, and what these are; how contacts begin.
@@ -156,6 +163,8 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
   line("coordinates", joined(words));
   if (const std::string unit = system.independent_unit(); system.independent != "t")
     line("independent variable", unit.empty() ? system.independent : fmt::format("{} in {}", system.independent, unit));
+  for (std::size_t i = 0; i < system.rates.size(); ++i)
+    line(i == 0 ? "rates" : "", rate_text(system.rates[i], equations.order));
   summarise_constraints(equations, findings.analysis, line);
   if (equations.degenerate)
     line("degenerate", fmt::format("{} of the {} numbers of a state are left, {} single{} out a motion",
@@ -263,6 +272,10 @@ ExitCode check(const ModelOptions& options, Console& console) {
     document["coordinates"] = Json::array();
     if (model)
       for (const Coordinate& c : model->system.coordinates) document["coordinates"].push_back(c.name);
+    if (model && !model->system.rates.empty()) {
+      document["rates"] = Json::array();
+      for (const Rate& rate : model->system.rates) document["rates"].push_back(rate.name);
+    }
     // Numbers are given only where they are known.
     const bool counted = findings && !study.wrong();
     document["freedoms"] = counted ? Json(findings->analysis.configuration_freedoms) : Json(nullptr);

@@ -46,18 +46,21 @@ ExitCode plot_fields(const PlotCommandOptions& options, Study& study, Console& c
   if (options.output != "-")
     check_output_files({{"-o", options.output, FileKind::Picture}}, options.model.path, study.diagnostics());
   if (study.wrong()) return finish_usage(console, study, "plot");
-  if (!study.field_equations()) return finish(console, study, document);
+  const FieldEquations* equations = study.field_equations();
+  if (!equations) return finish(console, study, document);
   if (study.model()->fields->system.space.size() > 1 && (options.map || options.curves))
     study.diagnostics().error("E0809", {}, "--map and --curves are for fields of one space variable.",
                               "In the plane u(x, y) is drawn at moments.", "Leave them out.");
+  if (study.wrong()) return finish_usage(console, study, "plot");
   FieldPictureOptions like;
   like.curves = !options.map, like.map = !options.curves;
   like.degrees = options.picture.degrees, like.theme = options.picture.theme, like.title = options.picture.title;
-  const auto pictures = field_pictures_of(study, options.y, like);
+  const auto pictures = field_pictures_of(study, *equations, options.y, like);
   if (study.wrong()) return finish_usage(console, study, "plot");
   const auto run = run_of_fields(study, settings, true, true);
   if (!run) return finish(console, study, document);
-  const ExitCode written = write_svg(options, pictures_of_fields(study, *run, pictures), study, document, console);
+  const ExitCode written =
+      write_svg(options, pictures_of_fields(study, *equations, *run, pictures), study, document, console);
   finish(console, study, document);
   return written;
 }

@@ -351,12 +351,14 @@ ExitCode simulate_fields(const SimulateOptions& options, Study& study, Console& 
   if (options.precision && *options.precision != "double")
     study.diagnostics().error("E0809", {}, "Fields are run in double.", "The mesh limits the digits, not the numbers.",
                               "Leave --precision out.");
-  if (!study.field_equations()) return finish(console, study, std::move(document));
+  const FieldEquations* equations = study.field_equations();
+  if (!equations) return finish(console, study, std::move(document));
   const auto run =
       run_of_fields(study, settings, !options.output.empty() || !options.plot.empty(), options.output.empty());
   if (!run) return finish(console, study, std::move(document));
   if (!options.output.empty()) write_rows(options.output, run->trajectory, study.diagnostics());
-  if (!options.plot.empty()) write_picture(options.plot, pictures_of_fields(study, *run, {}), study.diagnostics());
+  if (!options.plot.empty())
+    write_picture(options.plot, pictures_of_fields(study, *equations, *run, {}), study.diagnostics());
   if (!console.json()) console.print(field_run_text(*run));
   return finish(console, study, field_run_json(*run));
 }

@@ -1,0 +1,10 @@
+#pragma once
+#include <maupertuis/fields.hpp>
+
+namespace maupertuis {
+
+/// E0641 where the growth of waves about φ = 0 rises with the wave number without bound, along a space variable or a
+/// diagonal: no start determines what follows then.
+void refuse_ill_posed(const FieldEquations& equations, Diagnostics& diagnostics);
+
+}  // namespace maupertuis

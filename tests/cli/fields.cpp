@@ -1,0 +1,82 @@
+// Pictures, films and pages of fields: what was asked for is in them, and what has no meaning for fields is refused.
+#include "program.hpp"
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+using namespace cli_test;
+
+namespace {
+
+const std::string string_text =
+    "system s \"A string\"\ndimensionless\nfield u(x) : number on x = 0 .. 1 cells 10 order 5 boundary u = 0\n"
+    "density = 1/2 u'^2 - 1/2 u_x^2\nstart u = sin(pi x)\nrun 2\nexpect u (0.5) at 2 = 1 ± 1e-6\n";
+const std::string membrane_text =
+    "system m \"A membrane\"\ndimensionless\nfield u(x, y) : number on x = 0 .. 2, y = 0 .. 1 cells 6, 4 order 4 "
+    "boundary u = 0\ndensity = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2)\nstart u = sin(pi x/2) sin(pi y)\nrun 1\n";
+
+std::size_t times_in(const std::string& text, const std::string& part) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++n;
+  return n;
+}
+
+}  // namespace
+
+TEST_CASE("fields are drawn at moments and over space and time") {
+  const Outcome both = maup({"plot", "-"}, string_text), map = maup({"plot", "-", "--map"}, string_text),
+                curves = maup({"plot", "-", "--curves"}, string_text), plane = maup({"plot", "-"}, membrane_text),
+                rate = maup({"plot", "-", "--y", "u, u'", "--dark"}, string_text);
+  for (const Outcome* one : {&both, &map, &curves, &plane, &rate}) {
+    CHECK(one->code == 0);
+    CHECK(contains(one->out, "</svg>"));
+    CHECK_FALSE(contains(one->out, "nan"));
+  }
+  const std::string bar = "shape-rendering=\"crispEdges\"", curve = "class=\"curve";
+  CHECK(times_in(both.out, bar) == 1);
+  CHECK(times_in(map.out, bar) == 1);
+  CHECK(times_in(curves.out, bar) == 0);
+  CHECK(times_in(map.out, curve) == 0);
+  CHECK(times_in(both.out, curve) == 18);  // six moments: curve, key, mark
+  CHECK(times_in(curves.out, curve) == 12);
+  CHECK(times_in(plane.out, "<g stroke=\"none\">") == 6);
+  CHECK(times_in(rate.out, bar) == 2);
+  CHECK(times_in(rate.out, "A string") == times_in(both.out, "A string"));  // one title
+}
+
+TEST_CASE("fields move, and their report has its parts") {
+  const Folder folder;
+  const std::string string = folder.write("s.lag", string_text), membrane = folder.write("m.lag", membrane_text);
+  const std::string film = folder.path("s.svg"), still = folder.path("still.svg"), page = folder.path("m.html");
+  CHECK(maup({"animate", string, "-o", film, "--speed", "1", "--fps", "10"}).code == 0);
+  CHECK(times_in(read(film), "<animate ") == 21);
+  CHECK(maup({"animate", string, "-o", still, "--still", "0.5"}).code == 0);
+  CHECK(contains(read(still), "t = 0.5<"));
+  CHECK(maup({"animate", membrane, "-o", page, "--speed", "0.5", "--fps", "5"}).code == 0);
+  CHECK(times_in(read(page), "<animate ") == 11);
+  CHECK(contains(read(page), "film-scrub"));
+  const std::string report = folder.path("report.html");
+  CHECK(maup({"report", string, "-o", report}).code == 0);
+  for (const char* part : {"id=\"equations\"", "Density", "id=\"motion\"", "id=\"modes\"", "id=\"conserved\"",
+                           "id=\"derivation\"", "id=\"certificate\"", "id=\"expectations\"", "✓ passed", "3.141592"})
+    CHECK_MESSAGE(contains(read(report), part), part);
+  CHECK(maup({"report", string, "-o", report, "--sections", "equations", "--no-run"}).code == 0);
+  CHECK_FALSE(contains(read(report), "id=\"motion\""));
+  CHECK(contains(read(report), "id=\"certificate\""));
+}
+
+TEST_CASE("options that have no meaning for fields are refused") {
+  const std::vector<std::vector<std::string>> wrong{
+      {"plot", "-", "--x", "u"},          {"plot", "-", "--until", "u = 0"},      {"plot", "-", "--y", "w"},
+      {"plot", "-", "--map", "--curves"}, {"animate", "-", "--view", "1,2"},      {"animate", "-", "--plain"},
+      {"report", "-", "--floquet"},       {"report", "-", "--sections", "orbits"}};
+  for (const auto& arguments : wrong) {
+    CAPTURE(arguments[2]);
+    const Outcome told = maup(arguments, string_text);
+    CHECK(told.code == 2);
+    CHECK(contains(told.err, "error E08"));
+  }
+  CHECK(maup({"plot", "-", "--map"}, membrane_text).code == 2);
+  CHECK(contains(maup({"plot", "-", "--map"}, pendulum).err, "--map is for fields"));
+  CHECK(contains(maup({"plot", "-", "--y", "w"}, string_text).err, "`w` is no field"));
+}

@@ -1,0 +1,46 @@
+#include <maupertuis/study.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace maupertuis;
+
+namespace {
+
+/// What is said of a density: code and reason of the first error, or nothing.
+std::string said_of(const std::string& text) {
+  Study study(SourceText("field.lag", "dimensionless\n" + text));
+  study.field_equations();
+  for (const Diagnostic& d : study.diagnostics().items())
+    if (d.severity == Severity::Error) return d.code + ": " + d.reason;
+  return {};
+}
+
+bool ill_posed(const std::string& text) { return said_of(text).compare(0, 5, "E0641") == 0; }
+
+}  // namespace
+
+TEST_CASE("elliptic in time: one field, one of two, one direction of two") {
+  CHECK(ill_posed("field u(x) : number\ndensity = 1/2 u'^2 + 1/2 u_x^2\n"));
+  CHECK_FALSE(ill_posed("field u(x) : number\ndensity = 1/2 u'^2 - 1/2 u_x^2 + 1/2 u^2\n"));
+  CHECK(ill_posed("field u(x) : number\ndensity = 1/2 u'^2 + 1/2 u_xx^2\n"));
+  CHECK_FALSE(ill_posed("field u(x) : number\ndensity = 1/2 u'^2 - 1/2 u_xx^2 + 3 u_x^2\n"));
+  const std::string two = "field a(x), b(x) : number\ndensity = 1/2 a'^2 + 1/2 b'^2 - 1/2 a_x^2 - 1/2 b_x^2 ";
+  CHECK_FALSE(ill_posed(two + "- 0.9 a_x b_x\n"));
+  CHECK(ill_posed(two + "- 1.1 a_x b_x\n"));
+  const std::string plane = "field u(x, y) : number\ndensity = 1/2 u'^2 - 1/2 u_x^2 ";
+  CHECK_FALSE(ill_posed(plane + "- 1/2 u_y^2\n"));
+  CHECK(said_of(plane + "+ 1/2 u_y^2\n").find("along y") != std::string::npos);
+  CHECK(said_of(plane + "- 1/2 u_y^2 + 1.2 u_x u_y\n").find("along the diagonal") != std::string::npos);
+  CHECK(said_of(plane + "+ 1/2 u_y^2\n").find("dispersion relation is") != std::string::npos);
+}
+
+TEST_CASE("first order in time, and what is of no one order") {
+  // Schrödinger's equation in two fields turns, whatever the sign
+  for (const char* sign : {"-", "+"})
+    CHECK_FALSE(
+        ill_posed("field a(x), b(x) : number\ndensity = b a' - a b' " + std::string(sign) + " 1/2 (a_x^2 + b_x^2)\n"));
+  // its parts of different sign: diffusion, in one field backwards in time
+  CHECK(ill_posed("field a(x), b(x) : number\ndensity = b a' - a b' - 1/2 (a_x^2 - b_x^2)\n"));
+  CHECK_FALSE(ill_posed("field h(x), p(x) : number\ndensity = -(h p' + 1/2 h p_x^2 + 1/2 h^2)\n"));
+  CHECK_FALSE(ill_posed("field P(x), A(x) : number\ndensity = 1/2 (P_x + A')^2\n"));
+}
