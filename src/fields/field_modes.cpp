@@ -441,8 +441,8 @@ bool solve_conservative(const SmallMotions& motions, std::size_t count, std::vec
   return true;
 }
 
-/// (μ² + iμ Ĝ − M̂) y = 0 with μ = 1/ω, K = L Lᵀ, c = L⁻ᵀ y: with N² = M̂ the Hermitian matrix ((−iĜ, N), (N, 0)) has the
-/// eigenvalues μ. As a real symmetric matrix of twice the size it has each of them twice.
+/// (μ² + iμ Ĝ − M̂) y = 0 with μ = 1/ω, K = L Lᵀ, c = L⁻ᵀ y: with N² = M̂ the Hermitian matrix ((−iĜ, N), (N, 0)) has
+/// the eigenvalues μ. As a real symmetric matrix of twice the size it has each of them twice.
 bool solve_gyroscopic(const SmallMotions& motions, std::size_t count, std::vector<double>& out) {
   const Eigen::LLT<Eigen::MatrixXd> factor(motions.stiffness);
   if (factor.info() != Eigen::Success) return false;
