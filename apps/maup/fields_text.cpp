@@ -147,6 +147,22 @@ std::vector<FormulaLine> field_lines(Study& study, bool with_steps) {
   return out;
 }
 
+namespace {
+
+/// i ψ' + 1/2 ψ_xx + abs(ψ)^2 ψ = 0
+std::string complex_text(const FieldEquations& equations) {
+  std::string out;
+  for (const ComplexEquation& e : complex_equations(equations)) {
+    const auto text = [&](Expr part) { return to_plain(readable(part, equations.order), equations.order); };
+    std::string left = e.im.is_zero() ? "" : e.im.is(Kind::Sum) ? "i (" + text(e.im) + ")" : "i " + text(e.im);
+    if (!e.re.is_zero()) left += (left.empty() ? "" : " + ") + text(e.re);
+    out += fmt::format("  {} = 0\n", left.empty() ? "0" : left);
+  }
+  return out.empty() ? out : "\nIn complex form, δℒ/δψ* = 0\n" + out;
+}
+
+}  // namespace
+
 std::string fields_lecture(Study& study, bool with_steps) {
   const FieldEquations& equations = equations_of(study);
   std::string out, section;
@@ -154,6 +170,7 @@ std::string fields_lecture(Study& study, bool with_steps) {
     if (line.section != section) out += fmt::format("{}{}\n", out.empty() ? "" : "\n", section = line.section);
     out += fmt::format("  {}{}\n", plain_text(line), line.note.empty() ? "" : "    " + line.note);
   }
+  out += complex_text(equations);
   std::string b;
   for (std::size_t mu = 0; mu < equations.boundary_terms.size(); ++mu) {
     const FieldSystem& s = equations.system();

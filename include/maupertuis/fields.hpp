@@ -90,6 +90,15 @@ struct ComplexExpr {
 /// Nothing, and `trouble`, where φ = 0 is no solution or the coefficients depend on x or t.
 std::optional<ComplexExpr> dispersion(const FieldEquations& equations, std::string& trouble);
 
+/// δℒ/δψ* of a complex field ψ, re + i im, in ψ and its derivatives and a symbol named abs(ψ).
+struct ComplexEquation {
+  std::string field;  // ψ
+  Expr re, im;
+};
+/// Of all complex fields; none where one of them does not read well so: it is no polynomial, or holds more of ψ* than
+/// |ψ|².
+std::vector<ComplexEquation> complex_equations(const FieldEquations& equations);
+
 /// e with derivatives of fields typeset with ∂, and named u_tx in plain text.
 Layout field_layout(const FieldSystem& system, Layout layout);
 ReadableForm readable_residual(const FieldEquations& equations, std::size_t varied_index);

@@ -61,7 +61,8 @@ constexpr CodeEntry kEntries[] = {
      "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nT = 1/2 m u(1 m)'^2\nrun 1 s\n"},
     {"E0649", "a mesh that does not fit into the memory",
      "The Taylor coefficients of all nodes stand in the memory at once: some hundred bytes a node and operation of the "
-     "density. What a mesh takes is known before it is made.",
+     "density; of beams and fields of first order the matrices of a step. What a mesh takes is known before it is "
+     "made.",
      "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 1000, 1000 order 20\n"
      "density = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2) - (1 - cos u)\nrun 1\n",
      "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 20, 20 order 6\n"

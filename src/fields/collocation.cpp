@@ -292,11 +292,11 @@ bool CollocationMotion::newton(double h) {
   double before = 0;
   slow_ = false;
   for (int round = 1; round <= most_rounds; ++round) {
+    interrupt_.throw_if_asked();
     residuals(h);
     const Factors* factors = factors_for(h);
     if (!factors) return false;
     const double change = correct(h, *factors);
-    ++rounds_;
     if (!std::isfinite(change)) return false;
     if (change <= enough) return true;
     if (round > 1 && change > 0.3 * before && change <= settled) return true;  // rounding
@@ -308,6 +308,19 @@ bool CollocationMotion::newton(double h) {
 }
 
 bool CollocationMotion::step(double h) {
+  constexpr int most_halvings = 12;
+  return step_or_halves(h, most_halvings);
+}
+
+bool CollocationMotion::step_or_halves(double h, int halvings) {
+  if (one_step(h)) return true;
+  if (trouble_ != "step" || halvings == 0) return false;
+  trouble_.clear();
+  have_stages_ = false;
+  return step_or_halves(h / 2, halvings - 1) && step_or_halves(h / 2, halvings - 1);
+}
+
+bool CollocationMotion::one_step(double h) {
   const std::size_t s = tableau_.stages, n = mesh_.size();
   if (slow_ && !form_.linear) refresh_matrices(state_.c, stage_v_.back(), state_.t);
   const auto predict = [&] {
@@ -375,6 +388,17 @@ bool CollocationMotion::step(double h) {
   return true;
 }
 
+double CollocationMotion::bytes(const DensityForm& form, int cells, int degree, int stages) {
+  double local = 0;
+  for (std::size_t f = 0; f < form.smooth.size(); ++f) local += degree + 1;
+  const double coefficients = cells * local, points = cells * (degree + 2.0);
+  const double band = 2 * local, rows = 3 * band + 1;
+  constexpr double number = 8, real_matrices = 6, instructions_a_slot = 12;
+  const double matrices = coefficients * rows * number * (real_matrices + 2.0 * (stages / 2 + stages % 2));
+  return matrices + points * number * instructions_a_slot * static_cast<double>(form.slots.size()) +
+         10.0 * stages * number * coefficients;
+}
+
 double CollocationMotion::choose_step(double longest, double duration, double goal, const Interrupt& interrupt) {
   const State begin = state_;
   const std::vector<double> rates = rates_;
@@ -388,7 +412,7 @@ double CollocationMotion::choose_step(double longest, double duration, double go
       restore(begin);
       rates_ = rates;
       bool good = true;
-      for (int i = 0; i < steps && good; ++i) good = step(h / steps);
+      for (int i = 0; i < steps && good; ++i) good = one_step(h / steps);
       if (trouble_ != "mass") trouble_.clear();
       return good ? state_.c : std::vector<double>{};
     };
@@ -416,7 +440,6 @@ double CollocationMotion::choose_step(double longest, double duration, double go
   restore(begin);
   rates_ = rates;
   refresh_matrices(begin.c, rates, begin.t);
-  rounds_ = 0;
   return h;
 }
 

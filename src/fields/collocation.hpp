@@ -30,6 +30,7 @@ class CollocationMotion final : public FieldMotion {
   CollocationMotion(const FieldEquations& equations, const DensityForm& form, int cells, int degree, int stages);
 
   void start() override;
+  /// Where the equations of a step have no solution near, by halves of it, down to h/4096.
   bool step(double h) override;
   double energy(double& size) override;
   double answer(const FieldQuestion& question) override;
@@ -39,8 +40,10 @@ class CollocationMotion final : public FieldMotion {
   /// The longest step whose error, summed over the duration, is `goal` of the field's size; found by comparing a step
   /// with two of half of it from the start on. Leaves the state as it was.
   double choose_step(double longest, double duration, double goal, const Interrupt& interrupt);
-  /// After `step`: Newton's rounds of all steps so far, for the cost.
-  std::size_t rounds() const { return rounds_; }
+  /// Asked at each of Newton's rounds.
+  void watch(const Interrupt& interrupt) { interrupt_ = interrupt; }
+  /// What a run on such a mesh takes of memory, all but a factor 2.
+  static double bytes(const DensityForm& form, int cells, int degree, int stages);
 
  private:
   struct Factors {
@@ -65,6 +68,8 @@ class CollocationMotion final : public FieldMotion {
   const Factors* factors_for(double h);
   void refresh_matrices(const std::vector<double>& c, const std::vector<double>& v, double t);
   bool newton(double h);
+  bool one_step(double h);
+  bool step_or_halves(double h, int halvings);
   void residuals(double h);
   double correct(double h, const Factors& factors);
   void leave_null_vectors_out(const Factors& factors, std::size_t stage, std::vector<std::complex<double>>& w) const;
@@ -91,7 +96,7 @@ class CollocationMotion final : public FieldMotion {
   std::map<double, Factors> factors_;
   std::vector<std::vector<double>> null_;  // orthonormal vectors that are left out of the motion
   bool all_first_order_ = false;
-  std::size_t rounds_ = 0;
+  Interrupt interrupt_;
   bool slow_ = false;  // Newton's last step took many rounds: new matrices for the next
 };
 

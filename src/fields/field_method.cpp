@@ -44,6 +44,7 @@ std::unique_ptr<FieldMotion> FieldMethod::mesh(const FieldEquations& equations, 
 }
 
 double FieldMethod::bytes(const FieldEquations& equations, const Cells& cells) const {
+  if (stiff_) return CollocationMotion::bytes(*stiff_, cells[0], order_, stages);
   return cells.size() == 2 ? PlaneMesh::bytes(equations, *waves_, cells[0], cells[1], order_) : 0;
 }
 
@@ -61,6 +62,7 @@ double FieldMethod::longest_step(FieldMotion& mesh, double duration, double ever
     return omega > 0 ? stability / omega : duration;
   }
   auto& motion = dynamic_cast<CollocationMotion&>(mesh);
+  motion.watch(interrupt);
   if (step_ > 0) return step_ * std::round(motion.width_of_cell() / width_);
   width_ = motion.width_of_cell();
   return step_ = motion.choose_step(std::min(every, duration), duration, goal, interrupt);

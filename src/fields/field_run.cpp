@@ -54,7 +54,8 @@ void refuse(const FieldMotion& mesh, const FieldEquations& equations, Diagnostic
   } else if (what == "step") {
     diagnostics.error(
         "E0643", s.density_span, "no step leads on from here",
-        fmt::format("At t = {:.6g} s the equations of a step have no solution near, however short it is.", mesh.time()),
+        fmt::format("At t = {:.6g} s the equations of a step have no solution near, nor those of its 4096th part.",
+                    mesh.time()),
         "The field grows beyond all bounds, or comes to where its equations are singular.");
   } else if (what == "start") {
     diagnostics.error("E0645", equations.model->start.empty() ? s.density_span : equations.model->start.front().span,
@@ -158,18 +159,21 @@ bool refuse_large_mesh(const FieldEquations& equations, const FieldMethod& metho
                        Diagnostics& diagnostics) {
   const double bytes = method.bytes(equations, cells), memory = memory_of_machine();
   if (!(memory > 0) || bytes < 0.8 * memory) return false;
+  std::string numbers;
+  for (const int n : cells) numbers += (numbers.empty() ? "" : " × ") + std::to_string(n);
   diagnostics.error(
       "E0649", equations.system().space.front().span,
-      fmt::format("{} × {} cells of order {} do not fit into the memory of this machine", cells[0], cells[1], method.order()),
-      fmt::format("Its Taylor series would take {:.3g} GB; there are {:.3g} GB.", bytes / 1e9, memory / 1e9),
+      fmt::format("{} cells of order {} do not fit into the memory of this machine", numbers, method.order()),
+      fmt::format("{} would take {:.3g} GB; there are {:.3g} GB.",
+                  needs_collocation(equations) ? "The matrices of its steps" : "Its Taylor series", bytes / 1e9,
+                  memory / 1e9),
       "Write fewer cells, or a lower order of the elements.");
   return true;
 }
 
 /// The places of each direction that rows have values at: borders of cells, in the plane not more than some hundred,
 /// and between them where those are few.
-std::vector<std::vector<double>> places_of_rows(const FieldEquations& equations, const Cells& cells,
-                                                int least) {
+std::vector<std::vector<double>> places_of_rows(const FieldEquations& equations, const Cells& cells, int least) {
   const FieldSystem& s = equations.system();
   Bindings values;
   for (const Parameter& p : equations.model->parameters) values[p.symbol] = p.si_value;

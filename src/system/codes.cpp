@@ -598,7 +598,7 @@ constexpr CodeEntry kEntries[] = {
      "Formulas with a complex field ψ fall apart into their real and imaginary parts, in ψ_r and ψ_i. What is measured "
      "or conserved is real: re(…), im(…), abs(…). Functions of complex values are exp and whole powers.",
      "dimensionless\nfield ψ(x) : complex\ndensity = i/2 (conj(ψ) ψ' - ψ conj(ψ')) - 1/2 abs(ψ_x)^2\n"
-     "expect current ψ flux ψ_x\n",
+     "expect current ψ flux im(conj(ψ) ψ_x)\n",
      "dimensionless\nfield ψ(x) : complex\ndensity = i/2 (conj(ψ) ψ' - ψ conj(ψ')) - 1/2 abs(ψ_x)^2\n"
      "expect current abs(ψ)^2 flux im(conj(ψ) ψ_x)\n"},
     {"E0296", "a derivative at a place that nothing holds",

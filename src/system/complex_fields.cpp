@@ -356,7 +356,6 @@ class RealFields {
       for (const char* part : {"_r", "_i"}) {
         out.items.push_back(item);
         out.items.back().name.text += part;
-        out.items.back().kind.text = "number";
       }
     }
     out.boundary = equations(d.boundary);

@@ -231,4 +231,10 @@ TEST_CASE("a velocity that cannot be chosen and fields without motion are refuse
   CHECK(codes_of_run(head + "density = b a' - a b' - 1/2 (a_x^2 + b_x^2)\nstart b' = 1\n" + ask) == "E0642");
   CHECK(codes_of_run(head + "density = 1/2 a'^2 - 1/2 a_xx^2 - b a - b^2\n" + ask) == "E0642");
   CHECK(codes_of_run(head + "density = a^2 (b a' - a b') - 1/2 (a_x^2 + b_x^2)\n" + ask) == "E0508");
+  CHECK(codes_of_run("dimensionless\nfield w(x) : number on x = 0 .. 1 cells 1000000 order 20\n"
+                     "density = 1/2 w'^2 - 1/2 w_xx^2\nstart w = x^2\nrun 1\nexpect w(0.5) at 1 = 0 ± 9\n") == "E0649");
+  // w'' = 4 w³ at the middle: no value after a finite time
+  CHECK(codes_of_run("dimensionless\nfield w(x) : number on x = 0 .. 1 cells 4 boundary w_x = 0\n"
+                     "density = 1/2 w'^2 + w^4 - 1/2 w_xx^2\nstart w = 10\nrun 1\nexpect w(0.5) at 1 = 0 ± 9\n") ==
+        "E0643");
 }

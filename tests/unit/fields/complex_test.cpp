@@ -1,6 +1,9 @@
+#include <maupertuis/evaluate.hpp>
 #include <maupertuis/study.hpp>
 
 #include <doctest/doctest.h>
+
+#include <complex>
 
 using namespace maupertuis;
 
@@ -41,7 +44,8 @@ TEST_CASE("solutions, currents and definitions in complex form") {
                                "expect current abs(ψ)^2 flux im(conj(ψ) ψ_x)\n"
                                "expect current re(ψ conj(ψ)) flux im(ψ conj(ψ_x))\n") == "2 of 4");
   // Quotients and powers: (1 + i)^4 = −4, 1/i = −i
-  CHECK(outcome(schroedinger + "expect equation (1 + i)^4 (ψ'/4 + ((1/8)/i) ψ_xx + g/4 abs(ψ)^2 (ψ/i)) = 0\n") == "2 of 2");
+  CHECK(outcome(schroedinger + "expect equation (1 + i)^4 (ψ'/4 + ((1/8)/i) ψ_xx + g/4 abs(ψ)^2 (ψ/i)) = 0\n") ==
+        "2 of 2");
 }
 
 TEST_CASE("a complex field with mass: second order in time, a charge") {
@@ -62,4 +66,39 @@ TEST_CASE("complex densities and values that are not real are told") {
   std::string long_product = "1";
   for (int k = 0; k < 40; ++k) long_product += " (1 + i ψ)";
   CHECK(outcome(schroedinger + "expect total abs(" + long_product + ") at 1 = 0 ± 1\n") == "E0294 ");
+}
+
+TEST_CASE("equations in complex form: E_ψ* = (E_r + i E_i)/2 at random values") {
+  Study study(SourceText("field.lag",
+                         "dimensionless\nparam g = 2\nfield ψ(x) : complex\n"
+                         "density = i/2 (conj(ψ) ψ' - ψ conj(ψ')) - 1/2 abs(ψ_x)^2 + g/3 abs(ψ)^6 - abs(ψ)^2 x\n"));
+  REQUIRE(study.field_equations());
+  const FieldEquations& e = *study.field_equations();
+  const auto found = complex_equations(e);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].field == "ψ");
+  // One value of each jet: ψ = 0.3 − 0.8 i, ψ' = 0.5 + 0.2 i, ψ_xx = −0.4 + 0.9 i; x = 0.7
+  using Complex = std::complex<double>;
+  const Complex z[] = {{0.3, -0.8}, {0.5, 0.2}, {-0.4, 0.9}};
+  const FieldSystem& s = e.system();
+  Bindings real{{s.space[0].symbol, 0.7}}, in_re = real, in_im = real;
+  for (const Parameter& p : e.model->parameters) real[p.symbol] = in_re[p.symbol] = in_im[p.symbol] = p.si_value;
+  const FieldJet jets[] = {{0, {0}, 0}, {0, {0}, 1}, {0, {2}, 0}};
+  for (int k = 0; k < 3; ++k)
+    for (std::size_t part = 0; part < 2; ++part) {
+      FieldJet jet = jets[k];
+      jet.field = part;
+      real[s.jet_symbol(jet)] = part == 0 ? z[k].real() : z[k].imag();
+    }
+  const Complex expected =
+      0.5 * Complex(evaluate(s.expanded(e.euler[0]), real), evaluate(s.expanded(e.euler[1]), real));
+  // The complex form is linear in ψ, ψ', ψ_xx beside |ψ|: by the real and imaginary parts of these.
+  const Expr symbols[] = {s.context->symbol("ψ", Role::Coordinate, 0), s.context->symbol("ψ", Role::Coordinate, 1),
+                          s.context->symbol("ψ_xx", Role::Coordinate, 0)};
+  in_re[s.context->symbol("abs(ψ)", Role::Auxiliary)] = in_im[s.context->symbol("abs(ψ)", Role::Auxiliary)] =
+      std::abs(z[0]);
+  for (int k = 0; k < 3; ++k) in_re[symbols[k]] = z[k].real(), in_im[symbols[k]] = z[k].imag();
+  const Complex re(evaluate(found[0].re, in_re), evaluate(found[0].re, in_im));
+  const Complex im(evaluate(found[0].im, in_re), evaluate(found[0].im, in_im));
+  CHECK(std::abs(re + Complex(0, 1) * im - expected) < 1e-14);
 }
