@@ -124,6 +124,7 @@ bool refuse_identity(Elaboration& e, const Constraint& c) {
 }
 
 void warn_of_repetition(Elaboration& e) {
+  if (e.diagnostics.has_errors()) return;  // a constraint may hold what was refused
   const std::vector<Constraint>& list = e.system().constraints;
   const std::vector<Fingerprint> all = fingerprints(e);
   for (std::size_t k = 1; k < all.size(); ++k) {

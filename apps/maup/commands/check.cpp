@@ -111,7 +111,7 @@ std::string friction_of_coordinate(const Friction& f, const MechanicalSystem& sy
 /// "v = x' cos ψ + y' sin ψ"; the name alone where that is long.
 std::string rate_text(const Rate& rate, const ReadingOrder& order) {
   constexpr std::size_t longest = 90;
-  const std::string value = to_plain(rate.value, order);
+  const std::string value = to_plain(readable(rate.value, order), order);
   return value.size() > longest ? rate.name : rate.name + " = " + value;
 }
 
