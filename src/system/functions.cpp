@@ -1,4 +1,3 @@
-#include "syntax/words.hpp"
 #include "system/elaboration.hpp"
 
 #include <maupertuis/field_system.hpp>
@@ -40,6 +39,12 @@ std::optional<Function> find_function(std::string_view name) {
   };
   std::apply([&](const auto&... row) { (look(row), ...); }, functions::rows);
   return found;
+}
+
+/// Those that this file has rules for.
+bool is_function(std::string_view name) {
+  constexpr std::string_view others[] = {"sqrt", "abs", "sign", "step", "min", "max", "dot", "cross", "norm", "atan2"};
+  return find_function(name) || std::find(std::begin(others), std::end(others), name) != std::end(others);
 }
 
 bool refuse_vector(Elaboration& e, const Value& v, const Expression& x, const Expression& argument) {
@@ -135,7 +140,7 @@ Value of_vectors(Elaboration& e, const Expression& x, const std::vector<Value>& 
 Value value_of_call(Elaboration& e, const Expression& x, const Place& place) {
   if (e.fields && e.fields->system.jet_of_name(x.text)) return value_at_place(e, x);
   if (x.text == "multiplier" || x.text == "reaction") return value_of_reaction(e, x, place);
-  if (!syntax::find_function(x.text)) return Value::poison();  // of a field that was refused: that was told
+  if (!is_function(x.text)) return Value::poison();  // a place of a field that was refused: that was told
   const bool vectors = x.text == "dot" || x.text == "cross" || x.text == "norm";
   const bool several = x.text == "min" || x.text == "max";
   const bool two = x.text == "dot" || x.text == "cross" || x.text == "atan2";
