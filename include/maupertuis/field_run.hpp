@@ -9,9 +9,9 @@
 
 namespace maupertuis {
 
-/// The motion of fields by Galerkin's method. Waves of one or two space variables, whose density holds first derivatives
-/// with the velocities squared: Gauss-Lobatto elements, Taylor steps of order 8 within h ω_max ≤ 3.2. Beams and fields of
-/// first order in t, of one space variable: smooth elements where ℒ holds u_xx, Gauss's collocation
+/// The motion of fields by Galerkin's method. Waves of one or two space variables, whose density holds first
+/// derivatives with the velocities squared: Gauss-Lobatto elements, Taylor steps of order 8 within h ω_max ≤ 3.2. Beams
+/// and fields of first order in t, of one space variable: smooth elements where ℒ holds u_xx, Gauss's collocation
 /// (docs/theory/fields.md).
 struct FieldRunResult {
   struct Value {

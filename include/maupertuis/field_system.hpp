@@ -68,9 +68,9 @@ struct PlaceValue {
 /// A value of a field at a place that stands in T, V, L, D, positions, constraints or forces: u(l), u_x(l). It is a
 /// coordinate of the mechanical system beside the fields.
 struct PlaceCoordinate {
-  std::size_t coordinate = 0;  // in MechanicalSystem::coordinates
-  FieldJet jet;                // u or u_x
-  Expr place;                  // SI, parameters and numbers only
+  std::size_t coordinate = 0;                  // in MechanicalSystem::coordinates
+  FieldJet jet;                                // u or u_x
+  Expr place;                                  // SI, parameters and numbers only
   std::optional<BoundaryCondition::Side> end;  // nothing: inside, or of a periodic domain
   Span span;
 };

@@ -109,7 +109,7 @@ struct ReportContent {
   Trajectory trajectory;
   std::vector<Picture> pictures;
   std::vector<std::pair<std::string, std::string>> figures;  // captions and pictures in SVG, in the page's theme
-  std::string mode_search;  // how equilibria were sought
+  std::string mode_search;                                   // how equilibria were sought
   std::vector<ModePoint> mode_points;
   std::vector<Locus> loci;
 

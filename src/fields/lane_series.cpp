@@ -1,5 +1,7 @@
 #include "fields/lane_series.hpp"
 
+#include "fields/lane_sines.hpp"
+
 #include <maupertuis/kinds.hpp>
 
 #include "fields/wide_lanes.hpp"
@@ -246,9 +248,9 @@ void LaneSeries::first(std::size_t i) {
     case Op::Log:
       return each([](double v) { return std::log(v); });
     case Op::Sin:
-      return each([](double v) { return std::sin(v); });
+      return set_sines(out, a, lanes_, false);
     case Op::Cos:
-      return each([](double v) { return std::cos(v); });
+      return set_sines(out, a, lanes_, true);
     case Op::Sinh:
       return each([](double v) { return std::sinh(v); });
     case Op::Cosh:

@@ -131,8 +131,7 @@ const FieldEquations* Study::field_equations() {
     fields_derived_ = true;
     const InterruptScope scope = interruptible();
     field_equations_ = maupertuis::field_equations(model_->fields, diagnostics_);
-    if (field_equations_)
-      attach_bodies(*field_equations_, model_, diagnostics_);
+    if (field_equations_) attach_bodies(*field_equations_, model_, diagnostics_);
     if (field_equations_ && !wrong()) field_certificate_ = certify(*field_equations_);
     if (field_certificate_)
       for (const CertificateCheck& check : field_certificate_->checks) report(check);

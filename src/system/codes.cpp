@@ -603,24 +603,37 @@ constexpr CodeEntry kEntries[] = {
      "expect current abs(ψ)^2 flux im(conj(ψ) ψ_x)\n"},
     {"E0296", "a derivative at a place that nothing holds",
      "At a place a body is held by the value of the field, with a force, and by its slope, with a moment.",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nV = 1 [N m^3] u_xx(1 m)^2\n",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nT = 1/2 m u(1 m)'^2\n"},
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 "
+     "u_x^2\nV = 1 [N m^3] u_xx(1 m)^2\n",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 "
+     "u_x^2\nT = 1/2 m u(1 m)'^2\n"},
     {"E0297", "two statements about one end",
-     "At an end the field is given, or what acts there is: never both. A given slope of a field without bending energy is a force on the field.",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nboundary right : u = 0\nT = 1/2 m u(1 m)'^2\n",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nboundary left : u = 0\nT = 1/2 m u(1 m)'^2\n"},
+     "At an end the field is given, or what acts there is: never both. A given slope of a field without bending energy "
+     "is a force on the field.",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 "
+     "u_x^2\nboundary right : u = 0\nT = 1/2 m u(1 m)'^2\n",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 "
+     "u_x^2\nboundary left : u = 0\nT = 1/2 m u(1 m)'^2\n"},
     {"E0298", "a body on a slope that may jump",
      "Without u_xx in the density the slope of a field has kinks: no moment turns it, and no body can take hold of it.",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nT = 1/2 m (1 [m] u_x(1 m)')^2\n",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nT = 1/2 m u(1 m)'^2\n"},
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 "
+     "u_x^2\nT = 1/2 m (1 [m] u_x(1 m)')^2\n",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 "
+     "u_x^2\nT = 1/2 m u(1 m)'^2\n"},
     {"E0299", "a field without a place, or a coordinate in a density",
-     "A density is integrated over the field; T, V, L, D, constraints and forces hold values at places, and couple the field with coordinates.",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nT = 1/2 m u'^2\n",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nT = 1/2 m u(1 m)'^2\n"},
+     "A density is integrated over the field; T, V, L, D, constraints and forces hold values at places, and couple the "
+     "field with coordinates.",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 "
+     "u_x^2\nT = 1/2 m u'^2\n",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 "
+     "u_x^2\nT = 1/2 m u(1 m)'^2\n"},
     {"E0505", "a statement that does not go with fields",
-     "Beside fields stand coordinates, points and bodies, energies, constraints, forces and events. Contacts, friction, rates, gauges and paths belong to models of coordinates alone.",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 u_x^2\ncoord y : length\nT = 1/2 m y'^2\nfriction y limit 1 N\n",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 u_x^2\ncoord y : length\nT = 1/2 m y'^2\n"},
+     "Beside fields stand coordinates, points and bodies, energies, constraints, forces and events. Contacts, "
+     "friction, rates, gauges and paths belong to models of coordinates alone.",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 "
+     "u_x^2\ncoord y : length\nT = 1/2 m y'^2\nfriction y limit 1 N\n",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 "
+     "u_x^2\ncoord y : length\nT = 1/2 m y'^2\n"},
 };
 
 }  // namespace

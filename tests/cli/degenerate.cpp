@@ -85,9 +85,10 @@ TEST_CASE("invariants of a degenerate system, and where functions of time leave 
 }
 
 TEST_CASE("check lists rates by what they are") {
-  const std::string text = "param m = 1 kg, I = 1 kg m^2\ncoord x, y : length, ψ : angle\n"
-                           "T = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\n"
-                           "rates v = x' cos ψ + y' sin ψ, s = y' cos ψ - x' sin ψ, w = ψ'\n";
+  const std::string text =
+      "param m = 1 kg, I = 1 kg m^2\ncoord x, y : length, ψ : angle\n"
+      "T = 1/2 m (x'^2 + y'^2) + 1/2 I ψ'^2\n"
+      "rates v = x' cos ψ + y' sin ψ, s = y' cos ψ - x' sin ψ, w = ψ'\n";
   CHECK(contains(maup({"check", "-"}, text).out, "rates                 v = cos ψ x' + sin ψ y'\n"));
   CHECK(json_of(maup({"check", "-", "--json"}, text))["rates"].size() == 3);
 }

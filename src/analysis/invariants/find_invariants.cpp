@@ -47,7 +47,8 @@ class Finder {
     const auto acts = [](const ExprVector& v) {
       return std::any_of(v.begin(), v.end(), [](const Expr& e) { return !e.is_zero(); });
     };
-    hamiltonian_ = !system_.constrained() && !equations.degenerate && !acts(equations.generalized_forces) && !acts(equations.dissipative_terms);
+    hamiltonian_ = !system_.constrained() && !equations.degenerate && !acts(equations.generalized_forces) &&
+                   !acts(equations.dissipative_terms);
   }
 
   std::optional<Invariants> carry_out() {
