@@ -409,6 +409,9 @@ std::string field_run_text(const FieldRunResult& run) {
   out += run.omega_max > 0 ? fmt::format("  highest frequency of the mesh  {:.6g} rad/s, steps at most {:.4g} s\n",
                                          run.omega_max, run.step)
                            : fmt::format("  steps                          at most {:.4g} s\n", run.step);
+  for (const FieldRunResult::Range& r : run.at_end)
+    out += fmt::format("  {:<30} from {:.6g} to {:.6g}{}\n", r.name + " at the end", r.low, r.high,
+                       r.unit == "1" ? "" : " " + r.unit);
   out += fmt::format("  energy                         {:.16g}\n", run.energy);
   out += run.energy_drift < 0 ? std::string("  energy drift                   forces act: it is not conserved\n")
                               : fmt::format("  energy drift                   {:.3g} of its terms\n", run.energy_drift);
@@ -422,6 +425,8 @@ Json field_run_json(const FieldRunResult& run) {
                             {"omega_max", run.omega_max}, {"energy", run.energy},       {"seconds", run.seconds}};
   document["statistics"]["energy_drift"] = run.energy_drift < 0 ? Json(nullptr) : Json(run.energy_drift);
   document["end"] = run.end;
+  for (const FieldRunResult::Range& r : run.at_end)
+    document["at_end"].push_back({{"field", r.name}, {"unit", r.unit}, {"low", r.low}, {"high", r.high}});
   if (run.coupled) {
     document["final"] = Json::object();
     for (const FieldRunResult::Coordinate& c : run.final_coordinates)

@@ -28,6 +28,11 @@ struct FieldRunResult {
   std::string method;                    // of the steps, in words
   double step = 0, omega_max = 0;        // s, rad/s; 0: not known, no step depends on it
   double energy = 0, energy_drift = -1;  // J; relative to the terms of the energy; −1: forces act, none is conserved
+  struct Range {
+    std::string name, unit;  // of a field
+    double low = 0, high = 0;
+  };
+  std::vector<Range> at_end;  // of the values at the borders of cells; without coordinates and bodies
   double seconds = 0;
   std::string trouble;  // why the run ended early; empty: it did not
   // With coordinates and bodies:

@@ -83,6 +83,7 @@ struct OneRun {
   std::size_t steps = 0;
   double h = 0, omega = 0, energy = 0, drift = 0;
   Trajectory trajectory;
+  std::vector<FieldRunResult::Range> at_end;
 };
 
 /// E0647 where both meshes would pass something by, and their difference would tell nothing of it.
@@ -189,6 +190,29 @@ std::vector<std::vector<double>> places_of_rows(const FieldEquations& equations,
   return out;
 }
 
+/// From the least to the largest value of each field at these places, now.
+std::vector<FieldRunResult::Range> ranges_of(const FieldMotion& mesh, const FieldEquations& equations,
+                                             const std::vector<std::vector<double>>& places) {
+  const FieldSystem& s = equations.system();
+  std::vector<FieldRunResult::Range> out;
+  for (std::size_t a = 0; a < equations.varied.size(); ++a) {
+    const FieldJet jet{equations.varied[a], std::vector<int>(places.size(), 0), 0};
+    FieldRunResult::Range range{s.jet_name(jet), to_string(s.dimension_of(jet)),
+                                std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    const auto take = [&](const std::vector<double>& at) {
+      const double value = mesh.field_at(a, jet, at);
+      range.low = std::min(range.low, value), range.high = std::max(range.high, value);
+    };
+    for (const double x : places[0])
+      if (places.size() == 1)
+        take({x});
+      else
+        for (const double y : places[1]) take({x, y});
+    out.push_back(std::move(range));
+  }
+  return out;
+}
+
 /// On one mesh: with rows and warnings the first, without the others, which are there for the error.
 std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& method, const Cells& cells,
                              const std::vector<FieldQuestion>& questions, const FieldRunOptions& options,
@@ -240,6 +264,7 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
   }
   out.h = longest;
   if (size > 0) out.drift /= size;
+  if (first) out.at_end = ranges_of(mesh, equations, places_of_rows(equations, cells, 0));
   return out;
 }
 
@@ -316,6 +341,7 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   out.energy = fine->energy, out.energy_drift = method->conserves() ? fine->drift : -1;
   out.end = options.duration;
   out.trajectory = std::move(fine->trajectory);
+  out.at_end = std::move(fine->at_end);
   if (!rows.empty()) out.places = rows[0];
   if (rows.size() == 2) out.upwards = rows[1];
   const std::vector<double> errors = errors_of(*fine, equations, *method, cells, questions, options, diagnostics);

@@ -44,7 +44,7 @@ TEST_CASE("pictures are those that the program draws today") {
   }
 }
 
-TEST_CASE("the README shows four of them") {
+TEST_CASE("the README shows four models of bodies and two of fields") {
   const std::string readme = read(std::string(PROJECT_DIR) + "/README.md");
   std::size_t shown = 0;
   for (std::size_t at = readme.find("docs/gallery/"); at != std::string::npos;
@@ -54,5 +54,5 @@ TEST_CASE("the README shows four of them") {
     ++shown;
     CHECK(fs::exists(std::string(PROJECT_DIR) + "/" + name));
   }
-  CHECK(shown == 4);
+  CHECK(shown == 6);
 }
