@@ -56,6 +56,8 @@ class FieldMesh final : public WaveMesh {
   void differentiate_along_x(const double* from, double* to) const;
   void forces(std::size_t f, std::size_t k);
   void share(std::vector<double>& lanes) const;
+  double reach(double h);
+  bool advance(double h);  // by the series that is there
   void masses();
   void solve(std::size_t k);
   void hold_ends(std::size_t f, std::size_t k);
@@ -69,6 +71,7 @@ class FieldMesh final : public WaveMesh {
   Lobatto rule_;
   LaneSeries series_, energies_;  // of the equations; of the energy at one moment
   bool needs_rate_ = false;
+  std::optional<double> allowed_;  // of the last term of the series beside the field, see reach()
   std::vector<std::vector<double>> u_, v_;  // [fields][lanes]
   std::vector<std::vector<double>> force_;  // [fields][lanes]
   std::vector<double> mass_;                // [fields² × lanes], inverse

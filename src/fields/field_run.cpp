@@ -81,7 +81,7 @@ struct OneRun {
   std::vector<double> answers;
   std::vector<std::vector<double>> near;  // [questions]: the same beside their places
   std::size_t steps = 0;
-  double h = 0, omega = 0, energy = 0, drift = 0;
+  double h = 0, omega = 0, energy = 0, drift = 0, last_terms = 0;
   Trajectory trajectory;
   std::vector<FieldRunResult::Range> at_end;
 };
@@ -232,7 +232,10 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
   stops.push_back(options.duration);
   for (const double t : options.moments)
     if (first && t >= 0 && t <= options.duration) stops.push_back(t);
-  for (double t = 0; (first || method.is_wave()) && t < options.duration; t += every) stops.push_back(t);
+  // Where rows bound the steps, those of the other meshes are twice as long, so that their difference tells of steps
+  // too.
+  const double apart = first ? every : 2 * every;
+  for (double t = 0; (first || method.is_wave()) && t < options.duration; t += apart) stops.push_back(t);
   std::sort(stops.begin(), stops.end());
   double size = 0;
   const double start = mesh.energy(size);
@@ -262,7 +265,7 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
     if (!rows.empty() && (out.trajectory.times.empty() || mesh.time() > out.trajectory.times.back()))
       mesh.add_row(out.trajectory, rows);
   }
-  out.h = longest;
+  out.h = longest, out.steps += mesh.further_steps(), out.last_terms = mesh.last_terms();
   if (size > 0) out.drift /= size;
   if (first) out.at_end = ranges_of(mesh, equations, places_of_rows(equations, cells, 0));
   return out;
@@ -303,6 +306,8 @@ std::vector<double> errors_of(const OneRun& fine, const FieldEquations& equation
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (cells[i] > 1) ratio = std::min(ratio, static_cast<double>(cells[i]) / half[i]);
   const double rounding = 2.2e-16 * std::sqrt(static_cast<double>(fine.steps) + 1);
+  double largest = 0;  // of the fields: values at a place may pass through zero
+  for (const FieldRunResult::Range& r : fine.at_end) largest = std::max({largest, std::abs(r.low), std::abs(r.high)});
   for (std::size_t i = 0; i < questions.size(); ++i) {
     double gain = std::pow(ratio, method.power(equations, questions[i], half));
     if (!method.is_wave()) {
@@ -310,6 +315,8 @@ std::vector<double> errors_of(const OneRun& fine, const FieldEquations& equation
       gain = std::isfinite(seen) ? std::min(gain, std::max(seen, 2.0)) : gain;
     }
     out[i] = difference(*coarse, fine, i) / (gain - 1) + rounding * std::max(std::abs(fine.answers[i]), 1e-300);
+    if (fine.last_terms > 0)
+      out[i] += fine.last_terms * std::max(std::abs(fine.answers[i]), questions[i].total ? 0 : largest);
   }
   return out;
 }

@@ -16,14 +16,14 @@ struct Answers {
 };
 
 /// Values of what the `expect` lines name as places, in their order.
-Answers answers_of(const std::string& text, double time, bool errors = false) {
+Answers answers_of(const std::string& text, double time, bool errors = false, double every = 0) {
   Study study(SourceText("field.lag", text));
   const FieldEquations* equations = study.field_equations();
   REQUIRE_MESSAGE(equations, text);
   std::vector<FieldQuestion> questions;
   for (const PlaceValue& place : study.model()->fields->places) questions.push_back({place.symbol, false, time});
   FieldRunOptions options;
-  options.duration = time, options.errors = errors;
+  options.duration = time, options.errors = errors, options.every = every;
   Diagnostics diagnostics;
   const auto run = run_fields(*equations, questions, options, diagnostics);
   REQUIRE_MESSAGE(run, text);
@@ -129,8 +129,9 @@ TEST_CASE("what does not change along one direction is the field of the other") 
       "density = 1/2 (1 + x^2/50 + u_x^2/5) u'^2 - 1/2 u_x^2\ndissipation density = 1/200 u_tx^2\nstart u = sin(pi "
       "x/6)\nrun 2\n"
       "expect u(0.4) at 2 = 0 ± 1\nexpect u(3) at 2 = 0 ± 1\n"};
+  constexpr double every = 0.01;  // so that none of them sees the lengths of its steps
   for (const std::string& text : line) {
-    const Answers along = answers_of(text, 2);
+    const Answers along = answers_of(text, 2, false, every);
     // Both ends of the line are given where it says `boundary u = 0`; in the plane two sides stay natural.
     std::string plane = replaced(replaced(text, "u(x)", "u(x, y)"), " cells ", ", y = 0 .. 3 cells ");
     plane = replaced(replaced(plane, "60 order", "60, 5 order"), "20 order", "20, 3 order");
@@ -141,7 +142,7 @@ TEST_CASE("what does not change along one direction is the field of the other") 
     plane = replaced(plane, "+ u_x^2/5", "+ u_x^2/5 + u_y^2/5");
     plane = replaced(plane, "1/200 u_tx^2", "1/200 (u_tx^2 + u_ty^2)");
     plane = replaced(plane, "x^2/40) u_x^2", "x^2/40) (u_x^2 + u_y^2)");
-    const Answers across = answers_of(plane, 2);
+    const Answers across = answers_of(plane, 2, false, every);
     // The same with x and y exchanged.
     std::string turned = replaced(replaced(replaced(plane, "left", "bottom"), "right", "top"), "exp(", "EXP(");
     turned = replaced(replaced(turned, "boundary top : u_x", "boundary top : u_y"), "x", "X");
@@ -154,7 +155,7 @@ TEST_CASE("what does not change along one direction is the field of the other") 
       turned = replaced(turned, "u(" + std::string(place) + ", 1.1)", "u(1.1, " + std::string(place) + ")");
     turned = replaced(replaced(turned, "cells 60, 5", "cells 5, 60"), "cells 20, 3", "cells 3, 20");
     turned = replaced(turned, "X", "y");
-    const Answers upwards = answers_of(turned, 2);
+    const Answers upwards = answers_of(turned, 2, false, every);
     REQUIRE(along.values.size() == 2);
     for (std::size_t i = 0; i < 2; ++i) {
       CAPTURE(text);
@@ -183,4 +184,31 @@ TEST_CASE("a plane that does not fit into the memory is told before it is made, 
   const std::string wave = "density = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2)\nstart u = ";
   CHECK(code_of("cells 10, 10\n" + wave + "exp(-((x - 0.4877)^2 + (y - 0.2311)^2)/1e-6)\n") == "E0647");
   CHECK(code_of("cells 10, 10\n" + wave + "exp(-((x - 0.4877)^2 + (y - 0.2311)^2)/0.05)\n").empty());
+}
+
+TEST_CASE("steps follow waves that become faster than at the start, and the estimate tells it") {
+  struct Case {
+    const char* text;
+    double time, expected, most;
+  };
+  // q'' = −q³ of a uniform field, q'' = −π² exp(2 t) q, q'' = −r q' − π² q: by Runge and Kutta with 20,000 steps, and
+  // in closed form.
+  const Case cases[] = {
+      {"field u(x) : number on x = 0 .. 10 cells 4 order 4 boundary periodic\ndensity = 1/2 u'^2 - 1/2 u_x^2 - 1/4 "
+       "u^4\n"
+       "start u = 10\nrun 3\nexpect u(5) at 3 = 0 ± 1\n",
+       3, 9.454722525301229, 1e-5},
+      {"field u(x) : number on x = 0 .. 1 cells 10 order 6 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 exp(2 t) u_x^2\n"
+       "start u = sin(pi x)\nrun 1\nexpect u(0.5) at 1 = 0 ± 1\n",
+       1, 0.32562085579529954, 1e-10},
+      {"field u(x) : number on x = 0 .. 1 cells 6 order 6 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
+       "dissipation density = 450 u'^2\nstart u = sin(pi x)\nrun 0.5\nexpect u(0.5) at 0.5 = 0 ± 1\n",
+       0.5, 0.9945439433394054, 1e-7}};
+  for (const Case& c : cases) {
+    CAPTURE(c.text);
+    const Answers found = answers_of(std::string("dimensionless\n") + c.text, c.time, true);
+    const double error = std::abs(found.values[0] - c.expected);
+    CHECK(error < c.most);
+    CHECK(error < 5 * found.errors[0]);
+  }
 }
