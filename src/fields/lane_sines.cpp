@@ -2,14 +2,25 @@
 
 #include "fields/wide_lanes.hpp"
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 namespace maupertuis {
 namespace {
 
 constexpr double farthest = 1e6;
+
+inline std::uint64_t bits_of(double x) {
+  std::uint64_t out;
+  std::memcpy(&out, &x, sizeof out);
+  return out;
+}
+inline double number_of(std::uint64_t bits) {
+  double out;
+  std::memcpy(&out, &bits, sizeof out);
+  return out;
+}
 
 MAUP_LANES bool all_near(const double* x, std::size_t n) {
   int far = 0;
@@ -43,10 +54,10 @@ MAUP_LANES void near_sines(double* out, const double* x, std::size_t n, std::uin
     c = c * r2 + 1 / 24.0;
     const double half = 0.5 * r2, most = 1 - half;
     c = most + ((1 - most - half) + r2 * r2 * c);
-    const std::uint64_t turn = std::bit_cast<std::uint64_t>(shifted) + quarter;
-    const std::uint64_t sine = std::bit_cast<std::uint64_t>(s), cosine = std::bit_cast<std::uint64_t>(c);
+    const std::uint64_t turn = bits_of(shifted) + quarter;
+    const std::uint64_t sine = bits_of(s), cosine = bits_of(c);
     const std::uint64_t odd = 0 - (turn & 1);
-    out[i] = std::bit_cast<double>(((sine & ~odd) | (cosine & odd)) ^ (turn & 2) << 62);
+    out[i] = number_of(((sine & ~odd) | (cosine & odd)) ^ (turn & 2) << 62);
   }
 }
 
