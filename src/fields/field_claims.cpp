@@ -173,8 +173,13 @@ class FieldVerifier {
       for (const auto& [line, tolerance] : energy_) out.results[line].message = "The run did not come to it.";
       return;
     }
-    for (std::size_t i = 0; i < asked_.size(); ++i)
-      judge(out.results[asked_[i].line], asked_[i].expected, run->answers[i]);
+    for (std::size_t i = 0; i < asked_.size(); ++i) {
+      ExpectationResult& r = out.results[asked_[i].line];
+      judge(r, asked_[i].expected, run->answers[i]);
+      if (questions_[i].time >= 0) continue;
+      r.passed = false, r.actual = "no value";
+      r.message = "The moment lies before the start, and fields run forwards from there.";
+    }
     for (const auto& [line, tolerance] : energy_) {
       ExpectationResult& r = out.results[line];
       const double limit = tolerance.size ? number_of(tolerance.size) : 1e-12;

@@ -190,3 +190,13 @@ TEST_CASE("what lies between the nodes of both meshes is no secret of theirs") {
   CHECK(codes(" - exp(-((x - 0.9137)/1e-6)^2) u^2", "sin(pi x)", 50) == "E0647");
   CHECK(codes(" - 1/2 (1 + x^2) u^2", "sin(pi x)", 20) == "");
 }
+
+TEST_CASE("a moment before the start has no value") {
+  Study study(SourceText("before.lag",
+                         "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 4 order 6 boundary u = 0\n"
+                         "density = 1/2 u'^2 - 1/2 u_x^2\nstart u = sin(pi x)\nrun 1\nexpect u(0.5) at -1 = 1 ± 0.1\n"));
+  const auto found = study.verification({});
+  REQUIRE(found);
+  CHECK_FALSE(found->results.at(0).passed);
+  CHECK(found->results.at(0).message.find("before the start") != std::string::npos);
+}
