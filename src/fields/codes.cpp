@@ -47,6 +47,14 @@ constexpr CodeEntry kEntries[] = {
      "start u = exp(-((x - 0.4877)/1e-4)^2)\nrun 1\n",
      "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 20\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
      "start u = exp(-((x - 0.4877)/0.1)^2)\nrun 1\n"},
+    {"W0650", "forces in time that are shorter than a step",
+     "Boundary values, forces and coefficients in t are followed by the series of each step from its beginning. A "
+     "pulse "
+     "inside of a step is passed by on both meshes of the estimate, and a jump lets no high order come about.",
+     "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 4 order 6 boundary u = 0\n"
+     "density = 1/2 u'^2 - 1/2 u_x^2\nforce density u = sin(pi x) 1000 exp(-((t - 0.5)/1e-5)^2)\nrun 1\n",
+     "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 4 order 6 boundary u = 0\n"
+     "density = 1/2 u'^2 - 1/2 u_x^2\nforce density u = sin(pi x) exp(-((t - 0.5)/0.5)^2)\nrun 1\n"},
     {"N0648", "a constant of a field that no equation determines",
      "A potential w of u = w_x stands in the density by its derivatives alone. Then w plus any function of t is the "
      "same "

@@ -165,6 +165,7 @@ class FieldVerifier {
     FieldRunOptions options;
     options.interrupt = options_.interrupt;
     options.duration = options_.duration ? *options_.duration : number_of(model_.experiment.duration);
+    if (model_.experiment.output_every) options.every = number_of(model_.experiment.output_every);
     for (const FieldQuestion& q : questions_) options.duration = std::max(options.duration, q.time);
     const auto run = runs_as_one_system(equations_) ? run_coupled(model_, equations_, questions_, options, diagnostics_)
                                                     : run_fields(equations_, questions_, options, diagnostics_);

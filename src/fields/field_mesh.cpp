@@ -372,7 +372,7 @@ void FieldMesh::load(const std::vector<std::vector<double>>& u, const std::vecto
 /// what the shortest waves of the mesh have in it. It grows where an amplitude, friction, a velocity in the stiffness
 /// or a coefficient in t makes waves faster than ω_max told at the start.
 double FieldMesh::reach(double h) {
-  constexpr double least = 1e-12, most = 1e-8, room = 4;
+  constexpr double least = 1e-12, most = 1e-8, room = 4, at_rest = 1e-30;
   double ratio = 0;
   for (std::size_t f = 0; f < fields_; ++f) {
     const auto largest = [&](std::size_t k) {
@@ -380,15 +380,15 @@ double FieldMesh::reach(double h) {
       for (const double* c = phi(f, k); c != phi(f, k) + lanes_; ++c) out = std::max(out, std::abs(*c));
       return out;
     };
-    const double size = std::max(largest(0), largest(1) * h);
-    if (size > 0) ratio = std::max(ratio, largest(kOrder) * std::pow(h, static_cast<double>(kOrder)) / size);
+    const double size = std::max({largest(0), largest(1) * h, at_rest});
+    ratio = std::max(ratio, largest(kOrder) * std::pow(h, static_cast<double>(kOrder)) / size);
   }
-  if (!allowed_) allowed_ = std::clamp(room * ratio, least, most);
+  if (!allowed_) allowed_ = std::clamp(room * ratio, least, most) * std::pow(longer_, static_cast<double>(kOrder));
   return ratio > *allowed_ ? h * std::pow(*allowed_ / ratio, 1.0 / static_cast<double>(kOrder)) : h;
 }
 
 bool FieldMesh::step(double h) {
-  constexpr double shortest = 1e-5;  // of h: beyond, the motion leaves all bounds
+  constexpr double shortest = 1e-7;  // of h: beyond, the motion leaves all bounds
   for (double left = h; left > 0;) {
     load(u_, v_);
     for (std::size_t k = 0; k < kOrder && trouble_.empty(); ++k) coefficient(k);
@@ -397,7 +397,6 @@ bool FieldMesh::step(double h) {
     if (!(tau > shortest * h) && tau < left) trouble_ = "step";
     if (!trouble_.empty() || !advance(tau)) return false;
     left = tau < left ? left - tau : 0;
-    if (reached < h) last_terms_ += *allowed_;
     if (left > 0) ++further_steps_;
   }
   return true;

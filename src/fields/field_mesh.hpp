@@ -41,6 +41,8 @@ class FieldMesh final : public WaveMesh {
   double energy(double& size) override;
   double answer(const FieldQuestion& question) override;
   double field_at(std::size_t field, const FieldJet& jet, const std::vector<double>& place) const override;
+  /// Steps that the series bounds are so many times as long: of a mesh whose difference to another is to tell of steps.
+  void lengthen_steps(double times) { longer_ = times; }
   std::size_t nodes() const { return static_cast<std::size_t>(cells_) * static_cast<std::size_t>(p_); }
 
  private:
@@ -71,7 +73,8 @@ class FieldMesh final : public WaveMesh {
   Lobatto rule_;
   LaneSeries series_, energies_;  // of the equations; of the energy at one moment
   bool needs_rate_ = false;
-  std::optional<double> allowed_;  // of the last term of the series beside the field, see reach()
+  double longer_ = 1;
+  std::optional<double> allowed_;           // of the last term of the series beside the field, see reach()
   std::vector<std::vector<double>> u_, v_;  // [fields][lanes]
   std::vector<std::vector<double>> force_;  // [fields][lanes]
   std::vector<double> mass_;                // [fields² × lanes], inverse

@@ -37,10 +37,12 @@ std::string FieldMethod::name() const {
                 : fmt::format("steps of Gauss's collocation of order {}", 2 * stages);
 }
 
-std::unique_ptr<FieldMotion> FieldMethod::mesh(const FieldEquations& equations, const Cells& cells) const {
+std::unique_ptr<FieldMotion> FieldMethod::mesh(const FieldEquations& equations, const Cells& cells, bool first) const {
   if (stiff_) return std::make_unique<CollocationMotion>(equations, *stiff_, cells[0], order_, stages);
   if (cells.size() == 2) return std::make_unique<PlaneMesh>(equations, *waves_, cells[0], cells[1], order_);
-  return std::make_unique<FieldMesh>(equations, *waves_, cells[0], order_);
+  auto out = std::make_unique<FieldMesh>(equations, *waves_, cells[0], order_);
+  if (!first) out->lengthen_steps(2);
+  return out;
 }
 
 double FieldMethod::bytes(const FieldEquations& equations, const Cells& cells) const {

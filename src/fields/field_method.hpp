@@ -21,7 +21,8 @@ class FieldMethod {
   int order() const { return order_; }  // of the elements
   bool conserves() const { return waves_ ? waves_->conserves : stiff_->conserves; }
   std::string name() const;  // of the steps, in words
-  std::unique_ptr<FieldMotion> mesh(const FieldEquations& equations, const Cells& cells) const;
+  /// `first`: else one of those that tell the error, of which steps are twice as long where a series bounds them.
+  std::unique_ptr<FieldMotion> mesh(const FieldEquations& equations, const Cells& cells, bool first) const;
   /// Bytes that a mesh takes; 0: it is small.
   double bytes(const FieldEquations& equations, const Cells& cells) const;
   /// Functions of the density and their inputs, for a look at what a mesh resolves.

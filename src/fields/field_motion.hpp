@@ -27,8 +27,6 @@ class FieldMotion {
   double time() const { return t_; }
   /// Steps beside those that were asked for, where these were too long.
   std::size_t further_steps() const { return further_steps_; }
-  /// What the last terms of the series in such steps come to, beside the field.
-  double last_terms() const { return last_terms_; }
   /// Fields (of those that are varied) whose value at the left end stands still, since ℒ holds their derivatives alone.
   const std::vector<std::size_t>& fixed_fields() const { return fixed_; }
 
@@ -59,7 +57,6 @@ class FieldMotion {
   const FieldSystem& s_;
   double t_ = 0;
   std::size_t further_steps_ = 0;
-  double last_terms_ = 0;
   Bindings values_;  // of parameters
   std::string trouble_;
   std::vector<StartClash> clashes_;

@@ -81,7 +81,7 @@ struct OneRun {
   std::vector<double> answers;
   std::vector<std::vector<double>> near;  // [questions]: the same beside their places
   std::size_t steps = 0;
-  double h = 0, omega = 0, energy = 0, drift = 0, last_terms = 0;
+  double h = 0, omega = 0, energy = 0, drift = 0;
   Trajectory trajectory;
   std::vector<FieldRunResult::Range> at_end;
 };
@@ -130,6 +130,21 @@ void warn_of_clashes(const FieldMotion& mesh, const FieldEquations& equations, D
                     side_name(c.side, s), jet_name(c, equations), c.start, c.condition),
         "The condition is followed, so that a jump runs into the field, which no mesh resolves.",
         "Give a start that has the value of the condition there.");
+}
+
+/// W0650: what acts for less than a step.
+void warn_of_short_action(const FieldEquations& equations, const FieldMethod& method, double step, double duration,
+                          Diagnostics& diagnostics) {
+  const auto moment = unresolved_moment(equations, method.functions(), step, duration);
+  if (!moment) return;
+  diagnostics.warning(
+      "W0650", equations.system().density_span,
+      fmt::format("what acts changes within less than a step at t = {:.6g} s", *moment),
+      fmt::format(
+          "Steps are {:.3g} s long: a pulse between their ends is passed by, a jump is taken for something else, "
+          "and the estimate of the error does not tell.",
+          step),
+      "Make steps shorter with `output every`, or the change slower.");
 }
 
 /// N0648: what no equation says of a potential.
@@ -217,7 +232,7 @@ std::vector<FieldRunResult::Range> ranges_of(const FieldMotion& mesh, const Fiel
 std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& method, const Cells& cells,
                              const std::vector<FieldQuestion>& questions, const FieldRunOptions& options,
                              const std::vector<std::vector<double>>& rows, bool first, Diagnostics& diagnostics) {
-  const auto owner = method.mesh(equations, cells);
+  const auto owner = method.mesh(equations, cells, first);
   FieldMotion& mesh = *owner;
   OneRun out;
   double longest = options.duration;
@@ -232,6 +247,7 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
   stops.push_back(options.duration);
   for (const double t : options.moments)
     if (first && t >= 0 && t <= options.duration) stops.push_back(t);
+  if (first) warn_of_short_action(equations, method, std::min(longest, every), options.duration, diagnostics);
   // Where rows bound the steps, those of the other meshes are twice as long, so that their difference tells of steps
   // too.
   const double apart = first ? every : 2 * every;
@@ -265,7 +281,7 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
     if (!rows.empty() && (out.trajectory.times.empty() || mesh.time() > out.trajectory.times.back()))
       mesh.add_row(out.trajectory, rows);
   }
-  out.h = longest, out.steps += mesh.further_steps(), out.last_terms = mesh.last_terms();
+  out.h = longest, out.steps += mesh.further_steps();
   if (size > 0) out.drift /= size;
   if (first) out.at_end = ranges_of(mesh, equations, places_of_rows(equations, cells, 0));
   return out;
@@ -306,8 +322,6 @@ std::vector<double> errors_of(const OneRun& fine, const FieldEquations& equation
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (cells[i] > 1) ratio = std::min(ratio, static_cast<double>(cells[i]) / half[i]);
   const double rounding = 2.2e-16 * std::sqrt(static_cast<double>(fine.steps) + 1);
-  double largest = 0;  // of the fields: values at a place may pass through zero
-  for (const FieldRunResult::Range& r : fine.at_end) largest = std::max({largest, std::abs(r.low), std::abs(r.high)});
   for (std::size_t i = 0; i < questions.size(); ++i) {
     double gain = std::pow(ratio, method.power(equations, questions[i], half));
     if (!method.is_wave()) {
@@ -315,8 +329,6 @@ std::vector<double> errors_of(const OneRun& fine, const FieldEquations& equation
       gain = std::isfinite(seen) ? std::min(gain, std::max(seen, 2.0)) : gain;
     }
     out[i] = difference(*coarse, fine, i) / (gain - 1) + rounding * std::max(std::abs(fine.answers[i]), 1e-300);
-    if (fine.last_terms > 0)
-      out[i] += fine.last_terms * std::max(std::abs(fine.answers[i]), questions[i].total ? 0 : largest);
   }
   return out;
 }

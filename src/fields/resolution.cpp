@@ -137,7 +137,53 @@ bool stands_in(Expr symbol, Expr e) {
   return std::find(symbols.begin(), symbols.end(), symbol) != symbols.end();
 }
 
+struct ParameterValues {
+  explicit ParameterValues(const FieldModel& model) {
+    for (const Parameter& p : model.parameters) {
+      symbols.push_back(p.symbol);
+      values.push_back(p.si_value);
+      known[p.symbol] = p.si_value;
+    }
+  }
+  std::vector<Expr> symbols;
+  std::vector<double> values;
+  Bindings known;
+};
+
 }  // namespace
+
+std::optional<double> unresolved_moment(const FieldEquations& equations, const PointForm& form, double step,
+                                        double duration) {
+  constexpr double most_steps = 200'000;
+  if (!(step > 0) || duration / step > most_steps) return std::nullopt;
+  const FieldSystem& s = equations.system();
+  Context& context = *s.context;
+  const Expr time = context.time(), number = context.number(Rational(618034, 1000000));
+  const ParameterValues parameters(*equations.model);
+  const Lobatto rule(2);
+  const Elements steps{rule, {0}, {step}, {static_cast<int>(std::ceil(duration / step))}};
+  const auto look = [&](Expr f) -> std::optional<double> {
+    if (!stands_in(time, f)) return std::nullopt;
+    const auto found = Scan(f, {time}, parameters.symbols, parameters.values).find(steps);
+    return found ? std::optional((*found)[0]) : std::nullopt;
+  };
+  for (const BoundaryCondition& b : s.boundary)
+    if (b.value)
+      if (const auto found = look(s.expanded(b.value))) return found;
+  for (const EndForce& force : s.end_forces)
+    if (const auto found = look(s.expanded(force.value))) return found;
+  for (const int part : {13, 29, 50, 83}) {  // hundredths of the domain
+    ExprMap fixed;
+    for (const SpaceVariable& x : s.space)
+      fixed.emplace(x.symbol, s.expanded(x.from) + Rational(part, 100) * (s.expanded(x.to) - s.expanded(x.from)));
+    for (const Expr& input : form.inputs)
+      if (input != time) fixed.emplace(input, number);
+    for (const auto* list : {&form.a, &form.g, &form.s})
+      for (const Expr& f : *list)
+        if (const auto found = look(substitute(f, fixed))) return found;
+  }
+  return std::nullopt;
+}
 
 std::optional<Unresolved> unresolved_feature(const FieldEquations& equations, const PointForm& form,
                                              const std::vector<int>& cells, int order) {
@@ -145,23 +191,16 @@ std::optional<Unresolved> unresolved_feature(const FieldEquations& equations, co
   Context& context = *s.context;
   std::vector<Expr> x;
   for (const SpaceVariable& one : s.space) x.push_back(one.symbol);
-  std::vector<Expr> parameters;
-  std::vector<double> values;
-  Bindings known;
-  for (const Parameter& p : equations.model->parameters) {
-    parameters.push_back(p.symbol);
-    values.push_back(p.si_value);
-    known[p.symbol] = p.si_value;
-  }
+  const ParameterValues parameters(*equations.model);
   const Lobatto rule(order);
   Elements mesh{rule, {}, {}, cells};
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    mesh.from.push_back(evaluate(s.expanded(s.space[i].from), known));
-    mesh.width.push_back((evaluate(s.expanded(s.space[i].to), known) - mesh.from.back()) / cells[i]);
+    mesh.from.push_back(evaluate(s.expanded(s.space[i].from), parameters.known));
+    mesh.width.push_back((evaluate(s.expanded(s.space[i].to), parameters.known) - mesh.from.back()) / cells[i]);
   }
   const auto look = [&](Expr f, bool of_start) -> std::optional<Unresolved> {
     if (std::none_of(x.begin(), x.end(), [&](Expr one) { return stands_in(one, f); })) return std::nullopt;
-    const auto place = Scan(f, x, parameters, values).find(mesh);
+    const auto place = Scan(f, x, parameters.symbols, parameters.values).find(mesh);
     return place ? std::optional(Unresolved{*place, mesh.width, of_start}) : std::nullopt;
   };
   for (const FieldStart& start : equations.model->start)

@@ -21,4 +21,10 @@ struct Unresolved {
 std::optional<Unresolved> unresolved_feature(const FieldEquations& equations, const PointForm& form,
                                              const std::vector<int>& cells, int order);
 
+/// The same along t for what acts: boundary values, forces at ends, and the density at some places, beside the parabola
+/// through the beginning, the middle and the end of each step. A series from the beginning of a step follows it about
+/// as far; jumps are found too. The moment, or nothing. Cost: some evaluations a step, function and place.
+std::optional<double> unresolved_moment(const FieldEquations& equations, const PointForm& form, double step,
+                                        double duration);
+
 }  // namespace maupertuis
