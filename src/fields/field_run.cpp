@@ -73,6 +73,13 @@ void refuse(const FieldMotion& mesh, const FieldEquations& equations, Diagnostic
   }
 }
 
+void refuse_infinite_density(const FieldEquations& equations, Diagnostics& diagnostics) {
+  diagnostics.error("E0645", equations.system().density_span,
+                    "the density has no finite value at the start somewhere in its domain",
+                    "A coefficient is infinite or undefined there, or the start is where the density is.",
+                    "Look for a division by zero, or a logarithm or a root of a negative number.");
+}
+
 /// Where a value of smooth elements is looked at beside its place, in widths of the first mesh's cells: the error
 /// inside an element goes through zero several times.
 constexpr double beside[] = {-1, -0.7, -0.4, 0.4, 0.7, 1};
@@ -255,6 +262,7 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
   std::sort(stops.begin(), stops.end());
   double size = 0;
   const double start = mesh.energy(size);
+  if (!std::isfinite(start)) return refuse_infinite_density(equations, diagnostics), std::nullopt;
   out.energy = start;
   out.answers.assign(questions.size(), std::nan(""));
   out.near.resize(questions.size());

@@ -192,11 +192,43 @@ TEST_CASE("what lies between the nodes of both meshes is no secret of theirs") {
 }
 
 TEST_CASE("a moment before the start has no value") {
-  Study study(SourceText("before.lag",
-                         "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 4 order 6 boundary u = 0\n"
-                         "density = 1/2 u'^2 - 1/2 u_x^2\nstart u = sin(pi x)\nrun 1\nexpect u(0.5) at -1 = 1 ± 0.1\n"));
+  Study study(
+      SourceText("before.lag",
+                 "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 4 order 6 boundary u = 0\n"
+                 "density = 1/2 u'^2 - 1/2 u_x^2\nstart u = sin(pi x)\nrun 1\nexpect u(0.5) at -1 = 1 ± 0.1\n"));
   const auto found = study.verification({});
   REQUIRE(found);
   CHECK_FALSE(found->results.at(0).passed);
   CHECK(found->results.at(0).message.find("before the start") != std::string::npos);
+}
+
+namespace {
+
+std::string told_by_run(const std::string& text) {
+  Study study(SourceText(
+      "acts.lag", "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 4 order 6\nboundary left : u = 0\n" + text));
+  REQUIRE(study.field_equations());
+  FieldRunOptions options;
+  options.duration = 2, options.every = 0.02;
+  Diagnostics diagnostics;
+  run_fields(*study.field_equations(), {}, options, diagnostics);
+  std::string out;
+  for (const Diagnostic& d : diagnostics.items()) out += d.code + " ";
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("what acts for less than a step is told, what acts longer is not") {
+  const std::string wave = "density = 1/2 u'^2 - 1/2 u_x^2\nstart u = sin(pi x)\n";
+  CHECK(told_by_run(wave + "force density u = sin(pi x) exp(-((t - 1.2345)/1e-6)^2)\nrun 2\n") == "W0650 ");
+  CHECK(told_by_run(wave + "force u(1) = exp(-((t - 1.2345)/1e-6)^2)\nrun 2\n") == "W0650 ");
+  CHECK(told_by_run(wave + "boundary right : u = exp(-((t - 1.2345)/1e-6)^2)\nrun 2\n") == "W0650 ");
+  CHECK(told_by_run("density = 1/2 u'^2 - 1/2 (1 + exp(-((t - 1.2345)/1e-6)^2)) u_x^2\nrun 2\n") == "W0650 ");
+  CHECK(told_by_run(wave + "force u(1) = exp(-((t - 1.2345)/0.3)^2) + sin(20 t)\nrun 2\n") == "");
+  CHECK(told_by_run("density = 1/2 u'^2 - 1/2 u_xx^2\nforce u(1) = exp(-((t - 1.2345)/1e-6)^2)\nrun 2\n") == "W0650 ");
+}
+
+TEST_CASE("a density that is infinite somewhere at the start") {
+  CHECK(told_by_run("density = 1/2 u'^2 - 1/2 u_x^2/x\nstart u = sin(pi x)\nrun 2\n") == "E0645 ");
 }
