@@ -351,11 +351,7 @@ std::string dispersion_text(Study& study, std::string& trouble) {
   const FieldEquations& equations = equations_of(study);
   const auto relation = dispersion(equations, trouble);
   if (!relation) return {};
-  std::string out;
-  for (const Expr& part : {relation->re, relation->im})
-    if (const std::string text = plain_of(equations, part); text != "0")
-      out += (out.empty() ? "" : "\n") + text + " = 0";
-  return out;
+  return plain_of(equations, with_imaginary_unit(*relation)) + " = 0";
 }
 
 namespace {

@@ -89,6 +89,8 @@ struct ComplexExpr {
 /// The determinant of the equations linearized about φ = 0 for waves exp(i(k·x − ω t)), in the symbols of the model.
 /// Nothing, and `trouble`, where φ = 0 is no solution or the coefficients depend on x or t.
 std::optional<ComplexExpr> dispersion(const FieldEquations& equations, std::string& trouble);
+/// re + i im for a reader, with a symbol i. Friction makes a relation complex.
+Expr with_imaginary_unit(const ComplexExpr& relation);
 
 /// δℒ/δψ* of a complex field ψ, re + i im, in ψ and its derivatives and a symbol named abs(ψ).
 struct ComplexEquation {

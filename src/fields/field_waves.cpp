@@ -1,5 +1,6 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/fields.hpp>
+#include <maupertuis/print.hpp>
 
 #include <fmt/format.h>
 
@@ -94,7 +95,17 @@ std::optional<ComplexExpr> dispersion(const FieldEquations& equations, std::stri
     trouble = "More than six fields: their determinant is not written out.";
     return std::nullopt;
   }
-  return determinant(rows, context);
+  const ComplexExpr relation = determinant(rows, context);
+  const auto begins_with_minus = [&](Expr e) {
+    return to_plain(field_layout(s, lay_out(readable(e, equations.order), equations.order))).front() == '-';
+  };
+  const bool turned = begins_with_minus(relation.re.is_zero() ? relation.im : relation.re);
+  return turned ? ComplexExpr{-relation.re, -relation.im} : relation;
+}
+
+Expr with_imaginary_unit(const ComplexExpr& relation) {
+  if (relation.im.is_zero()) return relation.re;
+  return relation.re + relation.im * relation.re.context().symbol("i", Role::Auxiliary);
 }
 
 }  // namespace maupertuis

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <cmath>
 
 /// A study of fields as plain data for a page.
@@ -46,6 +48,18 @@ class FieldComposer {
                                      : "field, " + s_.fields[f].kind,
                                  "",
                                  ""});
+    }
+    const auto& attached = e_.model->attached;
+    for (std::size_t i = 0; i < model_.system.coordinates.size(); ++i) {
+      if (std::any_of(attached.begin(), attached.end(), [i](const auto& a) { return a.coordinate == i; }))
+        continue;  // the value of a field at a place
+      const Coordinate& c = model_.system.coordinates[i];
+      const std::string of = unit(c.dimension);
+      out.coordinates.push_back({lay_out(c.q, e_.order), lay_out(c.velocity, e_.order), "",
+                                 !c.kind.empty() && c.kind != "number" ? c.kind
+                                 : of.empty() || of == "1"             ? "number"
+                                                                       : "in " + of,
+                                 "", ""});
     }
     for (const Parameter& p : model_.system.parameters)
       if (p.symbol.role() == Role::Parameter)
@@ -126,8 +140,7 @@ class FieldComposer {
     rest.name = "Waves and modes about the field at rest";
     rest.stability = parts.dispersion ? "Waves exp(i(k·x − ω t)) of the linearized equations obey" : "";
     if (parts.dispersion)
-      for (const Expr& part : {parts.dispersion->re, parts.dispersion->im})
-        if (!part.is_zero()) rest.formulas.push_back({shown(part), layouts::number("0"), "", ""});
+      rest.formulas.push_back({shown(with_imaginary_unit(*parts.dispersion)), layouts::number("0"), "", ""});
     const bool bare = model_.system.dimensionless;
     if (parts.frequencies)
       for (const double w : *parts.frequencies) {

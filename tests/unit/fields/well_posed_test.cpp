@@ -1,3 +1,4 @@
+#include <maupertuis/print.hpp>
 #include <maupertuis/study.hpp>
 
 #include <doctest/doctest.h>
@@ -43,4 +44,16 @@ TEST_CASE("first order in time, and what is of no one order") {
   CHECK(ill_posed("field a(x), b(x) : number\ndensity = b a' - a b' - 1/2 (a_x^2 - b_x^2)\n"));
   CHECK_FALSE(ill_posed("field h(x), p(x) : number\ndensity = -(h p' + 1/2 h p_x^2 + 1/2 h^2)\n"));
   CHECK_FALSE(ill_posed("field P(x), A(x) : number\ndensity = 1/2 (P_x + A')^2\n"));
+}
+
+TEST_CASE("a damped wave has one complex relation, and begins with no minus") {
+  Study study(SourceText("damped.lag",
+                         "dimensionless\nparam r = 0.2\nfield u(x) : number\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
+                         "dissipation density = 1/2 r u'^2\n"));
+  const FieldEquations* equations = study.field_equations();
+  REQUIRE(equations);
+  std::string trouble;
+  const auto relation = dispersion(*equations, trouble);
+  REQUIRE(relation);
+  CHECK(to_plain(readable(with_imaginary_unit(*relation), equations->order), equations->order) == "r ω i + ω^2 - k^2");
 }
