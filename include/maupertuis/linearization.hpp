@@ -3,6 +3,7 @@
 #include <maupertuis/equations_of_motion.hpp>
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,12 +18,16 @@ struct RealMatrix {
   double at(std::size_t i, std::size_t j) const { return entries[i * columns + j]; }
 };
 
-/// Where the equations are linearized. At an equilibrium v = a = 0; in a steady motion a = 0.
+/// Where the equations are linearized. At an equilibrium v = a = 0; in a steady motion along translations a = 0; in one
+/// along rotations, q(t) turns as exp(Ξ t), v = Ξ q + d and a = Ξ v.
 struct OperatingPoint {
   double t = 0;
   std::vector<double> q, v, a;      // [n] each, SI
   std::vector<double> multipliers;  // [m]
   std::vector<double> inputs;       // [k] the values that the inputs are held at
+  /// Ξ [n × n], a symmetry: what lies beside the motion is seen in the frame that turns along with it, q = q₀(t) +
+  /// exp(Ξ t) ξ, in which the coefficients are constant. Empty: none.
+  RealMatrix turning = {};
 };
 
 /// A translation q → q + ε d of the coordinates that changes neither the equations nor the constraints: one cyclic
@@ -91,6 +96,7 @@ struct Equilibrium {
   std::size_t family = 0;                 // how many further ways it can be moved and stay one, beside translations
   std::vector<std::size_t> family_along;  // the coordinates that change on these ways, ascending
   bool coordinates_fail = false;  // M is singular there on what the constraints leave free: r = 0 of polar coordinates
+  std::size_t turns = 0;          // rotations that are symmetries and commute with the motion, itself among them
 };
 
 struct EquilibriumSearchResult {
@@ -106,6 +112,11 @@ struct EquilibriumSearchResult {
 /// curve or surface of equilibria, the member nearest to the start stands for all. Steady motions keep the momenta of
 /// the start along conserved translations, unless `fixed` holds their velocities.
 EquilibriumSearchResult find_equilibria(const PointEquations& equations, const EquilibriumSearch& search);
+
+/// The steady motion along rotations that are symmetries (of bodies turned by quaternions about axes of space and of
+/// their own, of pairs of lengths in their plane, alone or together) and along translations, nearest to the positions
+/// and velocities of the start: Newton's method from there. Nothing where no such motion has them.
+std::optional<Equilibrium> steady_rotation_near(const PointEquations& equations, const MotionState& start);
 
 /// The one nearest to a start: Newton's method from there alone. Nothing where it does not converge.
 std::vector<Equilibrium> equilibrium_near(const PointEquations& equations, const EquilibriumSearch& search);

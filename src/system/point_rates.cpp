@@ -67,15 +67,36 @@ class PointRows {
   std::vector<std::pair<std::size_t, PointRow>> rows_;
 };
 
-/// The coordinates of the point; where it says nothing 0, and the axes of a body as they are drawn.
+const StartValue* given_at(const std::vector<StartValue>& values, std::size_t coordinate) {
+  for (const StartValue& v : values)
+    if (v.order == 0 && v.coordinate == coordinate) return &v;
+  return nullptr;
+}
+
+/// A body turned by a quaternion of which the point says nothing has the axes of space; where it gives some of x, y, z,
+/// the others are 0 and w makes the norm 1.
+void complete_quaternions(Elaboration& e, Span span, std::vector<StartValue>& values) {
+  const std::vector<Coordinate>& all = e.system().coordinates;
+  for (std::size_t w = 0; w + 3 < all.size(); ++w) {
+    const std::string& name = all[w].name;
+    if (name.size() < 4 || name.substr(name.size() - 3) != ".qw" || given_at(values, w)) continue;
+    Expr rest = e.number(1);
+    for (std::size_t i = w + 1; i <= w + 3; ++i) {
+      const StartValue* v = given_at(values, i);
+      if (v) rest = rest - pow(v->value, 2);
+      if (!v) values.push_back({i, 0, e.number(0), span, {}, 1});
+    }
+    values.push_back({w, 0, sqrt(rest), span, {}, 1});
+  }
+}
+
+/// The coordinates of the point; where it says nothing 0.
 ExprMap configuration(Elaboration& e, const std::vector<StartValue>& values) {
   ExprMap at;
-  for (const Coordinate& c : e.system().coordinates) {
-    const bool is_real_part = c.name.size() > 3 && c.name.substr(c.name.size() - 3) == ".qw";
-    at.emplace(c.q, e.context.number(is_real_part ? 1 : 0));
+  for (std::size_t i = 0; i < e.system().coordinates.size(); ++i) {
+    const StartValue* v = given_at(values, i);
+    at.emplace(e.system().coordinates[i].q, v ? v->value : e.context.number(0));
   }
-  for (const StartValue& v : values)
-    if (v.order == 0) at.insert_or_assign(e.system().coordinates[v.coordinate].q, v.value);
   at.emplace(e.context.time(), e.context.number(0));
   return at;
 }
@@ -100,6 +121,7 @@ Expr rate_of(Elaboration&, const Constraint& c) {
 
 bool add_velocities_of_rates(Elaboration& e, const std::vector<StartRate>& rates, std::vector<StartValue>& values) {
   if (rates.empty()) return true;
+  complete_quaternions(e, rates.front().span, values);
   const ExprMap at = configuration(e, values);
   PointRows rows(e);
   for (const StartRate& r : rates)

@@ -11,7 +11,9 @@
 ///     φ_q ξ = 0,   r_v ξ̇ + r_q ξ = 0,   [M  −Aᵀ] [ξ̈ ]   [−R_v ξ̇ − R_q ξ + B w]
 ///                                       [A   0 ] [δλ] = [−α_v ξ̇ − α_q ξ      ]
 ///
-/// with r = (dφ/dt, ψ), α = A q̈ − b, and B = −∂R/∂u.
+/// with r = (dφ/dt, ψ), α = A q̈ − b, and B = −∂R/∂u. About a motion that turns as exp(Ξ t) all rows are seen in the
+/// frame that turns along: δq = exp(Ξ t) ξ, so δq̇ has ξ̇ + Ξ ξ and δq̈ has ξ̈ + 2 Ξ ξ̇ + Ξ² ξ, and since Ξ is a symmetry
+/// the rows are the same at all times up to exp(−Ξᵀ t) in front.
 namespace maupertuis {
 namespace {
 
@@ -103,10 +105,60 @@ struct Pieces {
   Matrix velocity_rows() const { return rates.by_v; }
 };
 
+/// Rows by (ξ, ξ̇, ξ̈) of the turning frame.
+RowsAtPoint in_frame(RowsAtPoint rows, const Matrix& turning) {
+  if (turning.size() == 0) return rows;
+  const Matrix by_v = rows.by_v + 2 * product(rows.by_a, turning);
+  rows.by_q += product(product(rows.by_a, turning) + rows.by_v, turning);
+  rows.by_v = by_v;
+  return rows;
+}
+
+/// (ξ, ξ̇) and ξ̈ as δq, δq̇ and δq̈ at the instant of the point.
+void out_of_frame(const Matrix& turning, Matrix& motion, Matrix& answer) {
+  const Index n = turning.rows();
+  const Matrix xi = motion.topRows(n), rate = motion.bottomRows(n);
+  motion.bottomRows(n) += product(turning, xi);
+  answer.topRows(n) += product(turning, 2 * rate + product(turning, xi));
+}
+
+/// How large the parts of R_q ξ in the turning frame are, which cancel along symmetries; no entries without a frame.
+Matrix sizes_of_parts(const RowsAtPoint& rows, const Matrix& turning) {
+  if (turning.size() == 0) return {};
+  const Matrix by = turning.cwiseAbs();
+  return rows.by_q.cwiseAbs() + product(product(rows.by_a.cwiseAbs(), by) + rows.by_v.cwiseAbs(), by);
+}
+
+/// Entries that are rounding of the parts along both of their directions.
+void clear_rounding(Matrix& part, const Vector& sizes) {
+  constexpr double rest = 1e-13;  // as far as Newton's method has settled the motion
+  for (Index i = 0; i < part.rows(); ++i)
+    for (Index j = 0; j < part.cols(); ++j)
+      if (std::abs(part(i, j)) <= rest * std::sqrt(sizes[i] * sizes[j])) part(i, j) = 0;
+}
+
+/// The same in A, beside what turns with the frame by itself: |Ξ| from rates, |Ξ|² from positions, in typical sizes.
+void clear_rounding(Matrix& a, const Linearization& l, const Vector& sizes) {
+  constexpr double rest = 1e-13;
+  const double turning = to_eigen(l.point.turning).norm();
+  const auto f = static_cast<Index>(l.independent.size());
+  const auto scale = [&](Index i) {
+    const bool position = i < f;
+    const std::size_t of = position ? l.independent[static_cast<std::size_t>(i)]
+                                    : l.independent_velocities[static_cast<std::size_t>(i - f)];
+    return sizes[static_cast<Index>(of)] * (position ? 1 : turning);
+  };
+  for (Index i = 0; i < a.rows(); ++i)
+    for (Index j = 0; j < a.cols(); ++j)
+      if (std::abs(a(i, j)) <= rest * turning * scale(i) / scale(j)) a(i, j) = 0;
+}
+
 /// Nᵀ M N and so on. Only where the independent directions do not turn along the motion: at rest and in steady motions.
-void second_order_form(Linearization& out, const Pieces& p, const Matrix& directions) {
+void second_order_form(Linearization& out, const Pieces& p, const Matrix& directions, const Matrix& sizes) {
   const auto project = [&](const Matrix& m) { return quadratic_form(directions, m); };
-  const Matrix mass = project(p.balance.by_a), velocity = project(p.balance.by_v), position = project(p.balance.by_q);
+  const Matrix mass = project(p.balance.by_a), velocity = project(p.balance.by_v);
+  Matrix position = project(p.balance.by_q);
+  if (sizes.size() > 0) clear_rounding(position, quadratic_form(directions.cwiseAbs(), sizes).diagonal());
   out.mass = to_real(clean_symmetric_part(mass));
   out.damping = to_real(clean_symmetric_part(velocity));
   out.gyroscopic = to_real(skew_part(velocity));
@@ -124,7 +176,9 @@ bool vanishes(const Matrix& part, const Matrix& beside) {
 
 LinearizationResult linearize(const PointEquations& equations, const OperatingPoint& point) {
   PointEquations::Impl& e = equations.impl();
-  const Pieces p{e.at(e.balance, point), e.at(e.positions, point), e.at(e.rates, point), e.at(e.accelerations, point)};
+  const Matrix turning = to_eigen(point.turning);
+  const auto rows_at = [&](PointEquations::Impl::Rows& rows) { return in_frame(e.at(rows, point), turning); };
+  const Pieces p{rows_at(e.balance), rows_at(e.positions), rows_at(e.rates), rows_at(e.accelerations)};
   LinearizationResult result;
   Linearization& out = result.linearization;
   out.point = point;
@@ -164,6 +218,7 @@ LinearizationResult linearize(const PointEquations& equations, const OperatingPo
   c.topLeftCorner(n, f) = xi;
   c.bottomLeftCorner(n, f) = rate_q;
   c.bottomRightCorner(n, g) = rate_w;
+  if (turning.size() > 0) clear_rounding(a, out, sizes);
   out.positions = to_real(xi);
   out.a = to_real(a);
   out.b = to_real(b);
@@ -171,10 +226,14 @@ LinearizationResult linearize(const PointEquations& equations, const OperatingPo
   out.d = to_real(Matrix::Zero(2 * n, k));
   Matrix motion = Matrix::Zero(2 * n, f + g + k);
   motion.leftCols(f + g) = c;
-  out.measured = measured_outputs(e, point, {motion, bordered.x, f + g});
+  Matrix answer = bordered.x;
+  if (turning.size() > 0) out_of_frame(turning, motion, answer);
+  out.measured = measured_outputs(e, point, {motion, answer, f + g});
 
-  const bool uniform = std::all_of(point.a.begin(), point.a.end(), [](double x) { return x == 0; });
-  if (e.m == 0 || (e.holonomic == e.m && uniform && vanishes(rate_q, rate_w))) second_order_form(out, p, xi);
+  const bool uniform =
+      turning.size() > 0 || std::all_of(point.a.begin(), point.a.end(), [](double x) { return x == 0; });
+  if (e.m == 0 || (e.holonomic == e.m && uniform && vanishes(rate_q, rate_w)))
+    second_order_form(out, p, xi, sizes_of_parts(e.at(e.balance, point), turning));
   return result;
 }
 

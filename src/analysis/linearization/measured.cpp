@@ -94,6 +94,14 @@ MeasuredOutputs measured_outputs(PointEquations::Impl& e, const OperatingPoint& 
     for (std::size_t i = 0; i < rough.size(); ++i)
       if (rough[i]) by.row(static_cast<Index>(i)).setConstant(std::numeric_limits<double>::quiet_NaN());
   }
+  if (point.turning.rows > 0) {  // an output that changes along the motion has no constant coefficients
+    const Vector v = to_eigen(point.v), a = to_eigen(point.a), jerk = to_eigen(point.turning) * a;
+    const Vector rate = y.by_q * v + y.by_v * a + y.by_a * jerk;
+    const Vector size =
+        y.by_q.cwiseAbs() * v.cwiseAbs() + y.by_v.cwiseAbs() * a.cwiseAbs() + y.by_a.cwiseAbs() * jerk.cwiseAbs();
+    for (Index i = 0; i < rate.size(); ++i)
+      if (!(std::abs(rate[i]) <= rounding * size[i])) by.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
   return {to_list(y.value), to_real(by.leftCols(response.states)), to_real(by.rightCols(k))};
 }
 
@@ -119,6 +127,14 @@ bool check_measured(const MechanicalSystem& system, const ModalStudy& study, std
       const bool value = std::isfinite(y.values[i]);
       if (value && finite_row(y.c, i) && finite_row(y.d, i)) continue;
       good = false;
+      if (value && e.equilibrium.point.turning.rows > 0) {
+        diagnostics.error(
+            "E1306", outputs[i].span, fmt::format("y = {} changes along the steady motion", outputs[i].text),
+            "Seen in the frame that turns with the motion the coefficients are constant; what is measured "
+            "in another frame, or has a kink there, has none.",
+            "Measure what stays the same all along the motion: a rate of the body, an angle with its axis.");
+        break;
+      }
       diagnostics.error("E1306", outputs[i].span,
                         fmt::format("y = {} has no {} at {}", outputs[i].text, value ? "derivative" : "value",
                                     point_text(system, e.equilibrium, study.translations)),

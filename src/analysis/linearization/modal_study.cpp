@@ -136,6 +136,18 @@ double distance(const EquilibriumSearch& asked, const OperatingPoint& point, con
   return out;
 }
 
+/// Where velocities are given: the steady motion along rotations that has them.
+std::optional<Equilibrium> turning_motion(const PointEquations& equations, const EquilibriumSearch& asked) {
+  if (asked.fixed.v.empty() || !equations.autonomous()) return std::nullopt;
+  MotionState start = asked.start;
+  for (std::size_t i = 0; i < start.v.size(); ++i)
+    if (!asked.fixed.v[i]) start.v[i] = 0;
+  std::optional<Equilibrium> found = steady_rotation_near(equations, start);
+  if (!found || distance(asked, found->point, equations.system()) > meant) return std::nullopt;
+  found->coordinates_fail = linearize(equations, found->point).singular;
+  return found;
+}
+
 /// With what was given kept; then, where that balances only nearly, with the coordinates free to move a little.
 std::vector<Equilibrium> answer(const PointEquations& equations, const EquilibriumSearch& asked,
                                 std::optional<Equilibrium>& nearest) {
@@ -145,8 +157,9 @@ std::vector<Equilibrium> answer(const PointEquations& equations, const Equilibri
     loose.fixed.q.assign(asked.start.q.size(), false);
     found = equilibrium_near(equations, loose);
   }
-  if (found.empty() || distance(asked, found.front().point, equations.system()) <= meant) return found;
-  nearest = found.front();
+  if (!found.empty() && distance(asked, found.front().point, equations.system()) <= meant) return found;
+  if (const auto turning = turning_motion(equations, asked)) return {*turning};
+  if (!found.empty()) nearest = found.front();
   return {};
 }
 
@@ -266,6 +279,36 @@ std::string short_point_text(const MechanicalSystem& system, const Equilibrium& 
   return out + fmt::format("… ({} coordinates)", n);
 }
 
+/// A motion that turns: the rates of the bodies on their own axes, and the velocities of what is no part of them.
+std::string turning_text(const MechanicalSystem& system, const OperatingPoint& point) {
+  const std::string unit = system.dimensionless ? "" : " rad/s";
+  std::string out;
+  const auto add = [&](const std::string& text) { out += (out.empty() ? "" : ", ") + text; };
+  const auto rounded = [](double x, double size) { return std::abs(x) < 1e-14 * size ? 0.0 : x; };
+  std::vector<bool> told(system.coordinates.size(), false);
+  for (const Constraint& c : system.constraints)
+    for (const Expr& symbol : c.body.empty() ? std::vector<Expr>{} : symbols_of({&c.value, 1}))
+      for (std::size_t i = 0; i < told.size(); ++i) told[i] = told[i] || symbol == system.coordinates[i].q;
+  Bindings bindings = parameter_bindings(system);
+  for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
+    bindings[system.coordinates[i].q] = point.q[i];
+    bindings[system.coordinates[i].velocity] = point.v[i];
+  }
+  for (const Body& body : system.bodies) {
+    if (body.angular_velocity.size() != 3) continue;
+    const ExprVector rates = in_terms_of_motion(system, body.angular_velocity);
+    double w[3], size = 0;
+    for (int k = 0; k < 3; ++k) w[k] = evaluate(rates[static_cast<std::size_t>(k)], bindings), size += std::abs(w[k]);
+    add(fmt::format("{}.ω = ({:.9g}, {:.9g}, {:.9g}){}", body.name, rounded(w[0], size), rounded(w[1], size),
+                    rounded(w[2], size), unit));
+  }
+  for (std::size_t i = 0; i < told.size(); ++i)
+    if (!told[i] && point.v[i] != 0)
+      add(fmt::format("{}' = {}", system.coordinates[i].name,
+                      value_text(system, point.v[i], system.coordinates[i].dimension / system.independent_dimension)));
+  return out;
+}
+
 }  // namespace
 
 std::string point_text(const MechanicalSystem& system, const Equilibrium& equilibrium,
@@ -274,17 +317,19 @@ std::string point_text(const MechanicalSystem& system, const Equilibrium& equili
     return std::any_of(translations.begin(), translations.end(), [&](const Translation& t) { return t.pivot == i; });
   };
   constexpr std::size_t most = 8;
-  if (system.coordinates.size() > most) return short_point_text(system, equilibrium);
+  if (system.coordinates.size() > most && equilibrium.point.turning.rows == 0)
+    return short_point_text(system, equilibrium);
   std::string positions, rates;
   for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
     const Coordinate& c = system.coordinates[i];
     if (!is_pivot(i))
       positions += fmt::format("{}{} = {}", positions.empty() ? "" : ", ", c.name,
                                value_text(system, equilibrium.point.q[i], c.dimension, c.kind == "angle"));
-    if (equilibrium.point.v[i] != 0)
+    if (equilibrium.point.v[i] != 0 && equilibrium.point.turning.rows == 0)
       rates += fmt::format("{}{}' = {}", rates.empty() ? "" : ", ", c.name,
                            value_text(system, equilibrium.point.v[i], c.dimension / system.independent_dimension));
   }
+  if (equilibrium.point.turning.rows > 0) rates = turning_text(system, equilibrium.point);
   if (positions.empty() && rates.empty()) return "rest anywhere";
   return positions + (positions.empty() || rates.empty() ? "" : "; ") + rates;
 }

@@ -194,6 +194,11 @@ class Analysis {
       shapes.col(static_cast<Index>(explained)) = direction;
       causes[explained++] = "translation along " + name_of(t);
     }
+    const Vector motion = to_eigen(l_.point.v);
+    if (l_.point.turning.rows > 0 && static_cast<Index>(explained) < d && in_span(motion, kernel)) {
+      shapes.col(static_cast<Index>(explained)) = motion;
+      causes[explained++] = "onward along the steady motion";
+    }
     if (explained > 0 && explained < static_cast<std::size_t>(d))
       complete(shapes, kernel, static_cast<Index>(explained));
     std::size_t left = zeros;

@@ -43,6 +43,7 @@ struct Verdicts {
   /// Eigenvalues of the Hessian; empty where the energy says nothing.
   std::vector<double> hessian() const {
     if (!form.valid || !form.potential || !equations.energy_never_grows()) return {};
+    if (equilibrium.point.turning.rows > 0) return {};  // what rotations keep is not worked into it
     if (!equilibrium.at_rest && !all_conserved()) return {};
     const Matrix k = effective_stiffness(form, all_conserved());
     if (k.size() == 0) return {};
@@ -61,7 +62,7 @@ struct Verdicts {
   /// A translation is a zero eigenvalue; a conserved one a second, the change of its momentum. So is each further way
   /// to move.
   std::size_t explained_zeros() const {
-    std::size_t out = translations.size() + equilibrium.family;
+    std::size_t out = translations.size() + equilibrium.family + 2 * equilibrium.turns;
     for (const Translation& t : translations) out += t.conserved;
     return out;
   }
@@ -100,7 +101,8 @@ StabilityReport judge_stability(const PointEquations& equations, const Lineariza
   const double tolerance = has_hessian ? v.hessian_tolerance() : 0;
   const bool strict_minimum = has_hessian ? out.hessian.front() > tolerance
                                           : form.valid && form.potential && equations.energy_never_grows() &&
-                                                v.all_conserved() && form.translations.cols() == form.k.rows();
+                                                equilibrium->turns == 0 && v.all_conserved() &&
+                                                form.translations.cols() == form.k.rows();
   const std::string_view potential = equilibrium->at_rest && translations.empty() ? "potential" : "effective potential";
   if (margin > 0) {
     out.verdict = Stability::Unstable;
