@@ -61,6 +61,23 @@ Json form_json(const ReadableForm& form, const ReadingOrder& order) {
           {"intermediates", intermediates_json(form, order)}};
 }
 
+/// As the text has it: rows that would fill pages are written by shared parts there, whose names are definitions.
+ReadableForm as_shown(const PhaseSpace& found, const std::string& section, Expr left, const ReadableForm& otherwise) {
+  const std::string wanted = to_plain(left, found.hamiltonian.order);
+  for (const DerivationStep& line : found.lines)
+    if (line.section == section && line.right && to_plain(line.left) == wanted)
+      return {line.right, line.intermediates, {}};
+  return otherwise;
+}
+
+constexpr const char* canonical_equations = "Canonical equations";
+
+std::vector<CanonicalEquation> as_shown(const PhaseSpace& found, std::vector<CanonicalEquation> equations) {
+  for (CanonicalEquation& e : equations)
+    if (e.right.value) e.right = as_shown(found, canonical_equations, e.left, e.right);
+  return equations;
+}
+
 Json equations_json(const std::vector<CanonicalEquation>& equations, const ReadingOrder& order) {
   Json list = Json::array();
   for (const CanonicalEquation& e : equations) {
@@ -72,17 +89,23 @@ Json equations_json(const std::vector<CanonicalEquation>& equations, const Readi
   return list;
 }
 
+ReadableForm momentum_form(const PhaseSpace& found, std::size_t i) {
+  const Hamiltonian& h = found.hamiltonian;
+  return as_shown(found, "Momenta", h.momenta[i], {h.momentum_values[i], {}, {}});
+}
+
 /// q' = …; of a velocity that is not written out the equation it follows from, together with the others of its group: p
 /// = ….
-Json velocities_json(const Hamiltonian& h) {
-  Json list = equations_json(h.velocities, h.order);
+Json velocities_json(const PhaseSpace& found) {
+  const Hamiltonian& h = found.hamiltonian;
+  Json list = equations_json(as_shown(found, h.velocities), h.order);
   for (std::size_t i = 0; i < h.velocities.size(); ++i) {
     list[i]["implicit"] = !h.velocities[i].right.value;
     if (h.velocities[i].right.value) continue;
     list[i]["velocity"] = list[i]["left"];
     list[i]["left"] = symbol_to_plain(h.momenta[i]);
     list[i]["has_velocities"] = true;
-    list[i].update(form_json(readable(h.momentum_values[i], h.order), h.order));
+    list[i].update(form_json(momentum_form(found, i), h.order));
   }
   return list;
 }
@@ -172,9 +195,8 @@ void add_to(Json& document, const PhaseSpace& found) {
   document["coordinates"] = document["momenta"] = document["groups"] = Json::array();
   for (std::size_t i = 0; i < h.momenta.size(); ++i) {
     document["coordinates"].push_back(h.system->coordinates[i].name);
-    const ReadableForm value = readable(h.momentum_values[i], h.order);
     Json row{{"name", symbol_to_plain(h.momenta[i])}};
-    row.update(form_json(value, h.order));
+    row.update(form_json(momentum_form(found, i), h.order));
     document["momenta"].push_back(std::move(row));
   }
   for (const LegendreBlock& block : h.legendre.blocks) {
@@ -187,8 +209,8 @@ void add_to(Json& document, const PhaseSpace& found) {
   }
   document["regular"] = h.regular();
   document["hamiltonian"] = energy_json(found);
-  document["velocities"] = velocities_json(h);
-  document["forces"] = equations_json(h.forces, h.order);
+  document["velocities"] = velocities_json(found);
+  document["forces"] = equations_json(as_shown(found, h.forces), h.order);
   document["routhian"] = found.routhian ? routhian_json(*found.routhian, h) : Json();
   document["dirac"] = found.dirac ? dirac_json(*found.dirac, h) : Json();
   document["brackets"] = Json::array();
@@ -200,6 +222,9 @@ void add_to(Json& document, const PhaseSpace& found) {
   document["definitions"] = Json::array();
   for (const Intermediate& i : h.legend)
     document["definitions"].push_back({{"name", to_plain(i.symbol, h.order)}, {"plain", to_plain(i.value, h.order)}});
+  for (const DerivationStep& line : found.lines)
+    for (const Json& i : intermediates_json({line.right, line.intermediates, {}}, h.order))
+      document["definitions"].push_back({{"name", i["name"]}, {"plain", i["plain"]}});
   document["certificate"] = to_json(found.certificate);
 }
 

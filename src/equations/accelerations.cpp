@@ -1,21 +1,77 @@
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/interrupt_scope.hpp>
 #include <maupertuis/linear_system.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace maupertuis {
 namespace {
 
-bool is_pivot(Expr e) {
-  return !e.is_zero() && (e.is_number() || e.is_symbol() || zero_test(e).verdict == Verdict::Nonzero);
-}
+/// The same elimination in numbers, at one point, with the largest term of each entry: an entry that is far from 0
+/// beside it does not vanish, and what it costs to see that does not grow with the formula. Where the point tells
+/// nothing the zero test decides. (Were a pivot 0 all the same, the quotient would have no value anywhere, and no proof
+/// would come.)
+class AtOnePoint {
+ public:
+  explicit AtOnePoint(const ExprMatrix& m) : columns_(m.columns) {
+    Bindings point;
+    double x = 0.7;
+    for (const Expr& symbol : symbols_of(m.entries)) {
+      x = x * 1.6180339887 + 0.31;
+      x -= std::floor(x);
+      point[symbol] = 0.4 + x;  // between 0.4 and 1.4
+    }
+    values_ = evaluate(m.entries, point);
+    for (const double v : values_) {
+      sizes_.push_back(std::abs(v));
+      known_ = known_ && std::isfinite(v);
+    }
+  }
+
+  bool sees_nonzero(std::size_t row, std::size_t column) const {
+    constexpr double cancelled = 1e-5;
+    const std::size_t at = row * columns_ + column;
+    return known_ && std::isfinite(values_[at]) && std::abs(values_[at]) > cancelled * sizes_[at];
+  }
+  /// From then on the zero test alone: the pivot is no number here that could be divided by.
+  void give_up() { known_ = false; }
+  void swap_rows(std::size_t a, std::size_t b) {
+    for (std::size_t k = 0; k < columns_; ++k) {
+      std::swap(values_[a * columns_ + k], values_[b * columns_ + k]);
+      std::swap(sizes_[a * columns_ + k], sizes_[b * columns_ + k]);
+    }
+  }
+  void eliminate(std::size_t row, std::size_t pivot) {
+    if (!known_) return;
+    const double factor = values_[row * columns_ + pivot] / values_[pivot * columns_ + pivot];
+    for (std::size_t k = pivot + 1; k < columns_; ++k) {
+      const double term = factor * values_[pivot * columns_ + k];
+      values_[row * columns_ + k] -= term;
+      double& size = sizes_[row * columns_ + k];
+      size = std::max(size, std::abs(term));
+    }
+  }
+
+ private:
+  std::size_t columns_;
+  std::vector<double> values_, sizes_;
+  bool known_ = true;
+};
 
 /// Brings a row with a nonzero entry in `column` to place `column`; false if there is none.
-bool choose_pivot(ExprMatrix& m, std::size_t column) {
+bool choose_pivot(ExprMatrix& m, std::size_t column, AtOnePoint& numbers) {
   for (std::size_t row = column; row < m.rows; ++row) {
-    if (!is_pivot(m.at(row, column))) continue;
-    for (std::size_t k = 0; row != column && k < m.columns; ++k) std::swap(m.at(row, k), m.at(column, k));
+    const Expr e = m.at(row, column);
+    if (e.is_zero()) continue;
+    const bool seen = numbers.sees_nonzero(row, column);
+    if (!seen && !e.is_number() && !e.is_symbol() && zero_test(e).verdict != Verdict::Nonzero) continue;
+    if (!seen) numbers.give_up();
+    if (row == column) return true;
+    for (std::size_t k = 0; k < m.columns; ++k) std::swap(m.at(row, k), m.at(column, k));
+    numbers.swap_rows(row, column);
     return true;
   }
   return false;
@@ -45,12 +101,16 @@ ExprVector acceleration_symbols(const MechanicalSystem& system) {
 
 std::optional<ExprVector> solve_linear(ExprMatrix m) {
   const std::size_t n = m.rows;
+  if (n == 0) return ExprVector{};
+  AtOnePoint numbers(m);
   for (std::size_t column = 0; column < n; ++column) {
-    if (!choose_pivot(m, column)) return std::nullopt;
+    interrupt_of(m.at(0, 0).context()).throw_if_asked();
+    if (!choose_pivot(m, column, numbers)) return std::nullopt;
     for (std::size_t row = column + 1; row < n; ++row) {
       if (m.at(row, column).is_zero()) continue;
       const Expr factor = m.at(row, column) / m.at(column, column);
       for (std::size_t k = column + 1; k <= n; ++k) m.at(row, k) = m.at(row, k) - factor * m.at(column, k);
+      numbers.eliminate(row, column);
     }
   }
   ExprVector solution(n);

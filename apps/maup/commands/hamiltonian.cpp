@@ -185,7 +185,7 @@ ExitCode hamiltonian_of(const HamiltonianOptions& options, Console& console) {
     else
       console.print(phase_space_text(found));
   }
-  add_to(document, found);
+  if (console.json()) add_to(document, found);
   const ExitCode ended = options.integrate ? integrate(options, found, study, console, document) : ExitCode::Fine;
   const ExitCode told = finish(console, study, document);
   return told != ExitCode::Fine ? (ended == ExitCode::Usage ? ended : told) : ended;

@@ -2,6 +2,7 @@
 
 #include <maupertuis/hamiltonian.hpp>
 #include <maupertuis/print.hpp>
+#include <maupertuis/shared_form.hpp>
 
 #include <fmt/format.h>
 
@@ -25,16 +26,23 @@ class Lines {
       : h_(h), equations_(equations), shown_(equations.shown()) {}
 
   std::vector<DerivationStep> write(const Routhian* routhian) {
-    for (std::size_t i = 0; i < h_.momenta.size(); ++i) formula("Momenta", "p = ∂L/∂q'", h_.momenta[i], momentum(i));
+    for (std::size_t i = 0; i < h_.momenta.size(); ++i) {
+      const ReadableForm form = momentum(i);
+      if (!form.intermediates.empty()) long_ones_.emplace_back(lines_.size(), h_.momentum_values[i]);
+      formula("Momenta", "p = ∂L/∂q'", h_.momenta[i], form);
+    }
     primary_constraints();
     hamiltonian();
     canonical_equations();
     if (routhian && routhian->readable.value) routh(*routhian);
+    share_long_ones();
     return std::move(lines_);
   }
 
  private:
   void formula(const std::string& section, const std::string& rule, Layout left, const ReadableForm& right) {
+    if (right.value && right.intermediates.empty() && is_long(right.value))
+      long_ones_.emplace_back(lines_.size(), right.value);
     lines_.push_back({section, rule, std::move(left), right.value, {}, right.intermediates});
   }
   void formula(const std::string& section, const std::string& rule, Expr left, const ReadableForm& right) {
@@ -42,6 +50,20 @@ class Lines {
   }
   void sentence(const std::string& section, std::string text) {
     lines_.push_back({section, {}, {}, {}, std::move(text), {}});
+  }
+
+  /// Rows that would fill pages are written by shared parts, whose names stand with the first of them.
+  void share_long_ones() {
+    if (long_ones_.empty()) return;
+    ExprVector rows;
+    for (const auto& [line, value] : long_ones_) rows.push_back(value);
+    SharedForm shared = shared_form(rows, h_.order);
+    for (std::size_t i = 0; i < long_ones_.size(); ++i) {
+      DerivationStep& line = lines_[long_ones_[i].first];
+      line.right = shared.rows[i];
+      line.intermediates.clear();
+    }
+    lines_[long_ones_.front().first].intermediates = std::move(shared.intermediates);
   }
 
   /// The shortest of the readable form and Σ M_ij q_j' + b_i with each coefficient in brackets.
@@ -178,6 +200,7 @@ class Lines {
   const EquationsOfMotion& equations_;
   const EquationsOfMotion& shown_;
   std::vector<DerivationStep> lines_;
+  std::vector<std::pair<std::size_t, Expr>> long_ones_;  // lines whose right sides would fill pages
 };
 
 }  // namespace

@@ -74,6 +74,8 @@ Expr shortest(std::span<const Expr> candidates, const ReadingOrder& order) {
   return best;
 }
 
+bool is_long(Expr e) { return tree_size(e) > longest_printed; }
+
 Expr tidy(Expr e, const ReadingOrder& order) {
   const ReadableForm form = readable(e, order);
   if (!form.intermediates.empty()) return e;

@@ -13,6 +13,9 @@ namespace maupertuis::phase_space {
 std::size_t length_of(Expr e, const ReadingOrder& order);
 constexpr std::size_t unreadable = ~std::size_t{0};
 
+/// Whether it would fill a page and more.
+bool is_long(Expr e);
+
 /// The shortest of equal forms, the first of several; empty handles do not take part.
 Expr shortest(std::span<const Expr> candidates, const ReadingOrder& order);
 

@@ -6,28 +6,47 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <unordered_set>
 
 namespace maupertuis::invariants {
 namespace {
 
 using Monomials = std::vector<Monomial>;
 
+struct MonomialHash {
+  std::size_t operator()(const Monomial& m) const {
+    std::size_t h = m.size();
+    for (const Factor& f : m)
+      h = h * 0x9e3779b97f4a7c15 + (std::size_t{f.generator} << 8) + static_cast<unsigned>(f.exponent);
+    return h ^ h >> 32;
+  }
+};
+
+/// Each monomial once, in the order in which they come.
+class Distinct {
+ public:
+  void add(Monomial m) {
+    if (seen_.insert(m).second) list_.push_back(std::move(m));
+  }
+  Monomials take() { return std::move(list_); }
+
+ private:
+  Monomials list_;
+  std::unordered_set<Monomial, MonomialHash> seen_;
+};
+
 Monomials products(const Monomials& a, const Monomials& b) {
-  Monomials out;
+  Distinct out;
   for (const Monomial& x : a)
-    for (const Monomial& y : b) {
-      Monomial xy = product(x, y);
-      if (std::find(out.begin(), out.end(), xy) == out.end()) out.push_back(std::move(xy));
-    }
-  return out;
+    for (const Monomial& y : b) out.add(product(x, y));
+  return out.take();
 }
 
 Monomials joined(std::initializer_list<Monomials> lists) {
-  Monomials out;
+  Distinct out;
   for (const Monomials& list : lists)
-    for (const Monomial& m : list)
-      if (std::find(out.begin(), out.end(), m) == out.end()) out.push_back(m);
-  return out;
+    for (const Monomial& m : list) out.add(m);
+  return out.take();
 }
 
 /// 1 and the functions of a list that are independent.
@@ -56,9 +75,11 @@ Monomials powers(const Monomials& generators, int degree) {
 }
 
 std::string names_of(const Generators& g, const Monomials& list, const ReadingOrder& order) {
+  constexpr std::size_t most = 12;
   std::string out;
-  for (const Monomial& m : list) out += (out.empty() ? "" : ", ") + to_plain(g.expression(m), order);
-  return out;
+  for (std::size_t i = 0; i < std::min(most, list.size()); ++i)
+    out += (out.empty() ? "" : ", ") + to_plain(g.expression(list[i]), order);
+  return list.size() <= most ? out : fmt::format("{}, … ({} in all)", out, list.size());
 }
 
 /// 1, t, …, t^degree; with e^{gt}, sin Wt, … and their products in pairs, of few in threes.
@@ -117,8 +138,29 @@ namespace {
 /// How rich a basis of charges is.
 struct Richness {
   int time_degree;
-  bool pairs;
+  enum { Constant, Affine, Functions, Pairs } displacements;  // of what the η are combinations
 };
+
+/// Where M is constant, no richer η than affine ones belong to symmetries.
+Monomials displacement_functions(const Ansatz& a, Richness r) {
+  if (r.displacements == Richness::Constant) return {};
+  if (r.displacements == Richness::Affine || a.constant_mass) return a.atoms.coordinates;
+  const Monomials& functions = a.atoms.functions;
+  Monomials out = joined({a.atoms.coordinates, functions, a.atoms.products});
+  return r.displacements == Richness::Pairs ? joined({out, products(functions, functions)}) : out;
+}
+
+Monomials gauge_functions(const Ansatz& a, Richness r) {
+  const Atoms& atoms = a.atoms;
+  if (r.displacements == Richness::Constant) return {};
+  if (r.displacements == Richness::Affine && !a.constant_mass) return atoms.coordinates;
+  Monomials out = joined({atoms.coordinates, products(atoms.coordinates, atoms.coordinates), atoms.functions,
+                          products(atoms.functions, atoms.coordinates), atoms.products});
+  // cos φ/sin θ: what the field of a monopole takes in spherical coordinates
+  return r.displacements == Richness::Pairs && !a.constant_mass
+             ? joined({out, products(atoms.functions, atoms.functions)})
+             : out;
+}
 
 /// The physical candidates first: total momentum, angular momentum, moment of mass.
 void add_candidates(Ansatz& a, Monomials& out) {
@@ -134,19 +176,14 @@ void add_candidates(Ansatz& a, Monomials& out) {
     for (const Expr& v : orbit.velocity) out.push_back(product(a.generators.add(x), a.generators.add(v)));
 }
 
-Basis charges(Ansatz& a, const MotionRows& rows, Richness r, std::uint64_t seed) {
+/// No monomials where there would be more than `largest`: told from the lists, before it costs something to find which
+/// of their functions are independent.
+Basis charges(Ansatz& a, const MotionRows& rows, Richness r, std::size_t largest, std::uint64_t seed) {
   const Atoms& atoms = a.atoms;
   Generators& g = a.generators;
-  Monomials displacements = atoms.coordinates;
-  if (!a.constant_mass) {
-    displacements = joined({displacements, atoms.functions, atoms.products});
-    if (r.pairs) displacements = joined({displacements, products(atoms.functions, atoms.functions)});
-  }
+  Monomials displacements = displacement_functions(a, r), gauges = gauge_functions(a, r);
+  if ((1 + displacements.size()) * a.momenta.size() + gauges.size() > largest) return {};
   displacements = with_one(rows, g, displacements, seed);
-  Monomials gauges = joined({atoms.coordinates, products(atoms.coordinates, atoms.coordinates), atoms.functions,
-                             products(atoms.functions, atoms.coordinates), atoms.products});
-  // cos φ/sin θ: what the field of a monopole takes in spherical coordinates
-  if (r.pairs && !a.constant_mass) gauges = joined({gauges, products(atoms.functions, atoms.functions)});
   gauges = with_one(rows, g, gauges, seed + 1);
   const Monomials few = with_one(rows, g, time_functions(a, r.time_degree), seed + 2),
                   more = with_one(rows, g, time_functions(a, r.time_degree + 1), seed + 3);
@@ -176,29 +213,39 @@ Basis charges(Ansatz& a, const MotionRows& rows, Richness r, std::uint64_t seed)
 
 Basis noether_basis(Ansatz& a, const MotionRows& rows, std::size_t largest, std::uint64_t seed) {
   const int richest = a.momenta.size() <= 3 ? 3 : 2;
-  for (const Richness r : {Richness{richest, true}, Richness{1, true}, Richness{1, false}, Richness{0, false}}) {
-    Basis basis = charges(a, rows, r, seed);
-    if (basis.monomials.size() <= largest) return basis;
+  using R = Richness;
+  for (const Richness r : {R{richest, R::Pairs}, R{1, R::Pairs}, R{1, R::Functions}, R{0, R::Functions},
+                           R{1, R::Affine}, R{0, R::Affine}, R{0, R::Constant}}) {
+    Basis basis = charges(a, rows, r, largest, seed);
+    if (!basis.monomials.empty() && basis.monomials.size() <= largest) return basis;
   }
   return {};
 }
 
 namespace {
 
-/// Functions of position: level 2 and 3 multiply in pairs.
-Monomials positions(Ansatz& a, const MotionRows& rows, int level, std::uint64_t seed) {
+/// Functions of position, some of which may depend on others: level 2 and 3 multiply in pairs.
+Monomials positions(Ansatz& a, int level) {
   const Atoms& atoms = a.atoms;
   if (!a.directions.empty()) {
     Monomials g;
     for (const Expr& e : a.directions) g.push_back(a.generators.add(e));
-    return with_one(rows, a.generators, level > 1 ? joined({g, powers(g, 2)}) : g, seed);
+    return level > 1 ? joined({g, powers(g, 2)}) : g;
   }
-  Monomials first = joined({atoms.coordinates, atoms.functions, atoms.products});
-  if (level > 1) {
-    const Monomials simple = joined({atoms.coordinates, atoms.functions});
-    first = joined({first, products(simple, simple)});
+  const Monomials first = joined({atoms.coordinates, atoms.functions, atoms.products});
+  if (level == 1) return first;
+  const Monomials simple = joined({atoms.coordinates, atoms.functions});
+  return joined({first, products(simple, simple)});
+}
+
+/// How many products of velocities there are, of a degree and of those below it with its parity (−1: all).
+std::size_t count_of_powers(std::size_t velocities, int degree, int parity) {
+  std::size_t out = 0, of_degree = 1;  // C(n + d − 1, d)
+  for (int d = 0; d <= degree; ++d) {
+    if (parity < 0 || d % 2 == parity) out += of_degree;
+    of_degree = of_degree * (velocities + static_cast<std::size_t>(d)) / (static_cast<std::size_t>(d) + 1);
   }
-  return with_one(rows, a.generators, first, seed);
+  return out;
 }
 
 /// Coefficients of velocity degree d are functions of position times as many terms of V as there are pairs of
@@ -302,7 +349,16 @@ PolynomialBases polynomial_bases(Ansatz& a, const MotionRows& rows, int degree, 
   if (a.explicit_time) times = joined({times, a.atoms.time});
   const std::vector<int> parities = a.reversible ? std::vector<int>{degree % 2, 1 - degree % 2} : std::vector<int>{-1};
   for (const int level : {3, 2, 1}) {
-    const Monomials functions = positions(a, rows, level, seed);
+    Monomials functions = positions(a, level);
+    // Few functions depend on others: where even a quarter of them would be too many, it is not asked which.
+    constexpr std::size_t dependent = 4;
+    const std::size_t expected =
+        (1 + functions.size()) * times.size() * count_of_powers(a.velocities.size(), degree, parities.front());
+    if (expected > dependent * largest) {
+      out.needed = expected;
+      continue;
+    }
+    functions = with_one(rows, a.generators, functions, seed);
     if (level == 3 && (a.atoms.potentials.size() * functions.size() > largest || !a.directions.empty())) continue;
     const auto coefficients = coefficients_by_degree(a, rows, functions, degree, level == 3, seed + 1);
     out.bases.clear();
@@ -319,7 +375,10 @@ PolynomialBases polynomial_bases(Ansatz& a, const MotionRows& rows, int degree, 
                       level == 3 ? ", in the lower terms times those of V" : "", basis.monomials.size());
       if (!basis.monomials.empty()) out.bases.push_back(std::move(basis));
     }
-    if (out.needed > largest) continue;
+    if (out.needed > largest) {
+      out.bases.clear();
+      continue;
+    }
     if (Basis relative = relative_basis(a, rows, degree, seed + 2); !relative.monomials.empty())
       out.bases.insert(out.bases.begin(), std::move(relative));
     for (const int parity : parities)
@@ -328,7 +387,6 @@ PolynomialBases polynomial_bases(Ansatz& a, const MotionRows& rows, int degree, 
         out.bases.push_back(std::move(half));
     return out;
   }
-  out.bases.clear();
   return out;
 }
 

@@ -24,14 +24,14 @@ Ansatz make_ansatz(const EquationsOfMotion& equations, const MotionRows& rows);
 
 /// I = −ξ h_E + η·p − f, the charges of point symmetries up to gauge: ξ(t), η(q,t), f(q,t) combinations of monomials
 /// and atoms; ξ(q,t) where L is no quadratic polynomial of the velocities. The richest of some such bases that has at
-/// most `largest` functions; empty where none has.
+/// most `largest` functions, down to constant η alone; empty where none has.
 Basis noether_basis(Ansatz& ansatz, const MotionRows& rows, std::size_t largest, std::uint64_t seed);
 
 /// Polynomials of the velocities up to a degree with functions of position as coefficients. The richest that has at
 /// most `largest` functions; where none has, no monomials, and the size of the poorest in `needed`.
 struct PolynomialBases {
   std::vector<Basis> bases;  // one, or the even and the odd part
-  std::size_t needed = 0;    // functions of the poorest
+  std::size_t needed = 0;    // functions of the poorest; where they are many, with those that depend on others
 };
 PolynomialBases polynomial_bases(Ansatz& ansatz, const MotionRows& rows, int degree, std::size_t largest,
                                  std::uint64_t seed);
