@@ -2,9 +2,11 @@
 
 #include "analysis/hamiltonian/readable_choice.hpp"
 
+#include <maupertuis/evaluate.hpp>
 #include <maupertuis/linear_system.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace maupertuis {
 
@@ -48,9 +50,16 @@ class Transform {
   explicit Transform(const LegendreProblem& problem) : problem_(problem), context_(*problem.system.context) {
     for (const std::size_t i : problem.replaced) velocities_.push_back(problem.system.coordinates[i].velocity);
     momenta_ = gradient(problem.lagrangian, velocities_);
-    mass_ = {velocities_.size(), velocities_.size(), {}};
+    const std::size_t n = velocities_.size();
+    mass_ = {n, n, {}};
     for (const Expr& p : momenta_)
-      for (const Expr& entry : gradient(p, velocities_)) mass_.entries.push_back(with_visible_zeros(entry));
+      for (const Expr& entry : gradient(p, velocities_)) mass_.entries.push_back(entry);
+    const std::vector<bool> plain = maybe_numbers();
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j)
+        mass_.at(i, j) = j < i              ? mass_.at(j, i)
+                         : plain[i * n + j] ? with_visible_zeros(mass_.at(i, j))
+                                            : mass_.at(i, j);
   }
 
   LegendreTransform carry_out() {
@@ -67,6 +76,27 @@ class Transform {
   }
 
  private:
+  /// Which entries of M have the same value at two points with the same parameters: those alone may be numbers.
+  std::vector<bool> maybe_numbers() const {
+    constexpr double rounding = 1e-9;
+    Bindings points[2];
+    double x = 0.7;
+    for (const Expr& symbol : symbols_of(mass_.entries))
+      for (Bindings& point : points) {
+        const bool held = symbol.role() == Role::Parameter || symbol.role() == Role::Constant;
+        if (&point == points || !held) x = std::fmod(x * 1.6180339887 + 0.31, 1.0);
+        point[symbol] = 0.4 + x;
+      }
+    const std::vector<double> a = evaluate(mass_.entries, points[0]), b = evaluate(mass_.entries, points[1]);
+    std::vector<bool> out;
+    const std::size_t n = velocities_.size();
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      const double beside = std::sqrt(std::abs(a[k / n * (n + 1)] * a[k % n * (n + 1)]));  // of M_ii M_jj
+      out.push_back(!(std::abs(a[k] - b[k]) > rounding * (std::abs(a[k]) + std::abs(b[k]) + 1e-3 * beside)));
+    }
+    return out;
+  }
+
   /// An entry that vanishes becomes 0; others keep their form, of which readable ones are made.
   static Expr with_visible_zeros(Expr e) {
     const Expr canonical = fourier_form(e);
@@ -94,7 +124,8 @@ class Transform {
       block.coordinates.push_back(problem_.replaced[i]);
       own.push_back(velocities_[i]);
       for (const std::size_t j : rows) {
-        block.mass.entries.push_back(tidy(mass_.at(i, j), problem_.order));
+        const std::size_t k = block.mass.entries.size(), row = k / rows.size(), column = k % rows.size();
+        block.mass.entries.push_back(column < row ? block.mass.at(column, row) : tidy(mass_.at(i, j), problem_.order));
         quadratic &= !has_velocities(mass_.at(i, j));
       }
     }

@@ -1,25 +1,14 @@
 #include "analysis/hamiltonian/readable_choice.hpp"
 
 #include <maupertuis/print.hpp>
+#include <maupertuis/tree_size.hpp>
 
 #include <algorithm>
-#include <unordered_map>
 
 namespace maupertuis::phase_space {
 namespace {
 
 constexpr std::size_t longest_printed = 3000;  // nodes of the tree
-
-/// Nodes of the tree that the printers would walk, counted on the graph.
-std::size_t tree_size(Expr e) {
-  std::unordered_map<NodeId, std::size_t> sizes;
-  for (const Expr& node : topological_order({&e, 1})) {
-    std::size_t size = 1;
-    for (const NodeId argument : node.argument_ids()) size = std::min(unreadable / 4, size + sizes.at(argument));
-    sizes.emplace(node.id(), size);
-  }
-  return sizes.at(e.id());
-}
 
 /// UTF-8 letters.
 std::size_t letters(const std::string& text) {
@@ -56,7 +45,7 @@ bool is_below_the_bar(Expr factor) {
 
 std::size_t length_of(Expr e, const ReadingOrder& order) {
   constexpr std::size_t weight_of_inner_fraction = 8;
-  if (tree_size(e) > longest_printed) return unreadable;
+  if (tree_size(e, longest_printed + 1) > longest_printed) return unreadable;
   const std::string text = to_plain(e, order);
   return letters(text) + weight_of_inner_fraction * inner_fractions(text);
 }
@@ -74,7 +63,7 @@ Expr shortest(std::span<const Expr> candidates, const ReadingOrder& order) {
   return best;
 }
 
-bool is_long(Expr e) { return tree_size(e) > longest_printed; }
+bool is_long(Expr e) { return tree_size(e, longest_printed + 1) > longest_printed; }
 
 Expr tidy(Expr e, const ReadingOrder& order) {
   const ReadableForm form = readable(e, order);

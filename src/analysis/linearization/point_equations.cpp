@@ -17,6 +17,7 @@ class Lowering {
  public:
   explicit Lowering(const EquationsOfMotion& equations) {
     const MechanicalSystem& system = *equations.system;
+    coordinates_ = system.coordinates.size();
     for (const Coordinate& c : system.coordinates) inputs_.push_back(c.q);
     for (const Coordinate& c : system.coordinates) inputs_.push_back(c.velocity);
     for (const Coordinate& c : system.coordinates) inputs_.push_back(c.acceleration);
@@ -40,6 +41,13 @@ class Lowering {
   DifferentiableKernel rows(std::span<const Expr> expressions) const {
     return build_differentiable({inputs_, parameters_, plain(expressions)}, 0, differentiated_);
   }
+  /// The same where nothing moves.
+  DifferentiableKernel resting_rows(std::span<const Expr> expressions) const {
+    ExprMap at_rest;
+    const std::size_t n = coordinates_;
+    for (std::size_t i = n; i < 3 * n; ++i) at_rest.emplace(inputs_[i], inputs_[i].context().number(0));
+    return build_differentiable({inputs_, parameters_, substitute(plain(expressions), at_rest)}, 0, differentiated_);
+  }
   FunctionKernel function(std::span<const Expr> expressions) const {
     return build_function({inputs_, parameters_, plain(expressions)});
   }
@@ -47,7 +55,7 @@ class Lowering {
  private:
   ExprVector inputs_, parameters_;
   ExprMap held_;
-  std::size_t differentiated_ = 0;
+  std::size_t coordinates_ = 0, differentiated_ = 0;
 };
 
 ExprVector chosen(const EquationsOfMotion& equations, Constraint::Level level, bool rates) {
@@ -127,6 +135,7 @@ PointEquations::Impl::Impl(const EquationsOfMotion& equations, std::span<const E
       velocities(Lowering(equations).rows(chosen(equations, Constraint::Level::Velocity, true))),
       accelerations(Lowering(equations).rows(equations.constraint_accelerations)),
       momenta(Lowering(equations).rows(equations.momenta)),
+      resting(Lowering(equations).resting_rows(equations.balance())),
       rates(Lowering(equations).rows(equations.constraint_rates)),
       outputs(Lowering(equations).rows(with_reactions(equations, measured))),
       input_formulas(Lowering(equations).function(formulas(*system))),
@@ -166,7 +175,7 @@ bool PointEquations::Impl::friction_takes(const FunctionKernel& friction) const 
 }
 
 void PointEquations::Impl::set_parameters() {
-  for (Rows* rows : {&balance, &positions, &velocities, &accelerations, &momenta, &rates, &outputs}) {
+  for (Rows* rows : {&balance, &positions, &velocities, &accelerations, &momenta, &resting, &rates, &outputs}) {
     rows->values.set_parameters(parameters);
     rows->entries.set_parameters(parameters);
   }

@@ -33,6 +33,7 @@ struct PointEquations::Impl {
   std::vector<double> parameters;
   std::vector<std::size_t> position_rows;                       // which constraints those are
   Rows balance, positions, velocities, accelerations, momenta;  // [n], [holonomic], [m - holonomic], [m], [n]
+  Rows resting;                                                 // the balance where q̇ = q̈ = 0: much shorter
   Rows rates;                                                   // [m] dφ/dt and ψ
   Rows outputs;                                                 // what is measured
   std::vector<bool> output_switches;                            // whether abs, min, piecewise … stand in it

@@ -31,11 +31,20 @@ SteadyState::SteadyState(PointEquations::Impl& equations, const std::vector<Tran
     by_rates_.col(static_cast<Index>(k)) = to_eigen(translations[free_rates_[k]].direction);
 }
 
+/// Derivatives by rates matter where rates are sought.
+PointEquations::Impl::Rows& SteadyState::balance_of(const OperatingPoint& point) const {
+  const auto none = [](const std::vector<double>& x) {
+    return std::all_of(x.begin(), x.end(), [](double value) { return value == 0; });
+  };
+  return free_rates_.empty() && none(point.v) && none(point.a) ? e_.resting : e_.balance;
+}
+
 SteadyState::System SteadyState::system_at(const OperatingPoint& point) const {
   const auto q = static_cast<Index>(free_q_.size()), c = static_cast<Index>(free_rates_.size()),
              m = static_cast<Index>(e_.m);
-  const RowsAtPoint balance = e_.at(e_.balance, point), positions = e_.at(e_.positions, point),
-                    velocities = e_.at(e_.velocities, point), momenta = e_.at(e_.momenta, point);
+  const RowsAtPoint balance = e_.at(balance_of(point), point), positions = e_.at(e_.positions, point),
+                    velocities = e_.at(e_.velocities, point);
+  const RowsAtPoint momenta = kept_momenta_.empty() ? RowsAtPoint{} : e_.at(e_.momenta, point);
   const auto kept = static_cast<Index>(kept_momenta_.size());
   const Index rows = balance.value.size() + positions.value.size() + velocities.value.size() + kept;
   System out{Vector::Zero(rows), Matrix::Zero(rows, q + c + m)};
@@ -84,7 +93,7 @@ void SteadyState::place(const Vector& z, OperatingPoint& point) const {
 void SteadyState::fit_multipliers(OperatingPoint& point) const {
   if (e_.m == 0) return;
   std::fill(point.multipliers.begin(), point.multipliers.end(), 0);
-  const RowsAtPoint balance = e_.at(e_.balance, point);
+  const RowsAtPoint balance = e_.at(balance_of(point), point);
   if (!balance.value.allFinite() || !balance.by_multipliers.allFinite()) return;
   const Vector fit = least_squares(balance.by_multipliers, -balance.value, rank_threshold).x;
   if (fit.allFinite()) point.multipliers = to_list(fit);

@@ -35,6 +35,7 @@ class SteadyState {
     Vector f;  // rows
     Matrix j;  // by the unknowns
   };
+  PointEquations::Impl::Rows& balance_of(const OperatingPoint& point) const;
   System system_at(const OperatingPoint& point) const;
   Vector unknowns(const OperatingPoint& point) const;
   void place(const Vector& z, OperatingPoint& point) const;

@@ -1,4 +1,5 @@
 #include <maupertuis/shared_form.hpp>
+#include <maupertuis/tree_size.hpp>
 
 #include "symbolic/transform/candidates.hpp"
 #include "symbolic/transform/denominators.hpp"
@@ -52,6 +53,13 @@ Expr readable_row(CandidateChooser& chooser, const Polynomial& p) {
   return chooser.cost()(other) < chooser.cost()(plain) ? other : plain;
 }
 
+/// Frames in frames in frames: a tree of so many nodes has too many terms however it is multiplied out, and to see that
+/// takes long.
+bool is_hopeless(Expr e) {
+  constexpr std::size_t most = 300'000;
+  return tree_size(e, most) == most;
+}
+
 /// Of so many rows the first one alone lists the intermediates, and none is collected by its accelerations.
 constexpr std::size_t most_rows_listed_whole = 100;
 
@@ -67,6 +75,7 @@ std::vector<ReadableForm> by_shared_parts(std::span<const Expr> expanded, const 
 
 ReadableForm readable(Expr e, const ReadingOrder& order, const ReadableOptions& options) {
   const Expr expanded = expand_time_derivatives(e);
+  if (is_hopeless(expanded)) return terms::with_intermediates({&expanded, 1}, order).front();
   try {
     CandidateChooser chooser(e.context(), order, options.term_budget);
     const Polynomial p = chooser.read(expanded);
@@ -86,6 +95,7 @@ std::vector<ReadableForm> readable_equations(std::span<const Expr> residuals, co
   try {
     CandidateChooser chooser(residuals.front().context(), order, options.term_budget);
     std::vector<Polynomial> polynomials;
+    if (std::any_of(expanded.begin(), expanded.end(), is_hopeless)) throw terms::TooManyTerms{};
     for (const Expr& e : expanded) {
       polynomials.push_back(chooser.read(e));
       if (polynomials.back().size() > longest_row(options)) throw terms::TooManyTerms{};

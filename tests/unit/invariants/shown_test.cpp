@@ -72,3 +72,37 @@ TEST_CASE("an oscillator in the plane: what brackets of shown ones lead to is sh
   for (std::size_t i = found.shown; i < found.integrals.size(); ++i) CHECK_FALSE(found.integrals[i].independent);
   check_brackets(m, found);
 }
+
+TEST_CASE("of a chain that is too long for every basis of functions the energy is found") {
+  const int links = 12;
+  std::string names, points;
+  for (int i = 1; i <= links; ++i) {
+    const std::string n = std::to_string(i), before = i > 1 ? "P" + std::to_string(i - 1) + " + " : "";
+    names += (i > 1 ? ", θ" : "θ") + n;
+    points += "point P" + n + " mass m at " + before + "l (sin θ" + n + ", -cos θ" + n + ")\n";
+  }
+  const ModelText m("system chain\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord " + names + " : angle\n" + points +
+                    "gravity (0, -g)\n");
+  const Invariants found = found_in(m);
+  REQUIRE(found.integrals.size() == 1);
+  CHECK(found.integrals[0].name == "energy");
+  CHECK(found.integrals[0].certificate.verdict == Verdict::Zero);
+}
+
+TEST_CASE("of many coordinates the momenta of cyclic ones are found beside the energy") {
+  std::string names, energy;
+  for (int i = 1; i <= 40; ++i) {  // a ring of springs: its centre moves uniformly
+    const std::string n = std::to_string(i), next = std::to_string(i % 40 + 1);
+    names += (i > 1 ? ", x" : "x") + n;
+    energy += (i > 1 ? " + " : "") + ("sin(x" + next + " - x" + n + ")^4");
+  }
+  const ModelText m("system ring\nparam m = 1 kg, k = 1 N/m, l = 1 m\ncoord " + names + " : angle\nT = 1/2 m l^2 (" +
+                    [&] {
+                      std::string sum;
+                      for (int i = 1; i <= 40; ++i) sum += (i > 1 ? " + x" : "x") + std::to_string(i) + "'^2";
+                      return sum;
+                    }() +
+                    ")\nV = k l^2 (" + energy + ")\n");
+  const Invariants found = found_in(m);
+  CHECK(found.rank >= 2);
+}
