@@ -199,38 +199,6 @@ std::optional<Rational> folded_function(Kind kind, const Rational& x) {
   throw unknown_kind(kind, "the folding of numbers");
 }
 
-/// The r of r π.
-std::optional<Rational> part_of_pi(Expr x) {
-  if (x.is(Kind::Pi)) return Rational(1);
-  if (x.is(Kind::Product) && x.size() == 2 && x[0].is_number() && x[1].is(Kind::Pi)) return x[0].number();
-  return std::nullopt;
-}
-
-/// sin r π by twelfths of a turn, where that is rational: 0, ±1/2, ±1.
-std::optional<Rational> sine_of_turn(std::int64_t twelfths) {
-  const std::int64_t k = (twelfths % 12 + 12) % 12;  // of 2 π / 12
-  if (k % 6 == 0) return Rational(0);
-  const int sign = k < 6 ? 1 : -1;
-  if (k % 6 == 1 || k % 6 == 5) return Rational(sign, 2);
-  if (k % 6 == 3) return Rational(sign);
-  return std::nullopt;
-}
-
-/// sin, cos and tan of r π where they are rational: a seat turned by π/2 is a permutation of axes.
-std::optional<Rational> folded_turn(Kind kind, const Rational& r) {
-  constexpr std::int64_t most = std::int64_t{1} << 40;
-  const auto small = r.small();
-  if (!small || 12 % small->denominator != 0 || small->numerator > most || small->numerator < -most)
-    return std::nullopt;
-  const std::int64_t parts = small->numerator * (12 / small->denominator);  // of π / 12
-  if (kind == Kind::Tan && parts % 3 == 0 && parts % 6 != 0) return Rational((parts % 12 + 12) % 12 == 3 ? 1 : -1);
-  if (kind == Kind::Tan && parts % 12 == 0) return Rational(0);
-  if (parts % 2 != 0) return std::nullopt;
-  if (kind == Kind::Sin) return sine_of_turn(parts / 2);
-  if (kind == Kind::Cos) return sine_of_turn(parts / 2 + 3);
-  return std::nullopt;
-}
-
 }  // namespace
 
 Expr Context::function(Kind kind, std::span<const Expr> arguments) {
@@ -241,9 +209,6 @@ Expr Context::function(Kind kind, std::span<const Expr> arguments) {
     const Expr x = arguments.front();
     if (x.is_number())
       if (const auto folded = folded_function(kind, x.number())) return number(*folded);
-    if (kind == Kind::Sin || kind == Kind::Cos || kind == Kind::Tan)
-      if (const auto part = part_of_pi(x))
-        if (const auto folded = folded_turn(kind, *part)) return number(*folded);
     if (info.parity != Parity::None && leads_with_minus(x)) {
       const Expr flipped = negated(x);
       const Expr value = function(kind, {&flipped, 1});

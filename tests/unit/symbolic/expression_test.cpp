@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <array>
-#include <cmath>
 
 using namespace maupertuis;
 
@@ -49,23 +48,6 @@ TEST_CASE_FIXTURE(Fixture, "parity of functions") {
   CHECK(sin(((-x) + y) + m) == -sin(-((-x) + y) - m));  // a sum inside a sum that begins with a minus
   CHECK(sin(c.number(0)).is_zero());
   CHECK(apply(Kind::Abs, c.number(-3)) == c.number(3));
-}
-
-TEST_CASE_FIXTURE(Fixture, "sines of rational parts of π are numbers where they are rational") {
-  for (int k = -30; k <= 30; ++k) {
-    const Expr turn = c.pi() * Rational(k, 12);
-    for (const auto& [kind, value] : {std::pair{Kind::Sin, std::sin(k * std::acos(-1.0) / 12)},
-                                      std::pair{Kind::Cos, std::cos(k * std::acos(-1.0) / 12)},
-                                      std::pair{Kind::Tan, std::tan(k * std::acos(-1.0) / 12)}}) {
-      const Expr e = apply(kind, turn);
-      const double twice = kind == Kind::Tan ? value : 2 * value;
-      const bool rational = std::abs(twice - std::round(twice)) < 1e-9 && std::abs(value) < 1e6;
-      CHECK(e.is_number() == rational);
-      if (e.is_number()) CHECK(std::abs(e.number().to_double() - value) < 1e-9);
-    }
-  }
-  CHECK_FALSE(sin(c.pi() * x).is_number());
-  CHECK_FALSE(sin(c.pi() * Rational(1, 5)).is_number());
 }
 
 TEST_CASE_FIXTURE(Fixture, "zero to a negative power is kept, never folded to a number") {
