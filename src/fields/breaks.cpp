@@ -80,7 +80,9 @@ std::optional<FieldBreak> find_jump(Line& f, const Range& range, double least) {
     }
     if (k < halvings_of_a_break) continue;
     FieldBreak out;
-    out.place = (a + b) / 2, out.before = fa, out.behind = fb;
+    const double near = 1e-6 * range.cell();  // sign(0) = 0 belongs to neither side
+    out.place = std::round((a + b) / 2 / near) * near;
+    out.before = f.at(out.place - near), out.behind = f.at(out.place + near);
     return out;
   }
   return std::nullopt;
