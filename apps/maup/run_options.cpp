@@ -157,7 +157,9 @@ SimulationOptions simulation_options(const RunOptions& options, Diagnostics& dia
                       "Leave --order out, or use --tol.");
   if (options.duration) out.duration = time_option("--duration", *options.duration, diagnostics);
   if (options.every) out.output_every = time_option("--every", *options.every, diagnostics);
-  if (out.output_every && !(*out.output_every > 0)) diagnostics.error("E0809", {}, "--every must be a positive time.");
+  if (out.output_every && !(*out.output_every > 0))
+    diagnostics.error("E0809", {}, "--every must be a positive time.", {},
+                      "Rows stand so far apart, for example --every 0.1.");
   for (const std::string& text : options.at)
     if (const auto t = time_option("--at", text, diagnostics)) out.at.push_back(*t);
   out.interrupt = &interrupt_flag();
@@ -184,7 +186,8 @@ ExtendedSimulationOptions extended_options(const RunOptions& options, Precision 
   if (options.duration) out.duration = exact_time_option("--duration", *options.duration, diagnostics);
   if (options.every) out.output_every = exact_time_option("--every", *options.every, diagnostics);
   if (out.output_every && out.output_every->sign() <= 0)
-    diagnostics.error("E0809", {}, "--every must be a positive time.");
+    diagnostics.error("E0809", {}, "--every must be a positive time.", {},
+                      "Rows stand so far apart, for example --every 0.1.");
   for (const std::string& text : options.at)
     if (const auto t = exact_time_option("--at", text, diagnostics)) out.at.push_back(*t);
   out.interrupt = &interrupt_flag();

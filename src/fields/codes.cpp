@@ -55,14 +55,22 @@ constexpr CodeEntry kEntries[] = {
      "density = 1/2 u'^2 - 1/2 u_x^2\nforce density u = sin(pi x) 1000 exp(-((t - 0.5)/1e-5)^2)\nrun 1\n",
      "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 4 order 6 boundary u = 0\n"
      "density = 1/2 u'^2 - 1/2 u_x^2\nforce density u = sin(pi x) exp(-((t - 0.5)/0.5)^2)\nrun 1\n"},
+    {"W0651", "a jump or a kink in space",
+     "Where the start jumps or has a kink, and where a periodic start does not close, waves of every length arise. No "
+     "mesh follows the short ones, so that the error falls about with the width of a cell; its estimate is made for "
+     "that.",
+     "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 20 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
+     "start u = min(x, 1 - x)\nrun 1\n",
+     "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 20 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
+     "start u = sin(pi x)\nrun 1\n"},
     {"N0648", "a constant of a field that no equation determines",
      "A potential w of u = w_x stands in the density by its derivatives alone. Then w plus any function of t is the "
      "same "
      "motion, and a run keeps w at the left end of a periodic domain, or of free ends, as it starts.",
      "", ""},
     {"E0656", "a mesh too large for a run with bodies",
-     "Fields that bodies take hold of run as one system with the bodies, of at most 200 unknowns of elements. Elements "
-     "of high order need few of them.",
+     "Fields that bodies take hold of, and those whose density changes at a place, run as one system of at most 200 "
+     "unknowns of elements. Elements of high order need few of them.",
      "field u(x) : length on x = 0 m .. 1 m cells 400\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\n"
      "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nT = 1/2 m u(1 m)'^2\nrun 1 s\n",
      "field u(x) : length on x = 0 m .. 1 m cells 10\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\n"

@@ -2,6 +2,7 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/repeated_evaluation.hpp>
 
+#include "fields/breaks.hpp"
 #include "fields/semi_discrete.hpp"
 
 #include <fmt/format.h>
@@ -156,9 +157,10 @@ std::vector<double> shown_places(const SemiDiscrete& mesh) {
 }
 
 /// The error of each answer from runs on two coarser meshes: what halving the elements gains is measured, not believed,
-/// since a start or a load with a kink lets no high order come about.
+/// since a start or a load with a kink lets no high order come about. After a break of the start differences may be
+/// small by chance: that of the coarser meshes counts too, and nothing is gained.
 std::vector<double> errors_of(const CoupledRun& fine, const std::optional<CoupledRun>& half,
-                              const std::optional<CoupledRun>& quarter) {
+                              const std::optional<CoupledRun>& quarter, bool breaks) {
   constexpr double least = 1.5, most = 33;  // of a gain that two differences show
   std::vector<double> out;
   for (std::size_t i = 0; i < fine.answers.size(); ++i) {
@@ -169,7 +171,7 @@ std::vector<double> errors_of(const CoupledRun& fine, const std::optional<Couple
     const double first = std::abs(fine.answers[i] - half->answers[i]);
     const double second = quarter ? std::abs(half->answers[i] - quarter->answers[i]) : 0;
     const double gain = first > 0 ? std::clamp(second / first, least, most) - 1 : 1;
-    out.push_back(first / gain);
+    out.push_back(breaks ? std::max(first, second / 4) : first / gain);
   }
   return out;
 }
@@ -206,6 +208,7 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
                         "the start does not fit the condition at an end",
                         "The condition is followed, so that a jump runs into the field, which no mesh resolves.",
                         "Give a start that has the value of the condition there.");
+  const bool breaks = warn_of_breaks(equations, {cells}, diagnostics);
   const auto fine = run_once(*mesh, questions, options, diagnostics);
   if (!fine) return std::nullopt;
   FieldRunResult out;
@@ -244,7 +247,7 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
     };
     half = coarser(2), quarter = coarser(4);
   }
-  const std::vector<double> errors = errors_of(*fine, half, quarter);
+  const std::vector<double> errors = errors_of(*fine, half, quarter, breaks);
   const double rounding = 2.2e-16 * std::sqrt(static_cast<double>(out.steps) + 1);
   for (std::size_t i = 0; i < questions.size(); ++i)
     out.answers.push_back({fine->answers[i], errors[i] + rounding * std::max(std::abs(fine->answers[i]), 1e-300)});

@@ -1,6 +1,7 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/field_run.hpp>
 
+#include "fields/breaks.hpp"
 #include "fields/field_method.hpp"
 #include "fields/resolution.hpp"
 
@@ -313,10 +314,10 @@ Cells divided(const Cells& cells, int parts) {
 /// The other meshes, and how far off the answers on the first are.
 ///
 /// Meshes and their steps are off by a power of the width of a cell, but never by less than rounding. Where a third
-/// mesh shows that the difference falls more slowly, by that.
+/// mesh shows that the difference falls more slowly, by that. Where something jumps (`breaks`), by the first power.
 std::vector<double> errors_of(const OneRun& fine, const FieldEquations& equations, FieldMethod& method,
                               const Cells& cells, const std::vector<FieldQuestion>& questions,
-                              const FieldRunOptions& options, Diagnostics& diagnostics) {
+                              const FieldRunOptions& options, bool breaks, Diagnostics& diagnostics) {
   std::vector<double> out(questions.size(), std::numeric_limits<double>::infinity());
   const Cells half = divided(cells, 2), quarter = divided(cells, 4);
   if (!options.errors || questions.empty() || half == cells) return out;
@@ -331,7 +332,7 @@ std::vector<double> errors_of(const OneRun& fine, const FieldEquations& equation
     if (cells[i] > 1) ratio = std::min(ratio, static_cast<double>(cells[i]) / half[i]);
   const double rounding = 2.2e-16 * std::sqrt(static_cast<double>(fine.steps) + 1);
   for (std::size_t i = 0; i < questions.size(); ++i) {
-    double gain = std::pow(ratio, method.power(equations, questions[i], half));
+    double gain = breaks ? 2 : std::pow(ratio, method.power(equations, questions[i], half));
     if (!method.is_wave()) {
       const double seen = coarser ? difference(*coarser, *coarse, i) / difference(*coarse, fine, i) : 2;
       gain = std::isfinite(seen) ? std::min(gain, std::max(seen, 2.0)) : gain;
@@ -356,6 +357,7 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   }
   if (refuse_large_mesh(equations, *method, cells, diagnostics)) return std::nullopt;
   if (refuse_coarse_mesh(equations, *method, cells, diagnostics)) return std::nullopt;
+  const bool breaks = warn_of_breaks(equations, cells, diagnostics);
   std::vector<std::vector<double>> rows;
   if (options.trajectory) rows = places_of_rows(equations, cells, options.least_values);
   auto fine = run_on(equations, *method, cells, questions, options, rows, true, diagnostics);
@@ -371,7 +373,8 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   out.at_end = std::move(fine->at_end);
   if (!rows.empty()) out.places = rows[0];
   if (rows.size() == 2) out.upwards = rows[1];
-  const std::vector<double> errors = errors_of(*fine, equations, *method, cells, questions, options, diagnostics);
+  const std::vector<double> errors =
+      errors_of(*fine, equations, *method, cells, questions, options, breaks, diagnostics);
   for (std::size_t i = 0; i < questions.size(); ++i) out.answers.push_back({fine->answers[i], errors[i]});
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;

@@ -57,7 +57,7 @@ struct LaneCompiler {
   const std::vector<Expr>& inputs;
   const std::unordered_map<Expr, double, ExprHash>& constants;
   std::string& trouble;
-  std::unordered_map<Expr, std::size_t, ExprHash> done;
+  std::unordered_map<Expr, std::size_t, ExprHash> done, secants;
   using Op = LaneSeries::Op;
 
   std::size_t push(LaneSeries::Instruction i) {
@@ -121,13 +121,15 @@ struct LaneCompiler {
   }
   std::size_t algebra(Expr e) {
     if (e.is(Kind::Power)) {
-      const std::size_t base = visit(e[0]);
       if (!e[1].is_number()) {
         trouble = "a power with a variable exponent";
-        return base;
+        return visit(e[0]);
       }
       const Rational& r = e[1].number();
       const double n = r.to_double();
+      if (e[0].is(Kind::Cosh) && n < 0 && n == std::floor(n) && -n <= most_factors)
+        return whole_power(hyperbolic_secant(e[0][0]), static_cast<unsigned>(-n));
+      const std::size_t base = visit(e[0]);
       // The recurrence of powers divides by the base, which a field may have as 0.
       if (std::abs(n) == std::floor(std::abs(n)) && std::abs(n) <= most_factors) {
         const std::size_t product = whole_power(base, static_cast<unsigned>(std::abs(n)));
@@ -153,6 +155,23 @@ struct LaneCompiler {
     if (out.code_[b].op == Op::Constant) return unary(Op::Scale, a, out.code_[b].number);
     return binary(Op::Multiply, a, b);
   }
+  /// tanh u and its slope 1/cosh²u have values where cosh u has none: a pair of their own.
+  std::size_t hyperbolic_tangent(Expr u) {
+    const Expr tanh = apply(Kind::Tanh, u);
+    if (const auto found = done.find(tanh); found != done.end()) return found->second;
+    const std::size_t a = visit(u), t = unary(Op::Tanh, a), slope = unary(Op::SlopeOfTanh, t);
+    out.code_[t].b = slope, out.code_[slope].b = t;
+    done.emplace(tanh, t);
+    return t;
+  }
+  /// 1/cosh u, with f' = −f tanh u u'.
+  std::size_t hyperbolic_secant(Expr u) {
+    const auto [place, is_new] = secants.try_emplace(u, 0);
+    if (!is_new) return place->second;
+    const std::size_t a = visit(u), t = hyperbolic_tangent(u), f = unary(Op::Sech, a);
+    out.code_[f].b = push({Op::Multiply, f, t, 0, constant(a)});
+    return secants[u] = f;
+  }
   std::size_t function(Expr e) {
     const std::size_t a = visit(e[0]);
     const Kind kind = e.kind();
@@ -167,10 +186,7 @@ struct LaneCompiler {
       return both(Op::Sinh, Op::Cosh, Kind::Sinh, Kind::Cosh, kind == Kind::Sinh);
     if (kind == Kind::Exp) return unary(Op::Exp, a);
     if (kind == Kind::Log) return unary(Op::Log, a);
-    if (kind == Kind::Tanh) {
-      const std::size_t s = pair(Op::Sinh, Op::Sinh, Op::Cosh, a);
-      return binary(Op::Multiply, s, unary(Op::Power, out.code_[s].b, -1));
-    }
+    if (kind == Kind::Tanh) return hyperbolic_tangent(e[0]);
     trouble = std::string(name_of(kind));
     return a;
   }
@@ -255,6 +271,15 @@ void LaneSeries::first(std::size_t i) {
       return each([](double v) { return std::sinh(v); });
     case Op::Cosh:
       return each([](double v) { return std::cosh(v); });
+    case Op::Tanh: {
+      double* slope = at(x.b, 0);
+      for (std::size_t n = 0; n < lanes_; ++n) slope[n] = 1 / (std::cosh(a[n]) * std::cosh(a[n]));
+      return each([](double v) { return std::tanh(v); });
+    }
+    case Op::SlopeOfTanh:  // with its tanh, from the argument, which loses no digits
+      return;
+    case Op::Sech:
+      return each([](double v) { return 1 / std::cosh(v); });
   }
 }
 
@@ -297,9 +322,14 @@ void LaneSeries::higher(std::size_t i, std::size_t k) {
     case Op::Sin:
     case Op::Sinh:
     case Op::Cosh:
+    case Op::Tanh:
       shares(1);
       return sum(x.b, 1, k);
+    case Op::SlopeOfTanh:
+      shares(-2);
+      return sum(x.b, 1, k);
     case Op::Cos:
+    case Op::Sech:
       shares(-1);
       return sum(x.b, 1, k);
     case Op::Input:

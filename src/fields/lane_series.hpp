@@ -40,14 +40,31 @@ class LaneSeries {
   }
 
  private:
-  enum class Op { Input, Constant, Add, Multiply, Scale, Power, Exp, Log, Sin, Cos, Sinh, Cosh };
+  enum class Op {
+    Input,
+    Constant,
+    Add,
+    Multiply,
+    Scale,
+    Power,
+    Exp,
+    Log,
+    Sin,
+    Cos,
+    Sinh,
+    Cosh,
+    Tanh,
+    SlopeOfTanh,
+    Sech
+  };
   struct Instruction {
     Op op = Op::Constant;
-    std::size_t a = 0, b = 0;  // operands; of Sin: its Cos, and the other way round, in b
-    double number = 0;         // Constant, Scale, the exponent of Power
-    bool constant = false;     // in time
-    bool kept = true;          // with its past
-    std::size_t place = 0;     // of its coefficients, in the block or among what all blocks share
+    std::size_t a = 0,
+                b = 0;      // operands; of Sin: its Cos, and the other way round, in b; of Sech its product with tanh
+    double number = 0;      // Constant, Scale, the exponent of Power
+    bool constant = false;  // in time
+    bool kept = true;       // with its past
+    std::size_t place = 0;  // of its coefficients, in the block or among what all blocks share
   };
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
   std::size_t place(std::size_t i, std::size_t order) const {

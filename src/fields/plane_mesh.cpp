@@ -409,16 +409,50 @@ void PlaneMesh::sweep(std::size_t orders, const std::function<void(std::size_t r
   }
 }
 
-bool PlaneMesh::step(double h) {
+/// The sum of the series after h. The last term beside the field: what is too long for the series is found afterwards,
+/// since a row's coefficients are gone when the next is there.
+double PlaneMesh::advance(double h) {
+  std::vector<double> size(fields_, 0), last(fields_, 0);
+  const auto take = [&](double& to, const double* c, double factor) {
+    for (std::size_t n = 0; n < lanes_; ++n) to = std::max(to, std::abs(c[n]) * factor);
+  };
   sweep(kOrder, [&](std::size_t row) {
     series_.select(row);
-    for (std::size_t f = 0; f < fields_; ++f)
+    for (std::size_t f = 0; f < fields_; ++f) {
+      take(size[f], phi(f, 0), 1), take(size[f], phi(f, 1), h);
+      take(last[f], phi(f, kOrder), std::pow(h, static_cast<double>(kOrder)));
       sum_series(u_[f].data() + row * lanes_, v_[f].data() + row * lanes_, phi(f, 0), h, lanes_);
+    }
   });
-  t_ += h;
-  for (std::size_t f = 0; f < fields_; ++f)
-    for (std::size_t row = 0; row < rows(); ++row)
-      if (!std::isfinite(u_[f][row * lanes_ + lanes_ / 2]) && trouble_.empty()) trouble_ = "overflow";
+  constexpr double at_rest = 1e-30;
+  double ratio = 0;
+  for (std::size_t f = 0; f < fields_; ++f) ratio = std::max(ratio, last[f] / std::max(size[f], at_rest));
+  return ratio;
+}
+
+/// Steps are held to the last term that the start has, as those of FieldMesh.
+bool PlaneMesh::step(double h) {
+  constexpr double least = 1e-12, most = 1e-8, room = 4, shortest = 1e-7;
+  for (double left = h; left > 0 && trouble_.empty();) {
+    const std::vector<Rows> u = u_, v = v_;
+    double tau = left;
+    const double ratio = advance(tau);
+    if (!allowed_) allowed_ = std::clamp(room * ratio, least, most);
+    if (ratio > *allowed_) {
+      tau *= std::pow(*allowed_ / ratio, 1.0 / static_cast<double>(kOrder));
+      u_ = u, v_ = v;
+      ++further_steps_;
+      if (tau > shortest * h)
+        advance(tau);
+      else
+        trouble_ = "step";
+    }
+    t_ += tau;
+    left = tau < left ? left - tau : 0;
+    for (std::size_t f = 0; f < fields_; ++f)
+      for (std::size_t row = 0; row < rows(); ++row)
+        if (!std::isfinite(u_[f][row * lanes_ + lanes_ / 2]) && trouble_.empty()) trouble_ = "overflow";
+  }
   return trouble_.empty();
 }
 

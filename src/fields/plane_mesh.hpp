@@ -35,6 +35,7 @@ class PlaneMesh final : public WaveMesh {
                       int order);
 
  private:
+  double advance(double h);
   using Rows = std::vector<double>;  // [rows of cells × lanes]
   struct Axis {
     int cells = 0;
@@ -82,6 +83,7 @@ class PlaneMesh final : public WaveMesh {
   LaneSeries series_, energies_;
   bool uses_velocity_ = false, uses_rate_ = false;
   std::vector<Rows> u_, v_;                   // [fields]
+  std::optional<double> allowed_;             // of the last term of the series beside the field
   std::vector<double> force_, other_;         // of one row: [fields × lanes], [lanes]
   std::vector<std::vector<double>> pending_;  // [orders] the last line of the row before, [fields × line]
   std::vector<std::vector<double>> first_;    // the same of the first line, where the plane is periodic

@@ -74,11 +74,19 @@ class Scan {
     work_.set_parameters(values);
   }
 
+  /// From now on a value that is no number is something found too.
+  Scan& with_poles() { return poles_ = true, *this; }
+
   /// The place of what the polynomials through the nodes do not follow; nothing where there is none.
   std::optional<Place> find(const Elements& mesh) {
     size_ = 0;
-    for (std::size_t e = 0; e < mesh.count(); ++e)
-      for (const double f : values_at_nodes(mesh, mesh.corner(e))) size_ = std::max(size_, std::abs(f));
+    for (std::size_t e = 0; e < mesh.count(); ++e) {
+      const std::vector<double>& values = values_at_nodes(mesh, mesh.corner(e));
+      for (std::size_t n = 0; n < values.size(); ++n) {
+        if (poles_ && !std::isfinite(values[n])) return mesh.node(mesh.corner(e), n);
+        size_ = std::max(size_, std::abs(values[n]));
+      }
+    }
     for (std::size_t e = 0; e < mesh.count(); ++e)
       if (const auto place = find_in(mesh, mesh.corner(e))) return place;
     return std::nullopt;
@@ -110,6 +118,7 @@ class Scan {
       const Piece piece = open.back();
       open.pop_back();
       const double f = at(piece.middle);
+      if (poles_ && !std::isfinite(f)) return piece.middle;
       if (std::abs(f - mesh.between(nodes, corner, piece.middle)) > unresolved * std::max(size_, std::abs(f)))
         return piece.middle;
       disks_.set_centre(piece.middle);
@@ -130,6 +139,7 @@ class Scan {
   FunctionDisks disks_;
   std::vector<double> nodes_;
   double size_ = 0;  // largest modulus at the nodes
+  bool poles_ = false;
 };
 
 bool stands_in(Expr symbol, Expr e) {
@@ -164,7 +174,7 @@ std::optional<double> unresolved_moment(const FieldEquations& equations, const P
   const Elements steps{rule, {0}, {step}, {static_cast<int>(std::ceil(duration / step))}};
   const auto look = [&](Expr f) -> std::optional<double> {
     if (!stands_in(time, f)) return std::nullopt;
-    const auto found = Scan(f, {time}, parameters.symbols, parameters.values).find(steps);
+    const auto found = Scan(f, {time}, parameters.symbols, parameters.values).with_poles().find(steps);
     return found ? std::optional((*found)[0]) : std::nullopt;
   };
   for (const BoundaryCondition& b : s.boundary)

@@ -114,12 +114,14 @@ bool SemiDiscrete::set_mesh(int cells, int order, Diagnostics& diagnostics) {
                                                              : EKind::Nodal);
   for (const ElementSpace& space : spaces_) dofs_ += space.size();
   if (dofs_ <= most_degrees_of_freedom) return true;
-  diagnostics.error("E0656", s.density_span,
-                    fmt::format("{} elements of order {} have {} unknowns, too many for a run with bodies", elements(),
-                                mesh_.degree, dofs_),
-                    fmt::format("Fields with bodies run as one system of at most {} coordinates of elements.",
-                                most_degrees_of_freedom),
-                    "Write fewer cells; elements of a higher order need fewer of them.");
+  const bool bodies = equations_->model->coupled;  // else a density that changes at a place
+  diagnostics.error(
+      "E0656", s.density_span,
+      fmt::format("{} elements of order {} have {} unknowns, too many for a run {}", elements(), mesh_.degree, dofs_,
+                  bodies ? "with bodies" : "of a density with borders"),
+      fmt::format("{} run as one system of at most {} coordinates of elements.",
+                  bodies ? "Fields with bodies" : "Fields whose density changes at a place", most_degrees_of_freedom),
+      "Write fewer cells; elements of a higher order need fewer of them.");
   return false;
 }
 

@@ -199,9 +199,14 @@ ExpressionParser::Node ExpressionParser::number() {
   node->text = token.text;
   if (peek().is("[")) node = with_bracketed_unit(std::move(node));
   if (peek().kind == Token::Kind::Number) {
+    const auto is_digits = [](std::string_view text) {
+      return text.find_first_not_of("0123456789") == std::string_view::npos;
+    };
+    std::string help = fmt::format("Write {} * {}", token.text, peek().text);
+    if (is_digits(token.text) && is_digits(peek().text))
+      help += fmt::format(", or {}{} if it is one number", token.text, peek().text);
     fail("E0123", cover(token.span, peek().span), "two numbers stand side by side",
-         "A product of numbers needs a sign between them.",
-         fmt::format("Write {} * {}, or {}{} if it is one number.", token.text, peek().text, token.text, peek().text));
+         "A product of numbers needs a sign between them.", help + ".");
   }
   return node;
 }
@@ -222,7 +227,8 @@ ExpressionParser::Node ExpressionParser::name() {
   const Token& token = next();
   const bool declared = context_.declarations.contains(token.text);
   if (!declared && is_not_a_number(token.text)) {
-    fail("E0105", token.span, fmt::format("`{}` is not a number", token.text), "Every quantity of a model is finite.");
+    fail("E0105", token.span, fmt::format("`{}` is not a number", token.text), "Every quantity of a model is finite.",
+         "Write a finite number.");
   }
   check_application(token);
   if (peek().is("(") && context_.declarations.kind(token.text) == Declarations::Kind::Field)

@@ -44,7 +44,8 @@ std::optional<End> end_of_range(Elaboration& e, const Expression& x) {
   if (v.poisoned) return std::nullopt;
   if (v.is_vector || e.context.depends_on_time(v.scalar().id()) || !constant_value(e, v.scalar())) {
     e.diagnostics.error("E0284", x.span, "an end of a domain must be known before the run",
-                        "A field lives between places that stand in the model: numbers and parameters.", "");
+                        "A field lives between places that stand in the model: numbers and parameters.",
+                        "Write a number or a parameter there.");
     return std::nullopt;
   }
   return End{v.scalar(), v.fits_any ? e.dimension(dimensions::length()) : v.dimension};
@@ -57,7 +58,8 @@ void range_of(Elaboration& e, const FieldDeclaration::Range& range) {
   if (!variable) {
     e.diagnostics.error("E0284", range.variable.span,
                         fmt::format("`{}` is no variable of this field", range.variable.text),
-                        "A domain gives each space variable of the field its two ends.", "");
+                        "A domain gives each space variable of the field its two ends.",
+                        "Write a variable that stands in the brackets of the field.");
     return;
   }
   const auto to = end_of_range(e, *range.to), from = end_of_range(e, *range.from);
@@ -96,7 +98,7 @@ void declare_space(Elaboration& e, const FieldDeclaration& s) {
   }
   if (system.space.size() > 3)
     e.diagnostics.error("E0284", s.items.front().variables[3].span, "a field of more than three space variables",
-                        "Space has three dimensions.", "");
+                        "Space has three dimensions.", "Leave the fourth variable out.");
   for (const FieldDeclaration::Range& range : s.ranges) range_of(e, range);
   constexpr double most_cells = 1e6;
   for (std::size_t i = 0; i < s.cells.size(); ++i) {
@@ -579,7 +581,8 @@ Value value_at_place(Elaboration& e, const syntax::Expression& x) {
     e.diagnostics.error(
         "E0289", x.span,
         fmt::format("a place has {} coordinate{}", system.space.size(), system.space.size() == 1 ? "" : "s"),
-        "It gives each space variable of the field its value.", "");
+        "It gives each space variable of the field its value.",
+        system.space.size() == 1 ? "Write u(3 m)." : "Write them one after the other, u(3 m, 1 m).");
     return Value::poison();
   }
   PlaceValue out{{}, system.jet_symbol(*jet), {}, x.span};
@@ -606,7 +609,8 @@ Value value_at_place(Elaboration& e, const syntax::Expression& x) {
     const bool outside = along.from && (at < *constant_value(e, along.from) || at > *constant_value(e, along.to));
     if (outside) {
       e.diagnostics.error("E0289", x.arguments[i]->span, "this place lies outside of the domain",
-                          "The field has no value there.", "");
+                          "The field has no value there.",
+                          fmt::format("Choose a place between the ends of {}.", along.name));
       return Value::poison();
     }
     out.place.push_back(v.scalar());

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <numbers>
 
 using namespace maupertuis;
 
@@ -231,4 +232,75 @@ TEST_CASE("what acts for less than a step is told, what acts longer is not") {
 
 TEST_CASE("a density that is infinite somewhere at the start") {
   CHECK(told_by_run("density = 1/2 u'^2 - 1/2 u_x^2/x\nstart u = sin(pi x)\nrun 2\n") == "E0645 ");
+}
+
+TEST_CASE("tanh and sech of large arguments are what they tend to") {
+  // With u = 0 at both ends, u'' = u_xx + sin(pi x) F: u = F sin(pi x) (1 - cos(pi t))/pi^2.
+  const auto value = [](const std::string& force) {
+    Study study(SourceText("large.lag",
+                           "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 10 order 6 boundary u = 0\n"
+                           "density = 1/2 u'^2 - 1/2 u_x^2\nforce density u = sin(pi x) " +
+                               force + "\nrun 1\nexpect u(0.5) at 1 = 0 ± 9\n"));
+    const auto found = study.verification({});
+    REQUIRE(found);
+    for (const Diagnostic& d : study.diagnostics().items()) CHECK_MESSAGE(d.code == "", d.code << " " << d.message);
+    return std::stod(found->results.at(0).actual);
+  };
+  constexpr double one = 2 / (std::numbers::pi * std::numbers::pi);
+  CHECK(value("tanh(800 (1 + t))") == doctest::Approx(one).epsilon(1e-9));
+  CHECK(value("(1 + 1/cosh(900 (1 + t)) + 1/cosh(800 (1 + t))^3)") == doctest::Approx(one).epsilon(1e-9));
+  // Where both rules hold they agree: tanh u = sinh u/cosh u, 1/cosh u = 2/(exp(u) + exp(-u)).
+  CHECK(value("tanh(3 t - 1)") ==
+        doctest::Approx(value("(exp(3 t - 1) - exp(1 - 3 t))/(exp(3 t - 1) + exp(1 - 3 t))")).epsilon(1e-9));
+  CHECK(value("(1/cosh(3 t - 1)^2)") == doctest::Approx(value("(2/(exp(3 t - 1) + exp(1 - 3 t)))^2")).epsilon(1e-9));
+}
+
+TEST_CASE("a kink of the start: the estimate is made for slow convergence, and said") {
+  // Plucked at 0.37 of its length: at x = 0.3 from t = 0.07 on the string is straight between both halves of the kink.
+  Study study(SourceText("plucked.lag",
+                         "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 20 boundary u = 0\n"
+                         "density = 1/2 u'^2 - 1/2 u_x^2\nstart u = min(x/0.37, (1 - x)/0.63)\nrun 0.1\n"
+                         "expect u(0.3) at 0.1 = 0 ± 9\n"));
+  REQUIRE(study.field_equations());
+  FieldRunOptions options;
+  options.duration = 0.1;
+  Diagnostics diagnostics;
+  const auto run = run_fields(*study.field_equations(), {{study.model()->fields->places[0].symbol, false, 0.1}},
+                              options, diagnostics);
+  REQUIRE(run);
+  REQUIRE(diagnostics.items().size() == 1);
+  CHECK(diagnostics.items()[0].code == "W0651");
+  const double exact = (0.2 / 0.37 + 0.6 / 0.63) / 2, off = std::abs(run->answers[0].value - exact);
+  CHECK(off > 1e-4);
+  CHECK(off < 3 * run->answers[0].error);
+}
+
+TEST_CASE("jumps and kinks in space are told where they are, smooth starts and jumps at borders are not") {
+  const std::string wave = "density = 1/2 u'^2 - 1/2 u_x^2\n", beam = "density = 1/2 u'^2 - 1/2 u_xx^2\n";
+  CHECK(told_by_run(beam + "start u = abs(x - 0.3) - 0.3\nrun 2\n").find("W0651") != std::string::npos);
+  CHECK(told_by_run(wave + "start u = abs(x - 0.3) - 0.3\nrun 2\n") == "W0651 ");
+  CHECK(told_by_run(wave + "start u = x, u' = piecewise(x < 0.3 : x, else : x + 0.1)\nrun 2\n") == "W0651 ");
+  CHECK(told_by_run(wave + "start u = abs(x)\nrun 2\n") == "");
+  CHECK(told_by_run(wave + "start u = sqrt(x^2 + 1) - 1\nrun 2\n") == "");
+  const auto closing = [](const std::string& start) {
+    Study study(SourceText("ring.lag",
+                           "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 8 boundary periodic\n"
+                           "density = 1/2 u'^2 - 1/2 u_x^2\nstart u = " +
+                               start + "\nrun 0.1\n"));
+    REQUIRE(study.field_equations());
+    FieldRunOptions options;
+    options.duration = 0.1;
+    Diagnostics diagnostics;
+    run_fields(*study.field_equations(), {}, options, diagnostics);
+    std::string out;
+    for (const Diagnostic& d : diagnostics.items()) out += d.code + " ";
+    return out;
+  };
+  CHECK(closing("x") == "W0651 ");
+  CHECK(closing("x (1 - x)") == "W0651 ");  // a kink at the seam
+  CHECK(closing("sin(2 pi x)") == "");
+}
+
+TEST_CASE("a force that is infinite at a moment is told on beams too") {
+  CHECK(told_by_run("density = 1/2 u'^2 - 1/2 u_xx^2\nforce density u = 1e-3/(t - 1.7)\nrun 2\n") == "W0650 ");
 }

@@ -212,3 +212,27 @@ TEST_CASE("steps follow waves that become faster than at the start, and the esti
     CHECK(error < 10 * found.errors[0]);
   }
 }
+
+TEST_CASE("waves of the plane that become faster in time: steps follow, and the estimate tells") {
+  // u = a(t) sin(pi x) sin(pi y), a'' = -2 pi^2 (1 + 400 t) a: as of a line with twice the stiffness.
+  const auto run = [](const std::string& field, const std::string& density, const std::string& start) {
+    const std::string place = field.find("y") == std::string::npos ? "u(0.5)" : "u(0.5, 0.5)";
+    Study asked(SourceText("asked.lag", "dimensionless\nfield " + field + " boundary u = 0\ndensity = 1/2 u'^2 - " +
+                                            density + "\nstart u = " + start + "\nrun 1\nexpect " + place +
+                                            " at 1 = 0 ± 9\n"));
+    REQUIRE(asked.field_equations());
+    FieldRunOptions options;
+    options.duration = 1;
+    Diagnostics diagnostics;
+    const auto found = run_fields(*asked.field_equations(), {{asked.model()->fields->places[0].symbol, false, 1}},
+                                  options, diagnostics);
+    REQUIRE(found);
+    return found->answers[0];
+  };
+  const auto line = run("u(x) : number on x = 0 .. 1 cells 40 order 6", "(1 + 400 t) u_x^2", "sin(pi x)");
+  const auto plane = run("u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 6, 6 order 4",
+                         "1/2 (1 + 400 t) (u_x^2 + u_y^2)", "sin(pi x) sin(pi y)");
+  CHECK(std::abs(line.value) < 1);
+  CHECK(std::abs(plane.value - line.value) < 10 * plane.error);
+  CHECK(plane.error < 1e-2);
+}
