@@ -41,6 +41,7 @@ HybridMotion::HybridMotion(const Model& model, const EquationsOfMotion& equation
   for (const ModelEvent& e : model.experiment.events) functions.push_back(e.function);
   const std::vector<Expr> plain = with_reactions(equations, functions);
   wanted_.events.insert(wanted_.events.end(), plain.begin(), plain.end());
+  for (const Contact& c : system_.contacts) in_space_ = in_space_ || c.friction.in_space();
 }
 
 HybridMotion::~HybridMotion() = default;

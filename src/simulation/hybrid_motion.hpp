@@ -217,6 +217,7 @@ class HybridMotion final : public Method {
   double accumulated_at_ = 0;
   HybridRecord record_;
   std::size_t left_out_remarks_ = 0;
+  bool in_space_ = false;              // a contact has friction in space
   std::vector<bool> begins_to_slide_;  // [contacts] in space, at this instant
   std::vector<double> slip_scale_;     // [contacts] of friction in space, the largest slips so far
   double cone_residual_ = 0;           // the largest so far

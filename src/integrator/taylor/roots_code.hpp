@@ -142,7 +142,7 @@ void RootSearchOf<T>::narrow() {
 
 template <class T>
 void RootSearchOf<T>::expand() {
-  if (expanded_) return;
+  if (expanded_ || (place_.x == T(0) && start_.rows)) return;
   retrace_.expand_about(T(h_ * place_.x));
   expanded_ = true;
 }
@@ -152,6 +152,13 @@ void RootSearchOf<T>::go_to(const T& x, const T& most) {
   using std::abs;
   if (place_.known && place_.x == x && place_.most == most) return;
   place_ = {true, x, most, std::move(place_.coefficients), std::move(place_.scales), {}, {}};
+  const double length = static_cast<double>(abs(h_) * most);
+  if (x == T(0) && start_.rows) {
+    place_.coefficients = start_.coefficients;
+    place_.scales = start_.scales;
+    disks_.begin(rows_.of(start_.rows, start_.stride, retrace_.order(), std::ilogb(length)));
+    return;
+  }
   expanded_ = false;
   expand();
   const std::size_t orders = static_cast<std::size_t>(retrace_.order()) + 2;
@@ -163,7 +170,6 @@ void RootSearchOf<T>::go_to(const T& x, const T& most) {
       place_.coefficients[i * orders + k] = retrace_.row(static_cast<int>(k))[slot];
     place_.scales[i] = retrace_.scale(slot);
   }
-  const double length = static_cast<double>(abs(h_) * most);
   disks_.begin(rows_.of(retrace_.row(0), retrace_.stride(), retrace_.order(), std::ilogb(length)));
 }
 

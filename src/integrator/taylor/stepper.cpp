@@ -146,6 +146,7 @@ bool TaylorStepper::Impl::make_step(double bound, double h, Step& result) {
   last.keep(work, state);
   watched.set_sides(probe);
   last.record_start(work);
+  has_start_sample = true;
   const taylor::Crossing crossing = watched.empty() ? taylor::Crossing() : watched.first_crossing(work, state.t, h);
   if (crossing.found && stuck >= 100) {
     end(result, StepEnding::Sliding,
@@ -191,7 +192,8 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   s.last.start(s.state);
   s.watched.choose_first_sides(s.work, s.state);
   s.watched.set_sides(s.probe);
-  s.last.start_sample = s.last.sample(t, s.probe);
+  s.last.start_sample.t = t;
+  s.has_start_sample = false;
 }
 
 void TaylorStepper::put_at_zero(std::span<const std::size_t> events, std::uint8_t order) {
@@ -262,6 +264,14 @@ void TaylorStepper::state(double t, std::span<double> q, std::span<double> v) co
 }
 
 double TaylorStepper::constraint_residual() const { return impl_->constraints.residual; }
-const Sample& TaylorStepper::step_start() const { return impl_->last.start_sample; }
+const Sample& TaylorStepper::step_start() const {
+  Impl& s = *impl_;
+  if (!s.has_start_sample) {
+    s.watched.set_sides(s.probe);
+    s.last.start_sample = s.last.sample(s.state.t.hi, s.probe);
+    s.has_start_sample = true;
+  }
+  return s.last.start_sample;
+}
 
 }  // namespace maupertuis

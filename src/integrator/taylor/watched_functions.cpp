@@ -21,6 +21,19 @@ void note(Crossing& crossing, double x, std::size_t index, double together, int 
   crossing.directions.push_back(direction);
 }
 
+/// Switch functions, then events, as a workspace has them.
+struct ExpansionOfWatched {
+  const KernelWorkspace& work;
+  std::size_t switches;
+
+  double coefficient(std::size_t i, int k) const {
+    return i < switches ? work.switch_function(i, k) : work.event(i - switches, k);
+  }
+  double scale(std::size_t i) const { return i < switches ? work.switch_scale(i) : work.event_scale(i - switches); }
+  const double* rows() const { return work.coordinate(0); }
+  std::size_t stride() const { return work.row_stride(); }
+};
+
 /// The side that an event function has as the step begins. True if it is not the one that it had as the last step
 /// ended: then a root lies between them, within rounding.
 bool begins_past_root(const KernelWorkspace& work, std::size_t index, double h, Watched& watched) {
@@ -43,7 +56,7 @@ WatchedFunctions::WatchedFunctions(const Kernel& kernel, const KernelWorkspace& 
 }
 
 void WatchedFunctions::start() {
-  std::fill(switches.begin(), switches.end(), Watched{});
+  for (Watched& w : switches) w = {w.side, false};  // a first guess: those of the motion before
   std::fill(events.begin(), events.end(), Watched{});
 }
 
@@ -72,7 +85,8 @@ Crossing WatchedFunctions::first_crossing(const KernelWorkspace& work, const Com
   out.after = switches;
   out.after.insert(out.after.end(), events.begin(), events.end());
   roots_->set_constants({work.constants(), work.program().constants.size()}, work.constants());
-  roots_->begin({t.hi, t.lo}, h, [&work](int k) { return work.coordinate(k); });
+  roots_->begin(
+      {t.hi, t.lo}, h, [&work](int k) { return work.coordinate(k); }, ExpansionOfWatched{work, switches.size()});
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const double together = std::max(4 * epsilon, 4 * epsilon * std::abs(t.hi / h));
   out.x = roots_->window();
