@@ -116,6 +116,7 @@ void HybridMotion::move_on(double by, const VectorXd& accelerations) {
   gap_begin_ = t_;
   just_moved_on_ = true;
   t_ += by;
+  knows_compliance_ = false;
   const double gained = energy_at(t_, q_, v_) - before;  // what other contacts rub meanwhile, as a rule
   carried_[0] += gained;
   carried_[1] -= gained;

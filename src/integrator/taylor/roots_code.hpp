@@ -207,6 +207,7 @@ typename RootSearchOf<T>::Piece RootSearchOf<T>::piece(std::size_t index, const 
   constexpr double most_of_radius = 0.45, least_of_radius = 0.02;
   double best = 0;
   T remainder = T(0);
+  Piece result{{}, T(0)};
   const double least = static_cast<double>(resolution_ / most);
   double radius = 8 * length;
   for (std::size_t i = 0; i < 200 && best < 1 && most_of_radius * radius > std::max(best, least) * length;
@@ -217,14 +218,15 @@ typename RootSearchOf<T>::Piece RootSearchOf<T>::piece(std::size_t index, const 
          part > best && part * length > least_of_radius * radius; part *= 0.75) {
       const double ratio = part * length / radius;
       const T left_out = left == 0 ? T(0) : T(left) * T(std::pow(ratio, known + 1) / (1 - ratio));
-      const auto polynomial = polynomial_over(part);
+      auto polynomial = polynomial_over(part);
       if (!(left_out <= unit * polynomial.reach)) continue;
       best = part, remainder = left_out;
+      result.polynomial = std::move(polynomial);
       break;
     }
   }
   if (!(best > least)) return {{}, T(0)};
-  Piece result{polynomial_over(best), T(best) * most};
+  result.width = T(best) * most;
   result.polynomial.scale += remainder / unit;
   result.polynomial.reach += remainder / unit;
   for (const T& c : result.polynomial.p)

@@ -222,6 +222,8 @@ TaylorStepper::Outlook TaylorStepper::outlook(double bound) {
   if (!s.expanded) return out;
   const double h = std::min(taylor::step_size(s.work, s.n, s.control, s.length), std::abs(s.remaining(bound)));
   out.length = h;
+  for (auto* list : {&out.reach, &out.values, &out.slopes}) list->reserve(s.kernel.events());
+  out.sides.reserve(s.kernel.events());
   for (const auto& [side, reach] : s.watched.sides_of_events(s.work, std::copysign(h, s.remaining(bound)))) {
     out.sides.push_back(side);
     out.reach.push_back(reach);
@@ -242,6 +244,7 @@ std::span<const double> TaylorStepper::q() const {
   return s.q_unwound;
 }
 std::span<const double> TaylorStepper::v() const { return impl_->state.v_now; }
+double TaylorStepper::integral(std::size_t index) const { return impl_->state.integrals[index].hi; }
 std::size_t TaylorStepper::steps() const { return impl_->steps; }
 std::size_t TaylorStepper::rejected() const { return impl_->rejected; }
 std::size_t TaylorStepper::switches() const { return impl_->switches; }

@@ -37,10 +37,13 @@ struct ExpansionOfWatched {
 /// The side that an event function has as the step begins. True if it is not the one that it had as the last step
 /// ended: then a root lies between them, within rounding.
 bool begins_past_root(const KernelWorkspace& work, std::size_t index, double h, Watched& watched) {
-  const auto polynomial = judged(event_polynomial(work, index, h));
   const std::int8_t before = watched.side;
-  watched.at_zero = watched.at_zero || polynomial.begins_at_zero();
-  watched.side = watched.at_zero ? polynomial.direction(watched.order) : sign(polynomial.p[0]);
+  const double here = work.event(index, 0);
+  watched.at_zero = watched.at_zero || watching::is_zero(here, work.event_scale(index));
+  watched.side = sign(here);
+  if (!watched.at_zero && (before == 0 || watched.side != -before)) return false;
+  const auto polynomial = judged(event_polynomial(work, index, h));
+  if (watched.at_zero) watched.side = polynomial.direction(watched.order);
   constexpr double close = 1e-6;  // beyond, the sign has changed by a jump
   return before != 0 && watched.side == -before && std::abs(polynomial.p[0]) <= close * polynomial.reach;
 }
@@ -143,6 +146,7 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, Crossing& out
 std::vector<WatchedFunctions::Side> WatchedFunctions::sides_of_events(const KernelWorkspace& work, double h) const {
   constexpr double clear = 1e-9;  // of the terms of the function: its own value decides
   std::vector<Side> out;
+  out.reserve(events.size());
   for (std::size_t i = 0; i < events.size(); ++i) {
     const double here = work.event(i, 0);
     if (!events[i].at_zero && std::abs(here) > clear * work.event_scale(i)) {

@@ -102,6 +102,11 @@ class Retrace {
   void shift(const T& s, int last) {
     const std::size_t n = program_.unknowns;
     const int degree = order_ + 1;
+    if (s == T(0)) {
+      for (int k = 0; k <= std::min(last, degree); ++k)
+        std::copy_n(polynomials_.data() + static_cast<std::size_t>(k) * n, n, memory_.row(k));
+      return;
+    }
     std::vector<T> c(static_cast<std::size_t>(degree) + 1);
     for (std::size_t i = 0; i < n; ++i) {
       for (int k = 0; k <= degree; ++k)
