@@ -141,11 +141,7 @@ class RootSearchOf {
   double tail(std::size_t disk, std::size_t near);
   Piece piece(std::size_t index, const T& x, const T& most);
   static Piece up_to(Piece piece, const T& width);
-  T value(std::size_t index, const T& x) {
-    expanded_ = false;
-    retrace_.evaluate(T(h_ * x));
-    return retrace_.row(0)[slots_[index]];
-  }
+  T value(std::size_t index, const T& x);
   T at_a_time(const T& x) const;
   T refined(std::size_t index, const Piece& piece, const T& begin, const T& root);
   struct Gap {
@@ -174,8 +170,8 @@ class RootSearchOf {
 using RootSearch = RootSearchOf<double>;
 
 /// Where side · p, which does not go below its rounding error, comes down to it after having been clear of it; nothing
-/// if it does not.
+/// if it does not. `ends_at_root`: what it does at x = 1 is known to be no touch.
 template <class T>
-std::optional<T> touching(const ScaledPolynomialOf<T>& polynomial, std::int8_t side);
+std::optional<T> touching(const ScaledPolynomialOf<T>& polynomial, std::int8_t side, bool ends_at_root = false);
 
 }  // namespace maupertuis::taylor

@@ -57,15 +57,20 @@ class Search {
 }  // namespace touches
 
 template <class T>
-std::optional<T> touching(const ScaledPolynomialOf<T>& polynomial, std::int8_t side) {
+std::optional<T> touching(const ScaledPolynomialOf<T>& polynomial, std::int8_t side, bool ends_at_root) {
   using std::abs;
   const std::span<const T> p = polynomial.p;
   if (p.empty() || side == 0) return std::nullopt;
   T rest = T(0);
   for (std::size_t k = 1; k < p.size(); ++k) rest += abs(p[k]);
   if (side * p[0] > rest + watching::unit<T>() * polynomial.reach) return std::nullopt;
-  touches::Search<T> search(polynomial, side);
-  return search.in(T(0), T(1), crossings::to_bernstein(p, side));
+  if (p.size() == 1) return std::nullopt;
+  std::vector<T> b = crossings::to_bernstein(p, side);
+  // Positive but for the ends: it comes to zero nowhere between them, however near to them it is.
+  const T error = watching::unit<T>() * polynomial.reach;
+  const bool is_positive = std::all_of(b.begin() + 1, b.end() - 1, [&](const T& c) { return c > error; });
+  if (is_positive && (ends_at_root || b.back() > error)) return std::nullopt;
+  return touches::Search<T>(polynomial, side).in(T(0), T(1), std::move(b));
 }
 
 namespace touches {
@@ -138,6 +143,13 @@ void RootSearchOf<T>::narrow() {
   for (const std::size_t i : near_) wanted.push_back(slots_[i]);
   retrace_.want(wanted);
   disks_.bound_only(wanted);
+}
+
+template <class T>
+T RootSearchOf<T>::value(std::size_t index, const T& x) {
+  expanded_ = false;
+  retrace_.evaluate(T(h_ * x), all_disks_.needs_larger_disk());
+  return retrace_.row(0)[slots_[index]];
 }
 
 template <class T>
@@ -333,7 +345,7 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watc
     const auto root = crossing(now.polynomial, watched);
     watched.at_zero = false;  // the step goes on from it, wherever it ends
     if (wants_touching) {
-      const auto touch = touching(touches::up_to(now.polynomial, root), watched.side);
+      const auto touch = touching(touches::up_to(now.polynomial, root), watched.side, root.has_value());
       const T end = root ? *root : T(1);
       if (touch && (!root || *touch < T(0.999))) return RootOf<T>{T(x + now.width * end * *touch), RootKind::Touching};
     }

@@ -58,8 +58,8 @@ class Retrace {
   }
   /// All orders about s.
   void expand_about(const T& s) { run(needed_, s, order_, order_ + 1); }
-  /// Values at s alone.
-  void evaluate(const T& s) { run(needed_, s, 1, 2); }
+  /// Values at s alone; without rates where nothing but coordinates is differentiated.
+  void evaluate(const T& s, bool with_rates = true) { run(needed_, s, 1, 2, with_rates ? never : 0); }
   /// Of all slots of the constructor, wanted now or not: orders up to `most`, those of the coordinates all.
   void values_about(const T& s, int most) { run(every_, s, std::min(most + 1, order_), order_ + 1, most); }
 
