@@ -87,6 +87,7 @@ class TaylorStepper {
   double time() const;
   std::span<const double> q() const;  // [n]
   std::span<const double> v() const;  // [n]
+  double integral(std::size_t index) const;
   std::size_t steps() const;
   std::size_t rejected() const;  // steps so far that were taken back, since the equations did not hold at their ends
   std::size_t switches() const;  // located crossings so far

@@ -1,6 +1,7 @@
 #include "simulation/companions.hpp"
 
 #include "simulation/hybrid_motion.hpp"
+#include "simulation/lost_digits.hpp"
 #include "simulation/methods.hpp"
 
 #include <maupertuis/ensemble.hpp>
@@ -55,10 +56,15 @@ Companions interrupted() {
 
 class Recorder {
  public:
-  Recorder(const CompanionPlan& plan, Method& method)
-      : plan_(plan), method_(method), requests_(order_of_requests(plan)) {
+  /// `last_row`: that others have come to before they lost the motion.
+  Recorder(const CompanionPlan& plan, Method& method, std::size_t last_row)
+      : plan_(plan), method_(method), requests_(order_of_requests(plan)), last_row_(last_row) {
     out_.at.resize(plan.options.at.size());
   }
+
+  /// It is recorded up to where it has lost the motion for good: what follows is told by nobody.
+  void end_where_lost(double share) { lost_.emplace(plan_, share); }
+  std::size_t last_row() const { return last_row_; }
 
   /// Nothing where the user has interrupted it.
   std::optional<CompanionRun> record(const RoundedNumbers::Draw& draw) {
@@ -66,14 +72,14 @@ class Recorder {
     const double bound = until ? plan_.run.end : plan_.result.final.t;
     method_.start(plan_.run.begin, draw.q, draw.v);
     cover();
-    while (method_.time() != bound) {
+    while (method_.time() != bound && !has_lost_the_motion()) {
       const Step step = method_.step(bound);
       cover();
       if (step.ending == StepEnding::Interrupted) return std::nullopt;
       if (until && step.event) out_.final = sample(method_.time());
       if (step.ending != StepEnding::None || out_.final) break;
     }
-    if (!until && method_.time() == bound) out_.final = sample(bound);
+    if (!until && method_.time() == bound && !has_lost_the_motion()) out_.final = sample(bound);
     out_.rows.resize(plan_.grid.size() * plan_.columns(), nothing);
     return std::move(out_);
   }
@@ -84,6 +90,8 @@ class Recorder {
     leave_out_undetermined(out, plan_.observables);
     return out;
   }
+
+  bool has_lost_the_motion() const { return next_row_ > last_row_ && next_request_ == requests_.size(); }
 
   void cover() {
     for (; next_row_ < plan_.grid.size() && method_.covers(plan_.time(next_row_)); ++next_row_)
@@ -98,14 +106,23 @@ class Recorder {
     const std::size_t n = plan_.run.q.size(), from = out_.rows.size();
     out_.rows.resize(from + 2 * n);
     method_.state(t, std::span(out_.rows).subspan(from, n), std::span(out_.rows).subspan(from + n, n));
+    if (lost_ && lost_->look(next_row_, out_.rows.data() + from)) last_row_ = std::min(last_row_, next_row_);
   }
 
   const CompanionPlan& plan_;
   Method& method_;
   std::vector<std::size_t> requests_;
   std::size_t next_row_ = 0, next_request_ = 0;
+  std::size_t last_row_;
+  std::optional<LostCompanion> lost_;
   CompanionRun out_;
 };
+
+/// Whether nothing but the state is asked of companions at the end, where it may be lost.
+bool may_end_where_lost(const CompanionPlan& plan) {
+  const bool at_the_end = plan.result.ending == Ending::UntilReached || plan.result.ending == Ending::Stopped;
+  return !plan.whole_rows && !at_the_end && (goes_through_modes(plan.model) || plan.observables.reactions.empty());
+}
 
 std::size_t most_steps(const CompanionPlan& plan) {
   const std::size_t steps = plan.result.statistics.steps, most = std::numeric_limits<std::size_t>::max();
@@ -151,7 +168,9 @@ Companions one_after_the_other(const CompanionPlan& plan, const WantedFunctions&
   const std::string& name = plan.result.statistics.method;
   const bool taylor = name == "taylor";
   Companions out;
-  for (int k = 0; k < (taylor ? 3 : 2); ++k) {
+  const int count = taylor ? 3 : 2;
+  std::size_t last_row = std::numeric_limits<std::size_t>::max();
+  for (int k = 0; k < count; ++k) {
     RoundedNumbers::Draw draw = numbers.draw(seed + static_cast<std::uint64_t>(k));
     if (!taylor) draw.q = plan.run.q, draw.v = plan.run.v;  // rounding is nothing beside their tolerances
     HybridMotion* through_modes = nullptr;
@@ -166,8 +185,11 @@ Companions one_after_the_other(const CompanionPlan& plan, const WantedFunctions&
         : taylor          ? method_of(TaylorStepper(numbers.kernel(), draw.parameters, taylor_options(plan, k)))
         : name == "stiff" ? finer_stiff(plan, wanted, k)
                           : finer_variational(plan, wanted, k);
-    auto run = Recorder(plan, *method).record(draw);
+    Recorder recorder(plan, *method, last_row);
+    if (may_end_where_lost(plan)) recorder.end_where_lost(out.factor / std::sqrt(count));
+    auto run = recorder.record(draw);
     if (!run) return interrupted();
+    last_row = recorder.last_row();
     if (through_modes) run->happenings = through_modes->record().happenings;
     take_in(out, std::move(*run), plan);
   }

@@ -1,5 +1,7 @@
 #include "simulation/errors.hpp"
 
+#include "simulation/lost_digits.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,10 +12,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t usual_rows = 400;  // that are compared where no row is to have its errors
-/// Of the largest value of a column: an error above it leaves no digit, and grows no further than the motion reaches.
-constexpr double saturated = 0.5;
-/// Of the largest value among columns of one unit: what is smaller is rounding noise about zero, not a motion.
-constexpr double noise = 1e-6;
 
 /// No number is known better than it is rounded; zero is exact where all agree on it.
 double with_rounding(double error, double value) {
@@ -105,32 +103,16 @@ class Teller {
     return column < n_ ? numbers_.given_q(column) : column < 2 * n_ && numbers_.given_v(column - n_);
   }
 
-  double largest(std::size_t column) const {
-    double out = 0;
-    for (std::size_t row = 0; row < result_.trajectory.rows(); ++row)
-      if (const double x = std::abs(result_.trajectory.at(row, column)); std::isfinite(x)) out = std::max(out, x);
-    return out;
-  }
-
   /// Each column of the state that is lost at the end, and since when.
   void find_loss() {
     lost_from_.assign(2 * n_, infinity);
     if (plan_.grid.empty()) return;
-    std::vector<double> sizes;
-    for (std::size_t c = 0; c < 2 * n_; ++c) sizes.push_back(largest(c));
-    const auto& names = result_.trajectory.columns;
+    const LostDigits digits(plan_);
     bool everything = true;
     for (std::size_t c = 0; c < 2 * n_; ++c) {
-      double of_unit = 0;
-      for (std::size_t other = 0; other < 2 * n_; ++other)
-        if (names[other].unit == names[c].unit) of_unit = std::max(of_unit, sizes[other]);
-      // What moves a coordinate along the whole run by less than its noise is noise too.
-      if (const double length = std::abs(plan_.run.end - plan_.run.begin); c >= n_ && length > 0)
-        for (std::size_t other = 0; other < n_; ++other)
-          if (names[other].unit == names[c - n_].unit) of_unit = std::max(of_unit, sizes[other] / length);
-      const std::size_t g = first_lost(c, sizes[c], of_unit);
+      const std::size_t g = first_lost(c, digits);
       if (g == plan_.grid.size()) {
-        everything = everything && sizes[c] == 0;
+        everything = everything && digits.size(c) == 0;
         continue;
       }
       lost_from_[c] = plan_.time(g);
@@ -141,19 +123,15 @@ class Teller {
 
   /// The first row that is lost and from which on most are: companions that go ways of their own come near each other
   /// by chance now and then.
-  std::size_t first_lost(std::size_t column, double size, double of_unit) const {
+  std::size_t first_lost(std::size_t column, const LostDigits& digits) const {
     constexpr double most = 0.75;
     const std::size_t rows = plan_.grid.size();
     std::size_t first = rows, lost = 0;
     for (std::size_t g = rows; g-- > 0;) {
-      if (!is_lost(errors_[g * columns_ + column], size, of_unit)) continue;
+      if (!digits.is_lost(column, errors_[g * columns_ + column])) continue;
       if (static_cast<double>(++lost) >= most * static_cast<double>(rows - g)) first = g;
     }
     return first;
-  }
-
-  static bool is_lost(double error, double size, double of_unit) {
-    return error > 0 && error >= saturated * size && error >= noise * of_unit;
   }
 
   void note_loss(std::size_t column) {
@@ -214,7 +192,7 @@ class Teller {
       const Sample* const sample = sample_of(run);
       return sample ? sample->observables[observable] : infinity;
     });
-    return everything_lost_at(t) && e >= saturated * std::abs(value) ? infinity : e;
+    return everything_lost_at(t) && e >= saturated_error * std::abs(value) ? infinity : e;
   }
 
   void tell_probe(Probe& probe) const {

@@ -100,7 +100,7 @@ void HybridMotion::order_by_forces(std::vector<Choice>& list, const ContactValue
 /// speed is taken out. v²/(2 |g̈|) is the height of such a flight, g̈ being what its own force takes back.
 void HybridMotion::close_lowest_flights(const std::vector<std::size_t>& touching, double bound) {
   constexpr double slow = 1e-6;  // of the fastest so far: never what is to be seen
-  const ContactValues values = functions_.at(t_, q_, v_);
+  const ContactValues& values = functions_.at(t_, q_, v_);
   const auto is_slow = [&](std::size_t i) {
     return values.rate[i] > rest_speed(i, values) && values.rate[i] <= slow * fastest_[i];
   };

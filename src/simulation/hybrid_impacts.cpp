@@ -150,6 +150,7 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
   const bool rubs =
       std::any_of(touching.begin(), touching.end(), [&](std::size_t i) { return !values.tangent[i].empty(); });
   ImpactProblem p = impact_problem(end ? cycle_ : touching, values);
+  if (!end) note_compliance(p);
   const bool rests = !end && is_lost_in_rounding(touching, values);
   if (end || rests) std::fill(p.restitution.begin(), p.restitution.end(), 0.0);
   const VectorXd v = vector_of(v_);

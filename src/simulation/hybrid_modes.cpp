@@ -391,8 +391,8 @@ void HybridMotion::forget(const ContactMode& mode) {
 }
 
 bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason) {
-  const ContactValues values = functions_.at(t_, q_, v_);
-  if (!touching.empty()) note_compliance(touching, values);
+  const ContactValues& values = functions_.at(t_, q_, v_);  // of one point throughout
+  if (!touching.empty() && !knows_compliance_) note_compliance(touching, values);
   std::vector<Choice> list = choices(touching, values);
   if (list.size() > 1) order_by_forces(list, values, bound);
   Combinations tries(list);

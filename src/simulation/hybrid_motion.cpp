@@ -41,6 +41,7 @@ HybridMotion::HybridMotion(const Model& model, const EquationsOfMotion& equation
   for (const ModelEvent& e : model.experiment.events) functions.push_back(e.function);
   const std::vector<Expr> plain = with_reactions(equations, functions);
   wanted_.events.insert(wanted_.events.end(), plain.begin(), plain.end());
+  for (const Contact& c : system_.contacts) in_space_ = in_space_ || c.friction.in_space();
 }
 
 HybridMotion::~HybridMotion() = default;
@@ -50,8 +51,7 @@ bool HybridMotion::will_jump() const { return pending_ && (!pending_->hit.empty(
 void HybridMotion::leave_mode() {
   if (!now_) return;
   const TaylorStepper& s = *now_->stepper;
-  const Sample last = s.sample(s.time());
-  for (std::size_t k = 0; k < 3; ++k) carried_[k] += last.integrals[k];
+  for (std::size_t k = 0; k < 3; ++k) carried_[k] += s.integral(k);
   steps_before_ += s.steps(), rejected_before_ += s.rejected(), switches_before_ += s.switches();
   residual_before_ = std::max(residual_before_, s.constraint_residual());
 }
@@ -440,6 +440,7 @@ std::optional<Step> HybridMotion::settle(double bound) {
         return stopped(StepEnding::Paradox,
                        fmt::format("The start violates the contact {}.", system_.contact_label(i)));
   note_sizes(values);
+  knows_compliance_ = false;
   begins_to_slide_.assign(system_.contacts.size(), false);
   std::vector<std::size_t> touch = touching(functions_.at(t_, q_, v_));
   if (!hit(touch, reason)) return stopped(StepEnding::Paradox, reason);

@@ -148,6 +148,7 @@ class HybridMotion final : public Method {
   void note_usual_gaps(const ContactValues& values);
   void note_accelerations(std::span<const double> a, const ContactValues& values);
   void note_compliance(const std::vector<std::size_t>& touching, const ContactValues& values);
+  void note_compliance(const ImpactProblem& problem);
   std::optional<std::size_t> violated();
   bool may_be_several(const ContactMode& mode, const ContactValues& values);
   void note_indeterminate(const std::vector<Choice>& list, const ContactValues& values);
@@ -206,6 +207,7 @@ class HybridMotion final : public Method {
   std::vector<double> place_, speed_, acceleration_;  // [kinds] |q|, |q'|, |q''|
   std::vector<double> usual_q_, usual_v_;             // [n] or empty
   std::vector<double> compliance_;                    // [contacts] what a force λ = 1 does to g̈, where it was needed
+  bool knows_compliance_ = false;                     // of all that touch at this instant
   struct Bounces {
     std::vector<std::pair<double, double>> last;  // (t, speed) of the last impacts
   };
@@ -217,6 +219,7 @@ class HybridMotion final : public Method {
   double accumulated_at_ = 0;
   HybridRecord record_;
   std::size_t left_out_remarks_ = 0;
+  bool in_space_ = false;              // a contact has friction in space
   std::vector<bool> begins_to_slide_;  // [contacts] in space, at this instant
   std::vector<double> slip_scale_;     // [contacts] of friction in space, the largest slips so far
   double cone_residual_ = 0;           // the largest so far

@@ -98,4 +98,11 @@ void HybridMotion::note_compliance(const std::vector<std::size_t>& touching, con
     compliance_[touching[k]] = std::abs(dot(rows[k], response.col(static_cast<Eigen::Index>(k))));
 }
 
+/// An impact has asked for the same: M does not depend on the velocities.
+void HybridMotion::note_compliance(const ImpactProblem& p) {
+  for (std::size_t k = 0; k < p.contacts.size(); ++k)
+    compliance_[p.contacts[k]] = std::abs(dot(p.normal[k], p.response.col(static_cast<Eigen::Index>(k))));
+  knows_compliance_ = true;
+}
+
 }  // namespace maupertuis

@@ -116,6 +116,7 @@ void HybridMotion::move_on(double by, const VectorXd& accelerations) {
   gap_begin_ = t_;
   just_moved_on_ = true;
   t_ += by;
+  knows_compliance_ = false;
   const double gained = energy_at(t_, q_, v_) - before;  // what other contacts rub meanwhile, as a rule
   carried_[0] += gained;
   carried_[1] -= gained;
@@ -160,6 +161,7 @@ void HybridMotion::take_out_slips(const std::vector<std::size_t>& stopping, cons
 /// A slip that is slow and falls comes to rest after v_t²/(−v_t·v̇_t): the motion moves on to there, where both
 /// components are 0. One that grows has just begun.
 void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double bound) {
+  if (!in_space_) return;
   const ContactValues values = functions_.at(t_, q_, v_);
   const auto is_slow = [&](std::size_t i) {
     constexpr double rounding = 1 + 1e-6;
@@ -207,6 +209,7 @@ void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double
 /// slip, and there is none yet: the motion moves on by a moment with the accelerations that the cones give. False, and
 /// why, where the cones have no solution that is found.
 bool HybridMotion::choose_slips(const std::vector<std::size_t>& touching, double bound, std::string& reason) {
+  if (!in_space_) return true;
   const ContactValues values = functions_.at(t_, q_, v_);
   const auto may_begin = [&](std::size_t i) {
     const Friction& f = system_.contacts[i].friction;

@@ -192,6 +192,7 @@ void TaylorStepper::Impl::pass(const Collocation& c, double bound, Step& result)
     for (std::size_t i = 0; i < state.integrals.size(); ++i)
       last.dense.integrand(k)[i] = k < nodes ? c.integrand[i][k] / power(k) : 0;
   last.start_sample = last.sample(last.begin.hi, probe);
+  has_start_sample = true;
   const bool reaches_bound = c.h == remaining(bound);
   state.move(last.dense, last.begin, c.h);
   if (reaches_bound) state.arrive(bound);

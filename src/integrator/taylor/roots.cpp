@@ -2,7 +2,7 @@
 
 namespace maupertuis::taylor {
 
-template std::optional<double> touching(const ScaledPolynomial&, std::int8_t);
+template std::optional<double> touching(const ScaledPolynomial&, std::int8_t, bool);
 template class RootSearchOf<double>;
 
 }  // namespace maupertuis::taylor

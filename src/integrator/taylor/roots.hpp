@@ -67,15 +67,24 @@ class RootSearchOf {
   /// row(k): the k-th coefficients of all unknowns about t; h: length of the step, not 0.
   template <class Row>
   void begin(const Time& time, const T& h, Row&& row) {
-    retrace_.set_motion(time.hi, time.lo, row);
-    t_ = time;
-    h_ = h;
-    const T& t = time.hi;
-    // Below it two times are the same, or nearly so.
-    using std::abs;
-    resolution_ =
-        std::max(T(64 * std::numeric_limits<T>::epsilon()), T(4 * std::numeric_limits<T>::epsilon() * abs(t) / abs(h)));
-    find_near();
+    begin_with(time, h, row);
+    start_ = {};
+  }
+  /// The same where `work` holds the expansion about t: it gives the function `index` by coefficient(index, k) and its
+  /// scale(index), and has rows() of all that it is made of, so that nothing is expanded twice.
+  template <class Row, class Expansion>
+  void begin(const Time& time, const T& h, Row&& row, const Expansion& work) {
+    begin_with(time, h, row);
+    const int orders = retrace_.order() + 2;
+    start_.coefficients.resize(near_.size() * static_cast<std::size_t>(orders));
+    start_.scales.resize(near_.size());
+    for (std::size_t i = 0; i < near_.size(); ++i) {
+      T* const coefficients = start_.coefficients.data() + i * static_cast<std::size_t>(orders);
+      for (int k = orders; k-- > 0;) coefficients[k] = work.coefficient(near_[i], k);
+      start_.scales[i] = work.scale(near_[i]);
+    }
+    start_.rows = work.rows();
+    start_.stride = work.stride();
   }
   /// The part of the step, from its beginning, in which roots can be searched: 1, or less where the functions that come
   /// near zero would be many.
@@ -95,6 +104,13 @@ class RootSearchOf {
     T width;                           // of [0, 1] over the step; 0: the function is not analytic here
   };
 
+  /// The expansion at the beginning of the step, where it is known from elsewhere.
+  struct Start {
+    std::vector<T> coefficients, scales;  // [near][order + 2], [near]
+    const T* rows = nullptr;              // of all slots that the disks of near ones read; null: it is not known
+    std::size_t stride = 0;
+  };
+
   /// What all pieces about one place share: the expansion there, and disks about it, each smaller than the one before.
   struct Place {
     bool known = false;
@@ -104,6 +120,18 @@ class RootSearchOf {
     std::vector<std::vector<double>> tails;  // [disks][near]
   };
 
+  template <class Row>
+  void begin_with(const Time& time, const T& h, Row&& row) {
+    retrace_.set_motion(time.hi, time.lo, row);
+    t_ = time;
+    h_ = h;
+    const T& t = time.hi;
+    // Below it two times are the same, or nearly so.
+    using std::abs;
+    resolution_ =
+        std::max(T(64 * std::numeric_limits<T>::epsilon()), T(4 * std::numeric_limits<T>::epsilon() * abs(t) / abs(h)));
+    find_near();
+  }
   void find_near();
   void find_clear(double radius);
   void note_near();
@@ -113,11 +141,7 @@ class RootSearchOf {
   double tail(std::size_t disk, std::size_t near);
   Piece piece(std::size_t index, const T& x, const T& most);
   static Piece up_to(Piece piece, const T& width);
-  T value(std::size_t index, const T& x) {
-    expanded_ = false;
-    retrace_.evaluate(T(h_ * x));
-    return retrace_.row(0)[slots_[index]];
-  }
+  T value(std::size_t index, const T& x);
   T at_a_time(const T& x) const;
   T refined(std::size_t index, const Piece& piece, const T& begin, const T& root);
   struct Gap {
@@ -133,6 +157,7 @@ class RootSearchOf {
   ScaledRows<T> rows_;
   std::vector<std::int8_t> clear_;               // [slots] side on which it stays; 0: it may come to zero
   std::vector<std::size_t> near_, near_before_;  // the others
+  Start start_;
   Place place_;
   bool expanded_ = false;  // the rows are those of the place
   Time t_;
@@ -145,8 +170,8 @@ class RootSearchOf {
 using RootSearch = RootSearchOf<double>;
 
 /// Where side · p, which does not go below its rounding error, comes down to it after having been clear of it; nothing
-/// if it does not.
+/// if it does not. `ends_at_root`: what it does at x = 1 is known to be no touch.
 template <class T>
-std::optional<T> touching(const ScaledPolynomialOf<T>& polynomial, std::int8_t side);
+std::optional<T> touching(const ScaledPolynomialOf<T>& polynomial, std::int8_t side, bool ends_at_root = false);
 
 }  // namespace maupertuis::taylor

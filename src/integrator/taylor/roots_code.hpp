@@ -57,15 +57,20 @@ class Search {
 }  // namespace touches
 
 template <class T>
-std::optional<T> touching(const ScaledPolynomialOf<T>& polynomial, std::int8_t side) {
+std::optional<T> touching(const ScaledPolynomialOf<T>& polynomial, std::int8_t side, bool ends_at_root) {
   using std::abs;
   const std::span<const T> p = polynomial.p;
   if (p.empty() || side == 0) return std::nullopt;
   T rest = T(0);
   for (std::size_t k = 1; k < p.size(); ++k) rest += abs(p[k]);
   if (side * p[0] > rest + watching::unit<T>() * polynomial.reach) return std::nullopt;
-  touches::Search<T> search(polynomial, side);
-  return search.in(T(0), T(1), crossings::to_bernstein(p, side));
+  if (p.size() == 1) return std::nullopt;
+  std::vector<T> b = crossings::to_bernstein(p, side);
+  // Positive but for the ends: it comes to zero nowhere between them, however near to them it is.
+  const T error = watching::unit<T>() * polynomial.reach;
+  const bool is_positive = std::all_of(b.begin() + 1, b.end() - 1, [&](const T& c) { return c > error; });
+  if (is_positive && (ends_at_root || b.back() > error)) return std::nullopt;
+  return touches::Search<T>(polynomial, side).in(T(0), T(1), std::move(b));
 }
 
 namespace touches {
@@ -141,8 +146,15 @@ void RootSearchOf<T>::narrow() {
 }
 
 template <class T>
+T RootSearchOf<T>::value(std::size_t index, const T& x) {
+  expanded_ = false;
+  retrace_.evaluate(T(h_ * x), all_disks_.needs_larger_disk());
+  return retrace_.row(0)[slots_[index]];
+}
+
+template <class T>
 void RootSearchOf<T>::expand() {
-  if (expanded_) return;
+  if (expanded_ || (place_.x == T(0) && start_.rows)) return;
   retrace_.expand_about(T(h_ * place_.x));
   expanded_ = true;
 }
@@ -152,6 +164,13 @@ void RootSearchOf<T>::go_to(const T& x, const T& most) {
   using std::abs;
   if (place_.known && place_.x == x && place_.most == most) return;
   place_ = {true, x, most, std::move(place_.coefficients), std::move(place_.scales), {}, {}};
+  const double length = static_cast<double>(abs(h_) * most);
+  if (x == T(0) && start_.rows) {
+    place_.coefficients = start_.coefficients;
+    place_.scales = start_.scales;
+    disks_.begin(rows_.of(start_.rows, start_.stride, retrace_.order(), std::ilogb(length)));
+    return;
+  }
   expanded_ = false;
   expand();
   const std::size_t orders = static_cast<std::size_t>(retrace_.order()) + 2;
@@ -163,7 +182,6 @@ void RootSearchOf<T>::go_to(const T& x, const T& most) {
       place_.coefficients[i * orders + k] = retrace_.row(static_cast<int>(k))[slot];
     place_.scales[i] = retrace_.scale(slot);
   }
-  const double length = static_cast<double>(abs(h_) * most);
   disks_.begin(rows_.of(retrace_.row(0), retrace_.stride(), retrace_.order(), std::ilogb(length)));
 }
 
@@ -201,6 +219,7 @@ typename RootSearchOf<T>::Piece RootSearchOf<T>::piece(std::size_t index, const 
   constexpr double most_of_radius = 0.45, least_of_radius = 0.02;
   double best = 0;
   T remainder = T(0);
+  Piece result{{}, T(0)};
   const double least = static_cast<double>(resolution_ / most);
   double radius = 8 * length;
   for (std::size_t i = 0; i < 200 && best < 1 && most_of_radius * radius > std::max(best, least) * length;
@@ -211,14 +230,15 @@ typename RootSearchOf<T>::Piece RootSearchOf<T>::piece(std::size_t index, const 
          part > best && part * length > least_of_radius * radius; part *= 0.75) {
       const double ratio = part * length / radius;
       const T left_out = left == 0 ? T(0) : T(left) * T(std::pow(ratio, known + 1) / (1 - ratio));
-      const auto polynomial = polynomial_over(part);
+      auto polynomial = polynomial_over(part);
       if (!(left_out <= unit * polynomial.reach)) continue;
       best = part, remainder = left_out;
+      result.polynomial = std::move(polynomial);
       break;
     }
   }
   if (!(best > least)) return {{}, T(0)};
-  Piece result{polynomial_over(best), T(best) * most};
+  result.width = T(best) * most;
   result.polynomial.scale += remainder / unit;
   result.polynomial.reach += remainder / unit;
   for (const T& c : result.polynomial.p)
@@ -325,7 +345,7 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watc
     const auto root = crossing(now.polynomial, watched);
     watched.at_zero = false;  // the step goes on from it, wherever it ends
     if (wants_touching) {
-      const auto touch = touching(touches::up_to(now.polynomial, root), watched.side);
+      const auto touch = touching(touches::up_to(now.polynomial, root), watched.side, root.has_value());
       const T end = root ? *root : T(1);
       if (touch && (!root || *touch < T(0.999))) return RootOf<T>{T(x + now.width * end * *touch), RootKind::Touching};
     }

@@ -146,6 +146,7 @@ bool TaylorStepper::Impl::make_step(double bound, double h, Step& result) {
   last.keep(work, state);
   watched.set_sides(probe);
   last.record_start(work);
+  has_start_sample = true;
   const taylor::Crossing crossing = watched.empty() ? taylor::Crossing() : watched.first_crossing(work, state.t, h);
   if (crossing.found && stuck >= 100) {
     end(result, StepEnding::Sliding,
@@ -191,7 +192,8 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   s.last.start(s.state);
   s.watched.choose_first_sides(s.work, s.state);
   s.watched.set_sides(s.probe);
-  s.last.start_sample = s.last.sample(t, s.probe);
+  s.last.start_sample.t = t;
+  s.has_start_sample = false;
 }
 
 void TaylorStepper::put_at_zero(std::span<const std::size_t> events, std::uint8_t order) {
@@ -220,6 +222,8 @@ TaylorStepper::Outlook TaylorStepper::outlook(double bound) {
   if (!s.expanded) return out;
   const double h = std::min(taylor::step_size(s.work, s.n, s.control, s.length), std::abs(s.remaining(bound)));
   out.length = h;
+  for (auto* list : {&out.reach, &out.values, &out.slopes}) list->reserve(s.kernel.events());
+  out.sides.reserve(s.kernel.events());
   for (const auto& [side, reach] : s.watched.sides_of_events(s.work, std::copysign(h, s.remaining(bound)))) {
     out.sides.push_back(side);
     out.reach.push_back(reach);
@@ -240,6 +244,7 @@ std::span<const double> TaylorStepper::q() const {
   return s.q_unwound;
 }
 std::span<const double> TaylorStepper::v() const { return impl_->state.v_now; }
+double TaylorStepper::integral(std::size_t index) const { return impl_->state.integrals[index].hi; }
 std::size_t TaylorStepper::steps() const { return impl_->steps; }
 std::size_t TaylorStepper::rejected() const { return impl_->rejected; }
 std::size_t TaylorStepper::switches() const { return impl_->switches; }
@@ -262,6 +267,14 @@ void TaylorStepper::state(double t, std::span<double> q, std::span<double> v) co
 }
 
 double TaylorStepper::constraint_residual() const { return impl_->constraints.residual; }
-const Sample& TaylorStepper::step_start() const { return impl_->last.start_sample; }
+const Sample& TaylorStepper::step_start() const {
+  Impl& s = *impl_;
+  if (!s.has_start_sample) {
+    s.watched.set_sides(s.probe);
+    s.last.start_sample = s.last.sample(s.state.t.hi, s.probe);
+    s.has_start_sample = true;
+  }
+  return s.last.start_sample;
+}
 
 }  // namespace maupertuis

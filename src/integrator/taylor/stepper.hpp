@@ -85,6 +85,7 @@ struct TaylorStepper::Impl {
   double longest = 0;  // so far
 
   // How the run goes.
+  bool has_start_sample = false;               // before the first step it is made when it is asked for
   bool first = true;                           // no step made yet
   bool expanded = false;                       // the workspace holds the motion through the present state already
   bool noisy = false;                          // halving did not mend the last steps, see equations_hold()

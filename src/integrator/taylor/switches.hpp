@@ -78,7 +78,7 @@ class SideChooserOf {
   std::size_t sliding() const { return sliding_; }
 
  private:
-  bool collect(const T& h);
+  bool collect();
   bool confirms(const T& h) const;
   std::optional<bool> tries(const std::vector<std::int8_t>& sides);
   Outcome alone(std::size_t index);

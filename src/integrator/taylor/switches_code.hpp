@@ -20,12 +20,20 @@ T unit() {
   return 16 * std::numeric_limits<T>::epsilon();
 }
 
+/// Whether a value is nothing but rounding of its terms.
+template <class T>
+bool is_zero(const T& value, const T& scale) {
+  using std::abs;
+  return abs(value) <= unit<T>() * scale;
+}
+
 template <class T, class Coefficient>
 ScaledPolynomialOf<T> scaled(int degree, const T& h, const T& scale, Coefficient&& coefficient) {
   using std::abs;
   ScaledPolynomialOf<T> result;
   T power = T(1);
   result.scale = result.reach = scale;
+  result.p.reserve(static_cast<std::size_t>(degree) + 1);
   for (int k = 0; k <= degree; ++k, power *= h) {
     result.p.push_back(coefficient(k) * power);
     if (k > 0) result.reach += abs(result.p.back());
@@ -45,8 +53,7 @@ std::size_t ScaledPolynomialOf<T>::leading(std::size_t from) const {
 
 template <class T>
 bool ScaledPolynomialOf<T>::begins_at_zero() const {
-  using std::abs;
-  return abs(p[0]) <= watching::unit<T>() * scale;
+  return watching::is_zero(p[0], scale);
 }
 
 template <class T>
@@ -130,15 +137,15 @@ void SideChooserOf<Work>::adopt(const std::vector<std::int8_t>& sides) {
 
 /// Finds the functions at a zero; the others take their sign. True if that changed a side.
 template <class Work>
-bool SideChooserOf<Work>::collect(const T& h) {
+bool SideChooserOf<Work>::collect() {
   bool changed = false;
   at_zero_.clear();
   for (std::size_t i = 0; i < watched_.size(); ++i) {
-    const ScaledPolynomialOf<T> polynomial = judged(switch_polynomial(work_, i, h));
-    if (watched_[i].at_zero || polynomial.begins_at_zero()) {
+    const T here = work_.switch_function(i, 0);
+    if (watched_[i].at_zero || watching::is_zero(here, work_.switch_scale(i))) {
       at_zero_.push_back(i);
       watched_[i].at_zero = true;
-    } else if (const std::int8_t side = watching::sign(polynomial.p[0]); side != watched_[i].side) {
+    } else if (const std::int8_t side = watching::sign(here); side != watched_[i].side) {
       watched_[i].side = side;
       changed = true;
     }
@@ -164,7 +171,7 @@ std::optional<bool> SideChooserOf<Work>::tries(const std::vector<std::int8_t>& s
 
 template <class Work>
 typename SideChooserOf<Work>::Outcome SideChooserOf<Work>::decide(T h) {
-  if (collect(h)) {
+  if (collect()) {
     const auto again = expand_(sides());
     if (!again) return Outcome::Failed;
     h = *again;

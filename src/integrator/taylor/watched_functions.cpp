@@ -21,13 +21,29 @@ void note(Crossing& crossing, double x, std::size_t index, double together, int 
   crossing.directions.push_back(direction);
 }
 
+/// Switch functions, then events, as a workspace has them.
+struct ExpansionOfWatched {
+  const KernelWorkspace& work;
+  std::size_t switches;
+
+  double coefficient(std::size_t i, int k) const {
+    return i < switches ? work.switch_function(i, k) : work.event(i - switches, k);
+  }
+  double scale(std::size_t i) const { return i < switches ? work.switch_scale(i) : work.event_scale(i - switches); }
+  const double* rows() const { return work.coordinate(0); }
+  std::size_t stride() const { return work.row_stride(); }
+};
+
 /// The side that an event function has as the step begins. True if it is not the one that it had as the last step
 /// ended: then a root lies between them, within rounding.
 bool begins_past_root(const KernelWorkspace& work, std::size_t index, double h, Watched& watched) {
-  const auto polynomial = judged(event_polynomial(work, index, h));
   const std::int8_t before = watched.side;
-  watched.at_zero = watched.at_zero || polynomial.begins_at_zero();
-  watched.side = watched.at_zero ? polynomial.direction(watched.order) : sign(polynomial.p[0]);
+  const double here = work.event(index, 0);
+  watched.at_zero = watched.at_zero || watching::is_zero(here, work.event_scale(index));
+  watched.side = sign(here);
+  if (!watched.at_zero && (before == 0 || watched.side != -before)) return false;
+  const auto polynomial = judged(event_polynomial(work, index, h));
+  if (watched.at_zero) watched.side = polynomial.direction(watched.order);
   constexpr double close = 1e-6;  // beyond, the sign has changed by a jump
   return before != 0 && watched.side == -before && std::abs(polynomial.p[0]) <= close * polynomial.reach;
 }
@@ -43,7 +59,7 @@ WatchedFunctions::WatchedFunctions(const Kernel& kernel, const KernelWorkspace& 
 }
 
 void WatchedFunctions::start() {
-  std::fill(switches.begin(), switches.end(), Watched{});
+  for (Watched& w : switches) w = {w.side, false};  // a first guess: those of the motion before
   std::fill(events.begin(), events.end(), Watched{});
 }
 
@@ -72,7 +88,8 @@ Crossing WatchedFunctions::first_crossing(const KernelWorkspace& work, const Com
   out.after = switches;
   out.after.insert(out.after.end(), events.begin(), events.end());
   roots_->set_constants({work.constants(), work.program().constants.size()}, work.constants());
-  roots_->begin({t.hi, t.lo}, h, [&work](int k) { return work.coordinate(k); });
+  roots_->begin(
+      {t.hi, t.lo}, h, [&work](int k) { return work.coordinate(k); }, ExpansionOfWatched{work, switches.size()});
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const double together = std::max(4 * epsilon, 4 * epsilon * std::abs(t.hi / h));
   out.x = roots_->window();
@@ -129,6 +146,7 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, Crossing& out
 std::vector<WatchedFunctions::Side> WatchedFunctions::sides_of_events(const KernelWorkspace& work, double h) const {
   constexpr double clear = 1e-9;  // of the terms of the function: its own value decides
   std::vector<Side> out;
+  out.reserve(events.size());
   for (std::size_t i = 0; i < events.size(); ++i) {
     const double here = work.event(i, 0);
     if (!events[i].at_zero && std::abs(here) > clear * work.event_scale(i)) {

@@ -58,8 +58,8 @@ class Retrace {
   }
   /// All orders about s.
   void expand_about(const T& s) { run(needed_, s, order_, order_ + 1); }
-  /// Values at s alone.
-  void evaluate(const T& s) { run(needed_, s, 1, 2); }
+  /// Values at s alone; without rates where nothing but coordinates is differentiated.
+  void evaluate(const T& s, bool with_rates = true) { run(needed_, s, 1, 2, with_rates ? never : 0); }
   /// Of all slots of the constructor, wanted now or not: orders up to `most`, those of the coordinates all.
   void values_about(const T& s, int most) { run(every_, s, std::min(most + 1, order_), order_ + 1, most); }
 
@@ -102,6 +102,11 @@ class Retrace {
   void shift(const T& s, int last) {
     const std::size_t n = program_.unknowns;
     const int degree = order_ + 1;
+    if (s == T(0)) {
+      for (int k = 0; k <= std::min(last, degree); ++k)
+        std::copy_n(polynomials_.data() + static_cast<std::size_t>(k) * n, n, memory_.row(k));
+      return;
+    }
     std::vector<T> c(static_cast<std::size_t>(degree) + 1);
     for (std::size_t i = 0; i < n; ++i) {
       for (int k = 0; k <= degree; ++k)

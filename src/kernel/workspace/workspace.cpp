@@ -15,6 +15,7 @@ using workspace::StageSolver;
 KernelWorkspace::Impl::Impl(const Kernel& kernel, int order)
     : expansion(kernel, order),
       solver(expansion, in_code),
+      along(expansion.program),
       at_point(expansion.program),
       corrects_points(outputs_follow_accelerations()) {}
 
@@ -35,6 +36,7 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   MAUP_REQUIRE(q.size() == x.program.freedoms && v.size() == x.program.freedoms);
   if (x.compute_constants()) solver.constants_changed();
   x.last_stage = stages - 1;
+  along.begin();
   solver.begin(stages == 1 && !corrects_points);
   if (x.program.time != no_slot) x.memory.row(0)[x.program.time] = t;
   double *const position = x.memory.row(0), *const velocity = x.memory.row(1);
@@ -63,8 +65,8 @@ bool KernelWorkspace::Impl::run_unrolled(std::span<const double> q, std::span<co
                       scratch.data());
   if (!straight::sound(scratch.data())) return false;
   solver.forget_point();
-  const bool is_over = x.program.runs[Along].empty();
-  if (is_over && at_point.empty()) return true;
+  const bool is_over = along.ends_at_first();
+  if (along.empty() && at_point.empty()) return true;
   for (int stage = x.program.first_stage; stage < (is_over ? 1 : stages); ++stage) run_along(stage);
   return true;
 }
@@ -87,7 +89,7 @@ void KernelWorkspace::Impl::run_first_stages() {
 /// Switch functions have values where forces have none, and tell the sides on which these have: log|x| on the wrong
 /// side of 0.
 KernelStatus KernelWorkspace::Impl::without_solution(KernelStatus status) {
-  if (!expansion.program.runs[Along].empty()) reference::run_section(expansion.memory, Along, 0);
+  along.run(expansion.memory, 0);
   return status;
 }
 
@@ -101,7 +103,7 @@ KernelStatus KernelWorkspace::Impl::run_step_by_step(int stage) {
 /// Whether all stages from 1 on run in one go.
 bool KernelWorkspace::Impl::runs_on() const {
   return solver.later() == StageSolver::LaterStages::ByInverse &&
-         (!in_code.code.stage || (in_code.code.later && expansion.program.runs[Along].empty()));
+         (!in_code.code.stage || (in_code.code.later && along.ends_at_first()));
 }
 
 /// False: a q̈ is not finite.
@@ -109,7 +111,7 @@ bool KernelWorkspace::Impl::run_later_stages(int stages) {
   if (in_code.code.later) return in_code.code.later(&in_code.arguments, stages) == 1;
   const workspace::Expansion& x = expansion;
   const packed::InverseSolution solution = solver.inverse_solution();
-  if (x.program.runs[Along].empty()) return x.engine.run_stages_by_inverse(x.tables, solution, 1, stages, false);
+  if (along.ends_at_first()) return x.engine.run_stages_by_inverse(x.tables, solution, 1, stages, false);
   bool finite = true;
   for (int stage = 1; stage < stages; ++stage) {
     finite &= x.engine.run_stages_by_inverse(x.tables, solution, stage, stage + 1, stage + 1 < stages);
@@ -135,7 +137,7 @@ void KernelWorkspace::Impl::renew_blocks(int stage, int stages) {
 
 /// What follows the solution of a stage.
 void KernelWorkspace::Impl::run_along(int stage) {
-  if (!expansion.program.runs[Along].empty()) reference::run_section(expansion.memory, Along, stage);
+  along.run(expansion.memory, stage);
   if (stage <= 0) at_point.run(expansion.memory, stage);
 }
 

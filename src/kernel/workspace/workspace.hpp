@@ -1,5 +1,6 @@
 #pragma once
 #include "kernel/reference/point_section.hpp"
+#include "kernel/workspace/along_section.hpp"
 #include "kernel/workspace/stage_solver.hpp"
 
 namespace maupertuis {
@@ -24,6 +25,7 @@ struct KernelWorkspace::Impl {
   workspace::Expansion expansion;
   workspace::ExpansionInCode in_code;
   workspace::StageSolver solver;
+  workspace::AlongSection along;
   reference::PointSection at_point;
   bool corrects_points;  // something that is read at a point alone depends on q̈
 };

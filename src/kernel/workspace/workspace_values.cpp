@@ -20,7 +20,9 @@ double KernelWorkspace::switch_function(std::size_t i, int k) const {
   return impl_->expansion.coefficient(program().switch_slots[i], k);
 }
 double KernelWorkspace::event(std::size_t i, int k) const {
-  return impl_->expansion.coefficient(program().events[i], k);
+  workspace::Expansion& x = impl_->expansion;
+  if (k > 2 - program().lags[program().events[i]]) impl_->along.need_event(x.memory, i, x.last_stage);
+  return x.coefficient(program().events[i], k);
 }
 double KernelWorkspace::integrand(std::size_t i, int k) const {
   return impl_->expansion.coefficient(program().integrands[i], k);

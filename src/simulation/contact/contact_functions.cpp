@@ -89,11 +89,14 @@ ExprVector matrices_of(const EquationsOfMotion& equations) {
   return out;
 }
 
-std::vector<SparseRow> rows_of(const DifferentiableKernel& kernel, const std::vector<double>& out, std::size_t first) {
-  std::vector<SparseRow> rows(kernel.size());
+/// Derivatives of the functions from `begin` on, one a row; what rows hold already makes room for them.
+void set_rows(const DifferentiableKernel& kernel, const std::vector<double>& out, std::size_t first, std::size_t begin,
+              std::size_t count, std::vector<SparseRow>& rows) {
+  rows.resize(count);
+  for (SparseRow& row : rows) row.clear();
   for (std::size_t k = 0; k < kernel.entries.size(); ++k)
-    rows[kernel.entries[k].row].emplace_back(kernel.entries[k].column - first, out[kernel.size() + k]);
-  return rows;
+    if (const std::size_t row = kernel.entries[k].row; row >= begin && row < begin + count)
+      rows[row - begin].emplace_back(kernel.entries[k].column - first, out[kernel.size() + k]);
 }
 
 }  // namespace
@@ -148,13 +151,12 @@ const ContactValues& ContactFunctions::at(double t, std::span<const double> q, s
   ContactValues& out = values_;
   out.gap.assign(gaps_out_.begin(), gaps_out_.begin() + static_cast<std::ptrdiff_t>(contacts_));
   out.slip.assign(slips_out_.begin(), slips_out_.begin() + static_cast<std::ptrdiff_t>(frictions_));
-  out.normal = rows_of(gaps_, gaps_out_, 0);
-  out.tangent = rows_of(slips_, slips_out_, n_);
+  set_rows(gaps_, gaps_out_, 0, 0, contacts_, out.normal);
+  set_rows(slips_, slips_out_, n_, 0, frictions_, out.tangent);
+  set_rows(slips_, slips_out_, n_, frictions_, contacts_, out.second_tangent);
   const auto second = static_cast<std::ptrdiff_t>(frictions_);
   out.second_slip.assign(slips_out_.begin() + second,
                          slips_out_.begin() + second + static_cast<std::ptrdiff_t>(contacts_));
-  out.second_tangent.assign(out.tangent.begin() + second, out.tangent.end());
-  out.tangent.resize(frictions_);
   for (auto* list : {&out.gap_scale, &out.rate, &out.drive, &out.rate_scale, &out.restitution}) list->clear();
   for (auto* list : {&out.slip_scale, &out.kinetic, &out.fixed}) list->clear();
   for (std::size_t c = 0; c < contacts_; ++c) {
@@ -220,6 +222,8 @@ Eigen::MatrixXd solve_by_parts(const Eigen::MatrixXd& matrix, const Eigen::Matri
 
 Eigen::MatrixXd ContactFunctions::response(double t, std::span<const double> q, std::span<const double> v,
                                            std::span<const SparseRow> rows, std::span<const SparseRow> held) {
+  if (std::all_of(rows.begin(), rows.end(), [](const SparseRow& row) { return row.empty(); }))
+    return Eigen::MatrixXd::Zero(static_cast<Index>(n_), static_cast<Index>(rows.size()));
   evaluate(matrices_work_, matrices_out_, t, q, v);
   const auto n = static_cast<Index>(n_), own = static_cast<Index>(m_), m = own + static_cast<Index>(held.size());
   Eigen::MatrixXd bordered = Eigen::MatrixXd::Zero(n + m, n + m);

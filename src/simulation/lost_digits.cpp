@@ -1,0 +1,55 @@
+#include "simulation/lost_digits.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace maupertuis {
+namespace {
+
+/// Of the largest value among columns of one unit: what is smaller is rounding noise about zero, not a motion.
+constexpr double noise_of_unit = 1e-6;
+
+double largest_of(const Trajectory& trajectory, std::size_t column) {
+  double out = 0;
+  for (std::size_t row = 0; row < trajectory.rows(); ++row)
+    if (const double x = std::abs(trajectory.at(row, column)); std::isfinite(x)) out = std::max(out, x);
+  return out;
+}
+
+}  // namespace
+
+LostDigits::LostDigits(const CompanionPlan& plan) {
+  const std::size_t n = plan.run.q.size();
+  const auto& names = plan.result.trajectory.columns;
+  for (std::size_t c = 0; c < 2 * n; ++c) sizes_.push_back(largest_of(plan.result.trajectory, c));
+  for (std::size_t c = 0; c < 2 * n; ++c) {
+    double of_unit = 0;
+    for (std::size_t other = 0; other < 2 * n; ++other)
+      if (names[other].unit == names[c].unit) of_unit = std::max(of_unit, sizes_[other]);
+    // What moves a coordinate along the whole run by less than its noise is noise too.
+    if (const double length = std::abs(plan.run.end - plan.run.begin); c >= n && length > 0)
+      for (std::size_t other = 0; other < n; ++other)
+        if (names[other].unit == names[c - n].unit) of_unit = std::max(of_unit, sizes_[other] / length);
+    of_unit_.push_back(of_unit);
+  }
+}
+
+bool LostDigits::is_lost(std::size_t column, double error) const {
+  return error > 0 && error >= saturated_error * sizes_[column] && error >= noise_of_unit * of_unit_[column];
+}
+
+LostCompanion::LostCompanion(const CompanionPlan& plan, double share)
+    : plan_(plan), digits_(plan), share_(share), largest_(2 * plan.run.q.size(), 0) {}
+
+bool LostCompanion::look(std::size_t g, const double* row) {
+  bool everything = true;
+  for (std::size_t c = 0; c < largest_.size(); ++c) {
+    const double value = plan_.result.trajectory.at(plan_.grid[g], c), off = std::abs(row[c] - value);
+    if (std::isfinite(off)) largest_[c] = std::max(largest_[c], off);
+    // A column that never moves is known although all others are lost.
+    everything = everything && digits_.size(c) > 0 && digits_.is_lost(c, share_ * largest_[c]);
+  }
+  return everything;
+}
+
+}  // namespace maupertuis

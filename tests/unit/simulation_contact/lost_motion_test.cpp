@@ -1,0 +1,77 @@
+// Errors of motions that forget their start: what is left of it, and what companions that end early tell.
+#include <maupertuis/simulation.hpp>
+
+#include "../model_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace maupertuis;
+
+namespace {
+
+const std::string billiard =
+    "dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n"
+    "contact max(abs(x) - 1, 0)^2 + y^2 <= 1 restitution 1\nstart x = 0.1, y = 0.2, x' = 0.8, y' = 0.6\n";
+
+SimulationResult run(const std::string& text, ErrorEstimates errors, std::vector<double> at = {}) {
+  ModelText m(text);
+  SimulationOptions options;
+  options.duration = 300;
+  options.output_every = 1;
+  options.errors = errors;
+  options.at = std::move(at);
+  auto result = simulate(m.model, m.equations, options, m.diagnostics);
+  INFO(render(m.diagnostics, m.source));
+  REQUIRE(result);
+  return std::move(*result);
+}
+
+bool same(double a, double b) { return a == b || (std::isinf(a) && std::isinf(b)); }
+
+}  // namespace
+
+TEST_CASE("companions that end where the motion is lost tell of it what whole ones do") {
+  const SimulationResult whole = run(billiard, ErrorEstimates::Rows), ended = run(billiard, ErrorEstimates::States);
+  REQUIRE(whole.uncertain.everything);
+  REQUIRE(ended.uncertain.everything);
+  CHECK(ended.uncertain.from == whole.uncertain.from);
+  CHECK(ended.uncertain.columns == whole.uncertain.columns);
+  CHECK(ended.uncertain.from > 20);
+  CHECK(ended.uncertain.from < 150);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK(std::isinf(ended.final.errors->q[i]));
+    CHECK(std::isinf(ended.final.errors->v[i]));
+  }
+  REQUIRE(ended.happenings.size() == whole.happenings.size());
+  std::size_t known = 0;
+  for (std::size_t k = 0; k < ended.happenings.size(); ++k) {
+    const double t = ended.happenings[k].t;
+    if (t < ended.uncertain.from - 5) {
+      CHECK(same(ended.happenings[k].error, whole.happenings[k].error));
+      ++known;
+    }
+    if (t > ended.uncertain.from + 20) CHECK(std::isinf(ended.happenings[k].error));
+  }
+  CHECK(known > 10);
+}
+
+TEST_CASE("what is asked for later is told by companions that go on") {
+  const SimulationResult r = run(billiard, ErrorEstimates::States, {10, 250});
+  REQUIRE(r.at.size() == 2);
+  CHECK(r.at[0].errors->q[0] < 1e-10);
+  CHECK(std::isinf(r.at[1].errors->q[0]));
+  const auto late =
+      std::find_if(r.happenings.begin(), r.happenings.end(), [](const Happening& h) { return h.t > 200; });
+  REQUIRE(late != r.happenings.end());
+  CHECK(std::isfinite(late->error));
+}
+
+TEST_CASE("a coordinate that never moves is known although the others are lost") {
+  std::string text = billiard;
+  text.replace(text.find("x, y :"), 6, "x, y, u :");
+  text.replace(text.find("y'^2)"), 5, "y'^2 + u'^2)");
+  const SimulationResult r = run(text, ErrorEstimates::States);
+  CHECK(r.final.errors->q[2] == 0);
+  CHECK(std::isinf(r.final.errors->q[0]));
+}
