@@ -300,6 +300,10 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
   const TaylorStepper::Outlook outlook = s.outlook(bound);
   if (outlook.ending != StepEnding::None) return false;
   constexpr double located = 1e-11;
+  constexpr double met = 1e-9;  // heights at which bounces have ended
+  const auto touches_now = [&](std::size_t i) {
+    return std::find(touching.begin(), touching.end(), i) != touching.end();
+  };
   if (accelerations) *accelerations = outlook.accelerations;
   double largest_force = 0;
   const auto is_squared = [&](const Watch& w) {
@@ -329,13 +333,16 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
       return false;
     }
     // Meeting the constraints of others may move a gap that opens through zero, by what they are known to.
-    const bool is_moved = w.what == Watch::What::Gap && outlook.sides[k] < 0 &&
-                          outlook.slopes[k] > rest_speed(w.index, values) &&
-                          -outlook.values[k] <= located * widest_[w.index];
-    if (is_moved) {
+    const bool is_moved =
+        w.what == Watch::What::Gap && outlook.sides[k] < 0 && -outlook.values[k] <= met * widest_[w.index];
+    if (is_moved && outlook.slopes[k] > rest_speed(w.index, values)) {
       s.put_at_zero({&k, 1});
       continue;
     }
+    // One that closes is hit now: it is as near as constraints are known, but not among those that touch.
+    if (is_moved && !touches_now(w.index) && values.rate[w.index] < -rest_speed(w.index, values) &&
+        values.gap[w.index] <= met * widest_[w.index])
+      met_ = w.index;
     const bool begins = w.what == Watch::What::Slip && friction_of(system_, w.index).in_space() &&
                         w.index < begins_to_slide_.size() && begins_to_slide_[w.index];
     if (begins) continue;  // it has not yet the speed at which it counts as stopped
@@ -390,6 +397,18 @@ void HybridMotion::forget(const ContactMode& mode) {
   std::erase_if(modes_, [&](const auto& entry) { return entry.second->mode == mode && entry.second.get() != now_; });
 }
 
+/// In which order modes are tried, and how many of them. Of many contacts the one that the forces of all point to is
+/// right as a rule, with rounding at a contact that neither presses nor opens: it and those that differ at one contact
+/// come first with all leniencies.
+std::vector<std::pair<HybridMotion::Leniency, std::size_t>> HybridMotion::attempts_with(std::size_t contacts) {
+  constexpr std::size_t few = 4;
+  std::vector<std::pair<Leniency, std::size_t>> out;
+  for (const std::size_t most : {contacts > few ? contacts + 1 : 0, most_choices})
+    for (const Leniency leniency : {Leniency::None, Leniency::Forces, Leniency::Gaps})
+      if (most > 0) out.emplace_back(leniency, most);
+  return out;
+}
+
 bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason) {
   const ContactValues& values = functions_.at(t_, q_, v_);  // of one point throughout
   if (!touching.empty() && !knows_compliance_) note_compliance(touching, values);
@@ -407,13 +426,17 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
   std::optional<ContactMode> found;
   ContactMode last;  // whose motion was begun last
   std::vector<double> first;
-  for (const Leniency leniency : {Leniency::None, Leniency::Forces, Leniency::Gaps}) {
-    for (std::size_t turn = 0; const std::vector<std::size_t>* taken = tries.number(turn); ++turn) {
+  for (const auto& [leniency, most] : attempts_with(list.size())) {
+    for (std::size_t turn = 0; turn < (found ? most_choices : most); ++turn) {
+      const std::vector<std::size_t>* taken = tries.number(turn);
+      if (!taken) break;
       if (interrupted()) return true;  // the step that follows says so
       const ContactMode mode = mode_of(list, *taken);
       std::vector<double> accelerations;
       last = mode;
+      met_.reset();
       if (!fits(mode, touching, bound, leniency, &accelerations)) {
+        if (turn == 0 && met_ && list.size() > 1) return false;
         if (turn >= most_kept) forget(mode);
         continue;
       }

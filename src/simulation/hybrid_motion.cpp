@@ -447,7 +447,12 @@ std::optional<Step> HybridMotion::settle(double bound) {
   if (!pending_->begins) close_lowest_flights(touch, bound);
   come_to_rest(touch, bound);
   if (!choose_slips(touch, bound, reason)) return stopped(StepEnding::Paradox, reason);
-  if (!choose_mode(touch, bound, reason)) return stopped(StepEnding::Paradox, reason);
+  // Constraints of the mode to come may move the next contact through zero: that is hit at the same instant.
+  for (std::size_t turn = 0; !choose_mode(touch, bound, reason); ++turn) {
+    if (!met_ || turn >= system_.contacts.size()) return stopped(StepEnding::Paradox, reason);
+    touch.push_back(*met_);
+    if (!hit(touch, reason)) return stopped(StepEnding::Paradox, reason);
+  }
   if (pending_->begins) tell_events_at_start(bound);
   if (settled_) note_after(bound);
   pending_.reset();

@@ -116,6 +116,7 @@ class HybridMotion final : public Method {
   double rest_slip(std::size_t friction, const ContactValues& values) const;
 
   // The mode after it.
+  static std::vector<std::pair<Leniency, std::size_t>> attempts_with(std::size_t contacts);
   bool choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason);
   std::vector<Choice> choices(const std::vector<std::size_t>& touching, const ContactValues& values) const;
   ContactMode mode_without_contacts(const std::vector<Choice>& list) const;
@@ -226,9 +227,10 @@ class HybridMotion final : public Method {
   double gap_begin_ = std::numeric_limits<double>::quiet_NaN();  // of a moment in which a slip began
   std::vector<double> moment_accelerations_;                     // [n] in it
   bool just_moved_on_ = false;                                   // the last step follows it
-  std::shared_ptr<ImpactDerivative> derivative_;                 // where instants are kept
-  std::shared_ptr<Settled> settled_;                             // the instant that is being settled
-  std::optional<ModeInstant> instant_;                           // the one at the beginning of the last step
+  std::optional<std::size_t> met_;  // a contact that the constraints of the mode that was tried move through zero
+  std::shared_ptr<ImpactDerivative> derivative_;  // where instants are kept
+  std::shared_ptr<Settled> settled_;              // the instant that is being settled
+  std::optional<ModeInstant> instant_;            // the one at the beginning of the last step
 };
 
 }  // namespace maupertuis
