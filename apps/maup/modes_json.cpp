@@ -121,6 +121,8 @@ Json modes_document(const MechanicalSystem& system, const ModalStudy& study) {
   for (const ModalEntry& e : study.entries) {
     Json entry = point_json(system, e.linearization.point);
     entry["at_rest"] = e.equilibrium.at_rest;
+    const RealMatrix& turning = e.equilibrium.point.turning;
+    entry["turning"] = turning.rows > 0 ? matrix_json(turning) : Json(nullptr);
     entry["side"] = e.side.empty() ? Json(nullptr) : Json(e.side);
     entry["residual"] = e.equilibrium.residual;
     entry["family"] = e.equilibrium.family;

@@ -9,8 +9,8 @@
 namespace maupertuis {
 
 /// x of N x = c for the augmented matrix [N | c], by Gaussian elimination with division: a shared DAG, nothing
-/// expanded. Nothing where N is singular as a function of its symbols. Cost O(n³) nodes; a pivot is told by its value at one point, and by
-/// a zero test where that is small.
+/// expanded. Nothing where N is singular as a function of its symbols. Cost O(n³) nodes; a pivot is told by its value
+/// at one point, and by a zero test where that is small.
 std::optional<ExprVector> solve_linear(ExprMatrix augmented);
 
 /// Groups of rows that a symmetric matrix couples, directly or through others; each group ascending. Entries must show
