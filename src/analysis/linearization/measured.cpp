@@ -80,6 +80,26 @@ std::vector<bool> rough_rows(const PointEquations::Impl& e, const Beside& beside
   return out;
 }
 
+/// Outputs that do not stay the same when everything turns as the motion does, q → Ξ q + d: seen at random points.
+/// Beside the motion their coefficients are not constant, even where they are along it.
+std::vector<Index> changing_rows(PointEquations::Impl& e, const OperatingPoint& point) {
+  const Matrix turning = to_eigen(point.turning);
+  const Vector shift = to_eigen(point.v) - turning * to_eigen(point.q);
+  std::vector<Index> out;
+  for (const std::uint64_t seed : {4001, 4002}) {
+    const OperatingPoint there = random_point(e, seed);
+    const RowsAtPoint y = e.at(e.outputs, there);
+    const Vector q = turning * to_eigen(there.q) + shift, v = turning * to_eigen(there.v),
+                 a = turning * to_eigen(there.a);
+    const Vector change = y.by_q * q + y.by_v * v + y.by_a * a;
+    const Vector size =
+        y.by_q.cwiseAbs() * q.cwiseAbs() + y.by_v.cwiseAbs() * v.cwiseAbs() + y.by_a.cwiseAbs() * a.cwiseAbs();
+    for (Index i = 0; i < change.size(); ++i)
+      if (!(std::abs(change[i]) <= rounding * size[i])) out.push_back(i);
+  }
+  return out;
+}
+
 }  // namespace
 
 MeasuredOutputs measured_outputs(PointEquations::Impl& e, const OperatingPoint& point, const Response& response) {
@@ -94,14 +114,8 @@ MeasuredOutputs measured_outputs(PointEquations::Impl& e, const OperatingPoint& 
     for (std::size_t i = 0; i < rough.size(); ++i)
       if (rough[i]) by.row(static_cast<Index>(i)).setConstant(std::numeric_limits<double>::quiet_NaN());
   }
-  if (point.turning.rows > 0) {  // an output that changes along the motion has no constant coefficients
-    const Vector v = to_eigen(point.v), a = to_eigen(point.a), jerk = to_eigen(point.turning) * a;
-    const Vector rate = y.by_q * v + y.by_v * a + y.by_a * jerk;
-    const Vector size =
-        y.by_q.cwiseAbs() * v.cwiseAbs() + y.by_v.cwiseAbs() * a.cwiseAbs() + y.by_a.cwiseAbs() * jerk.cwiseAbs();
-    for (Index i = 0; i < rate.size(); ++i)
-      if (!(std::abs(rate[i]) <= rounding * size[i])) by.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
-  }
+  if (point.turning.rows > 0)
+    for (const Index i : changing_rows(e, point)) by.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
   return {to_list(y.value), to_real(by.leftCols(response.states)), to_real(by.rightCols(k))};
 }
 

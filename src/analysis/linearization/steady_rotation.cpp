@@ -180,6 +180,10 @@ class TurningState {
   Matrix turning(const Vector& rates) const {
     Matrix out = Matrix::Zero(sizes_.size(), sizes_.size());
     for (std::size_t k = 0; k < rotations_.size(); ++k) out += rates[static_cast<Index>(k)] * rotations_[k];
+    constexpr double rounding = 4e-16;  // what combinations of rotations leave where none of them turns
+    const double largest = out.size() > 0 ? out.lpNorm<Eigen::Infinity>() : 0;
+    for (Index i = 0; i < out.size(); ++i)
+      if (std::abs(out.data()[i]) <= rounding * largest) out.data()[i] = 0;
     return out;
   }
   OperatingPoint point_of(const OperatingPoint& from, const Unknowns& z) const {
