@@ -300,15 +300,18 @@ std::optional<Equilibrium> steady_rotation_near(const PointEquations& equations,
   OperatingPoint from{
       start.t, start.q, start.v, std::vector<double>(e.n), std::vector<double>(e.m), equations.inputs_at(start.t)};
   // A body that turns about an axis of space is seen from itself; only where that is no symmetry, or not enough, about
-  // axes of its own as well.
+  // axes of its own as well. Rotations alone first: of a particle that circles, a part of the velocity could as well be
+  // a translation's.
   for (const std::vector<Matrix>* chosen :
        std::initializer_list<const std::vector<Matrix>*>{&generators.in_space, &all}) {
-    std::vector<Matrix> found = symmetries(e, *chosen);
-    if (found.empty()) continue;
-    const TurningState state(e, std::move(found), translations);
-    const std::optional<Vector> rates = state.rates(to_eigen(start.q), to_eigen(start.v));
-    if (!rates) continue;
-    if (auto motion = state.solve(from, *rates)) return motion;
+    const std::vector<Matrix> rotations = symmetries(e, *chosen);
+    for (const bool shifted : {false, true}) {
+      if (rotations.empty() || (shifted && translations.empty())) continue;
+      const TurningState state(e, rotations, shifted ? translations : std::vector<Vector>{});
+      const std::optional<Vector> rates = state.rates(to_eigen(start.q), to_eigen(start.v));
+      if (!rates) continue;
+      if (auto motion = state.solve(from, *rates)) return motion;
+    }
   }
   return std::nullopt;
 }

@@ -104,6 +104,22 @@ start x = 1.3 m
   }
 }
 
+TEST_CASE("An ion that circles in a magnetic field, where it could as well be moved along") {
+  Linearized m(R"(system cyclotron
+param m = 2 kg, b = 6 kg/s, k = 3 N/m
+coord x, y, z : length
+L = 1/2 m (x'^2 + y'^2 + z'^2) + 1/2 b (x y' - y x') - 1/2 k z^2
+start x = 1 m
+)");
+  m.start.v = {0, -3, 0};  // b/m
+  const auto found = motion(m);
+  REQUIRE(found);
+  CHECK(near(found->point.v[1], -3, 1e-12));
+  const std::vector<double> got = frequencies(modes_of(m, *found));
+  REQUIRE(!got.empty());
+  CHECK(near(got.front(), std::sqrt(1.5), 1e-12));
+}
+
 TEST_CASE("A ball that rolls along: a steady motion with velocity constraints") {
   Linearized m(R"(system ball
 param m = 1 kg, r = 10 cm, I = 0.004 kg m^2
