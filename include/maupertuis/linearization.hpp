@@ -96,7 +96,9 @@ struct Equilibrium {
   std::size_t family = 0;                 // how many further ways it can be moved and stay one, beside translations
   std::vector<std::size_t> family_along;  // the coordinates that change on these ways, ascending
   bool coordinates_fail = false;  // M is singular there on what the constraints leave free: r = 0 of polar coordinates
-  std::size_t turns = 0;          // rotations that are symmetries and commute with the motion, itself among them
+  /// Of a motion along rotations: how those that commute with it move its point, itself first. Neighbours there are
+  /// such motions too, and each keeps a momentum, as along a conserved translation.
+  std::vector<Translation> ways;
 };
 
 struct EquilibriumSearchResult {

@@ -2,6 +2,7 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/interrupt_scope.hpp>
 #include <maupertuis/linear_system.hpp>
+#include <maupertuis/scattered_point.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -17,14 +18,7 @@ namespace {
 class AtOnePoint {
  public:
   explicit AtOnePoint(const ExprMatrix& m) : columns_(m.columns) {
-    Bindings point;
-    double x = 0.7;
-    for (const Expr& symbol : symbols_of(m.entries)) {
-      x = x * 1.6180339887 + 0.31;
-      x -= std::floor(x);
-      point[symbol] = 0.4 + x;  // between 0.4 and 1.4
-    }
-    values_ = evaluate(m.entries, point);
+    values_ = evaluate(m.entries, scattered_point(symbols_of(m.entries)));
     for (const double v : values_) {
       sizes_.push_back(std::abs(v));
       known_ = known_ && std::isfinite(v);

@@ -1,6 +1,8 @@
 #include "equations/norm_reduction.hpp"
 #include "equations/simplified.hpp"
 
+#include <maupertuis/quaternion_coordinates.hpp>
+
 #include <algorithm>
 
 namespace maupertuis {
@@ -33,13 +35,10 @@ bool holds(Expr e, const std::array<Expr, 4>& quaternion) {
 }  // namespace
 
 UnitQuaternions::UnitQuaternions(const MechanicalSystem& system) {
-  for (const Constraint& c : system.constraints) {
-    if (c.body.empty()) continue;
+  for (const auto& four : quaternion_coordinates(system)) {
     std::array<Expr, 4> quaternion;
-    std::size_t found = 0;
-    for (const char* component : {"qw", "qx", "qy", "qz"})
-      if (const Coordinate* q = system.find_coordinate(c.body + "." + component)) quaternion[found++] = q->q;
-    if (found == 4) quaternions_.push_back(quaternion);
+    for (std::size_t k = 0; k < 4; ++k) quaternion[k] = system.coordinates[four[k]].q;
+    quaternions_.push_back(quaternion);
   }
 }
 

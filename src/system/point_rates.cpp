@@ -1,5 +1,7 @@
 #include "system/elaboration.hpp"
 
+#include <maupertuis/quaternion_coordinates.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -76,12 +78,10 @@ const StartValue* given_at(const std::vector<StartValue>& values, std::size_t co
 /// A body turned by a quaternion of which the point says nothing has the axes of space; where it gives some of x, y, z,
 /// the others are 0 and w makes the norm 1.
 void complete_quaternions(Elaboration& e, Span span, std::vector<StartValue>& values) {
-  const std::vector<Coordinate>& all = e.system().coordinates;
-  for (std::size_t w = 0; w + 3 < all.size(); ++w) {
-    const std::string& name = all[w].name;
-    if (name.size() < 4 || name.substr(name.size() - 3) != ".qw" || given_at(values, w)) continue;
+  for (const auto& [w, x, y, z] : quaternion_coordinates(e.system())) {
+    if (given_at(values, w)) continue;
     Expr rest = e.number(1);
-    for (std::size_t i = w + 1; i <= w + 3; ++i) {
+    for (const std::size_t i : {x, y, z}) {
       const StartValue* v = given_at(values, i);
       if (v) rest = rest - pow(v->value, 2);
       if (!v) values.push_back({i, 0, e.number(0), span, {}, 1});

@@ -96,6 +96,10 @@ TEST_CASE("modes: what cannot be answered says why") {
   CHECK(nowhere.code == 1);
   CHECK(contains(nowhere.err, "E1302"));
   CHECK(contains(nowhere.err, "θ = 0"));  // where Newton's method ends
+  const Outcome longer =
+      maup({"modes", PROJECT_DIR "/models/tumbling_satellite.lag", "--at", "sat.qx = 2, ω2 = 1 rad/s"});
+  CHECK(longer.code == 1);
+  CHECK(contains(longer.err, "break the norm of sat"));
   CHECK(contains(maup({"modes", "-", "--at", "ψ=1"}, pendulum).err, "E0224"));
   const Outcome fall = maup(
       {"modes", "-"}, "param m = 1 kg, g = 9.81 m/s^2\ncoord z : length\nT = 1/2 m z'^2\nV = m g z\nstart z = 1 m\n");

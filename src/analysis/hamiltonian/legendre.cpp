@@ -4,6 +4,7 @@
 
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/linear_system.hpp>
+#include <maupertuis/scattered_point.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -79,15 +80,9 @@ class Transform {
   /// Which entries of M have the same value at two points with the same parameters: those alone may be numbers.
   std::vector<bool> maybe_numbers() const {
     constexpr double rounding = 1e-9;
-    Bindings points[2];
-    double x = 0.7;
-    for (const Expr& symbol : symbols_of(mass_.entries))
-      for (Bindings& point : points) {
-        const bool held = symbol.role() == Role::Parameter || symbol.role() == Role::Constant;
-        if (&point == points || !held) x = std::fmod(x * 1.6180339887 + 0.31, 1.0);
-        point[symbol] = 0.4 + x;
-      }
-    const std::vector<double> a = evaluate(mass_.entries, points[0]), b = evaluate(mass_.entries, points[1]);
+    const std::vector<Expr> symbols = symbols_of(mass_.entries);
+    const std::vector<double> a = evaluate(mass_.entries, scattered_point(symbols, 0)),
+                              b = evaluate(mass_.entries, scattered_point(symbols, 1));
     std::vector<bool> out;
     const std::size_t n = velocities_.size();
     for (std::size_t k = 0; k < a.size(); ++k) {

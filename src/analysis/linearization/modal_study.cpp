@@ -1,6 +1,7 @@
 #include "analysis/linearization/kinks.hpp"
 
 #include <maupertuis/modes.hpp>
+#include <maupertuis/quaternion_coordinates.hpp>
 
 #include <fmt/format.h>
 
@@ -29,7 +30,9 @@ constexpr double balanced = 1e-9;  // residual of rest
 void add_entry(ModalStudy& study, const PointEquations& equations, const Equilibrium& x, const std::string& side) {
   ModalEntry entry{x, {}, {}, side};
   entry.linearization = linearize(equations, x.point).linearization;
-  entry.analysis = modal_analysis(equations, entry.linearization, study.translations, &entry.equilibrium);
+  std::vector<Translation> symmetries = x.ways;
+  symmetries.insert(symmetries.end(), study.translations.begin(), study.translations.end());
+  entry.analysis = modal_analysis(equations, entry.linearization, symmetries, &entry.equilibrium);
   study.entries.push_back(std::move(entry));
 }
 
@@ -136,6 +139,42 @@ double distance(const EquilibriumSearch& asked, const OperatingPoint& point, con
   return out;
 }
 
+/// A constraint of positions all of whose coordinates are given, and that they break: its label; else empty.
+std::string broken_constraint(const PointEquations& equations, const EquilibriumSearch& asked) {
+  PointEquations::Impl& e = equations.impl();
+  const OperatingPoint point{0,
+                             asked.start.q,
+                             std::vector<double>(e.n),
+                             std::vector<double>(e.n),
+                             std::vector<double>(e.m),
+                             equations.inputs_at(0)};
+  const RowsAtPoint rows = e.at(e.positions, point);
+  const std::vector<double> sizes = typical_sizes(equations.system(), asked.start);
+  for (Index i = 0; i < rows.value.size(); ++i) {
+    bool given = true;
+    double size = 0;
+    for (std::size_t j = 0; j < e.n; ++j) {
+      const double slope = rows.by_q(i, static_cast<Index>(j));
+      given = given && (slope == 0 || asked.fixed.q[j]);
+      size += std::abs(slope) * sizes[j];
+    }
+    if (given && !(std::abs(rows.value[i]) <= meant * size))
+      return equations.system().constraint_label(e.position_rows[static_cast<std::size_t>(i)]);
+  }
+  return {};
+}
+
+/// Only those that turn along stay what they are in the frame.
+std::vector<Translation> seen_in_frame(const OperatingPoint& point, std::vector<Translation> translations) {
+  const Matrix turning = to_eigen(point.turning);
+  constexpr double rounding = 1e-9;
+  std::erase_if(translations, [&](const Translation& t) {
+    return turning.size() > 0 &&
+           (turning * to_eigen(t.direction)).norm() > rounding * turning.norm() * to_eigen(t.direction).norm();
+  });
+  return translations;
+}
+
 /// Where velocities are given: the steady motion along rotations that has them.
 std::optional<Equilibrium> turning_motion(const PointEquations& equations, const EquilibriumSearch& asked) {
   if (asked.fixed.v.empty() || !equations.autonomous()) return std::nullopt;
@@ -192,8 +231,10 @@ std::optional<ModalStudy> modal_study_at(const PointEquations& equations, const 
   std::vector<bool> preferred = asked.fixed.v;
   const std::vector<Translation> translations = equations.translations(preferred);
   if (found.empty()) {
+    const std::string broken = broken_constraint(equations, asked);
     diagnostics.error("E1302", place, "the system neither rests nor moves steadily there",
-                      nearest
+                      !broken.empty() ? fmt::format("The values that are given break {}.", broken)
+                      : nearest
                           ? fmt::format("The forces do not balance; Newton's method from there ends at {}.",
                                         point_text(equations.system(), *nearest, translations))
                           : "The forces do not balance, and Newton's method from there finds no place where they do.",
@@ -206,7 +247,7 @@ std::optional<ModalStudy> modal_study_at(const PointEquations& equations, const 
                     diagnostics);
     return std::nullopt;
   }
-  ModalStudy study = analysed(equations, {found.front()}, translations);
+  ModalStudy study = analysed(equations, {found.front()}, seen_in_frame(found.front().point, translations));
   if (refuse_kinks_alone(equations, study, place, diagnostics)) return std::nullopt;
   tell_of_kinks(equations, study, diagnostics);
   return study;
@@ -286,9 +327,8 @@ std::string turning_text(const MechanicalSystem& system, const OperatingPoint& p
   const auto add = [&](const std::string& text) { out += (out.empty() ? "" : ", ") + text; };
   const auto rounded = [](double x, double size) { return std::abs(x) < 1e-14 * size ? 0.0 : x; };
   std::vector<bool> told(system.coordinates.size(), false);
-  for (const Constraint& c : system.constraints)
-    for (const Expr& symbol : c.body.empty() ? std::vector<Expr>{} : symbols_of({&c.value, 1}))
-      for (std::size_t i = 0; i < told.size(); ++i) told[i] = told[i] || symbol == system.coordinates[i].q;
+  for (const auto& quaternion : quaternion_coordinates(system))
+    for (const std::size_t i : quaternion) told[i] = true;
   Bindings bindings = parameter_bindings(system);
   for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
     bindings[system.coordinates[i].q] = point.q[i];

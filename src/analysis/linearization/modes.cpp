@@ -188,16 +188,14 @@ class Analysis {
     Matrix shapes = kernel;
     std::vector<std::string> causes(static_cast<std::size_t>(d));
     std::size_t explained = 0;
-    for (const Translation& t : translations_) {
-      const Vector direction = to_eigen(t.direction);
+    const std::size_t ways = equilibrium_ ? equilibrium_->ways.size() : 0;  // the first ones
+    for (std::size_t k = 0; k < translations_.size(); ++k) {
+      const Vector direction = to_eigen(translations_[k].direction);
       if (static_cast<Index>(explained) >= d || !in_span(direction, kernel)) continue;
       shapes.col(static_cast<Index>(explained)) = direction;
-      causes[explained++] = "translation along " + name_of(t);
-    }
-    const Vector motion = to_eigen(l_.point.v);
-    if (l_.point.turning.rows > 0 && static_cast<Index>(explained) < d && in_span(motion, kernel)) {
-      shapes.col(static_cast<Index>(explained)) = motion;
-      causes[explained++] = "onward along the steady motion";
+      causes[explained++] = k >= ways ? "translation along " + name_of(translations_[k])
+                            : k == 0  ? "onward along the steady motion"
+                                      : "turned by a rotation that is a symmetry";
     }
     if (explained > 0 && explained < static_cast<std::size_t>(d))
       complete(shapes, kernel, static_cast<Index>(explained));

@@ -17,13 +17,15 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// The Hessian of the effective potential, in y: along translations that are symmetries nothing is at stake, and where
 /// their momenta are kept, δp = ẏ_s + Ĉ_sr y_r = 0 turns the rates ẏ_s into positions:
 ///     K_eff = K̂_rr − Ĉ_rs Ĉ_sr
+/// Not where the momenta of two of them hold y_s as well, Ĉ_ss ≠ 0, as in a magnetic field.
 Matrix effective_stiffness(const MassNormalForm& form, bool keeps_momenta) {
   const Index f = form.k.rows(), s = form.translations.cols();
   if (s == 0) return form.k;
   const Matrix q = orthogonal_factor(form.translations);
   const Matrix along = q.leftCols(s), rest = q.rightCols(f - s);
   Matrix k = quadratic_form(rest, form.k);
-  if (keeps_momenta)
+  constexpr double rounding = 1e-9;
+  if (keeps_momenta && quadratic_form(along, form.c).norm() <= rounding * form.c.norm())
     k -= product(product(transposed_product(rest, form.c), along), product(transposed_product(along, form.c), rest));
   return k;
 }
@@ -43,7 +45,6 @@ struct Verdicts {
   /// Eigenvalues of the Hessian; empty where the energy says nothing.
   std::vector<double> hessian() const {
     if (!form.valid || !form.potential || !equations.energy_never_grows()) return {};
-    if (equilibrium.point.turning.rows > 0) return {};  // what rotations keep is not worked into it
     if (!equilibrium.at_rest && !all_conserved()) return {};
     const Matrix k = effective_stiffness(form, all_conserved());
     if (k.size() == 0) return {};
@@ -62,7 +63,7 @@ struct Verdicts {
   /// A translation is a zero eigenvalue; a conserved one a second, the change of its momentum. So is each further way
   /// to move.
   std::size_t explained_zeros() const {
-    std::size_t out = translations.size() + equilibrium.family + 2 * equilibrium.turns;
+    std::size_t out = translations.size() + equilibrium.family;
     for (const Translation& t : translations) out += t.conserved;
     return out;
   }
@@ -101,8 +102,7 @@ StabilityReport judge_stability(const PointEquations& equations, const Lineariza
   const double tolerance = has_hessian ? v.hessian_tolerance() : 0;
   const bool strict_minimum = has_hessian ? out.hessian.front() > tolerance
                                           : form.valid && form.potential && equations.energy_never_grows() &&
-                                                equilibrium->turns == 0 && v.all_conserved() &&
-                                                form.translations.cols() == form.k.rows();
+                                                v.all_conserved() && form.translations.cols() == form.k.rows();
   const std::string_view potential = equilibrium->at_rest && translations.empty() ? "potential" : "effective potential";
   if (margin > 0) {
     out.verdict = Stability::Unstable;

@@ -2,6 +2,8 @@
 #include "analysis/linearization/point_equations.hpp"
 #include "linear_algebra/products.hpp"
 
+#include <maupertuis/quaternion_coordinates.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -22,22 +24,8 @@ struct Generators {
   std::vector<Matrix> in_space, in_body;
 };
 
-/// The four coordinates (w, x, y, z) of each quaternion that is held at norm 1.
-std::vector<std::vector<std::size_t>> quaternions(const MechanicalSystem& system) {
-  std::vector<std::vector<std::size_t>> out;
-  for (const Constraint& c : system.constraints) {
-    if (c.body.empty()) continue;
-    const std::vector<Expr> symbols = symbols_of({&c.value, 1});
-    std::vector<std::size_t> four;
-    for (std::size_t i = 0; i < system.coordinates.size(); ++i)
-      if (std::find(symbols.begin(), symbols.end(), system.coordinates[i].q) != symbols.end()) four.push_back(i);
-    if (four.size() == 4) out.push_back(four);
-  }
-  return out;
-}
-
 /// p ∘ q / 2 for p = e_axis, and q ∘ p / 2 for side −1: (w, v) → (−p·v, w p + side p × v) / 2.
-Matrix half_turn(std::size_t n, const std::vector<std::size_t>& q, std::size_t axis, double side) {
+Matrix half_turn(std::size_t n, const std::array<std::size_t, 4>& q, std::size_t axis, double side) {
   Matrix out = Matrix::Zero(static_cast<Index>(n), static_cast<Index>(n));
   const auto entry = [&](std::size_t to, std::size_t from, double value) {
     out(static_cast<Index>(q[to]), static_cast<Index>(q[from])) = value / 2;
@@ -54,7 +42,7 @@ Generators candidates(const MechanicalSystem& system) {
   const std::size_t n = system.coordinates.size();
   Generators out;
   std::vector<bool> taken(n, false);
-  for (const std::vector<std::size_t>& q : quaternions(system)) {
+  for (const std::array<std::size_t, 4>& q : quaternion_coordinates(system)) {
     for (const std::size_t i : q) taken[i] = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       out.in_space.push_back(half_turn(n, q, axis, 1));
@@ -267,19 +255,34 @@ class TurningState {
   Equilibrium answer(const OperatingPoint& from, const Unknowns& z, double residual) const {
     Equilibrium out{point_of(from, z), false, residual, 0, {}, false};
     const Matrix xi = turning(z.rates);
-    out.turns = commuting(xi);
+    out.ways = ways(xi, z.q);
     return out;
   }
 
-  /// How many combinations of the rotations commute with Ξ.
-  std::size_t commuting(const Matrix& xi) const {
-    if (rotations_.empty()) return 0;
+  /// Independent directions Ξ_k q of the rotations that commute with Ξ, the motion itself first.
+  std::vector<Translation> ways(const Matrix& xi, const Vector& q) const {
     Matrix brackets(xi.size(), static_cast<Index>(rotations_.size()));
     for (std::size_t k = 0; k < rotations_.size(); ++k) {
       const Matrix bracket = product(xi, rotations_[k]) - product(rotations_[k], xi);
       brackets.col(static_cast<Index>(k)) = Eigen::Map<const Vector>(bracket.data(), bracket.size());
     }
-    return static_cast<std::size_t>(kernel_first(brackets, small * xi.norm()).kernel);
+    const KernelFirst split = kernel_first(brackets, small * xi.norm());
+    Matrix moved(q.size(), split.kernel + 1);
+    moved.col(0) = xi * q;
+    moved.rightCols(split.kernel) = directions(q).leftCols(brackets.cols()) * split.basis.leftCols(split.kernel);
+    std::vector<Translation> out;
+    Matrix kept(q.size(), 0);  // by typical sizes
+    for (Index k = 0; k < moved.cols(); ++k) {
+      const Vector by = moved.col(k).cwiseQuotient(sizes_);
+      const Vector rest = by - kept * least_squares(kept, by, rank_of_rates).x;
+      if (!(rest.norm() > rank_of_rates * std::max(by.norm(), xi.norm() * rank_of_rates))) continue;
+      kept.conservativeResize(Eigen::NoChange, kept.cols() + 1);
+      kept.rightCols(1) = by;
+      Index pivot = 0;
+      by.cwiseAbs().maxCoeff(&pivot);
+      out.push_back({to_list(moved.col(k)), static_cast<std::size_t>(pivot), true});
+    }
+    return out;
   }
 
   PointEquations::Impl& e_;

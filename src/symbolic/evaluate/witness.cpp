@@ -1,3 +1,4 @@
+#include <maupertuis/scattered_point.hpp>
 #include <maupertuis/seen_nonzero.hpp>
 
 #include "symbolic/evaluate/witness.hpp"
@@ -76,6 +77,18 @@ std::vector<bool> seen_nonzero(std::span<const Expr> expressions) {
       if (excludes_zero(values[tape.roots()[i]])) seen[i] = true;
   }
   return seen;
+}
+
+Bindings scattered_point(std::span<const Expr> symbols, int turn) {
+  constexpr double golden = 0.6180339887498949, another = 0.2763932022500211, least = 0.4;
+  Bindings point;
+  double place = 0.31;
+  for (const Expr& symbol : symbols) {
+    place = std::fmod(place + golden, 1.0);
+    const bool held = symbol.role() == Role::Parameter || symbol.role() == Role::Constant;
+    point[symbol] = least + (held ? place : std::fmod(place + another * turn, 1.0));
+  }
+  return point;
 }
 
 }  // namespace maupertuis

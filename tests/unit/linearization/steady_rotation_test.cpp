@@ -9,7 +9,7 @@ namespace {
 std::optional<Equilibrium> motion(Linearized& m) { return steady_rotation_near(m.at, m.start); }
 
 ModalAnalysis modes_of(Linearized& m, const Equilibrium& x) {
-  return modal_analysis(m.at, linearize(m.at, x.point).linearization, {}, &x);
+  return modal_analysis(m.at, linearize(m.at, x.point).linearization, x.ways, &x);
 }
 
 std::string satellite(const char* start) {
@@ -31,12 +31,15 @@ TEST_CASE("A body that spins about a principal axis: Euler's closed form") {
     const auto found = motion(m);
     REQUIRE(found);
     CHECK(found->residual < 1e-13);
-    CHECK(found->turns == 1);
+    CHECK(found->ways.size() == 1);
     // λ² = −ω² (I_k − I_i)(I_k − I_j) / (I_i I_j), and ±i ω of the axis, fixed in space, seen from the body.
     const double i = inertia[(k + 1) % 3], j = inertia[(k + 2) % 3], own = inertia[k];
     const double square = -w * w * (own - i) * (own - j) / (i * j);
     const ModalAnalysis modes = modes_of(m, *found);
-    CHECK((modes.stability.verdict == Stability::Unstable) == (k == 1));
+    for (const double entry : linearize(m.at, found->point).linearization.damping.entries) CHECK(entry == 0);
+    // The largest axis has the least energy of its momentum; at the smallest gyroscopic forces hold it.
+    const Stability verdicts[] = {Stability::Undecided, Stability::Unstable, Stability::Energetic};
+    CHECK(modes.stability.verdict == verdicts[k]);
     std::vector<double> expected{w};
     if (square < 0) expected.push_back(std::sqrt(-square));
     std::sort(expected.begin(), expected.end());
@@ -75,10 +78,12 @@ gravity (0, 0, -g)
     REQUIRE(found);
     CHECK(found->residual < 1e-13);
     CHECK(near(found->point.v[2], exact, 1e-5));
-    CHECK(found->turns == 2);  // about the vertical and about the figure axis
+    CHECK(found->ways.size() == 2);  // about the vertical and about the figure axis
     const double nutation =
         std::hypot(axial * spin / across - 2 * precession * std::cos(tilt), precession * std::sin(tilt));
-    const std::vector<double> got = frequencies(modes_of(m, *found));
+    const ModalAnalysis modes = modes_of(m, *found);
+    CHECK(modes.stability.verdict == Stability::Energetic);
+    const std::vector<double> got = frequencies(modes);
     REQUIRE(got.size() == 1);
     CHECK(near(got.front(), nutation, std::max(1e-10, 30 * off)));
   }
@@ -96,7 +101,8 @@ start x = 1.3 m
     m.start.v = {0, 1.3 * rate, 0};
     const auto found = motion(m);
     REQUIRE(found);
-    std::vector<double> expected{std::sqrt(2 - p) * rate, rate};  // in the plane; out of it
+    CHECK(modes_of(m, *found).stability.verdict == Stability::Energetic);  // κ² > 0, with its angular momentum kept
+    std::vector<double> expected{std::sqrt(2 - p) * rate, rate};           // in the plane; out of it
     std::sort(expected.begin(), expected.end());
     const std::vector<double> got = frequencies(modes_of(m, *found));
     REQUIRE(got.size() == 2);
@@ -118,6 +124,27 @@ start x = 1 m
   const std::vector<double> got = frequencies(modes_of(m, *found));
   REQUIRE(!got.empty());
   CHECK(near(got.front(), std::sqrt(1.5), 1e-12));
+  // Beside it a translation is one in a frame that turns: no zero.
+  const ModalEntry entry = m.here({0, 1, 2});
+  REQUIRE(entry.equilibrium.point.turning.rows == 3);
+  for (const Mode& mode : entry.analysis.modes) CHECK(mode.cause.find("translation") == std::string::npos);
+}
+
+TEST_CASE("A circular orbit that falls in: κ² < 0 is growth") {
+  Linearized m(R"(system orbit
+param m = 2 kg, μ = 1 m^2/s^2, l = 1 m
+coord x, y : length
+T = 1/2 m (x'^2 + y'^2)
+V = -3 m μ (l^2/(x^2 + y^2))^(3/2)
+start x = 1.3 m
+)");
+  const double rate = 3 / std::pow(1.3, 2.5);
+  m.start.v = {0, 1.3 * rate};
+  const auto found = motion(m);
+  REQUIRE(found);
+  const ModalAnalysis modes = modes_of(m, *found);
+  CHECK(modes.stability.verdict == Stability::Unstable);
+  CHECK(near(modes.stability.growth_rate, rate, 1e-11));  // κ² = (2 − 3) Ω²
 }
 
 TEST_CASE("A ball that rolls along: a steady motion with velocity constraints") {
