@@ -107,3 +107,27 @@ TEST_CASE("a multiplier decides how long a step of a motion may be that is a pol
   CHECK(run->statistics.energy_drift < 1e-12);
   CHECK(run->statistics.steps > 60);
 }
+
+TEST_CASE("rows that would fill pages are written by shared parts, which put in again are the rows") {
+  const PhaseSpaceOf p(text_of(PROJECT_DIR "/tests/problems/arm_seven_joints.lag"));
+  const std::vector<DerivationStep> lines = phase_space_lines(p.h, nullptr, p.equations);
+  ExprMap parts;
+  for (const DerivationStep& line : lines)
+    for (const Intermediate& i : line.intermediates) parts.emplace(i.symbol, substitute(i.value, parts));
+  REQUIRE(!parts.empty());
+  std::size_t rows = 0;
+  const auto check = [&](const DerivationStep& line, Expr left, Expr right) {
+    if (to_plain(line.left) != to_plain(left, p.h.order)) return;
+    CHECK(zero_test(substitute(line.right, parts) - right).verdict == Verdict::Zero);
+    ++rows;
+  };
+  for (const DerivationStep& line : lines) {
+    if (!line.right) continue;
+    CHECK(to_plain(line.right, p.h.order).size() < 20000);
+    for (std::size_t i = 0; i < p.h.momenta.size(); ++i)
+      if (line.section == "Momenta") check(line, p.h.momenta[i], p.h.momentum_values[i]);
+    for (const CanonicalEquation& e : p.h.forces)
+      if (line.section == "Canonical equations") check(line, e.left, e.right.value);
+  }
+  CHECK(rows == 14);
+}

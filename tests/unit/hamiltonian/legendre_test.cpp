@@ -163,32 +163,3 @@ TEST_CASE("definitions stay symbols, and the legend tells them") {
   CHECK(p.plain(p.h.legend[0].symbol) == "I");
   CHECK(p.certified());
 }
-
-TEST_CASE("rows that would fill pages are written by shared parts, which put in again are the rows") {
-  const int links = 12;
-  std::string names, points;
-  for (int i = 1; i <= links; ++i) {
-    const std::string n = std::to_string(i), before = i > 1 ? "P" + std::to_string(i - 1) + " + " : "";
-    names += (i > 1 ? ", θ" : "θ") + n;
-    points += "point P" + n + " mass m at " + before + "l (sin θ" + n + ", θ" + n + "^2 cos θ" + n + ", cos(θ" + n +
-              " - θ" + std::to_string(i > 1 ? i - 1 : links) + "))\n";
-  }
-  const PhaseSpaceOf p("system chain\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord " + names + " : angle\n" + points +
-                       "gravity (0, 0, -g)\n");
-  const std::vector<DerivationStep> lines = phase_space_lines(p.h, nullptr, p.equations);
-  ExprMap parts;
-  std::size_t rows = 0;
-  for (const DerivationStep& line : lines)
-    for (const Intermediate& i : line.intermediates) parts.emplace(i.symbol, substitute(i.value, parts));
-  REQUIRE(!parts.empty());
-  for (const DerivationStep& line : lines) {
-    if (!line.right) continue;
-    CHECK(to_plain(line.right, p.h.order).size() < 20000);
-    for (std::size_t i = 0; i < p.h.momenta.size(); ++i)
-      if (line.section == "Momenta" && to_plain(line.left) == to_plain(p.h.momenta[i], p.h.order)) {
-        CHECK(zero_test(substitute(line.right, parts) - p.h.momentum_values[i]).verdict == Verdict::Zero);
-        ++rows;
-      }
-  }
-  CHECK(rows == static_cast<std::size_t>(links));
-}
