@@ -174,6 +174,7 @@ class Search {
       auto solution = system.solve(from);
       if (!solution) continue;
       settle(*solution, system);
+      if (!balances(solution->point, system)) continue;
       if (!at_rest && is_at_rest(solution->point)) continue;
       if (!holds_for_all_times(solution->point)) continue;
       keep({solution->point, at_rest, solution->residual, solution->family, solution->along, false}, system);
@@ -201,6 +202,14 @@ class Search {
     if (!(residual <= std::max(solution.residual, 1e-14))) return;
     solution.point = plain;
     solution.residual = residual;
+  }
+
+  /// The forces balance at the very point that is told, whose angles may have been taken back by many turns; and with
+  /// q̇ = 0 put into R as a number, since x'/|x'| has no value there.
+  bool balances(const OperatingPoint& point, const SteadyState& system) const {
+    constexpr double balanced = 1e-9;
+    OperatingPoint told = point;
+    return system.residual_at(told) <= balanced && e_.value(e_.balance, told).allFinite();
   }
 
   /// Where t stands in the equations, they must hold whatever t is.

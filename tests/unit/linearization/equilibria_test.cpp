@@ -223,3 +223,38 @@ TEST_CASE("Rest where a force jumps has no linearization") {
   REQUIRE(study.kinks.size() == 1);
   CHECK(study.kinks[0].side == "x > 0");
 }
+
+TEST_CASE("Newton's method that runs away by 1e15 turns has found nothing: an arm has two places a link") {
+  Linearized m(R"(system arm
+param m1 = 4 kg, m2 = 3 kg, m3 = 1 kg, l1 = 50 cm, l2 = 40 cm, l3 = 20 cm, g = 9.81 m/s^2
+coord θ1, θ2, θ3 : angle
+frame shoulder at (0, 0) rotation angle θ1
+frame elbow at (l1, 0) rotation angle θ2 in shoulder
+frame wrist at (l2, 0) rotation angle θ3 in elbow
+point A mass m1 at (l1/2, 0) in shoulder
+point B mass m2 at (l2/2, 0) in elbow
+point C mass m3 at (l3/2, 0) in wrist
+force θ1 = -5 N m
+force θ2 = 5 N m
+gravity (0, -g)
+start θ1 = -90 deg, θ2 = 30 deg, θ3 = 20 deg
+)");
+  const ModalStudy study = m.study();
+  CHECK(study.entries.size() == 8);
+  // Of the torque about each joint: what hangs beyond it.
+  const double g = 9.81, first = 4 * 0.25 + 4 * 0.5, second = 3 * 0.2 + 1 * 0.4, third = 0.1;
+  for (const ModalEntry& e : study.entries) {
+    const std::vector<double>& q = e.equilibrium.point.q;
+    const double a = g * first * std::cos(q[0]), b = g * second * std::cos(q[0] + q[1]),
+                 c = g * third * std::cos(q[0] + q[1] + q[2]);
+    CHECK(std::abs(c) < 1e-12);
+    CHECK(std::abs(b + c - 5) < 1e-12);
+    CHECK(std::abs(a + b + c + 5) < 1e-12);
+  }
+}
+
+TEST_CASE("dry friction as a quotient has no value at rest, whatever else vanishes there") {
+  Linearized m("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\nforce x = -0.3 x'/abs(x')\n");
+  Diagnostics told;
+  CHECK_FALSE(modal_study(m.at, m.start, told));
+}
