@@ -63,6 +63,15 @@ constexpr CodeEntry kEntries[] = {
      "start u = min(x, 1 - x)\nrun 1\n",
      "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 20 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
      "start u = sin(pi x)\nrun 1\n"},
+    {"W0652", "a start that the mesh follows in part",
+     "Between the nodes of the elements the start is another function than their polynomials, by more than a "
+     "thousandth "
+     "of its largest value. Errors are those of short waves then, and fall fast with more cells; the estimate takes a "
+     "mesh of twice the cells too.",
+     "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 20 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
+     "start u = exp(-((x - 0.4)/0.01)^2)\nrun 1\n",
+     "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 200 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
+     "start u = exp(-((x - 0.4)/0.01)^2)\nrun 1\n"},
     {"N0648", "a constant of a field that no equation determines",
      "A potential w of u = w_x stands in the density by its derivatives alone. Then w plus any function of t is the "
      "same "

@@ -116,6 +116,20 @@ bool refuse_coarse_mesh(const FieldEquations& equations, const FieldMethod& meth
   return true;
 }
 
+/// Whether the mesh leaves so much of the start out that two meshes may agree by chance; W0652 where it is much.
+bool is_coarse_for_start(const FieldEquations& equations, const FieldMethod& method, const Cells& cells,
+                         Diagnostics& diagnostics) {
+  constexpr double counts = 1e-3, much = 1e-2;
+  const double part = left_out_of_start(equations, cells, method.order());
+  if (part > much)
+    diagnostics.warning("W0652", equations.model->start.front().span,
+                        fmt::format("the mesh leaves {:.2g} % of the start out", 100 * part),
+                        "Between the nodes the start is another function than the polynomials of the elements, and "
+                        "waves shorter than these run apart.",
+                        "Take more `cells`, or a higher `order`, until what is left out is less than 0.1 %.");
+  return part > counts;
+}
+
 const char* side_name(BoundaryCondition::Side side, const FieldSystem& s) {
   constexpr const char* names[] = {"left", "right", "bottom", "top"};
   constexpr const char* ends[] = {"left end", "right end", "bottom", "top"};
@@ -311,13 +325,17 @@ Cells divided(const Cells& cells, int parts) {
   return out;
 }
 
+/// Whether a mesh follows the start: not where it has jumps or kinks, and in part where it is too coarse.
+enum class Rough { No, Coarse, Breaks };
+
 /// The other meshes, and how far off the answers on the first are.
 ///
 /// Meshes and their steps are off by a power of the width of a cell, but never by less than rounding. Where a third
-/// mesh shows that the difference falls more slowly, by that. Where something jumps (`breaks`), by the first power.
+/// mesh shows that the difference falls more slowly, by that; where the start breaks, by the first power. Where the
+/// mesh follows the start in part alone, a mesh of twice the cells tells what both others miss.
 std::vector<double> errors_of(const OneRun& fine, const FieldEquations& equations, FieldMethod& method,
                               const Cells& cells, const std::vector<FieldQuestion>& questions,
-                              const FieldRunOptions& options, bool breaks, Diagnostics& diagnostics) {
+                              const FieldRunOptions& options, Rough start, Diagnostics& diagnostics) {
   std::vector<double> out(questions.size(), std::numeric_limits<double>::infinity());
   const Cells half = divided(cells, 2), quarter = divided(cells, 4);
   if (!options.errors || questions.empty() || half == cells) return out;
@@ -327,17 +345,26 @@ std::vector<double> errors_of(const OneRun& fine, const FieldEquations& equation
   Diagnostics ignored;  // without the third there is a broader estimate
   if (!method.is_wave() && cells[0] >= 4)
     coarser = run_on(equations, method, quarter, questions, options, {}, false, ignored);
+  std::optional<OneRun> finer;
+  if (start != Rough::No) {
+    Cells twice = cells;
+    for (int& n : twice) n *= 2;
+    finer = run_on(equations, method, twice, questions, options, {}, false, diagnostics);
+    if (!finer) return out;
+  }
   double ratio = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (cells[i] > 1) ratio = std::min(ratio, static_cast<double>(cells[i]) / half[i]);
   const double rounding = 2.2e-16 * std::sqrt(static_cast<double>(fine.steps) + 1);
   for (std::size_t i = 0; i < questions.size(); ++i) {
-    double gain = breaks ? 2 : std::pow(ratio, method.power(equations, questions[i], half));
+    double gain = start == Rough::Breaks ? 2 : std::pow(ratio, method.power(equations, questions[i], half));
     if (!method.is_wave()) {
       const double seen = coarser ? difference(*coarser, *coarse, i) / difference(*coarse, fine, i) : 2;
       gain = std::isfinite(seen) ? std::min(gain, std::max(seen, 2.0)) : gain;
     }
-    out[i] = difference(*coarse, fine, i) / (gain - 1) + rounding * std::max(std::abs(fine.answers[i]), 1e-300);
+    if (finer) out[i] = 2 * difference(*finer, fine, i);
+    out[i] = std::max(finer ? out[i] : 0, difference(*coarse, fine, i) / (gain - 1)) +
+             rounding * std::max(std::abs(fine.answers[i]), 1e-300);
   }
   return out;
 }
@@ -357,7 +384,9 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   }
   if (refuse_large_mesh(equations, *method, cells, diagnostics)) return std::nullopt;
   if (refuse_coarse_mesh(equations, *method, cells, diagnostics)) return std::nullopt;
-  const bool breaks = warn_of_breaks(equations, cells, diagnostics);
+  const Rough start = warn_of_breaks(equations, cells, diagnostics)                 ? Rough::Breaks
+                      : is_coarse_for_start(equations, *method, cells, diagnostics) ? Rough::Coarse
+                                                                                    : Rough::No;
   std::vector<std::vector<double>> rows;
   if (options.trajectory) rows = places_of_rows(equations, cells, options.least_values);
   auto fine = run_on(equations, *method, cells, questions, options, rows, true, diagnostics);
@@ -374,7 +403,7 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   if (!rows.empty()) out.places = rows[0];
   if (rows.size() == 2) out.upwards = rows[1];
   const std::vector<double> errors =
-      errors_of(*fine, equations, *method, cells, questions, options, breaks, diagnostics);
+      errors_of(*fine, equations, *method, cells, questions, options, start, diagnostics);
   for (std::size_t i = 0; i < questions.size(); ++i) out.answers.push_back({fine->answers[i], errors[i]});
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;

@@ -77,6 +77,27 @@ class Scan {
   /// From now on a value that is no number is something found too.
   Scan& with_poles() { return poles_ = true, *this; }
 
+  /// The largest distance from these polynomials beside the largest value, at places between the nodes.
+  double left_out(const Elements& mesh) {
+    constexpr std::size_t looks = 13;  // in an element, along each direction
+    std::size_t in_all = 1;
+    for (std::size_t i = 0; i < mesh.directions(); ++i) in_all *= looks;
+    double worst = 0, size = 0;
+    for (std::size_t e = 0; e < mesh.count(); ++e) {
+      const Place corner = mesh.corner(e);
+      const std::vector<double>& nodes = values_at_nodes(mesh, corner);
+      for (std::size_t k = 0; k < in_all; ++k) {
+        Place x = corner;
+        for (std::size_t i = 0, rest = k; i < x.size(); ++i, rest /= looks)
+          x[i] += mesh.width[i] * (static_cast<double>(rest % looks) + 0.5) / looks;
+        const double f = at(x);
+        size = std::max(size, std::abs(f));
+        worst = std::max(worst, std::abs(f - mesh.between(nodes, corner, x)));
+      }
+    }
+    return size > 0 ? worst / size : 0;
+  }
+
   /// The place of what the polynomials through the nodes do not follow; nothing where there is none.
   std::optional<Place> find(const Elements& mesh) {
     size_ = 0;
@@ -160,6 +181,23 @@ struct ParameterValues {
   Bindings known;
 };
 
+std::vector<Expr> space_of(const FieldEquations& equations) {
+  std::vector<Expr> out;
+  for (const SpaceVariable& one : equations.system().space) out.push_back(one.symbol);
+  return out;
+}
+
+Elements elements_of(const FieldEquations& equations, const ParameterValues& parameters, const Lobatto& rule,
+                     const std::vector<int>& cells) {
+  const FieldSystem& s = equations.system();
+  Elements out{rule, {}, {}, cells};
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    out.from.push_back(evaluate(s.expanded(s.space[i].from), parameters.known));
+    out.width.push_back((evaluate(s.expanded(s.space[i].to), parameters.known) - out.from.back()) / cells[i]);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::optional<double> unresolved_moment(const FieldEquations& equations, const PointForm& form, double step,
@@ -195,19 +233,26 @@ std::optional<double> unresolved_moment(const FieldEquations& equations, const P
   return std::nullopt;
 }
 
+double left_out_of_start(const FieldEquations& equations, const std::vector<int>& cells, int order) {
+  const ParameterValues parameters(*equations.model);
+  const Lobatto rule(order);
+  const Elements mesh = elements_of(equations, parameters, rule, cells);
+  double out = 0;
+  for (const FieldStart& start : equations.model->start)
+    out = std::max(
+        out, Scan(equations.system().expanded(start.value), space_of(equations), parameters.symbols, parameters.values)
+                 .left_out(mesh));
+  return out;
+}
+
 std::optional<Unresolved> unresolved_feature(const FieldEquations& equations, const PointForm& form,
                                              const std::vector<int>& cells, int order) {
   const FieldSystem& s = equations.system();
   Context& context = *s.context;
-  std::vector<Expr> x;
-  for (const SpaceVariable& one : s.space) x.push_back(one.symbol);
+  const std::vector<Expr> x = space_of(equations);
   const ParameterValues parameters(*equations.model);
   const Lobatto rule(order);
-  Elements mesh{rule, {}, {}, cells};
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    mesh.from.push_back(evaluate(s.expanded(s.space[i].from), parameters.known));
-    mesh.width.push_back((evaluate(s.expanded(s.space[i].to), parameters.known) - mesh.from.back()) / cells[i]);
-  }
+  const Elements mesh = elements_of(equations, parameters, rule, cells);
   const auto look = [&](Expr f, bool of_start) -> std::optional<Unresolved> {
     if (std::none_of(x.begin(), x.end(), [&](Expr one) { return stands_in(one, f); })) return std::nullopt;
     const auto place = Scan(f, x, parameters.symbols, parameters.values).find(mesh);

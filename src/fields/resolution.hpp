@@ -21,6 +21,11 @@ struct Unresolved {
 std::optional<Unresolved> unresolved_feature(const FieldEquations& equations, const PointForm& form,
                                              const std::vector<int>& cells, int order);
 
+/// How much of a start the polynomials through the nodes leave out, beside its largest value: at some places of each
+/// element that share no pattern with the nodes, of all lines of the start the largest. Cost: some evaluations an
+/// element.
+double left_out_of_start(const FieldEquations& equations, const std::vector<int>& cells, int order);
+
 /// The same along t for what acts: boundary values, forces at ends, and the density at some places, beside the parabola
 /// through the beginning, the middle and the end of each step. A series from the beginning of a step follows it about
 /// as far; jumps are found too. The moment, or nothing. Cost: some evaluations a step, function and place.
