@@ -65,8 +65,7 @@ constexpr CodeEntry kEntries[] = {
      "start u = sin(pi x)\nrun 1\n"},
     {"W0652", "a start that the mesh follows in part",
      "Between the nodes of the elements the start is another function than their polynomials, by more than a "
-     "thousandth "
-     "of its largest value. Errors are those of short waves then, and fall fast with more cells; the estimate takes a "
+     "hundredth of its largest value. Errors are those of short waves then, and fall fast with more cells; the estimate takes a "
      "mesh of twice the cells too.",
      "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 20 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
      "start u = exp(-((x - 0.4)/0.01)^2)\nrun 1\n",
