@@ -51,18 +51,48 @@ bool is_finite(const T& x) {
 
 }  // namespace maupertuis::extended
 
-// Values of ζ, which stand in erf behind the gamma functions, are computed by whoever asks first for one, in his
-// thread. Boost computes them for every number type when a program starts as well, in the main thread: 35 ms of the 42
-// that `maup --version` took. Newer versions of Boost are left as they are.
+// Values of ζ, Bernoulli numbers, factorials and constants, which stand in erf behind the gamma functions, are computed
+// by whoever asks first for one, in his thread. Boost computes them for every number type when a program starts as well, in the
+// main thread: 38 ms of the 42 that `maup --version` took. Newer versions of Boost are left as they are.
 #if BOOST_VERSION <= 108100
-namespace boost::math::detail {
+namespace maupertuis::extended {
 
-template <unsigned Bits, class Policy, class Tag>
-struct zeta_initializer<maupertuis::extended::Real<Bits>, Policy, Tag> {
+/// In the place of what Boost computes at the start.
+struct NothingAtStart {
+  struct Nothing {
+    void force_instantiate() const {}
+  };
+  static constexpr Nothing initializer{};
   static void force_instantiate() {}
 };
 
-}  // namespace boost::math::detail
+}  // namespace maupertuis::extended
+
+namespace boost::math {
+
+template <unsigned Bits>
+struct unchecked_factorial_initializer<maupertuis::extended::Real<Bits>> : maupertuis::extended::NothingAtStart {};
+
+namespace detail {
+
+template <unsigned Bits, class Policy, class Tag>
+struct zeta_initializer<maupertuis::extended::Real<Bits>, Policy, Tag> : maupertuis::extended::NothingAtStart {};
+template <unsigned Bits, class Policy>
+struct bernoulli_initializer<maupertuis::extended::Real<Bits>, Policy> : maupertuis::extended::NothingAtStart {};
+template <unsigned Bits, class Policy>
+struct polygamma_initializer<maupertuis::extended::Real<Bits>, Policy> : maupertuis::extended::NothingAtStart {};
+template <unsigned Bits, class Policy>
+struct lgamma_initializer<maupertuis::extended::Real<Bits>, Policy> : maupertuis::extended::NothingAtStart {};
+
+}  // namespace detail
+
+namespace constants::detail {
+
+template <unsigned Bits, int N, const maupertuis::extended::Real<Bits>& (*F)()>
+struct constant_initializer2<maupertuis::extended::Real<Bits>, N, F> : maupertuis::extended::NothingAtStart {};
+
+}  // namespace constants::detail
+}  // namespace boost::math
 #endif
 
 namespace maupertuis::reference {
