@@ -12,6 +12,7 @@ enum class Backend { Automatic, Interpreter, Compiled };
 struct CompileOptions {
   bool cache = true;        // objects of earlier runs are read, new ones kept: ~/.cache/maupertuis
   bool long_run = false;    // the code will run long: longer code and more passes pay
+  bool in_tiers = false;    // long code of a small program is compiled quickly, and anew in a thread when it ran long
   std::string processor{};  // empty: this one; else by LLVM's name, such as x86-64-v3
 };
 

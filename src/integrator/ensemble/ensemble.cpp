@@ -67,7 +67,7 @@ CompiledLanes lanes_for(const Kernel& kernel, const EnsembleStart& start, const 
   }
   if (options.width == 0 && !lanes_pay()) return out;
   if (wants_code(kernel, start, options, control))
-    out = compiled_lanes(kernel, width, {.cache = options.cache, .long_run = true, .processor = {}});
+    out = compiled_lanes(kernel, width, {.cache = options.cache, .long_run = true, .in_tiers = false, .processor = {}});
   // The interpreter decodes each instruction once for all lanes, so that two registers side by side pay.
   if (!out.expansion)
     out.expansion = interpreted_lanes(kernel, options.width > 0 ? options.width : std::min(16, 2 * width));

@@ -183,23 +183,43 @@ Digest key_of(const Request& request) {
   return d.digest();
 }
 
+namespace {
+
+void load(std::span<const char> object, Compiled& out) {
+  out.object_bytes = object.size();
+  out.code = LoadedObject::load(object, &resolve, out.trouble);
+}
+
+Compiled read(const Digest& key, const ObjectCache* cache) {
+  const auto begin = std::chrono::steady_clock::now();
+  Compiled out;
+  if (cache)
+    if (const auto object = cache->read(key)) load(*object, out);
+  out.from_cache = out.code != nullptr;
+  out.seconds = seconds_since(begin);
+  return out;
+}
+
+Request for_processor(Request request) {
+  request.processor = processor_of(request);
+  return request;
+}
+
+}  // namespace
+
+Compiled from_cache(const Request& request, const ObjectCache& cache) {
+  return read(key_of(for_processor(request)), &cache);
+}
+
 Compiled compile(const Request& wanted, const ObjectCache* cache) {
   const auto begin = std::chrono::steady_clock::now();
-  Request request = wanted;
-  request.processor = processor_of(wanted);
-  Compiled out;
+  const Request request = for_processor(wanted);
   const Digest key = key_of(request);
-  const auto load = [&](std::span<const char> object) {
-    out.object_bytes = object.size();
-    out.code = LoadedObject::load(object, &resolve, out.trouble);
-  };
-  if (cache)
-    if (const auto object = cache->read(key)) load(*object);
-  out.from_cache = out.code != nullptr;
+  Compiled out = read(key, cache);
   if (!out.code) {
     out.trouble.clear();
     const std::vector<char> object = ask_module(request, out);
-    if (!object.empty()) load(object);
+    if (!object.empty()) load(object, out);
     if (out.code && cache) out.cache_trouble = cache->write(key, object);
   }
   out.seconds = seconds_since(begin);
@@ -213,12 +233,18 @@ std::pair<std::shared_ptr<const LoadedObject>, CompileReport> compile(Request re
   request.processor = options.processor.c_str();
   std::optional<ObjectCache> cache;
   if (options.cache) cache.emplace(ObjectCache::usual_folder());
-  Compiled made = compile(request, cache ? &*cache : nullptr);
+  Compiled made;
+  if (options.in_tiers && cache) made = from_cache(request, *cache);
+  if (!made.code) {
+    if (options.in_tiers) request.effort = 2;
+    made = compile(request, cache ? &*cache : nullptr);
+  }
   return {made.code,
           {.compiled = made.code != nullptr,
            .trouble = std::move(made.trouble),
            .cache_trouble = std::move(made.cache_trouble),
            .from_cache = made.from_cache,
+           .is_final = request.effort != 2,
            .seconds = made.seconds}};
 }
 

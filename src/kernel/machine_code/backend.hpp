@@ -51,7 +51,11 @@ struct Compiled {
 /// below 1 ms.
 Compiled compile(const Request& request, const ObjectCache* cache);
 
-/// The same of a source with this digest, with the usual cache if the options want one.
+/// The same from the cache alone; LLVM is not opened.
+Compiled from_cache(const Request& request, const ObjectCache& cache);
+
+/// The same of a source with this digest, with the usual cache if the options want one. In tiers: what the cache has of
+/// effort 1, else code of effort 2.
 std::pair<std::shared_ptr<const LoadedObject>, CompileReport> compile(Request request, const Digest& source,
                                                                       const CompileOptions& options);
 

@@ -1,3 +1,4 @@
+#include "kernel/program/point_orders.hpp"
 #include "kernel/unrolled/unrolling.hpp"
 
 namespace maupertuis::unrolled {
@@ -80,7 +81,20 @@ void Unrolling::add_sum(const Pack& pack, Step step) {
   add(std::move(step));
 }
 
+/// An instruction as a step of one lane.
 void Unrolling::add_instruction(const Instruction& i) {
+  if (std::optional<Step> step = step_for(i)) add(std::move(*step));
+}
+
+void Unrolling::add_points() {
+  const std::vector<int> orders = point_orders(p_);
+  for (const Run& run : p_.runs[AtPoint])
+    for (std::uint32_t i = run.first; i < run.last; ++i)
+      if (orders[i] >= 0) points_.push_back({*step_for(p_.instructions[i]), orders[i]});
+}
+
+/// Empty for leaves, and for pairs in section Dynamics, which are packs.
+std::optional<Step> Unrolling::step_for(const Instruction& i) {
   Step step{.lag = i.lag, .out = {i.out}};
   const Value one = to_.literal(1);
   switch (i.op) {
@@ -98,32 +112,36 @@ void Unrolling::add_instruction(const Instruction& i) {
       }
       if (i.op == Op::Function)
         step.kind = Step::Integral, step.functions = {static_cast<std::uint32_t>(&i - p_.instructions.data())};
-      return add(std::move(step));
+      return step;
     case Op::Square:
       step.products = {{{i.a}, {i.a}, one}};
-      return add(std::move(step));
+      return step;
     case Op::Derivative:
       step.columns = {{{i.a}, 1, one}};
-      return add(std::move(step));
+      return step;
     case Op::Quotient:
       step.kind = Step::Quotient, step.products = {{{i.a}, {i.b}, none}};
-      return add(std::move(step));
+      return step;
     case Op::SquareRoot:
       step.kind = Step::Root, step.products = {{{i.a}, {}, none}};
-      return add(std::move(step));
+      return step;
     case Op::Power:
       step.kind = Step::Power, step.products = {{{i.a}, {}, constant(i.constant)}};
-      return add(std::move(step));
-    // leaves, pairs, which are packs always, and what is not unrolled
+      return step;
     case Op::SinCos:
     case Op::SinhCosh:
+      step.kind = Step::Integral, step.out = {i.out, i.second};
+      step.functions = {static_cast<std::uint32_t>(&i - p_.instructions.data())};
+      return step;
+    // leaves, and what is not unrolled
     case Op::One:
     case Op::Time:
     case Op::Coordinate:
     case Op::Companion:
     case Op::Select:
-      return;
+      break;
   }
+  return std::nullopt;
 }
 
 }  // namespace maupertuis::unrolled

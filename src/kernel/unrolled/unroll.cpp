@@ -1,5 +1,6 @@
 #include "kernel/unrolled/unroll.hpp"
 
+#include "kernel/program/point_orders.hpp"
 #include "kernel/unrolled/unrolling.hpp"
 
 namespace maupertuis::unrolled {
@@ -15,6 +16,7 @@ Unrolling::Unrolling(const packed::PackedProgram& program, std::size_t stride, i
   final_.assign(orders * p_.slots, none), early_ = final_;
   for (const packed::Pack& pack : packed_.packs) add_steps(pack);
   looks_ahead_ = can_look_ahead();
+  if (are_points_unrolled(p_)) add_points();
 }
 
 straight::StraightLine Unrolling::run() {
@@ -24,6 +26,7 @@ straight::StraightLine Unrolling::run() {
     for (const Step& step : steps_) find(step);
     if (stage_ == 0) factor();
     if (stage_ >= 0) solve(), correct();
+    if (stage_ <= 0) find_points();
     if (stage_ == 1 && looks_ahead_) look_ahead();
   }
   for (std::uint32_t i = 0; i < n_; ++i) to_.require_finite(to_.lane(check_, i));

@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -68,7 +69,9 @@ class Unrolling {
   void add_steps(const packed::Pack& pack);
   void add_sum(const packed::Pack& pack, Step step);
   void add_instruction(const Instruction& i);
+  std::optional<Step> step_for(const Instruction& i);
   void add(Step step);
+  void add_points();
   Slots slots_of(std::uint32_t block) const;
   Value coefficients(std::uint32_t first, std::size_t count);
   Value constant(ConstantId id);
@@ -94,6 +97,8 @@ class Unrolling {
   void store(const Slots& slots, int order, Value value);
 
   void find(const Step& step);
+  void find_points();
+  Value value_of(const Step& step);
   Value sum(const Step& step);
   Value columns(const Step& step, int shift, Value before);
   Value rate(const Column& column);
@@ -151,6 +156,12 @@ class Unrolling {
   straight::Builder to_;
   std::vector<Step> steps_;
   std::vector<int> step_of_;  // [slots] −1: none
+  /// Of the observables, which stages up to 0 find when their q̈ is there.
+  struct Point {
+    Step step;
+    int highest;  // order
+  };
+  std::vector<Point> points_;
   bool looks_ahead_ = false;
   std::vector<Value> final_, early_;                 // [orders × slots]; early: without q̈ of the stage
   std::map<std::pair<Value, int>, Value> weighted_;  // k u_k by u_k and k

@@ -115,18 +115,35 @@ Value Unrolling::square(const Slots& a, int first) {
 
 void Unrolling::find(const Step& step) {
   k_ = stage_ + 2 - step.lag;
-  if (k_ < 0) return;
+  if (k_ >= 0) keep(step, value_of(step));
+}
+
+Value Unrolling::value_of(const Step& step) {
   switch (step.kind) {
     case Step::Sum:
-      return keep(step, sum(step));
+      return sum(step);
     case Step::Integral:
-      return keep(step, k_ == 0 ? functions(step) : integral(step));
+      return k_ == 0 ? functions(step) : integral(step);
     case Step::Quotient:
-      return keep(step, quotient(step));
+      return quotient(step);
     case Step::Root:
-      return keep(step, root(step));
+      return root(step);
     case Step::Power:
-      return keep(step, power(step));
+      break;
+  }
+  return power(step);
+}
+
+/// After the corrections of the stage: rates of integrals that stand in it are those from before.
+void Unrolling::find_points() {
+  rates_.clear();
+  for (const auto& [step, highest] : points_) {
+    k_ = stage_ + 2 - step.lag;
+    if (k_ < 0 || k_ > highest) continue;
+    const Value value = value_of(step);
+    set(step, k_, value, final_);
+    for (std::uint32_t i = 0; i < step.out.size(); ++i)
+      to_.store(to_.lane(value, i), Rows, static_cast<std::uint32_t>(cell(k_, step.out[i])));
   }
 }
 

@@ -1,5 +1,7 @@
 #include "kernel/workspace/workspace.hpp"
 
+#include "kernel/program/point_orders.hpp"
+
 #include <maupertuis/require.hpp>
 
 #include <algorithm>
@@ -17,7 +19,9 @@ KernelWorkspace::Impl::Impl(const Kernel& kernel, int order)
       solver(expansion, in_code),
       along(expansion.program),
       at_point(expansion.program),
-      corrects_points(outputs_follow_accelerations()) {}
+      corrects_points(outputs_follow_accelerations()),
+      points_are_unrolled(are_points_unrolled(expansion.program)),
+      tiers(expansion.packed) {}
 
 /// Whether an output at a point, or what it is computed from after the solve, is corrected in row 0.
 bool KernelWorkspace::Impl::outputs_follow_accelerations() const {
@@ -60,13 +64,14 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
 bool KernelWorkspace::Impl::run_unrolled(std::span<const double> q, std::span<const double> v, int stages) {
   workspace::Expansion& x = expansion;
   if (!in_code.code.expand || stages != x.order) return false;
+  if (auto better = tiers.next()) adopt(std::move(*better));
   std::array<double, 8> scratch;
   in_code.code.expand(x.memory.rows.data(), q.data(), v.data(), x.lane_coefficients.data(), x.memory.constants.data(),
                       scratch.data());
   if (!straight::sound(scratch.data())) return false;
   solver.forget_point();
   const bool is_over = along.ends_at_first();
-  if (along.empty() && at_point.empty()) return true;
+  if (along.empty() && (at_point.empty() || points_are_unrolled)) return true;
   for (int stage = x.program.first_stage; stage < (is_over ? 1 : stages); ++stage) run_along(stage);
   return true;
 }
@@ -135,6 +140,13 @@ void KernelWorkspace::Impl::renew_blocks(int stage, int stages) {
     expansion.engine.renew_blocks(expansion.tables, stage);
 }
 
+/// Increments of the code before may still be asked for.
+void KernelWorkspace::Impl::adopt(workspace::ExpansionCode code) {
+  tiers.retire(in_code.code.memory);
+  in_code.adopt(std::move(code), expansion);
+  solver.adopt_code();
+}
+
 /// What follows the solution of a stage.
 void KernelWorkspace::Impl::run_along(int stage) {
   along.run(expansion.memory, stage);
@@ -154,11 +166,11 @@ CompileReport KernelWorkspace::compile(const CompileOptions& options) {
   Impl& s = *impl_;
   if (s.expansion.unknowns == 0) return {.trouble = "there are no coordinates, and so no equations to compile"};
   s.solver.compile(options);
-  auto [code, report] = workspace::compile(s.expansion.packed, s.expansion.order, s.expansion.memory.stride, options);
-  if (code.memory) {
-    s.in_code.adopt(std::move(code), s.expansion);
-    s.solver.adopt_code();
-  }
+  constexpr std::size_t most_in_tiers = 8;  // beyond, quickly compiled code is as slow as that of a stage
+  CompileOptions wanted = options;
+  wanted.in_tiers = options.in_tiers && options.long_run && s.expansion.unknowns <= most_in_tiers;
+  auto [code, report] = s.tiers.first(s.expansion.order, s.expansion.memory.stride, wanted);
+  if (code.memory) s.adopt(std::move(code));
   return report;
 }
 

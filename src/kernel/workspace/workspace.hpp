@@ -1,6 +1,7 @@
 #pragma once
 #include "kernel/reference/point_section.hpp"
 #include "kernel/workspace/along_section.hpp"
+#include "kernel/workspace/code_tiers.hpp"
 #include "kernel/workspace/stage_solver.hpp"
 
 namespace maupertuis {
@@ -21,6 +22,7 @@ struct KernelWorkspace::Impl {
   void run_stage(int stage);
   void renew_blocks(int stage, int stages);
   void run_along(int stage);
+  void adopt(workspace::ExpansionCode code);
 
   workspace::Expansion expansion;
   workspace::ExpansionInCode in_code;
@@ -28,6 +30,8 @@ struct KernelWorkspace::Impl {
   workspace::AlongSection along;
   reference::PointSection at_point;
   bool corrects_points;  // something that is read at a point alone depends on q̈
+  bool points_are_unrolled;
+  workspace::CodeTiers tiers;
 };
 
 }  // namespace maupertuis

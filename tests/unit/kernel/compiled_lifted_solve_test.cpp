@@ -9,7 +9,7 @@ TEST_CASE("chains, trees and combs: unknowns and tangents as by the loops, M x =
     Rods rods(count, parent);
     const MassOfRods mass_of_rods(count, parent);
     Lifted loops(build_kernel(rods.source)), code(build_kernel(rods.source));
-    code.solve.compile({.cache = false, .long_run = count != 100, .processor = {}});  // factors by code too, and not
+    code.solve.compile({.cache = false, .long_run = count != 100, .in_tiers = false, .processor = {}});  // factors by code too, and not
     CHECK_FALSE(code.solve.compile_report());                                         // no pivots yet
     const auto n = static_cast<std::size_t>(count);
     for (unsigned seed = 1; seed <= 3; ++seed) {
@@ -106,7 +106,7 @@ TEST_CASE("factors by code: a singular M is told so, with its coordinate, and wh
   add_idle_coordinate(rods);
   KernelWorkspace work(build_kernel(rods.source), 3);
   work.set_parameters(one);
-  work.compile({.cache = false, .long_run = true, .processor = {}});
+  work.compile({.cache = false, .long_run = true, .in_tiers = false, .processor = {}});
   Point p = check_idle_coordinate(work);
   p.q[30] = std::numeric_limits<double>::quiet_NaN();
   CHECK(work.evaluate(0, p.q, p.v) != KernelStatus::Ok);
@@ -141,7 +141,7 @@ TEST_CASE("a bad start leaves nothing behind: the same coefficients as by a work
   for (const bool is_position : {true, false}) {
     KernelWorkspace work(kernel, 8), fresh(kernel, 8);
     for (KernelWorkspace* const w : {&work, &fresh}) {
-      w->compile({.cache = false, .long_run = true, .processor = {}});
+      w->compile({.cache = false, .long_run = true, .in_tiers = false, .processor = {}});
       w->set_parameters(one);
       REQUIRE(w->expand(0, p.q, p.v) == KernelStatus::Ok);  // pivots are chosen
       w->set_parameters(one);                               // what the inverse is asked is made anew
