@@ -20,6 +20,8 @@ struct ParseContext {
   const SourceText& source;
   const Declarations& declarations;
   Diagnostics& diagnostics;
+  /// What was read as units, where someone wants to know.
+  std::vector<UnitExpression>* units = nullptr;
 };
 
 /// Recursive descent over the tokens of one statement: the cursor, formulas, and quantities.
@@ -74,6 +76,8 @@ class ExpressionParser {
   Node quantity();
   UnitExpression bracketed_unit();
   std::optional<UnitExpression> units();
+  /// Tells who wants to know that this was read as a unit.
+  void note(const UnitExpression& unit) const;
 
   std::string text_of(Span span) const { return std::string(context_.source.slice(span)); }
   std::string text_of(const Expression& expression) const { return text_of(expression.span); }

@@ -125,6 +125,7 @@ ExpressionParser::Node ExpressionParser::quantity_or_null() {
       if (all_names) return nullptr;
       refuse_ambiguous_slash();
     }
+    note(*unit);
     value = make(Kind::Quantity, cover(value->span, unit->span), {value});
     value->unit = std::move(unit);
   }
@@ -164,7 +165,12 @@ UnitExpression ExpressionParser::bracketed_unit() {
   }
   if (ambiguous_slash_) refuse_ambiguous_slash();
   unit.span = cover(open, next().span);
+  note(unit);
   return unit;
+}
+
+void ExpressionParser::note(const UnitExpression& unit) const {
+  if (context_.units) context_.units->push_back(unit);
 }
 
 // kg m^2/s^2, J/(kg K), 1/s, /s: nothing, and the cursor anywhere, if it is none of these.

@@ -117,6 +117,7 @@ std::vector<ExpressionPtr> StatementParser::with_unit_after(std::vector<Expressi
   if (!reciprocal && (peek().kind != Token::Kind::Name || is_clause_word(peek().text))) return out;
   const auto unit = units();
   if (!unit) fail_expected("a unit after the bracket");
+  note(*unit);
   for (ExpressionPtr& value : out) {
     if (!value) continue;
     if (!is_constant(*value))

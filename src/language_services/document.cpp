@@ -1,0 +1,78 @@
+#include <maupertuis/codes.hpp>
+#include <maupertuis/constraint_analysis.hpp>
+#include <maupertuis/language_services.hpp>
+#include <maupertuis/study.hpp>
+
+#include "language_services/roles.hpp"
+
+namespace maupertuis::language {
+
+struct Document::Implementation {
+  Implementation(SourceText source, const Interrupt& asked) : study(std::move(source), asked), interrupt(asked) {}
+
+  Study study;
+  Interrupt interrupt;
+  std::optional<syntax::TextReading> reading;
+  std::optional<Roles> roles;
+};
+
+Document::Document(SourceText source, const Interrupt& interrupt)
+    : implementation_(std::make_unique<Implementation>(std::move(source), interrupt)) {}
+Document::~Document() = default;
+Document::Document(Document&&) noexcept = default;
+
+const SourceText& Document::source() const { return implementation_->study.source(); }
+const Interrupt& Document::interrupt() const { return implementation_->interrupt; }
+
+const syntax::TextReading& Document::reading() {
+  if (!implementation_->reading) implementation_->reading = syntax::read_text(source());
+  return *implementation_->reading;
+}
+
+const Roles& Document::roles() {
+  if (!implementation_->roles) implementation_->roles.emplace(reading());
+  return *implementation_->roles;
+}
+
+const Model* Document::model() { return implementation_->study.model(); }
+
+const Diagnostics& Document::diagnostics() {
+  implementation_->study.model();
+  return implementation_->study.diagnostics();
+}
+
+namespace {
+
+/// What the state at the start adds to the mistakes of the equations.
+void look_into_start(const Model& model, const EquationsOfMotion& equations, Diagnostics& diagnostics) {
+  const auto start = consistent_start(model, equations, diagnostics);
+  const MotionState* state = start ? &start->state : nullptr;
+  report_constraints(analyse_constraints(equations, state), equations, state, diagnostics);
+  const bool runs = !model.experiment.start.empty() || model.experiment.duration || model.experiment.until;
+  if (state && model.system.has_modes() && runs) contact_start(model, equations, *state, diagnostics);
+  diagnostics.sort_by_place();
+}
+
+}  // namespace
+
+Diagnostics diagnose_derivation(const SourceText& source, const Interrupt& interrupt) {
+  Study study(source, interrupt);
+  if (study.has_fields()) {
+    study.field_equations();
+  } else if (const EquationsOfMotion* equations = study.equations()) {
+    const InterruptScope scope = study.interruptible();
+    look_into_start(*study.model(), *equations, study.diagnostics());
+  }
+  return study.diagnostics();
+}
+
+const CodeEntry* find_code(std::string_view code) {
+  for (const auto entries :
+       {syntax_codes(), system_codes(), equations_codes(), simulation_codes(), verification_codes(), invariants_codes(),
+        hamiltonian_codes(), action_codes(), linearization_codes(), orbits_codes(), study_codes(), fields_codes()})
+    for (const CodeEntry& entry : entries)
+      if (entry.code == code) return &entry;
+  return nullptr;
+}
+
+}  // namespace maupertuis::language

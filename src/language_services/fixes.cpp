@@ -1,0 +1,253 @@
+#include <maupertuis/language_services.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+/// Fixes: what the help of a message proposes, tried on the text.
+namespace maupertuis::language {
+namespace {
+
+/// A change that may mend a mistake.
+struct Proposal {
+  std::string title;
+  std::vector<TextEdit> edits;
+};
+
+std::string without_ticks(std::string_view text) {
+  if (text.size() >= 2 && text.front() == '`' && text.back() == '`') text = text.substr(1, text.size() - 2);
+  return std::string(text);
+}
+
+/// The words of "auto, taylor, variational or stiff", and nothing for a text that is no such list.
+std::vector<std::string> choices(std::string_view text) {
+  std::vector<std::string> out;
+  const std::size_t last = text.rfind(" or ");
+  if (last == std::string_view::npos || text.find(", ") == std::string_view::npos) return {};
+  std::string_view head = text.substr(0, last);
+  while (!head.empty()) {
+    const std::size_t comma = head.find(", ");
+    out.emplace_back(head.substr(0, comma));
+    head = comma == std::string_view::npos ? std::string_view() : head.substr(comma + 2);
+  }
+  out.emplace_back(text.substr(last + 4));
+  const bool words =
+      std::all_of(out.begin(), out.end(), [](const std::string& w) { return w.find(' ') == std::string::npos; });
+  return words ? out : std::vector<std::string>();
+}
+
+/// Up to where an explanation begins: "θ' for a velocity", "60 deg if degrees are meant".
+std::string_view before_explanation(std::string_view text) {
+  for (const std::string_view end : {std::string_view(" for "), std::string_view(" if "),
+                                     std::string_view(" in the place of "), std::string_view(" instead")})
+    text = text.substr(0, text.find(end));
+  while (!text.empty() && (text.back() == ' ' || text.back() == ',')) text.remove_suffix(1);
+  return text;
+}
+
+/// The texts that a proposal holds: one, or those between which it leaves the choice.
+std::vector<std::string> readings(std::string_view proposed) {
+  std::vector<std::string> out = choices(proposed);
+  if (!out.empty()) return out;
+  const auto add = [&](std::string_view text) {
+    const std::string reading = without_ticks(before_explanation(text));
+    const bool form = reading.empty() || reading.find("…") != std::string::npos;  // with places to fill in
+    if (!form && std::find(out.begin(), out.end(), reading) == out.end()) out.push_back(reading);
+  };
+  const std::size_t either = proposed.find(" or ");
+  add(proposed.substr(0, either));
+  if (either != std::string_view::npos) add(proposed.substr(either + 4));
+  return out;
+}
+
+/// The sentences of a help that begin with this word: what follows it, up to the end of the sentence.
+std::vector<std::string_view> after_word(std::string_view help, std::string_view word) {
+  std::vector<std::string_view> out;
+  for (std::size_t at = help.find(word); at != std::string_view::npos; at = help.find(word, at + 1)) {
+    const bool begins = at == 0 || help.substr(at < 2 ? 0 : at - 2, 2) == ". ";
+    if (!begins) continue;
+    const std::string_view rest = help.substr(at + word.size());
+    std::size_t end = rest.find(". ");
+    if (end == std::string_view::npos) end = rest.size() - (!rest.empty() && rest.back() == '.' ? 1 : 0);
+    const std::size_t colon = rest.substr(0, end).find("; ");
+    out.push_back(rest.substr(0, std::min(end, colon)));
+  }
+  return out;
+}
+
+class Proposals {
+ public:
+  Proposals(Document& document, const Diagnostic& diagnostic)
+      : document_(document), diagnostic_(diagnostic), span_(*diagnostic.span) {}
+
+  std::vector<Proposal> run() {
+    const std::string_view help = diagnostic_.help;
+    for (const std::string_view text : after_word(help, "Did you mean "))
+      propose(without_ticks(text.substr(0, text.find('?'))));
+    for (const std::string_view word :
+         {std::string_view("Write "), std::string_view("Type "), std::string_view("Close it with ")}) {
+      for (std::string_view text : after_word(help, word)) {
+        if (text.substr(0, 12) == "the missing ") {
+          insert_at_end(without_ticks(text.substr(12)));
+          continue;
+        }
+        for (const std::string& reading : readings(text)) propose(reading);
+      }
+    }
+    if (help.find("Remove the indentation") != std::string_view::npos) remove_indentation();
+    if (help.find("Remove it") != std::string_view::npos || help.find("Leave it out") != std::string_view::npos ||
+        help.find("Remove the line") != std::string_view::npos)
+      remove();
+    of_code();
+    return std::move(out_);
+  }
+
+ private:
+  std::string_view written() const { return document_.source().slice(span_); }
+
+  void add(std::string title, Span span, std::string text) {
+    if (document_.source().slice(span) == text) return;
+    out_.push_back({std::move(title), {{span, std::move(text)}}});
+  }
+
+  void propose(const std::string& text) { add(fmt::format("Write {}", text), place_of(text), text); }
+
+  /// The words at fault; with their arguments where the proposal has these in brackets too: cos(θ) for cosine(θ).
+  Span place_of(const std::string& text) const {
+    const std::string_view source = document_.source().text();
+    Span place = span_;
+    if (text.empty() || text.back() != ')' || written().find('(') != std::string_view::npos) return place;
+    std::uint32_t end = span_.end;
+    int depth = 0;
+    do {
+      if (end >= source.size() || source[end] == '\n' || (depth == 0 && source[end] != '(')) return place;
+      depth += source[end] == '(' ? 1 : source[end] == ')' ? -1 : 0;
+      ++end;
+    } while (depth > 0);
+    place.end = end;
+    return place;
+  }
+
+  /// Where the statement ends that holds the span.
+  Span end_of_statement() {
+    const syntax::TextReading& reading = document_.reading();
+    for (const syntax::TextStatement& s : reading.statements) {
+      if (s.begin == s.end || reading.tokens[s.end - 1].span.end < span_.end) continue;
+      const std::uint32_t end = reading.tokens[s.end - 1].span.end;
+      return {end, end, span_.source};
+    }
+    return {span_.end, span_.end, span_.source};
+  }
+
+  void insert_at_end(const std::string& text) {
+    add(fmt::format("Write the missing {}", text), end_of_statement(), text);
+  }
+
+  Span line_before(std::uint32_t offset) const {
+    const std::string_view text = document_.source().text();
+    std::uint32_t begin = offset;
+    while (begin > 0 && (text[begin - 1] == ' ' || text[begin - 1] == '\t')) --begin;
+    return {begin, offset, span_.source};
+  }
+
+  void remove_indentation() { add("Remove the indentation", line_before(span_.begin), ""); }
+
+  bool of_text() const { return diagnostic_.code[1] == '0' && diagnostic_.code[2] == '1'; }
+
+  /// The words at fault, with the blank before them; or the statement that they are in, unless it says other things
+  /// too.
+  void remove() {
+    const std::string_view text = document_.source().text();
+    if (of_text()) return add("Remove it", span_, "");
+    const syntax::TextReading& reading = document_.reading();
+    for (const syntax::TextStatement& s : reading.statements) {
+      if (s.begin == s.end || s.declares.size() > 1) continue;
+      Span whole = cover(reading.tokens[s.begin].span, reading.tokens[s.end - 1].span);
+      if (whole.begin > span_.begin || whole.end < span_.end) continue;
+      while (whole.end < text.size() && text[whole.end] != '\n') ++whole.end;
+      if (whole.end < text.size()) ++whole.end;
+      add("Remove the statement", whole, "");
+    }
+  }
+
+  bool ends_line() const {
+    const std::string_view rest = document_.source().text().substr(span_.end);
+    const std::size_t next = rest.find_first_not_of(" \t\r");
+    return next == std::string_view::npos || rest[next] == '\n' || rest[next] == '#';
+  }
+
+  /// What a code asks for in words that are no text to put in.
+  void of_code() {
+    const std::string& code = diagnostic_.code;
+    const std::string text(written());
+    if (code == "E0104" && text == "%") propose("#");
+    if (code == "E0104" && text == "//") propose("#");
+    if (code == "E0104" && text == ";" && !ends_line()) add("Write the statements on lines of their own", span_, "\n");
+    if (code == "E0104" && (text == ":=" || text == "==")) propose("=");
+    if (code == "E0104" && text == "{") propose("(");
+    if (code == "E0104" && text == "}") propose(")");
+    if (code == "E0104" && (text == "&" || text == "&&")) propose("and");
+    if (code == "E0110") {  // a line that is no statement: a definition
+      const Span at{span_.begin, span_.begin, span_.source};
+      for (const char* word : {"let ", "param ", "start "})
+        add("Begin it with " + std::string(word, std::strlen(word) - 1), at, word);
+    }
+  }
+
+  Document& document_;
+  const Diagnostic& diagnostic_;
+  Span span_;
+  std::vector<Proposal> out_;
+};
+
+std::size_t count(const Diagnostics& diagnostics, Severity severity) {
+  const auto items = diagnostics.items();
+  return static_cast<std::size_t>(
+      std::count_if(items.begin(), items.end(), [&](const Diagnostic& d) { return d.severity == severity; }));
+}
+
+std::size_t count(const Diagnostics& diagnostics, const std::string& code) {
+  const auto items = diagnostics.items();
+  return static_cast<std::size_t>(
+      std::count_if(items.begin(), items.end(), [&](const Diagnostic& d) { return d.code == code; }));
+}
+
+/// Whether the text with the edits has this mistake no longer, and no new one.
+bool mends(Document& document, const Diagnostic& diagnostic, const std::vector<TextEdit>& edits) {
+  Document mended(SourceText(document.source().name(), edited(document.source().text(), edits)), document.interrupt());
+  const Diagnostics& before = document.diagnostics();
+  const Diagnostics& after = mended.diagnostics();
+  if (count(after, diagnostic.code) >= count(before, diagnostic.code)) return false;
+  const std::size_t errors = count(before, Severity::Error);
+  if (diagnostic.severity == Severity::Error) return count(after, Severity::Error) < errors;
+  return count(after, Severity::Error) <= errors && count(after, Severity::Warning) <= count(before, Severity::Warning);
+}
+
+}  // namespace
+
+std::vector<Fix> fixes_of(Document& document, const Diagnostic& diagnostic) {
+  std::vector<Fix> out;
+  if (!diagnostic.span || diagnostic.span->source != document.source().id()) return out;
+  for (Proposal& proposal : Proposals(document, diagnostic).run()) {
+    document.interrupt().throw_if_asked();
+    const bool known = std::any_of(out.begin(), out.end(), [&](const Fix& f) {
+      return f.edits[0].span == proposal.edits[0].span && f.edits[0].text == proposal.edits[0].text;
+    });
+    if (!known && mends(document, diagnostic, proposal.edits))
+      out.push_back({std::move(proposal.title), diagnostic.code, *diagnostic.span, std::move(proposal.edits)});
+  }
+  return out;
+}
+
+std::vector<Fix> fixes(Document& document, Span span) {
+  std::vector<Fix> out;
+  for (const Diagnostic& d : document.diagnostics().items()) {
+    if (!d.span || d.span->source != document.source().id() || d.span->end < span.begin || span.end < d.span->begin)
+      continue;
+    for (Fix& fix : fixes_of(document, d)) out.push_back(std::move(fix));
+  }
+  return out;
+}
+
+}  // namespace maupertuis::language

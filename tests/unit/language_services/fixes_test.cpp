@@ -1,0 +1,112 @@
+#include "support.hpp"
+
+#include <doctest/doctest.h>
+
+#include <set>
+
+namespace {
+using namespace language_test;
+
+struct Case {
+  const char* code;
+  std::string wrong, right;
+};
+
+const std::string head = "system a\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ : angle\n";
+
+/// A model of one coordinate with these lines at its end.
+std::string model(const std::string& lines) { return head + "T = 1/2 m l^2 θ'^2\n" + lines; }
+
+const std::vector<Case> cases = {
+    {"E0104", model("V = -m g l cos θ;\n"), model("V = -m g l cos θ\n")},
+    {"E0104", model("V := -m g l cos θ\n"), model("V = -m g l cos θ\n")},
+    {"E0104", model("V = -m g l cos θ % gravity\n"), model("V = -m g l cos θ # gravity\n")},
+    {"E0104", model("V = m g l \\frac{1}{2} sin θ\n"), model("V = m g l 1/2 sin θ\n")},
+    {"E0105", "system a\nparam m = 1,5 kg\ncoord x : length\nT = 1/2 m x'^2\n",
+     "system a\nparam m = 1.5 kg\ncoord x : length\nT = 1/2 m x'^2\n"},
+    {"E0106", model("V = -m g (l cos θ\n"), model("V = -m g (l cos θ)\n")},
+    {"E0107", model("  V = -m g l cos θ\n"), model("V = -m g l cos θ\n")},
+    {"E0110", model("W0 = 3 m\nV = -m g (l + W0) cos θ\n"), model("let W0 = 3 m\nV = -m g (l + W0) cos θ\n")},
+    {"E0110", model("potental = -m g l cos θ\n"), model("potential = -m g l cos θ\n")},
+    {"E0113", model("V = m g l sin -θ\n"), model("V = m g l sin(-θ)\n")},
+    {"E0114", model("V = m g l cos θ^2\n"), model("V = m g l cos^2 θ\n")},
+    {"E0117", model("param e1 = 2\nV = -m g l cos θ (2e1)\n"), model("param e1 = 2\nV = -m g l cos θ (2 e1)\n")},
+    {"W0103", "param m = 1 kg, a = 1 J\ncoord α, β : angle\nT = 1/2 m (1 [m^2]) (α'^2 + β'^2)\nV = -a (cos α - β)\n",
+     "param m = 1 kg, a = 1 J\ncoord α, β : angle\nT = 1/2 m (1 [m^2]) (α'^2 + β'^2)\nV = -a (cos(α - β))\n"},
+    {"E0121", model("V = -m g l cos(θ(t))\n"), model("V = -m g l cos(θ)\n")},
+    {"E0122", model("V = -m g l cosine(θ)\n"), model("V = -m g l cos(θ)\n")},
+    {"E0123", model("V = -2 3 m g l cos θ\n"), model("V = -2 * 3 m g l cos θ\n")},
+    {"E0201", model("V = -m g l cos θ1\n"), model("V = -m g l cos θ\n")},
+    {"E0201", model("V = -mgl cos θ\n"), model("V = -m g l cos θ\n")},
+    {"E0251", model("V = -m g l cos θ\nmethod stif\n"), model("V = -m g l cos θ\nmethod stiff\n")},
+    {"E0301", "system a\nparam m = 1 kgg\ncoord x : length\nT = 1/2 m x'^2\n",
+     "system a\nparam m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n"},
+    {"E0312", model("V = -3 J cos θ\n"), model("V = -3 [J] cos θ\n")},
+    {"W0102", model("V = -m g l cos θ/2\n"), model("V = -m g l cos(θ/2)\n")},
+    {"W0310", model("V = -m g l cos θ\nstart θ = 60\n"), model("V = -m g l cos θ\nstart θ = 60 deg\n")},
+    {"W0416", model("V = -m g l cos θ\nlet v = l θ'\n"), model("V = -m g l cos θ\n")},
+};
+
+const Diagnostic* find(Document& document, const std::string& code) {
+  for (const Diagnostic& d : document.diagnostics().items())
+    if (d.code == code) return &d;
+  return nullptr;
+}
+
+}  // namespace
+
+TEST_CASE("the fix of each mistake is the text that its author meant") {
+  std::set<std::string> codes;
+  for (const Case& c : cases) {
+    CAPTURE(c.code);
+    CAPTURE(c.wrong);
+    Document asked = document(c.wrong);
+    const Diagnostic* d = find(asked, c.code);
+    REQUIRE(d != nullptr);
+    const std::vector<Fix> found = fixes_of(asked, *d);
+    std::vector<std::string> texts;
+    for (const Fix& fix : found) texts.push_back(edited(c.wrong, fix.edits));
+    CAPTURE(texts.size());
+    CHECK(std::find(texts.begin(), texts.end(), c.right) != texts.end());
+    codes.insert(c.code);
+  }
+  CHECK(codes.size() >= 18);
+}
+
+TEST_CASE("what a fix leaves is looked at: in all refused models none brings a new error") {
+  std::set<std::string> codes;
+  for (const auto& path : models_in("tests/golden/reject")) {
+    const std::string text = read_file(path);
+    Document asked = document(text);
+    const auto errors = [](Document& d) {
+      const auto items = d.diagnostics().items();
+      return std::count_if(items.begin(), items.end(),
+                           [](const Diagnostic& x) { return x.severity == Severity::Error; });
+    };
+    const auto before = errors(asked);
+    for (const Diagnostic& d : asked.diagnostics().items())
+      for (const Fix& fix : fixes_of(asked, d)) {
+        CAPTURE(path.filename().string());
+        CAPTURE(fix.title);
+        Document mended = document(edited(text, fix.edits));
+        CHECK(errors(mended) <= before);
+        codes.insert(fix.code);
+      }
+  }
+  CHECK(codes.size() >= 25);
+}
+
+TEST_CASE("a proposal that does not mend is not offered") {
+  // "Write s" for the hour that is no unit of length: the dimension stays wrong, whatever is written.
+  Document asked = document("system a\nparam m = 1 kg\ncoord x : length\nT = 1/2 m x'\n");
+  for (const Diagnostic& d : asked.diagnostics().items()) CHECK(fixes_of(asked, d).empty());
+  CHECK(asked.diagnostics().has_errors());
+}
+
+TEST_CASE("fixes of a range are those of the mistakes in it") {
+  const std::string text = "system a\nparam m = 1 kgg, n = 2 mm\ncoord x : lenght\nT = 1/2 m x'^2\n";
+  Document asked = document(text);
+  const auto place = static_cast<std::uint32_t>(text.find("kgg"));
+  const auto found = fixes(asked, {place, place, 0});
+  for (const Fix& fix : found) CHECK(slice(text, fix.span) == "kgg");
+}
