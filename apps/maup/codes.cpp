@@ -78,6 +78,10 @@ constexpr CodeEntry own_codes[] = {
      "processor has. Any other word is left out of account.",
      "MAUPERTUIS_INSTRUCTIONS=sse maup simulate pendulum.lag",
      "MAUPERTUIS_INSTRUCTIONS=avx2 maup simulate pendulum.lag"},
+    {"W0818", "a text is too large to be looked at while it is typed",
+     "An editor asks for mistakes at every keystroke, and each time the whole text is read. Up to 1 MiB that is quick; "
+     "beyond it `maup lsp` says this and looks no further. `maup check` reads texts up to 8 MiB.",
+     "", ""},
     {"W0817", "the name of a file is not what it seems",
      "The name holds escape bytes, characters that turn the direction of writing, or a letter of another alphabet that "
      "looks Latin. It is shown with such characters "

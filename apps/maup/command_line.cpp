@@ -151,6 +151,7 @@ void add_all_commands(CommandLine& line) {
   add_fmt(line);
   add_new(line);
   add_explain(line);
+  add_lsp(line);
   add_doctor(line);
   add_completions(line);
   add_manual(line);

@@ -27,5 +27,7 @@ bool is_predefined(std::string_view word);
 
 /// theta → θ, theta_1 → θ1, θ_1 → θ1, Omega → Ω; any other name as it is; π → pi.
 std::string normalize_name(std::string name);
+/// The same backwards, as a keyboard without Greek letters types it: θ1 → theta1; any other name as it is.
+std::string spelled_out(const std::string& name);
 
 }  // namespace maupertuis::syntax

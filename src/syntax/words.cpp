@@ -271,4 +271,10 @@ std::string normalize_name(std::string name) {
   return std::string(letter) + std::string(tail);
 }
 
+std::string spelled_out(const std::string& name) {
+  for (const auto& [word, letter] : kGreek)
+    if (name.compare(0, letter.size(), letter) == 0) return std::string(word) + name.substr(letter.size());
+  return name;
+}
+
 }  // namespace maupertuis::syntax

@@ -10,6 +10,7 @@
 #include "minimize.hpp"
 #include "supervisor.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -103,8 +104,16 @@ int program(int count, char** words) {
   return app::run_command_line(count, words);
 }
 
+/// All commands but the server of editors, whose frames are tested by tests/lsp.
+app::OptionTable commands_to_draw() {
+  app::OptionTable table = app::option_table();
+  const auto lsp = [](const app::CommandRow& row) { return row.name == "lsp"; };
+  table.commands.erase(std::remove_if(table.commands.begin(), table.commands.end(), lsp), table.commands.end());
+  return table;
+}
+
 Generator generator(std::uint64_t seed) {
-  return {Grammar(content(fs::path(PROJECT_DIR) / "docs/manual/grammar.ebnf")), stored_models(), app::option_table(),
+  return {Grammar(content(fs::path(PROJECT_DIR) / "docs/manual/grammar.ebnf")), stored_models(), commands_to_draw(),
           seed};
 }
 
