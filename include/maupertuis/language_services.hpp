@@ -5,6 +5,7 @@
 #include <maupertuis/text_reading.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -41,6 +42,8 @@ class Document {
   const Interrupt& interrupt() const;
   /// What each word of the text is: language_services/roles.hpp, for the services.
   const Roles& roles();
+  /// Whether the words of one quantity place are the names of the model that they also could be; asked of `probe` once.
+  bool reads_names(Span place, const std::function<bool()>& probe);
 
  private:
   struct Implementation;

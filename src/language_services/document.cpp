@@ -5,6 +5,8 @@
 
 #include "language_services/roles.hpp"
 
+#include <map>
+
 namespace maupertuis::language {
 
 struct Document::Implementation {
@@ -14,6 +16,7 @@ struct Document::Implementation {
   Interrupt interrupt;
   std::optional<syntax::TextReading> reading;
   std::optional<Roles> roles;
+  std::map<std::uint32_t, bool> names_at;  // by the beginning of the place
 };
 
 Document::Document(SourceText source, const Interrupt& interrupt)
@@ -32,6 +35,12 @@ const syntax::TextReading& Document::reading() {
 const Roles& Document::roles() {
   if (!implementation_->roles) implementation_->roles.emplace(reading());
   return *implementation_->roles;
+}
+
+bool Document::reads_names(Span place, const std::function<bool()>& probe) {
+  const auto known = implementation_->names_at.find(place.begin);
+  if (known != implementation_->names_at.end()) return known->second;
+  return implementation_->names_at[place.begin] = probe();
 }
 
 const Model* Document::model() { return implementation_->study.model(); }

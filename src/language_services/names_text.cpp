@@ -89,9 +89,12 @@ std::string facts_of(const Declared& declared, Document& document) {
       if (const auto* b = find_named(system.bodies, declared.name))
         return of_mass(b->mass, system, "without mass: it only turns");
       return {};
+    case NameKind::Constraint:
+      if (const auto* c = find_named(system.constraints, declared.name))
+        return c->level == Constraint::Level::Position ? "a relation of coordinates" : "a relation of velocities";
+      return {};
     case NameKind::System:
     case NameKind::Frame:
-    case NameKind::Constraint:
     case NameKind::Contact:
     case NameKind::Event:
     case NameKind::Reaction:

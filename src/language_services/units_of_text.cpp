@@ -17,12 +17,12 @@ const Declared* name_read(Document& document, std::size_t token) {
   const auto place = std::find_if(reading.units.begin(), reading.units.end(),
                                   [&](Span unit) { return unit.begin <= word.begin && word.end <= unit.end; });
   if (place == reading.units.end()) return nullptr;
-  const std::string_view text = document.source().text();
-  std::string bracketed(text.substr(0, place->begin));
-  bracketed += "[" + std::string(text.substr(place->begin, place->end - place->begin)) + "]";
-  bracketed += text.substr(place->end);
-  Document probe(SourceText("", std::move(bracketed)), document.interrupt());
-  return probe.model() ? nullptr : roles.find(reading.tokens[token].text);
+  const bool names = document.reads_names(*place, [&] {
+    const std::string words = "[" + std::string(document.source().slice(*place)) + "]";
+    Document probe(SourceText("", edited(document.source().text(), {{*place, words}})), document.interrupt());
+    return probe.model() == nullptr;
+  });
+  return names ? roles.find(reading.tokens[token].text) : nullptr;
 }
 
 }  // namespace maupertuis::language

@@ -114,7 +114,12 @@ void Server::read() {
 
 /// What the next messages make idle is ended before its turn comes.
 void Server::note_cancellation(const Json& message) {
-  if (member(message, "method") != "$/cancelRequest") return;
+  const Json& method = member(message, "method");
+  if (method == "textDocument/didChange" || method == "textDocument/didClose") {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!looking_.empty() && uri_of(member(message, "params")) == looking_) stop_ = true;
+  }
+  if (method != "$/cancelRequest") return;
   const Json& id = member(member(message, "params"), "id");
   const std::lock_guard<std::mutex> lock(mutex_);
   const std::string key = key_of(id);
@@ -322,12 +327,20 @@ void Server::look_at_what_is_due() {
     return std::string();
   };
   if (const std::string uri = take_due(due_); !uri.empty()) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      looking_ = uri;
+      stop_ = signal_.load();
+    }
     try {
       look_at(texts_.at(uri));
-    } catch (const Interrupted&) {
+    } catch (const Interrupted&) {  // by the change that arrives next: then it is looked at again
     } catch (const std::exception& failure) {
       tell("window/logMessage", {{"type", 1}, {"message", fmt::format("maup: internal error: {}", failure.what())}});
     }
+    const std::lock_guard<std::mutex> lock(mutex_);
+    looking_.clear();
+    stop_ = false;
     return;
   }
   const std::string uri = take_due(due_equations_);

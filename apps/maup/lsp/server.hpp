@@ -77,6 +77,7 @@ class Server {
   std::deque<Event> events_;
   std::set<std::string> cancelled_;  // ids as JSON texts
   std::string running_;              // the request that is answered
+  std::string looking_;              // the text that is looked at
   std::atomic<bool> stop_{false};    // of its work
 
   Client client_;

@@ -8,6 +8,9 @@ const { run } = require("./program");
 const escaped = (text) =>
   String(text).replace(/[&<>"']/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "'": "&#39;" })[c]);
 
+/// A sentence of a message; what stands between ticks is text of a model.
+const sentence = (text) => escaped(text || "").replace(/`([^`]*)`/g, "<code>$1</code>");
+
 /// What there is to show of a text: {document, mathml, svg, messages}. Each part is null where it could not be made.
 async function look(program, text, options = {}) {
   const json = await run(program, ["derive", "-", "--json"], text, options);
@@ -41,7 +44,7 @@ function messages(document) {
   const rows = items.map(
     (d) =>
       `<li class="${escaped(d.severity)}"><b>${escaped(d.code)}</b> ${d.line ? `line ${escaped(d.line)}: ` : ""}` +
-      `${escaped(d.message)} <span>${escaped(d.reason || "")} ${escaped(d.help || "")}</span></li>`
+      `${sentence(d.message)} <span>${sentence(d.reason)} ${sentence(d.help)}</span></li>`
   );
   return rows.length ? `<ul>${rows.join("")}</ul>` : "";
 }
@@ -65,7 +68,8 @@ ul { padding-left: 1.2em; margin: 0.4em 0; }
 li span { opacity: 0.7; }
 .error b { color: var(--vscode-editorError-foreground, #c00); }
 .warning b { color: var(--vscode-editorWarning-foreground, #a60); }
-pre { white-space: pre-wrap; }`;
+pre { white-space: pre-wrap; }
+code { font-family: var(--vscode-editor-font-family, monospace); }`;
 
 /// The page of what `look` found.
 function page(shown) {
