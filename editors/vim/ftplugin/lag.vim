@@ -14,4 +14,5 @@ if executable("maup")
   setlocal errorformat=%E--\ error\ %m\ -%#\ %f:%l:%c,%W--\ warning\ %m\ -%#\ %f:%l:%c,%-G%.%#
 endif
 
-let b:undo_ftplugin = "setlocal commentstring< comments< expandtab< shiftwidth< softtabstop< iskeyword< formatprg< makeprg< errorformat<"
+let b:undo_ftplugin = "setlocal commentstring< comments< expandtab< shiftwidth< softtabstop<"
+let b:undo_ftplugin .= " iskeyword< formatprg< makeprg< errorformat<"

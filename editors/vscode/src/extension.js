@@ -22,14 +22,14 @@ async function start(output) {
         derivation: settings().get("derivation"),
         derivationBudget: settings().get("derivationBudget"),
       },
-    }
+    },
   );
   try {
     await client.start();
   } catch (error) {
     const answer = await vscode.window.showErrorMessage(
       `maup could not be started (${command}): ${error.message || error}. Install it, or name it in the settings.`,
-      "Open Settings"
+      "Open Settings",
     );
     if (answer) vscode.commands.executeCommand("workbench.action.openSettings", "maupertuis.program");
   }
@@ -43,13 +43,16 @@ async function stop() {
 
 /// The page of one text; it follows the text until it is closed.
 class Preview {
-  constructor(document, output) {
+  constructor(document) {
     this.uri = document.uri.toString();
-    this.output = output;
-    this.panel = vscode.window.createWebviewPanel("maupertuis.preview", `Preview: ${document.fileName.split(/[\\/]/).pop()}`, {
-      viewColumn: vscode.ViewColumn.Beside,
-      preserveFocus: true,
-    });
+    this.panel = vscode.window.createWebviewPanel(
+      "maupertuis.preview",
+      `Preview: ${document.fileName.split(/[\\/]/).pop()}`,
+      {
+        viewColumn: vscode.ViewColumn.Beside,
+        preserveFocus: true,
+      },
+    );
     const changes = vscode.workspace.onDidChangeTextDocument((event) => {
       if (event.document.uri.toString() === this.uri) this.later(event.document);
     });
@@ -78,16 +81,20 @@ class Preview {
   }
 }
 
-function preview(output) {
+function preview() {
   const editor = vscode.window.activeTextEditor;
-  if (editor && editor.document.languageId === "lag") new Preview(editor.document, output);
+  if (editor && editor.document.languageId === "lag") new Preview(editor.document);
 }
 
 async function test() {
   const editor = vscode.window.activeTextEditor;
   if (!editor || editor.document.languageId !== "lag") return;
   if (editor.document.isUntitled || !(await editor.document.save())) return;
-  const terminal = vscode.window.createTerminal({ name: "maup test", shellPath: program(), shellArgs: ["test", editor.document.fileName] });
+  const terminal = vscode.window.createTerminal({
+    name: "maup test",
+    shellPath: program(),
+    shellArgs: ["test", editor.document.fileName],
+  });
   terminal.show(true);
 }
 
@@ -95,7 +102,7 @@ async function activate(context) {
   const output = vscode.window.createOutputChannel("Maupertuis");
   context.subscriptions.push(
     output,
-    vscode.commands.registerCommand("maupertuis.preview", () => preview(output)),
+    vscode.commands.registerCommand("maupertuis.preview", preview),
     vscode.commands.registerCommand("maupertuis.test", test),
     vscode.commands.registerCommand("maupertuis.restart", async () => {
       await stop();
@@ -105,7 +112,7 @@ async function activate(context) {
       if (!event.affectsConfiguration("maupertuis")) return;
       await stop();
       await start(output);
-    })
+    }),
   );
   await start(output);
 }

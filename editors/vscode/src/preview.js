@@ -6,7 +6,10 @@ const path = require("node:path");
 const { run } = require("./program");
 
 const escaped = (text) =>
-  String(text).replace(/[&<>"']/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "'": "&#39;" })[c]);
+  String(text).replace(
+    /[&<>"']/g,
+    (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "'": "&#39;" })[c],
+  );
 
 /// A sentence of a message; what stands between ticks is text of a model.
 const sentence = (text) => escaped(text || "").replace(/`([^`]*)`/g, "<code>$1</code>");
@@ -21,7 +24,10 @@ async function look(program, text, options = {}) {
     return shown;
   }
   if (json.code !== 0 || (options.signal && options.signal.aborted)) return shown;
-  const [formulas, svg] = await Promise.all([run(program, ["derive", "-", "--mathml"], text, options), drawing(program, text, options)]);
+  const [formulas, svg] = await Promise.all([
+    run(program, ["derive", "-", "--mathml"], text, options),
+    drawing(program, text, options),
+  ]);
   if (formulas.code === 0) shown.mathml = formulas.out;
   shown.svg = svg;
   return shown;
@@ -44,7 +50,7 @@ function messages(document) {
   const rows = items.map(
     (d) =>
       `<li class="${escaped(d.severity)}"><b>${escaped(d.code)}</b> ${d.line ? `line ${escaped(d.line)}: ` : ""}` +
-      `${sentence(d.message)} <span>${sentence(d.reason)} ${sentence(d.help)}</span></li>`
+      `${sentence(d.message)} <span>${sentence(d.reason)} ${sentence(d.help)}</span></li>`,
   );
   return rows.length ? `<ul>${rows.join("")}</ul>` : "";
 }
@@ -77,7 +83,9 @@ function page(shown) {
   const title = document && document.system ? document.system : "Model";
   const parts = [`<h1>${escaped(title)}</h1>`];
   if (shown.svg)
-    parts.push(`<img alt="The drawing in motion" src="data:image/svg+xml;base64,${Buffer.from(shown.svg).toString("base64")}">`);
+    parts.push(
+      `<img alt="The drawing in motion" src="data:image/svg+xml;base64,${Buffer.from(shown.svg).toString("base64")}">`,
+    );
   if (shown.mathml) parts.push(`<h2>Equations of motion</h2><div class="equations">${shown.mathml}</div>`);
   parts.push(messages(document));
   if (!document && shown.messages) parts.push(`<pre>${escaped(shown.messages)}</pre>`);

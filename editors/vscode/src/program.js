@@ -18,7 +18,11 @@ function run(program, args, input, { signal, limit = 30000, cwd } = {}) {
     });
     child.on("close", (code) => {
       clearTimeout(timer);
-      resolve({ code, out: Buffer.concat(parts.out).toString("utf8"), err: Buffer.concat(parts.err).toString("utf8") });
+      resolve({
+        code,
+        out: Buffer.concat(parts.out).toString("utf8"),
+        err: Buffer.concat(parts.err).toString("utf8"),
+      });
     });
     child.stdin.on("error", () => {});
     child.stdin.end(input);

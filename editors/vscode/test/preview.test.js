@@ -30,13 +30,21 @@ test("a model with a mistake shows the mistake, and no equations", async () => {
 });
 
 test("a model of energies alone has equations and no drawing", async () => {
-  const shown = await look(program, "param m = 1 kg, k = 2 N/m\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\nstart x = 1 m\nrun 1 s\n");
+  const shown = await look(
+    program,
+    "param m = 1 kg, k = 2 N/m\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\nstart x = 1 m\nrun 1 s\n",
+  );
   assert.match(shown.mathml, /<math /);
   assert.equal(shown.svg, null);
 });
 
 test("what a text names is escaped", () => {
-  const html = page({ document: { system: "<b>&", diagnostics: [{ severity: '"><x', code: "E1", line: 1, message: "<i>", reason: "", help: "" }] } });
+  const html = page({
+    document: {
+      system: "<b>&",
+      diagnostics: [{ severity: '"><x', code: "E1", line: 1, message: "<i>", reason: "", help: "" }],
+    },
+  });
   assert.doesNotMatch(html, /<b>&|<x|<i>/);
 });
 
