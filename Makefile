@@ -1,5 +1,5 @@
 # Thin: each rule calls a script of scripts/, which installs what is missing, configures by a CMake preset and builds.
-.PHONY: demo build test bench instructions fuzz mutants steep-models gallery format install package clean
+.PHONY: demo build test bench instructions fuzz mutants steep-models gallery format vscode install package clean
 
 demo:     # check, derive, simulate and report models/double_pendulum.lag
 	@scripts/demo
@@ -21,6 +21,8 @@ gallery:  # the pictures of docs/gallery
 	@scripts/gallery
 format:   # clang-format over the sources
 	@scripts/format
+vscode:   # editors/vscode/maupertuis.vsix: the extension for Visual Studio Code
+	@scripts/vscode
 install:  # PREFIX=/usr/local by default
 	@scripts/install
 package:  # build/packages/*.deb: the program, the module with LLVM, what other programs are built with

@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <stdexcept>
 
@@ -112,6 +113,11 @@ Json Editor::diagnostics(const std::string& uri, int version) {
 
 Json Editor::complaint() {
   return next([](const Json& m) { return m.contains("error") && m["id"].is_null(); });
+}
+
+bool Editor::complained() const {
+  return std::any_of(received_.begin(), received_.end(),
+                     [](const Json& m) { return m.contains("error") && m["id"].is_null(); });
 }
 
 Json Editor::initialize(const Json& options, const Json& capabilities) {

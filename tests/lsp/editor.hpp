@@ -33,6 +33,8 @@ class Editor {
   Json diagnostics(const std::string& uri, int version);
   /// The next frame that answers no request: of something that was not understood.
   Json complaint();
+  /// Whether one has arrived already that nobody asked for.
+  bool complained() const;
 
   Json initialize(const Json& options = Json::object(), const Json& capabilities = Json::object());
   void open(const std::string& uri, const std::string& text, int version = 1);
