@@ -313,7 +313,7 @@ Json currents_json(Study& study) {
 }
 
 std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOptions& settings, bool rows, bool pictured,
-                                            const std::vector<double>& moments) {
+                                            const std::vector<double>& moments, const FieldCurrents* currents) {
   const Model& model = *study.model();
   const FieldSystem& s = equations_of(study).system();
   Bindings values;
@@ -326,6 +326,7 @@ std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOption
   options.trajectory = rows;
   options.errors = false;
   options.moments = moments;
+  options.currents = currents;
   // A map over time shows what happens between a hundred moments.
   const bool line = s.space.size() == 1;
   if (pictured && !(options.every > 0)) options.every = options.duration / (line ? 240 : 120);
@@ -372,6 +373,35 @@ std::string coupled_run_text(const FieldRunResult& run) {
 
 }  // namespace
 
+namespace {
+
+std::string charges_text(const FieldRunResult& run) {
+  if (run.charges.empty()) return {};
+  std::string out = fmt::format("\n  {:<30} {:>14} {:>14} {:>16}   {}\n", "conserved charges", "at the start",
+                                "at the end", "flowed out", "left over");
+  for (const FieldCharge& c : run.charges) {
+    const std::string out_of = c.booked ? fmt::format("{:.8g}", c.outflow) : "not measured";
+    const std::string left = c.booked ? fmt::format("{:.2g} of its terms", c.left_over()) : "";
+    out += fmt::format("  {:<30} {:>14.8g} {:>14.8g} {:>16}   {}\n", c.label(), c.start, c.end, out_of, left);
+  }
+  return out + "\n";
+}
+
+Json charges_json(const FieldRunResult& run) {
+  Json out = Json::array();
+  for (const FieldCharge& c : run.charges)
+    out.push_back({{"name", c.name},
+                   {"meaning", c.meaning},
+                   {"start", c.start},
+                   {"end", c.end},
+                   {"outflow", c.booked ? Json(c.outflow) : Json(nullptr)},
+                   {"imbalance", c.booked ? Json(c.imbalance) : Json(nullptr)},
+                   {"size", c.size}});
+  return out;
+}
+
+}  // namespace
+
 std::string shape_of_bodies(const FieldEquations& equations, const FieldModes& modes, std::size_t index) {
   if (!equations.bodies || index >= modes.shapes.size()) return {};
   std::string out;
@@ -411,6 +441,7 @@ std::string field_run_text(const FieldRunResult& run) {
   out += fmt::format("  energy                         {:.16g}\n", run.energy);
   out += run.energy_drift < 0 ? std::string("  energy drift                   forces act: it is not conserved\n")
                               : fmt::format("  energy drift                   {:.3g} of its terms\n", run.energy_drift);
+  out += charges_text(run);
   return out + fmt::format("  computed in                    {:.3g} s\n", run.seconds);
 }
 
@@ -432,6 +463,7 @@ Json field_run_json(const FieldRunResult& run) {
       document["events"].push_back({{"name", h.name}, {"time", h.time}});
     if (!run.trouble.empty()) document["trouble"] = run.trouble;
   }
+  if (!run.charges.empty()) document["charges"] = charges_json(run);
   if (run.cells_upwards) document["statistics"]["cells_y"] = run.cells_upwards;
   return document;
 }

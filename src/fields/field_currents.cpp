@@ -347,6 +347,27 @@ struct NamedCurrent {
   bool reversed = false;  // −T^0_i is the density of momentum
 };
 
+/// Whether e is below zero wherever it is not zero, as far as random fields tell: |ψ|² with the other sign.
+bool is_nowhere_positive(const FieldEquations& equations, Expr e) {
+  const FieldSystem& s = equations.system();
+  Bindings values;
+  for (const Parameter& p : equations.model->parameters) values[p.symbol] = p.si_value;
+  const Expr root = s.expanded(e);
+  std::uint64_t seed = 1;
+  bool negative = false;
+  constexpr int points = 24;
+  for (int point = 0; point < points; ++point) {
+    for (const Expr& symbol : symbols_of({&root, 1}))
+      if (s.jet_of(symbol) || symbol.role() == Role::Time ||
+          std::any_of(s.space.begin(), s.space.end(), [&](const SpaceVariable& x) { return x.symbol == symbol; }))
+        seed = evaluation::mix(seed), values[symbol] = static_cast<double>(seed % 2001) / 1000 - 1;
+    const double value = evaluate(root, values);
+    if (!(value <= 0)) return false;
+    negative = negative || value < 0;
+  }
+  return negative;
+}
+
 NamedCurrent name_of(const FieldEquations& equations, const std::vector<Generator>& g,
                      const std::vector<std::size_t>& support) {
   const FieldSystem& s = equations.system();
@@ -364,7 +385,9 @@ NamedCurrent name_of(const FieldEquations& equations, const std::vector<Generato
     const std::size_t a = motions[0]->index, b = motions[1]->index;
     if (a < n && b < n)
       return {"angular momentum", fmt::format("rotations in the plane of {} and {}", variable(a), variable(b))};
-    if (a != b) return {"boost along " + variable(std::min(a, b)), "motions at constant speed"};
+    const auto moves_by = [&](std::size_t mu) { return mu == n ? s.context->time() : s.space[mu].symbol; };
+    if (a != b && motions[0]->factor == moves_by(b) && motions[1]->factor == moves_by(a))
+      return {"boost along " + variable(std::min(a, b)), "motions at constant speed"};
   }
   if (motions.size() == 1 && motions[0]->index < n && motions[0]->factor.role() == Role::Time &&
       motions[0]->factor.is_symbol())
@@ -402,7 +425,9 @@ std::optional<FieldCurrent> current_of(const FieldEquations& equations, const st
   for (std::size_t mu = 0; mu <= n; ++mu) j.push_back(k[mu] + (*rest)[mu] - b[mu]);
   FieldCurrent out;
   const NamedCurrent named = name_of(equations, generators, support);
-  if (named.reversed) {
+  const bool inner =
+      std::none_of(support.begin(), support.end(), [&](std::size_t i) { return generators[i].moves_space; });
+  if (named.reversed || (inner && is_nowhere_positive(equations, j[n]))) {
     for (Expr& x : q) x = -x;
     for (Expr& x : j) x = -x;
   }

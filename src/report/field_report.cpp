@@ -125,13 +125,28 @@ class FieldComposer {
       if (!part->lines.empty()) out.derivation.push_back(std::move(*part));
   }
 
-  void add_currents(ReportContent& out, const FieldCurrents& found) const {
+  void add_currents(ReportContent& out, const FieldCurrents& found, const FieldRunResult* run) const {
     for (const FieldCurrent& c : found.currents) {
       out.conserved.push_back({c.name + ": " + c.meaning, {current("t"), shown(c.density), "", ""}, "", ""});
       for (std::size_t x = 0; x < c.fluxes.size(); ++x)
         out.conserved.push_back({"", {current(s_.space[x].name), shown(c.fluxes[x]), "", ""}, "", ""});
+      add_charge(out, c, run);
     }
     if (!found.basis.empty()) out.conserved.push_back({found.basis, {}, "", ""});
+  }
+
+  /// What the charge of a current is in the run.
+  static void add_charge(ReportContent& out, const FieldCurrent& c, const FieldRunResult* run) {
+    if (!run) return;
+    for (const FieldCharge& charge : run->charges) {
+      if (charge.name != c.name || charge.meaning != c.meaning) continue;
+      std::string text = fmt::format("In the run ∫ j^t is {} at the start and {} at the end",
+                                     short_number(charge.start, 8), short_number(charge.end, 8));
+      if (charge.booked)
+        text += fmt::format("; {} flowed out at the sides. What is left over is at most {} of its terms",
+                            short_number(charge.outflow, 8), short_number(charge.left_over(), 2));
+      out.conserved.push_back({text + ".", {}, "", ""});
+    }
   }
 
   void add_waves(ReportContent& out, const FieldReportParts& parts) const {
@@ -217,7 +232,7 @@ ReportContent compose_field_report(const Model& model, const SourceText& source,
   if (parts.with_equations) composer.add_equations(out);
   if (parts.with_derivation) composer.add_derivation(out);
   add_certificate(out, certificate);
-  if (parts.currents) composer.add_currents(out, *parts.currents);
+  if (parts.currents) composer.add_currents(out, *parts.currents, parts.run);
   composer.add_waves(out, parts);
   if (parts.run) composer.add_run(out, *parts.run);
   if (parts.verification) out.expectations = parts.verification->results;
