@@ -4,6 +4,7 @@
 #include <maupertuis/coupled_fields.hpp>
 #include <maupertuis/field_pictures.hpp>
 #include <maupertuis/field_report.hpp>
+#include <maupertuis/stress_energy.hpp>
 
 #include <fmt/format.h>
 
@@ -132,7 +133,29 @@ class FieldComposer {
         out.conserved.push_back({"", {current(s_.space[x].name), shown(c.fluxes[x]), "", ""}, "", ""});
       add_charge(out, c, run);
     }
+    add_stress_energy(out, found);
     if (!found.basis.empty()) out.conserved.push_back({found.basis, {}, "", ""});
+  }
+
+  /// Of a Lorentz-invariant density.
+  void add_stress_energy(ReportContent& out, const FieldCurrents& found) const {
+    const auto tensor = stress_energy(e_, found);
+    if (!tensor) return;
+    out.conserved.push_back(
+        {"The symmetric stress-energy tensor: density w and flux S of the energy, flux Θ of the "
+         "momentum, whose density is S over the square of the speed. Symmetric and free of "
+         "divergence on solutions, by the zero test. The square of the speed is",
+         {{}, shown(tensor->c_squared), "", ""},
+         "",
+         ""});
+    const auto add = [&](Layout left, Expr e) { out.conserved.push_back({"", {left, shown(e), "", ""}, "", ""}); };
+    add(layouts::name("w"), tensor->energy_density());
+    const auto index = [&](std::size_t i) { return layouts::name(s_.space[i].name); };
+    for (std::size_t i = 0; i < tensor->dimensions; ++i)
+      add(layouts::indexed(layouts::name("S"), {index(i)}), tensor->energy_flux(i));
+    for (std::size_t i = 0; i < tensor->dimensions; ++i)
+      for (std::size_t j = i; j < tensor->dimensions; ++j)
+        add(layouts::power(layouts::name("Θ"), layouts::product({index(i), index(j)})), tensor->stress(i, j));
   }
 
   /// What the charge of a current is in the run.
