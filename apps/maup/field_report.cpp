@@ -33,11 +33,12 @@ std::optional<std::string> page_of_fields(Study& study, const SimulationOptions&
   std::vector<double> frequencies;
   std::optional<Verification> verification;
   Diagnostics unheard;
+  budget.carry_out("conserved", context, [&](const Interrupt&) { currents = field_currents(*equations); });
   if (with_run && model.experiment.duration)
     budget.carry_out("motion", context, [&](const Interrupt& interrupt) {
       SimulationOptions within = settings;
       within.interrupt = interrupt;
-      run = run_of_fields(study, within, true, true);
+      run = run_of_fields(study, within, true, true, {}, currents ? &*currents : nullptr);
     });
   if (study.wrong()) return std::nullopt;
   budget.carry_out("expectations", context, [&](const Interrupt& interrupt) {
@@ -46,7 +47,6 @@ std::optional<std::string> page_of_fields(Study& study, const SimulationOptions&
     if (!model.experiment.expectations.empty() || !model.fields->expectations.empty())
       verification = verify_fields(model, *equations, study.source(), within, study.diagnostics());
   });
-  budget.carry_out("conserved", context, [&](const Interrupt&) { currents = field_currents(*equations); });
   budget.carry_out("modes", context, [&](const Interrupt&) {
     std::string trouble;
     waves = dispersion(*equations, trouble);

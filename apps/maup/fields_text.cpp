@@ -7,6 +7,7 @@
 #include <maupertuis/coupled_fields.hpp>
 #include <maupertuis/diagram.hpp>
 #include <maupertuis/print.hpp>
+#include <maupertuis/stress_energy.hpp>
 
 #include <cmath>
 
@@ -163,6 +164,65 @@ std::string complex_text(const FieldEquations& equations) {
 
 }  // namespace
 
+namespace {
+
+/// w, S and Θ with their names; `spin`: what the tensor differs from the canonical one by, too.
+std::string tensor_text(const FieldEquations& equations, const StressEnergy& tensor, bool spin) {
+  const FieldSystem& s = equations.system();
+  const std::size_t n = s.space.size();
+  const auto name = [&](std::size_t mu) { return mu == n ? std::string("t") : s.space[mu].name; };
+  std::string out = fmt::format("\nSymmetric stress-energy tensor, Lorentz-invariant with the speed^2 {}\n",
+                                plain_of(equations, tensor.c_squared));
+  const auto line = [&](const std::string& head, Expr e) {
+    out += fmt::format("  {:<5} = {}\n", head, plain_of(equations, e));
+  };
+  line("w", tensor.energy_density());
+  for (std::size_t i = 0; i < n; ++i) line("S_" + name(i), tensor.energy_flux(i));
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i; j < n; ++j) line("Θ^" + name(i) + name(j), tensor.stress(i, j));
+  out += "  w: density of energy, S: its flux, S/speed^2: density of momentum, Θ: its flux\n";
+  if (!tensor.has_spin())
+    return out + "  It is the canonical tensor.\n  Certified: symmetric, ∂_μ Θ^μν = 0 on solutions.\n";
+  if (spin) {
+    out += "  It differs from the canonical one by ∂_λ B^λμν, B^λμν = -B^μλν\n";
+    for (std::size_t l = 0; l <= n; ++l)
+      for (std::size_t m = l + 1; m <= n; ++m)
+        for (std::size_t k = 0; k <= n; ++k)
+          if (const Expr b = tensor.spin(l, m, k); !b.is_zero()) line("B^" + name(l) + name(m) + name(k), b);
+  }
+  return out + "  Certified: symmetric, ∂_μ Θ^μν = 0 and Θ^μν - T^μν = ∂_λ B^λμν on solutions.\n";
+}
+
+std::optional<StressEnergy> tensor_of(Study& study) {
+  const FieldEquations& equations = equations_of(study);
+  const InterruptScope scope = study.interruptible();
+  return stress_energy(equations, field_currents(equations));
+}
+
+Json tensor_json(const FieldEquations& equations, const StressEnergy& tensor) {
+  const std::size_t n = tensor.dimensions;
+  Json out{{"c_squared", plain_of(equations, tensor.c_squared)},
+           {"energy_density", plain_of(equations, tensor.energy_density())},
+           {"certified", tensor.certified()}};
+  for (std::size_t i = 0; i < n; ++i) {
+    Json row = Json::array();
+    for (std::size_t j = 0; j < n; ++j) row.push_back(plain_of(equations, tensor.stress(i, j)));
+    out["energy_flux"].push_back(plain_of(equations, tensor.energy_flux(i)));
+    out["stress"].push_back(row);
+  }
+  out["spin_part"] = Json::object();
+  const FieldSystem& s = equations.system();
+  const auto name = [&](std::size_t mu) { return mu == n ? std::string("t") : s.space[mu].name; };
+  for (std::size_t l = 0; l <= n; ++l)
+    for (std::size_t m = l + 1; m <= n; ++m)
+      for (std::size_t k = 0; k <= n; ++k)
+        if (const Expr b = tensor.spin(l, m, k); !b.is_zero())
+          out["spin_part"][name(l) + name(m) + name(k)] = plain_of(equations, b);
+  return out;
+}
+
+}  // namespace
+
 std::string fields_lecture(Study& study, bool with_steps) {
   const FieldEquations& equations = equations_of(study);
   std::string out, section;
@@ -181,6 +241,7 @@ std::string fields_lecture(Study& study, bool with_steps) {
                               lay_out(readable(equations.boundary_terms[mu], equations.order), equations.order))));
   }
   out += fmt::format("\nWhat the variation leaves, δℒ = E·δφ + ∂_μ B^μ\n{}", b);
+  if (const auto tensor = tensor_of(study)) out += tensor_text(equations, *tensor, false);
   return out + "\n" + certificate_text(*study.field_certificate());
 }
 
@@ -219,6 +280,7 @@ Json fields_json(Study& study) {
   for (const CertificateCheck& check : study.field_certificate()->checks)
     checks.push_back({{"name", check.name}, {"points", check.points}, {"error_bound", check.error_bound}});
   document["certificate"] = {{"passed", study.field_certificate()->passed()}, {"checks", checks}};
+  if (const auto tensor = tensor_of(study)) document["stress_energy"] = tensor_json(equations, *tensor);
   return document;
 }
 
@@ -288,6 +350,7 @@ std::string currents_text(Study& study) {
     out += fmt::format("  Q   = {}\n", q);
   }
   if (found.currents.empty()) out += "\nNone was found.\n";
+  if (const auto tensor = stress_energy(equations, found)) out += tensor_text(equations, *tensor, true);
   return out + fmt::format("\n{}\n", found.basis);
 }
 
@@ -309,11 +372,12 @@ Json currents_json(Study& study) {
                                     {"certified", c.certified}});
   }
   document["basis"] = found.basis;
+  if (const auto tensor = stress_energy(equations, found)) document["stress_energy"] = tensor_json(equations, *tensor);
   return document;
 }
 
 std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOptions& settings, bool rows, bool pictured,
-                                            const std::vector<double>& moments) {
+                                            const std::vector<double>& moments, const FieldCurrents* currents) {
   const Model& model = *study.model();
   const FieldSystem& s = equations_of(study).system();
   Bindings values;
@@ -326,6 +390,7 @@ std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOption
   options.trajectory = rows;
   options.errors = false;
   options.moments = moments;
+  options.currents = currents;
   // A map over time shows what happens between a hundred moments.
   const bool line = s.space.size() == 1;
   if (pictured && !(options.every > 0)) options.every = options.duration / (line ? 240 : 120);
@@ -372,6 +437,35 @@ std::string coupled_run_text(const FieldRunResult& run) {
 
 }  // namespace
 
+namespace {
+
+std::string charges_text(const FieldRunResult& run) {
+  if (run.charges.empty()) return {};
+  std::string out = fmt::format("\n  {:<30} {:>14} {:>14} {:>16}   {}\n", "conserved charges", "at the start",
+                                "at the end", "flowed out", "left over");
+  for (const FieldCharge& c : run.charges) {
+    const std::string out_of = c.booked ? fmt::format("{:.8g}", c.outflow) : "not measured";
+    const std::string left = c.booked ? fmt::format("{:.2g} of its terms", c.left_over()) : "";
+    out += fmt::format("  {:<30} {:>14.8g} {:>14.8g} {:>16}   {}\n", c.label(), c.start, c.end, out_of, left);
+  }
+  return out + "\n";
+}
+
+Json charges_json(const FieldRunResult& run) {
+  Json out = Json::array();
+  for (const FieldCharge& c : run.charges)
+    out.push_back({{"name", c.name},
+                   {"meaning", c.meaning},
+                   {"start", c.start},
+                   {"end", c.end},
+                   {"outflow", c.booked ? Json(c.outflow) : Json(nullptr)},
+                   {"imbalance", c.booked ? Json(c.imbalance) : Json(nullptr)},
+                   {"size", c.size}});
+  return out;
+}
+
+}  // namespace
+
 std::string shape_of_bodies(const FieldEquations& equations, const FieldModes& modes, std::size_t index) {
   if (!equations.bodies || index >= modes.shapes.size()) return {};
   std::string out;
@@ -411,6 +505,7 @@ std::string field_run_text(const FieldRunResult& run) {
   out += fmt::format("  energy                         {:.16g}\n", run.energy);
   out += run.energy_drift < 0 ? std::string("  energy drift                   forces act: it is not conserved\n")
                               : fmt::format("  energy drift                   {:.3g} of its terms\n", run.energy_drift);
+  out += charges_text(run);
   return out + fmt::format("  computed in                    {:.3g} s\n", run.seconds);
 }
 
@@ -432,6 +527,7 @@ Json field_run_json(const FieldRunResult& run) {
       document["events"].push_back({{"name", h.name}, {"time", h.time}});
     if (!run.trouble.empty()) document["trouble"] = run.trouble;
   }
+  if (!run.charges.empty()) document["charges"] = charges_json(run);
   if (run.cells_upwards) document["statistics"]["cells_y"] = run.cells_upwards;
   return document;
 }

@@ -9,6 +9,19 @@
 
 namespace maupertuis {
 
+/// Q = ∫ j^t dx of a conserved current along a run, and what flowed out of the sides.
+struct FieldCharge {
+  std::string name, meaning;  // of the current
+  double start = 0, end = 0;  // SI
+  double outflow = 0;         // ∮ j·n over the sides and the time of the run
+  double imbalance = 0;       // the largest |Q(t) − Q(0) + outflow(t)| at some 20 moments
+  double size = 0;            // of the terms: the largest ∫ |j^t| dx, or outflow where that is more
+  bool booked = false;        // else j^x holds derivatives that the elements do not have
+  bool measured = false;
+  double left_over() const { return size > 0 ? imbalance / size : 0; }  // beside its terms
+  std::string label() const;                                            // of a line: shifts by what they add
+};
+
 /// The motion of fields by Galerkin's method. Waves of one or two space variables, whose density holds first
 /// derivatives with the velocities squared: Gauss-Lobatto elements, Taylor steps of order 8 within h ω_max ≤ 3.2. Beams
 /// and fields of first order in t, of one space variable: smooth elements where ℒ holds u_xx, Gauss's collocation
@@ -32,7 +45,8 @@ struct FieldRunResult {
     std::string name, unit;  // of a field
     double low = 0, high = 0;
   };
-  std::vector<Range> at_end;  // of the values at the borders of cells; without coordinates and bodies
+  std::vector<FieldCharge> charges;  // of FieldRunOptions::currents
+  std::vector<Range> at_end;         // of the values at the borders of cells; without coordinates and bodies
   double seconds = 0;
   std::string trouble;  // why the run ended early; empty: it did not
   // With coordinates and bodies:
@@ -63,6 +77,8 @@ struct FieldRunOptions {
   int least_values = 0;              // along a direction of a row: more than the borders of cells where those are few
   std::vector<double> moments = {};  // s; rows at these times beside the others
   bool errors = true;                // a second run on a mesh of half the cells
+  /// Whose charges are followed, without coordinates and bodies, dissipation and forces inside; null: none.
+  const FieldCurrents* currents = nullptr;
   Interrupt interrupt;
 };
 

@@ -1,7 +1,6 @@
 #include "fields/collocation.hpp"
 
 #include <maupertuis/evaluate.hpp>
-#include <maupertuis/repeated_evaluation.hpp>
 
 #include "linear_algebra/dense.hpp"
 
@@ -512,13 +511,12 @@ void CollocationMotion::find_null_vectors() {
   }
 }
 
-void CollocationMotion::find_rates() const {
-  if (rates_known_) return;
-  rates_known_ = true;
+const CollocationMotion::RateMatrix& CollocationMotion::rate_matrix() const {
+  if (rate_matrix_ && form_.steady && rate_matrix_->null_vectors == null_.size()) return *rate_matrix_;
   const std::size_t n = mesh_.size(), band = mesh_.bandwidth();
   BandedMatrix<double> matrix(n, band, band);
   mesh_.set(state_.c.data(), rates_.data(), t_);
-  const GalerkinMesh::Matrices now = mesh_.matrices();
+  GalerkinMesh::Matrices now = mesh_.matrices();
   for (std::size_t j = 0; j < n; ++j)
     for (std::size_t i = matrix.first_row(j); i < matrix.end_row(j); ++i)
       matrix.at(i, j) = is_held_[i] || is_held_[j] ? (i == j ? 1.0 : 0.0)
@@ -533,7 +531,17 @@ void CollocationMotion::find_rates() const {
     for (std::size_t i = matrix.first_row(j); i < matrix.end_row(j); ++i)
       largest = std::max(largest, std::abs(matrix.at(i, j)));
   for (std::size_t j = 0; !null_.empty() && j < n; ++j) matrix.at(j, j) += 1e-9 * largest;
-  if (!matrix.factor()) {
+  const bool regular = matrix.factor();
+  rate_matrix_.emplace(RateMatrix{std::move(matrix), std::move(now.a), regular, null_.size()});
+  return *rate_matrix_;
+}
+
+void CollocationMotion::find_rates() const {
+  if (rates_known_) return;
+  rates_known_ = true;
+  const RateMatrix& matrix = rate_matrix();
+  const std::size_t n = mesh_.size();
+  if (!matrix.regular) {
     std::fill(rates_.begin(), rates_.end(), std::nan(""));
     return;
   }
@@ -546,10 +554,10 @@ void CollocationMotion::find_rates() const {
     mesh_.forces(f.data());
     add_end_forces(t_, f.data());
     std::vector<double> change_of_p(n, 0);  // of momenta that are functions of c
-    now.a.add_product(rates_.data(), change_of_p.data());
+    matrix.a.add_product(rates_.data(), change_of_p.data());
     for (std::size_t i = 0; i < n; ++i)
       r[i] = is_held_[i] ? 0 : is_first_order_[i] ? change_of_p[i] - f[i] : (p[i] - state_.p[i]) - state_.p_lost[i];
-    matrix.solve(r.data());
+    matrix.factored.solve(r.data());
     for (const std::vector<double>& v : null_) {
       double part = 0;
       for (std::size_t i = 0; i < n; ++i) part += v[i] * r[i];
@@ -576,24 +584,17 @@ double CollocationMotion::field_at(std::size_t field, const FieldJet& jet, const
   return mesh_.value(jet.time == 0 ? state_.c.data() : rates_.data(), field, jet.space[0], place[0]);
 }
 
-double CollocationMotion::answer(const FieldQuestion& question) {
-  if (!question.total) return answer_at_places(question.value);
+void CollocationMotion::visit_points(const PointVisitor& visit) {
   find_rates();
   mesh_.set(state_.c.data(), rates_.data(), t_, true);
-  const Expr root[] = {s_.expanded(question.value)};
-  const RepeatedEvaluation at(root);
-  std::vector<double> values(mesh_.lanes());
-  for (std::size_t n = 0; n < values.size(); ++n)
-    values[n] = at([&](Expr symbol) {
-                  if (symbol == s_.space.front().symbol) return mesh_.place(n);
-                  if (s_.jet_of(symbol)) {
-                    for (std::size_t slot = 0; slot < form_.slots.size(); ++slot)
-                      if (form_.slots[slot].jet == symbol) return mesh_.jet(slot, n);
-                    return std::nan("");
-                  }
-                  return symbol.role() == Role::Time ? t_ : values_.at(symbol);
-                }).front();
-  return mesh_.integral(values);
+  const std::size_t slots = form_.slots.size();
+  std::vector<double> values(slots + 2);
+  values[slots + 1] = t_;
+  for (std::size_t n = 0; n < mesh_.lanes(); ++n) {
+    for (std::size_t slot = 0; slot < slots; ++slot) values[slot] = mesh_.jet(slot, n);
+    values[slots] = mesh_.place(n);
+    visit(mesh_.weight(n), values.data());
+  }
 }
 
 }  // namespace maupertuis

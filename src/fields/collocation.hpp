@@ -33,7 +33,8 @@ class CollocationMotion final : public FieldMotion {
   /// Where the equations of a step have no solution near, by halves of it, down to h/4096.
   bool step(double h) override;
   double energy(double& size) override;
-  double answer(const FieldQuestion& question) override;
+  const std::vector<Expr>& point_inputs() const override { return form_.inputs; }
+  void visit_points(const PointVisitor& visit) override;
   double field_at(std::size_t field, const FieldJet& jet, const std::vector<double>& place) const override;
   double width_of_cell() const { return mesh_.width(); }
 
@@ -75,6 +76,13 @@ class CollocationMotion final : public FieldMotion {
   void leave_null_vectors_out(const Factors& factors, std::size_t stage, std::vector<std::complex<double>>& w) const;
   void add_end_forces(double t, double* f) const;
   void restore(const State& s) { state_ = s, t_ = s.t, rates_known_ = false, have_stages_ = false; }
+  /// What gives velocities from momenta, or from the equations of first order, at one moment.
+  struct RateMatrix {
+    BandedMatrix<double> factored, a;  // a = ∂p/∂c
+    bool regular = false;
+    std::size_t null_vectors = 0;  // that were known
+  };
+  const RateMatrix& rate_matrix() const;
   /// c' at the present moment, from the momenta, or from the equations of first order.
   void find_rates() const;
 
@@ -93,6 +101,7 @@ class CollocationMotion final : public FieldMotion {
   double last_h_ = 0;
   mutable GalerkinMesh::Matrices matrices_;
   mutable bool matrices_known_ = false;
+  mutable std::optional<RateMatrix> rate_matrix_;  // kept where it is the same at all times
   std::map<double, Factors> factors_;
   std::vector<std::vector<double>> null_;  // orthonormal vectors that are left out of the motion
   bool all_first_order_ = false;

@@ -180,18 +180,40 @@ std::vector<std::size_t> reduce(Matrix& m, std::size_t columns, const evaluation
   return pivots;
 }
 
-/// The generators of each symmetry that stand in it with a factor other than 0. Shifts and motions that are simplest
-/// come last in the elimination, so that they stay free and each vector has few others.
-std::vector<std::vector<std::size_t>> supports(Matrix rows, std::size_t columns, const evaluation::PrimeField& f) {
+/// The generators of a symmetry that stand in it with a factor other than 0, the first with 1; `numbers`: the factors
+/// that are numbers of few digits, whatever the parameters are.
+struct Support {
+  std::vector<std::size_t> generators;
+  std::vector<std::optional<Rational>> numbers;
+};
+
+/// A number of few digits with this image; one of a parameter is as good as never taken for it.
+std::optional<Rational> small_number(Scalar value, const evaluation::PrimeField& f) {
+  constexpr std::uint64_t most = 1000;
+  for (std::uint64_t denominator = 1; denominator <= 12; ++denominator) {
+    const std::uint64_t r = f.residue(f.multiply(value, f.from_residue(denominator)));
+    const auto d = static_cast<std::int64_t>(denominator);
+    if (r <= most) return Rational(static_cast<std::int64_t>(r), d);
+    if (f.prime() - r <= most) return Rational(-static_cast<std::int64_t>(f.prime() - r), d);
+  }
+  return std::nullopt;
+}
+
+/// Shifts and motions that are simplest come last in the elimination, so that they stay free and each vector has few
+/// others.
+std::vector<Support> supports(Matrix rows, std::size_t columns, const evaluation::PrimeField& f) {
   std::vector<std::size_t> order;
   for (std::size_t c = columns; c-- > 0;) order.push_back(c);
   const std::vector<std::size_t> pivots = reduce(rows, columns, f, order);
-  std::vector<std::vector<std::size_t>> out;
+  std::vector<Support> out;
   for (std::size_t free = 0; free < columns; ++free) {
     if (std::find(pivots.begin(), pivots.end(), free) != pivots.end()) continue;
-    std::vector<std::size_t> support{free};
+    Support support{{free}, {Rational(1)}};
     for (std::size_t r = 0; r < pivots.size(); ++r)
-      if (rows[r][free] != 0) support.push_back(pivots[r]);
+      if (rows[r][free] != 0) {
+        support.generators.push_back(pivots[r]);
+        support.numbers.push_back(small_number(f.subtract(0, rows[r][free]), f));
+      }
     out.push_back(std::move(support));
   }
   return out;
@@ -214,21 +236,28 @@ ExprMap integer_point(const FieldSystem& s, const std::vector<Expr>& expressions
 
 bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
 
-/// The coefficients of a symmetry, that of its first generator 1; empty where they were not found.
+/// The coefficients of a symmetry, that of its first generator 1; empty where they were not found. Those that are
+/// numbers are taken as such, and the currents are certified afterwards.
 std::vector<Expr> coefficients(const FieldEquations& equations, const std::vector<std::vector<Expr>>& table,
-                               const std::vector<std::size_t>& support) {
+                               const Support& support) {
   const FieldSystem& s = equations.system();
   Context& context = *s.context;
-  const std::size_t unknowns = support.size() - 1;
-  std::vector<std::vector<Expr>> rows;  // [unknowns × (unknowns + 1)], the last: minus what the first gives
+  std::vector<std::size_t> unknown;  // in the support
+  for (std::size_t j = 0; j < support.generators.size(); ++j)
+    if (!support.numbers[j]) unknown.push_back(j);
+  const std::size_t unknowns = unknown.size();
+  std::vector<std::vector<Expr>> rows;  // [unknowns × (unknowns + 1)], the last: minus what the others give
   std::vector<Expr> all;
-  for (const std::size_t g : support) all.insert(all.end(), table[g].begin(), table[g].end());
+  for (const std::size_t g : support.generators) all.insert(all.end(), table[g].begin(), table[g].end());
   for (std::uint64_t point = 1; point < 12 + 2 * unknowns && rows.size() < unknowns; ++point) {
     const ExprMap values = integer_point(s, all, point);
     for (std::size_t f = 0; f < table.front().size() && rows.size() < unknowns; ++f) {
+      const auto at = [&](std::size_t j) { return substitute(table[support.generators[j]][f], values); };
       std::vector<Expr> row;
-      for (std::size_t j = 1; j < support.size(); ++j) row.push_back(substitute(table[support[j]][f], values));
-      row.push_back(-substitute(table[support[0]][f], values));
+      for (const std::size_t j : unknown) row.push_back(at(j));
+      row.push_back(context.number(0));
+      for (std::size_t j = 0; j < support.generators.size(); ++j)
+        if (support.numbers[j]) row.back() = row.back() - *support.numbers[j] * at(j);
       for (std::size_t r = 0; r < rows.size(); ++r) {  // eliminate with the rows so far, whose pivot is column r
         const Expr factor = row[r];
         if (factor.is_zero()) continue;
@@ -250,8 +279,9 @@ std::vector<Expr> coefficients(const FieldEquations& equations, const std::vecto
     }
   }
   if (rows.size() < unknowns) return {};
-  std::vector<Expr> out{context.number(1)};
-  for (const auto& row : rows) out.push_back(row.back());
+  std::vector<Expr> out;
+  std::size_t next = 0;
+  for (const auto& number : support.numbers) out.push_back(number ? context.number(*number) : rows[next++].back());
   return out;
 }
 
@@ -347,6 +377,27 @@ struct NamedCurrent {
   bool reversed = false;  // −T^0_i is the density of momentum
 };
 
+/// Whether e is below zero wherever it is not zero, as far as random fields tell: |ψ|² with the other sign.
+bool is_nowhere_positive(const FieldEquations& equations, Expr e) {
+  const FieldSystem& s = equations.system();
+  Bindings values;
+  for (const Parameter& p : equations.model->parameters) values[p.symbol] = p.si_value;
+  const Expr root = s.expanded(e);
+  std::uint64_t seed = 1;
+  bool negative = false;
+  constexpr int points = 24;
+  for (int point = 0; point < points; ++point) {
+    for (const Expr& symbol : symbols_of({&root, 1}))
+      if (s.jet_of(symbol) || symbol.role() == Role::Time ||
+          std::any_of(s.space.begin(), s.space.end(), [&](const SpaceVariable& x) { return x.symbol == symbol; }))
+        seed = evaluation::mix(seed), values[symbol] = static_cast<double>(seed % 2001) / 1000 - 1;
+    const double value = evaluate(root, values);
+    if (!(value <= 0)) return false;
+    negative = negative || value < 0;
+  }
+  return negative;
+}
+
 NamedCurrent name_of(const FieldEquations& equations, const std::vector<Generator>& g,
                      const std::vector<std::size_t>& support) {
   const FieldSystem& s = equations.system();
@@ -364,7 +415,9 @@ NamedCurrent name_of(const FieldEquations& equations, const std::vector<Generato
     const std::size_t a = motions[0]->index, b = motions[1]->index;
     if (a < n && b < n)
       return {"angular momentum", fmt::format("rotations in the plane of {} and {}", variable(a), variable(b))};
-    if (a != b) return {"boost along " + variable(std::min(a, b)), "motions at constant speed"};
+    const auto moves_by = [&](std::size_t mu) { return mu == n ? s.context->time() : s.space[mu].symbol; };
+    if (a != b && motions[0]->factor == moves_by(b) && motions[1]->factor == moves_by(a))
+      return {"boost along " + variable(std::min(a, b)), "motions at constant speed"};
   }
   if (motions.size() == 1 && motions[0]->index < n && motions[0]->factor.role() == Role::Time &&
       motions[0]->factor.is_symbol())
@@ -402,7 +455,9 @@ std::optional<FieldCurrent> current_of(const FieldEquations& equations, const st
   for (std::size_t mu = 0; mu <= n; ++mu) j.push_back(k[mu] + (*rest)[mu] - b[mu]);
   FieldCurrent out;
   const NamedCurrent named = name_of(equations, generators, support);
-  if (named.reversed) {
+  const bool inner =
+      std::none_of(support.begin(), support.end(), [&](std::size_t i) { return generators[i].moves_space; });
+  if (named.reversed || (inner && is_nowhere_positive(equations, j[n]))) {
     for (Expr& x : q) x = -x;
     for (Expr& x : j) x = -x;
   }
@@ -434,10 +489,10 @@ FieldCurrents field_currents(const FieldEquations& equations) {
   PrimeRows prime(table);
   const auto found = supports(prime.rows(generators.size() + 8, s), generators.size(), prime.field());
   std::size_t unwritten = 0;
-  for (const std::vector<std::size_t>& support : found) {
+  for (const Support& support : found) {
     interrupt_of(*s.context).throw_if_asked();
     const std::vector<Expr> c = coefficients(equations, table, support);
-    auto current = c.empty() ? std::nullopt : current_of(equations, generators, support, c);
+    auto current = c.empty() ? std::nullopt : current_of(equations, generators, support.generators, c);
     if (current)
       out.currents.push_back(std::move(*current));
     else

@@ -3,6 +3,7 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/repeated_evaluation.hpp>
 
+#include "fields/end_slopes.hpp"
 #include "fields/wide_lanes.hpp"
 
 #include <fmt/format.h>
@@ -440,13 +441,18 @@ double FieldMesh::omega_max(const Interrupt& interrupt) {
   return largest_frequency(u_, std::move(w), accelerations, rounds, trouble_, interrupt);
 }
 
-double FieldMesh::energy(double& size) {
+/// Coefficient 0 of all that ℒ depends on, as inputs.
+void FieldMesh::show_state() {
   load(u_, v_);
   for (std::size_t f = 0; f < fields_; ++f) {
     differentiate_along_x(phi(f, 0), slope(f, 0));
     differentiate_along_x(velocity(f, 0), rate(f, 0));
   }
   std::fill_n(series_.input(4 * fields_ + 1, 0), lanes_, t_);
+}
+
+double FieldMesh::energy(double& size) {
+  show_state();
   for (std::size_t i = 0; i < 4 * fields_ + 2; ++i) std::copy_n(series_.input(i, 0), lanes_, energies_.input(i, 0));
   energies_.advance(0);
   CarefulSum sum;
@@ -475,27 +481,69 @@ double FieldMesh::field_at(std::size_t field, const FieldJet& jet, const std::ve
   return by_space == 0 ? out : out * 2 / width_;
 }
 
-double FieldMesh::answer(const FieldQuestion& question) {
-  if (!question.total) return answer_at_places(question.value);
-  const Expr root[] = {s_.expanded(question.value)};
-  const RepeatedEvaluation at(root);
-  double ignored = 0;
-  energy(ignored);  // fills slopes and rates
-  double sum = 0;
+void FieldMesh::visit_points(const PointVisitor& visit) {
+  show_state();
+  std::vector<double> values(form_.inputs.size());
   for (std::size_t n = 0; n < lanes_; ++n) {
-    const double value =
-        at([&](Expr symbol) {
-          if (symbol == s_.space.front().symbol) return series_.input(4 * fields_, 0)[n];
-          if (const auto jet = s_.jet_of(symbol)) {
-            const std::size_t a = varied(jet->field);
-            if (a >= fields_ || jet->time > 1 || jet->space[0] > 1) return std::nan("");
-            return series_.input(4 * a + static_cast<std::size_t>(jet->time + 2 * jet->space[0]), 0)[n];
-          }
-          return symbol.role() == Role::Time ? t_ : values_.at(symbol);
-        }).front();
-    sum += rule_.w[n / static_cast<std::size_t>(cells_)] * width_ / 2 * value;
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = series_.input(i, 0)[n];
+    visit(rule_.w[n / static_cast<std::size_t>(cells_)] * width_ / 2, values.data());
   }
-  return sum;
+}
+
+/// What ℒ depends on at the nodes of an element.
+std::vector<std::vector<double>> FieldMesh::element_inputs(std::size_t cell) const {
+  const std::size_t points = static_cast<std::size_t>(p_) + 1, n = static_cast<std::size_t>(cells_);
+  std::vector<std::vector<double>> out(points, std::vector<double>(4 * fields_ + 2, 0));
+  for (std::size_t j = 0; j < points; ++j) {
+    for (std::size_t f = 0; f < fields_; ++f)
+      for (const std::size_t rate : {0, 1}) {
+        const std::vector<double>& u = (rate ? v_ : u_)[f];
+        out[j][4 * f + rate] = u[j * n + cell];
+        for (std::size_t m = 0; m < points; ++m)
+          out[j][4 * f + 2 + rate] +=
+              2 / width_ * rule_.derivative[j * points + m] * (u[m * n + cell] - u[j * n + cell]);
+      }
+    out[j][4 * fields_] = left_ + width_ * (static_cast<double>(cell) + 0.5 * (1 + rule_.x[j]));
+    out[j][4 * fields_ + 1] = t_;
+  }
+  return out;
+}
+
+/// Of a free end slopes are those of its condition, of a held one those of the equation of its node.
+std::vector<double> FieldMesh::inputs_at_end(bool right) {
+  const auto inputs = element_inputs(right ? static_cast<std::size_t>(cells_) - 1 : 0);
+  std::vector<double> out = right ? inputs.back() : inputs.front();
+  if (s_.periodic) return out;
+  std::vector<double> s(fields_, 0), accelerations(fields_, 0);
+  std::vector<bool> is_held(fields_, false);
+  for (const Held& held : held_) {
+    if (held.right != right) continue;
+    if (held.force) s[held.field] += (right ? -1 : 1) * boundary_coefficient(held.derivatives, 0);
+    if (!held.force) accelerations[held.field] = 2 * boundary_coefficient(held.derivatives, 2);
+    is_held[held.field] = is_held[held.field] || !held.force;
+  }
+  if (std::find(is_held.begin(), is_held.end(), true) != is_held.end()) {
+    // Where one field of several is free its acceleration is not at hand: polynomial slopes then.
+    if (std::find(is_held.begin(), is_held.end(), false) != is_held.end()) return out;
+    s = end_slopes_->stresses(rule_, width_, right, inputs, accelerations);
+  }
+  end_slopes_->solve(out, s);
+  return out;
+}
+
+void FieldMesh::visit_sides(const std::vector<Expr>& jets, const SideVisitor& visit) {
+  if (!end_slopes_) end_slopes_ = std::make_shared<EndSlopes>(form_, equations_.model->parameters);
+  for (const bool right : {false, true}) {
+    const std::vector<double> inputs = inputs_at_end(right);
+    std::vector<double> values;
+    for (const Expr& jet : jets) {
+      const auto at = std::find(form_.inputs.begin(), form_.inputs.end(), jet);
+      values.push_back(at == form_.inputs.end() ? std::nan("")
+                                                : inputs[static_cast<std::size_t>(at - form_.inputs.begin())]);
+    }
+    values.insert(values.end(), inputs.end() - 2, inputs.end());  // x, t
+    visit({0, right, 1}, values.data());
+  }
 }
 
 }  // namespace maupertuis

@@ -3,6 +3,7 @@
 #include "fields/lobatto.hpp"
 #include "fields/wave_mesh.hpp"
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,8 @@ struct PointForm {
 };
 std::optional<PointForm> point_form(const FieldEquations& equations, Diagnostics& diagnostics);
 
+class EndSlopes;
+
 /// One discretisation and its state. Lanes are [local node × cells], so that what belongs to one local node of all
 /// cells lies together.
 class FieldMesh final : public WaveMesh {
@@ -39,7 +42,9 @@ class FieldMesh final : public WaveMesh {
   double omega_max(const Interrupt& interrupt) override;
   bool step(double h) override;
   double energy(double& size) override;
-  double answer(const FieldQuestion& question) override;
+  const std::vector<Expr>& point_inputs() const override { return form_.inputs; }
+  void visit_points(const PointVisitor& visit) override;
+  void visit_sides(const std::vector<Expr>& jets, const SideVisitor& visit) override;
   double field_at(std::size_t field, const FieldJet& jet, const std::vector<double>& place) const override;
   /// Steps that the series bounds are so many times as long: of a mesh whose difference to another is to tell of steps.
   void lengthen_steps(double times) { longer_ = times; }
@@ -55,6 +60,9 @@ class FieldMesh final : public WaveMesh {
   double* rate(std::size_t f, std::size_t k) { return series_.input(4 * f + 3, k); }
   /// Coefficient k of all that follows from φ_0..k and φ'_0..k: the accelerations.
   void coefficient(std::size_t k);
+  void show_state();
+  std::vector<std::vector<double>> element_inputs(std::size_t cell) const;
+  std::vector<double> inputs_at_end(bool right);
   void differentiate_along_x(const double* from, double* to) const;
   void forces(std::size_t f, std::size_t k);
   void share(std::vector<double>& lanes) const;
@@ -87,6 +95,7 @@ class FieldMesh final : public WaveMesh {
     bool force = false;             // else the field itself
   };
   std::vector<Held> held_;
+  std::shared_ptr<EndSlopes> end_slopes_;  // made when sides are first looked at
 };
 
 }  // namespace maupertuis

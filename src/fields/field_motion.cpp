@@ -1,11 +1,15 @@
 #include "fields/field_motion.hpp"
 
+#include "fields/careful_sum.hpp"
+
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/repeated_evaluation.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 namespace maupertuis {
 
@@ -37,6 +41,38 @@ double FieldMotion::answer_at_places(Expr value, double shift) const {
     extra[place.symbol] = field_at(a, jet, at);
   }
   return value_of(value, extra);
+}
+
+double FieldMotion::answer(const FieldQuestion& question) {
+  if (!question.total) return answer_at_places(question.value);
+  const Expr root[] = {s_.expanded(question.value)};
+  const RepeatedEvaluation at(root);
+  std::unordered_map<Expr, std::size_t, ExprHash> inputs;
+  for (std::size_t i = 0; i < point_inputs().size(); ++i) inputs[point_inputs()[i]] = i;
+  CarefulSum sum;
+  visit_points([&](double weight, const double* values) {
+    sum.add(weight * at([&](Expr symbol) {
+                       if (const auto i = inputs.find(symbol); i != inputs.end()) return values[i->second];
+                       return s_.jet_of(symbol) ? std::nan("") : values_.at(symbol);
+                     }).front());
+  });
+  return sum.value();
+}
+
+/// Of one space variable: its two ends.
+void FieldMotion::visit_sides(const std::vector<Expr>& jets, const SideVisitor& visit) {
+  std::vector<double> values(jets.size() + 2);
+  for (const bool far : {false, true}) {
+    const SpaceVariable& x = s_.space.front();
+    const double place = value_of(far ? x.to : x.from, {});
+    for (std::size_t i = 0; i < jets.size(); ++i) {
+      const FieldJet jet = *s_.jet_of(jets[i]);
+      const std::size_t a = varied(jet.field);
+      values[i] = a < equations_.varied.size() ? field_at(a, jet, {place}) : std::nan("");
+    }
+    values[jets.size()] = place, values[jets.size() + 1] = t_;
+    visit({0, far, 1}, values.data());
+  }
 }
 
 void FieldMotion::add_row(Trajectory& rows, const std::vector<std::vector<double>>& places) const {

@@ -1,6 +1,7 @@
 #pragma once
 #include <maupertuis/field_run.hpp>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,22 @@ class FieldMotion {
   /// h_E of the mesh, and the integral of the size of its density.
   virtual double energy(double& size) = 0;
   /// Of an expression in place values; of one in jets at a place or integrated.
-  virtual double answer(const FieldQuestion& question) = 0;
+  double answer(const FieldQuestion& question);
+  /// What is known at a point of the integral: jets of the varied fields, then the space variables, then t.
+  virtual const std::vector<Expr>& point_inputs() const = 0;
+  /// Calls with the weight of each point of the integral and the values of `point_inputs` there.
+  using PointVisitor = std::function<void(double weight, const double* values)>;
+  virtual void visit_points(const PointVisitor& visit) = 0;
+  /// A point of a side x_along = const, its weight in the integral over the side.
+  struct SidePoint {
+    std::size_t along = 0;
+    bool far = false;  // right, top
+    double weight = 1;
+  };
+  /// Calls for the points of all sides with the values of `jets` there, then of the space variables, then t. NaN for
+  /// jets that the elements do not have.
+  using SideVisitor = std::function<void(const SidePoint& point, const double* values)>;
+  virtual void visit_sides(const std::vector<Expr>& jets, const SideVisitor& visit);
   /// The same at places shifted along x, within the domain.
   double answer_beside(const FieldQuestion& question, double shift) const {
     return answer_at_places(question.value, shift);

@@ -2,6 +2,7 @@
 #include <maupertuis/field_run.hpp>
 
 #include "fields/breaks.hpp"
+#include "fields/charge_meter.hpp"
 #include "fields/field_method.hpp"
 #include "fields/resolution.hpp"
 
@@ -92,6 +93,7 @@ struct OneRun {
   double h = 0, omega = 0, energy = 0, drift = 0;
   Trajectory trajectory;
   std::vector<FieldRunResult::Range> at_end;
+  std::vector<FieldCharge> charges;
 };
 
 /// E0647 where both meshes would pass something by, and their difference would tell nothing of it.
@@ -281,6 +283,13 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
   out.energy = start;
   out.answers.assign(questions.size(), std::nan(""));
   out.near.resize(questions.size());
+  std::optional<ChargeMeter> meter;
+  if (first && options.currents) meter.emplace(mesh, equations, *options.currents);
+  if (meter && meter->idle()) meter.reset();
+  if (meter) meter->note_flux(mesh), meter->measure(mesh);
+  constexpr int measurements = 20;
+  const double apart_in_run = options.duration / measurements * (1 - 1e-9);
+  double measured = 0;
   for (const double stop : stops) {
     const double way = stop - mesh.time();
     const auto steps = static_cast<std::size_t>(std::ceil(way / longest - 1e-9));
@@ -289,7 +298,10 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
       if (!mesh.step(way / static_cast<double>(std::max<std::size_t>(steps, 1))))
         return refuse(mesh, equations, diagnostics), std::nullopt;
       ++out.steps;
+      if (meter) meter->note_flux(mesh);
     }
+    if (meter && way > 0 && (stop - measured >= apart_in_run || stop == options.duration))
+      meter->measure(mesh), measured = stop;
     double now = 0;
     if (way > 0 || stop == 0) out.energy = mesh.energy(now), size = std::max(size, now);
     out.drift = std::max(out.drift, std::abs(out.energy - start));
@@ -304,6 +316,7 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
     if (!rows.empty() && (out.trajectory.times.empty() || mesh.time() > out.trajectory.times.back()))
       mesh.add_row(out.trajectory, rows);
   }
+  if (meter) out.charges = meter->finish();
   out.h = longest, out.steps += mesh.further_steps();
   if (size > 0) out.drift /= size;
   if (first) out.at_end = ranges_of(mesh, equations, places_of_rows(equations, cells, 0));
@@ -400,6 +413,7 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   out.end = options.duration;
   out.trajectory = std::move(fine->trajectory);
   out.at_end = std::move(fine->at_end);
+  out.charges = std::move(fine->charges);
   if (!rows.empty()) out.places = rows[0];
   if (rows.size() == 2) out.upwards = rows[1];
   const std::vector<double> errors =

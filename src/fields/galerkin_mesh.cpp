@@ -192,13 +192,9 @@ double GalerkinMesh::energy(double& size) {
 }
 
 double GalerkinMesh::integral(const std::vector<double>& f) const {
-  double sum = 0, lost = 0;  // with what each addition loses (Neumaier)
-  for (std::size_t n = 0; n < f.size(); ++n) {
-    const double term = rule_.w[n / cells()] * width_ / 2 * f[n], total = sum + term;
-    lost += std::abs(sum) >= std::abs(term) ? (sum - total) + term : (term - total) + sum;
-    sum = total;
-  }
-  return sum + lost;
+  CarefulSum sum;
+  for (std::size_t n = 0; n < f.size(); ++n) sum.add(weight(n) * f[n]);
+  return sum.value();
 }
 
 void GalerkinMesh::project(std::size_t field, const std::vector<Expr>& derivatives, double* c,
@@ -360,7 +356,7 @@ struct FormBuilder {
     const std::vector<Expr> standing = symbols_of(out.by_slot);
     for (DensityForm::Slot& slot : out.slots)
       slot.stands = std::find(standing.begin(), standing.end(), slot.jet) != standing.end();
-    out.linear = true;
+    out.linear = out.steady = true;
     out.first_order.assign(out.smooth.size(), true);
     for (std::size_t row = 0; row < out.slots.size(); ++row)
       for (std::size_t column = 0; column < out.slots.size(); ++column) {
@@ -368,7 +364,9 @@ struct FormBuilder {
         if (value.is_zero()) continue;
         out.hessian.push_back({row, column, value});
         if (out.slots[row].rate && out.slots[column].rate) out.first_order[out.slots[row].field] = false;
-        out.linear = out.linear && !holds_jets_or_time(s, value);
+        const bool changes = holds_jets_or_time(s, value);
+        out.linear = out.linear && !changes;
+        out.steady = out.steady && !(changes && (out.slots[row].rate || out.slots[column].rate));
       }
   }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include "fields/careful_sum.hpp"
 #include "fields/element.hpp"
 #include "fields/field_motion.hpp"
 #include "fields/lane_series.hpp"
@@ -33,6 +34,7 @@ struct DensityForm {
   std::vector<bool> first_order;  // [varied]: its momenta hold no velocity
   bool conserves = false;
   bool linear = false;  // the Hessian is the same at all times
+  bool steady = false;  // its part by velocities is
 };
 /// Whether a density holds second derivatives, or no square of a field's velocity.
 bool needs_collocation(const FieldEquations& equations);
@@ -68,6 +70,7 @@ class GalerkinMesh {
   /// Σ w f over the quadrature points, f of the lane.
   double integral(const std::vector<double>& f) const;
   std::size_t lanes() const { return points_.size(); }
+  double weight(std::size_t lane) const { return rule_.w[lane / cells()] * width_ / 2; }
   double place(std::size_t lane) const { return points_[lane]; }
   double jet(std::size_t slot, std::size_t lane) { return series_.input(slot, 0)[lane]; }
   const DensityForm& form() const { return form_; }

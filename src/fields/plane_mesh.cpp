@@ -529,23 +529,55 @@ double PlaneMesh::field_at(std::size_t field, const FieldJet& jet, const std::ve
   return out;
 }
 
-double PlaneMesh::answer(const FieldQuestion& question) {
-  if (!question.total) return answer_at_places(question.value);
-  const Expr root[] = {s_.expanded(question.value)};
-  const RepeatedEvaluation at(root);
-  std::unordered_map<Expr, std::size_t, ExprHash> inputs;
-  for (std::size_t i = 0; i < form_.inputs.size(); ++i) inputs[form_.inputs[i]] = i;
-  CarefulSum sum;
+void PlaneMesh::visit_points(const PointVisitor& visit) {
+  std::vector<double> values(form_.inputs.size());
   for (std::size_t row = 0; row < rows(); ++row) {
     show_row(row);
-    for (std::size_t n = 0; n < lanes_; ++n)
-      sum.add(weight(n) * at([&](Expr symbol) {
-                            if (const auto i = inputs.find(symbol); i != inputs.end())
-                              return energies_.input(i->second, 0)[n];
-                            return s_.jet_of(symbol) ? std::nan("") : values_.at(symbol);
-                          }).front());
+    for (std::size_t n = 0; n < lanes_; ++n) {
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] = energies_.input(i, 0)[n];
+      visit(weight(n), values.data());
+    }
   }
-  return sum.value();
+}
+
+/// What ℒ depends on at one node of one element.
+std::vector<double> PlaneMesh::inputs_at(std::size_t row, std::size_t lane) const {
+  const std::size_t j = lane / line_, i = lane % line_ / cells(), cell = lane % cells();
+  std::vector<double> out(form_.inputs.size(), 0);
+  for (std::size_t f = 0; f < fields_; ++f)
+    for (const std::size_t rate : {0, 1}) {
+      const double* u = (rate ? v_ : u_)[f].data() + row * lanes_;
+      const std::size_t first = kInputs * f + (rate ? RateX : SlopeX);
+      out[kInputs * f + (rate ? Velocity : Phi)] = u[lane];
+      for (std::size_t m = 0; m < points(); ++m) {
+        const double *along_x = u + j * line_ + m * cells() + cell, *along_y = u + m * line_ + i * cells() + cell;
+        out[first] += 2 / axes_[0].width * rule_.derivative[i * points() + m] * (*along_x - u[lane]);
+        out[first + 1] += 2 / axes_[1].width * rule_.derivative[j * points() + m] * (*along_y - u[lane]);
+      }
+    }
+  for (const std::size_t direction : {0, 1}) out[kInputs * fields_ + direction] = place(direction, row, lane);
+  out[kInputs * fields_ + 2] = t_;
+  return out;
+}
+
+void PlaneMesh::visit_sides(const std::vector<Expr>& jets, const SideVisitor& visit) {
+  std::vector<std::optional<std::size_t>> known;
+  for (const Expr& jet : jets) {
+    const auto at = std::find(form_.inputs.begin(), form_.inputs.end(), jet);
+    known.push_back(at == form_.inputs.end() ? std::nullopt
+                                             : std::optional(static_cast<std::size_t>(at - form_.inputs.begin())));
+  }
+  std::vector<double> values(jets.size() + 3);
+  const auto at = [&](std::size_t along, bool far, std::size_t row, std::size_t lane) {
+    const std::vector<double> inputs = inputs_at(row, lane);
+    for (std::size_t i = 0; i < jets.size(); ++i) values[i] = known[i] ? inputs[*known[i]] : std::nan("");
+    std::copy(inputs.end() - 3, inputs.end(), values.end() - 3);  // x, y, t
+    const std::size_t node = along == 0 ? lane / line_ : lane % line_ / cells();
+    visit({along, far, rule_.w[node] * axes_[1 - along].width / 2}, values.data());
+  };
+  for (std::size_t row = 0; row < rows(); ++row)
+    for (std::size_t j = 0; j < points(); ++j) at(0, false, row, j * line_), at(0, true, row, (j + 1) * line_ - 1);
+  for (std::size_t i = 0; i < line_; ++i) at(1, false, 0, i), at(1, true, rows() - 1, lanes_ - line_ + i);
 }
 
 }  // namespace maupertuis

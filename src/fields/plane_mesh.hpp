@@ -27,7 +27,9 @@ class PlaneMesh final : public WaveMesh {
   double omega_max(const Interrupt& interrupt) override;
   bool step(double h) override;
   double energy(double& size) override;
-  double answer(const FieldQuestion& question) override;
+  const std::vector<Expr>& point_inputs() const override { return form_.inputs; }
+  void visit_points(const PointVisitor& visit) override;
+  void visit_sides(const std::vector<Expr>& jets, const SideVisitor& visit) override;
   double field_at(std::size_t field, const FieldJet& jet, const std::vector<double>& place) const override;
 
   /// Bytes that a mesh takes.
@@ -59,6 +61,7 @@ class PlaneMesh final : public WaveMesh {
   void sweep(std::size_t orders, const std::function<void(std::size_t row)>& behind);
   void take_row(std::size_t row);
   void show_row(std::size_t row);
+  std::vector<double> inputs_at(std::size_t row, std::size_t lane) const;
   bool is_on(BoundaryCondition::Side side, std::size_t row) const;
 
   /// A condition or an end force, with its derivatives by t, at the nodes of a side.

@@ -1,7 +1,7 @@
 #pragma once
+#include "fields/careful_sum.hpp"
 #include "fields/field_motion.hpp"
 
-#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -29,19 +29,5 @@ void fill_randomly(FieldValues& w);
 
 /// A⁻¹ of one point, [n²]; false where it is singular.
 bool invert_mass(std::vector<double> a, std::vector<double>& inverse, std::size_t n);
-
-/// A sum with what each addition loses (Neumaier).
-class CarefulSum {
- public:
-  void add(double term) {
-    const double total = sum_ + term;
-    lost_ += std::abs(sum_) >= std::abs(term) ? (sum_ - total) + term : (term - total) + sum_;
-    sum_ = total;
-  }
-  double value() const { return sum_ + lost_; }
-
- private:
-  double sum_ = 0, lost_ = 0;
-};
 
 }  // namespace maupertuis

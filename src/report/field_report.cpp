@@ -4,6 +4,7 @@
 #include <maupertuis/coupled_fields.hpp>
 #include <maupertuis/field_pictures.hpp>
 #include <maupertuis/field_report.hpp>
+#include <maupertuis/stress_energy.hpp>
 
 #include <fmt/format.h>
 
@@ -125,13 +126,50 @@ class FieldComposer {
       if (!part->lines.empty()) out.derivation.push_back(std::move(*part));
   }
 
-  void add_currents(ReportContent& out, const FieldCurrents& found) const {
+  void add_currents(ReportContent& out, const FieldCurrents& found, const FieldRunResult* run) const {
     for (const FieldCurrent& c : found.currents) {
       out.conserved.push_back({c.name + ": " + c.meaning, {current("t"), shown(c.density), "", ""}, "", ""});
       for (std::size_t x = 0; x < c.fluxes.size(); ++x)
         out.conserved.push_back({"", {current(s_.space[x].name), shown(c.fluxes[x]), "", ""}, "", ""});
+      add_charge(out, c, run);
     }
+    add_stress_energy(out, found);
     if (!found.basis.empty()) out.conserved.push_back({found.basis, {}, "", ""});
+  }
+
+  /// Of a Lorentz-invariant density.
+  void add_stress_energy(ReportContent& out, const FieldCurrents& found) const {
+    const auto tensor = stress_energy(e_, found);
+    if (!tensor) return;
+    out.conserved.push_back(
+        {"The symmetric stress-energy tensor: density w and flux S of the energy, flux Θ of the "
+         "momentum, whose density is S over the square of the speed. Symmetric and free of "
+         "divergence on solutions, by the zero test. The square of the speed is",
+         {{}, shown(tensor->c_squared), "", ""},
+         "",
+         ""});
+    const auto add = [&](Layout left, Expr e) { out.conserved.push_back({"", {left, shown(e), "", ""}, "", ""}); };
+    add(layouts::name("w"), tensor->energy_density());
+    const auto index = [&](std::size_t i) { return layouts::name(s_.space[i].name); };
+    for (std::size_t i = 0; i < tensor->dimensions; ++i)
+      add(layouts::indexed(layouts::name("S"), {index(i)}), tensor->energy_flux(i));
+    for (std::size_t i = 0; i < tensor->dimensions; ++i)
+      for (std::size_t j = i; j < tensor->dimensions; ++j)
+        add(layouts::power(layouts::name("Θ"), layouts::product({index(i), index(j)})), tensor->stress(i, j));
+  }
+
+  /// What the charge of a current is in the run.
+  static void add_charge(ReportContent& out, const FieldCurrent& c, const FieldRunResult* run) {
+    if (!run) return;
+    for (const FieldCharge& charge : run->charges) {
+      if (charge.name != c.name || charge.meaning != c.meaning) continue;
+      std::string text = fmt::format("In the run ∫ j^t is {} at the start and {} at the end",
+                                     short_number(charge.start, 8), short_number(charge.end, 8));
+      if (charge.booked)
+        text += fmt::format("; {} flowed out at the sides. What is left over is at most {} of its terms",
+                            short_number(charge.outflow, 8), short_number(charge.left_over(), 2));
+      out.conserved.push_back({text + ".", {}, "", ""});
+    }
   }
 
   void add_waves(ReportContent& out, const FieldReportParts& parts) const {
@@ -217,7 +255,7 @@ ReportContent compose_field_report(const Model& model, const SourceText& source,
   if (parts.with_equations) composer.add_equations(out);
   if (parts.with_derivation) composer.add_derivation(out);
   add_certificate(out, certificate);
-  if (parts.currents) composer.add_currents(out, *parts.currents);
+  if (parts.currents) composer.add_currents(out, *parts.currents, parts.run);
   composer.add_waves(out, parts);
   if (parts.run) composer.add_run(out, *parts.run);
   if (parts.verification) out.expectations = parts.verification->results;

@@ -4,6 +4,8 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
+
 using namespace cli_test;
 
 namespace {
@@ -79,4 +81,30 @@ TEST_CASE("options that have no meaning for fields are refused") {
   CHECK(maup({"plot", "-", "--map"}, membrane_text).code == 2);
   CHECK(contains(maup({"plot", "-", "--map"}, pendulum).err, "--map is for fields"));
   CHECK(contains(maup({"plot", "-", "--y", "w"}, string_text).err, "`w` is no field"));
+}
+
+TEST_CASE("simulate shows charges with what flowed out, derive the symmetric tensor") {
+  const Outcome text = maup({"simulate", "-"}, string_text), json = maup({"simulate", "-", "--json"}, string_text);
+  CHECK(text.code == 0);
+  CHECK(contains(text.out, "conserved charges"));
+  CHECK(contains(text.out, "momentum along x"));
+  const auto charges = nlohmann::json::parse(json.out).at("charges");
+  bool found = false;
+  for (const auto& c : charges) {
+    if (c.at("name") != "energy") continue;
+    found = true;
+    CHECK(std::abs(c.at("start").get<double>() - 0.25 * 9.869604401089358) < 1e-9);  // π²/4
+    CHECK(c.at("imbalance").get<double>() < 1e-10);
+    CHECK(c.at("outflow") == 0);
+  }
+  CHECK(found);
+  const Outcome derived = maup({"derive", "-"}, string_text), document = maup({"derive", "-", "--json"}, string_text);
+  CHECK(contains(derived.out, "Symmetric stress-energy tensor, Lorentz-invariant with the speed^2 1"));
+  CHECK(contains(derived.out, "S_x   = -u_x u'"));
+  CHECK(nlohmann::json::parse(document.out).at("stress_energy").at("certified") == true);
+  const Folder folder;
+  const std::string page = folder.path("page.html");
+  CHECK(maup({"report", folder.write("s.lag", string_text), "-o", page}).code == 0);
+  CHECK(contains(read(page), "symmetric stress-energy tensor"));
+  CHECK(contains(read(page), "What is left over is at most"));
 }

@@ -340,6 +340,14 @@ ExitCode simulate_extended_model(const SimulateOptions& options, const std::stri
   return files_written && told != ExitCode::RunFailed ? exit_code(result->ending) : ExitCode::RunFailed;
 }
 
+/// Of fields alone: where bodies take part, what the field has is not conserved.
+std::optional<FieldCurrents> currents_of_run(Study& study) {
+  const FieldEquations& equations = *study.field_equations();
+  if (runs_as_one_system(equations)) return std::nullopt;
+  const InterruptScope scope = study.interruptible();
+  return field_currents(equations);
+}
+
 ExitCode simulate_fields(const SimulateOptions& options, Study& study, Console& console) {
   Json document = json_document("simulate");
   check_output_files({{"-o", options.output, FileKind::Table}, {"--plot", options.plot, FileKind::Picture}},
@@ -353,8 +361,9 @@ ExitCode simulate_fields(const SimulateOptions& options, Study& study, Console& 
                               "Leave --precision out.");
   const FieldEquations* equations = study.field_equations();
   if (!equations) return finish(console, study, std::move(document));
-  const auto run =
-      run_of_fields(study, settings, !options.output.empty() || !options.plot.empty(), options.output.empty());
+  const std::optional<FieldCurrents> currents = currents_of_run(study);
+  const auto run = run_of_fields(study, settings, !options.output.empty() || !options.plot.empty(),
+                                 options.output.empty(), {}, currents ? &*currents : nullptr);
   if (!run) return finish(console, study, std::move(document));
   if (!options.output.empty()) write_rows(options.output, run->trajectory, study.diagnostics());
   if (!options.plot.empty())

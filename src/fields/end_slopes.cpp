@@ -1,0 +1,85 @@
+#include "fields/end_slopes.hpp"
+
+#include <cmath>
+
+namespace maupertuis {
+namespace {
+
+constexpr std::size_t kPerField = 4, kSlope = 2;  // φ, φ', φ_x, φ_tx
+
+FunctionKernel kernel_of(const PointForm& form, const std::vector<Parameter>& parameters, std::vector<Expr> outputs) {
+  FunctionSource source{form.inputs, {}, std::move(outputs)};
+  for (const Parameter& p : parameters) source.parameters.push_back(p.symbol);
+  return build_function(source);
+}
+
+std::vector<Expr> equations_of_nodes(const PointForm& form) {
+  std::vector<Expr> out = form.a;
+  for (const auto* part : {&form.g, &form.s}) out.insert(out.end(), part->begin(), part->end());
+  return out;
+}
+
+std::vector<Expr> stresses_and_slopes(const PointForm& form) {
+  std::vector<Expr> out = form.s;
+  for (const Expr& s : form.s)
+    for (std::size_t o = 0; o < form.fields; ++o) out.push_back(differentiate(s, form.inputs[kPerField * o + kSlope]));
+  return out;
+}
+
+}  // namespace
+
+EndSlopes::EndSlopes(const PointForm& form, const std::vector<Parameter>& parameters)
+    : fields_(form.fields),
+      at_nodes_(kernel_of(form, parameters, equations_of_nodes(form))),
+      at_end_(kernel_of(form, parameters, stresses_and_slopes(form))),
+      node_work_(at_nodes_),
+      end_work_(at_end_) {
+  std::vector<double> values;
+  for (const Parameter& p : parameters) values.push_back(p.si_value);
+  node_work_.set_parameters(values);
+  end_work_.set_parameters(values);
+}
+
+std::vector<double> EndSlopes::stresses(const Lobatto& rule, double width, bool right,
+                                        const std::vector<std::vector<double>>& inputs,
+                                        const std::vector<double>& accelerations) {
+  const std::size_t node = right ? inputs.size() - 1 : 0, pairs = fields_ * fields_;
+  std::vector<double> out(fields_, 0), values(at_nodes_.outputs());
+  for (std::size_t q = 0; q < inputs.size(); ++q) {
+    node_work_.evaluate(inputs[q], values);
+    for (std::size_t f = 0; f < fields_; ++f) {
+      out[f] -= rule.w[q] * rule.derivative[q * inputs.size() + node] * values[pairs + fields_ + f];
+      if (q != node) continue;
+      double inertia = values[pairs + f];
+      for (std::size_t o = 0; o < fields_; ++o) inertia += values[f * fields_ + o] * accelerations[o];
+      out[f] += rule.w[node] * width / 2 * inertia;
+    }
+  }
+  if (right)
+    for (double& s : out) s = -s;
+  return out;
+}
+
+void EndSlopes::solve(std::span<double> inputs, const std::vector<double>& s) {
+  const std::vector<double> guess(inputs.begin(), inputs.end());
+  std::vector<double> out(at_end_.outputs()), inverse;
+  constexpr int rounds = 8;
+  constexpr double rounding = 1e-15, close = 1e-9;
+  for (int round = 0; round < rounds; ++round) {
+    end_work_.evaluate(inputs, out);
+    double change = 0, size = 0;
+    if (!invert_mass({out.begin() + static_cast<std::ptrdiff_t>(fields_), out.end()}, inverse, fields_)) break;
+    for (std::size_t f = 0; f < fields_; ++f) {
+      double by = 0;
+      for (std::size_t o = 0; o < fields_; ++o) by += inverse[f * fields_ + o] * (s[o] - out[o]);
+      double& slope = inputs[kPerField * f + kSlope];
+      slope += by;
+      change = std::max(change, std::abs(by)), size = std::max(size, std::abs(slope));
+    }
+    if (!std::isfinite(change)) break;
+    if (change <= (round + 1 < rounds ? rounding : close) * size) return;
+  }
+  std::copy(guess.begin(), guess.end(), inputs.begin());
+}
+
+}  // namespace maupertuis
