@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -218,6 +219,7 @@ class SideBySide {
       };
       append(q_, draws_[k].q), append(v_, draws_[k].v), append(parameters_, draws_[k].parameters);
       factors_.push_back(1 - static_cast<double>(k) / 32);
+      lost_.emplace_back(plan, factor / std::sqrt(in_a_register));
     }
     for (std::size_t g = 0; g < plan.grid.size(); ++g) times_.push_back(plan.time(g));
     for (std::size_t i = 0; i < plan.options.at.size(); ++i)
@@ -228,10 +230,61 @@ class SideBySide {
 
   /// Nothing where a lane was given up: its steps are then those of a run alone.
   std::optional<Companions> run() {
+    double from = plan_.run.begin;
+    for (const double to : ends_of_parts()) {
+      const EnsembleResult found = advance(from, to);
+      if (std::any_of(found.endings.begin(), found.endings.end(),
+                      [](const TrajectoryEnding& e) { return e.ending == StepEnding::Interrupted; }))
+        return interrupted();
+      if (std::any_of(found.endings.begin(), found.endings.end(), [](const TrajectoryEnding& e) { return e.alone; }))
+        return std::nullopt;
+      for (std::size_t k = 0; k < in_a_register; ++k) record(found, k, to);
+      next_row_ = rows_until(to);
+      const bool all_go_on =
+          std::all_of(found.endings.begin(), found.endings.end(), [](const TrajectoryEnding& e) { return e.ok(); });
+      if (has_lost_the_motion() || !all_go_on) break;
+      q_ = found.q, v_ = found.v, from = to;
+    }
+    Companions out;
+    out.factor = factor;
+    out.running_maximum = false;
+    for (CompanionRun& run : runs_) {
+      run.rows.resize(plan_.grid.size() * plan_.columns(), nothing);
+      run.at.resize(plan_.options.at.size());
+      take_in(out, std::move(run), plan_);
+    }
+    return out;
+  }
+
+ private:
+  static constexpr double factor = 3;
+
+  /// Long runs go on in parts, each twice as long as what went before: of a motion that is lost soon the rest is not
+  /// computed.
+  ///
+  ///     ├┤├┤├──┤├────────┤├────────────────┤
+  std::vector<double> ends_of_parts() const {
+    constexpr std::size_t long_run = 8'000;  // steps
+    const double begin = plan_.run.begin, end = plan_.result.final.t;
+    std::vector<double> out;
+    if (may_end_where_lost(plan_) && plan_.result.statistics.steps > long_run && end > begin)
+      for (const double share : {1.0 / 32, 1.0 / 16, 1.0 / 8, 1.0 / 4, 1.0 / 2})
+        out.push_back(begin + share * (end - begin));
+    out.push_back(end);
+    return out;
+  }
+
+  EnsembleResult advance(double from, double to) {
+    // In either direction; what is wanted at the beginning belongs to the first part.
+    const auto is_of_part = [&](double t) {
+      return std::min(from, to) <= t && t <= std::max(from, to) && (t != from || from == plan_.run.begin);
+    };
+    part_.clear();
+    std::copy_if(times_.begin(), times_.end(), std::back_inserter(part_), is_of_part);
     EnsembleStart start;
-    start.q = q_, start.v = v_, start.parameters = parameters_, start.step_factors = factors_, start.times = times_;
-    start.begin = {&plan_.run.begin, 1};
-    start.end = {&plan_.result.final.t, 1};
+    start.q = q_, start.v = v_, start.parameters = parameters_, start.step_factors = factors_, start.times = part_;
+    start.begin = {&from, 1};
+    start.end = {&to, 1};
     EnsembleOptions options;
     options.tolerance = std::max(rounding_tolerance(), plan_.options.tolerance / 40);
     options.order = plan_.result.statistics.order + 2;
@@ -241,24 +294,21 @@ class SideBySide {
     options.interrupt = plan_.options.interrupt;
     options.backend = plan_.options.backend;
     options.cache = plan_.options.cache;
-    const EnsembleResult found = advance_ensemble(kernel_, start, options);
-    if (std::any_of(found.endings.begin(), found.endings.end(),
-                    [](const TrajectoryEnding& e) { return e.ending == StepEnding::Interrupted; }))
-      return interrupted();
-    if (std::any_of(found.endings.begin(), found.endings.end(), [](const TrajectoryEnding& e) { return e.alone; }))
-      return std::nullopt;
-    Companions out;
-    out.factor = 3;
-    out.running_maximum = false;
-    for (std::size_t k = 0; k < in_a_register; ++k) take_in(out, recorded(found, k), plan_);
-    return out;
+    return advance_ensemble(kernel_, start, options);
   }
 
- private:
-  CompanionRun recorded(const EnsembleResult& found, std::size_t k) {
+  /// The first row behind `to`.
+  std::size_t rows_until(double to) const {
+    if (to == plan_.result.final.t) return plan_.grid.size();
+    std::size_t g = next_row_;
+    while (g < plan_.grid.size() && plan_.time(g) <= to) ++g;
+    return g;
+  }
+
+  void record(const EnsembleResult& found, std::size_t k, double to) {
     point_.set_parameters(draws_[k].parameters);
-    CompanionRun out;
-    for (std::size_t g = 0; g < plan_.grid.size(); ++g) {
+    CompanionRun& out = runs_[k];
+    for (std::size_t g = next_row_; g < rows_until(to); ++g) {
       const double t = plan_.time(g);
       const std::size_t i = index_of(t);
       if (plan_.whole_rows) {
@@ -267,18 +317,23 @@ class SideBySide {
       }
       for (const auto part : {found.q_of(k, i), found.v_of(k, i)})
         out.rows.insert(out.rows.end(), part.begin(), part.end());
+      is_lost_ = lost_[k].look(g, out.rows.data() + g * plan_.columns()) || is_lost_;
     }
+    out.at.resize(plan_.options.at.size());
     for (std::size_t r = 0; r < plan_.options.at.size(); ++r) {
       const double t = plan_.options.at[r];
       const bool reached = !plan_.result.at[r].q.empty();
-      out.at.push_back(reached ? sample(t, found.q_of(k, index_of(t)), found.v_of(k, index_of(t))) : Sample());
+      if (reached && std::binary_search(part_.begin(), part_.end(), t))
+        out.at[r] = sample(t, found.q_of(k, index_of(t)), found.v_of(k, index_of(t)));
     }
-    if (found.endings[k].ok()) out.final = sample(plan_.result.final.t, found.q_of(k), found.v_of(k));
-    return out;
+    if (to == plan_.result.final.t && found.endings[k].ok())
+      out.final = sample(plan_.result.final.t, found.q_of(k), found.v_of(k));
   }
 
+  bool has_lost_the_motion() const { return is_lost_ && may_end_where_lost(plan_); }
+
   std::size_t index_of(double t) const {
-    return static_cast<std::size_t>(std::lower_bound(times_.begin(), times_.end(), t) - times_.begin());
+    return static_cast<std::size_t>(std::lower_bound(part_.begin(), part_.end(), t) - part_.begin());
   }
 
   Sample sample(double t, std::span<const double> q, std::span<const double> v) {
@@ -297,6 +352,11 @@ class SideBySide {
   KernelWorkspace point_;
   std::vector<RoundedNumbers::Draw> draws_;
   std::vector<double> q_, v_, parameters_, factors_, times_;
+  std::vector<double> part_;  // times of the part at hand
+  std::vector<CompanionRun> runs_ = std::vector<CompanionRun>(in_a_register);
+  std::vector<LostCompanion> lost_;  // [companions]
+  std::size_t next_row_ = 0;
+  bool is_lost_ = false;  // by one of them at least
 };
 
 }  // namespace

@@ -1,7 +1,5 @@
 #include "integrator/taylor/code_choice.hpp"
 
-#include "kernel/program/program.hpp"
-
 #include <algorithm>
 
 namespace maupertuis::taylor {
@@ -9,11 +7,9 @@ namespace maupertuis::taylor {
 namespace {
 
 /// Whether all stages of an expansion can be code without a loop that is there soon.
-bool is_written_out_soon(const Program& program) {
+bool is_written_out_soon(const Kernel& kernel) {
   constexpr std::size_t most_unknowns = 8;
-  return program.unknowns == program.freedoms && program.unknowns <= most_unknowns &&
-         std::none_of(program.instructions.begin(), program.instructions.end(),
-                      [](const Instruction& i) { return i.op == Op::Select; });
+  return kernel.constraints() == 0 && kernel.freedoms() <= most_unknowns && kernel.switches().empty();
 }
 
 /// Steps from which code pays (docs/design/kernel_speed.md, "Default runs").
@@ -21,14 +17,15 @@ struct EnoughSteps {
   double stage_code, long_code;
 };
 
-EnoughSteps enough_for(const Program& program) {
+EnoughSteps enough_for(const Kernel& kernel) {
   constexpr double written_out_soon = 3'500;  // an unknown
   constexpr double a_stage = 20'000, an_expansion = 200'000, slow_expansion = 1'000'000, usual_size = 8;
   constexpr std::size_t largest_written_out = 16;
-  const auto unknowns = static_cast<double>(program.unknowns);
-  if (is_written_out_soon(program)) return {a_stage, written_out_soon * unknowns};
-  const bool is_slow_to_compile = unknowns > usual_size && program.unknowns <= largest_written_out;
-  return {a_stage / std::max(1.0, unknowns / usual_size), is_slow_to_compile ? slow_expansion : an_expansion};
+  const std::size_t unknowns = kernel.freedoms() + kernel.constraints();
+  const auto count = static_cast<double>(unknowns);
+  if (is_written_out_soon(kernel)) return {a_stage, written_out_soon * count};
+  const bool is_slow_to_compile = count > usual_size && unknowns <= largest_written_out;
+  return {a_stage / std::max(1.0, count / usual_size), is_slow_to_compile ? slow_expansion : an_expansion};
 }
 
 }  // namespace
@@ -42,19 +39,19 @@ void CodeChoice::compile(KernelWorkspace& work, bool cache, Length length) {
     use_ = {report.compiled, before + report.seconds, report.trouble, report.cache_trouble};
 }
 
-void CodeChoice::compile_at_once(KernelWorkspace& work, const TaylorOptions& options) {
-  compile(work, options.cache, is_written_out_soon(work.program()) ? Length::WholeExpansion : Length::Stage);
+void CodeChoice::compile_at_once(KernelWorkspace& work, const Kernel& kernel, const TaylorOptions& options) {
+  compile(work, options.cache, is_written_out_soon(kernel) ? Length::WholeExpansion : Length::Stage);
 }
 
 /// The expected number of steps decides, not the clock and not what the cache holds: so that equal runs give equal
 /// results.
-void CodeChoice::compile_if_it_pays(KernelWorkspace& work, const TaylorOptions& options, std::size_t steps, double done,
-                                    double left) {
+void CodeChoice::compile_if_it_pays(KernelWorkspace& work, const Kernel& kernel, const TaylorOptions& options,
+                                    std::size_t steps, double done, double left) {
   constexpr std::size_t first_look = 64;
   if (options.backend == Backend::Interpreter || steps < first_look || (steps & (steps - 1)) != 0) return;
   if (!use_.trouble.empty() || runs_long_) return;
   const double expected = static_cast<double>(steps) * (1 + left / done);
-  const EnoughSteps enough = enough_for(work.program());
+  const EnoughSteps enough = enough_for(kernel);
   if (expected >= enough.long_code)
     compile(work, options.cache, Length::WholeExpansion);
   else if (!use_.compiled && expected >= enough.stage_code)

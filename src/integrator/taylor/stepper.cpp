@@ -112,7 +112,7 @@ Step TaylorStepper::Impl::step(double bound) {
   Step result;
   result.begin = result.end = state.t.hi;
   if (remaining(bound) == 0 || !may_go_on(bound, result)) return result;
-  code.compile_if_it_pays(work, options, steps, std::abs(state.t.hi - run_begin), std::abs(remaining(bound)));
+  code.compile_if_it_pays(work, kernel, options, steps, std::abs(state.t.hi - run_begin), std::abs(remaining(bound)));
   if (!expanded) state.wind();
   if (!std::exchange(expanded, false) && !expand(bound, result)) {
     if (result.ending == StepEnding::Overflow) passes_from_here(bound, result);
