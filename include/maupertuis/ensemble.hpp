@@ -31,6 +31,15 @@ struct EnsembleStart {
   std::span<const double> times;           // s, ascending: the states wanted on the way, of every trajectory
   std::span<const double> step_factors{};  // [trajectories] in (0, 1], of the lengths that the tolerance asks for;
                                            // empty: 1. Not of those that go alone
+
+  double begin_of(std::size_t trajectory) const {
+    return begin.empty() ? 0 : begin[begin.size() == 1 ? 0 : trajectory];
+  }
+  double end_of(std::size_t trajectory) const { return end[end.size() == 1 ? 0 : trajectory]; }
+  /// `count`: the parameters of a trajectory, p.
+  std::span<const double> parameters_of(std::size_t trajectory, std::size_t count) const {
+    return parameters.size() == count ? parameters : parameters.subspan(trajectory * count, count);
+  }
 };
 
 struct EnsembleOptions {

@@ -176,8 +176,7 @@ Companions one_after_the_other(const CompanionPlan& plan, const WantedFunctions&
     if (!taylor) draw.q = plan.run.q, draw.v = plan.run.v;  // rounding is nothing beside their tolerances
     HybridMotion* through_modes = nullptr;
     const auto hybrid = [&] {
-      auto made =
-          std::make_unique<HybridMotion>(plan.model, plan.equations, wanted, draw.parameters, taylor_options(plan, k));
+      auto made = std::make_unique<HybridMotion>(plan.modes, draw.parameters, taylor_options(plan, k));
       through_modes = made.get();
       return made;
     };

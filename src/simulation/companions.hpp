@@ -1,5 +1,6 @@
 #pragma once
 #include "simulation/method.hpp"
+#include "simulation/mode_library.hpp"
 #include "simulation/observables.hpp"
 #include "simulation/rounded_numbers.hpp"
 
@@ -17,9 +18,10 @@ struct CompanionPlan {
   const SimulationOptions& options;
   const RunPlan& run;
   const Observables& observables;
-  const SimulationResult& result;  // of the run that counts
-  std::vector<std::size_t> grid;   // rows of the trajectory that are compared, in the order of the run
-  bool whole_rows = false;         // all their columns, else q and q' alone
+  const SimulationResult& result;        // of the run that counts
+  std::vector<std::size_t> grid;         // rows of the trajectory that are compared, in the order of the run
+  bool whole_rows = false;               // all their columns, else q and q' alone
+  std::shared_ptr<ModeLibrary> modes{};  // of the run, where it goes through modes
 
   double time(std::size_t g) const { return result.trajectory.times[grid[g]]; }
   std::size_t columns() const { return whole_rows ? result.trajectory.columns.size() : 2 * run.q.size(); }

@@ -18,7 +18,7 @@ std::optional<ContactStart> contact_start(const Model& model, const EquationsOfM
   out.rates = values.rate;
   if (!start_keeps_contacts(model, start.t, start.q, diagnostics)) return std::nullopt;
   if (!can_go_through_modes(equations, diagnostics)) return std::nullopt;
-  HybridMotion motion(model, equations, WantedFunctions{}, parameters, {});
+  HybridMotion motion(std::make_shared<ModeLibrary>(model, equations, WantedFunctions{}), parameters, {});
   motion.start(start.t, start.q, start.v);
   for (const Happening& h : motion.record().happenings)
     if (h.kind == Happening::Kind::Impact) out.impacts.push_back(h);

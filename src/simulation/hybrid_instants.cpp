@@ -68,7 +68,16 @@ void HybridMotion::keep_instants() {
 }
 
 const ContactMode& HybridMotion::mode() const { return now_->mode; }
-const EquationsOfMotion& HybridMotion::equations_in(const ContactMode& mode) { return *motion_in(mode).equations; }
+const EquationsOfMotion& HybridMotion::equations_in(const ContactMode& mode) {
+  std::unique_ptr<EquationsOfMotion>& slot = equations_of_modes_[key_of(mode, stops())];
+  if (slot) return *slot;
+  Diagnostics unheard;  // the system passed its checks with its contacts
+  MechanicalSystem in_mode = system_in_mode(system_, mode);
+  in_mode.written = nullptr;
+  slot = std::make_unique<EquationsOfMotion>(
+      *euler_lagrange(std::make_shared<const MechanicalSystem>(std::move(in_mode)), unheard));
+  return *slot;
+}
 
 std::string HybridMotion::touch_sentence(std::size_t contact, double t) const {
   return fmt::format("The contact {} is only touched at t = {:.9g}: some neighbours hit it and others do not.",
@@ -92,12 +101,12 @@ void HybridMotion::note_before(double bound) {
   const auto find = [&](Watch::What what, std::size_t index) {
     Settled::Ended found{{}, std::numeric_limits<double>::quiet_NaN()};
     double least = HUGE_VAL;
-    for (std::size_t k = 0, sides = 0; k < now_->watches.size() && k < outlook.slopes.size(); ++k) {
-      if (now_->watches[k].what != what || now_->watches[k].index != index) continue;
+    for (std::size_t k = 0, sides = 0; k < now_->watches().size() && k < outlook.slopes.size(); ++k) {
+      if (now_->watches()[k].what != what || now_->watches()[k].index != index) continue;
       const bool second = sides++ > 0;
       if (!(std::abs(outlook.values[k]) < least)) continue;
       least = std::abs(outlook.values[k]);
-      found = {function_of(now_->watches[k], second), outlook.slopes[k]};
+      found = {function_of(now_->watches()[k], second), outlook.slopes[k]};
     }
     return found;
   };
@@ -322,9 +331,9 @@ Expr HybridMotion::function_of(const Watch& watch, bool second) const {
       return second ? most + f.multipliers[0] : most - f.multipliers[0];
     }
     case Watch::What::Until:
-      return wanted_.events[0];
+      return library_->wanted().events[0];
     case Watch::What::Event:
-      return wanted_.events[wanted_.events.size() - model_.experiment.events.size() + i];
+      return library_->wanted().events[library_->wanted().events.size() - model_.experiment.events.size() + i];
   }
   throw std::logic_error("an unknown condition of a mode; please report");
 }

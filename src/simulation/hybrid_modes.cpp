@@ -1,8 +1,4 @@
 #include "simulation/hybrid_parts.hpp"
-#include "simulation/motion_kernel.hpp"
-
-#include <maupertuis/motion_kernel.hpp>
-#include <maupertuis/transform.hpp>
 
 #include <fmt/format.h>
 
@@ -17,18 +13,6 @@ constexpr double rounding_of_forces = 1e-13;  // of the terms of g̈
 constexpr std::size_t most_choices = 1024;    // modes that are tried
 constexpr std::size_t most_modes = 128;       // whose motions are kept
 constexpr std::size_t most_kept = 32;         // motions of modes that were tried in vain at an instant
-
-std::string key_of(const ContactMode& mode) {
-  std::string key;
-  for (const bool closed : mode.closed) key += closed ? '1' : '0';
-  for (const FrictionState state : mode.friction) key += static_cast<char>('a' + static_cast<int>(state));
-  for (const std::int8_t sign : mode.normal_sign) key += sign < 0 ? '-' : '+';
-  return key;
-}
-
-Expr number_of(const MechanicalSystem& system, double value) {
-  return system.context->number(Rational::from_double(value));
-}
 
 /// All combinations of options, those with the least changes of the likeliest first; made as they are asked for.
 class Combinations {
@@ -64,54 +48,10 @@ class Combinations {
 
 }  // namespace
 
-/// Gaps of open contacts; λ of closed ones.
-void HybridMotion::watch_contacts(ModeMotion& motion, std::vector<Expr>& events) {
-  for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
-    const Contact& c = system_.contacts[i];
-    motion.watches.push_back({motion.mode.closed[i] ? Watch::What::Force : Watch::What::Gap, i});
-    events.push_back(motion.mode.closed[i] ? c.multiplier : c.gap);
-  }
-}
-
-/// What holds while it sticks, |λ_t| ≤ μ_s N; the direction in which it slides; the sign of its normal force.
-void HybridMotion::watch_frictions(ModeMotion& motion, std::vector<Expr>& events) {
-  const std::size_t contacts = system_.contacts.size();
-  for (std::size_t i = 0; i < motion.mode.friction.size(); ++i) {
-    const FrictionState state = motion.mode.friction[i];
-    if (state == FrictionState::None) continue;
-    const Friction& f = friction_of(system_, i);
-    const Expr normal = normal_force(system_, motion.mode, i);
-    if (state == FrictionState::Stick) {
-      if (f.sticking) continue;
-      const Expr most = normal ? f.static_ * normal : f.static_;
-      if (f.in_space()) {
-        motion.watches.push_back({Watch::What::Hold, i});
-        events.push_back(most * most - f.multipliers[0] * f.multipliers[0] - f.multipliers[1] * f.multipliers[1]);
-        continue;
-      }
-      for (const Expr& event : {most - f.multipliers[0], most + f.multipliers[0]}) {
-        motion.watches.push_back({Watch::What::Hold, i});
-        events.push_back(event);
-      }
-    } else if (f.in_space()) {
-      const Expr stops = number_of(system_, stop_slip(i));
-      motion.watches.push_back({Watch::What::Slip, i});
-      events.push_back(f.slip[0] * f.slip[0] + f.slip[1] * f.slip[1] - stops * stops);
-    } else {
-      motion.watches.push_back({Watch::What::Slip, i});
-      events.push_back(state == FrictionState::Forward ? f.slip[0] : -f.slip[0]);
-    }
-    if (i >= contacts && has_multipliers(normal)) {
-      motion.watches.push_back({Watch::What::Normal, i - contacts});
-      events.push_back(normal);
-    }
-  }
-}
-
 /// Recorded events end no step. Directions (keep_instants) have to know of gaps that are touched too.
 void HybridMotion::treat_events(ModeMotion& motion) const {
   std::vector<TaylorStepper::EventTreatment> treatments;
-  for (const Watch& w : motion.watches) {
+  for (const Watch& w : motion.watches()) {
     const bool is_recorded =
         w.what == Watch::What::Event && model_.experiment.events[w.index].action == ModelEvent::Action::Record;
     treatments.push_back({!is_recorded, w.touches_count() || derivative_});
@@ -119,9 +59,9 @@ void HybridMotion::treat_events(ModeMotion& motion) const {
   motion.stepper->treat_events(treatments);
 }
 
-/// A heap goes through thousands of modes: those that were last asked for stay. Neighbours hold the equations of all.
+/// A heap goes through thousands of modes: those that were last asked for stay.
 void HybridMotion::forget_oldest() {
-  if (modes_.size() <= most_modes || derivative_) return;
+  if (modes_.size() <= most_modes) return;
   const auto older = [this](const auto& a, const auto& b) {
     if ((a.second.get() == now_) != (b.second.get() == now_)) return b.second.get() == now_;
     return a.second->asked_for < b.second->asked_for;
@@ -129,62 +69,31 @@ void HybridMotion::forget_oldest() {
   modes_.erase(std::min_element(modes_.begin(), modes_.end(), older));
 }
 
+/// [contacts] the speeds at which slips in space count as stopped.
+std::vector<double> HybridMotion::stops() const {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < system_.contacts.size(); ++i) out.push_back(stop_slip(i));
+  return out;
+}
+
 HybridMotion::ModeMotion& HybridMotion::motion_in(const ContactMode& mode) {
-  std::string key = key_of(mode);
-  for (std::size_t i = 0; i < mode.closed.size(); ++i)  // the motion knows at which slip friction in space stops
-    if (mode.friction[i] == FrictionState::Slide) key += fmt::format(" {}", stop_slip(i));
-  std::unique_ptr<ModeMotion>& slot = modes_[key];
+  const std::vector<double> slips = in_space_ ? stops() : std::vector<double>();
+  std::unique_ptr<ModeMotion>& slot = modes_[key_of(mode, slips)];
   ++asked_for_;
   if (slot) {
     slot->asked_for = asked_for_;
     return *slot;
   }
-  slot = std::make_unique<ModeMotion>();
-  slot->mode = mode;
-  slot->asked_for = asked_for_;
+  auto made = std::make_unique<ModeMotion>();
+  made->mode = mode;
+  made->asked_for = asked_for_;
+  made->program = library_->program(mode, slips);
+  made->stepper = std::make_unique<TaylorStepper>(made->program->kernel, parameters_, options_);
+  treat_events(*made);
+  slot = std::move(made);
+  ModeMotion& out = *slot;
   forget_oldest();
-  Diagnostics unheard;  // the system passed its checks with its contacts
-  MechanicalSystem in_mode = system_in_mode(system_, mode);
-  in_mode.written = nullptr;
-  slot->equations = std::make_unique<EquationsOfMotion>(
-      *euler_lagrange(std::make_shared<const MechanicalSystem>(std::move(in_mode)), unheard));
-  Context& context = *system_.context;
-  WantedFunctions wanted = wanted_;
-  const bool until = wanted_.events.size() > model_.experiment.events.size();
-  for (std::size_t i = 0; i < wanted.events.size(); ++i)
-    slot->watches.push_back(until && i == 0 ? Watch{Watch::What::Until, 0} : Watch{Watch::What::Event, i - until});
-  watch_contacts(*slot, wanted.events);
-  watch_frictions(*slot, wanted.events);
-  ExprVector rubbed{context.number(0)}, damped{context.number(0)};
-  ExprMap open;  // forces that do not act in this mode, and friction that slides
-  for (std::size_t i = 0; i < mode.friction.size(); ++i) {
-    const Friction& f = friction_of(system_, i);
-    const FrictionState state = mode.friction[i];
-    if (state == FrictionState::Stick || !f.present()) continue;
-    for (const Expr& multiplier : f.multipliers) open[multiplier] = context.number(0);
-    if (state == FrictionState::None) continue;
-    const Expr normal = normal_force(system_, mode, i);
-    const Expr force = normal ? f.kinetic * normal : f.kinetic;
-    if (state == FrictionState::Slide) {
-      const Expr speed = slip_speed(f);
-      rubbed.push_back(force * speed);
-      for (std::size_t k = 0; k < f.slip.size(); ++k) open[f.multipliers[k]] = -(force * f.slip[k] / speed);
-    } else {
-      const bool forward = state == FrictionState::Forward;
-      rubbed.push_back(forward ? force * f.slip[0] : -(force * f.slip[0]));
-      open[f.multipliers[0]] = forward ? -force : force;
-    }
-  }
-  for (std::size_t i = 0; i < system_.coordinates.size(); ++i)
-    damped.push_back(equations_.dissipative_terms[i] * system_.coordinates[i].velocity);
-  wanted.integrands = {slot->equations->power, context.sum(rubbed), context.sum(damped)};
-  for (std::size_t i = 0; i < mode.closed.size(); ++i)
-    if (!mode.closed[i]) open[system_.contacts[i].multiplier] = context.number(0);
-  for (auto* list : {&wanted.observables, &wanted.events, &wanted.integrands})
-    if (!open.empty() && !list->empty()) *list = substitute(*list, open);
-  slot->stepper = std::make_unique<TaylorStepper>(motion_kernel(*slot->equations, wanted), parameters_, options_);
-  treat_events(*slot);
-  return *slot;
+  return out;
 }
 
 namespace {
@@ -271,8 +180,8 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
   s.start(t_, q_, v_);
   const ContactValues& values = functions_.at(t_, q_, v_);
   std::vector<std::size_t> at_zero;
-  for (std::size_t k = 0; k < motion.watches.size(); ++k) {
-    const Watch& w = motion.watches[k];
+  for (std::size_t k = 0; k < motion.watches().size(); ++k) {
+    const Watch& w = motion.watches()[k];
     const bool left = std::any_of(pending_->left.begin(), pending_->left.end(),
                                   [&](const Watch& x) { return x.what == w.what && x.index == w.index; });
     // A gap that opens and is not negative begins as it is: next to rounding, but with the way that it has.
@@ -287,13 +196,13 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
   s.put_at_zero(at_zero);
   // A gap whose rate is rounding begins with the second power of time.
   for (const std::size_t k : at_zero) {
-    const Watch& w = motion.watches[k];
+    const Watch& w = motion.watches()[k];
     if (w.what == Watch::What::Gap && std::abs(values.rate[w.index]) <= rest_speed(w.index, values))
       s.put_at_zero({&k, 1}, 2);
   }
   // λ falls through 0, and so does g̈ rise from it: the gap begins with the third power of time.
-  for (std::size_t k = 0; k < motion.watches.size(); ++k)
-    if (motion.watches[k].what == Watch::What::Gap && released_[motion.watches[k].index]) s.put_at_zero({&k, 1}, 3);
+  for (std::size_t k = 0; k < motion.watches().size(); ++k)
+    if (motion.watches()[k].what == Watch::What::Gap && released_[motion.watches()[k].index]) s.put_at_zero({&k, 1}, 3);
   std::vector<double> places, speeds;
   for (const std::size_t k : kind_) places.push_back(place_[k]), speeds.push_back(speed_[k]);
   s.set_usual_sizes(places, speeds);
@@ -309,12 +218,12 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
   const auto is_squared = [&](const Watch& w) {
     return w.what == Watch::What::Hold && friction_of(system_, w.index).in_space();
   };
-  for (std::size_t k = 0; k < motion.watches.size(); ++k)
-    if (motion.watches[k].what == Watch::What::Force || motion.watches[k].what == Watch::What::Hold)
-      largest_force = std::max(largest_force, is_squared(motion.watches[k]) ? std::sqrt(std::abs(outlook.values[k]))
-                                                                            : std::abs(outlook.values[k]));
-  for (std::size_t k = 0; k < motion.watches.size(); ++k) {
-    const Watch& w = motion.watches[k];
+  for (std::size_t k = 0; k < motion.watches().size(); ++k)
+    if (motion.watches()[k].what == Watch::What::Force || motion.watches()[k].what == Watch::What::Hold)
+      largest_force = std::max(largest_force, is_squared(motion.watches()[k]) ? std::sqrt(std::abs(outlook.values[k]))
+                                                                              : std::abs(outlook.values[k]));
+  for (std::size_t k = 0; k < motion.watches().size(); ++k) {
+    const Watch& w = motion.watches()[k];
     if (!w.keeps_sign()) continue;
     const bool zero = std::find(at_zero.begin(), at_zero.end(), k) != at_zero.end();
     const bool must_move = w.what == Watch::What::Slip && zero;

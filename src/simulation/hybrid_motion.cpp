@@ -1,9 +1,5 @@
 #include "simulation/hybrid_parts.hpp"
 
-#include <maupertuis/constraint_manifold.hpp>
-#include <maupertuis/evaluate.hpp>
-#include <maupertuis/transform.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,30 +13,18 @@ constexpr std::size_t most_at_once = 1000;  // changes at the same time
 constexpr std::size_t most_happenings = 10'000'000;
 constexpr std::size_t most_numbers = 2'000'000;  // of states that are kept with what happens
 
-/// Normal forces in multipliers alone.
-MechanicalSystem with_plain_normals(const EquationsOfMotion& equations) {
-  MechanicalSystem out = *equations.system;
-  for (Friction& f : out.frictions)
-    if (f.normal) f.normal = with_reactions(equations, {&f.normal, 1}).front();
-  return out;
-}
-
 }  // namespace
 
-HybridMotion::HybridMotion(const Model& model, const EquationsOfMotion& equations, const WantedFunctions& wanted,
-                           std::vector<double> parameters, const TaylorOptions& options)
-    : model_(model),
-      equations_(equations),
-      wanted_(wanted),
+HybridMotion::HybridMotion(std::shared_ptr<ModeLibrary> library, std::vector<double> parameters,
+                           const TaylorOptions& options)
+    : library_(std::move(library)),
+      model_(library_->model()),
+      equations_(library_->equations()),
+      system_(library_->system()),
       parameters_(std::move(parameters)),
       options_(options),
-      system_(with_plain_normals(equations)),
-      functions_(equations, parameters_) {
+      functions_(library_->contacts(), parameters_) {
   parameters_.resize(system_.parameters.size());
-  ExprVector functions;
-  for (const ModelEvent& e : model.experiment.events) functions.push_back(e.function);
-  const std::vector<Expr> plain = with_reactions(equations, functions);
-  wanted_.events.insert(wanted_.events.end(), plain.begin(), plain.end());
   for (const Contact& c : system_.contacts) in_space_ = in_space_ || c.friction.in_space();
 }
 
@@ -221,9 +205,9 @@ void HybridMotion::tell_events_at_start(double bound) {
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
   const TaylorStepper::Outlook outlook = now_->stepper->outlook(bound);
   if (outlook.ending != StepEnding::None) return;
-  for (std::size_t k = 0; k < now_->watches.size(); ++k) {
-    if (now_->watches[k].what != Watch::What::Event) continue;
-    const ModelEvent& event = model_.experiment.events[now_->watches[k].index];
+  for (std::size_t k = 0; k < now_->watches().size(); ++k) {
+    if (now_->watches()[k].what != Watch::What::Event) continue;
+    const ModelEvent& event = model_.experiment.events[now_->watches()[k].index];
     if (!(std::abs(outlook.values[k]) <= rounding * outlook.reach[k]) || outlook.sides[k] == 0) continue;
     if (event.direction != 0 && outlook.sides[k] != event.direction * (forwards_ ? 1 : -1)) continue;
     add(Happening::Kind::Event, event.name);
@@ -265,8 +249,8 @@ bool HybridMotion::is_just_released(std::size_t contact) {
 bool HybridMotion::goes_on(double bound) {
   const TaylorStepper::Outlook outlook = now_->stepper->outlook(bound);
   if (outlook.ending != StepEnding::None) return true;  // the next step says why it cannot be made
-  for (std::size_t k = 0; k < now_->watches.size(); ++k)
-    if (now_->watches[k].keeps_sign() && outlook.sides[k] < 0) return false;
+  for (std::size_t k = 0; k < now_->watches().size(); ++k)
+    if (now_->watches()[k].keeps_sign() && outlook.sides[k] < 0) return false;
   return true;
 }
 
@@ -296,7 +280,7 @@ void HybridMotion::classify(Step& step) {
   step.event.reset();
   auto pending = std::make_unique<Pending>();
   for (const EventRoot& root : step.events) {
-    const Watch& watch = now_->watches[root.event];
+    const Watch& watch = now_->watches()[root.event];
     if (watch.what == Watch::What::Until) {
       step.event = 0;
     } else if (watch.what == Watch::What::Event) {
@@ -349,13 +333,33 @@ std::vector<std::size_t> HybridMotion::touching(const ContactValues& values) con
   return out;
 }
 
+namespace {
+
+/// At a point, with the parameters of the run; the workspace is made at the first call.
+std::vector<double> values_at(const FunctionKernel& kernel, std::optional<FunctionWorkspace>& work,
+                              std::span<const double> parameters, double t, std::span<const double> q,
+                              std::span<const double> v) {
+  if (!work) {
+    work.emplace(kernel);
+    work->set_parameters(parameters);
+  }
+  std::vector<double> point(q.begin(), q.end()), out(kernel.outputs());
+  point.insert(point.end(), v.begin(), v.end());
+  point.push_back(t);
+  work->evaluate(point, out);
+  return out;
+}
+
+}  // namespace
+
 /// A constraint that is off by more than these digits of the sizes that the motion has had.
-std::optional<std::size_t> HybridMotion::violated_constraint(const MotionState& state, double digits) const {
+std::optional<std::size_t> HybridMotion::violated_constraint(const MotionState& state, double digits) {
   if (!system_.constrained()) return std::nullopt;
-  const ConstraintManifold manifold(equations_);
-  const std::vector<double> a = manifold.matrix(state), values = manifold.values(state), rates = manifold.rates(state);
-  const std::size_t n = state.q.size();
-  for (std::size_t k = 0; k < system_.constraints.size(); ++k) {
+  const std::vector<double> found =
+      values_at(library_->constraints(), constraints_, parameters_, state.t, state.q, state.v);
+  const std::size_t n = state.q.size(), m = system_.constraints.size();
+  const double *const a = found.data(), *const values = a + m * n, *const rates = values + m;
+  for (std::size_t k = 0; k < m; ++k) {
     double place = 0, speed = 0;
     for (std::size_t i = 0; i < n; ++i) {
       place += std::abs(a[k * n + i]) * std::max(place_[kind_[i]], std::abs(state.q[i]));
@@ -367,32 +371,22 @@ std::optional<std::size_t> HybridMotion::violated_constraint(const MotionState& 
   return std::nullopt;
 }
 
-/// h_E with the parameters of the run.
-double HybridMotion::energy_at(double t, std::span<const double> q, std::span<const double> v) const {
-  Bindings bindings;
-  for (std::size_t i = 0; i < q.size(); ++i) {
-    bindings[system_.coordinates[i].q] = q[i];
-    bindings[system_.coordinates[i].velocity] = v[i];
-  }
-  for (std::size_t i = 0; i < parameters_.size(); ++i) bindings[system_.parameters[i].symbol] = parameters_[i];
-  bindings[system_.context->time()] = t;
-  return evaluate(in_terms_of_motion(system_, {&equations_.energy_function, 1}).front(), bindings);
+std::vector<double> HybridMotion::energy_and_sets_at(double t, std::span<const double> q, std::span<const double> v) {
+  return values_at(library_->sets(), sets_, parameters_, t, q, v);
 }
 
 /// Assigns what events set, all from the values before.
 bool HybridMotion::carry_out_sets(std::string& reason) {
-  Bindings bindings;
-  for (std::size_t i = 0; i < q_.size(); ++i) {
-    bindings[system_.coordinates[i].q] = q_[i];
-    bindings[system_.coordinates[i].velocity] = v_[i];
-  }
-  for (std::size_t i = 0; i < parameters_.size(); ++i) bindings[system_.parameters[i].symbol] = parameters_[i];
-  bindings[system_.context->time()] = t_;
+  const std::vector<double> found = energy_and_sets_at(t_, q_, v_);
   const std::string before = pending_->sets.front()->name;
   std::vector<double> q = q_, v = v_;
-  for (const ModelEvent* event : pending_->sets)
-    for (const ModelEvent::Assignment& a : event->sets)
-      (a.order == 0 ? q : v)[a.coordinate] = evaluate(in_terms_of_motion(system_, {&a.value, 1}).front(), bindings);
+  std::vector<const double*> first;  // of each event in `found`
+  const double* next = found.data() + 1;
+  for (const ModelEvent& e : model_.experiment.events) first.push_back(next), next += e.sets.size();
+  for (const ModelEvent* event : pending_->sets) {
+    const double* value = first[static_cast<std::size_t>(event - model_.experiment.events.data())];
+    for (const ModelEvent::Assignment& a : event->sets) (a.order == 0 ? q : v)[a.coordinate] = *value++;
+  }
   constexpr double digits = 1e-9;
   if (const auto k = violated_constraint({t_, q, v}, digits)) {
     reason = fmt::format("The event `{}` sets a state that violates {}.", before, system_.constraint_label(*k));
@@ -405,7 +399,7 @@ bool HybridMotion::carry_out_sets(std::string& reason) {
           fmt::format("The event `{}` sets a state that violates the contact {}.", before, system_.contact_label(i));
       return false;
     }
-  carried_[0] += energy_at(t_, q, v) - energy_at(t_, q_, v_);  // what a set puts in is work
+  carried_[0] += energy_and_sets_at(t_, q, v)[0] - found[0];  // what a set puts in is work
   q_ = q, v_ = v;
   return true;
 }

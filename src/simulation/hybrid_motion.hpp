@@ -2,8 +2,8 @@
 #include "simulation/contact/contact_forces.hpp"
 #include "simulation/contact/contact_functions.hpp"
 #include "simulation/contact/impact.hpp"
-#include "simulation/function_kernels.hpp"
 #include "simulation/method.hpp"
+#include "simulation/mode_library.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/contact_mode.hpp>
@@ -39,10 +39,8 @@ struct HybridRecord {
 /// Integrals of its samples: the work on h_E, that of impacts included; what friction took; what D took.
 class HybridMotion final : public Method {
  public:
-  /// `wanted`: observables in λ of contacts too; its first event, if there is one, ends the run.
   /// `parameters` [p].
-  HybridMotion(const Model& model, const EquationsOfMotion& equations, const WantedFunctions& wanted,
-               std::vector<double> parameters, const TaylorOptions& options);
+  HybridMotion(std::shared_ptr<ModeLibrary> library, std::vector<double> parameters, const TaylorOptions& options);
   ~HybridMotion() override;
 
   int order() const override;
@@ -62,6 +60,7 @@ class HybridMotion final : public Method {
   /// What the end of the run leaves unsettled is told.
   void finish();
   const HybridRecord& record() const { return record_; }
+  const std::shared_ptr<ModeLibrary>& library() const { return library_; }
   /// Whether the next step begins with an impact, or with what an event sets: the state is another one then.
   bool will_jump() const;
   /// Why there is no motion from the start; empty where there is one.
@@ -71,12 +70,13 @@ class HybridMotion final : public Method {
   void keep_instants();
   const ModeInstant* instant() const { return instant_ ? &*instant_ : nullptr; }
   const ContactMode& mode() const;
+  /// In the context of the model; they stay as long as this.
   const EquationsOfMotion& equations_in(const ContactMode& mode);
   /// Sizes that q and q' have elsewhere in the motion [n]: of later starts, what is much smaller is rounding.
   void set_usual_sizes(std::span<const double> q, std::span<const double> v);
 
  private:
-  struct Watch;
+  using Watch = ModeWatch;
   struct ModeMotion;
   struct Pending;
   struct Choice;
@@ -87,8 +87,6 @@ class HybridMotion final : public Method {
   ModeMotion& motion_in(const ContactMode& mode);
   void forget_oldest();
   void treat_events(ModeMotion& motion) const;
-  void watch_contacts(ModeMotion& motion, std::vector<Expr>& events);
-  void watch_frictions(ModeMotion& motion, std::vector<Expr>& events);
   void leave_mode();
   Sample adjusted(Sample sample) const;
   double covered(double t) const;
@@ -130,7 +128,8 @@ class HybridMotion final : public Method {
   SparseRow sliding_force(std::size_t contact, const ContactValues& values) const;
   Cones cones_of(const std::vector<std::size_t>& touching, const ContactValues& values,
                  std::span<const double> accelerations);
-  double energy_at(double t, std::span<const double> q, std::span<const double> v) const;
+  std::vector<double> stops() const;
+  std::vector<double> energy_and_sets_at(double t, std::span<const double> q, std::span<const double> v);
   void move_on(double by, const Eigen::VectorXd& accelerations);
   std::optional<TaylorStepper::Outlook> outlook_without_contacts(const ContactValues& values, double bound);
   void take_out_slips(const std::vector<std::size_t>& stopping, const std::vector<std::size_t>& touching);
@@ -178,16 +177,18 @@ class HybridMotion final : public Method {
   bool pulls() const;
   bool goes_on(double bound);
   void note_step();
-  std::optional<std::size_t> violated_constraint(const MotionState& state, double digits) const;
+  std::optional<std::size_t> violated_constraint(const MotionState& state, double digits);
 
+  std::shared_ptr<ModeLibrary> library_;
   const Model& model_;
   const EquationsOfMotion& equations_;
-  WantedFunctions wanted_;
+  const MechanicalSystem& system_;  // with reactions in normal forces put in
   std::vector<double> parameters_;
   TaylorOptions options_;
-  MechanicalSystem system_;  // with reactions in normal forces put in
   ContactFunctions functions_;
+  std::optional<FunctionWorkspace> sets_, constraints_;
   std::map<std::string, std::unique_ptr<ModeMotion>> modes_;
+  std::map<std::string, std::unique_ptr<EquationsOfMotion>> equations_of_modes_;  // that neighbours have asked for
   ModeMotion* now_ = nullptr;
   std::size_t asked_for_ = 0;  // modes so far
   std::unique_ptr<Pending> pending_;

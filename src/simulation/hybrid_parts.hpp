@@ -20,19 +20,10 @@ inline constexpr double rest_unit = 64 * std::numeric_limits<double>::epsilon();
 /// Of the terms of g̈: what a located instant leaves of a force that falls through 0.
 inline constexpr double located_force = 1e-9;
 
-/// An event function of a mode, and what a root of it means.
-struct HybridMotion::Watch {
-  enum class What { Until, Event, Gap, Force, Hold, Slip, Normal } what = What::Event;
-  std::size_t index = 0;  // of the event, the contact, the friction
-  bool keeps_sign() const { return what != What::Until && what != What::Event; }  // must not be negative in its mode
-  /// A gap or a force that comes to 0 and goes back changes nothing; a slip may come to rest there.
-  bool touches_count() const { return !keeps_sign() || what == What::Slip; }
-};
-
 struct HybridMotion::ModeMotion {
   ContactMode mode;
-  std::unique_ptr<EquationsOfMotion> equations;
-  std::vector<Watch> watches;
+  std::shared_ptr<const ModeProgram> program;
+  const std::vector<Watch>& watches() const { return program->watches; }
   std::unique_ptr<TaylorStepper> stepper;
   std::size_t asked_for = 0;  // the last time, in turns of asking
 };

@@ -107,7 +107,7 @@ HybridMotion::Cones HybridMotion::cones_of(const std::vector<std::size_t>& touch
 
 /// On by a moment with these accelerations: what they leave out are third powers of it, rounding.
 void HybridMotion::move_on(double by, const VectorXd& accelerations) {
-  const double before = energy_at(t_, q_, v_);
+  const double before = energy_and_sets_at(t_, q_, v_)[0];
   for (std::size_t i = 0; i < q_.size(); ++i) {
     q_[i] += by * (v_[i] + 0.5 * by * accelerations(at(i)));
     v_[i] += by * accelerations(at(i));
@@ -117,7 +117,7 @@ void HybridMotion::move_on(double by, const VectorXd& accelerations) {
   just_moved_on_ = true;
   t_ += by;
   knows_compliance_ = false;
-  const double gained = energy_at(t_, q_, v_) - before;  // what other contacts rub meanwhile, as a rule
+  const double gained = energy_and_sets_at(t_, q_, v_)[0] - before;  // what other contacts rub meanwhile, as a rule
   carried_[0] += gained;
   carried_[1] -= gained;
 }

@@ -37,8 +37,9 @@ bool jumps_on_its_way(const Model& model) {
 
 MotionThroughModes::MotionThroughModes(const Model& model, const EquationsOfMotion& equations, Expr until,
                                        const TaylorOptions& options)
-    : impl_(std::unique_ptr<Impl>(
-          new Impl{{model, equations, wanted_of(equations, until), parameter_values(model.system), options}})) {}
+    : impl_(
+          std::unique_ptr<Impl>(new Impl{{std::make_shared<ModeLibrary>(model, equations, wanted_of(equations, until)),
+                                          parameter_values(model.system), options}})) {}
 MotionThroughModes::~MotionThroughModes() = default;
 MotionThroughModes::MotionThroughModes(MotionThroughModes&&) noexcept = default;
 

@@ -10,6 +10,7 @@
 #include "simulation/companions.hpp"
 #include "simulation/contact_checks.hpp"
 #include "simulation/ending.hpp"
+#include "simulation/energy_balance.hpp"
 #include "simulation/energy_terms.hpp"
 #include "simulation/errors.hpp"
 #include "simulation/hybrid_motion.hpp"
@@ -78,8 +79,8 @@ std::unique_ptr<HybridMotion> hybrid_method(const Model& model, const EquationsO
     return nullptr;
   }
   if (!can_go_through_modes(equations, diagnostics)) return nullptr;
-  return std::make_unique<HybridMotion>(model, equations, wanted, parameter_values(model.system),
-                                        taylor_options(options));
+  return std::make_unique<HybridMotion>(std::make_shared<ModeLibrary>(model, equations, wanted),
+                                        parameter_values(model.system), taylor_options(options));
 }
 
 std::unique_ptr<Method> first_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
@@ -98,54 +99,6 @@ std::string_view word_of(StepMethod method) {
   return method == StepMethod::Stiff ? "stiff" : method == StepMethod::Variational ? "variational" : "taylor";
 }
 
-/// energy_drift = max |h_E(t) − h_E(0) − work(t)| / max Σ |terms of h_E|. Without power there is no integral.
-class EnergyBalance {
- public:
-  explicit EnergyBalance(std::size_t terms) : terms_(terms) {}
-
-  /// Another method takes over: its integrals start at zero again.
-  void carry_over(const Sample& last) { work_before_ += work_of(last); }
-
-  void add(const Sample& sample) {
-    double energy = 0, scale = 0;
-    for (std::size_t i = 0; i < terms_; ++i) {
-      energy += sample.observables[i];
-      scale += std::abs(sample.observables[i]);
-    }
-    overflows_ = overflows_ || std::isinf(scale);
-    if (!std::isfinite(energy))
-      return;  // a point at which the formula has no value, though the motion passes it; or the ending tells
-    if (!std::isfinite(work_of(sample))) {  // an integral never comes back from there
-      overflows_ = true;
-      return;
-    }
-    if (!begun_) first_ = energy;
-    begun_ = true;
-    largest_scale_ = std::max(largest_scale_, scale);
-    largest_error_ = std::max(largest_error_, std::abs(energy - first_ - work_before_ - work_of(sample)));
-  }
-
-  /// What is switched in time does work at once: the same state before and after.
-  void pass_switch(const Sample& before, const Sample& after) {
-    if (const double work = energy_of(after) - energy_of(before); std::isfinite(work)) work_before_ += work;
-  }
-
-  double energy_of(const Sample& sample) const {
-    return std::accumulate(sample.observables.begin(), sample.observables.begin() + static_cast<std::ptrdiff_t>(terms_),
-                           0.0);
-  }
-  double drift() const { return largest_scale_ > 0 ? largest_error_ / largest_scale_ : 0; }
-  /// Nothing is known of it: a term was infinite, or it had no value at any state.
-  bool is_lost() const { return overflows_ || (terms_ > 0 && !begun_); }
-
- private:
-  static double work_of(const Sample& sample) { return sample.integrals.empty() ? 0 : sample.integrals[0]; }
-
-  std::size_t terms_;
-  bool begun_ = false, overflows_ = false;
-  double first_ = 0, largest_scale_ = 0, largest_error_ = 0, work_before_ = 0;
-};
-
 std::string with_blank(const std::string& unit) { return unit.empty() ? unit : " " + unit; }
 
 class Run {
@@ -162,8 +115,7 @@ class Run {
         method_(std::move(method)),
         stiff_(std::move(stiff)),
         hybrid_(hybrid),
-        energy_jumps_(energy_jumps),
-        balance_(observables.energy_terms) {
+        balance_(observables.energy_terms, energy_jumps) {
     result_.statistics.method = word_of(*options.method);
     result_.trajectory.independent = {model.system.independent, model.system.independent_unit()};
     name_trajectory_columns(model.system, observables, result_.trajectory.columns, result_.reactions);
@@ -210,14 +162,12 @@ class Run {
 
   /// One step. False when the run ends here.
   bool advance() {
-    const std::optional<Sample> on_switch = at_switch_ ? std::optional(method_->sample(method_->time())) : std::nullopt;
+    balance_.before_step(*method_);
     const bool jumps = hybrid_ && hybrid_->will_jump() && jumps_ < most_jumps;
     if (jumps) add_row_before_jump();
     const Step step = method_->step(plan_.end);
     if (jumps && step.begin != step.end) add_row(shown(method_->step_start()));
-    if (on_switch && step.begin != step.end) balance_.pass_switch(*on_switch, method_->step_start());
-    at_switch_ = energy_jumps_ && step.switches > 0;
-    if (step.begin != step.end) balance_.add(method_->step_start());
+    balance_.after_step(*method_, step);
     if (step.ending != StepEnding::None) {
       result_.ending = ending_of(step.ending);
       result_.reason = step.reason;
@@ -315,8 +265,7 @@ class Run {
     }
     if (result_.ok() && balance_.is_lost()) {
       result_.ending = Ending::Overflow;
-      result_.reason =
-          "The energy is infinite or has no value along this motion, so that nothing tells whether it is right.";
+      result_.reason = EnergyBalance::lost;
     }
     result_.statistics.steps = steps_before_ + method_->steps();
     result_.statistics.rejected = rejected_before_ + method_->rejected();
@@ -349,7 +298,6 @@ class Run {
   StiffnessWatch watch_;
   BackendUse backend_;
   bool turned_stiff_ = false;
-  bool energy_jumps_ = false, at_switch_ = false;  // the last step ended there
   std::size_t steps_before_ = 0, rejected_before_ = 0;
   double residual_before_ = 0;
   EnergyBalance balance_;
@@ -394,7 +342,7 @@ void warn_of_backend(const BackendUse& use, Backend wanted, Diagnostics& diagnos
 /// The errors, as companion runs tell them.
 void add_errors(SimulationResult& result, Probe* probe, const Model& model, const EquationsOfMotion& equations,
                 const SimulationOptions& options, const RunPlan& plan, const Observables& observables,
-                const WantedFunctions& wanted) {
+                const WantedFunctions& wanted, const std::shared_ptr<ModeLibrary>& modes) {
   const auto begin = Clock::now();
   const RoundedNumbers numbers(model, equations, plan, wanted);
   const CompanionPlan companion_plan{model,
@@ -404,7 +352,8 @@ void add_errors(SimulationResult& result, Probe* probe, const Model& model, cons
                                      observables,
                                      result,
                                      comparison_grid(result.trajectory, plan, options.errors),
-                                     options.errors == ErrorEstimates::Rows};
+                                     options.errors == ErrorEstimates::Rows,
+                                     modes};
   const Companions companions = run_companions(companion_plan, wanted, numbers);
   if (companions.interrupted) {
     result.ending = Ending::Interrupted;
@@ -441,6 +390,7 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   std::unique_ptr<HybridMotion> through_modes;
   if (is_hybrid) through_modes = hybrid_method(model, equations, wanted, options, diagnostics);
   HybridMotion* const hybrid = through_modes.get();
+  const std::shared_ptr<ModeLibrary> modes = hybrid ? hybrid->library() : nullptr;
   std::unique_ptr<Method> method = is_hybrid ? std::unique_ptr<Method>(std::move(through_modes))
                                              : first_method(equations, wanted, options, diagnostics);
   if (!method) return std::nullopt;
@@ -454,7 +404,7 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
 
   SimulationResult result = run.carry_out();
   if (options.errors != ErrorEstimates::None && result.ending != Ending::Interrupted)
-    add_errors(result, probe, model, equations, options, *plan, observables, wanted);
+    add_errors(result, probe, model, equations, options, *plan, observables, wanted, modes);
   if (run.turned_stiff()) note_stiffness(result, model.system, stiff_tolerance(options), diagnostics);
   if (options.method == StepMethod::Automatic || options.method == StepMethod::Taylor ||
       options.backend == Backend::Compiled)

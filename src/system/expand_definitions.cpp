@@ -1,3 +1,5 @@
+#include <maupertuis/system_expressions.hpp>
+
 #include "system/elaboration.hpp"
 
 #include <functional>
@@ -6,65 +8,6 @@
 /// instead; the system as written is kept beside it for readable forms.
 namespace maupertuis::elaboration {
 namespace {
-
-/// Calls `visit` on every expression of the system that the equations come from.
-void for_each_expression(MechanicalSystem& s, const std::function<void(Expr&)>& visit) {
-  const auto vector = [&](ExprVector& v) {
-    for (Expr& x : v) visit(x);
-  };
-  const auto terms = [&](std::vector<EnergyTerm>& list) {
-    for (EnergyTerm& t : list) visit(t.value);
-  };
-  for (Input& i : s.inputs) visit(i.formula);
-  for (Rate& r : s.rates) visit(r.value);
-  for (Definition& d : s.definitions) vector(d.components);
-  for (Frame& f : s.frames) {
-    vector(f.origin);
-    vector(f.rotation.entries);
-    vector(f.angular_velocity);
-  }
-  for (Point& p : s.points) {
-    if (p.mass) visit(p.mass);
-    vector(p.position);
-  }
-  for (Body& b : s.bodies) {
-    if (b.mass) visit(b.mass);
-    vector(b.inertia.entries);
-    vector(b.position);
-    vector(b.rotation.entries);
-    vector(b.angular_velocity);
-    vector(b.angular_velocity_world);
-  }
-  for (Link& l : s.links) {
-    vector(l.from);
-    vector(l.to);
-  }
-  vector(s.gravity);
-  for (auto* list : {&s.kinetic, &s.potential, &s.generalized_potential, &s.dissipation, &s.lagrangian_extra})
-    terms(*list);
-  if (s.lagrangian_given) visit(s.lagrangian_given->value);
-  for (EnergyClaim& c : s.claims) visit(c.value);
-  for (AppliedForce& f : s.forces) {
-    vector(f.components);
-    vector(f.lever);
-  }
-  for (Constraint& c : s.constraints) visit(c.value);
-  for (Gauge& g : s.gauges) visit(g.value);
-  for (HigherDerivative& h : s.higher) visit(h.acceleration_momentum), visit(h.velocity_momentum);
-  if (s.higher_lagrangian) visit(s.higher_lagrangian);
-  const auto friction = [&](Friction& f) {
-    vector(f.slip);
-    for (Expr* x : {&f.kinetic, &f.static_, &f.normal})
-      if (*x) visit(*x);
-  };
-  for (Contact& c : s.contacts) {
-    visit(c.gap), visit(c.restitution);
-    friction(c.friction);
-  }
-  for (Friction& f : s.frictions) friction(f);
-  for (IntegralConstraint& c : s.integral_constraints)
-    for (Expr* x : {&c.integrand, &c.value}) visit(*x);
-}
 
 /// Calls `visit` on every expression of an expectation.
 struct ExpectationVisitor {

@@ -8,16 +8,6 @@
 
 namespace maupertuis::ensemble {
 
-double Job::begin(std::size_t i) const {
-  return start.begin.empty() ? 0 : start.begin[start.begin.size() == 1 ? 0 : i];
-}
-double Job::end(std::size_t i) const { return start.end[start.end.size() == 1 ? 0 : i]; }
-
-std::span<const double> Job::parameters(std::size_t i) const {
-  const std::size_t p = kernel.parameters();
-  return start.parameters.size() == p ? start.parameters : start.parameters.subspan(i * p, p);
-}
-
 std::size_t Job::take() {
   if (failed.load(std::memory_order_relaxed)) return trajectories;
   return std::min(next.fetch_add(1, std::memory_order_relaxed), trajectories);

@@ -21,11 +21,13 @@ struct Job {
   std::atomic<std::size_t> next{0};
   std::atomic<bool> failed{false};  // a thread threw: the others stop
 
-  double begin(std::size_t trajectory) const;
-  double end(std::size_t trajectory) const;
+  double begin(std::size_t trajectory) const { return start.begin_of(trajectory); }
+  double end(std::size_t trajectory) const { return start.end_of(trajectory); }
   std::span<const double> q(std::size_t trajectory) const { return start.q.subspan(trajectory * freedoms, freedoms); }
   std::span<const double> v(std::size_t trajectory) const { return start.v.subspan(trajectory * freedoms, freedoms); }
-  std::span<const double> parameters(std::size_t trajectory) const;
+  std::span<const double> parameters(std::size_t trajectory) const {
+    return start.parameters_of(trajectory, kernel.parameters());
+  }
   double step_factor(std::size_t trajectory) const {
     return start.step_factors.empty() ? 1 : start.step_factors[trajectory];
   }

@@ -1,13 +1,11 @@
 #include "integrator/ensemble/batch.hpp"
 
+#include <maupertuis/on_threads.hpp>
 #include <maupertuis/require.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
-#include <mutex>
-#include <thread>
 
 namespace maupertuis {
 namespace {
@@ -37,9 +35,7 @@ double expected_steps(const Kernel& kernel, const EnsembleStart& start, const ta
   const double begin = start.begin.empty() ? 0 : start.begin[0];
   if (work.expand(begin, start.q.first(n), start.v.first(n)) != KernelStatus::Ok) return 0;
   double duration = 0;
-  for (std::size_t i = 0; i < count; ++i)
-    duration += std::abs(start.end[start.end.size() == 1 ? 0 : i] -
-                         (start.begin.empty() ? 0 : start.begin[start.begin.size() == 1 ? 0 : i]));
+  for (std::size_t i = 0; i < count; ++i) duration += std::abs(start.end_of(i) - start.begin_of(i));
   return duration / taylor::step_size(work, n, control, 0);
 }
 
@@ -97,32 +93,12 @@ void work_on(Job& job) {
     ensemble::run_alone(job, trajectory);
 }
 
-/// As many threads as there is work for; the one that called is among them.
-std::size_t thread_count(const Job& job) {
-  const std::size_t wanted = job.options.threads > 0 ? static_cast<std::size_t>(job.options.threads)
-                                                     : std::max(1u, std::thread::hardware_concurrency());
-  const std::size_t at_once = job.expansion ? static_cast<std::size_t>(job.expansion->width()) : 1;
-  return std::min(wanted, std::max<std::size_t>(1, job.trajectories / at_once));
-}
-
-/// Every thread until no trajectory is left. What one of them throws is thrown again when all have stopped.
+/// Every thread until no trajectory is left.
 void run(Job& job) {
-  std::exception_ptr thrown;
-  std::mutex guard;
-  const auto guarded = [&] {
-    try {
-      work_on(job);
-    } catch (...) {
-      job.failed = true;
-      const std::lock_guard lock(guard);
-      if (!thrown) thrown = std::current_exception();
-    }
-  };
-  std::vector<std::thread> others;
-  for (std::size_t i = 1; i < thread_count(job); ++i) others.emplace_back(guarded);
-  guarded();
-  for (std::thread& thread : others) thread.join();
-  if (thrown) std::rethrow_exception(thrown);
+  const std::size_t at_once = job.expansion ? static_cast<std::size_t>(job.expansion->width()) : 1;
+  const std::size_t threads = thread_count(job.options.threads, job.trajectories / at_once);
+  on_threads(
+      threads, [&] { work_on(job); }, [&] { job.failed = true; });
 }
 
 }  // namespace

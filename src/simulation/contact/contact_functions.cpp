@@ -2,6 +2,7 @@
 
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/contact_mode.hpp>
+#include <maupertuis/system_expressions.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <algorithm>
@@ -21,23 +22,6 @@ Expr size_of_terms(Expr e) {
     sizes.push_back(apply(Kind::Abs, e));
   return e.context().sum(sizes);
 }
-
-class Lowering {
- public:
-  explicit Lowering(const MechanicalSystem& system) : system_(system) {
-    for (const Coordinate& c : system.coordinates) inputs_.push_back(c.q);
-    for (const Coordinate& c : system.coordinates) inputs_.push_back(c.velocity);
-    inputs_.push_back(system.context->time());
-    for (const Parameter& p : system.parameters) parameters_.push_back(p.symbol);
-  }
-  FunctionSource source(const ExprVector& outputs) const {
-    return {inputs_, parameters_, expand_time_derivatives(in_terms_of_motion(system_, outputs))};
-  }
-
- private:
-  const MechanicalSystem& system_;
-  ExprVector inputs_, parameters_;
-};
 
 ExprVector gaps_of(const MechanicalSystem& s) {
   ExprVector out;
@@ -101,31 +85,59 @@ void set_rows(const DifferentiableKernel& kernel, const std::vector<double>& out
 
 }  // namespace
 
+FunctionSource function_of_motion(const MechanicalSystem& system, const ExprVector& outputs) {
+  FunctionSource source;
+  for (const Coordinate& c : system.coordinates) source.inputs.push_back(c.q);
+  for (const Coordinate& c : system.coordinates) source.inputs.push_back(c.velocity);
+  source.inputs.push_back(system.context->time());
+  for (const Parameter& p : system.parameters) source.parameters.push_back(p.symbol);
+  source.outputs = expand_time_derivatives(in_terms_of_motion(system, outputs));
+  return source;
+}
+
 double dot(const SparseRow& row, const Eigen::VectorXd& x) {
   double sum = 0;
   for (const auto& [i, value] : row) sum += value * x(static_cast<Index>(i));
   return sum;
 }
 
-ContactFunctions::ContactFunctions(const EquationsOfMotion& equations, std::span<const double> parameters)
-    : equations_(equations),
+ContactPrograms::ContactPrograms(const EquationsOfMotion& equations)
+    : coordinates(equations.system->coordinates.size()),
+      constraints(equations.system->constraints.size()),
+      contacts(equations.system->contacts.size()),
+      frictions(contacts + equations.system->frictions.size()),
+      gaps(build_differentiable(function_of_motion(*equations.system, gaps_of(*equations.system)), 0, coordinates)),
+      slips(build_differentiable(function_of_motion(*equations.system, slips_of(*equations.system)), coordinates,
+                                 2 * coordinates)),
+      rates(build_function(function_of_motion(*equations.system, rates_of(*equations.system)))),
+      matrices(build_function(function_of_motion(*equations.system, matrices_of(equations)))),
+      system_(equations.system) {}
+
+/// In a context of its own: another thread may read the given one.
+const FunctionKernel& ContactPrograms::drifts() const {
+  const std::lock_guard lock(guard_);
+  if (!drifts_) {
+    const MechanicalSystem own = in_own_context(*system_, {});
+    drifts_ = build_function(function_of_motion(own, drifts_of(own)));
+  }
+  return *drifts_;
+}
+
+ContactFunctions::ContactFunctions(std::shared_ptr<const ContactPrograms> programs, std::span<const double> parameters)
+    : programs_(std::move(programs)),
       parameters_(parameters.begin(), parameters.end()),
-      n_(equations.system->coordinates.size()),
-      m_(equations.system->constraints.size()),
-      contacts_(equations.system->contacts.size()),
-      frictions_(contacts_ + equations.system->frictions.size()),
-      gaps_(build_differentiable(Lowering(*equations.system).source(gaps_of(*equations.system)), 0, n_)),
-      slips_(build_differentiable(Lowering(*equations.system).source(slips_of(*equations.system)), n_, 2 * n_)),
-      rates_(build_function(Lowering(*equations.system).source(rates_of(*equations.system)))),
-      matrices_(build_function(Lowering(*equations.system).source(matrices_of(equations)))),
-      gaps_work_(gaps_.values_and_entries),
-      slips_work_(slips_.values_and_entries),
-      rates_work_(rates_),
-      matrices_work_(matrices_),
-      gaps_out_(gaps_.values_and_entries.outputs()),
-      slips_out_(slips_.values_and_entries.outputs()),
-      rates_out_(rates_.outputs()),
-      matrices_out_(matrices_.outputs()) {
+      n_(programs_->coordinates),
+      m_(programs_->constraints),
+      contacts_(programs_->contacts),
+      frictions_(programs_->frictions),
+      gaps_work_(programs_->gaps.values_and_entries),
+      slips_work_(programs_->slips.values_and_entries),
+      rates_work_(programs_->rates),
+      matrices_work_(programs_->matrices),
+      gaps_out_(programs_->gaps.values_and_entries.outputs()),
+      slips_out_(programs_->slips.values_and_entries.outputs()),
+      rates_out_(programs_->rates.outputs()),
+      matrices_out_(programs_->matrices.outputs()) {
   for (FunctionWorkspace* work : {&gaps_work_, &slips_work_, &rates_work_, &matrices_work_})
     work->set_parameters(parameters);
 }
@@ -151,9 +163,9 @@ const ContactValues& ContactFunctions::at(double t, std::span<const double> q, s
   ContactValues& out = values_;
   out.gap.assign(gaps_out_.begin(), gaps_out_.begin() + static_cast<std::ptrdiff_t>(contacts_));
   out.slip.assign(slips_out_.begin(), slips_out_.begin() + static_cast<std::ptrdiff_t>(frictions_));
-  set_rows(gaps_, gaps_out_, 0, 0, contacts_, out.normal);
-  set_rows(slips_, slips_out_, n_, 0, frictions_, out.tangent);
-  set_rows(slips_, slips_out_, n_, frictions_, contacts_, out.second_tangent);
+  set_rows(programs_->gaps, gaps_out_, 0, 0, contacts_, out.normal);
+  set_rows(programs_->slips, slips_out_, n_, 0, frictions_, out.tangent);
+  set_rows(programs_->slips, slips_out_, n_, frictions_, contacts_, out.second_tangent);
   const auto second = static_cast<std::ptrdiff_t>(frictions_);
   out.second_slip.assign(slips_out_.begin() + second,
                          slips_out_.begin() + second + static_cast<std::ptrdiff_t>(contacts_));
@@ -242,11 +254,10 @@ Eigen::MatrixXd ContactFunctions::response(double t, std::span<const double> q, 
 }
 
 std::span<const double> ContactFunctions::drifts(double t, std::span<const double> q, std::span<const double> v) {
-  if (!drifts_) {
-    drifts_ = build_function(Lowering(*equations_.system).source(drifts_of(*equations_.system)));
-    drifts_work_.emplace(*drifts_);
+  if (!drifts_work_) {
+    drifts_work_.emplace(programs_->drifts());
     drifts_work_->set_parameters(parameters_);
-    drifts_out_.resize(drifts_->outputs());
+    drifts_out_.resize(programs_->drifts().outputs());
   }
   evaluate(*drifts_work_, drifts_out_, t, q, v);
   return drifts_out_;

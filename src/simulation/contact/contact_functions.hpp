@@ -5,6 +5,8 @@
 #include <maupertuis/function_kernel.hpp>
 
 #include <limits>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -28,12 +30,34 @@ struct ContactValues {
   std::vector<double> restitution;        // [contacts]
 };
 
-/// The functions of contacts and frictions, and M and A, at points. Inputs: q, q̇, t.
-class ContactFunctions {
+/// Functions of q, q̇, t and the parameters of a system, with its lets and inputs put in and derivatives carried out.
+FunctionSource function_of_motion(const MechanicalSystem& system, const ExprVector& outputs);
+
+/// The programs of what contacts and frictions are, and of M and A: for any number of runs and threads.
+class ContactPrograms {
  public:
   /// `equations`: of the system with its contacts, none of them in force.
   /// Cost: the symbolic gradients of the gaps and of L.
-  ContactFunctions(const EquationsOfMotion& equations, std::span<const double> parameters);
+  explicit ContactPrograms(const EquationsOfMotion& equations);
+
+  std::size_t coordinates, constraints, contacts, frictions;  // frictions: those of contacts counted
+  DifferentiableKernel gaps, slips;                           // by q; by q̇
+  FunctionKernel rates, matrices;
+  /// d²g/dt² and dv_t/dt without their terms in q̈. Cost of the first call: the second derivatives of all gaps.
+  const FunctionKernel& drifts() const;
+
+ private:
+  std::shared_ptr<const MechanicalSystem> system_;
+  mutable std::mutex guard_;
+  mutable std::optional<FunctionKernel> drifts_;
+};
+
+/// The functions of contacts and frictions, and M and A, at points. Inputs: q, q̇, t.
+class ContactFunctions {
+ public:
+  ContactFunctions(std::shared_ptr<const ContactPrograms> programs, std::span<const double> parameters);
+  ContactFunctions(const EquationsOfMotion& equations, std::span<const double> parameters)
+      : ContactFunctions(std::make_shared<const ContactPrograms>(equations), parameters) {}
 
   const ContactValues& at(double t, std::span<const double> q, std::span<const double> v);
   /// x [n × columns] of M x = rows, A x = 0: what impulses along `rows` change in q̇. M may be singular where A is not.
@@ -48,13 +72,10 @@ class ContactFunctions {
   void evaluate(FunctionWorkspace& work, std::vector<double>& out, double t, std::span<const double> q,
                 std::span<const double> v);
 
-  EquationsOfMotion equations_;
+  std::shared_ptr<const ContactPrograms> programs_;
   std::vector<double> parameters_;
   std::size_t n_, m_, contacts_, frictions_;
-  DifferentiableKernel gaps_, slips_;  // by q; by q̇
-  FunctionKernel rates_, matrices_;
   FunctionWorkspace gaps_work_, slips_work_, rates_work_, matrices_work_;
-  std::optional<FunctionKernel> drifts_;
   std::optional<FunctionWorkspace> drifts_work_;
   std::vector<double> drifts_out_;
   std::vector<double> point_, gaps_out_, slips_out_, rates_out_, matrices_out_;

@@ -17,19 +17,9 @@ using Eigen::VectorXd;
 /// Functions of q, q̇, t in numbers with their derivatives by all of these.
 struct ImpactDerivative::Compiled {
   Compiled(const MechanicalSystem& system, std::span<const double> parameters, const ExprVector& outputs)
-      : kernel(build_differentiable(source_of(system, outputs))), work(kernel.values_and_entries) {
+      : kernel(build_differentiable(function_of_motion(system, outputs))), work(kernel.values_and_entries) {
     work.set_parameters(parameters);
     out.resize(kernel.values_and_entries.outputs());
-  }
-
-  static FunctionSource source_of(const MechanicalSystem& system, const ExprVector& outputs) {
-    FunctionSource source;
-    for (const Coordinate& c : system.coordinates) source.inputs.push_back(c.q);
-    for (const Coordinate& c : system.coordinates) source.inputs.push_back(c.velocity);
-    source.inputs.push_back(system.context->time());
-    for (const Parameter& p : system.parameters) source.parameters.push_back(p.symbol);
-    source.outputs = outputs;
-    return source;
   }
 
   void evaluate(const At& at) {
@@ -126,8 +116,7 @@ ImpactDerivative::ImpactDerivative(const EquationsOfMotion& equations, std::span
   ExprVector entries = mass_matrix(equations).entries;
   const ExprMatrix a = constraint_matrix(equations);
   entries.insert(entries.end(), a.entries.begin(), a.entries.end());
-  matrices_ =
-      std::make_unique<Compiled>(system, parameters_, expand_time_derivatives(in_terms_of_motion(system, entries)));
+  matrices_ = std::make_unique<Compiled>(system, parameters_, entries);
 }
 
 ImpactDerivative::~ImpactDerivative() = default;

@@ -1,0 +1,47 @@
+#include "simulation/energy_balance.hpp"
+
+#include <cmath>
+#include <numeric>
+
+namespace maupertuis {
+
+double EnergyBalance::energy_of(const Sample& sample) const {
+  return std::accumulate(sample.observables.begin(), sample.observables.begin() + static_cast<std::ptrdiff_t>(terms_),
+                         0.0);
+}
+
+void EnergyBalance::before_step(const Method& method) {
+  on_switch_ = at_switch_ ? std::optional(method.sample(method.time())) : std::nullopt;
+}
+
+void EnergyBalance::after_step(const Method& method, const Step& step) {
+  const bool moved = step.begin != step.end;
+  // What is switched in time does work at once: the same state before and after.
+  if (on_switch_ && moved) {
+    const double work = energy_of(method.step_start()) - energy_of(*on_switch_);
+    if (std::isfinite(work)) work_before_ += work;
+  }
+  at_switch_ = jumps_ && step.switches > 0;
+  if (moved) add(method.step_start());
+}
+
+void EnergyBalance::add(const Sample& sample) {
+  double energy = 0, scale = 0;
+  for (std::size_t i = 0; i < terms_; ++i) {
+    energy += sample.observables[i];
+    scale += std::abs(sample.observables[i]);
+  }
+  overflows_ = overflows_ || std::isinf(scale);
+  if (!std::isfinite(energy))
+    return;  // a point at which the formula has no value, though the motion passes it; or the ending tells
+  if (!std::isfinite(work_of(sample))) {  // an integral never comes back from there
+    overflows_ = true;
+    return;
+  }
+  if (!begun_) first_ = energy;
+  begun_ = true;
+  largest_scale_ = std::max(largest_scale_, scale);
+  largest_error_ = std::max(largest_error_, std::abs(energy - first_ - work_before_ - work_of(sample)));
+}
+
+}  // namespace maupertuis

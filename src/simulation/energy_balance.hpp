@@ -1,0 +1,38 @@
+#pragma once
+#include "simulation/method.hpp"
+
+#include <cstddef>
+#include <optional>
+
+namespace maupertuis {
+
+/// energy_drift = max |h_E(t) − h_E(0) − work(t)| / max Σ |terms of h_E| of a run. Without power there is no integral.
+class EnergyBalance {
+ public:
+  /// `terms`: so many first observables add up to h_E. `jumps`: its formula jumps at switches in time.
+  EnergyBalance(std::size_t terms, bool jumps) : terms_(terms), jumps_(jumps) {}
+
+  void before_step(const Method& method);
+  void after_step(const Method& method, const Step& step);
+  void add(const Sample& sample);
+  /// Another method takes over: its integrals start at zero again.
+  void carry_over(const Sample& last) { work_before_ += work_of(last); }
+
+  double drift() const { return largest_scale_ > 0 ? largest_error_ / largest_scale_ : 0; }
+  /// Nothing is known of it: a term was infinite, or it had no value at any state.
+  bool is_lost() const { return overflows_ || (terms_ > 0 && !begun_); }
+  static constexpr const char* lost =
+      "The energy is infinite or has no value along this motion, so that nothing tells whether it is right.";
+
+ private:
+  double energy_of(const Sample& sample) const;
+  static double work_of(const Sample& sample) { return sample.integrals.empty() ? 0 : sample.integrals[0]; }
+
+  std::size_t terms_;
+  bool jumps_, at_switch_ = false;  // the last step ended there
+  std::optional<Sample> on_switch_;
+  bool begun_ = false, overflows_ = false;
+  double first_ = 0, largest_scale_ = 0, largest_error_ = 0, work_before_ = 0;
+};
+
+}  // namespace maupertuis

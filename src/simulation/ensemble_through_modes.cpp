@@ -1,0 +1,224 @@
+#include <maupertuis/across_switches.hpp>
+#include <maupertuis/degenerate.hpp>
+#include <maupertuis/ensemble_through_modes.hpp>
+#include <maupertuis/interrupt_scope.hpp>
+#include <maupertuis/motion_through_modes.hpp>
+#include <maupertuis/on_threads.hpp>
+#include <maupertuis/require.hpp>
+
+#include "simulation/energy_balance.hpp"
+#include "simulation/hybrid_motion.hpp"
+#include "simulation/observables.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+
+/// Runs through modes beside each other: each is the run that it would be alone, with the programs of modes shared.
+namespace maupertuis {
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+/// What the threads share. Each trajectory is written by the thread that took it.
+struct Members {
+  const EnsembleStart& start;
+  const ThroughModesOptions& options;
+  std::shared_ptr<ModeLibrary> library;
+  std::size_t energy_terms;
+  bool energy_jumps;
+  std::size_t count, freedoms;
+  ThroughModesResult& result;
+  std::atomic<std::size_t> next{0};
+
+  bool interrupted() const { return options.interrupt && options.interrupt->load(std::memory_order_relaxed); }
+  TaylorOptions taylor() const {
+    TaylorOptions out;
+    out.tolerance = options.tolerance;
+    out.order = options.order;
+    out.maximum_steps = options.maximum_steps;
+    out.interrupt = options.interrupt;
+    out.backend = options.backend;
+    out.cache = options.cache;
+    return out;
+  }
+};
+
+void check(const Model& model, const EnsembleStart& start) {
+  const std::size_t n = model.system.coordinates.size(), p = model.system.parameters.size();
+  MAUP_REQUIRE(goes_through_modes(model));
+  MAUP_REQUIRE(n > 0 && start.q.size() % n == 0 && start.v.size() == start.q.size());
+  const std::size_t count = start.q.size() / n;
+  MAUP_REQUIRE(start.parameters.size() == p || start.parameters.size() == count * p);
+  MAUP_REQUIRE(start.begin.empty() || start.begin.size() == 1 || start.begin.size() == count);
+  MAUP_REQUIRE(start.end.size() == 1 || start.end.size() == count);
+  MAUP_REQUIRE(start.step_factors.empty());
+  MAUP_REQUIRE(std::is_sorted(start.times.begin(), start.times.end()));
+}
+
+ThroughModesResult empty_result(std::size_t count, std::size_t freedoms, std::size_t times) {
+  ThroughModesResult out;
+  out.freedoms = freedoms;
+  out.times = times;
+  out.endings.resize(count);
+  out.through.resize(count);
+  for (auto* values : {&out.q, &out.v}) values->assign(count * freedoms, nothing);
+  for (auto* values : {&out.sampled_q, &out.sampled_v}) values->assign(count * times * freedoms, nothing);
+  return out;
+}
+
+/// One trajectory.
+class Member {
+ public:
+  Member(Members& members, std::size_t number)
+      : members_(members),
+        number_(number),
+        begin_(members.start.begin_of(number)),
+        end_(members.start.end_of(number)),
+        motion_(members.library, parameters(), members.taylor()),
+        balance_(members.energy_terms, members.energy_jumps) {}
+
+  void carry_out() {
+    motion_.start(begin_, state(members_.start.q), state(members_.start.v));
+    take_samples();
+    TrajectoryEnding& ending = members_.result.endings[number_];
+    bool stopped = false;
+    while (motion_.time() != end_ && ending.ok() && !stopped) {
+      balance_.before_step(motion_);
+      Step step = motion_.step(end_);
+      balance_.after_step(motion_, step);
+      take_samples();
+      ending.ending = step.ending;
+      ending.reason = std::move(step.reason);
+      stopped = step.event && motion_.record().stopped_by;
+    }
+    finish(ending);
+  }
+
+ private:
+  std::span<const double> state(std::span<const double> all) const {
+    return all.subspan(number_ * members_.freedoms, members_.freedoms);
+  }
+  std::vector<double> parameters() const {
+    const std::span<const double> found =
+        members_.start.parameters_of(number_, members_.library->system().parameters.size());
+    return {found.begin(), found.end()};
+  }
+
+  /// The wanted times that the last step covers, in the order of the run.
+  void take_samples() {
+    const std::size_t n = members_.freedoms, count = members_.start.times.size();
+    for (; sampled_ < count; ++sampled_) {
+      const std::size_t index = end_ < begin_ ? count - 1 - sampled_ : sampled_;
+      const double t = members_.start.times[index];
+      const bool passed = end_ < begin_ ? t > motion_.time() : t < motion_.time();
+      if (motion_.covers(t)) {
+        const std::size_t at = (number_ * count + index) * n;
+        motion_.state(t, std::span(members_.result.sampled_q).subspan(at, n),
+                      std::span(members_.result.sampled_v).subspan(at, n));
+      } else if (!passed) {
+        return;
+      }
+    }
+  }
+
+  void finish(TrajectoryEnding& ending) {
+    const Sample last = motion_.sample(motion_.time());
+    balance_.add(last);
+    motion_.finish();
+    ending.t = last.t;
+    ending.steps = motion_.steps();
+    ending.energy_drift = balance_.drift();
+    ending.alone = true;
+    if (ending.ok() && balance_.is_lost()) ending.ending = StepEnding::Overflow, ending.reason = EnergyBalance::lost;
+    const auto place = static_cast<std::ptrdiff_t>(number_ * members_.freedoms);
+    std::copy(last.q.begin(), last.q.end(), members_.result.q.begin() + place);
+    std::copy(last.v.begin(), last.v.end(), members_.result.v.begin() + place);
+    take_record(ending, last);
+  }
+
+  void take_record(TrajectoryEnding& ending, const Sample& last) {
+    const HybridRecord& record = motion_.record();
+    const Model& model = members_.library->model();
+    const auto& events = model.experiment.events;
+    if (record.stopped_by && ending.ok())
+      for (std::size_t k = 0; k < events.size(); ++k)
+        if (events[k].name == *record.stopped_by) ending.event = k;
+    ThroughModes& out = members_.result.through[number_];
+    out.first_mode = out.last_mode = record.first_mode;
+    for (const Happening& h : record.happenings) {
+      ++out.counts[static_cast<std::size_t>(h.kind)];
+      if (h.mode != out.last_mode) ++out.modes;
+      out.last_mode = h.mode;
+      if (out.happenings.size() < members_.options.happenings) out.happenings.push_back(h);
+    }
+    out.remarks = record.remarks;
+    if (!model.system.has_modes()) return;
+    out.books = record.books;
+    out.books->friction = last.integrals[1];
+    out.books->dampers = last.integrals[2];
+  }
+
+  Members& members_;
+  std::size_t number_;
+  double begin_, end_;
+  HybridMotion motion_;
+  EnergyBalance balance_;
+  std::size_t sampled_ = 0;  // times that are done
+};
+
+/// A trajectory that nobody began, or that ended while a mode was derived, stays where it starts.
+void end_interrupted(Members& members, std::size_t number) {
+  TrajectoryEnding& ending = members.result.endings[number];
+  ending = {};
+  ending.ending = StepEnding::Interrupted;
+  ending.reason = "The ensemble was interrupted before this motion was done.";
+  ending.t = members.start.begin_of(number);
+  ending.alone = true;
+  const std::size_t n = members.freedoms;
+  std::copy_n(members.start.q.begin() + static_cast<std::ptrdiff_t>(number * n), n,
+              members.result.q.begin() + static_cast<std::ptrdiff_t>(number * n));
+  std::copy_n(members.start.v.begin() + static_cast<std::ptrdiff_t>(number * n), n,
+              members.result.v.begin() + static_cast<std::ptrdiff_t>(number * n));
+}
+
+void carry_out(Members& members, std::size_t number) {
+  if (members.interrupted()) return end_interrupted(members, number);
+  try {
+    Member(members, number).carry_out();
+  } catch (const Interrupted&) {
+    end_interrupted(members, number);
+  }
+}
+
+}  // namespace
+
+std::optional<ThroughModesResult> advance_ensemble(const Model& model, const EquationsOfMotion& equations,
+                                                   const EnsembleStart& start, const ThroughModesOptions& options,
+                                                   Diagnostics& diagnostics) {
+  check(model, start);
+  if (equations.determined)
+    return advance_ensemble(with_determined_system(model, equations), *equations.determined, start, options,
+                            diagnostics);
+  if (!can_go_through_modes(equations, diagnostics)) return std::nullopt;
+  const InterruptScope scope(*model.system.context, options.interrupt);
+  const Observables observables = collect_observables(equations, nullptr);
+  const std::size_t n = model.system.coordinates.size(), count = start.q.size() / n;
+  ThroughModesResult result = empty_result(count, n, start.times.size());
+  Members members{
+      .start = start,
+      .options = options,
+      .library = std::make_shared<ModeLibrary>(model, equations, WantedFunctions{observables.expressions, {}, {}}),
+      .energy_terms = observables.energy_terms,
+      .energy_jumps = across_switches(*equations.system, equations.energy_function, equations.order).jump.has_value(),
+      .count = count,
+      .freedoms = n,
+      .result = result};
+  const auto work = [&] {
+    for (std::size_t number = members.next++; number < count; number = members.next++) carry_out(members, number);
+  };
+  on_threads(thread_count(options.threads, count), work, [&] { members.next = count; });
+  return result;
+}
+
+}  // namespace maupertuis

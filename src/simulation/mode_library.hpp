@@ -1,0 +1,77 @@
+#pragma once
+#include "simulation/contact/contact_functions.hpp"
+#include "simulation/function_kernels.hpp"
+
+#include <maupertuis/contact_mode.hpp>
+#include <maupertuis/kernel.hpp>
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace maupertuis {
+
+/// An event function of a mode, and what a root of it means.
+struct ModeWatch {
+  enum class What { Until, Event, Gap, Force, Hold, Slip, Normal } what = What::Event;
+  std::size_t index = 0;  // of the event, the contact, the friction
+  bool keeps_sign() const { return what != What::Until && what != What::Event; }  // must not be negative in its mode
+  /// A gap or a force that comes to 0 and goes back changes nothing; a slip may come to rest there.
+  bool touches_count() const { return !keeps_sign() || what == What::Slip; }
+};
+
+/// The motion in one mode as a program: its events are what is watched, its integrands the work on h_E, what friction
+/// took, what D took.
+struct ModeProgram {
+  std::vector<ModeWatch> watches;
+  Kernel kernel;
+};
+
+/// The programs that runs of one model through modes share: of its modes, each made when it is first asked for, of its
+/// contacts, and of what events set. A program depends on the model and its mode alone, to the bit: modes are derived
+/// in contexts of their own. Any number of threads, as long as nobody makes expressions in the context of the model.
+class ModeLibrary {
+ public:
+  /// `wanted`: observables in λ of contacts too; its first event, if there is one, ends the run. The model and the
+  /// equations outlive it.
+  ModeLibrary(const Model& model, const EquationsOfMotion& equations, const WantedFunctions& wanted);
+
+  const Model& model() const { return model_; }
+  const EquationsOfMotion& equations() const { return equations_; }
+  const MechanicalSystem& system() const { return system_; }  // with reactions in normal forces put in
+  /// With the events of the model after those that were wanted.
+  const WantedFunctions& wanted() const { return wanted_; }
+  std::shared_ptr<const ContactPrograms> contacts() const { return contacts_; }
+  /// h_E, then the values that events set, one after the other; of q, q̇, t.
+  const FunctionKernel& sets() const { return sets_; }
+  /// A by rows [m × n], φ or ψ [m], dφ/dt or ψ [m]; of q, q̇, t. Empty where no event sets a state.
+  const FunctionKernel& constraints() const { return constraints_; }
+
+  /// `stops` [contacts]: the speed at which a slip in space counts as stopped in this mode, where it slides.
+  std::shared_ptr<const ModeProgram> program(const ContactMode& mode, const std::vector<double>& stops);
+
+ private:
+  ModeProgram derived(const ContactMode& mode, const std::vector<double>& stops) const;
+
+  const Model& model_;
+  const EquationsOfMotion& equations_;
+  MechanicalSystem system_;
+  WantedFunctions wanted_;
+  std::shared_ptr<const ContactPrograms> contacts_;
+  FunctionKernel sets_, constraints_;
+  std::mutex guard_;
+  struct Kept {
+    std::shared_ptr<const ModeProgram> program;
+    std::size_t asked_for = 0;  // the last time, in turns of asking
+  };
+  std::map<std::string, Kept> kept_;
+  std::size_t asked_for_ = 0;
+};
+
+/// What tells one mode from another; that of the motion with `stops` too.
+std::string key_of(const ContactMode& mode, const std::vector<double>& stops);
+
+}  // namespace maupertuis
