@@ -241,7 +241,7 @@ class SideBySide {
       next_row_ = rows_until(to);
       const bool all_go_on =
           std::all_of(found.endings.begin(), found.endings.end(), [](const TrajectoryEnding& e) { return e.ok(); });
-      if (has_lost_the_motion() || !all_go_on) break;
+      if ((is_lost_ && may_end_early()) || !all_go_on) break;
       q_ = found.q, v_ = found.v, from = to;
     }
     Companions out;
@@ -266,7 +266,7 @@ class SideBySide {
     constexpr std::size_t long_run = 8'000;  // steps
     const double begin = plan_.run.begin, end = plan_.result.final.t;
     std::vector<double> out;
-    if (may_end_where_lost(plan_) && plan_.result.statistics.steps > long_run && end > begin)
+    if (may_end_early() && plan_.result.statistics.steps > long_run && end > begin)
       for (const double share : {1.0 / 32, 1.0 / 16, 1.0 / 8, 1.0 / 4, 1.0 / 2})
         out.push_back(begin + share * (end - begin));
     out.push_back(end);
@@ -329,7 +329,9 @@ class SideBySide {
       out.final = sample(plan_.result.final.t, found.q_of(k), found.v_of(k));
   }
 
-  bool has_lost_the_motion() const { return is_lost_ && may_end_where_lost(plan_); }
+  /// Where energy is conserved, motions that have parted do not come together again (Liouville's theorem); where there
+  /// is damping they may, on their way to the same rest.
+  bool may_end_early() const { return may_end_where_lost(plan_) && kernel_.integrands() == 0; }
 
   std::size_t index_of(double t) const {
     return static_cast<std::size_t>(std::lower_bound(part_.begin(), part_.end(), t) - part_.begin());
