@@ -480,6 +480,7 @@ std::string shape_of_bodies(const FieldEquations& equations, const FieldModes& m
 
 Json shapes_json(const FieldEquations& equations, const FieldModes& modes) {
   Json out{{"places", modes.places}, {"modes", Json::array()}};
+  if (!modes.upwards.empty()) out["upwards"] = modes.upwards;
   for (const FieldModes::Shape& shape : modes.shapes) {
     Json one = Json::object();
     for (std::size_t a = 0; a < shape.fields.size(); ++a)

@@ -101,16 +101,19 @@ struct FieldModes {
   std::vector<double> frequencies;  // rad/s, ascending; below 0: the rate of growth of an unstable one, negative
   /// The shape of each, its largest value 1; none where velocities act sideways (gyroscopic terms).
   struct Shape {
-    std::vector<std::vector<double>> fields;  // [varied][places]
+    std::vector<std::vector<double>> fields;  // [varied][places], in the plane [varied][upwards × places]
     std::vector<double> coordinates;          // [coordinates of `bodies`], SI
   };
   std::vector<Shape> shapes;
   std::vector<double> places;
+  std::vector<double> upwards;  // in the plane those of y
+  std::vector<double> errors;   // in the plane, rad/s: by how much polynomials of lower degree are off
 };
 
 /// The lowest `count`: Ritz's method with Legendre polynomials on elements between the places of bodies and the borders
 /// of the density, for densities of first and second derivatives. Friction is left out. Empty, and E0644, where there
-/// are none.
+/// are none. Rectangles: products of polynomials over all of the domain, for densities of first derivatives without
+/// bodies; the degree grows until frequencies stand still, or to some 1000 unknowns.
 FieldModes field_modes(const FieldEquations& equations, std::size_t count, Diagnostics& diagnostics);
 /// Their frequencies alone.
 std::vector<double> field_frequencies(const FieldEquations& equations, std::size_t count, Diagnostics& diagnostics);

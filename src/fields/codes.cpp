@@ -65,7 +65,8 @@ constexpr CodeEntry kEntries[] = {
      "start u = sin(pi x)\nrun 1\n"},
     {"W0652", "a start that the mesh follows in part",
      "Between the nodes of the elements the start is another function than their polynomials, by more than a "
-     "hundredth of its largest value. Errors are those of short waves then, and fall fast with more cells; the estimate takes a "
+     "hundredth of its largest value. Errors are those of short waves then, and fall fast with more cells; the "
+     "estimate takes a "
      "mesh of twice the cells too.",
      "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 20 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
      "start u = exp(-((x - 0.4)/0.01)^2)\nrun 1\n",
@@ -92,7 +93,8 @@ constexpr CodeEntry kEntries[] = {
      "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 20, 20 order 6\n"
      "density = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2) - (1 - cos u)\nrun 1\n"},
     {"E0644", "no modes of a field",
-     "Frequencies are those of small motions about φ = 0 of a field of one space variable with a domain, with constant "
+     "Frequencies are those of small motions about φ = 0 of a field of one or two space variables with a domain, with "
+     "constant "
      "coefficients in time and a positive energy.",
      "", ""},
     {"E0641", "an ill-posed field equation",

@@ -304,8 +304,10 @@ ExitCode modes_of_fields(const ModesOptions& options, Study& study, Console& con
     document["frequencies"].push_back(omega);
     text += omega < 0 ? fmt::format("  grows at the rate {:.12g} 1/s", -omega)
                       : fmt::format("  {:.12g} rad/s  {:.12g} Hz", omega, omega / (2 * std::acos(-1.0)));
+    if (i < modes.errors.size()) text += fmt::format("  ± {:.1g}", modes.errors[i]);
     text += shape_of_bodies(*study.field_equations(), modes, i) + "\n";
   }
+  if (!modes.errors.empty()) document["errors"] = modes.errors;
   document["shapes"] = shapes_json(*study.field_equations(), modes);
   if (!console.json()) console.print(text);
   return finish(console, study, std::move(document));

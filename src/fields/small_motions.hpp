@@ -1,0 +1,47 @@
+#pragma once
+#include <maupertuis/fields.hpp>
+
+#include "linear_algebra/dense.hpp"
+
+#include <vector>
+
+/// What modes of fields have in common, of one and of two space variables: ℒ to second order about rest, M c̈ + G ċ + K
+/// c = 0, and its frequencies.
+namespace maupertuis {
+
+/// E0644; false.
+bool refuse_modes_of(const FieldEquations& equations, Diagnostics& diagnostics, const std::string& why);
+
+/// A second derivative of ℒ at rest, by two jets, as a function of place.
+struct DensityEntry {
+  std::size_t a = 0, b = 0;
+  int da = 0, db = 0;  // derivatives by x
+  int ta = 0, tb = 0;  // by t
+  Expr value;
+  int ya = 0, yb = 0;  // by y
+};
+
+struct DensityEntries {
+  std::vector<DensityEntry> list;
+  bool linear = true;  // constant second derivatives: the same about every rest
+};
+
+/// The density with given fields by their formulas; an empty handle where one has none.
+Expr density_of(const FieldEquations& equations);
+bool entries_of(const FieldEquations& equations, DensityEntries& out, Diagnostics& diagnostics);
+/// Whether φ = 0 is a rest of it, where that counts.
+bool has_modes_at_rest(const FieldEquations& equations, bool linear, Diagnostics& diagnostics);
+
+/// M c̈ + G ċ + K c = 0 in the free unknowns, those that constraints tie together replaced.
+struct SmallMotions {
+  Eigen::MatrixXd mass, gyroscopic, stiffness;
+  Eigen::MatrixXd from_free;  // all unknowns from the free ones
+};
+
+/// M c = μ (K + σ M) c, μ = 1/(ω² + σ): the lowest frequencies are the largest μ, which keep their digits.
+bool solve_conservative(const SmallMotions& motions, std::size_t count, std::vector<double>& out,
+                        std::vector<Eigen::VectorXd>& shapes);
+/// (μ² + iμ Ĝ − M̂) y = 0 with μ = 1/ω, K = L Lᵀ, c = L⁻ᵀ y.
+bool solve_gyroscopic(const SmallMotions& motions, std::size_t count, std::vector<double>& out);
+
+}  // namespace maupertuis

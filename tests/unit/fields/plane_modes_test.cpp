@@ -1,0 +1,104 @@
+#include <maupertuis/field_run.hpp>
+#include <maupertuis/study.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+/// Frequencies and shapes of membranes against their closed forms.
+using namespace maupertuis;
+
+namespace {
+
+FieldModes plane_modes_of(const std::string& text, std::size_t count) {
+  Study study(SourceText("field.lag", text));
+  const FieldEquations* equations = study.field_equations();
+  REQUIRE_MESSAGE(equations, text);
+  Diagnostics diagnostics;
+  FieldModes out = field_modes(*equations, count, diagnostics);
+  REQUIRE_MESSAGE(out.frequencies.size() == count, text);
+  return out;
+}
+
+/// π c sqrt(m²/a² + n²/b²) for m = m0, m0 + step, …, n alike, the lowest.
+std::vector<double> closed_forms(double c, double a, double b, double m0, double n0, std::size_t count) {
+  std::vector<double> out;
+  for (int i = 0; i < 30; ++i)
+    for (int j = 0; j < 30; ++j) out.push_back(std::acos(-1.0) * c * std::hypot((m0 + i) / a, (n0 + j) / b));
+  std::sort(out.begin(), out.end());
+  out.resize(count);
+  return out;
+}
+
+const std::string density = "density = 1/2 u'^2 - 1/2 c^2 (u_x^2 + u_y^2)\n";
+
+std::string rectangle(const std::string& boundary) {
+  return "dimensionless\nparam c = 2\nfield u(x, y) : number on x = 0 .. 3, y = -1 .. 0\n" + density + boundary;
+}
+
+}  // namespace
+
+TEST_CASE("a rectangle of any sides: π c sqrt(m²/a² + n²/b²)") {
+  struct {
+    const char* boundary;
+    double m0, n0;  // held on both sides: 1, 2, …; free: 0, 1, …; one of each: 1/2, 3/2, …
+  } const sides[] = {
+      {"boundary left : u = 0\nboundary right : u = 0\nboundary bottom : u = 0\nboundary top : u = 0\n", 1, 1},
+      {"", 0, 0},
+      {"boundary left : u = 0\n", 0.5, 0},
+      {"boundary left : u = 0\nboundary right : u = 0\nboundary top : u = 0\n", 1, 0.5},
+      {"boundary bottom : u = 0\nboundary top : u = 0\n", 0, 1},
+  };
+  for (const auto& s : sides) {
+    CAPTURE(s.boundary);
+    const FieldModes found = plane_modes_of(rectangle(s.boundary), 8);
+    const std::vector<double> expected = closed_forms(2, 3, 1, s.m0, s.n0, 8);
+    for (std::size_t i = 0; i < 8; ++i) {
+      const double error = std::abs(found.frequencies[i] - expected[i]);
+      CHECK(error < (expected[i] == 0 ? 1e-4 : 1e-10 * expected[i]));
+      CHECK(found.errors[i] < 1e-4);
+    }
+  }
+}
+
+TEST_CASE("equal frequencies of a square have the shapes sin 2πx sin πy and sin πx sin 2πy") {
+  const double pi = std::acos(-1.0);
+  const FieldModes found = plane_modes_of(
+      "dimensionless\nparam c = 1\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 boundary u = 0\n" + density, 4);
+  CHECK(std::abs(found.frequencies[1] - found.frequencies[2]) < 1e-10);
+  for (const std::size_t mode : {1, 2}) {
+    const double m = mode == 1 ? 1 : 2, n = 3 - m;  // the one that changes less along x first
+    double worst = 0;
+    for (std::size_t j = 0; j < found.upwards.size(); ++j)
+      for (std::size_t i = 0; i < found.places.size(); ++i) {
+        const double value = found.shapes[mode].fields[0][j * found.places.size() + i];
+        const double form = std::sin(m * pi * found.places[i]) * std::sin(n * pi * found.upwards[j]);
+        worst = std::max(worst, std::abs(std::abs(value) - std::abs(form)));
+      }
+    CHECK(worst < 1e-6);
+  }
+}
+
+TEST_CASE("a membrane that is heavier to one side: a string of the same density, with the waves across as a bedding") {
+  // sides along y are free, so that the modes without change along y are those of a string
+  const FieldModes plane = plane_modes_of(
+      "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1/10\nboundary left : u = 0\nboundary right : u "
+      "= 0\ndensity = 1/2 (1 + x^2) u'^2 - 1/2 (u_x^2 + u_y^2)\n",
+      4);
+  Study study(SourceText("field.lag",
+                         "dimensionless\nfield u(x) : number on x = 0 .. 1 boundary u = 0\n"
+                         "density = 1/2 (1 + x^2) u'^2 - 1/2 u_x^2\n"));
+  Diagnostics diagnostics;
+  const std::vector<double> string = field_frequencies(*study.field_equations(), 4, diagnostics);
+  for (std::size_t i = 0; i < 4; ++i) CHECK(std::abs(plane.frequencies[i] - string[i]) < 1e-10 * string[i]);
+}
+
+TEST_CASE("plates have no modes yet, and it is told") {
+  Study study(SourceText("field.lag",
+                         "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1\n"
+                         "density = 1/2 u'^2 - 1/2 (u_xx + u_yy)^2\n"));
+  Diagnostics diagnostics;
+  CHECK(field_modes(*study.field_equations(), 4, diagnostics).frequencies.empty());
+  CHECK(diagnostics.has_errors());
+}
