@@ -331,7 +331,7 @@ class SideBySide {
 
   /// Where energy is conserved, motions that have parted do not come together again (Liouville's theorem); where there
   /// is damping they may, on their way to the same rest.
-  bool may_end_early() const { return may_end_where_lost(plan_) && kernel_.integrands() == 0; }
+  bool may_end_early() const { return may_end_where_lost(plan_) && plan_.equations.power.is_zero(); }
 
   std::size_t index_of(double t) const {
     return static_cast<std::size_t>(std::lower_bound(part_.begin(), part_.end(), t) - part_.begin());

@@ -105,6 +105,22 @@ TEST_CASE("a chaotic run says from when on nothing is certain") {
   CHECK(r.final.errors->v[1] == infinity);
 }
 
+TEST_CASE("companions of a motion that is lost end early, but not where damping brings motions together again") {
+  // Hénon and Heiles' potential just below its escape, and the same with a little friction, which ends at rest.
+  const auto motion = [](const std::string& friction) {
+    return run("dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = 1/2 (x^2 + y^2) + x^2 y - y^3/3\n" +
+               friction + "start x = 0, y = -0.15, x' = 0.52, y' = 0\nrun 20000\n");
+  };
+  const SimulationResult conserved = motion(""), damped = motion("dissipation = 0.0005 (x'^2 + y'^2)\n");
+  CHECK(conserved.uncertain.everything);
+  CHECK(conserved.uncertain.from > 200);
+  CHECK(conserved.uncertain.from < 2000);
+  CHECK(conserved.final.errors->q[0] == infinity);
+  REQUIRE(damped.final.errors);
+  CHECK(damped.final.errors->q[0] < 1e-3);
+  CHECK(damped.final.errors->q[1] < 1e-3);
+}
+
 TEST_CASE("equal runs have equal errors, and each row has one where that is asked") {
   SimulationOptions options = at({3});
   options.errors = ErrorEstimates::Rows;
