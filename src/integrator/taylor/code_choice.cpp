@@ -39,8 +39,8 @@ void CodeChoice::compile(KernelWorkspace& work, bool cache, Length length) {
     use_ = {report.compiled, before + report.seconds, report.trouble, report.cache_trouble};
 }
 
-void CodeChoice::compile_at_once(KernelWorkspace& work, const Kernel& kernel, const TaylorOptions& options) {
-  compile(work, options.cache, is_written_out_soon(kernel) ? Length::WholeExpansion : Length::Stage);
+void CodeChoice::compile_at_once(KernelWorkspace& work, const TaylorOptions& options) {
+  compile(work, options.cache, Length::Stage);
 }
 
 /// The expected number of steps decides, not the clock and not what the cache holds: so that equal runs give equal

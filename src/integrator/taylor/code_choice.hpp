@@ -8,7 +8,7 @@ namespace maupertuis::taylor {
 class CodeChoice {
  public:
   /// Before the first step: what is there soonest.
-  void compile_at_once(KernelWorkspace& work, const Kernel& kernel, const TaylorOptions& options);
+  void compile_at_once(KernelWorkspace& work, const TaylorOptions& options);
   /// Looks where the number of steps doubles. `done`, `left`: time that they took, and that is left.
   void compile_if_it_pays(KernelWorkspace& work, const Kernel& kernel, const TaylorOptions& options, std::size_t steps,
                           double done, double left);

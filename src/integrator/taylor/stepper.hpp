@@ -29,7 +29,7 @@ struct TaylorStepper::Impl {
         constraints(n, m) {
     work.set_parameters(parameters);
     probe.set_parameters(parameters);
-    if (options.backend == Backend::Compiled) code.compile_at_once(work, kernel, options);
+    if (options.backend == Backend::Compiled) code.compile_at_once(work, options);
   }
 
   // A step (stepper.cpp).
