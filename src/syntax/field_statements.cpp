@@ -64,6 +64,11 @@ StatementBody StatementParser::field_statement() {
   }
   if (accept("order")) field.order = quantity();
   if (!accept("boundary")) return field_clause("field", {std::move(field)});
+  for (const std::string_view side : {"left", "right", "bottom", "top"})
+    if (peek().is(side) && !peek(1).is("="))
+      fail_expected(
+          "a condition that holds on all sides, such as `u = 0`",
+          fmt::format("Write the conditions of one side on a line of their own, `boundary {} : u = 0`.", side));
   const std::size_t first = index_ - 1;
   field.periodic = accept("periodic");
   if (!field.periodic) list([&] { field.boundary.push_back(boundary_condition()); });

@@ -452,8 +452,10 @@ void given_formulas(Elaboration& e) {
   }
 }
 
-/// E0281 where a density or a boundary stands in a model without a field.
+/// E0281 where a density or a boundary stands in a model without a field, unless one may be among the statements that
+/// were left out because of a mistake.
 void refuse_without_field(Elaboration& e) {
+  if (!e.tree.lost_names.empty()) return;
   for (const syntax::Statement& s : e.tree.statements) {
     const auto* f = std::get_if<syntax::FieldStatement>(&s.body);
     if (!f) continue;

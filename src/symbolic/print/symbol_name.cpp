@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <initializer_list>
 #include <utility>
 
 namespace maupertuis::print {
@@ -69,13 +70,21 @@ std::vector<std::string> parts_of(std::string_view text) {
   return parts;
 }
 
+/// EI, GJ, ρA: a modulus or density times a quantity of a cross-section, written as one word in textbooks.
+bool is_of_cross_section(const std::vector<std::string_view>& letters) {
+  const auto is_one_of = [](std::string_view letter, std::initializer_list<std::string_view> list) {
+    return std::find(list.begin(), list.end(), letter) != list.end();
+  };
+  return letters.size() == 2 && is_one_of(letters[0], {"E", "G", "ρ"}) && is_one_of(letters[1], {"A", "I", "J"});
+}
+
 /// θ1 → θ with 1 below; mt → m with t below; mt1 → m with t1 below. A word keeps its letters.
 void take_index(SymbolName& name, std::string_view head) {
   std::size_t digits = head.size();
   while (digits > 0 && is_digit(head[digits - 1])) --digits;
   if (digits == 0) digits = head.size();
   const auto letters = letters_of(head.substr(0, digits));
-  const bool two = letters.size() == 2 && !is_digit(letters[1].front());
+  const bool two = letters.size() == 2 && !is_digit(letters[1].front()) && !is_of_cross_section(letters);
   const std::size_t cut = two ? letters[0].size() : digits;
   name.body = head.substr(0, cut);
   if (cut < head.size()) name.below.emplace_back(head.substr(cut));

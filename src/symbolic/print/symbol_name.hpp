@@ -10,8 +10,8 @@ namespace maupertuis::print {
 
 /// A name of the model language as typography sees it. What follows an underscore stands below, and so do digits at the
 /// end: θ_max, l12, θ1_max (θ with 1, max below). Two letters are a letter with one below: mt is m_t, Jw is J_w. More
-/// are an upright word. A component of a body, ball.qw, has the body below: q with w, ball; so has ball.ω.x: ω with 1,
-/// ball.
+/// are an upright word, and so are EI, GJ, ρA. A component of a body, ball.qw, has the body below: q with w, ball; so
+/// has ball.ω.x: ω with 1, ball.
 struct SymbolName {
   std::string body;                // one letter, or a word
   std::vector<std::string> below;  // separated by commas

@@ -200,6 +200,8 @@ TEST_CASE("names of several letters: two are a letter with one below, more a wor
   const auto latex = [&](const char* name) { return symbol_to_latex(n.c.symbol(name, Role::Parameter)); };
   CHECK(latex("mt") == "m_t");
   CHECK(latex("Jw") == "J_w");
+  CHECK(latex("EI") == "\\mathrm{EI}");
+  CHECK(latex("ρA") == "{\\rho}\\mathrm{A}");
   CHECK(latex("φs") == "\\varphi_s");
   CHECK(latex("mt1") == "m_{t_1}");
   CHECK(latex("mt_0") == "m_{t,0}");
