@@ -171,7 +171,7 @@ std::string tensor_text(const FieldEquations& equations, const StressEnergy& ten
   const FieldSystem& s = equations.system();
   const std::size_t n = s.space.size();
   const auto name = [&](std::size_t mu) { return mu == n ? std::string("t") : s.space[mu].name; };
-  std::string out = fmt::format("\nSymmetric stress-energy tensor, Lorentz-invariant with the speed^2 {}\n",
+  std::string out = fmt::format("\nSymmetric stress-energy tensor, Lorentz-invariant with c^2 = {}\n",
                                 plain_of(equations, tensor.c_squared));
   const auto line = [&](const std::string& head, Expr e) {
     out += fmt::format("  {:<5} = {}\n", head, plain_of(equations, e));
@@ -180,7 +180,7 @@ std::string tensor_text(const FieldEquations& equations, const StressEnergy& ten
   for (std::size_t i = 0; i < n; ++i) line("S_" + name(i), tensor.energy_flux(i));
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = i; j < n; ++j) line("Θ^" + name(i) + name(j), tensor.stress(i, j));
-  out += "  w: density of energy, S: its flux, S/speed^2: density of momentum, Θ: its flux\n";
+  out += "  w: density of energy, S: its flux, S/c^2: density of momentum, Θ: its flux\n";
   if (!tensor.has_spin())
     return out + "  It is the canonical tensor.\n  Certified: symmetric, ∂_μ Θ^μν = 0 on solutions.\n";
   if (spin) {

@@ -19,7 +19,7 @@ struct Range {
 };
 
 /// The lines of a text end by \n, \r\n or \r. Bytes that are not UTF-8 count as one character each.
-/// A view; the text outlives it. Cost: a scan of the text once, of one line a question.
+/// A view; the text outlives it. Cost: a scan of the text once, of a thousand bytes at most a question.
 class Positions {
  public:
   Positions(std::string_view text, Encoding encoding);
@@ -36,7 +36,13 @@ class Positions {
  private:
   std::string_view text_;
   Encoding encoding_;
+  /// What is known without counting: a place every thousand bytes of a long line.
+  struct Mark {
+    std::uint32_t offset;
+    Position position;
+  };
   std::vector<std::uint32_t> starts_;  // [lines]
+  std::vector<Mark> marks_;            // in the order of the text; the beginning of each line is one
 };
 
 }  // namespace maupertuis::language

@@ -425,8 +425,8 @@ NamedCurrent name_of(const FieldEquations& equations, const std::vector<Generato
   if (!motions.empty() && motions.size() >= n) return {"dilation", "a change of scale"};
   if (motions.empty() && shifts.size() == 1 && !s.jet_of(first.factor))
     return {"shift of " + field(first.index),
-            fmt::format("{} + ε {}", field(first.index),
-                        first.factor.is_one() ? "1" : to_plain(lay_out(first.factor, equations.order)))};
+            field(first.index) + " + ε" +
+                (first.factor.is_one() ? std::string() : " " + to_plain(lay_out(first.factor, equations.order)))};
   if (motions.empty() && shifts.size() == 2)
     return {"charge",
             fmt::format("rotations of {} and {} into each other", field(shifts[0]->index), field(shifts[1]->index))};

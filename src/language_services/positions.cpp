@@ -1,6 +1,7 @@
 #include <maupertuis/positions.hpp>
 
 #include <algorithm>
+#include <iterator>
 
 namespace maupertuis::language {
 namespace {
@@ -36,11 +37,21 @@ std::uint32_t units_of(std::uint32_t bytes, Encoding encoding) {
 }  // namespace
 
 Positions::Positions(std::string_view text, Encoding encoding) : text_(text), encoding_(encoding) {
-  starts_.push_back(0);
-  for (std::size_t i = 0; i < text_.size(); ++i) {
-    const bool pair = text_[i] == '\r' && i + 1 < text_.size() && text_[i + 1] == '\n';
-    if (pair) ++i;
-    if (pair || text_[i] == '\n' || text_[i] == '\r') starts_.push_back(static_cast<std::uint32_t>(i + 1));
+  constexpr std::uint32_t distance = 1000;  // bytes between marks
+  const auto size = static_cast<std::uint32_t>(text_.size());
+  Mark here{0, {}};
+  starts_.push_back(0), marks_.push_back(here);
+  while (here.offset < size) {
+    const std::string_view rest = text_.substr(here.offset);
+    const bool pair = rest.substr(0, 2) == "\r\n";
+    if (pair || rest[0] == '\n' || rest[0] == '\r') {
+      here = {here.offset + (pair ? 2 : 1), {here.position.line + 1, 0}};
+      starts_.push_back(here.offset), marks_.push_back(here);
+      continue;
+    }
+    if (here.offset >= marks_.back().offset + distance) marks_.push_back(here);
+    const std::uint32_t bytes = length_of(rest);
+    here.offset += bytes, here.position.character += units_of(bytes, encoding_);
   }
 }
 
@@ -55,11 +66,10 @@ std::uint32_t Positions::line_end(std::uint32_t line) const {
 
 Position Positions::at(std::uint32_t offset) const {
   offset = std::min(offset, static_cast<std::uint32_t>(text_.size()));
-  const auto after = std::upper_bound(starts_.begin(), starts_.end(), offset);
-  Position position;
-  position.line = static_cast<std::uint32_t>(after - starts_.begin()) - 1;
+  auto [i, position] = *std::prev(std::upper_bound(marks_.begin(), marks_.end(), offset,
+                                                   [](std::uint32_t x, const Mark& m) { return x < m.offset; }));
   const std::uint32_t end = std::min(offset, line_end(position.line));
-  for (std::uint32_t i = starts_[position.line]; i < end;) {
+  while (i < end) {
     const std::uint32_t bytes = length_of(text_.substr(i));
     if (i + bytes > end) break;
     position.character += units_of(bytes, encoding_);
@@ -68,14 +78,17 @@ Position Positions::at(std::uint32_t offset) const {
   return position;
 }
 
-std::uint32_t Positions::offset(Position position) const {
-  if (position.line >= starts_.size()) return static_cast<std::uint32_t>(text_.size());
-  const std::uint32_t end = line_end(position.line);
-  std::uint32_t counted = 0, i = starts_[position.line];
-  while (i < end && counted < position.character) {
+std::uint32_t Positions::offset(Position wanted) const {
+  if (wanted.line >= starts_.size()) return static_cast<std::uint32_t>(text_.size());
+  const std::uint32_t end = line_end(wanted.line);
+  const auto is_before = [](Position x, const Mark& m) {
+    return x.line != m.position.line ? x.line < m.position.line : x.character < m.position.character;
+  };
+  auto [i, position] = *std::prev(std::upper_bound(marks_.begin(), marks_.end(), wanted, is_before));
+  while (i < end && position.character < wanted.character) {
     const std::uint32_t bytes = length_of(text_.substr(i)), units = units_of(bytes, encoding_);
-    if (counted + units > position.character) break;
-    counted += units;
+    if (position.character + units > wanted.character) break;
+    position.character += units;
     i += bytes;
   }
   return i;

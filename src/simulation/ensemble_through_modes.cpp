@@ -8,6 +8,7 @@
 
 #include "simulation/energy_balance.hpp"
 #include "simulation/hybrid_motion.hpp"
+#include "simulation/methods.hpp"
 #include "simulation/observables.hpp"
 
 #include <algorithm>
@@ -32,16 +33,6 @@ struct Members {
   std::atomic<std::size_t> next{0};
 
   bool interrupted() const { return options.interrupt && options.interrupt->load(std::memory_order_relaxed); }
-  TaylorOptions taylor() const {
-    TaylorOptions out;
-    out.tolerance = options.tolerance;
-    out.order = options.order;
-    out.maximum_steps = options.maximum_steps;
-    out.interrupt = options.interrupt;
-    out.backend = options.backend;
-    out.cache = options.cache;
-    return out;
-  }
 };
 
 void check(const Model& model, const EnsembleStart& start) {
@@ -75,7 +66,7 @@ class Member {
         number_(number),
         begin_(members.start.begin_of(number)),
         end_(members.start.end_of(number)),
-        motion_(members.library, parameters(), members.taylor()),
+        motion_(members.library, parameters(), taylor_options(members.options)),
         balance_(members.energy_terms, members.energy_jumps) {}
 
   void carry_out() {

@@ -3,6 +3,7 @@
 #include "simulation/method.hpp"
 
 #include <maupertuis/diagnostic.hpp>
+#include <maupertuis/integrator.hpp>
 #include <maupertuis/simulation.hpp>
 #include <maupertuis/stiff.hpp>
 #include <maupertuis/variational.hpp>
@@ -15,6 +16,19 @@ namespace maupertuis {
 /// The options with a method: where none is asked for that of the model's `method`, or Automatic. Its step and order go
 /// with it wherever they are not asked for either and the method is the same.
 SimulationOptions with_method_of(const Model& model, SimulationOptions options);
+
+/// Those of Taylor's steps among the options of a run, or of many.
+template <class Options>
+TaylorOptions taylor_options(const Options& options) {
+  TaylorOptions out;
+  out.tolerance = options.tolerance;
+  out.order = options.order;
+  out.maximum_steps = options.maximum_steps;
+  out.interrupt = options.interrupt;
+  out.backend = options.backend;
+  out.cache = options.cache;
+  return out;
+}
 
 /// Nothing, with a diagnostic, for constraints between velocities (E0720), without a positive step (E0721), and for an
 /// order that there is none of (E0722).

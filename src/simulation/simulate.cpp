@@ -38,17 +38,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-TaylorOptions taylor_options(const SimulationOptions& options) {
-  TaylorOptions out;
-  out.tolerance = options.tolerance;
-  out.order = options.order;
-  out.maximum_steps = options.maximum_steps;
-  out.interrupt = options.interrupt;
-  out.backend = options.backend;
-  out.cache = options.cache;
-  return out;
-}
-
 std::unique_ptr<Method> taylor_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
                                       const SimulationOptions& options) {
   return method_of(

@@ -120,6 +120,13 @@ TEST_CASE("results that cannot be written leave what was there") {
   CHECK(contains(full.err, "E0805"));
   const Outcome closed = shell("{ \"$MAUP\" simulate " + model + " --json; echo code $? >&2; } | true");
   CHECK(!contains(closed.err, "internal error"));
+  // An editor that sends and does not read.
+  const Outcome deaf = shell(
+      "printf 'Content-Length: 70\\r\\n\\r\\n"
+      "{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"initialize\",\"params\":{\"rootUri\":\"\"}}' | \"$MAUP\" lsp "
+      ">/dev/full");
+  CHECK(deaf.code == 3);
+  CHECK(contains(deaf.err, "E0805"));
 }
 
 TEST_CASE("a wrong model writes nothing") {

@@ -99,7 +99,7 @@ TEST_CASE("simulate shows charges with what flowed out, derive the symmetric ten
   }
   CHECK(found);
   const Outcome derived = maup({"derive", "-"}, string_text), document = maup({"derive", "-", "--json"}, string_text);
-  CHECK(contains(derived.out, "Symmetric stress-energy tensor, Lorentz-invariant with the speed^2 1"));
+  CHECK(contains(derived.out, "Symmetric stress-energy tensor, Lorentz-invariant with c^2 = 1"));
   CHECK(contains(derived.out, "S_x   = -u_x u'"));
   CHECK(nlohmann::json::parse(document.out).at("stress_energy").at("certified") == true);
   const Folder folder;

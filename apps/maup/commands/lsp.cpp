@@ -13,6 +13,13 @@ ExitCode serve(Console& console) {
   lsp::Server server(STDIN_FILENO, STDOUT_FILENO, interrupt_flag());
   const bool good = server.run();
   if (good || interrupt_flag()) return ExitCode::Fine;
+  if (server.output_failed()) {
+    Diagnostics diagnostics;
+    diagnostics.error("E0805", {}, "The answers could not be written to standard output.",
+                      "The editor no longer reads them, or they go to a file on a full disk.");
+    console.show(diagnostics, SourceText("standard output", ""));
+    return ExitCode::RunFailed;
+  }
   console.say("maup lsp: the editor left without `shutdown` and `exit`.\n");
   return ExitCode::ModelWrong;
 }

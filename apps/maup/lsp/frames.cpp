@@ -37,11 +37,14 @@ std::size_t content_length(const std::string& header) {
 
 }  // namespace
 
-/// More bytes; false at the end of the stream, and when a signal asks to stop.
+/// More bytes; false at the end of the stream, when a signal asks to stop, and when the conversation has ended.
 bool FrameReader::fill() {
+  constexpr int half_a_second = 500;  // ms
   pollfd waiting{descriptor_, POLLIN, 0};
-  while (poll(&waiting, 1, -1) < 0)
-    if (errno != EINTR || stop_) return false;
+  for (int found = 0; found <= 0;) {
+    found = poll(&waiting, 1, half_a_second);
+    if (stop_ || ended_ || (found < 0 && errno != EINTR)) return false;
+  }
   char bytes[65536];
   ssize_t got = -1;
   do got = read(descriptor_, bytes, sizeof bytes);

@@ -16,8 +16,9 @@ struct Frame {
 /// Reads frames from a file descriptor. What is no frame is told and passed over up to the next header.
 class FrameReader {
  public:
-  /// `stop`: looked at when a signal comes.
-  FrameReader(int descriptor, const std::atomic<bool>& stop) : descriptor_(descriptor), stop_(stop) {}
+  /// `stop`: looked at when a signal comes; `ended`: twice a second.
+  FrameReader(int descriptor, const std::atomic<bool>& stop, const std::atomic<bool>& ended)
+      : descriptor_(descriptor), stop_(stop), ended_(ended) {}
 
   Frame next();
 
@@ -27,7 +28,7 @@ class FrameReader {
   void skip_to_header();
 
   int descriptor_;
-  const std::atomic<bool>& stop_;
+  const std::atomic<bool>&stop_, &ended_;
   std::string buffer_;
   std::size_t skip_ = 0;  // bytes of a body that is too large
 };
@@ -38,7 +39,7 @@ class FrameWriter {
   explicit FrameWriter(int descriptor) : descriptor_(descriptor) {}
 
   void write(std::string_view json);
-  bool failed() const { return failed_.load(); }
+  const std::atomic<bool>& failed() const { return failed_; }
 
  private:
   int descriptor_;

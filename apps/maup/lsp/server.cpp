@@ -72,7 +72,8 @@ class SignalsElsewhere {
 
 }  // namespace
 
-Server::Server(int in, int out, const std::atomic<bool>& stop) : reader_(in, stop), writer_(out), signal_(stop) {}
+Server::Server(int in, int out, const std::atomic<bool>& stop)
+    : writer_(out), reader_(in, stop, writer_.failed()), signal_(stop) {}
 Server::~Server() = default;
 
 bool Server::run() {

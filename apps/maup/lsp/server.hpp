@@ -29,6 +29,8 @@ class Server {
 
   /// Until `exit`, the end of the stream or a signal. True where the editor said `shutdown` before `exit`.
   bool run();
+  /// Whether an answer could not be written.
+  bool output_failed() const { return writer_.failed(); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -68,8 +70,8 @@ class Server {
   void refuse(const Json& id, int code, const std::string& message);
   void tell(const char* method, Json params);
 
-  FrameReader reader_;
   FrameWriter writer_;
+  FrameReader reader_;
   const std::atomic<bool>& signal_;
 
   std::mutex mutex_;  // of the queue and of what is cancelled

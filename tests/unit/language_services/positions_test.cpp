@@ -56,3 +56,21 @@ TEST_CASE("an empty text has one place") {
   CHECK(positions.at(7) == Position{});
   CHECK(positions.offset({3, 3}) == 0);
 }
+
+TEST_CASE("a long line is counted from places within it, in both directions") {
+  std::string text = "first\n";
+  for (int i = 0; i < 3000; ++i) text += "θ🎡x";  // 7 bytes, 4 units of UTF-16
+  text += "\nlast";
+  const Positions positions(text, Encoding::Utf16);
+  for (std::uint32_t i = 0; i < 3000; i += 7) {
+    const std::uint32_t begin = 6 + 7 * i;
+    CHECK(positions.at(begin) == Position{1, 4 * i});
+    CHECK(positions.at(begin + 2) == Position{1, 4 * i + 1});
+    CHECK(positions.at(begin + 6) == Position{1, 4 * i + 3});
+    CHECK(positions.offset({1, 4 * i}) == begin);
+    CHECK(positions.offset({1, 4 * i + 2}) == begin + 2);  // between the surrogates
+    CHECK(positions.offset({1, 4 * i + 3}) == begin + 6);
+  }
+  CHECK(positions.offset({1, 999'999}) == 6 + 7 * 3000);
+  CHECK(positions.at(static_cast<std::uint32_t>(text.size())) == Position{2, 4});
+}
