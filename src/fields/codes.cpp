@@ -72,6 +72,11 @@ constexpr CodeEntry kEntries[] = {
      "start u = exp(-((x - 0.4)/0.01)^2)\nrun 1\n",
      "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 200 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
      "start u = exp(-((x - 0.4)/0.01)^2)\nrun 1\n"},
+    {"W0653", "modes of a field without its dissipation",
+     "Modes of fields are those of the density of Lagrange's function alone: frequencies and shapes of motions that do "
+     "not decay. With dissipation each motion has a rate of decay and another frequency, of a string with r u' in "
+     "every place sqrt(ω^2 - (r/2ρ)^2).",
+     "", ""},
     {"N0648", "a constant of a field that no equation determines",
      "A potential w of u = w_x stands in the density by its derivatives alone. Then w plus any function of t is the "
      "same "

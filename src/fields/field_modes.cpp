@@ -339,6 +339,11 @@ class ModeProblem {
 FieldModes field_modes(const FieldEquations& equations, std::size_t count, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
   FieldModes out;
+  if (s.dissipation)
+    diagnostics.warning(
+        "W0653", s.density_span, "these are the modes without the dissipation of the field",
+        "Dissipation damps the motions, and shifts frequencies and shapes.",
+        "`maup modes --dispersion` has it in the relation of waves, and `maup simulate` shows the decay.");
   if (s.space.size() == 2) return plane_modes(equations, count, diagnostics);
   if (s.space.size() != 1 || !s.space.front().from) {
     refuse_modes_of(equations, diagnostics, "It has three space variables, or no domain.");

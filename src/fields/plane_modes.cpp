@@ -263,6 +263,7 @@ FieldModes plane_modes(const FieldEquations& equations, std::size_t count, Diagn
   FieldModes out;
   std::vector<double> before;
   std::vector<Eigen::VectorXd> shapes;
+  double off_before = 0, missing = 1;  // what is left of a geometric series beyond its last term
   for (std::size_t pass = 0; pass < (problem.gyroscopic() ? std::size(sizes_sideways) : std::size(sizes)); ++pass) {
     interrupt_of(*equations.system().context).throw_if_asked();
     problem.lay_out(problem.gyroscopic() ? sizes_sideways[pass] : sizes[pass]);
@@ -282,8 +283,13 @@ FieldModes plane_modes(const FieldEquations& equations, std::size_t count, Diagn
       out.errors.push_back(error + 4 * std::numeric_limits<double>::epsilon() * std::abs(out.frequencies[i]));
       if (i < count) off = std::max(off, error), largest = std::max(largest, std::abs(out.frequencies[i]));
     }
+    // Where coefficients jump within the domain convergence is slow, and the last change is less than what is left.
+    constexpr double slowest = 0.7, caution = 2;
+    const double ratio = off_before > 0 && std::isfinite(off_before) ? std::min(slowest, off / off_before) : 0;
+    off_before = off, missing = std::max(1.0, caution * ratio / (1 - ratio));
     if (off <= close * largest) break;
   }
+  for (double& error : out.errors) error *= missing;
   problem.part_equals(out.frequencies, shapes);
   out.frequencies.resize(std::min(count, out.frequencies.size()));
   out.errors.resize(out.frequencies.size());

@@ -102,3 +102,28 @@ TEST_CASE("plates have no modes yet, and it is told") {
   CHECK(field_modes(*study.field_equations(), 4, diagnostics).frequencies.empty());
   CHECK(diagnostics.has_errors());
 }
+
+TEST_CASE("frequencies of a membrane whose tension jumps within the domain are within their errors") {
+  // Separable: sin π y times a string whose tension jumps, on elements that end at the jump.
+  const std::string tension = "(1 + 3 step(x - 0.3))";
+  const FieldModes found = plane_modes_of(
+      "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 10 by 10 boundary u = 0\n"
+      "density = 1/2 u'^2 - 1/2 " +
+          tension + " (u_x^2 + u_y^2)\n",
+      1);
+  const FieldModes exact = plane_modes_of(
+      "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 10 boundary u = 0\n"
+      "density = 1/2 u'^2 - 1/2 " +
+          tension + " (u_x^2 + pi^2 u^2)\n",
+      1);
+  CHECK(std::abs(found.frequencies[0] - exact.frequencies[0]) < found.errors[0]);
+  CHECK(found.errors[0] < 0.1 * found.frequencies[0]);
+}
+
+TEST_CASE("modes without the dissipation of the field say so") {
+  Study study(SourceText("field.lag", rectangle("boundary left : u = 0\n") + "dissipation density = 0.1 u'^2\n"));
+  Diagnostics diagnostics;
+  field_modes(*study.field_equations(), 3, diagnostics);
+  REQUIRE(diagnostics.items().size() == 1);
+  CHECK(diagnostics.items()[0].code == "W0653");
+}
