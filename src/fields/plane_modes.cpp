@@ -272,7 +272,10 @@ FieldModes plane_modes(const FieldEquations& equations, std::size_t count, Diagn
     out.frequencies.clear(), shapes.clear();
     if (problem.gyroscopic() ? !solve_gyroscopic(motions, count + beyond, out.frequencies)
                              : !solve_conservative(motions, count + beyond, out.frequencies, shapes)) {
-      refuse_modes_of(equations, diagnostics, "Its energy is not positive.");
+      refuse_modes_of(equations, diagnostics,
+                      problem.gyroscopic()
+                          ? "Forces act sideways on velocities, and not every displacement costs energy."
+                          : "Its energy is not positive.");
       return {};
     }
     double off = 0, largest = 0;

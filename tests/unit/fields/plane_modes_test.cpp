@@ -127,3 +127,44 @@ TEST_CASE("modes without the dissipation of the field say so") {
   REQUIRE(diagnostics.items().size() == 1);
   CHECK(diagnostics.items()[0].code == "W0653");
 }
+
+TEST_CASE("a tension that is not along the sides: ω² = k² + l² + 2 β k l on a periodic square") {
+  const FieldModes found = plane_modes_of(
+      "dimensionless\nfield u(x, y) : number on x = 0 .. 2 pi, y = 0 .. 2 pi cells 5 by 5 boundary periodic\n"
+      "density = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2) - 0.3 u_x u_y\n",
+      9);
+  const double expected[] = {0, 1, 1, 1, 1, std::sqrt(1.4), std::sqrt(1.4), std::sqrt(2.6), std::sqrt(2.6)};
+  for (std::size_t i = 0; i < 9; ++i) CHECK(std::abs(found.frequencies[i] - expected[i]) < (i == 0 ? 1e-6 : 1e-11));
+  // k = −l: functions of x − y
+  const std::size_t n = found.places.size();
+  for (const std::size_t mode : {5u, 6u})
+    for (std::size_t i = 0; i + 1 < n; ++i)
+      for (std::size_t j = 0; j + 1 < n; ++j) {
+        const std::vector<double>& u = found.shapes[mode].fields[0];
+        CHECK(std::abs(u[j * n + i] - u[(j + 1) * n + i + 1]) < 1e-9);
+      }
+}
+
+TEST_CASE("a membrane that runs over two rollers: ω² = (1 − v²)² k² + (1 − v²) l²") {
+  // exp(iωt + i v ω x/(1 − v²)) sin kx sin ly, with k and l multiples of π
+  const FieldModes found = plane_modes_of(
+      "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 5 by 5 boundary u = 0\n"
+      "density = 1/2 (u' + 0.6 u_x)^2 - 1/2 (u_x^2 + u_y^2)\n",
+      3);
+  const double w = 0.64;  // 1 − v²
+  const double expected[] = {std::hypot(w * 1, std::sqrt(w) * 1), std::hypot(w * 2, std::sqrt(w) * 1),
+                             std::hypot(w * 1, std::sqrt(w) * 2)};
+  for (std::size_t i = 0; i < 3; ++i)
+    CHECK(std::abs(found.frequencies[i] - std::acos(-1.0) * expected[i]) < std::max(1e-9, found.errors[i]));
+}
+
+TEST_CASE("which way a tension leans: dω²/dβ = 2 for sin(πx/2) sin(πy/2), held at the left and below") {
+  const double beta = 1e-4;
+  const FieldModes found = plane_modes_of(
+      "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 5 by 5\n"
+      "density = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2) - 1e-4 u_x u_y\n"
+      "boundary left : u = 0\nboundary bottom : u = 0\n",
+      1);
+  const double change = std::pow(found.frequencies[0], 2) - std::pow(std::acos(-1.0), 2) / 2;
+  CHECK(change / beta == doctest::Approx(2).epsilon(1e-3));
+}
