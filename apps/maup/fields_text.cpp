@@ -171,7 +171,7 @@ std::string tensor_text(const FieldEquations& equations, const StressEnergy& ten
   const FieldSystem& s = equations.system();
   const std::size_t n = s.space.size();
   const auto name = [&](std::size_t mu) { return mu == n ? std::string("t") : s.space[mu].name; };
-  std::string out = fmt::format("\nSymmetric stress-energy tensor, Lorentz-invariant with c^2 = {}\n",
+  std::string out = fmt::format("\nSymmetric stress-energy tensor, Lorentz-invariant: speed^2 = {}\n",
                                 plain_of(equations, tensor.c_squared));
   const auto line = [&](const std::string& head, Expr e) {
     out += fmt::format("  {:<5} = {}\n", head, plain_of(equations, e));
@@ -180,7 +180,7 @@ std::string tensor_text(const FieldEquations& equations, const StressEnergy& ten
   for (std::size_t i = 0; i < n; ++i) line("S_" + name(i), tensor.energy_flux(i));
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = i; j < n; ++j) line("Θ^" + name(i) + name(j), tensor.stress(i, j));
-  out += "  w: density of energy, S: its flux, S/c^2: density of momentum, Θ: its flux\n";
+  out += "  w: density of energy, S: its flux, S/speed^2: density of momentum, Θ: its flux\n";
   if (!tensor.has_spin())
     return out + "  It is the canonical tensor.\n  Certified: symmetric, ∂_μ Θ^μν = 0 on solutions.\n";
   if (spin) {
@@ -439,6 +439,13 @@ std::string coupled_run_text(const FieldRunResult& run) {
 
 namespace {
 
+/// Charges of one label are told apart by their place in the list of conserved quantities.
+std::string label_of(const FieldCharge& c, const std::vector<FieldCharge>& all) {
+  const auto alike =
+      std::count_if(all.begin(), all.end(), [&](const FieldCharge& x) { return x.label() == c.label(); });
+  return alike > 1 ? fmt::format("{}, current {}", c.label(), c.current + 1) : c.label();
+}
+
 std::string charges_text(const FieldRunResult& run) {
   if (run.charges.empty()) return {};
   std::string out = fmt::format("\n  {:<30} {:>14} {:>14} {:>16}   {}\n", "conserved charges", "at the start",
@@ -446,7 +453,8 @@ std::string charges_text(const FieldRunResult& run) {
   for (const FieldCharge& c : run.charges) {
     const std::string out_of = c.booked ? fmt::format("{:.8g}", c.outflow) : "not measured";
     const std::string left = c.booked ? fmt::format("{:.2g} of its terms", c.left_over()) : "";
-    out += fmt::format("  {:<30} {:>14.8g} {:>14.8g} {:>16}   {}\n", c.label(), c.start, c.end, out_of, left);
+    out += fmt::format("  {:<30} {:>14.8g} {:>14.8g} {:>16}   {}\n", label_of(c, run.charges), c.start, c.end, out_of,
+                       left);
   }
   return out + "\n";
 }
@@ -456,6 +464,7 @@ Json charges_json(const FieldRunResult& run) {
   for (const FieldCharge& c : run.charges)
     out.push_back({{"name", c.name},
                    {"meaning", c.meaning},
+                   {"current", c.current},
                    {"start", c.start},
                    {"end", c.end},
                    {"outflow", c.booked ? Json(c.outflow) : Json(nullptr)},

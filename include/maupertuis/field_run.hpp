@@ -11,6 +11,7 @@ namespace maupertuis {
 
 /// Q = ∫ j^t dx of a conserved current along a run, and what flowed out of the sides.
 struct FieldCharge {
+  std::size_t current = 0;    // its place in FieldCurrents
   std::string name, meaning;  // of the current
   double start = 0, end = 0;  // SI
   double outflow = 0;         // ∮ j·n over the sides and the time of the run

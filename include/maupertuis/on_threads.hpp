@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -30,7 +31,11 @@ void on_threads(std::size_t threads, const Work& work, const Failed& failed) {
     }
   };
   std::vector<std::thread> others;
-  for (std::size_t i = 1; i < threads; ++i) others.emplace_back(guarded);
+  others.reserve(threads);
+  try {
+    for (std::size_t i = 1; i < threads; ++i) others.emplace_back(guarded);
+  } catch (const std::system_error&) {  // no more threads are to be had: those that are there do the work
+  }
   guarded();
   for (std::thread& thread : others) thread.join();
   if (thrown) std::rethrow_exception(thrown);

@@ -108,6 +108,7 @@ ChargeMeter::ChargeMeter(const FieldMotion& motion, const FieldEquations& equati
     const Expr density = with_given(s, c.density);
     if (!knows(s, motion.point_inputs(), density)) continue;
     FieldCharge charge;
+    charge.current = static_cast<std::size_t>(&c - currents.currents.data());
     charge.name = c.name, charge.meaning = c.meaning;
     charges_.push_back(charge);
     densities.push_back(density);

@@ -359,9 +359,7 @@ FieldModes field_modes(const FieldEquations& equations, std::size_t count, Diagn
   std::vector<Eigen::VectorXd> shapes;
   if (sideways ? !solve_gyroscopic(*motions, count, out.frequencies)
                : !solve_conservative(*motions, count, out.frequencies, shapes)) {
-    refuse_modes_of(equations, diagnostics,
-                    sideways ? "Forces act sideways on velocities, and not every displacement costs energy."
-                             : "Its energy is not positive.");
+    refuse_modes_of(equations, diagnostics, no_small_motions(*motions));
     return {};
   }
   out.places = problem.places();

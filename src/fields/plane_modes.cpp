@@ -8,6 +8,8 @@
 #include "fields/small_motions.hpp"
 #include "linear_algebra/products.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -61,7 +63,8 @@ class PlaneModes {
   }
 
   bool gyroscopic() const { return gyroscopic_; }
-  /// Degrees whose unknowns are about so many, more along the longer side.
+  /// Degrees whose unknowns are about so many, more along the longer side; along both sides more than before, so that
+  /// two sizes never agree because they are one.
   void lay_out(double unknowns) {
     constexpr double least = 8;  // of the shortest side: what a half wave needs
     const double per_field = unknowns / static_cast<double>(equations_.varied.size());
@@ -73,8 +76,11 @@ class PlaneModes {
     const double n = std::max(0.0, (-b + std::sqrt(std::max(0.0, b * b - 4 * ratio * c))) / (2 * ratio));
     const int small = static_cast<int>(least + n), large = std::max(small, static_cast<int>(least + ratio * n));
     axes_.clear();
-    for (std::size_t i = 0; i < 2; ++i)
-      axes_.emplace_back(from_[i], to_[i], (i == 0) == across ? small : std::min(large, most_degree_), s_.periodic);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const int wanted = (i == 0) == across ? small : std::min(large, most_degree_);
+      degrees_[i] = std::max(wanted, degrees_[i] + 2);
+      axes_.emplace_back(from_[i], to_[i], degrees_[i], s_.periodic);
+    }
     size_ = axes_[0].size() * axes_[1].size();
   }
 
@@ -94,6 +100,20 @@ class PlaneModes {
     out.mass = symmetric_part(quadratic_form(out.from_free, mass));
     out.stiffness = symmetric_part(quadratic_form(out.from_free, stiffness));
     if (gyroscopic_) out.gyroscopic = quadratic_form(out.from_free, sideways);
+    return out;
+  }
+
+  /// How much of a coefficient lies between the points of quadrature, beside its mean, at most: along each side for
+  /// some places of the other.
+  double unseen() const {
+    double out = 0;
+    for (const DensityEntry& e : entries_.list)
+      for (std::size_t along = 0; along < 2; ++along) {
+        if (!holds_symbol(e.value, s_.space[along].symbol)) continue;
+        const Axis& other = axes_[1 - along];
+        for (Eigen::Index i = 0; i < other.points(); i += std::max<Eigen::Index>(1, other.points() / 5))
+          out = std::max(out, unseen(e.value, along, other.place(i)));
+      }
     return out;
   }
 
@@ -137,6 +157,34 @@ class PlaneModes {
   }
 
  private:
+  static bool holds_symbol(Expr value, Expr symbol) {
+    const std::vector<Expr> below = symbols_of({&value, 1});
+    return std::find(below.begin(), below.end(), symbol) != below.end();
+  }
+  /// Along a line: the mean by quadrature against that of many places.
+  double unseen(Expr value, std::size_t along, double across) const {
+    constexpr int places = 4000;
+    const Expr root[] = {value};
+    const RepeatedEvaluation at(root);
+    const auto value_at = [&](double x) {
+      return at([&](Expr symbol) {
+               return symbol == s_.space[along].symbol       ? x
+                      : symbol == s_.space[1 - along].symbol ? across
+                                                             : values_.at(symbol);
+             })
+          .front();
+    };
+    const double length = to_[along] - from_[along];
+    double by_quadrature = 0, by_places = 0, size = 0;
+    for (Eigen::Index q = 0; q < axes_[along].points(); ++q)
+      by_quadrature += axes_[along].weight(q) * value_at(axes_[along].place(q)) / length;
+    for (int i = 0; i < places; ++i) {
+      const double v = value_at(from_[along] + length * (i + 0.5) / places);
+      by_places += v / places, size += std::abs(v) / places;
+    }
+    return size > 0 ? std::abs(by_quadrature - by_places) / size : 0;
+  }
+
   Eigen::Index index(std::size_t i, std::size_t j) const {
     return static_cast<Eigen::Index>(j) * axes_[0].size() + static_cast<Eigen::Index>(i);
   }
@@ -225,21 +273,32 @@ class PlaneModes {
     for (Eigen::Index i = 0; i < count; ++i) shapes[first + static_cast<std::size_t>(i)] = turned.col(i);
   }
 
-  static constexpr int most_degree_ = 80;
+  static constexpr int most_degree_ = 72;  // of the first size
   const FieldEquations& equations_;
   const FieldSystem& s_;
   const DensityEntries& entries_;
   Bindings values_;
   double from_[2] = {0, 0}, to_[2] = {0, 0};
+  int degrees_[2] = {0, 0};
   std::vector<Axis> axes_;
   Eigen::Index size_ = 0;  // functions of a field
   bool gyroscopic_ = false;
 };
 
+/// Whether ∂ℒ by the slope that is given at a side follows from it alone, as in E0292 of runs.
+bool says_the_force(const FieldEquations& equations, const BoundaryCondition& b) {
+  const FieldSystem& s = equations.system();
+  const Expr slope = s.jet_symbol(b.jet);
+  return s.jets_in(substitute(differentiate(s.expanded(s.density), slope), {{slope, s.expanded(b.value)}})).empty();
+}
+
 /// Why there are no modes; empty: there are.
 std::string trouble_of(const FieldEquations& equations, const DensityEntries& entries) {
   const FieldSystem& s = equations.system();
   if (!s.space[0].from || !s.space[1].from) return "It has no domain.";
+  for (const BoundaryCondition& b : s.boundary)
+    if (b.jet.order() == 1 && !says_the_force(equations, b))
+      return "A given slope at a side does not say what ∂ℒ/∂u_x is there, as other derivatives stand in it.";
   if (equations.bodies) return "Bodies take hold of it in the plane.";
   for (const DensityEntry& e : entries.list)
     if (e.da + e.ya > 1 || e.db + e.yb > 1 || e.ta + e.da + e.ya > 1 || e.tb + e.db + e.yb > 1)
@@ -272,10 +331,7 @@ FieldModes plane_modes(const FieldEquations& equations, std::size_t count, Diagn
     out.frequencies.clear(), shapes.clear();
     if (problem.gyroscopic() ? !solve_gyroscopic(motions, count + beyond, out.frequencies)
                              : !solve_conservative(motions, count + beyond, out.frequencies, shapes)) {
-      refuse_modes_of(equations, diagnostics,
-                      problem.gyroscopic()
-                          ? "Forces act sideways on velocities, and not every displacement costs energy."
-                          : "Its energy is not positive.");
+      refuse_modes_of(equations, diagnostics, no_small_motions(motions));
       return {};
     }
     double off = 0, largest = 0;
@@ -293,6 +349,18 @@ FieldModes plane_modes(const FieldEquations& equations, std::size_t count, Diagn
     if (off <= close * largest) break;
   }
   for (double& error : out.errors) error *= missing;
+  const double unseen = problem.unseen();
+  constexpr double much = 0.03, places = 1e-6;  // the latter: of the sum over places itself
+  if (!(unseen < much)) {
+    const FieldSystem& s = equations.system();
+    diagnostics.error(
+        "E0647", s.density_span, "the polynomials of the modes pass by what a coefficient has somewhere",
+        fmt::format("Between their points lie {:.2g} % of it, and no value could be trusted.", 100 * unseen),
+        "Make it wider, or `maup simulate` the motion with more `cells`.");
+    return {};
+  }
+  if (unseen > places)
+    for (std::size_t i = 0; i < out.errors.size(); ++i) out.errors[i] += 4 * unseen * std::abs(out.frequencies[i]);
   problem.part_equals(out.frequencies, shapes);
   out.frequencies.resize(std::min(count, out.frequencies.size()));
   out.errors.resize(out.frequencies.size());

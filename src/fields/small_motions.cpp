@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
 
 namespace maupertuis {
 
@@ -77,14 +79,40 @@ bool has_modes_at_rest(const FieldEquations& equations, bool linear, Diagnostics
   return true;
 }
 
+std::string no_small_motions(const SmallMotions& motions) {
+  if (!motions.mass.allFinite() || !motions.stiffness.allFinite() || !motions.gyroscopic.allFinite())
+    return "A coefficient of its density is infinite, or has no value, somewhere in the domain.";
+  if (!(motions.mass.trace() > 0)) return "No velocity has a positive kinetic energy.";
+  if (motions.gyroscopic.size() > 0 && motions.gyroscopic.cwiseAbs().maxCoeff() > 0)
+    return "Forces act sideways on velocities, and not every displacement costs energy.";
+  return "Its kinetic energy is not positive, or its potential energy falls without bound.";
+}
+
+namespace {
+
+/// σ such that K + σ M is positive definite, σ > 0: of a rest that is unstable not the first one.
+std::optional<Eigen::LLT<Eigen::MatrixXd>> factor_with_shift(const Eigen::MatrixXd& k, const Eigen::MatrixXd& m,
+                                                             double& shift) {
+  constexpr int tries = 12;
+  for (int i = 0; i < tries && std::isfinite(shift); ++i, shift *= 8) {
+    Eigen::LLT<Eigen::MatrixXd> factor(symmetric_part(k + shift * m));
+    if (factor.info() == Eigen::Success) return factor;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 bool solve_conservative(const SmallMotions& motions, std::size_t count, std::vector<double>& out,
                         std::vector<Eigen::VectorXd>& shapes) {
   const Eigen::MatrixXd &kk = motions.stiffness, &mm = motions.mass;
-  double shift = kk.trace() / static_cast<double>(kk.rows());
+  if (!kk.allFinite() || !mm.allFinite() || !(mm.trace() > 0)) return false;
+  double shift = std::abs(kk.trace()) / static_cast<double>(kk.rows());
+  if (!(shift > 0)) shift = 1;            // a rest at which nothing costs energy
   for (int pass = 0; pass < 2; ++pass) {  // the second with σ of the size of what is looked for
-    const Eigen::LLT<Eigen::MatrixXd> factor(symmetric_part(kk + shift * mm));
-    if (factor.info() != Eigen::Success || !(shift > 0)) return false;
-    const Eigen::MatrixXd inverse = factor.matrixL().solve(Eigen::MatrixXd::Identity(mm.rows(), mm.cols()));
+    const auto factor = factor_with_shift(kk, mm, shift);
+    if (!factor) return false;
+    const Eigen::MatrixXd inverse = factor->matrixL().solve(Eigen::MatrixXd::Identity(mm.rows(), mm.cols()));
     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
     solver.compute(symmetric_part(product_transposed(product(inverse, mm), inverse)), Eigen::ComputeEigenvectors);
     const Eigen::VectorXd& mu = solver.eigenvalues();  // ascending
@@ -103,8 +131,14 @@ bool solve_conservative(const SmallMotions& motions, std::size_t count, std::vec
 /// With N² = M̂ the Hermitian matrix ((−iĜ, N), (N, 0)) has
 /// the eigenvalues μ. As a real symmetric matrix of twice the size it has each of them twice.
 bool solve_gyroscopic(const SmallMotions& motions, std::size_t count, std::vector<double>& out) {
+  if (!motions.stiffness.allFinite() || !motions.mass.allFinite() || !(motions.mass.trace() > 0)) return false;
   const Eigen::LLT<Eigen::MatrixXd> factor(motions.stiffness);
-  if (factor.info() != Eigen::Success) return false;
+  // Where a displacement costs nothing its pivot is rounding, of either sign.
+  constexpr double rounding = 1e-13;
+  const Eigen::ArrayXd pivots = factor.matrixLLT().diagonal().array().square();
+  if (factor.info() != Eigen::Success ||
+      pivots.minCoeff() < rounding * static_cast<double>(pivots.size()) * pivots.maxCoeff())
+    return false;
   const Eigen::Index n = motions.mass.rows();
   const Eigen::MatrixXd inverse = factor.matrixL().solve(Eigen::MatrixXd::Identity(n, n));
   const Eigen::MatrixXd m = symmetric_part(product_transposed(product(inverse, motions.mass), inverse));

@@ -38,6 +38,8 @@ struct SmallMotions {
   Eigen::MatrixXd from_free;  // all unknowns from the free ones
 };
 
+/// Why solve_conservative or solve_gyroscopic has no answer, in a sentence.
+std::string no_small_motions(const SmallMotions& motions);
 /// M c = μ (K + σ M) c, μ = 1/(ω² + σ): the lowest frequencies are the largest μ, which keep their digits.
 bool solve_conservative(const SmallMotions& motions, std::size_t count, std::vector<double>& out,
                         std::vector<Eigen::VectorXd>& shapes);

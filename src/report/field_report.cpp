@@ -131,7 +131,7 @@ class FieldComposer {
       out.conserved.push_back({c.name + ": " + c.meaning, {current("t"), shown(c.density), "", ""}, "", ""});
       for (std::size_t x = 0; x < c.fluxes.size(); ++x)
         out.conserved.push_back({"", {current(s_.space[x].name), shown(c.fluxes[x]), "", ""}, "", ""});
-      add_charge(out, c, run);
+      add_charge(out, static_cast<std::size_t>(&c - found.currents.data()), run);
     }
     add_stress_energy(out, found);
     if (!found.basis.empty()) out.conserved.push_back({found.basis, {}, "", ""});
@@ -159,10 +159,10 @@ class FieldComposer {
   }
 
   /// What the charge of a current is in the run.
-  static void add_charge(ReportContent& out, const FieldCurrent& c, const FieldRunResult* run) {
+  static void add_charge(ReportContent& out, std::size_t current, const FieldRunResult* run) {
     if (!run) return;
     for (const FieldCharge& charge : run->charges) {
-      if (charge.name != c.name || charge.meaning != c.meaning) continue;
+      if (charge.current != current) continue;
       std::string text = fmt::format("In the run ∫ j^t is {} at the start and {} at the end",
                                      short_number(charge.start, 8), short_number(charge.end, 8));
       if (charge.booked)

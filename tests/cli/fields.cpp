@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include <cmath>
 
@@ -83,6 +84,28 @@ TEST_CASE("options that have no meaning for fields are refused") {
   CHECK(contains(maup({"plot", "-", "--y", "w"}, string_text).err, "`w` is no field"));
 }
 
+TEST_CASE("charges of currents of one name are told apart, and stand under their own in the report") {
+  const Folder folder;
+  const std::string model =
+      folder.write("two.lag",
+                   "dimensionless\nfield u(x) : number on x = 0 .. 2 cells 20 order 8 boundary periodic\n"
+                   "density = 1/2 u'^2 - 1/2 u_x^2 + 0.3 u' u_x\nstart u = sin(pi x)^3\nrun 1\n");
+  const auto charges = nlohmann::json::parse(maup({"simulate", model, "--json"}).out).at("charges");
+  std::set<std::size_t> currents;
+  std::size_t dilations = 0;
+  for (const auto& c : charges)
+    currents.insert(c.at("current").get<std::size_t>()), dilations += c["name"] == "dilation";
+  CHECK(currents.size() == charges.size());
+  CHECK(dilations == 2);
+  CHECK(contains(maup({"simulate", model}).out, "dilation, current "));
+  const std::string page = folder.path("two.html");
+  REQUIRE(maup({"report", model, "-o", page}).code == 0);
+  const std::string text = read(page);
+  std::size_t sentences = 0;
+  for (std::size_t at = 0; (at = text.find("In the run ∫ j^t is", at)) != std::string::npos; ++at) ++sentences;
+  CHECK(sentences == charges.size());
+}
+
 TEST_CASE("simulate shows charges with what flowed out, derive the symmetric tensor") {
   const Outcome text = maup({"simulate", "-"}, string_text), json = maup({"simulate", "-", "--json"}, string_text);
   CHECK(text.code == 0);
@@ -99,7 +122,7 @@ TEST_CASE("simulate shows charges with what flowed out, derive the symmetric ten
   }
   CHECK(found);
   const Outcome derived = maup({"derive", "-"}, string_text), document = maup({"derive", "-", "--json"}, string_text);
-  CHECK(contains(derived.out, "Symmetric stress-energy tensor, Lorentz-invariant with c^2 = 1"));
+  CHECK(contains(derived.out, "Symmetric stress-energy tensor, Lorentz-invariant: speed^2 = 1"));
   CHECK(contains(derived.out, "S_x   = -u_x u'"));
   CHECK(nlohmann::json::parse(document.out).at("stress_energy").at("certified") == true);
   const Folder folder;

@@ -312,6 +312,9 @@ TEST_CASE("frames that are none are answered and survived") {
   complained(std::string(10'000, 'x'), -32700);
   const std::string deep = std::string(100'000, '[');
   complained("Content-Length: 100000\r\n\r\n" + deep, -32700);
+  const std::string closed = deep + std::string(100'000, ']');  // JSON, and deeper than a stack
+  const std::string nested = "{\"jsonrpc\":\"2.0\",\"method\":\"$/cancelRequest\",\"params\":{\"id\":" + closed + "}}";
+  complained("Content-Length: " + std::to_string(nested.size()) + "\r\n\r\n" + nested, -32700);
   // Other headers, other cases of letters, and lines that end by \n alone are frames.
   const std::string text =
       R"({"jsonrpc":"2.0","id":"text id","method":"textDocument/foldingRange","params":)" + about(uri).dump() + "}";

@@ -27,6 +27,25 @@ int version_of(const Json& params) {
 
 std::string key_of(const Json& id) { return id.dump(-1, ' ', true, Json::error_handler_t::replace); }
 
+/// Whether brackets stand in each other deeper than any message of the protocol has them, and than values are copied
+/// and written without end of the stack.
+bool is_too_deep(std::string_view json) {
+  constexpr int most = 200;
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    if (quoted && json[i] == '\\')
+      ++i;
+    else if (json[i] == '"')
+      quoted = !quoted;
+    else if (!quoted && (json[i] == '[' || json[i] == '{') && ++depth > most)
+      return true;
+    else if (!quoted && (json[i] == ']' || json[i] == '}'))
+      --depth;
+  }
+  return false;
+}
+
 std::chrono::milliseconds milliseconds_of(const Json& value, std::chrono::milliseconds otherwise) {
   if (!value.is_number()) return otherwise;
   return std::chrono::milliseconds(static_cast<long>(std::min(std::max(value.get<double>(), 0.0), 3.6e6)));
@@ -100,10 +119,11 @@ void Server::read() {
     event.kind = Event::Kind::Malformed;
     event.text = std::move(frame.text);
     if (frame.kind == Frame::Kind::Message) {
-      event.message = Json::parse(event.text, nullptr, false);
-      const bool json = !event.message.is_discarded();
+      const bool deep = is_too_deep(event.text);
+      event.message = deep ? Json() : Json::parse(event.text, nullptr, false);
+      const bool json = !deep && !event.message.is_discarded();
       event.kind = json ? Event::Kind::Message : Event::Kind::Malformed;
-      event.text = json ? std::string() : "a message that is no JSON";
+      event.text = json ? std::string() : deep ? "a message nested too deeply" : "a message that is no JSON";
       if (!json) event.message = nullptr;
     }
     const bool last = member(event.message, "method") == "exit";

@@ -168,3 +168,56 @@ TEST_CASE("which way a tension leans: dω²/dβ = 2 for sin(πx/2) sin(πy/2), h
   const double change = std::pow(found.frequencies[0], 2) - std::pow(std::acos(-1.0), 2) / 2;
   CHECK(change / beta == doctest::Approx(2).epsilon(1e-3));
 }
+
+namespace {
+
+/// The code of the one diagnostic of modes that are refused.
+std::string refusal(const std::string& text) {
+  Study study(SourceText("field.lag", text));
+  const FieldEquations* equations = study.field_equations();
+  REQUIRE_MESSAGE(equations, text);
+  Diagnostics diagnostics;
+  CHECK(field_modes(*equations, 3, diagnostics).frequencies.empty());
+  REQUIRE(diagnostics.items().size() == 1);
+  return diagnostics.items()[0].code;
+}
+
+const std::string square = "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 ";
+
+}  // namespace
+
+TEST_CASE("two fields that turn into each other: sqrt(π² (m² + n²) + W²) ± W, each within its error") {
+  // Sizes of two fields are half as large: two sizes with the same degrees would agree on anything.
+  const FieldModes found = plane_modes_of(
+      "dimensionless\nfield u(x, y), v(x, y) : number on x = 0 .. 1, y = 0 .. 1 boundary u = 0, v = 0\n"
+      "density = 1/2 (u'^2 + v'^2) - 1/2 (u_x^2 + u_y^2 + v_x^2 + v_y^2) + 3 (u v' - v u')\n",
+      8);
+  const double pi = std::acos(-1.0);
+  const double squares[] = {2, 5, 5, 8, 10, 10};  // of m and n
+  for (std::size_t i = 0; i < 6; ++i) {
+    const double expected = std::sqrt(pi * pi * squares[i] + 9) - 3;
+    CHECK(std::abs(found.frequencies[i] - expected) <= std::max(found.errors[i], 1e-13 * expected));
+  }
+}
+
+TEST_CASE("a rest that is unstable grows, at its rate") {
+  const FieldModes found =
+      plane_modes_of(square + "boundary u = 0\ndensity = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2) + 20 (1 - cos u)\n", 2);
+  const double pi = std::acos(-1.0);
+  CHECK(std::abs(found.frequencies[0] + std::sqrt(20 - 2 * pi * pi)) < 1e-10);
+  CHECK(std::abs(found.frequencies[1] - std::sqrt(5 * pi * pi - 20)) < 1e-10);
+}
+
+TEST_CASE("modes that nothing is known of are refused") {
+  // Narrower than the distance of any points, infinite, without inertia, and a slope that says nothing of the force.
+  CHECK(
+      refusal(square + "boundary u = 0\ndensity = 1/2 (1 + 50 exp(-(400 (x - 0.5))^2)) u'^2 - 1/2 (u_x^2 + u_y^2)\n") ==
+      "E0647");
+  CHECK(refusal(square + "boundary u = 0\ndensity = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2) - u^2/(x - 0.5)^2\n") == "E0644");
+  CHECK(refusal(square + "boundary u = 0\nparam s = 0\ndensity = 1/2 s u'^2 - 1/2 (u_x^2 + u_y^2)\n") == "E0644");
+  CHECK(refusal(square + "\nboundary left : u_x = 0\ndensity = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2) - 0.3 u_x u_y\n") ==
+        "E0644");
+  // Free on all sides, and forces sideways: some displacements cost nothing.
+  CHECK(refusal("dimensionless\nfield u(x, y), v(x, y) : number on x = 0 .. 1, y = 0 .. 1\n"
+                "density = 1/2 (u'^2 + v'^2) - 1/2 (u_x^2 + u_y^2 + v_x^2 + v_y^2) + 3 (u v' - v u')\n") == "E0644");
+}
