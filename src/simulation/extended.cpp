@@ -167,9 +167,11 @@ class ExtendedRun {
       out_.reason = fmt::format("Contact {}: {}", system_.contact_label(*motion.trouble), motion.reason);
     if (!motion.final.t.empty()) out_.reached = Rational::parse(motion.final.t)->to_double();
     if (motion.ending != StepEnding::None) return;
-    if (motion.met && !motion.roots.empty() && is_stop(motion.roots.back())) {
+    const auto stop =
+        std::find_if(motion.roots.begin(), motion.roots.end(), [&](const ExtendedRoot& r) { return is_stop(r); });
+    if (motion.met && stop != motion.roots.end()) {
       out_.ending = Ending::Stopped;
-      out_.reason = fmt::format("the event `{}` stopped the run", name_of(motion.roots.back()));
+      out_.reason = fmt::format("the event `{}` stopped the run", name_of(*stop));
       return;
     }
     if (!plan_.problem.until) return;

@@ -38,6 +38,8 @@ class Modes {
   void note_step();
   /// Carries out what was met: sets, impacts, the mode after them. Nothing more where out.ending says why.
   void settle(const Met& met);
+  /// Adds what happened at a time.
+  void add(ExtendedRoot root, const T& t);
   bool any() const { return !problem_.contacts.frictions.empty(); }
   bool has_forces() const;
 
@@ -78,6 +80,7 @@ class Modes {
   std::vector<Choice> choices(const std::vector<std::size_t>& touching, const Met& met) const;
   Choice choice_of_contact(std::size_t contact, const Met& met) const;
   ExtendedMode mode_of(const std::vector<Choice>& list, const std::vector<std::size_t>& taken) const;
+  bool begins_slowly(InMode& candidate, const typename Stepper<T>::Outlook& outlook);
   bool fits(InMode& candidate, const std::vector<std::size_t>& touching, const Met& met, bool lenient,
             std::vector<T>* accelerations);
   void put_at_zero(InMode& candidate, const std::vector<std::size_t>& touching, const Met& met);
@@ -95,6 +98,7 @@ class Modes {
   std::map<std::string, std::unique_ptr<InMode>> modes_;
   InMode* now_ = nullptr;
   Workspace<T> base_;               // the kernel of the problem, at points
+  std::vector<T> times_;            // [out_.roots] at which they were located
   std::vector<std::int8_t> sides_;  // of its switches
   std::optional<ContactPoint<T>> point_;
   std::vector<T> compliance_;  // [contacts] what a force λ = 1 does to g̈, at this instant

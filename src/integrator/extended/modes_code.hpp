@@ -282,8 +282,7 @@ bool Modes<T>::hit(const std::vector<std::size_t>& touching, Met& met) {
                 at_once ? "no impulses were found that keep all contacts that are hit from closing."
                         : "impacts follow each other without an end.");
   for (const auto& blow : *blows)
-    out_.roots.push_back(
-        {ExtendedRoot::Kind::Impact, blow.contact, before, text_of(blow.impulse), text_of(blow.speed)});
+    add({ExtendedRoot::Kind::Impact, blow.contact, before, text_of(blow.impulse), text_of(blow.speed)}, t_);
   v_ = std::move(v);
   std::erase_if(met.left, [](const ExtendedWatch& w) { return w.what == What::Force; });
   const bool is_short = abs(t_ - last_impact_) <= through_modes::roundings * epsilon<T>() * abs(t_);
@@ -369,14 +368,30 @@ void Modes<T>::put_at_zero(InMode& candidate, const std::vector<std::size_t>& to
   }
 }
 
+/// A slip whose rate is rounding, as where friction gives way with μ_s = μ, begins with the second power of time: then
+/// it is put there.
+template <class T>
+bool Modes<T>::begins_slowly(InMode& candidate, const typename Stepper<T>::Outlook& outlook) {
+  bool any = false;
+  for (std::size_t k = 0; k < candidate.program.watches.size(); ++k) {
+    const ExtendedWatch& w = candidate.program.watches[k];
+    if (w.what != What::Slip || abs(point_->slip[w.index]) > rest_slip(w.index)) continue;
+    if (abs(outlook.slopes[k]) > epsilon_to<T>(0.85) * size_along(point_->tangent[w.index], acceleration_)) continue;
+    candidate.stepper->put_at_zero(k, 2);
+    any = true;
+  }
+  return any;
+}
+
 /// Whether the motion in a mode keeps its conditions. Lenient: forces that are 0 to rounding of others may be violated.
 template <class T>
 bool Modes<T>::fits(InMode& candidate, const std::vector<std::size_t>& touching, const Met& met, bool lenient,
                     std::vector<T>* accelerations) {
   candidate.stepper->start(t_, q_, v_);
   put_at_zero(candidate, touching, met);
-  const typename Stepper<T>::Outlook outlook = candidate.stepper->outlook(bound_);
+  typename Stepper<T>::Outlook outlook = candidate.stepper->outlook(bound_);
   if (outlook.ending != StepEnding::None) return false;
+  if (begins_slowly(candidate, outlook)) outlook = candidate.stepper->outlook(bound_);
   const auto is_force = [](const ExtendedWatch& w) { return w.what == What::Force || w.what == What::Hold; };
   T largest = T(0);
   const auto& watches = candidate.program.watches;
@@ -392,10 +407,15 @@ bool Modes<T>::fits(InMode& candidate, const std::vector<std::size_t>& touching,
       if (lenient) continue;
       return false;
     }
+    // λ was located to rounding of the time alone: what it does next counts.
+    if (w.what == What::Force && abs(outlook.values[k]) <= epsilon_to<T>(0.7) * size_of_force(w.index)) {
+      if (outlook.slopes[k] >= 0) continue;
+      released_[w.index] = true;
+      return false;
+    }
     const bool must_move = w.what == What::Slip && !(abs(point_->slip[w.index]) > rest_slip(w.index));
     const bool must_press = w.what == What::Force && !lenient;
     if (outlook.sides[k] > 0 || (outlook.sides[k] == 0 && !must_move && !must_press)) continue;
-    if (w.what == What::Force && through_modes::holds(met.left, w.what, w.index)) released_[w.index] = true;
     if (!lenient || !is_force(w) || abs(outlook.values[k]) > epsilon_to<T>(0.8) * largest) return false;
   }
   *accelerations = outlook.accelerations;
@@ -430,10 +450,17 @@ bool Modes<T>::choose(const std::vector<std::size_t>& touching, const Met& met) 
   released_.assign(problem_.contacts.count, false);
   for (const ExtendedWatch& w : met.left)
     if (w.what == What::Force) released_[w.index] = true;
+  std::vector<T> first;
+  if (met.begins) {  // what acts without contacts is a first measure of forces
+    std::vector<Choice> apart = list;
+    std::erase_if(apart, [&](const Choice& c) { return c.index < problem_.contacts.count; });
+    InMode& free = in_mode(mode_of(apart, std::vector<std::size_t>(apart.size(), 0)));
+    free.stepper->start(t_, q_, v_);
+    note_accelerations(free.stepper->outlook(bound_).accelerations);
+  }
   InMode* found = nullptr;
   InMode* last = nullptr;
   bool by_leniency = false;
-  std::vector<T> first;
   for (const bool lenient : {false, true}) {
     for (std::size_t turn = 0; const std::vector<std::size_t>* taken = tries.number(turn); ++turn) {
       if (options_.interrupt && options_.interrupt->load(std::memory_order_relaxed))
@@ -473,7 +500,21 @@ template <class T>
 void Modes<T>::record(ExtendedRoot::Kind kind, std::size_t index, const std::optional<T>& time) {
   ExtendedRoot root{kind, index, stepper().sample(stepper().time()), {}, {}};
   if (time) root.state.t = text_of(*time);
-  out_.roots.push_back(std::move(root));
+  add(std::move(root), stepper().time());
+}
+
+/// Roots of one instant may be located some roundings or tolerances apart, one step after the other: they are told in
+/// the order of their kinds, so that runs of different digits tell the same.
+template <class T>
+void Modes<T>::add(ExtendedRoot root, const T& t) {
+  const auto rank = [](const ExtendedRoot& r) {
+    return r.kind == ExtendedRoot::Kind::Event ? 0 : r.kind == ExtendedRoot::Kind::Impact ? 1 : 2;
+  };
+  const T apart = std::max(epsilon_to<T>(0.9), exp2_of<T>(log2_tolerance_ + 6));
+  std::size_t at = out_.roots.size();
+  while (at > 0 && rank(out_.roots[at - 1]) > rank(root) && abs(t - times_[at - 1]) <= apart * abs(t)) --at;
+  out_.roots.insert(out_.roots.begin() + static_cast<std::ptrdiff_t>(at), std::move(root));
+  times_.insert(times_.begin() + static_cast<std::ptrdiff_t>(at), t);
 }
 
 template <class T>

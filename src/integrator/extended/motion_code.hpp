@@ -118,7 +118,7 @@ class Motion {
   void meet_event(std::size_t index, int direction, typename Modes<T>::Met& met) {
     const ExtendedEvent& event = problem_.events[index];
     if (event.direction != 0 && direction != event.direction) return;
-    out_.roots.push_back({ExtendedRoot::Kind::Event, index, stepper().sample(stepper().time()), {}, {}});
+    modes_.add({ExtendedRoot::Kind::Event, index, stepper().sample(stepper().time()), {}, {}}, stepper().time());
     out_.met = out_.met || event.action == ExtendedEvent::Action::Stop;
     if (event.action == ExtendedEvent::Action::Set) met.sets.push_back(index);
   }

@@ -1,7 +1,8 @@
 // Modes of contacts and friction in many digits, against closed forms in decimals.
 #include "decimal.hpp"
 
-#include <fmt/format.h>
+#include <fstream>
+#include <sstream>
 
 using namespace maupertuis;
 
@@ -131,4 +132,26 @@ TEST_CASE("what an event sets is refused where it breaks a constraint") {
                     "start x = -0.6, y = -0.8\nevent off when x = 0.1 rising : set x = -0.11\n"),
           options);
   CHECK(r.ending == Ending::SingularConstraints);
+}
+
+TEST_CASE("models of the gallery meet in quad what they meet in double, at times within the errors of double") {
+  for (const char* name : {"ball_on_string", "bouncing_dumbbell", "dry_hoop", "newtons_cradle", "rocking_block",
+                           "sliding_ladder", "stick_slip", "two_link_hopper", "wheel_brake"}) {
+    CAPTURE(std::string(name));
+    std::ostringstream text;
+    text << std::ifstream(std::string(PROJECT_DIR) + "/models/" + name + ".lag").rdbuf();
+    ModelText m(text.str());
+    const ExtendedResult quad = run(m, {});
+    const auto rough = simulate(m.model, m.equations, {}, m.diagnostics);
+    REQUIRE(rough);
+    CHECK(quad.ok());
+    REQUIRE(quad.happenings.size() == rough->happenings.size());
+    for (std::size_t i = 0; i < quad.happenings.size(); ++i) {
+      const Happening& h = rough->happenings[i];
+      CHECK(quad.happenings[i].kind == h.kind);
+      CHECK(quad.happenings[i].name == h.name);
+      CHECK(quad.happenings[i].t.digits >= 25);
+      CHECK(std::abs(std::stod(quad.happenings[i].t.text) - h.t) <= 4 * h.error + 1e-15);
+    }
+  }
 }
