@@ -48,6 +48,8 @@ std::string happening_text(const ExtendedHappening& h, const ExtendedResult& res
                                 second.empty() ? "" : " ", second, h.name);
   if (h.kind == Happening::Kind::Impact)
     out += " impact, impulse " + impulse_text(number_text(h.impulse), h.name, system);
+  else if (h.kind != Happening::Kind::Event)
+    out += " " + std::string(word_of(h.kind));
   return out + "\n";
 }
 

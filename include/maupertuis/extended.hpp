@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -18,8 +19,48 @@ enum class Mantissa { Bits113, Bits192, Bits384, Bits448 };
 
 /// What a root of an event function of the kernel does.
 struct ExtendedEvent {
-  enum class Action { Record, Stop, Hit } action = Action::Record;  // Hit: a gap that falls to 0, and an impact there
-  int direction = 0;  // of time: 1 rising, −1 falling, 0 both; a Hit is always one that falls
+  enum class Action { Record, Stop, Set } action = Action::Record;
+  int direction = 0;  // of time: 1 rising, −1 falling, 0 both
+  struct Assignment {
+    std::size_t coordinate = 0;
+    int order = 0;  // 0: q, 1: q̇
+  };
+  std::vector<Assignment> sets{};
+};
+
+/// A mode of contacts and frictions: which equations hold between two instants.
+struct ExtendedMode {
+  enum class Friction : std::int8_t { None, Stick, Forward, Backward };
+  std::vector<bool> closed;              // [contacts]
+  std::vector<Friction> friction;        // [contacts + frictions]
+  std::vector<std::int8_t> normal_sign;  // [frictions] of normal forces made of multipliers
+};
+
+/// What an event function of the kernel of a mode means, as ModeWatch of simulation.
+struct ExtendedWatch {
+  enum class What { Until, Event, Gap, Force, Hold, Slip, Normal } what = What::Event;
+  std::size_t index = 0;  // of the event, the contact, the friction
+};
+
+struct ExtendedProgram {
+  Kernel kernel;                       // its first observables are those of ExtendedProblem::kernel
+  std::vector<ExtendedWatch> watches;  // [events of the kernel]
+};
+
+/// Contacts and frictions in the plane. What they are at a point are observables of ExtendedProblem::kernel, whose last
+/// events are the gaps.
+struct ExtendedContacts {
+  std::size_t count = 0;       // of contacts
+  std::size_t first = 0;       // observables for each contact: ∂g/∂t, restitution, ∂g/∂q [2 + n]
+  std::size_t first_slip = 0;  // for each friction, those of contacts first: v_t, μ, μ_s, ∂v_t/∂q̇ [3 + n]
+  struct Friction {
+    bool present = false, sticking = false;  // sticking: it never slides
+    bool has_sign = false;                   // its normal force is made of multipliers
+  };
+  std::vector<std::size_t> kind{}, gap_kind{};  // [n], [contacts]: of one dimension share a number, and their sizes
+  std::vector<Friction> frictions{};            // [contacts + frictions]
+  bool simultaneous = false;                    // impacts of several contacts are shared by complementarity
+  std::function<ExtendedProgram(const ExtendedMode&)> program{};  // called by one thread
 };
 
 /// What is to be computed. Every number of it is an expression in a kernel of its own, so that 9.81 is the decimal and
@@ -35,8 +76,9 @@ struct ExtendedProblem {
   std::size_t rows = 0;                   // states wanted at begin, begin ± every, …, this many; then one at the end
   std::size_t times = 0;                  // states wanted at the times asked for, in the order of the run
   bool until = false;                     // the first event of the kernel ends the run
-  std::vector<ExtendedEvent> events{};    // what the others of the kernel do, in its order
-  std::size_t first_contact = 0;  // observables of `kernel` for each Hit: ∂g/∂t, restitution, ∂g/∂q [2 + n]
+  std::vector<ExtendedEvent> events{};    // what the next ones do, in their order
+  std::size_t first_set = 0;              // observables: the values that events set, one after the other
+  ExtendedContacts contacts{};
 };
 
 struct ExtendedOptions {
@@ -56,16 +98,17 @@ struct ExtendedSample {
   std::vector<std::string> multipliers;  // [constraints]; empty text where the equations do not determine λ
 };
 
-/// An event that was met, or one impulse of an impact.
+/// What happened at an instant.
 struct ExtendedRoot {
-  std::size_t event = 0;       // of ExtendedProblem::events
+  enum class Kind { Impact, Made, Lost, Stick, Slip, Event } kind = Kind::Event;
+  std::size_t index = 0;       // of the event, the contact, the friction
   ExtendedSample state;        // before an impact
-  std::string impulse, speed;  // Hit: Λ, and −ġ before it
+  std::string impulse, speed;  // Impact: Λ, and −ġ before it
 };
 
 struct ExtendedMotion {
   std::vector<ExtendedRoot> roots;
-  std::optional<std::size_t> trouble;    // of ExtendedProblem::events: where it could not go on; `reason` is said of it
+  std::optional<std::size_t> trouble;    // the contact where it could not go on; `reason` is said of it
   std::vector<ExtendedSample> rows, at;  // at: [times]
   ExtendedSample final;
   StepEnding ending = StepEnding::None;

@@ -107,8 +107,8 @@ constexpr std::array entries{
     CodeEntry{"E0725", "this method calculates in double alone",
               "--precision quad and --precision 100 run Taylor's method, whose order grows with the number of digits. "
               "The stiff and the "
-              "variational method have bounded orders. Of contacts, flights and impacts without friction are carried "
-              "through in many digits.",
+              "variational method have bounded orders. Contacts with friction in space are not carried through in many "
+              "digits: the forces in their cones are found by an iteration in double.",
               "", ""},
     CodeEntry{"E0726", "a run cannot end with a force that the model does not determine",
               "Where constraints depend on each other, or coordinates have removed one, its force is not unique.", "",

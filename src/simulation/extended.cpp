@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <random>
@@ -39,6 +40,24 @@ bool has_method(const Model& model, const ExtendedSimulationOptions& options, Di
       "Its order is bounded, so that a hundred digits would cost more steps than anyone can wait for.",
       "Take --method taylor, or leave it out.");
   return false;
+}
+
+Happening::Kind kind_of(ExtendedRoot::Kind kind) {
+  switch (kind) {
+    case ExtendedRoot::Kind::Impact:
+      return Happening::Kind::Impact;
+    case ExtendedRoot::Kind::Made:
+      return Happening::Kind::Made;
+    case ExtendedRoot::Kind::Lost:
+      return Happening::Kind::Lost;
+    case ExtendedRoot::Kind::Stick:
+      return Happening::Kind::Stick;
+    case ExtendedRoot::Kind::Slip:
+      return Happening::Kind::Slip;
+    case ExtendedRoot::Kind::Event:
+      break;
+  }
+  return Happening::Kind::Event;
 }
 
 class ExtendedRun {
@@ -130,17 +149,29 @@ class ExtendedRun {
     return run_extended(problem, level_.check, settings);
   }
 
-  bool is_stop(std::size_t event) const { return plan_.problem.events[event].action == ExtendedEvent::Action::Stop; }
+  bool is_stop(const ExtendedRoot& root) const {
+    return root.kind == ExtendedRoot::Kind::Event &&
+           plan_.problem.events[root.index].action == ExtendedEvent::Action::Stop;
+  }
+  /// Of the contact, the coordinate with friction, the event.
+  std::string name_of(const ExtendedRoot& root) const {
+    if (root.kind == ExtendedRoot::Kind::Event) return model_.experiment.events[root.index].name;
+    const std::size_t contacts = system_.contacts.size();
+    return root.index < contacts ? system_.contact_label(root.index) : system_.frictions[root.index - contacts].name;
+  }
 
   void tell_ending(const ExtendedMotion& motion) {
     out_.ending = ending_of(motion.ending);
     out_.reason = motion.reason;
-    if (motion.trouble) out_.reason = fmt::format("Contact {}: {}", plan_.watched[*motion.trouble].name, motion.reason);
+    if (motion.trouble)
+      out_.reason = fmt::format("Contact {}: {}", system_.contact_label(*motion.trouble), motion.reason);
     if (!motion.final.t.empty()) out_.reached = Rational::parse(motion.final.t)->to_double();
     if (motion.ending != StepEnding::None) return;
-    if (motion.met && !motion.roots.empty() && is_stop(motion.roots.back().event)) {
+    const auto stop =
+        std::find_if(motion.roots.begin(), motion.roots.end(), [&](const ExtendedRoot& r) { return is_stop(r); });
+    if (motion.met && stop != motion.roots.end()) {
       out_.ending = Ending::Stopped;
-      out_.reason = fmt::format("the event `{}` stopped the run", plan_.watched[motion.roots.back().event].name);
+      out_.reason = fmt::format("the event `{}` stopped the run", name_of(*stop));
       return;
     }
     if (!plan_.problem.until) return;
@@ -164,28 +195,63 @@ class ExtendedRun {
       out_.rows.push_back(agreed({rough.rows[i], companion.rows[i], fine.rows[i]}));
   }
 
-  /// As far as all meet the same in the same order.
+  using Roots = std::array<const ExtendedRoot*, 3>;  // of the run, its companion, its check
+
+  /// As far as all meet the same in the same order. Bounces without end are cut off at heights that depend on the
+  /// digits: from the first that one of them leaves out to the end of the bounces, whose time all extrapolate.
   void add_happenings(const ExtendedMotion& rough, const ExtendedMotion& companion, const ExtendedMotion& fine) {
-    const std::size_t n = system_.coordinates.size();
-    for (std::size_t i = 0; i < rough.roots.size(); ++i) {
-      const std::size_t event = rough.roots[i].event;
-      const auto is_same = [&](const ExtendedMotion& m) { return i < m.roots.size() && m.roots[i].event == event; };
-      if (!is_same(companion) || !is_same(fine)) break;
-      const Samples s{rough.roots[i].state, companion.roots[i].state, fine.roots[i].state};
-      const auto number = [&](const std::string ExtendedRoot::*value) {
-        return agreed(rough.roots[i].*value, companion.roots[i].*value, fine.roots[i].*value);
-      };
-      ExtendedHappening h{plan_.watched[event].kind,
-                          plan_.watched[event].name,
-                          agreed(s.rough.t, s.companion.t, s.fine.t),
-                          agreed(s, &ExtendedSample::q, 0, n),
-                          agreed(s, &ExtendedSample::v, 0, n),
-                          {},
-                          {}};
-      if (h.kind == Happening::Kind::Impact)
-        h.impulse = number(&ExtendedRoot::impulse), h.speed = number(&ExtendedRoot::speed);
-      out_.happenings.push_back(std::move(h));
+    const std::array<const std::vector<ExtendedRoot>*, 3> lists{&rough.roots, &companion.roots, &fine.roots};
+    std::array<std::size_t, 3> next{0, 0, 0};
+    const auto same = [&](const Roots& roots) {
+      return std::all_of(roots.begin(), roots.end(), [&](const ExtendedRoot* r) {
+        return r->kind == roots[0]->kind && r->index == roots[0]->index;
+      });
+    };
+    for (;;) {
+      Roots roots{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (next[k] >= lists[k]->size()) return;
+        roots[k] = &(*lists[k])[next[k]];
+      }
+      bool ends = false;
+      for (std::size_t k = 0; k < 3; ++k) ends = ends || ends_bounces(*lists[k], next[k]);
+      if (ends) {
+        for (std::size_t k = 0; k < 3; ++k)
+          while (next[k] < lists[k]->size() && is_impact_on((*lists[k])[next[k]], roots[0]->index)) ++next[k];
+        continue;
+      }
+      if (!same(roots)) return;
+      add_happening(roots);
+      for (std::size_t& k : next) ++k;
     }
+  }
+
+  static bool is_impact_on(const ExtendedRoot& root, std::size_t contact) {
+    return root.kind == ExtendedRoot::Kind::Impact && root.index == contact;
+  }
+  /// Whether it is the last impact on a contact that stays closed from then on.
+  static bool ends_bounces(const std::vector<ExtendedRoot>& roots, std::size_t i) {
+    return i + 1 < roots.size() && roots[i].kind == ExtendedRoot::Kind::Impact &&
+           roots[i + 1].kind == ExtendedRoot::Kind::Made && roots[i + 1].index == roots[i].index &&
+           roots[i].state.t != roots[i + 1].state.t;
+  }
+
+  void add_happening(const Roots& roots) {
+    const std::size_t n = system_.coordinates.size();
+    const Samples s{roots[0]->state, roots[1]->state, roots[2]->state};
+    const auto number = [&](const std::string ExtendedRoot::*value) {
+      return agreed(roots[0]->*value, roots[1]->*value, roots[2]->*value);
+    };
+    ExtendedHappening h{kind_of(roots[0]->kind),
+                        name_of(*roots[0]),
+                        agreed(s.rough.t, s.companion.t, s.fine.t),
+                        agreed(s, &ExtendedSample::q, 0, n),
+                        agreed(s, &ExtendedSample::v, 0, n),
+                        {},
+                        {}};
+    if (h.kind == Happening::Kind::Impact)
+      h.impulse = number(&ExtendedRoot::impulse), h.speed = number(&ExtendedRoot::speed);
+    out_.happenings.push_back(std::move(h));
   }
 
   /// One state, three times.

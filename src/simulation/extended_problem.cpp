@@ -1,6 +1,7 @@
 #include "simulation/extended_problem.hpp"
 
 #include "simulation/ending.hpp"
+#include "simulation/mode_library.hpp"
 #include "simulation/motion_kernel.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
@@ -52,6 +53,9 @@ class ExactPlanner {
     wanted.observables.insert(wanted.observables.end(), energies, all.expressions.end());
     out_.points = all.points;
     out_.reactions = all.reactions.size();
+    WantedFunctions along = wanted;
+    if (plan_.until) along.events.push_back(plan_.condition);
+    if (system_.has_modes()) library_ = std::make_shared<ModeLibrary>(model_, equations_, along);
     out_.problem.first_rate = wanted.observables.size();
     ExprVector velocities;
     for (const Coordinate& c : system_.coordinates) velocities.push_back(c.velocity);
@@ -65,7 +69,7 @@ class ExactPlanner {
     if (plan_.until) wanted.events.push_back(plan_.condition);
     out_.problem.until = plan_.until;
     watch_events(wanted);
-    watch_contacts(wanted);
+    add_contacts(wanted);
     without_forces(wanted);
     out_.problem.kernel = motion_kernel(equations_, wanted);
   }
@@ -73,30 +77,115 @@ class ExactPlanner {
   void watch_events(WantedFunctions& wanted) {
     for (const ModelEvent& e : model_.experiment.events) {
       wanted.events.push_back(with_reactions(equations_, {&e.function, 1}).front());
-      const bool stops = e.action == ModelEvent::Action::Stop;
-      out_.problem.events.push_back({stops ? ExtendedEvent::Action::Stop : ExtendedEvent::Action::Record, e.direction});
-      out_.watched.push_back({Happening::Kind::Event, e.name});
+      ExtendedEvent event{action_of(e.action), e.direction, {}};
+      for (const ModelEvent::Assignment& a : e.sets) event.sets.push_back({a.coordinate, a.order});
+      out_.problem.events.push_back(std::move(event));
     }
+    out_.problem.first_set = wanted.observables.size();
+    for (const ModelEvent& e : model_.experiment.events)
+      for (const ModelEvent::Assignment& a : e.sets) wanted.observables.push_back(a.value);
   }
 
-  void watch_contacts(WantedFunctions& wanted) {
-    ExprVector q;
-    for (const Coordinate& c : system_.coordinates) q.push_back(c.q);
-    out_.problem.first_contact = wanted.observables.size();
-    for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
-      const Contact& c = system_.contacts[i];
+  static ExtendedEvent::Action action_of(ModelEvent::Action action) {
+    using Action = ExtendedEvent::Action;
+    return action == ModelEvent::Action::Stop  ? Action::Stop
+           : action == ModelEvent::Action::Set ? Action::Set
+                                               : Action::Record;
+  }
+
+  /// A number for each: that of the first of its dimension.
+  template <class Items>
+  static std::vector<std::size_t> kinds_of(const Items& items) {
+    std::vector<std::size_t> out;
+    for (const auto& item : items) {
+      std::size_t k = 0;
+      while (!(items[k].dimension == item.dimension)) ++k;
+      out.push_back(k);
+    }
+    return out;
+  }
+
+  /// What contacts and frictions are at a point, and where the programs of their modes come from.
+  void add_contacts(WantedFunctions& wanted) {
+    if (!library_) return;
+    ExprVector q, v;
+    for (const Coordinate& c : system_.coordinates) q.push_back(c.q), v.push_back(c.velocity);
+    ExtendedContacts& out = out_.problem.contacts;
+    out.count = system_.contacts.size();
+    out.simultaneous = system_.impact_law == ImpactLaw::Simultaneous;
+    out.kind = kinds_of(system_.coordinates);
+    out.gap_kind = kinds_of(system_.contacts);
+    out.first = wanted.observables.size();
+    for (const Contact& c : system_.contacts) {
       wanted.events.push_back(c.gap);
-      out_.problem.events.push_back({ExtendedEvent::Action::Hit, -1});
-      out_.watched.push_back({Happening::Kind::Impact, system_.contact_label(i)});
       wanted.observables.push_back(differentiate(c.gap, context_.time()));
       wanted.observables.push_back(c.restitution);
       for (const Expr& slope : gradient(c.gap, q)) wanted.observables.push_back(slope);
     }
+    out.first_slip = wanted.observables.size();
+    for (std::size_t i = 0; i < out.count + system_.frictions.size(); ++i) {
+      const Friction& f = friction_of(library_->system(), i);
+      const bool rubs = f.present();
+      out.frictions.push_back({rubs, f.sticking, i >= out.count && has_multipliers(f.normal)});
+      const Expr slip = rubs ? expand_time_derivatives(f.slip[0]) : number(0);
+      wanted.observables.push_back(slip);
+      wanted.observables.push_back(rubs ? f.kinetic : number(0));
+      wanted.observables.push_back(rubs ? f.static_ : number(0));
+      for (const Expr& slope : gradient(slip, v)) wanted.observables.push_back(slope);
+    }
+    out.program = [library = library_](const ExtendedMode& mode) { return program_of(*library, mode); };
+  }
+
+  static ExtendedProgram program_of(ModeLibrary& library, const ExtendedMode& mode) {
+    ContactMode same;
+    same.closed = mode.closed;
+    for (const ExtendedMode::Friction f : mode.friction) same.friction.push_back(state_of(f));
+    same.normal_sign = mode.normal_sign;
+    const std::shared_ptr<const ModeProgram> found = library.program(same, {});
+    ExtendedProgram out{found->kernel, {}};
+    for (const ModeWatch& w : found->watches) out.watches.push_back({what_of(w.what), w.index});
+    return out;
+  }
+
+  static FrictionState state_of(ExtendedMode::Friction friction) {
+    switch (friction) {
+      case ExtendedMode::Friction::Stick:
+        return FrictionState::Stick;
+      case ExtendedMode::Friction::Forward:
+        return FrictionState::Forward;
+      case ExtendedMode::Friction::Backward:
+        return FrictionState::Backward;
+      case ExtendedMode::Friction::None:
+        break;
+    }
+    return FrictionState::None;
+  }
+
+  static ExtendedWatch::What what_of(ModeWatch::What what) {
+    switch (what) {
+      case ModeWatch::What::Until:
+        return ExtendedWatch::What::Until;
+      case ModeWatch::What::Gap:
+        return ExtendedWatch::What::Gap;
+      case ModeWatch::What::Force:
+        return ExtendedWatch::What::Force;
+      case ModeWatch::What::Hold:
+        return ExtendedWatch::What::Hold;
+      case ModeWatch::What::Slip:
+        return ExtendedWatch::What::Slip;
+      case ModeWatch::What::Normal:
+        return ExtendedWatch::What::Normal;
+      case ModeWatch::What::Event:
+        break;
+    }
+    return ExtendedWatch::What::Event;
   }
 
   /// Contacts are open between impacts.
   void without_forces(WantedFunctions& wanted) const {
     ExprMap open;
+    for (std::size_t i = 0; i < system_.contacts.size() + system_.frictions.size(); ++i)
+      for (const Expr& multiplier : friction_of(system_, i).multipliers) open[multiplier] = number(0);
     for (const Contact& c : system_.contacts) open[c.multiplier] = number(0);
     for (auto* list : {&wanted.observables, &wanted.events})
       if (!open.empty() && !list->empty()) *list = substitute(*list, open);
@@ -177,7 +266,8 @@ class ExactPlanner {
   const RunPlan& plan_;
   Context& context_;
   ExprMap values_;
-  ExtendedPlan out_{{Kernel(nullptr), Kernel(nullptr), {}, {}, 0, 0, 0, 0, false}, {}, 0, {}, 0, 0, {}};
+  std::shared_ptr<ModeLibrary> library_;  // where the model has contacts or friction
+  ExtendedPlan out_{{Kernel(nullptr), Kernel(nullptr), {}, {}, 0, 0, 0, 0, false}, {}, 0, {}, 0, 0};
 };
 
 }  // namespace
@@ -189,22 +279,14 @@ Kernel kernel_of_numbers(const std::vector<Expr>& numbers) {
 }
 
 bool goes_in_many_digits(const Model& model, const EquationsOfMotion& equations, Diagnostics& diagnostics) {
-  const MechanicalSystem& system = model.system;
   if (!goes_through_modes(model)) return true;
-  const auto refuse = [&](Span span, const std::string& what) {
-    diagnostics.error("E0725", span, what + " is not carried through in many digits",
-                      "There the motion goes through flights, impacts without friction and events that record or stop; "
-                      "contacts that stay closed, friction and states that are set have equations of their own.",
+  for (const Contact& c : model.system.contacts) {
+    if (!c.friction.in_space()) continue;
+    diagnostics.error("E0725", c.span, "friction in space is not carried through in many digits",
+                      "Its forces lie in circular cones, and the iteration that finds them calculates in double.",
                       "Leave --precision out, or ask one mode: --mode \"…\".");
     return false;
-  };
-  for (const Contact& c : system.contacts)
-    if (c.friction.present()) return refuse(c.span, "friction");
-  if (!system.frictions.empty()) return refuse(system.frictions.front().span, "friction");
-  if (system.contacts.size() > 1 && system.impact_law == ImpactLaw::Simultaneous)
-    return refuse(system.contacts.front().span, "`impact simultaneous`");
-  for (const ModelEvent& e : model.experiment.events)
-    if (e.action == ModelEvent::Action::Set) return refuse(e.span, "an event that sets the state");
+  }
   return can_go_through_modes(equations, diagnostics);
 }
 

@@ -13,11 +13,6 @@ struct ExtendedPlan {
   std::size_t end_index = 0;                // of the end among them
   std::vector<std::size_t> order_of_times;  // problem time → index in options.at
   std::size_t points = 0, reactions = 0;    // observables: energy, points, reactions
-  struct Watched {
-    Happening::Kind kind;
-    std::string name;
-  };
-  std::vector<Watched> watched;  // [problem.events]
 };
 
 ExtendedPlan plan_extended(const Model& model, const EquationsOfMotion& equations,

@@ -1,3 +1,4 @@
+#include "linear_algebra/combinations.hpp"
 #include "simulation/hybrid_parts.hpp"
 
 #include <fmt/format.h>
@@ -13,38 +14,6 @@ constexpr double rounding_of_forces = 1e-13;  // of the terms of g̈
 constexpr std::size_t most_choices = 1024;    // modes that are tried
 constexpr std::size_t most_modes = 128;       // whose motions are kept
 constexpr std::size_t most_kept = 32;         // motions of modes that were tried in vain at an instant
-
-/// All combinations of options, those with the least changes of the likeliest first; made as they are asked for.
-class Combinations {
- public:
-  template <class Choices>
-  explicit Combinations(const Choices& list) {
-    for (const auto& choice : list) counts_.push_back(choice.options.size());
-    made_.emplace_back(counts_.size(), 0);
-  }
-  /// Nothing beyond the last.
-  const std::vector<std::size_t>* number(std::size_t turn) {
-    while (made_.size() <= turn && made_.size() < most_choices && done_ < made_.size()) extend(made_[done_++]);
-    return turn < std::min(made_.size(), most_choices) ? &made_[turn] : nullptr;
-  }
-
- private:
-  /// Only entries from the last changed one on are changed, so that each combination comes once.
-  void extend(const std::vector<std::size_t> from) {
-    std::size_t last = 0;
-    for (std::size_t k = 0; k < from.size(); ++k)
-      if (from[k] != 0) last = k;
-    for (std::size_t k = last; k < from.size(); ++k)
-      if (from[k] + 1 < counts_[k]) {
-        made_.push_back(from);
-        ++made_.back()[k];
-      }
-  }
-
-  std::vector<std::size_t> counts_;  // of options
-  std::vector<std::vector<std::size_t>> made_;
-  std::size_t done_ = 0;  // of made_, whose changes have been made
-};
 
 }  // namespace
 
@@ -323,7 +292,9 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
   if (!touching.empty() && !knows_compliance_) note_compliance(touching, values);
   std::vector<Choice> list = choices(touching, values);
   if (list.size() > 1) order_by_forces(list, values, bound);
-  Combinations tries(list);
+  std::vector<std::size_t> counts;
+  for (const Choice& c : list) counts.push_back(c.options.size());
+  Combinations tries(std::move(counts), most_choices);
   released_.assign(system_.contacts.size(), false);
   for (const Watch& w : pending_->left)
     if (w.what == Watch::What::Force) released_[w.index] = true;

@@ -1,15 +1,13 @@
 #pragma once
-#include "kernel/extended/linear_solver.hpp"
-#include "kernel/extended/workspace.hpp"
-
-#include <maupertuis/extended.hpp>
-
-#include <optional>
+#include "integrator/extended/contact_point.hpp"
+#include "linear_algebra/combinations.hpp"
+#include "linear_algebra/plane_impulse.hpp"
 
 namespace maupertuis::extended {
 
-/// One impulse after the other without friction (sequential_impact of simulation/contact, over T): the contact whose
-/// |ġ|/√(G M⁻¹ Gᵀ) is largest comes first, with ġ⁺ = −e ġ⁻, until none closes.
+/// What contacts that are hit do to the velocities (impact.cpp of simulation/contact, over T): one after the other, the
+/// one whose |ġ|/√(G M⁻¹ Gᵀ) is largest first, with Newton's restitution or with Stronge's energetic one where there is
+/// friction; or all at once by complementarity.
 template <class T>
 class Impact {
  public:
@@ -18,28 +16,30 @@ class Impact {
     T impulse, speed;  // Λ; −ġ before
   };
 
-  /// `here`: evaluated at the state. `contacts`: those that touch.
-  Impact(const ExtendedProblem& problem, const Workspace<T>& here, std::span<const std::size_t> contacts)
-      : n_(problem.kernel.freedoms()), m_(problem.kernel.constraints()), contacts_(contacts.begin(), contacts.end()) {
+  /// `here`: evaluated at the point. `contacts`: those that touch; `plastic`: e = 0 for all of them.
+  Impact(const ContactPoint<T>& point, const Workspace<T>& here, std::span<const std::size_t> contacts,
+         const ExtendedContacts& all, bool plastic)
+      : n_(here.program().freedoms), contacts_(contacts.begin(), contacts.end()) {
+    const Responses<T> responses(here);
     for (const std::size_t c : contacts_) {
-      const std::size_t at = problem.first_contact + c * (2 + n_);
-      Row row{here.observable(at), here.observable(at + 1), std::vector<T>(n_), {}};
-      for (std::size_t i = 0; i < n_; ++i) row.normal[i] = here.observable(at + 2 + i);
+      Row row;
+      row.drive = point.drive[c], row.restitution = plastic ? T(0) : point.restitution[c];
+      row.normal = point.normal[c], row.response = responses.of(point.normal[c]);
+      const auto& friction = all.frictions[c];
+      row.rubs = friction.present && (friction.sticking || point.friction[c] > 0 || point.fixed[c] > 0);
+      if (row.rubs) {
+        row.tangent = point.tangent[c], row.tangent_response = responses.of(point.tangent[c]);
+        row.slip_drive = point.slip_drive[c], row.sticking = friction.sticking;
+        row.friction = point.friction[c], row.fixed = point.fixed[c];
+      }
       rows_.push_back(std::move(row));
     }
-    find_responses(here);
   }
 
-  T rate(std::size_t k, std::span<const T> v) const { return rows_[k].drive + along(rows_[k].normal, v); }
-  /// Σ |terms of ġ|
-  T scale(std::size_t k, std::span<const T> v) const {
-    T out = abs(rows_[k].drive);
-    for (std::size_t i = 0; i < n_; ++i) out += abs(rows_[k].normal[i] * v[i]);
-    return out;
-  }
+  T rate(std::size_t k, std::span<const T> v) const { return rows_[k].drive + along<T>(rows_[k].normal, v); }
 
-  /// What it does to v; rates below `rest` [contacts] are 0. Nothing where the impulses do not come to an end.
-  std::optional<std::vector<Blow>> carry_out(std::vector<T>& v, std::span<const T> rest) const {
+  /// Rates below `rest` [contacts] are 0. Nothing where the impulses do not come to an end.
+  std::optional<std::vector<Blow>> one_after_the_other(std::vector<T>& v, std::span<const T> rest) const {
     constexpr std::size_t most = 1000;  // a contact
     std::vector<Blow> out;
     for (;;) {
@@ -48,49 +48,99 @@ class Impact {
       for (std::size_t k = 0; k < rows_.size(); ++k) {
         const T closing = -rate(k, v);
         if (!(closing > rest[k])) continue;
-        const T speed = closing / sqrt(along(rows_[k].normal, rows_[k].response));
+        const T speed = closing / sqrt(along<T>(rows_[k].normal, rows_[k].response));
         if (!next || speed > fastest * (1 + T(1e-12))) next = k, fastest = speed;
       }
       if (!next) return out;
       if (out.size() >= most * rows_.size()) return std::nullopt;
-      const Row& row = rows_[*next];
-      const T closing = -rate(*next, v), impulse = (1 + row.restitution) * closing / along(row.normal, row.response);
-      for (std::size_t i = 0; i < n_; ++i) v[i] += impulse * row.response[i];
-      out.push_back({contacts_[*next], impulse, closing});
+      out.push_back(strike(*next, v));
     }
+  }
+
+  /// 0 ≤ Λ ⟂ ġ⁺ + e ġ⁻ ≥ 0, without friction: the contacts that press are looked for among all sets of them. Nothing
+  /// where none is found.
+  std::optional<std::vector<Blow>> all_at_once(std::vector<T>& v) const {
+    constexpr std::size_t most = 4096;  // sets
+    const std::size_t count = rows_.size();
+    std::vector<T> matrix(count * count), wanted(count);
+    for (std::size_t a = 0; a < count; ++a) {
+      const T before = rate(a, v);
+      wanted[a] = -(1 + (before > 0 ? T(0) : rows_[a].restitution)) * before;
+      for (std::size_t b = 0; b < count; ++b) matrix[a * count + b] = along<T>(rows_[a].normal, rows_[b].response);
+    }
+    Combinations sets(std::vector<std::size_t>(count, 2), most);
+    for (std::size_t turn = 0; const std::vector<std::size_t>* set = sets.number(turn); ++turn) {
+      const auto impulses = pressing(matrix, wanted, *set);
+      if (!impulses) continue;
+      std::vector<Blow> out;
+      for (std::size_t a = 0; a < count; ++a)
+        if ((*impulses)[a] > 0) out.push_back({contacts_[a], (*impulses)[a], T(-rate(a, v))});
+      for (std::size_t a = 0; a < count; ++a)
+        for (std::size_t i = 0; i < n_; ++i) v[i] += (*impulses)[a] * rows_[a].response[i];
+      return out;
+    }
+    return std::nullopt;
   }
 
  private:
   struct Row {
-    T drive, restitution;
-    std::vector<T> normal, response;  // ∂g/∂q; what a unit of impulse changes in q̇
+    T drive = T(0), restitution = T(0), slip_drive = T(0), friction = T(0), fixed = T(0);
+    std::vector<T> normal, response;           // ∂g/∂q; what a unit of impulse changes in q̇
+    std::vector<T> tangent, tangent_response;  // the same for ∂v_t/∂q̇, where it rubs
+    bool rubs = false, sticking = false;
   };
 
-  T along(std::span<const T> row, std::span<const T> x) const {
-    T sum = T(0);
-    for (std::size_t i = 0; i < n_; ++i) sum += row[i] * x[i];
-    return sum;
-  }
-
-  /// [M Aᵀ; A 0] (x, ·) = (normal, 0)
-  void find_responses(const Workspace<T>& here) {
-    const std::size_t size = n_ + m_;
-    std::vector<T> matrix(size * size, T(0));
+  Blow strike(std::size_t k, std::vector<T>& v) const {
+    const Row& row = rows_[k];
+    const T before = rate(k, v), w_nn = along<T>(row.normal, row.response);
+    ImpulseOf<T> found{(1 + row.restitution) * -before / w_nn, T(0)};
+    if (row.rubs) {
+      ImpulseCourse<T> course;
+      course.w_nn = w_nn, course.w_nt = along<T>(row.normal, row.tangent_response);
+      course.w_tt = along<T>(row.tangent, row.tangent_response);
+      course.friction = row.friction, course.static_friction = row.fixed, course.sticking = row.sticking;
+      course.v_n = before, course.v_t = row.slip_drive + along<T>(row.tangent, v);
+      found = impulse_in_plane<T>(course, row.restitution);
+    }
     for (std::size_t i = 0; i < n_; ++i) {
-      for (std::size_t j = 0; j < n_; ++j) matrix[i * size + j] = here.mass(i, j);
-      for (std::size_t k = 0; k < m_; ++k)
-        matrix[i * size + n_ + k] = matrix[(n_ + k) * size + i] = here.constraint_matrix(k, i);
+      v[i] += found.normal * row.response[i];
+      if (row.rubs) v[i] += found.tangential * row.tangent_response[i];
     }
-    LinearSolver<T> solver;
-    solver.factor(matrix, size, epsilon_to<T>(0.9));
-    for (Row& row : rows_) {
-      row.response = row.normal;
-      row.response.resize(size, T(0));
-      solver.solve(row.response);
-    }
+    return {contacts_[k], found.normal, T(-before)};
   }
 
-  std::size_t n_, m_;
+  /// The impulses of a set (0: in it), and whether they press and no other contact closes more than it may.
+  std::optional<std::vector<T>> pressing(const std::vector<T>& matrix, const std::vector<T>& wanted,
+                                         const std::vector<std::size_t>& set) const {
+    const std::size_t count = wanted.size();
+    std::vector<std::size_t> in;
+    for (std::size_t a = 0; a < count; ++a)
+      if (set[a] == 0) in.push_back(a);
+    std::vector<T> part, right, out(count, T(0));
+    T largest = T(0);
+    for (const std::size_t a : in) {
+      right.push_back(wanted[a]);
+      for (const std::size_t b : in) part.push_back(matrix[a * count + b]);
+    }
+    for (const T& x : wanted) largest = std::max(largest, T(abs(x)));
+    LinearSolver<T> solver;
+    solver.factor(part, in.size(), epsilon_to<T>(0.9));
+    solver.solve(right);
+    const T rounding = 1024 * epsilon<T>();
+    for (std::size_t k = 0; k < in.size(); ++k) {
+      const T size = largest / matrix[in[k] * count + in[k]];
+      if (right[k] < -rounding * size) return std::nullopt;
+      out[in[k]] = right[k] > rounding * size ? right[k] : T(0);
+    }
+    for (std::size_t a = 0; a < count; ++a) {
+      T changed = -wanted[a];
+      for (const std::size_t b : in) changed += matrix[a * count + b] * out[b];
+      if (changed < -rounding * largest) return std::nullopt;
+    }
+    return out;
+  }
+
+  std::size_t n_;
   std::vector<std::size_t> contacts_;
   std::vector<Row> rows_;
 };

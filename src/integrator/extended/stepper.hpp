@@ -34,13 +34,20 @@ class Stepper {
   /// One step towards `bound`, at most up to it; time() == bound exactly when it is reached.
   Outcome step(const T& bound);
 
-  /// The motion goes on with these velocities.
-  void set_velocities(const std::vector<T>& v) { v_ = v; }
+  /// After start(): an event function that vanishes here, to rounding; order: of the zero, where it is known.
+  void put_at_zero(std::size_t event, std::uint8_t order = 1) { event_state_[event] = {0, true, order}; }
+  /// What is seen of the motion at its start, before a step is made.
+  struct Outlook {
+    StepEnding ending = StepEnding::None;  // None: there is a motion
+    std::string reason;
+    std::vector<std::int8_t> sides;             // [events] of zero, just after; 0 where rounding hides it
+    std::vector<T> values, slopes;              // [events]
+    std::vector<T> reach;                       // [events] the largest that they can become over what is judged
+    std::vector<T> accelerations, multipliers;  // [n], [constraints]
+  };
+  Outlook outlook(const T& bound);
   std::span<const T> q() const { return q_; }
   std::span<const T> v() const { return v_; }
-  /// The kernel at the present state; nullptr where it has no value there.
-  const Workspace<T>* here() { return probe_.evaluate(t_, q_, v_) == KernelStatus::Ok ? &probe_ : nullptr; }
-
   const T& time() const { return t_; }
   std::size_t steps() const { return steps_; }
   std::size_t switches() const { return switches_; }

@@ -187,7 +187,7 @@ bool Stepper<T>::begins_past_root(std::size_t index, const T& h, taylor::Watched
   const Polynomial polynomial = taylor::judged(taylor::event_polynomial(work_, index, h));
   const std::int8_t before = watched.side;
   watched.at_zero = watched.at_zero || polynomial.begins_at_zero();
-  watched.side = watched.at_zero ? polynomial.direction() : taylor::watching::sign(polynomial.p[0]);
+  watched.side = watched.at_zero ? polynomial.direction(watched.order) : taylor::watching::sign(polynomial.p[0]);
   return before != 0 && watched.side == -before && abs(polynomial.p[0]) <= T(1e-6) * polynomial.reach;
 }
 
@@ -348,6 +348,28 @@ void Stepper<T>::state_after(const T& tau, std::vector<T>& q, std::vector<T>& v)
     q[i] = q_begin_[i] + (dq + v_begin_[i]) * tau;
     v[i] = v_begin_[i] + dv * tau;
   }
+}
+
+template <class T>
+typename Stepper<T>::Outlook Stepper<T>::outlook(const T& bound) {
+  Outlook out;
+  if (const auto stopped = expand(bound)) {
+    out.ending = stopped->ending, out.reason = stopped->reason;
+    return out;
+  }
+  const T h = judged_length(bound);
+  for (std::size_t i = 0; i < event_state_.size(); ++i) {
+    const Polynomial polynomial = taylor::judged(taylor::event_polynomial(work_, i, h));
+    const bool at_zero = event_state_[i].at_zero || polynomial.begins_at_zero();
+    out.sides.push_back(at_zero ? polynomial.direction(event_state_[i].order)
+                                : taylor::watching::sign(polynomial.p[0]));
+    out.reach.push_back(polynomial.reach);
+    out.values.push_back(work_.event(i, 0));
+    out.slopes.push_back(work_.event(i, 1));
+  }
+  for (std::size_t i = 0; i < n_; ++i) out.accelerations.push_back(work_.acceleration(i));
+  for (std::size_t i = 0; i < kernel_.constraints(); ++i) out.multipliers.push_back(work_.multiplier(i));
+  return out;
 }
 
 template <class T>

@@ -1,7 +1,7 @@
 #include "simulation/contact/impact.hpp"
 
 #include "linear_algebra/complementarity.hpp"
-#include "simulation/contact/plane_impulse.hpp"
+#include "linear_algebra/plane_impulse.hpp"
 #include "simulation/contact/space_impulse.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "simulation/contact/impact_derivative.hpp"
 
-#include "simulation/contact/plane_impulse.hpp"
+#include "linear_algebra/plane_impulse.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/transform.hpp>

@@ -2,7 +2,8 @@
 #include <cmath>
 #include <utility>
 
-/// The impulse of one contact in the plane, for numbers and for numbers with their change along a direction.
+/// The impulse of one contact in the plane: for double, for numbers of more digits, and for numbers with their change
+/// along a direction.
 namespace maupertuis {
 
 /// A number, and its change along one direction. Comparisons are those of the numbers.
@@ -27,12 +28,27 @@ inline Dual root(Dual a) {
   const double r = std::sqrt(a.value);
   return {r, r > 0 ? a.slope / (2 * r) : 0};
 }
-inline double root(double a) { return std::sqrt(a); }
+template <class T>
+T root(const T& a) {
+  using std::sqrt;
+  return sqrt(a);
+}
 inline double number(Dual a) { return a.value; }
-inline double number(double a) { return a; }
+template <class T>
+const T& number(const T& a) {
+  return a;
+}
 /// Whether it is 0 and stays so along the direction.
 inline bool stays_zero(Dual a) { return a.value == 0 && a.slope == 0; }
-inline bool stays_zero(double a) { return a == 0; }
+template <class T>
+bool stays_zero(const T& a) {
+  return a == 0;
+}
+template <class T>
+T size_of_number(const T& a) {
+  using std::abs;
+  return abs(a);
+}
 
 /// The course of an impact over the normal impulse p: v_n, v_t and the work of the normal force are piecewise simple.
 ///
@@ -49,7 +65,7 @@ struct ImpulseCourse {
   Number slope() const {
     if (number(v_t) != 0 && !sticking) return number(v_t) > 0 ? -friction : friction;
     const Number hold = number(w_tt) > 0 ? -w_nt / w_tt : Number(0);  // keeps v_t = 0
-    if (sticking || std::abs(number(hold)) <= number(static_friction)) return hold;
+    if (sticking || size_of_number(number(hold)) <= number(static_friction)) return hold;
     return number(hold) > 0 ? friction : -friction;  // as near to holding as friction goes: v_t moves the other way
   }
   Number normal_slope(Number f) const { return w_nn + w_nt * f; }
@@ -89,7 +105,7 @@ ImpulseOf<Number> impulse_in_plane(ImpulseCourse<Number> c, Number restitution) 
     const Number f = c.slope(), stop = c.until_stop(f), slope = c.normal_slope(f);
     const Number end = number(slope) > 0 ? -c.v_n / slope : Number(HUGE_VAL);
     const bool stops = number(stop) <= number(end), ends = number(end) <= number(stop);
-    if (std::isinf(number(stops ? stop : end))) return {};  // jammed: friction presses more than it gives way
+    if (!(number(stops ? stop : end) < HUGE_VAL)) return {};  // jammed: friction presses more than it gives way
     c.advance(number(end) < number(stop) ? end : stop, f);
     if (stops) c.v_t = 0;
     if (ends) c.v_n = 0;

@@ -1,0 +1,157 @@
+// Modes of contacts and friction in many digits, against closed forms in decimals.
+#include "decimal.hpp"
+
+#include <fstream>
+#include <sstream>
+
+using namespace maupertuis;
+
+namespace {
+
+std::vector<ExtendedHappening> all_of_kind(const ExtendedResult& r, Happening::Kind kind) {
+  std::vector<ExtendedHappening> out;
+  for (const ExtendedHappening& h : r.happenings)
+    if (h.kind == kind) out.push_back(h);
+  return out;
+}
+
+ExtendedResult run_for(const std::string& text, const Rational& duration) {
+  ExtendedSimulationOptions options = digits100();
+  options.duration = duration;
+  ExtendedResult out = run(ModelText(text), options);
+  INFO(out.reason);
+  REQUIRE(out.ok());
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("a block that slides up an incline stops at v/(g (sin α + μ cos α)), and stays") {
+  const ExtendedResult r = run_for(
+      "dimensionless\nparam g = 9.81, a = 0.4, u = 0.6\ncoord s, n : number\nT = 1/2 (s'^2 + n'^2)\n"
+      "V = g (s sin a + n cos a)\ncontact n >= 0 friction u slip s' name plane\nstart s' = 2\n",
+      1);
+  const Decimal a("0.4"), pull = Decimal("9.81") * (sin(a) + Decimal("0.6") * cos(a));
+  const auto stops = all_of_kind(r, Happening::Kind::Stick);
+  REQUIRE(stops.size() == 1);
+  check_digits(stops.front().t, 2 / pull, 95);
+  check_digits(r.final.q[0], 2 / pull, 95);  // v²/(2 a) with v = 2
+  CHECK(r.final.v[0].text == "0");
+}
+
+TEST_CASE("a block on a belt sticks for 2 ΔF/(k v) and slips for (π + 2 atan(v k/(w ΔF)))/w") {
+  const ExtendedResult r = run_for(
+      "dimensionless\nparam k = 100, g = 9.81, u = 0.3, us = 0.4, b = 0.2\ncoord x, z : number\n"
+      "T = 1/2 (x'^2 + z'^2)\nV = 1/2 k x^2 + g z\ncontact z >= 0 friction u static us slip x' - b name belt\n"
+      "start x' = b\n",
+      3);
+  const Decimal fall("0.981"), pi = 4 * atan(Decimal(1));
+  const Decimal holds = 2 * fall / 20, slides = (pi + 2 * atan(Decimal(20) / (10 * fall))) / 10;
+  Decimal slip("0.19620"), stick = slip + slides;
+  const auto slips = all_of_kind(r, Happening::Kind::Slip), sticks = all_of_kind(r, Happening::Kind::Stick);
+  REQUIRE(slips.size() == 5);
+  REQUIRE(sticks.size() == 4);
+  for (std::size_t k = 0; k < sticks.size(); ++k) {
+    check_digits(slips[k].t, slip, 90);
+    check_digits(sticks[k].t, stick, 90);
+    slip += holds + slides, stick += holds + slides;
+  }
+}
+
+TEST_CASE("dry friction of a coordinate takes 2 F/k from the amplitude of each half swing, and holds at last") {
+  const ExtendedResult r = run_for(
+      "dimensionless\nparam F = 0.3\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\nfriction x limit F\n"
+      "start x = 2\n",
+      12);
+  const Decimal pi = 4 * atan(Decimal(1));
+  const auto stops = all_of_kind(r, Happening::Kind::Stick), turns = all_of_kind(r, Happening::Kind::Slip);
+  REQUIRE(turns.size() == 2);  // 2 → −1.4 → 0.8 → −0.2, where 0.3 holds
+  for (std::size_t k = 0; k < 2; ++k) check_digits(turns[k].t, (k + 1) * pi, 90);
+  REQUIRE(stops.size() == 1);
+  check_digits(stops.front().t, 3 * pi, 90);
+  check_digits(r.final.q[0], Decimal("-0.2"), 90);
+}
+
+TEST_CASE("an impact with friction takes μ (1 + e) of the speed of approach from a slip that goes on") {
+  const ExtendedResult r = run_for(
+      "dimensionless\nparam g = 9.81\ncoord x, z : number\nT = 1/2 (x'^2 + z'^2)\nV = g z\n"
+      "contact z >= 0 restitution 0.5 friction 0.1 slip x' name floor\nstart z = 1, x' = 3\n",
+      Rational::from_double(0.5));
+  const Decimal speed = sqrt(2 * Decimal("9.81"));
+  check_digits(r.final.v[0], 3 - Decimal("0.15") * speed, 90);
+  check_digits(r.final.v[1], speed / 2 - Decimal("9.81") * (Decimal("0.5") - speed / Decimal("9.81")), 90);
+}
+
+TEST_CASE("three balls in a row that are hit at once share the impact by complementarity") {
+  const ExtendedResult r = run_for(
+      "dimensionless\ncoord a, b, c : number\nT = 1/2 (a'^2 + b'^2 + c'^2)\n"
+      "contact b - a >= 1 restitution 0.7 name ab\ncontact c - b >= 1 restitution 0.7 name bc\nimpact simultaneous\n"
+      "start a = -1/3, b = 1, c = 2, a' = 1\n",
+      1);
+  const auto hits = all_of_kind(r, Happening::Kind::Impact);
+  REQUIRE(hits.size() == 2);
+  // 2 Λ1 − Λ2 = 1 + e, 2 Λ2 − Λ1 = 0
+  const Decimal second = Decimal("1.7") / 3, first = 2 * second;
+  check_digits(hits[0].t, Decimal(1) / 3, 95);
+  check_digits(hits[0].impulse, first, 95);
+  check_digits(hits[1].impulse, second, 95);
+  check_digits(r.final.v[0], 1 - first, 95);
+  check_digits(r.final.v[1], first - second, 95);
+  check_digits(r.final.v[2], second, 95);
+}
+
+TEST_CASE("a particle leaves a sphere where its height is (2 + v²/(g R))/3 of the radius") {
+  const ExtendedResult r = run_for(
+      "dimensionless\nparam g = 9.81, v0 = 0.5\ncoord r, w : number\nT = 1/2 (r'^2 + r^2 w'^2)\nV = g r cos w\n"
+      "contact r >= 1 name sphere\nstart r = 1, w' = v0\n",
+      1);
+  const auto lost = all_of_kind(r, Happening::Kind::Lost);
+  REQUIRE(lost.size() == 1);
+  const Decimal height = (2 + Decimal("0.25") / Decimal("9.81")) / 3;
+  check_digits(lost.front().q[1], acos(height), 80);
+}
+
+TEST_CASE("an event that sets the speed to a third at each fall through 0") {
+  const ExtendedResult r = run_for(
+      "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\nstart x = 1\n"
+      "event back when x = 0 falling : set x' = -x'/3\n",
+      7);
+  const Decimal pi = 4 * atan(Decimal(1));
+  const auto events = all_of_kind(r, Happening::Kind::Event);
+  REQUIRE(events.size() == 2);  // at π/2 and 3π/2: from v = −1 to 1/3, from −1/3 to 1/9
+  check_digits(events[0].t, pi / 2, 95);
+  check_digits(events[1].t, 3 * pi / 2, 95);
+  check_digits(r.final.q[0], sin(Decimal(7) - 3 * pi / 2) / 9, 95);
+}
+
+TEST_CASE("what an event sets is refused where it breaks a constraint") {
+  ExtendedSimulationOptions options;
+  options.duration = 2;
+  const ExtendedResult r =
+      run(ModelText("dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = y\nconstraint x^2 + y^2 = 1\n"
+                    "start x = -0.6, y = -0.8\nevent off when x = 0.1 rising : set x = -0.11\n"),
+          options);
+  CHECK(r.ending == Ending::SingularConstraints);
+}
+
+TEST_CASE("models of the gallery meet in quad what they meet in double, at times within the errors of double") {
+  for (const char* name : {"ball_on_string", "bouncing_dumbbell", "dry_hoop", "newtons_cradle", "rocking_block",
+                           "sliding_ladder", "stick_slip", "two_link_hopper", "wheel_brake"}) {
+    CAPTURE(std::string(name));
+    std::ostringstream text;
+    text << std::ifstream(std::string(PROJECT_DIR) + "/models/" + name + ".lag").rdbuf();
+    ModelText m(text.str());
+    const ExtendedResult quad = run(m, {});
+    const auto rough = simulate(m.model, m.equations, {}, m.diagnostics);
+    REQUIRE(rough);
+    CHECK(quad.ok());
+    REQUIRE(quad.happenings.size() == rough->happenings.size());
+    for (std::size_t i = 0; i < quad.happenings.size(); ++i) {
+      const Happening& h = rough->happenings[i];
+      CHECK(quad.happenings[i].kind == h.kind);
+      CHECK(quad.happenings[i].name == h.name);
+      CHECK(quad.happenings[i].t.digits >= 25);
+      CHECK(std::abs(std::stod(quad.happenings[i].t.text) - h.t) <= 4 * h.error + 1e-15);
+    }
+  }
+}
