@@ -1,5 +1,5 @@
 #pragma once
-#include "notation.hpp"
+#include <maupertuis/formula_document.hpp>
 #include "open_study.hpp"
 
 #include <maupertuis/rates.hpp>

@@ -38,7 +38,7 @@ std::optional<std::string> page_of_fields(Study& study, const SimulationOptions&
     budget.carry_out("motion", context, [&](const Interrupt& interrupt) {
       SimulationOptions within = settings;
       within.interrupt = interrupt;
-      run = run_of_fields(study, within, true, true, {}, currents ? &*currents : nullptr);
+      run = run_of_fields(study, within, {true, true, {}, currents ? &*currents : nullptr});
     });
   if (study.wrong()) return std::nullopt;
   budget.carry_out("expectations", context, [&](const Interrupt& interrupt) {

@@ -376,40 +376,14 @@ Json currents_json(Study& study) {
   return document;
 }
 
-std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOptions& settings, bool rows, bool pictured,
-                                            const std::vector<double>& moments, const FieldCurrents* currents) {
-  const Model& model = *study.model();
-  const FieldSystem& s = equations_of(study).system();
-  Bindings values;
-  for (const Parameter& p : model.system.parameters) values[p.symbol] = p.si_value;
-  const auto number = [&](Expr e) { return e ? evaluate(s.expanded(e), values) : 0.0; };
-  FieldRunOptions options;
-  options.interrupt = settings.interrupt;
-  options.duration = settings.duration ? *settings.duration : number(model.experiment.duration);
-  options.every = settings.output_every ? *settings.output_every : number(model.experiment.output_every);
-  options.trajectory = rows;
-  options.errors = false;
-  options.moments = moments;
-  options.currents = currents;
-  // A map over time shows what happens between a hundred moments.
-  const bool line = s.space.size() == 1;
-  if (pictured && !(options.every > 0)) options.every = options.duration / (line ? 240 : 120);
-  if (pictured) options.least_values = line ? 480 : 64;
+std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOptions& settings,
+                                            const FieldMotionOptions& kept) {
   if (settings.duration && !(*settings.duration > 0)) {
     study.diagnostics().error("E0809", std::nullopt, "a run of a field goes forward",
                               "Its mesh is started at t = 0 and steps on from there.", "Give a positive --duration.");
     return std::nullopt;
   }
-  const bool until = model.experiment.until && runs_as_one_system(equations_of(study)) && !settings.duration;
-  if (!(options.duration > 0) && !until) {
-    study.diagnostics().error("E0701", std::nullopt, "the model does not say how long it runs",
-                              "A run of a field goes on for a time.", "Add `run 10 s`, or give --duration.");
-    return std::nullopt;
-  }
-  const InterruptScope scope = study.interruptible();
-  return runs_as_one_system(equations_of(study))
-             ? run_coupled(model, equations_of(study), {}, options, study.diagnostics())
-             : run_fields(equations_of(study), {}, options, study.diagnostics());
+  return study.field_motion(settings, kept);
 }
 
 std::string dispersion_text(Study& study, std::string& trouble) {

@@ -1,6 +1,6 @@
 #pragma once
 #include "json.hpp"
-#include "notation.hpp"
+#include <maupertuis/formula_document.hpp>
 #include "open_study.hpp"
 
 #include <maupertuis/field_run.hpp>
@@ -21,11 +21,9 @@ std::string fields_summary(Study& study);
 std::string currents_text(Study& study);
 Json currents_json(Study& study);
 
-/// The run of the experiment; nothing where there is none, and the diagnostics say why. `rows`: with its trajectory,
-/// `pictured`: as many as a picture wants, and those at `moments`; the charges of `currents`.
-std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOptions& settings, bool rows,
-                                            bool pictured = false, const std::vector<double>& moments = {},
-                                            const FieldCurrents* currents = nullptr);
+/// Study::field_motion, where the options allow it (E0809).
+std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOptions& settings,
+                                            const FieldMotionOptions& kept);
 /// The dispersion relation; empty, and `trouble`, where there is none.
 std::string dispersion_text(Study& study, std::string& trouble);
 /// "   u(l) 1, y 0.3": how coordinates and places move in a mode, the largest value of the field being 1; empty

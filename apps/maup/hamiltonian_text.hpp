@@ -1,6 +1,6 @@
 #pragma once
 #include "json.hpp"
-#include "notation.hpp"
+#include <maupertuis/formula_document.hpp>
 
 #include <maupertuis/dirac.hpp>
 #include <maupertuis/hamiltonian.hpp>

@@ -3,6 +3,7 @@
 #include <maupertuis/degenerate.hpp>
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/extended_simulation.hpp>
+#include <maupertuis/field_run.hpp>
 #include <maupertuis/fields.hpp>
 #include <maupertuis/interrupt_scope.hpp>
 #include <maupertuis/mechanical_system.hpp>
@@ -14,6 +15,14 @@
 #include <string>
 
 namespace maupertuis {
+
+/// What a run of fields keeps.
+struct FieldMotionOptions {
+  bool rows = false;                        // its trajectory
+  bool pictured = false;                    // as many rows and places as a picture wants
+  std::vector<double> moments = {};         // s; rows at these times beside the others
+  const FieldCurrents* currents = nullptr;  // whose charges are followed; null: none
+};
 
 /// A model text on its way through the stages: tree → model → equations → derivation, certificate; and what they are
 /// asked for.
@@ -91,6 +100,9 @@ class Study {
   std::optional<SimulationResult> motion(const SimulationOptions& options = {});
   /// The same in many digits.
   std::optional<ExtendedResult> motion(const ExtendedSimulationOptions& options);
+  /// The motion of a model with fields, from t = 0 on; what concerns steps of coordinates is passed over. Nothing where
+  /// there is none, and the diagnostics say why.
+  std::optional<FieldRunResult> field_motion(const SimulationOptions& options, const FieldMotionOptions& kept);
   /// What becomes of the `expect` and `claim` lines. A text that expects errors is judged by its diagnostics, any other
   /// by its equations and runs. Nothing where it cannot be judged.
   std::optional<Verification> verification(const SimulationOptions& options = {});
@@ -131,6 +143,11 @@ class Study {
   bool has_steps_ = false;
   std::optional<Certificate> certificate_;
 };
+
+/// What the state at the start adds to the mistakes of the equations: clashing constraints, what they are, contacts
+/// that cannot begin. Returns that state, on the constraints, where there is one.
+std::optional<ConsistentStart> look_into_start(const Model& model, const EquationsOfMotion& equations,
+                                               Diagnostics& diagnostics);
 
 /// Whether the independent variable is a time; without units nothing says that it is none.
 bool moves_in_time(const MechanicalSystem& system);

@@ -50,20 +50,6 @@ const Diagnostics& Document::diagnostics() {
   return implementation_->study.diagnostics();
 }
 
-namespace {
-
-/// What the state at the start adds to the mistakes of the equations.
-void look_into_start(const Model& model, const EquationsOfMotion& equations, Diagnostics& diagnostics) {
-  const auto start = consistent_start(model, equations, diagnostics);
-  const MotionState* state = start ? &start->state : nullptr;
-  report_constraints(analyse_constraints(equations, state), equations, state, diagnostics);
-  const bool runs = !model.experiment.start.empty() || model.experiment.duration || model.experiment.until;
-  if (state && model.system.has_modes() && runs) contact_start(model, equations, *state, diagnostics);
-  diagnostics.sort_by_place();
-}
-
-}  // namespace
-
 Diagnostics diagnose_derivation(const SourceText& source, const Interrupt& interrupt) {
   Study study(source, interrupt);
   if (study.has_fields()) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <maupertuis/math_markup.hpp>
 #include <maupertuis/report.hpp>
 
 #include <string>
@@ -12,12 +13,6 @@ std::string escape_html(std::string_view text);
 std::string unit_html(std::string_view unit);
 /// 1.2e-15 as 1.2 × 10⁻¹⁵; other text as it is.
 std::string number_html(std::string_view number);
-
-/// One <math> element in the line of text; nothing for an empty layout.
-std::string inline_math(const Layout& formula);
-/// left = right as a block of display mathematics. A long sum becomes several <math> elements, between which lines may
-/// break: one element would run out of a narrow window, and off the paper.
-std::string display_math(const Layout& left, const Layout& right);
 
 /// A sentence: what stands between backquotes is code, names have their indices below the line.
 std::string sentence_html(std::string_view sentence);

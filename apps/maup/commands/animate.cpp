@@ -277,7 +277,7 @@ ExitCode animate_fields(AnimateOptions o, Study& study, Console& console) {
   if (o.output.empty()) o.output = study.model()->system.name + (o.still.empty() ? ".html" : ".svg");
   std::vector<double> asked;
   if (const auto t = o.still.empty() ? std::nullopt : parse_exact_time(o.still)) asked.push_back(t->to_double());
-  const auto run = run_of_fields(study, settings, true, true, asked);
+  const auto run = run_of_fields(study, settings, {true, true, asked});
   if (!run) return finish(console, study, document);
 
   Drawing times;  // of the run

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace maupertuis::app {
+namespace maupertuis {
 
 enum class Notation { Plain, Latex, Mathml };
 
@@ -33,4 +33,4 @@ std::string identifier(std::string_view text);
 
 std::string xml_text(const std::string& text);
 
-}  // namespace maupertuis::app
+}  // namespace maupertuis

@@ -1,4 +1,4 @@
-#include "notation.hpp"
+#include <maupertuis/formula_document.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-namespace maupertuis::app {
+namespace maupertuis {
 namespace {
 
 /// The letters and signs of rules and sentences that pdflatex does not know by itself.
@@ -224,4 +224,4 @@ std::string document(const std::vector<FormulaLine>& lines, Notation notation) {
   return {};
 }
 
-}  // namespace maupertuis::app
+}  // namespace maupertuis

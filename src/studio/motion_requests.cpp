@@ -1,0 +1,335 @@
+#include "studio/requests.hpp"
+
+#include <maupertuis/diagram.hpp>
+#include <maupertuis/field_report.hpp>
+#include <maupertuis/modes.hpp>
+#include <maupertuis/motion_pictures.hpp>
+#include <maupertuis/orbits.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace maupertuis::studio {
+namespace {
+
+const char* ending_word(Ending ending) {
+  switch (ending) {
+    case Ending::Finished:
+      return "finished";
+    case Ending::UntilReached:
+      return "until reached";
+    case Ending::UntilNotReached:
+      return "until not reached";
+    case Ending::Interrupted:
+      return "interrupted";
+    case Ending::SingularMass:
+      return "singular mass matrix";
+    case Ending::SingularConstraints:
+      return "singular constraints";
+    case Ending::NoConvergence:
+      return "no convergence";
+    case Ending::Overflow:
+      return "overflow";
+    case Ending::StepUnderflow:
+      return "step underflow";
+    case Ending::Sliding:
+      return "sliding";
+    case Ending::TooManySteps:
+      return "too many steps";
+    case Ending::Stopped:
+      return "stopped by an event";
+    case Ending::Paradox:
+      return "paradox";
+    case Ending::Unending:
+      return "unending events";
+  }
+  return "finished";
+}
+
+/// Columns one after the other: what plots take. Seven digits are more than a screen shows.
+Json values_json(const Trajectory& t, std::size_t stride) {
+  Json columns = Json::array();
+  for (std::size_t c = 0; c < t.columns.size(); ++c) {
+    Json values = Json::array();
+    for (std::size_t row = 0; row < t.rows(); row += stride) values.push_back(number_or_null(t.at(row, c)));
+    columns.push_back(std::move(values));
+  }
+  return columns;
+}
+
+void add_trajectory(Json& out, const Trajectory& t, std::size_t most_rows) {
+  const std::size_t stride = std::max<std::size_t>(1, (t.rows() + most_rows - 1) / std::max<std::size_t>(most_rows, 1));
+  out["independent"] = {{"name", t.independent.name}, {"unit", t.independent.unit}};
+  Json columns = Json::array(), times = Json::array();
+  for (const auto& c : t.columns) columns.push_back({{"name", c.name}, {"unit", c.unit}});
+  for (std::size_t row = 0; row < t.rows(); row += stride) times.push_back(number_or_null(t.times[row]));
+  out["columns"] = std::move(columns);
+  out["times"] = std::move(times);
+  out["values"] = values_json(t, stride);
+}
+
+Json happenings_json(const SimulationResult& run) {
+  Json list = Json::array();
+  for (const Happening& h : run.happenings)
+    list.push_back({{"t", h.t},
+                    {"what", word_of(h.kind)},
+                    {"name", h.name},
+                    {"mode", h.mode},
+                    {"impulse", number_or_null(h.impulse)},
+                    {"speed", number_or_null(h.speed)},
+                    {"remark", h.remark},
+                    {"error", number_or_null(h.error)}});
+  return list;
+}
+
+Json state_json(const State& state, const MechanicalSystem& system) {
+  Json out = Json::object();
+  for (std::size_t i = 0; i < state.q.size(); ++i) {
+    out[system.coordinates[i].name] = number_or_null(state.q[i]);
+    out[system.coordinates[i].name + "'"] = number_or_null(state.v[i]);
+  }
+  return out;
+}
+
+Json pictures_json(const ReportContent& content) {
+  Json list = Json::array();
+  for (const auto& picture : content.pictures)
+    list.push_back({{"caption", picture.caption},
+                    {"columns", picture.options.columns},
+                    {"phase", !picture.options.against.empty()},
+                    {"against", picture.options.against}});
+  return list;
+}
+
+Json figures_json(const ReportContent& content) {
+  Json list = Json::array();
+  for (const auto& [caption, svg] : content.figures) list.push_back({{"caption", caption}, {"svg", svg}});
+  return list;
+}
+
+std::size_t count_of(const Json& request, const char* key, double otherwise, double least, double most) {
+  return static_cast<std::size_t>(std::clamp(number_of(request, key, otherwise), least, most));
+}
+
+/// The run with what a page shows of it: drawing, statistics, values and drifts of what is conserved.
+Json run_json(const Study& study, const Model& model, const EquationsOfMotion& equations, const Derivation& derivation,
+              const Certificate& certificate, const SimulationResult& result, std::size_t frames) {
+  ReportParts parts;
+  parts.simulation = &result;
+  const ReportContent content = compose_report(model, study.source(), equations, derivation, certificate, parts,
+                                               [](std::string_view section, const std::function<void()>& part) {
+                                                 const bool shown = section == "motion" || section == "conserved";
+                                                 if (shown) part();
+                                                 return shown;
+                                               });
+  const auto drawing =
+      evaluate_drawing(model, result.trajectory, frames, &equations, impulses_of(result, model.system));
+  Json out = {{"drawing", drawing_of(drawing)}};
+  add_trajectory(out, content.trajectory, std::max<std::size_t>(frames, 2));
+  out["statistics"] = pairs_json(content.statistics);
+  out["happenings"] = happenings_json(result);
+  out["first_mode"] = result.first_mode;
+  out["ending"] = {{"ok", result.ok()},
+                   {"kind", ending_word(result.ending)},
+                   {"reason", result.reason},
+                   {"t", number_or_null(result.final.t)}};
+  out["conserved"] = conserved_json(content.conserved);
+  out["pictures"] = pictures_json(content);
+  out["figures"] = figures_json(content);
+  out["start"] = state_json(result.start, model.system);
+  out["uncertain"] = nullptr;
+  if (!result.uncertain.columns.empty()) {
+    Json names = Json::array();
+    for (const std::size_t column : result.uncertain.columns) names.push_back(result.trajectory.columns[column].name);
+    out["uncertain"] = {
+        {"from", result.uncertain.from}, {"everything", result.uncertain.everything}, {"columns", std::move(names)}};
+  }
+  return out;
+}
+
+Json run_of_fields(Desk& desk, Study& study, const SimulationOptions& options, std::size_t frames) {
+  const InterruptScope scope = study.interruptible();
+  const FieldEquations& equations = *study.field_equations();
+  const FieldCurrents currents = field_currents(equations);
+  const auto result = study.field_motion(options, {true, true, {}, &currents});
+  if (!result) desk.refuse(study);
+  FieldReportParts parts;
+  parts.run = &*result;
+  parts.currents = &currents;
+  parts.with_derivation = parts.with_equations = false;
+  const ReportContent content =
+      compose_field_report(*study.model(), study.source(), equations, *study.field_certificate(), parts);
+  Json out = {{"drawing", nullptr}};
+  add_trajectory(out, result->trajectory, std::max<std::size_t>(frames, 2));
+  out["places"] = result->places;
+  out["upwards"] = result->upwards;
+  Json ranges = Json::array();
+  for (const auto& range : result->at_end) ranges.push_back({{"name", range.name}, {"unit", range.unit}});
+  out["fields"] = std::move(ranges);
+  out["statistics"] = pairs_json(content.statistics);
+  out["happenings"] = Json::array();
+  for (const auto& h : result->happenings)
+    out["happenings"].push_back({{"t", h.time}, {"what", "event"}, {"name", h.name}, {"mode", ""}, {"remark", ""}});
+  out["first_mode"] = "";
+  out["ending"] = {{"ok", result->trouble.empty()},
+                   {"kind", result->trouble.empty() ? "finished" : "ended early"},
+                   {"reason", result->trouble},
+                   {"t", number_or_null(result->end)}};
+  out["conserved"] = conserved_json(content.conserved);
+  out["pictures"] = Json::array();
+  out["figures"] = figures_json(content);
+  out["start"] = Json::object();
+  out["uncertain"] = nullptr;
+  return out;
+}
+
+}  // namespace
+
+Json run(Desk& desk, const Work& work) {
+  Study& study = desk.certified(work.request);
+  const std::size_t frames = count_of(work.request, "frames", 600, 1, 12'000);
+  SimulationOptions options;
+  options.interrupt = work.interrupt;
+  options.errors = is_true(work.request, "errors") ? ErrorEstimates::States : ErrorEstimates::None;
+  options.progress = [&work](double fraction) { work.send({{"progress", fraction}}); };
+  Json out;
+  if (study.has_fields()) {
+    out = run_of_fields(desk, study, options, frames);
+  } else {
+    const Model& model = *study.model();
+    const auto result = study.motion(report_run(model, options));
+    if (!result) desk.refuse(study);
+    if (result->ending == Ending::Interrupted && result->trajectory.rows() < 2) throw Interrupted();
+    out = run_json(study, model, *study.equations(), *study.derivation(true), *study.certificate(), *result, frames);
+  }
+  out["diagnostics"] = desk.diagnostics(study);
+  return out;
+}
+
+namespace {
+
+Json mode_point_json(const ReportContent::ModePoint& point) {
+  Json rows = Json::array(), shapes = Json::array();
+  for (const auto& row : point.rows)
+    rows.push_back({{"kind", row.kind},
+                    {"frequency", row.frequency},
+                    {"hertz", row.hertz},
+                    {"period", row.period},
+                    {"damping", row.damping}});
+  for (const auto& shape : point.shapes) {
+    Json one = {{"caption", shape.caption}, {"drawing", drawing_of(shape.drawing)}, {"svg", ""}};
+    if (shape.diagram) {
+      Diagram diagram = *shape.diagram;
+      diagram.theme = PlotTheme::Page;
+      one["svg"] = diagram_svg(diagram);
+    }
+    shapes.push_back(std::move(one));
+  }
+  return {{"name", point.name},      {"stability", point.stability},
+          {"stable", point.stable},  {"formulas", lines_json(point.formulas)},
+          {"rows", std::move(rows)}, {"shapes", std::move(shapes)}};
+}
+
+Json modes_of_fields(Study& study) {
+  const InterruptScope scope = study.interruptible();
+  const FieldEquations& equations = *study.field_equations();
+  Diagnostics unheard;  // a field without such modes has none to show
+  const std::vector<double> frequencies = field_frequencies(equations, 6, unheard);
+  FieldReportParts parts;
+  if (!frequencies.empty()) parts.frequencies = &frequencies;
+  parts.with_derivation = parts.with_equations = false;
+  const ReportContent content =
+      compose_field_report(*study.model(), study.source(), equations, *study.field_certificate(), parts);
+  Json points = Json::array();
+  for (const auto& point : content.mode_points) points.push_back(mode_point_json(point));
+  return {{"points", std::move(points)}, {"search", ""}};
+}
+
+}  // namespace
+
+Json modes(Desk& desk, const Work& work) {
+  Study& study = desk.certified(work.request);
+  if (study.has_fields()) return modes_of_fields(study);
+  if (study.refuse_modes() || study.refuse_without_time()) desk.refuse(study);
+  const Model& model = *study.model();
+  const EquationsOfMotion& equations = *study.equations();
+  const InterruptScope scope = study.interruptible();
+  const auto start = consistent_start(model, equations, study.diagnostics());
+  if (!start) desk.refuse(study);
+  PointEquations at_points(equations);
+  auto found = modal_study(at_points, start->state, study.diagnostics());
+  if (!found) desk.refuse(study);
+  settle_driven(*found, at_points, model, equations, work.interrupt);
+  work.interrupt.throw_if_asked();
+  ReportParts parts;
+  parts.modes = &*found;
+  const ReportContent content =
+      compose_report(model, study.source(), equations, *study.derivation(true), *study.certificate(), parts,
+                     [](std::string_view section, const std::function<void()>& part) {
+                       if (section == "modes") part();
+                       return section == "modes";
+                     });
+  Json points = Json::array();
+  for (const auto& point : content.mode_points) points.push_back(mode_point_json(point));
+  return {{"points", std::move(points)}, {"search", content.mode_search}, {"diagnostics", desk.diagnostics(study)}};
+}
+
+namespace {
+
+Json section_json(const SectionResult& result, const std::string& what, const MechanicalSystem& system) {
+  const Trajectory rows = section_rows(result, system);
+  Json out = Json::object();
+  add_trajectory(out, rows, rows.rows());
+  PlotOptions picture = section_picture(result, what, system);
+  picture.theme = PlotTheme::Page;
+  out["svg"] = plot_svg(rows, picture);
+  out["across"] = system.coordinates[result.across].name;
+  out["crossings"] = result.crossings.size();
+  out["ended"] = result.orbits.empty() ? std::string() : result.orbits.front().ended;
+  out["energy_conserved"] = result.energy_conserved;
+  return out;
+}
+
+}  // namespace
+
+Json section(Desk& desk, const Work& work) {
+  Json request = work.request;
+  const std::string what = text_of(request, "at");
+  std::string equation = what;
+  SectionDirection direction = SectionDirection::Both;
+  for (const auto& [word, way] : {std::pair(std::string(" rising"), SectionDirection::Rising),
+                                  std::pair(std::string(" falling"), SectionDirection::Falling)})
+    if (what.ends_with(word)) equation = what.substr(0, what.size() - word.size()), direction = way;
+  request["section"] = equation;
+  Study& study = desk.certified(request);
+  if (study.refuse_modes() || study.refuse_without_time() || !study.equations()) desk.refuse(study);
+  if (!study.model()->experiment.section)
+    throw Trouble{"refused", "No section was named.", "", "Write where the motion passes, such as θ1 = 0.", "",
+                  nullptr};
+  const InterruptScope scope = study.interruptible();
+  SectionOptions options;
+  options.section = study.model()->experiment.section;
+  options.direction = direction;
+  options.interrupt = work.interrupt;
+  const std::size_t wanted = count_of(request, "crossings", 200, 1, 20'000);
+  const MechanicalSystem& system = study.model()->system;
+  // It grows: a few crossings first, then four times as many, until there are enough. The motion is the same each time.
+  Json out;
+  for (std::size_t crossings = std::min<std::size_t>(wanted, 50);; crossings = std::min(wanted, 4 * crossings)) {
+    options.crossings = crossings;
+    const auto found = poincare_section(*study.model(), *study.equations(), options, study.diagnostics());
+    if (!found) desk.refuse(study);
+    if (work.interrupt.asked()) {
+      if (out.is_null()) throw Interrupted();
+      out["ended"] = "The time of this question was over.";
+      break;
+    }
+    out = section_json(*found, what, system);
+    if (crossings == wanted || !out["ended"].get<std::string>().empty()) break;
+    work.send({{"section", out}});
+  }
+  out["diagnostics"] = desk.diagnostics(study);
+  return out;
+}
+
+}  // namespace maupertuis::studio

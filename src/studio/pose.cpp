@@ -1,0 +1,187 @@
+#include "linear_algebra/dense.hpp"
+#include "studio/requests.hpp"
+
+#include <maupertuis/constraint_manifold.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+/// The mechanism at its start, and dragged by one of the points that are drawn.
+///
+/// A drawn point p(q) is pulled to where the pointer is: δq minimizes |p(q) + J δq − target|² + μ δqᵀ M δq, then the
+/// constraints are met again in the metric of M (docs/design/studio.md). J comes from drawings at neighbouring
+/// positions, so that whatever is drawn can be dragged.
+namespace maupertuis::studio {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int most_pulls = 12;
+constexpr double step = 1e-6;  // of a coordinate, in its SI unit, for J
+
+struct Drag {
+  std::size_t element = 0, point = 0;
+  std::vector<double> to;
+};
+
+Trajectory rows_at(const MechanicalSystem& system, const std::vector<MotionState>& states) {
+  Trajectory rows;
+  for (const Coordinate& c : system.coordinates) rows.columns.push_back({c.name, ""});
+  for (const Coordinate& c : system.coordinates) rows.columns.push_back({c.name + "'", ""});
+  double time = 0;
+  for (const MotionState& state : states) {
+    rows.times.push_back(time++);
+    rows.values.insert(rows.values.end(), state.q.begin(), state.q.end());
+    rows.values.insert(rows.values.end(), state.v.begin(), state.v.end());
+  }
+  return rows;
+}
+
+/// Pulls one drawn point towards a place, on the constraints.
+class Pull {
+ public:
+  Pull(const Model& model, const EquationsOfMotion& equations, const Drag& drag)
+      : model_(model), manifold_(equations), drag_(drag) {}
+
+  /// Moves the state as far as it goes; false where the point cannot be dragged.
+  bool carry_out(MotionState& state) const {
+    double distance = 0;
+    for (int k = 0; k < most_pulls; ++k) {
+      const auto place = place_of(state);
+      if (!place) return k > 0;
+      const VectorXd gap = target() - *place;
+      if (k > 0 && gap.norm() >= distance * 0.999) break;  // as near as it gets
+      distance = gap.norm();
+      if (distance < 1e-9) break;
+      MotionState next = state;
+      if (!pull(next, *place, gap)) break;
+      state = std::move(next);
+    }
+    const std::vector<bool> free(state.q.size(), false);
+    return manifold_.constraints() == 0 || manifold_.move_velocities(state, free);
+  }
+
+ private:
+  VectorXd target() const {
+    return Eigen::Map<const VectorXd>(drag_.to.data(), static_cast<Eigen::Index>(drag_.to.size()));
+  }
+
+  std::optional<VectorXd> place_of(const MotionState& state) const {
+    const auto drawing = evaluate_drawing(model_, rows_at(model_.system, {state}));
+    return drawing ? point_in(*drawing, 0) : std::nullopt;
+  }
+
+  std::optional<VectorXd> point_in(const Drawing& drawing, std::size_t frame) const {
+    const auto d = static_cast<std::size_t>(drawing.dimension);
+    if (drag_.element >= drawing.elements.size() || drag_.to.size() != d) return std::nullopt;
+    const Drawing::Element& e = drawing.elements[drag_.element];
+    if (drag_.point >= e.points || e.still) return std::nullopt;
+    const std::size_t at = (frame * e.points + drag_.point) * d;
+    const VectorXd out = Eigen::Map<const VectorXd>(e.positions.data() + at, static_cast<Eigen::Index>(d));
+    return out.allFinite() ? std::optional(out) : std::nullopt;
+  }
+
+  /// J δq = gap in the metric of M with a little damping, then back onto the constraints. Shorter steps where the
+  /// constraints are not met again.
+  bool pull(MotionState& state, const VectorXd& place, const VectorXd& gap) const {
+    const auto n = static_cast<Eigen::Index>(state.q.size());
+    MatrixXd j(gap.size(), n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      MotionState near = state;
+      near.q[static_cast<std::size_t>(i)] += step;
+      const auto moved = place_of(near);
+      if (!moved) return false;
+      j.col(i) = (*moved - place) / step;
+    }
+    const std::vector<double> rows = manifold_.mass(state);
+    MatrixXd m = Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(rows.data(), n, n);
+    const double scale = m.diagonal().cwiseAbs().maxCoeff();
+    if (!(scale > 0) || !m.allFinite()) m = MatrixXd::Identity(n, n);
+    m /= scale > 0 ? scale : 1;
+    const double size = j.squaredNorm();
+    if (!(size > 0)) return false;
+    // The motion along the constraints alone counts: A δq = 0.
+    const MatrixXd k =
+        j.transpose() * j + 1e-4 * size / static_cast<double>(n) * m + 1e-9 * size * MatrixXd::Identity(n, n);
+    const VectorXd delta = on_constraints(state, k, VectorXd(j.transpose() * gap));
+    for (double part = 1; part > 1e-3; part /= 2) {
+      MotionState next = state;
+      for (Eigen::Index i = 0; i < n; ++i) next.q[static_cast<std::size_t>(i)] += part * delta(i);
+      const std::vector<bool> free(next.q.size(), false);
+      if (manifold_.constraints() > 0 && !manifold_.move_positions(next, free)) continue;
+      const auto moved = place_of(next);
+      if (!moved || (target() - *moved).norm() >= gap.norm()) continue;
+      state = std::move(next);
+      return true;
+    }
+    return false;
+  }
+
+  /// K δ + Aᵀ ν = r, A δ = 0; the shortest where rows of A depend on each other.
+  VectorXd on_constraints(const MotionState& state, const MatrixXd& k, const VectorXd& r) const {
+    const auto n = k.rows(), m = static_cast<Eigen::Index>(manifold_.constraints());
+    MatrixXd bordered = MatrixXd::Zero(n + m, n + m);
+    bordered.topLeftCorner(n, n) = k;
+    if (m > 0) {
+      const std::vector<double> rows = manifold_.matrix(state);
+      const MatrixXd a = Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(rows.data(), m, n);
+      bordered.bottomLeftCorner(m, n) = a;
+      bordered.topRightCorner(n, m) = a.transpose();
+    }
+    VectorXd right = VectorXd::Zero(n + m);
+    right.head(n) = r;
+    const Eigen::CompleteOrthogonalDecomposition<MatrixXd> factors(bordered);
+    return VectorXd(factors.solve(right)).head(n);
+  }
+
+  const Model& model_;
+  ConstraintManifold manifold_;
+  const Drag& drag_;
+};
+
+std::optional<Drag> drag_of(const Json& request) {
+  const auto found = request.find("drag");
+  if (found == request.end() || found->is_null()) return std::nullopt;
+  Drag drag;
+  if (!found->is_object()) throw Trouble{"request", "`drag` is no object.", "", "", "", nullptr};
+  drag.element = static_cast<std::size_t>(std::max(0.0, number_of(*found, "element", 0)));
+  drag.point = static_cast<std::size_t>(std::max(0.0, number_of(*found, "point", 0)));
+  const auto to = found->find("to");
+  if (to == found->end() || !to->is_array()) throw Trouble{"request", "`drag.to` is no place.", "", "", "", nullptr};
+  for (const Json& x : *to) {
+    if (!x.is_number()) throw Trouble{"request", "`drag.to` is no place.", "", "", "", nullptr};
+    drag.to.push_back(x.get<double>());
+  }
+  return drag;
+}
+
+}  // namespace
+
+Json pose(Desk& desk, const Work& work) {
+  Study& study = desk.certified(work.request);
+  if (study.has_fields() || !study.equations()) desk.refuse(study);
+  const Model& model = *study.model();
+  const MechanicalSystem& system = model.system;
+  const InterruptScope scope = study.interruptible();
+  const auto start = consistent_start(model, *study.equations(), study.diagnostics());
+  if (!start) desk.refuse(study);
+  MotionState state = start->state;
+  if (const auto drag = drag_of(work.request)) {
+    MotionState dragged = state;
+    if (Pull(model, *study.equations(), *drag).carry_out(dragged)) state = std::move(dragged);
+  }
+  Json values = Json::object(), adjusted = Json::array();
+  for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
+    values[system.coordinates[i].name] = number_or_null(state.q[i]);
+    values[system.coordinates[i].name + "'"] = number_or_null(state.v[i]);
+  }
+  for (const StartAdjustment& a : start->adjustments)
+    adjusted.push_back(system.coordinates[a.coordinate].name + (a.order ? "'" : ""));
+  return {{"start", std::move(values)},
+          {"adjusted", std::move(adjusted)},
+          {"drawing", drawing_of(evaluate_drawing(model, rows_at(system, {state}), 1, study.equations()))},
+          {"diagnostics", desk.diagnostics(study)}};
+}
+
+}  // namespace maupertuis::studio
