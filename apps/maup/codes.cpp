@@ -112,6 +112,14 @@ constexpr CodeEntry own_codes[] = {
      "coordinates and energies alone says "
      "nothing of that.",
      "", ""},
+    {"E0850", "the studio is not here",
+     "`maup studio` shows a page in the browser, served by a program of its own, maup-studio, from the files of the "
+     "page. One of the two is not installed with this program. A build makes the page with npm (`make studio`) and the "
+     "server where cpp-httplib is installed.",
+     "", ""},
+    {"E0851", "the studio could not be served",
+     "The server of the studio listens at a port of 127.0.0.1, which no other program may use at the same time.",
+     "maup studio --port 80", "maup studio"},
     {"E1305", "the motion does not reach the time asked for",
      "`maup modes --at 3s` linearizes about the state of the motion at that time; the run ended before. Its reason is "
      "quoted.",

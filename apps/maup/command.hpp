@@ -60,6 +60,7 @@ void add_fmt(CommandLine& line);
 void add_new(CommandLine& line);
 void add_explain(CommandLine& line);
 void add_lsp(CommandLine& line);
+void add_studio(CommandLine& line);
 void add_doctor(CommandLine& line);
 void add_completions(CommandLine& line);
 void add_manual(CommandLine& line);

@@ -152,6 +152,7 @@ void add_all_commands(CommandLine& line) {
   add_new(line);
   add_explain(line);
   add_lsp(line);
+  add_studio(line);
   add_doctor(line);
   add_completions(line);
   add_manual(line);

@@ -78,11 +78,20 @@ Study& Desk::study(const Json& request) {
   return *studies_.front().study;
 }
 
-void Desk::refuse(Study& study) {
-  const auto items = study.diagnostics().items();
+Json Desk::diagnostics(const Study& study, const Diagnostics& more) {
+  Diagnostics all = study.diagnostics();
+  all.append(more);
+  all.sort_by_place();
+  return diagnostics_json(all, study.texts(), units());
+}
+
+void Desk::refuse(const Study& study, const Diagnostics& more) {
+  Diagnostics all = study.diagnostics();
+  all.append(more);
+  const auto items = all.items();
   const auto is_error = [](const Diagnostic& d) { return d.severity == Severity::Error; };
   const auto first = std::find_if(items.begin(), items.end(), is_error);
-  Trouble trouble{"model", "The model has a mistake.", "", "", "", diagnostics(study)};
+  Trouble trouble{"model", "The model has a mistake.", "", "", "", diagnostics(study, more)};
   if (first != items.end()) {
     trouble.message = first->message, trouble.reason = first->reason;
     trouble.help = first->help, trouble.code = first->code;

@@ -41,12 +41,13 @@ class Desk {
   Study& study(const Json& request);
   /// The same, certified; trouble of kind model where the text has mistakes.
   Study& certified(const Json& request);
-  /// A study that has collected messages of a run says them once: the next request begins a new one.
+  /// A study that has collected messages beyond its equations says them once: the next request begins a new one.
   void forget_said();
 
-  Json diagnostics(Study& study) { return diagnostics_json(study.diagnostics(), study.texts(), units()); }
-  /// Throws the mistakes of the study as trouble of kind model.
-  [[noreturn]] void refuse(Study& study);
+  /// Those of the study, and what a question of this request has found beside them.
+  Json diagnostics(const Study& study, const Diagnostics& more = {});
+  /// Throws the mistakes of both as trouble of kind model.
+  [[noreturn]] void refuse(const Study& study, const Diagnostics& more = {});
 
  private:
   struct Kept {

@@ -118,6 +118,7 @@ Json equations(Desk& desk, const Work& work) {
   const bool steps = is_true(work.request, "steps");
   Study& study = desk.certified(work.request);
   Json out;
+  Diagnostics found;
   if (study.has_fields()) {
     const InterruptScope scope = study.interruptible();
     out = equations_of_fields(desk, study, steps);
@@ -134,7 +135,7 @@ Json equations(Desk& desk, const Work& work) {
     out = content_json(
         compose_report(model, study.source(), equations, *study.derivation(true), *study.certificate(), {}, wanted),
         steps);
-    const auto start = look_into_start(model, equations, study.diagnostics());
+    const auto start = look_into_start(model, equations, found);
     out["coordinates"] = coordinates_json(model, equations.order, start);
     out["parameters"] = parameters_json(model.system, equations.order, desk.units());
     out["contacts"] = Json::array();
@@ -143,7 +144,7 @@ Json equations(Desk& desk, const Work& work) {
     out["modes"] = modes_json(model.system);
   }
   out["notes"] = notes_json(*study.tree(), study.source());
-  out["diagnostics"] = desk.diagnostics(study);
+  out["diagnostics"] = desk.diagnostics(study, found);
   return out;
 }
 

@@ -193,16 +193,18 @@ Json run(Desk& desk, const Work& work) {
   options.errors = is_true(work.request, "errors") ? ErrorEstimates::States : ErrorEstimates::None;
   options.progress = [&work](double fraction) { work.send({{"progress", fraction}}); };
   Json out;
+  Diagnostics found;
   if (study.has_fields()) {
     out = run_of_fields(desk, study, options, frames);
   } else {
     const Model& model = *study.model();
-    const auto result = study.motion(report_run(model, options));
-    if (!result) desk.refuse(study);
+    if (study.refuse_held_integrals()) desk.refuse(study);
+    const auto result = simulate(model, *study.equations(), report_run(model, options), found);
+    if (!result) desk.refuse(study, found);
     if (result->ending == Ending::Interrupted && result->trajectory.rows() < 2) throw Interrupted();
     out = run_json(study, model, *study.equations(), *study.derivation(true), *study.certificate(), *result, frames);
   }
-  out["diagnostics"] = desk.diagnostics(study);
+  out["diagnostics"] = desk.diagnostics(study, found);
   return out;
 }
 
@@ -254,11 +256,12 @@ Json modes(Desk& desk, const Work& work) {
   const Model& model = *study.model();
   const EquationsOfMotion& equations = *study.equations();
   const InterruptScope scope = study.interruptible();
-  const auto start = consistent_start(model, equations, study.diagnostics());
-  if (!start) desk.refuse(study);
+  Diagnostics said;
+  const auto start = consistent_start(model, equations, said);
+  if (!start) desk.refuse(study, said);
   PointEquations at_points(equations);
-  auto found = modal_study(at_points, start->state, study.diagnostics());
-  if (!found) desk.refuse(study);
+  auto found = modal_study(at_points, start->state, said);
+  if (!found) desk.refuse(study, said);
   settle_driven(*found, at_points, model, equations, work.interrupt);
   work.interrupt.throw_if_asked();
   ReportParts parts;
@@ -271,7 +274,8 @@ Json modes(Desk& desk, const Work& work) {
                      });
   Json points = Json::array();
   for (const auto& point : content.mode_points) points.push_back(mode_point_json(point));
-  return {{"points", std::move(points)}, {"search", content.mode_search}, {"diagnostics", desk.diagnostics(study)}};
+  return {
+      {"points", std::move(points)}, {"search", content.mode_search}, {"diagnostics", desk.diagnostics(study, said)}};
 }
 
 namespace {
@@ -315,10 +319,11 @@ Json section(Desk& desk, const Work& work) {
   const MechanicalSystem& system = study.model()->system;
   // It grows: a few crossings first, then four times as many, until there are enough. The motion is the same each time.
   Json out;
+  Diagnostics said;
   for (std::size_t crossings = std::min<std::size_t>(wanted, 50);; crossings = std::min(wanted, 4 * crossings)) {
     options.crossings = crossings;
-    const auto found = poincare_section(*study.model(), *study.equations(), options, study.diagnostics());
-    if (!found) desk.refuse(study);
+    const auto found = poincare_section(*study.model(), *study.equations(), options, said);
+    if (!found) desk.refuse(study, said);
     if (work.interrupt.asked()) {
       if (out.is_null()) throw Interrupted();
       out["ended"] = "The time of this question was over.";
@@ -328,7 +333,7 @@ Json section(Desk& desk, const Work& work) {
     if (crossings == wanted || !out["ended"].get<std::string>().empty()) break;
     work.send({{"section", out}});
   }
-  out["diagnostics"] = desk.diagnostics(study);
+  out["diagnostics"] = desk.diagnostics(study, said);
   return out;
 }
 

@@ -164,8 +164,9 @@ Json pose(Desk& desk, const Work& work) {
   const Model& model = *study.model();
   const MechanicalSystem& system = model.system;
   const InterruptScope scope = study.interruptible();
-  const auto start = consistent_start(model, *study.equations(), study.diagnostics());
-  if (!start) desk.refuse(study);
+  Diagnostics found;
+  const auto start = consistent_start(model, *study.equations(), found);
+  if (!start) desk.refuse(study, found);
   MotionState state = start->state;
   if (const auto drag = drag_of(work.request)) {
     MotionState dragged = state;
@@ -181,7 +182,7 @@ Json pose(Desk& desk, const Work& work) {
   return {{"start", std::move(values)},
           {"adjusted", std::move(adjusted)},
           {"drawing", drawing_of(evaluate_drawing(model, rows_at(system, {state}), 1, study.equations()))},
-          {"diagnostics", desk.diagnostics(study)}};
+          {"diagnostics", desk.diagnostics(study, found)}};
 }
 
 }  // namespace maupertuis::studio

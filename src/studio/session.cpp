@@ -4,6 +4,7 @@
 #include <maupertuis/studio.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <map>
 #include <string_view>
 
@@ -37,6 +38,8 @@ const std::map<std::string_view, Answering>& answering() {
   };
   return all;
 }
+
+constexpr std::chrono::milliseconds between_progress(50);
 
 /// Bytes that are no UTF-8 come back as the sign for such.
 std::string written(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
@@ -102,8 +105,12 @@ class Session::Implementation {
     const double budget = std::clamp(asked, 0.05, limits_.longest_budget);
     cancelled_ = stop_ = false;
     const Deadline deadline(budget, stop_);
-    const Work work{request, Interrupt(&stop_), [&send](const Json& message) {
-                      if (send) send(written(message));
+    auto last = std::chrono::steady_clock::time_point{};
+    const Work work{request, Interrupt(&stop_), [&](const Json& message) {
+                      const auto now = std::chrono::steady_clock::now();
+                      if (!send || (message.contains("progress") && now - last < between_progress)) return;
+                      last = now;
+                      send(written(message));
                     }};
     try {
       Json out = {{"ok", true}};

@@ -37,7 +37,7 @@ TEST_CASE("1: statements and commands of later versions say so") {
                                  "coord y : number\nT = 1/2 y'^2\ncontact y >= 0\n");
   CHECK(statement.code == 1);
   CHECK(contains(statement.err, "not supported yet"));
-  for (const char* command : {"sweep", "export", "studio"}) {
+  for (const char* command : {"sweep", "export"}) {
     CAPTURE(command);
     const Outcome outcome = maup({command, "x.lag", "--whatever"});
     CHECK(outcome.code == 1);

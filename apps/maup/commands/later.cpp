@@ -28,7 +28,6 @@ void add_later_commands(CommandLine& line) {
   const std::pair<const char*, const char*> commands[] = {
       {"sweep", "parameter studies and ensembles"},
       {"export", "c, python, latex, fmu, html"},
-      {"studio", "the interactive browser page"},
   };
   for (const auto& [name, what] : commands) {
     Command& command =
