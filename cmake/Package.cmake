@@ -1,5 +1,5 @@
 # Debian packages, made by cpack (scripts/package): maupertuis with the program, maupertuis-llvm with the module that makes machine code,
-# libmaupertuis-dev with what other programs are built with.
+# maupertuis-studio with the server and the page of the studio, libmaupertuis-dev with what other programs are built with.
 set(MAUPERTUIS_MAINTAINER "The Maupertuis developers <maintainers@maupertuis.invalid>" CACHE STRING "Who answers for the packages")
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR Maupertuis)
@@ -58,6 +58,14 @@ on one page.")
       DESCRIPTION "The module with which maup compiles the equations of a model for this
 processor. Long runs and ensembles are several times as fast with it, and
 give the same results up to rounding.")
+  endif()
+  if(TARGET maup-studio AND EXISTS ${CMAKE_BINARY_DIR}/studio/index.html)
+    package(studio maupertuis-studio science
+      DEPENDS "maupertuis (= ${package_version})" RECOMMENDS "maupertuis-llvm (= ${package_version}), xdg-utils"
+      SUMMARY "Lagrangian mechanics in the browser"
+      DESCRIPTION "The page that \`maup studio\` shows: write a model and see its equations,
+its motion, its conserved quantities at once; drag it, change its values,
+step through the derivation in a lecture. It is served at 127.0.0.1 alone.")
   endif()
   package(dev libmaupertuis-dev libdevel
     DEPENDS "libfmt-dev, libsundials-dev, liblapack-dev, libblas-dev" RECOMMENDS "maupertuis-llvm (= ${package_version})"

@@ -10,7 +10,7 @@
 ;;; Code:
 
 (defconst lag-statement-words
-  '("system" "source" "dimensionless" "param" "coord" "let" "input" "frame" "point" "body" "gravity"
+  '("system" "source" "note" "dimensionless" "param" "coord" "let" "input" "frame" "point" "body" "gravity"
     "spring" "damper" "torsion" "kinetic" "potential" "generalized_potential" "lagrangian"
     "dissipation" "force" "torque" "friction" "constraint" "gauge" "reaction" "contact" "impact"
     "event" "start" "run" "output" "method" "precision" "sweep" "draw" "independent" "path" "rates"

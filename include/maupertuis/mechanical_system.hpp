@@ -341,6 +341,23 @@ struct Experiment {
   std::optional<PathFormulas> given_path;
 };
 
+/// note "…": a sentence for readers, and what the statements before it are about.
+struct Note {
+  enum class Place {
+    Beginning,  // of the text
+    Coordinates,
+    Positions,  // points, bodies, frames
+    KineticEnergy,
+    PotentialEnergy,
+    Lagrangian,
+    Forces,  // and dissipation
+    Constraints,
+    End,  // starts, runs, pictures, expectations
+  } place = Place::Beginning;
+  std::string text;
+  Span span;
+};
+
 struct FieldModel;  // field_system.hpp
 
 struct Model {
@@ -348,6 +365,7 @@ struct Model {
   Experiment experiment;
   /// The fields, where the model has some; else null. `system` has no coordinates then, and holds the parameters.
   std::shared_ptr<const FieldModel> fields = nullptr;
+  std::vector<Note> notes = {};  // in the order of the text
 };
 
 /// Resolves names and units, infers dimensions, builds kinematics and energies. All mistakes go to `diagnostics`;

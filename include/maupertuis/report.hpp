@@ -31,6 +31,7 @@ struct ReportContent {
   struct Section {
     std::string title;
     std::vector<Formula> lines;
+    std::vector<std::string> notes = {};  // of the model, before the lines
   };
   struct Parameter {
     Layout symbol;
@@ -85,7 +86,8 @@ struct ReportContent {
     Diagram diagram;
   };
 
-  std::string name, title, source;  // source: the citation
+  std::string name, title, source;          // source: the citation
+  std::vector<std::string> notes, last_notes;  // of the model: at the beginning, and about its motion
   std::string file, model_text;
   std::vector<std::pair<std::string, std::string>> summary;  // "freedoms" → "2"
   std::vector<Message> messages;
@@ -165,6 +167,9 @@ using SectionGuard = std::function<bool(std::string_view section, const std::fun
 ReportContent compose_report(const Model& model, const SourceText& source, const EquationsOfMotion& equations,
                              const Derivation& derivation, const Certificate& certificate,
                              const ReportParts& parts = {}, const SectionGuard& guard = {});
+/// The notes of a model, each at the section of the derivation that the statements before it are about; where there is
+/// no such section, at the one before, or at the beginning.
+void add_notes(ReportContent& content, const Model& model);
 /// The messages of a page: those of `diagnostics` that are no errors.
 void add_messages(ReportContent& content, const Diagnostics& diagnostics, const SourceText& source);
 

@@ -95,6 +95,10 @@ struct SourceStatement {
   std::string citation;
 };
 struct DimensionlessStatement {};
+/// A sentence for readers, which stands in reports and lectures where it stands in the text.
+struct NoteStatement {
+  std::string text;
+};
 
 struct ParamStatement {
   struct Item {
@@ -502,7 +506,7 @@ using StatementBody =
                  OutputStatement, MethodStatement, PrecisionStatement, DrawStatement, ReactionStatement,
                  ExpectStatement, ConstraintStatement, SweepStatement, IndependentStatement, PathStatement,
                  ContactStatement, FrictionStatement, EventStatement, ImpactStatement, GaugeStatement, RatesStatement,
-                 FieldStatement>;
+                 FieldStatement, NoteStatement>;
 
 struct Statement {
   StatementBody body;

@@ -9,6 +9,7 @@ namespace {
 constexpr WordHelp kWords[] = {
     {"system", "", "system NAME \"Title\"", "The name and the title of the model."},
     {"source", "", "source \"citation\"", "Where the model or its reference values come from."},
+    {"note", "", "note \"sentence\"", "A sentence for readers, shown at its place in reports and lectures."},
     {"dimensionless", "", "dimensionless", "Turns units off: numbers are bare, angles in radians."},
     {"param", "", "param m = 1 kg, l = 60 cm", "Parameters with their values; derivations keep them as symbols."},
     {"coord", "", "coord x : length, θ : angle", "Generalized coordinates and what kind of quantity each is."},

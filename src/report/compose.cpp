@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 /// From the artifacts of a study to plain data: what stands here chooses and names, html.cpp lays out.
@@ -183,6 +184,48 @@ void add_messages(ReportContent& content, const Diagnostics& diagnostics, const 
   }
 }
 
+namespace {
+
+/// The titles of the derivation that a note of this place goes to, the best one first.
+std::vector<std::string_view> sections_for(Note::Place place) {
+  switch (place) {
+    case Note::Place::Coordinates:
+      return {"Coordinates"};
+    case Note::Place::Positions:
+      return {"Positions", "Angular velocities", "Kinetic energy"};
+    case Note::Place::KineticEnergy:
+      return {"Kinetic energy", "Lagrangian"};
+    case Note::Place::PotentialEnergy:
+      return {"Potential energy", "Lagrangian"};
+    case Note::Place::Lagrangian:
+      return {"Lagrangian", "Lagrangian density"};
+    case Note::Place::Forces:
+      return {"Generalized forces", "Lagrangian"};
+    case Note::Place::Constraints:
+      return {"Constraints"};
+    case Note::Place::Beginning:
+    case Note::Place::End:
+      return {};
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_notes(ReportContent& content, const Model& model) {
+  for (const Note& note : model.notes) {
+    std::vector<std::string>* notes = note.place == Note::Place::End ? &content.last_notes : &content.notes;
+    for (const std::string_view title : sections_for(note.place)) {
+      const auto found = std::find_if(content.derivation.begin(), content.derivation.end(),
+                                      [&](const auto& section) { return section.title == title; });
+      if (found == content.derivation.end()) continue;
+      notes = &found->notes;
+      break;
+    }
+    notes->push_back(note.text);
+  }
+}
+
 ReportContent compose_report(const Model& model, const SourceText& source, const EquationsOfMotion& equations,
                              const Derivation& derivation, const Certificate& certificate, const ReportParts& parts,
                              const SectionGuard& guard) {
@@ -197,6 +240,7 @@ ReportContent compose_report(const Model& model, const SourceText& source, const
   add_model(content, model, source, equations, parts.simulation);
   section("equations", [&] { add_equations(content, derivation, equations.order); });
   section("derivation", [&] { content.derivation = sections_of(derivation.steps, equations.order); });
+  add_notes(content, model);
   section("phase-space", [&] { add_phase_space(content, equations); });
   add_certificate(content, certificate);
   section("conserved", [&] {

@@ -254,6 +254,7 @@ ReportContent compose_field_report(const Model& model, const SourceText& source,
   composer.add_model(out, source);
   if (parts.with_equations) composer.add_equations(out);
   if (parts.with_derivation) composer.add_derivation(out);
+  add_notes(out, model);
   add_certificate(out, certificate);
   if (parts.currents) composer.add_currents(out, *parts.currents, parts.run);
   composer.add_waves(out, parts);

@@ -50,7 +50,7 @@ std::string header(const ReportContent& content) {
   std::string html =
       fmt::format("<header>\n<h1>{}</h1>\n", escape_html(content.title.empty() ? content.name : content.title));
   if (!content.source.empty()) html += fmt::format("<p class=\"citation\">{}</p>\n", escape_html(content.source));
-  return html + facts_line(content);
+  return html + notes_html(content.notes) + facts_line(content);
 }
 
 /// Up to the body. `title` is escaped.

@@ -149,11 +149,11 @@ std::string sentence_html(std::string_view sentence) {
 namespace {
 
 constexpr std::array statement_words{
-    "system",    "source",      "dimensionless", "param",  "coord",   "let",     "input",  "frame",    "point",
-    "body",      "gravity",     "spring",        "damper", "torsion", "force",   "torque", "friction", "constraint",
-    "gauge",     "reaction",    "contact",       "impact", "event",   "start",   "run",    "output",   "sweep",
-    "draw",      "independent", "path",          "rates",  "field",   "density", "expect", "claim",    "kinetic",
-    "potential", "lagrangian",  "dissipation",   "T",      "V",       "U",       "L",      "D"};
+    "system",  "source",    "dimensionless", "param",       "coord",   "let",   "input",   "frame",    "point",
+    "body",    "gravity",   "spring",        "damper",      "torsion", "force", "torque",  "friction", "constraint",
+    "note",    "gauge",     "reaction",      "contact",     "impact",  "event", "start",   "run",      "output",
+    "sweep",   "draw",      "independent",   "path",        "rates",   "field", "density", "expect",   "claim",
+    "kinetic", "potential", "lagrangian",    "dissipation", "T",       "V",     "U",       "L",        "D"};
 
 // Where a comment begins: a # that stands in no quotation.
 std::size_t comment_start(std::string_view line) {

@@ -54,6 +54,12 @@ std::string_view message_class(Severity severity) {
 
 }  // namespace
 
+std::string notes_html(const std::vector<std::string>& notes) {
+  std::string html;
+  for (const std::string& note : notes) html += fmt::format("<p class=\"note\">{}</p>\n", sentence_html(note));
+  return html;
+}
+
 std::string messages_section(const ReportContent& content) {
   std::string html;
   for (const auto& message : content.messages) {
@@ -162,6 +168,7 @@ std::string derivation_section(const ReportContent& content) {
     html += fmt::format("<details{}><summary>{}<span class=\"muted\">{}</span></summary>\n", lines <= 24 ? " open" : "",
                         sentence_html(part.title),
                         part.lines.size() == 1 ? "1 line" : fmt::format("{} lines", part.lines.size()));
+    html += notes_html(part.notes);
     for (const auto& line : part.lines)
       html += fmt::format("<div class=\"step\">{}<div class=\"rule\">{}</div></div>\n", formula_block(line),
                           sentence_html(line.rule));
@@ -224,7 +231,7 @@ std::string conserved_section(const ReportContent& content) {
 }
 
 std::string motion_section(const ReportContent& content) {
-  std::string html;
+  std::string html = notes_html(content.last_notes);
   if (!content.ending.empty())
     html += fmt::format("<div class=\"message\"><p>{}</p></div>\n", sentence_html(content.ending));
   html += facts_list(content.statistics);

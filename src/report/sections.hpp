@@ -6,6 +6,8 @@
 /// The parts of the page, in its order. Each is empty where the content has nothing for it.
 namespace maupertuis {
 
+/// A paragraph each.
+std::string notes_html(const std::vector<std::string>& notes);
 std::string messages_section(const ReportContent& content);
 std::string drawing_section(const ReportContent& content);
 std::string equations_section(const ReportContent& content);

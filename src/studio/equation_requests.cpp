@@ -78,7 +78,9 @@ Json content_json(const ReportContent& content, bool with_steps) {
               {"energies_title", content.energies_title},
               {"equations", lines_json(content.equations)},
               {"intermediates", lines_json(content.intermediates)},
-              {"conserved", conserved_json(content.conserved)}};
+              {"conserved", conserved_json(content.conserved)},
+              {"first_notes", content.notes},
+              {"last_notes", content.last_notes}};
   if (with_steps) out["derivation"] = sections_json(content.derivation);
   return out;
 }
@@ -110,7 +112,13 @@ Json modes_json(const MechanicalSystem& system) {
   return list;
 }
 
-Json notes_json(const syntax::SyntaxTree&, const SourceText&) { return Json::array(); }
+/// In the order of the text; `notes` of the sections of a derivation say where they are read out.
+Json notes_json(const Study& study, const Model& model) {
+  Json list = Json::array();
+  for (const Note& note : model.notes)
+    list.push_back({{"line", study.source().locate(note.span.begin).line}, {"text", note.text}});
+  return list;
+}
 
 }  // namespace
 
@@ -143,7 +151,7 @@ Json equations(Desk& desk, const Work& work) {
       out["contacts"].push_back({{"name", model.system.contact_label(k)}});
     out["modes"] = modes_json(model.system);
   }
-  out["notes"] = notes_json(*study.tree(), study.source());
+  out["notes"] = notes_json(study, *study.model());
   out["diagnostics"] = desk.diagnostics(study, found);
   return out;
 }
@@ -188,6 +196,15 @@ Json result_json(const ExpectationResult& r) {
   return {{"line", r.line},       {"text", r.text},         {"claim", r.claim},         {"passed", r.passed},
           {"actual", r.actual},   {"expected", r.expected}, {"tolerance", r.tolerance}, {"uncertainty", r.uncertainty},
           {"message", r.message}, {"pitfall", r.pitfall}};
+}
+
+/// For exercises: whether it is right, and which known mistake it is, but not by what it differs.
+Json without_answer(const ExpectationResult& r) {
+  const std::string message =
+      r.passed            ? "It follows from Lagrange's equations of this system."
+      : r.pitfall.empty() ? "It does not follow from Lagrange's equations of this system, and it is no known mistake."
+                          : "It does not follow from Lagrange's equations of this system.";
+  return {{"passed", r.passed}, {"message", message}, {"pitfall", r.pitfall}, {"text", r.text}};
 }
 
 /// The lines are carried out with a study of their own: a model that expects errors is judged by its diagnostics.
@@ -259,7 +276,7 @@ Json claim(Desk& desk, const Work& work) {
   // Its line is the last one of the text.
   const auto last = std::max_element(found->results.begin(), found->results.end(),
                                      [](const auto& a, const auto& b) { return a.line < b.line; });
-  return result_json(*last);
+  return is_true(work.request, "exercise") ? without_answer(*last) : result_json(*last);
 }
 
 }  // namespace maupertuis::studio

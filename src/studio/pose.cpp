@@ -17,7 +17,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int most_pulls = 12;
+constexpr int most_pulls = 30;
 constexpr double step = 1e-6;  // of a coordinate, in its SI unit, for J
 
 struct Drag {
@@ -51,12 +51,10 @@ class Pull {
       const auto place = place_of(state);
       if (!place) return k > 0;
       const VectorXd gap = target() - *place;
-      if (k > 0 && gap.norm() >= distance * 0.999) break;  // as near as it gets
+      if (k > 0 && gap.norm() >= distance * (1 - 1e-7)) break;  // as near as it gets
       distance = gap.norm();
       if (distance < 1e-9) break;
-      MotionState next = state;
-      if (!pull(next, *place, gap)) break;
-      state = std::move(next);
+      if (!pull(state, *place, gap)) break;
     }
     const std::vector<bool> free(state.q.size(), false);
     return manifold_.constraints() == 0 || manifold_.move_velocities(state, free);
@@ -105,17 +103,30 @@ class Pull {
     const MatrixXd k =
         j.transpose() * j + 1e-4 * size / static_cast<double>(n) * m + 1e-9 * size * MatrixXd::Identity(n, n);
     const VectorXd delta = on_constraints(state, k, VectorXd(j.transpose() * gap));
-    for (double part = 1; part > 1e-3; part /= 2) {
-      MotionState next = state;
-      for (Eigen::Index i = 0; i < n; ++i) next.q[static_cast<std::size_t>(i)] += part * delta(i);
-      const std::vector<bool> free(next.q.size(), false);
-      if (manifold_.constraints() > 0 && !manifold_.move_positions(next, free)) continue;
-      const auto moved = place_of(next);
-      if (!moved || (target() - *moved).norm() >= gap.norm()) continue;
-      state = std::move(next);
-      return true;
+    // A place out of reach is overshot by the whole step: it is halved as long as that comes nearer.
+    std::optional<MotionState> best;
+    double nearest = gap.norm();
+    for (double part = 1; part > 1e-4; part /= 2) {
+      const auto [next, distance] = moved_by(state, delta, part);
+      if (next && distance < nearest)
+        best = next, nearest = distance;
+      else if (best)
+        break;
     }
-    return false;
+    if (best) state = *std::move(best);
+    return best.has_value();
+  }
+
+  /// The state after a part of a step, on the constraints, and how far its point is from the pointer then.
+  std::pair<std::optional<MotionState>, double> moved_by(const MotionState& state, const VectorXd& delta,
+                                                         double part) const {
+    MotionState next = state;
+    for (std::size_t i = 0; i < next.q.size(); ++i) next.q[i] += part * delta(static_cast<Eigen::Index>(i));
+    const std::vector<bool> free(next.q.size(), false);
+    if (manifold_.constraints() > 0 && !manifold_.move_positions(next, free)) return {};
+    const auto moved = place_of(next);
+    if (!moved) return {};
+    return {std::move(next), (target() - *moved).norm()};
   }
 
   /// K δ + Aᵀ ν = r, A δ = 0; the shortest where rows of A depend on each other.

@@ -79,7 +79,8 @@ Json lines_json(const std::vector<ReportContent::Formula>& lines) {
 
 Json sections_json(const std::vector<ReportContent::Section>& sections) {
   Json list = Json::array();
-  for (const auto& section : sections) list.push_back({{"title", section.title}, {"lines", lines_json(section.lines)}});
+  for (const auto& section : sections)
+    list.push_back({{"title", section.title}, {"notes", section.notes}, {"lines", lines_json(section.lines)}});
   return list;
 }
 

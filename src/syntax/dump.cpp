@@ -37,6 +37,7 @@ class Dumper {
 
   void operator()(const SystemStatement& s) { head("system", s.name.text), word("title", s.title); }
   void operator()(const SourceStatement& s) { head("source", s.citation); }
+  void operator()(const NoteStatement& s) { head("note", s.text); }
   void operator()(const DimensionlessStatement&) { head("dimensionless"); }
   void operator()(const ParamStatement& s) {
     head("param");

@@ -13,6 +13,7 @@ std::span<const StatementParser::Entry> StatementParser::table() {
   static constexpr Entry entries[] = {
       {"system", &P::system_statement},
       {"source", &P::source_statement},
+      {"note", &P::note_statement},
       {"dimensionless", &P::dimensionless_statement},
       {"param", &P::param_statement},
       {"coord", &P::coord_statement},
@@ -147,6 +148,12 @@ StatementBody StatementParser::source_statement() {
   next();
   if (peek().kind != Token::Kind::String) fail_expected("a citation in quotes after `source`");
   return SourceStatement{std::string(next().text)};
+}
+
+StatementBody StatementParser::note_statement() {
+  next();
+  if (peek().kind != Token::Kind::String) fail_expected("a sentence in quotes after `note`");
+  return NoteStatement{std::string(next().text)};
 }
 
 StatementBody StatementParser::dimensionless_statement() {

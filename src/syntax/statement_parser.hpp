@@ -41,6 +41,7 @@ class StatementParser : private ExpressionParser {
 
   StatementBody system_statement();
   StatementBody source_statement();
+  StatementBody note_statement();
   StatementBody dimensionless_statement();
   StatementBody param_statement();
   StatementBody coord_statement();

@@ -13,6 +13,7 @@ using namespace std::string_view_literals;
 constexpr std::array kStatementWords = {
     "system"sv,
     "source"sv,
+    "note"sv,
     "dimensionless"sv,
     "param"sv,
     "coord"sv,

@@ -171,6 +171,7 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& written, const SourceTe
   const syntax::SyntaxTree& tree = real_fields ? *real_fields : written;
   Elaboration e(tree, SourceTexts(source, overrides.texts()), overrides, diagnostics);
   headings(e);
+  elaborate_notes(e);
   name_independent(e);
   fix_space_dimension(e);
   check_statement_counts(e);

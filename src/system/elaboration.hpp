@@ -173,6 +173,7 @@ std::vector<StartRate> start_rates(Elaboration& e, const syntax::StartStatement:
 /// The velocities that rates of a point ask for, added to its values. False, and a message, where none give them.
 bool add_velocities_of_rates(Elaboration& e, const std::vector<StartRate>& rates, std::vector<StartValue>& values);
 void elaborate_experiment(Elaboration& e);
+void elaborate_notes(Elaboration& e);
 void elaborate_expectation(Elaboration& e, const syntax::ExpectStatement& s, Span span);
 /// What a line says; nothing after a mistake.
 using Expected = std::optional<expectation::Kind>;

@@ -33,7 +33,7 @@ bool goes_with_fields(const syntax::Statement& s) {
   const auto* constraint = std::get_if<syntax::ConstraintStatement>(&s.body);
   if (constraint && constraint->integral) return false;
   return is_mechanics(s) || std::get_if<syntax::SystemStatement>(&s.body) ||
-         std::get_if<syntax::SourceStatement>(&s.body) || std::get_if<syntax::DimensionlessStatement>(&s.body) ||
+         std::get_if<syntax::SourceStatement>(&s.body) || std::get_if<syntax::NoteStatement>(&s.body) || std::get_if<syntax::DimensionlessStatement>(&s.body) ||
          std::get_if<syntax::ParamStatement>(&s.body) || std::get_if<syntax::LetStatement>(&s.body) ||
          std::get_if<syntax::InputStatement>(&s.body) || std::get_if<syntax::StartStatement>(&s.body) ||
          std::get_if<syntax::RunStatement>(&s.body) || std::get_if<syntax::OutputStatement>(&s.body) ||

@@ -29,6 +29,7 @@ syntax match lagWord /\<\(boundary\|constraint\|damper\|density\|event\|friction
 " Statement words are reserved at the beginning of a line alone; those of energies stand before = there.
 syntax match lagStatement /^\s*\zssystem\ze\k\@!/
 syntax match lagStatement /^\s*\zssource\ze\k\@!/
+syntax match lagStatement /^\s*\zsnote\ze\k\@!/
 syntax match lagStatement /^\s*\zsdimensionless\ze\k\@!/
 syntax match lagStatement /^\s*\zsparam\ze\k\@!/
 syntax match lagStatement /^\s*\zscoord\ze\k\@!/

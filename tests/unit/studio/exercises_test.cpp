@@ -1,0 +1,57 @@
+#include "session.hpp"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+
+namespace maupertuis::studio {
+namespace {
+
+TEST_CASE("exercises take the right equations, and name known mistakes without the answer") {
+  Json exercises = Json::parse(file_text("tests/studio/exercises.json"));
+  std::size_t files = 0;
+  for (const auto& file : std::filesystem::directory_iterator(std::string(PROJECT_DIR) + "/studio/exercises")) {
+    if (file.path().extension() == ".lag") {
+      CHECK(exercises.contains(file.path().stem().string()));
+      ++files;
+    }
+  }
+  CHECK(files == 20);
+  for (const auto& [name, claims] : exercises.items()) {
+    CAPTURE(name);
+    Asked page(file_text("studio/exercises/" + name + ".lag"));
+    CHECK(page.opened["diagnostics"] == Json::array());
+    CHECK(page.ask("run")["ok"] == true);
+    for (const Json& right : claims["right"]) {
+      CAPTURE(right);
+      CHECK(page.ask({{"do", "claim"}, {"text", right}, {"exercise", true}})["passed"] == true);
+    }
+    for (const Json& wrong : claims["wrong"]) {
+      CAPTURE(wrong);
+      Json judged = page.ask({{"do", "claim"}, {"text", wrong[0]}, {"exercise", true}});
+      CHECK(judged["passed"] == false);
+      const std::string pitfall = judged.value("pitfall", "");
+      CAPTURE(pitfall);
+      CHECK((wrong[1] == "" ? pitfall.empty() : pitfall.find(wrong[1].get<std::string>()) != std::string::npos));
+      for (const Json& right : claims["right"])
+        CHECK(judged.dump().find(right.get<std::string>()) == std::string::npos);
+    }
+  }
+}
+
+TEST_CASE("claims that cannot be read are told at their place") {
+  Asked page(file_text("studio/exercises/01_pendulum.lag"));
+  Json judged = page.ask({{"do", "claim"}, {"text", "θ'' = -g/l sinn θ"}});
+  CHECK(judged["ok"] == false);
+  REQUIRE(judged["diagnostics"].size() >= 1);
+  CHECK(judged["diagnostics"][0]["in_claim"] == true);
+  CHECK(judged["diagnostics"][0]["from"] == 11);
+  CHECK(page.ask({{"do", "claim"}, {"text", ""}})["kind"] == "refused");
+  CHECK(page.ask({{"do", "claim"}, {"text", "θ'' = 0\nm = 3"}})["kind"] == "refused");
+  // Without `exercise` the difference is told.
+  CHECK(page.ask({{"do", "claim"}, {"text", "θ'' = g/l sin θ"}})["message"].get<std::string>().find("sin") !=
+        std::string::npos);
+}
+
+}  // namespace
+}  // namespace maupertuis::studio
