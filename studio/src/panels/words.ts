@@ -1,0 +1,11 @@
+/** Numbers and units as a book prints them: 5e-16 is 5·10⁻¹⁶, m/s^2 is m/s². */
+export function numbers(text: string): string {
+  return text.replace(/(?<![\w.])(-?\d+(?:\.\d+)?)e([+-]?)0*(\d+)/g, (_, mantissa: string, sign: string, exponent: string) =>
+    `${mantissa === '1' ? '' : mantissa + '·'}10${raised((sign === '-' ? '-' : '') + exponent)}`).replace(/(?<![\w.)])-(?=\d)/g, '−');
+}
+
+export const raised = (digits: string): string => [...digits].map(c => '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'['-0123456789'.indexOf(c)]).join('');
+
+export function unitText(unit: string): string {
+  return unit === 'deg' ? '°' : unit.replace(/\^\(?(-?\d+)\)?/g, (_, exponent: string) => raised(exponent)).replace(/ /g, '\u2009');
+}
