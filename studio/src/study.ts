@@ -4,6 +4,7 @@ import type {Answer, ClaimAnswer, Conserved, EquationsAnswer, Failure, ModesAnsw
 import type {Store} from './store';
 import type {State} from './state';
 
+const longest = 1_000_000;  // characters of a model: as much as a session takes
 const restAfter = 220, quickFrames = 160, fullFrames = 900;
 
 export interface Model {text: string; name: string; set?: Record<string, string>; start?: Record<string, string>; origin?: State['origin']}
@@ -11,11 +12,14 @@ export interface Model {text: string; name: string; set?: Record<string, string>
 /** What follows from the text and the values: asks for it when they change, and puts the answers into the state. */
 export class Study {
   private resting = 0;
-  private grabbed: {values: Values; start: Record<string, string>} | null = null;
+  private grabbed: {values: Values; start: Record<string, string>; moved: boolean} | null = null;
   private shown = false;  // something of this model was shown: the clock goes on where it is
 
   constructor(readonly store: Store<State>, readonly asker: Asker, private readonly clock: Clock) {
     asker.onBusy(kind => store.update({busy: kind, progress: null}));
+    store.watch(['busy', 'quick', 'text', 'openedText'], state => {
+      document.body.dataset.settled = String(state.busy === null && !state.quick && state.text === state.openedText);
+    });
   }
 
   get values(): Values {
@@ -52,13 +56,17 @@ export class Study {
   private async readText(): Promise<void> {
     window.clearTimeout(this.resting);
     const {text, name} = this.store.state;
+    if (text.length > longest)
+      return this.store.update({readable: false, openedText: text, deep: [], equationsTrouble: {
+        code: '', message: 'The text is too long.', reason: `A model is a text that a person writes; this has ${(text.length / 1e6).toFixed(1)} million characters.`,
+        help: 'Is it the right file? Undo brings the text before it back.'}});
     const opened = await this.asker.ask<OpenAnswer>({do: 'open', text, name: `${name}.lag`});
     if (!opened.ok) {
       if (opened.kind !== 'cancelled') this.store.update({equationsTrouble: opened.trouble, readable: false});
       return;
     }
     if (text !== this.store.state.text) return;
-    this.store.update({opened, openedText: text, readable: opened.readable, ...(opened.readable ? {} : {deep: []})});
+    this.store.update({opened, openedText: text, ...(opened.readable ? {} : {equationsTrouble: null}), readable: opened.readable, ...(opened.readable ? {} : {deep: []})});
     if (opened.readable) await this.follow();
   }
 
@@ -193,7 +201,7 @@ export class Study {
       }
     }
     this.clock.play(false);
-    this.grabbed = {values: this.values, start};
+    this.grabbed = {values: this.values, start, moved: false};
   }
 
   async drag(element: number, point: number, to: number[]): Promise<void> {
@@ -206,6 +214,7 @@ export class Study {
     }
     for (const c of this.store.state.equations?.coordinates ?? []) {
       const q = answer.start[c.name], v = answer.start[c.name + "'"];
+      grabbed.moved ||= typeof q === 'number' && q !== (grabbed.start[c.name] === undefined ? this.store.state.run?.start[c.name] : Number.parseFloat(grabbed.start[c.name]));
       if (q !== null && q !== undefined) grabbed.start[c.name] = withUnit(q, c.unit);
       if (v !== null && v !== undefined) grabbed.start[c.name + "'"] = withUnit(v, c.velocity_unit);
     }
@@ -216,6 +225,10 @@ export class Study {
     const grabbed = this.grabbed;
     this.grabbed = null;
     if (!grabbed || !moved) return this.store.update({pose: null});
+    if (!grabbed.moved) {
+      this.say('Its constraints hold it where it is.');
+      return this.store.update({pose: null});
+    }
     this.store.update({start: grabbed.start});
     this.clock.seek(0);
     window.clearTimeout(this.resting);

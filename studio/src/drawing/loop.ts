@@ -2,12 +2,13 @@ import maupScene from '../../../src/report/page/scene.js';
 import maupPainter from '../../../src/report/page/painter.js';
 import type {Scene} from '../contract';
 import {h} from '../dom';
+import {pretty} from '../panels/words';
 
 /** A mode that swings over its equilibrium while it is on the screen; a click halts it. */
 export function loopDrawing(scene: Scene, caption: string): {element: HTMLElement; stop: () => void} {
   const canvas = h('canvas', {role: 'img', 'aria-label': `Mode: ${caption.replaceAll('`', '')}`}), context = canvas.getContext('2d')!, painter = maupPainter(context);
   const button = h('button', {type: 'button', class: 'watch', 'aria-pressed': 'true', onclick: () => set(!playing)}, 'Halt');
-  const element = h('figure', {class: 'mode'}, canvas, h('figcaption', {}, caption.replaceAll('`', '')), button);
+  const element = h('figure', {class: 'mode'}, canvas, h('figcaption', {}, pretty(caption.replaceAll('`', ''))), button);
   const duration = maupScene.duration(scene);
   let playing = false, ended = false, s = 0, before = 0;
 

@@ -69,7 +69,7 @@ export class Editor {
         {key: 'Tab', run: acceptCompletion},
         ...closeBracketsKeymap, ...defaultKeymap, ...searchKeymap, ...historyKeymap, ...foldKeymap, ...completionKeymap, ...lintKeymap, indentWithTab,
       ]),
-      EditorView.contentAttributes.of({'aria-label': 'Model text', spellcheck: 'false', autocorrect: 'off', autocapitalize: 'off'}),
+      EditorView.contentAttributes.of({'aria-label': 'Model text', tabindex: '0', spellcheck: 'false', autocorrect: 'off', autocapitalize: 'off'}),
       EditorView.domEventHandlers({
         click: event => {
           if (!(event.ctrlKey || event.metaKey)) return false;

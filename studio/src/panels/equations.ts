@@ -4,8 +4,7 @@ import {loopDrawing} from '../drawing/loop';
 import type {State} from '../state';
 import type {Store} from '../store';
 import type {Study} from '../study';
-import {pretty} from '../plots/panel';
-import {numbers} from './words';
+import {numbers, pretty} from './words';
 import {copyButton, lineElement, sectionsElements} from './formulas';
 
 /** The words of the page for what went wrong: what, why, what helps. */
@@ -34,7 +33,11 @@ export class EquationsPanel {
     store.watch(['run', 'runTrouble'], state => this.motion(state));
     store.watch(['modes'], state => this.modes(state));
     store.watch(['phaseSpace'], state => this.phaseSpace(state));
-    store.watch(['readable', 'opened'], state => byId('equations').classList.toggle('stale', state.opened !== null && !state.readable));
+    store.watch(['readable', 'opened', 'equations'], state => {
+      const stale = state.opened !== null && !state.readable && state.equations !== null;
+      byId('equations').classList.toggle('stale', stale);
+      byId('stale').hidden = !stale;
+    });
     onOpening('derivation', () => void study.wantSteps());
     onOpening('modes', () => this.asked());
     onOpening('phase-space', () => this.asked());
@@ -123,9 +126,9 @@ export class EquationsPanel {
 
   private points(modes: ModesAnswer): (Node | string)[] {
     return [...modes.points.flatMap(point => [
-      h('h3', {}, point.name, h('span', {class: point.stable ? 'good' : 'bad'}, ` ${point.stability}`)),
+      h('h3', {}, pretty(point.name), h('span', {class: point.stable ? 'good' : 'bad'}, ` ${point.stability}`)),
       h('div', {class: 'scroll'}, h('table', {}, h('thead', {}, h('tr', {}, ...['', 'ω', 'f', 'period', 'damping'].map(t => h('th', {}, t)))),
-        h('tbody', {}, ...point.rows.map(row => h('tr', {}, ...[row.kind, row.frequency, row.hertz, row.period, row.damping].map(t => h('td', {}, t))))))),
+        h('tbody', {}, ...point.rows.map(row => h('tr', {}, ...[row.kind, row.frequency, row.hertz, row.period, row.damping].map(t => h('td', {}, numbers(t)))))))),
       h('div', {class: 'shapes'}, ...point.shapes.map(shape => this.shape(shape))),
       h('details', {class: 'inner'}, h('summary', {}, 'Linearized equations'), ...point.formulas.map(lineElement)),
     ]), modes.search ? h('p', {class: 'muted'}, ...prose(modes.search)) : '', modes.points.length ? '' : h('p', {class: 'muted'}, 'There is no equilibrium here.')];

@@ -1,4 +1,5 @@
 import type {Line, Section} from '../contract';
+import {pretty} from './words';
 import {copyText, h, prose} from '../dom';
 
 /** A line of mathematics with its sentence before it and the rule that made it at its side. */
@@ -28,7 +29,7 @@ export function copyButton(lines: () => Line[], say: (text: string) => void): HT
 export function sectionsElements(sections: Section[], say: (text: string) => void): HTMLElement[] {
   return sections.map(section => {
     const steps = section.lines.length;
-    return h('details', {}, h('summary', {}, section.title, h('span', {class: 'muted'}, `${steps} ${steps === 1 ? 'line' : 'lines'}`)),
+    return h('details', {}, h('summary', {}, pretty(section.title), h('span', {class: 'muted'}, `${steps} ${steps === 1 ? 'line' : 'lines'}`)),
              h('div', {class: 'tools'}, copyButton(() => section.lines, say)), ...section.lines.map(lineElement));
   });
 }

@@ -1,10 +1,10 @@
 /** Where a slider begins, ends, and what one step of it is. */
 export interface Range {low: number; high: number; step: number}
 
-/** The next larger of 1, 2, 5 times a power of ten. */
+/** The next larger of 1, 2, 3, 5 times a power of ten. */
 function round(size: number): number {
   const power = 10 ** Math.floor(Math.log10(size));
-  return [1, 2, 5, 10].map(f => f * power).find(f => f >= size * 0.999)!;
+  return [1, 2, 3, 5, 10].map(f => f * power).find(f => f >= size * 0.999)!;
 }
 
 const within = (low: number, high: number): Range => ({low, high, step: 10 ** Math.floor(Math.log10((high - low) / 200))});

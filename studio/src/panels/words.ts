@@ -9,3 +9,9 @@ export const raised = (digits: string): string => [...digits].map(c => '⁻⁰¹
 export function unitText(unit: string): string {
   return unit === 'deg' ? '°' : unit.replace(/\^\(?(-?\d+)\)?/g, (_, exponent: string) => raised(exponent)).replace(/ /g, '\u2009');
 }
+
+/** The name as formulas write it: θ1' is θ₁′. Marks of differentiation stay primes, which any face has. */
+export function pretty(name: string): string {
+  return name.replace(/(\p{L})(\d+)(?![\d.])/gu, (_, letter: string, digits: string) => letter + [...digits].map(d => '₀₁₂₃₄₅₆₇₈₉'[Number(d)]).join(''))
+             .replace(/''/g, '″').replace(/'/g, '′').replace(/(?<![\w.)])-(?=\d)/g, '−');
+}

@@ -4,14 +4,9 @@ import {byId, h} from '../dom';
 import type {ChartSpec, State} from '../state';
 import type {Store} from '../store';
 import {nearestRow} from '../study';
-import {unitText} from '../panels/words';
+import {pretty, unitText} from '../panels/words';
 import {Chart, type Curve} from './chart';
 
-/** The name as formulas write it: θ1' is θ̇₁. Marks of differentiation stay primes, which any face has. */
-export function pretty(name: string): string {
-  return name.replace(/(\p{L})(\d+)/gu, (_, letter: string, digits: string) => letter + [...digits].map(d => '₀₁₂₃₄₅₆₇₈₉'[Number(d)]).join(''))
-             .replace(/''/g, '″').replace(/'/g, '′');
-}
 const withUnitOf = (name: string, unit: string): string => unit ? `${pretty(name)} (${unitText(unit)})` : pretty(name);
 
 /** What a model asks for, else its coordinates, those of a unit together. */

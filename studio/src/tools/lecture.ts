@@ -3,6 +3,7 @@ import type {Line} from '../contract';
 import {h, prose} from '../dom';
 import {Stage} from '../drawing/stage';
 import {lineElement} from '../panels/formulas';
+import {pretty} from '../panels/words';
 import type {State} from '../state';
 import type {Store} from '../store';
 import type {Study} from '../study';
@@ -33,7 +34,7 @@ export async function lecture(store: Store<State>, study: Study, clock: Clock, s
 
   function show(): void {
     const step = steps[at], first = steps.findIndex(one => one.title === step.title);
-    title.textContent = step.title;
+    title.textContent = pretty(step.title);
     const shown = steps.slice(first, at + 1).map(one => lineElement(one.line));
     shown.at(-1)!.classList.add('now');
     lines.replaceChildren(...shown);
