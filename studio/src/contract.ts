@@ -59,6 +59,7 @@ export interface RunAnswer extends Table {
   pictures: {caption: string; columns: string[]; phase: boolean; against?: string}[]; figures: {caption: string; svg: string}[];
   start: Record<string, number | null>; uncertain: {from: number; everything: boolean; columns: string[]} | null;
   diagnostics: Diagnostic[];
+  places?: number[]; upwards?: number[]; fields?: Column[];  // of fields
 }
 export interface PoseAnswer {start: Record<string, number | null>; drawing: Scene | null; adjusted: string[]}
 export interface ModePoint {

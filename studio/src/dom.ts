@@ -1,3 +1,5 @@
+import {numbers} from './panels/words';
+
 type Child = Node | string | null | undefined | false;
 type Attributes = Record<string, string | number | boolean | ((event: never) => void) | null | undefined>;
 
@@ -18,7 +20,7 @@ export const byId = <T extends HTMLElement>(id: string): T => document.getElemen
 
 /** Text with `code` in backquotes. */
 export function prose(text: string): Node[] {
-  return text.split('`').map((part, i) => i % 2 ? h('code', {}, part) : document.createTextNode(part));
+  return text.split('`').map((part, i) => i % 2 ? h('code', {}, part) : document.createTextNode(numbers(part)));
 }
 
 export function icon(path: string): SVGElement {

@@ -4,8 +4,9 @@ import type {Answer, ClaimAnswer, Conserved, EquationsAnswer, Failure, ModesAnsw
 import type {Store} from './store';
 import type {State} from './state';
 
+export const noDuration = 'E0701';
 const longest = 1_000_000;  // characters of a model: as much as a session takes
-const restAfter = 220, quickFrames = 160, fullFrames = 900;
+const restAfter = 220, quickFrames = 160, fullFrames = 1500;
 
 export interface Model {text: string; name: string; set?: Record<string, string>; start?: Record<string, string>; origin?: State['origin']}
 
@@ -121,7 +122,8 @@ export class Study {
     if (answer.ok) this.showRun(answer, quick);
     else if (answer.kind !== 'cancelled' && !(quick && answer.kind === 'budget')) {
       this.dropForeignValues(answer);
-      this.store.update({runTrouble: answer.trouble, quick: false, deep: answer.diagnostics?.length ? answer.diagnostics : this.store.state.deep});
+      this.store.update({runTrouble: answer.trouble, quick: false, ...(answer.trouble.code === noDuration ? {run: null} : {}),
+                         deep: answer.diagnostics?.length && answer.trouble.code !== noDuration ? answer.diagnostics : this.store.state.deep});
     }
   }
 

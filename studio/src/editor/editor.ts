@@ -58,7 +58,7 @@ export class Editor {
     return [
       lineNumbers(), foldGutter(), codeFolding(), lintGutter(), history(), drawSelection(), highlightSpecialChars(), highlightActiveLine(),
       bracketMatching(), closeBrackets(), highlightSelectionMatches(), search({top: true}), EditorState.tabSize.of(4), EditorView.lineWrapping,
-      autocompletion({override: [context => this.complete(context)], activateOnTypingDelay: 60}),
+      autocompletion({override: [context => this.complete(context)], activateOnTypingDelay: 60, icons: false}),
       hoverTooltip((_, at) => this.hover(at), {hoverTime: 350}),
       keymap.of([
         {key: 'F2', run: () => { void this.rename(); return true; }},

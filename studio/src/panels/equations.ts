@@ -3,7 +3,7 @@ import {byId, h, prose} from '../dom';
 import {loopDrawing} from '../drawing/loop';
 import type {State} from '../state';
 import type {Store} from '../store';
-import type {Study} from '../study';
+import {noDuration, type Study} from '../study';
 import {numbers, pretty} from './words';
 import {copyButton, lineElement, sectionsElements} from './formulas';
 
@@ -112,7 +112,12 @@ export class EquationsPanel {
     const ending = run && !run.ending.ok ? h('div', {class: 'message'}, h('p', {class: 'what'}, `The motion ended early: ${run.ending.kind}.`), run.ending.reason && h('p', {}, ...prose(run.ending.reason))) : '';
     const lost = run?.uncertain ? h('div', {class: 'message'}, h('p', {class: 'what'}, `From t = ${Number(run.uncertain.from.toPrecision(3))} on no digit of ${run.uncertain.everything ? 'the motion' : run.uncertain.columns.map(pretty).join(', ')} is certain.`)) : '';
     byId('motion-body').replaceChildren(runTrouble ? troubleElement(runTrouble) : '', ending, lost, facts, run?.happenings.length ? happenings(run.happenings, run.first_mode) : '');
-    byId('stage-trouble').replaceChildren(runTrouble ? troubleElement(runTrouble) : ending ? ending.cloneNode(true) : '');
+    byId('stage-trouble').replaceChildren(runTrouble ? (runTrouble.code === noDuration ? this.withoutDuration() : troubleElement(runTrouble)) : ending ? ending.cloneNode(true) : '');
+  }
+
+  private withoutDuration(): HTMLElement {
+    return h('div', {class: 'message'}, h('p', {class: 'what'}, 'The text does not say how long to run.'),
+             h('p', {}, 'A line such as ', h('code', {}, 'run 10 s'), ' says it. ', h('button', {type: 'button', onclick: () => this.study.setDuration('10 s')}, 'Run 10 s')));
   }
 
   private modes({modes}: State): void {

@@ -8,10 +8,12 @@ export interface ChartContent {
   y: string;
   overTime: boolean;   // x is the time: a line shows the present
   marks?: number[];    // times of events
+  up?: [number, number];  // the range of y where the curves do not say it
+  moves?: boolean;     // the curves are those of the moment, and are drawn whole
 }
 
 const room = {left: 62, right: 14, top: 12, bottom: 40};
-const faces = `'STIX Two Text','Latin Modern Roman',Cambria,'Times New Roman','DejaVu Serif',serif`;
+const faces = `'STIX Two Text','Latin Modern Roman','Latin Modern Math',Cambria,'Times New Roman','DejaVu Serif',serif`;
 
 /** Places of ticks with 1, 2 or 5 times a power of ten between them. */
 export function ticks(low: number, high: number, most: number): number[] {
@@ -32,7 +34,7 @@ function tickText(value: number, step: number): string {
   return value.toFixed(Math.max(0, Math.min(9, -Math.floor(Math.log10(step) + 1e-9)))).replace('-', '−');
 }
 
-function extent(curves: Curve[], key: 'x' | 'y'): [number, number] {
+export function extent(curves: Curve[], key: 'x' | 'y'): [number, number] {
   let low = Infinity, high = -Infinity;
   for (const curve of curves)
     for (let i = 0; i < curve[key].length; ++i) {
@@ -70,8 +72,8 @@ export class Chart {
 
   set(content: ChartContent): void {
     this.content = content;
-    this.range = {x: extent(content.curves, 'x'), y: extent(content.curves, 'y')};
-    if (!content.overTime) {
+    this.range = {x: extent(content.curves, 'x'), y: content.up ?? extent(content.curves, 'y')};
+    if (!content.overTime && !content.moves) {
       const [low, high] = this.range.x, wider = 0.05 * (high - low);
       this.range.x = [low - wider, high + wider];
     }
@@ -111,7 +113,7 @@ export class Chart {
       context.setLineDash([]);
     }
     for (const curve of this.content.curves) {
-      context.globalAlpha = curve.faint ? 0.55 : this.content.overTime ? 1 : 0.28;
+      context.globalAlpha = curve.faint ? 0.55 : this.content.overTime || this.content.moves ? 1 : 0.28;
       this.stroke(context, curve, colour(`--series-${curve.series + 1}`), curve.faint ? 1 : 1.5, curve.x.length);
     }
     this.present(...this.lastPresent);
@@ -185,6 +187,7 @@ export class Chart {
       line(context, this.across(time), room.top, this.across(time), this.height - room.bottom);
       context.globalAlpha = 1;
     }
+    if (this.content.moves) return;
     for (const curve of this.content.curves) {
       if (curve.faint) continue;
       const ink = colour(`--series-${curve.series + 1}`);

@@ -5,27 +5,30 @@ import type {ChartSpec, State} from '../state';
 import type {Store} from '../store';
 import {nearestRow} from '../study';
 import {pretty, unitText} from '../panels/words';
+import {movingFields, type MovingField} from './field';
 import {Chart, type Curve} from './chart';
 
-const withUnitOf = (name: string, unit: string): string => unit ? `${pretty(name)} (${unitText(unit)})` : pretty(name);
+const withUnitOf = (name: string, unit: string): string => unit && unit !== '1' ? `${pretty(name)} (${unitText(unit)})` : pretty(name);
 
-/** What a model asks for, else its coordinates, those of a unit together. */
+const most = 5;  // charts that a model gets unasked
+
+/** What a model asks for, else its coordinates; of one unit each; the phase portrait of the first coordinate next to them. */
 export function chartsOf(run: RunAnswer, state: State): ChartSpec[] {
   if (state.charts) return state.charts;
-  const exists = (name: string): boolean => run.columns.some(column => column.name === name);
-  const asked = run.pictures.map(picture => ({columns: picture.columns.filter(exists), against: picture.against && exists(picture.against) ? picture.against : null}))
-                            .filter(spec => spec.columns.length > 0);
+  if (run.places) return [];  // a field is shown in motion
+  const unitOf = (name: string): string | undefined => run.columns.find(column => column.name === name)?.unit;
+  const exists = (name: string): boolean => unitOf(name) !== undefined;
   const coordinates = (state.equations?.coordinates ?? []).map(c => c.name).filter(exists);
-  const phase = (specs: ChartSpec[]): ChartSpec[] =>
-    specs.some(spec => spec.against) || coordinates.length === 0 || !exists(coordinates[0] + "'") ? specs
-      : [...specs, {columns: [coordinates[0] + "'"], against: coordinates[0]}];
-  if (asked.length > 0) return phase(asked).slice(0, 4);
-  const groups = new Map<string, string[]>();
-  for (const name of (coordinates.length ? coordinates : run.columns.map(column => column.name)).slice(0, 8)) {
-    const unit = run.columns.find(column => column.name === name)!.unit;
-    groups.set(unit, [...groups.get(unit) ?? [], name]);
-  }
-  return phase([...groups.values()].map(columns => ({columns, against: null}))).slice(0, 4);
+  const plain = coordinates.length ? coordinates : run.columns.map(column => column.name);
+  const asked = run.pictures.length ? run.pictures : [{columns: plain.slice(0, 8), against: ''}];
+  const specs = asked.flatMap(({columns, against}) => {
+    const groups = new Map<string, string[]>();
+    for (const name of columns.filter(exists)) groups.set(unitOf(name)!, [...groups.get(unitOf(name)!) ?? [], name]);
+    return [...groups.values()].map((group): ChartSpec => ({columns: group, against: against && exists(against) ? against : null}));
+  });
+  const first = coordinates[0];
+  if (first && exists(`${first}'`) && !specs.some(spec => spec.against)) specs.splice(1, 0, {columns: [`${first}'`], against: first});
+  return specs.slice(0, most);
 }
 
 interface Shown {spec: ChartSpec; chart: Chart; caption: HTMLElement; canvas: HTMLCanvasElement}
@@ -34,17 +37,23 @@ interface Shown {spec: ChartSpec; chart: Chart; caption: HTMLElement; canvas: HT
 export class PlotsPanel {
   private readonly host = byId('plots');
   private shown: Shown[] = [];
+  private fields: MovingField[] = [];
+  private of: RunAnswer | null = null;  // the run that the fields are of
 
   constructor(private readonly store: Store<State>, private readonly clock: Clock) {
     clock.onTick(() => this.present());
     store.watch(['run', 'pins', 'charts', 'equations'], () => this.refresh());
   }
 
-  recolour(): void { for (const {chart} of this.shown) chart.paintStill(); }
+  recolour(): void {
+    for (const {chart} of this.shown) chart.paintStill();
+    for (const field of this.fields) field.recolour();
+  }
 
   private refresh(): void {
     const {run} = this.store.state;
-    if (!run) return this.host.replaceChildren();
+    if (!run) { this.shown = []; this.fields = []; return this.host.replaceChildren(); }
+    if (run !== this.of) { this.of = run; this.fields = movingFields(run, this.clock); this.host.querySelector('.moving')?.replaceChildren(...this.fields.map(one => one.element)); }
     const specs = chartsOf(run, this.store.state), key = (list: ChartSpec[]): string => JSON.stringify(list);
     if (key(specs) !== key(this.shown.map(one => one.spec)) || this.host.childElementCount === 0) this.build(specs, run);
     else this.host.querySelector('.figures')?.replaceChildren(...this.figures(run));
@@ -66,7 +75,7 @@ export class PlotsPanel {
         this.store.update({charts: specs.filter((_, k) => k !== i)})}, '×');
       return h('figure', {class: spec.against ? 'chart phase' : 'chart'}, canvas, h('div', {class: 'under'}, caption, away));
     });
-    this.host.replaceChildren(...figures, h('div', {class: 'figures'}, ...this.figures(run)), this.adder(specs, run));
+    this.host.replaceChildren(h('div', {class: 'moving'}, ...this.fields.map(one => one.element)), ...figures, h('div', {class: 'figures'}, ...this.figures(run)), run.columns.length <= 300 ? this.adder(specs, run) : '');
   }
 
   private adder(specs: ChartSpec[], run: RunAnswer): HTMLElement {
@@ -96,7 +105,7 @@ export class PlotsPanel {
     });
     const unit = run.columns.find(c => c.name === spec.columns[0])?.unit ?? '', acrossUnit = spec.against ? run.columns.find(c => c.name === spec.against)?.unit ?? '' : run.independent.unit;
     const across = withUnitOf(spec.against ?? run.independent.name, acrossUnit);
-    const up = spec.columns.length === 1 ? withUnitOf(spec.columns[0], unit) : unit ? `(${unitText(unit)})` : '';
+    const up = spec.columns.length === 1 ? withUnitOf(spec.columns[0], unit) : unit && unit !== '1' ? `(${unitText(unit)})` : '';
     chart.set({curves, x: across, y: up, overTime: !spec.against, marks: run.happenings.length <= 60 ? run.happenings.map(one => one.t) : []});
     const names = spec.columns.map((name, i) => h('span', {class: `key s${i % 7 + 1}`}, pretty(name)));
     const ghosts = pinned.map(pin => h('span', {class: `key faint s${pin.series + 1}`}, pin.label));
@@ -110,5 +119,6 @@ export class PlotsPanel {
     if (!run || run.times.length === 0) return;
     const row = nearestRow(run, this.clock.s);
     for (const {chart} of this.shown) chart.present(this.clock.now, row);
+    for (const field of this.fields) field.present(this.clock.s);
   }
 }

@@ -253,6 +253,7 @@ export const cases = {
     check('both texts are shown', /# theirs/.test(await page.locator('dialog .both').innerText()) && /# more/.test(await page.locator('dialog .both').innerText()));
     await page.locator('dialog button', {hasText: "Keep this page's"}).click();
     await page.waitForFunction(() => /Saved/.test(document.querySelector('#word').textContent));
+    await page.waitForFunction(() => document.querySelector('#document-state').textContent === '');
     check('the one that was chosen is saved', /# more/.test(readFileSync(file, 'utf8')));
     writeFileSync(file, original);
     await page.evaluate(() => dispatchEvent(new Event('focus')));
