@@ -41,13 +41,13 @@ export interface Parameter {
   from?: number; to?: number;
 }
 export interface Check {name: string; statement: string; verdict: string; passed: boolean; applies: boolean; points: number}
-export interface Section {title: string; lines: Line[]}
+export interface Section {title: string; lines: Line[]; notes?: string[]}
 export interface Conserved {sentence: string; formula: Line; value: string; drift: string}
 export interface EquationsAnswer {
   title: string; name: string; source: string; summary: [string, string][]; certified: boolean; certificate: Check[];
   diagnostics: Diagnostic[]; coordinates: Coordinate[]; parameters: Parameter[];
   definitions: Line[]; energies: Line[]; energies_title: string; equations: Line[]; intermediates: Line[];
-  derivation?: Section[]; conserved: Conserved[]; notes: Note[]; contacts: {name: string}[]; modes?: string[];
+  derivation?: Section[]; conserved: Conserved[]; notes: Note[]; first_notes?: string[]; last_notes?: string[]; contacts: {name: string}[]; modes?: string[];
 }
 export interface Note {line: number; text: string}
 export interface Column {name: string; unit: string}

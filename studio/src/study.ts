@@ -265,7 +265,8 @@ export class Study {
     else if (answer.kind !== 'cancelled') this.store.update({sectionTrouble: answer.trouble});
   }
 
-  claim(text: string): Promise<Answer<ClaimAnswer>> { return this.asker.ask<ClaimAnswer>({do: 'claim', text}); }
+  /** A claim of an exercise: a wrong one is not told what would be right. */
+  claim(text: string): Promise<Answer<ClaimAnswer>> { return this.asker.ask<ClaimAnswer>({do: 'claim', text, exercise: true}); }
 
   private take<T>(answer: Answer<T>, patch: (answer: T | Failure['trouble']) => Partial<State>): void {
     if (answer.ok) this.store.update(patch(answer));

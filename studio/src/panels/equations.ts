@@ -78,8 +78,8 @@ export class EquationsPanel {
       for (const part of parts) part.toggleAttribute('open', open);
       all.textContent = open ? 'Fold all' : 'Unfold all';
     }}, 'Unfold all');
-    const notes = equations.notes.map(note => h('p', {class: 'note'}, ...prose(note.text)));
-    body.replaceChildren(h('div', {class: 'tools'}, all, copyButton(() => equations.derivation!.flatMap(part => part.lines), this.say)), ...notes, ...parts);
+    const notes = (list: string[] | undefined): HTMLElement[] => (list ?? []).map(text => h('p', {class: 'note'}, ...prose(text)));
+    body.replaceChildren(h('div', {class: 'tools'}, all, copyButton(() => equations.derivation!.flatMap(part => part.lines), this.say)), ...notes(equations.first_notes), ...parts, ...notes(equations.last_notes));
   }
 
   private facts({equations}: State): void {

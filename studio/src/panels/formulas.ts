@@ -30,6 +30,6 @@ export function sectionsElements(sections: Section[], say: (text: string) => voi
   return sections.map(section => {
     const steps = section.lines.length;
     return h('details', {}, h('summary', {}, pretty(section.title), h('span', {class: 'muted'}, `${steps} ${steps === 1 ? 'line' : 'lines'}`)),
-             h('div', {class: 'tools'}, copyButton(() => section.lines, say)), ...section.lines.map(lineElement));
+             h('div', {class: 'tools'}, copyButton(() => section.lines, say)), ...(section.notes ?? []).map(text => h('p', {class: 'note'}, ...prose(text))), ...section.lines.map(lineElement));
   });
 }

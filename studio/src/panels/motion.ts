@@ -71,8 +71,8 @@ export class MotionPanel {
   private shown({run, runTrouble, opened, readable}: State): void {
     const drawing = run?.drawing, none = byId('no-drawing');
     byId('drawing').hidden = !drawing;
-    none.hidden = Boolean(drawing);
-    none.textContent = run ? (run.figures.length ? '' : 'There is nothing to draw: the model has neither points nor bodies.') : runTrouble ? '' : 'No motion yet.';
+    none.textContent = drawing ? '' : run ? (run.figures.length ? '' : 'There is nothing to draw: the model has neither points nor bodies.') : runTrouble ? '' : 'No motion yet.';
+    none.hidden = none.textContent === '';
     byId('motion').classList.toggle('stale', opened !== null && !readable);
     byId('transport').hidden = !run;
     byId('trail-label').hidden = !drawing?.elements.some(e => e.kind === 'trail');

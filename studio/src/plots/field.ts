@@ -57,7 +57,11 @@ function map(values: Moments, across: number, upwards: number): MovingField {
   const canvas = h('canvas', {role: 'img', class: 'map', 'aria-label': 'The field as a map, at the moment that is shown'}), small = h('canvas', {width: across, height: upwards});
   let last = 0;
   const most = Math.max(Math.abs(values.range[0]), Math.abs(values.range[1])) || 1;
-  const colour = (name: string): number[] => (getComputedStyle(canvas).getPropertyValue(name).trim().match(/[0-9a-f]{2}/gi) ?? ['00', '00', '00']).map(part => parseInt(part, 16));
+  const colour = (name: string): number[] => {
+    const context = small.getContext('2d')!;
+    context.fillStyle = getComputedStyle(canvas).getPropertyValue(name).trim();  // any colour of a style sheet, as #rrggbb
+    return [1, 3, 5].map(i => parseInt(String(context.fillStyle).slice(i, i + 2), 16));
+  };
   const present = (s: number): void => {
     last = s;
     const box = canvas.getBoundingClientRect(), ratio = window.devicePixelRatio || 1;

@@ -6,7 +6,12 @@ import {dialog} from './dialog';
 import {exercises} from './files';
 import type {Storage_} from './storage';
 
-const notesIn = (text: string): string[] => [...text.matchAll(/^note\s+"([^"]*)"/gm)].map(found => found[1]);
+/** Notes before the model ask; those behind it comment on the answer. */
+function notesIn(text: string): {question: string[]; comments: string[]} {
+  const begin = text.search(/^(param|coord|let)\b/m), notes = [...text.matchAll(/^note\s+"([^"]*)"/gm)];
+  const of = (before: boolean): string[] => notes.filter(note => (note.index < begin) === before).map(note => note[1]);
+  return {question: of(true), comments: of(false)};
+}
 
 /** Models that ask: the student types an equation of motion and hears whether it is right, and which pitfall if not. */
 export class Exercises {
@@ -31,14 +36,14 @@ export class Exercises {
   private begin(name: string, title: string, text: string): void {
     this.current = name;
     this.study.load({text, name});
-    const [question, ...hints] = notesIn(text);
+    const {question, comments: said} = notesIn(text);
     const field = h('input', {type: 'text', id: 'claim', autocomplete: 'off', spellcheck: 'false', placeholder: "θ'' = …", 'aria-describedby': 'claim-verdict'});
     const verdict = h('div', {id: 'claim-verdict', role: 'status', 'aria-live': 'polite'});
     const comments = h('div', {});
-    const form = h('form', {onsubmit: (event: Event) => { event.preventDefault(); void this.judge(field.value, verdict, () => comments.replaceChildren(...hints.map(hint => h('p', {class: 'note'}, ...prose(hint))))); }},
+    const form = h('form', {onsubmit: (event: Event) => { event.preventDefault(); void this.judge(field.value, verdict, () => comments.replaceChildren(...said.map(hint => h('p', {class: 'note'}, ...prose(hint))))); }},
       h('label', {for: 'claim'}, 'Your equation of motion'), h('p', {class: 'row'}, field, h('button', {type: 'submit', class: 'primary'}, 'Check')));
     const leave = h('button', {type: 'button', class: 'quiet', onclick: () => this.end()}, 'Show the equations');
-    const panel = h('section', {id: 'exercise', 'aria-label': 'Exercise'}, h('h2', {}, title), question ? h('p', {}, ...prose(question)) : '', form, verdict, comments,
+    const panel = h('section', {id: 'exercise', 'aria-label': 'Exercise'}, h('h2', {}, title), ...question.map(one => h('p', {}, ...prose(one))), form, verdict, comments,
                     h('p', {class: 'muted'}, "Derivatives are θ' and θ''; products need a blank. ", leave));
     byId('exercise')?.remove();
     byId('equations').prepend(panel);

@@ -8,13 +8,16 @@ import type {State} from '../state';
 import type {Store} from '../store';
 import type {Study} from '../study';
 
-interface Step {title: string; line: Line; note: string | null}
+interface Step {title: string; line: Line; notes: string[]}
 
-/** The lines of the derivation one after the other; a note of the model stands at the first step of its part. */
+/** The lines of the derivation one after the other; notes of the model stand at the first step of their part, before all, and after all. */
 function stepsOf(state: State): Step[] {
   const equations = state.equations!, sections = [...equations.derivation ?? []];
-  if (!sections.some(one => one.title === 'Equations of motion')) sections.push({title: 'Equations of motion', lines: equations.equations});
-  return sections.flatMap((section, part) => section.lines.map((line, i) => ({title: section.title, line, note: i === 0 ? equations.notes[part]?.text ?? null : null})));
+  const steps = sections.flatMap(section => section.lines.map((line, i): Step => ({title: section.title, line, notes: i === 0 ? section.notes ?? [] : []})));
+  steps.push(...equations.equations.map((line): Step => ({title: 'Equations of motion', line, notes: []})));
+  steps[0]?.notes.unshift(...equations.first_notes ?? []);
+  if (equations.last_notes?.length) steps.at(-1)!.notes = [...steps.at(-1)!.notes, ...equations.last_notes];
+  return steps;
 }
 
 /** Full screen, large type: the derivation line by line, the drawing beside it. */
@@ -23,7 +26,7 @@ export async function lecture(store: Store<State>, study: Study, clock: Clock, s
   if (!store.state.equations?.derivation) return study.say('There are no equations to go through yet.', true);
   const steps = stepsOf(store.state);
   let at = 0;
-  const lines = h('div', {class: 'lines', 'aria-live': 'polite'}), title = h('h2', {}), note = h('p', {class: 'note'}), count = h('output', {}), canvas = h('canvas', {role: 'img', 'aria-label': 'Drawing of the system in motion'});
+  const lines = h('div', {class: 'lines', 'aria-live': 'polite'}), title = h('h2', {}), note = h('div', {class: 'note', 'aria-live': 'polite'}), count = h('output', {}), canvas = h('canvas', {role: 'img', 'aria-label': 'Drawing of the system in motion'});
   const go = (to: number): void => { at = Math.min(steps.length - 1, Math.max(0, to)); show(); };
   const button = (text: string, label: string, act: () => void): HTMLElement => h('button', {type: 'button', 'aria-label': label, title: label, onclick: act}, text);
   const box = h('dialog', {id: 'lecture', 'aria-label': 'Lecture'},
@@ -39,8 +42,8 @@ export async function lecture(store: Store<State>, study: Study, clock: Clock, s
     shown.at(-1)!.classList.add('now');
     lines.replaceChildren(...shown);
     shown.at(-1)!.scrollIntoView({block: 'nearest'});
-    const said = steps.slice(0, at + 1).reverse().find(one => one.note)?.note ?? '';
-    note.replaceChildren(...prose(said));
+    const said = steps.slice(0, at + 1).reverse().find(one => one.notes.length > 0)?.notes ?? [];
+    note.replaceChildren(...said.map(text => h('p', {}, ...prose(text))));
     count.textContent = `${at + 1} / ${steps.length}`;
   }
 
