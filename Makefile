@@ -1,5 +1,5 @@
 # Thin: each rule calls a script of scripts/, which installs what is missing, configures by a CMake preset and builds.
-.PHONY: demo build test bench instructions fuzz mutants steep-models gallery format vscode install package clean
+.PHONY: demo build test bench instructions fuzz mutants steep-models gallery format vscode studio install package clean
 
 demo:     # check, derive, simulate and report models/double_pendulum.lag
 	@scripts/demo
@@ -23,6 +23,8 @@ format:   # clang-format over the sources
 	@scripts/format
 vscode:   # editors/vscode/maupertuis.vsix: the extension for Visual Studio Code
 	@scripts/vscode
+studio:   # build/studio: the page of `maup studio`; needs npm
+	@scripts/studio
 install:  # PREFIX=/usr/local by default
 	@scripts/install
 package:  # build/packages/*.deb: the program, the module with LLVM, what other programs are built with

@@ -1,10 +1,11 @@
 // The drawings of a report: each figure names the element with its frames, data-drawing. They are drawn on its canvas; the
 // reader plays, pauses, scrubs, changes the speed, and turns a drawing in space, as far as the figure has controls. A mode
-// (data-loop) swings without end over its equilibrium. Nothing is fetched. What a moment looks like is said by scene.js.
+// (data-loop) swings without end over its equilibrium. Nothing is fetched. What a moment looks like is said by scene.js, and
+// painted by painter.js.
 'use strict';
 function animate(figure, scene) {
   const loops = 'loop' in figure.dataset;
-  const canvas = figure.querySelector('canvas'), context = canvas.getContext('2d');
+  const canvas = figure.querySelector('canvas'), context = canvas.getContext('2d'), painter = maupPainter(context);
   const control = name => figure.querySelector(`[data-control="${name}"]`);
   const {times, elements} = scene, spatial = scene.dimension === 3;
   for (const element of elements) element.positions = element.positions.map(value => value ?? NaN);
@@ -17,71 +18,16 @@ function animate(figure, scene) {
     canvas.width = Math.round(box.width * ratio);
     canvas.height = Math.round(box.height * ratio);
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    context.lineCap = context.lineJoin = 'round';
     view = maupScene.makeView(scene, box.width, box.height, camera);
   }
   const turn = () => { view = maupScene.makeView(scene, view.width, view.height, camera); };
 
-  // -------------------------------------------------------------------------------------------------------- painting
-
-  const channels = text => {
-    context.fillStyle = '#000';
-    context.fillStyle = text;  // any colour of a style sheet, as #rrggbb
-    return [1, 3, 5].map(i => parseInt(context.fillStyle.slice(i, i + 2), 16));
-  };
-  let palette = {};
-  function readColours() {
-    const colour = name => channels(getComputedStyle(document.documentElement).getPropertyValue(name).trim());
-    palette = {ink: colour('--ink'), muted: colour('--muted'), paper: colour('--figure'), series: [1, 2, 3, 4, 5, 6, 7].map(i => colour(`--series-${i}`))};
-  }
-  const inkOf = colour => colour.ink === 'series' ? palette.series[colour.series] : palette[colour.ink];
-  const fillOf = colour => `rgb(${inkOf(colour).map((x, k) => Math.round(palette.paper[k] + colour.strength * (x - palette.paper[k]))).join()})`;
-
-  function paint(items, opacity = 1) {
-    for (const item of items) {
-      const [x, y] = item.points;
-      context.globalAlpha = opacity;
-      if (item.kind === 'text') { write(item, x, y); continue; }
-      context.beginPath();
-      if (item.kind === 'disc') context.arc(x, y, item.radius, 0, 2 * Math.PI);
-      else for (let i = 0; i < item.points.length; i += 2) context.lineTo(item.points[i], item.points[i + 1]);
-      if (item.closed) context.closePath();
-      if (item.fill) {
-        context.fillStyle = fillOf(item.fill);
-        context.fill();
-      }
-      if (!item.stroke) continue;
-      context.globalAlpha = opacity * item.stroke.strength;
-      context.lineCap = item.stroke.strength < 1 ? 'butt' : 'round';  // round ends would show as beads where pieces meet
-      context.strokeStyle = `rgb(${inkOf(item.stroke).join()})`;
-      context.lineWidth = item.width;
-      context.stroke();
-    }
-    context.globalAlpha = 1;
-  }
-
-  function write(item, x, y) {
-    const {base, index, upright, dots = 0} = item.text, size = 15 * view.unit;
-    const faces = "'STIX Two Text','Latin Modern Roman','Cambria','Times New Roman','DejaVu Serif',serif";
-    const large = `${upright ? '' : 'italic '}${size}px ${faces}`, small = `${0.72 * size}px ${faces}`, word = base + '\u0307'.repeat(dots);
-    context.font = small;
-    const tail = context.measureText(index).width;
-    context.font = large;
-    const whole = context.measureText(word).width + tail;
-    const left = item.align === 'l' ? x : item.align === 'r' ? x - whole : x - whole / 2;
-    context.fillStyle = fillOf(item.fill);
-    context.textAlign = 'left';
-    context.textBaseline = 'alphabetic';
-    context.fillText(word, left, y + 0.33 * size);
-    context.font = small;
-    context.fillText(index, left + whole - tail, y + 0.55 * size);
-  }
-
+  const paint = (items, options) => painter.paint(items, view.unit, options);
   const trail = () => loops ? 'none' : {some: 'fading', all: 'whole', none: 'none'}[control('trail')?.value ?? 'none'];
   function draw() {
     context.clearRect(0, 0, view.width, view.height);
     // A mode passes its equilibrium a quarter of a period after its turning point.
-    if (loops) paint(maupScene.frameItems(scene, view, duration / 4, {trail: 'none'}), 0.2);
+    if (loops) paint(maupScene.frameItems(scene, view, duration / 4, {trail: 'none'}), {opacity: 0.2});
     paint(maupScene.frameItems(scene, view, elapsed, {trail: trail(), trailTime: 3 * rate()}));
     if (!loops) paint(maupScene.furniture(scene, view));
   }
@@ -191,7 +137,7 @@ function animate(figure, scene) {
     });
   }
 
-  readColours();
+  painter.readColours();
   offerSpeeds();
   control('play')?.addEventListener('click', () => play(!playing));
   if (!loops) {
@@ -204,7 +150,7 @@ function animate(figure, scene) {
     figure.classList.add('spatial');
     turnByPointer();
   }
-  const redraw = () => { readColours(); fit(); show(); };
+  const redraw = () => { painter.readColours(); fit(); show(); };
   new ResizeObserver(redraw).observe(canvas);
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);
   document.addEventListener('maup-theme', redraw);

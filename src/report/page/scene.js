@@ -357,6 +357,6 @@ const maupScene = (() => {
 
   const furniture = (scene, view) => [...(scene.dimension === 2 ? scaleBar(scene, view) : axes(scene, view)), ...gravityArrow(scene, view)];
 
-  return {duration, direction, makeView, frameItems, furniture};
+  return {duration, direction, makeView, frameItems, furniture, pointsAt, centreAt, project};
 })();
 if (typeof module !== 'undefined') module.exports = maupScene;

@@ -1,0 +1,118 @@
+import type {Clock} from '../clock';
+import {byId, h, icon} from '../dom';
+import {numbers, raised} from './words';
+import type {Stage} from '../drawing/stage';
+import type {State} from '../state';
+import type {Store} from '../store';
+import type {Study} from '../study';
+import {troubleElement} from './equations';
+
+function speedText(speed: number): string {
+  if (speed >= 1e-3 && speed < 1e6) return `× ${speed.toLocaleString('en')}`;
+  const [mantissa, exponent] = speed.toExponential().split('e');
+  return `× ${mantissa === '1' ? '' : mantissa + ' · '}10${raised(exponent.replace('+', ''))}`;
+}
+
+const icons = {play: 'M6 4v16l14-8z', pause: 'M6 4h4v16H6zM14 4h4v16h-4z', start: 'M5 4h3v16H5zM20 4v16L9 12z'};
+
+/** Play, scrub, speed, trails, pinned runs, and the Poincaré section. */
+export class MotionPanel {
+  private offered = 0;
+
+  constructor(private readonly store: Store<State>, private readonly study: Study, private readonly clock: Clock, private readonly stage: Stage) {
+    this.transport();
+    clock.onTick(() => this.tick());
+    store.watch(['run', 'runTrouble', 'opened', 'readable'], state => this.shown(state));
+    store.watch(['pins'], state => this.pins(state));
+    store.watch(['section', 'sectionTrouble', 'busy'], state => this.section(state));
+    store.watch(['equations'], () => this.sectionPlace());
+    this.sectionForm();
+  }
+
+  private transport(): void {
+    const {clock, store} = this;
+    byId('to-start').append(icon(icons.start));
+    byId('play').addEventListener('click', () => clock.play(!clock.playing));
+    byId('to-start').addEventListener('click', () => clock.seek(0));
+    byId('scrub').addEventListener('input', event => { clock.play(false); clock.seek(Number((event.target as HTMLInputElement).value) * clock.duration); });
+    byId('speed').addEventListener('change', event => { clock.rate = Number((event.target as HTMLSelectElement).value); });
+    byId('repeat').addEventListener('change', event => { clock.repeat = (event.target as HTMLInputElement).checked; });
+    byId('trail').addEventListener('change', event => store.update({trail: (event.target as HTMLSelectElement).value as State['trail']}));
+    byId('forces').addEventListener('change', event => store.update({forces: (event.target as HTMLInputElement).checked}));
+    byId('home-view').addEventListener('click', () => { this.stage.camera.reset(); this.stage.draw(); });
+    byId('pin-button').addEventListener('click', () => this.study.pin());
+  }
+
+  private tick(): void {
+    const {clock} = this, digits = Math.max(0, Math.min(9, 3 - Math.floor(Math.log10(clock.duration || 1))));
+    const unit = this.store.state.run?.independent.unit ?? '', text = `${clock.now.toFixed(digits)}${unit ? ' ' + unit : ''}`;
+    byId('time').textContent = text;
+    const scrub = byId<HTMLInputElement>('scrub'), play = byId('play');
+    scrub.value = clock.duration > 0 ? String(clock.s / clock.duration) : '0';
+    scrub.setAttribute('aria-valuetext', text);
+    if (play.dataset.playing !== String(clock.playing)) {
+      play.dataset.playing = String(clock.playing);
+      play.setAttribute('aria-label', clock.playing ? 'Pause' : 'Play');
+      play.replaceChildren(icon(clock.playing ? icons.pause : icons.play));
+    }
+    if (this.offered !== clock.pleasant) this.offerSpeeds();
+    const speed = byId<HTMLSelectElement>('speed');
+    if (speed.value !== String(clock.rate)) speed.value = String(clock.rate);
+  }
+
+  private offerSpeeds(): void {
+    this.offered = this.clock.pleasant;
+    byId('speed').replaceChildren(...[0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10].map(factor => {
+      const speed = this.offered * factor;
+      return h('option', {value: speed, selected: speed === this.clock.rate}, speedText(Number(speed.toPrecision(2))));
+    }));
+  }
+
+  private shown({run, runTrouble, opened, readable}: State): void {
+    const drawing = run?.drawing, none = byId('no-drawing');
+    byId('drawing').hidden = !drawing;
+    none.textContent = drawing ? '' : run ? (run.figures.length ? '' : 'There is nothing to draw: the model has neither points nor bodies.') : runTrouble ? '' : 'No motion yet.';
+    none.hidden = none.textContent === '';
+    byId('motion').classList.toggle('stale', opened !== null && !readable);
+    byId('transport').hidden = !run;
+    byId('trail-label').hidden = !drawing?.elements.some(e => e.kind === 'trail');
+    byId('forces-label').hidden = !drawing?.elements.some(e => e.kind === 'arrow');
+    byId('home-view').hidden = !drawing;
+    if (drawing) byId('drawing').setAttribute('aria-label', `Drawing of the system in motion. ${drawing.dimension === 3 ? 'Drag to turn it, ' : ''}Drag a body to set the start.`);
+    this.tick();
+  }
+
+  private pins({pins}: State): void {
+    byId('pins').replaceChildren(...pins.map(pin => {
+      const set = (patch: Partial<typeof pin>): void => this.store.update({pins: this.store.state.pins.map(one => one.id === pin.id ? {...one, ...patch} : one)});
+      return h('li', {class: `s${pin.series + 1}`},
+        h('label', {}, h('input', {type: 'checkbox', checked: pin.shown, onchange: (event: Event) => set({shown: (event.target as HTMLInputElement).checked})}), h('span', {class: 'dot', 'aria-hidden': 'true'}), pin.label),
+        h('button', {type: 'button', class: 'icon', 'aria-label': `Take away the run with ${pin.label}`, onclick: () => this.store.update({pins: this.store.state.pins.filter(one => one.id !== pin.id)})}, '×'));
+    }));
+    byId('pins').hidden = pins.length === 0;
+  }
+
+  // ------------------------------------------------------------------------------------------------- Poincaré section
+
+  private sectionPlace(): void {
+    const field = byId<HTMLInputElement>('section-at'), first = this.store.state.equations?.coordinates[0]?.name;
+    byId('section').hidden = !first || (this.store.state.opened?.fields ?? false);
+    const known = this.store.state.equations?.coordinates.some(c => field.value.includes(c.name)) ?? false;
+    if (first && !known) field.value = `${first} = 0`;
+  }
+
+  private sectionForm(): void {
+    byId('section-form').addEventListener('submit', event => {
+      event.preventDefault();
+      const at = byId<HTMLInputElement>('section-at').value.trim(), way = byId<HTMLSelectElement>('section-way').value;
+      void this.study.askSection(at + way, Number(byId<HTMLInputElement>('section-count').value) || 300);
+    });
+    byId('section-stop').addEventListener('click', () => this.study.asker.cancel('section'));
+  }
+
+  private section({section, sectionTrouble, busy}: State): void {
+    byId('section-stop').hidden = busy !== 'section';
+    const facts = section ? `${section.crossings} crossings${section.ended ? `; ${section.ended}` : ''}` : busy === 'section' ? 'It runs …' : '';
+    byId('section-body').replaceChildren(sectionTrouble ? troubleElement(sectionTrouble) : '', section ? h('div', {class: 'picture', html: section.svg}) : '', h('p', {class: 'muted'}, numbers(facts)));
+  }
+}
