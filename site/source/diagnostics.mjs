@@ -43,7 +43,7 @@ export function diagnosticsPages(root, program, documents) {
   }
   const index = sorted.map(([range, entries]) => `<section data-group><h2 id="range-${range}">${range}xx ${escape(title(range))}</h2>\n<ul class="codes">${entries.map(({code, title, explanation}) =>
     `<li data-words="${escape(`${code} ${title} ${explanation}`.toLowerCase())}"><a href="${code}.html"><code class="${severities[code[0]]}">${code}</code> ${escape(title)}</a></li>`).join('\n')}</ul></section>\n`).join('');
-  pages.unshift({path: 'diagnostics/index.html', title: 'Diagnostics', contents: false, formulas: false, html:
+  pages.unshift({path: 'diagnostics/index.html', title: 'Diagnostics', documentTitle: 'All diagnostics', contents: false, formulas: false, html:
     `<p class="lead">Everything that <code>maup</code> may have to say of a model: ${codes.length} codes, each with its reason, its remedy, and where that helps a text that is wrong beside one that is right. How messages are built is told in <a href="../manual/diagnostics.html">the manual</a>; <code>maup explain CODE</code> says the same in a terminal.</p>
 <p class="filter"><label for="filter">Filter</label> <input id="filter" type="search" autocomplete="off" spellcheck="false"> <output id="filter-count" for="filter"></output></p>\n${index}`});
   return {pages, codes: codes.length, examples: [...shown.keys()].length};

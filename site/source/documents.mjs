@@ -13,8 +13,8 @@ const theory = {
   'Motion': ['taylor', 'variational', 'stiff', 'tangent'],
   'Study': ['linearization', 'orbits', 'action', 'measures'],
 };
-const inside = {'The project': ['ARCHITECTURE.md', 'CONTRIBUTING.md', 'CHANGELOG.md', 'docs/reference_cases.md']};
-const insideNames = {'ARCHITECTURE.md': 'architecture', 'CONTRIBUTING.md': 'contributing', 'CHANGELOG.md': 'changes', 'docs/reference_cases.md': 'reference_cases'};
+const inside = {'The project': ['ARCHITECTURE.md', 'CONTRIBUTING.md', 'CHANGELOG.md', 'docs/reference_cases.md', 'site/README.md']};
+const insideNames = {'site/README.md': 'site', 'ARCHITECTURE.md': 'architecture', 'CONTRIBUTING.md': 'contributing', 'CHANGELOG.md': 'changes', 'docs/reference_cases.md': 'reference_cases'};
 
 export class DocumentPages {
   constructor(root) {
@@ -48,13 +48,14 @@ export class DocumentPages {
     this.entries.push({file, path, area, group, title: readFileSync(join(this.root, file), 'utf8').match(/^# (.*)/m)[1]});
   }
 
-  // The address of a link in `env.file`, seen from its page. Links out of the site are none.
+  // The address of a link in `env.file`, seen from its page; null for a file of the repository that is no page of the site.
   linkOf(target, env) {
     if (target.startsWith('#')) return target;
     if (/^[a-z]+:/i.test(target)) return target;
     const [path, anchor] = target.split('#'), file = normalize(join(dirname(env.file), decodeURI(path))).replace(/\/$/, '');
     const page = this.addresses.get(file);
-    if (!page) throw new Error(`${env.file}: the link to ${target} leads to no page of the site`);
+    if (!page && existsSync(join(this.root, file))) return null;
+    if (!page) throw new Error(`${env.file}: the link to ${target} leads nowhere`);
     return relative(this.addresses.get(env.file) ?? env.path, page + (anchor ? `#${anchor}` : ''));
   }
 

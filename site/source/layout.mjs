@@ -28,7 +28,7 @@ export function pageHtml(page, {studio}) {
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta http-equiv="Content-Security-Policy" content="${policy}">
-<title>${escape(page.start ? page.title : `${page.title} – Maupertuis`)}</title>
+<title>${escape(page.start ? page.title : `${page.documentTitle ?? page.title} – Maupertuis`)}</title>
 ${page.description ? `<meta name="description" content="${escape(page.description)}">\n` : ''}<link rel="icon" href="${at('assets/icon.svg')}">
 <link rel="stylesheet" href="${at('assets/style.css')}">${page.formulas === false ? '' : `\n<link rel="stylesheet" href="${at('assets/katex/katex.min.css')}">`}
 <script src="${at('assets/theme.js')}"></script>

@@ -13,7 +13,7 @@ export class Documents {
   constructor(highlighter, linkOf, {studioLink = () => null, titleOf = () => null} = {}) {
     this.titleOf = titleOf;
     this.highlighter = highlighter;
-    this.linkOf = linkOf;  // (target, document) → address beside the page, or throws
+    this.linkOf = linkOf;  // (target, document) → address beside the page; null: none; or throws
     this.studioLink = studioLink;
     this.md = new MarkdownIt({html: true, typographer: false});
     const rules = this.md.renderer.rules;
@@ -46,10 +46,19 @@ export class Documents {
           const title = this.titleOf(child.attrGet('href'), env);
           if (title) children[k + 1].content = title;
         }
-        if (child.type === 'link_open') child.attrSet('href', this.linkOf(child.attrGet('href'), env));
+        if (child.type === 'link_open') this.lead(children, k, env);
         if (child.type === 'image') child.attrSet('src', this.linkOf(child.attrGet('src'), env));
       });
     });
+  }
+
+  // A link to what is no page of the site becomes its text.
+  lead(children, k, env) {
+    const address = this.linkOf(children[k].attrGet('href'), env);
+    if (address !== null) return children[k].attrSet('href', address);
+    const close = children.findIndex((child, i) => i > k && child.type === 'link_close');
+    for (const child of [children[k], children[close]]) child.tag = 'span';
+    children[k].attrs = [];
   }
 
   fence(token, env) {

@@ -127,7 +127,7 @@ const sentence = html => html.replace(/^./, first => first.toUpperCase()) + '.';
 const card = (model, studio) => `<li class="card" data-words="${escape(`${model.name} ${model.title} ${model.shows ?? ''} ${model.source ?? ''} ${model.group}`.toLowerCase())}">
 <a href="${model.name}.html">${model.picture ? `<img src="pictures/${model.name}.svg" alt="" loading="lazy" width="480" height="330">` : `<span class="formula">${model.derivation.ok ? katexHtml(model.derivation.equations[0].latex, model.name) : ''}</span>`}
 <b>${escape(model.title)}</b></a>
-<p>${model.shows ? sentence(marked(model.shows)) : ''}</p>${studio ? `<a class="open" href="studio:#${fragmentOf(model.text)}" aria-label="Open ${escape(model.title)} in the studio">open in the studio</a>` : ''}</li>`;
+<p>${model.shows ? sentence(marked(model.shows)) : ''}</p>${studio ? `<a class="open" href="studio:#${fragmentOf(model.text)}" aria-label="open in the studio: ${escape(model.title)}">open in the studio</a>` : ''}</li>`;
 
 export function galleryPage(models, {studio}) {
   const sections = order.map(group => [group, models.filter(model => model.group === group)]).filter(([, list]) => list.length)
@@ -144,7 +144,7 @@ export function problemPages(root, documents, {studio}) {
   return readdirSync(folder).filter(name => name.endsWith('.lag')).sort().map(file => {
     const text = readFileSync(join(folder, file), 'utf8'), name = basename(file, '.lag'), title = text.match(/^system \w+ "([^"]*)"/m)?.[1] ?? name;
     const link = studio ? `<p class="actions"><a class="button main" href="studio:#${fragmentOf(text)}">Open in the studio</a></p>\n` : '';
-    return {file: `tests/problems/${file}`, path: `problems/${name}.html`, title, formulas: false, contents: false, area: 'inside/index.html', html:
+    return {file: `tests/problems/${file}`, path: `problems/${name}.html`, title, documentTitle: `${name}: ${title}`, formulas: false, contents: false, area: 'inside/index.html', html:
       `<p class="muted"><code>tests/problems/${file}</code>, of the <a href="../inside/reference_cases.html">reference cases</a></p>\n${link}${documents.lag(text.trimEnd(), false)}`,
       sections: [{title, id: '', text: name}]};
   });
