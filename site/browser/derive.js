@@ -1,5 +1,6 @@
 // The box "derive your own": its text goes to the studio in the fragment of the address, deflated, which no server sees.
-const box = document.getElementById('own'), link = document.getElementById('own-open');
+const box = document.getElementById('own'),
+  link = document.getElementById('own-open');
 
 async function fragmentOf(text) {
   const deflated = new Blob([text]).stream().pipeThrough(new CompressionStream('deflate-raw'));
@@ -11,6 +12,7 @@ async function fragmentOf(text) {
 
 let asked = 0;
 box.addEventListener('input', async () => {
-  const mine = ++asked, fragment = await fragmentOf(box.value);
+  const mine = ++asked,
+    fragment = await fragmentOf(box.value);
   if (mine === asked) link.href = `studio/index.html#${fragment}`;
 });

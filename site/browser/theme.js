@@ -3,5 +3,7 @@
 try {
   const theme = localStorage.getItem('maup-theme');
   if (theme === 'light' || theme === 'dark') document.documentElement.dataset.theme = theme;
-} catch { /* the system's choice holds */ }
+} catch {
+  /* the system's choice holds */
+}
 document.documentElement.classList.add('script');

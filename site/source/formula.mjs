@@ -2,16 +2,82 @@
 // LaTeX that KaTeX sets. A sign that is not listed, or what KaTeX does not understand, is an error: no formula is left unset.
 import katex from 'katex';
 
-const superscripts = new Map([...'⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻ⁿᵀ⁽⁾ᵏⁱ'].map((sign, i) => [sign, [...'0123456789+-n', '\\mathsf{T}', '(', ')', 'k', 'i'][i]]));
+const superscripts = new Map(
+  [...'⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻ⁿᵀ⁽⁾ᵏⁱ'].map((sign, i) => [sign, [...'0123456789+-n', '\\mathsf{T}', '(', ')', 'k', 'i'][i]]),
+);
 const subscripts = new Map([...'₀₁₂₃₄₅₆₇₈₉₊₋ᵢⱼₖₙ'].map((sign, i) => [sign, [...'0123456789+-ijkn'][i]]));
-const greek = {α: 'alpha', β: 'beta', γ: 'gamma', δ: 'delta', ε: 'varepsilon', ζ: 'zeta', η: 'eta', θ: 'theta', κ: 'kappa', λ: 'lambda',
-  μ: 'mu', ν: 'nu', ξ: 'xi', π: 'pi', ρ: 'rho', σ: 'sigma', τ: 'tau', φ: 'varphi', χ: 'chi', ψ: 'psi', ω: 'omega', Γ: 'Gamma', Δ: 'Delta',
-  Θ: 'Theta', Λ: 'Lambda', Ξ: 'Xi', Π: 'Pi', Φ: 'Phi', Ψ: 'Psi', Ω: 'Omega'};
-const signs = {'·': '\\cdot', '−': '-', '–': '-', '±': '\\pm', '∓': '\\mp', '≤': '\\le', '≥': '\\ge', '≈': '\\approx', '≠': '\\ne', '→': '\\to',
-  '∞': '\\infty', '∫': '\\int', 'Σ': '\\sum', '∂': '\\partial', '∇': '\\nabla', '½': '\\tfrac{1}{2}', '¼': '\\tfrac{1}{4}', '×': '\\times',
-  '⌈': '\\lceil', '⌉': '\\rceil', '⌊': '\\lfloor', '⌋': '\\rfloor', 'ℒ': '\\mathcal{L}', '𝒟': '\\mathcal{D}', '𝓡': '\\mathcal{R}', '…': '\\ldots',
-  '§': '\\S ', '{': '\\{', '}': '\\}', '|': '|', '∘': '\\circ', '∈': '\\in', '⇒': '\\Rightarrow', '∝': '\\propto', '‖': '\\|', '*': '\\cdot',
-  '%': '\\%', '\uE003': '\\ne'};
+const greek = {
+  α: 'alpha',
+  β: 'beta',
+  γ: 'gamma',
+  δ: 'delta',
+  ε: 'varepsilon',
+  ζ: 'zeta',
+  η: 'eta',
+  θ: 'theta',
+  κ: 'kappa',
+  λ: 'lambda',
+  μ: 'mu',
+  ν: 'nu',
+  ξ: 'xi',
+  π: 'pi',
+  ρ: 'rho',
+  σ: 'sigma',
+  τ: 'tau',
+  φ: 'varphi',
+  χ: 'chi',
+  ψ: 'psi',
+  ω: 'omega',
+  Γ: 'Gamma',
+  Δ: 'Delta',
+  Θ: 'Theta',
+  Λ: 'Lambda',
+  Ξ: 'Xi',
+  Π: 'Pi',
+  Φ: 'Phi',
+  Ψ: 'Psi',
+  Ω: 'Omega',
+};
+const signs = {
+  '·': '\\cdot',
+  '−': '-',
+  '–': '-',
+  '±': '\\pm',
+  '∓': '\\mp',
+  '≤': '\\le',
+  '≥': '\\ge',
+  '≈': '\\approx',
+  '≠': '\\ne',
+  '→': '\\to',
+  '∞': '\\infty',
+  '∫': '\\int',
+  Σ: '\\sum',
+  '∂': '\\partial',
+  '∇': '\\nabla',
+  '½': '\\tfrac{1}{2}',
+  '¼': '\\tfrac{1}{4}',
+  '×': '\\times',
+  '⌈': '\\lceil',
+  '⌉': '\\rceil',
+  '⌊': '\\lfloor',
+  '⌋': '\\rfloor',
+  ℒ: '\\mathcal{L}',
+  '𝒟': '\\mathcal{D}',
+  '𝓡': '\\mathcal{R}',
+  '…': '\\ldots',
+  '§': '\\S ',
+  '{': '\\{',
+  '}': '\\}',
+  '|': '|',
+  '∘': '\\circ',
+  '∈': '\\in',
+  '⇒': '\\Rightarrow',
+  '∝': '\\propto',
+  '‖': '\\|',
+  '*': '\\cdot',
+  '%': '\\%',
+  '\uE003': '\\ne',
+};
 const accents = {'\u0307': 'dot', '\u0308': 'ddot', '\u0302': 'hat', '\u0303': 'tilde', '\u0304': 'bar'};
 const functions = new Set(['sin', 'cos', 'tan', 'exp', 'ln', 'log', 'min', 'max', 'det', 'tr']);
 const operatorNames = new Set(['diag', 'rank', 'sign', 'Fix', 'fix', 'tr']);
@@ -26,16 +92,25 @@ export class FormulaError extends Error {}
 // ------------------------------------------------------------------------------------------------------ text to LaTeX
 
 class Reader {
-  constructor(text) { this.signs = [...text]; this.at = 0; }
-  get next() { return this.signs[this.at]; }
-  take() { return this.signs[this.at++]; }
+  constructor(text) {
+    this.signs = [...text];
+    this.at = 0;
+  }
+  get next() {
+    return this.signs[this.at];
+  }
+  take() {
+    return this.signs[this.at++];
+  }
   takeWhile(test) {
     let text = '';
     while (this.at < this.signs.length && test(this.next)) text += this.take();
     return text;
   }
-  takeGroup(open, close) {  // after `open`, up to the `close` that belongs to it
-    let depth = 1, text = '';
+  takeGroup(open, close) {
+    // after `open`, up to the `close` that belongs to it
+    let depth = 1,
+      text = '';
     while (this.at < this.signs.length) {
       const sign = this.take();
       if (sign === open) ++depth;
@@ -46,7 +121,8 @@ class Reader {
   }
 }
 
-const isLetter = sign => /^\p{L}$/u.test(sign) && !superscripts.has(sign) && !subscripts.has(sign) && !(sign in signs);
+const isLetter = sign =>
+  /^\p{L}$/u.test(sign) && !superscripts.has(sign) && !subscripts.has(sign) && !(sign in signs);
 const isMark = sign => sign in accents;
 
 export function latexOf(text) {
@@ -64,7 +140,9 @@ function tidy(latex) {
   return latex
     .replace(new RegExp(`(${operator})\\s*\\\\, `, 'g'), '$1 ')
     .replace(/\\, (?=\s*(?:[=+<>,;:)\]/-]|\\(?:cdot|pm|mp|le|ge|approx|ne|to|sim)(?![a-z])))/g, ' ')
-    .replace(/(\\text\{[^{}]*\})\\, /g, '$1\\;').replace(/\\, (\\text\{)/g, '\\;$1').trim();
+    .replace(/(\\text\{[^{}]*\})\\, /g, '$1\\;')
+    .replace(/\\, (\\text\{)/g, '\\;$1')
+    .trim();
 }
 
 function piece(reader) {
@@ -84,7 +162,7 @@ function piece(reader) {
   throw new FormulaError(`no LaTeX for ${JSON.stringify(sign)} (U+${sign.codePointAt(0).toString(16)})`);
 }
 
-const bracketed = latex => latex.includes('\\frac') ? `\\left(${latex}\\right)` : `(${latex})`;
+const bracketed = latex => (latex.includes('\\frac') ? `\\left(${latex}\\right)` : `(${latex})`);
 
 function primes(reader) {
   let text = '\\prime'.repeat(1 + reader.takeWhile(s => s === "'").length);
@@ -113,17 +191,26 @@ function scripts(reader, sign, table, mark) {
 }
 
 function script(reader) {
-  if (reader.next === '{') { reader.take(); return `{${latexOf(reader.takeGroup('{', '}'))}}`; }
-  if (reader.next === '(') { reader.take(); return `{(${latexOf(reader.takeGroup('(', ')'))})}`; }
+  if (reader.next === '{') {
+    reader.take();
+    return `{${latexOf(reader.takeGroup('{', '}'))}}`;
+  }
+  if (reader.next === '(') {
+    reader.take();
+    return `{(${latexOf(reader.takeGroup('(', ')'))})}`;
+  }
   const text = reader.takeWhile(s => isLetter(s) || /[0-9]/.test(s) || isMark(s));
   if (text === '') throw new FormulaError('nothing stands in an index');
   return /^[a-z]{3,}$/.test(text) ? `{\\mathrm{${text}}}` : `{${[...text].map(letter).join('')}}`;
 }
 
-const letter = sign => sign in greek ? `\\${greek[sign]} ` : sign;
+const letter = sign => (sign in greek ? `\\${greek[sign]} ` : sign);
 
 function argument(reader) {
-  if (reader.next === '(') { reader.take(); return latexOf(reader.takeGroup('(', ')')); }
+  if (reader.next === '(') {
+    reader.take();
+    return latexOf(reader.takeGroup('(', ')'));
+  }
   let text = reader.take() + reader.takeWhile(isMark);
   text += reader.takeWhile(s => subscripts.has(s) || /[0-9]/.test(s));
   return latexOf(text);
@@ -149,22 +236,38 @@ function letters(reader) {
 
 // A line may break at a sign between terms, but not within short brackets: those become groups.
 function unbroken(latex) {
-  let result = '', at = 0;
+  let result = '',
+    at = 0;
   while (at < latex.length) {
-    if (latex[at] !== '(' || /\\(left|right|bigl?|Bigl?)$/.test(result)) { result += latex[at++]; continue; }
-    let end = at, depth = 0;
-    do { if (latex[end] === '(') ++depth; else if (latex[end] === ')') --depth; ++end; } while (depth > 0 && end < latex.length);
-    const group = latex.slice(at, end), signs = group.replace(/\\[a-z]+|[{}^_\s\\]/g, '').length;
+    if (latex[at] !== '(' || /\\(left|right|bigl?|Bigl?)$/.test(result)) {
+      result += latex[at++];
+      continue;
+    }
+    let end = at,
+      depth = 0;
+    do {
+      if (latex[end] === '(') ++depth;
+      else if (latex[end] === ')') --depth;
+      ++end;
+    } while (depth > 0 && end < latex.length);
+    const group = latex.slice(at, end),
+      signs = group.replace(/\\[a-z]+|[{}^_\s\\]/g, '').length;
     const braces = (group.match(/\{/g) ?? []).length - (group.match(/\}/g) ?? []).length;
-    if (depth === 0 && braces === 0 && signs <= 22 && !/\\right/.test(group)) { result += `\\mathopen{}{${group}}`; at = end; }
-    else result += latex[at++];
+    if (depth === 0 && braces === 0 && signs <= 22 && !/\\right/.test(group)) {
+      result += `\\mathopen{}{${group}}`;
+      at = end;
+    } else result += latex[at++];
   }
   return result;
 }
 
 export function katexHtml(latex, where) {
   try {
-    return katex.renderToString(`\\displaystyle ${unbroken(latex)}`, {throwOnError: true, strict: 'error', output: 'htmlAndMathml'});
+    return katex.renderToString(`\\displaystyle ${unbroken(latex)}`, {
+      throwOnError: true,
+      strict: 'error',
+      output: 'htmlAndMathml',
+    });
   } catch (error) {
     throw new FormulaError(`${where}: the formula ${latex} does not render: ${error.message}`);
   }
@@ -175,7 +278,9 @@ const onlyWords = text => /^[a-z’]+( [a-z’]+)+$/.test(text);
 function typeset(text, where) {
   try {
     if (onlyWords(text)) return `<span class="said">${text}</span>`;
-    const marked = text.normalize('NFC').replace(derivative, (all, d, what, below) => `\uE000${d}${what ?? ''}\uE001${below}\uE002`);
+    const marked = text
+      .normalize('NFC')
+      .replace(derivative, (all, d, what, below) => `\uE000${d}${what ?? ''}\uE001${below}\uE002`);
     return katexHtml(latexOf(marked), where);
   } catch (error) {
     throw error instanceof FormulaError ? new FormulaError(`${where}: ${error.message}: ${text}`) : error;
@@ -199,8 +304,13 @@ export function formulaBlock(text, where) {
   const lines = text.split('\n').filter(line => line.trim() !== '');
   if (lines.length > 1 && lines.every(line => /^\s*[[|].*[\]|]\s*$/u.test(line)))
     return `<div class="formula">${katexHtml(matrixLatex(lines), where)}</div>\n`;
-  return lines.map(line => {
-    const parts = line.trim().split(/\s{3,}/).map(part => `<span class="part">${typeset(part, where)}</span>`);
-    return `<div class="${/∂|d\/dt/.test(line) ? 'formula tall' : 'formula'}">${parts.join(' ')}</div>\n`;
-  }).join('');
+  return lines
+    .map(line => {
+      const parts = line
+        .trim()
+        .split(/\s{3,}/)
+        .map(part => `<span class="part">${typeset(part, where)}</span>`);
+      return `<div class="${/∂|d\/dt/.test(line) ? 'formula tall' : 'formula'}">${parts.join(' ')}</div>\n`;
+    })
+    .join('');
 }

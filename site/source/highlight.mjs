@@ -2,12 +2,20 @@
 // here, so that a word of the language is listed once. Only what that grammar has is understood: match, begin and end, include.
 import {readFileSync} from 'node:fs';
 
-export const escape = text => text.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('>', '&gt;').replaceAll('"', '&quot;');
+export const escape = text =>
+  text.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('>', '&gt;').replaceAll('"', '&quot;');
 
 // The scopes of the grammar that are shown, and the classes of style.css.
-const classes = [['comment', 'comment'], ['string', 'string'], ['keyword.control', 'word'], ['keyword.other', 'clause'],
-                 ['support.function', 'function'], ['support.type', 'unit'], ['constant.numeric', 'number'],
-                 ['constant.language', 'constant']];
+const classes = [
+  ['comment', 'comment'],
+  ['string', 'string'],
+  ['keyword.control', 'word'],
+  ['keyword.other', 'clause'],
+  ['support.function', 'function'],
+  ['support.type', 'unit'],
+  ['constant.numeric', 'number'],
+  ['constant.language', 'constant'],
+];
 
 const classOf = scope => classes.find(([prefix]) => scope?.startsWith(prefix))?.[1];
 
@@ -19,21 +27,27 @@ export class Highlighter {
   }
 
   resolve(patterns) {
-    return patterns.map(pattern => pattern.include ? this.repository[pattern.include.slice(1)] : pattern).map(pattern => ({
-      ...pattern,
-      expression: new RegExp(pattern.match ?? pattern.begin, 'gu'),
-      last: pattern.end && new RegExp(pattern.end, 'gu'),
-      inner: pattern.patterns && this.resolve(pattern.patterns),
-    }));
+    return patterns
+      .map(pattern => (pattern.include ? this.repository[pattern.include.slice(1)] : pattern))
+      .map(pattern => ({
+        ...pattern,
+        expression: new RegExp(pattern.match ?? pattern.begin, 'gu'),
+        last: pattern.end && new RegExp(pattern.end, 'gu'),
+        inner: pattern.patterns && this.resolve(pattern.patterns),
+      }));
   }
 
   html(text) {
-    return text.split('\n').map(line => this.line(line, this.patterns)).join('\n');
+    return text
+      .split('\n')
+      .map(line => this.line(line, this.patterns))
+      .join('\n');
   }
 
   // The rule that matches first decides; of two at the same place the one that stands first in the grammar.
   line(text, patterns) {
-    let html = '', at = 0;
+    let html = '',
+      at = 0;
     while (at < text.length) {
       const found = first(patterns, text, at);
       if (!found) break;

@@ -2,24 +2,41 @@
 import {escape} from './highlight.mjs';
 import {posix} from 'node:path';
 
-export const areas = [['models/index.html', 'Models'], ['manual/index.html', 'Manual'], ['theory/index.html', 'Theory'], ['diagnostics/index.html', 'Diagnostics'],
-  ['benchmarks.html', 'Benchmarks'], ['api/index.html', 'API'], ['inside/index.html', 'Inside']];
+export const areas = [
+  ['models/index.html', 'Models'],
+  ['manual/index.html', 'Manual'],
+  ['theory/index.html', 'Theory'],
+  ['diagnostics/index.html', 'Diagnostics'],
+  ['benchmarks.html', 'Benchmarks'],
+  ['api/index.html', 'API'],
+  ['inside/index.html', 'Inside'],
+];
 
-const policy = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; font-src 'self'; base-uri 'none'; form-action 'none'";
+const policy =
+  "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; font-src 'self'; base-uri 'none'; form-action 'none'";
 
 export const relative = (from, to) => {
   const [path, anchor] = to.split('#');
-  const way = path === '' || path === from ? (anchor === undefined ? posix.basename(from) : '') : posix.relative(posix.dirname(from), path);
+  const way =
+    path === '' || path === from
+      ? anchor === undefined
+        ? posix.basename(from)
+        : ''
+      : posix.relative(posix.dirname(from), path);
   return way + (anchor === undefined ? '' : `#${anchor}`);
 };
 
-const themeIcon = '<svg viewBox="0 0 24 24" aria-hidden="true"><path d="M12 3a9 9 0 1 0 0 18V3z"/><circle cx="12" cy="12" r="9" fill="none" stroke="currentColor" stroke-width="1.4"/></svg>';
+const themeIcon =
+  '<svg viewBox="0 0 24 24" aria-hidden="true"><path d="M12 3a9 9 0 1 0 0 18V3z"/><circle cx="12" cy="12" r="9" fill="none" stroke="currentColor" stroke-width="1.4"/></svg>';
 
 /// page: {path, title, html, headings, list: {label, pages: [[path, title], …]}, scripts, description, wide}
 export function pageHtml(page, {studio}) {
   const at = to => escape(relative(page.path, to));
-  const area = page.area ?? areas.find(([path]) => path === page.path || page.path.startsWith(posix.dirname(path) + '/'))?.[0];
-  const links = areas.map(([path, name]) => `<a href="${at(path)}"${path === area ? ' aria-current="true"' : ''}>${name}</a>`);
+  const area =
+    page.area ?? areas.find(([path]) => path === page.path || page.path.startsWith(posix.dirname(path) + '/'))?.[0];
+  const links = areas.map(
+    ([path, name]) => `<a href="${at(path)}"${path === area ? ' aria-current="true"' : ''}>${name}</a>`,
+  );
   if (studio) links.push(`<a href="${at('studio/index.html')}">Studio</a>`);
   const heading = page.start ? '' : `<h1>${page.titleHtml ?? escape(page.title)}</h1>\n`;
   return `<!DOCTYPE html>
@@ -53,8 +70,11 @@ ${(page.scripts ?? []).map(script => `<script src="${at(script)}"></script>\n`).
 }
 
 function listHtml({path, list}, at) {
-  const items = list.pages.map(entry => entry.length === 1 ? `</ul>\n<p class="group">${escape(entry[0])}</p>\n<ul>`
-    : `<li><a href="${at(entry[0])}"${entry[0] === path ? ' aria-current="page"' : ''}>${escape(entry[1])}</a></li>`);
+  const items = list.pages.map(entry =>
+    entry.length === 1
+      ? `</ul>\n<p class="group">${escape(entry[0])}</p>\n<ul>`
+      : `<li><a href="${at(entry[0])}"${entry[0] === path ? ' aria-current="page"' : ''}>${escape(entry[1])}</a></li>`,
+  );
   return `<nav class="pages" aria-label="${escape(list.label)}"><details open><summary>${escape(list.label)}</summary>
 <ul>${items.join('\n')}</ul></details></nav>\n`.replace('<ul></ul>\n', '');
 }
@@ -62,14 +82,17 @@ function listHtml({path, list}, at) {
 function contents({headings, contents}) {
   const shown = (headings ?? []).filter(h => h.level <= 3);
   if (contents === false || shown.length < 3) return '';
-  return `<nav class="contents" aria-label="On this page"><details open><summary>On this page</summary><ul>${
-    shown.map(h => `<li class="level${h.level}"><a href="#${escape(h.id)}">${escape(h.text)}</a></li>`).join('\n')}</ul></details></nav>\n`;
+  return `<nav class="contents" aria-label="On this page"><details open><summary>On this page</summary><ul>${shown
+    .map(h => `<li class="level${h.level}"><a href="#${escape(h.id)}">${escape(h.text)}</a></li>`)
+    .join('\n')}</ul></details></nav>\n`;
 }
 
 function neighbours({path, list}, at) {
   if (!list || list.neighbours === false) return '';
-  const pages = list.pages.filter(entry => entry.length > 1), i = pages.findIndex(([p]) => p === path);
+  const pages = list.pages.filter(entry => entry.length > 1),
+    i = pages.findIndex(([p]) => p === path);
   if (i < 0) return '';
-  const link = (entry, word, rel) => entry ? `<a rel="${rel}" href="${at(entry[0])}"><span>${word}</span> ${escape(entry[1])}</a>` : '<span></span>';
+  const link = (entry, word, rel) =>
+    entry ? `<a rel="${rel}" href="${at(entry[0])}"><span>${word}</span> ${escape(entry[1])}</a>` : '<span></span>';
   return `<nav class="neighbours" aria-label="Neighbouring pages">${link(pages[i - 1], 'before', 'prev')}${link(pages[i + 1], 'next', 'next')}</nav>\n`;
 }

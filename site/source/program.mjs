@@ -9,16 +9,28 @@ export class Program {
     this.path = path;
     this.folder = mkdtempSync(join(tmpdir(), 'maup-site-'));
   }
-  close() { rmSync(this.folder, {recursive: true, force: true}); }
+  close() {
+    rmSync(this.folder, {recursive: true, force: true});
+  }
 
   json(...options) {
-    return JSON.parse(execFileSync(this.path, [...options, '--json'], {encoding: 'utf8', maxBuffer: 1 << 28, stdio: ['ignore', 'pipe', 'ignore'], timeout: 120_000}));
+    return JSON.parse(
+      execFileSync(this.path, [...options, '--json'], {
+        encoding: 'utf8',
+        maxBuffer: 1 << 28,
+        stdio: ['ignore', 'pipe', 'ignore'],
+        timeout: 120_000,
+      }),
+    );
   }
 
   // {code, out, errors}: what a command says, whatever its exit code.
   run(...options) {
-    return new Promise(done => execFile(this.path, options, {encoding: 'utf8', maxBuffer: 1 << 28, timeout: 120_000},
-      (error, out, errors) => done({code: error ? error.code ?? 1 : 0, out, errors})));
+    return new Promise(done =>
+      execFile(this.path, options, {encoding: 'utf8', maxBuffer: 1 << 28, timeout: 120_000}, (error, out, errors) =>
+        done({code: error ? (error.code ?? 1) : 0, out, errors}),
+      ),
+    );
   }
 
   // The text of the file that a command writes with -o, or null where it refuses.
@@ -36,11 +48,13 @@ export class Program {
 export async function together(items, width, f) {
   const results = new Array(items.length);
   let next = 0;
-  await Promise.all(Array.from({length: width}, async () => {
-    while (next < items.length) {
-      const i = next++;
-      results[i] = await f(items[i], i);
-    }
-  }));
+  await Promise.all(
+    Array.from({length: width}, async () => {
+      while (next < items.length) {
+        const i = next++;
+        results[i] = await f(items[i], i);
+      }
+    }),
+  );
   return results;
 }

@@ -3,29 +3,61 @@ import {escape} from './highlight.mjs';
 import {katexHtml} from './formula.mjs';
 import {fragmentOf} from './studio.mjs';
 
-const shown = ['rattleback', 'planetary_gear', 'stadium_billiard', 'kink_antikink', 'spherical_pendulum', 'squeezer', 'membrane', 'woodpecker'];
+const shown = [
+  'rattleback',
+  'planetary_gear',
+  'stadium_billiard',
+  'kink_antikink',
+  'spherical_pendulum',
+  'squeezer',
+  'membrane',
+  'woodpecker',
+];
 
 // The model without its tests, as in the README.
-const short = text => text.split('\n').filter(line => line !== '' && !/^(source|expect|claim|output|#)/.test(line) && !/^\s/.test(line)).join('\n');
+const short = text =>
+  text
+    .split('\n')
+    .filter(line => line !== '' && !/^(source|expect|claim|output|#)/.test(line) && !/^\s/.test(line))
+    .join('\n');
 
 /// The angles and their rates along the run, rounded to what a picture needs.
 function trajectory(csv) {
-  const [header, ...lines] = csv.trim().split(/\r?\n/), names = header.split(',').map(name => name.replace(/ \[.*/, '').replaceAll('"', ''));
+  const [header, ...lines] = csv.trim().split(/\r?\n/),
+    names = header.split(',').map(name => name.replace(/ \[.*/, '').replaceAll('"', ''));
   const columns = ['t', 'θ1', "θ1'", 'θ2', "θ2'"].map(name => {
     const at = names.indexOf(name);
     if (at < 0) throw new Error(`the trajectory of the double pendulum has no column ${name}`);
     return at;
   });
-  return lines.map(line => { const cells = line.split(','); return columns.map(at => Number(Number(cells[at]).toPrecision(8))); });
+  return lines.map(line => {
+    const cells = line.split(',');
+    return columns.map(at => Number(Number(cells[at]).toPrecision(8)));
+  });
 }
 
 export async function startPage(models, program, documents, {studio}) {
-  const model = models.find(m => m.name === 'double_pendulum'), text = short(model.text);
-  const csv = await program.written('start.csv', 'simulate', model.file, '--every', '20ms', '--no-errors', '--columns', "θ1, θ1', θ2, θ2'");
+  const model = models.find(m => m.name === 'double_pendulum'),
+    text = short(model.text);
+  const csv = await program.written(
+    'start.csv',
+    'simulate',
+    model.file,
+    '--every',
+    '20ms',
+    '--no-errors',
+    '--columns',
+    "θ1, θ1', θ2, θ2'",
+  );
   if (csv === null) throw new Error('maup simulate models/double_pendulum.lag failed');
-  const state = (await program.run('simulate', model.file, '--at', '1s', '--duration', '1s')).out.split('\n').slice(0, 5).join('\n');
-  const wrong = text.replace('l2 (sin θ2', 'm2 (sin θ2'), message = await mistake(program, wrong);
-  const d = model.derivation, pictures = shown.map(name => models.find(m => m.name === name)).filter(m => m?.picture);
+  const state = (await program.run('simulate', model.file, '--at', '1s', '--duration', '1s')).out
+    .split('\n')
+    .slice(0, 5)
+    .join('\n');
+  const wrong = text.replace('l2 (sin θ2', 'm2 (sin θ2'),
+    message = await mistake(program, wrong);
+  const d = model.derivation,
+    pictures = shown.map(name => models.find(m => m.name === name)).filter(m => m?.picture);
   const html = `<section class="hero">
 <div class="words">
 <h1>Lagrangian mechanics from a text file</h1>
@@ -75,18 +107,31 @@ ${studio ? deriveBox(text) : ''}<section>
 </ul>
 </section>
 `;
-  return {path: 'index.html', title: 'Maupertuis: Lagrangian mechanics from a text file', start: true, wide: true, contents: false, html,
-    description: 'Models of mechanics as text; certified equations of motion; motion at machine precision.', scripts: studio ? ['assets/pendulum.js', 'assets/derive.js'] : ['assets/pendulum.js'],
-    sections: [{title: 'Maupertuis', id: '', text: 'Lagrangian mechanics from a text file'}]};
+  return {
+    path: 'index.html',
+    title: 'Maupertuis: Lagrangian mechanics from a text file',
+    start: true,
+    wide: true,
+    contents: false,
+    html,
+    description: 'Models of mechanics as text; certified equations of motion; motion at machine precision.',
+    scripts: studio ? ['assets/pendulum.js', 'assets/derive.js'] : ['assets/pendulum.js'],
+    sections: [{title: 'Maupertuis', id: '', text: 'Lagrangian mechanics from a text file'}],
+  };
 }
 
 async function mistake(program, text) {
-  const {writeFileSync} = await import('node:fs'), {join} = await import('node:path');
+  const {writeFileSync} = await import('node:fs'),
+    {join} = await import('node:path');
   const file = join(program.folder, 'pendulum.lag');
   writeFileSync(file, text + '\n');
   const {code, out, errors} = await program.run('check', file, '--color', 'never');
-  const message = (errors + out).replaceAll(program.folder + '/', '').split(/\n(?=-- )/)[0].trim();
-  if (code !== 1 || !message.startsWith('-- error')) throw new Error('the wrong model of the start page is not refused');
+  const message = (errors + out)
+    .replaceAll(program.folder + '/', '')
+    .split(/\n(?=-- )/)[0]
+    .trim();
+  if (code !== 1 || !message.startsWith('-- error'))
+    throw new Error('the wrong model of the start page is not refused');
   return message;
 }
 

@@ -2,4 +2,5 @@
 import {deflateRawSync, inflateRawSync} from 'node:zlib';
 
 export const fragmentOf = text => `m=${deflateRawSync(Buffer.from(text, 'utf8'), {level: 9}).toString('base64url')}`;
-export const textOfFragment = fragment => inflateRawSync(Buffer.from(fragment.replace(/^#?m=/, ''), 'base64url')).toString('utf8');
+export const textOfFragment = fragment =>
+  inflateRawSync(Buffer.from(fragment.replace(/^#?m=/, ''), 'base64url')).toString('utf8');
