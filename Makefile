@@ -1,5 +1,5 @@
 # Thin: each rule calls a script of scripts/, which installs what is missing, configures by a CMake preset and builds.
-.PHONY: demo build test bench instructions fuzz mutants steep-models gallery format vscode studio install package clean
+.PHONY: demo build test bench instructions fuzz mutants steep-models gallery format site vscode studio install package clean
 
 demo:     # check, derive, simulate and report models/double_pendulum.lag
 	@scripts/demo
@@ -21,6 +21,8 @@ gallery:  # the pictures of docs/gallery
 	@scripts/gallery
 format:   # clang-format over the sources
 	@scripts/format
+site:     # build/site: the static site
+	@scripts/site
 vscode:   # editors/vscode/maupertuis.vsix: the extension for Visual Studio Code
 	@scripts/vscode
 studio:   # build/studio: the page of `maup studio`; needs npm
