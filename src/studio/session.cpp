@@ -101,7 +101,10 @@ class Session::Implementation {
     const double asked = number_of(request, "budget", limits_.budget);
     const double budget = std::clamp(asked, 0.05, limits_.longest_budget);
     cancelled_ = stop_ = false;
-    const Deadline deadline(budget, stop_);
+    const Deadline deadline(budget, stop_, [this] {
+      if (limits_.cancelled && limits_.cancelled()) cancelled_ = true;
+      return cancelled_.load();
+    });
     const Work work{request, Interrupt(&stop_), [&send](const Json& message) {
                       if (send) send(written(message));
                     }};
@@ -131,7 +134,8 @@ class Session::Implementation {
   }
 
   SessionLimits limits_;
-  std::atomic<bool> stop_ = false, cancelled_ = false;
+  StopFlag stop_ = false;
+  std::atomic<bool> cancelled_ = false;
   Desk desk_;
 };
 
