@@ -2,9 +2,9 @@
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/diagnostic.hpp>
 #include <maupertuis/equations_of_motion.hpp>
+#include <maupertuis/stop_flag.hpp>
 #include <maupertuis/trajectory.hpp>
 
-#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -107,7 +107,7 @@ struct ActionOptions {
   std::size_t paths = 8;   // at most so many are looked for
   std::size_t turns = 0;   // angles may also end up to so many whole turns further
   bool variations = true;  // S on neighbours
-  const std::atomic<bool>* interrupt = nullptr;
+  const StopFlag* interrupt = nullptr;
 };
 
 struct PathSearch {

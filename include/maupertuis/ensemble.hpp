@@ -1,8 +1,8 @@
 #pragma once
 #include <maupertuis/lanes.hpp>
 #include <maupertuis/step.hpp>
+#include <maupertuis/stop_flag.hpp>
 
-#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -43,13 +43,13 @@ struct EnsembleStart {
 };
 
 struct EnsembleOptions {
-  double tolerance = 0;                          // relative, per step; 0: rounding level of double
-  int order = 0;                                 // of the polynomial of q̇; 0: from the tolerance
-  std::size_t maximum_steps = 100'000'000;       // of one trajectory
-  int width = 0;                                 // motions side by side: 1, 2, 4, 8, 16; 0: what suits the processor
-  int threads = 0;                               // 0: as many as the machine runs at once
-  std::size_t energy_terms = 0;                  // so many first observables add up to an energy that is conserved
-  const std::atomic<bool>* interrupt = nullptr;  // looked at once a step
+  double tolerance = 0;                     // relative, per step; 0: rounding level of double
+  int order = 0;                            // of the polynomial of q̇; 0: from the tolerance
+  std::size_t maximum_steps = 100'000'000;  // of one trajectory
+  int width = 0;                            // motions side by side: 1, 2, 4, 8, 16; 0: what suits the processor
+  int threads = 0;                          // 0: as many as the machine runs at once
+  std::size_t energy_terms = 0;             // so many first observables add up to an energy that is conserved
+  const StopFlag* interrupt = nullptr;      // looked at once a step
   /// Automatic: compiled code where as many steps are expected as pay for it; that differs from the interpreter by
   /// rounding errors.
   Backend backend = Backend::Automatic;

@@ -1,8 +1,8 @@
 #pragma once
 #include <maupertuis/kernel.hpp>
 #include <maupertuis/step.hpp>
+#include <maupertuis/stop_flag.hpp>
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -85,7 +85,7 @@ struct ExtendedOptions {
   double log2_tolerance = 0;  // of the relative tolerance of a step; 0: rounding level
   int order = 0;              // of the polynomial of q̇; 0: from the tolerance
   std::size_t maximum_steps = 100'000'000;
-  const std::atomic<bool>* interrupt = nullptr;
+  const StopFlag* interrupt = nullptr;
   std::function<void(double)> progress;  // told the fraction of the run that is done, now and then
 };
 

@@ -18,7 +18,7 @@ struct ExtendedSimulationOptions {
   double tolerance = 0;                  // relative, per step; 0: 2e-34 (Quad), 1e-105 (Digits100)
   int order = 0;                         // 0: from the tolerance
   std::size_t maximum_steps = 100'000'000;
-  const std::atomic<bool>* interrupt = nullptr;
+  const StopFlag* interrupt = nullptr;
   std::function<void(double)> progress;
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <maupertuis/kernel.hpp>
 #include <maupertuis/step.hpp>
+#include <maupertuis/stop_flag.hpp>
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -28,9 +28,9 @@ struct TaylorOptions {
   double tolerance = 0;  // relative, per step; 0: rounding level of double
   int order = 0;         // of the polynomial of q̇; 0: from the tolerance
   std::size_t maximum_steps = 100'000'000;
-  const std::atomic<bool>* interrupt = nullptr;  // looked at once a step
-  Backend backend = Backend::Automatic;          // what carries out the expansions
-  bool cache = true;                             // of compiled code
+  const StopFlag* interrupt = nullptr;   // looked at once a step
+  Backend backend = Backend::Automatic;  // what carries out the expansions
+  bool cache = true;                     // of compiled code
 };
 
 /// What carried out the expansions.

@@ -1,5 +1,6 @@
 #pragma once
-#include <atomic>
+#include <maupertuis/stop_flag.hpp>
+
 #include <exception>
 
 namespace maupertuis {
@@ -16,16 +17,16 @@ class Interrupted : public std::exception {
 class Interrupt {
  public:
   /// The flag outlives whatever holds this; null: never.
-  Interrupt(const std::atomic<bool>* flag = nullptr) : flag_(flag) {}
+  Interrupt(const StopFlag* flag = nullptr) : flag_(flag) {}
 
-  operator const std::atomic<bool>*() const { return flag_; }
+  operator const StopFlag*() const { return flag_; }
   bool asked() const { return flag_ && flag_->load(std::memory_order_relaxed); }
   void throw_if_asked() const {
     if (asked()) throw Interrupted();
   }
 
  private:
-  const std::atomic<bool>* flag_;
+  const StopFlag* flag_;
 };
 
 }  // namespace maupertuis

@@ -2,10 +2,10 @@
 #include <maupertuis/diagnostic.hpp>
 #include <maupertuis/modes.hpp>
 #include <maupertuis/simulation.hpp>
+#include <maupertuis/stop_flag.hpp>
 #include <maupertuis/tangent.hpp>
 #include <maupertuis/trajectory.hpp>
 
-#include <atomic>
 #include <complex>
 #include <cstddef>
 #include <functional>
@@ -20,7 +20,7 @@ namespace maupertuis {
 
 struct FloquetOptions {
   std::optional<double> period;  // s: of the motion, or near it; nothing: looked for within the model's run
-  const std::atomic<bool>* interrupt = nullptr;
+  const StopFlag* interrupt = nullptr;
   std::optional<MotionState> start = std::nullopt;  // instead of that of the model
 };
 
@@ -78,7 +78,7 @@ std::optional<FloquetResult> floquet(const Model& model, const EquationsOfMotion
 /// these give. [entries]; nothing where the drive does not repeat; empty where the equations do not depend on the time.
 std::vector<std::optional<FloquetResult>> settle_driven(ModalStudy& study, const PointEquations& points,
                                                         const Model& model, const EquationsOfMotion& equations,
-                                                        const std::atomic<bool>* interrupt);
+                                                        const StopFlag* interrupt);
 
 // --------------------------------------------------------------------------------------------------- Poincaré sections
 
@@ -93,7 +93,7 @@ struct SectionOptions {
   std::optional<double> energy;  // J, instead of that of the model's start
   double longest = 0;            // s: no motion is followed for longer; 0: 10⁴ times the model's run, or 10⁶ s
   double tolerance = 0;          // of the steps; 0: rounding level
-  const std::atomic<bool>* interrupt = nullptr;
+  const StopFlag* interrupt = nullptr;
   std::function<void(double)> progress;
 };
 
@@ -139,7 +139,7 @@ struct LyapunovOptions {
   std::optional<double> duration;   // s; nothing: the model's run
   double interval = 0;              // s between orthogonalizations; 0: chosen
   std::optional<double> transient;  // s of the motion before the average begins; nothing: a tenth of the duration
-  const std::atomic<bool>* interrupt = nullptr;
+  const StopFlag* interrupt = nullptr;
   std::function<void(double)> progress;
 };
 

@@ -4,9 +4,9 @@
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/kernel.hpp>
+#include <maupertuis/stop_flag.hpp>
 #include <maupertuis/trajectory.hpp>
 
-#include <atomic>
 #include <functional>
 #include <optional>
 #include <string>
@@ -31,8 +31,8 @@ struct SimulationOptions {
   bool cache = true;                     // of compiled code, on disk
   ErrorEstimates errors = ErrorEstimates::States;
   std::size_t maximum_steps = 100'000'000;
-  const std::atomic<bool>* interrupt = nullptr;  // set by Ctrl-C
-  std::function<void(double)> progress;          // told the fraction of the run that is done, now and then
+  const StopFlag* interrupt = nullptr;   // set by Ctrl-C
+  std::function<void(double)> progress;  // told the fraction of the run that is done, now and then
 };
 
 /// By how much the numbers of a state may be off, each in the unit of its number: 0 where it is exact, infinite where

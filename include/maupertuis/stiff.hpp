@@ -1,8 +1,8 @@
 #pragma once
 #include <maupertuis/motion_functions.hpp>
 #include <maupertuis/step.hpp>
+#include <maupertuis/stop_flag.hpp>
 
-#include <atomic>
 #include <memory>
 #include <span>
 
@@ -16,7 +16,7 @@ struct StiffOptions {
   double tolerance = 1e-10;  // relative, per step
   double absolute = 0;       // in the unit of each coordinate and velocity; 0: 1e-4 · tolerance
   std::size_t maximum_steps = 100'000'000;
-  const std::atomic<bool>* interrupt = nullptr;  // looked at once a step
+  const StopFlag* interrupt = nullptr;  // looked at once a step
 };
 
 /// Variable order (1 to 5) and step. Without constraints by CVODE: the unknowns are q and v. With constraints by IDA,

@@ -12,6 +12,9 @@ struct SessionLimits {
   double budget = 20;                    // s that a request may take where it does not say
   double longest_budget = 600;           // s that it may ask for
   std::size_t largest_text = 1'000'000;  // bytes of a model
+  /// In programs of one thread (WebAssembly), where nobody could call `cancel` while a request is answered: whether it
+  /// is to be cancelled. Asked on the thread of `answer`, as often as a motion makes steps.
+  std::function<bool()> cancelled{};
 };
 
 /// Receives what a request has to tell before its answer: one JSON object a call. Called on the thread of `answer`.

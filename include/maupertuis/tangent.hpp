@@ -3,8 +3,8 @@
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/mechanical_system.hpp>
 #include <maupertuis/step.hpp>
+#include <maupertuis/stop_flag.hpp>
 
-#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -51,9 +51,9 @@ struct TangentForces {
 };
 
 struct TangentOptions {
-  double tolerance = 0;                          // relative, per step; 0: rounding level of double
-  std::size_t maximum_steps = 100'000'000;       // of each advance
-  const std::atomic<bool>* interrupt = nullptr;  // looked at once a step
+  double tolerance = 0;                     // relative, per step; 0: rounding level of double
+  std::size_t maximum_steps = 100'000'000;  // of each advance
+  const StopFlag* interrupt = nullptr;      // looked at once a step
 };
 
 /// The flow of a system together with its derivative. One thread at a time.

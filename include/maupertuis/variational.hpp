@@ -1,8 +1,8 @@
 #pragma once
 #include <maupertuis/motion_functions.hpp>
 #include <maupertuis/step.hpp>
+#include <maupertuis/stop_flag.hpp>
 
-#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -14,7 +14,7 @@ struct VariationalOptions {
   double step = 0;  // s, > 0; the same for the whole run, but the last step may be shorter
   int order = 4;    // of accuracy: 2, 4, …, 12; an odd number counts as the next even one
   std::size_t maximum_steps = 100'000'000;
-  const std::atomic<bool>* interrupt = nullptr;  // looked at once a step
+  const StopFlag* interrupt = nullptr;  // looked at once a step
 };
 
 /// Galerkin variational integrator on Gauss nodes, or on Lobatto nodes when there are constraints. The map from step to

@@ -12,14 +12,14 @@ namespace {
 
 using Ink = FrameColour::Ink;
 using Kind = Drawing::Kind;
-using Outline = SolidShape::Outline;
+using SolidOutline = SolidShape::Outline;
 
 constexpr double body_tint = 0.22, whole_trail = 0.2;
 constexpr std::size_t ids_of_an_element = 4096, contour = 48;
 
 /// The same line by this number of points, so that an animated picture finds each of them again.
-Outline with_points(const Outline& line, std::size_t count) {
-  Outline out;
+SolidOutline with_points(const SolidOutline& line, std::size_t count) {
+  SolidOutline out;
   const std::size_t n = line.points.size() / 3;
   for (std::size_t i = 0; i < count; ++i) {
     const double at = static_cast<double>(i * (n - 1)) / static_cast<double>(count - 1);
@@ -129,8 +129,8 @@ class Painter {
   void trail(const Drawing::Element& e, std::size_t series);
   void force(const Drawing::Element& e, const std::vector<double>& points);
   void label(const Drawing::Element& e, const std::vector<double>& points);
-  std::vector<double> outline(const std::vector<double>& pose, const Outline& o, double* near = nullptr) const;
-  double shade(const std::vector<double>& pose, const Outline& face, bool& hidden) const;
+  std::vector<double> outline(const std::vector<double>& pose, const SolidOutline& o, double* near = nullptr) const;
+  double shade(const std::vector<double>& pose, const SolidOutline& face, bool& hidden) const;
 
   const Drawing& drawing_;
   const View& view_;
@@ -170,7 +170,7 @@ void Painter::path(const Drawing::Element& e, const std::vector<double>& points)
   }
 }
 
-std::vector<double> Painter::outline(const std::vector<double>& pose, const Outline& o, double* near) const {
+std::vector<double> Painter::outline(const std::vector<double>& pose, const SolidOutline& o, double* near) const {
   std::vector<double> out;
   double sum = 0, world[3];
   for (std::size_t i = 0; i < o.points.size(); i += d_) {
@@ -184,7 +184,7 @@ std::vector<double> Painter::outline(const std::vector<double>& pose, const Outl
 }
 
 /// How dark a face of a box is: by its normal against the light, which comes from above and from the eye.
-double Painter::shade(const std::vector<double>& pose, const Outline& face, bool& hidden) const {
+double Painter::shade(const std::vector<double>& pose, const SolidOutline& face, bool& hidden) const {
   double a[3], b[3], c[3], n[3], facing = 0, size = 0;
   drawing::carry(pose, &face.points[0], 3, a);
   drawing::carry(pose, &face.points[3], 3, b);
@@ -219,7 +219,7 @@ void Painter::solid(const SolidShape& shape, const std::vector<double>& pose) {
     note(pose.data(), origin.near);
     return ball(shape, pose, origin.near, small ? 1 : body_tint);
   }
-  for (const Outline& face : shape.faces) {
+  for (const SolidOutline& face : shape.faces) {
     bool hidden = false;
     const double tint = shape.convex ? shade(pose, face, hidden) : small ? 1 : body_tint;
     if (hidden) {
@@ -234,7 +234,7 @@ void Painter::solid(const SolidShape& shape, const std::vector<double>& pose) {
   }
   const bool grid = ground && d_ == 3;
   const bool plain = shape.faces.empty();  // a hoop, a spring
-  for (const Outline& line : shape.lines) {
+  for (const SolidOutline& line : shape.lines) {
     double near = origin.near;
     std::vector<double> points = outline(pose, line, plain && !grid ? &near : nullptr);
     const FrameColour colour = grid ? FrameColour{Ink::Muted, 0, 0.3} : FrameColour{ground ? Ink::Muted : Ink::Ink};
@@ -301,7 +301,7 @@ void Painter::ball(const SolidShape& shape, const std::vector<double>& pose, dou
   const double square = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
   if (!(square > 1)) return;  // from inside there is nothing to see
   const auto sides = drawing::sides_of(e);
-  Outline rim;
+  SolidOutline rim;
   const double r = std::sqrt(1 - 1 / square);
   for (std::size_t i = 0; i < contour; ++i) {
     const double angle = 6.283185307179586 * static_cast<double>(i) / contour;
@@ -311,7 +311,7 @@ void Painter::ball(const SolidShape& shape, const std::vector<double>& pose, dou
   FrameItem& body = stroke(outline(pose, rim), tint == 1 ? FrameColour{Ink::Paper} : FrameColour{Ink::Ink}, 1.6, depth);
   body.closed = true;
   body.fill = {Ink::Series, 0, tint};
-  for (const Outline& line : shape.lines) {  // of a great circle half is seen: one piece, begun behind the ball
+  for (const SolidOutline& line : shape.lines) {  // of a great circle half is seen: one piece, begun behind the ball
     const std::size_t n = line.points.size() / 3;
     const auto seen = [&](std::size_t i) {
       const double* x = &line.points[i % n * 3];
@@ -319,7 +319,7 @@ void Painter::ball(const SolidShape& shape, const std::vector<double>& pose, dou
     };
     std::size_t first = 0;
     while (first < n && !(seen(first + 1) && !seen(first))) ++first;
-    Outline half;
+    SolidOutline half;
     for (std::size_t i = first + 1; i <= first + n && seen(i); ++i)
       half.points.insert(half.points.end(), &line.points[i % n * 3], &line.points[i % n * 3] + 3);
     if (half.points.size() < 6)

@@ -292,10 +292,10 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
   double measured = 0;
   for (const double stop : stops) {
     const double way = stop - mesh.time();
-    const auto steps = static_cast<std::size_t>(std::ceil(way / longest - 1e-9));
-    for (std::size_t k = 0; way > 0 && k < std::max<std::size_t>(steps, 1); ++k) {
+    const auto steps = static_cast<std::uint64_t>(std::ceil(way / longest - 1e-9));
+    for (std::uint64_t k = 0; way > 0 && k < std::max<std::uint64_t>(steps, 1); ++k) {
       options.interrupt.throw_if_asked();
-      if (!mesh.step(way / static_cast<double>(std::max<std::size_t>(steps, 1))))
+      if (!mesh.step(way / static_cast<double>(std::max<std::uint64_t>(steps, 1))))
         return refuse(mesh, equations, diagnostics), std::nullopt;
       ++out.steps;
       if (meter) meter->note_flux(mesh);

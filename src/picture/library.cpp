@@ -2,13 +2,22 @@
 
 #include <fmt/format.h>
 
+#ifndef __EMSCRIPTEN__
 #include <dlfcn.h>
+#endif
 
 namespace maupertuis::picture {
 namespace {
 
 constexpr const char* file = "librsvg-2.so.2";
 
+#ifdef __EMSCRIPTEN__
+Library open() {
+  Library l;
+  l.problem = fmt::format("a WebAssembly module cannot open {}", file);
+  return l;
+}
+#else
 template <class Function>
 void look_up(void* opened, const char* name, Function& function, std::string& problem) {
   function = reinterpret_cast<Function>(dlsym(opened, name));  // of its dependencies too: cairo, GObject
@@ -42,6 +51,7 @@ Library open() {
 #undef MAUP_LOOK_UP
   return l;
 }
+#endif
 
 }  // namespace
 

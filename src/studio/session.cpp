@@ -104,7 +104,10 @@ class Session::Implementation {
     const double asked = number_of(request, "budget", limits_.budget);
     const double budget = std::clamp(asked, 0.05, limits_.longest_budget);
     cancelled_ = stop_ = false;
-    const Deadline deadline(budget, stop_);
+    const Deadline deadline(budget, stop_, [this] {
+      if (limits_.cancelled && limits_.cancelled()) cancelled_ = true;
+      return cancelled_.load();
+    });
     auto last = std::chrono::steady_clock::time_point{};
     const Work work{request, Interrupt(&stop_), [&](const Json& message) {
                       const auto now = std::chrono::steady_clock::now();
@@ -138,7 +141,8 @@ class Session::Implementation {
   }
 
   SessionLimits limits_;
-  std::atomic<bool> stop_ = false, cancelled_ = false;
+  StopFlag stop_ = false;
+  std::atomic<bool> cancelled_ = false;
   Desk desk_;
 };
 

@@ -9,7 +9,7 @@ namespace maupertuis {
 /// search is done at first use, for all lines of a model.
 class ActionClaims {
  public:
-  ActionClaims(const Model& model, const EquationsOfMotion& equations, const std::atomic<bool>* interrupt)
+  ActionClaims(const Model& model, const EquationsOfMotion& equations, const StopFlag* interrupt)
       : model_(model), equations_(equations) {
     options_.variations = false;
     options_.interrupt = interrupt;

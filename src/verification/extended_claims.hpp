@@ -15,7 +15,7 @@ class ExtendedClaims {
     std::size_t index;  // of its result
   };
 
-  ExtendedClaims(const Model& model, const EquationsOfMotion& equations, const std::atomic<bool>* interrupt)
+  ExtendedClaims(const Model& model, const EquationsOfMotion& equations, const StopFlag* interrupt)
       : model_(model), equations_(equations), interrupt_(interrupt) {}
   /// Whether the model asks for more digits than double has, and the subject is a coordinate or a velocity.
   bool takes(const expectation::ValueAt& expectation) const;
@@ -30,7 +30,7 @@ class ExtendedClaims {
 
   const Model& model_;
   const EquationsOfMotion& equations_;
-  const std::atomic<bool>* interrupt_;
+  const StopFlag* interrupt_;
 };
 
 }  // namespace maupertuis

@@ -11,7 +11,7 @@ namespace maupertuis {
 /// time.
 class OrbitClaims {
  public:
-  OrbitClaims(const Model& model, const EquationsOfMotion& equations, const std::atomic<bool>* interrupt)
+  OrbitClaims(const Model& model, const EquationsOfMotion& equations, const StopFlag* interrupt)
       : model_(model), equations_(equations), interrupt_(interrupt) {}
   void decide(const expectation::Multipliers& expectation, ExpectationResult& result);
   void decide(const expectation::Trace& expectation, ExpectationResult& result);
@@ -28,7 +28,7 @@ class OrbitClaims {
 
   const Model& model_;
   const EquationsOfMotion& equations_;
-  const std::atomic<bool>* interrupt_;
+  const StopFlag* interrupt_;
   std::map<double, Answer> answers_;  // by the period that was given; 0: none
 };
 

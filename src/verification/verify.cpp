@@ -150,7 +150,7 @@ class Verifier {
 
   const Model& model_;
   const EquationsOfMotion& equations_;
-  const std::atomic<bool>* interrupt_;
+  const StopFlag* interrupt_;
   std::size_t line_ = 0;  // of the expectation that is looked at
   IdentityClaims identities_;
   RunClaims runs_;

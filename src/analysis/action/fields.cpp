@@ -36,7 +36,7 @@ Matrix inverse_times(const Matrix& a, const Matrix& b) { return a.partialPivLu()
 class Neighbours {
  public:
   Neighbours(Functional& functional, const EquationsOfMotion& weighted, const Trial& trial, bool backward,
-             double stretch, const std::atomic<bool>* interrupt)
+             double stretch, const StopFlag* interrupt)
       : functional_(functional),
         trial_(trial),
         path_(to_path(trial)),
@@ -175,7 +175,7 @@ class ActionAlong {
 class Study {
  public:
   Study(Functional& functional, const EquationsOfMotion& weighted, Expr lagrangian, const Trial& trial,
-        const FixedEnds& fixed, const Vector& least, std::vector<double> breaks, const std::atomic<bool>* interrupt)
+        const FixedEnds& fixed, const Vector& least, std::vector<double> breaks, const StopFlag* interrupt)
       : functional_(functional),
         trial_(trial),
         fixed_(fixed),
@@ -417,7 +417,7 @@ std::size_t FieldStudy::count() const {
 
 FieldStudy jacobi_fields(Functional& functional, const EquationsOfMotion& weighted, Expr lagrangian, const Trial& trial,
                          const FixedEnds& fixed, bool singular_start, bool singular_end, const Vector& least,
-                         const std::atomic<bool>* interrupt) {
+                         const StopFlag* interrupt) {
   std::vector<double> breaks = breaks_of(trial, singular_start, singular_end);
   if (breaks.size() < 2) {
     FieldStudy out;

@@ -1,7 +1,8 @@
 #pragma once
 #include "analysis/action/directions.hpp"
 
-#include <atomic>
+#include <maupertuis/stop_flag.hpp>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,6 @@ struct FieldStudy {
 /// that an unstable motion does no harm. Precondition: M is positive definite on the directions allowed.
 FieldStudy jacobi_fields(Functional& functional, const EquationsOfMotion& weighted, Expr lagrangian, const Trial& trial,
                          const FixedEnds& fixed, bool singular_start, bool singular_end, const Vector& least,
-                         const std::atomic<bool>* interrupt);
+                         const StopFlag* interrupt);
 
 }  // namespace maupertuis::action

@@ -1,13 +1,13 @@
 #pragma once
 #include "analysis/action/directions.hpp"
 
-#include <atomic>
+#include <maupertuis/stop_flag.hpp>
 
 namespace maupertuis::action {
 
 struct NewtonOptions {
   int most_iterations = 60;
-  const std::atomic<bool>* interrupt = nullptr;
+  const StopFlag* interrupt = nullptr;
 };
 
 struct NewtonResult {

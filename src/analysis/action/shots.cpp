@@ -26,7 +26,7 @@ struct Shot {
 
 class Shooter {
  public:
-  Shooter(Problem& problem, const ActionEnds& ends, const std::atomic<bool>* interrupt)
+  Shooter(Problem& problem, const ActionEnds& ends, const StopFlag* interrupt)
       : problem_(problem),
         ends_(ends),
         from_(*ends.from[0]),
@@ -121,7 +121,7 @@ class Shooter {
 
 }  // namespace
 
-Shots shoot_all(Problem& problem, const ActionEnds& ends, const std::atomic<bool>* interrupt) {
+Shots shoot_all(Problem& problem, const ActionEnds& ends, const StopFlag* interrupt) {
   return Shooter(problem, ends, interrupt).run();
 }
 

@@ -9,6 +9,6 @@ struct Shots {
   double fastest = 0;           // the bound
   std::size_t count = 0;
 };
-Shots shoot_all(Problem& problem, const ActionEnds& ends, const std::atomic<bool>* interrupt);
+Shots shoot_all(Problem& problem, const ActionEnds& ends, const StopFlag* interrupt);
 
 }  // namespace maupertuis::action

@@ -15,10 +15,10 @@ using Monomials = std::vector<Monomial>;
 
 struct MonomialHash {
   std::size_t operator()(const Monomial& m) const {
-    std::size_t h = m.size();
+    std::uint64_t h = m.size();
     for (const Factor& f : m)
-      h = h * 0x9e3779b97f4a7c15 + (std::size_t{f.generator} << 8) + static_cast<unsigned>(f.exponent);
-    return h ^ h >> 32;
+      h = h * 0x9e3779b97f4a7c15 + (std::uint64_t{f.generator} << 8) + static_cast<unsigned>(f.exponent);
+    return static_cast<std::size_t>(h ^ h >> 32);
   }
 };
 

@@ -26,7 +26,7 @@ StabilityReport report_of(const FloquetResult& neighbours) {
 
 std::vector<std::optional<FloquetResult>> settle_driven(ModalStudy& study, const PointEquations& points,
                                                         const Model& model, const EquationsOfMotion& equations,
-                                                        const std::atomic<bool>* interrupt) {
+                                                        const StopFlag* interrupt) {
   std::vector<std::optional<FloquetResult>> out;
   if (points.autonomous()) return out;
   for (ModalEntry& entry : study.entries) {

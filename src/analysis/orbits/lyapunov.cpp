@@ -51,7 +51,7 @@ class LyapunovRun {
     if (!plan() || !choose_directions() || !warm_up()) return std::nullopt;
     if (takes_all() && !flow_.through_modes()) divergence_.emplace(equations_, geometry_);
     if (flow_.through_modes() && !geometry_.symplectic()) volume_.reset();
-    for (std::size_t k = 0; k < intervals_ && interval(); ++k) {
+    for (std::uint64_t k = 0; k < intervals_ && interval(); ++k) {
       if (options_.progress) options_.progress((k + 1.0) / static_cast<double>(intervals_));
     }
     if (logs_.empty()) return std::nullopt;  // told
@@ -76,7 +76,7 @@ class LyapunovRun {
     if (!check_interval(*duration) || !check_transient(step)) return false;
     const double wanted =
         options_.interval > 0 ? options_.interval : std::min(steps_of_interval * step, *duration / least_intervals);
-    intervals_ = static_cast<std::size_t>(std::max(1.0, std::round(*duration / wanted)));
+    intervals_ = static_cast<std::uint64_t>(std::max(1.0, std::round(*duration / wanted)));
     out_.interval = *duration / static_cast<double>(intervals_);
     point_.state = start->state;
     return true;
@@ -191,8 +191,8 @@ class LyapunovRun {
 
   bool warm_up() {
     const double begin = point_.state.t;
-    const auto count = static_cast<std::size_t>(std::ceil(transient_ / out_.interval));
-    for (std::size_t k = 1; k <= count; ++k)
+    const auto count = static_cast<std::uint64_t>(std::ceil(transient_ / out_.interval));
+    for (std::uint64_t k = 1; k <= count; ++k)
       if (!carry(begin + transient_ * static_cast<double>(k) / static_cast<double>(count))) return tell_stop();
     begin_ = point_.state.t;
     averaging_ = true;
@@ -325,7 +325,7 @@ class LyapunovRun {
   Matrix directions_;  // [2n × k], orthonormal in units of the sizes
   Vector sizes_;
   double transient_ = 0, begin_ = 0;
-  std::size_t intervals_ = 0;
+  std::uint64_t intervals_ = 0;
   MotionState before_;                                    // where the average begins
   Matrix frame_before_, frame_after_;                     // the directions there, and at the end
   std::vector<Vector> logs_;                              // of each interval

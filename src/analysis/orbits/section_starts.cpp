@@ -174,8 +174,7 @@ std::optional<Grid> fitted(const Plane& plane, const MotionState& near, const st
   return std::nullopt;
 }
 
-std::vector<MotionState> spread(const Plane& plane, const Grid& grid, std::size_t count,
-                                const std::atomic<bool>* interrupt) {
+std::vector<MotionState> spread(const Plane& plane, const Grid& grid, std::size_t count, const StopFlag* interrupt) {
   constexpr double plastic = 1.32471795724474602596;  // x³ = x + 1
   std::vector<MotionState> out;
   for (std::size_t k = 1; out.size() < count && k < 400 * count; ++k) {

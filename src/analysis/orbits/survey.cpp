@@ -97,13 +97,12 @@ Survey survey_by(Stepper stepper, const MechanicalSystem& system, const MotionSt
 }  // namespace
 
 Survey survey(const MechanicalSystem& system, const MotionKernel& motion, const MotionState& start, double duration,
-              const std::atomic<bool>* interrupt) {
+              const StopFlag* interrupt) {
   return survey_by(TaylorStepper(motion.kernel, motion.parameters, {.interrupt = interrupt}), system, start, duration);
 }
 
 Survey survey(const Model& model, const EquationsOfMotion& equations, const MotionKernel& motion,
-              const MotionState& start, double duration, const std::atomic<bool>* interrupt,
-              std::span<const double> sizes) {
+              const MotionState& start, double duration, const StopFlag* interrupt, std::span<const double> sizes) {
   if (!jumps_on_its_way(model)) return survey(*equations.system, motion, start, duration, interrupt);
   MotionThroughModes through(model, equations, {}, {.interrupt = interrupt});
   through.keep_instants();

@@ -2,8 +2,8 @@
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/motion_through_modes.hpp>
+#include <maupertuis/stop_flag.hpp>
 
-#include <atomic>
 #include <string>
 #include <vector>
 
@@ -23,10 +23,9 @@ struct Survey {
 };
 
 Survey survey(const MechanicalSystem& system, const MotionKernel& motion, const MotionState& start, double duration,
-              const std::atomic<bool>* interrupt);
+              const StopFlag* interrupt);
 /// Through contacts, friction and events of the model, if there are any; `sizes` [2n] of the motion before, or none.
 Survey survey(const Model& model, const EquationsOfMotion& equations, const MotionKernel& motion,
-              const MotionState& start, double duration, const std::atomic<bool>* interrupt,
-              std::span<const double> sizes = {});
+              const MotionState& start, double duration, const StopFlag* interrupt, std::span<const double> sizes = {});
 
 }  // namespace maupertuis::orbits

@@ -32,7 +32,13 @@ struct Register<1> {
   typedef std::int64_t Integers __attribute__((may_alias));
 };
 
-/// a b + c, rounded once, on every processor.
+/// a b + c, rounded once, on every processor; WebAssembly, which has no such instruction, rounds twice.
+#if defined(__wasm__)
+template <class V>
+inline V fused(V a, V b, V c) {
+  return a * b + c;
+}
+#else
 inline double fused(double a, double b, double c) { return __builtin_fma(a, b, c); }
 template <class V>
 inline V fused(V a, V b, V c) {
@@ -47,6 +53,7 @@ inline V fused(V a, V b, V c) {
     c[lane] = __builtin_fma(a[lane], b[lane], c[lane]);
   return c;
 }
+#endif
 
 constexpr double infinity = __builtin_huge_val();
 constexpr double epsilon = 0x1p-52;

@@ -16,7 +16,7 @@ Plan::Plan(const Program& program) : program_(program), moves_(program.slots) {
   for (auto first = edges.begin(); first != edges.end();) {
     const auto last =
         std::find_if(first, edges.end(), [&](const sparse::Edge& edge) { return edge.out != first->out; });
-    add_result({first, last});
+    add_result({&*first, static_cast<std::size_t>(last - first)});
     first = last;
   }
   for (std::uint32_t row = 0; row < program.unknowns; ++row) {

@@ -75,7 +75,8 @@ std::vector<ReadColumn> columns_with_holes(const Program& program, Sums sums, Co
     const auto best = std::max_element(lanes_of.begin(), lanes_of.end(),
                                        [](const auto& x, const auto& y) { return x.second < y.second; });
     if (best == lanes_of.end() || best->second < least_lanes) break;
-    const auto [shift, first] = best->first;
+    const std::uint32_t shift = std::get<0>(best->first);
+    const Slot first = std::get<1>(best->first);
     ReadColumn read{{.kind = Column::Contiguous, .shift = static_cast<std::uint8_t>(shift), .source = first},
                     std::vector<ConstantId>(lanes, zero)};
     for (Slot lane = 0; lane < lanes; ++lane) read.column.sources[lane] = first + lane;

@@ -72,12 +72,12 @@ void add_compensated(V& hi, V& lo, V b) {
 /// Eight numbers hi and lo that stand pair by pair.
 inline void load_pairs(const double* p, Vector& hi, Vector& lo) {
   const Vector a = load(p), b = load(p + lanes);
-  hi = __builtin_shuffle(a, b, Places{0, 2, 4, 6, 8, 10, 12, 14}),
-  lo = __builtin_shuffle(a, b, Places{1, 3, 5, 7, 9, 11, 13, 15});
+  hi = shuffled<0, 2, 4, 6, 8, 10, 12, 14>(a, b),
+  lo = shuffled<1, 3, 5, 7, 9, 11, 13, 15>(a, b);
 }
 inline void save_pairs(double* p, Vector hi, Vector lo) {
-  save(p, __builtin_shuffle(hi, lo, Places{0, 8, 1, 9, 2, 10, 3, 11})),
-      save(p + lanes, __builtin_shuffle(hi, lo, Places{4, 12, 5, 13, 6, 14, 7, 15}));
+  save(p, shuffled<0, 8, 1, 9, 2, 10, 3, 11>(hi, lo)),
+      save(p + lanes, shuffled<4, 12, 5, 13, 6, 14, 7, 15>(hi, lo));
 }
 
 /// What is added to lo may be fused with its product: TwoSum takes it as one number.
@@ -100,13 +100,10 @@ void add_increments(std::size_t count, double tau, const double* dq, const doubl
 }
 
 inline double least_lane(Vector v) {
-  const auto fold = [&v](Places places) {
-    const Vector other = __builtin_shuffle(v, places);
-    v = other < v ? other : v;
-  };
-  fold(Places{4, 5, 6, 7, 0, 1, 2, 3});
-  fold(Places{2, 3, 0, 1, 6, 7, 4, 5});
-  fold(Places{1, 0, 3, 2, 5, 4, 7, 6});
+  const auto fold = [&v](Vector other) { v = other < v ? other : v; };
+  fold(shuffled<4, 5, 6, 7, 0, 1, 2, 3>(v));
+  fold(shuffled<2, 3, 0, 1, 6, 7, 4, 5>(v));
+  fold(shuffled<1, 0, 3, 2, 5, 4, 7, 6>(v));
   return v[0];
 }
 

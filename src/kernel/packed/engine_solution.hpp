@@ -6,16 +6,16 @@ constexpr std::size_t most_inverted = 16;
 
 /// 8 × 8 numbers, in three exchanges: of neighbours, pairs and halves.
 inline void transpose_rows(Vector (&r)[lanes]) {
-  const auto exchange = [&](std::size_t distance, Places low, Places high) {
+  const auto exchange = [&](std::size_t distance, auto low, auto high) {
     for (std::size_t i = 0; i < lanes; ++i) {
       if (i & distance) continue;
       const Vector a = r[i], b = r[i + distance];
-      r[i] = __builtin_shuffle(a, b, low), r[i + distance] = __builtin_shuffle(a, b, high);
+      r[i] = low(a, b), r[i + distance] = high(a, b);
     }
   };
-  exchange(1, Places{0, 8, 2, 10, 4, 12, 6, 14}, Places{1, 9, 3, 11, 5, 13, 7, 15});
-  exchange(2, Places{0, 1, 8, 9, 4, 5, 12, 13}, Places{2, 3, 10, 11, 6, 7, 14, 15});
-  exchange(4, Places{0, 1, 2, 3, 8, 9, 10, 11}, Places{4, 5, 6, 7, 12, 13, 14, 15});
+  exchange(1, shuffled<0, 8, 2, 10, 4, 12, 6, 14>, shuffled<1, 9, 3, 11, 5, 13, 7, 15>);
+  exchange(2, shuffled<0, 1, 8, 9, 4, 5, 12, 13>, shuffled<2, 3, 10, 11, 6, 7, 14, 15>);
+  exchange(4, shuffled<0, 1, 2, 3, 8, 9, 10, 11>, shuffled<4, 5, 6, 7, 12, 13, 14, 15>);
 }
 
 /// To 1e-12 of the diagonal; not if a number is not finite.

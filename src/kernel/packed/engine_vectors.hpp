@@ -12,6 +12,15 @@ inline Vector gather(const double* p, const Slot* slots) {
   return Vector{p[slots[0]], p[slots[1]], p[slots[2]], p[slots[3]], p[slots[4]], p[slots[5]], p[slots[6]], p[slots[7]]};
 }
 
+/// Of the lanes of a and then those of b, which count from 8 on, these.
+template <int... from>
+struct Shuffle {
+  Vector operator()(Vector a, Vector b) const { return __builtin_shufflevector(a, b, from...); }
+  Vector operator()(Vector v) const { return __builtin_shufflevector(v, v, from...); }
+};
+template <int... from>
+constexpr Shuffle<from...> shuffled;
+
 typedef long long Places __attribute__((vector_size(64)));
 typedef long long UnalignedPlaces __attribute__((vector_size(64), aligned(8)));
 
@@ -25,7 +34,7 @@ inline Vector column_values(const double* from, const Column& column) {
   else if constexpr (kind == Column::Contiguous)
     return load(from + column.source);
   else if constexpr (kind == Column::Reversed)
-    return __builtin_shuffle(load(from + column.source - (lanes - 1)), Places{7, 6, 5, 4, 3, 2, 1, 0});
+    return shuffled<7, 6, 5, 4, 3, 2, 1, 0>(load(from + column.source - (lanes - 1)));
   else
     return gather(from, column.sources.data());
 }
@@ -65,23 +74,23 @@ inline Vector columns_of_kind(const Column* columns, std::size_t count, const do
 /// Each lane with all lanes before it.
 inline Vector running_sum(Vector v) {
   const Vector zero = all(0);
-  v += __builtin_shuffle(v, zero, Places{8, 0, 1, 2, 3, 4, 5, 6});
-  v += __builtin_shuffle(v, zero, Places{8, 8, 0, 1, 2, 3, 4, 5});
-  return v + __builtin_shuffle(v, zero, Places{8, 8, 8, 8, 0, 1, 2, 3});
+  v += shuffled<8, 0, 1, 2, 3, 4, 5, 6>(v, zero);
+  v += shuffled<8, 8, 0, 1, 2, 3, 4, 5>(v, zero);
+  return v + shuffled<8, 8, 8, 8, 0, 1, 2, 3>(v, zero);
 }
 inline Vector running_sum_down(Vector v) {
   const Vector zero = all(0);
-  v += __builtin_shuffle(v, zero, Places{1, 2, 3, 4, 5, 6, 7, 8});
-  v += __builtin_shuffle(v, zero, Places{2, 3, 4, 5, 6, 7, 8, 8});
-  return v + __builtin_shuffle(v, zero, Places{4, 5, 6, 7, 8, 8, 8, 8});
+  v += shuffled<1, 2, 3, 4, 5, 6, 7, 8>(v, zero);
+  v += shuffled<2, 3, 4, 5, 6, 7, 8, 8>(v, zero);
+  return v + shuffled<4, 5, 6, 7, 8, 8, 8, 8>(v, zero);
 }
 
 /// All lanes before each.
 inline Vector before_lanes(Vector v) {
-  return running_sum(__builtin_shuffle(v, all(0), Places{8, 0, 1, 2, 3, 4, 5, 6}));
+  return running_sum(shuffled<8, 0, 1, 2, 3, 4, 5, 6>(v, all(0)));
 }
 inline Vector before_lanes_down(Vector v) {
-  return running_sum_down(__builtin_shuffle(v, all(0), Places{1, 2, 3, 4, 5, 6, 7, 8}));
+  return running_sum_down(shuffled<1, 2, 3, 4, 5, 6, 7, 8>(v, all(0)));
 }
 
 /// What a running sum adds to.
@@ -101,16 +110,16 @@ inline Vector larger(Vector x, Vector y) { return x > y ? x : y; }
 inline Vector absolute(Vector x) { return reinterpret_cast<Vector>(reinterpret_cast<Places>(x) & 0x7fffffffffffffff); }
 
 inline double largest_lane(Vector v) {
-  v = larger(v, __builtin_shuffle(v, Places{4, 5, 6, 7, 0, 1, 2, 3}));
-  v = larger(v, __builtin_shuffle(v, Places{2, 3, 0, 1, 6, 7, 4, 5}));
+  v = larger(v, shuffled<4, 5, 6, 7, 0, 1, 2, 3>(v));
+  v = larger(v, shuffled<2, 3, 0, 1, 6, 7, 4, 5>(v));
   return v[0] > v[1] ? v[0] : v[1];
 }
 
 /// Infinity and NaN times 0 are NaN.
 inline bool are_finite(Vector v) {
   Vector zero = v * all(0);
-  zero += __builtin_shuffle(zero, Places{4, 5, 6, 7, 0, 1, 2, 3});
-  zero += __builtin_shuffle(zero, Places{2, 3, 0, 1, 6, 7, 4, 5});
+  zero += shuffled<4, 5, 6, 7, 0, 1, 2, 3>(zero);
+  zero += shuffled<2, 3, 0, 1, 6, 7, 4, 5>(zero);
   return zero[0] + zero[1] == 0;
 }
 

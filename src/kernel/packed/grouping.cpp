@@ -176,7 +176,7 @@ class Grouping {
     const auto is_whole = [&](std::size_t i) { return home(i) < order_.whole; };
     const auto begin = std::find_if(members.begin(), members.end(), is_whole),
                end = std::find_if_not(begin, members.end(), is_whole);
-    if (!are_strands({begin, end})) return;
+    if (!are_strands({members.data() + (begin - members.begin()), static_cast<std::size_t>(end - begin)})) return;
     for (auto i = begin; i != end; ++i) piece_[*i] = Strands;
     for (auto i = end; i != members.end(); ++i) piece_[*i] = After;
   }

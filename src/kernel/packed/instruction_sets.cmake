@@ -9,4 +9,6 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
   set_source_files_properties(${engines}/engine_avx512.cpp PROPERTIES COMPILE_OPTIONS
     "-O3;-fno-tree-loop-distribute-patterns;-march=x86-64-v4;-mprefer-vector-width=512;-ffp-contract=fast;-Wno-psabi")
   set_source_files_properties(${engines}/engine.cpp PROPERTIES COMPILE_DEFINITIONS MAUPERTUIS_X86_64)
+else()
+  set_source_files_properties(${engines}/engine_avx2.cpp ${engines}/engine_avx512.cpp PROPERTIES HEADER_FILE_ONLY ON)
 endif()

@@ -33,9 +33,9 @@ struct SineCosine {
  private:
   /// (high, low) = x − n π/2; the first difference is exact.
   void reduce(const V& x, const V& n) {
-    const V first = fma(n, -0x1.921fb54442d18p0, x);
+    const V first = exact_fma(n, -0x1.921fb54442d18p0, x);
     const V product = n * 0x1.1a62633145c07p-54;
-    const V error = fma(n, 0x1.1a62633145c07p-54, -product);
+    const V error = exact_fma(n, 0x1.1a62633145c07p-54, -product);
     high_ = first - product;
     const V back = high_ - first;
     const V lost = (first - (high_ - back)) - (product + back);

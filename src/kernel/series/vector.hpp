@@ -12,7 +12,8 @@
 /// copy of an inline function, and that must not be one with instructions that the processor lacks.
 ///
 /// Results do not depend on W nor on the instruction set: products are fused with sums exactly where fma() is
-/// written (the compiler fuses nothing: -ffp-contract=off), one correctly rounded operation everywhere.
+/// written (the compiler fuses nothing: -ffp-contract=off), one correctly rounded operation everywhere but in
+/// WebAssembly, which has none: fma() rounds twice there, and exact_fma() computes the error of the product.
 namespace maupertuis::series {
 namespace {
 
@@ -35,7 +36,16 @@ struct Register<1> {
   typedef std::int64_t Integers __attribute__((may_alias));
 };
 
+#if defined(__wasm__)
+constexpr bool has_fused = false;
+template <class Reals>
+inline Reals fused(Reals a, Reals b, Reals c) {
+  return a * b + c;
+}
+#else
+constexpr bool has_fused = true;
 inline double fused(double a, double b, double c) { return __builtin_fma(a, b, c); }
+#endif
 #if defined(__AVX512F__)
 inline Register<8>::Reals fused(Register<8>::Reals a, Register<8>::Reals b, Register<8>::Reals c) {
   return _mm512_fmadd_pd(a, b, c);
@@ -52,7 +62,7 @@ inline Register<2>::Reals fused(Register<2>::Reals a, Register<2>::Reals b, Regi
 inline Register<2>::Reals fused(Register<2>::Reals a, Register<2>::Reals b, Register<2>::Reals c) {
   return vfmaq_f64(c, a, b);
 }
-#else
+#elif !defined(__wasm__)
 inline Register<2>::Reals fused(Register<2>::Reals a, Register<2>::Reals b, Register<2>::Reals c) {
   return Register<2>::Reals{__builtin_fma(a[0], b[0], c[0]), __builtin_fma(a[1], b[1], c[1])};
 }
@@ -119,6 +129,22 @@ inline Vec<W> fma(Vec<W> a, double b, const Vec<W>& c) {
   return fma(a, Vec<W>::all(b), c);
 }
 
+/// a b + c where the last bits of the product are what is wanted. Without a fused product they come from halves of the
+/// factors (T. J. Dekker, 1971): right where the result is a number of 53 bits or the error of the product, and factors
+/// are below 2⁹⁹⁶.
+template <int W>
+inline Vec<W> exact_fma(const Vec<W>& a, double b, const Vec<W>& c) {
+  if constexpr (has_fused) {
+    return fma(a, b, c);
+  } else {
+    constexpr double splitter = 0x1p27 + 1;
+    const Vec<W> product = a * b, wide = a * splitter, a_high = wide - (wide - a), a_low = a - a_high;
+    const double b_wide = splitter * b, b_high = b_wide - (b_wide - b), b_low = b - b_high;
+    const Vec<W> error = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
+    return (product + c) + error;
+  }
+}
+
 /// One truth value a lane.
 template <int W>
 struct Mask {
@@ -172,6 +198,7 @@ struct Divisor {
 };
 template <int W>
 inline Vec<W> operator/(const Vec<W>& a, const Divisor& d) {
+  if constexpr (!has_fused) return a / d.value;
   const Vec<W> quotient = a * d.reciprocal;
   return fma(fma(-quotient, d.value, a), d.reciprocal, quotient);
 }

@@ -79,7 +79,7 @@ class EvaluationLayout {
     std::stable_sort(order.begin(), order.end(), [this](Value v, Value w) { return key(v) < key(w); });
     for (auto first = order.begin(); first != order.end();) {
       const auto last = std::find_if(first, order.end(), [&](Value v) { return key(v) != key(*first); });
-      write({first, last});
+      write({&*first, static_cast<std::size_t>(last - first)});
       if (!changes_[*first]) out_.changing_ = out_.steps_.size();
       first = last;
     }

@@ -13,7 +13,8 @@ std::pair<ExpansionCode, CompileReport> compile(const packed::PackedProgram& pro
   request.source = &program;
   request.order = order;
   request.stride = stride;
-  auto [made, report] = machine_code::compile(request, machine_code::digest_of(program.program), options);
+  auto compiled = machine_code::compile(request, machine_code::digest_of(program.program), options);
+  const auto& made = compiled.first;
   ExpansionCode code;
   if (made) {
     const auto find = [&](auto& function, const char* name) {
@@ -24,7 +25,7 @@ std::pair<ExpansionCode, CompileReport> compile(const packed::PackedProgram& pro
     find(code.ahead, "ahead"), find(code.later, "later"), find(code.tangents, "tangents");
     code.memory = made;
   }
-  return {std::move(code), std::move(report)};
+  return {std::move(code), std::move(compiled.second)};
 }
 
 }  // namespace maupertuis::workspace

@@ -1,0 +1,11 @@
+# fmt, Boost, Eigen and nlohmann/json are headers that stand among those of this machine's C library, which a compiler for another
+# machine must not read: a folder of links shows it these four alone. What is found is the headers; libraries are of this machine.
+set(headers ${CMAKE_BINARY_DIR}/headers)
+file(MAKE_DIRECTORY ${headers})
+foreach(library fmt boost eigen3 nlohmann)
+  if(NOT EXISTS /usr/include/${library})
+    message(FATAL_ERROR "The headers of ${library} are not in /usr/include: scripts/packages build")
+  endif()
+  file(CREATE_LINK /usr/include/${library} ${headers}/${library} SYMBOLIC)
+endforeach()
+include_directories(SYSTEM ${headers})

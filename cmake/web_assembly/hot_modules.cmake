@@ -1,0 +1,9 @@
+# All is compiled for size (-Os), but for what runs at each step of a motion.
+foreach(module linear_algebra kernel_packed kernel_dense kernel_series kernel_workspace kernel_straight_line kernel_lanes
+    kernel_disks kernel_sparse kernel_reference kernel_function integrator_dense_output integrator_taylor integrator_point
+    integrator_variational integrator_ensemble)
+  get_target_property(type maup_${module} TYPE)
+  if(type STREQUAL STATIC_LIBRARY)
+    target_compile_options(maup_${module} PRIVATE -O2)
+  endif()
+endforeach()

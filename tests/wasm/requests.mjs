@@ -1,0 +1,79 @@
+// What is asked about each model, and when two answers are the same.
+import {readFileSync, readdirSync} from 'node:fs';
+import {fileURLToPath} from 'node:url';
+
+export const project = fileURLToPath(new URL('../..', import.meta.url));
+
+export function models(only = '') {
+  return readdirSync(project + 'models').filter(name => name.endsWith('.lag') && name.includes(only)).sort();
+}
+
+const budget = 600;
+
+/** Of the gallery: each line that expects something, the equations with their derivation, and the run. */
+export function requestsFor(model) {
+  return [
+    {do: 'open', name: model, text: readFileSync(`${project}models/${model}`, 'utf8')},
+    {do: 'expectations', budget},
+    {do: 'equations', steps: true, budget},
+    {do: 'run', frames: 2, errors: true, budget},
+  ];
+}
+
+/** Numbers that come from arithmetic, not from the text: compared as numbers, to this part of their size. */
+const close = (a, b, part, size = Math.max(Math.abs(a), Math.abs(b))) => a === b || Math.abs(a - b) <= part * size;
+
+const number = /[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?/g;
+
+/** Two texts whose words are the same and whose numbers agree. */
+function sameText(a, b, part) {
+  if (a === b) return true;
+  if (a.replace(number, '#') !== b.replace(number, '#')) return false;
+  const left = a.match(number) ?? [], right = b.match(number) ?? [];
+  return left.every((n, i) => close(Number(n), Number(right[i]), part));
+}
+
+// A drift and a residual are rounding errors themselves.
+const roundings = new Set(['drift', 'residual', 'statistics']);
+
+function* differences(a, b, path, part) {
+  if (typeof a === 'string' && typeof b === 'string') {
+    if (!sameText(a, b, part)) yield `${path}: ${a.slice(0, 200)} | ${b.slice(0, 200)}`;
+  } else if (typeof a === 'number' && typeof b === 'number') {
+    if (!close(a, b, part)) yield `${path}: ${a} | ${b}`;
+  } else if (a !== null && b !== null && typeof a === 'object' && typeof b === 'object') {
+    for (const key of new Set([...Object.keys(a), ...Object.keys(b)]))
+      if (!roundings.has(key)) yield* differences(a[key], b[key], `${path}.${key}`, part);
+  } else if (a !== b) {
+    yield `${path}: ${JSON.stringify(a)} | ${JSON.stringify(b)}`;
+  }
+}
+
+/** A motion agrees as far as its own error estimates vouch for it: before that time, each column to a part of its size. */
+function* runDifferences(a, b) {
+  if (a.times?.length !== b.times?.length) return yield `run: ${a.times?.length} rows | ${b.times?.length}`;
+  const certain = Math.min(a.uncertain?.from ?? Infinity, b.uncertain?.from ?? Infinity);
+  for (const [column, values] of a.values.entries()) {
+    const size = Math.max(...values.map(x => Math.abs(x ?? 0)));
+    const row = values.findIndex((x, i) => a.times[i] < 0.5 * certain && !close(x, b.values[column][i], 1e-7, size));
+    if (row >= 0)
+      yield `run: ${a.columns[column].name} at ${a.times[row]}: ${values[row]} | ${b.values[column][row]}, size ${size}`;
+  }
+}
+
+/** What is not the same in the two answers to a request; empty if they agree. */
+export function compare(request, native, wasm) {
+  if (native.ok !== wasm.ok) return [`ok: ${native.ok} | ${wasm.ok}: ${JSON.stringify((native.ok ? wasm : native).trouble)}`];
+  if (!native.ok) return [...differences(native.trouble, wasm.trouble, 'trouble', 0)];
+  switch (request.do) {
+    case 'expectations': {
+      const failed = answer => answer.results.filter(result => !result.passed).map(result => result.text);
+      return [
+        ...differences(failed(native), failed(wasm), 'failed', 0),
+        ...differences(native.results.map(r => r.actual), wasm.results.map(r => r.actual), 'actual', 1e-5),
+      ];
+    }
+    case 'run': return [...runDifferences(native, wasm)];
+    default: return [...differences(native, wasm, request.do, 1e-9)];
+  }
+}
