@@ -49,10 +49,13 @@ export function extent(curves: Curve[], key: 'x' | 'y'): [number, number] {
   return key === 'x' ? [low, high] : [low - 0.05 * span, high + 0.05 * span];
 }
 
-/** Curves on a canvas: what stays is drawn once, the present over it at every tick. */
+/** Curves on a canvas: what stays is drawn once, what has been passed grows on a second sheet, the present over both at every tick. */
 export class Chart {
   private readonly canvas: HTMLCanvasElement;
   private readonly still = document.createElement('canvas');
+  private readonly passed = document.createElement('canvas');
+  private passedTo = 0;  // row up to which `passed` is drawn
+  private seen = true;
   private content: ChartContent = {curves: [], x: '', y: '', overTime: true};
   private range = {x: [0, 1] as [number, number], y: [0, 1] as [number, number]};
   private width = 0;
@@ -61,6 +64,10 @@ export class Chart {
   constructor(canvas: HTMLCanvasElement, private readonly onSeek: ((time: number) => void) | null) {
     this.canvas = canvas;
     new ResizeObserver(() => this.fit()).observe(canvas);
+    new IntersectionObserver(entries => {
+      this.seen = entries.at(-1)!.isIntersecting;
+      if (this.seen) this.present(...this.lastPresent);
+    }).observe(canvas);
     const seek = (event: PointerEvent): void => {
       if (!this.onSeek || !this.content.overTime || !(event.buttons & 1)) return;
       const box = canvas.getBoundingClientRect(), part = (event.clientX - box.left - room.left) / (this.width - room.left - room.right);
@@ -84,7 +91,7 @@ export class Chart {
     const box = this.canvas.getBoundingClientRect(), ratio = window.devicePixelRatio || 1;
     if (box.width === 0) return;
     [this.width, this.height] = [box.width, box.height];
-    for (const canvas of [this.canvas, this.still]) [canvas.width, canvas.height] = [Math.round(box.width * ratio), Math.round(box.height * ratio)];
+    for (const canvas of [this.canvas, this.still, this.passed]) [canvas.width, canvas.height] = [Math.round(box.width * ratio), Math.round(box.height * ratio)];
     this.paintStill();
   }
 
@@ -114,8 +121,10 @@ export class Chart {
     }
     for (const curve of this.content.curves) {
       context.globalAlpha = curve.faint ? 0.55 : this.content.overTime || this.content.moves ? 1 : 0.28;
-      this.stroke(context, curve, colour(`--series-${curve.series + 1}`), curve.faint ? 1 : 1.5, curve.x.length);
+      this.stroke(context, curve, colour(`--series-${curve.series + 1}`), curve.faint ? 1 : 1.5, 0, curve.x.length);
     }
+    this.begin(this.passed);
+    this.passedTo = 0;
     this.present(...this.lastPresent);
   }
 
@@ -128,7 +137,7 @@ export class Chart {
     return context;
   }
 
-  private stroke(context: CanvasRenderingContext2D, curve: Curve, colour: string, width: number, rows: number): void {
+  private stroke(context: CanvasRenderingContext2D, curve: Curve, colour: string, width: number, first: number, end: number): void {
     context.save();
     context.beginPath();
     context.rect(room.left, room.top - 4, this.width - room.left - room.right + 2, this.height - room.top - room.bottom + 8);
@@ -137,7 +146,7 @@ export class Chart {
     context.lineWidth = width;
     context.beginPath();
     let pen = false;
-    for (let i = 0; i < Math.min(rows, curve.x.length); ++i) {
+    for (let i = first; i < Math.min(end, curve.x.length); ++i) {
       const x = curve.x[i], y = curve.y[i];
       if (x === null || y === null || !Number.isFinite(x) || !Number.isFinite(y)) { pen = false; continue; }
       if (pen) context.lineTo(this.across(x), this.down(y)); else context.moveTo(this.across(x), this.down(y));
@@ -174,12 +183,28 @@ export class Chart {
     context.restore();
   }
 
+  private grow(row: number, colour: (name: string) => string): void {
+    if (row < this.passedTo) {
+      this.begin(this.passed);
+      this.passedTo = 0;
+    }
+    if (row === this.passedTo) return;
+    const context = this.passed.getContext('2d')!;
+    for (const curve of this.content.curves)
+      if (!curve.faint) this.stroke(context, curve, colour(`--series-${curve.series + 1}`), 1.6, this.passedTo, row + 1);
+    this.passedTo = row;
+  }
+
   /** The present: the time, and the row that is next to it. */
   present(time: number, row: number): void {
     this.lastPresent = [time, row];
-    if (this.width === 0) return;
+    if (this.width === 0 || !this.seen) return;
     const context = this.begin(this.canvas), colour = this.colours();
     context.drawImage(this.still, 0, 0, this.width, this.height);
+    if (!this.content.overTime && !this.content.moves) {
+      this.grow(row, colour);
+      context.drawImage(this.passed, 0, 0, this.width, this.height);
+    }
     if (this.content.overTime) {
       context.strokeStyle = colour('--ink');
       context.globalAlpha = 0.6;
@@ -191,7 +216,6 @@ export class Chart {
     for (const curve of this.content.curves) {
       if (curve.faint) continue;
       const ink = colour(`--series-${curve.series + 1}`);
-      if (!this.content.overTime) this.stroke(context, curve, ink, 1.6, row + 1);
       const x = this.content.overTime ? time : curve.x[row], y = curve.y[row];
       if (x === null || y === null || x === undefined || y === undefined || !Number.isFinite(y)) continue;
       context.fillStyle = ink;
