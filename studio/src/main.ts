@@ -1,7 +1,7 @@
 import {Asker} from './asker';
 import type {Carrier} from './carriers/carrier';
 import {HttpCarrier} from './carriers/http';
-import {WorkerCarrier} from './carriers/worker';
+import {embeddedCore, WorkerCarrier} from './carriers/worker';
 import {Clock} from './clock';
 import {byId, copyText, h} from './dom';
 import {Stage} from './drawing/stage';
@@ -25,10 +25,11 @@ import {decodeShared, encodeShared} from './tools/share';
 import {Storage_} from './tools/storage';
 import {themes} from './tools/theme';
 
-/** The static page names the worker that holds the core; without it there is a server. */
+/** A static page names the script of the worker that holds the core, or holds the core itself; without either there is a server. */
 function carrierOf(): Carrier {
   const core = document.documentElement.dataset.core;
-  return core ? new WorkerCarrier(() => new Worker(core)) : new HttpCarrier();
+  if (!core) return new HttpCarrier();
+  return new WorkerCarrier(core === 'embedded' ? embeddedCore() : Promise.resolve({script: core}));
 }
 
 const storage = new Storage_(), store = new Store<State>({...initialState, storage: storage.works}), clock = new Clock();
