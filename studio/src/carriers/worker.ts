@@ -1,15 +1,29 @@
 import type {Answer, Message, Request} from '../contract';
 import {cancelled, failure, type Carrier} from './carrier';
 
-type FromWorker = {id?: number; message?: Message | string; answer?: unknown; failed?: string; started?: WebAssembly.Module};
-interface Waiting {resolve(answer: never): void; onMessage(message: Message): void}
+type FromWorker = {
+  id?: number;
+  message?: Message | string;
+  answer?: unknown;
+  failed?: string;
+  started?: WebAssembly.Module;
+};
+interface Waiting {
+  resolve(answer: never): void;
+  onMessage(message: Message): void;
+}
 
 /** Where the core comes from: the script of the worker, and the bytes of maup.wasm where it is not to fetch them. */
-export interface Core {script: string; wasm?: ArrayBuffer}
+export interface Core {
+  script: string;
+  wasm?: ArrayBuffer;
+}
 
 /**
- * The core as WebAssembly in a worker: {id, request} goes there, {id, message} and {id, answer} come back (apps/studio_wasm).
- * A worker cannot hear while it computes. Where pages may share memory, a number there ends a request; elsewhere a cancel ends
+ * The core as WebAssembly in a worker: {id, request} goes there, {id, message} and {id, answer} come back
+ * (apps/studio_wasm).
+ * A worker cannot hear while it computes. Where pages may share memory, a number there ends a request; elsewhere a
+ * cancel ends
  * the worker and starts another, which gets the compiled module and the text that was open.
  */
 export class WorkerCarrier implements Carrier {
@@ -41,7 +55,10 @@ export class WorkerCarrier implements Carrier {
   private giveUp(id: number): void {
     const waiting = this.waiting.get(id);
     if (!waiting) return;
-    if (this.cancel) { Atomics.store(this.cancel, 0, id); return; }  // its answer says that it was cancelled
+    if (this.cancel) {
+      Atomics.store(this.cancel, 0, id);
+      return;
+    } // its answer says that it was cancelled
     this.waiting.delete(id);
     this.end();
     waiting.resolve(cancelled() as never);
@@ -49,7 +66,8 @@ export class WorkerCarrier implements Carrier {
 
   private async ready(opens: boolean): Promise<Worker> {
     if (this.worker) return this.worker;
-    const {script, wasm} = await this.core, worker = new Worker(script);
+    const {script, wasm} = await this.core,
+      worker = new Worker(script);
     this.worker = worker;
     worker.onmessage = (event: MessageEvent<FromWorker>) => this.hear(event.data);
     worker.onerror = event => this.lose(event.message);
@@ -63,7 +81,7 @@ export class WorkerCarrier implements Carrier {
     if (failed !== undefined) return this.lose(failed);
     const waiting = this.waiting.get(id ?? 0);
     if (!waiting) return;
-    if (message) waiting.onMessage(typeof message === 'string' ? JSON.parse(message) as Message : message);
+    if (message) waiting.onMessage(typeof message === 'string' ? (JSON.parse(message) as Message) : message);
     if (answer === undefined) return;
     this.waiting.delete(id!);
     waiting.resolve((typeof answer === 'string' ? JSON.parse(answer) : answer) as never);
@@ -83,17 +101,33 @@ export class WorkerCarrier implements Carrier {
 
 function withoutCore(why: string): ReturnType<typeof failure> {
   if (location.protocol === 'file:' && why.includes('Worker'))
-    return failure('connection', 'A browser starts no worker from a file of the disk.', 'It treats each file as a site of its own.', 'Open `studio.html` beside this page, which holds everything in itself.');
+    return failure(
+      'connection',
+      'A browser starts no worker from a file of the disk.',
+      'It treats each file as a site of its own.',
+      'Open `studio.html` beside this page, which holds everything in itself.',
+    );
   if (why.includes('browser has no'))
-    return failure('connection', `${why[0].toUpperCase()}${why.slice(1)}.`, 'The core of Maupertuis is a WebAssembly program that needs it.',
-                   'Take a browser of 2023 or later, or install Maupertuis and run `maup studio`.');
-  return failure('connection', 'The core stopped.', why || 'The browser ended it, perhaps for want of memory.', 'It is started anew with the next question.');
+    return failure(
+      'connection',
+      `${why[0].toUpperCase()}${why.slice(1)}.`,
+      'The core of Maupertuis is a WebAssembly program that needs it.',
+      'Take a browser of 2023 or later, or install Maupertuis and run `maup studio`.',
+    );
+  return failure(
+    'connection',
+    'The core stopped.',
+    why || 'The browser ended it, perhaps for want of memory.',
+    'It is started anew with the next question.',
+  );
 }
 
 /** The core that stands in the page itself, packed, in two elements that are no scripts for the browser. */
 export async function embeddedCore(): Promise<Core> {
   const part = (id: string): string => document.getElementById(id)!.textContent!;
   const packed = Uint8Array.from(atob(part('core-wasm')), c => c.charCodeAt(0));
-  const wasm = await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
+  const wasm = await new Response(
+    new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip')),
+  ).arrayBuffer();
   return {script: URL.createObjectURL(new Blob([part('core-worker')], {type: 'text/javascript'})), wasm};
 }

@@ -23,7 +23,8 @@ function pixels(svg: string): Promise<Blob | null> {
     const image = new Image();
     image.onerror = () => resolve(null);
     image.onload = () => {
-      const canvas = h('canvas', {width: 2 * image.naturalWidth, height: 2 * image.naturalHeight}), context = canvas.getContext('2d')!;
+      const canvas = h('canvas', {width: 2 * image.naturalWidth, height: 2 * image.naturalHeight}),
+        context = canvas.getContext('2d')!;
       context.drawImage(image, 0, 0, canvas.width, canvas.height);
       canvas.toBlob(resolve, 'image/png');
     };
@@ -35,12 +36,17 @@ export function exportDialog(store: Store<State>, study: Study): void {
   const make = async (what: string): Promise<void> => {
     box.close();
     study.say('It is made …');
-    const ask = (one: string): Promise<Answer<ExportAnswer>> => study.asker.ask<ExportAnswer>({do: 'export', what: one, budget: 60, ...study.values});
+    const ask = (one: string): Promise<Answer<ExportAnswer>> =>
+      study.asker.ask<ExportAnswer>({do: 'export', what: one, budget: 60, ...study.values});
     let answer = await ask(what);
-    if (!answer.ok && answer.kind === 'refused' && what.endsWith('.png')) {  // a core without pixels, as the one in a browser: the browser has them
+    if (!answer.ok && answer.kind === 'refused' && what.endsWith('.png')) {
+      // a core without pixels, as the one in a browser: the browser has them
       const svg = await ask(what.replace('.png', '.svg'));
       const picture = svg.ok ? await pixels(svg.text ?? '') : null;
-      if (picture) { download(`${store.state.name}_${what}`, 'image/png', picture); return study.say(`${store.state.name}_${what} is in your downloads.`); }
+      if (picture) {
+        download(`${store.state.name}_${what}`, 'image/png', picture);
+        return study.say(`${store.state.name}_${what} is in your downloads.`);
+      }
       if (!svg.ok) answer = svg;
     }
     if (!answer.ok) return study.say(`${answer.trouble.message} ${answer.trouble.help}`, true);
@@ -48,7 +54,24 @@ export function exportDialog(store: Store<State>, study: Study): void {
     download(answer.name, answer.type, content as BlobPart);
     study.say(`${answer.name} is in your downloads.`);
   };
-  const entries = kinds.map(([what, title, detail]) => h('li', {}, h('button', {type: 'button', onclick: () => void make(what)}, title, h('small', {}, detail))));
-  const own = h('li', {}, h('button', {type: 'button', onclick: () => { box.close(); download(`${store.state.name}.lag`, 'text/plain', store.state.text); }}, 'Model text', h('small', {}, '.lag')));
+  const entries = kinds.map(([what, title, detail]) =>
+    h('li', {}, h('button', {type: 'button', onclick: () => void make(what)}, title, h('small', {}, detail))),
+  );
+  const own = h(
+    'li',
+    {},
+    h(
+      'button',
+      {
+        type: 'button',
+        onclick: () => {
+          box.close();
+          download(`${store.state.name}.lag`, 'text/plain', store.state.text);
+        },
+      },
+      'Model text',
+      h('small', {}, '.lag'),
+    ),
+  );
   const box = dialog('Export', [h('section', {class: 'models'}, h('ul', {}, own, ...entries))]);
 }

@@ -1,5 +1,14 @@
 /** What the page keeps in the browser, if the browser lets it. */
-export interface Draft {text: string; name: string; set: Record<string, string>; start: Record<string, string>; path: string | null; version: string; saved: string; at: number}
+export interface Draft {
+  text: string;
+  name: string;
+  set: Record<string, string>;
+  start: Record<string, string>;
+  path: string | null;
+  version: string;
+  saved: string;
+  at: number;
+}
 
 const key = 'maupertuis-studio-draft';
 
@@ -12,7 +21,9 @@ export class Storage_ {
       localStorage.setItem('maupertuis-studio-try', '1');
       localStorage.removeItem('maupertuis-studio-try');
       works = true;
-    } catch { /* none, or full: the page says so */ }
+    } catch {
+      /* none, or full: the page says so */
+    }
     this.works = works;
   }
 
@@ -36,9 +47,17 @@ export class Storage_ {
   }
 
   setting(name: string): string | null {
-    try { return localStorage.getItem(`maupertuis-studio-${name}`); } catch { return null; }
+    try {
+      return localStorage.getItem(`maupertuis-studio-${name}`);
+    } catch {
+      return null;
+    }
   }
   setSetting(name: string, value: string): void {
-    try { localStorage.setItem(`maupertuis-studio-${name}`, value); } catch { /* it is forgotten with the page */ }
+    try {
+      localStorage.setItem(`maupertuis-studio-${name}`, value);
+    } catch {
+      /* it is forgotten with the page */
+    }
   }
 }
