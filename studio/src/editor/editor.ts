@@ -243,7 +243,7 @@ export class Editor {
     const answer = await this.study.asker.ask<{from: number; to: number; items: CompletionItem[]}>({
       do: 'complete',
       at: context.pos,
-      budget: 1,
+      budget: 3,
     });
     if (!answer.ok || context.aborted || answer.items.length === 0) return null;
     const typed = context.state.sliceDoc(answer.from, context.pos).toLowerCase();
@@ -255,7 +255,7 @@ export class Editor {
     const answer = await this.study.asker.ask<{from: number | null; to: number | null; markdown: string}>({
       do: 'hover',
       at,
-      budget: 1,
+      budget: 3,
     });
     if (!answer.ok || answer.from === null || !answer.markdown) return null;
     return {
@@ -275,7 +275,7 @@ export class Editor {
     const answer = await this.study.asker.ask<{label: string; parameters: string[]; active: number; help: string}>({
       do: 'signature',
       at: this.head,
-      budget: 1,
+      budget: 3,
     });
     if (!answer.ok || !answer.label) return line.replaceChildren();
     const open = answer.label.indexOf('('),

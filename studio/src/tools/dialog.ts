@@ -13,7 +13,7 @@ export function dialog(
     'dialog',
     {'aria-labelledby': id, class: classes},
     h('header', {}, h('h2', {id}, title), close),
-    h('div', {class: 'content'}, ...content),
+    h('div', {class: 'content', tabindex: 0}, ...content),
     buttons.length > 0 && h('footer', {}, ...buttons),
   );
   box.addEventListener('close', () => box.remove());

@@ -496,6 +496,95 @@ export const cases = {
     await page.context().close();
   },
 
+  async 'one file from a disk'({open}, variant) {
+    if (!variant.files) return;
+    const url = `file://${join(variant.files, 'studio.html')}`;
+    const page = await open({url, hash: '#example=pendulum'});
+    await setSlider(page, 'l', 0.7);
+    await settled(page);
+    check(
+      'it computes',
+      (await field(page, 'l')) === 0.7 && (await page.locator('#certified').innerText()).includes('certified'),
+    );
+    await page.context().close();
+  },
+
+  async dialogs({open}, variant, picture) {
+    for (const dark of [false, true]) {
+      const page = await open({dark, hash: '#example=pendulum'});
+      for (const name of ['open', 'export', 'help', 'exercises']) {
+        if (await page.locator(`#${name}-button`).isHidden()) continue;
+        await page.locator(`#${name}-button`).click();
+        await page.waitForSelector('dialog[open]');
+        await axe(page, `the dialog ${name}${dark ? ', dark' : ''}`);
+        await picture(page, `dialog-${name}${dark ? '-dark' : ''}`);
+        await page.keyboard.press('Escape');
+        await page.waitForFunction(() => !document.querySelector('dialog'));
+      }
+      for (const part of ['derivation', 'modes', 'phase-space', 'run-facts', 'section'])
+        await page.locator(`#${part} > summary`).click();
+      await page.waitForSelector('#phase-space-body math');
+      await settled(page);
+      await axe(page, `everything unfolded${dark ? ', dark' : ''}`);
+      await page.locator('h1').click();
+      await page.keyboard.press('l');
+      await page.waitForSelector('#lecture .line.now');
+      await axe(page, `the lecture${dark ? ', dark' : ''}`);
+      await page.context().close();
+    }
+  },
+
+  async print({open}, variant, picture) {
+    const page = await open({dark: true, hash: '#example=pendulum'});
+    await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
+    await page.emulateMedia({media: 'print'});
+    await page.waitForTimeout(200);
+    check('paper has no bar', await page.locator('#bar').isHidden());
+    check('paper has the equations', await page.locator('#equations-body math').first().isVisible());
+    check(
+      'paper is white',
+      (await page.evaluate(() => getComputedStyle(document.documentElement).getPropertyValue('--ink'))).trim() ===
+        '#1d1b18',
+    );
+    await page.setViewportSize({width: 800, height: 1600});
+    await picture(page, 'print');
+    await page.context().close();
+  },
+
+  async 'drag in space'({open}, variant, picture) {
+    const page = await open({hash: '#example=spherical_pendulum'}),
+      grip = await gripNear(page, '#drawing', [0.5, 0.5]);
+    check('a point in space can be taken hold of', grip !== null);
+    if (!grip) return;
+    const before = await page.locator('#starts input[type=number]').evaluateAll(list => list.map(one => one.value));
+    await page.mouse.move(...grip);
+    await page.mouse.down();
+    for (let i = 1; i <= 8; ++i) {
+      await page.mouse.move(grip[0] + 8 * i, grip[1] + 4 * i);
+      await page.waitForTimeout(40);
+    }
+    await page.mouse.up();
+    await settled(page);
+    const after = await page.locator('#starts input[type=number]').evaluateAll(list => list.map(one => one.value));
+    check(
+      'the start changed',
+      before.some((x, i) => x !== after[i]),
+      [before, after],
+    );
+    const view = await page.locator('#drawing').evaluate(canvas => canvas.toDataURL());
+    const box = await page.locator('#drawing').boundingBox();
+    await page.mouse.move(box.x + 30, box.y + 30);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 130, box.y + 60, {steps: 5});
+    await page.mouse.up();
+    check(
+      'a drag beside it turns the drawing',
+      view !== (await page.locator('#drawing').evaluate(canvas => canvas.toDataURL())),
+    );
+    await picture(page, 'space');
+    await page.context().close();
+  },
+
   async 'colours are those of reports'() {
     const html = readFileSync(join(root, 'src/report/html.cpp'), 'utf8'),
       style = readFileSync(join(root, 'src/plot/style.cpp'), 'utf8');

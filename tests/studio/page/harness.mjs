@@ -81,7 +81,7 @@ export async function staticVariant(folder) {
   });
   await new Promise(done => server.listen(0, '127.0.0.1', done));
   const base = `http://127.0.0.1:${server.address().port}/`;
-  return {name: 'static', base, entry: base, folder: null, slow: 3, end: () => server.close()};
+  return {name: 'static', files: folder, base, entry: base, folder: null, slow: 3, end: () => server.close()};
 }
 
 /** Pages of one browser; what the console says, and every request that leaves the page's own server, is a failure. */
@@ -98,6 +98,7 @@ export async function openBrowser(variant) {
     wait = true,
     storage = true,
     allow = [],
+    url = null,
   } = {}) {
     const context = await browser.newContext({
       viewport: {width, height},
@@ -118,7 +119,7 @@ export async function openBrowser(variant) {
     page.on('request', request =>
       check(
         'no request leaves the page',
-        /^(data|blob):/.test(request.url()) || request.url().startsWith(variant.base),
+        /^(data|blob):/.test(request.url()) || request.url().startsWith(url ?? variant.base),
         request.url(),
       ),
     );
@@ -131,8 +132,8 @@ export async function openBrowser(variant) {
         }),
       );
     if (cookies) await context.addCookies(cookies);
-    await page.goto(cookies || variant.name === 'static' ? variant.base + hash : variant.entry);
-    if (!cookies && variant.name === 'server') {
+    await page.goto(url ? url + hash : cookies || variant.name === 'static' ? variant.base + hash : variant.entry);
+    if (!url && !cookies && variant.name === 'server') {
       cookies = await context.cookies();
       if (hash) {
         await page.goto('about:blank');
