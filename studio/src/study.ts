@@ -197,6 +197,7 @@ export class Study {
   private showRun(run: RunAnswer, quick: boolean): void {
     if (run.drawing)
       for (const element of run.drawing.elements) element.positions = element.positions.map(value => value ?? NaN);
+    if (/^dimensionless\b/m.test(this.store.state.text)) run.independent.unit = '';
     const first = !this.shown;
     this.shown = true;
     this.clock.take(run, first);

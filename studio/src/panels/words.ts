@@ -6,6 +6,7 @@ export function numbers(text: string): string {
       (_, mantissa: string, sign: string, exponent: string) =>
         `${mantissa === '1' ? '' : mantissa + '·'}10${raised((sign === '-' ? '-' : '') + exponent)}`,
     )
+    .replace(/(?<=\p{L})\^(-?\d)(?!\d)/gu, (_, exponent: string) => raised(exponent))
     .replace(/(?<![\w.)])-(?=\d)/g, '−');
 }
 

@@ -31,16 +31,22 @@ export function ticks(low: number, high: number, most: number): number[] {
   return out;
 }
 
+/** The power of ten that all ticks of an axis are told in: 0 for sizes that one reads at a glance. */
+function powerOf([low, high]: [number, number]): number {
+  const size = Math.max(Math.abs(low), Math.abs(high));
+  return size >= 1e5 || size < 1e-2 ? Math.floor(Math.log10(size)) : 0;
+}
+
 function tickText(value: number, step: number): string {
   if (value === 0 || Math.abs(value) < 1e-9 * step) return '0';
-  const size = Math.abs(value);
-  if (size >= 1e5 || size < 1e-3) {
-    const [mantissa, exponent] = value
-      .toExponential(Math.max(0, Math.min(3, Math.round(Math.log10(size / step)))))
-      .split('e');
-    return `${mantissa.replace('-', '−')}·10${raised(exponent.replace('+', ''))}`;
-  }
   return value.toFixed(Math.max(0, Math.min(9, -Math.floor(Math.log10(step) + 1e-9)))).replace('-', '−');
+}
+
+/** `x (m)` in thousandths is `x (10⁻³ m)`. */
+function titleText(title: string, power: number): string {
+  if (power === 0) return title;
+  const factor = `10${raised(String(power))}`;
+  return title.endsWith(')') ? title.replace(/\(([^()]*)\)$/, `(${factor} $1)`) : `${title} (${factor})`;
 }
 
 export function extent(curves: Curve[], key: 'x' | 'y'): [number, number] {
@@ -211,26 +217,29 @@ export class Chart {
     context.font = `13px ${faces}`;
     context.lineWidth = 1;
     const xs = ticks(...this.range.x, Math.max(2, (right - room.left) / 75)),
-      ys = ticks(...this.range.y, Math.max(2, (bottom - room.top) / 26));
+      ys = ticks(...this.range.y, Math.max(2, (bottom - room.top) / 26)),
+      powers = {x: powerOf(this.range.x), y: powerOf(this.range.y)},
+      told = (value: number, all: number[], power: number): string =>
+        tickText(value / 10 ** power, (all[1] - all[0] || 1) / 10 ** power);
     context.strokeStyle = colour('--grid');
     for (const x of xs) line(context, this.across(x), room.top, this.across(x), bottom);
     for (const y of ys) line(context, room.left, this.down(y), right, this.down(y));
     context.fillStyle = colour('--muted');
     context.textAlign = 'center';
-    for (const x of xs) context.fillText(tickText(x, xs[1] - xs[0] || 1), this.across(x), bottom + 16);
+    for (const x of xs) context.fillText(told(x, xs, powers.x), this.across(x), bottom + 16);
     context.textAlign = 'right';
-    for (const y of ys) context.fillText(tickText(y, ys[1] - ys[0] || 1), room.left - 7, this.down(y) + 4);
+    for (const y of ys) context.fillText(told(y, ys, powers.y), room.left - 7, this.down(y) + 4);
     context.strokeStyle = colour('--muted');
     line(context, room.left, bottom, right, bottom);
     line(context, room.left, room.top, room.left, bottom);
     context.fillStyle = colour('--ink');
     context.textAlign = 'center';
     context.font = `italic 14px ${faces}`;
-    context.fillText(this.content.x, (room.left + right) / 2, height - 6);
+    context.fillText(titleText(this.content.x, powers.x), (room.left + right) / 2, height - 6);
     context.save();
     context.translate(14, (room.top + bottom) / 2);
     context.rotate(-Math.PI / 2);
-    context.fillText(this.content.y, 0, 0);
+    context.fillText(titleText(this.content.y, powers.y), 0, 0);
     context.restore();
   }
 

@@ -302,6 +302,25 @@ export const cases = {
     await settled(page);
     check('the text is there after a reload', /# kept/.test(await text(page)));
     await page.context().close();
+    const one = await open({hash: '#example=pendulum'}),
+      two = await one.context().newPage();
+    await two.goto(one.url());
+    await settled(two);
+    await typeAtEnd(one, '\n# first tab');
+    await typeAtEnd(two, '\n# second tab');
+    await one.waitForTimeout(700);
+    for (const [tab, mark] of [
+      [one, '# first tab'],
+      [two, '# second tab'],
+    ]) {
+      await tab.evaluate(() => {
+        location.hash = '';
+      });
+      await tab.reload();
+      await settled(tab);
+      check(`each tab keeps its own text: ${mark}`, (await text(tab)).endsWith(mark));
+    }
+    await one.context().close();
     const poor = await open({storage: false});
     check('a browser without storage is told', /no storage/.test(await poor.locator('#document-state').innerText()));
     await poor.context().close();
