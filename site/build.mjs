@@ -183,6 +183,8 @@ async function main() {
     for (const page of pages) write(page.path, pageHtml(page, {studio}));
     write('assets/search.js', `self.maupSearch=${JSON.stringify(searchTexts(pages))};\n`);
     await assets(models);
+    for (const name of readdirSync(join(root, 'docs/pictures')).filter(name => name.endsWith('.png')))
+      cpSync(join(root, 'docs/pictures', name), join(making, 'pictures', name));
     if (studio) cpSync(values.studio, join(making, 'studio'), {recursive: true});
     rmSync(out, {recursive: true, force: true});
     renameSync(making, out);

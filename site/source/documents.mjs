@@ -12,6 +12,7 @@ const manual = [
   'pictures',
   'modes',
   'diagnostics',
+  'studio',
   'editors',
   'library',
 ];
