@@ -132,15 +132,16 @@ export class Documents {
 const inlineMath = html =>
   html
     .replace(
-      /(?<![\p{L}\p{N}_])(\p{L}[\u0300-\u036f]*'*|[)\]])_(\{[^}]*\}|[\p{L}\p{N}]{1,3}|eff|rod)(?![\p{L}\p{N}_])/gu,
+      /(?<![\p{L}\p{N}_∂δ])([∂δ]?\p{L}[\u0300-\u036f]*'*|∂|[)\]])_(\{[^}]*\}|[\p{L}0-9]{1,3})(?![\p{L}0-9_])/gu,
       (all, base, index) => `${base}<sub>${index.replace(/[{}]/g, '')}</sub>`,
     )
+    .replace(/∂_(\p{L})(?![\p{L}0-9_])/gu, '∂<sub>$1</sub>')
     .replace(
-      /(?<=[\p{L}\p{N})\]>])\^(\{[^}]*\}|[-−]?[\p{L}\p{N}]{1,3}|\([^()]{1,8}\))(?![\p{L}\p{N}])/gu,
+      /(?<=[\p{L}\p{N})\]>])\^(\{[^}]*\}|[-−]?[\p{L}0-9]{1,3}|\([^()]{1,8}\))(?![\p{L}0-9])/gu,
       (all, power) => `<sup>${power.replace(/[{}]/g, '')}</sup>`,
     )
     .replace(
-      /(?<![\p{L}\p{N}])(\p{L}[\u0300-\u036f]*)('+)(?![\p{L}'])/gu,
+      /((?<![\p{L}\p{N}])[∂δ]?\p{L}[\u0300-\u036f]*|(?<=\p{L}\([\p{L}\d,\s]{1,8})\))('+)(?![\p{L}'])/gu,
       (all, base, primes) => base + '′'.repeat(primes.length),
     );
 
