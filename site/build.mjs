@@ -1,4 +1,4 @@
-// Builds the static site: node site/build.mjs [--maup build/bin/maup] [--out build/site] [--studio build/studio]
+// Builds the static site: node site/build.mjs [--maup build/bin/maup] [--out build/site] [--studio build/studio] [--core build-wasm/bin]
 // Everything comes from the repository and from what the program says; a page that cannot be made right fails the build.
 import {cpSync, existsSync, mkdirSync, readFileSync, readdirSync, renameSync, rmSync, writeFileSync} from 'node:fs';
 import {availableParallelism} from 'node:os';
@@ -16,7 +16,7 @@ import {galleryPage, modelPages, problemPages, readModels, studyModels} from './
 import {pageHtml} from './source/layout.mjs';
 import {Program} from './source/program.mjs';
 import {startPage} from './source/start.mjs';
-import {fragmentOf} from './source/studio.mjs';
+import {copyStudio, fragmentOf, missingOf} from './source/studio.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url)),
   root = resolve(here, '..');
@@ -25,6 +25,7 @@ const {values} = parseArgs({
     maup: {type: 'string', default: join(root, 'build/bin/maup')},
     out: {type: 'string', default: join(root, 'build/site')},
     studio: {type: 'string', default: join(root, 'build/studio')},
+    core: {type: 'string', default: join(root, 'build-wasm/bin')},
   },
 });
 const out = resolve(values.out),
@@ -83,8 +84,7 @@ async function assets(models) {
     outfile: join(making, 'assets/style.css'),
     format: undefined,
   });
-  const page = name => readFileSync(join(root, 'src/report/page', name), 'utf8');
-  write('assets/drawing.js', `${page('scene.js')}\n${page('animation.js')}`);
+  write('assets/drawing.js', models.find(model => model.film?.kind === 'drawing').film.script);
   for (const model of models) {
     if (model.picture) write(`models/pictures/${model.name}.svg`, model.picture);
     if (model.film?.kind === 'film') write(`models/film/${model.name}.js`, `'use strict';\n${model.film.script}`);
@@ -144,15 +144,16 @@ async function main() {
   const started = Date.now(),
     program = new Program(resolve(values.maup));
   if (!existsSync(program.path)) throw new Error(`there is no program ${program.path}; scripts/build makes it`);
-  const studio = existsSync(join(values.studio, 'index.html'));
-  if (!studio) console.log(`No studio in ${values.studio}: the site is made without links to it.`);
+  const missing = missingOf(resolve(values.studio), resolve(values.core)),
+    studio = missing === null;
+  if (!studio) console.log(`The site is made without the studio and links to it: ${missing}.`);
   rmSync(making, {recursive: true, force: true});
   try {
     const docs = new DocumentPages(root),
       highlighter = new Highlighter(join(root, 'editors/vscode/syntaxes/lag.tmLanguage.json'));
     const documents = new Documents(highlighter, (target, env) => docs.linkOf(target, env), {
       titleOf: (target, env) => docs.titleOf(target, env),
-      studioLink: text => (studio ? `studio:#${fragmentOf(text + '\n')}` : null),
+      studioLink: text => (studio ? `studio:#${fragmentOf(text + '\n', text.match(/^system (\w+)/m)?.[1])}` : null),
     });
     const models = readModels(root),
       problems = problemPages(root, documents, {studio});
@@ -183,7 +184,9 @@ async function main() {
     for (const page of pages) write(page.path, pageHtml(page, {studio}));
     write('assets/search.js', `self.maupSearch=${JSON.stringify(searchTexts(pages))};\n`);
     await assets(models);
-    if (studio) cpSync(values.studio, join(making, 'studio'), {recursive: true});
+    for (const name of readdirSync(join(root, 'docs/pictures')).filter(name => name.endsWith('.png')))
+      cpSync(join(root, 'docs/pictures', name), join(making, 'pictures', name));
+    if (studio) copyStudio(resolve(values.studio), resolve(values.core), join(making, 'studio'));
     rmSync(out, {recursive: true, force: true});
     renameSync(making, out);
     console.log(

@@ -30,7 +30,7 @@ std::optional<std::string> page_of_fields(Study& study, const SimulationOptions&
   std::optional<FieldRunResult> run;
   std::optional<FieldCurrents> currents;
   std::optional<ComplexExpr> waves;
-  std::vector<double> frequencies;
+  FieldModes modes;
   std::optional<Verification> verification;
   Diagnostics unheard;
   budget.carry_out("conserved", context, [&](const Interrupt&) { currents = field_currents(*equations); });
@@ -50,13 +50,13 @@ std::optional<std::string> page_of_fields(Study& study, const SimulationOptions&
   budget.carry_out("modes", context, [&](const Interrupt&) {
     std::string trouble;
     waves = dispersion(*equations, trouble);
-    frequencies = field_frequencies(*equations, 6, unheard);  // none where the field has no such modes
+    modes = field_modes(*equations, 6, unheard);  // none where the field has no such modes
   });
   parts.with_equations = budget.wanted("equations"), parts.with_derivation = budget.wanted("derivation");
   if (run && run->trajectory.rows() > 1) parts.run = &*run;
   if (currents) parts.currents = &*currents;
   if (waves) parts.dispersion = &*waves;
-  if (!frequencies.empty()) parts.frequencies = &frequencies;
+  if (!modes.frequencies.empty()) parts.modes = &modes;
   if (verification) parts.verification = &*verification;
   ReportContent content = compose_field_report(model, study.source(), *equations, *study.field_certificate(), parts);
   study.diagnostics().append(budget.warnings());

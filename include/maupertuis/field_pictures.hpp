@@ -30,6 +30,11 @@ std::string field_picture_svg(const FieldEquations& equations, const FieldRunRes
 std::string field_frame_svg(const FieldEquations& equations, const FieldRunResult& run,
                             const FieldPictureOptions& options, std::size_t row);
 
+/// The shape of a mode (FieldModes::shapes): of one variable the curves of all fields, in the plane a map of the field
+/// `options.field`; the largest value is 1. Precondition: the mode has a shape.
+std::string field_shape_svg(const FieldEquations& equations, const FieldModes& modes, std::size_t mode,
+                            const FieldPictureOptions& options);
+
 /// Pictures of one size, each with its style, turned like pages in `seconds`.
 std::string turned_pictures_svg(const std::vector<std::string>& frames, double seconds, bool loop);
 /// The same on a page that needs nothing else, with controls.

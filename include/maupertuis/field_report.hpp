@@ -9,11 +9,11 @@ namespace maupertuis {
 
 /// What a report of fields may show beside its equations and their certificate.
 struct FieldReportParts {
-  const FieldRunResult* run = nullptr;               // with rows
-  const Verification* verification = nullptr;        // null: the `expect` lines were not carried out
-  const FieldCurrents* currents = nullptr;           // null: conservation laws were not looked for
-  const ComplexExpr* dispersion = nullptr;           // of waves on the field at rest
-  const std::vector<double>* frequencies = nullptr;  // rad/s, ascending
+  const FieldRunResult* run = nullptr;         // with rows
+  const Verification* verification = nullptr;  // null: the `expect` lines were not carried out
+  const FieldCurrents* currents = nullptr;     // null: conservation laws were not looked for
+  const ComplexExpr* dispersion = nullptr;     // of waves on the field at rest
+  const FieldModes* modes = nullptr;           // small motions about rest
   bool with_equations = true, with_derivation = true;
 };
 

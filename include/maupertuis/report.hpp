@@ -73,6 +73,7 @@ struct ReportContent {
     std::string caption;
     std::optional<Drawing> drawing;  // one period, swinging from its turning point
     std::optional<Diagram> diagram;  // of systems that have no drawing
+    std::string svg = {};            // of fields, in the page's theme
   };
   struct ModePoint {
     std::string name, stability;  // "θ1 = 0, θ2 = π"; the verdict with its reason
@@ -86,7 +87,7 @@ struct ReportContent {
     Diagram diagram;
   };
 
-  std::string name, title, source;          // source: the citation
+  std::string name, title, source;             // source: the citation
   std::vector<std::string> notes, last_notes;  // of the model: at the beginning, and about its motion
   std::string file, model_text;
   std::vector<std::pair<std::string, std::string>> summary;  // "freedoms" → "2"

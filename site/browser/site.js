@@ -36,7 +36,7 @@ function theme() {
 
 // Lists of pages are open where there is room beside the text, and closed above it.
 function lists() {
-  const narrow = matchMedia('(max-width: 62rem)');
+  const narrow = matchMedia('(max-width: 72rem)');
   const fold = () => {
     for (const details of document.querySelectorAll('nav.pages details, nav.contents details'))
       details.open = !narrow.matches;

@@ -5,6 +5,13 @@ import {join} from 'node:path';
 import {escape} from './highlight.mjs';
 import {all, one, parseXml, textOf} from './xml.mjs';
 
+// Documents that comments name are pages of the site.
+const documentLinks = html =>
+  html.replace(/docs\/(design|theory|manual)\/(\w+)\.md/g, (all, folder, name) => {
+    const area = folder === 'design' ? 'inside' : folder;
+    return `<a href="../${area}/${name}.html">${name.replaceAll('_', ' ')}</a>`;
+  });
+
 export function readHeaders(root, folder) {
   mkdirSync(folder, {recursive: true});
   const headers = join(root, 'include/maupertuis');
@@ -61,7 +68,7 @@ class Writer {
     let html = '',
       text = {children: []};
     const flush = () => {
-      const inner = this.inline(text).trim();
+      const inner = documentLinks(this.inline(text).trim());
       if (inner) html += `<p>${inner}</p>\n`;
       text = {children: []};
     };
@@ -140,7 +147,7 @@ function leadOf(source) {
     text = [],
     code = [];
   const flush = () => {
-    if (text.length) html += `<p>${escape(text.join(' '))}</p>\n`;
+    if (text.length) html += `<p>${documentLinks(escape(text.join(' ')))}</p>\n`;
     if (code.length) html += `<pre><code>${escape(code.join('\n').trimEnd())}</code></pre>\n`;
     ((text = []), (code = []));
   };

@@ -94,6 +94,8 @@ export function diagnosticsPages(root, program, documents) {
   return {pages, codes: codes.length, examples: [...shown.keys()].length};
 }
 
+const capital = text => text.replace(/^./u, first => first.toUpperCase());
+
 function codePage({code, title, explanation, wrong, right}, example, documents) {
   const kind = severities[code[0]];
   const paragraphs = explanation
@@ -110,10 +112,10 @@ ${documents.lag(example.text.trimEnd(), true)}<pre class="message"><code>${escap
   return {
     path: `diagnostics/${code}.html`,
     title: `${code}: ${title}`,
-    titleHtml: `<code class="${kind}">${code}</code> ${escape(title)}`,
+    titleHtml: `<code class="${kind}">${code}</code> ${escape(capital(title))}`,
     formulas: false,
     contents: false,
-    html: `<p class="kind">${kind[0].toUpperCase() + kind.slice(1)}.</p>\n${paragraphs}\n${listing('Wrong', wrong)}${listing('Right', right)}${message}`,
+    html: `<p class="kind">${capital(kind)}.</p>\n${paragraphs}\n${listing('Wrong', wrong)}${listing('Right', right)}${message}`,
     sections: [{title: `${code} ${title}`, id: '', text: explanation}],
   };
 }

@@ -12,6 +12,7 @@ const manual = [
   'pictures',
   'modes',
   'diagnostics',
+  'studio',
   'editors',
   'library',
 ];
@@ -141,11 +142,11 @@ export class DocumentPages {
   }
 }
 
+// Of the first paragraph; a sentence that only leads to a list or a formula says little, and is cut at its colon.
 function firstSentence({sections}) {
-  const text = (sections.find(s => s.text.trim() !== '' && !/^[|$]/.test(s.text.trim()))?.text ?? '').trim();
-  const end = text.search(/[.:](\s|$)/);
+  const text = (sections.find(section => section.prose.trim() !== '')?.prose ?? '').trim();
+  const end = text.search(/(?<=[\p{L}\p{N})`"])[.:](\s|$)/u);
   const sentence = end < 0 ? text : text.slice(0, end + 1);
-  return sentence.length > 180
-    ? sentence.slice(0, sentence.lastIndexOf(' ', 170)) + ' …'
-    : sentence.replace(/:$/, '.');
+  const short = sentence.length > 180 ? sentence.slice(0, sentence.lastIndexOf(' ', 170)) + ' …' : sentence;
+  return short.replace(/:$/, '.');
 }

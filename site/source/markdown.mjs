@@ -11,18 +11,18 @@ export const slug = text =>
     .replace(/\s/g, '-');
 
 // `sh install`: the second word says how tests/documents treats a block; a reader of the site need not know.
-const plainKinds = {
-  diagram: 'Diagram',
-  usage: 'Usage',
-  output: 'Output',
-  python: 'Python',
-  toml: 'TOML',
-  lua: 'Lua',
-  vim: 'Vim script',
-  elisp: 'Emacs Lisp',
-  cmake: 'CMake',
-  cpp: 'C++',
-  json: 'JSON',
+const plainKinds = new Set(['diagram', 'shape', 'usage', 'python', 'toml', 'lua', 'vim', 'elisp', 'cmake', 'cpp']);
+
+// A block may be set in as a whole.
+const dedented = text => {
+  const margins = text
+    .split('\n')
+    .filter(line => line.trim() !== '')
+    .map(line => line.match(/^ */)[0].length);
+  return text
+    .split('\n')
+    .map(line => line.slice(Math.min(...margins)))
+    .join('\n');
 };
 
 export class Documents {
@@ -87,7 +87,7 @@ export class Documents {
 
   fence(token, env) {
     const [kind] = token.info.trim().split(/\s+/),
-      text = token.content.replace(/\n$/, '');
+      text = dedented(token.content.replace(/\n$/, ''));
     const where = `${env.file}:${token.map[0] + 1}`;
     env.blocks = (env.blocks ?? 0) + 1;
     switch (kind) {
@@ -100,7 +100,7 @@ export class Documents {
       case 'sh':
         return `<pre class="console"><code>${escape(text).replace(/(^|\s)(#.*)$/gm, '$1<span class="comment">$2</span>')}</code></pre>\n`;
       default:
-        if (!(kind in plainKinds)) throw new Error(`${where}: a block of the unknown kind "${kind}"`);
+        if (!plainKinds.has(kind)) throw new Error(`${where}: a block of the unknown kind "${kind}"`);
         return `<pre class="${kind}"><code>${escape(text)}</code></pre>\n`;
     }
   }
@@ -132,15 +132,16 @@ export class Documents {
 const inlineMath = html =>
   html
     .replace(
-      /(?<![\p{L}\p{N}_])(\p{L}[\u0300-\u036f]*'*|[)\]])_(\{[^}]*\}|[\p{L}\p{N}]{1,3}|eff|rod)(?![\p{L}\p{N}_])/gu,
+      /(?<![\p{L}\p{N}_∂δ])([∂δ]?\p{L}[\u0300-\u036f]*'*|∂|[)\]])_(\{[^}]*\}|[\p{L}0-9]{1,3})(?![\p{L}0-9_])/gu,
       (all, base, index) => `${base}<sub>${index.replace(/[{}]/g, '')}</sub>`,
     )
+    .replace(/∂_(\p{L})(?![\p{L}0-9_])/gu, '∂<sub>$1</sub>')
     .replace(
-      /(?<=[\p{L}\p{N})\]>])\^(\{[^}]*\}|[-−]?[\p{L}\p{N}]{1,3}|\([^()]{1,8}\))(?![\p{L}\p{N}])/gu,
+      /(?<=[\p{L}\p{N})\]>])\^(\{[^}]*\}|[-−]?[\p{L}0-9]{1,3}|\([^()]{1,8}\))(?![\p{L}0-9])/gu,
       (all, power) => `<sup>${power.replace(/[{}]/g, '')}</sup>`,
     )
     .replace(
-      /(?<![\p{L}\p{N}])(\p{L}[\u0300-\u036f]*)('+)(?![\p{L}'])/gu,
+      /((?<![\p{L}\p{N}])[∂δ]?\p{L}[\u0300-\u036f]*|(?<=\p{L}\([\p{L}\d,\s]{1,8})\))('+)(?![\p{L}'])/gu,
       (all, base, primes) => base + '′'.repeat(primes.length),
     );
 
@@ -158,13 +159,14 @@ const consoleHtml = text =>
 
 // What the search finds: the text below each heading.
 function sectionsOf(tokens, title) {
-  const sections = [{title, id: '', text: ''}];
+  const sections = [{title, id: '', text: '', prose: ''}];
   tokens.forEach((token, i) => {
     if (token.type === 'heading_open' && token.tag !== 'h1')
-      sections.push({title: plain(tokens[i + 1]), id: token.attrGet('id'), text: ''});
-    else if (token.type === 'inline' && tokens[i - 1]?.type !== 'heading_open')
+      sections.push({title: plain(tokens[i + 1]), id: token.attrGet('id'), text: '', prose: ''});
+    else if (token.type === 'inline' && tokens[i - 1]?.type !== 'heading_open') {
       sections.at(-1).text += plain(token) + ' ';
-    else if (token.type === 'fence') sections.at(-1).text += token.content.replace(/\s+/g, ' ') + ' ';
+      if (tokens[i - 1]?.type === 'paragraph_open') sections.at(-1).prose += plain(token) + ' ';
+    } else if (token.type === 'fence') sections.at(-1).text += token.content.replace(/\s+/g, ' ') + ' ';
   });
   return sections;
 }

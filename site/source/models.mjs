@@ -96,19 +96,21 @@ function picture(root, model, program) {
   );
 }
 
-// Of the page that `maup animate` writes: what moves, and the script of films of fields. {html, kind, script}
+// Of the page that `maup animate` writes: what moves, and the scripts that move it. {html, kind, script}
 function filmOf(page, model) {
   if (page === null) return null;
   const main = page.match(/<main>\n?([\s\S]*?)<\/main>/)?.[1];
+  // Without the script that changes light and dark: the site has its own.
   const scripts = [...page.matchAll(/<script>\n?([\s\S]*?)<\/script>/g)].map(match => match[1]);
+  const script = scripts.filter(text => !text.includes("getElementById('theme')")).join('\n');
   if (!main) throw new Error(`${model.name}: the page of maup animate has no <main>`);
-  if (main.includes('id="drawing-data"')) return {kind: 'drawing', html: main.trim()};
+  if (main.includes('id="drawing-data"')) return {kind: 'drawing', html: main.trim(), script};
   const data = page.match(/<script type="application\/json" id="drawing-data">[\s\S]*?<\/script>/)?.[0];
-  if (data) return {kind: 'drawing', html: `${main.trim()}\n${data}`};
+  if (data) return {kind: 'drawing', html: `${main.trim()}\n${data}`, script};
   if (!main.includes('id="film"'))
     throw new Error(`${model.name}: neither a drawing nor a film on the page of maup animate`);
   const html = main.replace('<svg ', `<svg aria-label="${escape(model.title)}, in motion" `).trim();
-  return {kind: 'film', html, script: scripts.find(text => text.includes('#film'))};
+  return {kind: 'film', html, script};
 }
 
 // ----------------------------------------------------------------------------------------------------------- pages
@@ -193,7 +195,9 @@ export function modelPages(models, documents, {studio}) {
         : '';
     const links = [`<a class="button" href="text/${model.name}.lag" download>${model.name}.lag</a>`];
     if (studio)
-      links.unshift(`<a class="button main" href="studio:#${fragmentOf(model.text)}">Open in the studio</a>`);
+      links.unshift(
+        `<a class="button main" href="studio:#${fragmentOf(model.text, model.name)}">Open in the studio</a>`,
+      );
     const html = `${model.source ? `<p class="citation">${escape(model.source)}</p>\n` : ''}${model.shows ? `<p class="lead">${sentence(marked(model.shows))} <span class="muted">Compared with: ${marked(model.against)}.</span></p>\n` : ''}${film}
 <p class="actions">${links.join(' ')} <span class="muted">or <code>maup report ${escape(model.folder ? `models/${model.folder}` : 'models')}/${model.name}.lag</code></span></p>
 <h2 id="text">Model</h2>\n${documents.lag(model.text.trimEnd(), false)}${equations(model)}${certificate(model.derivation)}`;
@@ -230,7 +234,7 @@ const card = (
 ) => `<li class="card" data-words="${escape(`${model.name} ${model.title} ${model.shows ?? ''} ${model.source ?? ''} ${model.group}`.toLowerCase())}">
 <a href="${model.name}.html">${model.picture ? `<img src="pictures/${model.name}.svg" alt="" loading="lazy" width="480" height="330">` : `<span class="formula">${model.derivation.ok ? katexHtml(model.derivation.equations[0].latex, model.name) : ''}</span>`}
 <b>${escape(model.title)}</b></a>
-<p>${model.shows ? sentence(marked(model.shows)) : ''}</p>${studio ? `<a class="open" href="studio:#${fragmentOf(model.text)}" aria-label="open in the studio: ${escape(model.title)}">open in the studio</a>` : ''}</li>`;
+<p>${model.shows ? sentence(marked(model.shows)) : ''}</p>${studio ? `<a class="open" href="studio:#${fragmentOf(model.text, model.name)}" aria-label="open in the studio: ${escape(model.title)}">open in the studio</a>` : ''}</li>`;
 
 export function galleryPage(models, {studio}) {
   const sections = order
@@ -262,7 +266,7 @@ export function problemPages(root, documents, {studio}) {
         name = basename(file, '.lag'),
         title = text.match(/^system \w+ "([^"]*)"/m)?.[1] ?? name;
       const link = studio
-        ? `<p class="actions"><a class="button main" href="studio:#${fragmentOf(text)}">Open in the studio</a></p>\n`
+        ? `<p class="actions"><a class="button main" href="studio:#${fragmentOf(text, name)}">Open in the studio</a></p>\n`
         : '';
       return {
         file: `tests/problems/${file}`,

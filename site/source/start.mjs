@@ -140,6 +140,6 @@ const deriveBox = text => `<section>
 <p>Change it, or write a model of your own; it opens in the studio, in this browser, and no server sees it.</p>
 <label class="unseen" for="own">Model text</label>
 <textarea id="own" rows="12" spellcheck="false" autocapitalize="off" autocomplete="off">${escape(text)}</textarea>
-<p class="actions"><a class="button main" id="own-open" href="studio:#${fragmentOf(text + '\n')}">Derive and run</a></p>
+<p class="actions"><a class="button main" id="own-open" href="studio:#${fragmentOf(text + '\n', 'double_pendulum')}">Derive and run</a></p>
 </section>
 `;

@@ -144,6 +144,58 @@ class FieldPainter {
 
 }  // namespace
 
+namespace {
+
+std::string shown_unit(const Dimension& d, const FieldPictureOptions& options) {
+  const std::string text = to_string(d);
+  return options.dimensionless || text == "1" ? std::string() : text;
+}
+
+/// The sign of a shape is free: what is largest points upwards.
+double upright(const std::vector<double>& values) {
+  double largest = 0;
+  for (const double v : values)
+    if (std::abs(v) > std::abs(largest) * (1 + 1e-9)) largest = v;
+  return largest < 0 ? -1 : 1;
+}
+
+}  // namespace
+
+std::string field_shape_svg(const FieldEquations& equations, const FieldModes& modes, std::size_t mode,
+                            const FieldPictureOptions& options) {
+  const FieldSystem& s = equations.system();
+  const auto& fields = modes.shapes[mode].fields;
+  const auto name_of = [&](std::size_t a) { return s.fields[equations.varied[a]].name; };
+  const SpaceVariable& x = s.space.front();
+  if (s.space.size() == 2) {
+    FieldMap map;
+    map.title = options.title, map.theme = options.theme, map.width = options.width;
+    map.x_name = x.name, map.x_unit = shown_unit(x.dimension, options);
+    map.y_name = s.space[1].name, map.y_unit = shown_unit(s.space[1].dimension, options);
+    map.value_name = name_of(options.field);
+    map.x = modes.places, map.y = modes.upwards, map.include = {-1, 1};
+    map.equal_scales = x.dimension == s.space[1].dimension;
+    const double sign = upright(fields[options.field]);
+    map.sheets.push_back({"", fields[options.field]});
+    for (double& v : map.sheets.back().values) v *= sign;
+    return field_map_svg(map);
+  }
+  Diagram out;
+  out.title = options.title, out.theme = options.theme, out.width = options.width, out.zero_line = true;
+  out.x_name = x.name, out.x_unit = shown_unit(x.dimension, options), out.include_y = {-1, 1};
+  if (fields.size() == 1) out.y_name = name_of(0);
+  std::vector<double> all;
+  for (const auto& one : fields) all.insert(all.end(), one.begin(), one.end());
+  const double sign = upright(all);
+  for (std::size_t a = 0; a < fields.size(); ++a) {
+    std::vector<double> values = fields[a];
+    for (double& v : values) v *= sign;
+    out.curves.push_back({modes.places, std::move(values), a, false, false});
+    if (fields.size() > 1) out.legend.push_back({name_of(a), a, false, false});
+  }
+  return diagram_svg(out);
+}
+
 std::vector<double> field_values(const FieldRunResult& run, std::size_t row, std::size_t field, int order) {
   const std::size_t count = run.places.size() * std::max<std::size_t>(run.upwards.size(), 1);
   const std::size_t first = (2 * field + static_cast<std::size_t>(order)) * count;

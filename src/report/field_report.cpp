@@ -5,6 +5,7 @@
 #include <maupertuis/field_pictures.hpp>
 #include <maupertuis/field_report.hpp>
 #include <maupertuis/stress_energy.hpp>
+#include <maupertuis/uncertainty.hpp>
 
 #include <fmt/format.h>
 
@@ -173,28 +174,48 @@ class FieldComposer {
   }
 
   void add_waves(ReportContent& out, const FieldReportParts& parts) const {
-    if (!parts.dispersion && (!parts.frequencies || parts.frequencies->empty())) return;
+    if (!parts.dispersion && (!parts.modes || parts.modes->frequencies.empty())) return;
     ReportContent::ModePoint rest;
     rest.name = "Waves and modes about the field at rest";
     rest.stability = parts.dispersion ? "Waves exp(i(k·x − ω t)) of the linearized equations obey" : "";
     if (parts.dispersion)
       rest.formulas.push_back({shown(with_imaginary_unit(*parts.dispersion)), layouts::number("0"), "", ""});
-    const bool bare = model_.system.dimensionless;
-    if (parts.frequencies)
-      for (const double w : *parts.frequencies) {
-        const double hertz = w / (2 * 3.14159265358979323846);
-        rest.rows.push_back({w > 0   ? "oscillation"
-                             : w < 0 ? "grows"
-                                     : "free",
-                             quantity(std::abs(w),
-                                      bare    ? ""
-                                      : w < 0 ? "1/s"
-                                              : "rad/s",
-                                      10),
-                             w > 0 ? quantity(hertz, bare ? "" : "Hz", 8) : "",
-                             w > 0 ? quantity(1 / hertz, bare ? "" : "s", 8) : "", ""});
-      }
+    if (parts.modes) {
+      for (std::size_t i = 0; i < parts.modes->frequencies.size(); ++i) rest.rows.push_back(mode_row(*parts.modes, i));
+      add_shapes(rest, *parts.modes);
+    }
     out.mode_points.push_back(std::move(rest));
+  }
+
+  /// In the plane with as many digits as its error leaves.
+  std::string with_error(double value, double error, const char* unit) const {
+    const bool bare = model_.system.dimensionless;
+    if (!(error > 0)) return quantity(value, bare ? "" : unit, 10);
+    return with_uncertainty(value, error) + (bare ? std::string() : std::string(" ") + unit);
+  }
+
+  ReportContent::ModeRow mode_row(const FieldModes& modes, std::size_t i) const {
+    constexpr double turn = 2 * 3.14159265358979323846;
+    const double w = modes.frequencies[i], error = i < modes.errors.size() ? modes.errors[i] : 0;
+    if (w == 0) return {"free", "0", "", "", ""};
+    if (w < 0) return {"grows", with_error(-w, error, "1/s"), "", "", ""};
+    return {"oscillation", with_error(w, error, "rad/s"), with_error(w / turn, error / turn, "Hz"),
+            with_error(turn / w, turn / w * error / w, "s"), ""};
+  }
+
+  void add_shapes(ReportContent::ModePoint& rest, const FieldModes& modes) const {
+    constexpr std::size_t most_shapes = 6;
+    FieldPictureOptions options;
+    options.theme = PlotTheme::Page, options.dimensionless = model_.system.dimensionless, options.width = 320;
+    for (std::size_t i = 0; i < std::min(modes.shapes.size(), most_shapes); ++i) {
+      const std::size_t pictures = s_.space.size() == 2 ? e_.varied.size() : 1;
+      for (options.field = 0; options.field < pictures; ++options.field) {
+        const std::string of = pictures > 1 ? s_.fields[e_.varied[options.field]].name + " of mode" : "Mode";
+        rest.shapes.push_back({fmt::format("{} {}: {} {}", of, i + 1,
+                                           modes.frequencies[i] < 0 ? "grows at" : "ω =", rest.rows[i].frequency),
+                               std::nullopt, std::nullopt, field_shape_svg(e_, modes, i, options)});
+      }
+    }
   }
 
   void add_run(ReportContent& out, const FieldRunResult& run) const {

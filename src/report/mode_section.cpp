@@ -40,6 +40,8 @@ std::string shape_figure(const ReportContent::ModeShape& shape, const std::strin
     Diagram d = *shape.diagram;
     d.theme = PlotTheme::Page;
     inside = diagram_svg(d);
+  } else {
+    inside = shape.svg;
   }
   return fmt::format("<figure class=\"mode\"{}>\n{}\n<figcaption>{}</figcaption></figure>\n", attributes, inside,
                      sentence_html(shape.caption));

@@ -219,7 +219,7 @@ Json mode_point_json(const ReportContent::ModePoint& point) {
                     {"period", row.period},
                     {"damping", row.damping}});
   for (const auto& shape : point.shapes) {
-    Json one = {{"caption", shape.caption}, {"drawing", drawing_of(shape.drawing)}, {"svg", ""}};
+    Json one = {{"caption", shape.caption}, {"drawing", drawing_of(shape.drawing)}, {"svg", shape.svg}};
     if (shape.diagram) {
       Diagram diagram = *shape.diagram;
       diagram.theme = PlotTheme::Page;
@@ -236,9 +236,9 @@ Json modes_of_fields(Study& study) {
   const InterruptScope scope = study.interruptible();
   const FieldEquations& equations = *study.field_equations();
   Diagnostics unheard;  // a field without such modes has none to show
-  const std::vector<double> frequencies = field_frequencies(equations, 6, unheard);
+  const FieldModes modes = field_modes(equations, 6, unheard);
   FieldReportParts parts;
-  if (!frequencies.empty()) parts.frequencies = &frequencies;
+  if (!modes.frequencies.empty()) parts.modes = &modes;
   parts.with_derivation = parts.with_equations = false;
   const ReportContent content =
       compose_field_report(*study.model(), study.source(), equations, *study.field_certificate(), parts);

@@ -15,7 +15,8 @@ interface Job {
 const ranks: Record<string, number> = {open: 0, pose: 1, run: 3, equations: 2, complete: 1, hover: 2, signature: 2};
 
 /**
- * One question at a time goes to the session, as it answers one at a time. Of one kind only the newest waits; one on its way
+ * One question at a time goes to the session, as it answers one at a time. Of one kind only the newest waits; one on
+ * its way
  * is cancelled by a newer one of its kind after the carrier's grace, and by a new text.
  */
 export class Asker {
@@ -25,12 +26,18 @@ export class Asker {
 
   constructor(private readonly carrier: Carrier) {}
 
-  onBusy(listener: (kind: string | null) => void): void { this.listeners.push(listener); }
+  onBusy(listener: (kind: string | null) => void): void {
+    this.listeners.push(listener);
+  }
 
-  ask<T>(request: Request, {kind = request.do, onMessage = () => {}}: {kind?: string; onMessage?: (message: Message) => void} = {}): Promise<Answer<T>> {
+  ask<T>(
+    request: Request,
+    {kind = request.do, onMessage = () => {}}: {kind?: string; onMessage?: (message: Message) => void} = {},
+  ): Promise<Answer<T>> {
     const opens = request.do === 'open';
     for (const job of this.queue.filter(job => job.kind === kind || (opens && dependsOnText(job)))) this.drop(job);
-    if (this.current && (this.current.kind === kind || (opens && dependsOnText(this.current)))) this.cancelSoon(this.current);
+    if (this.current && (this.current.kind === kind || (opens && dependsOnText(this.current))))
+      this.cancelSoon(this.current);
     return new Promise<Answer<T>>(resolve => {
       const rank = ranks[request.do] ?? 4;
       this.queue.push({kind, request, rank, onMessage, resolve, abort: new AbortController(), begun: 0});
@@ -51,12 +58,17 @@ export class Asker {
 
   private cancelSoon(job: Job): void {
     const left = this.carrier.grace - (performance.now() - job.begun);
-    setTimeout(() => { if (this.current === job) job.abort.abort(); }, Math.max(0, left));
+    setTimeout(
+      () => {
+        if (this.current === job) job.abort.abort();
+      },
+      Math.max(0, left),
+    );
   }
 
   private async next(): Promise<void> {
     if (this.current || this.queue.length === 0) return;
-    const job = this.queue.reduce((best, one) => one.rank < best.rank ? one : best);
+    const job = this.queue.reduce((best, one) => (one.rank < best.rank ? one : best));
     this.queue = this.queue.filter(other => other !== job);
     this.current = job;
     job.begun = performance.now();
@@ -69,4 +81,5 @@ export class Asker {
   }
 }
 
-const dependsOnText = (job: Job): boolean => job.request.do !== 'hello' && job.request.do !== 'explain' && job.request.do !== 'open';
+const dependsOnText = (job: Job): boolean =>
+  job.request.do !== 'hello' && job.request.do !== 'explain' && job.request.do !== 'open';

@@ -7,21 +7,27 @@ export class Clock {
   repeat = false;
   duration = 0;
   rate = 1;
-  pleasant = 1;   // the rate at which a run takes a pleasant time to watch
-  first = 0;      // the time of the first moment
+  pleasant = 1; // the rate at which a run takes a pleasant time to watch
+  first = 0; // the time of the first moment
   way: 1 | -1 = 1;
   private before = 0;
   private listeners: (() => void)[] = [];
 
-  onTick(listener: () => void): void { this.listeners.push(listener); }
-  get now(): number { return this.first + this.way * this.s; }
+  onTick(listener: () => void): void {
+    this.listeners.push(listener);
+  }
+  get now(): number {
+    return this.first + this.way * this.s;
+  }
 
   take(run: RunAnswer, fresh: boolean): void {
-    const {times} = run, last = times[times.length - 1] ?? 0;
+    const {times} = run,
+      last = times[times.length - 1] ?? 0;
     this.first = times[0] ?? 0;
     this.way = last < this.first ? -1 : 1;
     this.duration = Math.abs(last - this.first);
-    const pleasant = this.duration >= 2 && this.duration <= 120 ? 1 : 10 ** Math.round(Math.log10(this.duration / 15 || 1));
+    const pleasant =
+      this.duration >= 2 && this.duration <= 120 ? 1 : 10 ** Math.round(Math.log10(this.duration / 15 || 1));
     if (fresh || pleasant !== this.pleasant) this.rate = pleasant * (fresh ? 1 : this.rate / this.pleasant);
     this.pleasant = pleasant;
     this.seek(fresh ? 0 : this.s);
@@ -47,10 +53,12 @@ export class Clock {
     if (!this.playing) return;
     this.s = Math.min(this.duration, this.s + Math.min(0.1, Math.max(0, stamp - this.before) / 1000) * this.rate);
     this.before = stamp;
-    if (this.s >= this.duration) this.repeat ? this.s = 0 : this.playing = false;
+    if (this.s >= this.duration) this.repeat ? (this.s = 0) : (this.playing = false);
     this.tell();
     if (this.playing) requestAnimationFrame(next => this.step(next));
   }
 
-  private tell(): void { for (const listener of this.listeners) listener(); }
+  private tell(): void {
+    for (const listener of this.listeners) listener();
+  }
 }

@@ -4,7 +4,11 @@ type Child = Node | string | null | undefined | false;
 type Attributes = Record<string, string | number | boolean | ((event: never) => void) | null | undefined>;
 
 /** An element; attributes that are functions are listeners (`onclick`), `html` is markup of the core. */
-export function h<K extends keyof HTMLElementTagNameMap>(tag: K, attributes: Attributes = {}, ...children: Child[]): HTMLElementTagNameMap[K] {
+export function h<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  attributes: Attributes = {},
+  ...children: Child[]
+): HTMLElementTagNameMap[K] {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
     if (value === null || value === undefined || value === false) continue;
@@ -12,7 +16,9 @@ export function h<K extends keyof HTMLElementTagNameMap>(tag: K, attributes: Att
     else if (name === 'html') element.innerHTML = String(value);
     else element.setAttribute(name, value === true ? '' : String(value));
   }
-  element.append(...children.filter((child): child is Node | string => child !== null && child !== undefined && child !== false));
+  element.append(
+    ...children.filter((child): child is Node | string => child !== null && child !== undefined && child !== false),
+  );
   return element;
 }
 
@@ -20,7 +26,7 @@ export const byId = <T extends HTMLElement>(id: string): T => document.getElemen
 
 /** Text with `code` in backquotes. */
 export function prose(text: string): Node[] {
-  return text.split('`').map((part, i) => i % 2 ? h('code', {}, part) : document.createTextNode(numbers(part)));
+  return text.split('`').map((part, i) => (i % 2 ? h('code', {}, part) : document.createTextNode(numbers(part))));
 }
 
 export function icon(path: string): SVGElement {

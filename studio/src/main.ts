@@ -1,7 +1,7 @@
 import {Asker} from './asker';
 import type {Carrier} from './carriers/carrier';
 import {HttpCarrier} from './carriers/http';
-import {WorkerCarrier} from './carriers/worker';
+import {embeddedCore, WorkerCarrier} from './carriers/worker';
 import {Clock} from './clock';
 import {byId, copyText, h} from './dom';
 import {Stage} from './drawing/stage';
@@ -25,16 +25,27 @@ import {decodeShared, encodeShared} from './tools/share';
 import {Storage_} from './tools/storage';
 import {themes} from './tools/theme';
 
-/** The static page names the worker that holds the core; without it there is a server. */
+/**
+ * A static page names the script of the worker that holds the core, or holds the core itself; without either there is
+ * a server.
+ */
 function carrierOf(): Carrier {
   const core = document.documentElement.dataset.core;
-  return core ? new WorkerCarrier(() => new Worker(core)) : new HttpCarrier();
+  if (!core) return new HttpCarrier();
+  return new WorkerCarrier(core === 'embedded' ? embeddedCore() : Promise.resolve({script: core}));
 }
 
-const storage = new Storage_(), store = new Store<State>({...initialState, storage: storage.works}), clock = new Clock();
-const carrier = carrierOf(), asker = new Asker(carrier), study = new Study(store, asker, clock);
-const stage = new Stage(byId<HTMLCanvasElement>('drawing'), store, clock, study), stages = new Set([stage]);
-const editor: Editor = new Editor(store, study, (messages, fixes) => showMessages(messages, fixes, () => editor, asker));
+const storage = new Storage_(),
+  store = new Store<State>({...initialState, storage: storage.works}),
+  clock = new Clock();
+const carrier = carrierOf(),
+  asker = new Asker(carrier),
+  study = new Study(store, asker, clock);
+const stage = new Stage(byId<HTMLCanvasElement>('drawing'), store, clock, study),
+  stages = new Set([stage]);
+const editor: Editor = new Editor(store, study, (messages, fixes) =>
+  showMessages(messages, fixes, () => editor, asker),
+);
 const plots = new PlotsPanel(store, clock);
 new ValuesPanel(store, study);
 new EquationsPanel(store, study);
@@ -42,12 +53,16 @@ new MotionPanel(store, study, clock, stage);
 expectationsPanel(store, study);
 const files = new FileTools(store, study, carrier);
 new Exercises(store, study, storage);
-themes(storage, () => { for (const one of stages) one.recolour(); plots.recolour(); });
+themes(storage, () => {
+  for (const one of stages) one.recolour();
+  plots.recolour();
+});
 
 // ----------------------------------------------------------------------------------------------------------- the bar
 
 function panes(): void {
-  const small = matchMedia('(max-width: 759px)'), tabs = [...document.querySelectorAll<HTMLElement>('#tabs button')];
+  const small = matchMedia('(max-width: 759px)'),
+    tabs = [...document.querySelectorAll<HTMLElement>('#tabs button')];
   for (const tab of tabs) tab.addEventListener('click', () => store.update({pane: tab.dataset.pane as Pane}));
   store.watch(['pane'], ({pane}) => {
     document.body.dataset.pane = pane;
@@ -57,14 +72,20 @@ function panes(): void {
 }
 
 async function share(): Promise<void> {
-  const {text, set, start, name} = store.state, link = `${location.origin === 'null' ? location.href.split('#')[0] : location.origin + location.pathname}#m=${await encodeShared({text, set, start, name})}`;
+  const {text, set, start, name} = store.state,
+    link = `${location.href.split('#')[0]}#m=${await encodeShared({text, set, start, name})}`;
   history.replaceState(null, '', link);
   const copied = await copyText(link);
-  study.say(copied ? 'The link is copied. It holds the whole model; no server sees it.' : 'The address of this page is the link now: it holds the whole model.');
+  study.say(
+    copied
+      ? 'The link is copied. It holds the whole model; no server sees it.'
+      : 'The address of this page is the link now: it holds the whole model.',
+  );
 }
 
 function applyValues(): void {
-  const {text, set, start} = store.state, {edits, missing} = applied(text, set, start);
+  const {text, set, start} = store.state,
+    {edits, missing} = applied(text, set, start);
   if (missing.length > 0) return study.say(`The text has no \`param\` for ${missing.join(', ')}.`, true);
   store.update({set: {}, start: {}});
   editor.apply(edits, false);
@@ -81,13 +102,20 @@ function bar(): void {
   byId('search-button').addEventListener('click', () => editor.find());
   byId('reset-values').addEventListener('click', () => study.resetValues());
   byId('apply-values').addEventListener('click', applyValues);
-  byId('duration').addEventListener('change', event => study.setDuration((event.target as HTMLInputElement).value.trim()));
+  byId('duration').addEventListener('change', event =>
+    study.setDuration((event.target as HTMLInputElement).value.trim()),
+  );
   byId('mode').addEventListener('change', event => study.setMode((event.target as HTMLSelectElement).value));
-  store.watch(['duration'], ({duration}) => { byId<HTMLInputElement>('duration').value = duration; });
+  store.watch(['duration'], ({duration}) => {
+    byId<HTMLInputElement>('duration').value = duration;
+  });
   store.watch(['equations', 'mode'], ({equations, mode}) => {
     const modes = equations?.modes ?? [];
     byId('mode-row').hidden = modes.length === 0 && !mode;
-    byId('mode').replaceChildren(h('option', {value: ''}, 'as the motion is'), ...modes.map(one => h('option', {value: one, selected: one === mode}, one)));
+    byId('mode').replaceChildren(
+      h('option', {value: ''}, 'as the motion is'),
+      ...modes.map(one => h('option', {value: one, selected: one === mode}, one)),
+    );
   });
   store.watch(['busy', 'progress'], ({busy, progress}) => {
     const sign = byId('busy');
@@ -95,9 +123,17 @@ function bar(): void {
     sign.textContent = busy === 'run' && progress !== null && progress > 0.02 ? `${Math.round(100 * progress)} %` : '';
   });
   pageKeys({
-    play: () => clock.play(!clock.playing), seek: part => { clock.play(false); clock.seek(clock.s + part * clock.duration); }, start: () => clock.seek(0),
-    pin: () => study.pin(), save: () => void files.save(), open: () => void files.open(),
-    lecture: () => void lecture(store, study, clock, stages), help: () => helpDialog(store.state.version),
+    play: () => clock.play(!clock.playing),
+    seek: part => {
+      clock.play(false);
+      clock.seek(clock.s + part * clock.duration);
+    },
+    start: () => clock.seek(0),
+    pin: () => study.pin(),
+    save: () => void files.save(),
+    open: () => void files.open(),
+    lecture: () => void lecture(store, study, clock, stages),
+    help: () => helpDialog(store.state.version),
   });
 }
 
@@ -109,7 +145,11 @@ function words(): void {
     window.clearTimeout(timer);
     place.className = word ? (word.trouble ? 'shown trouble' : 'shown') : '';
     place.textContent = word?.text ?? '';
-    if (word) timer = window.setTimeout(() => store.update({word: null}), Math.max(4000, 70 * word.text.length) * (word.trouble ? 2 : 1));
+    if (word)
+      timer = window.setTimeout(
+        () => store.update({word: null}),
+        Math.max(4000, 70 * word.text.length) * (word.trouble ? 2 : 1),
+      );
   });
 }
 
@@ -120,10 +160,22 @@ function keep(): void {
   const write = (): void => {
     const {text, name, set, start, origin} = store.state;
     if (!text) return;
-    const kept = storage.write({text, name, set, start, path: origin?.path ?? null, version: origin?.version ?? '', saved: origin?.saved ?? '', at: Date.now()});
+    const kept = storage.write({
+      text,
+      name,
+      set,
+      start,
+      path: origin?.path ?? null,
+      version: origin?.version ?? '',
+      saved: origin?.saved ?? '',
+      at: Date.now(),
+    });
     if (kept !== store.state.storage) store.update({storage: kept});
   };
-  store.watch(['text', 'set', 'start', 'origin', 'name'], () => { window.clearTimeout(timer); timer = window.setTimeout(write, 400); });
+  store.watch(['text', 'set', 'start', 'origin', 'name'], () => {
+    window.clearTimeout(timer);
+    timer = window.setTimeout(write, 400);
+  });
   addEventListener('pagehide', write);
 }
 
@@ -133,17 +185,20 @@ async function lookAgain(): Promise<void> {
   if (!origin || !carrier.files) return;
   const file = await carrier.files.read(origin.path);
   if ('message' in file || file.version === origin.version || store.state.origin !== origin) return;
-  if (text !== origin.saved) return study.say(`${origin.path} was changed elsewhere. When you save, both texts are shown.`, true);
+  if (text !== origin.saved)
+    return study.say(`${origin.path} was changed elsewhere. When you save, both texts are shown.`, true);
   study.edit(file.text);
   store.update({origin: {...origin, version: file.version, saved: file.text}});
   study.say(`${origin.path} was changed elsewhere; this is the new text.`);
 }
 
 async function fromLink(): Promise<boolean> {
-  const code = /^#m=(.+)$/.exec(location.hash)?.[1], name = /^#example=([\w-]+)$/.exec(location.hash)?.[1];
+  const code = /^#m=(.+)$/.exec(location.hash)?.[1],
+    name = /^#example=([\w-]+)$/.exec(location.hash)?.[1];
   if (name) {
     const text = example(name);
-    if (text === null) study.say(`There is no example ${name}.`, true); else study.load({text, name});
+    if (text === null) study.say(`There is no example ${name}.`, true);
+    else study.load({text, name});
     return text !== null;
   }
   if (!code) return false;
@@ -156,14 +211,20 @@ async function fromLink(): Promise<boolean> {
 async function begin(): Promise<void> {
   const [linked, listing] = await Promise.all([fromLink(), carrier.files?.list()]);
   if (linked) return;
-  const draft = storage.read(), wanted = listing?.open;
-  if (wanted && draft?.path !== wanted && await files.read(wanted)) return;
+  const draft = storage.read(),
+    wanted = listing?.open;
+  if (wanted && draft?.path !== wanted && (await files.read(wanted))) return;
   if (draft) {
-    study.load({text: draft.text, name: draft.name, set: draft.set, start: draft.start,
-                origin: draft.path && carrier.files ? {path: draft.path, version: draft.version, saved: draft.saved} : null});
+    study.load({
+      text: draft.text,
+      name: draft.name,
+      set: draft.set,
+      start: draft.start,
+      origin: draft.path && carrier.files ? {path: draft.path, version: draft.version, saved: draft.saved} : null,
+    });
     return void lookAgain();
   }
-  if (wanted && await files.read(wanted)) return;
+  if (wanted && (await files.read(wanted))) return;
   study.load({text: example('double_pendulum') ?? '', name: 'double_pendulum'});
 }
 

@@ -24,7 +24,6 @@ export class Store<T extends object> {
   private flush(): void {
     const changed = this.changed;
     this.changed = new Set();
-    for (const {keys, tell} of this.watchers)
-      if (keys.some(key => changed.has(key))) tell(this.state);
+    for (const {keys, tell} of this.watchers) if (keys.some(key => changed.has(key))) tell(this.state);
   }
 }

@@ -186,6 +186,21 @@ void balance(const Block& block) {
     CHECK(fs::exists(root + "/" + match[1].str()));
 }
 
+/// What data look like that the program gives or takes: the names in quotes stand so in the sources.
+void look_up_names(const Block& block) {
+  static const std::string sources = [] {
+    std::string all;
+    for (const char* folder : {"/src", "/apps"})
+      for (const auto& entry : fs::recursive_directory_iterator(root + folder))
+        if (entry.path().extension() == ".cpp") all += read(entry.path().string());
+    return all;
+  }();
+  static const std::regex name("\"([a-z_]+)\"[,:}|]");
+  const std::string text = block.joined();
+  for (std::sregex_iterator at(text.begin(), text.end(), name), end; at != end; ++at)
+    CHECK_MESSAGE(contains(sources, (*at)[1].str() + "\""), (*at)[1].str());
+}
+
 /// All blocks of C++ in one translation unit, each a function; names that the documents take for granted are in
 /// snippets.hpp.
 std::string translation_unit(const std::vector<Block>& blocks) {
@@ -205,6 +220,7 @@ std::string translation_unit(const std::vector<Block>& blocks) {
 
 void read_block(const Block& block) {
   if (block.kind == "usage") return look_up_options(block);
+  if (block.kind == "shape") return look_up_names(block);
   if (block.kind == "python") return parse_by("python3 -c 'import ast, sys; ast.parse(sys.stdin.read())'", block);
   if (block.kind == "toml") return parse_by("python3 -c 'import sys, tomllib; tomllib.loads(sys.stdin.read())'", block);
   if (block.kind == "cmake") {

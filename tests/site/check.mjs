@@ -30,19 +30,26 @@ function check(what, holds, detail = '') {
   );
 }
 
+// A page and a worker that are as small as they can be: the worker answers with what it finds in maup.wasm.
+const inItsPlace = {
+  'studio/index.html': `<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Studio</title><link rel="icon" href="data:,">
+<script defer src="./studio.js"></script><p>In its place.</p></html>`,
+  'studio/studio.js': `new Worker(document.documentElement.dataset.core).onmessage = event => { self.answer = event.data; };`,
+  'studio/page.html.gz': 'not wanted in the site',
+  'core/maup_worker.js': `fetch('maup.wasm').then(answer => answer.text()).then(postMessage);`,
+  'core/maup.wasm': 'the core',
+};
+
 function build() {
   if (values.keep && existsSync(site)) return;
   rmSync(work, {recursive: true, force: true});
-  mkdirSync(join(work, 'studio'), {recursive: true});
-  writeFileSync(
-    join(work, 'studio/index.html'),
-    '<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Studio</title><link rel="icon" href="data:,"><p>In its place.</p></html>\n',
-  );
-  const {status} = spawnSync(
-    process.execPath,
-    [join(root, 'site/build.mjs'), '--maup', resolve(values.maup), '--out', site, '--studio', join(work, 'studio')],
-    {stdio: 'inherit'},
-  );
+  for (const [name, text] of Object.entries(inItsPlace)) {
+    mkdirSync(dirname(join(work, name)), {recursive: true});
+    writeFileSync(join(work, name), text);
+  }
+  const folders = ['--out', site, '--studio', join(work, 'studio'), '--core', join(work, 'core')];
+  const options = [join(root, 'site/build.mjs'), '--maup', resolve(values.maup), ...folders];
+  const {status} = spawnSync(process.execPath, options, {stdio: 'inherit'});
   if (status !== 0) throw new Error('the site was not built');
 }
 
@@ -65,7 +72,7 @@ async function noting(context, path) {
   page.on('console', message => page.noted.push(`console: ${message.text()}`));
   page.on('pageerror', error => page.noted.push(`error: ${error.message}`));
   page.on('request', request => {
-    if (!request.url().startsWith(base) && !request.url().startsWith('data:'))
+    if (!request.url().startsWith(base) && !/^(data|blob):/.test(request.url()))
       page.noted.push(`request: ${request.url()}`);
   });
   page.on('requestfailed', request => page.noted.push(`failed: ${request.url()}`));
@@ -130,7 +137,7 @@ async function lookAt(page, path, {width, dark, withAxe}) {
 }
 
 async function run() {
-  checkParts(check, root);
+  await checkParts(check, root);
   build();
   const {pages, links} = checkFiles(check, site);
   const browser = await chromium.launch({

@@ -1,5 +1,6 @@
 // The parts of the site's program that must refuse what they do not understand, and those with an answer that is known.
 import {existsSync, readFileSync} from 'node:fs';
+import {createRequire} from 'node:module';
 import {join} from 'node:path';
 import {FormulaError, formulaBlock, katexHtml, latexOf} from '../../site/source/formula.mjs';
 import {Highlighter} from '../../site/source/highlight.mjs';
@@ -18,7 +19,7 @@ const refuses = (action, kind) => {
   }
 };
 
-export function checkParts(check, root) {
+export async function checkParts(check, root) {
   const squeezed = text => latexOf(text).replace(/\s/g, '');
   check('primes and powers', squeezed("q'' + x²") === 'q^{\\prime\\prime}+x^{2}', squeezed("q'' + x²"));
   check(
@@ -107,11 +108,30 @@ export function checkParts(check, root) {
       relative('a/b.html', 'a/c.html') === 'c.html' &&
       relative('index.html', 'a/b.html') === 'a/b.html',
   );
-  check('a model comes back from its link', textOfFragment(fragmentOf(sample)) === sample);
+  check('a model comes back from its link', textOfFragment(fragmentOf(sample, 's')) === sample);
+  await checkSharing(check, root);
   const xml = parseXml('<a x="1 &amp; 2"><b>p &lt; q</b>r</a>');
   check('XML is read', xml.attributes.x === '1 & 2' && textOf(one(xml, 'b')) === 'p < q' && textOf(xml) === 'p < qr');
   check('the lock names no registry', !/"resolved"/.test(readFileSync(join(root, 'site/package-lock.json'), 'utf8')));
   check('the site is not the place of Node’s packages', !existsSync(join(root, 'site/source/node_modules')));
+}
+
+// The studio reads the links of the site, and the site those that the studio writes.
+async function checkSharing(check, root) {
+  const {build} = createRequire(join(root, 'site/package.json'))('esbuild'),
+    entry = join(root, 'studio/src/tools/share.ts');
+  const {outputFiles} = await build({
+    entryPoints: [entry],
+    bundle: true,
+    format: 'esm',
+    write: false,
+    logLevel: 'silent',
+  });
+  const share = await import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].text).toString('base64')}`);
+  const read = await share.decodeShared(fragmentOf(sample, 's').slice(2));
+  check('the studio reads the links of the site', read?.text === sample && read.name === 's', read);
+  check('a broken link is none', (await share.decodeShared(fragmentOf(sample, 's').slice(2, -4))) === null);
+  check('the site reads those of the studio', textOfFragment(await share.encodeShared({text: sample})) === sample);
 }
 
 const stripped = html =>

@@ -153,6 +153,8 @@ async function checkStudio(check, browser, open, site) {
     textOfFragment(href.split('#')[1]) === readFileSync(join(site, 'models/text/pendulum.lag'), 'utf8'),
   );
   await Promise.all([page.waitForURL(/studio\/index\.html#m=/), page.click('.button.main')]);
+  await page.waitForFunction(() => self.answer !== undefined);
+  check('from a file the studio has its core', (await page.evaluate(() => self.answer)) === 'the core');
   check('no message on the way to the studio', page.noted.length === 0, page.noted);
   await page.context().close();
 }

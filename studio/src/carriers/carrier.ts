@@ -9,9 +9,17 @@ export interface Carrier {
 }
 
 /** `folder`: its name; `open`: the file that the program was started with. */
-export interface Listing {files: string[]; folder: string; open: string}
-export interface StoredFile {text: string; version: string}
-export type Saved = {saved: true; version: string} | {saved: false; theirs: StoredFile} | {saved: null; trouble: Trouble};
+export interface Listing {
+  files: string[];
+  folder: string;
+  open: string;
+}
+export interface StoredFile {
+  text: string;
+  version: string;
+}
+export type Saved =
+  {saved: true; version: string} | {saved: false; theirs: StoredFile} | {saved: null; trouble: Trouble};
 
 /** Files below the folder that was opened; only where there is a server. */
 export interface Files {

@@ -2,7 +2,9 @@ import type {Answer, Message, Request, Trouble} from '../contract';
 import {cancelled, failure, type Carrier, type Files, type Listing, type Saved, type StoredFile} from './carrier';
 
 const gone: Trouble = {
-  code: '', message: 'The server of this page does not answer.', reason: '`maup studio` was ended, or the machine slept.',
+  code: '',
+  message: 'The server of this page does not answer.',
+  reason: '`maup studio` was ended, or the machine slept.',
   help: 'Your text is safe in this page. Start `maup studio` again and open the address that it prints.',
 };
 
@@ -17,7 +19,10 @@ export class HttpCarrier implements Carrier {
   async request<T>(request: Request, onMessage: (message: Message) => void, signal: AbortSignal): Promise<Answer<T>> {
     try {
       const response = await fetch(`/api/request?session=${tab}`, {
-        method: 'POST', headers: {'Content-Type': 'application/json'}, body: JSON.stringify(request), signal,
+        method: 'POST',
+        headers: {'Content-Type': 'application/json'},
+        body: JSON.stringify(request),
+        signal,
       });
       if (!response.ok) return refused(response);
       return await this.read<T>(response, onMessage);
@@ -33,7 +38,10 @@ export class HttpCarrier implements Carrier {
     for (;;) {
       const {value, done} = await reader.read();
       if (done) break;
-      if (!value.includes('\n')) { parts.push(value); continue; }  // a large answer comes in many pieces
+      if (!value.includes('\n')) {
+        parts.push(value);
+        continue;
+      } // a large answer comes in many pieces
       const events = (parts.join('') + value).split('\n\n');
       parts = [events.pop()!];
       for (const event of events) {
@@ -42,21 +50,32 @@ export class HttpCarrier implements Carrier {
         if (kind === 'message') onMessage(JSON.parse(data) as Message);
       }
     }
-    return failure('connection', 'The answer broke off.', 'The session ended before it had answered.', 'It is started anew with the next question.');
+    return failure(
+      'connection',
+      'The answer broke off.',
+      'The session ended before it had answered.',
+      'It is started anew with the next question.',
+    );
   }
 }
 
 function readEvent(text: string): {kind: string; data: string} {
-  const lines = text.split('\n'), of = (name: string): string[] => lines.filter(line => line.startsWith(name)).map(line => line.slice(name.length).trimStart());
+  const lines = text.split('\n'),
+    of = (name: string): string[] =>
+      lines.filter(line => line.startsWith(name)).map(line => line.slice(name.length).trimStart());
   return {kind: of('event:')[0] ?? 'message', data: of('data:').join('\n')};
 }
 
 async function refused(response: Response): Promise<ReturnType<typeof failure>> {
-  const body = await response.json().catch(() => null) as {trouble?: Trouble} | null;
+  const body = (await response.json().catch(() => null)) as {trouble?: Trouble} | null;
   if (body?.trouble) return {ok: false, kind: 'connection', trouble: body.trouble};
   if (response.status === 401 || response.status === 403)
-    return failure('connection', 'The server does not know this page.', 'Its address has a token that is good once.',
-                   'Open the address that `maup studio` printed, or start it again.');
+    return failure(
+      'connection',
+      'The server does not know this page.',
+      'Its address has a token that is good once.',
+      'Open the address that `maup studio` printed, or start it again.',
+    );
   return failure('connection', `The server answered with status ${response.status}.`, '', 'Start `maup studio` again.');
 }
 
@@ -66,7 +85,7 @@ class HttpFiles implements Files {
   async list(): Promise<Listing> {
     const response = await fetch('/api/files').catch(() => null);
     if (!response?.ok) return nowhere;
-    const {files, folder, open} = await response.json() as {files: {path: string}[]; folder: string; open?: string};
+    const {files, folder, open} = (await response.json()) as {files: {path: string}[]; folder: string; open?: string};
     return {files: files.map(file => file.path), folder, open: open ?? ''};
   }
 
@@ -74,19 +93,25 @@ class HttpFiles implements Files {
     const response = await fetch(`/api/file?path=${encodeURIComponent(path)}`).catch(() => null);
     if (!response) return gone;
     if (!response.ok) return (await refused(response)).trouble;
-    const {text, etag} = await response.json() as {text: string; etag: string};
+    const {text, etag} = (await response.json()) as {text: string; etag: string};
     return {text, version: etag};
   }
 
   async write(path: string, text: string, version: string | null): Promise<Saved> {
     const condition: Record<string, string> = version === null ? {} : {'If-Match': `"${version}"`};
     const response = await fetch(`/api/file?path=${encodeURIComponent(path)}`, {
-      method: 'PUT', body: text, headers: {'Content-Type': 'text/plain; charset=utf-8', ...condition},
+      method: 'PUT',
+      body: text,
+      headers: {'Content-Type': 'text/plain; charset=utf-8', ...condition},
     }).catch(() => null);
     if (!response) return {saved: null, trouble: gone};
-    if (response.ok) return {saved: true, version: (await response.json() as {etag: string}).etag};
-    const answer = await response.clone().json().catch(() => ({})) as {text?: string | null; etag?: string | null};
-    if (response.status === 409 && typeof answer.text === 'string') return {saved: false, theirs: {text: answer.text, version: answer.etag ?? ''}};
+    if (response.ok) return {saved: true, version: ((await response.json()) as {etag: string}).etag};
+    const answer = (await response
+      .clone()
+      .json()
+      .catch(() => ({}))) as {text?: string | null; etag?: string | null};
+    if (response.status === 409 && typeof answer.text === 'string')
+      return {saved: false, theirs: {text: answer.text, version: answer.etag ?? ''}};
     return {saved: null, trouble: (await refused(response)).trouble};
   }
 }

@@ -1,10 +1,30 @@
-import {acceptCompletion, autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap, snippetCompletion, type Completion, type CompletionContext, type CompletionResult} from '@codemirror/autocomplete';
+import {
+  acceptCompletion,
+  autocompletion,
+  closeBrackets,
+  closeBracketsKeymap,
+  completionKeymap,
+  snippetCompletion,
+  type Completion,
+  type CompletionContext,
+  type CompletionResult,
+} from '@codemirror/autocomplete';
 import {defaultKeymap, history, historyKeymap, indentWithTab} from '@codemirror/commands';
 import {bracketMatching, codeFolding, foldGutter, foldKeymap} from '@codemirror/language';
 import {lintGutter, lintKeymap, setDiagnostics, type Diagnostic as Lint} from '@codemirror/lint';
 import {highlightSelectionMatches, openSearchPanel, search, searchKeymap} from '@codemirror/search';
 import {Annotation, EditorState, Transaction} from '@codemirror/state';
-import {drawSelection, EditorView, highlightActiveLine, highlightSpecialChars, hoverTooltip, keymap, lineNumbers, type Tooltip, type ViewUpdate} from '@codemirror/view';
+import {
+  drawSelection,
+  EditorView,
+  highlightActiveLine,
+  highlightSpecialChars,
+  hoverTooltip,
+  keymap,
+  lineNumbers,
+  type Tooltip,
+  type ViewUpdate,
+} from '@codemirror/view';
 import type {CompletionItem, Diagnostic, Edit, Fix} from '../contract';
 import {byId, h, prose} from '../dom';
 import type {Store} from '../store';
@@ -15,7 +35,15 @@ import {known, knownMarks} from './marks';
 import {markdown} from './markdown';
 
 const fromOutside = Annotation.define<boolean>();
-const symbols: Record<string, string> = {statement: 'keyword', word: 'keyword', name: 'variable', function: 'function', unit: 'constant', member: 'property', snippet: 'text'};
+const symbols: Record<string, string> = {
+  statement: 'keyword',
+  word: 'keyword',
+  name: 'variable',
+  function: 'function',
+  unit: 'constant',
+  member: 'property',
+  snippet: 'text',
+};
 
 /** The text of the model, with everything that the session says about it. */
 export class Editor {
@@ -23,20 +51,29 @@ export class Editor {
   private fixes: Fix[] = [];
   private signatureTimer = 0;
 
-  constructor(private readonly store: Store<State>, private readonly study: Study, private readonly onMessages: (messages: Diagnostic[], fixes: Fix[]) => void) {
+  constructor(
+    private readonly store: Store<State>,
+    private readonly study: Study,
+    private readonly onMessages: (messages: Diagnostic[], fixes: Fix[]) => void,
+  ) {
     this.view = new EditorView({parent: byId('editor'), state: this.fresh('')});
     store.watch(['text'], ({text}) => this.take(text));
     store.watch(['openedText', 'opened', 'deep'], () => this.mark());
   }
 
-  private fresh(text: string): EditorState { return EditorState.create({doc: text, extensions: this.extensions()}); }
+  private fresh(text: string): EditorState {
+    return EditorState.create({doc: text, extensions: this.extensions()});
+  }
 
   /** A text that was not typed here. Another model starts another history. */
   private take(text: string): void {
     const now = this.view.state.doc.toString();
     if (text === now) return;
     if (now === '' || this.store.state.opened === null) return this.view.setState(this.fresh(text));
-    this.view.dispatch({changes: {from: 0, to: this.view.state.doc.length, insert: text}, annotations: fromOutside.of(true)});
+    this.view.dispatch({
+      changes: {from: 0, to: this.view.state.doc.length, insert: text},
+      annotations: fromOutside.of(true),
+    });
   }
 
   /** Changes that the page makes stand in the history, so that undo takes them back. */
@@ -52,24 +89,75 @@ export class Editor {
     this.view.focus();
   }
 
-  find(): void { openSearchPanel(this.view); }
+  find(): void {
+    openSearchPanel(this.view);
+  }
 
   private extensions() {
     return [
-      lineNumbers(), foldGutter(), codeFolding(), lintGutter(), history(), drawSelection(), highlightSpecialChars(), highlightActiveLine(),
-      bracketMatching(), closeBrackets(), highlightSelectionMatches(), search({top: true}), EditorState.tabSize.of(4), EditorView.lineWrapping,
+      lineNumbers(),
+      foldGutter(),
+      codeFolding(),
+      lintGutter(),
+      history(),
+      drawSelection(),
+      highlightSpecialChars(),
+      highlightActiveLine(),
+      bracketMatching(),
+      closeBrackets(),
+      highlightSelectionMatches(),
+      search({top: true}),
+      EditorState.tabSize.of(4),
+      EditorView.lineWrapping,
       autocompletion({override: [context => this.complete(context)], activateOnTypingDelay: 60, icons: false}),
       hoverTooltip((_, at) => this.hover(at), {hoverTime: 350}),
       keymap.of([
-        {key: 'F2', run: () => { void this.rename(); return true; }},
-        {key: 'F12', run: () => { void this.define(this.head); return true; }},
-        {key: 'Shift-F12', run: () => { void this.uses(); return true; }},
-        {key: 'Shift-Alt-f', run: () => { void this.format(); return true; }},
+        {
+          key: 'F2',
+          run: () => {
+            void this.rename();
+            return true;
+          },
+        },
+        {
+          key: 'F12',
+          run: () => {
+            void this.define(this.head);
+            return true;
+          },
+        },
+        {
+          key: 'Shift-F12',
+          run: () => {
+            void this.uses();
+            return true;
+          },
+        },
+        {
+          key: 'Shift-Alt-f',
+          run: () => {
+            void this.format();
+            return true;
+          },
+        },
         {key: 'Mod-.', run: () => this.fixHere()},
         {key: 'Tab', run: acceptCompletion},
-        ...closeBracketsKeymap, ...defaultKeymap, ...searchKeymap, ...historyKeymap, ...foldKeymap, ...completionKeymap, ...lintKeymap, indentWithTab,
+        ...closeBracketsKeymap,
+        ...defaultKeymap,
+        ...searchKeymap,
+        ...historyKeymap,
+        ...foldKeymap,
+        ...completionKeymap,
+        ...lintKeymap,
+        indentWithTab,
       ]),
-      EditorView.contentAttributes.of({'aria-label': 'Model text', tabindex: '0', spellcheck: 'false', autocorrect: 'off', autocapitalize: 'off'}),
+      EditorView.contentAttributes.of({
+        'aria-label': 'Model text',
+        tabindex: '0',
+        spellcheck: 'false',
+        autocorrect: 'off',
+        autocapitalize: 'off',
+      }),
       EditorView.domEventHandlers({
         click: event => {
           if (!(event.ctrlKey || event.metaKey)) return false;
@@ -84,10 +172,13 @@ export class Editor {
     ];
   }
 
-  private get head(): number { return this.view.state.selection.main.head; }
+  private get head(): number {
+    return this.view.state.selection.main.head;
+  }
 
   private changed(update: ViewUpdate): void {
-    if (update.docChanged && !update.transactions.some(t => t.annotation(fromOutside))) this.study.edit(update.state.doc.toString());
+    if (update.docChanged && !update.transactions.some(t => t.annotation(fromOutside)))
+      this.study.edit(update.state.doc.toString());
     if (update.docChanged || update.selectionSet) {
       window.clearTimeout(this.signatureTimer);
       this.signatureTimer = window.setTimeout(() => void this.signature(), 150);
@@ -112,28 +203,48 @@ export class Editor {
 
   private show(messages: Diagnostic[]): void {
     const end = this.view.state.doc.length;
-    const lint: Lint[] = messages.filter(m => m.from !== null && m.to !== null).map(m => ({
-      from: Math.min(m.from!, end), to: Math.min(Math.max(m.to!, m.from!), end), severity: m.severity === 'note' ? 'info' : m.severity, message: m.message,
-      renderMessage: () => h('div', {class: 'lint'}, h('p', {class: 'what'}, m.message), m.reason && h('p', {}, ...prose(m.reason)), m.help && h('p', {class: 'help'}, ...prose(m.help))),
-      actions: fixesOf(m, this.fixes).map(fix => ({name: fix.title, apply: () => this.apply(fix.edits)})),
-    }));
+    const lint: Lint[] = messages
+      .filter(m => m.from !== null && m.to !== null)
+      .map(m => ({
+        from: Math.min(m.from!, end),
+        to: Math.min(Math.max(m.to!, m.from!), end),
+        severity: m.severity === 'note' ? 'info' : m.severity,
+        message: m.message,
+        renderMessage: () =>
+          h(
+            'div',
+            {class: 'lint'},
+            h('p', {class: 'what'}, m.message),
+            m.reason && h('p', {}, ...prose(m.reason)),
+            m.help && h('p', {class: 'help'}, ...prose(m.help)),
+          ),
+        actions: fixesOf(m, this.fixes).map(fix => ({name: fix.title, apply: () => this.apply(fix.edits)})),
+      }));
     this.view.dispatch(setDiagnostics(this.view.state, lint));
     this.onMessages(messages, this.fixes);
   }
 
   private fixHere(): boolean {
-    const at = this.head, fix = this.fixes.find(one => one.from <= at && at <= one.to) ?? this.fixes.find(one => this.view.state.doc.lineAt(one.from).number === this.view.state.doc.lineAt(at).number);
+    const at = this.head,
+      fix =
+        this.fixes.find(one => one.from <= at && at <= one.to) ??
+        this.fixes.find(one => this.view.state.doc.lineAt(one.from).number === this.view.state.doc.lineAt(at).number);
     if (!fix) this.study.say('There is nothing here that is mended with one key.');
     else this.apply(fix.edits);
     return true;
   }
 
-  // --------------------------------------------------------------------------------------------------------- at a place
+  // --------------------------------------------------------------------------------------------------------- at a
+  // place
 
   private async complete(context: CompletionContext): Promise<CompletionResult | null> {
     const before = context.matchBefore(/[\p{L}\p{N}_']+/u);
     if (!context.explicit && !before) return null;
-    const answer = await this.study.asker.ask<{from: number; to: number; items: CompletionItem[]}>({do: 'complete', at: context.pos, budget: 1});
+    const answer = await this.study.asker.ask<{from: number; to: number; items: CompletionItem[]}>({
+      do: 'complete',
+      at: context.pos,
+      budget: 3,
+    });
     if (!answer.ok || context.aborted || answer.items.length === 0) return null;
     const typed = context.state.sliceDoc(answer.from, context.pos).toLowerCase();
     const items = answer.items.filter(item => matches(item, typed)).sort((a, b) => a.rank - b.rank);
@@ -141,18 +252,38 @@ export class Editor {
   }
 
   private async hover(at: number): Promise<Tooltip | null> {
-    const answer = await this.study.asker.ask<{from: number | null; to: number | null; markdown: string}>({do: 'hover', at, budget: 1});
+    const answer = await this.study.asker.ask<{from: number | null; to: number | null; markdown: string}>({
+      do: 'hover',
+      at,
+      budget: 3,
+    });
     if (!answer.ok || answer.from === null || !answer.markdown) return null;
-    return {pos: answer.from, end: answer.to ?? undefined, above: true, create: () => ({dom: markdown(answer.markdown)})};
+    return {
+      pos: answer.from,
+      end: answer.to ?? undefined,
+      above: true,
+      create: () => ({dom: markdown(answer.markdown)}),
+    };
   }
 
   private async signature(): Promise<void> {
-    const line = byId('signature'), before = this.view.state.doc.lineAt(this.head).text.slice(0, this.head - this.view.state.doc.lineAt(this.head).from);
+    const line = byId('signature'),
+      before = this.view.state.doc
+        .lineAt(this.head)
+        .text.slice(0, this.head - this.view.state.doc.lineAt(this.head).from);
     if ((before.match(/\(/g)?.length ?? 0) <= (before.match(/\)/g)?.length ?? 0)) return line.replaceChildren();
-    const answer = await this.study.asker.ask<{label: string; parameters: string[]; active: number; help: string}>({do: 'signature', at: this.head, budget: 1});
+    const answer = await this.study.asker.ask<{label: string; parameters: string[]; active: number; help: string}>({
+      do: 'signature',
+      at: this.head,
+      budget: 3,
+    });
     if (!answer.ok || !answer.label) return line.replaceChildren();
-    const open = answer.label.indexOf('('), name = open < 0 ? answer.label : answer.label.slice(0, open);
-    const parameters = answer.parameters.flatMap((one, i) => [i ? ', ' : '', i === answer.active ? h('b', {}, one) : one]);
+    const open = answer.label.indexOf('('),
+      name = open < 0 ? answer.label : answer.label.slice(0, open);
+    const parameters = answer.parameters.flatMap((one, i) => [
+      i ? ', ' : '',
+      i === answer.active ? h('b', {}, one) : one,
+    ]);
     line.replaceChildren(h('code', {}, name, '(', ...parameters, ')'), ` ${answer.help}`);
   }
 
@@ -167,12 +298,16 @@ export class Editor {
     if (!answer.ok || answer.places.length === 0) return this.study.say('There is no name here.');
     const next = answer.places.find(([from]) => from > this.head) ?? answer.places[0];
     this.goTo(next[0], next[1]);
-    this.study.say(`${answer.places.length} places; this is the one in line ${this.view.state.doc.lineAt(next[0]).number}.`);
+    this.study.say(
+      `${answer.places.length} places; this is the one in line ${this.view.state.doc.lineAt(next[0]).number}.`,
+    );
   }
 
   async rename(): Promise<void> {
-    const word = this.view.state.wordAt(this.head), old = word ? this.view.state.sliceDoc(word.from, word.to) : '';
-    const at = this.head, name = await askFor('Another name', `Instead of ${old || 'this name'}:`, old, 'Rename');
+    const word = this.view.state.wordAt(this.head),
+      old = word ? this.view.state.sliceDoc(word.from, word.to) : '';
+    const at = this.head,
+      name = await askFor('Another name', `Instead of ${old || 'this name'}:`, old, 'Rename');
     if (!name || name === old) return this.view.focus();
     const answer = await this.study.asker.ask<{edits: Edit[]; refusal: string}>({do: 'rename', at, name});
     if (!answer.ok) return this.study.say(answer.trouble.message, true);
@@ -183,7 +318,10 @@ export class Editor {
   async format(): Promise<void> {
     const answer = await this.study.asker.ask<{edits: Edit[]}>({do: 'format'});
     if (!answer.ok) return this.study.say(answer.trouble.message, true);
-    if (answer.edits.length === 0) this.study.say(this.store.state.readable ? 'The text is in its layout.' : 'A text with a mistake of grammar is not laid out.');
+    if (answer.edits.length === 0)
+      this.study.say(
+        this.store.state.readable ? 'The text is in its layout.' : 'A text with a mistake of grammar is not laid out.',
+      );
     this.apply(answer.edits);
   }
 }
@@ -200,20 +338,59 @@ function all(text: Diagnostic[], deep: Diagnostic[]): Diagnostic[] {
 }
 
 const spelled: Record<string, string> = {
-  α: 'alpha', β: 'beta', γ: 'gamma', δ: 'delta', ε: 'epsilon', ζ: 'zeta', η: 'eta', θ: 'theta', ι: 'iota', κ: 'kappa', λ: 'lambda', μ: 'mu', ν: 'nu', ξ: 'xi',
-  π: 'pi', ρ: 'rho', σ: 'sigma', τ: 'tau', υ: 'upsilon', φ: 'phi', χ: 'chi', ψ: 'psi', ω: 'omega', Γ: 'Gamma', Δ: 'Delta', Θ: 'Theta', Λ: 'Lambda', Ξ: 'Xi',
-  Π: 'Pi', Σ: 'Sigma', Φ: 'Phi', Ψ: 'Psi', Ω: 'Omega',
+  α: 'alpha',
+  β: 'beta',
+  γ: 'gamma',
+  δ: 'delta',
+  ε: 'epsilon',
+  ζ: 'zeta',
+  η: 'eta',
+  θ: 'theta',
+  ι: 'iota',
+  κ: 'kappa',
+  λ: 'lambda',
+  μ: 'mu',
+  ν: 'nu',
+  ξ: 'xi',
+  π: 'pi',
+  ρ: 'rho',
+  σ: 'sigma',
+  τ: 'tau',
+  υ: 'upsilon',
+  φ: 'phi',
+  χ: 'chi',
+  ψ: 'psi',
+  ω: 'omega',
+  Γ: 'Gamma',
+  Δ: 'Delta',
+  Θ: 'Theta',
+  Λ: 'Lambda',
+  Ξ: 'Xi',
+  Π: 'Pi',
+  Σ: 'Sigma',
+  Φ: 'Phi',
+  Ψ: 'Psi',
+  Ω: 'Omega',
 };
 function matches(item: CompletionItem, typed: string): boolean {
   if (!typed) return true;
-  const label = item.label.toLowerCase(), latin = [...item.label].map(c => spelled[c] ?? c).join('').toLowerCase();
+  const label = item.label.toLowerCase(),
+    latin = [...item.label]
+      .map(c => spelled[c] ?? c)
+      .join('')
+      .toLowerCase();
   return label.startsWith(typed) || latin.startsWith(typed) || item.insert.toLowerCase().startsWith(typed);
 }
 
 function option(item: CompletionItem, boost: number): Completion {
   const shown: Completion = {
-    label: item.label, detail: item.detail, type: symbols[item.kind] ?? 'text', boost: Math.min(99, boost),
+    label: item.label,
+    detail: item.detail,
+    type: symbols[item.kind] ?? 'text',
+    boost: Math.min(99, boost),
     info: item.help ? () => h('div', {class: 'markdown'}, h('p', {}, ...prose(item.help))) : undefined,
   };
-  return item.snippet ? snippetCompletion(item.insert.replace(/\$\{(\d+)\|([^,|}]*)[^}]*\}/g, '${$1:$2}').replace(/\$0/g, '${}'), shown) : {...shown, apply: item.insert || item.label};
+  return item.snippet
+    ? snippetCompletion(item.insert.replace(/\$\{(\d+)\|([^,|}]*)[^}]*\}/g, '${$1:$2}').replace(/\$0/g, '${}'), shown)
+    : {...shown, apply: item.insert || item.label};
 }

@@ -18,7 +18,8 @@ const tokens = StateField.define<DecorationSet>({
   update(set, transaction) {
     for (const effect of transaction.effects)
       if (effect.is(known)) {
-        const end = transaction.newDoc.length, ranges: Range<Decoration>[] = [];
+        const end = transaction.newDoc.length,
+          ranges: Range<Decoration>[] = [];
         for (const [from, to, kind] of effect.value.tokens)
           if (kind !== 'other' && from < to && to <= end) ranges.push(markOf(kind).range(from, to));
         return Decoration.set(ranges, true);
@@ -32,7 +33,9 @@ const folds = StateField.define<[number, number][]>({
   create: () => [],
   update(list, transaction) {
     for (const effect of transaction.effects) if (effect.is(known)) return effect.value.folding;
-    return transaction.docChanged ? list.map(([from, to]) => [transaction.changes.mapPos(from), transaction.changes.mapPos(to)]) : list;
+    return transaction.docChanged
+      ? list.map(([from, to]) => [transaction.changes.mapPos(from), transaction.changes.mapPos(to)])
+      : list;
   },
 });
 

@@ -9,15 +9,22 @@ import {copyButton, lineElement, sectionsElements} from './formulas';
 
 /** The words of the page for what went wrong: what, why, what helps. */
 export function troubleElement(trouble: Trouble): HTMLElement {
-  return h('div', {class: 'message error'}, h('p', {class: 'what'}, trouble.message), trouble.reason && h('p', {}, ...prose(trouble.reason)),
-           trouble.help && h('p', {class: 'help'}, ...prose(trouble.help)));
+  return h(
+    'div',
+    {class: 'message error'},
+    h('p', {class: 'what'}, trouble.message),
+    trouble.reason && h('p', {}, ...prose(trouble.reason)),
+    trouble.help && h('p', {class: 'help'}, ...prose(trouble.help)),
+  );
 }
 
 const isTrouble = (x: object): x is Trouble => 'message' in x;
 
 /** A panel whose content is asked for when it is opened. */
 function onOpening(id: string, ask: () => void): void {
-  byId<HTMLDetailsElement>(id).addEventListener('toggle', () => { if (byId<HTMLDetailsElement>(id).open) ask(); });
+  byId<HTMLDetailsElement>(id).addEventListener('toggle', () => {
+    if (byId<HTMLDetailsElement>(id).open) ask();
+  });
 }
 const isOpen = (id: string): boolean => byId<HTMLDetailsElement>(id).open;
 
@@ -26,9 +33,15 @@ export class EquationsPanel {
   private readonly say = (text: string): void => this.study.say(text);
   private loops: (() => void)[] = [];
 
-  constructor(private readonly store: Store<State>, private readonly study: Study) {
+  constructor(
+    private readonly store: Store<State>,
+    private readonly study: Study,
+  ) {
     store.watch(['equations', 'equationsTrouble'], state => this.equations(state));
-    store.watch(['equations'], state => { this.derivation(state); this.facts(state); });
+    store.watch(['equations'], state => {
+      this.derivation(state);
+      this.facts(state);
+    });
     store.watch(['equations', 'run', 'found'], state => this.conserved(state));
     store.watch(['run', 'runTrouble'], state => this.motion(state));
     store.watch(['modes'], state => this.modes(state));
@@ -56,87 +69,222 @@ export class EquationsPanel {
     const body = byId('equations-body');
     byId('stage-title').textContent = equations ? equations.title || equations.name : '';
     byId('stage-source').textContent = equations?.source ?? '';
-    if (!equations) return body.replaceChildren(...(equationsTrouble ? [troubleElement(equationsTrouble)] : [h('p', {class: 'muted'}, 'No equations yet.')]));
+    if (!equations)
+      return body.replaceChildren(
+        ...(equationsTrouble ? [troubleElement(equationsTrouble)] : [h('p', {class: 'muted'}, 'No equations yet.')]),
+      );
     const all = [...equations.equations, ...equations.intermediates];
     const where = equations.definitions.length + equations.energies.length > 0;
     body.replaceChildren(
       equationsTrouble ? troubleElement(equationsTrouble) : '',
       h('div', {class: 'numbered'}, ...equations.equations.map(lineElement)),
-      equations.intermediates.length > 0 ? h('div', {class: 'where'}, h('p', {class: 'muted'}, 'with'), ...equations.intermediates.map(lineElement)) : '',
-      where ? h('details', {class: 'inner', open: true}, h('summary', {}, equations.energies_title || 'Where'),
-                ...equations.definitions.map(lineElement), ...equations.energies.map(lineElement)) : '',
-      h('div', {class: 'tools'}, copyButton(() => all, this.say)));
+      equations.intermediates.length > 0
+        ? h('div', {class: 'where'}, h('p', {class: 'muted'}, 'with'), ...equations.intermediates.map(lineElement))
+        : '',
+      where
+        ? h(
+            'details',
+            {class: 'inner', open: true},
+            h('summary', {}, equations.energies_title || 'Where'),
+            ...equations.definitions.map(lineElement),
+            ...equations.energies.map(lineElement),
+          )
+        : '',
+      h(
+        'div',
+        {class: 'tools'},
+        copyButton(() => all, this.say),
+      ),
+    );
   }
 
   private derivation({equations, steps}: State): void {
-    const body = byId('derivation-body'), opened = new Set([...body.querySelectorAll('details[open] > summary')].map(one => one.textContent));
+    const body = byId('derivation-body'),
+      opened = new Set([...body.querySelectorAll('details[open] > summary')].map(one => one.textContent));
     if (!equations?.derivation) return body.replaceChildren(h('p', {class: 'muted'}, steps ? 'It comes …' : ''));
     const parts = sectionsElements(equations.derivation, this.say);
     for (const part of parts) if (opened.has(part.querySelector('summary')!.textContent)) part.setAttribute('open', '');
-    const all = h('button', {type: 'button', class: 'quiet', onclick: () => {
-      const open = !parts.every(part => part.hasAttribute('open'));
-      for (const part of parts) part.toggleAttribute('open', open);
-      all.textContent = open ? 'Fold all' : 'Unfold all';
-    }}, 'Unfold all');
-    const notes = (list: string[] | undefined): HTMLElement[] => (list ?? []).map(text => h('p', {class: 'note'}, ...prose(text)));
-    body.replaceChildren(h('div', {class: 'tools'}, all, copyButton(() => equations.derivation!.flatMap(part => part.lines), this.say)), ...notes(equations.first_notes), ...parts, ...notes(equations.last_notes));
+    const all = h(
+      'button',
+      {
+        type: 'button',
+        class: 'quiet',
+        onclick: () => {
+          const open = !parts.every(part => part.hasAttribute('open'));
+          for (const part of parts) part.toggleAttribute('open', open);
+          all.textContent = open ? 'Fold all' : 'Unfold all';
+        },
+      },
+      'Unfold all',
+    );
+    const notes = (list: string[] | undefined): HTMLElement[] =>
+      (list ?? []).map(text => h('p', {class: 'note'}, ...prose(text)));
+    body.replaceChildren(
+      h(
+        'div',
+        {class: 'tools'},
+        all,
+        copyButton(() => equations.derivation!.flatMap(part => part.lines), this.say),
+      ),
+      ...notes(equations.first_notes),
+      ...parts,
+      ...notes(equations.last_notes),
+    );
   }
 
   private facts({equations}: State): void {
-    const body = byId('certificate-body'), badge = byId('certified');
+    const body = byId('certificate-body'),
+      badge = byId('certified');
     badge.hidden = !equations;
     if (!equations) return body.replaceChildren();
     badge.className = equations.certified ? 'badge good' : 'badge bad';
     badge.textContent = equations.certified ? '✓ certified' : '✗ not certified';
-    const summary = h('dl', {}, ...equations.summary.flatMap(([name, value]) => [h('dt', {}, name), h('dd', {}, ...prose(value))]));
+    const summary = h(
+      'dl',
+      {},
+      ...equations.summary.flatMap(([name, value]) => [h('dt', {}, name), h('dd', {}, ...prose(value))]),
+    );
     body.replaceChildren(summary, ...(equations.certificate.length ? [checks(equations.certificate)] : []));
   }
 
   private conserved({equations, run, found}: State): void {
-    const list: Conserved[] = Array.isArray(found) ? found : run?.conserved.length ? run.conserved : equations?.conserved ?? [];
+    const list: Conserved[] = Array.isArray(found)
+      ? found
+      : run?.conserved.length
+        ? run.conserved
+        : (equations?.conserved ?? []);
     const drifts = new Map(run?.conserved.map(c => [c.sentence, c]));
     const rows = list.map(c => {
       const measured = drifts.get(c.sentence) ?? c;
-      return h('div', {class: 'conserved'}, c.sentence && h('p', {class: 'sentence'}, ...prose(c.sentence)), lineElement({...c.formula, sentence: ''}),
-               (measured.value || measured.drift) && h('p', {class: 'drift'}, measured.value && h('span', {}, 'value ', h('b', {}, numbers(measured.value))),
-                                                         measured.drift && h('span', {}, 'drift ', h('b', {}, numbers(measured.drift)))));
+      return h(
+        'div',
+        {class: 'conserved'},
+        c.sentence && h('p', {class: 'sentence'}, ...prose(c.sentence)),
+        lineElement({...c.formula, sentence: ''}),
+        (measured.value || measured.drift) &&
+          h(
+            'p',
+            {class: 'drift'},
+            measured.value && h('span', {}, 'value ', h('b', {}, numbers(measured.value))),
+            measured.drift && h('span', {}, 'drift ', h('b', {}, numbers(measured.drift))),
+          ),
+      );
     });
-    const search = h('button', {type: 'button', class: 'quiet', onclick: () => void this.study.askConserved()}, 'Search for more');
+    const search = h(
+      'button',
+      {type: 'button', class: 'quiet', onclick: () => void this.study.askConserved()},
+      'Search for more',
+    );
     byId('conserved-body').replaceChildren(
-      ...(rows.length ? rows : equations ? [h('p', {class: 'muted'}, 'None was found among the energy and the momenta.')] : []),
-      found && isTrouble(found) ? troubleElement(found) : '', equations ? h('div', {class: 'tools'}, search) : '');
+      ...(rows.length
+        ? rows
+        : equations
+          ? [h('p', {class: 'muted'}, 'None was found among the energy and the momenta.')]
+          : []),
+      found && isTrouble(found) ? troubleElement(found) : '',
+      equations ? h('div', {class: 'tools'}, search) : '',
+    );
   }
 
   private motion({run, runTrouble}: State): void {
-    const facts = run ? h('dl', {}, ...run.statistics.flatMap(([name, value]) => [h('dt', {}, name), h('dd', {}, numbers(value))])) : '';
-    const ending = run && !run.ending.ok ? h('div', {class: 'message'}, h('p', {class: 'what'}, `The motion ended early: ${run.ending.kind}.`), run.ending.reason && h('p', {}, ...prose(run.ending.reason))) : '';
-    const lost = run?.uncertain ? h('div', {class: 'message'}, h('p', {class: 'what'}, `From t = ${Number(run.uncertain.from.toPrecision(3))} on no digit of ${run.uncertain.everything ? 'the motion' : run.uncertain.columns.map(pretty).join(', ')} is certain.`)) : '';
-    byId('motion-body').replaceChildren(runTrouble ? troubleElement(runTrouble) : '', ending, lost, facts, run?.happenings.length ? happenings(run.happenings, run.first_mode) : '');
-    byId('stage-trouble').replaceChildren(runTrouble ? (runTrouble.code === noDuration ? this.withoutDuration() : troubleElement(runTrouble)) : ending ? ending.cloneNode(true) : '');
+    const facts = run
+      ? h('dl', {}, ...run.statistics.flatMap(([name, value]) => [h('dt', {}, name), h('dd', {}, numbers(value))]))
+      : '';
+    const ending =
+      run && !run.ending.ok
+        ? h(
+            'div',
+            {class: 'message'},
+            h('p', {class: 'what'}, `The motion ended early: ${run.ending.kind}.`),
+            run.ending.reason && h('p', {}, ...prose(run.ending.reason)),
+          )
+        : '';
+    const lost = run?.uncertain
+      ? h(
+          'div',
+          {class: 'message'},
+          h(
+            'p',
+            {class: 'what'},
+            `From t = ${Number(run.uncertain.from.toPrecision(3))} on no digit of ` +
+              `${run.uncertain.everything ? 'the motion' : run.uncertain.columns.map(pretty).join(', ')} is certain.`,
+          ),
+        )
+      : '';
+    byId('motion-body').replaceChildren(
+      runTrouble ? troubleElement(runTrouble) : '',
+      ending,
+      lost,
+      facts,
+      run?.happenings.length ? happenings(run.happenings, run.first_mode) : '',
+    );
+    byId('stage-trouble').replaceChildren(
+      runTrouble
+        ? runTrouble.code === noDuration
+          ? this.withoutDuration()
+          : troubleElement(runTrouble)
+        : ending
+          ? ending.cloneNode(true)
+          : '',
+    );
   }
 
   private withoutDuration(): HTMLElement {
-    return h('div', {class: 'message'}, h('p', {class: 'what'}, 'The text does not say how long to run.'),
-             h('p', {}, 'A line such as ', h('code', {}, 'run 10 s'), ' says it. ', h('button', {type: 'button', onclick: () => this.study.setDuration('10 s')}, 'Run 10 s')));
+    return h(
+      'div',
+      {class: 'message'},
+      h('p', {class: 'what'}, 'The text does not say how long to run.'),
+      h(
+        'p',
+        {},
+        'A line such as ',
+        h('code', {}, 'run 10 s'),
+        ' says it. ',
+        h('button', {type: 'button', onclick: () => this.study.setDuration('10 s')}, 'Run 10 s'),
+      ),
+    );
   }
 
   private modes({modes}: State): void {
     for (const stop of this.loops) stop();
     this.loops = [];
     const body = byId('modes-body');
-    if (modes === null) return body.replaceChildren(h('p', {class: 'muted'}, 'Asked for when this is opened and the values rest.'));
+    if (modes === null)
+      return body.replaceChildren(h('p', {class: 'muted'}, 'Asked for when this is opened and the values rest.'));
     if (isTrouble(modes)) return body.replaceChildren(troubleElement(modes));
     body.replaceChildren(...this.points(modes));
   }
 
   private points(modes: ModesAnswer): (Node | string)[] {
-    return [...modes.points.flatMap(point => [
-      h('h3', {}, pretty(point.name), h('span', {class: point.stable ? 'good' : 'bad'}, ` ${point.stability}`)),
-      h('div', {class: 'scroll'}, h('table', {}, h('thead', {}, h('tr', {}, ...['', 'ω', 'f', 'period', 'damping'].map(t => h('th', {}, t)))),
-        h('tbody', {}, ...point.rows.map(row => h('tr', {}, ...[row.kind, row.frequency, row.hertz, row.period, row.damping].map(t => h('td', {}, numbers(t)))))))),
-      h('div', {class: 'shapes'}, ...point.shapes.map(shape => this.shape(shape))),
-      h('details', {class: 'inner'}, h('summary', {}, 'Linearized equations'), ...point.formulas.map(lineElement)),
-    ]), modes.search ? h('p', {class: 'muted'}, ...prose(modes.search)) : '', modes.points.length ? '' : h('p', {class: 'muted'}, 'There is no equilibrium here.')];
+    return [
+      ...modes.points.flatMap(point => [
+        h('h3', {}, pretty(point.name), h('span', {class: point.stable ? 'good' : 'bad'}, ` ${point.stability}`)),
+        h(
+          'div',
+          {class: 'scroll'},
+          h(
+            'table',
+            {},
+            h('thead', {}, h('tr', {}, ...['', 'ω', 'f', 'period', 'damping'].map(t => h('th', {}, t)))),
+            h(
+              'tbody',
+              {},
+              ...point.rows.map(row =>
+                h(
+                  'tr',
+                  {},
+                  ...[row.kind, row.frequency, row.hertz, row.period, row.damping].map(t => h('td', {}, numbers(t))),
+                ),
+              ),
+            ),
+          ),
+        ),
+        h('div', {class: 'shapes'}, ...point.shapes.map(shape => this.shape(shape))),
+        h('details', {class: 'inner'}, h('summary', {}, 'Linearized equations'), ...point.formulas.map(lineElement)),
+      ]),
+      modes.search ? h('p', {class: 'muted'}, ...prose(modes.search)) : '',
+      modes.points.length ? '' : h('p', {class: 'muted'}, 'There is no equilibrium here.'),
+    ];
   }
 
   private shape({caption, drawing, svg}: ModesAnswer['points'][number]['shapes'][number]): HTMLElement {
@@ -148,7 +296,8 @@ export class EquationsPanel {
 
   private phaseSpace({phaseSpace}: State): void {
     const body = byId('phase-space-body');
-    if (phaseSpace === null) return body.replaceChildren(h('p', {class: 'muted'}, 'Asked for when this is opened and the values rest.'));
+    if (phaseSpace === null)
+      return body.replaceChildren(h('p', {class: 'muted'}, 'Asked for when this is opened and the values rest.'));
     if (!Array.isArray(phaseSpace)) return body.replaceChildren(troubleElement(phaseSpace));
     body.replaceChildren(...sectionsElements(phaseSpace as Section[], this.say));
     body.querySelector('details')?.setAttribute('open', '');
@@ -156,16 +305,55 @@ export class EquationsPanel {
 }
 
 function checks(list: Check[]): HTMLElement {
-  return h('ul', {class: 'checks'}, ...list.map(check => {
-    const mark = !check.applies ? ['muted', '–', 'does not apply'] : check.passed ? ['good', '✓', 'passed'] : ['bad', '✗', 'failed'];
-    return h('li', {}, h('span', {class: mark[0], role: 'img', 'aria-label': mark[2]}, mark[1]), h('span', {}, check.statement), h('span', {class: 'muted'}, check.verdict));
-  }));
+  return h(
+    'ul',
+    {class: 'checks'},
+    ...list.map(check => {
+      const mark = !check.applies
+        ? ['muted', '–', 'does not apply']
+        : check.passed
+          ? ['good', '✓', 'passed']
+          : ['bad', '✗', 'failed'];
+      return h(
+        'li',
+        {},
+        h('span', {class: mark[0], role: 'img', 'aria-label': mark[2]}, mark[1]),
+        h('span', {}, check.statement),
+        h('span', {class: 'muted'}, check.verdict),
+      );
+    }),
+  );
 }
 
 function happenings(list: Happening[], first: string): HTMLElement {
-  const most = 200, rows = list.slice(0, most).map(one =>
-    h('tr', {}, h('td', {class: 'number'}, String(Number(one.t.toPrecision(6)))), h('td', {}, `${one.what} ${one.name}`), h('td', {}, one.mode), h('td', {}, one.remark)));
-  return h('details', {class: 'inner', open: list.length <= 12}, h('summary', {}, `Events and modes (${list.length})`), first && h('p', {class: 'muted'}, `It begins ${first}.`),
-           h('div', {class: 'scroll'}, h('table', {}, h('thead', {}, h('tr', {}, ...['t in s', 'what', 'then', ''].map(t => h('th', {}, t)))), h('tbody', {}, ...rows))),
-           list.length > most && h('p', {class: 'muted'}, `and ${list.length - most} more`));
+  const most = 200,
+    rows = list
+      .slice(0, most)
+      .map(one =>
+        h(
+          'tr',
+          {},
+          h('td', {class: 'number'}, String(Number(one.t.toPrecision(6)))),
+          h('td', {}, `${one.what} ${one.name}`),
+          h('td', {}, one.mode),
+          h('td', {}, one.remark),
+        ),
+      );
+  return h(
+    'details',
+    {class: 'inner', open: list.length <= 12},
+    h('summary', {}, `Events and modes (${list.length})`),
+    first && h('p', {class: 'muted'}, `It begins ${first}.`),
+    h(
+      'div',
+      {class: 'scroll'},
+      h(
+        'table',
+        {},
+        h('thead', {}, h('tr', {}, ...['t in s', 'what', 'then', ''].map(t => h('th', {}, t)))),
+        h('tbody', {}, ...rows),
+      ),
+    ),
+    list.length > most && h('p', {class: 'muted'}, `and ${list.length - most} more`),
+  );
 }

@@ -7,7 +7,8 @@ import {troubleElement} from './equations';
 
 /** The `expect` and `claim` lines of the model, carried out when this is opened. */
 export function expectationsPanel(store: Store<State>, study: Study): void {
-  const part = byId<HTMLDetailsElement>('expectations'), body = byId('expectations-body');
+  const part = byId<HTMLDetailsElement>('expectations'),
+    body = byId('expectations-body');
   let of = '';
   const show = async (): Promise<void> => {
     const {openedText, readable, quick, run, runTrouble} = store.state;
@@ -15,17 +16,43 @@ export function expectationsPanel(store: Store<State>, study: Study): void {
     of = openedText;
     body.replaceChildren(h('p', {class: 'muted'}, 'They are carried out …'));
     const answer = await study.asker.ask<{results: ExpectationResult[]}>({do: 'expectations', budget: 60});
-    if (!answer.ok && answer.kind === 'cancelled') { of = ''; return; }
-    body.replaceChildren(...(answer.ok ? resultsElements(answer.results) : [troubleElement(answer.trouble as Trouble)]));
+    if (!answer.ok && answer.kind === 'cancelled') {
+      of = '';
+      return;
+    }
+    body.replaceChildren(
+      ...(answer.ok ? resultsElements(answer.results) : [troubleElement(answer.trouble as Trouble)]),
+    );
   };
   part.addEventListener('toggle', () => void show());
   store.watch(['openedText', 'readable', 'run', 'quick'], () => void show());
 }
 
 function resultsElements(results: ExpectationResult[]): Node[] {
-  if (results.length === 0) return [h('p', {class: 'muted'}, 'The model has none: an `expect` line says what must hold.')];
-  return [h('ul', {class: 'checks'}, ...results.map(r =>
-    h('li', {}, h('span', {class: r.passed ? 'good' : 'bad', role: 'img', 'aria-label': r.passed ? 'holds' : 'fails'}, r.passed ? '✓' : '✗'),
-      h('span', {}, h('code', {}, r.text), r.passed ? '' : h('p', {}, ...prose([r.message, r.pitfall].filter(Boolean).join(' ')))),
-      h('span', {class: 'muted'}, r.actual))))];
+  if (results.length === 0)
+    return [h('p', {class: 'muted'}, 'The model has none: an `expect` line says what must hold.')];
+  return [
+    h(
+      'ul',
+      {class: 'checks'},
+      ...results.map(r =>
+        h(
+          'li',
+          {},
+          h(
+            'span',
+            {class: r.passed ? 'good' : 'bad', role: 'img', 'aria-label': r.passed ? 'holds' : 'fails'},
+            r.passed ? '✓' : '✗',
+          ),
+          h(
+            'span',
+            {},
+            h('code', {}, r.text),
+            r.passed ? '' : h('p', {}, ...prose([r.message, r.pitfall].filter(Boolean).join(' '))),
+          ),
+          h('span', {class: 'muted'}, r.actual),
+        ),
+      ),
+    ),
+  ];
 }

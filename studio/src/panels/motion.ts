@@ -19,7 +19,12 @@ const icons = {play: 'M6 4v16l14-8z', pause: 'M6 4h4v16H6zM14 4h4v16h-4z', start
 export class MotionPanel {
   private offered = 0;
 
-  constructor(private readonly store: Store<State>, private readonly study: Study, private readonly clock: Clock, private readonly stage: Stage) {
+  constructor(
+    private readonly store: Store<State>,
+    private readonly study: Study,
+    private readonly clock: Clock,
+    private readonly stage: Stage,
+  ) {
     this.transport();
     clock.onTick(() => this.tick());
     store.watch(['run', 'runTrouble', 'opened', 'readable'], state => this.shown(state));
@@ -34,20 +39,37 @@ export class MotionPanel {
     byId('to-start').append(icon(icons.start));
     byId('play').addEventListener('click', () => clock.play(!clock.playing));
     byId('to-start').addEventListener('click', () => clock.seek(0));
-    byId('scrub').addEventListener('input', event => { clock.play(false); clock.seek(Number((event.target as HTMLInputElement).value) * clock.duration); });
-    byId('speed').addEventListener('change', event => { clock.rate = Number((event.target as HTMLSelectElement).value); });
-    byId('repeat').addEventListener('change', event => { clock.repeat = (event.target as HTMLInputElement).checked; });
-    byId('trail').addEventListener('change', event => store.update({trail: (event.target as HTMLSelectElement).value as State['trail']}));
-    byId('forces').addEventListener('change', event => store.update({forces: (event.target as HTMLInputElement).checked}));
-    byId('home-view').addEventListener('click', () => { this.stage.camera.reset(); this.stage.draw(); });
+    byId('scrub').addEventListener('input', event => {
+      clock.play(false);
+      clock.seek(Number((event.target as HTMLInputElement).value) * clock.duration);
+    });
+    byId('speed').addEventListener('change', event => {
+      clock.rate = Number((event.target as HTMLSelectElement).value);
+    });
+    byId('repeat').addEventListener('change', event => {
+      clock.repeat = (event.target as HTMLInputElement).checked;
+    });
+    byId('trail').addEventListener('change', event =>
+      store.update({trail: (event.target as HTMLSelectElement).value as State['trail']}),
+    );
+    byId('forces').addEventListener('change', event =>
+      store.update({forces: (event.target as HTMLInputElement).checked}),
+    );
+    byId('home-view').addEventListener('click', () => {
+      this.stage.camera.reset();
+      this.stage.draw();
+    });
     byId('pin-button').addEventListener('click', () => this.study.pin());
   }
 
   private tick(): void {
-    const {clock} = this, digits = Math.max(0, Math.min(9, 3 - Math.floor(Math.log10(clock.duration || 1))));
-    const unit = this.store.state.run?.independent.unit ?? '', text = `${clock.now.toFixed(digits)}${unit ? ' ' + unit : ''}`;
+    const {clock} = this,
+      digits = Math.max(0, Math.min(9, 3 - Math.floor(Math.log10(clock.duration || 1))));
+    const unit = this.store.state.run?.independent.unit ?? '',
+      text = `${clock.now.toFixed(digits)}${unit ? ' ' + unit : ''}`;
     byId('time').textContent = text;
-    const scrub = byId<HTMLInputElement>('scrub'), play = byId('play');
+    const scrub = byId<HTMLInputElement>('scrub'),
+      play = byId('play');
     scrub.value = clock.duration > 0 ? String(clock.s / clock.duration) : '0';
     scrub.setAttribute('aria-valuetext', text);
     if (play.dataset.playing !== String(clock.playing)) {
@@ -62,40 +84,85 @@ export class MotionPanel {
 
   private offerSpeeds(): void {
     this.offered = this.clock.pleasant;
-    byId('speed').replaceChildren(...[0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10].map(factor => {
-      const speed = this.offered * factor;
-      return h('option', {value: speed, selected: speed === this.clock.rate}, speedText(Number(speed.toPrecision(2))));
-    }));
+    byId('speed').replaceChildren(
+      ...[0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10].map(factor => {
+        const speed = this.offered * factor;
+        return h(
+          'option',
+          {value: speed, selected: speed === this.clock.rate},
+          speedText(Number(speed.toPrecision(2))),
+        );
+      }),
+    );
   }
 
   private shown({run, runTrouble, opened, readable}: State): void {
-    const drawing = run?.drawing, none = byId('no-drawing');
+    const drawing = run?.drawing,
+      none = byId('no-drawing');
     byId('drawing').hidden = !drawing;
-    none.textContent = drawing ? '' : run ? (run.figures.length ? '' : 'There is nothing to draw: the model has neither points nor bodies.') : runTrouble ? '' : 'No motion yet.';
+    none.textContent = drawing
+      ? ''
+      : run
+        ? run.figures.length
+          ? ''
+          : 'There is nothing to draw: the model has neither points nor bodies.'
+        : runTrouble
+          ? ''
+          : 'No motion yet.';
     none.hidden = none.textContent === '';
     byId('motion').classList.toggle('stale', opened !== null && !readable);
     byId('transport').hidden = !run;
     byId('trail-label').hidden = !drawing?.elements.some(e => e.kind === 'trail');
     byId('forces-label').hidden = !drawing?.elements.some(e => e.kind === 'arrow');
     byId('home-view').hidden = !drawing;
-    if (drawing) byId('drawing').setAttribute('aria-label', `Drawing of the system in motion. ${drawing.dimension === 3 ? 'Drag to turn it, ' : ''}Drag a body to set the start.`);
+    if (drawing)
+      byId('drawing').setAttribute(
+        'aria-label',
+        `Drawing of the system in motion. ${drawing.dimension === 3 ? 'Drag to turn it. ' : ''}Drag a body to set it.`,
+      );
     this.tick();
   }
 
   private pins({pins}: State): void {
-    byId('pins').replaceChildren(...pins.map(pin => {
-      const set = (patch: Partial<typeof pin>): void => this.store.update({pins: this.store.state.pins.map(one => one.id === pin.id ? {...one, ...patch} : one)});
-      return h('li', {class: `s${pin.series + 1}`},
-        h('label', {}, h('input', {type: 'checkbox', checked: pin.shown, onchange: (event: Event) => set({shown: (event.target as HTMLInputElement).checked})}), h('span', {class: 'dot', 'aria-hidden': 'true'}), pin.label),
-        h('button', {type: 'button', class: 'icon', 'aria-label': `Take away the run with ${pin.label}`, onclick: () => this.store.update({pins: this.store.state.pins.filter(one => one.id !== pin.id)})}, '×'));
-    }));
+    byId('pins').replaceChildren(
+      ...pins.map(pin => {
+        const set = (patch: Partial<typeof pin>): void =>
+          this.store.update({pins: this.store.state.pins.map(one => (one.id === pin.id ? {...one, ...patch} : one))});
+        return h(
+          'li',
+          {class: `s${pin.series + 1}`},
+          h(
+            'label',
+            {},
+            h('input', {
+              type: 'checkbox',
+              checked: pin.shown,
+              onchange: (event: Event) => set({shown: (event.target as HTMLInputElement).checked}),
+            }),
+            h('span', {class: 'dot', 'aria-hidden': 'true'}),
+            pin.label,
+          ),
+          h(
+            'button',
+            {
+              type: 'button',
+              class: 'icon',
+              'aria-label': `Take away the run with ${pin.label}`,
+              onclick: () => this.store.update({pins: this.store.state.pins.filter(one => one.id !== pin.id)}),
+            },
+            '×',
+          ),
+        );
+      }),
+    );
     byId('pins').hidden = pins.length === 0;
   }
 
   // ------------------------------------------------------------------------------------------------- Poincaré section
 
   private sectionPlace(): void {
-    const field = byId<HTMLInputElement>('section-at'), first = this.store.state.equations?.coordinates[0]?.name;
+    const field = byId<HTMLInputElement>('section-at'),
+      first = this.store.state.equations?.coordinates[0]?.name;
     byId('section').hidden = !first || (this.store.state.opened?.fields ?? false);
     const known = this.store.state.equations?.coordinates.some(c => field.value.includes(c.name)) ?? false;
     if (first && !known) field.value = `${first} = 0`;
@@ -104,7 +171,8 @@ export class MotionPanel {
   private sectionForm(): void {
     byId('section-form').addEventListener('submit', event => {
       event.preventDefault();
-      const at = byId<HTMLInputElement>('section-at').value.trim(), way = byId<HTMLSelectElement>('section-way').value;
+      const at = byId<HTMLInputElement>('section-at').value.trim(),
+        way = byId<HTMLSelectElement>('section-way').value;
       void this.study.askSection(at + way, Number(byId<HTMLInputElement>('section-count').value) || 300);
     });
     byId('section-stop').addEventListener('click', () => this.study.asker.cancel('section'));
@@ -112,7 +180,15 @@ export class MotionPanel {
 
   private section({section, sectionTrouble, busy}: State): void {
     byId('section-stop').hidden = busy !== 'section';
-    const facts = section ? `${section.crossings} crossings${section.ended ? `; ${section.ended}` : ''}` : busy === 'section' ? 'It runs …' : '';
-    byId('section-body').replaceChildren(sectionTrouble ? troubleElement(sectionTrouble) : '', section ? h('div', {class: 'picture', html: section.svg}) : '', h('p', {class: 'muted'}, numbers(facts)));
+    const facts = section
+      ? `${section.crossings} crossings${section.ended ? `; ${section.ended}` : ''}`
+      : busy === 'section'
+        ? 'It runs …'
+        : '';
+    byId('section-body').replaceChildren(
+      sectionTrouble ? troubleElement(sectionTrouble) : '',
+      section ? h('div', {class: 'picture', html: section.svg}) : '',
+      h('p', {class: 'muted'}, numbers(facts)),
+    );
   }
 }

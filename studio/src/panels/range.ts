@@ -1,5 +1,9 @@
 /** Where a slider begins, ends, and what one step of it is. */
-export interface Range {low: number; high: number; step: number}
+export interface Range {
+  low: number;
+  high: number;
+  step: number;
+}
 
 /** The next larger of 1, 2, 3, 5 times a power of ten. */
 function round(size: number): number {
@@ -7,7 +11,11 @@ function round(size: number): number {
   return [1, 2, 3, 5, 10].map(f => f * power).find(f => f >= size * 0.999)!;
 }
 
-const within = (low: number, high: number): Range => ({low, high, step: 10 ** Math.floor(Math.log10((high - low) / 200))});
+const within = (low: number, high: number): Range => ({
+  low,
+  high,
+  step: 10 ** Math.floor(Math.log10((high - low) / 200)),
+});
 
 /** Of a parameter: from nothing to about three times what the text says; of either sign where it is 0. */
 export function rangeOfParameter(value: number): Range {
@@ -18,7 +26,8 @@ export function rangeOfParameter(value: number): Range {
 
 /** Of a start value: a full turn of an angle; else about three times the value, at least `scale`, to both sides. */
 export function rangeOfStart(value: number, unit: string, scale: number): Range {
-  if (unit === 'deg') return Math.abs(value) <= 180 ? within(-180, 180) : within(-round(Math.abs(value)), round(Math.abs(value)));
+  if (unit === 'deg')
+    return Math.abs(value) <= 180 ? within(-180, 180) : within(-round(Math.abs(value)), round(Math.abs(value)));
   const reach = round(Math.max(3 * Math.abs(value), scale));
   return within(-reach, reach);
 }

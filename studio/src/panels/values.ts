@@ -16,25 +16,67 @@ interface Row {
 }
 
 /** A name with its slider, number, unit and the way back to what the text says. */
-function makeRow(name: string, symbol: Formula | null, unit: string, range: Range, change: (value: number, resting: boolean) => void, back: () => void): Row {
-  const slider = h('input', {type: 'range', min: range.low, max: range.high, step: range.step, 'aria-label': `${name}${unit ? ` in ${unit}` : ''}`});
+function makeRow(
+  name: string,
+  symbol: Formula | null,
+  unit: string,
+  range: Range,
+  change: (value: number, resting: boolean) => void,
+  back: () => void,
+): Row {
+  const slider = h('input', {
+    type: 'range',
+    min: range.low,
+    max: range.high,
+    step: range.step,
+    'aria-label': `${name}${unit ? ` in ${unit}` : ''}`,
+  });
   const field = h('input', {type: 'number', step: 'any', 'aria-label': `${name}: number${unit ? ` in ${unit}` : ''}`});
-  const reset = h('button', {type: 'button', class: 'icon', 'aria-label': `${name} as in the text`, title: 'As in the text', onclick: back}, '↺');
+  const reset = h(
+    'button',
+    {type: 'button', class: 'icon', 'aria-label': `${name} as in the text`, title: 'As in the text', onclick: back},
+    '↺',
+  );
   const label = h('span', {class: 'symbol', html: symbol ? `<math><mrow>${symbol.mathml}</mrow></math>` : ''});
   if (!symbol) label.textContent = name;
-  const element = h('div', {class: 'value', 'data-name': name}, label, slider, field, h('span', {class: 'unit'}, unitText(unit)), reset);
-  const row: Row = {element, slider, field, reset, range, show(value, changed) {
-    element.classList.toggle('changed', changed);
-    reset.disabled = !changed;
-    if (value === null) { field.value = ''; return; }
-    row.range = widened(row.range, value);
-    [slider.min, slider.max, slider.step] = [String(row.range.low), String(row.range.high), String(row.range.step)];
-    if (document.activeElement !== field) field.value = shown(value);
-    if (document.activeElement !== slider || Math.abs(Number(slider.value) - value) > row.range.step) slider.value = String(value);
-  }};
-  slider.addEventListener('input', () => { field.value = shown(Number(slider.value)); change(Number(slider.value), false); });
+  const element = h(
+    'div',
+    {class: 'value', 'data-name': name},
+    label,
+    slider,
+    field,
+    h('span', {class: 'unit'}, unitText(unit)),
+    reset,
+  );
+  const row: Row = {
+    element,
+    slider,
+    field,
+    reset,
+    range,
+    show(value, changed) {
+      element.classList.toggle('changed', changed);
+      reset.disabled = !changed;
+      if (value === null) {
+        field.value = '';
+        return;
+      }
+      row.range = widened(row.range, value);
+      [slider.min, slider.max, slider.step] = [String(row.range.low), String(row.range.high), String(row.range.step)];
+      if (document.activeElement !== field) field.value = shown(value);
+      if (document.activeElement !== slider || Math.abs(Number(slider.value) - value) > row.range.step)
+        slider.value = String(value);
+    },
+  };
+  slider.addEventListener('input', () => {
+    field.value = shown(Number(slider.value));
+    change(Number(slider.value), false);
+  });
   slider.addEventListener('change', () => change(Number(slider.value), true));
-  field.addEventListener('change', () => { const value = Number(field.value); if (field.value !== '' && Number.isFinite(value)) change(value, true); });
+  field.addEventListener('change', () => {
+    const value = Number(field.value);
+    if (field.value !== '' && Number.isFinite(value)) change(value, true);
+  });
   return row;
 }
 
@@ -49,16 +91,29 @@ export class ValuesPanel {
   private rows = new Map<string, Row>();
   private shape = '';
 
-  constructor(private readonly store: Store<State>, private readonly study: Study) {
+  constructor(
+    private readonly store: Store<State>,
+    private readonly study: Study,
+  ) {
     store.watch(['equations', 'run', 'set', 'start', 'quick'], () => this.refresh());
   }
 
   private refresh(): void {
     const {equations} = this.store.state;
     byId('values').classList.toggle('empty', !equations);
-    if (!equations) { this.shape = ''; this.parameters.replaceChildren(); this.starts.replaceChildren(); this.rows.clear(); return; }
+    if (!equations) {
+      this.shape = '';
+      this.parameters.replaceChildren();
+      this.starts.replaceChildren();
+      this.rows.clear();
+      return;
+    }
     const parameters = equations.parameters.filter(p => p.used && p.value !== null);
-    const shape = JSON.stringify([equations.name, parameters.map(p => [p.name, p.unit]), equations.coordinates.map(c => [c.name, c.unit])]);
+    const shape = JSON.stringify([
+      equations.name,
+      parameters.map(p => [p.name, p.unit]),
+      equations.coordinates.map(c => [c.name, c.unit]),
+    ]);
     if (shape !== this.shape) this.build(parameters, equations.coordinates, shape);
     for (const p of parameters) this.showParameter(p);
     for (const c of equations.coordinates) this.showStart(c);
@@ -76,19 +131,33 @@ export class ValuesPanel {
   }
 
   private parameterRow(p: Parameter): HTMLElement {
-    const row = makeRow(p.name, p.symbol, p.unit, rangeOfParameter(p.value!),
-                        (value, resting) => this.study.setValue(p.name, `${shown(value)}${p.unit ? ' ' + p.unit : ''}`, resting),
-                        () => this.study.setValue(p.name, null, true));
+    const row = makeRow(
+      p.name,
+      p.symbol,
+      p.unit,
+      rangeOfParameter(p.value!),
+      (value, resting) => this.study.setValue(p.name, `${shown(value)}${p.unit ? ' ' + p.unit : ''}`, resting),
+      () => this.study.setValue(p.name, null, true),
+    );
     this.rows.set(p.name, row);
     return row.element;
   }
 
   private startRow(c: Coordinate, order: 0 | 1): HTMLElement {
-    const name = order ? c.name + "'" : c.name, angle = inDegrees(c) && order === 0, unit = angle ? 'deg' : order ? c.velocity_unit : c.unit;
-    const now = (order ? c.v : c.q) ?? 0, radius = this.store.state.run?.drawing?.radius ?? 1, scale = inDegrees(c) ? (order ? 10 : 180) : radius;
-    const row = makeRow(name, order ? c.velocity : c.symbol, unit, rangeOfStart(angle ? now * degrees : now, unit, scale),
-                        (value, resting) => this.study.setStart(name, `${shown(value)}${unit ? ' ' + unit : ''}`, resting),
-                        () => this.study.setStart(name, null, true));
+    const name = order ? c.name + "'" : c.name,
+      angle = inDegrees(c) && order === 0,
+      unit = angle ? 'deg' : order ? c.velocity_unit : c.unit;
+    const now = (order ? c.v : c.q) ?? 0,
+      radius = this.store.state.run?.drawing?.radius ?? 1,
+      scale = inDegrees(c) ? (order ? 10 : 180) : radius;
+    const row = makeRow(
+      name,
+      order ? c.velocity : c.symbol,
+      unit,
+      rangeOfStart(angle ? now * degrees : now, unit, scale),
+      (value, resting) => this.study.setStart(name, `${shown(value)}${unit ? ' ' + unit : ''}`, resting),
+      () => this.study.setStart(name, null, true),
+    );
     this.rows.set(name, row);
     return row.element;
   }
@@ -101,9 +170,17 @@ export class ValuesPanel {
   private showStart(c: Coordinate): void {
     const {run, start, quick} = this.store.state;
     for (const order of [0, 1]) {
-      const name = order ? c.name + "'" : c.name, override = start[name], met = run && !quick ? run.start[name] : undefined;
-      const si = met ?? (order ? c.v : c.q), factor = inDegrees(c) && order === 0 ? degrees : 1;
-      const own = override?.endsWith('deg') && order === 0 ? Number.parseFloat(override) : override !== undefined ? Number.parseFloat(override) * factor : null;
+      const name = order ? c.name + "'" : c.name,
+        override = start[name],
+        met = run && !quick ? run.start[name] : undefined;
+      const si = met ?? (order ? c.v : c.q),
+        factor = inDegrees(c) && order === 0 ? degrees : 1;
+      const own =
+        override?.endsWith('deg') && order === 0
+          ? Number.parseFloat(override)
+          : override !== undefined
+            ? Number.parseFloat(override) * factor
+            : null;
       this.rows.get(name)?.show(quick && own !== null ? own : si === null ? own : si * factor, override !== undefined);
     }
   }

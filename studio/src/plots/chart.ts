@@ -1,15 +1,21 @@
 import {raised} from '../panels/words';
 
 /** A curve of a chart; `upTo`: it is drawn to this row only, as it grows with the motion. */
-export interface Curve {x: ArrayLike<number | null>; y: ArrayLike<number | null>; series: number; label: string; faint?: boolean}
+export interface Curve {
+  x: ArrayLike<number | null>;
+  y: ArrayLike<number | null>;
+  series: number;
+  label: string;
+  faint?: boolean;
+}
 export interface ChartContent {
   curves: Curve[];
   x: string;
   y: string;
-  overTime: boolean;   // x is the time: a line shows the present
-  marks?: number[];    // times of events
-  up?: [number, number];  // the range of y where the curves do not say it
-  moves?: boolean;     // the curves are those of the moment, and are drawn whole
+  overTime: boolean; // x is the time: a line shows the present
+  marks?: number[]; // times of events
+  up?: [number, number]; // the range of y where the curves do not say it
+  moves?: boolean; // the curves are those of the moment, and are drawn whole
 }
 
 const room = {left: 62, right: 14, top: 12, bottom: 40};
@@ -17,25 +23,35 @@ const faces = `'STIX Two Text','Latin Modern Roman','Latin Modern Math',Cambria,
 
 /** Places of ticks with 1, 2 or 5 times a power of ten between them. */
 export function ticks(low: number, high: number, most: number): number[] {
-  const raw = (high - low) / Math.max(1, most), power = 10 ** Math.floor(Math.log10(raw));
+  const raw = (high - low) / Math.max(1, most),
+    power = 10 ** Math.floor(Math.log10(raw));
   const step = [1, 2, 5, 10].map(f => f * power).find(f => f >= raw * 0.999) ?? power;
   const out = [];
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) out.push(k * step);
   return out;
 }
 
+/** The power of ten that all ticks of an axis are told in: 0 for sizes that one reads at a glance. */
+function powerOf([low, high]: [number, number]): number {
+  const size = Math.max(Math.abs(low), Math.abs(high));
+  return size >= 1e5 || size < 1e-2 ? Math.floor(Math.log10(size)) : 0;
+}
+
 function tickText(value: number, step: number): string {
   if (value === 0 || Math.abs(value) < 1e-9 * step) return '0';
-  const size = Math.abs(value);
-  if (size >= 1e5 || size < 1e-3) {
-    const [mantissa, exponent] = value.toExponential(Math.max(0, Math.min(3, Math.round(Math.log10(size / step))))).split('e');
-    return `${mantissa.replace('-', '−')}·10${raised(exponent.replace('+', ''))}`;
-  }
   return value.toFixed(Math.max(0, Math.min(9, -Math.floor(Math.log10(step) + 1e-9)))).replace('-', '−');
 }
 
+/** `x (m)` in thousandths is `x (10⁻³ m)`. */
+function titleText(title: string, power: number): string {
+  if (power === 0) return title;
+  const factor = `10${raised(String(power))}`;
+  return title.endsWith(')') ? title.replace(/\(([^()]*)\)$/, `(${factor} $1)`) : `${title} (${factor})`;
+}
+
 export function extent(curves: Curve[], key: 'x' | 'y'): [number, number] {
-  let low = Infinity, high = -Infinity;
+  let low = Infinity,
+    high = -Infinity;
   for (const curve of curves)
     for (let i = 0; i < curve[key].length; ++i) {
       const value = curve[key][i];
@@ -44,29 +60,50 @@ export function extent(curves: Curve[], key: 'x' | 'y'): [number, number] {
       if (value > high) high = value;
     }
   if (!(low <= high)) return [0, 1];
-  const span = high - low, tiny = 1e-12 * Math.max(Math.abs(low), Math.abs(high));
-  if (span <= tiny) { const around = Math.abs(low) > 0 ? Math.abs(low) * 0.1 : 1; return [low - around, high + around]; }
+  const span = high - low,
+    tiny = 1e-12 * Math.max(Math.abs(low), Math.abs(high));
+  if (span <= tiny) {
+    const around = Math.abs(low) > 0 ? Math.abs(low) * 0.1 : 1;
+    return [low - around, high + around];
+  }
   return key === 'x' ? [low, high] : [low - 0.05 * span, high + 0.05 * span];
 }
 
-/** Curves on a canvas: what stays is drawn once, the present over it at every tick. */
+/**
+ * Curves on a canvas: what stays is drawn once, what has been passed grows on a second sheet, the present over both at
+ * every tick.
+ */
 export class Chart {
   private readonly canvas: HTMLCanvasElement;
   private readonly still = document.createElement('canvas');
+  private readonly passed = document.createElement('canvas');
+  private passedTo = 0; // row up to which `passed` is drawn
+  private seen = true;
   private content: ChartContent = {curves: [], x: '', y: '', overTime: true};
   private range = {x: [0, 1] as [number, number], y: [0, 1] as [number, number]};
   private width = 0;
   private height = 0;
 
-  constructor(canvas: HTMLCanvasElement, private readonly onSeek: ((time: number) => void) | null) {
+  constructor(
+    canvas: HTMLCanvasElement,
+    private readonly onSeek: ((time: number) => void) | null,
+  ) {
     this.canvas = canvas;
     new ResizeObserver(() => this.fit()).observe(canvas);
+    new IntersectionObserver(entries => {
+      this.seen = entries.at(-1)!.isIntersecting;
+      if (this.seen) this.present(...this.lastPresent);
+    }).observe(canvas);
     const seek = (event: PointerEvent): void => {
       if (!this.onSeek || !this.content.overTime || !(event.buttons & 1)) return;
-      const box = canvas.getBoundingClientRect(), part = (event.clientX - box.left - room.left) / (this.width - room.left - room.right);
+      const box = canvas.getBoundingClientRect(),
+        part = (event.clientX - box.left - room.left) / (this.width - room.left - room.right);
       this.onSeek(this.range.x[0] + Math.min(1, Math.max(0, part)) * (this.range.x[1] - this.range.x[0]));
     };
-    canvas.addEventListener('pointerdown', event => { canvas.setPointerCapture(event.pointerId); seek(event); });
+    canvas.addEventListener('pointerdown', event => {
+      canvas.setPointerCapture(event.pointerId);
+      seek(event);
+    });
     canvas.addEventListener('pointermove', seek);
   }
 
@@ -74,24 +111,29 @@ export class Chart {
     this.content = content;
     this.range = {x: extent(content.curves, 'x'), y: content.up ?? extent(content.curves, 'y')};
     if (!content.overTime && !content.moves) {
-      const [low, high] = this.range.x, wider = 0.05 * (high - low);
+      const [low, high] = this.range.x,
+        wider = 0.05 * (high - low);
       this.range.x = [low - wider, high + wider];
     }
     this.paintStill();
   }
 
   private fit(): void {
-    const box = this.canvas.getBoundingClientRect(), ratio = window.devicePixelRatio || 1;
+    const box = this.canvas.getBoundingClientRect(),
+      ratio = window.devicePixelRatio || 1;
     if (box.width === 0) return;
     [this.width, this.height] = [box.width, box.height];
-    for (const canvas of [this.canvas, this.still]) [canvas.width, canvas.height] = [Math.round(box.width * ratio), Math.round(box.height * ratio)];
+    for (const canvas of [this.canvas, this.still, this.passed])
+      [canvas.width, canvas.height] = [Math.round(box.width * ratio), Math.round(box.height * ratio)];
     this.paintStill();
   }
 
   private across = (x: number): number =>
-    room.left + (x - this.range.x[0]) / (this.range.x[1] - this.range.x[0]) * (this.width - room.left - room.right);
+    room.left + ((x - this.range.x[0]) / (this.range.x[1] - this.range.x[0])) * (this.width - room.left - room.right);
   private down = (y: number): number =>
-    this.height - room.bottom - (y - this.range.y[0]) / (this.range.y[1] - this.range.y[0]) * (this.height - room.top - room.bottom);
+    this.height -
+    room.bottom -
+    ((y - this.range.y[0]) / (this.range.y[1] - this.range.y[0])) * (this.height - room.top - room.bottom);
 
   private colours(): (name: string) => string {
     const style = getComputedStyle(this.canvas);
@@ -102,7 +144,8 @@ export class Chart {
 
   paintStill(): void {
     if (this.width === 0) return;
-    const context = this.begin(this.still), colour = this.colours();
+    const context = this.begin(this.still),
+      colour = this.colours();
     this.paintAxes(context, colour);
     for (const time of this.content.marks ?? []) {
       context.strokeStyle = colour('--muted');
@@ -114,13 +157,16 @@ export class Chart {
     }
     for (const curve of this.content.curves) {
       context.globalAlpha = curve.faint ? 0.55 : this.content.overTime || this.content.moves ? 1 : 0.28;
-      this.stroke(context, curve, colour(`--series-${curve.series + 1}`), curve.faint ? 1 : 1.5, curve.x.length);
+      this.stroke(context, curve, colour(`--series-${curve.series + 1}`), curve.faint ? 1 : 1.5, 0, curve.x.length);
     }
+    this.begin(this.passed);
+    this.passedTo = 0;
     this.present(...this.lastPresent);
   }
 
   private begin(canvas: HTMLCanvasElement): CanvasRenderingContext2D {
-    const context = canvas.getContext('2d')!, ratio = window.devicePixelRatio || 1;
+    const context = canvas.getContext('2d')!,
+      ratio = window.devicePixelRatio || 1;
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.globalAlpha = 1;
     context.clearRect(0, 0, this.width, this.height);
@@ -128,19 +174,36 @@ export class Chart {
     return context;
   }
 
-  private stroke(context: CanvasRenderingContext2D, curve: Curve, colour: string, width: number, rows: number): void {
+  private stroke(
+    context: CanvasRenderingContext2D,
+    curve: Curve,
+    colour: string,
+    width: number,
+    first: number,
+    end: number,
+  ): void {
     context.save();
     context.beginPath();
-    context.rect(room.left, room.top - 4, this.width - room.left - room.right + 2, this.height - room.top - room.bottom + 8);
+    context.rect(
+      room.left,
+      room.top - 4,
+      this.width - room.left - room.right + 2,
+      this.height - room.top - room.bottom + 8,
+    );
     context.clip();
     context.strokeStyle = colour;
     context.lineWidth = width;
     context.beginPath();
     let pen = false;
-    for (let i = 0; i < Math.min(rows, curve.x.length); ++i) {
-      const x = curve.x[i], y = curve.y[i];
-      if (x === null || y === null || !Number.isFinite(x) || !Number.isFinite(y)) { pen = false; continue; }
-      if (pen) context.lineTo(this.across(x), this.down(y)); else context.moveTo(this.across(x), this.down(y));
+    for (let i = first; i < Math.min(end, curve.x.length); ++i) {
+      const x = curve.x[i],
+        y = curve.y[i];
+      if (x === null || y === null || !Number.isFinite(x) || !Number.isFinite(y)) {
+        pen = false;
+        continue;
+      }
+      if (pen) context.lineTo(this.across(x), this.down(y));
+      else context.moveTo(this.across(x), this.down(y));
       pen = true;
     }
     context.stroke();
@@ -148,38 +211,62 @@ export class Chart {
   }
 
   private paintAxes(context: CanvasRenderingContext2D, colour: (name: string) => string): void {
-    const {width, height} = this, bottom = height - room.bottom, right = width - room.right;
+    const {width, height} = this,
+      bottom = height - room.bottom,
+      right = width - room.right;
     context.font = `13px ${faces}`;
     context.lineWidth = 1;
-    const xs = ticks(...this.range.x, Math.max(2, (right - room.left) / 75)), ys = ticks(...this.range.y, Math.max(2, (bottom - room.top) / 26));
+    const xs = ticks(...this.range.x, Math.max(2, (right - room.left) / 75)),
+      ys = ticks(...this.range.y, Math.max(2, (bottom - room.top) / 26)),
+      powers = {x: powerOf(this.range.x), y: powerOf(this.range.y)},
+      told = (value: number, all: number[], power: number): string =>
+        tickText(value / 10 ** power, (all[1] - all[0] || 1) / 10 ** power);
     context.strokeStyle = colour('--grid');
     for (const x of xs) line(context, this.across(x), room.top, this.across(x), bottom);
     for (const y of ys) line(context, room.left, this.down(y), right, this.down(y));
     context.fillStyle = colour('--muted');
     context.textAlign = 'center';
-    for (const x of xs) context.fillText(tickText(x, xs[1] - xs[0] || 1), this.across(x), bottom + 16);
+    for (const x of xs) context.fillText(told(x, xs, powers.x), this.across(x), bottom + 16);
     context.textAlign = 'right';
-    for (const y of ys) context.fillText(tickText(y, ys[1] - ys[0] || 1), room.left - 7, this.down(y) + 4);
+    for (const y of ys) context.fillText(told(y, ys, powers.y), room.left - 7, this.down(y) + 4);
     context.strokeStyle = colour('--muted');
     line(context, room.left, bottom, right, bottom);
     line(context, room.left, room.top, room.left, bottom);
     context.fillStyle = colour('--ink');
     context.textAlign = 'center';
     context.font = `italic 14px ${faces}`;
-    context.fillText(this.content.x, (room.left + right) / 2, height - 6);
+    context.fillText(titleText(this.content.x, powers.x), (room.left + right) / 2, height - 6);
     context.save();
     context.translate(14, (room.top + bottom) / 2);
     context.rotate(-Math.PI / 2);
-    context.fillText(this.content.y, 0, 0);
+    context.fillText(titleText(this.content.y, powers.y), 0, 0);
     context.restore();
+  }
+
+  private grow(row: number, colour: (name: string) => string): void {
+    if (row < this.passedTo) {
+      this.begin(this.passed);
+      this.passedTo = 0;
+    }
+    if (row === this.passedTo) return;
+    const context = this.passed.getContext('2d')!;
+    for (const curve of this.content.curves)
+      if (!curve.faint)
+        this.stroke(context, curve, colour(`--series-${curve.series + 1}`), 1.6, this.passedTo, row + 1);
+    this.passedTo = row;
   }
 
   /** The present: the time, and the row that is next to it. */
   present(time: number, row: number): void {
     this.lastPresent = [time, row];
-    if (this.width === 0) return;
-    const context = this.begin(this.canvas), colour = this.colours();
+    if (this.width === 0 || !this.seen) return;
+    const context = this.begin(this.canvas),
+      colour = this.colours();
     context.drawImage(this.still, 0, 0, this.width, this.height);
+    if (!this.content.overTime && !this.content.moves) {
+      this.grow(row, colour);
+      context.drawImage(this.passed, 0, 0, this.width, this.height);
+    }
     if (this.content.overTime) {
       context.strokeStyle = colour('--ink');
       context.globalAlpha = 0.6;
@@ -191,8 +278,8 @@ export class Chart {
     for (const curve of this.content.curves) {
       if (curve.faint) continue;
       const ink = colour(`--series-${curve.series + 1}`);
-      if (!this.content.overTime) this.stroke(context, curve, ink, 1.6, row + 1);
-      const x = this.content.overTime ? time : curve.x[row], y = curve.y[row];
+      const x = this.content.overTime ? time : curve.x[row],
+        y = curve.y[row];
       if (x === null || y === null || x === undefined || y === undefined || !Number.isFinite(y)) continue;
       context.fillStyle = ink;
       context.beginPath();

@@ -5,17 +5,25 @@ function bare(text: string): string {
   return text.replace(/"[^"\n]*"|#[^\n]*/g, part => ' '.repeat(part.length));
 }
 
-interface Assignment {name: string; from: number; to: number}
+interface Assignment {
+  name: string;
+  from: number;
+  to: number;
+}
 
 /** The values of all `param` or `start` statements: where each stands. */
 export function assignments(text: string, word: 'param' | 'start'): Assignment[] {
-  const out: Assignment[] = [], plain = bare(text);
+  const out: Assignment[] = [],
+    plain = bare(text);
   for (const statement of plain.matchAll(new RegExp(`^${word}\\b([^\\n]*(?:\\n[ \\t]+[^\\n]*)*)`, 'gm'))) {
-    let at = statement.index + word.length, depth = 0, begin = at;
+    let at = statement.index + word.length,
+      depth = 0,
+      begin = at;
     const take = (end: number): void => {
       const found = /^(\s*(?:exactly\s+)?)([^\s=,()]+)\s*=\s*/.exec(plain.slice(begin, end));
       if (found) {
-        const from = begin + found[0].length, value = plain.slice(from, end);
+        const from = begin + found[0].length,
+          value = plain.slice(from, end);
         out.push({name: found[2], from, to: from + value.trimEnd().length});
       }
       begin = end + 1;
@@ -31,17 +39,29 @@ export function assignments(text: string, word: 'param' | 'start'): Assignment[]
   return out;
 }
 
-/** Edits that write these values into the text; start values that have no place yet come behind the last `start`, or at the end of the declarations. */
-export function applied(text: string, set: Record<string, string>, start: Record<string, string>): {edits: Edit[]; missing: string[]} {
-  const edits: Edit[] = [], missing: string[] = [], parameters = assignments(text, 'param'), starts = assignments(text, 'start');
+/**
+ * Edits that write these values into the text; start values that have no place yet come behind the last `start`, or at
+ * the end of the declarations.
+ */
+export function applied(
+  text: string,
+  set: Record<string, string>,
+  start: Record<string, string>,
+): {edits: Edit[]; missing: string[]} {
+  const edits: Edit[] = [],
+    missing: string[] = [],
+    parameters = assignments(text, 'param'),
+    starts = assignments(text, 'start');
   for (const [name, value] of Object.entries(set)) {
     const place = parameters.filter(one => one.name === name).pop();
-    if (place) edits.push({from: place.from, to: place.to, insert: value}); else missing.push(name);
+    if (place) edits.push({from: place.from, to: place.to, insert: value});
+    else missing.push(name);
   }
   const added: string[] = [];
   for (const [name, value] of Object.entries(start)) {
     const place = starts.filter(one => one.name === name).pop();
-    if (place) edits.push({from: place.from, to: place.to, insert: value}); else added.push(`${name} = ${value}`);
+    if (place) edits.push({from: place.from, to: place.to, insert: value});
+    else added.push(`${name} = ${value}`);
   }
   if (added.length > 0) {
     const last = starts.reduce((end, one) => Math.max(end, one.to), -1);
@@ -57,7 +77,8 @@ export function applied(text: string, set: Record<string, string>, start: Record
 /** An edit may end where this one begins: it becomes part of it. */
 function addTo(edits: Edit[], at: number, insert: string): void {
   const before = edits.find(edit => edit.to === at);
-  if (before) before.insert += insert; else edits.push({from: at, to: at, insert});
+  if (before) before.insert += insert;
+  else edits.push({from: at, to: at, insert});
 }
 
 /** Before the line of `run`, else before what is drawn or expected, else at the end. */

@@ -8,8 +8,9 @@ import type {Storage_} from './storage';
 
 /** Notes before the model ask; those behind it comment on the answer. */
 function notesIn(text: string): {question: string[]; comments: string[]} {
-  const begin = text.search(/^(param|coord|let)\b/m), notes = [...text.matchAll(/^note\s+"([^"]*)"/gm)];
-  const of = (before: boolean): string[] => notes.filter(note => (note.index < begin) === before).map(note => note[1]);
+  const begin = text.search(/^(param|coord|let)\b/m),
+    notes = [...text.matchAll(/^note\s+"([^"]*)"/gm)];
+  const of = (before: boolean): string[] => notes.filter(note => note.index < begin === before).map(note => note[1]);
   return {question: of(true), comments: of(false)};
 }
 
@@ -18,33 +19,98 @@ export class Exercises {
   private solved: Set<string>;
   private current: string | null = null;
 
-  constructor(private readonly store: Store<State>, private readonly study: Study, private readonly storage: Storage_) {
+  constructor(
+    private readonly store: Store<State>,
+    private readonly study: Study,
+    private readonly storage: Storage_,
+  ) {
     this.solved = new Set((storage.setting('solved') ?? '').split(' ').filter(Boolean));
     byId('exercises-button').addEventListener('click', () => this.list());
     byId('exercises-button').hidden = exercises().length === 0;
-    store.watch(['name', 'origin'], () => { if (store.state.name !== this.current) this.end(); });
+    store.watch(['name', 'origin'], () => {
+      if (store.state.name !== this.current) this.end();
+    });
   }
 
   private list(): void {
-    const box = dialog('Exercises', [
-      h('p', {}, 'Read the model, write its equation of motion, and hear whether it is right. The answer is not given away.'),
-      h('section', {class: 'models'}, h('ol', {}, ...exercises().map(one => h('li', {}, h('button', {type: 'button', onclick: () => { box.close(); this.begin(one.name, one.title, one.text); }},
-        one.title, h('small', {}, this.solved.has(one.name) ? '✓ solved' : '')))))),
-    ], [], 'wide');
+    const box = dialog(
+      'Exercises',
+      [
+        h(
+          'p',
+          {},
+          'Read the model, write its equation of motion, and hear whether it is right. The answer is not given away.',
+        ),
+        h(
+          'section',
+          {class: 'models'},
+          h(
+            'ol',
+            {},
+            ...exercises().map(one =>
+              h(
+                'li',
+                {},
+                h(
+                  'button',
+                  {
+                    type: 'button',
+                    onclick: () => {
+                      box.close();
+                      this.begin(one.name, one.title, one.text);
+                    },
+                  },
+                  one.title,
+                  h('small', {}, this.solved.has(one.name) ? '✓ solved' : ''),
+                ),
+              ),
+            ),
+          ),
+        ),
+      ],
+      [],
+      'wide',
+    );
   }
 
   private begin(name: string, title: string, text: string): void {
     this.current = name;
     this.study.load({text, name});
     const {question, comments: said} = notesIn(text);
-    const field = h('input', {type: 'text', id: 'claim', autocomplete: 'off', spellcheck: 'false', placeholder: "θ'' = …", 'aria-describedby': 'claim-verdict'});
+    const field = h('input', {
+      type: 'text',
+      id: 'claim',
+      autocomplete: 'off',
+      spellcheck: 'false',
+      placeholder: "θ'' = …",
+      'aria-describedby': 'claim-verdict',
+    });
     const verdict = h('div', {id: 'claim-verdict', role: 'status', 'aria-live': 'polite'});
     const comments = h('div', {});
-    const form = h('form', {onsubmit: (event: Event) => { event.preventDefault(); void this.judge(field.value, verdict, () => comments.replaceChildren(...said.map(hint => h('p', {class: 'note'}, ...prose(hint))))); }},
-      h('label', {for: 'claim'}, 'Your equation of motion'), h('p', {class: 'row'}, field, h('button', {type: 'submit', class: 'primary'}, 'Check')));
+    const form = h(
+      'form',
+      {
+        onsubmit: (event: Event) => {
+          event.preventDefault();
+          void this.judge(field.value, verdict, () =>
+            comments.replaceChildren(...said.map(hint => h('p', {class: 'note'}, ...prose(hint)))),
+          );
+        },
+      },
+      h('label', {for: 'claim'}, 'Your equation of motion'),
+      h('p', {class: 'row'}, field, h('button', {type: 'submit', class: 'primary'}, 'Check')),
+    );
     const leave = h('button', {type: 'button', class: 'quiet', onclick: () => this.end()}, 'Show the equations');
-    const panel = h('section', {id: 'exercise', 'aria-label': 'Exercise'}, h('h2', {}, title), ...question.map(one => h('p', {}, ...prose(one))), form, verdict, comments,
-                    h('p', {class: 'muted'}, "Derivatives are θ' and θ''; products need a blank. ", leave));
+    const panel = h(
+      'section',
+      {id: 'exercise', 'aria-label': 'Exercise'},
+      h('h2', {}, title),
+      ...question.map(one => h('p', {}, ...prose(one))),
+      form,
+      verdict,
+      comments,
+      h('p', {class: 'muted'}, "Derivatives are θ' and θ''; products need a blank. ", leave),
+    );
     byId('exercise')?.remove();
     byId('equations').prepend(panel);
     document.body.classList.add('exercising');
@@ -62,16 +128,54 @@ export class Exercises {
     verdict.replaceChildren(h('p', {class: 'muted'}, 'It is checked …'));
     const answer = await this.study.claim(text);
     if (!answer.ok) {
-      const inside = (answer.diagnostics as {from: number | null; to: number | null; message: string; reason: string; help: string}[] | undefined)?.[0], t = inside ?? answer.trouble;
-      const place = inside && inside.from !== null && inside.to !== null && inside.to > inside.from ? h('p', {}, h('code', {}, text.slice(0, inside.from), h('mark', {}, text.slice(inside.from, inside.to)), text.slice(inside.to))) : '';
-      return verdict.replaceChildren(h('div', {class: 'message warning'}, place, h('p', {class: 'what'}, ...prose(t.message)), t.reason ? h('p', {}, ...prose(t.reason)) : '', t.help ? h('p', {}, ...prose(t.help)) : ''));
+      const inside = (
+          answer.diagnostics as
+            {from: number | null; to: number | null; message: string; reason: string; help: string}[] | undefined
+        )?.[0],
+        t = inside ?? answer.trouble;
+      const place =
+        inside && inside.from !== null && inside.to !== null && inside.to > inside.from
+          ? h(
+              'p',
+              {},
+              h(
+                'code',
+                {},
+                text.slice(0, inside.from),
+                h('mark', {}, text.slice(inside.from, inside.to)),
+                text.slice(inside.to),
+              ),
+            )
+          : '';
+      return verdict.replaceChildren(
+        h(
+          'div',
+          {class: 'message warning'},
+          place,
+          h('p', {class: 'what'}, ...prose(t.message)),
+          t.reason ? h('p', {}, ...prose(t.reason)) : '',
+          t.help ? h('p', {}, ...prose(t.help)) : '',
+        ),
+      );
     }
     if (!answer.passed)
-      return verdict.replaceChildren(h('div', {class: 'message error'}, h('p', {class: 'what'}, 'Not yet.'), answer.pitfall ? h('p', {}, ...prose(answer.pitfall)) : h('p', {}, 'It is none of the usual pitfalls. Check units, signs and which coordinates the velocities depend on.')));
+      return verdict.replaceChildren(
+        h(
+          'div',
+          {class: 'message error'},
+          h('p', {class: 'what'}, 'Not yet.'),
+          answer.pitfall
+            ? h('p', {}, ...prose(answer.pitfall))
+            : h(
+                'p',
+                {},
+                'It is none of the usual pitfalls. Check units, signs and which coordinates the velocities depend on.',
+              ),
+        ),
+      );
     verdict.replaceChildren(h('div', {class: 'message right'}, h('p', {class: 'what'}, '✓ Right.')));
     if (this.current) this.solved.add(this.current);
     this.storage.setSetting('solved', [...this.solved].join(' '));
     right();
   }
 }
-

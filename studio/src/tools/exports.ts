@@ -1,4 +1,4 @@
-import type {ExportAnswer} from '../contract';
+import type {Answer, ExportAnswer} from '../contract';
 import {download, h} from '../dom';
 import type {State} from '../state';
 import type {Store} from '../store';
@@ -17,17 +17,61 @@ const kinds: [string, string, string][] = [
   ['drawing.png', 'Drawing', 'PNG'],
 ];
 
+/** A picture at twice its size on the screen; null where the browser cannot read it. */
+function pixels(svg: string): Promise<Blob | null> {
+  return new Promise(resolve => {
+    const image = new Image();
+    image.onerror = () => resolve(null);
+    image.onload = () => {
+      const canvas = h('canvas', {width: 2 * image.naturalWidth, height: 2 * image.naturalHeight}),
+        context = canvas.getContext('2d')!;
+      context.drawImage(image, 0, 0, canvas.width, canvas.height);
+      canvas.toBlob(resolve, 'image/png');
+    };
+    image.src = URL.createObjectURL(new Blob([svg], {type: 'image/svg+xml'}));
+  });
+}
+
 export function exportDialog(store: Store<State>, study: Study): void {
   const make = async (what: string): Promise<void> => {
     box.close();
     study.say('It is made …');
-    const answer = await study.asker.ask<ExportAnswer>({do: 'export', what, budget: 60, ...study.values});
+    const ask = (one: string): Promise<Answer<ExportAnswer>> =>
+      study.asker.ask<ExportAnswer>({do: 'export', what: one, budget: 60, ...study.values});
+    let answer = await ask(what);
+    if (!answer.ok && answer.kind === 'refused' && what.endsWith('.png')) {
+      // a core without pixels, as the one in a browser: the browser has them
+      const svg = await ask(what.replace('.png', '.svg'));
+      const picture = svg.ok ? await pixels(svg.text ?? '') : null;
+      if (picture) {
+        download(`${store.state.name}_${what}`, 'image/png', picture);
+        return study.say(`${store.state.name}_${what} is in your downloads.`);
+      }
+      if (!svg.ok) answer = svg;
+    }
     if (!answer.ok) return study.say(`${answer.trouble.message} ${answer.trouble.help}`, true);
     const content = answer.text ?? Uint8Array.from(atob(answer.base64 ?? ''), c => c.charCodeAt(0));
     download(answer.name, answer.type, content as BlobPart);
     study.say(`${answer.name} is in your downloads.`);
   };
-  const entries = kinds.map(([what, title, detail]) => h('li', {}, h('button', {type: 'button', onclick: () => void make(what)}, title, h('small', {}, detail))));
-  const own = h('li', {}, h('button', {type: 'button', onclick: () => { box.close(); download(`${store.state.name}.lag`, 'text/plain', store.state.text); }}, 'Model text', h('small', {}, '.lag')));
+  const entries = kinds.map(([what, title, detail]) =>
+    h('li', {}, h('button', {type: 'button', onclick: () => void make(what)}, title, h('small', {}, detail))),
+  );
+  const own = h(
+    'li',
+    {},
+    h(
+      'button',
+      {
+        type: 'button',
+        onclick: () => {
+          box.close();
+          download(`${store.state.name}.lag`, 'text/plain', store.state.text);
+        },
+      },
+      'Model text',
+      h('small', {}, '.lag'),
+    ),
+  );
   const box = dialog('Export', [h('section', {class: 'models'}, h('ul', {}, own, ...entries))]);
 }

@@ -6,22 +6,36 @@ import type {Store} from '../store';
 import type {Study} from '../study';
 import {ask, choose, dialog} from './dialog';
 
-const titleOf = (text: string, name: string): string => /^system\s+\S+\s+"([^"]+)"/m.exec(text)?.[1] ?? name.replaceAll('_', ' ');
-const folders: [string, string][] = [['examples', 'Mechanics'], ['degenerate', 'Degenerate Lagrangians'], ['fields', 'Fields']];
+const titleOf = (text: string, name: string): string =>
+  /^system\s+\S+\s+"([^"]+)"/m.exec(text)?.[1] ?? name.replaceAll('_', ' ');
+const folders: [string, string][] = [
+  ['examples', 'Mechanics'],
+  ['degenerate', 'Degenerate Lagrangians'],
+  ['fields', 'Fields'],
+];
 export const exercises = (): {name: string; title: string; text: string}[] =>
-  models.filter(([folder]) => folder === 'exercises').map(([, name, text]) => ({name, title: titleOf(text, name), text}));
-export const example = (name: string): string | null => models.find(([folder, one]) => folder !== 'exercises' && one === name)?.[2] ?? null;
+  models
+    .filter(([folder]) => folder === 'exercises')
+    .map(([, name, text]) => ({name, title: titleOf(text, name), text}));
+export const example = (name: string): string | null =>
+  models.find(([folder, one]) => folder !== 'exercises' && one === name)?.[2] ?? null;
 
 /** Models from the opened folder, from the disk, or from the examples; and back there. */
 export class FileTools {
   private readonly files: Files | undefined;
 
-  constructor(private readonly store: Store<State>, private readonly study: Study, carrier: Carrier) {
+  constructor(
+    private readonly store: Store<State>,
+    private readonly study: Study,
+    carrier: Carrier,
+  ) {
     this.files = carrier.files;
     byId('open-button').addEventListener('click', () => void this.open());
     byId('save-button').addEventListener('click', () => void this.save());
     store.watch(['name', 'origin', 'text', 'storage'], () => this.title());
-    document.addEventListener('dragover', event => { if (event.dataTransfer?.types.includes('Files')) event.preventDefault(); });
+    document.addEventListener('dragover', event => {
+      if (event.dataTransfer?.types.includes('Files')) event.preventDefault();
+    });
     document.addEventListener('drop', event => {
       const file = event.dataTransfer?.files[0];
       if (!file) return;
@@ -33,33 +47,112 @@ export class FileTools {
   private title(): void {
     const {origin, name, text, storage} = this.store.state;
     byId('document-name').textContent = origin?.path ?? name;
-    byId('document-state').textContent = origin ? (text === origin.saved ? '' : ' – changed') : storage ? '' : ' – not kept: this browser has no storage';
+    byId('document-state').textContent = origin
+      ? text === origin.saved
+        ? ''
+        : ' – changed'
+      : storage
+        ? ''
+        : ' – not kept: this browser has no storage';
   }
 
   /** Whether what is changed may be left. */
   private async mayLeave(): Promise<boolean> {
     const {origin, text} = this.store.state;
     if (!origin || origin.saved === text) return true;
-    const way = await choose(`${origin.path} has changes`, ['They are in this page only.'], [['Save them', 'save'], ['Leave them', 'leave']]);
+    const way = await choose(
+      `${origin.path} has changes`,
+      ['They are in this page only.'],
+      [
+        ['Save them', 'save'],
+        ['Leave them', 'leave'],
+      ],
+    );
     return way === 'save' ? this.save() : way === 'leave';
   }
 
   async open(): Promise<void> {
-    const listing = await this.files?.list(), field = h('input', {type: 'search', placeholder: 'Search', 'aria-label': 'Search models'});
-    const pick = h('input', {type: 'file', accept: '.lag,text/plain', class: 'away', tabindex: -1, 'aria-label': 'A file of this computer', onchange: () => { const file = pick.files?.[0]; if (file) { box.close(); void this.take(file); } }});
+    const listing = await this.files?.list(),
+      field = h('input', {type: 'search', placeholder: 'Search', 'aria-label': 'Search models'});
+    const pick = h('input', {
+      type: 'file',
+      accept: '.lag,text/plain',
+      class: 'away',
+      tabindex: -1,
+      'aria-label': 'A file of this computer',
+      onchange: () => {
+        const file = pick.files?.[0];
+        if (file) {
+          box.close();
+          void this.take(file);
+        }
+      },
+    });
     const entry = (title: string, name: string, take: () => void): HTMLElement =>
-      h('li', {'data-words': `${title} ${name}`.toLowerCase()}, h('button', {type: 'button', onclick: () => { box.close(); take(); }}, title, h('small', {}, name)));
+      h(
+        'li',
+        {'data-words': `${title} ${name}`.toLowerCase()},
+        h(
+          'button',
+          {
+            type: 'button',
+            onclick: () => {
+              box.close();
+              take();
+            },
+          },
+          title,
+          h('small', {}, name),
+        ),
+      );
     const groups: HTMLElement[] = [];
     if (listing && listing.files.length > 0)
-      groups.push(group(`In ${listing.folder || 'the folder'}`, listing.files.map(path => entry(path.split('/').pop()!, path, () => void this.read(path)))));
+      groups.push(
+        group(
+          `In ${listing.folder || 'the folder'}`,
+          listing.files.map(path => entry(path.split('/').pop()!, path, () => void this.read(path))),
+        ),
+      );
     for (const [folder, title] of folders)
-      groups.push(group(title, models.filter(([one]) => one === folder).map(([, name, text]) => entry(titleOf(text, name), name, () => void this.take_example(name, text)))));
+      groups.push(
+        group(
+          title,
+          models
+            .filter(([one]) => one === folder)
+            .map(([, name, text]) => entry(titleOf(text, name), name, () => void this.take_example(name, text))),
+        ),
+      );
     field.addEventListener('input', () => {
-      for (const li of box.querySelectorAll<HTMLElement>('li')) li.hidden = !li.dataset.words!.includes(field.value.toLowerCase());
+      for (const li of box.querySelectorAll<HTMLElement>('li'))
+        li.hidden = !li.dataset.words!.includes(field.value.toLowerCase());
       for (const one of groups) one.hidden = ![...one.querySelectorAll('li')].some(li => !li.hidden);
     });
-    const box = dialog('Open a model', [h('p', {class: 'row'}, field, h('button', {type: 'button', onclick: () => pick.click()}, 'A file of this computer'), pick,
-                                          h('button', {type: 'button', onclick: () => { box.close(); void this.fresh(); }}, 'New')), ...groups], [], 'wide');
+    const box = dialog(
+      'Open a model',
+      [
+        h(
+          'p',
+          {class: 'row'},
+          field,
+          h('button', {type: 'button', onclick: () => pick.click()}, 'A file of this computer'),
+          pick,
+          h(
+            'button',
+            {
+              type: 'button',
+              onclick: () => {
+                box.close();
+                void this.fresh();
+              },
+            },
+            'New',
+          ),
+        ),
+        ...groups,
+      ],
+      [],
+      'wide',
+    );
     field.focus();
   }
 
@@ -72,24 +165,38 @@ export class FileTools {
   }
 
   private async take(file: File): Promise<void> {
-    if (!await this.mayLeave()) return;
+    if (!(await this.mayLeave())) return;
     const text = await file.text();
     if (text.includes('\0')) return this.study.say(`${file.name} is no text.`, true);
     this.study.load({text, name: file.name.replace(/\.lag$/, '')});
   }
 
   async read(path: string): Promise<boolean> {
-    if (!this.files || !await this.mayLeave()) return false;
+    if (!this.files || !(await this.mayLeave())) return false;
     const file = await this.files.read(path);
-    if ('message' in file) { this.study.say(`${file.message} ${file.help}`, true); return false; }
-    this.study.load({text: file.text, name: path.split('/').pop()!.replace(/\.lag$/, ''), origin: {path, version: file.version, saved: file.text}});
+    if ('message' in file) {
+      this.study.say(`${file.message} ${file.help}`, true);
+      return false;
+    }
+    this.study.load({
+      text: file.text,
+      name: path
+        .split('/')
+        .pop()!
+        .replace(/\.lag$/, ''),
+      origin: {path, version: file.version, saved: file.text},
+    });
     return true;
   }
 
   /** Into its file where there is a server, else as a download. */
   async save(): Promise<boolean> {
     const {text, name, origin} = this.store.state;
-    if (!this.files) { download(`${name}.lag`, 'text/plain', text); this.study.say(`Downloaded as ${name}.lag.`); return true; }
+    if (!this.files) {
+      download(`${name}.lag`, 'text/plain', text);
+      this.study.say(`Downloaded as ${name}.lag.`);
+      return true;
+    }
     let path = origin?.path ?? null;
     if (path === null) {
       path = await ask('Save in the folder', 'Name of the file', `${name}.lag`, 'Save');
@@ -101,9 +208,18 @@ export class FileTools {
 
   private async write(path: string, text: string, version: string | null): Promise<boolean> {
     const saved = await this.files!.write(path, text, version);
-    if (saved.saved === null) { this.study.say(`${saved.trouble.message} ${saved.trouble.reason} ${saved.trouble.help}`, true); return false; }
+    if (saved.saved === null) {
+      this.study.say(`${saved.trouble.message} ${saved.trouble.reason} ${saved.trouble.help}`, true);
+      return false;
+    }
     if (saved.saved) {
-      this.store.update({origin: {path, version: saved.version, saved: text}, name: path.split('/').pop()!.replace(/\.lag$/, '')});
+      this.store.update({
+        origin: {path, version: saved.version, saved: text},
+        name: path
+          .split('/')
+          .pop()!
+          .replace(/\.lag$/, ''),
+      });
       this.study.say(`Saved as ${path}.`);
       return true;
     }
@@ -112,14 +228,26 @@ export class FileTools {
 
   /** Somebody else wrote the file meanwhile: both texts are shown, and nothing is lost. */
   private async conflict(path: string, mine: string, theirs: {text: string; version: string}): Promise<boolean> {
-    const both = h('div', {class: 'both'}, h('section', {}, h('h3', {}, 'In this page'), h('pre', {tabindex: 0}, mine)), h('section', {}, h('h3', {}, 'In the file'), h('pre', {tabindex: 0}, theirs.text)));
-    const way = await choose(`${path} was changed elsewhere`, [h('p', {}, 'Another program or another tab wrote it since this page read it.'), both],
-                             [['Keep this page\'s', 'mine'], ['Take the file\'s', 'theirs'], ['Save this page\'s under another name', 'other']]);
+    const both = h(
+      'div',
+      {class: 'both'},
+      h('section', {}, h('h3', {}, 'In this page'), h('pre', {tabindex: 0}, mine)),
+      h('section', {}, h('h3', {}, 'In the file'), h('pre', {tabindex: 0}, theirs.text)),
+    );
+    const way = await choose(
+      `${path} was changed elsewhere`,
+      [h('p', {}, 'Another program or another tab wrote it since this page read it.'), both],
+      [
+        ["Keep this page's", 'mine'],
+        ["Take the file's", 'theirs'],
+        ["Save this page's under another name", 'other'],
+      ],
+    );
     if (way === 'mine') return this.write(path, mine, theirs.version);
     if (way === 'theirs') {
       this.study.edit(theirs.text);
       this.store.update({origin: {path, version: theirs.version, saved: theirs.text}});
-      this.study.say('Undo brings this page\'s text back.');
+      this.study.say("Undo brings this page's text back.");
       return true;
     }
     if (way !== 'other') return false;

@@ -8,14 +8,24 @@ import type {State} from '../state';
 import type {Store} from '../store';
 import type {Study} from '../study';
 
-interface Step {title: string; line: Line; notes: string[]}
+interface Step {
+  title: string;
+  line: Line;
+  notes: string[];
+}
 
-/** The lines of the derivation one after the other; notes of the model stand at the first step of their part, before all, and after all. */
+/**
+ * The lines of the derivation one after the other; notes of the model stand at the first step of their part, before
+ * all, and after all.
+ */
 function stepsOf(state: State): Step[] {
-  const equations = state.equations!, sections = [...equations.derivation ?? []];
-  const steps = sections.flatMap(section => section.lines.map((line, i): Step => ({title: section.title, line, notes: i === 0 ? section.notes ?? [] : []})));
+  const equations = state.equations!,
+    sections = [...(equations.derivation ?? [])];
+  const steps = sections.flatMap(section =>
+    section.lines.map((line, i): Step => ({title: section.title, line, notes: i === 0 ? (section.notes ?? []) : []})),
+  );
   steps.push(...equations.equations.map((line): Step => ({title: 'Equations of motion', line, notes: []})));
-  steps[0]?.notes.unshift(...equations.first_notes ?? []);
+  steps[0]?.notes.unshift(...(equations.first_notes ?? []));
   if (equations.last_notes?.length) steps.at(-1)!.notes = [...steps.at(-1)!.notes, ...equations.last_notes];
   return steps;
 }
@@ -26,33 +36,68 @@ export async function lecture(store: Store<State>, study: Study, clock: Clock, s
   if (!store.state.equations?.derivation) return study.say('There are no equations to go through yet.', true);
   const steps = stepsOf(store.state);
   let at = 0;
-  const lines = h('div', {class: 'lines', 'aria-live': 'polite'}), title = h('h2', {}), note = h('div', {class: 'note', 'aria-live': 'polite'}), count = h('output', {}), canvas = h('canvas', {role: 'img', 'aria-label': 'Drawing of the system in motion'});
-  const go = (to: number): void => { at = Math.min(steps.length - 1, Math.max(0, to)); show(); };
-  const button = (text: string, label: string, act: () => void): HTMLElement => h('button', {type: 'button', 'aria-label': label, title: label, onclick: act}, text);
-  const box = h('dialog', {id: 'lecture', 'aria-label': 'Lecture'},
+  const lines = h('div', {class: 'lines', 'aria-live': 'polite'}),
+    title = h('h2', {}),
+    note = h('div', {class: 'note', 'aria-live': 'polite'}),
+    count = h('output', {}),
+    canvas = h('canvas', {role: 'img', 'aria-label': 'Drawing of the system in motion'});
+  const go = (to: number): void => {
+    at = Math.min(steps.length - 1, Math.max(0, to));
+    show();
+  };
+  const button = (text: string, label: string, act: () => void): HTMLElement =>
+    h('button', {type: 'button', 'aria-label': label, title: label, onclick: act}, text);
+  const box = h(
+    'dialog',
+    {id: 'lecture', 'aria-label': 'Lecture'},
     h('section', {class: 'board'}, title, lines),
     h('section', {class: 'scene'}, h('h3', {}, store.state.equations.title), canvas, note),
-    h('footer', {}, button('←', 'The line before', () => go(at - 1)), count, button('→', 'The next line', () => go(at + 1)),
-      button('▶', 'Play and pause', () => clock.play(!clock.playing)), button('×', 'End the lecture', () => box.close())));
+    h(
+      'footer',
+      {},
+      button('←', 'The line before', () => go(at - 1)),
+      count,
+      button('→', 'The next line', () => go(at + 1)),
+      button('▶', 'Play and pause', () => clock.play(!clock.playing)),
+      button('×', 'End the lecture', () => box.close()),
+    ),
+  );
 
   function show(): void {
-    const step = steps[at], first = steps.findIndex(one => one.title === step.title);
+    const step = steps[at],
+      first = steps.findIndex(one => one.title === step.title);
     title.textContent = pretty(step.title);
     const shown = steps.slice(first, at + 1).map(one => lineElement(one.line));
     shown.at(-1)!.classList.add('now');
     lines.replaceChildren(...shown);
     shown.at(-1)!.scrollIntoView({block: 'nearest'});
-    const said = steps.slice(0, at + 1).reverse().find(one => one.notes.length > 0)?.notes ?? [];
+    const said =
+      steps
+        .slice(0, at + 1)
+        .reverse()
+        .find(one => one.notes.length > 0)?.notes ?? [];
     note.replaceChildren(...said.map(text => h('p', {}, ...prose(text))));
     count.textContent = `${at + 1} / ${steps.length}`;
   }
 
   box.addEventListener('keydown', event => {
     const act: Record<string, () => void> = {
-      ArrowRight: () => go(at + 1), PageDown: () => go(at + 1), ArrowLeft: () => go(at - 1), PageUp: () => go(at - 1), Home: () => go(0), End: () => go(steps.length - 1),
+      ArrowRight: () => go(at + 1),
+      PageDown: () => go(at + 1),
+      ArrowLeft: () => go(at - 1),
+      PageUp: () => go(at - 1),
+      Home: () => go(0),
+      End: () => go(steps.length - 1),
       ' ': () => clock.play(!clock.playing),
     };
-    if (!act[event.key] || event.ctrlKey || event.metaKey || event.altKey || (event.key === ' ' && (event.target as HTMLElement).closest('button'))) return;
+    if (
+      !act[event.key] ||
+      event.ctrlKey ||
+      event.metaKey ||
+      event.altKey ||
+      (event.key === ' ' && (event.target as HTMLElement).closest('button'))
+    )
+      return;
     event.preventDefault();
     event.stopPropagation();
     act[event.key]();
@@ -66,7 +111,8 @@ export async function lecture(store: Store<State>, study: Study, clock: Clock, s
     box.remove();
     if (document.fullscreenElement) void document.exitFullscreen();
   });
-  await document.documentElement.requestFullscreen?.().catch(() => {});  // a browser may refuse; the dialog fills the window all the same
+  // a browser may refuse; the dialog fills the window all the same
+  await document.documentElement.requestFullscreen?.().catch(() => {});
   box.showModal();
   box.focus();
   show();

@@ -1,8 +1,15 @@
 /** What a link holds. It stands behind #, which no browser sends anywhere. */
-export interface Shared {text: string; set?: Record<string, string>; start?: Record<string, string>; name?: string}
+export interface Shared {
+  text: string;
+  set?: Record<string, string>;
+  start?: Record<string, string>;
+  name?: string;
+}
 
 async function through(bytes: Uint8Array, stream: GenericTransformStream): Promise<Uint8Array> {
-  const piped = new Blob([bytes as BlobPart]).stream().pipeThrough(stream as ReadableWritablePair<Uint8Array, Uint8Array>);
+  const piped = new Blob([bytes as BlobPart])
+    .stream()
+    .pipeThrough(stream as ReadableWritablePair<Uint8Array, Uint8Array>);
   return new Uint8Array(await new Response(piped).arrayBuffer());
 }
 
@@ -17,10 +24,20 @@ export async function encodeShared(shared: Shared): Promise<string> {
 export async function decodeShared(code: string): Promise<Shared | null> {
   try {
     const binary = atob(code.replaceAll('-', '+').replaceAll('_', '/'));
-    const text = new TextDecoder('utf-8', {fatal: true}).decode(await through(Uint8Array.from(binary, c => c.charCodeAt(0)), new DecompressionStream('deflate-raw')));
+    const text = new TextDecoder('utf-8', {fatal: true}).decode(
+      await through(
+        Uint8Array.from(binary, c => c.charCodeAt(0)),
+        new DecompressionStream('deflate-raw'),
+      ),
+    );
     const shared = JSON.parse(text) as Partial<Shared> | null;
     if (!shared || typeof shared.text !== 'string') return null;
-    return {text: shared.text, set: words(shared.set), start: words(shared.start), name: typeof shared.name === 'string' ? shared.name.slice(0, 80) : undefined};
+    return {
+      text: shared.text,
+      set: words(shared.set),
+      start: words(shared.start),
+      name: typeof shared.name === 'string' ? shared.name.slice(0, 80) : undefined,
+    };
   } catch {
     return null;
   }
@@ -28,5 +45,7 @@ export async function decodeShared(code: string): Promise<Shared | null> {
 
 function words(values: unknown): Record<string, string> {
   if (typeof values !== 'object' || values === null) return {};
-  return Object.fromEntries(Object.entries(values).filter((entry): entry is [string, string] => typeof entry[1] === 'string'));
+  return Object.fromEntries(
+    Object.entries(values).filter((entry): entry is [string, string] => typeof entry[1] === 'string'),
+  );
 }

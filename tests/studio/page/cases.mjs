@@ -3,18 +3,28 @@ import {readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {axe, check, gripNear, root, settled} from './harness.mjs';
 
-const setSlider = (page, name, value, rest = true) => page.locator(`.value[data-name="${name}"] input[type=range]`).evaluate((slider, [x, rests]) => {
-  slider.value = x;
-  slider.dispatchEvent(new Event('input', {bubbles: true}));
-  if (rests) slider.dispatchEvent(new Event('change', {bubbles: true}));
-}, [String(value), rest]);
+const setSlider = (page, name, value, rest = true) =>
+  page.locator(`.value[data-name="${name}"] input[type=range]`).evaluate(
+    (slider, [x, rests]) => {
+      slider.value = x;
+      slider.dispatchEvent(new Event('input', {bubbles: true}));
+      if (rests) slider.dispatchEvent(new Event('change', {bubbles: true}));
+    },
+    [String(value), rest],
+  );
 const field = (page, name) => page.locator(`.value[data-name="${name}"] input[type=number]`).inputValue().then(Number);
 const typeAtEnd = async (page, text) => {
   await page.locator('.cm-content').click();
   await page.keyboard.press('Control+End');
   await page.keyboard.insertText(text);
 };
-const text = page => page.locator('.cm-content').evaluate(content => content.cmTile?.view?.state.doc.toString() ?? content.cmView?.view?.state.doc.toString() ?? content.innerText);
+const text = page =>
+  page
+    .locator('.cm-content')
+    .evaluate(
+      content =>
+        content.cmTile?.view?.state.doc.toString() ?? content.cmView?.view?.state.doc.toString() ?? content.innerText,
+    );
 const energies = page => page.locator('#conserved-body .drift').first().innerText();
 
 export const cases = {
@@ -22,7 +32,7 @@ export const cases = {
     const page = await open({hash: '#example=pendulum'});
     await typeAtEnd(page, '\nlet U = m g l cos θ\nevent low when θ = 0 recrd');
     await page.waitForSelector('#messages .message.error');
-    check('a mistake is underlined', await page.locator('.cm-lintRange-error, .cm-lintPoint-error').count() > 0);
+    check('a mistake is underlined', (await page.locator('.cm-lintRange-error, .cm-lintPoint-error').count()) > 0);
     check('what stands there is said to be of an older text', await page.locator('#stale').isVisible());
     await picture(page, 'mistake');
     await page.keyboard.press('Control+z');
@@ -40,7 +50,7 @@ export const cases = {
     const before = await text(page);
     await page.locator('#messages .fix').first().click();
     await page.waitForFunction(() => !document.querySelector('#messages .message.error'));
-    check('a fix changes the text', await text(page) !== before, before);
+    check('a fix changes the text', (await text(page)) !== before, before);
 
     await page.keyboard.press('Control+End');
     await page.keyboard.type('\nlet w = the', {delay: 30});
@@ -51,7 +61,10 @@ export const cases = {
 
     await page.locator('.cm-content .tok-coordinate').first().hover();
     await page.waitForSelector('.cm-tooltip .markdown');
-    check('hover says what a name is', /angle|coordinate/.test(await page.locator('.cm-tooltip .markdown').innerText()));
+    check(
+      'hover says what a name is',
+      /angle|coordinate/.test(await page.locator('.cm-tooltip .markdown').innerText()),
+    );
     await page.context().close();
   },
 
@@ -61,39 +74,62 @@ export const cases = {
     await page.keyboard.press('F2');
     await page.locator('dialog input').fill('φ');
     await page.keyboard.press('Enter');
-    await page.waitForFunction(() => [...document.querySelectorAll('.tok-coordinate')].some(one => one.textContent.startsWith('φ')));
+    await page.waitForFunction(() =>
+      [...document.querySelectorAll('.tok-coordinate')].some(one => one.textContent.startsWith('φ')),
+    );
     await settled(page);
     check('the equations have the new name', (await page.locator('#equations-body').innerHTML()).includes('φ'));
     check('the old one is gone', !(await text(page)).includes('coord θ'));
     await page.keyboard.press('Control+z');
-    await page.waitForFunction(() => [...document.querySelectorAll('.tok-coordinate')].some(one => one.textContent.startsWith('θ')));
+    await page.waitForFunction(() =>
+      [...document.querySelectorAll('.tok-coordinate')].some(one => one.textContent.startsWith('θ')),
+    );
     await page.context().close();
   },
 
   async sliders({open}, variant, picture) {
     const page = await open();
-    const energy = await energies(page), svg = () => page.locator('#plots canvas').first().evaluate(canvas => canvas.toDataURL().length);
+    const energy = await energies(page),
+      svg = () =>
+        page
+          .locator('#plots canvas')
+          .first()
+          .evaluate(canvas => canvas.toDataURL().length);
     await svg();
     for (const value of [1.1, 1.2, 1.3, 1.4]) await setSlider(page, 'l1', value, false);
     await setSlider(page, 'l1', 1.5);
     await settled(page);
-    check('the number follows its slider', await field(page, 'l1') === 1.5);
-    check('the energy follows', await energies(page) !== energy, energy);
-    check('its drift stays at rounding', /drift\s*\d+(\.\d+)?·10⁻¹[⁴⁵⁶⁷]/.test((await energies(page)).replace(/\s+/g, ' ')), await energies(page));
+    check('the number follows its slider', (await field(page, 'l1')) === 1.5);
+    check('the energy follows', (await energies(page)) !== energy, energy);
+    check(
+      'its drift stays at rounding',
+      /drift\s*\d+(\.\d+)?·10⁻¹[⁴⁵⁶⁷]/.test((await energies(page)).replace(/\s+/g, ' ')),
+      await energies(page),
+    );
     // An independent value: V = −(m1 + m2) g l1 cos θ1 − m2 g l2 cos θ2 at rest.
-    const deg = Math.PI / 180, wanted = -2 * 9.81 * 1.5 * Math.cos(120 * deg) - 9.81 * Math.cos(-10 * deg);
-    check('the energy is that of the closed form', Math.abs(parseFloat((await energies(page)).replace('value', '').replace('−', '-')) - wanted) < 1e-6 * Math.abs(wanted), [await energies(page), wanted]);
+    const deg = Math.PI / 180,
+      wanted = -2 * 9.81 * 1.5 * Math.cos(120 * deg) - 9.81 * Math.cos(-10 * deg);
+    check(
+      'the energy is that of the closed form',
+      Math.abs(parseFloat((await energies(page)).replace('value', '').replace('−', '-')) - wanted) <
+        1e-6 * Math.abs(wanted),
+      [await energies(page), wanted],
+    );
     await page.locator('#pin-button').click();
     await setSlider(page, 'θ1', 60);
     await settled(page);
-    check('the start follows', Math.abs(await field(page, 'θ1') - 60) < 1e-9);
-    check('a run is pinned', await page.locator('#pins li').count() === 1);
+    check('the start follows', Math.abs((await field(page, 'θ1')) - 60) < 1e-9);
+    check('a run is pinned', (await page.locator('#pins li').count()) === 1);
     await picture(page, 'pinned');
     await page.locator('#apply-values').click();
     await settled(page);
     const written = await text(page);
-    check('values are written into the text', /l1 = 1\.5 m/.test(written) && /θ1 = 60 deg/.test(written), written.slice(0, 700));
-    check('then nothing is changed', await page.locator('.value.changed').count() === 0);
+    check(
+      'values are written into the text',
+      /l1 = 1\.5 m/.test(written) && /θ1 = 60 deg/.test(written),
+      written.slice(0, 700),
+    );
+    check('then nothing is changed', (await page.locator('.value.changed').count()) === 0);
     await page.locator('.cm-content').click();
     await page.keyboard.press('Control+z');
     await settled(page);
@@ -106,29 +142,50 @@ export const cases = {
     const grip = await gripNear(page, '#drawing', [0.5, 0.5]);
     check('a point can be taken hold of', grip !== null);
     if (!grip) return;
-    const before = await page.locator('#starts input[type=number]').evaluateAll(list => list.map(one => Number(one.value)));
+    const before = await page
+      .locator('#starts input[type=number]')
+      .evaluateAll(list => list.map(one => Number(one.value)));
     await page.mouse.move(...grip);
     await page.mouse.down();
-    for (let i = 1; i <= 10; ++i) { await page.mouse.move(grip[0] + 5 * i, grip[1] + 3 * i); await page.waitForTimeout(30); }
+    for (let i = 1; i <= 10; ++i) {
+      await page.mouse.move(grip[0] + 5 * i, grip[1] + 3 * i);
+      await page.waitForTimeout(30);
+    }
     await page.waitForTimeout(200);
     await picture(page, 'dragged');
     await page.mouse.up();
     await settled(page);
-    const after = await page.locator('#starts input[type=number]').evaluateAll(list => list.map(one => Number(one.value)));
-    check('several start values moved together', after.filter((x, i) => Math.abs(x - before[i]) > 1e-3).length >= 2, [before, after]);
-    check('no message came', await page.locator('#stage-trouble .message').count() === 0, await page.locator('#stage-trouble').innerText());
+    const after = await page
+      .locator('#starts input[type=number]')
+      .evaluateAll(list => list.map(one => Number(one.value)));
+    check('several start values moved together', after.filter((x, i) => Math.abs(x - before[i]) > 1e-3).length >= 2, [
+      before,
+      after,
+    ]);
+    check(
+      'no message came',
+      (await page.locator('#stage-trouble .message').count()) === 0,
+      await page.locator('#stage-trouble').innerText(),
+    );
     await page.context().close();
   },
 
   async 'drag meets the circle'({open}) {
     const page = await open({hash: '#example=pendulum'});
-    const grip = await gripNear(page, '#drawing', [0.5, 0.9]), box = await page.locator('#drawing').boundingBox();
+    const grip = await gripNear(page, '#drawing', [0.5, 0.9]),
+      box = await page.locator('#drawing').boundingBox();
     check('the bob can be taken hold of', grip !== null);
     if (!grip) return;
     await page.mouse.move(...grip);
     await page.mouse.down();
     // Straight down from the pivot, as far as the sheet goes: the bob comes to hang at rest.
-    for (let i = 1; i <= 12; ++i) { await page.mouse.move(grip[0] + (box.x + box.width * 0.48 - grip[0]) * i / 12, grip[1] + (box.y + box.height - 8 - grip[1]) * i / 12); await page.waitForTimeout(40); }
+    for (let i = 1; i <= 12; ++i) {
+      await page.mouse.move(
+        grip[0] + ((box.x + box.width * 0.48 - grip[0]) * i) / 12,
+        grip[1] + ((box.y + box.height - 8 - grip[1]) * i) / 12,
+      );
+      await page.waitForTimeout(40);
+    }
     await page.waitForTimeout(200);
     await page.mouse.up();
     await settled(page);
@@ -139,7 +196,10 @@ export const cases = {
   async scrub({open}, variant, picture) {
     const page = await open();
     const time = () => page.locator('#time').innerText();
-    await page.locator('#scrub').evaluate(scrub => { scrub.value = '0.5'; scrub.dispatchEvent(new Event('input')); });
+    await page.locator('#scrub').evaluate(scrub => {
+      scrub.value = '0.5';
+      scrub.dispatchEvent(new Event('input'));
+    });
     check('scrubbing shows the middle', /^10(\.0+)? s$/.test(await time()), await time());
     await page.locator('#drawing').focus();
     await page.keyboard.press('Shift+ArrowRight');
@@ -161,15 +221,19 @@ export const cases = {
     const page = await open({still: false});
     await page.locator('.cm-content').click();
     const rate = await page.evaluate(async () => {
-      const slider = document.querySelector('.value[data-name="l1"] input[type=range]'), begin = performance.now();
+      const slider = document.querySelector('.value[data-name="l1"] input[type=range]'),
+        begin = performance.now();
       let frames = 0;
-      await new Promise(done => requestAnimationFrame(function step(now) {
-        ++frames;
-        slider.value = String(1 + 0.4 * Math.sin(now / 300));
-        slider.dispatchEvent(new Event('input'));
-        if (now - begin < 2000) requestAnimationFrame(step); else done();
-      }));
-      return frames / (performance.now() - begin) * 1000;
+      await new Promise(done =>
+        requestAnimationFrame(function step(now) {
+          ++frames;
+          slider.value = String(1 + 0.4 * Math.sin(now / 300));
+          slider.dispatchEvent(new Event('input'));
+          if (now - begin < 2000) requestAnimationFrame(step);
+          else done();
+        }),
+      );
+      return (frames / (performance.now() - begin)) * 1000;
     });
     console.log(`frames a second while a slider moves: ${rate.toFixed(0)}`);
     check('frames come while a slider moves', rate > 5, rate);
@@ -182,24 +246,28 @@ export const cases = {
     await page.locator('#derivation > summary').click();
     await page.waitForSelector('#derivation-body details');
     await page.locator('#derivation-body details > summary').nth(2).click();
-    check('a step unfolds with its rule', await page.locator('#derivation-body details[open] .rule').count() > 0);
+    check('a step unfolds with its rule', (await page.locator('#derivation-body details[open] .rule').count()) > 0);
     await page.locator('#equations-body >> text=Copy LaTeX').click();
     const copied = await page.evaluate(() => navigator.clipboard.readText());
     check('LaTeX is copied', copied.includes('\\ddot{\\theta}_1'), copied.slice(0, 200));
     await page.locator('#modes > summary').click();
     await page.waitForSelector('#modes-body table');
-    check('modes are shown', await page.locator('#modes-body .mode, #modes-body figure').count() > 0);
+    check('modes are shown', (await page.locator('#modes-body .mode, #modes-body figure').count()) > 0);
     await page.locator('#phase-space > summary').click();
     await page.waitForSelector('#phase-space-body math');
     await page.locator('#expectations > summary').click();
     await page.waitForSelector('#expectations-body .checks li', {timeout: 60_000});
-    check('every expectation holds', await page.locator('#expectations-body .bad').count() === 0);
+    check('every expectation holds', (await page.locator('#expectations-body .bad').count()) === 0);
     await page.locator('#derivation').scrollIntoViewIfNeeded();
     await picture(page, 'derivation');
     await page.locator('#section > summary').click();
     await page.locator('#section-count').fill('100');
     await page.locator('#section-form button[type=submit]').click();
-    await page.waitForFunction(() => /^100 crossings/.test(document.querySelector('#section-body p')?.textContent ?? ''), null, {timeout: 60_000});
+    await page.waitForFunction(
+      () => /^100 crossings/.test(document.querySelector('#section-body p')?.textContent ?? ''),
+      null,
+      {timeout: 60_000},
+    );
     await page.locator('#section-body').scrollIntoViewIfNeeded();
     await picture(page, 'section');
     await page.context().close();
@@ -211,10 +279,11 @@ export const cases = {
     await settled(page);
     await page.locator('#share-button').click();
     await page.waitForFunction(() => location.hash.startsWith('#m='));
-    const link = page.url(), own = await text(page);
+    const link = page.url(),
+      own = await text(page);
     const other = await open({hash: new URL(link).hash});
-    check('a link carries the text', await text(other) === own);
-    check('and the values', await field(other, 'l') === 0.7);
+    check('a link carries the text', (await text(other)) === own);
+    check('and the values', (await field(other, 'l')) === 0.7);
     const broken = await open({hash: new URL(link).hash.slice(0, -7), wait: false});
     await broken.waitForSelector('#word.shown.trouble');
     check('a broken link is told', /broken/.test(await broken.locator('#word').innerText()));
@@ -226,11 +295,32 @@ export const cases = {
     const page = await open({hash: '#example=pendulum'});
     await typeAtEnd(page, '\n# kept');
     await page.waitForTimeout(700);
-    await page.evaluate(() => { location.hash = ''; });
+    await page.evaluate(() => {
+      location.hash = '';
+    });
     await page.reload();
     await settled(page);
     check('the text is there after a reload', /# kept/.test(await text(page)));
     await page.context().close();
+    const one = await open({hash: '#example=pendulum'}),
+      two = await one.context().newPage();
+    await two.goto(one.url());
+    await settled(two);
+    await typeAtEnd(one, '\n# first tab');
+    await typeAtEnd(two, '\n# second tab');
+    await one.waitForTimeout(700);
+    for (const [tab, mark] of [
+      [one, '# first tab'],
+      [two, '# second tab'],
+    ]) {
+      await tab.evaluate(() => {
+        location.hash = '';
+      });
+      await tab.reload();
+      await settled(tab);
+      check(`each tab keeps its own text: ${mark}`, (await text(tab)).endsWith(mark));
+    }
+    await one.context().close();
     const poor = await open({storage: false});
     check('a browser without storage is told', /no storage/.test(await poor.locator('#document-state').innerText()));
     await poor.context().close();
@@ -238,9 +328,14 @@ export const cases = {
 
   async 'a file in two tabs'({open}, variant) {
     if (!variant.folder) return;
-    const page = await open({allow: ['409']}), file = join(variant.folder, 'pendulum.lag'), original = readFileSync(file, 'utf8');
+    const page = await open({allow: ['409']}),
+      file = join(variant.folder, 'pendulum.lag'),
+      original = readFileSync(file, 'utf8');
     await page.locator('#open-button').click();
-    await page.locator('dialog li button', {hasText: /^pendulum.lag/}).first().click();
+    await page
+      .locator('dialog li button', {hasText: /^pendulum.lag/})
+      .first()
+      .click();
     await settled(page);
     await typeAtEnd(page, '\n# mine');
     await page.keyboard.press('Control+s');
@@ -250,7 +345,11 @@ export const cases = {
     writeFileSync(file, `${original}\n# theirs\n`);
     await page.keyboard.press('Control+s');
     await page.waitForSelector('dialog .both');
-    check('both texts are shown', /# theirs/.test(await page.locator('dialog .both').innerText()) && /# more/.test(await page.locator('dialog .both').innerText()));
+    check(
+      'both texts are shown',
+      /# theirs/.test(await page.locator('dialog .both').innerText()) &&
+        /# more/.test(await page.locator('dialog .both').innerText()),
+    );
     await page.locator('dialog button', {hasText: "Keep this page's"}).click();
     await page.waitForFunction(() => /Saved/.test(document.querySelector('#word').textContent));
     await page.waitForFunction(() => document.querySelector('#document-state').textContent === '');
@@ -264,16 +363,39 @@ export const cases = {
 
   async exports({open}) {
     const page = await open({hash: '#example=pendulum'});
-    for (const [label, ending, inside] of [['CSV', '.csv', 'θ'], ['LaTeX', '.tex', '\\ddot'], ['A page with everything', '.html', '<math'], ['.lag', '.lag', 'system pendulum']]) {
+    for (const [label, ending, inside] of [
+      ['CSV', '.csv', 'θ'],
+      ['LaTeX', '.tex', '\\ddot'],
+      ['A page with everything', '.html', '<math'],
+      ['.lag', '.lag', 'system pendulum'],
+    ]) {
       await page.locator('#export-button').click();
-      const [download] = await Promise.all([page.waitForEvent('download'), page.locator('dialog li button', {hasText: label}).first().click()]);
+      const [download] = await Promise.all([
+        page.waitForEvent('download'),
+        page.locator('dialog li button', {hasText: label}).first().click(),
+      ]);
       const content = readFileSync(await download.path(), 'utf8');
-      check(`export ${label}`, download.suggestedFilename().endsWith(ending) && content.includes(inside), [download.suggestedFilename(), content.slice(0, 100)]);
+      check(`export ${label}`, download.suggestedFilename().endsWith(ending) && content.includes(inside), [
+        download.suggestedFilename(),
+        content.slice(0, 100),
+      ]);
     }
-    for (const [label, magic] of [['PNG', '\x89PNG'], ['SVG', '<svg']]) {
+    for (const [label, magic] of [
+      ['PNG', '\x89PNG'],
+      ['SVG', '<svg'],
+    ]) {
       await page.locator('#export-button').click();
-      const [download] = await Promise.all([page.waitForEvent('download'), page.locator('dialog li button', {hasText: label}).last().click()]);
-      check(`export ${label}`, readFileSync(await download.path()).toString('latin1').includes(magic), download.suggestedFilename());
+      const [download] = await Promise.all([
+        page.waitForEvent('download'),
+        page.locator('dialog li button', {hasText: label}).last().click(),
+      ]);
+      check(
+        `export ${label}`,
+        readFileSync(await download.path())
+          .toString('latin1')
+          .includes(magic),
+        download.suggestedFilename(),
+      );
     }
     await page.context().close();
   },
@@ -283,7 +405,11 @@ export const cases = {
     await page.keyboard.press('l');
     await page.waitForSelector('#lecture .line.now');
     for (let i = 0; i < 6; ++i) await page.keyboard.press('ArrowRight');
-    check('seven lines on', /^7 \//.test(await page.locator('#lecture output').innerText()), await page.locator('#lecture output').innerText());
+    check(
+      'seven lines on',
+      /^7 \//.test(await page.locator('#lecture output').innerText()),
+      await page.locator('#lecture output').innerText(),
+    );
     await page.keyboard.press('ArrowLeft');
     check('and one back', /^6 \//.test(await page.locator('#lecture output').innerText()));
     await picture(page, 'lecture');
@@ -295,7 +421,7 @@ export const cases = {
 
   async exercises({open}, variant, picture) {
     const page = await open();
-    if (await page.locator('#exercises-button').isHidden()) return void await page.context().close();
+    if (await page.locator('#exercises-button').isHidden()) return void (await page.context().close());
     await page.locator('#exercises-button').click();
     await picture(page, 'exercises');
     await page.locator('dialog li button').first().click();
@@ -313,23 +439,31 @@ export const cases = {
     // A text of 10 MB is refused with a word, and the page lives.
     await page.locator('.cm-content').evaluate(content => {
       const view = content.cmTile?.view ?? content.cmView?.view;
-      view.dispatch({changes: {from: view.state.doc.length, insert: '\n' + '# a long line that says nothing\n'.repeat(330_000)}});
+      view.dispatch({
+        changes: {from: view.state.doc.length, insert: '\n' + '# a long line that says nothing\n'.repeat(330_000)},
+      });
     });
     await page.waitForSelector('#equations-body .message.error', {timeout: 30_000});
     check('a text of 10 MB is told', /long/.test(await page.locator('#equations-body').innerText()));
     await page.locator('.cm-content').click();
     await page.keyboard.press('Control+z');
-    await page.waitForFunction(() => !document.querySelector('#equations-body .message.error'), null, {timeout: 30_000});
+    await page.waitForFunction(() => !document.querySelector('#equations-body .message.error'), null, {
+      timeout: 30_000,
+    });
     await settled(page);
 
     // A run without end is stopped by its budget; the page answers meanwhile.
     await page.locator('#run-group > summary').click();
     await page.locator('#duration').fill('1e9 s');
     await page.keyboard.press('Enter');
-    await page.waitForFunction(() => document.querySelector('#stage-trouble .message') !== null, null, {timeout: 60_000});
+    await page.waitForFunction(() => document.querySelector('#stage-trouble .message') !== null, null, {
+      timeout: 60_000,
+    });
     await page.locator('#duration').fill('');
     await page.keyboard.press('Enter');
-    await page.waitForFunction(() => document.querySelector('#stage-trouble .message') === null, null, {timeout: 60_000});
+    await page.waitForFunction(() => document.querySelector('#stage-trouble .message') === null, null, {
+      timeout: 60_000,
+    });
 
     // A start that is no number.
     await typeAtEnd(page, '\nstart θ = 0/0');
@@ -339,9 +473,19 @@ export const cases = {
 
   async widths({open}, variant, picture) {
     for (const dark of [false, true])
-      for (const [width, height] of [[400, 800], [1000, 760], [1600, 900]]) {
-        const page = await open({width, height, dark}), name = `${width}${dark ? '-dark' : ''}`;
-        const panes = width < 760 ? ['model', 'values', 'motion', 'equations'] : width < 1200 ? ['model', 'values', 'equations'] : ['all'];
+      for (const [width, height] of [
+        [400, 800],
+        [1000, 760],
+        [1600, 900],
+      ]) {
+        const page = await open({width, height, dark}),
+          name = `${width}${dark ? '-dark' : ''}`;
+        const panes =
+          width < 760
+            ? ['model', 'values', 'motion', 'equations']
+            : width < 1200
+              ? ['model', 'values', 'equations']
+              : ['all'];
         for (const pane of panes) {
           if (pane !== 'all') await page.locator(`#tabs [data-pane=${pane}]`).click();
           await page.waitForTimeout(150);
@@ -371,12 +515,110 @@ export const cases = {
     await page.context().close();
   },
 
+  async 'one file from a disk'({open}, variant) {
+    if (!variant.files) return;
+    const url = `file://${join(variant.files, 'studio.html')}`;
+    const page = await open({url, hash: '#example=pendulum'});
+    await setSlider(page, 'l', 0.7);
+    await settled(page);
+    check(
+      'it computes',
+      (await field(page, 'l')) === 0.7 && (await page.locator('#certified').innerText()).includes('certified'),
+    );
+    await page.context().close();
+  },
+
+  async dialogs({open}, variant, picture) {
+    for (const dark of [false, true]) {
+      const page = await open({dark, hash: '#example=pendulum'});
+      for (const name of ['open', 'export', 'help', 'exercises']) {
+        if (await page.locator(`#${name}-button`).isHidden()) continue;
+        await page.locator(`#${name}-button`).click();
+        await page.waitForSelector('dialog[open]');
+        await axe(page, `the dialog ${name}${dark ? ', dark' : ''}`);
+        await picture(page, `dialog-${name}${dark ? '-dark' : ''}`);
+        await page.keyboard.press('Escape');
+        await page.waitForFunction(() => !document.querySelector('dialog'));
+      }
+      for (const part of ['derivation', 'modes', 'phase-space', 'run-facts', 'section'])
+        await page.locator(`#${part} > summary`).click();
+      await page.waitForSelector('#phase-space-body math');
+      await settled(page);
+      await axe(page, `everything unfolded${dark ? ', dark' : ''}`);
+      await page.locator('h1').click();
+      await page.keyboard.press('l');
+      await page.waitForSelector('#lecture .line.now');
+      await axe(page, `the lecture${dark ? ', dark' : ''}`);
+      await page.context().close();
+    }
+  },
+
+  async print({open}, variant, picture) {
+    const page = await open({dark: true, hash: '#example=pendulum'});
+    await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
+    await page.emulateMedia({media: 'print'});
+    await page.waitForTimeout(200);
+    check('paper has no bar', await page.locator('#bar').isHidden());
+    check('paper has the equations', await page.locator('#equations-body math').first().isVisible());
+    check(
+      'paper is white',
+      (await page.evaluate(() => getComputedStyle(document.documentElement).getPropertyValue('--ink'))).trim() ===
+        '#1d1b18',
+    );
+    await page.setViewportSize({width: 800, height: 1600});
+    await picture(page, 'print');
+    await page.context().close();
+  },
+
+  async 'drag in space'({open}, variant, picture) {
+    const page = await open({hash: '#example=spherical_pendulum'}),
+      grip = await gripNear(page, '#drawing', [0.5, 0.5]);
+    check('a point in space can be taken hold of', grip !== null);
+    if (!grip) return;
+    const before = await page.locator('#starts input[type=number]').evaluateAll(list => list.map(one => one.value));
+    await page.mouse.move(...grip);
+    await page.mouse.down();
+    for (let i = 1; i <= 8; ++i) {
+      await page.mouse.move(grip[0] + 8 * i, grip[1] + 4 * i);
+      await page.waitForTimeout(40);
+    }
+    await page.mouse.up();
+    await settled(page);
+    const after = await page.locator('#starts input[type=number]').evaluateAll(list => list.map(one => one.value));
+    check(
+      'the start changed',
+      before.some((x, i) => x !== after[i]),
+      [before, after],
+    );
+    const view = await page.locator('#drawing').evaluate(canvas => canvas.toDataURL());
+    const box = await page.locator('#drawing').boundingBox();
+    await page.mouse.move(box.x + 30, box.y + 30);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 130, box.y + 60, {steps: 5});
+    await page.mouse.up();
+    check(
+      'a drag beside it turns the drawing',
+      view !== (await page.locator('#drawing').evaluate(canvas => canvas.toDataURL())),
+    );
+    await picture(page, 'space');
+    await page.context().close();
+  },
+
   async 'colours are those of reports'() {
-    const html = readFileSync(join(root, 'src/report/html.cpp'), 'utf8'), style = readFileSync(join(root, 'src/plot/style.cpp'), 'utf8');
+    const html = readFileSync(join(root, 'src/report/html.cpp'), 'utf8'),
+      style = readFileSync(join(root, 'src/plot/style.cpp'), 'utf8');
     const own = readFileSync(join(root, 'studio/src/colours.css'), 'utf8').replaceAll(' ', '');
-    const themes = html.match(/color-scheme:(?:dark|light);[^"]*"\s*(?:"[^"]*"\s*)*/g).map(part => part.replace(/"\s*"?/g, ''));
+    const themes = html
+      .match(/color-scheme:(?:dark|light);[^"]*"\s*(?:"[^"]*"\s*)*/g)
+      .map(part => part.replace(/"\s*"?/g, ''));
     check('two themes', themes.length === 2, themes);
-    for (const theme of themes) for (const rule of theme.split(';').filter(Boolean)) check(`the page has ${rule}`, own.includes(`${rule};`), rule);
-    for (const colour of style.match(/_palette\{[^}]*\}/g).join().match(/#[0-9a-f]{6}/g)) check(`the page has ${colour}`, own.includes(colour));
+    for (const theme of themes)
+      for (const rule of theme.split(';').filter(Boolean))
+        check(`the page has ${rule}`, own.includes(`${rule};`), rule);
+    for (const colour of style
+      .match(/_palette\{[^}]*\}/g)
+      .join()
+      .match(/#[0-9a-f]{6}/g))
+      check(`the page has ${colour}`, own.includes(colour));
   },
 };

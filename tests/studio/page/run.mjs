@@ -7,13 +7,18 @@ import {cases} from './cases.mjs';
 import {check, checks, failures, openBrowser, pictures, serverVariant, staticVariant} from './harness.mjs';
 
 const [kind, ...words] = process.argv.slice(2);
-const variant = kind === 'server' ? await serverVariant(resolve(words[0]), resolve(words[1])) : await staticVariant(resolve(words[0]));
-const wanted = words.slice(kind === 'server' ? 2 : 1), picture = pictures(process.env.STUDIO_PICTURES);
+const variant =
+  kind === 'server'
+    ? await serverVariant(resolve(words[0]), resolve(words[1]))
+    : await staticVariant(resolve(words[0]));
+const wanted = words.slice(kind === 'server' ? 2 : 1),
+  picture = pictures(process.env.STUDIO_PICTURES);
 const browser = await openBrowser(variant);
 try {
   for (const [name, run] of Object.entries(cases)) {
     if (wanted.length > 0 && !wanted.includes(name)) continue;
-    const begin = Date.now(), before = failures;
+    const begin = Date.now(),
+      before = failures;
     await run(browser, variant, picture).catch(error => check(name, false, error.stack));
     console.log(`${failures === before ? 'ok    ' : 'FAILED'} ${name} (${((Date.now() - begin) / 1000).toFixed(1)} s)`);
   }
