@@ -420,17 +420,46 @@ export const cases = {
   },
 
   async exercises({open}, variant, picture) {
-    const page = await open();
-    if (await page.locator('#exercises-button').isHidden()) return void (await page.context().close());
+    const page = await open(),
+      known = JSON.parse(readFileSync(join(root, 'tests/studio/exercises.json'), 'utf8')),
+      verdict = page.locator('#claim-verdict .message');
+    const claim = async text => {
+      await page.locator('#claim').fill(text);
+      await page.keyboard.press('Enter');
+      await verdict.waitFor();
+      return verdict.innerText();
+    };
     await page.locator('#exercises-button').click();
     await picture(page, 'exercises');
-    await page.locator('dialog li button').first().click();
-    await page.waitForSelector('#exercise');
-    await page.locator('#claim').fill('1 = 0');
-    await page.keyboard.press('Enter');
-    await page.waitForSelector('#claim-verdict .message:not(.right)');
-    check('the equations are hidden', await page.locator('#equations-body').isHidden());
-    await picture(page, 'exercise');
+    check('twenty exercises', (await page.locator('dialog ol li').count()) === Object.keys(known).length);
+    await page.keyboard.press('Escape');
+    for (const [i, {right, wrong}] of Object.values(known).entries()) {
+      const name = Object.keys(known)[i];
+      await page.locator('#exercises-button').click();
+      await page.locator('dialog ol li button').nth(i).click();
+      await page.waitForSelector('#exercise');
+      await settled(page);
+      check(`${name}: the equations are hidden`, await page.locator('#equations-body').isHidden());
+      check(`${name}: it asks`, /Find|find/.test(await page.locator('#exercise').innerText()));
+      const told = await claim(wrong[0][0]);
+      check(
+        `${name}: a wrong claim is told with its pitfall`,
+        /Not yet/.test(told) && told.includes(wrong[0][1]),
+        told,
+      );
+      check(`${name}: the answer is not given`, !told.includes(right[0].split('=')[1].trim()), told);
+      if (i === 0) await picture(page, 'exercise');
+      check(`${name}: a right one is right`, /Right/.test(await claim(right[0])));
+    }
+    check('what is no equation is told', /\S/.test(await claim("x'' = = 2")));
+    await picture(page, 'exercise-right');
+    await page.locator('#exercise >> text=Show the equations').click();
+    check('the equations are there again', await page.locator('#equations-body').isVisible());
+    await page.locator('h1').click();
+    await page.keyboard.press('l');
+    await page.waitForSelector('#lecture .line.now');
+    check('a note stands beside its step', /\S/.test(await page.locator('#lecture .note').innerText()));
+    await picture(page, 'lecture-note');
     await page.context().close();
   },
 
