@@ -295,9 +295,6 @@ export const cases = {
     const page = await open({hash: '#example=pendulum'});
     await typeAtEnd(page, '\n# kept');
     await page.waitForTimeout(700);
-    await page.evaluate(() => {
-      location.hash = '';
-    });
     await page.reload();
     await settled(page);
     check('the text is there after a reload', /# kept/.test(await text(page)));
@@ -313,9 +310,6 @@ export const cases = {
       [one, '# first tab'],
       [two, '# second tab'],
     ]) {
-      await tab.evaluate(() => {
-        location.hash = '';
-      });
       await tab.reload();
       await settled(tab);
       check(`each tab keeps its own text: ${mark}`, (await text(tab)).endsWith(mark));
