@@ -1,5 +1,6 @@
-// Builds the static site: node site/build.mjs [--maup build/bin/maup] [--out build/site] [--studio build/studio] [--core build-wasm/bin]
-// Everything comes from the repository and from what the program says; a page that cannot be made right fails the build.
+// Builds the static site:
+//   node site/build.mjs [--maup build/bin/maup] [--out build/site] [--studio build/studio] [--core build-wasm/bin]
+// All comes from the repository and from what the program says; a page that cannot be made right fails the build.
 import {cpSync, existsSync, mkdirSync, readFileSync, readdirSync, renameSync, rmSync, writeFileSync} from 'node:fs';
 import {availableParallelism} from 'node:os';
 import {dirname, join, resolve} from 'node:path';
@@ -115,7 +116,8 @@ const grammarPage = docs => ({
   formulas: false,
   contents: false,
   list: docs.listOf('manual'),
-  html: `<p class="lead">The grammar of the model language in EBNF, which the tests of the parser follow.</p>\n<pre><code>${escape(readFileSync(join(root, 'docs/manual/grammar.ebnf'), 'utf8').trimEnd())}</code></pre>\n`,
+  html: `<p class="lead">The grammar of the model language in EBNF, which the tests of the parser follow.</p>
+<pre><code>${escape(readFileSync(join(root, 'docs/manual/grammar.ebnf'), 'utf8').trimEnd())}</code></pre>\n`,
 });
 
 // kind, page, address, title, text of each part that can be found
@@ -190,7 +192,8 @@ async function main() {
     rmSync(out, {recursive: true, force: true});
     renameSync(making, out);
     console.log(
-      `${pages.length} pages in ${out}: ${models.length} models, ${diagnostics.codes} codes (${diagnostics.examples} with an example), ${((Date.now() - started) / 1000).toFixed(0)} s.`,
+      `${pages.length} pages in ${out}: ${models.length} models, ${diagnostics.codes} codes ` +
+        `(${diagnostics.examples} with an example), ${((Date.now() - started) / 1000).toFixed(0)} s.`,
     );
   } finally {
     program.close();

@@ -1,9 +1,9 @@
-// The studio within the site: its page with the core as WebAssembly beside it, and the addresses that open a model in it.
+// The studio within the site: its page with the core as WebAssembly beside it, and addresses that open a model in it.
 import {cpSync, existsSync, mkdirSync, readFileSync, readdirSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {deflateRawSync, inflateRawSync} from 'node:zlib';
 
-// The fragment, which no server sees: {text, name} as JSON, deflated, in base64url (studio/src/tools/share.ts reads it).
+// The fragment, which no server sees: {text, name} as JSON, deflated, in base64url (read by studio/src/tools/share.ts).
 export const fragmentOf = (text, name) =>
   `m=${deflateRawSync(Buffer.from(JSON.stringify({text, name}), 'utf8'), {level: 9}).toString('base64url')}`;
 
@@ -17,17 +17,19 @@ export function missingOf(page, core) {
   return null;
 }
 
-// A page that was opened from a file may neither fetch nor start a worker from a file: there the core comes as a script.
+// A page from a file may neither fetch nor start a worker from a file: there the core comes as a script.
 const choose = `'use strict';
 if (location.protocol === 'file:') document.write('<script src="core_in_a_script.js"><\\/script>');
 else document.documentElement.dataset.core = 'maup_worker.js';
 `;
 
+// The worker begins by itself with the module (its first message may bring one, apps/studio_wasm/worker.js).
 const inScript = (worker, wasm) => `'use strict';
 {
   const worker = ${JSON.stringify(worker)};
-  const bytes = 'self.fetch = async () => new Response(Uint8Array.from(atob("${wasm}"), c => c.charCodeAt(0)));\\n';
-  document.documentElement.dataset.core = URL.createObjectURL(new Blob([bytes, worker], {type: 'text/javascript'}));
+  const bytes = 'Uint8Array.from(atob("${wasm}"), c => c.charCodeAt(0))';
+  const begin = '\\nself.onmessage({data: {start: {wasm: ' + bytes + '}}});\\n';
+  document.documentElement.dataset.core = URL.createObjectURL(new Blob([worker, begin], {type: 'text/javascript'}));
 }
 `;
 

@@ -1,6 +1,7 @@
-// Builds the site (with an empty studio in its place, so that the links to it are there too) and looks at it as readers do: in
-// Chromium, from files, at the width of a phone and of a desk, light, dark and on paper, with the keyboard, and by axe.
-//   node tests/site/check.mjs --maup build/bin/maup --work FOLDER [--keep]   (--keep: the site that is in FOLDER already)
+// Builds the site (with an empty studio in its place, so that the links to it are there too) and looks at it as readers
+// do: in Chromium, from files, at the width of a phone and of a desk, light, dark and on paper, with the
+// keyboard, and by axe.
+//   node tests/site/check.mjs --maup build/bin/maup --work FOLDER [--keep]   (--keep: the site that is in FOLDER)
 import {spawnSync} from 'node:child_process';
 import {existsSync, mkdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
@@ -32,11 +33,15 @@ function check(what, holds, detail = '') {
 
 // A page and a worker that are as small as they can be: the worker answers with what it finds in maup.wasm.
 const inItsPlace = {
-  'studio/index.html': `<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Studio</title><link rel="icon" href="data:,">
+  'studio/index.html': `<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Studio</title>
+<link rel="icon" href="data:,">
 <script defer src="./studio.js"></script><p>In its place.</p></html>`,
-  'studio/studio.js': `new Worker(document.documentElement.dataset.core).onmessage = event => { self.answer = event.data; };`,
+  'studio/studio.js': `const core = new Worker(document.documentElement.dataset.core);
+core.onmessage = event => { self.answer = event.data; };`,
   'studio/page.html.gz': 'not wanted in the site',
-  'core/maup_worker.js': `fetch('maup.wasm').then(answer => answer.text()).then(postMessage);`,
+  'core/maup_worker.js': `self.onmessage = async ({data: {start}}) => {
+  postMessage(start ? new TextDecoder().decode(start.wasm) : 'no module came');
+};`,
   'core/maup.wasm': 'the core',
 };
 
