@@ -73,7 +73,16 @@ export async function studyModels(root, models, program, width) {
     model.picture = await picture(root, model, program);
     model.film = filmOf(await program.written(`${model.name}.html`, 'animate', model.file), model);
     model.derivation = JSON.parse((await program.run('derive', '--json', model.file)).out);
+    model.expectations = await expectationsOf(model, program);
   });
+}
+
+// A model whose tests fail is not shown as if they held.
+async function expectationsOf(model, program) {
+  const {expectations} = JSON.parse((await program.run('test', '--json', model.file)).out);
+  const failed = expectations.find(expectation => !expectation.passed);
+  if (failed) throw new Error(`${model.name}: \`${failed.text}\` does not hold`);
+  return expectations;
 }
 
 function picture(root, model, program) {
@@ -149,6 +158,19 @@ function certificate({certificate}) {
 </tr></thead><tbody>${rows.join('\n')}</tbody></table></div>\n`;
 }
 
+function tests({expectations}) {
+  const rows = expectations.map(
+    ({text, actual, message}) => `<tr><td><code>${escape(text)}</code></td>
+<td><code>${escape(actual)}</code> <span class="muted">${escape(message)}</span></td></tr>`,
+  );
+  if (rows.length === 0) return '';
+  const all = rows.length === 1 ? 'The expectation of the model holds' : `All ${rows.length} expectations of the model hold`;
+  return `<h2 id="tests">Tests</h2>
+<p><span class="good">${all}</span>, as found by <code>maup test</code> when this page was made.</p>
+<div class="scroll"><table class="tests"><thead><tr><th scope="col">expected</th><th scope="col">found</th></tr></thead>
+<tbody>${rows.join('\n')}</tbody></table></div>\n`;
+}
+
 function equations(model) {
   const d = model.derivation,
     where = model.name;
@@ -222,7 +244,7 @@ ${model.shows ? `<p class="lead">${sentence(marked(model.shows))} ${against}</p>
 <p class="actions">${links.join(' ')}
 <span class="muted">or <code>maup report models/${model.folder && `${model.folder}/`}${model.name}.lag</code></span></p>
 <h2 id="text">Model</h2>
-${documents.lag(model.text.trimEnd(), false)}${equations(model)}${certificate(model.derivation)}`;
+${documents.lag(model.text.trimEnd(), false)}${equations(model)}${certificate(model.derivation)}${tests(model)}`;
     const headings = [...html.matchAll(/<h([23]) id="([^"]*)">(.*?)<\/h/g)].map(([, level, id, text]) => ({
       level: Number(level),
       id,

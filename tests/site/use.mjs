@@ -80,6 +80,7 @@ async function checkModel(check, browser, open) {
   await page.click('[data-control=play]');
   check('the drawing of a model moves', (await picture()) !== first);
   check('its equations are set', (await page.locator('#content .katex').count()) >= 2);
+  check('its tests are shown', /All 11 expectations of the model hold/.test(await page.locator('#content').innerText()));
   check('its certificate is shown', /Passed: 4 independent checks/.test(await page.locator('#content').innerText()));
   check('no message while it moves', page.noted.length === 0, page.noted);
   await page.goto(page.siteUrl('models/kink_antikink.html'));
