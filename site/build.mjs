@@ -1,5 +1,5 @@
 // Builds the static site:
-//   node site/build.mjs [--maup build/bin/maup] [--out build/site] [--studio build/studio] [--core build-wasm/bin]
+//   node site/build.mjs [--maup build/bin/maup] [--out build/site] [--studio build/studio_static]
 // All comes from the repository and from what the program says; a page that cannot be made right fails the build.
 import {cpSync, existsSync, mkdirSync, readFileSync, readdirSync, renameSync, rmSync, writeFileSync} from 'node:fs';
 import {availableParallelism} from 'node:os';
@@ -25,8 +25,7 @@ const {values} = parseArgs({
   options: {
     maup: {type: 'string', default: join(root, 'build/bin/maup')},
     out: {type: 'string', default: join(root, 'build/site')},
-    studio: {type: 'string', default: join(root, 'build/studio')},
-    core: {type: 'string', default: join(root, 'build-wasm/bin')},
+    studio: {type: 'string', default: join(root, 'build/studio_static')},
   },
 });
 const out = resolve(values.out),
@@ -146,7 +145,7 @@ async function main() {
   const started = Date.now(),
     program = new Program(resolve(values.maup));
   if (!existsSync(program.path)) throw new Error(`there is no program ${program.path}; scripts/build makes it`);
-  const missing = missingOf(resolve(values.studio), resolve(values.core)),
+  const missing = missingOf(resolve(values.studio)),
     studio = missing === null;
   if (!studio) console.log(`The site is made without the studio and links to it: ${missing}.`);
   rmSync(making, {recursive: true, force: true});
@@ -188,7 +187,7 @@ async function main() {
     await assets(models);
     for (const name of readdirSync(join(root, 'docs/pictures')).filter(name => name.endsWith('.png')))
       cpSync(join(root, 'docs/pictures', name), join(making, 'pictures', name));
-    if (studio) copyStudio(resolve(values.studio), resolve(values.core), join(making, 'studio'));
+    if (studio) copyStudio(resolve(values.studio), join(making, 'studio'));
     rmSync(out, {recursive: true, force: true});
     renameSync(making, out);
     console.log(

@@ -164,7 +164,8 @@ function tests({expectations}) {
 <td><code>${escape(actual)}</code> <span class="muted">${escape(message)}</span></td></tr>`,
   );
   if (rows.length === 0) return '';
-  const all = rows.length === 1 ? 'The expectation of the model holds' : `All ${rows.length} expectations of the model hold`;
+  const all =
+    rows.length === 1 ? 'The expectation of the model holds' : `All ${rows.length} expectations of the model hold`;
   return `<h2 id="tests">Tests</h2>
 <p><span class="good">${all}</span>, as found by <code>maup test</code> when this page was made.</p>
 <div class="scroll"><table class="tests"><thead><tr><th scope="col">expected</th><th scope="col">found</th></tr></thead>
@@ -199,8 +200,7 @@ function equations(model) {
   if (d.momenta?.length)
     html += `<h3 id="momenta">Momenta</h3>
 <ul class="plain">${d.momenta.map((p, i) => `<li>${code(`p_${d.coordinates[i]} = ${p}`)}</li>`).join('\n')}</ul>\n`;
-  if (d.conserved?.length)
-    html += `<p>Conserved: ${d.conserved.map(nameOf).join(', ')}.</p>\n`;
+  if (d.conserved?.length) html += `<p>Conserved: ${d.conserved.map(nameOf).join(', ')}.</p>\n`;
   return html + messages(d);
 }
 

@@ -31,18 +31,12 @@ function check(what, holds, detail = '') {
   );
 }
 
-// A page and a worker that are as small as they can be: the worker answers with what it finds in maup.wasm.
+// The pages of a studio, as small as they can be: one for hosts and one for disks.
+const studioPage = script => `<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Studio</title>
+<link rel="icon" href="data:,"><script>${script}</script><p>In its place.</p></html>`;
 const inItsPlace = {
-  'studio/index.html': `<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Studio</title>
-<link rel="icon" href="data:,">
-<script defer src="./studio.js"></script><p>In its place.</p></html>`,
-  'studio/studio.js': `const core = new Worker(document.documentElement.dataset.core);
-core.onmessage = event => { self.answer = event.data; };`,
-  'studio/page.html.gz': 'not wanted in the site',
-  'core/maup_worker.js': `self.onmessage = async ({data: {start}}) => {
-  postMessage(start ? new TextDecoder().decode(start.wasm) : 'no module came');
-};`,
-  'core/maup.wasm': 'the core',
+  'studio/index.html': studioPage("self.opened = 'for hosts';"),
+  'studio/studio.html': studioPage("self.opened = 'for disks';"),
 };
 
 function build() {
@@ -52,7 +46,7 @@ function build() {
     mkdirSync(dirname(join(work, name)), {recursive: true});
     writeFileSync(join(work, name), text);
   }
-  const folders = ['--out', site, '--studio', join(work, 'studio'), '--core', join(work, 'core')];
+  const folders = ['--out', site, '--studio', join(work, 'studio')];
   const options = [join(root, 'site/build.mjs'), '--maup', resolve(values.maup), ...folders];
   const {status} = spawnSync(process.execPath, options, {stdio: 'inherit'});
   if (status !== 0) throw new Error('the site was not built');
@@ -80,7 +74,10 @@ async function noting(context, path) {
     if (!request.url().startsWith(base) && !/^(data|blob):/.test(request.url()))
       page.noted.push(`request: ${request.url()}`);
   });
-  page.on('requestfailed', request => page.noted.push(`failed: ${request.url()}`));
+  page.on('requestfailed', request => {
+    const {errorText} = request.failure(); // what is cut off because the page is left is no failure
+    if (errorText !== 'net::ERR_ABORTED') page.noted.push(`failed: ${request.url()} ${errorText}`);
+  });
   page.siteUrl = path => `${base}/${path}`;
   await page.goto(page.siteUrl(path));
   return page;
