@@ -27,6 +27,13 @@ export async function checkUse(check, browser, open, site) {
   check('a code finds its page', (await page.locator('#found b').first().innerText()).startsWith('E0304'));
   await finish(page);
 
+  page = await open(browser, 'theory/taylor.html', {width: 400});
+  await page.fill('#search', 'pendulum');
+  await page.waitForSelector('#found [role=option]');
+  const list = await page.locator('#found').boundingBox();
+  check('on a phone what was found is seen whole', list.x >= 0 && list.x + list.width <= 400, list);
+  await finish(page);
+
   // Light and dark: the choice is kept from page to page.
   page = await open(browser, 'theory/taylor.html');
   const paper = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor),
