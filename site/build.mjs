@@ -1,5 +1,6 @@
-// Builds the static site: node site/build.mjs [--maup build/bin/maup] [--out build/site] [--studio build/studio] [--core build-wasm/bin]
-// Everything comes from the repository and from what the program says; a page that cannot be made right fails the build.
+// Builds the static site:
+//   node site/build.mjs [--maup build/bin/maup] [--out build/site] [--studio build/studio_static]
+// All comes from the repository and from what the program says; a page that cannot be made right fails the build.
 import {cpSync, existsSync, mkdirSync, readFileSync, readdirSync, renameSync, rmSync, writeFileSync} from 'node:fs';
 import {availableParallelism} from 'node:os';
 import {dirname, join, resolve} from 'node:path';
@@ -24,8 +25,7 @@ const {values} = parseArgs({
   options: {
     maup: {type: 'string', default: join(root, 'build/bin/maup')},
     out: {type: 'string', default: join(root, 'build/site')},
-    studio: {type: 'string', default: join(root, 'build/studio')},
-    core: {type: 'string', default: join(root, 'build-wasm/bin')},
+    studio: {type: 'string', default: join(root, 'build/studio_static')},
   },
 });
 const out = resolve(values.out),
@@ -115,7 +115,8 @@ const grammarPage = docs => ({
   formulas: false,
   contents: false,
   list: docs.listOf('manual'),
-  html: `<p class="lead">The grammar of the model language in EBNF, which the tests of the parser follow.</p>\n<pre><code>${escape(readFileSync(join(root, 'docs/manual/grammar.ebnf'), 'utf8').trimEnd())}</code></pre>\n`,
+  html: `<p class="lead">The grammar of the model language in EBNF, which the tests of the parser follow.</p>
+<pre><code>${escape(readFileSync(join(root, 'docs/manual/grammar.ebnf'), 'utf8').trimEnd())}</code></pre>\n`,
 });
 
 // kind, page, address, title, text of each part that can be found
@@ -144,7 +145,7 @@ async function main() {
   const started = Date.now(),
     program = new Program(resolve(values.maup));
   if (!existsSync(program.path)) throw new Error(`there is no program ${program.path}; scripts/build makes it`);
-  const missing = missingOf(resolve(values.studio), resolve(values.core)),
+  const missing = missingOf(resolve(values.studio)),
     studio = missing === null;
   if (!studio) console.log(`The site is made without the studio and links to it: ${missing}.`);
   rmSync(making, {recursive: true, force: true});
@@ -186,11 +187,12 @@ async function main() {
     await assets(models);
     for (const name of readdirSync(join(root, 'docs/pictures')).filter(name => name.endsWith('.png')))
       cpSync(join(root, 'docs/pictures', name), join(making, 'pictures', name));
-    if (studio) copyStudio(resolve(values.studio), resolve(values.core), join(making, 'studio'));
+    if (studio) copyStudio(resolve(values.studio), join(making, 'studio'));
     rmSync(out, {recursive: true, force: true});
     renameSync(making, out);
     console.log(
-      `${pages.length} pages in ${out}: ${models.length} models, ${diagnostics.codes} codes (${diagnostics.examples} with an example), ${((Date.now() - started) / 1000).toFixed(0)} s.`,
+      `${pages.length} pages in ${out}: ${models.length} models, ${diagnostics.codes} codes ` +
+        `(${diagnostics.examples} with an example), ${((Date.now() - started) / 1000).toFixed(0)} s.`,
     );
   } finally {
     program.close();

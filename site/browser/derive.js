@@ -1,4 +1,4 @@
-// The box "derive your own": its text goes to the studio in the fragment of the address, deflated, which no server sees.
+// The box "derive your own": its text goes to the studio in the fragment of the address, which no server sees.
 import {encodeShared} from '../../studio/src/tools/share.ts';
 
 const box = document.getElementById('own'),

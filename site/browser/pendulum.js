@@ -1,5 +1,6 @@
-// The pendulum of the start page. Until someone takes hold of it, it follows the run that maup simulate computed when the site was
-// made (cubics through angles and rates). After that a few lines of Runge-Kutta move it: an ornament, and it says so.
+// The pendulum of the start page. Until someone takes hold of it, it follows the run that maup simulate computed when
+// the site was made (cubics through angles and rates). After that a few lines of Runge-Kutta move it: an
+// ornament, and it says so.
 const figure = document.getElementById('pendulum'),
   svg = figure.querySelector('svg'),
   says = document.getElementById('pendulum-says');

@@ -79,6 +79,8 @@ function load() {
           prefix: true,
           fuzzy: term => (term.length > 4 ? 0.15 : false),
           combineWith: 'AND',
+          boostDocument: (id, term, {kind, page}) =>
+            page === 'Changelog' ? 0.4 : kind === 'reference case' ? 0.7 : 1,
         },
       });
       search.addAll(

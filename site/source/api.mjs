@@ -111,7 +111,8 @@ function signature(member, writer) {
   if (kind === 'enum') return `enum ${member.attributes.strong === 'yes' ? 'class ' : ''}${name}`;
   if (kind === 'variable') {
     const value = textOf(one(member, 'initializer')).trim();
-    return `${type ? type + ' ' : ''}${name}${value ? ` <span class="muted">${escape(/^[={]/.test(value) ? value : `= ${value}`)}</span>` : ''}`;
+    const shown = /^[={]/.test(value) ? value : `= ${value}`;
+    return `${type ? type + ' ' : ''}${name}${value ? ` <span class="muted">${escape(shown)}</span>` : ''}`;
   }
   const parameters = all(member, 'param').map(parameter => {
     const value = textOf(one(parameter, 'defval'));
@@ -247,7 +248,10 @@ export class ApiPages {
       list: {...list, neighbours: false},
       contents: false,
       formulas: false,
-      html: `<p class="lead">The headers of <code>include/maupertuis/</code>, in the order of the stages from text to motion. <a href="../manual/library.html">The library</a> has examples, <a href="../inside/architecture.html">Architecture</a> the data flow.</p>\n${overview.join('')}`,
+      html: `<p class="lead">The headers of <code>include/maupertuis/</code>, in the order of the stages from
+text to motion. <a href="../manual/library.html">The library</a> has examples,
+<a href="../inside/architecture.html">Architecture</a> the data flow.</p>
+${overview.join('')}`,
     });
     return pages;
   }
@@ -258,7 +262,9 @@ export class ApiPages {
     const html = entries
       .map(
         entry =>
-          `<section class="entry">\n<h2 id="${entry.anchor}">${escape(entry.name)}</h2>\n${this.entryHtml(entry, writer)}</section>\n`,
+          `<section class="entry">
+<h2 id="${entry.anchor}">${escape(entry.name)}</h2>
+${this.entryHtml(entry, writer)}</section>\n`,
       )
       .join('');
     const lead = leadOf(readFileSync(join(this.root, 'include/maupertuis', header), 'utf8'));
@@ -288,6 +294,7 @@ export class ApiPages {
       .flatMap(section => all(section, 'memberdef'))
       .filter(member => member.attributes.kind !== 'friend')
       .sort((a, b) => Number(one(a, 'location').attributes.line) - Number(one(b, 'location').attributes.line));
-    return `${bases.length ? `<p class="muted">is a ${bases.join(', ')}</p>\n` : ''}${about}${members.map((member, i) => memberHtml(member, writer, `${anchor}-${i + 1}`)).join('')}`;
+    const base = bases.length ? `<p class="muted">is a ${bases.join(', ')}</p>\n` : '';
+    return base + about + members.map((member, i) => memberHtml(member, writer, `${anchor}-${i + 1}`)).join('');
   }
 }

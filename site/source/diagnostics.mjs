@@ -74,10 +74,12 @@ export function diagnosticsPages(root, program, documents) {
   const index = sorted
     .map(
       ([range, entries]) =>
-        `<section data-group><h2 id="range-${range}">${range}xx ${escape(title(range))}</h2>\n<ul class="codes">${entries
+        `<section data-group><h2 id="range-${range}">${range}xx ${escape(title(range))}</h2>
+<ul class="codes">${entries
           .map(
             ({code, title, explanation}) =>
-              `<li data-words="${escape(`${code} ${title} ${explanation}`.toLowerCase())}"><a href="${code}.html"><code class="${severities[code[0]]}">${code}</code> ${escape(title)}</a></li>`,
+              `<li data-words="${escape(`${code} ${title} ${explanation}`.toLowerCase())}"><a href="${code}.html">
+<code class="${severities[code[0]]}">${code}</code> ${escape(title)}</a></li>`,
           )
           .join('\n')}</ul></section>\n`,
     )
@@ -88,8 +90,13 @@ export function diagnosticsPages(root, program, documents) {
     documentTitle: 'All diagnostics',
     contents: false,
     formulas: false,
-    html: `<p class="lead">Everything that <code>maup</code> may have to say of a model: ${codes.length} codes, each with its reason, its remedy, and where that helps a text that is wrong beside one that is right. How messages are built is told in <a href="../manual/diagnostics.html">the manual</a>; <code>maup explain CODE</code> says the same in a terminal.</p>
-<p class="filter"><label for="filter">Filter</label> <input id="filter" type="search" autocomplete="off" spellcheck="false"> <output id="filter-count" for="filter"></output></p>\n${index}`,
+    html: `<p class="lead">Everything that <code>maup</code> may have to say of a model: ${codes.length} codes,
+each with its reason, its remedy, and where that helps a text that is wrong beside one that is right. How messages are
+built is told in <a href="../manual/diagnostics.html">the manual</a>; <code>maup explain CODE</code>
+says the same in a terminal.</p>
+<p class="filter"><label for="filter">Filter</label>
+<input id="filter" type="search" autocomplete="off" spellcheck="false">
+<output id="filter-count" for="filter"></output></p>\n${index}`,
   });
   return {pages, codes: codes.length, examples: [...shown.keys()].length};
 }
@@ -106,7 +113,8 @@ function codePage({code, title, explanation, wrong, right}, example, documents) 
     text ? `<h2 id="${heading.toLowerCase()}">${heading}</h2>\n${documents.lag(text.trimEnd(), false)}` : '';
   const message = example
     ? `<h2 id="example">A model, and what is said of it</h2>
-${documents.lag(example.text.trimEnd(), true)}<pre class="message"><code>${escape(example.message.trimEnd())}</code></pre>
+${documents.lag(example.text.trimEnd(), true)}
+<pre class="message"><code>${escape(example.message.trimEnd())}</code></pre>
 <p class="source">From the tests of the program, <code>tests/golden/reject/${escape(example.name)}</code>.</p>\n`
     : '';
   return {
@@ -115,7 +123,9 @@ ${documents.lag(example.text.trimEnd(), true)}<pre class="message"><code>${escap
     titleHtml: `<code class="${kind}">${code}</code> ${escape(capital(title))}`,
     formulas: false,
     contents: false,
-    html: `<p class="kind">${capital(kind)}.</p>\n${paragraphs}\n${listing('Wrong', wrong)}${listing('Right', right)}${message}`,
+    html: `<p class="kind">${capital(kind)}.</p>
+${paragraphs}
+${listing('Wrong', wrong)}${listing('Right', right)}${message}`,
     sections: [{title: `${code} ${title}`, id: '', text: explanation}],
   };
 }

@@ -87,7 +87,7 @@ export class DocumentPages {
     });
   }
 
-  // The address of a link in `env.file`, seen from its page; null for a file of the repository that is no page of the site.
+  // The address of a link in `env.file`, seen from its page; null for a file of the repository that is no page here.
   linkOf(target, env) {
     if (target.startsWith('#')) return target;
     if (/^[a-z]+:/i.test(target)) return target;
@@ -136,7 +136,8 @@ export class DocumentPages {
           '<ul class="overview">\n';
         ((group = entry.group), (open = true));
       }
-      html += `<li><a href="${relative(path, entry.path)}">${escape(entry.title)}</a> <span>${escape(firstSentence(entry))}</span></li>\n`;
+      html += `<li><a href="${relative(path, entry.path)}">${escape(entry.title)}</a>
+<span>${escape(firstSentence(entry))}</span></li>\n`;
     }
     return {path, title, html: html + '</ul>\n', list: {...this.listOf(area), neighbours: false}, contents: false};
   }

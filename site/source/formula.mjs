@@ -1,5 +1,6 @@
-// The formulas of the documents. They are written there as one reads them in a terminal, ∂L/∂q' and M⁻¹; here they become the
-// LaTeX that KaTeX sets. A sign that is not listed, or what KaTeX does not understand, is an error: no formula is left unset.
+// The formulas of the documents. They are written there as one reads them in a terminal, ∂L/∂q' and M⁻¹; here they
+// become the LaTeX that KaTeX sets. A sign that is not listed, or what KaTeX does not understand, is an error: no
+// formula is left unset.
 import katex from 'katex';
 
 const superscripts = new Map(
@@ -134,7 +135,8 @@ export function latexOf(text) {
 
 // Thin spaces stand between factors alone; words that follow each other are one text.
 function tidy(latex) {
-  const operator = String.raw`(?:[=+<>(\[,;:/-]|\\(?:cdot|pm|mp|le|ge|approx|ne|to|sim|in|sum|int|partial|nabla|(?:sum|int)\s*_\{[^{}]*\}|sin|cos|tan|exp|ln|log|min|max|det)(?![a-z]))`;
+  const names = 'cdot|pm|mp|le|ge|approx|ne|to|sim|in|sum|int|partial|nabla|sin|cos|tan|exp|ln|log|min|max|det';
+  const operator = String.raw`(?:[=+<>(\[,;:/-]|\\(?:${names}|(?:sum|int)\s*_\{[^{}]*\})(?![a-z]))`;
   const words = /(\\text\{[^{}]*)\}\\, \\text\{/;
   while (words.test(latex)) latex = latex.replace(words, '$1 ');
   return latex
@@ -295,7 +297,8 @@ function matrixLatex(lines) {
   rows[0].forEach((_, g) => {
     const sign = between.map(parts => parts[g]).find(part => part !== '');
     const cell = text => latexOf(text.replace(/ or /g, ' or '));
-    latex += `${sign ? latexOf(sign) : ''}\\begin{bmatrix}${rows.map(row => row[g].map(cell).join(' & ')).join(' \\\\ ')}\\end{bmatrix}`;
+    const cells = rows.map(row => row[g].map(cell).join(' & ')).join(' \\\\ ');
+    latex += `${sign ? latexOf(sign) : ''}\\begin{bmatrix}${cells}\\end{bmatrix}`;
   });
   return latex;
 }

@@ -1,5 +1,6 @@
-// Model text in colour, by the grammar that the editors use (editors/vscode/syntaxes/lag.tmLanguage.json): its rules are read
-// here, so that a word of the language is listed once. Only what that grammar has is understood: match, begin and end, include.
+// Model text in colour, by the grammar that the editors use (editors/vscode/syntaxes/lag.tmLanguage.json): its rules
+// are read here, so that a word of the language is listed once. Only what that grammar has is understood: match, begin
+// and end, include.
 import {readFileSync} from 'node:fs';
 
 export const escape = text =>

@@ -1,4 +1,4 @@
-// The documents of the repository as HTML: what each kind of block becomes, anchors of headings, links to pages of the site.
+// The documents of the repository as HTML: what each kind of block becomes, anchors of headings, links to other pages.
 import MarkdownIt from 'markdown-it';
 import {escape} from './highlight.mjs';
 import {formulaBlock} from './formula.mjs';
@@ -98,7 +98,7 @@ export class Documents {
       case 'console':
         return `<pre class="console"><code>${consoleHtml(text)}</code></pre>\n`;
       case 'sh':
-        return `<pre class="console"><code>${escape(text).replace(/(^|\s)(#.*)$/gm, '$1<span class="comment">$2</span>')}</code></pre>\n`;
+        return `<pre class="console"><code>${remarked(escape(text))}</code></pre>\n`;
       default:
         if (!plainKinds.has(kind)) throw new Error(`${where}: a block of the unknown kind "${kind}"`);
         return `<pre class="${kind}"><code>${escape(text)}</code></pre>\n`;
@@ -128,7 +128,9 @@ export class Documents {
   }
 }
 
-// Symbols within sentences: what is lowered or raised, and primes. Names of programs stand in code and are left as they are.
+const remarked = html => html.replace(/(^|\s)(#.*)$/gm, '$1<span class="comment">$2</span>');
+
+// Symbols within sentences: what is lowered or raised, and primes. Names of programs stand in code and are left alone.
 const inlineMath = html =>
   html
     .replace(

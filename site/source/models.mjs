@@ -73,7 +73,16 @@ export async function studyModels(root, models, program, width) {
     model.picture = await picture(root, model, program);
     model.film = filmOf(await program.written(`${model.name}.html`, 'animate', model.file), model);
     model.derivation = JSON.parse((await program.run('derive', '--json', model.file)).out);
+    model.expectations = await expectationsOf(model, program);
   });
+}
+
+// A model whose tests fail is not shown as if they held.
+async function expectationsOf(model, program) {
+  const {expectations} = JSON.parse((await program.run('test', '--json', model.file)).out);
+  const failed = expectations.find(expectation => !expectation.passed);
+  if (failed) throw new Error(`${model.name}: \`${failed.text}\` does not hold`);
+  return expectations;
 }
 
 function picture(root, model, program) {
@@ -119,7 +128,8 @@ const formulas = (rows, where) =>
   rows
     .map(
       row =>
-        `<div class="formula${row.latex.includes('\\frac') ? ' tall' : ''}">${katexHtml(row.latex, where)}${row.where ? ` <span class="said">${escape(row.where)}</span>` : ''}</div>\n`,
+        `<div class="formula${row.latex.includes('\\frac') ? ' tall' : ''}">${katexHtml(row.latex, where)}
+${row.where ? `<span class="said">${escape(row.where)}</span>` : ''}</div>\n`,
     )
     .join('');
 
@@ -134,10 +144,32 @@ function certificate({certificate}) {
   if (!certificate) return '';
   const rows = certificate.checks.map(
     check =>
-      `<tr><td><code>${escape(check.name)}</code></td><td>${escape(check.statement ?? checkNames[check.name] ?? check.name.replaceAll('_', ' '))}</td><td class="number">${check.points}</td><td class="number">${check.error_bound ? check.error_bound.toExponential(1) : '0'}</td></tr>`,
+      `<tr><td><code>${escape(check.name)}</code></td>
+<td>${escape(check.statement ?? checkNames[check.name] ?? check.name.replaceAll('_', ' '))}</td>
+<td class="number">${check.points}</td>
+<td class="number">${check.error_bound ? check.error_bound.toExponential(1) : '0'}</td></tr>`,
   );
-  return `<h2 id="certificate">Certificate</h2>\n<p class="${certificate.passed ? 'good' : 'bad'}">${certificate.passed ? 'Passed' : 'Not passed'}: ${certificate.checks.length} independent checks of the derivation. <a href="../theory/certificate.html">What they are</a></p>
-<div class="scroll"><table><thead><tr><th scope="col">check</th><th scope="col">says</th><th scope="col">points</th><th scope="col">error below</th></tr></thead><tbody>${rows.join('\n')}</tbody></table></div>\n`;
+  const [manner, word] = certificate.passed ? ['good', 'Passed'] : ['bad', 'Not passed'];
+  return `<h2 id="certificate">Certificate</h2>
+<p class="${manner}">${word}: ${certificate.checks.length} independent checks of the derivation.
+<a href="../theory/certificate.html">What they are</a></p>
+<div class="scroll"><table><thead><tr>
+<th scope="col">check</th><th scope="col">says</th><th scope="col">points</th><th scope="col">error below</th>
+</tr></thead><tbody>${rows.join('\n')}</tbody></table></div>\n`;
+}
+
+function tests({expectations}) {
+  const rows = expectations.map(
+    ({text, actual, message}) => `<tr><td><code>${escape(text)}</code></td>
+<td><code>${escape(actual)}</code> <span class="muted">${escape(message)}</span></td></tr>`,
+  );
+  if (rows.length === 0) return '';
+  const all =
+    rows.length === 1 ? 'The expectation of the model holds' : `All ${rows.length} expectations of the model hold`;
+  return `<h2 id="tests">Tests</h2>
+<p><span class="good">${all}</span>, as found by <code>maup test</code> when this page was made.</p>
+<div class="scroll"><table class="tests"><thead><tr><th scope="col">expected</th><th scope="col">found</th></tr></thead>
+<tbody>${rows.join('\n')}</tbody></table></div>\n`;
 }
 
 function equations(model) {
@@ -146,6 +178,8 @@ function equations(model) {
   if (!d.ok) return `<h2 id="equations">Equations</h2>\n${messages(d)}`;
   const part = (name, rows) =>
     rows?.length ? `<h3 id="${name.toLowerCase().replace(/\W+/g, '-')}">${name}</h3>\n${formulas(rows, where)}` : '';
+  const nameOf = name => (name === 'energy' ? 'the energy function' : code(name));
+  const unit = r => (r.unit ? ` (${escape(r.unit)})` : '');
   const code = text => `<code>${escape(text)}</code>`;
   let html = `<h2 id="equations">Equations</h2>\n${formulas(d.equations ?? [], where)}`;
   html +=
@@ -160,12 +194,13 @@ function equations(model) {
       d.degenerate.constraints.map(c => ({latex: `${c.latex} = 0`})),
     );
   if (d.reactions?.length)
-    html += `<h3 id="reactions">Reactions</h3>\n<ul>${d.reactions.map(r => `<li>${code(r.plain)} ${r.unit ? `(${escape(r.unit)})` : ''}: ${escape(r.meaning)}</li>`).join('\n')}</ul>\n`;
+    html += `<h3 id="reactions">Reactions</h3>
+<ul>${d.reactions.map(r => `<li>${code(r.plain)}${unit(r)}: ${escape(r.meaning)}</li>`).join('\n')}</ul>\n`;
   if (d.energy) html += `<h3 id="energy">Energy function</h3>\n<p class="long-code">${code(d.energy)}</p>\n`;
   if (d.momenta?.length)
-    html += `<h3 id="momenta">Momenta</h3>\n<ul class="plain">${d.momenta.map((p, i) => `<li>${code(`p_${d.coordinates[i]} = ${p}`)}</li>`).join('\n')}</ul>\n`;
-  if (d.conserved?.length)
-    html += `<p>Conserved: ${d.conserved.map(name => (name === 'energy' ? 'the energy function' : code(name))).join(', ')}.</p>\n`;
+    html += `<h3 id="momenta">Momenta</h3>
+<ul class="plain">${d.momenta.map((p, i) => `<li>${code(`p_${d.coordinates[i]} = ${p}`)}</li>`).join('\n')}</ul>\n`;
+  if (d.conserved?.length) html += `<p>Conserved: ${d.conserved.map(nameOf).join(', ')}.</p>\n`;
   return html + messages(d);
 }
 
@@ -173,7 +208,12 @@ const messages = ({diagnostics}) =>
   (diagnostics ?? [])
     .map(
       d =>
-        `<div class="remark ${d.severity}"><p><a href="../diagnostics/${d.code}.html"><code>${d.code}</code></a> ${escape(d.message)}</p>${d.reason ? `<p>${escape(d.reason)}</p>` : ''}${d.help ? `<p>${escape(d.help).replace(/`([^`]+)`/g, '<code>$1</code>')}</p>` : ''}</div>\n`,
+        `<div class="remark ${d.severity}">
+<p><a href="../diagnostics/${d.code}.html"><code>${d.code}</code></a> ${escape(d.message)}</p>
+${[d.reason, d.help]
+  .filter(Boolean)
+  .map(text => `<p>${marked(text)}</p>`)
+  .join('\n')}</div>\n`,
     )
     .join('');
 
@@ -198,9 +238,13 @@ export function modelPages(models, documents, {studio}) {
       links.unshift(
         `<a class="button main" href="studio:#${fragmentOf(model.text, model.name)}">Open in the studio</a>`,
       );
-    const html = `${model.source ? `<p class="citation">${escape(model.source)}</p>\n` : ''}${model.shows ? `<p class="lead">${sentence(marked(model.shows))} <span class="muted">Compared with: ${marked(model.against)}.</span></p>\n` : ''}${film}
-<p class="actions">${links.join(' ')} <span class="muted">or <code>maup report ${escape(model.folder ? `models/${model.folder}` : 'models')}/${model.name}.lag</code></span></p>
-<h2 id="text">Model</h2>\n${documents.lag(model.text.trimEnd(), false)}${equations(model)}${certificate(model.derivation)}`;
+    const against = model.shows && `<span class="muted">Compared with: ${marked(model.against)}.</span>`;
+    const html = `${model.source ? `<p class="citation">${escape(model.source)}</p>\n` : ''}
+${model.shows ? `<p class="lead">${sentence(marked(model.shows))} ${against}</p>\n` : ''}${film}
+<p class="actions">${links.join(' ')}
+<span class="muted">or <code>maup report models/${model.folder && `${model.folder}/`}${model.name}.lag</code></span></p>
+<h2 id="text">Model</h2>
+${documents.lag(model.text.trimEnd(), false)}${equations(model)}${certificate(model.derivation)}${tests(model)}`;
     const headings = [...html.matchAll(/<h([23]) id="([^"]*)">(.*?)<\/h/g)].map(([, level, id, text]) => ({
       level: Number(level),
       id,
@@ -228,13 +272,19 @@ function scriptsOf({name, film}) {
 
 const sentence = html => html.replace(/^./, first => first.toUpperCase()) + '.';
 
-const card = (
-  model,
-  studio,
-) => `<li class="card" data-words="${escape(`${model.name} ${model.title} ${model.shows ?? ''} ${model.source ?? ''} ${model.group}`.toLowerCase())}">
-<a href="${model.name}.html">${model.picture ? `<img src="pictures/${model.name}.svg" alt="" loading="lazy" width="480" height="330">` : `<span class="formula">${model.derivation.ok ? katexHtml(model.derivation.equations[0].latex, model.name) : ''}</span>`}
-<b>${escape(model.title)}</b></a>
-<p>${model.shows ? sentence(marked(model.shows)) : ''}</p>${studio ? `<a class="open" href="studio:#${fragmentOf(model.text, model.name)}" aria-label="open in the studio: ${escape(model.title)}">open in the studio</a>` : ''}</li>`;
+function card(model, studio) {
+  const {name, title, shows, source, group, picture, derivation} = model;
+  const words = [name, title, shows, source, group].filter(Boolean).join(' ').toLowerCase();
+  const shown = picture
+    ? `<img src="pictures/${name}.svg" alt="" loading="lazy" width="480" height="330">`
+    : `<span class="formula">${derivation.ok ? katexHtml(derivation.equations[0].latex, name) : ''}</span>`;
+  const open = `<a class="open" href="studio:#${fragmentOf(model.text, name)}"
+ aria-label="open in the studio: ${escape(title)}">open in the studio</a>`;
+  return `<li class="card" data-words="${escape(words)}">
+<a href="${name}.html">${shown}
+<b>${escape(title)}</b></a>
+<p>${shows ? sentence(marked(shows)) : ''}</p>${studio ? open : ''}</li>`;
+}
 
 export function galleryPage(models, {studio}) {
   const sections = order
@@ -242,15 +292,21 @@ export function galleryPage(models, {studio}) {
     .filter(([, list]) => list.length)
     .map(
       ([group, list]) =>
-        `<section data-group><h2 id="${group.toLowerCase().replace(/\W+/g, '-')}">${group}</h2>\n<ul class="cards">${list.map(model => card(model, studio)).join('\n')}</ul></section>\n`,
+        `<section data-group><h2 id="${group.toLowerCase().replace(/\W+/g, '-')}">${group}</h2>
+<ul class="cards">${list.map(model => card(model, studio)).join('\n')}</ul></section>\n`,
     );
   return {
     path: 'models/index.html',
     title: 'Models',
     wide: true,
     contents: false,
-    html: `<p class="lead">${models.length} systems, each with its source, its equations and the certificate of their derivation; in their files are the tests that compare them with values from outside. Reference cases of the literature are <a href="../inside/reference_cases.html">listed apart</a>.</p>
-<p class="filter"><label for="filter">Filter</label> <input id="filter" type="search" autocomplete="off" spellcheck="false" placeholder="pendulum, rolling, Goldstein …"> <output id="filter-count" for="filter"></output></p>\n${sections.join('')}`,
+    html: `<p class="lead">${models.length} systems, each with its source, its equations and the certificate of their
+derivation; in their files are the tests that compare them with values from outside. Reference cases of the literature
+are <a href="../inside/reference_cases.html">listed apart</a>.</p>
+<p class="filter"><label for="filter">Filter</label>
+<input id="filter" type="search" autocomplete="off" spellcheck="false" placeholder="pendulum, rolling, Goldstein …">
+<output id="filter-count" for="filter"></output></p>
+${sections.join('')}`,
     sections: [{title: 'Models', id: '', text: 'gallery of all models'}],
   };
 }
@@ -266,7 +322,8 @@ export function problemPages(root, documents, {studio}) {
         name = basename(file, '.lag'),
         title = text.match(/^system \w+ "([^"]*)"/m)?.[1] ?? name;
       const link = studio
-        ? `<p class="actions"><a class="button main" href="studio:#${fragmentOf(text, name)}">Open in the studio</a></p>\n`
+        ? `<p class="actions"><a class="button main" href="studio:#${fragmentOf(text, name)}">
+Open in the studio</a></p>\n`
         : '';
       return {
         file: `tests/problems/${file}`,
@@ -276,7 +333,9 @@ export function problemPages(root, documents, {studio}) {
         formulas: false,
         contents: false,
         area: 'inside/index.html',
-        html: `<p class="muted"><code>tests/problems/${file}</code>, of the <a href="../inside/reference_cases.html">reference cases</a></p>\n${link}${documents.lag(text.trimEnd(), false)}`,
+        html: `<p class="muted"><code>tests/problems/${file}</code>, of the
+<a href="../inside/reference_cases.html">reference cases</a></p>
+${link}${documents.lag(text.trimEnd(), false)}`,
         sections: [{title, id: '', text: name}],
       };
     });

@@ -127,10 +127,15 @@ export function logPlot({title, x, y, series, reverse}) {
         .filter(k => k % every === 0)
         .map(k => [k, power(k)]);
   for (const [v, text] of ticks)
-    svg += `<path class="grid" d="M${f(across(v))} ${top}V${height - bottom}"/><text class="tick" x="${f(across(v))}" y="${height - bottom + 20}" text-anchor="middle">${text}</text>\n`;
+    svg += `<path class="grid" d="M${f(across(v))} ${top}V${height - bottom}"/>
+<text class="tick" x="${f(across(v))}" y="${height - bottom + 20}" text-anchor="middle">${text}</text>\n`;
   for (let k = y0; k <= y1; ++k)
-    svg += `<path class="grid" d="M${left} ${f(up(k))}H${width - right}"/><text class="tick" x="${left - 8}" y="${f(up(k) + 4)}" text-anchor="end">${timeText(k)}</text>\n`;
-  svg += `<path class="axis" d="M${left} ${top}V${height - bottom}H${width - right}"/><text x="${(left + width - right) / 2}" y="${height - 12}" text-anchor="middle">${escape(x)}</text><text transform="translate(16 ${(top + height - bottom) / 2}) rotate(-90)" text-anchor="middle">${escape(y)}</text>\n`;
+    svg += `<path class="grid" d="M${left} ${f(up(k))}H${width - right}"/>
+<text class="tick" x="${left - 8}" y="${f(up(k) + 4)}" text-anchor="end">${timeText(k)}</text>\n`;
+  svg += `<path class="axis" d="M${left} ${top}V${height - bottom}H${width - right}"/>
+<text x="${(left + width - right) / 2}" y="${height - 12}" text-anchor="middle">${escape(x)}</text>
+<text transform="translate(16 ${(top + height - bottom) / 2}) rotate(-90)"
+ text-anchor="middle">${escape(y)}</text>\n`;
   const ends = series
     .map((s, i) => ({i, s, last: [...s.points].sort((a, b) => (reverse ? b[0] - a[0] : a[0] - b[0])).at(-1)}))
     .map(e => ({...e, x: across(log(e.last[0])), y: up(log(e.last[1])), label: 0}));
@@ -138,9 +143,14 @@ export function logPlot({title, x, y, series, reverse}) {
   for (const end of [...ends].sort((a, b) => a.y - b.y)) previous = end.label = Math.max(end.y, previous + 17);
   for (const {i, s, x: ex, y: ey, label} of ends) {
     const points = [...s.points].sort((a, b) => a[0] - b[0]).map(p => [across(log(p[0])), up(log(p[1]))]);
-    svg += `<g class="s${i + 1}"><path class="curve" d="M${points.map(p => p.map(f).join(' ')).join('L')}"/>${points.map(p => `<circle cx="${f(p[0])}" cy="${f(p[1])}" r="3.2"/>`).join('')}`;
+    const marks = points.map(p => `<circle cx="${f(p[0])}" cy="${f(p[1])}" r="3.2"/>`).join('');
+    svg += `<g class="s${i + 1}"><path class="curve" d="M${points.map(p => p.map(f).join(' ')).join('L')}"/>${marks}`;
     const at = Math.max(ex + 10, width - right + 8);
-    svg += `<path class="leader" d="M${f(ex + 5)} ${f(ey)}L${f(at - 2)} ${f(label)}"/><text x="${f(at)}" y="${f(label + 4)}">${escape(s.name)}</text></g>\n`;
+    svg += `<path class="leader" d="M${f(ex + 5)} ${f(ey)}L${f(at - 2)} ${f(label)}"/>
+<text x="${f(at)}" y="${f(label + 4)}">${escape(s.name)}</text></g>\n`;
   }
-  return `<figure class="plot"><div class="scroll"><svg viewBox="0 0 ${width} ${height}" role="img" aria-label="${escape(title)}">\n${svg}</svg></div><figcaption>${escape(title)}, from the table.</figcaption></figure>`;
+  return `<figure class="plot"><div class="scroll">
+<svg viewBox="0 0 ${width} ${height}" role="img" aria-label="${escape(title)}">
+${svg}</svg></div>
+<figcaption>${escape(title)}, from the table.</figcaption></figure>`;
 }

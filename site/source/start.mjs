@@ -61,8 +61,11 @@ export async function startPage(models, program, documents, {studio}) {
   const html = `<section class="hero">
 <div class="words">
 <h1>Lagrangian mechanics from a text file</h1>
-<p class="lead">Write where the masses are. <code>maup</code> derives the equations of motion, certifies them by independent routes, and runs them to the last digits of double precision.</p>
-<p class="actions"><a class="button main" href="manual/getting_started.html">Get started</a> <a class="button" href="models/index.html">${models.length} models</a>${studio ? ' <a class="button" href="studio/index.html">Open the studio</a>' : ''}</p>
+<p class="lead">Write where the masses are. <code>maup</code> derives the equations of motion, certifies
+them by independent routes, and runs them to the last digits of double precision.</p>
+<p class="actions"><a class="button main" href="manual/getting_started.html">Get started</a>
+<a class="button" href="models/index.html">${models.length} models</a>
+${studio ? '<a class="button" href="studio/index.html">Open the studio</a>' : ''}</p>
 </div>
 <figure id="pendulum">
 <svg viewBox="-2.1 -1.35 4.2 3.5" aria-label="A double pendulum in motion. Its two bobs can be dragged." role="group">
@@ -70,10 +73,14 @@ export async function startPage(models, program, documents, {studio}) {
 <path class="ground" d="M-.2 0H.2M-.2 0l.07-.08M-.1 0l.07-.08M0 0l.07-.08M.1 0l.07-.08"/>
 <path class="rods"/>
 <circle class="pivot" r=".035"/>
-<circle class="bob first" r=".11" tabindex="0" role="slider" aria-label="Angle of the first rod, degrees" aria-valuemin="-180" aria-valuemax="180" aria-valuenow="120"/>
-<circle class="bob second" r=".11" tabindex="0" role="slider" aria-label="Angle of the second rod, degrees" aria-valuemin="-180" aria-valuemax="180" aria-valuenow="-10"/>
+<circle class="bob first" r=".11" tabindex="0" role="slider"
+ aria-label="Angle of the first rod, degrees" aria-valuemin="-180" aria-valuemax="180" aria-valuenow="120"/>
+<circle class="bob second" r=".11" tabindex="0" role="slider"
+ aria-label="Angle of the second rod, degrees" aria-valuemin="-180" aria-valuemax="180" aria-valuenow="-10"/>
 </svg>
-<figcaption><button type="button" id="pendulum-play">Pause</button> <span id="pendulum-says">The run of the model below, computed by <code>maup simulate</code>. Drag a bob.</span></figcaption>
+<figcaption><button type="button" id="pendulum-play">Pause</button>
+<span id="pendulum-says">The run of the model below, computed by <code>maup simulate</code>.
+Drag a bob.</span></figcaption>
 </figure>
 </section>
 <script type="application/json" id="pendulum-run">${JSON.stringify(trajectory(csv))}</script>
@@ -82,19 +89,23 @@ export async function startPage(models, program, documents, {studio}) {
 <div class="two">
 <div>${documents.lag(text, true)}</div>
 <div class="follows">${d.equations.map(e => `<div class="formula">${katexHtml(e.latex, 'start')}</div>`).join('\n')}
-<p>No velocity, no T, no V was written: they follow from the places. ${d.certificate.checks.length} independent checks certify the result${d.conserved.includes('energy') ? ', and the energy is found to be conserved' : ''}. Then the motion, with its certain digits:</p>
+<p>No velocity, no T, no V was written: they follow from the places. ${d.certificate.checks.length} independent
+checks certify the result${d.conserved.includes('energy') ? ', and the energy is found to be conserved' : ''}.
+Then the motion, with its certain digits:</p>
 <pre class="console"><code>${escape(state)}</code></pre></div>
 </div>
 </section>
 <section>
 <h2 id="mistakes">Mistakes are told in words of physics</h2>
-<p>Units are checked everywhere, and each of the <a href="diagnostics/index.html">messages</a> says where, why, and what to write instead.</p>
+<p>Units are checked everywhere, and each of the <a href="diagnostics/index.html">messages</a> says where,
+why, and what to write instead.</p>
 <pre class="message"><code>${escape(message)}</code></pre>
 </section>
 <section>
 <h2 id="models">Models</h2>
-<p>Constraints and rolling, contacts and dry friction, rigid bodies, fields, paths of stationary action: <a href="models/index.html">all in pictures</a>, each with its equations.</p>
-<ul class="cards strip">${pictures.map(m => `<li class="card"><a href="${m.path}"><img src="models/pictures/${m.name}.svg" alt="" loading="lazy" width="480" height="330"><b>${escape(m.title)}</b></a></li>`).join('\n')}</ul>
+<p>Constraints and rolling, contacts and dry friction, rigid bodies, fields, paths of stationary action:
+<a href="models/index.html">all in pictures</a>, each with its equations.</p>
+<ul class="cards strip">${pictures.map(pictureCard).join('\n')}</ul>
 </section>
 ${studio ? deriveBox(text) : ''}<section>
 <h2 id="ways">Ways on</h2>
@@ -120,6 +131,10 @@ ${studio ? deriveBox(text) : ''}<section>
   };
 }
 
+const pictureCard = model => `<li class="card"><a href="${model.path}">
+<img src="models/pictures/${model.name}.svg" alt="" loading="lazy" width="480" height="330">
+<b>${escape(model.title)}</b></a></li>`;
+
 async function mistake(program, text) {
   const {writeFileSync} = await import('node:fs'),
     {join} = await import('node:path');
@@ -140,6 +155,7 @@ const deriveBox = text => `<section>
 <p>Change it, or write a model of your own; it opens in the studio, in this browser, and no server sees it.</p>
 <label class="unseen" for="own">Model text</label>
 <textarea id="own" rows="12" spellcheck="false" autocapitalize="off" autocomplete="off">${escape(text)}</textarea>
-<p class="actions"><a class="button main" id="own-open" href="studio:#${fragmentOf(text + '\n', 'double_pendulum')}">Derive and run</a></p>
+<p class="actions"><a class="button main" id="own-open"
+ href="studio:#${fragmentOf(text + '\n', 'double_pendulum')}">Derive and run</a></p>
 </section>
 `;

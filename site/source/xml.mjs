@@ -1,4 +1,5 @@
-// As much of XML as Doxygen writes: elements, attributes, text, five entities. {name, attributes, children}; text is a string.
+// As much of XML as Doxygen writes: elements, attributes, text, five entities. {name, attributes, children}; text is a
+// string.
 const entities = {lt: '<', gt: '>', amp: '&', quot: '"', apos: "'"};
 const decode = text =>
   text.replace(/&(?:#(\d+)|#x([0-9a-f]+)|(\w+));/gi, (all, decimal, hex, name) =>

@@ -237,7 +237,7 @@ void add_modes(ReportContent& content, const Model& model, const EquationsOfMoti
       point.formulas = symbolic ? formulas_of(*symbolic, equations.order) : formulas_of(entry.linearization);
     }
     for (const Mode& m : entry.analysis.modes) point.rows.push_back(row_of(system, m));
-    if (p == 0) add_shapes(point, model, entry);
+    if (p == 0 || point.stable) add_shapes(point, model, entry);  // the others are left at the slightest push
     content.mode_points.push_back(std::move(point));
   }
 }

@@ -71,10 +71,23 @@ function panes(): void {
   });
 }
 
+/**
+ * What the address says that the page holds: an address that is not true any more is taken back, so that a reload
+ * keeps the text.
+ */
+let linked: string | null = null;
+const asLinked = (): string => JSON.stringify([store.state.text, store.state.set, store.state.start]);
+store.watch(['text', 'set', 'start'], () => {
+  if (linked === null || linked === asLinked()) return;
+  linked = null;
+  history.replaceState(null, '', location.href.split('#')[0]);
+});
+
 async function share(): Promise<void> {
   const {text, set, start, name} = store.state,
     link = `${location.href.split('#')[0]}#m=${await encodeShared({text, set, start, name})}`;
   history.replaceState(null, '', link);
+  linked = asLinked();
   const copied = await copyText(link);
   study.say(
     copied
@@ -199,12 +212,14 @@ async function fromLink(): Promise<boolean> {
     const text = example(name);
     if (text === null) study.say(`There is no example ${name}.`, true);
     else study.load({text, name});
+    linked = asLinked();
     return text !== null;
   }
   if (!code) return false;
   const shared = await decodeShared(code);
   if (shared) study.load({text: shared.text, name: shared.name ?? 'shared', set: shared.set, start: shared.start});
-  else study.say('The link is broken: a part of it is missing or was changed. Ask for it again, whole.', true);
+  linked = asLinked();
+  if (!shared) study.say('The link is broken: a part of it is missing or was changed. Ask for it again, whole.', true);
   return shared !== null;
 }
 

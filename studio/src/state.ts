@@ -63,7 +63,7 @@ export interface State {
   // how it is shown
   pane: Pane;
   charts: ChartSpec[] | null; // null: what the model asks for
-  trail: 'some' | 'all' | 'none';
+  trail: 'some' | 'bodies' | 'all' | 'none';
   forces: boolean;
   busy: string | null;
   progress: number | null;

@@ -143,4 +143,5 @@ const stripped = html =>
     .replaceAll('&amp;', '&');
 
 const sample =
-  'system s "θ & <b> – ½"\nparam m = 1 kg, a = 2 [m/s^2]  # [ open\ncoord θ1 : angle\nL = 1/2 m θ1\'^2 - m a cos(θ1)\nexpect equation m θ1\'\' = 0 "€\n';
+  'system s "θ & <b> – ½"\nparam m = 1 kg, a = 2 [m/s^2]  # [ open\ncoord θ1 : angle\n' +
+  "L = 1/2 m θ1'^2 - m a cos(θ1)\nexpect equation m θ1'' = 0 \"€\n";

@@ -27,6 +27,13 @@ export async function checkUse(check, browser, open, site) {
   check('a code finds its page', (await page.locator('#found b').first().innerText()).startsWith('E0304'));
   await finish(page);
 
+  page = await open(browser, 'theory/taylor.html', {width: 400});
+  await page.fill('#search', 'pendulum');
+  await page.waitForSelector('#found [role=option]');
+  const list = await page.locator('#found').boundingBox();
+  check('on a phone what was found is seen whole', list.x >= 0 && list.x + list.width <= 400, list);
+  await finish(page);
+
   // Light and dark: the choice is kept from page to page.
   page = await open(browser, 'theory/taylor.html');
   const paper = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor),
@@ -80,6 +87,10 @@ async function checkModel(check, browser, open) {
   await page.click('[data-control=play]');
   check('the drawing of a model moves', (await picture()) !== first);
   check('its equations are set', (await page.locator('#content .katex').count()) >= 2);
+  check(
+    'its tests are shown',
+    /All 11 expectations of the model hold/.test(await page.locator('#content').innerText()),
+  );
   check('its certificate is shown', /Passed: 4 independent checks/.test(await page.locator('#content').innerText()));
   check('no message while it moves', page.noted.length === 0, page.noted);
   await page.goto(page.siteUrl('models/kink_antikink.html'));
@@ -152,9 +163,10 @@ async function checkStudio(check, browser, open, site) {
     'a model goes to the studio as it is',
     textOfFragment(href.split('#')[1]) === readFileSync(join(site, 'models/text/pendulum.lag'), 'utf8'),
   );
-  await Promise.all([page.waitForURL(/studio\/index\.html#m=/), page.click('.button.main')]);
-  await page.waitForFunction(() => self.answer !== undefined);
-  check('from a file the studio has its core', (await page.evaluate(() => self.answer)) === 'the core');
+  await Promise.all([page.waitForURL(/studio\/studio\.html#m=/), page.click('.button.main')]);
+  await page.waitForFunction(() => self.opened !== undefined);
+  check('from a file the page for disks takes over', (await page.evaluate(() => self.opened)) === 'for disks');
+  check('it has the model', page.url().split('#')[1] === href.split('#')[1]);
   check('no message on the way to the studio', page.noted.length === 0, page.noted);
   await page.context().close();
 }

@@ -134,9 +134,12 @@ export class Stage {
           view.unit,
           {opacity: 0.5, only: pin.series},
         );
-    const how = pose ? 'none' : ({some: 'fading', all: 'whole', none: 'none'} as const)[trail];
+    const how = pose ? 'none' : ({some: 'fading', bodies: 'fading', all: 'whole', none: 'none'} as const)[trail];
     this.painter.paint(
-      maupScene.frameItems(shown(scene), view, s, {trail: how, trailTime: 3 * this.clock.rate}),
+      maupScene.frameItems(shown(trail === 'bodies' && !pose ? everyTrail(scene) : scene), view, s, {
+        trail: how,
+        trailTime: 3 * this.clock.rate,
+      }),
       view.unit,
     );
     this.painter.paint(maupScene.furniture(scene, view), view.unit);
@@ -273,6 +276,32 @@ export class Stage {
     ]);
     this.draw();
   }
+}
+
+const trailed = new WeakMap<Scene, Scene>();
+
+/** The scene with a trail of every body and every point with mass, in the place of those that the model asks for. */
+function everyTrail(scene: Scene): Scene {
+  const made = trailed.get(scene);
+  if (made) return made;
+  const d = scene.dimension;
+  const trailOf = (element: SceneElement, point: number): SceneElement => ({
+    kind: 'trail',
+    points: 1,
+    still: false,
+    positions: scene.times.flatMap((_, frame) => {
+      const at = (frame * element.points + point) * d;
+      return element.positions.slice(at, at + d);
+    }),
+  });
+  const trails = scene.elements.flatMap(element => {
+    if (element.still || element.ground) return [];
+    if (element.kind === 'solid') return [trailOf(element, 0)];
+    return element.kind === 'path' ? (element.bobs ?? []).flatMap((bob, p) => (bob ? [trailOf(element, p)] : [])) : [];
+  });
+  const whole = {...scene, elements: [...trails, ...scene.elements.filter(element => element.kind !== 'trail')]};
+  trailed.set(scene, whole);
+  return whole;
 }
 
 function placeOf(scene: Scene, element: SceneElement, point: number, s: number): number[] {

@@ -268,10 +268,8 @@ export class Editor {
 
   private async signature(): Promise<void> {
     const line = byId('signature'),
-      before = this.view.state.doc
-        .lineAt(this.head)
-        .text.slice(0, this.head - this.view.state.doc.lineAt(this.head).from);
-    if ((before.match(/\(/g)?.length ?? 0) <= (before.match(/\)/g)?.length ?? 0)) return line.replaceChildren();
+      {text, from} = this.view.state.doc.lineAt(this.head);
+    if (!text.slice(0, this.head - from).includes('(')) return line.replaceChildren();
     const answer = await this.study.asker.ask<{label: string; parameters: string[]; active: number; help: string}>({
       do: 'signature',
       at: this.head,

@@ -112,7 +112,7 @@ export class MotionPanel {
     none.hidden = none.textContent === '';
     byId('motion').classList.toggle('stale', opened !== null && !readable);
     byId('transport').hidden = !run;
-    byId('trail-label').hidden = !drawing?.elements.some(e => e.kind === 'trail');
+    byId('trail-label').hidden = !drawing;
     byId('forces-label').hidden = !drawing?.elements.some(e => e.kind === 'arrow');
     byId('home-view').hidden = !drawing;
     if (drawing)

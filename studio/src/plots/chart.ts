@@ -147,7 +147,10 @@ export class Chart {
     const context = this.begin(this.still),
       colour = this.colours();
     this.paintAxes(context, colour);
+    let last = -Infinity;
     for (const time of this.content.marks ?? []) {
+      if (this.across(time) - last < 3) continue; // impacts that come to rest are one mark
+      last = this.across(time);
       context.strokeStyle = colour('--muted');
       context.globalAlpha = 0.4;
       context.lineWidth = 0.8;

@@ -20,11 +20,12 @@ export function assignments(text: string, word: 'param' | 'start'): Assignment[]
       depth = 0,
       begin = at;
     const take = (end: number): void => {
-      const found = /^(\s*(?:exactly\s+)?)([^\s=,()]+)\s*=\s*/.exec(plain.slice(begin, end));
+      // Before the name may stand `exactly`, and a time: `start at 2 s θ = 1`.
+      const found = /^[^=]*?([^\s=,()]+)\s*=\s*/.exec(plain.slice(begin, end));
       if (found) {
         const from = begin + found[0].length,
           value = plain.slice(from, end);
-        out.push({name: found[2], from, to: from + value.trimEnd().length});
+        out.push({name: found[1], from, to: from + value.trimEnd().length});
       }
       begin = end + 1;
     };

@@ -93,7 +93,7 @@ export class Exercises {
         onsubmit: (event: Event) => {
           event.preventDefault();
           void this.judge(field.value, verdict, () =>
-            comments.replaceChildren(...said.map(hint => h('p', {class: 'note'}, ...prose(hint)))),
+            comments.replaceChildren(...said.map(hint => h('p', {class: 'note'}, ...prose(hint))), this.next(name)),
           );
         },
       },
@@ -116,6 +116,14 @@ export class Exercises {
     document.body.classList.add('exercising');
     this.store.update({pane: 'equations'});
     field.focus();
+  }
+
+  private next(name: string): HTMLElement {
+    const all = exercises(),
+      next = all[all.findIndex(one => one.name === name) + 1];
+    if (!next) return h('p', {}, 'That was the last one.');
+    const go = (): void => this.begin(next.name, next.title, next.text);
+    return h('p', {}, h('button', {type: 'button', onclick: go}, `Next: ${next.title}`));
   }
 
   private end(): void {

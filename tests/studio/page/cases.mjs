@@ -54,11 +54,17 @@ export const cases = {
 
     await page.keyboard.press('Control+End');
     await page.keyboard.type('\nlet w = the', {delay: 30});
-    await page.waitForSelector('.cm-tooltip-autocomplete');
-    check('theta finds θ', /θ/.test(await page.locator('.cm-tooltip-autocomplete').innerText()));
+    await page.waitForFunction(() => /θ/.test(document.querySelector('.cm-tooltip-autocomplete')?.textContent ?? '')); // theta finds θ
     await picture(page, 'completion');
     await page.keyboard.press('Escape');
 
+    await page.keyboard.type('ta + atan2(θ, ', {delay: 10});
+    await page.waitForFunction(() => /atan2/.test(document.querySelector('#signature').textContent));
+    check(
+      'a call shows its arguments',
+      (await page.locator('#signature b').innerText()) === 'x',
+      await page.locator('#signature').innerText(),
+    );
     await page.locator('.cm-content .tok-coordinate').first().hover();
     await page.waitForSelector('.cm-tooltip .markdown');
     check(
@@ -79,8 +85,19 @@ export const cases = {
     );
     await settled(page);
     check('the equations have the new name', (await page.locator('#equations-body').innerHTML()).includes('φ'));
+    await page.keyboard.press('Control+End');
+    await page.keyboard.insertText('\nlet U = m g l cos φ');
+    await settled(page);
+    await page.keyboard.press('F12');
+    await page.waitForFunction(() => /^coord φ/.test(document.querySelector('.cm-activeLine').textContent));
+    await page.keyboard.press('Control+End');
+    await page.keyboard.insertText('\nlet   W=m g   l');
+    await settled(page);
+    await page.locator('#format-button').click();
+    await page.waitForFunction(() => /let W = m g l/.test(document.querySelector('.cm-content').textContent));
+    await settled(page);
     check('the old one is gone', !(await text(page)).includes('coord θ'));
-    await page.keyboard.press('Control+z');
+    for (let i = 0; i < 8 && !(await text(page)).includes('coord θ'); ++i) await page.keyboard.press('Control+z');
     await page.waitForFunction(() =>
       [...document.querySelectorAll('.tok-coordinate')].some(one => one.textContent.startsWith('θ')),
     );
@@ -295,9 +312,6 @@ export const cases = {
     const page = await open({hash: '#example=pendulum'});
     await typeAtEnd(page, '\n# kept');
     await page.waitForTimeout(700);
-    await page.evaluate(() => {
-      location.hash = '';
-    });
     await page.reload();
     await settled(page);
     check('the text is there after a reload', /# kept/.test(await text(page)));
@@ -313,9 +327,6 @@ export const cases = {
       [one, '# first tab'],
       [two, '# second tab'],
     ]) {
-      await tab.evaluate(() => {
-        location.hash = '';
-      });
       await tab.reload();
       await settled(tab);
       check(`each tab keeps its own text: ${mark}`, (await text(tab)).endsWith(mark));
@@ -420,17 +431,46 @@ export const cases = {
   },
 
   async exercises({open}, variant, picture) {
-    const page = await open();
-    if (await page.locator('#exercises-button').isHidden()) return void (await page.context().close());
+    const page = await open(),
+      known = JSON.parse(readFileSync(join(root, 'tests/studio/exercises.json'), 'utf8')),
+      verdict = page.locator('#claim-verdict .message');
+    const claim = async text => {
+      await page.locator('#claim').fill(text);
+      await page.keyboard.press('Enter');
+      await verdict.waitFor();
+      return verdict.innerText();
+    };
     await page.locator('#exercises-button').click();
     await picture(page, 'exercises');
-    await page.locator('dialog li button').first().click();
-    await page.waitForSelector('#exercise');
-    await page.locator('#claim').fill('1 = 0');
-    await page.keyboard.press('Enter');
-    await page.waitForSelector('#claim-verdict .message:not(.right)');
-    check('the equations are hidden', await page.locator('#equations-body').isHidden());
-    await picture(page, 'exercise');
+    check('twenty exercises', (await page.locator('dialog ol li').count()) === Object.keys(known).length);
+    await page.keyboard.press('Escape');
+    for (const [i, {right, wrong}] of Object.values(known).entries()) {
+      const name = Object.keys(known)[i];
+      await page.locator('#exercises-button').click();
+      await page.locator('dialog ol li button').nth(i).click();
+      await page.waitForSelector('#exercise');
+      await settled(page);
+      check(`${name}: the equations are hidden`, await page.locator('#equations-body').isHidden());
+      check(`${name}: it asks`, /Find|find/.test(await page.locator('#exercise').innerText()));
+      const told = await claim(wrong[0][0]);
+      check(
+        `${name}: a wrong claim is told with its pitfall`,
+        /Not yet/.test(told) && told.includes(wrong[0][1]),
+        told,
+      );
+      check(`${name}: the answer is not given`, !told.includes(right[0].split('=')[1].trim()), told);
+      if (i === 0) await picture(page, 'exercise');
+      check(`${name}: a right one is right`, /Right/.test(await claim(right[0])));
+    }
+    check('what is no equation is told', /\S/.test(await claim("x'' = = 2")));
+    await picture(page, 'exercise-right');
+    await page.locator('#exercise >> text=Show the equations').click();
+    check('the equations are there again', await page.locator('#equations-body').isVisible());
+    await page.locator('h1').click();
+    await page.keyboard.press('l');
+    await page.waitForSelector('#lecture .line.now');
+    check('a note stands beside its step', /\S/.test(await page.locator('#lecture .note').innerText()));
+    await picture(page, 'lecture-note');
     await page.context().close();
   },
 
@@ -512,6 +552,77 @@ export const cases = {
       await setSlider(page, 'l', 0.7);
     }
     await settled(page);
+    await page.context().close();
+  },
+
+  async 'values of every kind are written into the text'({open}) {
+    const page = await open();
+    for (const name of [
+      'heavy_top',
+      'woodpecker',
+      'slider_crank',
+      'bead_on_wire',
+      'stick_slip',
+      'monopole',
+      'kepler',
+    ]) {
+      await page.evaluate(one => {
+        document.body.dataset.settled = 'false';
+        location.hash = `#example=${one}`;
+      }, name);
+      await settled(page);
+      const before = await page.locator('#messages .message.error').count();
+      await page
+        .locator('#parameters .value')
+        .first()
+        .locator('input[type=number]')
+        .evaluate(field => {
+          field.value = String(Number(field.value) * 1.01);
+          field.dispatchEvent(new Event('change'));
+        });
+      await settled(page);
+      await page
+        .locator('#starts .value')
+        .nth(1)
+        .locator('input[type=number]')
+        .evaluate(field => {
+          field.value = String(Number(field.value) + 0.001);
+          field.dispatchEvent(new Event('change'));
+        });
+      await settled(page);
+      const times = () => page.locator('#scrub').getAttribute('aria-valuetext'),
+        facts = () => page.locator('#conserved-body').innerText();
+      const told = [await times(), await facts()];
+      await page.locator('#apply-values').click();
+      await settled(page);
+      check(
+        `${name}: nothing is wrong`,
+        (await page.locator('#messages .message.error').count()) === before,
+        await page.locator('#messages').innerText(),
+      );
+      check(`${name}: nothing is changed`, (await page.locator('.value.changed').count()) === 0);
+      check(
+        `${name}: the motion is the same`,
+        JSON.stringify(told) === JSON.stringify([await times(), await facts()]),
+        [told[1], await facts()],
+      );
+    }
+    await page.context().close();
+  },
+
+  async 'without SIMD'({open}, variant) {
+    if (!variant.files) return;
+    const page = await open({
+      wait: false,
+      before: one =>
+        one.route('**/maup_worker.js', async route => {
+          const answer = await route.fetch();
+          await route.fulfill({response: answer, body: `WebAssembly.validate = () => false;\n${await answer.text()}`});
+        }),
+    });
+    await page.waitForSelector('#equations-body .message.error');
+    check('a browser that is too old is told', /SIMD/.test(await page.locator('#equations-body').innerText()));
+    check('the text is there', (await text(page)).includes('system'));
     await page.context().close();
   },
 

@@ -99,6 +99,7 @@ export async function openBrowser(variant) {
     storage = true,
     allow = [],
     url = null,
+    before = () => {},
   } = {}) {
     const context = await browser.newContext({
       viewport: {width, height},
@@ -131,6 +132,7 @@ export async function openBrowser(variant) {
           },
         }),
       );
+    await before(page);
     if (cookies) await context.addCookies(cookies);
     await page.goto(url ? url + hash : cookies || variant.name === 'static' ? variant.base + hash : variant.entry);
     if (!url && !cookies && variant.name === 'server') {
