@@ -16,7 +16,8 @@ std::vector<source_tree::File> pages() {
     out.push_back(source_tree::read(root / page));
   for (const char* folder : {"docs", "src", "apps", "tests", "models"})
     for (const auto& entry : fs::recursive_directory_iterator(root / folder))
-      if (entry.path().extension() == ".md") out.push_back(source_tree::read(entry.path()));
+      if (entry.path().extension() == ".md" && entry.path().string().find("/node_modules/") == std::string::npos)
+        out.push_back(source_tree::read(entry.path()));
   return out;
 }
 
