@@ -1,5 +1,5 @@
-# fmt, Boost, Eigen and nlohmann/json are headers that stand among those of this machine's C library, which a compiler for another
-# machine must not read: a folder of links shows it these four alone. What is found is the headers; libraries are of this machine.
+# fmt, Boost, Eigen and nlohmann/json are headers that stand among those of this machine's C library, which a compiler
+# for another machine must not read: a folder of links shows it these four alone.
 set(headers ${CMAKE_BINARY_DIR}/headers)
 file(MAKE_DIRECTORY ${headers})
 foreach(library fmt boost eigen3 nlohmann)

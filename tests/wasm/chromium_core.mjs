@@ -51,21 +51,40 @@ export class ChromiumCore {
     writeFileSync(file, page());
     core.browser = await chromium.launch({
       executablePath: process.env.CHROMIUM || '/usr/bin/chromium',
-      args: ['--no-sandbox', '--disable-gpu', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run'],
+      args: [
+        '--no-sandbox',
+        '--disable-gpu',
+        '--disable-background-networking',
+        '--disable-component-update',
+        '--disable-sync',
+        '--no-first-run',
+      ],
     });
     core.page = await core.browser.newPage();
-    core.said = [], core.requests = [];
+    ((core.said = []), (core.requests = []));
     core.page.on('console', message => core.said.push(message.text()));
     core.page.on('pageerror', error => core.said.push(String(error)));
     await core.page.goto(pathToFileURL(file).href);
     core.page.on('request', request => request.url().startsWith('blob:') || core.requests.push(request.url()));
-    core.ready = await core.page.evaluate(async () => { const begin = performance.now(); await make(); return performance.now() - begin; });
+    core.ready = await core.page.evaluate(async () => {
+      const begin = performance.now();
+      await make();
+      return performance.now() - begin;
+    });
     return core;
   }
-  async ask(request) { return JSON.parse(await this.page.evaluate(text => ask(text), JSON.stringify(request))); }
+  async ask(request) {
+    return JSON.parse(await this.page.evaluate(text => ask(text), JSON.stringify(request)));
+  }
   /** Ends the worker in the middle of a request; a new one starts with the code that is compiled. ms until it is ready. */
   restart() {
-    return this.page.evaluate(async () => { const begin = performance.now(); worker.terminate(); waiting.clear(); await make(); return performance.now() - begin; });
+    return this.page.evaluate(async () => {
+      const begin = performance.now();
+      worker.terminate();
+      waiting.clear();
+      await make();
+      return performance.now() - begin;
+    });
   }
   async end() {
     await this.browser.close();

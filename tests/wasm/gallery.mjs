@@ -1,12 +1,15 @@
-// node gallery.mjs node|chromium [part of a model's name]: the whole gallery by the module and by the session of this machine.
+// node gallery.mjs node|chromium [part of a name]: all models by the module and by the session of this machine.
 import {Native} from './native.mjs';
 import {compare, models, requestsFor} from './requests.mjs';
 
 const [where = 'node', only = ''] = process.argv.slice(2);
-const core = where === 'chromium' ? await (await import('./chromium_core.mjs')).ChromiumCore.start()
-                                  : await (await import('./node_core.mjs')).NodeCore.start();
+const core =
+  where === 'chromium'
+    ? await (await import('./chromium_core.mjs')).ChromiumCore.start()
+    : await (await import('./node_core.mjs')).NodeCore.start();
 const native = new Native();
-let lines = 0, wrong = 0;
+let lines = 0,
+  wrong = 0;
 const seconds = {native: 0, wasm: 0};
 
 async function timed(who, answering) {
@@ -32,8 +35,10 @@ if (where === 'chromium') {
   wrong += core.said.length + core.requests.length;
   console.log(`ready after ${core.ready.toFixed(0)} ms`);
 }
-console.log(`${where}: ${models(only).length} models, ${lines} lines of expectations, ${wrong} differences; ` +
-  `${seconds.wasm.toFixed(1)} s, the session of this machine ${seconds.native.toFixed(1)} s`);
+console.log(
+  `${where}: ${models(only).length} models, ${lines} lines of expectations, ${wrong} differences; ` +
+    `${seconds.wasm.toFixed(1)} s, the session of this machine ${seconds.native.toFixed(1)} s`,
+);
 native.end();
 await core.end();
 process.exitCode = wrong === 0 && lines > 0 ? 0 : 1;

@@ -1,4 +1,4 @@
-// node hostile.mjs: requests that go wrong, in a worker of Chromium. The worker has to live, say what was wrong, and answer the next.
+// node hostile.mjs: requests that go wrong, in a worker of Chromium. It has to live, say why, and answer the next.
 import {readFileSync} from 'node:fs';
 import {gzipSync} from 'node:zlib';
 import {ChromiumCore} from './chromium_core.mjs';
@@ -9,7 +9,7 @@ const core = await ChromiumCore.start();
 let failed = 0;
 
 function expect(name, holds, what) {
-  if (!holds) failed += 1, console.log(`${name}: ${JSON.stringify(what).slice(0, 400)}`);
+  if (!holds) ((failed += 1), console.log(`${name}: ${JSON.stringify(what).slice(0, 400)}`));
 }
 
 /** Afterwards the same session opens a model and derives its equations. */
@@ -19,7 +19,9 @@ async function lives(name) {
   expect(`${name}, afterwards`, answer.ok && answer.certified, answer);
 }
 
-async function open(text) { return core.ask({do: 'open', name: 'model.lag', text}); }
+async function open(text) {
+  return core.ask({do: 'open', name: 'model.lag', text});
+}
 const oscillator = (start = 'x = 1 m', run = '1 s') => `system spring
 param m = 1 kg, k = 4 N/m
 coord x : length
@@ -63,20 +65,31 @@ const cases = {
   },
   async 'a run without end'() {
     await open(oscillator('x = 1 m', '1e12 s'));
-    const begin = performance.now(), answer = await core.ask({do: 'run', budget: 1, frames: 10}), seconds = (performance.now() - begin) / 1000;
-    expect('a run without end', seconds < 5 && (answer.ok ? !answer.ending.ok : answer.kind === 'budget'), [seconds, answer]);
+    const begin = performance.now(),
+      answer = await core.ask({do: 'run', budget: 1, frames: 10}),
+      seconds = (performance.now() - begin) / 1000;
+    expect('a run without end', seconds < 5 && (answer.ok ? !answer.ending.ok : answer.kind === 'budget'), [
+      seconds,
+      answer,
+    ]);
   },
   async 'a derivation without end'() {
     const links = [...Array(60).keys()].map(i => `θ${i + 1}`);
     const points = links.map((q, i) => `point P${i + 1} mass m at ${i ? `P${i} + ` : ''}l (sin ${q}, -cos ${q})`);
-    await open(`system chain\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord ${links.join(', ')} : angle\n${points.join('\n')}\n` +
-      `gravity (0, -g)\nstart ${links.map(q => `${q} = 2 rad`).join(', ')}\nrun 1 s\n`);
-    const begin = performance.now(), answer = await core.ask({do: 'equations', steps: true, budget: 0.5}), seconds = (performance.now() - begin) / 1000;
+    await open(
+      `system chain\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord ${links.join(', ')} : angle\n${points.join('\n')}\n` +
+        `gravity (0, -g)\nstart ${links.map(q => `${q} = 2 rad`).join(', ')}\nrun 1 s\n`,
+    );
+    const begin = performance.now(),
+      answer = await core.ask({do: 'equations', steps: true, budget: 0.5}),
+      seconds = (performance.now() - begin) / 1000;
     expect('a derivation without end', seconds < 3 && !answer.ok && answer.kind === 'budget', [seconds, answer.kind]);
   },
   async 'a worker that is ended'() {
     await open(oscillator('x = 1 m', '1e12 s'));
-    core.page.evaluate(() => { ask(JSON.stringify({do: 'run', budget: 600})).catch(() => {}); });
+    core.page.evaluate(() => {
+      ask(JSON.stringify({do: 'run', budget: 600})).catch(() => {});
+    });
     await new Promise(resolve => setTimeout(resolve, 300));
     console.log(`a worker that was ended: the next is ready after ${(await core.restart()).toFixed(0)} ms`);
   },
@@ -94,10 +107,12 @@ for (const [name, run] of Object.entries(cases)) {
 }
 const bytes = name => gzipSync(readFileSync(`${project}build-wasm/bin/${name}`), {level: 9}).length;
 const size = bytes('maup.wasm') + bytes('maup_worker.js');
-expect('size', size < 2_700_000, size);  // of 3 MB, of which the page has its share
+expect('size', size < 2_700_000, size); // of 3 MB, of which the page has its share
 for (const text of core.said) expect('the console', false, text);
 expect('the network', core.requests.length === 0, core.requests);
-console.log(`${Object.keys(cases).length} kinds of bad input, ${failed} failures; first ready after ${core.ready.toFixed(0)} ms; ` +
-  `${(size / 1e6).toFixed(2)} MB gzip`);
+console.log(
+  `${Object.keys(cases).length} kinds of bad input, ${failed} failures; first ready after ${core.ready.toFixed(0)} ms; ` +
+    `${(size / 1e6).toFixed(2)} MB gzip`,
+);
 await core.end();
 process.exitCode = failed ? 1 : 0;

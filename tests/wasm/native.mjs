@@ -7,7 +7,7 @@ export class Native {
   constructor() {
     this.process = spawn(project + 'build/bin/session_answers', {
       stdio: ['pipe', 'pipe', 'inherit'],
-      env: {...process.env, MAUPERTUIS_LLVM_MODULE: '/nowhere'},  // the interpreter: the module has nothing else
+      env: {...process.env, MAUPERTUIS_LLVM_MODULE: '/nowhere'}, // the interpreter: the module has nothing else
     });
     this.waiting = [];
     createInterface({input: this.process.stdout}).on('line', line => this.waiting.shift()?.(JSON.parse(line)));
@@ -18,5 +18,7 @@ export class Native {
       this.process.stdin.write(JSON.stringify(request) + '\n');
     });
   }
-  end() { this.process.stdin.end(); }
+  end() {
+    this.process.stdin.end();
+  }
 }

@@ -18,11 +18,15 @@ export class NodeCore {
   }
   async ask(request) {
     this.messages = [];
-    const text = JSON.stringify(request), bytes = this.module.lengthBytesUTF8(text) + 1, place = this.module._malloc(bytes);
+    const text = JSON.stringify(request),
+      bytes = this.module.lengthBytesUTF8(text) + 1,
+      place = this.module._malloc(bytes);
     this.module.stringToUTF8(text, place, bytes);
     const answer = this.module.UTF8ToString(this.module._maup_answer(this.studio, place));
     this.module._free(place);
     return JSON.parse(answer);
   }
-  end() { this.module._maup_destroy(this.studio); }
+  end() {
+    this.module._maup_destroy(this.studio);
+  }
 }

@@ -5,7 +5,9 @@ import {fileURLToPath} from 'node:url';
 export const project = fileURLToPath(new URL('../..', import.meta.url));
 
 export function models(only = '') {
-  return readdirSync(project + 'models').filter(name => name.endsWith('.lag') && name.includes(only)).sort();
+  return readdirSync(project + 'models')
+    .filter(name => name.endsWith('.lag') && name.includes(only))
+    .sort();
 }
 
 const budget = 600;
@@ -29,7 +31,8 @@ const number = /[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?/g;
 function sameText(a, b, part) {
   if (a === b) return true;
   if (a.replace(number, '#') !== b.replace(number, '#')) return false;
-  const left = a.match(number) ?? [], right = b.match(number) ?? [];
+  const left = a.match(number) ?? [],
+    right = b.match(number) ?? [];
   return left.every((n, i) => close(Number(n), Number(right[i]), part));
 }
 
@@ -58,7 +61,9 @@ function* runDifferences(a, b) {
   const certain = Math.min(a.uncertain?.from ?? Infinity, b.uncertain?.from ?? Infinity);
   for (const [column, values] of a.values.entries()) {
     const size = Math.max(...values.map(x => Math.abs(x ?? 0)));
-    const row = values.findIndex((x, i) => a.times[i] < 0.5 * certain && !close(x, b.values[column][i], 1e-7, size + noise));
+    const row = values.findIndex(
+      (x, i) => a.times[i] < 0.5 * certain && !close(x, b.values[column][i], 1e-7, size + noise),
+    );
     if (row >= 0)
       yield `run: ${a.columns[column].name} at ${a.times[row]}: ${values[row]} | ${b.values[column][row]}, size ${size}`;
   }
@@ -66,18 +71,21 @@ function* runDifferences(a, b) {
 
 /** What is not the same in the two answers to a request; empty if they agree. */
 export function compare(request, native, wasm) {
-  if (native.ok !== wasm.ok) return [`ok: ${native.ok} | ${wasm.ok}: ${JSON.stringify((native.ok ? wasm : native).trouble)}`];
+  if (native.ok !== wasm.ok)
+    return [`ok: ${native.ok} | ${wasm.ok}: ${JSON.stringify((native.ok ? wasm : native).trouble)}`];
   if (!native.ok) return [...differences(native.trouble, wasm.trouble, 'trouble', 0)];
   switch (request.do) {
     case 'expectations': {
-      const values = answer => answer.results.map(result => result.actual.startsWith('drift ') ? '' : result.actual);
+      const values = answer => answer.results.map(result => (result.actual.startsWith('drift ') ? '' : result.actual));
       const failed = answer => answer.results.filter(result => !result.passed).map(result => result.text);
       return [
         ...differences(failed(native), failed(wasm), 'failed', 0),
         ...differences(values(native), values(wasm), 'actual', 1e-5),
       ];
     }
-    case 'run': return [...runDifferences(native, wasm)];
-    default: return [...differences(native, wasm, request.do, 1e-9)];
+    case 'run':
+      return [...runDifferences(native, wasm)];
+    default:
+      return [...differences(native, wasm, request.do, 1e-9)];
   }
 }
