@@ -23,7 +23,8 @@ export function requestsFor(model) {
 }
 
 /** Numbers that come from arithmetic, not from the text: compared as numbers, to this part of their size. */
-const close = (a, b, part, size = Math.max(Math.abs(a), Math.abs(b))) => a === b || Math.abs(a - b) <= part * size;
+const close = (a, b, part, size = Math.max(Math.abs(a), Math.abs(b))) =>
+  a === b || Math.abs(a - b) <= part * size + 1e-14;
 
 const number = /[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?/g;
 
@@ -60,6 +61,7 @@ function* runDifferences(a, b) {
   if (a.times?.length !== b.times?.length) return yield `run: ${a.times?.length} rows | ${b.times?.length}`;
   const certain = Math.min(a.uncertain?.from ?? Infinity, b.uncertain?.from ?? Infinity);
   for (const [column, values] of a.values.entries()) {
+    if (a.columns[column].name.endsWith('drift')) continue;
     const size = Math.max(...values.map(x => Math.abs(x ?? 0)));
     const row = values.findIndex(
       (x, i) => a.times[i] < 0.5 * certain && !close(x, b.values[column][i], 1e-7, size + noise),
