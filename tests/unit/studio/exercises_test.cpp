@@ -30,6 +30,8 @@ TEST_CASE("exercises take the right equations, and name known mistakes without t
       CAPTURE(wrong);
       Json judged = page.ask({{"do", "claim"}, {"text", wrong[0]}, {"exercise", true}});
       CHECK(judged["passed"] == false);
+      CHECK(judged.contains("expected") == false);
+      CHECK(judged["message"].get<std::string>().rfind("It does not follow from Lagrange's equations", 0) == 0);
       const std::string pitfall = judged.value("pitfall", "");
       CAPTURE(pitfall);
       CHECK((wrong[1] == "" ? pitfall.empty() : pitfall.find(wrong[1].get<std::string>()) != std::string::npos));

@@ -109,6 +109,9 @@ TEST_CASE("a run is the closed form, with the values beside the text") {
   for (std::size_t i = 0; i < r["times"].size(); ++i)
     CHECK(r["values"][0][i].get<double>() == doctest::Approx(2 * std::cos(3 * r["times"][i].get<double>())));
   CHECK(r["ending"]["ok"] == true);
+  for (const auto& [key, other] : {std::pair("start", Json{{"x", "1 m"}}), std::pair("set", Json{{"k", "1 N/m"}})})
+    CHECK(page.ask({{"do", "run"}, {key, other}})["values"][0].back() != page.ask("run")["values"][0].back());
+  CHECK(page.ask({{"do", "run"}, {"run", "1 s"}})["times"].back() == 1);
   Json plain = page.ask("run");
   CHECK(plain["values"][0].back().get<double>() == doctest::Approx(2 * std::cos(10.) + 1.5 * std::sin(10.)));
 }
