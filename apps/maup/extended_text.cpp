@@ -149,8 +149,8 @@ Json extended_document(const ExtendedResult& result, const std::string& precisio
                             {"companion_seconds", s.companion_seconds},
                             {"switches", s.switches},
                             {"rows", result.rows.size()}};
-  document["ended"] = {{"reason", result.reason.empty() ? ending_name(result.ending) : result.reason},
-                       {"kind", ending_name(result.ending)},
+  document["ended"] = {{"reason", result.reason.empty() ? std::string(word_of(result.ending)) : result.reason},
+                       {"kind", word_of(result.ending)},
                        {"ok", result.ok()}};
   return document;
 }

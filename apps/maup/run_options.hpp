@@ -54,7 +54,5 @@ std::optional<ExtendedResult> run_model(Study& study, const ExtendedSimulationOp
 
 /// 0, 3 or 130 by how a run ended.
 ExitCode exit_code(Ending ending);
-/// "until reached", "singular mass", … for JSON.
-const char* ending_name(Ending ending);
 
 }  // namespace maupertuis::app

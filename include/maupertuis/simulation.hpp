@@ -66,6 +66,8 @@ enum class Ending {
   Paradox,   // no mode, or none that is known, fits contacts and friction here
   Unending,  // events follow each other without end and without getting denser
 };
+/// "until reached", "singular mass matrix", … for JSON.
+std::string_view word_of(Ending ending);
 
 struct SimulationStatistics {
   std::size_t steps = 0;

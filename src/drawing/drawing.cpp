@@ -114,7 +114,8 @@ std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& ru
   drawing.gravity = gravity_of(system, parameters);
   const std::size_t rows = run.rows(), stride = (rows + frames - 1) / frames;
   const std::size_t parts = rows > 1 ? std::max<std::size_t>(1, (fewest_frames + rows - 2) / (rows - 1)) : 1;
-  for (std::size_t row = 0; row < rows; row += stride)
+  // The last row is a frame whatever the stride: a motion is shown to its end.
+  for (std::size_t row = 0; row < rows; row = row + 1 == rows ? rows : std::min(row + stride, rows - 1))
     for (std::size_t k = 0; k < (row + 1 == rows ? 1 : stride == 1 ? parts : 1); ++k) {
       const double u = static_cast<double>(k) / static_cast<double>(parts);
       const Bindings& state = motion.state(row, u);

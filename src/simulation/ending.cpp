@@ -35,6 +35,40 @@ std::string_view word_of(Happening::Kind kind) {
   return words[static_cast<int>(kind)];
 }
 
+std::string_view word_of(Ending ending) {
+  switch (ending) {
+    case Ending::Finished:
+      return "finished";
+    case Ending::UntilReached:
+      return "until reached";
+    case Ending::UntilNotReached:
+      return "until not reached";
+    case Ending::Interrupted:
+      return "interrupted";
+    case Ending::SingularMass:
+      return "singular mass matrix";
+    case Ending::SingularConstraints:
+      return "singular constraints";
+    case Ending::NoConvergence:
+      return "no convergence";
+    case Ending::Overflow:
+      return "overflow";
+    case Ending::StepUnderflow:
+      return "step underflow";
+    case Ending::Sliding:
+      return "sliding";
+    case Ending::TooManySteps:
+      return "too many steps";
+    case Ending::Stopped:
+      return "stopped by an event";
+    case Ending::Paradox:
+      return "no motion fits";
+    case Ending::Unending:
+      return "events without end";
+  }
+  return "";
+}
+
 bool goes_through_modes(const Model& model) { return model.system.has_modes() || !model.experiment.events.empty(); }
 
 }  // namespace maupertuis

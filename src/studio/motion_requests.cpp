@@ -12,60 +12,30 @@
 namespace maupertuis::studio {
 namespace {
 
-const char* ending_word(Ending ending) {
-  switch (ending) {
-    case Ending::Finished:
-      return "finished";
-    case Ending::UntilReached:
-      return "until reached";
-    case Ending::UntilNotReached:
-      return "until not reached";
-    case Ending::Interrupted:
-      return "interrupted";
-    case Ending::SingularMass:
-      return "singular mass matrix";
-    case Ending::SingularConstraints:
-      return "singular constraints";
-    case Ending::NoConvergence:
-      return "no convergence";
-    case Ending::Overflow:
-      return "overflow";
-    case Ending::StepUnderflow:
-      return "step underflow";
-    case Ending::Sliding:
-      return "sliding";
-    case Ending::TooManySteps:
-      return "too many steps";
-    case Ending::Stopped:
-      return "stopped by an event";
-    case Ending::Paradox:
-      return "paradox";
-    case Ending::Unending:
-      return "unending events";
-  }
-  return "finished";
+/// So many rows at most, the first and the last among them.
+std::vector<std::size_t> shown_rows(std::size_t rows, std::size_t most) {
+  std::vector<std::size_t> out;
+  const std::size_t stride = rows > most ? (rows + most - 2) / std::max<std::size_t>(most - 1, 1) : 1;
+  for (std::size_t row = 0; row + 1 < rows; row += stride) out.push_back(row);
+  if (rows > 0) out.push_back(rows - 1);
+  return out;
 }
 
-/// Columns one after the other: what plots take. Seven digits are more than a screen shows.
-Json values_json(const Trajectory& t, std::size_t stride) {
-  Json columns = Json::array();
-  for (std::size_t c = 0; c < t.columns.size(); ++c) {
-    Json values = Json::array();
-    for (std::size_t row = 0; row < t.rows(); row += stride) values.push_back(number_or_null(t.at(row, c)));
-    columns.push_back(std::move(values));
-  }
-  return columns;
-}
-
+/// Columns one after the other: what plots take.
 void add_trajectory(Json& out, const Trajectory& t, std::size_t most_rows) {
-  const std::size_t stride = std::max<std::size_t>(1, (t.rows() + most_rows - 1) / std::max<std::size_t>(most_rows, 1));
+  const std::vector<std::size_t> rows = shown_rows(t.rows(), most_rows);
   out["independent"] = {{"name", t.independent.name}, {"unit", t.independent.unit}};
-  Json columns = Json::array(), times = Json::array();
-  for (const auto& c : t.columns) columns.push_back({{"name", c.name}, {"unit", c.unit}});
-  for (std::size_t row = 0; row < t.rows(); row += stride) times.push_back(number_or_null(t.times[row]));
+  Json columns = Json::array(), times = Json::array(), values = Json::array();
+  for (const std::size_t row : rows) times.push_back(number_or_null(t.times[row]));
+  for (std::size_t c = 0; c < t.columns.size(); ++c) {
+    columns.push_back({{"name", t.columns[c].name}, {"unit", t.columns[c].unit}});
+    Json column = Json::array();
+    for (const std::size_t row : rows) column.push_back(number_or_null(t.at(row, c)));
+    values.push_back(std::move(column));
+  }
   out["columns"] = std::move(columns);
   out["times"] = std::move(times);
-  out["values"] = values_json(t, stride);
+  out["values"] = std::move(values);
 }
 
 Json happenings_json(const SimulationResult& run) {
@@ -130,7 +100,7 @@ Json run_json(const Study& study, const Model& model, const EquationsOfMotion& e
   out["happenings"] = happenings_json(result);
   out["first_mode"] = result.first_mode;
   out["ending"] = {{"ok", result.ok()},
-                   {"kind", ending_word(result.ending)},
+                   {"kind", word_of(result.ending)},
                    {"reason", result.reason},
                    {"t", number_or_null(result.final.t)}};
   out["conserved"] = conserved_json(content.conserved);

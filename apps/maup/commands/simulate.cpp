@@ -142,8 +142,8 @@ Json document_of(const SimulationResult& result, const MechanicalSystem& system)
                                 {"friction", result.books->friction},
                                 {"dampers", result.books->dampers}};
   document["remarks"] = result.remarks;
-  document["ended"] = {{"reason", result.reason.empty() ? ending_name(result.ending) : result.reason},
-                       {"kind", ending_name(result.ending)},
+  document["ended"] = {{"reason", result.reason.empty() ? std::string(word_of(result.ending)) : result.reason},
+                       {"kind", word_of(result.ending)},
                        {"ok", result.ok()}};
   return document;
 }
