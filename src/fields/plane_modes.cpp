@@ -104,16 +104,19 @@ class PlaneModes {
   }
 
   /// How much of a coefficient lies between the points of quadrature, beside its mean, at most: along each side for
-  /// some places of the other.
+  /// some places of the other, and over the plane.
   double unseen() const {
     double out = 0;
-    for (const DensityEntry& e : entries_.list)
+    for (const DensityEntry& e : entries_.list) {
+      if (holds_symbol(e.value, s_.space[0].symbol) && holds_symbol(e.value, s_.space[1].symbol))
+        out = std::max(out, unseen(e.value));
       for (std::size_t along = 0; along < 2; ++along) {
         if (!holds_symbol(e.value, s_.space[along].symbol)) continue;
         const Axis& other = axes_[1 - along];
         for (Eigen::Index i = 0; i < other.points(); i += std::max<Eigen::Index>(1, other.points() / 5))
           out = std::max(out, unseen(e.value, along, other.place(i)));
       }
+    }
     return out;
   }
 
@@ -161,28 +164,60 @@ class PlaneModes {
     const std::vector<Expr> below = symbols_of({&value, 1});
     return std::find(below.begin(), below.end(), symbol) != below.end();
   }
+  /// A coefficient at a place.
+  double value_at(const RepeatedEvaluation& value, double x, double y) const {
+    return value([&](Expr symbol) {
+             return symbol == s_.space[0].symbol   ? x
+                    : symbol == s_.space[1].symbol ? y
+                                                   : values_.at(symbol);
+           })
+        .front();
+  }
+  /// By how much two means of it differ, as a part of its size.
+  static double apart(double by_quadrature, double by_places, double size) {
+    return size > 0 ? std::abs(by_quadrature - by_places) / size : 0;
+  }
+
   /// Along a line: the mean by quadrature against that of many places.
   double unseen(Expr value, std::size_t along, double across) const {
     constexpr int places = 4000;
     const Expr root[] = {value};
-    const RepeatedEvaluation at(root);
-    const auto value_at = [&](double x) {
-      return at([&](Expr symbol) {
-               return symbol == s_.space[along].symbol       ? x
-                      : symbol == s_.space[1 - along].symbol ? across
-                                                             : values_.at(symbol);
-             })
-          .front();
+    const RepeatedEvaluation evaluation(root);
+    const auto at = [&](double x) {
+      return along == 0 ? value_at(evaluation, x, across) : value_at(evaluation, across, x);
     };
     const double length = to_[along] - from_[along];
     double by_quadrature = 0, by_places = 0, size = 0;
     for (Eigen::Index q = 0; q < axes_[along].points(); ++q)
-      by_quadrature += axes_[along].weight(q) * value_at(axes_[along].place(q)) / length;
+      by_quadrature += axes_[along].weight(q) * at(axes_[along].place(q)) / length;
     for (int i = 0; i < places; ++i) {
-      const double v = value_at(from_[along] + length * (i + 0.5) / places);
+      const double v = at(from_[along] + length * (i + 0.5) / places);
       by_places += v / places, size += std::abs(v) / places;
     }
-    return size > 0 ? std::abs(by_quadrature - by_places) / size : 0;
+    return apart(by_quadrature, by_places, size);
+  }
+
+  /// Over the plane: what is narrow in both directions lies between the lines too.
+  double unseen(Expr value) const {
+    constexpr int places = 1000;  // along each side
+    const Expr root[] = {value};
+    const RepeatedEvaluation evaluation(root);
+    const double length = to_[0] - from_[0], height = to_[1] - from_[1];
+    double by_quadrature = 0, by_places = 0, size = 0;
+    for (Eigen::Index j = 0; j < axes_[1].points(); ++j)
+      for (Eigen::Index i = 0; i < axes_[0].points(); ++i)
+        by_quadrature += axes_[0].weight(i) * axes_[1].weight(j) / (length * height) *
+                         value_at(evaluation, axes_[0].place(i), axes_[1].place(j));
+    for (int j = 0; j < places; ++j) {
+      interrupt_of(*s_.context).throw_if_asked();
+      for (int i = 0; i < places; ++i) {
+        const double v =
+            value_at(evaluation, from_[0] + length * (i + 0.5) / places, from_[1] + height * (j + 0.5) / places);
+        by_places += v, size += std::abs(v);
+      }
+    }
+    constexpr double all = static_cast<double>(places) * places;
+    return apart(by_quadrature, by_places / all, size / all);
   }
 
   Eigen::Index index(std::size_t i, std::size_t j) const {

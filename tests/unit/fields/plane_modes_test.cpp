@@ -106,6 +106,20 @@ TEST_CASE("plates have no modes yet, and it is told") {
   CHECK(diagnostics.has_errors());
 }
 
+TEST_CASE("a mass that is narrow along both sides is not passed by") {
+  // It weighs as much as twenty membranes, at a place of no line of points.
+  const std::string text =
+      "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 boundary u = 0\n"
+      "density = 1/2 (1 + 1e6 exp(-(400 (x - 0.37))^2 - (400 (y - 0.61))^2)) u'^2 - 1/2 (u_x^2 + u_y^2)\n";
+  Study study(SourceText("field.lag", text));
+  const FieldEquations* equations = study.field_equations();
+  REQUIRE(equations);
+  Diagnostics diagnostics;
+  CHECK(field_modes(*equations, 2, diagnostics).frequencies.empty());
+  REQUIRE(diagnostics.items().size() == 1);
+  CHECK(diagnostics.items()[0].code == "E0647");
+}
+
 TEST_CASE("frequencies of a membrane whose tension jumps within the domain are within their errors") {
   // Separable: sin π y times a string whose tension jumps, on elements that end at the jump.
   const std::string tension = "(1 + 3 step(x - 0.3))";
