@@ -9,8 +9,9 @@ namespace maupertuis::studio {
 std::string random_letters(std::size_t bytes);
 
 /// Who may ask. The address that the program prints holds a token, which is good once: whoever brings it gets a cookie,
-/// and all further requests need that. Other pages in the same browser can neither read the cookie nor send it
-/// (HttpOnly, SameSite=Strict), and a name that was made to point to 127.0.0.1 is not our Host.
+/// and all further requests need that. Pages of other sites in the same browser can neither read the cookie nor send it
+/// (HttpOnly, SameSite=Strict), and a name that was made to point to 127.0.0.1 is not our Host. Browsers do send it to
+/// other ports of 127.0.0.1: who has an account on this machine, and is visited there by the browser, can read it.
 class Access {
  public:
   explicit Access(int port) : port_(port), token_(random_letters(24)), cookie_(random_letters(24)) {}

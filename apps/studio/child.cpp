@@ -18,7 +18,13 @@ constexpr std::chrono::milliseconds between_looks(50);  // whether anybody still
 
 /// In the new process, between fork and exec: calls that are safe there.
 [[noreturn]] void become_worker(const char* program, int in, int out, std::size_t memory) {
+  // Of the thread that started it, which lives as long as the server: there is one for each connection, kept for reuse.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
+  // The server blocks signals for a thread that waits for them, and has no ear for a broken pipe: not so the worker.
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  signal(SIGPIPE, SIG_DFL);
   setpgid(0, 0);  // Ctrl-C at the terminal is for the server
   dup2(in, STDIN_FILENO);
   dup2(out, STDOUT_FILENO);
@@ -39,10 +45,11 @@ bool Child::begin() {
     close(down[0]), close(down[1]);
     return false;
   }
-  process_ = fork();
-  if (process_ == 0) become_worker(program_.c_str(), down[0], up[1], memory_);
+  const pid_t born = fork();
+  if (born == 0) become_worker(program_.c_str(), down[0], up[1], memory_);
+  process_ = born;
   close(down[0]), close(up[1]);
-  if (process_ < 0) {
+  if (born < 0) {
     close(down[1]), close(up[0]);
     return false;
   }
@@ -52,11 +59,20 @@ bool Child::begin() {
 }
 
 void Child::end() {
-  if (process_ <= 0) return;
-  kill(process_, SIGKILL);
-  waitpid(process_, nullptr, 0);
+  const pid_t gone = process_.exchange(-1);
+  if (gone <= 0) return;
+  kill(gone, SIGKILL);
+  waitpid(gone, nullptr, 0);
   close(to_), close(from_);
-  process_ = -1;
+}
+
+void Child::kill_now() {
+  if (const pid_t now = process_; now > 0) kill(now, SIGKILL);
+}
+
+void Child::wait_gone() {
+  // Whoever waits for its answer may have done so before: then there is no such child any more, which is as good.
+  if (const pid_t now = process_; now > 0) waitpid(now, nullptr, 0);
 }
 
 bool Child::send(const std::string& line) {
@@ -83,13 +99,16 @@ Child::Outcome Child::ask(const std::string& request, std::chrono::duration<doub
   auto until = Clock::now() + std::chrono::duration_cast<Clock::duration>(longest);
   auto look = Clock::now();
   bool cancelled = false;
+  std::size_t searched = 0;  // of what is unread there is no end of a line before it
   for (;;) {
-    for (std::size_t at; (at = unread_.find('\n')) != std::string::npos;) {
+    for (std::size_t at; (at = unread_.find('\n', searched)) != std::string::npos;) {
       const std::string got = unread_.substr(0, at);
       unread_.erase(0, at + 1);
+      searched = 0;
       if (got.rfind("answer ", 0) == 0) return {Outcome::Kind::Answered, got.substr(7)};
       if (got.rfind("message ", 0) == 0) message(got.substr(8));
     }
+    searched = unread_.size();
     if (!cancelled && Clock::now() >= look && !wanted()) {
       cancelled = true;
       if (!send("cancel\n")) return lost(Outcome::Kind::Died);

@@ -1,6 +1,7 @@
 #pragma once
 #include <sys/types.h>
 
+#include <atomic>
 #include <chrono>
 #include <functional>
 #include <mutex>
@@ -30,6 +31,10 @@ class Child {
               const std::function<void(const std::string&)>& message, const std::function<bool()>& wanted);
   bool alive() const { return process_ > 0; }
   void end();
+  /// From any thread: whoever waits for an answer hears that the process died.
+  void kill_now();
+  /// After kill_now(), until the process is gone: nothing is left for whoever inherits it.
+  void wait_gone();
 
  private:
   bool begin();
@@ -37,7 +42,7 @@ class Child {
 
   std::string program_;
   std::size_t memory_;
-  pid_t process_ = -1;
+  std::atomic<pid_t> process_ = -1;
   int to_ = -1, from_ = -1;
   std::string unread_;
 };

@@ -2,6 +2,8 @@
 
 #include <maupertuis/trajectory.hpp>
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
@@ -15,9 +17,25 @@ namespace fs = std::filesystem;
 
 bool is_hidden(const fs::path& path) { return path.filename().string().rfind('.', 0) == 0; }
 
+/// What a path below the folder may be: a model, in no hidden folder.
+bool is_model_path(const fs::path& path) {
+  if (path.extension() != ".lag") return false;
+  return std::none_of(path.begin(), path.end(), [](const fs::path& part) { return part == ".." || is_hidden(part); });
+}
+
 std::string content_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
+}
+
+bool is_utf8(const std::string& text) {
+  // A JSON text is UTF-8: the library that writes answers tells.
+  try {
+    nlohmann::json(text).dump();
+    return true;
+  } catch (const nlohmann::json::type_error&) {
+    return false;
+  }
 }
 
 FileTrouble outside(const std::string& path) {
@@ -49,22 +67,23 @@ std::vector<Folder::Entry> Folder::list() const {
   return out;
 }
 
-/// Links are followed to where they lead, and that has to be inside.
+/// Links are followed to where they lead: that has to be a model inside as well.
 fs::path Folder::inside(const std::string& path) const {
   const fs::path asked(path);
   if (path.empty() || path.size() > 1000 || path.find('\0') != std::string::npos || asked.is_absolute() ||
-      asked.extension() != ".lag")
+      !is_model_path(asked))
     throw outside(path);
-  for (const fs::path& part : asked)
-    if (part == ".." || is_hidden(part)) throw outside(path);
   std::error_code error;
   const fs::path root = fs::canonical(root_, error);
   if (error)
     throw FileTrouble{404, "The folder that was opened is no longer there.", root_.string() + " cannot be read.",
                       "What you have typed is kept in the page: export it, or bring the folder back."};
   const fs::path whole = fs::weakly_canonical(root / asked, error);
-  if (error || std::mismatch(root.begin(), root.end(), whole.begin(), whole.end()).first != root.end())
-    throw outside(path);
+  const auto [end_of_root, below] = std::mismatch(root.begin(), root.end(), whole.begin(), whole.end());
+  if (error || end_of_root != root.end()) throw outside(path);
+  fs::path rest;
+  for (auto part = below; part != whole.end(); ++part) rest /= *part;
+  if (!is_model_path(rest)) throw outside(path);
   return whole;
 }
 
@@ -86,7 +105,12 @@ std::string Folder::read(const std::string& path) const {
     throw FileTrouble{413, path + " is larger than a model can be here.",
                       "A model is a text that a person writes; this has more than a megabyte.",
                       "Is it the right file?"};
-  return content_of(file);
+  std::string text = content_of(file);
+  if (!is_utf8(text))
+    throw FileTrouble{415, path + " is not written in UTF-8.",
+                      "Some of its bytes stand for no letter; saved from here they would be lost.",
+                      "Convert it, such as with `iconv -f latin1 -t utf-8`, and open it again."};
+  return text;
 }
 
 void Folder::write(const std::string& path, const std::string& text, const std::string& expected) const {

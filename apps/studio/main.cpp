@@ -30,6 +30,10 @@ void open_browser(const std::string& address) {
     return;
   }
   if (fork() != 0) _exit(0);
+  sigset_t none;  // what the server blocks and ignores is not for the browser
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  std::signal(SIGPIPE, SIG_DFL);
   if (!std::freopen("/dev/null", "w", stdout) || !std::freopen("/dev/null", "w", stderr)) _exit(1);
   execlp("xdg-open", "xdg-open", address.c_str(), static_cast<char*>(nullptr));
   _exit(127);
@@ -67,6 +71,7 @@ int serve(const studio::ServerOptions& options, bool browser, bool json) {
       int signal = 0;
       sigwait(&ends, &signal);
       stop();
+      _exit(130);  // connections that a browser keeps open are waited for by nobody
     }).detach();
   });
   if (!problem.empty()) return fail(problem, "Give another one, such as --port 8766, or leave --port out.");

@@ -84,9 +84,13 @@ class Studio {
     files();
     pages();  // whatever else is asked for
   }
-  ~Studio() { sessions_.end(); }
-
   const Access& access() const { return access_; }
+  /// The threads of the server end when what they wait for has ended.
+  void stop() {
+    sessions_.end();
+    const std::lock_guard lock(saving_);  // a file that is being written is written whole
+    server_.stop();
+  }
 
  private:
   /// Before anything else is looked at.
@@ -261,7 +265,7 @@ std::string serve(const ServerOptions& options,
   ::listen(listening, most_threads);  // the library lets no more than five connections wait
   Studio studio(options, port, server);
   started("http://127.0.0.1:" + std::to_string(port) + "/?token=" + studio.access().token(), port,
-          [&server] { server.stop(); });
+          [&studio] { studio.stop(); });
   server.listen_after_bind();
   return {};
 }

@@ -1,5 +1,7 @@
 #include "sessions.hpp"
 
+#include <maupertuis/json_depth.hpp>
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -14,6 +16,15 @@ std::string trouble(const char* kind, const char* message, const char* reason, c
               {"kind", kind},
               {"trouble", {{"code", ""}, {"message", message}, {"reason", reason}, {"help", help}}}}
       .dump();
+}
+
+/// Whether a request opens a text. What is no request is refused by the worker.
+bool is_open(const std::string& request) {
+  if (is_too_deep(request)) return false;
+  const Json parsed = Json::parse(request, nullptr, false);
+  if (!parsed.is_object()) return false;
+  const auto what = parsed.find("do");
+  return what != parsed.end() && what->is_string() && *what == "open";
 }
 
 std::string explained(Child::Outcome::Kind kind) {
@@ -60,17 +71,16 @@ std::string Sessions::ask(const std::string& id, const std::string& request, con
   const auto own = session(id);
   const unsigned cancels = own->cancels;
   const std::lock_guard turn(own->turn);
-  const auto wanted = [&] { return own->cancels == cancels && told.wanted(); };
+  const auto wanted = [&] { return !ended_ && own->cancels == cancels && told.wanted(); };
   if (!wanted()) return trouble("cancelled", "It was cancelled.", "", "");
-  const Json parsed = Json::parse(request, nullptr, false);
-  const bool opens = parsed.is_object() && parsed.value("do", Json()) == "open";
+  const bool opens = is_open(request);
   const std::chrono::duration<double> longest(limits_.longest);
   if (!own->child->alive() && !own->opened.empty() && !opens)
     own->child->ask(
-        own->opened, longest, [](const std::string&) {}, [] { return true; });
+        own->opened, longest, [](const std::string&) {}, wanted);
   const Child::Outcome outcome = own->child->ask(request, longest, told.message, wanted);
   if (outcome.kind != Child::Outcome::Kind::Answered) return explained(outcome.kind);
-  if (opens) own->opened = request;
+  if (opens && outcome.answer.rfind(R"({"ok":true)", 0) == 0) own->opened = request;
   return outcome.answer;
 }
 
@@ -80,15 +90,11 @@ void Sessions::cancel(const std::string& id) {
   if (found != sessions_.end()) ++found->second->cancels;
 }
 
-std::size_t Sessions::count() {
-  const std::lock_guard lock(guard_);
-  return sessions_.size();
-}
-
 void Sessions::end() {
   const std::lock_guard lock(guard_);
-  for (auto& [id, session] : sessions_) ++session->cancels;
-  sessions_.clear();
+  ended_ = true;
+  for (auto& [id, session] : sessions_) session->child->kill_now();
+  for (auto& [id, session] : sessions_) session->child->wait_gone();
 }
 
 }  // namespace maupertuis::studio

@@ -30,8 +30,7 @@ class Sessions {
   std::string ask(const std::string& id, const std::string& request, const Told& told);
   /// Ends what the tab waits for.
   void cancel(const std::string& id);
-  std::size_t count();
-  /// Ends all workers.
+  /// Ends all workers, at once, whatever they do; nothing is asked any more. From any thread.
   void end();
 
  private:
@@ -48,6 +47,7 @@ class Sessions {
 
   std::string program_;
   Limits limits_;
+  std::atomic<bool> ended_ = false;
   std::mutex guard_;
   std::map<std::string, std::shared_ptr<Session>> sessions_;
 };

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <condition_variable>
+#include <cstdint>
 #include <deque>
 #include <mutex>
 #include <string>
@@ -27,10 +28,15 @@ bool write_line(int output, std::string_view word, std::string_view json) {
   return true;
 }
 
+struct Request {
+  std::string line;
+  std::uint64_t cancels = 0;  // that were heard before it
+};
+
 /// Requests that came and are not answered. A thread of its own reads them, so that `cancel` is heard.
 class Inbox {
  public:
-  void put(std::string line) {
+  void put(Request line) {
     const std::lock_guard lock(guard_);
     lines_.push_back(std::move(line));
     changed_.notify_one();
@@ -41,7 +47,7 @@ class Inbox {
     changed_.notify_one();
   }
   /// The next one; false at the end.
-  bool take(std::string& line) {
+  bool take(Request& line) {
     std::unique_lock lock(guard_);
     changed_.wait(lock, [this] { return closed_ || !lines_.empty(); });
     if (lines_.empty()) return false;
@@ -53,7 +59,7 @@ class Inbox {
  private:
   std::mutex guard_;
   std::condition_variable changed_;
-  std::deque<std::string> lines_;
+  std::deque<Request> lines_;
   bool closed_ = false;
 };
 
@@ -71,7 +77,7 @@ void read_lines(int input, Inbox& inbox, Session& session) {
       if (line == "cancel")
         session.cancel();
       else
-        inbox.put(std::move(line));
+        inbox.put({std::move(line), session.cancels()});
       line.clear();
     }
   }
@@ -85,11 +91,12 @@ int work(int input, int output) {
   Session session;
   Inbox inbox;
   std::thread reader(read_lines, input, std::ref(inbox), std::ref(session));
-  std::string request;
+  Request request;
   bool heard = true;
   while (heard && inbox.take(request)) {
     const std::string answer = session.answer(
-        request, [&](std::string_view message) { heard = heard && write_line(output, "message", message); });
+        request.line, [&](std::string_view message) { heard = heard && write_line(output, "message", message); },
+        request.cancels);
     heard = heard && write_line(output, "answer", answer);
   }
   if (!heard) _exit(1);  // the reader waits for an input that will not come

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -35,10 +36,15 @@ class Session {
 
   /// Carries out one request. Whatever it holds, the answer is an object with "ok"; nothing is thrown but
   /// std::bad_alloc. A request ends within a second of the end of its budget.
-  std::string answer(std::string_view request, const Send& send = {});
+  std::string answer(std::string_view request, const Send& send = {}) { return answer(request, send, cancels()); }
+  /// The same for a request that came while `cancels()` was `since`: a cancel from then on is heard, whether the
+  /// request waited or was being answered.
+  std::string answer(std::string_view request, const Send& send, std::uint64_t since);
 
-  /// Ends the request that is being answered, if there is one: its answer says "cancelled".
+  /// Ends the request that is being answered, and those that wait: their answers say "cancelled".
   void cancel();
+  /// How often that was.
+  std::uint64_t cancels() const;
 
  private:
   class Implementation;

@@ -17,9 +17,6 @@ class Deadline {
   Deadline(const Deadline&) = delete;
   Deadline& operator=(const Deadline&) = delete;
 
-  /// Whether it was this that set the flag.
-  bool over() const { return over_; }
-
  private:
   std::atomic<bool> over_ = false;
 #ifdef MAUP_ONE_THREAD

@@ -25,6 +25,7 @@ bool is_true(const Json& request, const char* key) {
 
 void Desk::open(std::string name, std::string text) {
   studies_.clear();
+  certified_modes_.clear();
   units_.reset();
   document_.emplace(SourceText(std::move(name), std::move(text)), interrupt_);
   units_.emplace(document_->source().text());
@@ -99,14 +100,30 @@ void Desk::refuse(const Study& study, const Diagnostics& more) {
   throw trouble;
 }
 
+namespace {
+
+/// Whether the equations of the study, or of its fields, were derived.
+bool derived(Study& study) { return study.has_fields() ? study.field_equations() != nullptr : study.equations() != nullptr; }
+
+}  // namespace
+
 Study& Desk::certified(const Json& request) {
   Study& study = this->study(request);
-  if (study.has_fields()) {
-    if (!study.field_equations()) refuse(study);
-  } else {
-    if (study.equations()) study.derivation(true);  // before the certificate, which vouches for the readable form too
+  if (!derived(study)) refuse(study);
+  if (!study.has_fields()) {
+    study.derivation(true);  // before the certificate, which vouches for the readable form too
     if (!study.certificate() || study.wrong()) refuse(study);
   }
+  certified_modes_.insert(text_of(request, "mode"));
+  Kept& kept = studies_.front();
+  if (kept.messages == 0) kept.messages = 1 + study.diagnostics().items().size();
+  return study;
+}
+
+Study& Desk::moved(const Json& request) {
+  if (certified_modes_.count(text_of(request, "mode")) == 0) return certified(request);
+  Study& study = this->study(request);
+  if (!derived(study)) refuse(study);
   Kept& kept = studies_.front();
   if (kept.messages == 0) kept.messages = 1 + study.diagnostics().items().size();
   return study;

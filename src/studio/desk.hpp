@@ -8,6 +8,7 @@
 #include <list>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 namespace maupertuis::studio {
@@ -39,10 +40,15 @@ class Desk {
 
   /// The study with what the request says beside the text: set, start, run, mode, section.
   Study& study(const Json& request);
-  /// The same, certified; trouble of kind model where the text has mistakes.
+  /// The same, certified with its readable form; trouble of kind model where the text has mistakes.
   Study& certified(const Json& request);
+  /// The same where nothing is shown but a motion or a pose: other values do not change the equations of a text, so
+  /// that those of the same text and mode need to be certified once. Many of these come while a slider moves.
+  Study& moved(const Json& request);
   /// A study that has collected messages beyond its equations says them once: the next request begins a new one.
   void forget_said();
+
+  void forget_studies() { studies_.clear(); }
 
   /// Those of the study, and what a question of this request has found beside them.
   Json diagnostics(const Study& study, const Diagnostics& more = {});
@@ -60,7 +66,8 @@ class Desk {
   Interrupt interrupt_;
   std::optional<language::Document> document_;
   std::optional<Units> units_;
-  std::list<Kept> studies_;  // used last first
+  std::list<Kept> studies_;                // used last first
+  std::set<std::string> certified_modes_;  // of this text
 };
 
 }  // namespace maupertuis::studio

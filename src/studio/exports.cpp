@@ -63,11 +63,12 @@ Drawing drawing_for(const Model& model, const EquationsOfMotion& equations, cons
   return *std::move(drawing);
 }
 
+/// At the moment t of the run, which may go backwards; beyond its ends the nearer one.
 std::string frame_of(const Drawing& drawing, double t) {
   FrameOptions options;
   options.height = fitting_height(drawing, options.width);
   const double first = drawing.times.front(), last = drawing.times.back();
-  return frame_svg(drawing, std::clamp(std::abs(t - first), 0.0, std::abs(last - first)), options);
+  return frame_svg(drawing, std::abs(std::clamp(t, std::min(first, last), std::max(first, last)) - first), options);
 }
 
 std::string plot_of(const SimulationResult& run, const MechanicalSystem& system) {
@@ -105,6 +106,7 @@ std::string latex_of(Study& study) {
 std::string report_of(Desk& desk, Study& study, const Work& work) {
   const Model& model = *study.model();
   const EquationsOfMotion& equations = *study.equations();
+  Diagnostics said = study.diagnostics();
   Diagnostics unheard;  // what the page cannot say of a system is no mistake of the model
   const SimulationResult run = motion_of(desk, study, work);
   ReportParts parts;
@@ -115,7 +117,12 @@ std::string report_of(Desk& desk, Study& study, const Work& work) {
   parts.verification = &verification;
   std::optional<Invariants> invariants;
   std::optional<ModalStudy> modes;
-  if (!model.system.has_modes()) {
+  if (model.system.has_modes()) {
+    said.note(
+        "N0506", std::nullopt, "this page has the equations without contact and without dry friction",
+        "Conserved quantities and modes of vibration belong to one mode of contacts and frictions, and are left out.",
+        "Choose a mode, and make its page.");
+  } else {
     InvariantsOptions search;
     search.largest_basis = 600;
     search.drift = false;
@@ -132,7 +139,7 @@ std::string report_of(Desk& desk, Study& study, const Work& work) {
   if (modes) parts.modes = &*modes;
   ReportContent content =
       compose_report(model, study.source(), equations, *study.derivation(true), *study.certificate(), parts);
-  add_messages(content, study.diagnostics(), study.source());
+  add_messages(content, said, study.source());
   return report_html(content);
 }
 

@@ -18,7 +18,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int most_pulls = 30;
-constexpr double step = 1e-6;  // of a coordinate, in its SI unit, for J
+constexpr double small = 1e-6;  // a step for J, as a part of the size of a coordinate
 
 struct Drag {
   std::size_t element = 0, point = 0;
@@ -53,7 +53,7 @@ class Pull {
       const VectorXd gap = target() - *place;
       if (k > 0 && gap.norm() >= distance * (1 - 1e-7)) break;  // as near as it gets
       distance = gap.norm();
-      if (distance < 1e-9) break;
+      if (distance < 1e-9 * size_of(*place)) break;
       if (!pull(state, *place, gap)) break;
     }
     const std::vector<bool> free(state.q.size(), false);
@@ -63,6 +63,21 @@ class Pull {
  private:
   VectorXd target() const {
     return Eigen::Map<const VectorXd>(drag_.to.data(), static_cast<Eigen::Index>(drag_.to.size()));
+  }
+
+  /// Of what is dragged: how far it is from the origin, and from where it is to go.
+  double size_of(const VectorXd& place) const { return std::max(place.norm(), (target() - place).norm()); }
+
+  /// Of a coordinate: the largest of its kind, a turn's radian for angles and numbers, the length of the drag for
+  /// lengths (and for numbers that stand for lengths, in models without units).
+  double size_of(const MotionState& state, std::size_t i, double length) const {
+    const Coordinate& c = model_.system.coordinates[i];
+    double out = c.dimension.same_as(dimensions::length()) ? length
+                 : model_.system.dimensionless             ? std::min(1.0, length)
+                                                           : 1;
+    for (std::size_t k = 0; k < state.q.size(); ++k)
+      if (model_.system.coordinates[k].dimension.same_as(c.dimension)) out = std::max(out, std::abs(state.q[k]));
+    return out;
   }
 
   std::optional<VectorXd> place_of(const MotionState& state) const {
@@ -87,6 +102,7 @@ class Pull {
     MatrixXd j(gap.size(), n);
     for (Eigen::Index i = 0; i < n; ++i) {
       MotionState near = state;
+      const double step = small * size_of(state, static_cast<std::size_t>(i), size_of(place));
       near.q[static_cast<std::size_t>(i)] += step;
       const auto moved = place_of(near);
       if (!moved) return false;
@@ -170,7 +186,7 @@ std::optional<Drag> drag_of(const Json& request) {
 }  // namespace
 
 Json pose(Desk& desk, const Work& work) {
-  Study& study = desk.certified(work.request);
+  Study& study = desk.moved(work.request);
   if (study.has_fields() || !study.equations()) desk.refuse(study);
   const Model& model = *study.model();
   const MechanicalSystem& system = model.system;

@@ -1,6 +1,7 @@
 #include "studio/deadline.hpp"
 #include "studio/requests.hpp"
 
+#include <maupertuis/json_depth.hpp>
 #include <maupertuis/studio.hpp>
 
 #include <algorithm>
@@ -62,17 +63,18 @@ class Session::Implementation {
  public:
   explicit Implementation(const SessionLimits& limits) : limits_(limits), desk_(Interrupt(&stop_)) {}
 
-  Json answer(std::string_view text, const Send& send) {
+  Json answer(std::string_view text, const Send& send, std::uint64_t since) {
     try {
-      return in_its_time(read(text), send);
+      return in_its_time(read(text), send, since);
     } catch (const Trouble& trouble) {
       return told(trouble);
     }
   }
   void cancel() {
-    cancelled_ = true;
+    ++cancels_;
     stop_ = true;
   }
+  std::uint64_t cancels() const { return cancels_; }
 
  private:
   Json read(std::string_view text) const {
@@ -84,6 +86,7 @@ class Session::Implementation {
           "Is it the right file?",
           "",
           nullptr};
+    if (is_too_deep(text)) throw unreadable("Its brackets stand in each other too deep.");
     Json request = Json::parse(text, nullptr, false);
     if (!request.is_object()) throw unreadable("The request is no JSON object.");
     if (text_of(request, "text").size() > limits_.largest_text)
@@ -97,17 +100,20 @@ class Session::Implementation {
     return request;
   }
 
-  Json in_its_time(const Json& request, const Send& send) {
+  Json in_its_time(const Json& request, const Send& send, std::uint64_t since) {
     const std::string what = text_of(request, "do");
     const auto found = answering().find(what);
     if (found == answering().end()) throw unreadable("`" + what + "` is no request.");
     const double asked = number_of(request, "budget", limits_.budget);
     const double budget = std::clamp(asked, 0.05, limits_.longest_budget);
-    cancelled_ = stop_ = false;
-    const Deadline deadline(budget, stop_, [this] {
-      if (limits_.cancelled && limits_.cancelled()) cancelled_ = true;
-      return cancelled_.load();
-    });
+    // First lowered, then looked at: a cancel in between raises it again.
+    stop_ = false;
+    const auto cancelled = [this, since] {
+      if (limits_.cancelled && limits_.cancelled() && cancels_ == since) ++cancels_;
+      return cancels_ != since;
+    };
+    if (cancelled()) throw Trouble{"cancelled", "It was cancelled.", "", "", "", nullptr};
+    const Deadline deadline(budget, stop_, cancelled);
     auto last = std::chrono::steady_clock::time_point{};
     const Work work{request, Interrupt(&stop_), [&](const Json& message) {
                       const auto now = std::chrono::steady_clock::now();
@@ -121,7 +127,8 @@ class Session::Implementation {
       desk_.forget_said();
       return out;
     } catch (const Interrupted&) {
-      if (cancelled_) throw Trouble{"cancelled", "It was cancelled.", "", "", "", nullptr};
+      desk_.forget_studies();  // one that was interrupted may have said half of what it found
+      if (cancelled()) throw Trouble{"cancelled", "It was cancelled.", "", "", "", nullptr};
       throw Trouble{"budget",
                     "It did not come within " + Json(budget).dump() + " s.",
                     "Every question has a time, so that the page stays alive.",
@@ -132,8 +139,10 @@ class Session::Implementation {
       desk_.forget_said();
       throw;
     } catch (const std::bad_alloc&) {
+      desk_.forget_studies();
       throw;
     } catch (const std::exception& e) {
+      desk_.forget_studies();
       throw Trouble{"internal", std::string("Something that should hold did not: ") + e.what(),
                     "",         "Please report this model.",
                     "",         nullptr};
@@ -142,17 +151,18 @@ class Session::Implementation {
 
   SessionLimits limits_;
   StopFlag stop_ = false;
-  std::atomic<bool> cancelled_ = false;
+  std::atomic<std::uint64_t> cancels_ = 0;
   Desk desk_;
 };
 
 Session::Session(const SessionLimits& limits) : implementation_(std::make_unique<Implementation>(limits)) {}
 Session::~Session() = default;
 
-std::string Session::answer(std::string_view request, const Send& send) {
-  return written(implementation_->answer(request, send));
+std::string Session::answer(std::string_view request, const Send& send, std::uint64_t since) {
+  return written(implementation_->answer(request, send, since));
 }
 
 void Session::cancel() { implementation_->cancel(); }
+std::uint64_t Session::cancels() const { return implementation_->cancels(); }
 
 }  // namespace maupertuis::studio

@@ -98,8 +98,7 @@ Json open_text(Desk& desk, const Work& work) {
               {"readable", model != nullptr}};
   out["fields"] = model && model->fields;
   out["modes"] = model && model->system.has_modes();
-  out["runs"] = model && model->system.integral_constraints.empty() &&
-                (model->experiment.duration || model->experiment.until || model->system.integral_constraints.empty());
+  out["runs"] = model && model->system.integral_constraints.empty();
   return out;
 }
 

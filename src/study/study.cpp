@@ -128,11 +128,15 @@ const Model* Study::model() {
 const FieldEquations* Study::field_equations() {
   if (!has_fields()) return nullptr;
   if (!fields_derived_) {
-    fields_derived_ = true;
     const InterruptScope scope = interruptible();
-    field_equations_ = maupertuis::field_equations(model_->fields, diagnostics_);
-    if (field_equations_) attach_bodies(*field_equations_, model_, diagnostics_);
-    if (field_equations_ && !wrong()) field_certificate_ = certify(*field_equations_);
+    Diagnostics found;  // an interrupt leaves nothing behind, and the next use does the work again
+    auto equations = maupertuis::field_equations(model_->fields, found);
+    if (equations) attach_bodies(*equations, model_, found);
+    std::optional<Certificate> certificate;
+    if (equations && !wrong() && !found.has_errors()) certificate = certify(*equations);
+    diagnostics_.append(found);
+    field_equations_ = std::move(equations), field_certificate_ = std::move(certificate);
+    fields_derived_ = true;
     if (field_certificate_)
       for (const CertificateCheck& check : field_certificate_->checks) report(check);
   }
@@ -190,13 +194,14 @@ void Study::report(const CertificateCheck& check) {
 const Certificate* Study::certificate(const CertifyOptions& options) {
   if (certificate_ || !equations()) return certificate_ ? &*certificate_ : nullptr;
   const InterruptScope scope = interruptible();
-  certificate_ = certify(*equations_, derivation_ ? &*derivation_ : nullptr, options);
+  Certificate found = certify(*equations_, derivation_ ? &*derivation_ : nullptr, options);
   if (!model_->system.higher.empty())
     for (const HigherOrderProof& proof : higher_order_proofs(*equations_)) {
       const ZeroTest& test = proof.test;
-      certificate_->checks.push_back({proof.name, proof.statement, test.verdict, true, test.points, test.error_bound,
-                                      test.reason, model_->system.coordinates.size()});
+      found.checks.push_back({proof.name, proof.statement, test.verdict, true, test.points, test.error_bound,
+                              test.reason, model_->system.coordinates.size()});
     }
+  certificate_ = std::move(found);
   for (const CertificateCheck& check : certificate_->checks) report(check);
   return wrong() ? nullptr : &*certificate_;
 }

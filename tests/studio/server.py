@@ -117,7 +117,7 @@ def paths(studio):
         response, content = studio.ask("GET", path)
         expect(f"{path} leads nowhere", b"secret" not in content and b"root:" not in content, content)
     for path in ["../secret.txt", "/etc/passwd", "..%2f..%2fetc%2fpasswd", "a/../../x.lag", ".hidden.lag", "x.txt",
-                 "link.lag", "linked/pendulum.lag", "%00.lag", "", "a" * 5000 + ".lag"]:
+                 "link.lag", "linked/pendulum.lag", "config.lag", "%00.lag", "", "a" * 5000 + ".lag"]:
         response, content = studio.ask("GET", f"/api/file?path={path}")
         expect(f"file {path[:40]!r} is refused", response.status in (403, 404), response.status)
         response, content = studio.ask("PUT", f"/api/file?path={path}", "system x\n")
@@ -127,8 +127,10 @@ def paths(studio):
 def files(studio, folder):
     _, content = studio.ask("GET", "/api/files")
     listed = json.loads(content)
-    expect("models are listed", [f["path"] for f in listed["files"]] == ["double_pendulum.lag", "pendulum.lag",
+    expect("models are listed", [f["path"] for f in listed["files"]] == ["double_pendulum.lag", "latin.lag", "pendulum.lag",
                                                                          "sub/kepler.lag"], content)
+    response, content = studio.ask("GET", "/api/file?path=latin.lag")
+    expect("bytes that are no letters are not read", response.status == 415 and b"UTF-8" in content, content)
     _, content = studio.ask("GET", "/api/file?path=pendulum.lag")
     read = json.loads(content)
     expect("a file is read", read["text"] == (folder / "pendulum.lag").read_text())
@@ -164,6 +166,18 @@ def questions(studio):
         _, content = studio.ask("POST", "/api/request?session=bad", body.encode("latin-1"))
         answer = json.loads(content.decode().rsplit("data: ", 1)[1])
         expect(f"{body[:40]!r} gets a sentence", isinstance(answer.get("ok"), bool), answer)
+    deep = '{"do":' + "[" * 1_400_000 + "]" * 1_400_000 + "}"
+    for body in [deep, '{"do":"run","set":' + "[" * 1_000_000 + "]" * 1_000_000 + "}"]:
+        _, content = studio.ask("POST", "/api/request?session=deep", body)
+        answer = json.loads(content.decode().rsplit("data: ", 1)[1])
+        expect("brackets without end get a sentence", answer["ok"] is False and answer["kind"] == "request", answer)
+    studio.request("refused", **{"do": "open", "text": text})
+    studio.request("refused", **{"do": "open", "text": "#" * 1_100_000})
+    expect("a text that is refused leaves the one before", studio.request("refused", **{"do": "equations"})["ok"])
+    for child in children(studio.process):
+        os.kill(child, signal.SIGKILL)
+    answers = [studio.request("refused", **{"do": "equations"})["ok"] for _ in range(2)]
+    expect("in a new worker too", answers[1], answers)
     for session in ["", "../x", "a" * 200, "a b"]:
         response, _ = studio.ask("POST", "/api/request?session=" + session.replace(" ", "%20"), '{"do":"hello"}')
         expect(f"session {session[:20]!r} is refused", response.status == 400)
@@ -251,6 +265,10 @@ def main():
     shutil.copy(MODELS / "kepler.lag", folder / "sub")
     (folder / "link.lag").symlink_to("/etc/passwd")
     (folder / "linked").symlink_to(MODELS)
+    (folder / ".git").mkdir()
+    (folder / ".git" / "config").write_text("secret\n")
+    (folder / "config.lag").symlink_to(folder / ".git" / "config")
+    (folder / "latin.lag").write_bytes(b"system latin # M\xfcller\n")
     (folder / ".hidden.lag").write_text("system hidden\n")
     studio = Studio(folder)
     try:
@@ -268,6 +286,13 @@ def main():
         response, content = studio.ask("GET", "/api/files")
         expect("a folder that vanished is told", response.status == 404 and b"no longer there" in content, content)
         workers = children(studio.process)
+        # As browsers do: the request that starts the worker, and one that lasts, over one connection that is kept.
+        kept = http.client.HTTPConnection("127.0.0.1", studio.port, timeout=60)
+        headers = {"Host": studio.host, "Origin": f"http://{studio.host}", "Cookie": studio.cookie}
+        kept.request("POST", "/api/request?session=last", json.dumps({"do": "open", "text": FOREVER}), headers)
+        kept.getresponse().read()
+        kept.request("POST", "/api/request?session=last", json.dumps({"do": "run", "budget": 60}), headers)
+        time.sleep(0.5)
         code, seconds = studio.end()
         expect("Ctrl-C ends it with 130 within a second", code == 130 and seconds < 1.5, (code, seconds))
         time.sleep(0.2)

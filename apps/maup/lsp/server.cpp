@@ -1,5 +1,6 @@
 #include "lsp/server.hpp"
 
+#include <maupertuis/json_depth.hpp>
 #include <fmt/format.h>
 
 #include <csignal>
@@ -26,25 +27,6 @@ int version_of(const Json& params) {
 }
 
 std::string key_of(const Json& id) { return id.dump(-1, ' ', true, Json::error_handler_t::replace); }
-
-/// Whether brackets stand in each other deeper than any message of the protocol has them, and than values are copied
-/// and written without end of the stack.
-bool is_too_deep(std::string_view json) {
-  constexpr int most = 200;
-  int depth = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    if (quoted && json[i] == '\\')
-      ++i;
-    else if (json[i] == '"')
-      quoted = !quoted;
-    else if (!quoted && (json[i] == '[' || json[i] == '{') && ++depth > most)
-      return true;
-    else if (!quoted && (json[i] == ']' || json[i] == '}'))
-      --depth;
-  }
-  return false;
-}
 
 std::chrono::milliseconds milliseconds_of(const Json& value, std::chrono::milliseconds otherwise) {
   if (!value.is_number()) return otherwise;

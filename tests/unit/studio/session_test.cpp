@@ -253,6 +253,53 @@ TEST_CASE("work ends with its budget, or when nobody wants it") {
   CHECK(page.ask("equations")["ok"] == true);
 }
 
+TEST_CASE("a cancel is heard by requests that wait, and by no later one") {
+  Session session;
+  const auto ask = [&](const Json& request, std::uint64_t since) {
+    return Json::parse(session.answer(request.dump(), {}, since));
+  };
+  const Json open = {{"do", "open"}, {"text", endless}};
+  CHECK(ask(open, session.cancels())["ok"] == true);
+  const std::uint64_t before = session.cancels();
+  session.cancel();
+  CHECK(ask({{"do", "equations"}}, before)["kind"] == "cancelled");
+  CHECK(ask({{"do", "equations"}}, session.cancels())["ok"] == true);
+}
+
+TEST_CASE("what was interrupted is done again from its beginning") {
+  for (const char* model : {"fields/maxwell", "fields/membrane", "rattleback", "squeezer"}) {
+    CAPTURE(model);
+    Asked page(file_text(std::string("models/") + model + ".lag"));
+    for (const int ms : {1, 3, 10, 30, 100}) {
+      std::thread other([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(ms));
+        page.session.cancel();
+      });
+      page.ask("equations");
+      other.join();
+    }
+    Json after = page.ask("equations"),
+         fresh = Asked(file_text(std::string("models/") + model + ".lag")).ask("equations");
+    CHECK(after == fresh);
+  }
+}
+
+TEST_CASE("what is tiny or huge can be dragged") {
+  for (const char* size : {"1e-9", "1", "1.5e11"}) {
+    CAPTURE(size);
+    const double scale = std::stod(size);
+    Asked page("system free\nparam m = 1 kg\ncoord x, y : length\npoint P mass m at (x, y)\nstart x = " +
+               std::string(size) + " m\nrun 1 s\n");
+    for (const double to : {0.5, -2.0}) {
+      Json dragged =
+          page.ask({{"do", "pose"}, {"drag", {{"element", 0}, {"point", 0}, {"to", {to * scale, 0.25 * to * scale}}}}});
+      REQUIRE(dragged["ok"] == true);
+      CHECK(dragged["start"]["x"].get<double>() / scale == doctest::Approx(to).epsilon(1e-3));
+      CHECK(dragged["start"]["y"].get<double>() / scale == doctest::Approx(0.25 * to).epsilon(1e-3));
+    }
+  }
+}
+
 TEST_CASE("modes, sections and conserved quantities") {
   Asked page(file_text("models/double_pendulum.lag"));
   Json modes = page.ask("modes");
