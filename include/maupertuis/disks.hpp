@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,7 @@
 namespace maupertuis {
 
 struct Instruction;
+class ResidualTerms;
 
 /// Coefficients of all slots: the k-th of slot s, times unit^k, at rows[k · stride + s · step].
 struct SlotCoefficients {
@@ -52,9 +54,18 @@ class Disks {
   void evaluate(double radius, Depth depth = Depth::Coefficients);
   /// Whether derivatives of other values than coordinates are bounded, for which a larger disk has to be asked first.
   bool needs_larger_disk() const { return !derived_.empty(); }
+  /// Whether distances and the like are denominators or stand under powers: sums of products of coordinates whose known
+  /// coefficients tell how near they come to 0.
+  bool has_bases() const { return !bases_.empty(); }
 
   /// Of R_j at the radius evaluated last; rows of constraints follow those of the coordinates.
   double residual_tail(std::size_t j) const;
+  /// What a step of length h leaves out of the rows, each term bounded on that of the disks since begin() which suits
+  /// it; where there are bases. Cost: some 3 operations a term and disk.
+  void find_left_out(double h, std::uint32_t without = 0);
+  double residual_left_out(std::size_t j) const;
+  /// Of the disks since begin(), as they were asked.
+  const std::vector<double>& radii() const;
   /// What rounding makes of R_j at s = 0, in units of the rounding of 1: each value adds its own size to what its
   /// operands hand on, and a derivative divides by `length`, over which its operand is known. Cost: some 10 operations
   /// an instruction for each length.
@@ -91,6 +102,7 @@ class Disks {
   double rounding_of_derivative(std::uint32_t slot, std::uint32_t shift) const;
   double rounding_of(const Node& node) const;
   Bounds sum(const Node& node) const;
+  void add_disk();
   double tail_of_sum(const Instruction& instruction) const;
   Bounds product(std::uint32_t a, std::uint32_t b) const;
   Bounds quotient(const Node& node) const;
@@ -102,6 +114,9 @@ class Disks {
   double coefficient(int k, std::uint32_t slot) const {
     return now_.rows[static_cast<std::size_t>(k) * now_.stride + slot * now_.step];
   }
+  void find_bases();
+  double low_of_base(std::uint32_t slot) const;
+  double beyond(std::uint32_t slot) const;
   double centre(std::uint32_t slot, std::uint32_t shift = 0) const;
   double shifted_reach(const Term& term) const;
   double shifted_tail(const Term& term) const;
@@ -115,8 +130,13 @@ class Disks {
   std::vector<std::int8_t> needs_reach_, needs_tail_;  // [slots]
   int most_rates_ = 0;                                 // up to this shift the reach of coordinates is needed
   std::vector<Term> terms_;
+  std::unique_ptr<ResidualTerms> rows_;
+  bool bounds_residual_ = true;
   std::vector<int> residual_;            // node that makes R_j; −1: none
   std::vector<std::int8_t> has_series_;  // [slots] all known orders are in the rows
+  std::vector<std::uint32_t> bases_;     // slots
+  std::vector<std::int8_t> is_base_;     // [slots]
+  std::vector<int> maker_;               // [slots] node; −1: none
   std::vector<std::uint32_t> alone_;     // slots with a series beyond the stored ones
   std::vector<std::uint32_t> few_;       // those with a series that are needed, where bound_only() left few of them
   bool only_few_ = false;
@@ -134,6 +154,7 @@ class Disks {
   std::vector<double> rounding_;                    // [slots]
   double rounding_length_ = 0;                      // that they belong to; 0: there are none of this step
   std::vector<double> series_;                      // [slots] Σ_{k≥1} |f_k| r^k
+  std::vector<double> upper_;                       // [unknowns] Σ |q_k| r^k of the upper half of the orders
   std::array<std::vector<double>, 2> rate_reach_;   // [unknowns] of q̇ and q̈
 };
 

@@ -55,7 +55,11 @@ SafeLength::SafeLength(const Program& program, int order, double tolerance, std:
       tolerance_(tolerance),
       order_(order),
       largest_ratio_(largest_ratio(usual_ratio_)),
-      ratio_(largest_ratio_ / from_disk_to_disk) {}
+      ratio_(largest_ratio_ / from_disk_to_disk) {
+  for (double ratio = largest_ratio_; most_of_radius * ratio > 0.999; ratio /= from_disk_to_disk)
+    all_ratios_.push_back(ratio);
+  ratios_ = {ratio_};
+}
 
 std::shared_ptr<KnownLengths> SafeLength::shared_by_motions(const Program& program, int order, double tolerance) {
   return std::make_shared<KnownLengths>(program, Disks(program).degrees(), usual_ratio(order, tolerance), true);
@@ -68,6 +72,7 @@ void SafeLength::forget() {
   asked_ = asked_momenta_ = 0;
   needs_coefficients_ = false;
   ratio_ = largest_ratio_ / from_disk_to_disk;
+  ratios_ = {ratio_};
   own_.forget();
   allow();
   best_radius_ = radius_ = 0;
@@ -123,6 +128,17 @@ bool SafeLength::passes(double h) {
   return true;
 }
 
+/// Whether the disks of this step allow a length h, each term by the one that suits it.
+bool SafeLength::passes_by_terms(double h, std::uint32_t without) {
+  disks_.find_left_out(h, without);
+  for (std::size_t j = 0; j < disks_.residuals(); ++j) {
+    const double tail = disks_.residual_left_out(j);
+    if (!(h * tail <= tolerance_ * momentum(j)) && !(tail <= tolerance_ * disks_.residual_rounding(j, radius_)))
+      return false;
+  }
+  return true;
+}
+
 bool SafeLength::passes_on(double radius, double h, Disks::Depth depth) {
   radius_ = radius;
   disks_.evaluate(radius, depth);
@@ -149,7 +165,7 @@ double SafeLength::allowed() {
 /// alone decide; all else is a short cut to them.
 bool SafeLength::passes_somewhere(const SlotCoefficients& coefficients, double h) {
   disks_.begin(coefficients);
-  for (double ratio = largest_ratio_; most_of_radius * ratio > 0.999; ratio /= from_disk_to_disk)
+  for (const double ratio : all_ratios_)
     if (passes_on(ratio * h, h, Disks::Depth::Coefficients)) return ratio_ = ratio, needs_coefficients_ = true;
   return false;
 }
@@ -199,11 +215,64 @@ std::span<const double> SafeLength::allowed_by_rounding(const SlotCoefficients& 
   return allowed_by_rounding_;
 }
 
+/// Between a length that passes and one that may not, by all disks that were asked; to a fiftieth.
+double SafeLength::passing_length(double passes_at, double most) {
+  constexpr double near = 1.02;
+  for (double low = passes_at > 0 ? passes_at : most / 1024, high = most; high > near * low;) {
+    const double middle = std::sqrt(low * high);
+    if (passes_by_terms(middle))
+      passes_at = low = middle;
+    else
+      high = middle;
+  }
+  return passes_at;
+}
+
+/// Limits of the sizes of many bodies would be left again and again, and one or a few disks say as much of a step:
+/// those that were needed last, else all. Where these do not allow h, they mostly allow a little less.
+double SafeLength::within_bases(const SlotCoefficients& coefficients, double h) {
+  using enum Disks::Depth;
+  constexpr double little_less = 0.9, less = 0.5;
+  const auto ask = [&](std::span<const double> ratios) {
+    disks_.begin(coefficients);
+    radius_ = ratios.front() * h;
+    if (disks_.needs_larger_disk()) disks_.evaluate(from_disk_to_disk * radius_, Derivatives);
+    for (const double ratio : ratios) disks_.evaluate(ratio * h, Rules);
+  };
+  ask(ratios_);
+  if (passes_by_terms(h)) return h;
+  if (passes_by_terms(little_less * h)) return passing_length(little_less * h, h);
+  ask(all_ratios_);
+  const double length = passes_by_terms(h) ? h : passing_length(0, h);
+  if (length > less * h) return choose_ratios(length), length;
+  return passes_somewhere(coefficients, h) ? h : std::max(length, search(coefficients, h));
+}
+
+/// As few of the disks of this step as allow its length: one, if there is one.
+void SafeLength::choose_ratios(double length) {
+  const std::size_t count = all_ratios_.size();
+  const std::uint32_t all = (std::uint32_t{1} << count) - 1;
+  std::uint32_t without = 0;
+  for (std::size_t disk = 0; disk < count && without == 0; ++disk)
+    if (const std::uint32_t others = all & ~(std::uint32_t{1} << disk); passes_by_terms(length, others))
+      without = others;
+  for (std::size_t disk = 0; disk < count; ++disk)
+    if (const std::uint32_t more = without | std::uint32_t{1} << disk; more != all && passes_by_terms(length, more))
+      without = more;
+  ratios_.clear();
+  for (std::size_t disk = 0; disk < count; ++disk)
+    if ((without >> disk & 1) == 0) ratios_.push_back(all_ratios_[disk]);
+}
+
 double SafeLength::within(const SlotCoefficients& coefficients, double time, double wanted, double most,
                           const double* sizes) {
   if (!is_needed()) return wanted;
   const double h = std::min(wanted, most);
   if (!(h > 0)) return wanted;
+  if (disks_.has_bases()) {
+    const double length = within_bases(coefficients, h);
+    return length < h ? rounded_down(length) : wanted;
+  }
   if (is_known(coefficients, time, h, sizes)) return wanted;
   // What was right in the last step is asked first: the whole length by the rules, or with the coefficients where those
   // have to help.

@@ -62,11 +62,15 @@ class SafeLength {
   bool is_known(const SlotCoefficients& coefficients, double time, double h, const double* sizes);
   std::span<const double> allowed_by_rounding(const SlotCoefficients& coefficients);
   bool is_safe_alone(const SlotCoefficients& coefficients);
+  double within_bases(const SlotCoefficients& coefficients, double h);
   bool passes_somewhere(const SlotCoefficients& coefficients, double h);
   bool passes(double h);
+  bool passes_by_terms(double h, std::uint32_t without = 0);
+  void choose_ratios(double length);
   bool passes_on(double radius, double h, Disks::Depth depth);
   double allowed();
   double search(const SlotCoefficients& coefficients, double most);
+  double passing_length(double passes_at, double most);
   double momentum(std::size_t j) const;
 
   Disks disks_;
@@ -82,8 +86,10 @@ class SafeLength {
   std::vector<double> momenta_, momentum_rates_;  // [n] or empty; the rates that they belong to
   unsigned asked_momenta_ = 0;
   double largest_ratio_;
-  double ratio_;            // radius over length that was right last
-  double best_radius_ = 0;  // of the last search; 0: none yet
+  double ratio_;                    // radius over length that was right last
+  std::vector<double> all_ratios_;  // that are asked about, from large to small
+  std::vector<double> ratios_;      // where there are bases: of the disks that were needed last, from large to small
+  double best_radius_ = 0;          // of the last search; 0: none yet
   double radius_ = 0;
   bool needs_coefficients_ = false;  // since the rules alone did not do in the last steps
   unsigned asked_ = 0;               // by coefficients so far

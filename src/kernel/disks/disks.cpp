@@ -1,4 +1,6 @@
+#include "kernel/disks/least_modulus.hpp"
 #include "kernel/disks/node.hpp"
+#include "kernel/disks/residual_terms.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,29 +19,33 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 Disks::~Disks() = default;
 Disks::Disks(Disks&&) noexcept = default;
 
-Disks::Disks(const Program& program, std::span<const std::uint32_t> slots) : program_(program) {
+Disks::Disks(const Program& program, std::span<const std::uint32_t> slots)
+    : program_(program), rows_(std::make_unique<ResidualTerms>(program)) {
   std::vector<bool> made(program.slots, false);
-  std::vector<int> maker(program.slots, -1);
+  maker_.assign(program.slots, -1);
   for (const maupertuis::Term& t : program.terms) terms_.push_back({0, t.coefficient, t.a, t.b, t.shift});
   for (const Section section : {Dynamics, Along})
     for (const Run& run : program.runs[section])
       for (std::uint32_t i = run.first; i < run.last; ++i) {
         const Instruction& instruction = program.instructions[i];
-        maker[instruction.out] = static_cast<int>(nodes_.size());
+        maker_[instruction.out] = static_cast<int>(nodes_.size());
         nodes_.push_back({instruction, 0});
         made[instruction.out] = true;
         if (instruction.second != no_slot) made[instruction.second] = true;
       }
-  for (const Slot slot : program.residual) residual_.push_back(slot == no_slot ? -1 : maker[slot]);
+  for (const Slot slot : program.residual) residual_.push_back(slot == no_slot ? -1 : maker_[slot]);
   for (auto* values : {&reach_, &tail_, &low_, &high_, &reach_before_, &tail_before_, &series_, &rounding_})
     values->assign(program.slots, 0.0);
   for (auto& values : rate_reach_) values.assign(program.unknowns, 0.0);
+  upper_.assign(program.unknowns, 0.0);
   find_degrees();
   find_series(made);
+  find_bases();
   find_needs(slots, true);
 }
 
 void Disks::bound_only(std::span<const std::uint32_t> slots) {
+  bounds_residual_ = false;
   needed_.clear();
   derived_.clear();
   most_rates_ = 0;
@@ -163,6 +169,7 @@ void Disks::find_series(const std::vector<bool>& made) {
 
 void Disks::set_constants(const double* constants) {
   constants_ = constants;
+  rows_->set_constants(constants);
   for (Term& term : terms_) term.size = std::abs(constants[term.coefficient]);
   for (Node& node : nodes_)
     if (node.instruction.op == Op::Power) node.exponent = constants[node.instruction.constant];
@@ -180,6 +187,7 @@ void Disks::begin(const SlotCoefficients& coefficients) {
   now_ = coefficients;
   rounding_length_ = 0;
   previous_ = radius_ = 0;
+  rows_->begin();
   powers_.resize(static_cast<std::size_t>(now_.order) + 8);
 }
 
@@ -203,7 +211,19 @@ void Disks::evaluate(double radius, Depth depth) {
     set(program_.time, {radius, 0, std::max(0.0, t - radius), t + radius});
   }
   for (const std::uint32_t at : depth == Depth::Derivatives ? derived_ : needed_) evaluate(nodes_[at]);
+  if (has_bases() && bounds_residual_ && depth != Depth::Derivatives) add_disk();
 }
+
+void Disks::add_disk() {
+  rows_->add_disk(radius_, [this](const ResidualTerms::Term& term) {
+    if (term.b == no_slot) return shifted_tail({1, 0, term.a, no_slot, term.shift});
+    return degree_[term.a] + degree_[term.b] < now_.order ? 0.0 : product(term.a, term.b).tail;
+  });
+}
+
+void Disks::find_left_out(double h, std::uint32_t without) { rows_->find_left_out(h, now_.order, without); }
+double Disks::residual_left_out(std::size_t j) const { return rows_->left_out(j); }
+const std::vector<double>& Disks::radii() const { return rows_->radii(); }
 
 /// In four strands, since each product waits for the one before.
 void Disks::find_powers() {
@@ -216,17 +236,20 @@ void Disks::find_powers() {
 /// q, q̇ and q̈ of the coordinates, and of what multipliers are the second derivatives of: polynomials that are known
 /// whole.
 void Disks::evaluate_coordinates() {
-  const int degree = now_.order + 1;
+  const int degree = now_.order + 1, half = now_.order / 2;
   for (std::size_t i = 0; i < program_.unknowns; ++i) {
     const Slot slot = static_cast<Slot>(i);
     if (!needs_reach_[slot]) continue;
-    double even = 0, odd = 0;
-    for (int k = 1; k < degree; k += 2) {
-      even += std::abs(coefficient(k, slot)) * powers_[static_cast<std::size_t>(k)];
-      odd += std::abs(coefficient(k + 1, slot)) * powers_[static_cast<std::size_t>(k) + 1];
-    }
-    if (degree % 2 != 0) even += std::abs(coefficient(degree, slot)) * powers_[static_cast<std::size_t>(degree)];
-    const double reach = even + odd;
+    const auto sum = [&](int first, int end) {
+      double even = 0, odd = 0;
+      for (int k = first; k < end; k += 2) {
+        even += std::abs(coefficient(k, slot)) * powers_[static_cast<std::size_t>(k)];
+        if (k + 1 < end) odd += std::abs(coefficient(k + 1, slot)) * powers_[static_cast<std::size_t>(k) + 1];
+      }
+      return even + odd;
+    };
+    upper_[i] = sum(half, degree + 1);
+    const double reach = sum(1, half) + upper_[i];
     for (int shift = 1; shift <= most_rates_; ++shift)
       rate_reach_[static_cast<std::size_t>(shift) - 1][i] = reach_of_rate(slot, shift);
     const double c = std::abs(coefficient(0, slot));
@@ -278,6 +301,7 @@ void Disks::set(std::uint32_t slot, Bounds b) {
     const double by_series = series_[slot] + tail_before_[slot] * passed_on_[static_cast<std::size_t>(lag)];
     if (by_series < b.reach) b.reach = by_series;
   }
+  if (is_base_[slot]) b.low = std::max(b.low, low_of_base(slot));
   const double least = c - b.reach, most = c + b.reach;
   reach_[slot] = b.reach;
   tail_[slot] = b.tail;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 
 /// Order of execution: sections (what is needed when), within a section levels (who waits for whom), within a level
 /// runs of one op and lag, so that an interpreter decides once for many instructions.
@@ -71,14 +72,16 @@ class Scheduler {
 
   void find_lags() {
     const std::size_t count = graph_.nodes.size();
-    moved_.assign(count, false);
+    follows_q_.assign(count, false);
     lag_.assign(count, 0);
     int depth = 0;  // how often functions of t alone are differentiated
     for (std::size_t i = 0; i < count; ++i) {
-      moved_[i] = graph_.nodes[i].op == Op::Coordinate;
-      for_operands(graph_.nodes[i], [&](NodeIndex operand, int) { moved_[i] = moved_[i] || moved_[operand]; });
+      follows_q_[i] = graph_.nodes[i].op == Op::Coordinate;
+      for_operands(graph_.nodes[i], [&](NodeIndex operand, int) {
+        follows_q_[i] = follows_q_[i] || follows_q_[operand];
+      });
       lag_[i] = lag_of(i, 0);
-      if (section_[i] != dead && !moved_[i]) depth = std::max(depth, lag_[i]);
+      if (section_[i] != dead && !follows_q_[i]) depth = std::max(depth, lag_[i]);
     }
     // Their lag starts so low that they never hold anything up.
     for (std::size_t i = 0; i < count; ++i) {
@@ -87,6 +90,69 @@ class Scheduler {
         throw std::logic_error("the kernel met a third time derivative of a coordinate; please report");
     }
     program_.first_stage = -2 - depth;
+    delay();
+    find_moved();
+  }
+
+  /// Which operands move with q̈_k at stage k: a force of q that is found at order k does not.
+  void find_moved() {
+    moved_.assign(graph_.nodes.size(), false);
+    for (std::size_t i = 0; i < graph_.nodes.size(); ++i) {
+      moved_[i] = graph_.nodes[i].op == Op::Coordinate;
+      for_operands(graph_.nodes[i], [&](NodeIndex operand, int shift) {
+        moved_[i] = moved_[i] || (moved_[operand] && lag_[operand] + shift == lag_[i]);
+      });
+    }
+  }
+
+  /// The lags so far are the least, at which everything is found as early as it can be: forces of q at order k + 2 of
+  /// stage k, with q_{k+2} = 0, to be corrected when q̈_k is known. What waits for nothing but a residual or an
+  /// observable, without being differentiated, is found at order k instead: q_k is known then, and no acceleration moves
+  /// it. So forces between particles have no tangents, and no corrections.
+  void delay() {
+    can_wait_.assign(graph_.nodes.size(), true);
+    const auto keep = [this](NodeIndex node) {
+      if (node == no_node || !can_wait_[node]) return false;
+      can_wait_[node] = false;
+      return true;
+    };
+    for (const auto* roots : {&outputs_.constraint_values, &outputs_.constraint_rates})
+      for (const NodeIndex root : *roots) keep(root);
+    for (NodeIndex i = 0; i < graph_.nodes.size(); ++i)
+      if (section_[i] == Along) keep(i);
+    for (const auto* roots : {&outputs_.switches, &outputs_.events, &outputs_.integrands})
+      for (const NodeIndex root : *roots) keep(root);
+    for (bool changed = true; std::exchange(changed, false);)
+      for (NodeIndex i = static_cast<NodeIndex>(graph_.nodes.size()); i-- > 0;)
+        if (section_[i] != dead) for_needed_early(i, [&](NodeIndex operand) { changed |= keep(operand); });
+    for (NodeIndex i = 0; i < graph_.nodes.size(); ++i)
+      if (waits(i)) lag_[i] = 2;
+  }
+
+  /// Of velocities the residual waits less if they are at hand before.
+  bool waits(NodeIndex i) const {
+    return follows_q_[i] && can_wait_[i] && !is_leaf(graph_.nodes[i].op) && (lag_[i] <= 0 || section_[i] == AtPoint);
+  }
+
+  /// Calls f for what a node reads ahead of its own order, or at order 0 before the first accelerations are solved for:
+  /// the coefficients of these.
+  template <class F>
+  void for_needed_early(NodeIndex i, F&& f) const {
+    const Node& node = graph_.nodes[i];
+    const bool is_at_stage = lag_[i] == 2 || waits(i);
+    for_operands(node, [&](NodeIndex operand, int shift) {
+      if (!is_at_stage || shift > 0) f(operand);
+    });
+    const auto accelerates = [&](NodeIndex n) { return n != no_node && follows_q_[n] && lag_[n] == 2; };
+    for (const Term& term : node.terms) {
+      if (node.op == Op::Function && !is_at_stage) f(term.a);
+      if (accelerates(term.a)) f(term.b);
+      if (term.b != no_node && accelerates(term.b)) f(term.a);
+    }
+    if (accelerates(node.a)) f(node.b);
+    if (accelerates(node.b)) f(node.a);
+    if (node.op == Op::Companion && !waits(i)) f(node.a);
+    if ((node.op == Op::SinCos || node.op == Op::SinhCosh) && !waits(i)) f(companion(i));
   }
 
   int lag_of(std::size_t index, int lowest) const {
@@ -248,7 +314,7 @@ class Scheduler {
   const Outputs& outputs_;
   Program& program_;
   std::vector<std::uint8_t> section_;
-  std::vector<bool> moved_, stored_;
+  std::vector<bool> follows_q_, can_wait_, moved_, stored_;
   std::vector<int> lag_, level_;
   std::vector<NodeIndex> order_;
   std::vector<Slot> slot_;

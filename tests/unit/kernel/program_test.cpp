@@ -1,3 +1,5 @@
+#include "kernel/program/program.hpp"
+
 #include <doctest/doctest.h>
 #include <maupertuis/kernel.hpp>
 #include <maupertuis/transform.hpp>
@@ -138,4 +140,39 @@ TEST_CASE("a symbol that nobody listed, and a residual that is not linear in the
   CHECK_THROWS_AS(build_kernel(source), std::logic_error);
   source.residual = {context.time_derivative(a)};
   CHECK_THROWS_AS(build_kernel(source), std::logic_error);
+}
+
+TEST_CASE("forces of q alone are found when q is known: they have no tangents, and nothing of them is corrected") {
+  Context context;
+  KernelSource source;
+  Expr potential = context.number(0), kinetic = potential;
+  for (int i = 0; i < 6; ++i) {
+    const Expr q = context.symbol("q" + std::to_string(i), Role::Coordinate);
+    source.coordinates.push_back(q);
+    kinetic = kinetic + pow(context.time_derivative(q), 2) * Rational(i + 1, 2);
+  }
+  const auto& q = source.coordinates;
+  for (int i = 0; i < 6; i += 2)
+    for (int j = 0; j < i; j += 2)
+      potential = potential - pow(pow(q[i] - q[j], 2) + pow(q[i + 1] - q[j + 1], 2), Rational(-1, 2));
+  source.residual = variational_residual(kinetic - potential, q);
+  source.observables = {kinetic + potential};
+  const Kernel three_bodies = build_kernel(source);
+  const Program& program = three_bodies.program();
+  CHECK(program.stored_end[2] == program.unknowns);
+  for (const Run& run : program.runs[Dynamics])
+    for (std::uint32_t i = run.first; i < run.last; ++i) {
+      const Instruction& x = program.instructions[i];
+      CHECK(x.lag == 2);
+      if (x.op == Op::Power) CHECK(program.tangent_lags[x.out] == Program::unmoved);
+    }
+  // What is watched has all its orders as early as before, and what moves with accelerations is at hand before them.
+  source.events = {pow(q[0] - q[2], 2) + pow(q[1] - q[3], 2)};
+  const Kernel watched = build_kernel(source);
+  CHECK(watched.program().lags[watched.program().events[0]] == 0);
+  source.events.clear();
+  source.residual[0] = source.residual[0] + sin(q[0]) * context.time_derivative(context.time_derivative(q[1]));
+  const Kernel coupled = build_kernel(source);
+  for (const Instruction& x : coupled.program().instructions)
+    if (x.op == Op::SinCos) CHECK(x.lag == 0);
 }
