@@ -718,7 +718,7 @@ export const cases = {
   async 'colours are those of reports'() {
     const html = readFileSync(join(root, 'src/report/html.cpp'), 'utf8'),
       style = readFileSync(join(root, 'src/plot/style.cpp'), 'utf8');
-    const own = readFileSync(join(root, 'studio/src/colours.css'), 'utf8').replaceAll(' ', '');
+    const own = readFileSync(join(root, 'studio/src/style/colours.css'), 'utf8').replaceAll(' ', '');
     const themes = html
       .match(/color-scheme:(?:dark|light);[^"]*"\s*(?:"[^"]*"\s*)*/g)
       .map(part => part.replace(/"\s*"?/g, ''));
