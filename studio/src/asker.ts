@@ -76,7 +76,7 @@ export class Asker {
     const answer = await this.carrier.request(job.request, job.onMessage, job.abort.signal);
     this.current = null;
     if (this.queue.length === 0) for (const tell of this.listeners) tell(null);
-    job.resolve(answer as never);
+    job.resolve((job.abort.signal.aborted ? cancelled() : answer) as never);
     void this.next();
   }
 }

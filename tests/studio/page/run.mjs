@@ -3,6 +3,7 @@
 //   node run.mjs static FOLDER [CASE…]         from a static folder with the core as WebAssembly
 // STUDIO_PICTURES names a folder for screenshots.
 import {resolve} from 'node:path';
+import {carriers} from './carriers.mjs';
 import {cases} from './cases.mjs';
 import {check, checks, failures, openBrowser, pictures, serverVariant, staticVariant} from './harness.mjs';
 
@@ -15,7 +16,7 @@ const wanted = words.slice(kind === 'server' ? 2 : 1),
   picture = pictures(process.env.STUDIO_PICTURES);
 const browser = await openBrowser(variant);
 try {
-  for (const [name, run] of Object.entries(cases)) {
+  for (const [name, run] of Object.entries({...cases, ...carriers})) {
     if (wanted.length > 0 && !wanted.includes(name)) continue;
     const begin = Date.now(),
       before = failures;
