@@ -12,6 +12,7 @@ import {showMessages} from './panels/messages';
 import {MotionPanel} from './panels/motion';
 import {ValuesPanel} from './panels/values';
 import {PlotsPanel} from './plots/panel';
+import {paintMaps} from './plots/maps';
 import {initialState, type Pane, type State} from './state';
 import {Store} from './store';
 import {Study} from './study';
@@ -57,6 +58,7 @@ themes(storage, () => {
   for (const one of stages) one.recolour();
   plots.recolour();
 });
+  paintMaps(document);
 
 // ----------------------------------------------------------------------------------------------------------- the bar
 

@@ -1,6 +1,7 @@
 import type {Check, Conserved, Happening, ModesAnswer, Section, Trouble} from '../contract';
 import {byId, h, prose} from '../dom';
 import {loopDrawing} from '../drawing/loop';
+import {paintMaps} from '../plots/maps';
 import type {State} from '../state';
 import type {Store} from '../store';
 import {noDuration, type Study} from '../study';
@@ -288,7 +289,11 @@ export class EquationsPanel {
   }
 
   private shape({caption, drawing, svg}: ModesAnswer['points'][number]['shapes'][number]): HTMLElement {
-    if (!drawing) return h('figure', {}, h('div', {html: svg}), h('figcaption', {}, ...prose(caption)));
+    if (!drawing) {
+      const figure = h('figure', {}, h('div', {html: svg}), h('figcaption', {}, ...prose(caption)));
+      paintMaps(figure);
+      return figure;
+    }
     const {element, stop} = loopDrawing(drawing, caption);
     this.loops.push(stop);
     return element;

@@ -21,6 +21,14 @@ export interface ChartContent {
 const room = {left: 62, right: 14, top: 12, bottom: 40};
 const faces = `'STIX Two Text','Latin Modern Roman','Latin Modern Math',Cambria,'Times New Roman','DejaVu Serif',serif`;
 
+const reader = document.createElement('canvas').getContext('2d')!;
+
+/** Red, green and blue of any colour of a style sheet, 0 to 255: a canvas says it as #rrggbb. */
+export function channels(colour: string): number[] {
+  reader.fillStyle = colour;
+  return [1, 3, 5].map(i => parseInt(String(reader.fillStyle).slice(i, i + 2), 16));
+}
+
 /** Places of ticks with 1, 2 or 5 times a power of ten between them. */
 export function ticks(low: number, high: number, most: number): number[] {
   const raw = (high - low) / Math.max(1, most),

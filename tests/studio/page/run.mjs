@@ -6,6 +6,7 @@ import {resolve} from 'node:path';
 import {carriers} from './carriers.mjs';
 import {cases} from './cases.mjs';
 import {check, checks, failures, openBrowser, pictures, serverVariant, staticVariant} from './harness.mjs';
+import {kinds} from './kinds.mjs';
 
 const [kind, ...words] = process.argv.slice(2);
 const variant =
@@ -16,7 +17,7 @@ const wanted = words.slice(kind === 'server' ? 2 : 1),
   picture = pictures(process.env.STUDIO_PICTURES);
 const browser = await openBrowser(variant);
 try {
-  for (const [name, run] of Object.entries({...cases, ...carriers})) {
+  for (const [name, run] of Object.entries({...cases, ...carriers, ...kinds})) {
     if (wanted.length > 0 && !wanted.includes(name)) continue;
     const begin = Date.now(),
       before = failures;
