@@ -15,9 +15,9 @@ interface Job {
 const ranks: Record<string, number> = {open: 0, pose: 1, run: 3, equations: 2, complete: 1, hover: 2, signature: 2};
 
 /**
- * One question at a time goes to the session, as it answers one at a time. Of one kind only the newest waits; one on
- * its way
- * is cancelled by a newer one of its kind after the carrier's grace, and by a new text.
+ * One question at a time goes to the session, as it answers one at a time. Of one kind only the newest waits. One on its
+ * way ends, after the carrier's grace, where a newer one of its kind is asked, where another text is opened, and where
+ * the values change that it is about. What was cancelled gives no answer, not even one that was on its way already.
  */
 export class Asker {
   private queue: Job[] = [];
@@ -43,6 +43,12 @@ export class Asker {
       this.queue.push({kind, request, rank, onMessage, resolve, abort: new AbortController(), begun: 0});
       this.next();
     });
+  }
+
+  /** The values changed: what is asked about the former ones ends, however long it would go on. */
+  outdate(): void {
+    for (const job of this.queue.filter(aboutValues)) this.drop(job);
+    if (this.current && aboutValues(this.current)) this.cancelSoon(this.current);
   }
 
   /** Nobody waits for these any more. */
@@ -83,3 +89,7 @@ export class Asker {
 
 const dependsOnText = (job: Job): boolean =>
   job.request.do !== 'hello' && job.request.do !== 'explain' && job.request.do !== 'open';
+
+/** Equations are those of the text: they come to their end. A file that is exported is that of the values when it was asked for. */
+const aboutValues = (job: Job): boolean =>
+  ['run', 'modes', 'phase_space', 'conserved', 'section', 'expectations'].includes(job.request.do);

@@ -4,15 +4,15 @@ import {loopDrawing} from '../drawing/loop';
 import {paintMaps} from '../plots/maps';
 import type {State} from '../state';
 import type {Store} from '../store';
-import {noDuration, type Study} from '../study';
+import {noDuration, unfinished, type Study} from '../study';
 import {numbers, pretty} from './words';
 import {copyButton, lineElement, sectionsElements} from './formulas';
 
 /** The words of the page for what went wrong: what, why, what helps. */
-export function troubleElement(trouble: Trouble): HTMLElement {
+export function troubleElement(trouble: Trouble, severity = 'error'): HTMLElement {
   return h(
     'div',
-    {class: 'message error'},
+    {class: `message ${severity}`},
     h('p', {class: 'what'}, trouble.message),
     trouble.reason && h('p', {}, ...prose(trouble.reason)),
     trouble.help && h('p', {class: 'help'}, ...prose(trouble.help)),
@@ -20,6 +20,19 @@ export function troubleElement(trouble: Trouble): HTMLElement {
 }
 
 const isTrouble = (x: object): x is Trouble => 'message' in x;
+
+const slowly: Trouble = {
+    code: '',
+    message: 'This motion takes longer than a slider waits.',
+    reason: 'What is drawn belongs to the values before.',
+    help: 'Let the values rest: then it is computed in full. A shorter run follows the slider: `Run` among the values.',
+  },
+  outOfTime: Trouble = {
+    code: '',
+    message: 'The motion was not finished within the time of a run.',
+    reason: 'Every question has a time, so that the page stays alive; this is what was computed until then.',
+    help: 'A shorter run is finished: `Run` among the values says how long.',
+  };
 
 /** A panel whose content is asked for when it is opened. */
 function onOpening(id: string, ask: () => void): void {
@@ -44,24 +57,32 @@ export class EquationsPanel {
       this.facts(state);
     });
     store.watch(['equations', 'run', 'found'], state => this.conserved(state));
-    store.watch(['run', 'runTrouble'], state => this.motion(state));
+    store.watch(['run', 'runTrouble', 'slow'], state => this.motion(state));
     store.watch(['modes'], state => this.modes(state));
     store.watch(['phaseSpace'], state => this.phaseSpace(state));
-    store.watch(['readable', 'opened', 'equations'], state => {
-      const stale = state.opened !== null && !state.readable && state.equations !== null;
-      byId('equations').classList.toggle('stale', stale);
-      byId('stale').hidden = !stale;
-    });
+    store.watch(['readable', 'opened', 'equations', 'equationsLate', 'runLate'], state => this.stale(state));
     onOpening('derivation', () => void study.wantSteps());
     onOpening('modes', () => this.asked());
     onOpening('phase-space', () => this.asked());
-    store.watch(['run', 'modes', 'phaseSpace', 'quick'], () => this.asked());
+    store.watch(['answered', 'modes', 'phaseSpace', 'equations'], () => this.asked());
+  }
+
+  /** What is of a former text or of former values looks so, and is told where it is the text. */
+  private stale({readable, opened, equations, equationsLate, runLate}: State): void {
+    const mistake = opened !== null && !readable && equations !== null,
+      place = byId('stale');
+    byId('equations').classList.toggle('stale', mistake || equationsLate);
+    for (const part of ['conserved', 'run-facts']) byId(part).classList.toggle('stale', runLate);
+    place.hidden = !(mistake || equationsLate);
+    place.textContent = mistake
+      ? 'The text has a mistake. What stands here and in the drawing belongs to the last text without one.'
+      : 'What stands here belongs to the text before.';
   }
 
   /** What stands open and is not there is asked for, when the values rest. */
   private asked(): void {
-    const {run, quick, modes, phaseSpace, equations} = this.store.state;
-    if (!equations || quick || (run === null && this.store.state.runTrouble === null)) return;
+    const {answered, modes, phaseSpace, equations} = this.store.state;
+    if (!equations || !answered) return;
     if (isOpen('modes') && modes === null) void this.study.askModes();
     if (isOpen('phase-space') && phaseSpace === null) void this.study.askPhaseSpace();
   }
@@ -187,19 +208,20 @@ export class EquationsPanel {
     );
   }
 
-  private motion({run, runTrouble}: State): void {
+  private motion(state: State): void {
+    const {run, runTrouble, slow} = state;
     const facts = run
       ? h('dl', {}, ...run.statistics.flatMap(([name, value]) => [h('dt', {}, name), h('dd', {}, numbers(value))]))
       : '';
     const ending =
-      run && !run.ending.ok
-        ? h(
-            'div',
-            {class: 'message'},
-            h('p', {class: 'what'}, `The motion ended early: ${run.ending.kind}.`),
-            run.ending.reason && h('p', {}, ...prose(run.ending.reason)),
-          )
-        : '';
+      run && unfinished(run)
+        ? troubleElement(outOfTime, 'warning')
+        : run && !run.ending.ok
+          ? troubleElement(
+              {code: '', message: `The motion ended early: ${run.ending.kind}.`, reason: run.ending.reason, help: ''},
+              '',
+            )
+          : '';
     const lost = run?.uncertain
       ? h(
           'div',
@@ -220,14 +242,19 @@ export class EquationsPanel {
       run?.happenings.length ? happenings(run.happenings, run.first_mode) : '',
     );
     byId('stage-trouble').replaceChildren(
-      runTrouble
-        ? runTrouble.code === noDuration
-          ? this.withoutDuration()
-          : troubleElement(runTrouble)
-        : ending
-          ? ending.cloneNode(true)
-          : '',
+      slow
+        ? troubleElement(slowly, 'warning')
+        : runTrouble
+          ? this.withoutMotion(state) ?? troubleElement(runTrouble)
+          : ending
+            ? ending.cloneNode(true)
+            : '',
     );
+  }
+
+  /** What to do where the model has no motion yet, or none at all. */
+  private withoutMotion(state: State): HTMLElement | null {
+    return state.runTrouble?.code === noDuration ? this.withoutDuration() : null;
   }
 
   private withoutDuration(): HTMLElement {

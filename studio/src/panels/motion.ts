@@ -27,9 +27,9 @@ export class MotionPanel {
   ) {
     this.transport();
     clock.onTick(() => this.tick());
-    store.watch(['run', 'runTrouble', 'opened', 'readable'], state => this.shown(state));
+    store.watch(['run', 'runTrouble', 'opened', 'readable', 'runLate'], state => this.shown(state));
     store.watch(['pins'], state => this.pins(state));
-    store.watch(['section', 'sectionTrouble', 'busy'], state => this.section(state));
+    store.watch(['section', 'sectionTrouble', 'sectionGone', 'busy'], state => this.section(state));
     store.watch(['equations'], () => this.sectionPlace());
     this.sectionForm();
   }
@@ -96,7 +96,7 @@ export class MotionPanel {
     );
   }
 
-  private shown({run, runTrouble, opened, readable}: State): void {
+  private shown({run, runTrouble, opened, readable, runLate}: State): void {
     const drawing = run?.drawing,
       none = byId('no-drawing');
     byId('drawing').hidden = !drawing;
@@ -110,7 +110,7 @@ export class MotionPanel {
           ? ''
           : 'No motion yet.';
     none.hidden = none.textContent === '';
-    byId('motion').classList.toggle('stale', opened !== null && !readable);
+    byId('motion').classList.toggle('stale', runLate || (opened !== null && !readable));
     byId('transport').hidden = !run;
     byId('trail-label').hidden = !drawing;
     byId('forces-label').hidden = !drawing?.elements.some(e => e.kind === 'arrow');
@@ -178,13 +178,15 @@ export class MotionPanel {
     byId('section-stop').addEventListener('click', () => this.study.asker.cancel('section'));
   }
 
-  private section({section, sectionTrouble, busy}: State): void {
+  private section({section, sectionTrouble, sectionGone, busy}: State): void {
     byId('section-stop').hidden = busy !== 'section';
     const facts = section
       ? `${section.crossings} crossings${section.ended ? `; ${section.ended}` : ''}`
       : busy === 'section'
         ? 'It runs …'
-        : '';
+        : sectionGone
+          ? 'The section belonged to other values. Draw it anew.'
+          : '';
     byId('section-body').replaceChildren(
       sectionTrouble ? troubleElement(sectionTrouble) : '',
       section ? h('div', {class: 'picture', html: section.svg}) : '',

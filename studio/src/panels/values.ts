@@ -95,7 +95,7 @@ export class ValuesPanel {
     private readonly store: Store<State>,
     private readonly study: Study,
   ) {
-    store.watch(['equations', 'run', 'set', 'start', 'quick'], () => this.refresh());
+    store.watch(['equations', 'run', 'runTrouble', 'answered', 'set', 'start'], () => this.refresh());
   }
 
   private refresh(): void {
@@ -117,6 +117,7 @@ export class ValuesPanel {
     if (shape !== this.shape) this.build(parameters, equations.coordinates, shape);
     for (const p of parameters) this.showParameter(p);
     for (const c of equations.coordinates) this.showStart(c);
+    byId('start-group').hidden = equations.coordinates.length === 0;
     const changed = Object.keys(this.store.state.set).length + Object.keys(this.store.state.start).length;
     for (const id of ['reset-values', 'apply-values']) byId<HTMLButtonElement>(id).disabled = changed === 0;
   }
@@ -127,7 +128,6 @@ export class ValuesPanel {
     this.parameters.replaceChildren(...parameters.map(p => this.parameterRow(p)));
     this.starts.replaceChildren(...coordinates.flatMap(c => [this.startRow(c, 0), this.startRow(c, 1)]));
     byId('no-parameters').hidden = parameters.length > 0;
-    byId('start-group').hidden = coordinates.length === 0;
   }
 
   private parameterRow(p: Parameter): HTMLElement {
@@ -168,11 +168,11 @@ export class ValuesPanel {
   }
 
   private showStart(c: Coordinate): void {
-    const {run, start, quick} = this.store.state;
+    const {run, runTrouble, answered, start} = this.store.state;
     for (const order of [0, 1]) {
       const name = order ? c.name + "'" : c.name,
         override = start[name],
-        met = run && !quick ? run.start[name] : undefined;
+        met = run && !runTrouble ? run.start[name] : undefined;
       const si = met ?? (order ? c.v : c.q),
         factor = inDegrees(c) && order === 0 ? degrees : 1;
       const own =
@@ -181,7 +181,9 @@ export class ValuesPanel {
           : override !== undefined
             ? Number.parseFloat(override) * factor
             : null;
-      this.rows.get(name)?.show(quick && own !== null ? own : si === null ? own : si * factor, override !== undefined);
+      // What the run met, where constraints moved it, is that of the values when it has come.
+      const asked = own !== null && (!answered || runTrouble !== null || si === null);
+      this.rows.get(name)?.show(asked ? own : si === null ? null : si * factor, override !== undefined);
     }
   }
 }

@@ -1,5 +1,6 @@
 import type {Answer, ExportAnswer} from '../contract';
 import {download, h} from '../dom';
+import {fileOf} from '../lines';
 import type {State} from '../state';
 import type {Store} from '../store';
 import type {Study} from '../study';
@@ -66,7 +67,7 @@ export function exportDialog(store: Store<State>, study: Study): void {
         type: 'button',
         onclick: () => {
           box.close();
-          download(`${store.state.name}.lag`, 'text/plain', store.state.text);
+          download(`${store.state.name}.lag`, 'text/plain', fileOf(store.state));
         },
       },
       'Model text',

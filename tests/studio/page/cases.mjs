@@ -476,6 +476,8 @@ export const cases = {
     await page.waitForFunction(() => document.querySelector('#stage-trouble .message') !== null, null, {
       timeout: 60_000,
     });
+    const told = await page.locator('#stage-trouble').innerText();
+    check('why it ends, and what helps', /not finished|not come within/.test(told) && /shorter|less/.test(told), told);
     await page.locator('#duration').fill('');
     await page.keyboard.press('Enter');
     await page.waitForFunction(() => document.querySelector('#stage-trouble .message') === null, null, {
