@@ -21,7 +21,15 @@ import type {Ends} from './lines';
 import type {Store} from './store';
 import type {State} from './state';
 
-export const noDuration = 'E0701';
+export const noDuration = 'E0701',
+  heldIntegral = 'E0244';
+
+/** The model is about paths between two ends (`path from …`), and has no motion from a start. */
+export const betweenEnds = ({text, runTrouble}: State): boolean =>
+  runTrouble?.code === heldIntegral || (runTrouble?.code === noDuration && /^path\b/m.test(text));
+/** The equations are those of motions in time: no other variable is declared in its place. Without it there are no modes. */
+export const inTime = ({text}: State): boolean => !/^independent\b(?!\s+t\b)/m.test(text);
+
 const longest = 1_000_000; // characters of a model: as much as a session takes
 const restAfter = 220, // ms without a move of a slider
   lateAfter = 500, // ms that an older answer may stand in the place of the one that is asked for
@@ -291,7 +299,7 @@ export class Study {
   private showRunTrouble(failure: Failure, how: typeof full): void {
     if (this.dropForeignValues(failure)) return;
     const {trouble, diagnostics} = failure,
-      noMotion = trouble.code === noDuration,
+      noMotion = trouble.code === noDuration || trouble.code === heldIntegral,
       run = noMotion ? null : this.store.state.run;
     this.store.update({
       run,

@@ -4,7 +4,7 @@ import {loopDrawing} from '../drawing/loop';
 import {paintMaps} from '../plots/maps';
 import type {State} from '../state';
 import type {Store} from '../store';
-import {noDuration, unfinished, type Study} from '../study';
+import {betweenEnds, inTime, noDuration, unfinished, type Study} from '../study';
 import {numbers, pretty} from './words';
 import {copyButton, lineElement, sectionsElements} from './formulas';
 
@@ -61,6 +61,9 @@ export class EquationsPanel {
     store.watch(['modes'], state => this.modes(state));
     store.watch(['phaseSpace'], state => this.phaseSpace(state));
     store.watch(['readable', 'opened', 'equations', 'equationsLate', 'runLate'], state => this.stale(state));
+    store.watch(['equations'], state => {
+      byId('modes').hidden = !inTime(state);
+    });
     onOpening('derivation', () => void study.wantSteps());
     onOpening('modes', () => this.asked());
     onOpening('phase-space', () => this.asked());
@@ -234,6 +237,7 @@ export class EquationsPanel {
           ),
         )
       : '';
+    byId('run-facts').hidden = betweenEnds(state);
     byId('motion-body').replaceChildren(
       runTrouble ? troubleElement(runTrouble) : '',
       ending,
@@ -254,7 +258,31 @@ export class EquationsPanel {
 
   /** What to do where the model has no motion yet, or none at all. */
   private withoutMotion(state: State): HTMLElement | null {
+    if (betweenEnds(state)) return this.withPaths(state);
     return state.runTrouble?.code === noDuration ? this.withoutDuration() : null;
+  }
+
+  private withPaths(state: State): HTMLElement {
+    const carryOut = (): void => {
+      this.store.update({pane: 'equations'});
+      byId<HTMLDetailsElement>('expectations').open = true;
+      byId('expectations').scrollIntoView({block: 'nearest'});
+    };
+    return h(
+      'div',
+      {class: 'message'},
+      h('p', {class: 'what'}, 'This model is about paths between two ends: it has no motion from a start.'),
+      h(
+        'p',
+        {},
+        ...prose(
+          `\`maup action ${state.name}.lag\` finds the paths, \`maup report ${state.name}.lag\` draws them. Here its ` +
+            '`expect` lines are carried out, which ask for the action, the index and places of a path. ',
+        ),
+        h('button', {type: 'button', onclick: carryOut}, 'Carry them out'),
+      ),
+      inTime(state) && h('p', {}, ...prose('With lines `start` and `run` it has a motion beside its paths.')),
+    );
   }
 
   private withoutDuration(): HTMLElement {

@@ -4,7 +4,7 @@ import {numbers, raised} from './words';
 import type {Stage} from '../drawing/stage';
 import type {State} from '../state';
 import type {Store} from '../store';
-import type {Study} from '../study';
+import {betweenEnds, inTime, type Study} from '../study';
 import {troubleElement} from './equations';
 
 function speedText(speed: number): string {
@@ -30,7 +30,7 @@ export class MotionPanel {
     store.watch(['run', 'runTrouble', 'opened', 'readable', 'runLate'], state => this.shown(state));
     store.watch(['pins'], state => this.pins(state));
     store.watch(['section', 'sectionTrouble', 'sectionGone', 'busy'], state => this.section(state));
-    store.watch(['equations'], () => this.sectionPlace());
+    store.watch(['equations', 'runTrouble'], () => this.sectionPlace());
     this.sectionForm();
   }
 
@@ -163,7 +163,8 @@ export class MotionPanel {
   private sectionPlace(): void {
     const field = byId<HTMLInputElement>('section-at'),
       first = this.store.state.equations?.coordinates[0]?.name;
-    byId('section').hidden = !first || (this.store.state.opened?.fields ?? false);
+    const {state} = this.store;
+    byId('section').hidden = !first || betweenEnds(state) || !inTime(state) || (state.opened?.fields ?? false);
     const known = this.store.state.equations?.coordinates.some(c => field.value.includes(c.name)) ?? false;
     if (first && !known) field.value = `${first} = 0`;
   }

@@ -2,7 +2,7 @@ import type {Coordinate, Formula, Parameter} from '../contract';
 import {byId, h} from '../dom';
 import type {State} from '../state';
 import type {Store} from '../store';
-import type {Study} from '../study';
+import {betweenEnds, inTime, type Study} from '../study';
 import {unitText} from './words';
 import {rangeOfParameter, rangeOfStart, shown, widened, type Range} from './range';
 
@@ -117,7 +117,9 @@ export class ValuesPanel {
     if (shape !== this.shape) this.build(parameters, equations.coordinates, shape);
     for (const p of parameters) this.showParameter(p);
     for (const c of equations.coordinates) this.showStart(c);
-    byId('start-group').hidden = equations.coordinates.length === 0;
+    const still = betweenEnds(this.store.state);
+    byId('start-group').hidden = equations.coordinates.length === 0 || still;
+    byId('run-group').hidden = still && !inTime(this.store.state);
     const changed = Object.keys(this.store.state.set).length + Object.keys(this.store.state.start).length;
     for (const id of ['reset-values', 'apply-values']) byId<HTMLButtonElement>(id).disabled = changed === 0;
   }

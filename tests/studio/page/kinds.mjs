@@ -1,5 +1,6 @@
 // Models of other kinds than a system that moves from its start: each a case as in cases.mjs.
 import {check} from './harness.mjs';
+import {toExample} from './steps.mjs';
 
 /** The colour of the middle of the bar beside a map, and the lightness of a corner of the map in motion, 0 to 255. */
 const nothing = page =>
@@ -39,6 +40,35 @@ export const kinds = {
       .first()
       .evaluate(bar => bar.children[12].getAttribute('fill'));
     check('maps of modes too', parseInt(fill.slice(1, 3), 16) < 60, fill);
+    await page.context().close();
+  },
+
+  async 'paths have no motion'({open}, variant, picture) {
+    const page = await open(),
+      stage = page.locator('#stage-trouble');
+    for (const [name, inTime] of [
+      ['brachistochrone', false],
+      ['hanging_chain', false],
+      ['oscillator_path', true],
+    ]) {
+      await toExample(page, name);
+      check(`${name}: it is said`, /paths between two ends/.test(await stage.innerText()), await stage.innerText());
+      check(`${name}: what finds them is said`, (await stage.innerText()).includes(`maup action ${name}.lag`));
+      check(`${name}: no run is offered`, (await stage.locator('button', {hasText: 'Run'}).count()) === 0);
+      for (const id of ['start-group', 'section', 'transport', 'run-facts', ...(inTime ? [] : ['modes', 'run-group'])])
+        check(`${name}: no #${id}`, await page.locator(`#${id}`).isHidden());
+      await page.locator('#export-button').click();
+      const offered = await page.locator('dialog li small').allInnerTexts();
+      check(`${name}: files of a motion are not offered`, offered.join() === '.lag,LaTeX', offered);
+      await page.keyboard.press('Escape');
+    }
+    await picture(page, 'path');
+    await stage.locator('button').click();
+    await page.waitForSelector('#expectations-body .checks li');
+    check('its expectations hold', (await page.locator('#expectations-body .bad').count()) === 0);
+    await toExample(page, 'pendulum');
+    for (const id of ['start-group', 'section', 'transport', 'modes', 'run-group'])
+      check(`a pendulum has #${id}`, await page.locator(`#${id}`).isVisible());
     await page.context().close();
   },
 };
