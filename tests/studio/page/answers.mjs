@@ -8,6 +8,8 @@ const unfold = (page, ...parts) =>
   page.evaluate(ids => {
     for (const id of ids) document.getElementById(id).open = true;
   }, parts);
+const opacity = (page, place) => page.locator(place).evaluate(one => getComputedStyle(one).opacity);
+
 /** Waits until the page ends this request; false where it does not. */
 const ended = (page, kind) =>
   page
@@ -84,7 +86,8 @@ export const answers = {
     let held = await hold(page, full);
     await setSlider(page, 'l1', 1.5);
     await page.waitForSelector('#motion.stale');
-    check('conserved quantities of former values look so', await page.locator('#conserved.stale').isVisible());
+    for (const part of ['#drawing', '#plots', '#conserved-body'])
+      check(`${part} of former values is pale`, (await opacity(page, part)) === '0.5', await opacity(page, part));
     await page.locator('#pin-button').click();
     await shows(page, ['#word', 'not there yet']);
     check('a run of former values is not pinned', (await page.locator('#pins li').count()) === 0);
