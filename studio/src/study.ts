@@ -98,12 +98,10 @@ export class Study {
     if (this.late || (this.runOf === this.changes && this.equationsOf === this.texts)) return;
     this.late = window.setTimeout(() => {
       this.late = 0;
-      const {run, equations} = this.store.state,
-        runLate = run !== null && this.runOf !== this.changes;
+      const {run, equations} = this.store.state;
       this.store.update({
-        runLate,
+        runLate: run !== null && this.runOf !== this.changes,
         equationsLate: equations !== null && this.equationsOf !== this.texts,
-        ...(runLate && this.resting ? {slow: true} : {}),
       });
     }, lateAfter);
   }
@@ -261,6 +259,7 @@ export class Study {
     const answer = await this.asker.ask<RunAnswer>(
       {do: 'run', ...how, ...this.values},
       {
+        quick: how === quick,
         onMessage: message => {
           if (how === full && message.progress !== undefined && !outdated())
             this.store.update({progress: message.progress});

@@ -46,6 +46,8 @@ const isOpen = (id: string): boolean => byId<HTMLDetailsElement>(id).open;
 export class EquationsPanel {
   private readonly say = (text: string): void => this.study.say(text);
   private loops: (() => void)[] = [];
+  private conservedKey = '';
+  private conservedNumbers: HTMLElement[] = [];
 
   constructor(
     private readonly store: Store<State>,
@@ -172,29 +174,36 @@ export class EquationsPanel {
     body.replaceChildren(summary, ...(equations.certificate.length ? [checks(equations.certificate)] : []));
   }
 
-  private conserved({equations, run, found}: State): void {
+  private conserved(state: State): void {
+    const {equations, run, found} = state;
     const list: Conserved[] = Array.isArray(found)
       ? found
       : run?.conserved.length
         ? run.conserved
         : (equations?.conserved ?? []);
-    const drifts = new Map(run?.conserved.map(c => [c.sentence, c]));
-    const rows = list.map(c => {
-      const measured = drifts.get(c.sentence) ?? c;
-      return h(
+    const measured = new Map(run?.conserved.map(c => [c.sentence, c])),
+      numbersOf = (c: Conserved): string[] => {
+        const {value, drift} = measured.get(c.sentence) ?? c;
+        return [value, drift];
+      };
+    // While values move the formulas stay, which may be long, and the numbers change.
+    const key = JSON.stringify([equations !== null, found, list.map(c => [c.sentence, c.formula.mathml])]);
+    if (key !== this.conservedKey) this.buildConserved(list, state);
+    this.conservedKey = key;
+    list.forEach((c, i) => this.conservedNumbers[i].replaceChildren(...driftElements(numbersOf(c))));
+  }
+
+  private buildConserved(list: Conserved[], {equations, found}: State): void {
+    this.conservedNumbers = list.map(() => h('p', {class: 'drift'}));
+    const rows = list.map((c, i) =>
+      h(
         'div',
         {class: 'conserved'},
         c.sentence && h('p', {class: 'sentence'}, ...prose(c.sentence)),
         lineElement({...c.formula, sentence: ''}),
-        (measured.value || measured.drift) &&
-          h(
-            'p',
-            {class: 'drift'},
-            measured.value && h('span', {}, 'value ', h('b', {}, numbers(measured.value))),
-            measured.drift && h('span', {}, 'drift ', h('b', {}, numbers(measured.drift))),
-          ),
-      );
-    });
+        this.conservedNumbers[i],
+      ),
+    );
     const search = h(
       'button',
       {type: 'button', class: 'quiet', onclick: () => void this.study.askConserved()},
@@ -363,6 +372,12 @@ export class EquationsPanel {
     body.querySelector('details')?.setAttribute('open', '');
   }
 }
+
+const driftElements = ([value, drift]: string[]): HTMLElement[] =>
+  [
+    ['value ', value],
+    ['drift ', drift],
+  ].flatMap(([name, text]) => (text ? [h('span', {}, name, h('b', {}, numbers(text)))] : []));
 
 function checks(list: Check[]): HTMLElement {
   return h(

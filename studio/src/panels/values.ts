@@ -48,6 +48,7 @@ function makeRow(
     h('span', {class: 'unit'}, unitText(unit)),
     reset,
   );
+  let placed: number | null = null; // where the slider was put last
   const row: Row = {
     element,
     slider,
@@ -61,14 +62,22 @@ function makeRow(
         field.value = '';
         return;
       }
-      row.range = widened(row.range, value);
-      [slider.min, slider.max, slider.step] = [String(row.range.low), String(row.range.high), String(row.range.step)];
-      if (document.activeElement !== field) field.value = shown(value);
-      if (document.activeElement !== slider || Math.abs(Number(slider.value) - value) > row.range.step)
+      const range = widened(row.range, value);
+      if (range !== row.range) {
+        row.range = range;
+        [slider.min, slider.max, slider.step] = [String(range.low), String(range.high), String(range.step)];
+      }
+      // Only what changes is written: a row costs layout, and there may be many.
+      if (document.activeElement !== field && field.value !== shown(value)) field.value = shown(value);
+      if (value === placed) return;
+      if (document.activeElement !== slider || Math.abs(Number(slider.value) - value) > row.range.step) {
         slider.value = String(value);
+        placed = value;
+      }
     },
   };
   slider.addEventListener('input', () => {
+    placed = null;
     field.value = shown(Number(slider.value));
     change(Number(slider.value), false);
   });

@@ -87,6 +87,7 @@ export class Chart {
   private readonly passed = document.createElement('canvas');
   private passedTo = 0; // row up to which `passed` is drawn
   private seen = true;
+  private unpainted = false; // what stays was not drawn, as nobody saw it
   private content: ChartContent = {curves: [], x: '', y: '', overTime: true};
   private range = {x: [0, 1] as [number, number], y: [0, 1] as [number, number]};
   private width = 0;
@@ -100,7 +101,8 @@ export class Chart {
     new ResizeObserver(() => this.fit()).observe(canvas);
     new IntersectionObserver(entries => {
       this.seen = entries.at(-1)!.isIntersecting;
-      if (this.seen) this.present(...this.lastPresent);
+      if (this.seen && this.unpainted) this.paintStill();
+      else if (this.seen) this.present(...this.lastPresent);
     }).observe(canvas);
     const seek = (event: PointerEvent): void => {
       if (!this.onSeek || !this.content.overTime || !(event.buttons & 1)) return;
@@ -151,7 +153,8 @@ export class Chart {
   private lastPresent: [number, number] = [0, 0];
 
   paintStill(): void {
-    if (this.width === 0) return;
+    this.unpainted = !this.seen;
+    if (this.width === 0 || !this.seen) return;
     const context = this.begin(this.still),
       colour = this.colours();
     this.paintAxes(context, colour);

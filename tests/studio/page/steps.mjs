@@ -53,6 +53,14 @@ export async function hold(page, wanted) {
   };
 }
 
+/** Requests of this kind come so many ms later. */
+export const delay = (page, wanted, ms) =>
+  page.route('**/api/request*', async route => {
+    if (!wanted(route.request().postDataJSON())) return route.fallback();
+    await new Promise(go => setTimeout(go, ms));
+    await route.continue().catch(() => {}); // the page may have ended it
+  });
+
 /** Requests of this kind get this answer. */
 export const answer = (page, wanted, content) =>
   page.route('**/api/request*', route =>
