@@ -20,6 +20,21 @@ const reportScripts = {
   },
 };
 
+// `@dark { … }` are the colours of dark paper: where the system has it and the user did not choose, or where the user chose
+// it.
+const dark = {
+  postcssPlugin: 'dark',
+  AtRule: {
+    dark(rule, {postcss}) {
+      const inside = rule.nodes.map(node => `${node};`).join('');
+      const both =
+        `@media screen and (prefers-color-scheme: dark) {:root:not([data-theme='light']) {${inside}}}` +
+        `@media screen {:root[data-theme='dark'] {${inside}}}`;
+      rule.replaceWith(postcss.parse(both, {from: rule.source.input.file}));
+    },
+  },
+};
+
 // `virtual:models`: [folder, name, text] of every model that the page offers.
 const folders = {
   examples: join(root, 'models'),
@@ -108,6 +123,7 @@ export default defineConfig({
   root: here,
   base: './',
   plugins: [reportScripts, models, classicScript],
+  css: {postcss: {plugins: [dark]}},
   server: {fs: {allow: [root]}},
   build: {
     outDir,

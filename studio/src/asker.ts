@@ -5,19 +5,27 @@ interface Job {
   kind: string;
   request: Request;
   rank: number;
+  quick: boolean;
   onMessage: (message: Message) => void;
   resolve: (answer: never) => void;
   abort: AbortController;
   begun: number;
 }
 
+export interface AskOptions {
+  kind?: string;
+  quick?: boolean; // of values that move
+  onMessage?: (message: Message) => void;
+}
+
 /** Which of several questions goes first. */
 const ranks: Record<string, number> = {open: 0, pose: 1, run: 3, equations: 2, complete: 1, hover: 2, signature: 2};
 
 /**
- * One question at a time goes to the session, as it answers one at a time. Of one kind only the newest waits; one on
- * its way
- * is cancelled by a newer one of its kind after the carrier's grace, and by a new text.
+ * One question at a time goes to the session, as it answers one at a time. Of one kind only the newest waits. One on its
+ * way ends, after the carrier's grace, where a newer one of its kind is asked, where another text is opened, and where
+ * the values change that it is about; but a quick one comes to its end before other quick ones, or none would where
+ * values move faster than it. What was cancelled gives no answer, not even one that was on its way already.
  */
 export class Asker {
   private queue: Job[] = [];
@@ -32,17 +40,24 @@ export class Asker {
 
   ask<T>(
     request: Request,
-    {kind = request.do, onMessage = () => {}}: {kind?: string; onMessage?: (message: Message) => void} = {},
+    {kind = request.do, quick = false, onMessage = () => {}}: AskOptions = {},
   ): Promise<Answer<T>> {
     const opens = request.do === 'open';
     for (const job of this.queue.filter(job => job.kind === kind || (opens && dependsOnText(job)))) this.drop(job);
-    if (this.current && (this.current.kind === kind || (opens && dependsOnText(this.current))))
-      this.cancelSoon(this.current);
+    const {current} = this,
+      replaced = current?.kind === kind && !(quick && current.quick);
+    if (current && (replaced || (opens && dependsOnText(current)))) this.cancelSoon(current);
     return new Promise<Answer<T>>(resolve => {
       const rank = ranks[request.do] ?? 4;
-      this.queue.push({kind, request, rank, onMessage, resolve, abort: new AbortController(), begun: 0});
+      this.queue.push({kind, request, rank, quick, onMessage, resolve, abort: new AbortController(), begun: 0});
       this.next();
     });
+  }
+
+  /** The values changed: what is asked about the former ones ends, however long it would go on. */
+  outdate(): void {
+    for (const job of this.queue.filter(aboutValues)) this.drop(job);
+    if (this.current && aboutValues(this.current) && !this.current.quick) this.cancelSoon(this.current);
   }
 
   /** Nobody waits for these any more. */
@@ -76,10 +91,14 @@ export class Asker {
     const answer = await this.carrier.request(job.request, job.onMessage, job.abort.signal);
     this.current = null;
     if (this.queue.length === 0) for (const tell of this.listeners) tell(null);
-    job.resolve(answer as never);
+    job.resolve((job.abort.signal.aborted ? cancelled() : answer) as never);
     void this.next();
   }
 }
 
 const dependsOnText = (job: Job): boolean =>
   job.request.do !== 'hello' && job.request.do !== 'explain' && job.request.do !== 'open';
+
+/** Equations are those of the text: they come to their end. A file that is exported is that of the values when it was asked for. */
+const aboutValues = (job: Job): boolean =>
+  ['run', 'modes', 'phase_space', 'conserved', 'section', 'expectations'].includes(job.request.do);

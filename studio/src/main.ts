@@ -4,6 +4,7 @@ import {HttpCarrier} from './carriers/http';
 import {embeddedCore, WorkerCarrier} from './carriers/worker';
 import {Clock} from './clock';
 import {byId, copyText, h} from './dom';
+import {linesOf} from './lines';
 import {Stage} from './drawing/stage';
 import {Editor} from './editor/editor';
 import {EquationsPanel} from './panels/equations';
@@ -11,10 +12,11 @@ import {expectationsPanel} from './panels/expectations';
 import {showMessages} from './panels/messages';
 import {MotionPanel} from './panels/motion';
 import {ValuesPanel} from './panels/values';
+import {paintMaps} from './plots/maps';
 import {PlotsPanel} from './plots/panel';
 import {initialState, type Pane, type State} from './state';
 import {Store} from './store';
-import {Study} from './study';
+import {Study, type Model} from './study';
 import {applied} from './tools/apply';
 import {Exercises} from './tools/exercises';
 import {exportDialog} from './tools/exports';
@@ -22,7 +24,7 @@ import {example, FileTools} from './tools/files';
 import {helpDialog, pageKeys} from './tools/keys';
 import {lecture} from './tools/lecture';
 import {decodeShared, encodeShared} from './tools/share';
-import {Storage_} from './tools/storage';
+import {Storage_, type Draft} from './tools/storage';
 import {themes} from './tools/theme';
 
 /**
@@ -52,10 +54,11 @@ new EquationsPanel(store, study);
 new MotionPanel(store, study, clock, stage);
 expectationsPanel(store, study);
 const files = new FileTools(store, study, carrier);
-new Exercises(store, study, storage);
+new Exercises(store, study, storage, files);
 themes(storage, () => {
   for (const one of stages) one.recolour();
   plots.recolour();
+  paintMaps(document);
 });
 
 // ----------------------------------------------------------------------------------------------------------- the bar
@@ -71,17 +74,17 @@ function panes(): void {
   });
 }
 
-/**
- * What the address says that the page holds: an address that is not true any more is taken back, so that a reload
- * keeps the text.
- */
+/** What the address says that the page holds. One that is not true any more is taken back: a reload keeps the text. */
 let linked: string | null = null;
 const asLinked = (): string => JSON.stringify([store.state.text, store.state.set, store.state.start]);
 store.watch(['text', 'set', 'start'], () => {
   if (linked === null || linked === asLinked()) return;
+  forgetAddress();
+});
+function forgetAddress(): void {
   linked = null;
   history.replaceState(null, '', location.href.split('#')[0]);
-});
+}
 
 async function share(): Promise<void> {
   const {text, set, start, name} = store.state,
@@ -171,21 +174,22 @@ function words(): void {
 function keep(): void {
   let timer = 0;
   const write = (): void => {
-    const {text, name, set, start, origin} = store.state;
+    const {text, ends, saved, name, set, start, origin} = store.state;
     if (!text) return;
     const kept = storage.write({
       text,
+      ends,
+      saved,
       name,
       set,
       start,
       path: origin?.path ?? null,
       version: origin?.version ?? '',
-      saved: origin?.saved ?? '',
       at: Date.now(),
     });
     if (kept !== store.state.storage) store.update({storage: kept});
   };
-  store.watch(['text', 'set', 'start', 'origin', 'name'], () => {
+  store.watch(['text', 'saved', 'set', 'start', 'origin', 'name'], () => {
     window.clearTimeout(timer);
     timer = window.setTimeout(write, 400);
   });
@@ -194,49 +198,69 @@ function keep(): void {
 
 /** Another program may write the file while this page is away. */
 async function lookAgain(): Promise<void> {
-  const {origin, text} = store.state;
+  const {origin, text, saved} = store.state;
   if (!origin || !carrier.files) return;
   const file = await carrier.files.read(origin.path);
   if ('message' in file || file.version === origin.version || store.state.origin !== origin) return;
-  if (text !== origin.saved)
+  if (text !== saved)
     return study.say(`${origin.path} was changed elsewhere. When you save, both texts are shown.`, true);
   study.edit(file.text);
-  store.update({origin: {...origin, version: file.version, saved: file.text}});
+  store.update({origin: {...origin, version: file.version}, saved: file.text, ends: file.ends});
   study.say(`${origin.path} was changed elsewhere; this is the new text.`);
 }
 
-async function fromLink(): Promise<boolean> {
+/** The model that the address holds; null where it holds none, or none that can be read. */
+async function inAddress(): Promise<Model | null> {
   const code = /^#m=(.+)$/.exec(location.hash)?.[1],
     name = /^#example=([\w-]+)$/.exec(location.hash)?.[1];
   if (name) {
     const text = example(name);
     if (text === null) study.say(`There is no example ${name}.`, true);
-    else study.load({text, name});
-    linked = asLinked();
-    return text !== null;
+    return text === null ? null : {text, name};
   }
-  if (!code) return false;
+  if (!code) return null;
   const shared = await decodeShared(code);
-  if (shared) study.load({text: shared.text, name: shared.name ?? 'shared', set: shared.set, start: shared.start});
-  linked = asLinked();
   if (!shared) study.say('The link is broken: a part of it is missing or was changed. Ask for it again, whole.', true);
-  return shared !== null;
+  return shared && {...shared, name: shared.name ?? 'shared'};
+}
+
+/** False where the address holds no model, or the user stays with what is changed. */
+async function fromAddress(): Promise<boolean> {
+  const model = await inAddress(),
+    taken = model !== null && (await files.mayLeave());
+  if (taken) study.load(model);
+  else if (model) forgetAddress();
+  if (location.hash) linked = asLinked();
+  return taken;
+}
+
+function fromDraft(draft: Draft): void {
+  const {text, ends} = linesOf(draft.text),
+    saved = draft.path || draft.saved ? linesOf(draft.saved).text : text;
+  study.load({
+    text,
+    ends: draft.ends ?? ends,
+    saved,
+    name: draft.name,
+    set: draft.set,
+    start: draft.start,
+    origin: draft.path && carrier.files ? {path: draft.path, version: draft.version} : null,
+  });
 }
 
 async function begin(): Promise<void> {
-  const [linked, listing] = await Promise.all([fromLink(), carrier.files?.list()]);
-  if (linked) return;
+  await storage.begin();
+  const own = storage.own(),
+    changed = own !== null && own.saved !== '' && own.text !== own.saved;
+  // A link that is opened in this tab asks before it takes the place of what is changed.
+  if (changed && location.hash) fromDraft(own);
+  const [taken, listing] = await Promise.all([fromAddress(), carrier.files?.list()]);
+  if (taken || store.state.loads > 0) return;
   const draft = storage.read(),
     wanted = listing?.open;
   if (wanted && draft?.path !== wanted && (await files.read(wanted))) return;
   if (draft) {
-    study.load({
-      text: draft.text,
-      name: draft.name,
-      set: draft.set,
-      start: draft.start,
-      origin: draft.path && carrier.files ? {path: draft.path, version: draft.version, saved: draft.saved} : null,
-    });
+    fromDraft(draft);
     return void lookAgain();
   }
   if (wanted && (await files.read(wanted))) return;
@@ -247,7 +271,7 @@ panes();
 bar();
 words();
 keep();
-addEventListener('hashchange', () => void fromLink());
+addEventListener('hashchange', () => void fromAddress());
 addEventListener('focus', () => void lookAgain());
 void begin().then(async () => {
   const hello = await asker.ask<{version: string}>({do: 'hello'});

@@ -10,6 +10,7 @@ import type {
   Trouble,
   Conserved,
 } from './contract';
+import type {Ends} from './lines';
 
 /** A run that stays to be compared with. */
 export interface Pin {
@@ -25,16 +26,18 @@ export interface ChartSpec {
 }
 export type Pane = 'model' | 'values' | 'motion' | 'equations';
 
-/** Where the text came from: a file of the opened folder, or nothing but this page. */
+/** The file of the opened folder that the text came from. */
 export interface Origin {
   path: string;
   version: string;
-  saved: string;
 }
 
 export interface State {
   // what is asked
-  text: string;
+  text: string; // its lines end with \n
+  ends: Ends; // of the lines of its file
+  saved: string; // the text as it was loaded, or saved last
+  loads: number; // how many models were loaded: each begins anew
   name: string;
   origin: Origin | null;
   set: Record<string, string>;
@@ -52,12 +55,17 @@ export interface State {
   run: RunAnswer | null;
   runTrouble: Trouble | null;
   quick: boolean; // the run has few frames, a full one comes
+  answered: boolean; // the full run, or why there is none, is that of the text and the values
+  runLate: boolean; // the run is of a former text or former values: its successor takes long, or failed
+  equationsLate: boolean; // so are the equations, of a former text
+  slow: boolean; // a quick run did not come in its time
   deep: Diagnostic[]; // what only a derivation finds
   modes: ModesAnswer | Trouble | null;
   phaseSpace: Section[] | Trouble | null;
   found: Conserved[] | Trouble | null;
   section: SectionAnswer | null;
   sectionTrouble: Trouble | null;
+  sectionGone: boolean; // a section was of former values
   pose: Scene | null; // while a point is dragged
   pins: Pin[];
   // how it is shown
@@ -73,6 +81,9 @@ export interface State {
 
 export const initialState: State = {
   text: '',
+  ends: '\n',
+  saved: '',
+  loads: 0,
   name: 'model',
   origin: null,
   set: {},
@@ -89,12 +100,17 @@ export const initialState: State = {
   run: null,
   runTrouble: null,
   quick: false,
+  answered: false,
+  runLate: false,
+  equationsLate: false,
+  slow: false,
   deep: [],
   modes: null,
   phaseSpace: null,
   found: null,
   section: null,
   sectionTrouble: null,
+  sectionGone: false,
   pose: null,
   pins: [],
   pane: 'motion',

@@ -9,23 +9,38 @@ import type {
   ModesAnswer,
   OpenAnswer,
   PoseAnswer,
+  Request,
   RunAnswer,
   Scene,
   Section,
   SectionAnswer,
+  Trouble,
   Values,
 } from './contract';
+import type {Ends} from './lines';
 import type {Store} from './store';
 import type {State} from './state';
 
-export const noDuration = 'E0701';
-const longest = 1_000_000; // characters of a model: as much as a session takes
-const restAfter = 220,
-  quickFrames = 160,
-  fullFrames = 1500;
+export const noDuration = 'E0701',
+  heldIntegral = 'E0244';
 
+/** The model is about paths between two ends (`path from …`), and has no motion from a start. */
+export const betweenEnds = ({text, runTrouble}: State): boolean =>
+  runTrouble?.code === heldIntegral || (runTrouble?.code === noDuration && /^path\b/m.test(text));
+/** The equations are those of motions in time: no other variable is declared in its place. Without it there are no modes. */
+export const inTime = ({text}: State): boolean => !/^independent\b(?!\s+t\b)/m.test(text);
+
+const longest = 1_000_000; // characters of a model: as much as a session takes
+const restAfter = 220, // ms without a move of a slider
+  lateAfter = 500, // ms that an older answer may stand in the place of the one that is asked for
+  quick = {frames: 160, budget: 1},
+  full = {frames: 1500, budget: 20};
+
+/** `saved`: the text of its file, or as it was before it was changed; without it, `text`. */
 export interface Model {
   text: string;
+  ends?: Ends;
+  saved?: string;
   name: string;
   set?: Record<string, string>;
   start?: Record<string, string>;
@@ -34,8 +49,16 @@ export interface Model {
 
 /** What follows from the text and the values: asks for it when they change, and puts the answers into the state. */
 export class Study {
-  private resting = 0;
-  private grabbed: {values: Values; start: Record<string, string>; moved: boolean} | null = null;
+  // Changes of what is asked for: of the text or the mode, and of these or any value. Answers to what was asked before
+  // are let go.
+  private texts = 0;
+  private changes = 0;
+  private equationsOf = 0; // of `texts`: what the equations that are shown were asked for
+  private runOf = 0; // of `changes`
+  private resting = 0; // a timer, while a slider moves
+  private late = 0; // a timer, while something that is shown is of former values
+  private pending = new Map<string, number>(); // searches on their way, of `changes`
+  private grabbed: {values: Values; start: Record<string, string>; moved: boolean; told: boolean} | null = null;
   private shown = false; // something of this model was shown: the clock goes on where it is
 
   constructor(
@@ -44,8 +67,8 @@ export class Study {
     private readonly clock: Clock,
   ) {
     asker.onBusy(kind => store.update({busy: kind, progress: null}));
-    store.watch(['busy', 'quick', 'text', 'openedText'], state => {
-      document.body.dataset.settled = String(state.busy === null && !state.quick && state.text === state.openedText);
+    store.watch(['busy', 'answered', 'readable', 'text', 'openedText'], ({busy, answered, readable, text, openedText}) => {
+      document.body.dataset.settled = String(busy === null && text === openedText && (answered || !readable));
     });
   }
 
@@ -58,15 +81,62 @@ export class Study {
     this.store.update({word: {text, trouble}});
   }
 
+  // ---------------------------------------------------------------------------------------------------- what is asked
+
+  private change(patch: Partial<State>, {ofText}: {ofText: boolean}): void {
+    ++this.changes;
+    if (ofText) ++this.texts;
+    window.clearTimeout(this.resting);
+    this.resting = 0;
+    this.asker.outdate();
+    this.store.update({...patch, answered: false});
+    this.watch();
+  }
+
+  /** What is shown of a former text or former values is called so where its successor takes long. */
+  private watch(): void {
+    if (this.late || (this.runOf === this.changes && this.equationsOf === this.texts)) return;
+    this.late = window.setTimeout(() => {
+      this.late = 0;
+      const {run, equations} = this.store.state;
+      this.store.update({
+        runLate: run !== null && this.runOf !== this.changes,
+        equationsLate: equations !== null && this.equationsOf !== this.texts,
+      });
+    }, lateAfter);
+  }
+
+  private arrived(): void {
+    window.clearTimeout(this.late);
+    this.late = 0;
+    this.watch();
+  }
+
+  private nothingFound(): Partial<State> {
+    const {section, sectionGone, busy} = this.store.state;
+    return {
+      modes: null,
+      phaseSpace: null,
+      found: null,
+      section: null,
+      sectionTrouble: null,
+      sectionGone: sectionGone || section !== null || busy === 'section',
+    };
+  }
+
   // ------------------------------------------------------------------------------------------------------- the text
 
   /** Another model: nothing of the one before stays. */
-  load({text, name, set = {}, start = {}, origin = null}: Model): void {
+  load({text, ends = '\n', saved = text, name, set = {}, start = {}, origin = null}: Model): void {
     this.shown = false;
+    this.grabbed = null;
     this.clock.play(false);
     this.clock.seek(0);
-    this.store.update({
+    const patch: Partial<State> = {
       text,
+      ends,
+      saved,
+      loads: this.store.state.loads + 1,
       name,
       origin,
       set,
@@ -77,26 +147,28 @@ export class Study {
       run: null,
       equationsTrouble: null,
       runTrouble: null,
+      runLate: false,
+      equationsLate: false,
+      slow: false,
+      quick: false,
+      pose: null,
       charts: null,
       pins: [],
       deep: [],
       ...this.nothingFound(),
-    });
+      sectionGone: false,
+    };
+    this.change(patch, {ofText: true});
     void this.readText();
   }
 
   edit(text: string): void {
     if (text === this.store.state.text) return;
-    this.store.update({text});
+    this.change({text}, {ofText: true});
     void this.readText();
   }
 
-  private nothingFound(): Partial<State> {
-    return {modes: null, phaseSpace: null, found: null, section: null, sectionTrouble: null};
-  }
-
   private async readText(): Promise<void> {
-    window.clearTimeout(this.resting);
     const {text, name} = this.store.state;
     if (text.length > longest)
       return this.store.update({
@@ -128,25 +200,33 @@ export class Study {
 
   /** Equations and motion of the text that is open. */
   private async follow(): Promise<void> {
+    const {changes} = this;
     this.store.update(this.nothingFound());
     await this.askEquations();
-    await this.askRun(fullFrames);
+    if (changes === this.changes) await this.askRun(full);
   }
 
   async askEquations(): Promise<void> {
-    const {steps, text} = this.store.state;
+    const {steps, equations} = this.store.state,
+      {texts, changes} = this;
     const answer = await this.asker.ask<EquationsAnswer>({do: 'equations', steps, ...this.values});
-    if (text !== this.store.state.text) return;
+    if (texts !== this.texts) return;
     if (answer.ok) {
-      this.store.update({equations: answer, equationsTrouble: null, deep: answer.diagnostics});
+      this.equationsOf = texts;
+      this.store.update({equations: answer, equationsTrouble: null, equationsLate: false, deep: answer.diagnostics});
       if (!this.shown) document.title = `${answer.title || answer.name} – Maupertuis`;
-    } else if (answer.kind !== 'cancelled') {
-      if (this.dropForeignValues(answer)) return this.askEquations();
-      this.store.update({equationsTrouble: answer.trouble, deep: answer.diagnostics ?? []});
+      this.arrived();
+    } else if (answer.kind !== 'cancelled' && changes === this.changes) {
+      if (this.dropForeignValues(answer)) return;
+      this.store.update({
+        equationsTrouble: answer.trouble,
+        equationsLate: equations !== null,
+        deep: answer.diagnostics ?? [],
+      });
     }
   }
 
-  /** Values of names that the text has no more are let go, with a word. */
+  /** Values of names that the text has no more are let go, with a word, and everything is asked without them. */
   private dropForeignValues(failure: Failure): boolean {
     const {set, start, text} = this.store.state;
     if (!failure.diagnostics?.some(d => d.severity === 'error' && d.text)) return false;
@@ -157,8 +237,9 @@ export class Study {
     const before = Object.keys(set).length + Object.keys(start).length,
       after = Object.keys(next.set).length + Object.keys(next.start).length;
     if (before === after) return false;
-    this.store.update(next);
     this.say('Values of names that the text does not have any more were dropped.');
+    this.change(next, {ofText: false});
+    void this.follow();
     return true;
   }
 
@@ -170,85 +251,109 @@ export class Study {
 
   // ------------------------------------------------------------------------------------------------------- the motion
 
-  private async askRun(frames: number): Promise<void> {
-    const quick = frames < fullFrames;
+  private async askRun(how: typeof full): Promise<void> {
+    const {changes, texts} = this,
+      outdated = (): boolean =>
+        how === quick ? texts !== this.texts || this.resting === 0 : changes !== this.changes;
     if (!this.store.state.opened?.readable) return;
     const answer = await this.asker.ask<RunAnswer>(
-      {do: 'run', frames, budget: quick ? 1 : 20, ...this.values},
+      {do: 'run', ...how, ...this.values},
       {
+        quick: how === quick,
         onMessage: message => {
-          if (!quick && message.progress !== undefined) this.store.update({progress: message.progress});
+          if (how === full && message.progress !== undefined && !outdated())
+            this.store.update({progress: message.progress});
         },
       },
     );
-    if (answer.ok) this.showRun(answer, quick);
-    else if (answer.kind !== 'cancelled' && !(quick && answer.kind === 'budget')) {
-      this.dropForeignValues(answer);
-      this.store.update({
-        runTrouble: answer.trouble,
-        quick: false,
-        ...(answer.trouble.code === noDuration ? {run: null} : {}),
-        deep:
-          answer.diagnostics?.length && answer.trouble.code !== noDuration ? answer.diagnostics : this.store.state.deep,
-      });
-    }
+    if (outdated() || (!answer.ok && answer.kind === 'cancelled')) return;
+    if (how === quick && (answer.ok ? unfinished(answer) : answer.kind === 'budget'))
+      return this.store.update({slow: true, runLate: this.store.state.run !== null});
+    if (answer.ok) this.showRun(answer, how, changes);
+    else this.showRunTrouble(answer, how);
   }
 
-  private showRun(run: RunAnswer, quick: boolean): void {
+  private showRun(run: RunAnswer, how: typeof full, of: number): void {
     if (run.drawing)
       for (const element of run.drawing.elements) element.positions = element.positions.map(value => value ?? NaN);
     if (/^dimensionless\b/m.test(this.store.state.text)) run.independent.unit = '';
     const first = !this.shown;
     this.shown = true;
+    this.runOf = of;
     this.clock.take(run, first);
-    this.store.update({run, runTrouble: null, quick, pose: this.grabbed ? this.store.state.pose : null});
+    this.store.update({
+      run,
+      runTrouble: null,
+      runLate: false,
+      slow: false,
+      quick: how === quick,
+      answered: how === full,
+      pose: this.grabbed ? this.store.state.pose : null,
+    });
+    this.arrived();
     const still = matchMedia('(prefers-reduced-motion: reduce)').matches;
     if (first && !still) this.clock.play(true);
   }
 
-  /** Values changed: a quick run now, everything when they rest. */
-  private valuesChanged(resting: boolean): void {
-    window.clearTimeout(this.resting);
+  private showRunTrouble(failure: Failure, how: typeof full): void {
+    if (this.dropForeignValues(failure)) return;
+    const {trouble, diagnostics} = failure,
+      noMotion = trouble.code === noDuration || trouble.code === heldIntegral,
+      run = noMotion ? null : this.store.state.run;
+    this.store.update({
+      run,
+      runTrouble: trouble,
+      runLate: run !== null,
+      slow: false,
+      quick: false,
+      answered: how === full,
+      ...(diagnostics?.length && !noMotion ? {deep: diagnostics} : {}),
+    });
+  }
+
+  /** Values change: a quick run now, everything when they rest. */
+  private changeValues(patch: Partial<State>, resting: boolean): void {
+    this.change({...patch, ...this.nothingFound()}, {ofText: false});
     if (resting) return void this.everything();
-    void this.askRun(quickFrames);
-    this.resting = window.setTimeout(() => void this.everything(), restAfter);
+    void this.askRun(quick);
+    this.resting = window.setTimeout(() => {
+      this.resting = 0;
+      void this.everything();
+    }, restAfter);
   }
 
   private async everything(): Promise<void> {
-    this.store.update(this.nothingFound());
-    await this.askRun(fullFrames);
-    await this.askEquations();
+    const {changes} = this;
+    await this.askRun(full);
+    if (changes === this.changes) await this.askEquations();
   }
 
   setValue(name: string, value: string | null, resting: boolean): void {
-    this.store.update({set: withValue(this.store.state.set, name, value)});
-    this.valuesChanged(resting);
+    this.changeValues({set: withValue(this.store.state.set, name, value)}, resting);
   }
 
   setStart(name: string, value: string | null, resting: boolean): void {
-    this.store.update({start: withValue(this.store.state.start, name, value)});
     if (resting) this.clock.seek(0);
-    this.valuesChanged(resting);
+    this.changeValues({start: withValue(this.store.state.start, name, value)}, resting);
   }
 
   setDuration(duration: string): void {
-    this.store.update({duration});
-    this.valuesChanged(true);
+    this.changeValues({duration}, true);
   }
 
   setMode(mode: string): void {
-    this.store.update({mode});
+    this.change({mode}, {ofText: true});
     void this.follow();
   }
 
   resetValues(): void {
-    this.store.update({set: {}, start: {}, duration: ''});
-    this.valuesChanged(true);
+    this.changeValues({set: {}, start: {}, duration: ''}, true);
   }
 
   pin(): void {
     const {run, pins, set, start} = this.store.state;
     if (!run) return;
+    if (this.runOf !== this.changes) return this.say('The run of these values is not there yet.', true);
     if (pins.length >= 5) return this.say('Five runs are pinned; take one away first.', true);
     const said = [...Object.entries(set), ...Object.entries(start)]
       .slice(0, 3)
@@ -280,7 +385,7 @@ export class Study {
       }
     }
     this.clock.play(false);
-    this.grabbed = {values: this.values, start, moved: false};
+    this.grabbed = {values: this.values, start, moved: false, told: false};
   }
 
   async drag(element: number, point: number, to: number[]): Promise<void> {
@@ -293,9 +398,11 @@ export class Study {
       ...grabbed.values,
       start: grabbed.start,
     });
-    if (this.grabbed !== grabbed || !answer.ok) {
-      if (!answer.ok && answer.kind !== 'cancelled' && answer.kind !== 'budget') this.say(answer.trouble.message, true);
-      return;
+    if (this.grabbed !== grabbed) return;
+    if (!answer.ok) {
+      if (answer.kind === 'cancelled' || grabbed.told) return;
+      grabbed.told = true;
+      return this.say(answer.kind === 'budget' ? tooFar : `${answer.trouble.message} ${answer.trouble.help}`, true);
     }
     for (const c of this.store.state.equations?.coordinates ?? []) {
       const q = answer.start[c.name],
@@ -320,46 +427,61 @@ export class Study {
       this.say('Its constraints hold it where it is.');
       return this.store.update({pose: null});
     }
-    this.store.update({start: grabbed.start});
     this.clock.seek(0);
-    window.clearTimeout(this.resting);
+    this.change({start: grabbed.start, ...this.nothingFound()}, {ofText: false});
+    const {changes} = this;
     await this.everything();
+    if (changes !== this.changes) return;
     this.store.update({pose: null});
     if (!this.store.state.runTrouble) this.clock.play(true);
   }
 
   // ------------------------------------------------------------------------------------------------------- questions
 
-  async askModes(): Promise<void> {
-    const answer = await this.asker.ask<ModesAnswer>({do: 'modes', ...this.values});
-    if (answer.ok)
-      for (const shape of answer.points.flatMap(point => point.shapes))
-        for (const element of shape.drawing?.elements ?? [])
-          element.positions = element.positions.map(value => value ?? NaN);
-    this.take(answer, modes => ({modes}));
+  askModes(): Promise<void> {
+    return this.search<ModesAnswer>({do: 'modes'}, modes => {
+      if ('points' in modes)
+        for (const shape of modes.points.flatMap(point => point.shapes))
+          for (const element of shape.drawing?.elements ?? [])
+            element.positions = element.positions.map(value => value ?? NaN);
+      return {modes};
+    });
   }
-  async askPhaseSpace(): Promise<void> {
-    this.take(await this.asker.ask<{sections: Section[]}>({do: 'phase_space', ...this.values}), answer => ({
+  askPhaseSpace(): Promise<void> {
+    return this.search<{sections: Section[]}>({do: 'phase_space'}, answer => ({
       phaseSpace: 'sections' in answer ? answer.sections : answer,
     }));
   }
-  async askConserved(): Promise<void> {
-    this.take(
-      await this.asker.ask<{conserved: Conserved[]}>({do: 'conserved', budget: 60, ...this.values}),
-      answer => ({found: 'conserved' in answer ? answer.conserved : answer}),
-    );
+  askConserved(): Promise<void> {
+    return this.search<{conserved: Conserved[]}>({do: 'conserved', budget: 60}, answer => ({
+      found: 'conserved' in answer ? answer.conserved : answer,
+    }));
+  }
+
+  /** What takes its time and is of the values that stand there now; it is asked for once. */
+  private async search<T extends object>(request: Request, patch: (answer: T | Trouble) => Partial<State>): Promise<void> {
+    const {changes} = this;
+    if (this.pending.get(request.do) === changes) return;
+    this.pending.set(request.do, changes);
+    const answer = await this.asker.ask<T>({...request, ...this.values});
+    if (changes !== this.changes) return;
+    this.pending.delete(request.do);
+    if (answer.ok) this.store.update(patch(answer));
+    else if (answer.kind !== 'cancelled') this.store.update(patch(answer.trouble));
   }
 
   async askSection(at: string, crossings: number): Promise<void> {
-    this.store.update({section: null, sectionTrouble: null});
+    const {changes} = this;
+    this.store.update({section: null, sectionTrouble: null, sectionGone: false});
     const answer = await this.asker.ask<SectionAnswer>(
       {do: 'section', at, crossings, budget: 60, ...this.values},
       {
         onMessage: message => {
-          if (message.section) this.store.update({section: message.section});
+          if (message.section && changes === this.changes) this.store.update({section: message.section});
         },
       },
     );
+    if (changes !== this.changes) return;
     if (answer.ok) this.store.update({section: answer});
     else if (answer.kind !== 'cancelled') this.store.update({sectionTrouble: answer.trouble});
   }
@@ -368,12 +490,12 @@ export class Study {
   claim(text: string): Promise<Answer<ClaimAnswer>> {
     return this.asker.ask<ClaimAnswer>({do: 'claim', text, exercise: true});
   }
-
-  private take<T>(answer: Answer<T>, patch: (answer: T | Failure['trouble']) => Partial<State>): void {
-    if (answer.ok) this.store.update(patch(answer));
-    else if (answer.kind !== 'cancelled') this.store.update(patch(answer.trouble));
-  }
 }
+
+const tooFar = 'The constraints could not be solved in time for this place. Move more slowly, or less far.';
+
+/** It ended with its budget, and holds what was computed until then. */
+export const unfinished = (run: RunAnswer): boolean => run.ending.kind === 'interrupted';
 
 const withValue = (values: Record<string, string>, name: string, value: string | null): Record<string, string> => {
   const next = {...values};

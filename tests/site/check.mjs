@@ -8,6 +8,7 @@ import {createRequire} from 'node:module';
 import {dirname, join, resolve} from 'node:path';
 import {fileURLToPath, pathToFileURL} from 'node:url';
 import {parseArgs} from 'node:util';
+import {flags} from '../chromium.mjs';
 import {checkFiles} from './files.mjs';
 import {checkParts} from './parts.mjs';
 import {checkUse} from './use.mjs';
@@ -144,7 +145,7 @@ async function run() {
   const {pages, links} = checkFiles(check, site);
   const browser = await chromium.launch({
     executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-    args: ['--no-sandbox', '--disable-gpu', '--disable-dev-shm-usage', '--allow-file-access-from-files=false'],
+    args: [...flags, '--allow-file-access-from-files=false'],
   });
   try {
     const present = kinds.filter(path => existsSync(join(site, path)));

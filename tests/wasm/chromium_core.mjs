@@ -3,6 +3,7 @@ import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {pathToFileURL} from 'node:url';
 import {chromium} from 'playwright-core';
+import {flags} from '../chromium.mjs';
 import {project} from './requests.mjs';
 
 const bin = project + 'build-wasm/bin/';
@@ -51,14 +52,7 @@ export class ChromiumCore {
     writeFileSync(file, page());
     core.browser = await chromium.launch({
       executablePath: process.env.CHROMIUM || '/usr/bin/chromium',
-      args: [
-        '--no-sandbox',
-        '--disable-gpu',
-        '--disable-background-networking',
-        '--disable-component-update',
-        '--disable-sync',
-        '--no-first-run',
-      ],
+      args: flags,
     });
     core.page = await core.browser.newPage();
     ((core.said = []), (core.requests = []));

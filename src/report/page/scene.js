@@ -107,6 +107,16 @@ const maupScene = (() => {
   }
   const words = (text, x, y, align, fill) => ({kind: 'text', points: [x, y], text, align, fill});
 
+  // A whole trail in px stays while the view does.
+  const ways = new WeakMap();
+  function wayKept(element, view, make) {
+    const key = [view.across, view.down, view.scale, view.middle, view.right, view.up].join(), kept = ways.get(element);
+    if (kept && kept.key === key) return kept.way;
+    const way = make();
+    ways.set(element, {key, way});
+    return way;
+  }
+
   // Everything of the model at `s` seconds from the first frame. trail: 'none', 'fading' over trailTime seconds, 'whole'.
   function frameItems(scene, view, s, {trail = 'fading', trailTime = 3, trailPieces = 24} = {}) {
     const d = scene.dimension, unit = view.unit, centre = centreAt(scene, view, s), items = [], planes = [], spots = [];
@@ -255,7 +265,7 @@ const maupScene = (() => {
       const now = pointsAt(scene, e, s);
       if (Number.isFinite(now[0])) note(now, 0, true);
       const steps = Math.min(1500, Math.max(2, scene.times.length));
-      if (!scene.follow.length) stroke(thinned(way(0, all, steps), 0.7), series(colour, whole ? 0.75 : wholeTrail), whole ? 1.4 : 1, -1e299);
+      if (!scene.follow.length) stroke(wayKept(e, view, () => thinned(way(0, all, steps), 0.7)), series(colour, whole ? 0.75 : wholeTrail), whole ? 1.4 : 1, -1e299);
       if (whole) return;
       const from = Math.max(0, s - trailTime);
       for (let k = 0; k < trailPieces; ++k) {

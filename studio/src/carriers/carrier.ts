@@ -1,4 +1,5 @@
 import type {Answer, Failure, Message, Request, Trouble, TroubleKind} from '../contract';
+import type {Lines} from '../lines';
 
 /** Brings requests to a session and answers back. It never throws: what fails is an answer with its trouble. */
 export interface Carrier {
@@ -14,9 +15,10 @@ export interface Listing {
   folder: string;
   open: string;
 }
-export interface StoredFile {
-  text: string;
+/** `alike`: its lines end alike. */
+export interface StoredFile extends Lines {
   version: string;
+  alike: boolean;
 }
 export type Saved =
   {saved: true; version: string} | {saved: false; theirs: StoredFile} | {saved: null; trouble: Trouble};
@@ -26,7 +28,7 @@ export interface Files {
   list(): Promise<Listing>;
   read(path: string): Promise<StoredFile | Trouble>;
   /** Refused with the other text where the file is not the one of `version` any more; null: the file must not exist. */
-  write(path: string, text: string, version: string | null): Promise<Saved>;
+  write(path: string, lines: Lines, version: string | null): Promise<Saved>;
 }
 
 export function failure(kind: TroubleKind, message: string, reason = '', help = ''): Failure {

@@ -1,4 +1,5 @@
 import type {Answer, Message, Request, Trouble} from '../contract';
+import {endsAlike, fileOf, linesOf, type Lines} from '../lines';
 import {cancelled, failure, type Carrier, type Files, type Listing, type Saved, type StoredFile} from './carrier';
 
 const gone: Trouble = {
@@ -80,6 +81,7 @@ async function refused(response: Response): Promise<ReturnType<typeof failure>> 
 }
 
 const nowhere: Listing = {files: [], folder: '', open: ''};
+const stored = (file: string, version: string): StoredFile => ({...linesOf(file), alike: endsAlike(file), version});
 
 class HttpFiles implements Files {
   async list(): Promise<Listing> {
@@ -94,14 +96,14 @@ class HttpFiles implements Files {
     if (!response) return gone;
     if (!response.ok) return (await refused(response)).trouble;
     const {text, etag} = (await response.json()) as {text: string; etag: string};
-    return {text, version: etag};
+    return stored(text, etag);
   }
 
-  async write(path: string, text: string, version: string | null): Promise<Saved> {
+  async write(path: string, lines: Lines, version: string | null): Promise<Saved> {
     const condition: Record<string, string> = version === null ? {} : {'If-Match': `"${version}"`};
     const response = await fetch(`/api/file?path=${encodeURIComponent(path)}`, {
       method: 'PUT',
-      body: text,
+      body: fileOf(lines),
       headers: {'Content-Type': 'text/plain; charset=utf-8', ...condition},
     }).catch(() => null);
     if (!response) return {saved: null, trouble: gone};
@@ -111,7 +113,7 @@ class HttpFiles implements Files {
       .json()
       .catch(() => ({}))) as {text?: string | null; etag?: string | null};
     if (response.status === 409 && typeof answer.text === 'string')
-      return {saved: false, theirs: {text: answer.text, version: answer.etag ?? ''}};
+      return {saved: false, theirs: stored(answer.text, answer.etag ?? '')};
     return {saved: null, trouble: (await refused(response)).trouble};
   }
 }

@@ -8,6 +8,7 @@ type FromWorker = {
   failed?: string;
   started?: WebAssembly.Module;
 };
+const none = -1; // the number of no request
 interface Waiting {
   resolve(answer: never): void;
   onMessage(message: Message): void;
@@ -21,10 +22,9 @@ export interface Core {
 
 /**
  * The core as WebAssembly in a worker: {id, request} goes there, {id, message} and {id, answer} come back
- * (apps/studio_wasm).
- * A worker cannot hear while it computes. Where pages may share memory, a number there ends a request; elsewhere a
- * cancel ends
- * the worker and starts another, which gets the compiled module and the text that was open.
+ * (apps/studio_wasm). A worker cannot hear while it computes. Where pages may share memory, the number of a request that
+ * stands there ends it; elsewhere a cancel ends the worker and starts another. A new worker gets the compiled module, and
+ * the text that was open as its request 0.
  */
 export class WorkerCarrier implements Carrier {
   readonly grace: number;
@@ -33,7 +33,7 @@ export class WorkerCarrier implements Carrier {
   private ids = 0;
   private opened: Request | null = null;
   private module: WebAssembly.Module | null = null;
-  private readonly cancel = globalThis.crossOriginIsolated ? new Int32Array(new SharedArrayBuffer(4)) : null;
+  private readonly cancel = globalThis.crossOriginIsolated ? new Int32Array(new SharedArrayBuffer(4)).fill(none) : null;
 
   constructor(private readonly core: Promise<Core>) {
     this.grace = this.cancel ? 60 : 500;

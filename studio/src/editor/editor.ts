@@ -13,7 +13,7 @@ import {defaultKeymap, history, historyKeymap, indentWithTab} from '@codemirror/
 import {bracketMatching, codeFolding, foldGutter, foldKeymap} from '@codemirror/language';
 import {lintGutter, lintKeymap, setDiagnostics, type Diagnostic as Lint} from '@codemirror/lint';
 import {highlightSelectionMatches, openSearchPanel, search, searchKeymap} from '@codemirror/search';
-import {Annotation, EditorState, Transaction} from '@codemirror/state';
+import {Annotation, EditorState, Text, Transaction} from '@codemirror/state';
 import {
   drawSelection,
   EditorView,
@@ -49,6 +49,8 @@ const symbols: Record<string, string> = {
 export class Editor {
   readonly view: EditorView;
   private fixes: Fix[] = [];
+  private fixesOf = Text.empty; // the text that `fixes` mend
+  private loaded = 0;
   private signatureTimer = 0;
 
   constructor(
@@ -57,7 +59,7 @@ export class Editor {
     private readonly onMessages: (messages: Diagnostic[], fixes: Fix[]) => void,
   ) {
     this.view = new EditorView({parent: byId('editor'), state: this.fresh('')});
-    store.watch(['text'], ({text}) => this.take(text));
+    store.watch(['text', 'loads'], state => this.take(state));
     store.watch(['openedText', 'opened', 'deep'], () => this.mark());
   }
 
@@ -65,11 +67,13 @@ export class Editor {
     return EditorState.create({doc: text, extensions: this.extensions()});
   }
 
-  /** A text that was not typed here. Another model starts another history. */
-  private take(text: string): void {
-    const now = this.view.state.doc.toString();
-    if (text === now) return;
-    if (now === '' || this.store.state.opened === null) return this.view.setState(this.fresh(text));
+  /** A text that was not typed here. Another model begins another history: undo never leads into the one before. */
+  private take({text, loads}: State): void {
+    if (loads !== this.loaded) {
+      this.loaded = loads;
+      return this.view.setState(this.fresh(text));
+    }
+    if (text === this.view.state.doc.toString()) return;
     this.view.dispatch({
       changes: {from: 0, to: this.view.state.doc.length, insert: text},
       annotations: fromOutside.of(true),
@@ -81,6 +85,12 @@ export class Editor {
     if (edits.length === 0) return;
     this.view.dispatch({changes: edits, annotations: Transaction.userEvent.of('input.edit')});
     if (focus) this.view.focus();
+  }
+
+  /** A fix mends the text that it was made for. */
+  mend(fix: Fix): void {
+    if (this.view.state.doc !== this.fixesOf) return this.study.say('The text changed meanwhile; look again.');
+    this.apply(fix.edits);
   }
 
   goTo(from: number, to = from): void {
@@ -198,6 +208,7 @@ export class Editor {
     const answer = await this.study.asker.ask<{fixes: Fix[]}>({do: 'fixes', from: 0, to: openedText.length, budget: 3});
     if (!answer.ok || this.view.state.doc.toString() !== openedText || answer.fixes.length === 0) return;
     this.fixes = answer.fixes;
+    this.fixesOf = this.view.state.doc;
     this.show(messages);
   }
 
@@ -218,7 +229,7 @@ export class Editor {
             m.reason && h('p', {}, ...prose(m.reason)),
             m.help && h('p', {class: 'help'}, ...prose(m.help)),
           ),
-        actions: fixesOf(m, this.fixes).map(fix => ({name: fix.title, apply: () => this.apply(fix.edits)})),
+        actions: fixesFor(m, this.fixes).map(fix => ({name: fix.title, apply: () => this.mend(fix)})),
       }));
     this.view.dispatch(setDiagnostics(this.view.state, lint));
     this.onMessages(messages, this.fixes);
@@ -230,12 +241,11 @@ export class Editor {
         this.fixes.find(one => one.from <= at && at <= one.to) ??
         this.fixes.find(one => this.view.state.doc.lineAt(one.from).number === this.view.state.doc.lineAt(at).number);
     if (!fix) this.study.say('There is nothing here that is mended with one key.');
-    else this.apply(fix.edits);
+    else this.mend(fix);
     return true;
   }
 
-  // --------------------------------------------------------------------------------------------------------- at a
-  // place
+  // ------------------------------------------------------------------------------------------------------ at a place
 
   private async complete(context: CompletionContext): Promise<CompletionResult | null> {
     const before = context.matchBefore(/[\p{L}\p{N}_']+/u);
@@ -307,15 +317,18 @@ export class Editor {
     const at = this.head,
       name = await askFor('Another name', `Instead of ${old || 'this name'}:`, old, 'Rename');
     if (!name || name === old) return this.view.focus();
-    const answer = await this.study.asker.ask<{edits: Edit[]; refusal: string}>({do: 'rename', at, name});
+    const {doc} = this.view.state,
+      answer = await this.study.asker.ask<{edits: Edit[]; refusal: string}>({do: 'rename', at, name});
     if (!answer.ok) return this.study.say(answer.trouble.message, true);
     if (answer.refusal) return this.study.say(answer.refusal, true);
-    this.apply(answer.edits);
+    if (this.view.state.doc === doc) this.apply(answer.edits);
   }
 
   async format(): Promise<void> {
-    const answer = await this.study.asker.ask<{edits: Edit[]}>({do: 'format'});
+    const {doc} = this.view.state,
+      answer = await this.study.asker.ask<{edits: Edit[]}>({do: 'format'});
     if (!answer.ok) return this.study.say(answer.trouble.message, true);
+    if (this.view.state.doc !== doc) return;
     if (answer.edits.length === 0)
       this.study.say(
         this.store.state.readable ? 'The text is in its layout.' : 'A text with a mistake of grammar is not laid out.',
@@ -324,7 +337,7 @@ export class Editor {
   }
 }
 
-const fixesOf = (m: Diagnostic, fixes: Fix[]): Fix[] => fixes.filter(fix => fix.code === m.code && fix.from === m.from);
+const fixesFor = (m: Diagnostic, fixes: Fix[]): Fix[] => fixes.filter(fix => fix.code === m.code && fix.from === m.from);
 
 /** What the text says and what only a derivation finds, each once. */
 function all(text: Diagnostic[], deep: Diagnostic[]): Diagnostic[] {

@@ -1,17 +1,18 @@
 import type {Check, Conserved, Happening, ModesAnswer, Section, Trouble} from '../contract';
 import {byId, h, prose} from '../dom';
 import {loopDrawing} from '../drawing/loop';
+import {paintMaps} from '../plots/maps';
 import type {State} from '../state';
 import type {Store} from '../store';
-import {noDuration, type Study} from '../study';
+import {betweenEnds, inTime, noDuration, unfinished, type Study} from '../study';
 import {numbers, pretty} from './words';
 import {copyButton, lineElement, sectionsElements} from './formulas';
 
 /** The words of the page for what went wrong: what, why, what helps. */
-export function troubleElement(trouble: Trouble): HTMLElement {
+export function troubleElement(trouble: Trouble, severity = 'error'): HTMLElement {
   return h(
     'div',
-    {class: 'message error'},
+    {class: `message ${severity}`},
     h('p', {class: 'what'}, trouble.message),
     trouble.reason && h('p', {}, ...prose(trouble.reason)),
     trouble.help && h('p', {class: 'help'}, ...prose(trouble.help)),
@@ -19,6 +20,19 @@ export function troubleElement(trouble: Trouble): HTMLElement {
 }
 
 const isTrouble = (x: object): x is Trouble => 'message' in x;
+
+const slowly: Trouble = {
+    code: '',
+    message: 'This motion takes longer than a slider waits.',
+    reason: 'What is drawn belongs to the values before.',
+    help: 'Let the values rest: then it is computed in full. A shorter run follows the slider: `Run` among the values.',
+  },
+  outOfTime: Trouble = {
+    code: '',
+    message: 'The motion was not finished within the time of a run.',
+    reason: 'Every question has a time, so that the page stays alive; this is what was computed until then.',
+    help: 'A shorter run is finished: `Run` among the values says how long.',
+  };
 
 /** A panel whose content is asked for when it is opened. */
 function onOpening(id: string, ask: () => void): void {
@@ -32,6 +46,8 @@ const isOpen = (id: string): boolean => byId<HTMLDetailsElement>(id).open;
 export class EquationsPanel {
   private readonly say = (text: string): void => this.study.say(text);
   private loops: (() => void)[] = [];
+  private conservedKey = '';
+  private conservedNumbers: HTMLElement[] = [];
 
   constructor(
     private readonly store: Store<State>,
@@ -43,24 +59,35 @@ export class EquationsPanel {
       this.facts(state);
     });
     store.watch(['equations', 'run', 'found'], state => this.conserved(state));
-    store.watch(['run', 'runTrouble'], state => this.motion(state));
+    store.watch(['run', 'runTrouble', 'slow'], state => this.motion(state));
     store.watch(['modes'], state => this.modes(state));
     store.watch(['phaseSpace'], state => this.phaseSpace(state));
-    store.watch(['readable', 'opened', 'equations'], state => {
-      const stale = state.opened !== null && !state.readable && state.equations !== null;
-      byId('equations').classList.toggle('stale', stale);
-      byId('stale').hidden = !stale;
+    store.watch(['readable', 'opened', 'equations', 'equationsLate', 'runLate'], state => this.stale(state));
+    store.watch(['equations'], state => {
+      byId('modes').hidden = !inTime(state);
     });
     onOpening('derivation', () => void study.wantSteps());
     onOpening('modes', () => this.asked());
     onOpening('phase-space', () => this.asked());
-    store.watch(['run', 'modes', 'phaseSpace', 'quick'], () => this.asked());
+    store.watch(['answered', 'modes', 'phaseSpace', 'equations'], () => this.asked());
+  }
+
+  /** What is of a former text or of former values looks so, and is told where it is the text. */
+  private stale({readable, opened, equations, equationsLate, runLate}: State): void {
+    const mistake = opened !== null && !readable && equations !== null,
+      place = byId('stale');
+    byId('equations').classList.toggle('stale', mistake || equationsLate);
+    for (const part of ['conserved', 'run-facts']) byId(part).classList.toggle('stale', runLate);
+    place.hidden = !(mistake || equationsLate);
+    place.textContent = mistake
+      ? 'The text has a mistake. What stands here and in the drawing belongs to the last text without one.'
+      : 'What stands here belongs to the text before.';
   }
 
   /** What stands open and is not there is asked for, when the values rest. */
   private asked(): void {
-    const {run, quick, modes, phaseSpace, equations} = this.store.state;
-    if (!equations || quick || (run === null && this.store.state.runTrouble === null)) return;
+    const {answered, modes, phaseSpace, equations} = this.store.state;
+    if (!equations || !answered) return;
     if (isOpen('modes') && modes === null) void this.study.askModes();
     if (isOpen('phase-space') && phaseSpace === null) void this.study.askPhaseSpace();
   }
@@ -147,29 +174,36 @@ export class EquationsPanel {
     body.replaceChildren(summary, ...(equations.certificate.length ? [checks(equations.certificate)] : []));
   }
 
-  private conserved({equations, run, found}: State): void {
+  private conserved(state: State): void {
+    const {equations, run, found} = state;
     const list: Conserved[] = Array.isArray(found)
       ? found
       : run?.conserved.length
         ? run.conserved
         : (equations?.conserved ?? []);
-    const drifts = new Map(run?.conserved.map(c => [c.sentence, c]));
-    const rows = list.map(c => {
-      const measured = drifts.get(c.sentence) ?? c;
-      return h(
+    const measured = new Map(run?.conserved.map(c => [c.sentence, c])),
+      numbersOf = (c: Conserved): string[] => {
+        const {value, drift} = measured.get(c.sentence) ?? c;
+        return [value, drift];
+      };
+    // While values move the formulas stay, which may be long, and the numbers change.
+    const key = JSON.stringify([equations !== null, found, list.map(c => [c.sentence, c.formula.mathml])]);
+    if (key !== this.conservedKey) this.buildConserved(list, state);
+    this.conservedKey = key;
+    list.forEach((c, i) => this.conservedNumbers[i].replaceChildren(...driftElements(numbersOf(c))));
+  }
+
+  private buildConserved(list: Conserved[], {equations, found}: State): void {
+    this.conservedNumbers = list.map(() => h('p', {class: 'drift'}));
+    const rows = list.map((c, i) =>
+      h(
         'div',
         {class: 'conserved'},
         c.sentence && h('p', {class: 'sentence'}, ...prose(c.sentence)),
         lineElement({...c.formula, sentence: ''}),
-        (measured.value || measured.drift) &&
-          h(
-            'p',
-            {class: 'drift'},
-            measured.value && h('span', {}, 'value ', h('b', {}, numbers(measured.value))),
-            measured.drift && h('span', {}, 'drift ', h('b', {}, numbers(measured.drift))),
-          ),
-      );
-    });
+        this.conservedNumbers[i],
+      ),
+    );
     const search = h(
       'button',
       {type: 'button', class: 'quiet', onclick: () => void this.study.askConserved()},
@@ -186,19 +220,20 @@ export class EquationsPanel {
     );
   }
 
-  private motion({run, runTrouble}: State): void {
+  private motion(state: State): void {
+    const {run, runTrouble, slow} = state;
     const facts = run
       ? h('dl', {}, ...run.statistics.flatMap(([name, value]) => [h('dt', {}, name), h('dd', {}, numbers(value))]))
       : '';
     const ending =
-      run && !run.ending.ok
-        ? h(
-            'div',
-            {class: 'message'},
-            h('p', {class: 'what'}, `The motion ended early: ${run.ending.kind}.`),
-            run.ending.reason && h('p', {}, ...prose(run.ending.reason)),
-          )
-        : '';
+      run && unfinished(run)
+        ? troubleElement(outOfTime, 'warning')
+        : run && !run.ending.ok
+          ? troubleElement(
+              {code: '', message: `The motion ended early: ${run.ending.kind}.`, reason: run.ending.reason, help: ''},
+              '',
+            )
+          : '';
     const lost = run?.uncertain
       ? h(
           'div',
@@ -211,6 +246,7 @@ export class EquationsPanel {
           ),
         )
       : '';
+    byId('run-facts').hidden = betweenEnds(state);
     byId('motion-body').replaceChildren(
       runTrouble ? troubleElement(runTrouble) : '',
       ending,
@@ -219,13 +255,42 @@ export class EquationsPanel {
       run?.happenings.length ? happenings(run.happenings, run.first_mode) : '',
     );
     byId('stage-trouble').replaceChildren(
-      runTrouble
-        ? runTrouble.code === noDuration
-          ? this.withoutDuration()
-          : troubleElement(runTrouble)
-        : ending
-          ? ending.cloneNode(true)
-          : '',
+      slow
+        ? troubleElement(slowly, 'warning')
+        : runTrouble
+          ? this.withoutMotion(state) ?? troubleElement(runTrouble)
+          : ending
+            ? ending.cloneNode(true)
+            : '',
+    );
+  }
+
+  /** What to do where the model has no motion yet, or none at all. */
+  private withoutMotion(state: State): HTMLElement | null {
+    if (betweenEnds(state)) return this.withPaths(state);
+    return state.runTrouble?.code === noDuration ? this.withoutDuration() : null;
+  }
+
+  private withPaths(state: State): HTMLElement {
+    const carryOut = (): void => {
+      this.store.update({pane: 'equations'});
+      byId<HTMLDetailsElement>('expectations').open = true;
+      byId('expectations').scrollIntoView({block: 'nearest'});
+    };
+    return h(
+      'div',
+      {class: 'message'},
+      h('p', {class: 'what'}, 'This model is about paths between two ends: it has no motion from a start.'),
+      h(
+        'p',
+        {},
+        ...prose(
+          `\`maup action ${state.name}.lag\` finds the paths, \`maup report ${state.name}.lag\` draws them. Here its ` +
+            '`expect` lines are carried out, which ask for the action, the index and places of a path. ',
+        ),
+        h('button', {type: 'button', onclick: carryOut}, 'Carry them out'),
+      ),
+      inTime(state) && h('p', {}, ...prose('With lines `start` and `run` it has a motion beside its paths.')),
     );
   }
 
@@ -288,7 +353,11 @@ export class EquationsPanel {
   }
 
   private shape({caption, drawing, svg}: ModesAnswer['points'][number]['shapes'][number]): HTMLElement {
-    if (!drawing) return h('figure', {}, h('div', {html: svg}), h('figcaption', {}, ...prose(caption)));
+    if (!drawing) {
+      const figure = h('figure', {}, h('div', {html: svg}), h('figcaption', {}, ...prose(caption)));
+      paintMaps(figure);
+      return figure;
+    }
     const {element, stop} = loopDrawing(drawing, caption);
     this.loops.push(stop);
     return element;
@@ -303,6 +372,12 @@ export class EquationsPanel {
     body.querySelector('details')?.setAttribute('open', '');
   }
 }
+
+const driftElements = ([value, drift]: string[]): HTMLElement[] =>
+  [
+    ['value ', value],
+    ['drift ', drift],
+  ].flatMap(([name, text]) => (text ? [h('span', {}, name, h('b', {}, numbers(text)))] : []));
 
 function checks(list: Check[]): HTMLElement {
   return h(

@@ -11,21 +11,28 @@ export function expectationsPanel(store: Store<State>, study: Study): void {
     body = byId('expectations-body');
   let of = '';
   const show = async (): Promise<void> => {
-    const {openedText, readable, quick, run, runTrouble} = store.state;
-    if (!part.open || !readable || quick || of === openedText || (!run && !runTrouble)) return;
+    const {openedText, readable, answered} = store.state;
+    if (!part.open || !readable || !answered || of === openedText) return;
     of = openedText;
     body.replaceChildren(h('p', {class: 'muted'}, 'They are carried out …'));
     const answer = await study.asker.ask<{results: ExpectationResult[]}>({do: 'expectations', budget: 60});
+    if (of !== openedText) return;
     if (!answer.ok && answer.kind === 'cancelled') {
-      of = '';
-      return;
+      of = ''; // the text or a value changed: they are carried out again when everything rests
+      return body.replaceChildren();
     }
     body.replaceChildren(
       ...(answer.ok ? resultsElements(answer.results) : [troubleElement(answer.trouble as Trouble)]),
     );
   };
   part.addEventListener('toggle', () => void show());
-  store.watch(['openedText', 'readable', 'run', 'quick'], () => void show());
+  store.watch(['openedText', 'readable', 'answered'], ({openedText, readable}) => {
+    if (readable && of !== '' && of !== openedText) {
+      of = '';
+      body.replaceChildren();
+    }
+    void show();
+  });
 }
 
 function resultsElements(results: ExpectationResult[]): Node[] {

@@ -21,7 +21,7 @@ export function showMessages(list: Diagnostic[], fixes: Fix[], editor: () => Edi
             );
       const mends = fixes
         .filter(fix => fix.code === m.code && fix.from === m.from)
-        .map(fix => h('button', {type: 'button', class: 'fix', onclick: () => editor().apply(fix.edits)}, fix.title));
+        .map(fix => h('button', {type: 'button', class: 'fix', onclick: () => editor().mend(fix)}, fix.title));
       return h(
         'article',
         {class: `message ${m.severity}`},

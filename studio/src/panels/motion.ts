@@ -4,7 +4,7 @@ import {numbers, raised} from './words';
 import type {Stage} from '../drawing/stage';
 import type {State} from '../state';
 import type {Store} from '../store';
-import type {Study} from '../study';
+import {betweenEnds, inTime, type Study} from '../study';
 import {troubleElement} from './equations';
 
 function speedText(speed: number): string {
@@ -27,10 +27,10 @@ export class MotionPanel {
   ) {
     this.transport();
     clock.onTick(() => this.tick());
-    store.watch(['run', 'runTrouble', 'opened', 'readable'], state => this.shown(state));
+    store.watch(['run', 'runTrouble', 'opened', 'readable', 'runLate'], state => this.shown(state));
     store.watch(['pins'], state => this.pins(state));
-    store.watch(['section', 'sectionTrouble', 'busy'], state => this.section(state));
-    store.watch(['equations'], () => this.sectionPlace());
+    store.watch(['section', 'sectionTrouble', 'sectionGone', 'busy'], state => this.section(state));
+    store.watch(['equations', 'runTrouble'], () => this.sectionPlace());
     this.sectionForm();
   }
 
@@ -96,7 +96,7 @@ export class MotionPanel {
     );
   }
 
-  private shown({run, runTrouble, opened, readable}: State): void {
+  private shown({run, runTrouble, opened, readable, runLate}: State): void {
     const drawing = run?.drawing,
       none = byId('no-drawing');
     byId('drawing').hidden = !drawing;
@@ -110,7 +110,7 @@ export class MotionPanel {
           ? ''
           : 'No motion yet.';
     none.hidden = none.textContent === '';
-    byId('motion').classList.toggle('stale', opened !== null && !readable);
+    byId('motion').classList.toggle('stale', runLate || (opened !== null && !readable));
     byId('transport').hidden = !run;
     byId('trail-label').hidden = !drawing;
     byId('forces-label').hidden = !drawing?.elements.some(e => e.kind === 'arrow');
@@ -163,7 +163,8 @@ export class MotionPanel {
   private sectionPlace(): void {
     const field = byId<HTMLInputElement>('section-at'),
       first = this.store.state.equations?.coordinates[0]?.name;
-    byId('section').hidden = !first || (this.store.state.opened?.fields ?? false);
+    const {state} = this.store;
+    byId('section').hidden = !first || betweenEnds(state) || !inTime(state) || (state.opened?.fields ?? false);
     const known = this.store.state.equations?.coordinates.some(c => field.value.includes(c.name)) ?? false;
     if (first && !known) field.value = `${first} = 0`;
   }
@@ -178,13 +179,15 @@ export class MotionPanel {
     byId('section-stop').addEventListener('click', () => this.study.asker.cancel('section'));
   }
 
-  private section({section, sectionTrouble, busy}: State): void {
+  private section({section, sectionTrouble, sectionGone, busy}: State): void {
     byId('section-stop').hidden = busy !== 'section';
     const facts = section
       ? `${section.crossings} crossings${section.ended ? `; ${section.ended}` : ''}`
       : busy === 'section'
         ? 'It runs …'
-        : '';
+        : sectionGone
+          ? 'The section belonged to other values. Draw it anew.'
+          : '';
     byId('section-body').replaceChildren(
       sectionTrouble ? troubleElement(sectionTrouble) : '',
       section ? h('div', {class: 'picture', html: section.svg}) : '',

@@ -2,7 +2,7 @@ import type {Coordinate, Formula, Parameter} from '../contract';
 import {byId, h} from '../dom';
 import type {State} from '../state';
 import type {Store} from '../store';
-import type {Study} from '../study';
+import {betweenEnds, inTime, type Study} from '../study';
 import {unitText} from './words';
 import {rangeOfParameter, rangeOfStart, shown, widened, type Range} from './range';
 
@@ -48,6 +48,7 @@ function makeRow(
     h('span', {class: 'unit'}, unitText(unit)),
     reset,
   );
+  let placed: number | null = null; // where the slider was put last
   const row: Row = {
     element,
     slider,
@@ -61,14 +62,22 @@ function makeRow(
         field.value = '';
         return;
       }
-      row.range = widened(row.range, value);
-      [slider.min, slider.max, slider.step] = [String(row.range.low), String(row.range.high), String(row.range.step)];
-      if (document.activeElement !== field) field.value = shown(value);
-      if (document.activeElement !== slider || Math.abs(Number(slider.value) - value) > row.range.step)
+      const range = widened(row.range, value);
+      if (range !== row.range) {
+        row.range = range;
+        [slider.min, slider.max, slider.step] = [String(range.low), String(range.high), String(range.step)];
+      }
+      // Only what changes is written: a row costs layout, and there may be many.
+      if (document.activeElement !== field && field.value !== shown(value)) field.value = shown(value);
+      if (value === placed) return;
+      if (document.activeElement !== slider || Math.abs(Number(slider.value) - value) > row.range.step) {
         slider.value = String(value);
+        placed = value;
+      }
     },
   };
   slider.addEventListener('input', () => {
+    placed = null;
     field.value = shown(Number(slider.value));
     change(Number(slider.value), false);
   });
@@ -95,7 +104,7 @@ export class ValuesPanel {
     private readonly store: Store<State>,
     private readonly study: Study,
   ) {
-    store.watch(['equations', 'run', 'set', 'start', 'quick'], () => this.refresh());
+    store.watch(['equations', 'run', 'runTrouble', 'answered', 'set', 'start'], () => this.refresh());
   }
 
   private refresh(): void {
@@ -117,6 +126,9 @@ export class ValuesPanel {
     if (shape !== this.shape) this.build(parameters, equations.coordinates, shape);
     for (const p of parameters) this.showParameter(p);
     for (const c of equations.coordinates) this.showStart(c);
+    const still = betweenEnds(this.store.state);
+    byId('start-group').hidden = equations.coordinates.length === 0 || still;
+    byId('run-group').hidden = still && !inTime(this.store.state);
     const changed = Object.keys(this.store.state.set).length + Object.keys(this.store.state.start).length;
     for (const id of ['reset-values', 'apply-values']) byId<HTMLButtonElement>(id).disabled = changed === 0;
   }
@@ -127,7 +139,6 @@ export class ValuesPanel {
     this.parameters.replaceChildren(...parameters.map(p => this.parameterRow(p)));
     this.starts.replaceChildren(...coordinates.flatMap(c => [this.startRow(c, 0), this.startRow(c, 1)]));
     byId('no-parameters').hidden = parameters.length > 0;
-    byId('start-group').hidden = coordinates.length === 0;
   }
 
   private parameterRow(p: Parameter): HTMLElement {
@@ -168,11 +179,11 @@ export class ValuesPanel {
   }
 
   private showStart(c: Coordinate): void {
-    const {run, start, quick} = this.store.state;
+    const {run, runTrouble, answered, start} = this.store.state;
     for (const order of [0, 1]) {
       const name = order ? c.name + "'" : c.name,
         override = start[name],
-        met = run && !quick ? run.start[name] : undefined;
+        met = run && !runTrouble ? run.start[name] : undefined;
       const si = met ?? (order ? c.v : c.q),
         factor = inDegrees(c) && order === 0 ? degrees : 1;
       const own =
@@ -181,7 +192,9 @@ export class ValuesPanel {
           : override !== undefined
             ? Number.parseFloat(override) * factor
             : null;
-      this.rows.get(name)?.show(quick && own !== null ? own : si === null ? own : si * factor, override !== undefined);
+      // What the run met, where constraints moved it, is that of the values when it has come.
+      const asked = own !== null && (!answered || runTrouble !== null || si === null);
+      this.rows.get(name)?.show(asked ? own : si === null ? null : si * factor, override !== undefined);
     }
   }
 }

@@ -21,6 +21,14 @@ export interface ChartContent {
 const room = {left: 62, right: 14, top: 12, bottom: 40};
 const faces = `'STIX Two Text','Latin Modern Roman','Latin Modern Math',Cambria,'Times New Roman','DejaVu Serif',serif`;
 
+const reader = document.createElement('canvas').getContext('2d')!;
+
+/** Red, green and blue of any colour of a style sheet, 0 to 255: a canvas says it as #rrggbb. */
+export function channels(colour: string): number[] {
+  reader.fillStyle = colour;
+  return [1, 3, 5].map(i => parseInt(String(reader.fillStyle).slice(i, i + 2), 16));
+}
+
 /** Places of ticks with 1, 2 or 5 times a power of ten between them. */
 export function ticks(low: number, high: number, most: number): number[] {
   const raw = (high - low) / Math.max(1, most),
@@ -79,6 +87,7 @@ export class Chart {
   private readonly passed = document.createElement('canvas');
   private passedTo = 0; // row up to which `passed` is drawn
   private seen = true;
+  private unpainted = false; // what stays was not drawn, as nobody saw it
   private content: ChartContent = {curves: [], x: '', y: '', overTime: true};
   private range = {x: [0, 1] as [number, number], y: [0, 1] as [number, number]};
   private width = 0;
@@ -92,7 +101,8 @@ export class Chart {
     new ResizeObserver(() => this.fit()).observe(canvas);
     new IntersectionObserver(entries => {
       this.seen = entries.at(-1)!.isIntersecting;
-      if (this.seen) this.present(...this.lastPresent);
+      if (this.seen && this.unpainted) this.paintStill();
+      else if (this.seen) this.present(...this.lastPresent);
     }).observe(canvas);
     const seek = (event: PointerEvent): void => {
       if (!this.onSeek || !this.content.overTime || !(event.buttons & 1)) return;
@@ -143,7 +153,8 @@ export class Chart {
   private lastPresent: [number, number] = [0, 0];
 
   paintStill(): void {
-    if (this.width === 0) return;
+    this.unpainted = !this.seen;
+    if (this.width === 0 || !this.seen) return;
     const context = this.begin(this.still),
       colour = this.colours();
     this.paintAxes(context, colour);

@@ -2,7 +2,7 @@ import type {Clock} from '../clock';
 import type {RunAnswer} from '../contract';
 import {h} from '../dom';
 import {pretty, unitText} from '../panels/words';
-import {Chart, extent} from './chart';
+import {channels, Chart, extent} from './chart';
 
 /**
  * A field in motion: its values over the line it lives on, or as a map of the plane, at the moment that the clock
@@ -96,12 +96,7 @@ function map(values: Moments, across: number, upwards: number): MovingField {
     small = h('canvas', {width: across, height: upwards});
   let last = 0;
   const most = Math.max(Math.abs(values.range[0]), Math.abs(values.range[1])) || 1;
-  const colour = (name: string): number[] => {
-    const context = small.getContext('2d')!;
-    // any colour of a style sheet, as #rrggbb
-    context.fillStyle = getComputedStyle(canvas).getPropertyValue(name).trim();
-    return [1, 3, 5].map(i => parseInt(String(context.fillStyle).slice(i, i + 2), 16));
-  };
+  const colour = (name: string): number[] => channels(getComputedStyle(canvas).getPropertyValue(name));
   const present = (s: number): void => {
     last = s;
     const box = canvas.getBoundingClientRect(),

@@ -1,11 +1,12 @@
 import type {Clock} from '../clock';
 import type {RunAnswer} from '../contract';
 import {byId, h} from '../dom';
-import type {ChartSpec, State} from '../state';
+import type {ChartSpec, Pin, State} from '../state';
 import type {Store} from '../store';
 import {nearestRow} from '../study';
 import {pretty, unitText} from '../panels/words';
 import {movingFields, type MovingField} from './field';
+import {paintMaps} from './maps';
 import {Chart, type Curve} from './chart';
 
 const withUnitOf = (name: string, unit: string): string =>
@@ -88,9 +89,11 @@ export class PlotsPanel {
   }
 
   private figures(run: RunAnswer): HTMLElement[] {
-    return run.figures.map(({caption, svg}) =>
-      h('figure', {class: 'given'}, h('div', {html: svg}), h('figcaption', {}, caption)),
-    );
+    return run.figures.map(({caption, svg}) => {
+      const figure = h('figure', {class: 'given'}, h('div', {html: svg}), h('figcaption', {}, caption));
+      paintMaps(figure);
+      return figure;
+    });
   }
 
   private build(specs: ChartSpec[], run: RunAnswer): void {
@@ -192,14 +195,18 @@ export class PlotsPanel {
       overTime: !spec.against,
       marks: run.happenings.length <= 60 ? run.happenings.map(one => one.t) : [],
     });
-    const names = spec.columns.map((name, i) => h('span', {class: `key s${(i % 7) + 1}`}, pretty(name)));
-    const ghosts = pinned.map(pin => h('span', {class: `key faint s${pin.series + 1}`}, pin.label));
-    caption.replaceChildren(...names, ...ghosts);
+    if (pinned.length > 0 || caption.childElementCount !== spec.columns.length) this.name(spec, pinned, caption);
     canvas.setAttribute(
       'aria-label',
       `${spec.columns.map(pretty).join(', ')} over ${pretty(spec.against ?? run.independent.name)}` +
         (pinned.length ? `, with ${pinned.length} pinned` : ''),
     );
+  }
+
+  private name(spec: ChartSpec, pinned: Pin[], caption: HTMLElement): void {
+    const names = spec.columns.map((name, i) => h('span', {class: `key s${(i % 7) + 1}`}, pretty(name)));
+    const ghosts = pinned.map(pin => h('span', {class: `key faint s${pin.series + 1}`}, pin.label));
+    caption.replaceChildren(...names, ...ghosts);
   }
 
   private present(): void {

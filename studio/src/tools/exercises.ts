@@ -3,7 +3,7 @@ import type {State} from '../state';
 import type {Store} from '../store';
 import type {Study} from '../study';
 import {dialog} from './dialog';
-import {exercises} from './files';
+import {exercises, type FileTools} from './files';
 import type {Storage_} from './storage';
 
 /** Notes before the model ask; those behind it comment on the answer. */
@@ -23,6 +23,7 @@ export class Exercises {
     private readonly store: Store<State>,
     private readonly study: Study,
     private readonly storage: Storage_,
+    private readonly files: FileTools,
   ) {
     this.solved = new Set((storage.setting('solved') ?? '').split(' ').filter(Boolean));
     byId('exercises-button').addEventListener('click', () => this.list());
@@ -57,7 +58,7 @@ export class Exercises {
                     type: 'button',
                     onclick: () => {
                       box.close();
-                      this.begin(one.name, one.title, one.text);
+                      void this.begin(one.name, one.title, one.text);
                     },
                   },
                   one.title,
@@ -73,7 +74,8 @@ export class Exercises {
     );
   }
 
-  private begin(name: string, title: string, text: string): void {
+  private async begin(name: string, title: string, text: string): Promise<void> {
+    if (!(await this.files.mayLeave())) return;
     this.current = name;
     this.study.load({text, name});
     const {question, comments: said} = notesIn(text);
@@ -92,7 +94,7 @@ export class Exercises {
       {
         onsubmit: (event: Event) => {
           event.preventDefault();
-          void this.judge(field.value, verdict, () =>
+          void this.judge(name, field.value, verdict, () =>
             comments.replaceChildren(...said.map(hint => h('p', {class: 'note'}, ...prose(hint))), this.next(name)),
           );
         },
@@ -122,7 +124,7 @@ export class Exercises {
     const all = exercises(),
       next = all[all.findIndex(one => one.name === name) + 1];
     if (!next) return h('p', {}, 'That was the last one.');
-    const go = (): void => this.begin(next.name, next.title, next.text);
+    const go = (): void => void this.begin(next.name, next.title, next.text);
     return h('p', {}, h('button', {type: 'button', onclick: go}, `Next: ${next.title}`));
   }
 
@@ -132,7 +134,7 @@ export class Exercises {
     byId('exercise')?.remove();
   }
 
-  private async judge(text: string, verdict: HTMLElement, right: () => void): Promise<void> {
+  private async judge(name: string, text: string, verdict: HTMLElement, right: () => void): Promise<void> {
     verdict.replaceChildren(h('p', {class: 'muted'}, 'It is checked …'));
     const answer = await this.study.claim(text);
     if (!answer.ok) {
@@ -182,7 +184,7 @@ export class Exercises {
         ),
       );
     verdict.replaceChildren(h('div', {class: 'message right'}, h('p', {class: 'what'}, '✓ Right.')));
-    if (this.current) this.solved.add(this.current);
+    this.solved.add(name);
     this.storage.setSetting('solved', [...this.solved].join(' '));
     right();
   }

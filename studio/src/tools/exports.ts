@@ -1,8 +1,9 @@
 import type {Answer, ExportAnswer} from '../contract';
 import {download, h} from '../dom';
+import {fileOf} from '../lines';
 import type {State} from '../state';
 import type {Store} from '../store';
-import type {Study} from '../study';
+import {betweenEnds, type Study} from '../study';
 import {dialog} from './dialog';
 
 const kinds: [string, string, string][] = [
@@ -54,7 +55,8 @@ export function exportDialog(store: Store<State>, study: Study): void {
     download(answer.name, answer.type, content as BlobPart);
     study.say(`${answer.name} is in your downloads.`);
   };
-  const entries = kinds.map(([what, title, detail]) =>
+  const still = betweenEnds(store.state);
+  const entries = kinds.filter(([what]) => !still || what === 'latex').map(([what, title, detail]) =>
     h('li', {}, h('button', {type: 'button', onclick: () => void make(what)}, title, h('small', {}, detail))),
   );
   const own = h(
@@ -66,7 +68,7 @@ export function exportDialog(store: Store<State>, study: Study): void {
         type: 'button',
         onclick: () => {
           box.close();
-          download(`${store.state.name}.lag`, 'text/plain', store.state.text);
+          download(`${store.state.name}.lag`, 'text/plain', fileOf(store.state));
         },
       },
       'Model text',

@@ -1,6 +1,7 @@
 import models from 'virtual:models';
-import type {Carrier, Files} from '../carriers/carrier';
+import type {Carrier, Files, StoredFile} from '../carriers/carrier';
 import {byId, download, h} from '../dom';
+import {endsAlike, fileOf, linesOf, type Lines} from '../lines';
 import type {State} from '../state';
 import type {Store} from '../store';
 import type {Study} from '../study';
@@ -32,7 +33,7 @@ export class FileTools {
     this.files = carrier.files;
     byId('open-button').addEventListener('click', () => void this.open());
     byId('save-button').addEventListener('click', () => void this.save());
-    store.watch(['name', 'origin', 'text', 'storage'], () => this.title());
+    store.watch(['name', 'origin', 'text', 'saved', 'storage'], () => this.title());
     document.addEventListener('dragover', event => {
       if (event.dataTransfer?.types.includes('Files')) event.preventDefault();
     });
@@ -45,23 +46,18 @@ export class FileTools {
   }
 
   private title(): void {
-    const {origin, name, text, storage} = this.store.state;
+    const {origin, name, text, saved, storage} = this.store.state;
     byId('document-name').textContent = origin?.path ?? name;
-    byId('document-state').textContent = origin
-      ? text === origin.saved
-        ? ''
-        : ' – changed'
-      : storage
-        ? ''
-        : ' – not kept: this browser has no storage';
+    byId('document-state').textContent =
+      origin || storage ? (text === saved ? '' : ' – changed') : ' – not kept: this browser has no storage';
   }
 
-  /** Whether what is changed may be left. */
-  private async mayLeave(): Promise<boolean> {
-    const {origin, text} = this.store.state;
-    if (!origin || origin.saved === text) return true;
+  /** Whether what is changed may be left: another model takes the place of the text, and no undo brings it back. */
+  async mayLeave(): Promise<boolean> {
+    const {origin, name, text, saved} = this.store.state;
+    if (saved === text) return true;
     const way = await choose(
-      `${origin.path} has changes`,
+      `${origin?.path ?? name} has changes`,
       ['They are in this page only.'],
       [
         ['Save them', 'save'],
@@ -168,7 +164,12 @@ export class FileTools {
     if (!(await this.mayLeave())) return;
     const text = await file.text();
     if (text.includes('\0')) return this.study.say(`${file.name} is no text.`, true);
-    this.study.load({text, name: file.name.replace(/\.lag$/, '')});
+    this.study.load({...linesOf(text), name: file.name.replace(/\.lag$/, '')});
+    if (!endsAlike(text)) this.tellEnds(file.name);
+  }
+
+  private tellEnds(name: string): void {
+    this.study.say(`The lines of ${name} end in several ways. Saved, they all end as most of them do.`);
   }
 
   async read(path: string): Promise<boolean> {
@@ -180,20 +181,23 @@ export class FileTools {
     }
     this.study.load({
       text: file.text,
+      ends: file.ends,
       name: path
         .split('/')
         .pop()!
         .replace(/\.lag$/, ''),
-      origin: {path, version: file.version, saved: file.text},
+      origin: {path, version: file.version},
     });
+    if (!file.alike) this.tellEnds(path);
     return true;
   }
 
   /** Into its file where there is a server, else as a download. */
   async save(): Promise<boolean> {
-    const {text, name, origin} = this.store.state;
+    const {text, ends, name, origin} = this.store.state;
     if (!this.files) {
-      download(`${name}.lag`, 'text/plain', text);
+      download(`${name}.lag`, 'text/plain', fileOf({text, ends}));
+      this.store.update({saved: text});
       this.study.say(`Downloaded as ${name}.lag.`);
       return true;
     }
@@ -203,18 +207,19 @@ export class FileTools {
       if (!path) return false;
       if (!path.endsWith('.lag')) path += '.lag';
     }
-    return this.write(path, text, origin?.path === path ? origin.version : null);
+    return this.write(path, {text, ends}, origin?.path === path ? origin.version : null);
   }
 
-  private async write(path: string, text: string, version: string | null): Promise<boolean> {
-    const saved = await this.files!.write(path, text, version);
+  private async write(path: string, lines: Lines, version: string | null): Promise<boolean> {
+    const saved = await this.files!.write(path, lines, version);
     if (saved.saved === null) {
       this.study.say(`${saved.trouble.message} ${saved.trouble.reason} ${saved.trouble.help}`, true);
       return false;
     }
     if (saved.saved) {
       this.store.update({
-        origin: {path, version: saved.version, saved: text},
+        origin: {path, version: saved.version},
+        saved: lines.text,
         name: path
           .split('/')
           .pop()!
@@ -223,15 +228,15 @@ export class FileTools {
       this.study.say(`Saved as ${path}.`);
       return true;
     }
-    return this.conflict(path, text, saved.theirs);
+    return this.conflict(path, lines, saved.theirs);
   }
 
   /** Somebody else wrote the file meanwhile: both texts are shown, and nothing is lost. */
-  private async conflict(path: string, mine: string, theirs: {text: string; version: string}): Promise<boolean> {
+  private async conflict(path: string, mine: Lines, theirs: StoredFile): Promise<boolean> {
     const both = h(
       'div',
       {class: 'both'},
-      h('section', {}, h('h3', {}, 'In this page'), h('pre', {tabindex: 0}, mine)),
+      h('section', {}, h('h3', {}, 'In this page'), h('pre', {tabindex: 0}, mine.text)),
       h('section', {}, h('h3', {}, 'In the file'), h('pre', {tabindex: 0}, theirs.text)),
     );
     const way = await choose(
@@ -246,7 +251,7 @@ export class FileTools {
     if (way === 'mine') return this.write(path, mine, theirs.version);
     if (way === 'theirs') {
       this.study.edit(theirs.text);
-      this.store.update({origin: {path, version: theirs.version, saved: theirs.text}});
+      this.store.update({origin: {path, version: theirs.version}, saved: theirs.text, ends: theirs.ends});
       this.study.say("Undo brings this page's text back.");
       return true;
     }

@@ -1,3 +1,5 @@
+import {linesOf} from '../lines';
+
 /** What a link holds. It stands behind #, which no browser sends anywhere. */
 export interface Shared {
   text: string;
@@ -33,7 +35,7 @@ export async function decodeShared(code: string): Promise<Shared | null> {
     const shared = JSON.parse(text) as Partial<Shared> | null;
     if (!shared || typeof shared.text !== 'string') return null;
     return {
-      text: shared.text,
+      text: linesOf(shared.text).text,
       set: words(shared.set),
       start: words(shared.start),
       name: typeof shared.name === 'string' ? shared.name.slice(0, 80) : undefined,

@@ -1,4 +1,6 @@
-/** What the page keeps in the browser, if the browser lets it. */
+import type {Ends} from '../lines';
+
+/** What the page keeps in the browser, if the browser lets it. `saved`: as in the state. */
 export interface Draft {
   text: string;
   name: string;
@@ -7,26 +9,31 @@ export interface Draft {
   path: string | null;
   version: string;
   saved: string;
+  ends?: Ends; // a draft of before has none
   at: number;
 }
 
 const prefix = 'maupertuis-studio-draft-',
+  tabKey = 'maupertuis-studio-tab',
   most = 8; // tabs whose texts are kept
 
-/** Each tab has its own: two of them do not write over each other. A reload keeps the name. */
-function tabName(): string {
-  try {
-    const name = sessionStorage.getItem('maupertuis-studio-tab') ?? String(Math.random()).slice(2);
-    sessionStorage.setItem('maupertuis-studio-tab', name);
-    return name;
-  } catch {
-    return 'one';
-  }
+const anotherName = (): string => String(Math.random()).slice(2);
+
+/** Holds a name for as long as this page lives; false where another page holds it. */
+function hold(name: string): Promise<boolean> {
+  return new Promise(resolve => {
+    const held = (lock: Lock | null): Promise<void> | undefined => {
+      resolve(lock !== null);
+      return lock ? new Promise(() => {}) : undefined;
+    };
+    navigator.locks.request(`${tabKey}-${name}`, {ifAvailable: true}, held).catch(() => resolve(true));
+  });
 }
 
 export class Storage_ {
   readonly works: boolean;
-  private readonly tab = tabName();
+  private tab = anotherName(); // the name of this tab: it writes under this
+  private former = this.tab; // the name that it came with: it reads what stands there
 
   constructor() {
     let works = false;
@@ -40,10 +47,28 @@ export class Storage_ {
     this.works = works;
   }
 
+  /**
+   * Each tab has a name, so that two of them do not write over each other's text. A reload keeps it. A copy of a tab
+   * comes with the name of the other, which holds it: the copy reads the text and takes a name of its own.
+   */
+  async begin(): Promise<void> {
+    try {
+      const name = sessionStorage.getItem(tabKey) ?? this.tab;
+      this.former = name;
+      if (!navigator.locks || (await hold(name))) this.tab = name;
+      else await hold(this.tab);
+      sessionStorage.setItem(tabKey, this.tab);
+    } catch {
+      /* a browser without storage: nothing is kept */
+    }
+  }
+
   /** What this tab had, else what was written last in any. */
   read(): Draft | null {
-    const own = this.draft(prefix + this.tab);
-    return own ?? this.drafts()[0]?.draft ?? null;
+    return this.own() ?? this.drafts()[0]?.draft ?? null;
+  }
+  own(): Draft | null {
+    return this.draft(prefix + this.former);
   }
 
   private draft(key: string): Draft | null {

@@ -7,6 +7,7 @@ import {mkdtempSync, rmSync, existsSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join, resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
+import {flags} from '../../chromium.mjs';
 
 const [writer, ...others] = process.argv.slice(2);
 const folder = mkdtempSync(join(tmpdir(), 'maup-browser-'));
@@ -29,10 +30,9 @@ function findChromium() {
 
 class Browser {
   constructor() {
-    const flags = ['--headless', '--no-sandbox', '--disable-gpu', '--no-first-run', '--disable-background-networking',
-                   '--disable-component-update', '--disable-sync', '--disable-dev-shm-usage', '--mute-audio',
-                   '--remote-debugging-pipe', `--user-data-dir=${join(folder, 'profile')}`, 'about:blank'];
-    this.process = spawn(findChromium(), flags, {stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe']});
+    const own = ['--headless', '--mute-audio', '--remote-debugging-pipe', `--user-data-dir=${join(folder, 'profile')}`];
+    this.process = spawn(findChromium(), [...flags, ...own, 'about:blank'],
+                         {stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe']});
     this.next = 1;
     this.waiting = new Map();
     this.listeners = [];

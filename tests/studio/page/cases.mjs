@@ -2,30 +2,7 @@
 import {readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {axe, check, gripNear, root, settled} from './harness.mjs';
-
-const setSlider = (page, name, value, rest = true) =>
-  page.locator(`.value[data-name="${name}"] input[type=range]`).evaluate(
-    (slider, [x, rests]) => {
-      slider.value = x;
-      slider.dispatchEvent(new Event('input', {bubbles: true}));
-      if (rests) slider.dispatchEvent(new Event('change', {bubbles: true}));
-    },
-    [String(value), rest],
-  );
-const field = (page, name) => page.locator(`.value[data-name="${name}"] input[type=number]`).inputValue().then(Number);
-const typeAtEnd = async (page, text) => {
-  await page.locator('.cm-content').click();
-  await page.keyboard.press('Control+End');
-  await page.keyboard.insertText(text);
-};
-const text = page =>
-  page
-    .locator('.cm-content')
-    .evaluate(
-      content =>
-        content.cmTile?.view?.state.doc.toString() ?? content.cmView?.view?.state.doc.toString() ?? content.innerText,
-    );
-const energies = page => page.locator('#conserved-body .drift').first().innerText();
+import {energies, field, setSlider, text, toExample, typeAtEnd} from './steps.mjs';
 
 export const cases = {
   async typing({open}, variant, picture) {
@@ -499,6 +476,8 @@ export const cases = {
     await page.waitForFunction(() => document.querySelector('#stage-trouble .message') !== null, null, {
       timeout: 60_000,
     });
+    const told = await page.locator('#stage-trouble').innerText();
+    check('why it ends, and what helps', /not finished|not come within/.test(told) && /shorter|less/.test(told), told);
     await page.locator('#duration').fill('');
     await page.keyboard.press('Enter');
     await page.waitForFunction(() => document.querySelector('#stage-trouble .message') === null, null, {
@@ -566,11 +545,7 @@ export const cases = {
       'monopole',
       'kepler',
     ]) {
-      await page.evaluate(one => {
-        document.body.dataset.settled = 'false';
-        location.hash = `#example=${one}`;
-      }, name);
-      await settled(page);
+      await toExample(page, name);
       const before = await page.locator('#messages .message.error').count();
       await page
         .locator('#parameters .value')
@@ -718,7 +693,7 @@ export const cases = {
   async 'colours are those of reports'() {
     const html = readFileSync(join(root, 'src/report/html.cpp'), 'utf8'),
       style = readFileSync(join(root, 'src/plot/style.cpp'), 'utf8');
-    const own = readFileSync(join(root, 'studio/src/colours.css'), 'utf8').replaceAll(' ', '');
+    const own = readFileSync(join(root, 'studio/src/style/colours.css'), 'utf8').replaceAll(' ', '');
     const themes = html
       .match(/color-scheme:(?:dark|light);[^"]*"\s*(?:"[^"]*"\s*)*/g)
       .map(part => part.replace(/"\s*"?/g, ''));

@@ -6,20 +6,12 @@ import {createServer} from 'node:http';
 import {createRequire} from 'node:module';
 import {tmpdir} from 'node:os';
 import {extname, join, resolve} from 'node:path';
+import {flags} from '../../chromium.mjs';
 
 export const root = resolve(import.meta.dirname, '../../..');
 const require = createRequire(join(root, 'studio/package.json'));
 const {chromium} = require('playwright-core');
 const axeSource = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
-// Chromium's own requests (updates, sync) are no business of a test.
-const flags = [
-  '--no-sandbox',
-  '--disable-gpu',
-  '--disable-background-networking',
-  '--disable-component-update',
-  '--disable-sync',
-  '--no-first-run',
-];
 
 export let failures = 0,
   checks = 0;

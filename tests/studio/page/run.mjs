@@ -3,8 +3,12 @@
 //   node run.mjs static FOLDER [CASE…]         from a static folder with the core as WebAssembly
 // STUDIO_PICTURES names a folder for screenshots.
 import {resolve} from 'node:path';
+import {answers} from './answers.mjs';
+import {carriers} from './carriers.mjs';
 import {cases} from './cases.mjs';
 import {check, checks, failures, openBrowser, pictures, serverVariant, staticVariant} from './harness.mjs';
+import {kinds} from './kinds.mjs';
+import {texts} from './texts.mjs';
 
 const [kind, ...words] = process.argv.slice(2);
 const variant =
@@ -15,7 +19,7 @@ const wanted = words.slice(kind === 'server' ? 2 : 1),
   picture = pictures(process.env.STUDIO_PICTURES);
 const browser = await openBrowser(variant);
 try {
-  for (const [name, run] of Object.entries(cases)) {
+  for (const [name, run] of Object.entries({...cases, ...texts, ...answers, ...carriers, ...kinds})) {
     if (wanted.length > 0 && !wanted.includes(name)) continue;
     const begin = Date.now(),
       before = failures;

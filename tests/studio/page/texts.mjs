@@ -1,0 +1,160 @@
+// Texts that come, go and are kept: each a case as in cases.mjs.
+import {readFileSync, writeFileSync} from 'node:fs';
+import {join} from 'node:path';
+import {check, root, settled} from './harness.mjs';
+import {field, leave, setSlider, text, toExample, typeAtEnd} from './steps.mjs';
+
+const model = name => readFileSync(join(root, `models/${name}.lag`), 'utf8');
+const undo = async (page, times) => {
+  await page.locator('.cm-content').click();
+  for (let i = 0; i < times; ++i) await page.keyboard.press('Control+z');
+};
+const openFile = async (page, name) => {
+  await page.locator('#open-button').click();
+  await page
+    .locator('dialog li button', {hasText: new RegExp(`^${name}`)})
+    .first()
+    .click();
+  await settled(page);
+};
+
+export const texts = {
+  async 'undo stays in its model'({open}) {
+    const page = await open({hash: '#example=pendulum'});
+    await typeAtEnd(page, '\n# mine');
+    await settled(page);
+    await toExample(page, 'kepler');
+    await undo(page, 3);
+    check('undo does not lead into the model before', (await text(page)) === model('kepler'));
+    await typeAtEnd(page, '\n# more');
+    await undo(page, 3);
+    check('what was typed is undone', (await text(page)) === model('kepler'));
+    await settled(page);
+
+    // Values that the page writes into the text are of this model, and are undone.
+    await setSlider(page, 'm', 2);
+    await settled(page);
+    await page.locator('#apply-values').click();
+    await settled(page);
+    check('values are written', (await text(page)) !== model('kepler'));
+    await undo(page, 1);
+    check('and undone', (await text(page)) === model('kepler'));
+    await settled(page);
+
+    await page.locator('#exercises-button').click();
+    await page.locator('dialog ol li button').first().click();
+    await page.waitForSelector('#exercise');
+    await settled(page);
+    const exercise = await text(page);
+    await undo(page, 3);
+    check('nor from an exercise', (await text(page)) === exercise);
+    await page.context().close();
+  },
+
+  async 'ends of lines'({open}, variant) {
+    if (!variant.folder) return;
+    const file = join(variant.folder, 'pendulum.lag'),
+      original = readFileSync(file, 'utf8'),
+      ended = original.replaceAll('\n', '\r\n'),
+      read = () => readFileSync(file, 'utf8');
+    writeFileSync(file, ended);
+    const page = await open();
+    await openFile(page, 'pendulum.lag');
+    check('it is not changed by reading', (await page.locator('#document-state').innerText()) === '');
+    check('words are coloured', (await page.locator('.cm-content .tok-coordinate').count()) > 0);
+    await page.keyboard.press('Control+s');
+    await page.waitForFunction(() => /Saved/.test(document.querySelector('#word').textContent));
+    check('saved as it was, it is the same to the byte', read() === ended);
+    await typeAtEnd(page, 'let W = m g missing');
+    await page.waitForSelector('.cm-lintRange-error');
+    check(
+      'a mistake is underlined where it stands',
+      (await page.locator('.cm-lintRange-error').allInnerTexts()).join() === 'missing',
+      await page.locator('.cm-lintRange-error').allInnerTexts(),
+    );
+    await undo(page, 1);
+    await typeAtEnd(page, '# one\n# two\n');
+    await settled(page);
+    await page.keyboard.press('Control+s');
+    await page.waitForFunction(() => document.querySelector('#document-state').textContent === '');
+    check('new lines end as the others do', read() === `${ended}# one\r\n# two\r\n`, JSON.stringify(read().slice(-60)));
+    await typeAtEnd(page, '# kept');
+    await page.waitForTimeout(700);
+    await page.reload();
+    await settled(page);
+    await page.keyboard.press('Control+s');
+    await page.waitForFunction(() => document.querySelector('#document-state').textContent === '');
+    check('a reload knows how they end', read() === `${ended}# one\r\n# two\r\n# kept`, JSON.stringify(read().slice(-60)));
+
+    writeFileSync(file, original.replace('\n', '\r\n'));
+    await openFile(page, 'pendulum.lag');
+    await page.waitForFunction(() => /end in several ways/.test(document.querySelector('#word').textContent));
+    writeFileSync(file, original);
+    await page.context().close();
+  },
+
+  async 'a copy of a tab'({open}) {
+    const one = await open({hash: '#example=pendulum'});
+    await typeAtEnd(one, '\n# both');
+    await one.waitForTimeout(700);
+    // A window that a page opens comes with a copy of its sessionStorage, as a duplicated tab does.
+    const [two] = await Promise.all([
+      one.context().waitForEvent('page'),
+      one.evaluate(() => void window.open(location.href)),
+    ]);
+    await settled(two);
+    check('the copy has the text', (await text(two)).endsWith('# both'));
+    await typeAtEnd(one, '\n# first tab');
+    await typeAtEnd(two, '\n# second tab');
+    await one.waitForTimeout(700);
+    const kept = await one.evaluate(() =>
+      Object.entries(localStorage).flatMap(([key, value]) => (key.includes('draft') ? [JSON.parse(value).text] : [])),
+    );
+    for (const [tab, mark] of [
+      [one, '# both\n# first tab'],
+      [two, '# both\n# second tab'],
+    ]) {
+      check(`the texts of both are kept: ${mark}`, kept.some(draft => draft.endsWith(mark)), kept.map(x => x.slice(-40)));
+      await tab.reload();
+      await settled(tab);
+      check(`each keeps its own text: ${mark}`, (await text(tab)).endsWith(mark), (await text(tab)).slice(-60));
+    }
+    await one.context().close();
+  },
+
+  async 'a link asks'({open}, variant) {
+    const page = await open({hash: '#example=pendulum'}),
+      follow = hash => page.evaluate(to => void (location.hash = to), hash),
+      asked = () => page.waitForSelector('dialog[open]');
+    await setSlider(page, 'l', 0.7);
+    await settled(page);
+    await page.locator('#share-button').click();
+    await page.waitForFunction(() => location.hash.startsWith('#m='));
+    const link = new URL(page.url()).hash;
+    await page.locator('#reset-values').click();
+    await typeAtEnd(page, '\n# mine');
+    await settled(page);
+    for (const hash of [link, '#example=kepler']) {
+      await follow(hash);
+      await asked();
+      await page.keyboard.press('Escape');
+      await page.waitForFunction(() => location.hash === '');
+      check(`${hash.slice(0, 9)}: the text stays`, (await text(page)).endsWith('# mine'));
+    }
+    // A link in the place of the page, as typed into the address of the tab and then opened anew.
+    await page.waitForTimeout(500);
+    await page.goto('about:blank');
+    await page.goto(variant.base + link);
+    await asked();
+    check('what is changed stands there', (await text(page)).endsWith('# mine'));
+    await leave(page);
+    await page.waitForFunction(() => !document.querySelector('.cm-content').innerText.includes('# mine'));
+    await settled(page);
+    check('then the link is opened', (await field(page, 'l')) === 0.7);
+    await follow('#example=kepler');
+    await settled(page);
+    await page.waitForFunction(() => document.querySelector('.cm-content').innerText.includes('system kepler'));
+    check('nothing is asked where nothing is changed', (await page.locator('dialog[open]').count()) === 0);
+    await page.context().close();
+  },
+};
