@@ -125,7 +125,7 @@ Particles bodies(int count) {
       v.push_back(within(0.3));
     }
   return gravitating(fmt::format("{} bodies in space", count), "xyz", 1, Numbers(static_cast<std::size_t>(count), 1.0),
-                     q, v, count <= 8 ? 3 : 0.5);
+                     q, v, count <= 8 ? 3 : 2);
 }
 
 Particles lennard_jones() {

@@ -48,7 +48,7 @@ void ResidualTerms::set_constants(const double* constants) {
 }
 
 void ResidualTerms::find_left_out(double h, int order, std::uint32_t without) {
-  constexpr double most_of_radius = 0.5;
+  constexpr double most_of_radius = 0.5 * (1 + 1e-12);  // radii are products of roots of 2
   weights_.clear();
   for (std::size_t disk = 0; disk < radii_.size(); ++disk) {
     const double x = h / radii_[disk];

@@ -10,6 +10,11 @@
 #include <utility>
 
 namespace maupertuis::lowering {
+namespace {
+
+constexpr std::int64_t most_halves = 32;  // beyond, products cost more than a power of its own
+
+}  // namespace
 
 Lowering::Lowering(const KernelSource& source) {
   for (const Expr& q : source.coordinates)
@@ -156,6 +161,15 @@ Scaled Lowering::integer_power(Scaled base, std::int64_t exponent) {
   return result;
 }
 
+/// base^(n/2) by roots, products and one division, which are carried out side by side; a power of its own is not. So
+/// r^(−3) of many pairs of bodies, 1/(r² √r²), costs as little as their distances.
+Scaled Lowering::half_power(Scaled base, std::int64_t halves) {
+  const std::int64_t size = std::abs(halves);
+  Scaled above = integer_power(base, size / 2);
+  if (size % 2 != 0) above = multiply({above, graph.scaled(graph.unary(Op::SquareRoot, graph.node_of(base)))});
+  return halves > 0 ? above : divide(constant(graph.constants.literal(1)), above);
+}
+
 Scaled Lowering::power(Expr e) {
   const Scaled base = of(e[0]), exponent = of(e[1]);
   if (!exponent.is_constant())  // x^y = exp(y log x)
@@ -163,9 +177,11 @@ Scaled Lowering::power(Expr e) {
   const Rational* number = graph.constants.literal_or_null(exponent.coefficient);
   const auto integer = number ? number->as_integer() : std::nullopt;
   if (integer && *integer >= 0) return integer_power(base, *integer);
-  if (integer && *integer == -1) return divide(constant(graph.constants.literal(1)), base);
   if (!number || number->sign() > 0)
     if (const auto apart = power_of_choices(base, exponent.coefficient)) return *apart;
+  if (number)
+    if (const auto halves = (*number * Rational(2)).as_integer(); halves && std::abs(*halves) <= most_halves)
+      return half_power(base, *halves);
   return plain_power(base, exponent.coefficient);
 }
 

@@ -30,6 +30,7 @@ class Lowering {
   Scaled divide(Scaled numerator, Scaled denominator);
   Scaled power(Expr e);
   Scaled plain_power(Scaled base, ConstantId exponent);
+  Scaled half_power(Scaled base, std::int64_t halves);
   Scaled integer_power(Scaled base, std::int64_t exponent);
   Scaled function(Kind kind, Scaled argument);
   /// y = f(u) with dy = f'(u) du, where f' may be written with y.

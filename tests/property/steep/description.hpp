@@ -43,6 +43,7 @@ enum class Shape {
   Plummer,     // -1/sqrt(ρ + 1)
   RoundRoot,   // sqrt(ρ + 1)
   RoundPen,    // piecewise(ρ < 1 : 0, else : (sqrt(ρ) - 1)^2)
+  Core,        // ρ^(-n)                                      extra: n, a multiple of 1/2
 };
 
 enum class Role { Potential, Dissipation, Force };
@@ -96,7 +97,8 @@ struct Description {
 
 /// The text of the model.
 std::string text_of(const Description& d, const std::string& name);
-/// A random one: the same for the same number.
+/// A random one: the same for the same number; from `first_core` on bodies that meet cores.
+inline constexpr unsigned long long first_core = 1'000'000'000'000;
 Description random_description(unsigned long long number);
 
 }  // namespace steep

@@ -13,6 +13,12 @@ class Maker {
  public:
   explicit Maker(unsigned long long number) : random_(number * 0x9e3779b97f4a7c15ull + 1) {}
 
+  Description make_core() {
+    d_.units = chance(0.25);
+    cores();
+    return d_;
+  }
+
   Description make() {
     d_.units = chance(0.25);
     switch (whole(0, 4)) {
@@ -255,6 +261,34 @@ class Maker {
     }
   }
 
+  // ---- cores ----
+
+  /// A body in the plane, aimed at one to three cores far away or near, of any hardness and strength, that attract or
+  /// repel: what it meets shows in nothing that it does before.
+  void cores() {
+    d_.kind = "cores";
+    masses(2);
+    d_.coupling = Coupling::None;
+    const double v = uniform(0.3, 2);
+    double farthest = 0;
+    for (int k = whole(1, 3); k > 0; --k) {
+      constexpr double exponents[] = {0.5, 0.5, 1, 1.5, 3, 6, 12};
+      const double exponent = exponents[whole(0, 6)], width = by_ratio(0.003, 0.3), distance = by_ratio(0.7, 12);
+      const bool attracts = exponent == 0.5 && chance(0.6);
+      Term& term = add(Shape::Core, Role::Potential, attracts ? -by_ratio(0.3, 30) : by_ratio(1e-6, 3));
+      term.of_q[0] = term.of_q[1] = 1;
+      term.extra = number(exponent);
+      term.width = number(width);
+      term.centre[0] = number(distance);
+      term.centre[1] = number((attracts ? sign() * uniform(0.5, 4) : uniform(-1.5, 1.5)) * width);
+      farthest = std::max(farthest, distance);
+    }
+    if (chance(0.3)) oscillator(0, 0.01, 0.1);
+    if (chance(0.3)) oscillator(1);
+    d_.v[0] = number(v);
+    d_.duration = number(farthest / v * uniform(1.2, 2));
+  }
+
   // ---- pulses ----
 
   void pulse(int target) {
@@ -390,6 +424,8 @@ class Maker {
 
 }  // namespace
 
-Description random_description(unsigned long long number) { return Maker(number).make(); }
+Description random_description(unsigned long long number) {
+  return number >= first_core ? Maker(number).make_core() : Maker(number).make();
+}
 
 }  // namespace steep

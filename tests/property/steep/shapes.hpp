@@ -191,6 +191,10 @@ Real slope(Shape shape, const Real& u, const Real& extra, const bool* bit) {
       return 1 / (2 * sqrt(u + 1));
     case Shape::RoundPen:
       return bit[0] ? Real(1 - 1 / sqrt(u)) : Real(0);
+    case Shape::Core: {
+      const int halves = static_cast<int>(std::lround(2 * static_cast<double>(extra)));
+      return -extra / (power(u, halves / 2 + 1) * (halves % 2 == 0 ? Real(1) : Real(sqrt(u))));
+    }
     default:
       throw std::logic_error("a shape that is no energy");
   }
@@ -216,6 +220,7 @@ inline double spacing(Shape shape, double u, double extra) {
     case Shape::Power:
       return std::max(0.5 / extra, 0.25 * (1 - distance));
     case Shape::LennardJones:
+    case Shape::Core:
       return 0.15 * distance;
     case Shape::Comb: {
       const double to_peak = std::abs(std::remainder(u, 2 * pi));

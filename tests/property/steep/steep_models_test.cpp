@@ -25,7 +25,7 @@ unsigned long long from_environment(const char* name, unsigned long long otherwi
 }
 
 /// Classes of which not one may be wrong. Of the others the table tells.
-const std::set<std::string> hold = {"walls", "pulses", "layers", "switches", "mixed"};
+const std::set<std::string> hold = {"walls", "pulses", "layers", "switches", "mixed", "cores"};
 
 struct Count {
   std::array<int, 5> of{};  // by verdict
@@ -86,10 +86,7 @@ class Session {
   std::string told_;
 };
 
-}  // namespace
-
-TEST_CASE("random steep models: no wrong number without a word") {
-  const auto count = from_environment("STEEP_COUNT", 100), first = from_environment("STEEP_FIRST", 1);
+void check_models(unsigned long long first, unsigned long long count) {
   Session session;
   session.run(first, count, static_cast<unsigned>(from_environment("STEEP_THREADS", 2)));
   fmt::print("{}", session.table());
@@ -105,4 +102,15 @@ TEST_CASE("random steep models: no wrong number without a word") {
   }
   // The reference judges nearly all: too sensitive ones are rare.
   CHECK(judged >= static_cast<int>(count) * 9 / 10);
+}
+
+}  // namespace
+
+TEST_CASE("random steep models: no wrong number without a word") {
+  const auto count = from_environment("STEEP_COUNT", 100), first = from_environment("STEEP_FIRST", 1);
+  check_models(first, count);
+}
+
+TEST_CASE("random cores: no wrong number without a word") {
+  check_models(first_core + from_environment("STEEP_FIRST", 1), from_environment("STEEP_COUNT", 60));
 }

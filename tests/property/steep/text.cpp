@@ -173,6 +173,8 @@ class Writer {
         return fmt::format("sqrt({} + 1)", u);
       case Shape::RoundPen:
         return fmt::format("piecewise({0} < 1 : 0, else : (sqrt({0}) - 1)^2)", u);
+      case Shape::Core:
+        return fmt::format("({})^(-{})", u, term.extra.text);
     }
     throw std::logic_error("a shape without words");
   }

@@ -49,6 +49,8 @@ TEST_CASE("each term of a row is bounded on the disk that bounds it best, with i
   CHECK(a.rows->left_out(0) == doctest::Approx(5 * weight(1, 4) + 2 * 11 * weight(1, 3)).epsilon(1e-12));
   a.rows->find_left_out(1, order, 0b01);  // without the first
   CHECK(a.rows->left_out(0) == doctest::Approx((5 * 7 + 2 * 11) * weight(1, 3)).epsilon(1e-12));
+  a.rows->find_left_out(1.5 * (1 + 1e-15), order);  // half of the second radius, up to rounding
+  CHECK(a.rows->left_out(0) < infinity);
   a.rows->find_left_out(1.6, order);  // more than half of the second radius
   CHECK(a.rows->left_out(0) == infinity);
   // A disk without anything on it, that ends before the step does, says nothing.
