@@ -77,9 +77,8 @@ class Scheduler {
     int depth = 0;  // how often functions of t alone are differentiated
     for (std::size_t i = 0; i < count; ++i) {
       follows_q_[i] = graph_.nodes[i].op == Op::Coordinate;
-      for_operands(graph_.nodes[i], [&](NodeIndex operand, int) {
-        follows_q_[i] = follows_q_[i] || follows_q_[operand];
-      });
+      for_operands(graph_.nodes[i],
+                   [&](NodeIndex operand, int) { follows_q_[i] = follows_q_[i] || follows_q_[operand]; });
       lag_[i] = lag_of(i, 0);
       if (section_[i] != dead && !follows_q_[i]) depth = std::max(depth, lag_[i]);
     }
@@ -107,8 +106,8 @@ class Scheduler {
 
   /// The lags so far are the least, at which everything is found as early as it can be: forces of q at order k + 2 of
   /// stage k, with q_{k+2} = 0, to be corrected when q̈_k is known. What waits for nothing but a residual or an
-  /// observable, without being differentiated, is found at order k instead: q_k is known then, and no acceleration moves
-  /// it. So forces between particles have no tangents, and no corrections.
+  /// observable, without being differentiated, is found at order k instead: q_k is known then, and no acceleration
+  /// moves it. So forces between particles have no tangents, and no corrections.
   void delay() {
     can_wait_.assign(graph_.nodes.size(), true);
     const auto keep = [this](NodeIndex node) {
@@ -118,8 +117,6 @@ class Scheduler {
     };
     for (const auto* roots : {&outputs_.constraint_values, &outputs_.constraint_rates})
       for (const NodeIndex root : *roots) keep(root);
-    for (NodeIndex i = 0; i < graph_.nodes.size(); ++i)
-      if (section_[i] == Along) keep(i);
     for (const auto* roots : {&outputs_.switches, &outputs_.events, &outputs_.integrands})
       for (const NodeIndex root : *roots) keep(root);
     for (bool changed = true; std::exchange(changed, false);)

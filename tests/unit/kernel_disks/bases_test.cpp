@@ -109,3 +109,14 @@ TEST_CASE("what the rows leave out of a distance counts") {
   CHECK(f.disks->reach(f.slot) >= farthest(f, 1));
   CHECK(farthest(f, 1) > 0.9);
 }
+
+TEST_CASE("what the rows leave out of a product counts, whichever of its factors is of high order") {
+  for (const std::size_t high : {std::size_t{0}, std::size_t{1}}) {
+    CAPTURE(high);
+    Followed f;
+    f.c[high][20] = 0.9, f.c[1 - high][5] = 0.9;
+    f.follow(pow(f.x * f.y + Rational(1), Rational(-3, 2)));  // w = 1 + 0.81 s²⁵, of which the rows hold 1
+    f.disks->evaluate(1, Disks::Depth::Rules);
+    CHECK(f.disks->reach(f.slot) >= std::pow(0.19, -1.5) - 1);
+  }
+}
