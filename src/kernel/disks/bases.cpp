@@ -31,6 +31,14 @@ void Disks::find_bases() {
     }
     degree[i.out] = std::min(highest, more);
   }
+  // A product keeps from 0 what its factors keep from 0: w of 1/w⁶.
+  for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) {
+    const Instruction& i = node->instruction;
+    if (!is_kept_from_zero[i.out]) continue;
+    if (i.op == Op::Square) is_kept_from_zero[i.a] = true;
+    if (i.op == Op::Products && i.first_product == i.first_term && i.last_term - i.first_term == 1)
+      is_kept_from_zero[terms_[i.first_term].a] = is_kept_from_zero[terms_[i.first_term].b] = true;
+  }
   for (const Node& node : nodes_) {
     const Instruction& i = node.instruction;
     if (!is_kept_from_zero[i.out] || !has_series_[i.out] || degree[i.out] == 0 || degree[i.out] == more) continue;
