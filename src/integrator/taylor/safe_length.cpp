@@ -229,7 +229,8 @@ double SafeLength::passing_length(double passes_at, double most) {
 }
 
 /// Limits of the sizes of many bodies would be left again and again, and one or a few disks say as much of a step:
-/// those that were needed last, else all. Where these do not allow h, they mostly allow a little less.
+/// those that were needed last, else all. Where these do not allow h, they mostly allow a little less. 0: far less, or
+/// they say nothing, as where a square is beyond the range of numbers.
 double SafeLength::within_bases(const SlotCoefficients& coefficients, double h) {
   using enum Disks::Depth;
   constexpr double little_less = 0.9, less = 0.5;
@@ -244,8 +245,9 @@ double SafeLength::within_bases(const SlotCoefficients& coefficients, double h) 
   if (passes_by_terms(little_less * h)) return passing_length(little_less * h, h);
   ask(all_ratios_);
   const double length = passes_by_terms(h) ? h : passing_length(0, h);
-  if (length > less * h) return choose_ratios(length), length;
-  return passes_somewhere(coefficients, h) ? h : std::max(length, search(coefficients, h));
+  if (!(length > less * h)) return 0;
+  choose_ratios(length);
+  return length;
 }
 
 /// As few of the disks of this step as allow its length: one, if there is one.
@@ -269,10 +271,9 @@ double SafeLength::within(const SlotCoefficients& coefficients, double time, dou
   if (!is_needed()) return wanted;
   const double h = std::min(wanted, most);
   if (!(h > 0)) return wanted;
-  if (disks_.has_bases()) {
-    const double length = within_bases(coefficients, h);
-    return length < h ? rounded_down(length) : wanted;
-  }
+  if (disks_.has_bases())
+    if (const double length = within_bases(coefficients, h); length > 0)
+      return length < h ? rounded_down(length) : wanted;
   if (is_known(coefficients, time, h, sizes)) return wanted;
   // What was right in the last step is asked first: the whole length by the rules, or with the coefficients where those
   // have to help.

@@ -263,10 +263,32 @@ class Maker {
 
   // ---- cores ----
 
+  /// A body that swings through the origin on a straight line, with a small core on its way: the swing has all of the
+  /// coefficients, and nothing of the core shows in them.
+  void core_on_a_swing() {
+    constexpr double slope = 0.5, exponents[] = {1, 1.5, 3, 6, 12};
+    d_.n = 2;
+    const double amplitude = uniform(0.8, 1.5), rate = uniform(0.7, 1.5), part = uniform(0.3, 0.9);
+    for (int i = 0; i < 2; ++i) {
+      Term& swing = add(Shape::Harmonic, Role::Potential, rate * rate);
+      swing.of_q[i] = 1;
+      d_.v[i] = number((i == 0 ? 1 : slope) * amplitude * rate);
+    }
+    const double width = by_ratio(3e-4, 1e-2);
+    Term& core = add(Shape::Core, Role::Potential, by_ratio(0.01, 1));
+    core.of_q[0] = core.of_q[1] = 1;
+    core.extra = number(exponents[whole(0, 4)]);
+    core.width = number(width);
+    core.centre[0] = number(part * amplitude);
+    core.centre[1] = number(slope * part * amplitude + uniform(-0.5, 0.5) * width);
+    d_.duration = number(std::asin(part) / rate * uniform(1.2, 2));
+  }
+
   /// A body in the plane, aimed at one to three cores far away or near, of any hardness and strength, that attract or
-  /// repel: what it meets shows in nothing that it does before.
+  /// repel.
   void cores() {
     d_.kind = "cores";
+    if (chance(0.4)) return core_on_a_swing();
     masses(2);
     d_.coupling = Coupling::None;
     const double v = uniform(0.3, 2);
