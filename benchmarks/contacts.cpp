@@ -193,7 +193,7 @@ void beside_mujoco() {
   // A ball that falls from 1 m and bounces without loss is there again after each 2 √(2 h/g).
   const double period = 2 * std::sqrt(2 / 9.81), end = 3 * period;
   std::string elastic = ball;
-  elastic.replace(elastic.find("0.8"), 3, "1");
+  elastic.replace(elastic.find("0.8"), 3, std::string("1"));
   const Timed bounce = run(elastic, end);
   row("bouncing ball without loss, height after three bounces: maupertuis",
       fmt::format("{:.1e} m off", std::abs(bounce.result.final.q[0] - 1)), "",

@@ -73,9 +73,9 @@ class ComplexForm {
           continue;
         }
         const auto jet = s_.jet_of(base);
-        const auto whole = jet ? whole_of(*jet) : std::nullopt;
         const bool whole_power = !factor.is(Kind::Power) || (factor[1].is_number() && factor[1].number().is_integer());
         if (!jet || !whole_power) return false;
+        const std::optional<std::size_t> whole = whole_of(*jet);
         if (!whole) {
           factors.push_back(factor);
           continue;

@@ -196,7 +196,7 @@ std::optional<LaneSeries> LaneSeries::make(const std::vector<Expr>& roots, const
                                            const std::unordered_map<Expr, double, ExprHash>& constants,
                                            std::string& trouble) {
   LaneSeries out;
-  LaneCompiler compiler{out, inputs, constants, trouble, {}};
+  LaneCompiler compiler{out, inputs, constants, trouble, {}, {}};
   for (const Expr& input : inputs) {
     out.inputs_.push_back(out.code_.size());
     compiler.done.emplace(input, compiler.push({Op::Input, 0, 0, 0, false}));

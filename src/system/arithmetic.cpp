@@ -208,22 +208,24 @@ Value power(Elaboration& e, const Value& base, const Value& exponent, const Expr
   }
   const bool bare = base.dimension.is_one();
   const std::optional<Rational> exact = n.is_number() || !bare ? exact_exponent(e, n) : std::nullopt;
-  const auto ratio = exact ? exact->small() : std::nullopt;
-  if (!bare && !base.fits_any && !ratio) {
+  const std::optional<Rational::Small> short_form = exact ? exact->small() : std::nullopt;
+  const bool is_short = short_form.has_value();
+  const Rational::Small ratio = short_form.value_or(Rational::Small{0, 1});
+  if (!bare && !base.fits_any && !is_short) {
     e.diagnostics.error(
         "E0305", exponent_span, fmt::format("{} to a power that is no known number", describe(base.dimension)),
         "The dimension of the result would not be known.", "Divide the base by a quantity of its dimension first.");
     return Value::poison();
   }
-  const bool huge = exact && (!ratio || std::llabs(ratio->numerator) > 4000 || ratio->denominator > 4000);
+  const bool huge = exact && (!is_short || std::llabs(ratio.numerator) > 4000 || ratio.denominator > 4000);
   const Expr b = base.scalar();
   const bool explodes = exact && b.is_number() && exact->is_integer() && !huge &&
-                        digits(b.number()) * static_cast<std::size_t>(std::llabs(ratio->numerator)) > 8000 &&
+                        digits(b.number()) * static_cast<std::size_t>(std::llabs(ratio.numerator)) > 8000 &&
                         !b.is_one() && !b.is_zero() && !(-b).is_one();
   if ((huge && !(b.is_one() || b.is_zero())) ||
       (explodes && !std::isfinite(std::pow(b.number().to_double(), exact->to_double()))) ||
       (explodes && digits(b.number()) > 19) ||
-      (!bare && ratio && (std::llabs(ratio->numerator) > 100 || ratio->denominator > 100))) {
+      (!bare && is_short && (std::llabs(ratio.numerator) > 100 || ratio.denominator > 100))) {
     e.diagnostics.error("E0218", x.span, "this power is beyond the range of computation",
                         "Numbers lie between 1e-308 and 1e308 in size.", "");
     return Value::poison();
@@ -232,11 +234,10 @@ Value power(Elaboration& e, const Value& base, const Value& exponent, const Expr
     e.diagnostics.error("E0219", x.span, "division by zero", "A negative power of zero has no value.", "");
     return Value::poison();
   }
-  Value v = Value::of(e.context.power(b, n),
-                      ratio && !bare ? pow(base.dimension, ratio->numerator, ratio->denominator) : Dimension{},
-                      std::max(base.order, exponent.order));
-  if (bare && ratio && n.is_number() && std::llabs(ratio->numerator) <= 100 && ratio->denominator <= 100)
-    v.dimension = pow(base.dimension, ratio->numerator, ratio->denominator);
+  Dimension dimension;
+  if (is_short && (!bare || n.is_number()) && std::llabs(ratio.numerator) <= 100 && ratio.denominator <= 100)
+    dimension = pow(base.dimension, ratio.numerator, ratio.denominator);
+  Value v = Value::of(e.context.power(b, n), dimension, std::max(base.order, exponent.order));
   v.fits_any = base.fits_any && exact && exact->sign() > 0;
   v.hertz = base.hertz;
   v.is_literal = base.is_literal && exponent.is_literal;

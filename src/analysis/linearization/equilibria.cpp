@@ -177,7 +177,7 @@ class Search {
       if (!balances(solution->point, system)) continue;
       if (!at_rest && is_at_rest(solution->point)) continue;
       if (!holds_for_all_times(solution->point)) continue;
-      keep({solution->point, at_rest, solution->residual, solution->family, solution->along, false}, system);
+      keep({solution->point, at_rest, solution->residual, solution->family, solution->along, false, {}}, system);
     }
   }
 

@@ -265,7 +265,7 @@ std::optional<ModalStudy> modal_study_of(const PointEquations& equations, const 
   }
   ModalStudy study;
   study.translations = equations.translations();
-  ModalEntry entry{{*point, false, 0, 0, {}, false}, linearize(equations, *point).linearization, {}, {}};
+  ModalEntry entry{{*point, false, 0, 0, {}, false, {}}, linearize(equations, *point).linearization, {}, {}};
   entry.analysis = modal_analysis(equations, entry.linearization, {}, nullptr);
   study.entries.push_back(std::move(entry));
   return study;

@@ -253,7 +253,7 @@ class TurningState {
   }
 
   Equilibrium answer(const OperatingPoint& from, const Unknowns& z, double residual) const {
-    Equilibrium out{point_of(from, z), false, residual, 0, {}, false};
+    Equilibrium out{point_of(from, z), false, residual, 0, {}, false, {}};
     const Matrix xi = turning(z.rates);
     out.ways = ways(xi, z.q);
     return out;

@@ -18,6 +18,9 @@ StabilityReport report_of(const FloquetResult& neighbours) {
       break;
     case OrbitalStability::Neutral:
       out.reason = "all Floquet multipliers lie on the unit circle: stable to first order";
+      break;
+    case OrbitalStability::Undecided:
+      out.reason = "the Floquet multipliers contradict what the geometry of the motion asks of them";
   }
   return out;
 }

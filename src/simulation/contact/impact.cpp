@@ -199,7 +199,7 @@ ImpactResult end_of_bounces(const ImpactProblem& p, const VectorXd& v) {
   const VectorXd impulses = least_solution(w, q);
   std::vector<std::size_t> all;
   for (std::size_t a = 0; a < count; ++a) out.v += impulses(at(a)) * p.response.col(at(a)), all.push_back(a);
-  polish(p, all, std::vector<double>(count, 0.0), out.v);
+  polish(p, all, std::vector<double>(count), out.v);
   for (std::size_t a = 0; a < count; ++a) {
     const double before = rate(p, a, v), after = rate(p, a, out.v);
     out.moving -= impulses(at(a)) * p.drive[a];

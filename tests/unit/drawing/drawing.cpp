@@ -26,9 +26,9 @@ struct Pendulum {
                                   dimensions::angle(),
                                   "angle",
                                   {}});
-    system.parameters.push_back({"l", length, c.number(2), 2, dimensions::length(), "m", false, {}});
+    system.parameters.push_back({"l", length, c.number(2), 2, dimensions::length(), "m", 1, false, {}});
     const Expr mass = c.symbol("m", Role::Parameter);
-    system.parameters.push_back({"m", mass, c.number(3), 3, dimensions::mass(), "kg", false, {}});
+    system.parameters.push_back({"m", mass, c.number(3), 3, dimensions::mass(), "kg", 1, false, {}});
     const ExprVector bob{length * sin(theta), -(length * cos(theta))};
     system.points.push_back({"bob", mass, bob, {}});
     system.gravity = {c.number(0), c.number(-9)};

@@ -1,7 +1,9 @@
 // Modes of contacts and friction in many digits, against closed forms in decimals.
+#include "../under_sanitizers.hpp"
 #include "decimal.hpp"
 
 #include <fstream>
+#include <span>
 #include <sstream>
 
 using namespace maupertuis;
@@ -135,8 +137,10 @@ TEST_CASE("what an event sets is refused where it breaks a constraint") {
 }
 
 TEST_CASE("models of the gallery meet in quad what they meet in double, at times within the errors of double") {
-  for (const char* name : {"ball_on_string", "bouncing_dumbbell", "dry_hoop", "newtons_cradle", "rocking_block",
-                           "sliding_ladder", "stick_slip", "two_link_hopper", "wheel_brake"}) {
+  const char* const names[] = {"ball_on_string", "newtons_cradle",    "stick_slip",
+                               "rocking_block",  "bouncing_dumbbell", "dry_hoop",
+                               "sliding_ladder", "two_link_hopper",   "wheel_brake"};
+  for (const char* const name : std::span(names).first(under_sanitizers ? 3 : std::size(names))) {
     CAPTURE(std::string(name));
     std::ostringstream text;
     text << std::ifstream(std::string(PROJECT_DIR) + "/models/" + name + ".lag").rdbuf();

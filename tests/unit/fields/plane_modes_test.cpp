@@ -1,4 +1,4 @@
-#include "../sanitized.hpp"
+#include "../under_sanitizers.hpp"
 
 #include <maupertuis/field_run.hpp>
 #include <maupertuis/study.hpp>
@@ -41,7 +41,7 @@ std::string rectangle(const std::string& boundary) {
 
 }  // namespace
 
-TEST_CASE("a rectangle of any sides: π c sqrt(m²/a² + n²/b²)" * doctest::skip(sanitized)) {
+TEST_CASE("a rectangle of any sides: π c sqrt(m²/a² + n²/b²)" * doctest::skip(under_sanitizers)) {
   struct {
     const char* boundary;
     double m0, n0;  // held on both sides: 1, 2, …; free: 0, 1, …; one of each: 1/2, 3/2, …
@@ -122,7 +122,8 @@ TEST_CASE("a mass that is narrow along both sides is not passed by") {
   CHECK(diagnostics.items()[0].code == "E0647");
 }
 
-TEST_CASE("frequencies of a membrane whose tension jumps within the domain are within their errors") {
+TEST_CASE("frequencies of a membrane whose tension jumps within the domain are within their errors" *
+          doctest::skip(under_sanitizers)) {
   // Separable: sin π y times a string whose tension jumps, on elements that end at the jump.
   const std::string tension = "(1 + 3 step(x - 0.3))";
   const FieldModes found = plane_modes_of(

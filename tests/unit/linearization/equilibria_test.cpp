@@ -156,7 +156,7 @@ V = 1/2 k θ^2 - c cos θ
 TEST_CASE("What has no equilibrium says so") {
   const auto first_code = [](Linearized& m, bool at) {
     Diagnostics told;
-    const std::vector<StartValue> one{{0, 0, m.number(0.3), {}}};
+    const std::vector<StartValue> one{{0, 0, m.number(0.3), {}, {}}};
     const bool found =
         at ? modal_study_at(m.at, m.start, one, told).has_value() : modal_study(m.at, m.start, told).has_value();
     CHECK_FALSE(found);

@@ -73,7 +73,7 @@ V = 1/2 k (r - l0)^2 - m g r cos θ
 start r = 1.1 m
 )");
   Diagnostics told;
-  const std::vector<StartValue> at{{1, 0, m.number(0), {}}};
+  const std::vector<StartValue> at{{1, 0, m.number(0), {}, {}}};
   const auto study = modal_study_at(m.at, m.start, at, told);
   REQUIRE(study);
   const auto s = symbolic_linearization(m.equations, study->entries[0].linearization, study->translations);

@@ -37,8 +37,8 @@ struct Linearized : ModelText {
   /// About the values of the start, all of them kept.
   maupertuis::ModalEntry here(const std::vector<std::size_t>& rates = {}) {
     std::vector<maupertuis::StartValue> given;
-    for (std::size_t i = 0; i < start.q.size(); ++i) given.push_back({i, 0, number(start.q[i]), {}});
-    for (const std::size_t i : rates) given.push_back({i, 1, number(start.v[i]), {}});
+    for (std::size_t i = 0; i < start.q.size(); ++i) given.push_back({i, 0, number(start.q[i]), {}, {}});
+    for (const std::size_t i : rates) given.push_back({i, 1, number(start.v[i]), {}, {}});
     auto result = maupertuis::modal_study_at(at, start, given, diagnostics);
     INFO(maupertuis::render(diagnostics, source));
     REQUIRE(result);

@@ -1,4 +1,5 @@
 // Periodic motions, exponents and sections of motions with impacts and friction.
+#include "../under_sanitizers.hpp"
 #include "support.hpp"
 
 #include <fmt/format.h>
@@ -138,7 +139,8 @@ TEST_CASE("stick-slip on a belt closes, and neighbours come into the same motion
   CHECK(r.stability == OrbitalStability::Attracting);
 }
 
-TEST_CASE("exponents of billiards: none in a circle, those of Sinai's by reflecting wave fronts") {
+TEST_CASE("exponents of billiards: none in a circle, those of Sinai's by reflecting wave fronts" *
+          doctest::skip(under_sanitizers)) {
   ModelText circle(
       "dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\ncontact x^2 + y^2 <= 1 restitution 1 name wall\n"
       "start x = 0.2, x' = 0.6, y' = 0.8\nrun 4000\n");

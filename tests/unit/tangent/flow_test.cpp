@@ -1,3 +1,4 @@
+#include "../under_sanitizers.hpp"
 #include "support.hpp"
 
 #include <boost/multiprecision/cpp_dec_float.hpp>
@@ -81,7 +82,7 @@ TEST_CASE("Kepler: over a period dΦ = 1 − f ∂T/∂x, since every orbit clos
   CHECK(relative_difference(p.directions, expected) < 2e-13);
 }
 
-TEST_CASE("two links: against differences of the flow in quad precision") {
+TEST_CASE("two links: against differences of the flow in quad precision" * doctest::skip(under_sanitizers)) {
   const ModelText m(two_links);
   const TangentPoint p = carried(m, 2);
   for (std::size_t j = 0; j < 4; ++j)

@@ -62,7 +62,7 @@ inline std::vector<std::string> quad_end(const ModelText& m, double t, std::size
   for (auto& start : model.experiment.start)
     if (start.coordinate == coordinate && start.order == order)
       start.value = start.value + context.number(by), written = true;
-  if (!written) model.experiment.start.push_back({coordinate, order, context.number(by), {1, 2}});
+  if (!written) model.experiment.start.push_back({coordinate, order, context.number(by), {1, 2}, {}});
   maupertuis::ExtendedSimulationOptions options;
   options.duration = maupertuis::Rational::from_double(t);
   maupertuis::Diagnostics diagnostics;
