@@ -23,7 +23,7 @@ for (const model of models(only)) {
   for (const request of requestsFor(model)) {
     const here = await timed('native', native.ask(request));
     const there = await timed('wasm', core.ask(request));
-    const found = compare(request, here, there);
+    const found = compare(model, request, here, there);
     if (request.do === 'expectations' && here.ok) lines += here.results.length;
     wrong += found.length;
     for (const text of found.slice(0, 5)) console.log(`${model}, ${request.do}: ${text}`);
