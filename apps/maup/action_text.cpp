@@ -1,5 +1,6 @@
 #include "action_text.hpp"
 
+#include "outcome.hpp"
 #include "quantity.hpp"
 
 #include <fmt/format.h>
@@ -176,7 +177,7 @@ Json path_json(const StationaryPath& p, const MechanicalSystem& system) {
 }  // namespace
 
 std::string action_text(const PathSearch& search, const MechanicalSystem& system) {
-  std::string out = fmt::format("{}: {} stationary path{} {}\n", system.name, search.paths.size(),
+  std::string out = fmt::format("{}: {} stationary path{} {}\n", spoken_name(system), search.paths.size(),
                                 search.paths.size() == 1 ? "" : "s", ends_text(search.ends, system));
   for (std::size_t k = 0; k < search.paths.size(); ++k) {
     const StationaryPath& p = search.paths[k];
@@ -205,7 +206,7 @@ Json action_json(const PathSearch& search, const MechanicalSystem& system) {
 }
 
 std::string action_text(const GivenPath& given, const MechanicalSystem& system) {
-  std::string out = fmt::format("{}: the path given, from {} to {}\n", system.name, moment(given.start, system),
+  std::string out = fmt::format("{}: the path given, from {} to {}\n", spoken_name(system), moment(given.start, system),
                                 moment(given.end, system));
   out += line("S", value_of_action(given.action, given.action_error, system));
   for (std::size_t i = 0; i < given.integrals.size(); ++i) {
@@ -239,7 +240,7 @@ Json action_json(const GivenPath& given, const MechanicalSystem& system) {
 
 std::string action_text(const MotionAction& motion, const MechanicalSystem& system) {
   const StationaryPath& p = motion.path;
-  std::string out = fmt::format("{}: the motion from {} to {}\n", system.name, moment(p.path.start, system),
+  std::string out = fmt::format("{}: the motion from {} to {}\n", spoken_name(system), moment(p.path.start, system),
                                 moment(p.path.end, system));
   out += path_text(p, system);
   if (p.second.index && !p.second.conjugate.empty())
@@ -256,7 +257,7 @@ Json action_json(const MotionAction& motion, const MechanicalSystem& system) {
 }
 
 std::string action_text(const PeriodicAction& orbit, const MechanicalSystem& system) {
-  std::string out = fmt::format("{}: a periodic motion as a closed path\n", system.name);
+  std::string out = fmt::format("{}: a periodic motion as a closed path\n", spoken_name(system));
   out += line("period", with_unit(fmt::format("{:.12g}", orbit.period), system.independent_unit()));
   out += line("∮ p dq", with_unit(fmt::format("{:.12g}", orbit.abbreviated), action_unit(system)));
   return out + path_text(orbit.path, system);

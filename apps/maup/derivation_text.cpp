@@ -3,6 +3,7 @@
 #include <maupertuis/degenerate.hpp>
 #include <maupertuis/higher_order.hpp>
 
+#include "outcome.hpp"
 #include "quantity.hpp"
 #include "rates_form.hpp"
 
@@ -160,7 +161,7 @@ std::string lecture(Study& study, const EquationForm& form, const Certificate& c
   const ReadingOrder& order = form.order(equations);
   std::string out;
   if (with_steps) out += steps_text(steps_to(form, study), order) + "\n";
-  out += fmt::format("Equations of motion of {}{}\n", equations.system->name, form.in_rates ? " in rates" : "");
+  out += fmt::format("Equations of motion of {}{}\n", spoken_name(*equations.system), form.in_rates ? " in rates" : "");
   out += equations_text(form, order);
   out += legend(*equations.system, order);
   if (form.in_rates) return out + rates_text(form, equations) + certificate_text(with_rates_check(certificate, form));

@@ -1,5 +1,6 @@
 #include "orbits_text.hpp"
 
+#include "outcome.hpp"
 #include "quantity.hpp"
 
 #include <fmt/format.h>
@@ -123,7 +124,7 @@ std::string period_text(const FloquetResult& r, const MechanicalSystem& system) 
 
 std::string floquet_text(const FloquetResult& r, const MechanicalSystem& system) {
   const PeriodicMotion& m = r.motion;
-  std::string out = fmt::format("{}: {}\n", system.name,
+  std::string out = fmt::format("{}: {}\n", spoken_name(system),
                                 m.rests ? "an equilibrium, whose neighbours are driven" : "a periodic motion");
   out += period_text(r, system);
   out += line("start", state_line(m.start, system));
@@ -163,7 +164,7 @@ Json floquet_json(const FloquetResult& r, const MechanicalSystem& system) {
 // ------------------------------------------------------------------------------------------------------------ sections
 
 std::string section_text(const SectionResult& r, const std::string& what, const MechanicalSystem& system) {
-  std::string out = fmt::format("{}: {}, {} crossing{} of {} motion{}\n", system.name, what, r.crossings.size(),
+  std::string out = fmt::format("{}: {}, {} crossing{} of {} motion{}\n", spoken_name(system), what, r.crossings.size(),
                                 r.crossings.size() == 1 ? "" : "s", r.orbits.size(), r.orbits.size() == 1 ? "" : "s");
   double low = r.orbits.front().energy, high = low, drift = 0;
   std::size_t early = 0;

@@ -11,6 +11,8 @@
 
 namespace maupertuis::app {
 
+std::string spoken_name(const MechanicalSystem& system) { return system.name.empty() ? "the model" : system.name; }
+
 bool unreadable(const Diagnostics& diagnostics) {
   const auto items = diagnostics.items();
   return std::any_of(items.begin(), items.end(),

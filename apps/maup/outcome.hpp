@@ -8,6 +8,9 @@
 
 namespace maupertuis::app {
 
+/// How an answer calls the model at its head: by its name, or "the model" where it has none.
+std::string spoken_name(const MechanicalSystem& system);
+
 /// The file could not be read at all: nothing is known of the model.
 bool unreadable(const Diagnostics& diagnostics);
 /// Of several files the worst: Ctrl-C, a file that could not be read, a wrong model, a failed expectation.

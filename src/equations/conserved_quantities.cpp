@@ -13,7 +13,12 @@ bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Z
 std::string compare_with_energy(const EquationsOfMotion& equations, bool& equal) {
   const MechanicalSystem& system = *equations.system;
   const Expr energy = expand_time_derivatives(system.kinetic_energy() + system.potential_energy());
-  equal = vanishes(equations.energy_function - energy);
+  const Expr difference = equations.energy_function - energy;
+  const ZeroTest test = zero_test(difference);
+  equal = difference.is_zero() || test.verdict == Verdict::Zero;
+  if (!equal && test.verdict == Verdict::Undecided)
+    return "Whether h_E is T + V was not decided: " +
+           (test.reason.empty() ? "no point was found at which both have a value" : test.reason) + ".";
   const bool has_generalized_potential = !system.generalized_potential.empty() || !system.lagrangian_extra.empty();
   if (equal && has_generalized_potential)
     return "h_E = T + V: the velocity-dependent part of L is linear in the velocities and does no work.";

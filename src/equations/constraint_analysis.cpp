@@ -19,6 +19,7 @@ using Matrix = Eigen::MatrixXd;
 using Index = Eigen::Index;
 
 constexpr double vanishing = 1e-4;  // a row on the manifold against beside it
+constexpr double rounding = 1e-14;
 /// Beyond this number of entries ranks are taken by elimination, not by singular values.
 constexpr std::size_t largest_dense = 64 * 128;
 
@@ -173,6 +174,8 @@ class Analysis {
       const double scale = lengths[i] > vanishing * beside[i] ? 1 / lengths[i] : 0;
       for (SparseRows& a : rows_) scale_row(a.rows[i], scale);
       scale_row(at_start.rows[i], scale);
+      // cos 90° is 6e-17: a gradient that is rounding of its length elsewhere is none.
+      if (norm(at_start.rows[i]) < rounding) at_start.rows[i].clear();
     }
     std::vector<std::size_t> ranks;
     for (const SparseRows& a : rows_) {

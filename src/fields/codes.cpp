@@ -7,110 +7,133 @@ constexpr CodeEntry kEntries[] = {
     {"E0292", "a slope that clashes with the natural condition",
      "At a free end the variation leaves ∂ℒ/∂u_x = 0. A given slope is an end force only where it says by itself what "
      "∂ℒ/∂u_x is there.",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u^2/(1 [m^2]) "
-     "u_x^2\nboundary left : u_x = 1\nrun 1 s\n",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},
+     "# maup simulate\nfield u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N, a = 1 m\n"
+     "density = 1/2 ρ u'^2 - 1/2 T u^2/a^2 u_x^2\nboundary left : u_x = 1\nrun 1 s\n",
+     "# maup simulate\nfield u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\n"
+     "density = 1/2 ρ u'^2 - 1/2 T u_x^2\nboundary left : u_x = 1\nrun 1 s\n"},
     {"E0508", "a run or an expectation of fields that is not supported yet",
      "Runs are those of fields of one space variable on a domain, or of two where the density holds u, u' squared, u_x "
      "and u_y. All fields have derivations, conservation laws and waves. Expectations of fields hold at the values of "
      "the model.",
-     "field u(x) : length \nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nrun 1 s\n",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nrun 1 s\n"},
+     "# maup simulate\nfield u(x) : length\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nrun 1 s\n",
+     "# maup simulate\nfield u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\n"
+     "density = 1/2 ρ u'^2 - 1/2 T u_x^2\nrun 1 s\n"},
     {"E0642", "a motion of a field that is not determined",
      "Each field needs an equation with its derivative by t. Where the density is linear in the velocities the "
      "equations are of first order: the field alone determines how it goes on, and its velocity cannot be chosen.",
-     "dimensionless\nfield a(x), b(x) : number on x = 0 .. 1 cells 10 boundary a = 0, b = 0\n"
+     "# maup simulate\ndimensionless\nfield a(x), b(x) : number on x = 0 .. 1 cells 10 boundary a = 0, b = 0\n"
      "density = b a' - a b' - 1/2 (a_x^2 + b_x^2)\nstart a = sin(pi x), a' = 1\nrun 1\n",
-     "dimensionless\nfield a(x), b(x) : number on x = 0 .. 1 cells 10 boundary a = 0, b = 0\n"
+     "# maup simulate\ndimensionless\nfield a(x), b(x) : number on x = 0 .. 1 cells 10 boundary a = 0, b = 0\n"
      "density = b a' - a b' - 1/2 (a_x^2 + b_x^2)\nstart a = sin(pi x)\nrun 1\n"},
     {"E0643", "a field that grows beyond all numbers",
-     "The run met an infinity: an unstable density, or a start that grows.", "", ""},
+     "The run met an infinity: an unstable density, or a start that grows.",
+     "# maup simulate\nfield w(x) : length on x = 0 m .. 1 m cells 4 boundary w_x = 0\n"
+     "param ρ = 1 kg/m, E = 1 N m^2, k = 1 N/m^4\ndensity = 1/2 ρ w'^2 - 1/2 E w_xx^2 + k w^4\nstart w = 10 m\n"
+     "run 1 s\n",
+     "# maup simulate\nfield w(x) : length on x = 0 m .. 1 m cells 4 boundary w_x = 0\n"
+     "param ρ = 1 kg/m, E = 1 N m^2, k = 1 N/m^4\ndensity = 1/2 ρ w'^2 - 1/2 E w_xx^2 - k w^4\nstart w = 10 cm\n"
+     "run 1 s\n"},
     {"E0645", "a start of a field that is no number",
      "Somewhere in the domain the formula of the start has no finite value.",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N, l = 1 m\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"
-     "start u = l log(x/l - 2)\nrun 1 s\n",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N, l = 1 m\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"
-     "start u = l log(x/l + 2)\nrun 1 s\n"},
+     "# maup simulate\nfield u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N, l = 1 m\n"
+     "density = 1/2 ρ u'^2 - 1/2 T u_x^2\nstart u = l log(x/l - 2)\nrun 1 s\n",
+     "# maup simulate\nfield u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N, l = 1 m\n"
+     "density = 1/2 ρ u'^2 - 1/2 T u_x^2\nstart u = l log(x/l + 2)\nrun 1 s\n"},
     {"W0646", "a start of a field that does not fit its boundary condition",
      "At an end the field has the value of the condition from the beginning on. Another value beside it is a jump, "
      "which "
      "runs into the domain and which no mesh resolves.",
-     "field u(x) : length on x = 0 m .. 1 m boundary u = 0\nparam ρ = 1 kg/m, T = 1 N, l = 1 m\n"
+     "# maup simulate\nfield u(x) : length on x = 0 m .. 1 m boundary u = 0\nparam ρ = 1 kg/m, T = 1 N, l = 1 m\n"
      "density = 1/2 ρ u'^2 - 1/2 T u_x^2\nstart u = l\nrun 1 s\n",
-     "field u(x) : length on x = 0 m .. 1 m boundary u = 0\nparam ρ = 1 kg/m, T = 1 N, l = 1 m\n"
+     "# maup simulate\nfield u(x) : length on x = 0 m .. 1 m boundary u = 0\nparam ρ = 1 kg/m, T = 1 N, l = 1 m\n"
      "density = 1/2 ρ u'^2 - 1/2 T u_x^2\nstart u = l sin(pi x/l)\nrun 1 s\n"},
     {"E0647", "a mesh that passes something by",
      "A bump, a layer or a jump of the density or of the start lies between the nodes of the mesh. Values on it, and "
      "on a "
      "second mesh, would be those of a system without it.",
-     "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 20\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
+     "# maup simulate\ndimensionless\nfield u(x) : number on x = 0 .. 1 cells 20\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
      "start u = exp(-((x - 0.4877)/1e-4)^2)\nrun 1\n",
-     "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 20\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
+     "# maup simulate\ndimensionless\nfield u(x) : number on x = 0 .. 1 cells 20\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
      "start u = exp(-((x - 0.4877)/0.1)^2)\nrun 1\n"},
     {"W0650", "forces in time that are shorter than a step",
      "Boundary values, forces and coefficients in t are followed by the series of each step from its beginning. A "
      "pulse "
      "inside of a step is passed by on both meshes of the estimate, and a jump lets no high order come about.",
-     "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 4 order 6 boundary u = 0\n"
-     "density = 1/2 u'^2 - 1/2 u_x^2\nforce density u = sin(pi x) 1000 exp(-((t - 0.5)/1e-5)^2)\nrun 1\n",
-     "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 4 order 6 boundary u = 0\n"
+     "# maup simulate\ndimensionless\nfield u(x) : number on x = 0 .. 1 cells 4 order 6 boundary u = 0\n"
+     "density = 1/2 u'^2 - 1/2 u_x^2\nforce density u = 1000 sin(pi x) exp(-((t - 0.5)/1e-5)^2)\nrun 1\n",
+     "# maup simulate\ndimensionless\nfield u(x) : number on x = 0 .. 1 cells 4 order 6 boundary u = 0\n"
      "density = 1/2 u'^2 - 1/2 u_x^2\nforce density u = sin(pi x) exp(-((t - 0.5)/0.5)^2)\nrun 1\n"},
     {"W0651", "a jump or a kink in space",
      "Where the start jumps or has a kink, and where a periodic start does not close, waves of every length arise. No "
      "mesh follows the short ones, so that the error falls about with the width of a cell; its estimate is made for "
      "that.",
-     "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 20 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
-     "start u = min(x, 1 - x)\nrun 1\n",
-     "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 20 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
-     "start u = sin(pi x)\nrun 1\n"},
+     "# maup simulate\ndimensionless\nfield u(x) : number on x = 0 .. 1 cells 20 boundary u = 0\n"
+     "density = 1/2 u'^2 - 1/2 u_x^2\nstart u = min(x, 1 - x)\nrun 1\n",
+     "# maup simulate\ndimensionless\nfield u(x) : number on x = 0 .. 1 cells 20 boundary u = 0\n"
+     "density = 1/2 u'^2 - 1/2 u_x^2\nstart u = sin(pi x)\nrun 1\n"},
     {"W0652", "a start that the mesh follows in part",
      "Between the nodes of the elements the start is another function than their polynomials, by more than a "
      "hundredth of its largest value. Errors are those of short waves then, and fall fast with more cells; the "
      "estimate takes a "
      "mesh of twice the cells too.",
-     "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 20 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
-     "start u = exp(-((x - 0.4)/0.01)^2)\nrun 1\n",
-     "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 200 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
-     "start u = exp(-((x - 0.4)/0.01)^2)\nrun 1\n"},
+     "# maup simulate\ndimensionless\nfield u(x) : number on x = 0 .. 1 cells 20 boundary u = 0\n"
+     "density = 1/2 u'^2 - 1/2 u_x^2\nstart u = exp(-((x - 0.4)/0.01)^2)\nrun 1\n",
+     "# maup simulate\ndimensionless\nfield u(x) : number on x = 0 .. 1 cells 200 boundary u = 0\n"
+     "density = 1/2 u'^2 - 1/2 u_x^2\nstart u = exp(-((x - 0.4)/0.01)^2)\nrun 1\n"},
     {"W0653", "modes of a field without its dissipation",
      "Modes of fields are those of the density of Lagrange's function alone: frequencies and shapes of motions that do "
      "not decay. With dissipation each motion has a rate of decay and another frequency, of a string with r u' in "
      "every place sqrt(ω^2 - (r/2ρ)^2).",
-     "", ""},
+     "# maup modes\nfield u(x) : length on x = 0 m .. 1 m cells 20 boundary u = 0\n"
+     "param ρ = 1 kg/m, T0 = 1 N, r = 0.1 kg/(m s)\ndensity = 1/2 ρ u'^2 - 1/2 T0 u_x^2\n"
+     "dissipation density = 1/2 r u'^2\n",
+     "# maup modes --dispersion\nfield u(x) : length on x = 0 m .. 1 m cells 20 boundary u = 0\n"
+     "param ρ = 1 kg/m, T0 = 1 N, r = 0.1 kg/(m s)\ndensity = 1/2 ρ u'^2 - 1/2 T0 u_x^2\n"
+     "dissipation density = 1/2 r u'^2\n"},
     {"N0648", "a constant of a field that no equation determines",
      "A potential w of u = w_x stands in the density by its derivatives alone. Then w plus any function of t is the "
      "same "
      "motion, and a run keeps w at the left end of a periodic domain, or of free ends, as it starts.",
-     "", ""},
+     "# maup simulate\ndimensionless\nfield w(x) : number on x = 0 .. 2*pi cells 6 order 9 boundary periodic\n"
+     "density = 1/2 w' w_x - 1/2 w_xx^2\nstart w = cos(2*x)\nrun 1\n",
+     "# maup simulate\ndimensionless\nfield w(x) : number on x = -5 .. 5 cells 10 order 7\n"
+     "density = 1/2 w' w_x - 1/2 w_xx^2\nboundary left : w = 0, w_x = 0\nboundary right : w = 0, w_x = 0\n"
+     "start w = exp(-x^2)\nrun 1/10\n"},
     {"E0656", "a mesh too large for a run with bodies",
      "Fields that bodies take hold of, and those whose density changes at a place, run as one system of at most 200 "
      "unknowns of elements. Elements of high order need few of them.",
-     "field u(x) : length on x = 0 m .. 1 m cells 400\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\n"
+     "# maup simulate\nfield u(x) : length on x = 0 m .. 1 m cells 400\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\n"
      "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nT = 1/2 m u(1 m)'^2\nrun 1 s\n",
-     "field u(x) : length on x = 0 m .. 1 m cells 10\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\n"
+     "# maup simulate\nfield u(x) : length on x = 0 m .. 1 m cells 10\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\n"
      "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nT = 1/2 m u(1 m)'^2\nrun 1 s\n"},
     {"E0649", "a mesh that does not fit into the memory",
      "The Taylor coefficients of all nodes stand in the memory at once: some hundred bytes a node and operation of the "
      "density; of beams and fields of first order the matrices of a step. What a mesh takes is known before it is "
      "made.",
-     "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 1000, 1000 order 20\n"
+     "# maup simulate\ndimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 1000, 1000 order 20\n"
      "density = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2) - (1 - cos u)\nrun 1\n",
-     "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 20, 20 order 6\n"
+     "# maup simulate\ndimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 20, 20 order 6\n"
      "density = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2) - (1 - cos u)\nrun 1\n"},
     {"E0644", "no modes of a field",
      "Frequencies are those of small motions about φ = 0 of a field of one or two space variables with a domain, with "
      "constant "
      "coefficients in time and a positive energy.",
-     "", ""},
+     "# maup modes\nfield u(x) : length on x = 0 m .. 1 m cells 20 boundary u = 0\n"
+     "param ρ = 1 kg/m, T0 = 1 N, τ = 2 s\ndensity = 1/2 ρ u'^2 - 1/2 T0 (1 + t/τ) u_x^2\n",
+     "# maup modes\nfield u(x) : length on x = 0 m .. 1 m cells 20 boundary u = 0\nparam ρ = 1 kg/m, T0 = 1 N\n"
+     "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\n"},
     {"E0641", "an ill-posed field equation",
      "Where the parts of the density in u' and in u_x have the same sign, the equation is elliptic in time: waves "
      "grow, the shorter the faster, so that no start determines what follows.",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 + 1/2 T u_x^2\n",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},
+     "# maup derive\nfield u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N\n"
+     "density = 1/2 ρ u'^2 + 1/2 T0 u_x^2\n",
+     "# maup derive\nfield u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N\n"
+     "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\n"},
     {"N0640", "field equations without the time",
      "The density holds no velocity: its equations are those of a field at rest.",
-     "field u(x) : length on x = 0 m .. 1 m\nparam T = 1 N\ndensity = -1/2 T u_x^2\n",
-     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},
+     "# maup derive\nfield u(x) : length on x = 0 m .. 1 m\nparam T0 = 1 N\ndensity = -1/2 T0 u_x^2\n",
+     "# maup derive\nfield u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N\n"
+     "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\n"},
 };
 
 }  // namespace

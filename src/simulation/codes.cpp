@@ -10,7 +10,10 @@ constexpr std::array entries{
         "E0701", "the run has no length",
         "A run needs an end: a `run` statement in the model, --duration on the command line, or times asked for "
         "with --at. `run 10 s` runs for ten seconds; `run until P.y = 0 within 60 s` stops when the condition is met.",
-        "", ""},
+        "# maup simulate\ncoord θ : angle\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\n"
+        "point P mass m at l (sin θ, -cos θ)\ngravity (0, -g)\nstart θ = 60 deg\n",
+        "# maup simulate\ncoord θ : angle\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\n"
+        "point P mass m at l (sin θ, -cos θ)\ngravity (0, -g)\nstart θ = 60 deg\nrun 10 s\n"},
     CodeEntry{
         "E0702", "a start value is not a finite number",
         "The initial state is computed from the parameters. A division by zero or a root of a negative number in a "
@@ -26,39 +29,66 @@ constexpr std::array entries{
     CodeEntry{"E0705", "the trajectory would be too large",
               "The trajectory is kept in memory until it is written. With more than twenty million rows it would not "
               "fit; choose a longer interval between rows. The steps of the integrator are not affected.",
-              "", ""},
+              "# maup simulate\ncoord x : length\nparam m = 1 kg, k = 4 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"
+              "start x = 10 cm\nrun 5 s\noutput every 1 ps\n",
+              "# maup simulate\ncoord x : length\nparam m = 1 kg, k = 4 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"
+              "start x = 10 cm\nrun 5 s\noutput every 1 ms\n"},
     CodeEntry{"E0706", "a time that is asked for is not on the way of the run",
               "A run goes one way from its start: forwards, or backwards with a negative duration. States on the other "
               "side of the start need a run of their own.",
-              "", ""},
+              "# maup simulate --at -1s\ncoord x : length\nparam m = 1 kg, k = 4 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"
+              "start x = 10 cm\nrun 5 s\n",
+              "# maup simulate --at -1s --duration -5s\ncoord x : length\nparam m = 1 kg, k = 4 N/m\nT = 1/2 m x'^2\n"
+              "V = 1/2 k x^2\nstart x = 10 cm\nrun 5 s\n"},
     CodeEntry{
         "E0707", "the start violates a constraint",
         "`start exactly` keeps every written value as it stands. Here the written values do not lie on the "
         "constraints, whatever the others are. Without `exactly` they are moved by the least kinetic change, with a "
         "warning.",
-        "", ""},
+        "# maup simulate\ncoord x, y : length\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\npoint P mass m at (x, y)\n"
+        "gravity (0, -g)\nconstraint x^2 + y^2 = l^2 name rod\nstart exactly x = 0.6 m, y = -0.7 m\nrun 5 s\n",
+        "# maup simulate\ncoord x, y : length\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\npoint P mass m at (x, y)\n"
+        "gravity (0, -g)\nconstraint x^2 + y^2 = l^2 name rod\nstart exactly x = 0.6 m, y = -0.8 m\nrun 5 s\n"},
     CodeEntry{
         "E0708", "the constraints cannot be met",
         "From the start, and from several other configurations, no configuration was found on which all "
         "constraints hold: a loop that cannot close, or constraints that contradict each other. The message names a "
         "smallest set of them that clashes. The search is local: a start near a configuration that you know to "
         "be possible helps it.",
-        "", ""},
+        "# maup simulate\ncoord x, y : length\nparam m = 1 kg, a = 1 m, b = 1 m, d = 3 m, g = 9.81 m/s^2\n"
+        "point P mass m at (x, y)\ngravity (0, -g)\nconstraint x^2 + y^2 = a^2 name left_rod\n"
+        "constraint (x - d)^2 + y^2 = b^2 name right_rod\nstart x = 0.6 m, y = -0.8 m\nrun 1 s\n",
+        "# maup simulate\ncoord x, y : length\nparam m = 1 kg, a = 1 m, b = 1 m, d = 1.2 m, g = 9.81 m/s^2\n"
+        "point P mass m at (x, y)\ngravity (0, -g)\nconstraint x^2 + y^2 = a^2 name left_rod\n"
+        "constraint (x - d)^2 + y^2 = b^2 name right_rod\nstart x = 0.6 m, y = -0.8 m\nrun 1 s\n"},
     CodeEntry{"E0709", "no velocities satisfy the constraints",
               "At the configuration of the start the constraints on the velocities contradict each other or the rates "
               "that the start asks for.",
-              "", ""},
+              "# maup simulate\ncoord x : length, φ : angle\nparam m = 1 kg, R = 20 cm, v = 1 m/s, Ω = 6 rad/s\n"
+              "body disk mass m inertia m R^2/2 at (x, R) rotation angle φ\nconstraint x' + R φ' = 0 name rolling\n"
+              "constraint x' = v name pull\nconstraint φ' = -Ω name motor\nrun 2 s\n",
+              "# maup simulate\ncoord x : length, φ : angle\nparam m = 1 kg, R = 20 cm, v = 1 m/s\n"
+              "body disk mass m inertia m R^2/2 at (x, R) rotation angle φ\nconstraint x' + R φ' = 0 name rolling\n"
+              "constraint x' = v name pull\nrun 2 s\n"},
     CodeEntry{"W0701", "written start values were moved onto the constraints",
               "The values that the start gives contradict the constraints or each other, so that no choice of the "
               "others can make them hold. They were moved by the least kinetic change. `start exactly` makes this an "
               "error.",
-              "", ""},
+              "# maup simulate\ncoord x, y : length\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\n"
+              "point P mass m at (x, y)\ngravity (0, -g)\nconstraint x^2 + y^2 = l^2 name rod\n"
+              "start x = 0.6 m, y = -0.7 m\nrun 5 s\n",
+              "# maup simulate\ncoord x, y : length\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\n"
+              "point P mass m at (x, y)\ngravity (0, -g)\nconstraint x^2 + y^2 = l^2 name rod\n"
+              "start x = 0.6 m, y = -0.8 m\nrun 5 s\n"},
     CodeEntry{
         "W0703", "the run was carried out without compiled code",
         "--backend compiled asks for machine code, which the module with LLVM makes. It may be missing, belong to "
         "another build, or not do this: a very large model, or a method other than "
         "Taylor's. The results of the interpreter are the same to rounding, they only take longer.",
-        "", ""},
+        "# maup simulate --method variational --step 10ms --backend compiled\ncoord θ : angle\n"
+        "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\nT = 1/2 m l^2 θ'^2\nV = -m g l cos θ\nstart θ = 60 deg\nrun 10 s\n",
+        "# maup simulate --method variational --step 10ms\ncoord θ : angle\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\n"
+        "T = 1/2 m l^2 θ'^2\nV = -m g l cos θ\nstart θ = 60 deg\nrun 10 s\n"},
     CodeEntry{
         "N0704", "compiled code would have paid for this run, and is not here",
         "A run of many steps takes machine code from the module with LLVM where it can. This installation has none "
@@ -77,27 +107,45 @@ constexpr std::array entries{
         "The default method sees that its steps are far shorter than the times in which the velocities change and "
         "goes on with backward differentiation formulas. They keep a tolerance (1e-10, or --tol), not rounding "
         "level. --method taylor forbids the change, --method stiff uses it from the start.",
-        "", ""},
+        "# maup simulate\ncoord x : length\nparam m = 1 g, k = 10 N/m, c = 1000 kg/s\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"
+        "D = 1/2 c x'^2\nstart x = 1 cm\nrun 100 s\n",
+        "# maup simulate\ncoord x : length\nparam m = 1 g, k = 10 N/m, c = 0.05 kg/s\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"
+        "D = 1/2 c x'^2\nstart x = 1 cm\nrun 1 s\n"},
     CodeEntry{
         "N0701", "the start was found by a search",
         "The coordinates that the start does not give have no solution near zero, so that one was searched for from "
         "several points. A mechanism can often be assembled in more than one way: give more start values to choose.",
-        "", ""},
+        "# maup simulate\ncoord x, y : length\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\npoint P mass m at (x, y)\n"
+        "gravity (0, -g)\nconstraint x^2 + y^2 = l^2 name rod\nrun 2 s\n",
+        "# maup simulate\ncoord x, y : length\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\npoint P mass m at (x, y)\n"
+        "gravity (0, -g)\nconstraint x^2 + y^2 = l^2 name rod\nstart x = 0.6 m, y = -0.8 m\nrun 2 s\n"},
     CodeEntry{"E0720", "the variational method does not take constraints between velocities",
               "A constraint between velocities that no constraint between positions implies follows d'Alembert's "
               "principle, not "
               "Hamilton's: variations obey other conditions than motions do. The default method takes it.",
-              "", ""},
+              "# maup simulate --method variational --step 10ms\ncoord x, y : length, φ : angle\n"
+              "param m = 1 kg, J = 0.02 kg m^2, g = 9.81 m/s^2, β = 20 deg\nT = 1/2 m (x'^2 + y'^2) + 1/2 J φ'^2\n"
+              "V = -m g x sin β\nconstraint y' cos φ = x' sin φ name blade\nstart φ' = 1 rad/s\nrun 2 s\n",
+              "# maup simulate\ncoord x, y : length, φ : angle\n"
+              "param m = 1 kg, J = 0.02 kg m^2, g = 9.81 m/s^2, β = 20 deg\nT = 1/2 m (x'^2 + y'^2) + 1/2 J φ'^2\n"
+              "V = -m g x sin β\nconstraint y' cos φ = x' sin φ name blade\nstart φ' = 1 rad/s\nrun 2 s\n"},
     CodeEntry{"E0721", "the variational method needs the length of its step",
               "The steps of a variational integrator are all alike, which is why it keeps momenta and the symplectic "
               "form; its "
               "length is given with --step.",
-              "", ""},
+              "# maup simulate --method variational\ncoord θ : angle\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\n"
+              "T = 1/2 m l^2 θ'^2\nV = -m g l cos θ\nstart θ = 60 deg\nrun 10 s\n",
+              "# maup simulate --method variational --step 10ms\ncoord θ : angle\n"
+              "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\nT = 1/2 m l^2 θ'^2\nV = -m g l cos θ\nstart θ = 60 deg\n"
+              "run 10 s\n"},
     CodeEntry{
         "E0722", "there is no variational step of this order",
         "Steps on s Gauss nodes have order 2s, on s Lobatto nodes 2s - 2 (under constraints). Orders from 2 to 12 are "
         "offered; an odd number counts as the next even one.",
-        "", ""},
+        "# maup simulate --method variational --step 10ms --order 20\ncoord θ : angle\n"
+        "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\nT = 1/2 m l^2 θ'^2\nV = -m g l cos θ\nstart θ = 60 deg\nrun 10 s\n",
+        "# maup simulate --method variational --step 10ms --order 4\ncoord θ : angle\n"
+        "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\nT = 1/2 m l^2 θ'^2\nV = -m g l cos θ\nstart θ = 60 deg\nrun 10 s\n"},
     CodeEntry{"E0723", "this build has no stiff method",
               "The stiff method is CVODE of the library SUNDIALS, which is optional when maup is built.", "", ""},
     CodeEntry{"E0724", "the tolerance of the stiff method is no number between 0 and 1",
@@ -109,31 +157,61 @@ constexpr std::array entries{
               "The stiff and the "
               "variational method have bounded orders. Contacts with friction in space are not carried through in many "
               "digits: the forces in their cones are found by an iteration in double.",
-              "", ""},
+              "# maup simulate --precision quad --method stiff\ncoord θ : angle\n"
+              "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\nT = 1/2 m l^2 θ'^2\nV = -m g l cos θ\nstart θ = 60 deg\n"
+              "run 1 s\n",
+              "# maup simulate --precision quad\ncoord θ : angle\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\n"
+              "T = 1/2 m l^2 θ'^2\nV = -m g l cos θ\nstart θ = 60 deg\nrun 1 s\n"},
     CodeEntry{"E0726", "a run cannot end with a force that the model does not determine",
-              "Where constraints depend on each other, or coordinates have removed one, its force is not unique.", "",
-              ""},
+              "Where constraints depend on each other, or coordinates have removed one, its force is not unique.",
+              "# maup simulate\ncoord θ : angle\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\nT = 1/2 m l^2 θ'^2\n"
+              "V = -m g l cos θ\nreaction rod = release l\nstart θ = 60 deg\n"
+              "run until reaction(rod) = m g within 2 s\n",
+              "# maup simulate\ncoord θ : angle\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\n"
+              "point P mass m at l (sin θ, -cos θ)\ngravity (0, -g)\nreaction rod = release l\nstart θ = 60 deg\n"
+              "run until reaction(rod) = m g within 2 s\n"},
     CodeEntry{
         "E0727", "this method does not go through contacts, friction or events",
         "They are located to rounding on the polynomials of Taylor's steps, and the mode changes there. The stiff "
         "and the variational method have no such polynomials.",
-        "", ""},
+        "# maup simulate --method variational --step 10ms\ncoord z : length\n"
+        "param m = 1 kg, g = 9.81 m/s^2, e = 0.8\nT = 1/2 m z'^2\nV = m g z\n"
+        "contact z >= 0 restitution e name floor\nstart z = 1 m\nrun 2 s\n",
+        "# maup simulate\ncoord z : length\nparam m = 1 kg, g = 9.81 m/s^2, e = 0.8\nT = 1/2 m z'^2\nV = m g z\n"
+        "contact z >= 0 restitution e name floor\nstart z = 1 m\nrun 2 s\n"},
     CodeEntry{
         "E0730", "a contact with a kink",
         "A gap made of abs, min, max, step or piecewise may switch where it and its slope go on, as on the border of a "
         "stadium. At a corner or a step of the surface the normal direction jumps: that is two contacts.",
-        "", ""},
+        "# maup simulate\ncoord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\npoint P mass m at (x, z)\n"
+        "gravity (0, -g)\ncontact z >= abs(x) restitution 0.8 name groove\nstart x = 0.2 m, z = 1 m\nrun 1 s\n",
+        "# maup simulate\ncoord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\npoint P mass m at (x, z)\n"
+        "gravity (0, -g)\ncontact z >= x restitution 0.8 name right_side\n"
+        "contact z >= -x restitution 0.8 name left_side\nstart x = 0.2 m, z = 1 m\nrun 1 s\n"},
     CodeEntry{
         "E0729", "impacts where momenta are not linear in the velocities",
         "An impulse changes p = ∂L/∂q'. For a Lagrangian that is quadratic in q' the velocities after it follow from a "
         "linear equation, which is solved; others, as of a relativistic particle, are not carried out yet.",
-        "", ""},
+        "# maup simulate\ncoord x : length\nparam m = 9.11e-31 kg, c = 299792458 m/s, d = 1 m\n"
+        "L = -m c^2 sqrt(1 - x'^2/c^2)\ncontact x <= d restitution 1 name wall\nstart x' = 0.5 c\nrun 10 ns\n",
+        "# maup simulate\ncoord x : length\nparam m = 9.11e-31 kg, c = 299792458 m/s, d = 1 m\nL = 1/2 m x'^2\n"
+        "contact x <= d restitution 1 name wall\nstart x' = 0.01 c\nrun 500 ns\n"},
     CodeEntry{"W0731", "no motion begins at this start",
-              "Contacts and friction allow no motion with finite forces from here, or several: Painlevé's paradox.", "",
-              ""},
+              "Contacts and friction allow no motion with finite forces from here, or several: Painlevé's paradox.",
+              "# maup check\ncoord x, z : length, θ : angle\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\n"
+              "body rod mass m inertia m l^2/12 at (x, z) rotation angle θ\ngravity (0, -g)\n"
+              "contact z - l/2 sin θ >= 0 friction 3 slip x' + l/2 sin θ θ' name floor\n"
+              "start z = l/2 sin(1), θ = 1 rad, x' = -3 m/s\nrun 0.1 s\n",
+              "# maup check\ncoord x, z : length, θ : angle\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\n"
+              "body rod mass m inertia m l^2/12 at (x, z) rotation angle θ\ngravity (0, -g)\n"
+              "contact z - l/2 sin θ >= 0 friction 0.3 slip x' + l/2 sin θ θ' name floor\n"
+              "start z = l/2 sin(1), θ = 1 rad, x' = -3 m/s\nrun 0.1 s\n"},
     CodeEntry{"E0728", "the start violates a contact",
-              "A contact g >= 0 holds at all times, at the first one too: bodies do not begin inside each other.", "",
-              ""},
+              "A contact g >= 0 holds at all times, at the first one too: bodies do not begin inside each other.",
+              "# maup simulate\ncoord z : length\nparam m = 1 kg, g = 9.81 m/s^2, e = 0.8\nT = 1/2 m z'^2\n"
+              "V = m g z\ncontact z >= 0 restitution e name floor\nstart z = -1 cm\nrun 2 s\n",
+              "# maup simulate\ncoord z : length\nparam m = 1 kg, g = 9.81 m/s^2, e = 0.8\nT = 1/2 m z'^2\n"
+              "V = m g z\ncontact z >= 0 restitution e name floor\nstart z = 1 cm\nrun 2 s\n"},
 };
 
 }  // namespace

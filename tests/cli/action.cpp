@@ -116,6 +116,19 @@ TEST_CASE("a path that is given: its action, whether it is stationary, and where
   CHECK(contains(unknown.err, "z"));
 }
 
+TEST_CASE("the ends of a given path have the unit of the independent variable") {
+  // Brachistochrone along the line y = x + a: the time is ∫ dx/√(g y) = 2 (√(1.5 m) − √(0.5 m))/√g.
+  const std::string line =
+      "param g = 9.81 m/s^2\nindependent x : length\ncoord y : length\nL = sqrt((1 + y'^2)/(2 g y))\n";
+  const Outcome along = maup({"action", "-", "--path", "y = x + 0.5 [m]", "--from", "0m", "--to", "1m"}, line);
+  CHECK_MESSAGE(along.code == 0, along.err);
+  CHECK(along.out.rfind("the model: the path given", 0) == 0);
+  const double time = 2 * (std::sqrt(1.5) - std::sqrt(0.5)) / std::sqrt(9.81);
+  CHECK(std::abs(std::stod(along.out.substr(along.out.find(" S ") + 3)) - time) < 1e-10);
+  const Outcome seconds = maup({"action", "-", "--path", "y = x + 0.5 [m]", "--from", "0s", "--to", "1s"}, line);
+  CHECK(contains(seconds.err, "E0304"));
+}
+
 TEST_CASE("ends that no path reaches, ends of the wrong kind, no ends") {
   const Outcome conjugate =
       maup({"action", "-"},

@@ -65,12 +65,9 @@ void check_belonging(const ActionCommand& o, Diagnostics& diagnostics) {
 }
 
 void check_usage(const ActionCommand& o, Diagnostics& diagnostics) {
-  for (const auto& [name, value] :
-       {std::pair("--from", &o.from), std::pair("--to", &o.to), std::pair("--period", &o.period)})
-    if (*value && !parse_time(**value))
-      diagnostics.error(
-          "E0809", {}, fmt::format("{} \"{}\" is no time.", name, **value), {},
-          "Write a number with a unit of time, such as 3s; a bare number is in SI units of the independent variable.");
+  if (o.period && !parse_time(*o.period))
+    diagnostics.error("E0809", {}, fmt::format("--period \"{}\" is no time.", *o.period), {},
+                      "Write a number with a unit of time, such as 3s; a bare number is in seconds.");
   if (o.periodic + o.motion + !o.path.empty() > 1)
     diagnostics.error("E0809", {}, "maup action looks at one thing at a time.", {},
                       "Give one of --path, --motion and --periodic.");

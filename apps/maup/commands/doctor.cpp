@@ -54,7 +54,7 @@ std::vector<Finding> examine() {
       {"films", picture_problem().empty() && !find_ffmpeg().empty()
                     ? "html, svg, mp4, gif"
                     : "html, svg; mp4 and gif need ffmpeg and librsvg2-2"},
-      {"not in this version", "contacts, friction, events, fields, sweeps, HDF5"},
+      {"not in this version", "sweeps, HDF5"},
   };
 }
 

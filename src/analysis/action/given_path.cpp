@@ -302,14 +302,7 @@ std::optional<GivenPath> action_of_path(const Model& model, const EquationsOfMot
                                         Diagnostics& diagnostics) {
   if (!has_action(equations, diagnostics)) return std::nullopt;
   Problem problem(model, equations);
-  if (!(start < end) || !std::isfinite(end - start)) {
-    diagnostics.error("E1203", {},
-                      fmt::format("the path ends at {}, not after its start at {}", place(end, model.system),
-                                  place(start, model.system)),
-                      "The action is an integral from the earlier end to the later one.",
-                      "Give the earlier end first.");
-    return std::nullopt;
-  }
+  if (!check_order(start, end, model.system, {}, diagnostics)) return std::nullopt;
   Formulas formulas(model.system, path);
   if (ends && !meets_ends(problem, formulas, start, end, *ends, diagnostics)) return std::nullopt;
   if (!keeps_constraints(problem, formulas, start, end, diagnostics)) return std::nullopt;

@@ -162,6 +162,22 @@ std::string place(double t, const MechanicalSystem& system) {
   return fmt::format("{} = {}", system.independent, with_unit(t, unit_of_independent(system)));
 }
 
+bool check_order(double start, double end, const MechanicalSystem& system, std::optional<Span> span,
+                 Diagnostics& diagnostics) {
+  if (start < end && std::isfinite(end - start)) return true;
+  if (start < end)
+    diagnostics.error("E1203", span,
+                      fmt::format("the ends at {} and {} are further apart than numbers reach", place(start, system),
+                                  place(end, system)),
+                      "The largest number is 1.8e308.", "Give ends that are nearer to each other.");
+  else
+    diagnostics.error(
+        "E1203", span,
+        fmt::format("the path ends at {}, not after its start at {}", place(end, system), place(start, system)),
+        "The action is an integral from the earlier end to the later one.", "Write the earlier end first.");
+  return false;
+}
+
 bool move_onto_constraints(Functional& functional, Trial& trial, const FixedEnds& fixed, const Matrix& scale) {
   if (functional.constraints() == 0) return true;
   const Vector nothing = Vector::Zero(trial.q.size());

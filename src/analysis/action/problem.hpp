@@ -2,6 +2,7 @@
 #include "analysis/action/refine.hpp"
 
 #include <maupertuis/action.hpp>
+#include <maupertuis/diagnostic.hpp>
 
 #include <atomic>
 #include <string>
@@ -42,6 +43,9 @@ FixedEnds fixed_of(const ActionEnds& ends);
 std::string with_unit(double value, const std::string& unit);
 /// "s", or the unit of another independent variable; empty for bare numbers.
 std::string unit_of_independent(const MechanicalSystem& system);
+/// E1203 where a path does not run from an earlier end to a later one, at a finite distance; false then.
+bool check_order(double start, double end, const MechanicalSystem& system, std::optional<Span> span,
+                 Diagnostics& diagnostics);
 /// "t = 2 s"
 std::string place(double t, const MechanicalSystem& system);
 

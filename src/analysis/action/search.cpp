@@ -40,14 +40,7 @@ bool same(const Trial& a, const Trial& b, const Vector& least) {
 bool check_ends(Problem& problem, const ActionEnds& ends, Diagnostics& diagnostics) {
   const MechanicalSystem& system = problem.model.system;
   const auto span = problem.model.experiment.path ? std::optional(problem.model.experiment.path->span) : std::nullopt;
-  if (!(ends.start < ends.end) || !std::isfinite(ends.end - ends.start)) {
-    diagnostics.error("E1203", span,
-                      fmt::format("the path ends at {}, not after its start at {}", place(ends.end, system),
-                                  place(ends.start, system)),
-                      "The action is an integral from the earlier end to the later one.",
-                      "Write the earlier end first.");
-    return false;
-  }
+  if (!check_order(ends.start, ends.end, system, span, diagnostics)) return false;
   if (!system.constrained()) return true;
   const ConstraintManifold manifold(problem.equations);
   for (const bool first : {true, false}) {
@@ -245,8 +238,8 @@ void refuse_no_path(const Search& search, Problem& problem, const ActionEnds& en
     return refuse_beyond_numbers(*speed, problem, ends, diagnostics);
   const auto span = problem.model.experiment.path ? std::optional(problem.model.experiment.path->span) : std::nullopt;
   std::string reason =
-      fmt::format("Newton's method on the stationarity of S began from {} lines between the ends and found no path.",
-                  search.starts_);
+      fmt::format("Newton's method on the stationarity of S began from {} line{} between the ends and found no path.",
+                  search.starts_, search.starts_ == 1 ? "" : "s");
   if (search.reached_ > 0 && search.reached_ < 1)
     reason +=
         fmt::format(" From the path of a short duration it could be followed to {:.3g} of this one.", search.reached_);

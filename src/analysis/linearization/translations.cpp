@@ -88,11 +88,12 @@ void clean(Matrix& basis) {
 }
 
 /// d·R vanishes in every uniform motion along the translations: no force acts along d. What constraints of velocities
-/// do there counts as a force.
-bool is_conserved(PointEquations::Impl& e, const Vector& direction) {
+/// do there counts as a force, and inputs have the values that the model gives them.
+bool is_conserved(const PointEquations& equations, PointEquations::Impl& e, const Vector& direction) {
   for (int s = 0; s < samples; ++s) {
     OperatingPoint point = random_point(e, 577 + static_cast<std::uint64_t>(s));
     std::fill(point.a.begin(), point.a.end(), 0);
+    point.inputs = equations.inputs_at(s);  // at several times: inputs that change are forces
     const Vector r = e.value(e.balance, point);
     const Vector p = e.at(e.momenta, point).by_q * to_eigen(point.v);  // d/dt p at a = 0, without explicit time
     const double rate = direction.dot(r - p), size = direction.cwiseAbs().dot(r.cwiseAbs() + p.cwiseAbs());
@@ -112,7 +113,7 @@ std::vector<Translation> PointEquations::translations(const std::vector<bool>& p
   std::vector<Translation> out;
   for (Index k = 0; k < basis.cols(); ++k) {
     const Vector d = basis.col(k);
-    out.push_back({to_list(d), pivots[static_cast<std::size_t>(k)], is_conserved(*impl_, d)});
+    out.push_back({to_list(d), pivots[static_cast<std::size_t>(k)], is_conserved(*this, *impl_, d)});
   }
   std::sort(out.begin(), out.end(), [](const Translation& x, const Translation& y) { return x.pivot < y.pivot; });
   return out;

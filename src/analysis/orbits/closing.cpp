@@ -119,9 +119,11 @@ class Closer {
     if (f.size() == 0) return refuse_end(at_.t, "An acceleration has no value here.", diagnostics_);
     if (!out_.motion.driven && f.cwiseAbs().maxCoeff() == 0) return refuse_rest();
     if (out_.motion.driven && !repeats_in_time(system_, motion_, seen_, *period_)) {
-      diagnostics_.error("E1404", {}, fmt::format("the equations do not repeat after {:.9g} s", *period_),
+      diagnostics_.error("E1404", {},
+                         fmt::format("the equations do not repeat after {:.9g} s{}", *period_,
+                                     options_.period ? "" : ", the period of the sines and cosines of t in them"),
                          "A driven motion can only repeat with the period of its drive, or a multiple of it.",
-                         "Give a period of the drive with --period.");
+                         "If there is one, give it with --period.");
       return false;
     }
     return true;
@@ -287,6 +289,7 @@ class Closer {
     out_.log_volume = flow_.log_volume_of_jumps();
     if (!stop) return true;
     if (stop->ending == StepEnding::None) return refuse_jump(*stop, diagnostics_);
+    if (out_.motion.iterations > 0 && stop->ending != StepEnding::Interrupted) return refuse_corrected(*stop);
     return refuse_end(stop->t, stop->reason, diagnostics_);
   }
 
@@ -363,6 +366,16 @@ class Closer {
                        fmt::format("Newton's method on the return map did not converge: after {:.9g} s the state is "
                                    "still {:.2g} of the orbit's size away.",
                                    *period_, error),
+                       "Give a better period with --period, or a start that is nearer to a periodic motion.");
+    return false;
+  }
+
+  /// The motion from the start that was given goes on; the one from a corrected start does not.
+  bool refuse_corrected(const TangentStop& stop) {
+    diagnostics_.error("E1401", place_of_start(), "no periodic motion was found near this start",
+                       fmt::format("Newton's method on the return map led to a start from which the motion ends at "
+                                   "t = {:.9g} s: {}",
+                                   stop.t, stop.reason),
                        "Give a better period with --period, or a start that is nearer to a periodic motion.");
     return false;
   }

@@ -46,7 +46,12 @@ std::optional<double> length_of_run(const Model& model, std::optional<double> as
   if (!length && written)
     length = evaluate(in_terms_of_motion(model.system, {&written, 1}).front(), parameter_bindings(model.system));
   if (length && *length > 0 && std::isfinite(*length)) return length;
-  refuse_no_time(length ? "the duration" : "a duration is needed, and it", diagnostics);
+  if (length)
+    refuse_no_time("the duration", diagnostics);
+  else
+    diagnostics.error("E1406", {}, "it is not said how long the motion is followed",
+                      "The model has no `run`, which would say it.",
+                      "Write `run 10 s` into the model, or give --duration 10s.");
   return std::nullopt;
 }
 

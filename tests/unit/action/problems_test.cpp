@@ -271,6 +271,7 @@ TEST_CASE("what has no action, ends off the constraints, ends in the wrong order
       "system c\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nconstraint x^2 + y^2 = 1 name ring\n");
   CHECK(code_of_search(circle, fixed_ends({1, 0}, 0, {1, 1}, 1)) == "E1202");
   CHECK(code_of_search(circle, fixed_ends({1, 0}, 1, {0, 1}, 0)) == "E1203");
+  CHECK(code_of_search(circle, fixed_ends({1, 0}, -1.5e308, {0, 1}, 1.5e308)) == "E1203");
 }
 
 TEST_CASE(

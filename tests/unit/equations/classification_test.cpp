@@ -170,6 +170,18 @@ constraint r sin θ1 + a/2 sin β = r sin θ3 name middle_y
   CHECK(analyse_constraints(plain.equations, &flat).singular_start());
 }
 
+TEST_CASE("a start is singular to rounding: cos 90° is 6e-17") {
+  const ModelText m(R"(param m = 1 kg, r = 30 cm
+coord φ : angle, s : length
+T = 1/4 m r^2 φ'^2 + 1/2 m s'^2
+constraint r^2 + s^2 - 2 r s cos φ = r^2 name rod
+)");
+  const double quarter = std::acos(0.0);
+  const MotionState singular{0, {quarter, 0}, {0, 0}}, beside{0, {quarter - 1e-6, 0}, {0, 0}};
+  CHECK(analyse_constraints(m.equations, &singular).singular_start());
+  CHECK_FALSE(analyse_constraints(m.equations, &beside).singular_start());
+}
+
 TEST_CASE("redundant velocity constraints name the set that they depend on") {
   const Analysed m(space("constraint x' = y'\nconstraint z' = y x'\nconstraint z' = y y'\n"));
   CHECK(m.found.rank == 2);

@@ -153,6 +153,21 @@ V = 1/2 k θ^2 - c cos θ
   }
 }
 
+TEST_CASE("A translation that an input pushes along stays one while the input is zero") {
+  const std::string free = "system puck\nparam m = 2 kg\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\n";
+  Linearized pushed(free + "input u : [N] = 0\nforce x = u\n");
+  const ModalStudy study = pushed.study();
+  REQUIRE(study.translations.size() == 2);
+  CHECK(study.translations[0].conserved);
+  CHECK(study.translations[1].conserved);
+  CHECK(study.entries.front().analysis.stability.verdict == Stability::Energetic);
+  Linearized driven(free + "input u : [N] = 1 [N] sin(t/1 [s])\nforce x = u\n");
+  const auto translations = driven.at.translations({});
+  REQUIRE(translations.size() == 2);
+  CHECK_FALSE(translations[0].conserved);
+  CHECK(translations[1].conserved);
+}
+
 TEST_CASE("What has no equilibrium says so") {
   const auto first_code = [](Linearized& m, bool at) {
     Diagnostics told;

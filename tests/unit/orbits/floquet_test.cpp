@@ -234,4 +234,7 @@ TEST_CASE("what has no Floquet multipliers is told") {
   CHECK(code(free + "V = 1/2 x^2\nstart x = 1\n") == "E1406");
   CHECK(code(free + "V = 1/2 x^2\nstart x = 1\n", {.period = 0.0}) == "E1406");
   CHECK(code(free + "V = -1/x\nstart x = 1\n", {.period = 3.0}) == "E1408");
+  // The motion from this start goes on past the centre; the start that Newton's method tries next falls into it.
+  CHECK(code("system kepler\ndimensionless\ncoord r : number, φ : angle\nT = 1/2 (r'^2 + r^2 φ'^2)\nV = -1/r\n"
+             "start r = 1, φ' = 0.001\nrun 20\n") == "E1401");
 }
