@@ -70,7 +70,7 @@ TEST_CASE("the examples of every code, by the command that they name") {
     check_wrong(code, wrong);
     if (!right.text.empty()) check_right(code, right);
   }
-  CHECK(tried > 160);
+  CHECK(tried > 250);
 }
 
 }  // namespace examples_of_codes

@@ -70,7 +70,8 @@ export class WorkerCarrier implements Carrier {
       worker = new Worker(script);
     this.worker = worker;
     worker.onmessage = (event: MessageEvent<FromWorker>) => this.hear(event.data);
-    worker.onerror = event => this.lose(event.message);
+    // A script that could not be fetched is an event without a message.
+    worker.onerror = event => this.lose((event as Partial<ErrorEvent>).message ?? 'It could not be loaded.');
     worker.postMessage({start: {wasm: this.module ?? wasm, cancel: this.cancel ?? undefined}});
     if (!opens && this.opened) worker.postMessage({id: 0, request: this.opened});
     return worker;

@@ -54,6 +54,17 @@ export const carriers = {
     await page.context().close();
   },
 
+  async 'a worker that cannot be fetched'({open}, variant) {
+    if (variant.name === 'server') return;
+    const page = await open({
+      wait: false,
+      allow: ['ERR_FAILED'],
+      before: page => page.route('**/maup_worker.js', route => route.abort()),
+    });
+    await shows(page, ['#equations-body', 'could not be loaded']);
+    await page.context().close();
+  },
+
   async 'an answer after its cancel'({open}, variant) {
     if (variant.name !== 'server') return;
     // The second question cancels the first, whose answer was on its way.

@@ -519,6 +519,7 @@ export const cases = {
 
   async offline({open}, variant) {
     const page = await open({hash: '#example=pendulum', allow: ['ERR_INTERNET_DISCONNECTED']});
+    await settled(page); // the core is there
     await page.context().setOffline(true);
     if (variant.name === 'server') {
       await typeAtEnd(page, '\n# on');
