@@ -15,8 +15,8 @@ std::string compare_with_energy(const EquationsOfMotion& equations, bool& equal)
   const Expr energy = expand_time_derivatives(system.kinetic_energy() + system.potential_energy());
   const Expr difference = equations.energy_function - energy;
   const ZeroTest test = zero_test(difference);
-  equal = difference.is_zero() || test.verdict == Verdict::Zero;
-  if (!equal && test.verdict == Verdict::Undecided)
+  equal = test.verdict == Verdict::Zero;
+  if (test.verdict == Verdict::Undecided)
     return "Whether h_E is T + V was not decided: " +
            (test.reason.empty() ? "no point was found at which both have a value" : test.reason) + ".";
   const bool has_generalized_potential = !system.generalized_potential.empty() || !system.lagrangian_extra.empty();

@@ -19,7 +19,7 @@ using Matrix = Eigen::MatrixXd;
 using Index = Eigen::Index;
 
 constexpr double vanishing = 1e-4;  // a row on the manifold against beside it
-constexpr double rounding = 1e-14;
+constexpr double rounding = 1e-14;  // a row at the start against its length elsewhere
 /// Beyond this number of entries ranks are taken by elimination, not by singular values.
 constexpr std::size_t largest_dense = 64 * 128;
 

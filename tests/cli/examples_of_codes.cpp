@@ -44,6 +44,15 @@ std::string shown(const Example& example, const Outcome& outcome) {
   return example.text + "\n" + outcome.out + outcome.err + "\nexit code " + std::to_string(outcome.code);
 }
 
+/// A build without SUNDIALS or LAPACK has no stiff method, or no regulator (E1315), and other messages; a mesh that fits
+/// into no memory (E0649) may fit into that of a large machine.
+bool is_told_otherwise_here(const std::string& code) {
+  if (code == "E0649") return true;
+  static const std::string doctor = cli_test::maup({"doctor"}).out;
+  if (contains(doctor, "stiff needs SUNDIALS") && code == "N0702") return true;
+  return contains(doctor, "needs LAPACK") && code >= "E1310" && code <= "E1314";
+}
+
 void check_wrong(const std::string& code, const Example& example) {
   const Outcome outcome = example.run();
   CHECK_MESSAGE(contains(outcome.out + outcome.err, code), shown(example, outcome));
@@ -65,7 +74,7 @@ TEST_CASE("the examples of every code, by the command that they name") {
     const std::string code = entry["code"];
     CAPTURE(code);
     const Example wrong{entry["wrong"]}, right{entry["right"]};
-    if (wrong.is_command_line() || wrong.text.empty()) continue;
+    if (wrong.is_command_line() || wrong.text.empty() || is_told_otherwise_here(code)) continue;
     ++tried;
     check_wrong(code, wrong);
     if (!right.text.empty()) check_right(code, right);

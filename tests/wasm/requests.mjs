@@ -69,7 +69,7 @@ function* runDifferences(a, b) {
     return yield `run: ${rows.length} rows have the same times, of ${a.times.length} | ${b.times.length}`;
   const certain = Math.min(a.uncertain?.from ?? Infinity, b.uncertain?.from ?? Infinity);
   // A field's values at all places are of one size: beside a wave it is nearly zero, and what is there is rounding.
-  const quantity = column => a.columns[column].name.replace(/\(.*/, ''),
+  const quantity = column => a.columns[column].name.replace(/\([-\d., e]+\)$/, '(x)'),
     sizes = new Map();
   for (const [column, values] of a.values.entries())
     sizes.set(quantity(column), values.reduce((size, x) => Math.max(size, Math.abs(x ?? 0)), sizes.get(quantity(column)) ?? 0));
@@ -86,19 +86,52 @@ function* runDifferences(a, b) {
   }
 }
 
-/** Of these models lines are written with other signs and in another order, equal as formulas: docs/design/web_assembly.md. */
+/** Of these models lines are written with other signs and in another order: docs/design/web_assembly.md. */
 export const reordered = new Set(['ball_on_turntable.lag', 'heavy_top.lag', 'fields/loaded_bridge.lag']);
 
-const words = text => (text.match(/[\p{L}\p{N}_.'\\]+/gu) ?? []).sort();
+/** A formula as it is printed, with a number for each name: "2 m R^2 (a' - b/3)", where w(L/2) is a name too. */
+export function valueOf(text) {
+  const tokens = text.match(/\d+(\.\d+)?|\p{L}[\p{L}\p{N}_.]*'*(\([^()]*\))?|[-+*/^()]|\S/gu) ?? [];
+  const numberOf = name => [...name].reduce((sum, sign, i) => (sum + (i + 7) * sign.codePointAt(0) * 0.6180339) % 1, 0.1) + 0.5;
+  const take = sign => tokens[0] === sign && tokens.shift();
+  const sum = () => {
+    let value = take('-') ? -term() : term();
+    while (/^[-+]$/.test(tokens[0])) value += tokens.shift() === '-' ? -term() : term();
+    return value;
+  };
+  const term = () => {
+    let value = power();
+    while (tokens.length > 0 && !/^[-+)]$/.test(tokens[0])) value = take('/') ? value / power() : (take('*'), value * power());
+    return value;
+  };
+  const power = () => {
+    const base = atom();
+    return take('^') ? base ** atom() : base;
+  };
+  const atom = () => {
+    const token = tokens.shift() ?? '';
+    if (token === '(') {
+      const value = sum();
+      return take(')') ? value : NaN;
+    }
+    return /^\d/.test(token) ? Number(token) : /^\p{L}/u.test(token) ? numberOf(token) : NaN;
+  };
+  const value = sum();
+  return tokens.length === 0 ? value : NaN;
+}
 
-/** Lines with the same words, whatever their order and signs. */
-function* otherWords(a, b, path) {
-  if (typeof a === 'string' && typeof b === 'string') {
-    if (!path.endsWith('mathml')) yield* differences(words(a), words(b), path, 1e-9);
+/** Formulas that are equal, however they are written; an equation … = 0 may be written with the other sign. */
+function* otherFormulas(a, b, path, signed = true) {
+  if (/\.(mathml|latex)$/.test(path) || a === b) return;
+  if (path.endsWith('.plain')) {
+    const [left, right] = [a, b].map(text => (signed ? valueOf(text) : Math.abs(valueOf(text))));
+    if (!close(left, right, 1e-9)) yield `${path}: ${a} | ${b}`;
   } else if (a !== null && b !== null && typeof a === 'object' && typeof b === 'object') {
-    for (const key of new Set([...Object.keys(a), ...Object.keys(b)])) yield* otherWords(a[key], b[key], `${path}.${key}`);
-  } else if (a !== b && typeof a !== 'number') {
-    yield `${path}: ${JSON.stringify(a)} | ${JSON.stringify(b)}`;
+    const isZero = a.right?.plain === '0' && b.right?.plain === '0';
+    for (const key of new Set([...Object.keys(a), ...Object.keys(b)]))
+      yield* otherFormulas(a[key], b[key], `${path}.${key}`, signed && !isZero);
+  } else {
+    yield* differences(a, b, path, 1e-9);
   }
 }
 
@@ -119,7 +152,7 @@ export function compare(model, request, native, wasm) {
     case 'run':
       return [...runDifferences(native, wasm)];
     case 'equations':
-      if (reordered.has(model)) return [...otherWords(native, wasm, request.do)];
+      if (reordered.has(model)) return [...otherFormulas(native, wasm, request.do)];
     // otherwise word by word
     default:
       return [...differences(native, wasm, request.do, 1e-9)];

@@ -1,8 +1,11 @@
 #include "analysis/linearization/dense.hpp"
 #include "analysis/linearization/point_equations.hpp"
 
+#include <maupertuis/transform.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 /// Translations that are symmetries: the null space of ∂(R, φ, ψ)/∂q, common to random points.
 namespace maupertuis {
@@ -88,18 +91,29 @@ void clean(Matrix& basis) {
 }
 
 /// d·R vanishes in every uniform motion along the translations: no force acts along d. What constraints of velocities
-/// do there counts as a force, and inputs have the values that the model gives them.
-bool is_conserved(const PointEquations& equations, PointEquations::Impl& e, const Vector& direction) {
+/// do there counts as a force, and so does an input that changes with time. `held`: [k] the values of those that do
+/// not.
+bool is_conserved(PointEquations::Impl& e, const Vector& direction, const std::vector<std::optional<double>>& held) {
   for (int s = 0; s < samples; ++s) {
     OperatingPoint point = random_point(e, 577 + static_cast<std::uint64_t>(s));
     std::fill(point.a.begin(), point.a.end(), 0);
-    point.inputs = equations.inputs_at(s);  // at several times: inputs that change are forces
+    for (std::size_t i = 0; i < held.size(); ++i) point.inputs[i] = held[i].value_or(point.inputs[i]);
     const Vector r = e.value(e.balance, point);
     const Vector p = e.at(e.momenta, point).by_q * to_eigen(point.v);  // d/dt p at a = 0, without explicit time
     const double rate = direction.dot(r - p), size = direction.cwiseAbs().dot(r.cwiseAbs() + p.cwiseAbs());
     if (!std::isfinite(rate) || std::abs(rate) > small * size) return false;
   }
   return true;
+}
+
+/// [k] the values of the inputs that are constant.
+std::vector<std::optional<double>> constant_inputs(const PointEquations& equations) {
+  const MechanicalSystem& system = equations.system();
+  const std::vector<double> values = equations.inputs_at(0);
+  std::vector<std::optional<double>> out(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (differentiate(system.inputs[i].formula, system.context->time()).is_zero()) out[i] = values[i];
+  return out;
 }
 
 }  // namespace
@@ -110,10 +124,11 @@ std::vector<Translation> PointEquations::translations(const std::vector<bool>& p
   basis = sizes.asDiagonal() * basis;
   const std::vector<std::size_t> pivots = reduce_to_pivots(basis, preferred);
   clean(basis);
+  const std::vector<std::optional<double>> held = constant_inputs(*this);
   std::vector<Translation> out;
   for (Index k = 0; k < basis.cols(); ++k) {
     const Vector d = basis.col(k);
-    out.push_back({to_list(d), pivots[static_cast<std::size_t>(k)], is_conserved(*this, *impl_, d)});
+    out.push_back({to_list(d), pivots[static_cast<std::size_t>(k)], is_conserved(*impl_, d, held)});
   }
   std::sort(out.begin(), out.end(), [](const Translation& x, const Translation& y) { return x.pivot < y.pivot; });
   return out;
