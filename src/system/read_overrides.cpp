@@ -99,9 +99,11 @@ void ExperimentOverrides::read(OverrideKind kind, const SourceText& text, const 
       return;
     case OverrideKind::GivenFrom:
       given_from = syntax::parse_quantity(text, model, diagnostics);
+      if (!given_from) given_path.clear();  // one whose end was not understood is not one without ends
       return;
     case OverrideKind::GivenTo:
       given_to = syntax::parse_quantity(text, model, diagnostics);
+      if (!given_to) given_path.clear();
       return;
   }
 }

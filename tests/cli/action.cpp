@@ -127,6 +127,9 @@ TEST_CASE("the ends of a given path have the unit of the independent variable") 
   CHECK(std::abs(std::stod(along.out.substr(along.out.find(" S ") + 3)) - time) < 1e-10);
   const Outcome seconds = maup({"action", "-", "--path", "y = x + 0.5 [m]", "--from", "0s", "--to", "1s"}, line);
   CHECK(contains(seconds.err, "E0304"));
+  const Outcome none = maup({"action", "-", "--path", "y = x + 0.5 [m]", "--from", "nan", "--to", "1m"}, line);
+  CHECK(contains(none.err, "E0105"));
+  CHECK_FALSE(contains(none.err, "E0243"));
 }
 
 TEST_CASE("ends that no path reaches, ends of the wrong kind, no ends") {
