@@ -1,5 +1,5 @@
 # Thin: each rule calls a script of scripts/, which installs what is missing, configures by a CMake preset and builds.
-.PHONY: demo build test bench instructions fuzz mutants steep-models gallery format site vscode studio wasm wasm-test install package clean
+.PHONY: demo build test bench instructions sanitize fuzz mutants steep-models gallery format site vscode studio wasm wasm-test install package clean
 
 demo:     # check, derive, simulate and report models/double_pendulum.lag
 	@scripts/demo
@@ -11,6 +11,8 @@ bench:    # the tables of docs/benchmarks.md, measured here
 	@scripts/bench
 instructions:  # counts of fixed work under valgrind, against benchmarks/instruction_counts.json
 	@scripts/instructions
+sanitize: # all unit tests and the fuzzer's corpus under ASan and UBSan
+	@scripts/sanitize
 fuzz:     # SECONDS=120 of libFuzzer on parse → check → derive, and as long of drawn inputs for every command
 	@scripts/fuzz $(SECONDS)
 mutants:  # one-line changes of the sources: nine of ten must be seen by the tests

@@ -44,10 +44,12 @@ function(maup_compile_together target folder batch)
   endif()
 endfunction()
 
-# maup_module(<directory below src> LINKS <module>... [COLD] [ALONE <source>...] [BATCH <sources at a time>]): the library maup_<directory with _ for />.
-# COLD: nothing in it computes for long; it is compiled with less optimization, in three quarters of the time.
+# maup_module(<directory below src> LINKS <module>... [COLD] [CHECKED] [ALONE <source>...] [BATCH <sources at a time>]): the library
+# maup_<directory with _ for />. COLD: nothing in it computes for long; it is compiled with less optimization, in three quarters of
+# the time. CHECKED: all its memory is that of containers, which look at every index in every build; sanitizers look at the rest
+# (tests/CMakeLists.txt).
 function(maup_module directory)
-  cmake_parse_arguments(ARG "COLD" "BATCH" "LINKS;PRIVATE_LINKS;ALONE" ${ARGN})
+  cmake_parse_arguments(ARG "COLD;CHECKED" "BATCH" "LINKS;PRIVATE_LINKS;ALONE" ${ARGN})
   if(NOT ARG_BATCH)
     set(ARG_BATCH 6)
   endif()
@@ -68,6 +70,10 @@ function(maup_module directory)
   maup_compile_together(maup_${name} ${PROJECT_SOURCE_DIR}/src/${directory} ${ARG_BATCH} ${ARG_ALONE})
   if(ARG_COLD AND NOT EMSCRIPTEN)  # there all is compiled to be small
     target_compile_options(maup_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
+  if(ARG_CHECKED)
+    target_compile_definitions(maup_${name} PRIVATE _GLIBCXX_ASSERTIONS)
+    set_property(GLOBAL APPEND PROPERTY MAUP_CHECKED ${directory})
   endif()
   target_include_directories(maup_${name} INTERFACE ${PROJECT_SOURCE_DIR}/include)
   set_property(GLOBAL APPEND PROPERTY MAUP_MODULES maup_${name})

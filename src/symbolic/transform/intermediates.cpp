@@ -1,5 +1,6 @@
 #include <maupertuis/shared_form.hpp>
 
+#include "symbolic/expression/storage.hpp"
 #include "symbolic/transform/intermediates.hpp"
 #include "symbolic/transform/rebuild.hpp"
 #include "symbolic/transform/reverse_sweep.hpp"
@@ -7,7 +8,6 @@
 #include <algorithm>
 #include <string>
 #include <unordered_map>
-#include <unordered_set>
 
 namespace maupertuis::terms {
 namespace {
@@ -15,30 +15,27 @@ namespace {
 /// Names that nothing in the context has yet: c2 and s2 for the cosine and sine of the second coordinate, k1, k2, …
 class FreshNames {
  public:
-  FreshNames(Context& context, const ReadingOrder& order) : context_(context), places_(places_of(order.coordinates)) {
-    for (NodeId id = 1; id <= context.node_count(); ++id)
-      if (const Expr e = context.node(id); e.is_symbol()) taken_.insert(e.name());
-  }
+  FreshNames(Context& context, const ReadingOrder& order) : context_(context), places_(places_of(order.coordinates)) {}
 
   Expr name_for(Expr value) {
     if (value.is(Kind::Sin) || value.is(Kind::Cos)) {
       if (const auto place = places_.find(value[0].id()); place != places_.end()) {
         const std::string name = (value.is(Kind::Sin) ? "s" : "c") + std::to_string(place->second + 1);
-        if (taken_.insert(name).second) return symbol(name);
+        if (is_free(name)) return symbol(name);
       }
     }
     std::string name;
     do name = "k" + std::to_string(++last_);
-    while (!taken_.insert(name).second);
+    while (!is_free(name));
     return symbol(name);
   }
 
  private:
+  bool is_free(const std::string& name) const { return !context_.storage().symbols_by_name.contains(name); }
   Expr symbol(const std::string& name) { return context_.symbol(name, Role::Auxiliary); }
 
   Context& context_;
   std::unordered_map<NodeId, std::size_t> places_;  // of the coordinates
-  std::unordered_set<std::string> taken_;
   int last_ = 0;
 };
 

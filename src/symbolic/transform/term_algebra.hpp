@@ -97,7 +97,7 @@ class TermAlgebra {
 
   AtomId atom(Expr e, AtomKind kind, std::vector<Polynomial> arguments = {});
   const Atom& info(AtomId id) const { return atoms_[id]; }
-  void show(AtomId id, Expr shown) { atoms_[id].shown = shown; }
+  void show(AtomId id, Expr shown);
   /// How the collected argument of an exponential is shown; the flat sum by default.
   void show_exponents(std::function<Expr(const Polynomial&)> form) { exponent_form_ = std::move(form); }
   std::size_t atom_count() const { return atoms_.size(); }
@@ -143,6 +143,7 @@ class TermAlgebra {
   Polynomial power_of_number(const Rational& value, Fraction exponent);
   Polynomial power_of_sum(const Polynomial& sum, Fraction exponent);
   Expr exponential(const Monomial& monomial, bool shown);
+  std::vector<Expr> factors_without_exponentials(const Monomial& monomial, bool shown) const;
 
   Context* context_;
   std::size_t budget_;
@@ -157,6 +158,8 @@ class TermAlgebra {
   std::vector<Harmonic> harmonics_;
   std::unordered_map<Harmonic, HarmonicId, KeyHash> harmonic_ids_;
   std::unordered_map<std::uint64_t, std::vector<Term>> harmonic_products_;
+  // Expressions made before, by harmonic and by monomial without exponentials; `shown_monomials_` until an atom is shown otherwise.
+  std::vector<Expr> harmonic_expressions_, monomial_expressions_, shown_monomials_;
 };
 
 /// The terms as bytes, to be looked up by.

@@ -1,9 +1,26 @@
 #include "symbolic/transform/term_algebra.hpp"
 
+#include <algorithm>
 #include <array>
 
 /// From the term algebra back to expressions.
 namespace maupertuis::terms {
+namespace {
+
+/// Made at first use: a search for the best form writes the same monomials and angles thousands of times.
+template <typename Make>
+Expr remembered(std::vector<Expr>& known, std::size_t id, Make make) {
+  if (known.size() <= id) known.resize(id + 1);
+  if (!known[id]) known[id] = make();
+  return known[id];
+}
+
+}  // namespace
+
+void TermAlgebra::show(AtomId id, Expr shown) {
+  atoms_[id].shown = shown;
+  shown_monomials_.clear();
+}
 
 Expr TermAlgebra::angle_expression(const std::vector<Frequency>& argument) const {
   std::vector<Expr> terms;
@@ -14,8 +31,10 @@ Expr TermAlgebra::angle_expression(const std::vector<Frequency>& argument) const
 Expr TermAlgebra::expression_of_harmonic(HarmonicId id) {
   const Harmonic& h = harmonics_[id];
   if (h.argument.empty()) return context_->number(1);
-  const Expr argument = angle_expression(h.argument);
-  return h.sine ? sin(argument) : cos(argument);
+  return remembered(harmonic_expressions_, id, [&] {
+    const Expr argument = angle_expression(h.argument);
+    return h.sine ? sin(argument) : cos(argument);
+  });
 }
 
 /// All exponentials of a monomial as one: exp(a)^2 exp(b)^-1 = exp(2a − b).
@@ -27,19 +46,25 @@ Expr TermAlgebra::exponential(const Monomial& monomial, bool shown) {
   return apply(Kind::Exp, shown && exponent_form_ ? exponent_form_(exponent) : expression(exponent, shown));
 }
 
-Expr TermAlgebra::expression(MonomialId id, bool shown) {
-  const Monomial monomial = monomials_[id];
+std::vector<Expr> TermAlgebra::factors_without_exponentials(const Monomial& monomial, bool shown) const {
   std::vector<Expr> factors;
-  bool has_exponential = false;
-  for (const Factor& f : monomial) {
-    if (atoms_[f.atom].kind == AtomKind::Exponential) {
-      has_exponential = true;
-      continue;
-    }
-    factors.push_back(pow(shown ? atoms_[f.atom].shown : atoms_[f.atom].expr, to_rational(f.exponent)));
+  for (const Factor& f : monomial)
+    if (const Atom& atom = atoms_[f.atom]; atom.kind != AtomKind::Exponential)
+      factors.push_back(pow(shown ? atom.shown : atom.expr, to_rational(f.exponent)));
+  return factors;
+}
+
+Expr TermAlgebra::expression(MonomialId id, bool shown) {
+  const auto is_exponential = [&](const Factor& f) { return atoms_[f.atom].kind == AtomKind::Exponential; };
+  if (std::any_of(monomials_[id].begin(), monomials_[id].end(), is_exponential)) {
+    const Monomial monomial = monomials_[id];  // the form of an exponent is chosen anew and may make more monomials
+    std::vector<Expr> factors = factors_without_exponentials(monomial, shown);
+    factors.push_back(exponential(monomial, shown));
+    return context_->product(factors);
   }
-  if (has_exponential) factors.push_back(exponential(monomial, shown));
-  return context_->product(factors);
+  return remembered(shown ? shown_monomials_ : monomial_expressions_, id, [&] {
+    return context_->product(factors_without_exponentials(monomials_[id], shown));
+  });
 }
 
 Expr TermAlgebra::expression(const Polynomial& p, bool shown) {
