@@ -92,7 +92,7 @@ TEST_CASE("the models of the gallery, in every form") {
 
 TEST_CASE("the models of the literature, with their derivation") {
   std::vector<std::string> files = models_in("tests/problems");
-  // The steps of the arm of seven joints did not come within the minute that a command has here, on a busy machine.
+  // The steps of the arm of seven joints are 53,000 lines, which take as long as those of all other models.
   std::erase_if(files, [](const std::string& file) { return contains(file, "urdf_panda"); });
   // L = q has no motion, and nothing is shown of it.
   std::erase_if(files, [](const std::string& file) { return contains(file, "degen_contradiction"); });
