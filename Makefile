@@ -1,12 +1,14 @@
 # Thin: each rule calls a script of scripts/, which installs what is missing, configures by a CMake preset and builds.
-.PHONY: demo build test bench instructions sanitize fuzz mutants steep-models gallery format site vscode studio wasm wasm-test install package clean
+.PHONY: demo build test test-long bench instructions sanitize fuzz mutants steep-models gallery format site vscode studio wasm wasm-test install package clean
 
 demo:     # check, derive, simulate and report models/double_pendulum.lag
 	@scripts/demo
 build:    # build/bin/maup
 	@scripts/build
-test:     # all tests
+test:     # the tests of every change
 	@scripts/test
+test-long: # the others: the site, LaTeX of every model, public headers alone, reference values, large draws
+	@scripts/test long
 bench:    # the tables of docs/benchmarks.md, measured here
 	@scripts/bench
 instructions:  # counts of fixed work under valgrind, against benchmarks/instruction_counts.json

@@ -29,6 +29,7 @@ target_include_directories(maup_options INTERFACE ${PROJECT_SOURCE_DIR}/include 
 
 # Compiles the sources of a target several at a time (a unity build): most of a small file's time goes into its headers. ALONE: sources whose file-local
 # names are those of others, or which are slow to compile themselves. Sources with options of their own are left alone by CMake.
+# TOGETHER: sources that are one object, since they share what takes long; the others of such a module are batched as everywhere.
 option(MAUPERTUIS_UNITY "Compile several sources at a time" ON)
 function(maup_compile_together target folder batch)
   if(NOT MAUPERTUIS_UNITY)
@@ -38,18 +39,32 @@ function(maup_compile_together target folder batch)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # the sources that are compiled together are taken for headers
   endif()
-  list(TRANSFORM ARGN PREPEND ${folder}/ OUTPUT_VARIABLE alone)
-  if(alone)
-    set_source_files_properties(${alone} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  cmake_parse_arguments(ARG "" "" "ALONE;TOGETHER" ${ARGN})
+  list(TRANSFORM ARG_ALONE PREPEND ${folder}/)
+  if(ARG_ALONE)
+    set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  endif()
+  if(ARG_TOGETHER)
+    list(TRANSFORM ARG_TOGETHER PREPEND ${folder}/)
+    get_target_property(others ${target} SOURCES)
+    list(REMOVE_ITEM others ${ARG_TOGETHER} ${ARG_ALONE})
+    set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+    set_source_files_properties(${ARG_TOGETHER} PROPERTIES UNITY_GROUP together)
+    set(number 0)
+    foreach(source IN LISTS others)
+      math(EXPR group "${number} / ${batch}")
+      math(EXPR number "${number} + 1")
+      set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
+    endforeach()
   endif()
 endfunction()
 
-# maup_module(<directory below src> LINKS <module>... [COLD] [CHECKED] [ALONE <source>...] [BATCH <sources at a time>]): the library
+# maup_module(<directory below src> LINKS <module>... [COLD] [CHECKED] [ALONE <source>...] [TOGETHER <source>...] [BATCH <sources at a time>]): the library
 # maup_<directory with _ for />. COLD: nothing in it computes for long; it is compiled with less optimization, in three quarters of
 # the time. CHECKED: all its memory is that of containers, which look at every index in every build; sanitizers look at the rest
 # (tests/CMakeLists.txt).
 function(maup_module directory)
-  cmake_parse_arguments(ARG "COLD;CHECKED" "BATCH" "LINKS;PRIVATE_LINKS;ALONE" ${ARGN})
+  cmake_parse_arguments(ARG "COLD;CHECKED" "BATCH" "LINKS;PRIVATE_LINKS;ALONE;TOGETHER" ${ARGN})
   if(NOT ARG_BATCH)
     set(ARG_BATCH 6)
   endif()
@@ -67,7 +82,7 @@ function(maup_module directory)
   endif()
   add_library(maup_${name} STATIC ${sources})
   target_link_libraries(maup_${name} PUBLIC ${links} PRIVATE maup_options maup_hardening fmt::fmt ${ARG_PRIVATE_LINKS})
-  maup_compile_together(maup_${name} ${PROJECT_SOURCE_DIR}/src/${directory} ${ARG_BATCH} ${ARG_ALONE})
+  maup_compile_together(maup_${name} ${PROJECT_SOURCE_DIR}/src/${directory} ${ARG_BATCH} ALONE ${ARG_ALONE} TOGETHER ${ARG_TOGETHER})
   if(ARG_COLD AND NOT EMSCRIPTEN)  # there all is compiled to be small
     target_compile_options(maup_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
@@ -102,7 +117,7 @@ function(maup_plugin directory)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${directory}/*.cpp)
   add_library(maup_${name} MODULE ${sources})
   target_link_libraries(maup_${name} PRIVATE ${links} maup_options maup_hardening ${ARG_PRIVATE_LINKS})
-  maup_compile_together(maup_${name} ${PROJECT_SOURCE_DIR}/src/${directory} 6 ${ARG_ALONE})
+  maup_compile_together(maup_${name} ${PROJECT_SOURCE_DIR}/src/${directory} 6 ALONE ${ARG_ALONE})
   target_include_directories(maup_${name} SYSTEM PRIVATE ${LLVM19_INCLUDE_DIR})
   target_compile_definitions(maup_${name} PRIVATE MAUPERTUIS_BUILD_TAG="${MAUPERTUIS_BUILD_TAG}")
   set_target_properties(maup_${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/maupertuis

@@ -4,6 +4,7 @@
 #include <maupertuis/equations_of_motion.hpp>
 
 #include <optional>
+#include <string_view>
 #include <vector>
 
 /// Lagrangians of which det ∂²L/∂q̇∂q̇ = 0 (docs/theory/degenerate.md): what they ask of the state, what they leave
@@ -43,6 +44,16 @@ Bindings generic_state(const Model& model);
 /// close.
 std::optional<EquationsOfMotion> determined_equations(const EquationsOfMotion& equations,
                                                       const DegenerateAnalysis& analysis);
+
+/// The equations that determine every acceleration: these, or where L is degenerate the ones that were found for it.
+const EquationsOfMotion& solvable_equations(const EquationsOfMotion& equations);
+
+/// Whether functions of time stay free, which no `gauge` chooses: what depends on them has no value of its own.
+bool has_free_functions(const EquationsOfMotion& equations);
+
+/// E0631 where functions stay free, of a question that has an answer for one choice of them alone. `who` opens "… want
+/// one choice of them": "Lyapunov exponents".
+bool refuse_free_functions(const EquationsOfMotion& equations, std::string_view who, Diagnostics& diagnostics);
 
 /// All that a motion satisfies at each point, in q, q̇, q̈, λ, t: the relations between states, and the rows that are
 /// linear in q̈ and λ.

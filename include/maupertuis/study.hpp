@@ -1,5 +1,6 @@
 #pragma once
 #include <maupertuis/certificate.hpp>
+#include <maupertuis/constraint_analysis.hpp>
 #include <maupertuis/degenerate.hpp>
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/extended_simulation.hpp>
@@ -144,10 +145,16 @@ class Study {
   std::optional<Certificate> certificate_;
 };
 
+/// What a look at the start finds.
+struct StartFindings {
+  std::optional<ConsistentStart> start;  // on the constraints; none where they clash
+  ConstraintAnalysis constraints;        // there, or in general where there is no such state
+  std::optional<ContactStart> contacts;  // of a model with contacts or friction that asks for a motion, by a start or a run
+};
+
 /// What the state at the start adds to the mistakes of the equations: clashing constraints, what they are, contacts
-/// that cannot begin. Returns that state, on the constraints, where there is one.
-std::optional<ConsistentStart> look_into_start(const Model& model, const EquationsOfMotion& equations,
-                                               Diagnostics& diagnostics);
+/// that cannot begin; all of it is told.
+StartFindings look_into_start(const Model& model, const EquationsOfMotion& equations, Diagnostics& diagnostics);
 
 /// Whether the independent variable is a time; without units nothing says that it is none.
 bool moves_in_time(const MechanicalSystem& system);

@@ -15,6 +15,11 @@ using comparison::Differences;
 using comparison::Motions;
 using comparison::PullBack;
 
+/// What messages call a model; `mark` tells two of one name apart.
+std::string called(const std::string& name, const char* unnamed, const char* mark) {
+  return name.empty() ? unnamed : name + mark;
+}
+
 class Comparer {
  public:
   Comparer(const Model& a, const EquationsOfMotion& a_equations, const CoordinateMap& map,
@@ -28,8 +33,8 @@ class Comparer {
         motions_(b_, b_equations),
         runs_(a, a_equations, b_, b_equations, pull_back, motions_, options.simulation) {
     const bool same_name = a.system.name == b_.system.name;
-    out_.name_a = a.system.name + (same_name ? " (first)" : "");
-    out_.name_b = b_.system.name + (same_name ? " (second)" : "");
+    out_.name_a = called(a.system.name, "the first model", same_name ? " (first)" : "");
+    out_.name_b = called(b_.system.name, "the second model", same_name ? " (second)" : "");
   }
 
   Comparison carry_out() {

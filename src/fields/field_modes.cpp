@@ -225,7 +225,7 @@ class ModeProblem {
       const Eigen::MatrixXd kk = quadratic_form(free_, k);
       const Eigen::VectorXd right = transposed_product(free_, -force);
       const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(kk);
-      const Eigen::VectorXd step = product(free_, solver.solve(right));
+      const Eigen::VectorXd step = product(free_, Eigen::VectorXd(solver.solve(right)));
       z += step;
       for (std::size_t i = 0; i < n; ++i) at[system.coordinates[i].q] = z(body_unknowns_[i]);
       if (!z.allFinite()) break;

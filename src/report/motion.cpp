@@ -62,7 +62,7 @@ void add_statistics(ReportContent& content, const SimulationResult& run, const M
   if (run.ending != Ending::Finished && !run.reason.empty()) {
     content.ending = run.reason;
     content.ending[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(content.ending[0])));
-    content.ending += '.';
+    if (!content.ending.ends_with('.')) content.ending += '.';
   }
 }
 

@@ -188,6 +188,7 @@ std::optional<ThroughModesResult> advance_ensemble(const Model& model, const Equ
                                                    const EnsembleStart& start, const ThroughModesOptions& options,
                                                    Diagnostics& diagnostics) {
   check(model, start);
+  if (refuse_free_functions(equations, "ensembles", diagnostics)) return std::nullopt;
   if (equations.determined)
     return advance_ensemble(with_determined_system(model, equations), *equations.determined, start, options,
                             diagnostics);

@@ -324,13 +324,7 @@ SimulationOptions in_double(const ExtendedSimulationOptions& options) {
 
 std::optional<ExtendedResult> simulate_extended(const Model& model, const EquationsOfMotion& equations,
                                                 const ExtendedSimulationOptions& options, Diagnostics& diagnostics) {
-  if (equations.determined && !equations.degenerate->free.empty()) {
-    diagnostics.error("E0631", std::nullopt,
-                      "functions of this motion are free, and many digits want one choice of them",
-                      "The Lagrangian leaves them open; a run in double shows what does not depend on them.",
-                      "`gauge EXPR = EXPR` makes a choice.");
-    return std::nullopt;
-  }
+  if (refuse_free_functions(equations, "many digits", diagnostics)) return std::nullopt;
   if (equations.determined)
     return simulate_extended(with_determined_system(model, equations), *equations.determined, options, diagnostics);
   if (!has_method(model, options, diagnostics) || !goes_in_many_digits(model, equations, diagnostics))

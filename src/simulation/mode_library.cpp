@@ -166,12 +166,22 @@ std::shared_ptr<const ModeProgram> ModeLibrary::program(const ContactMode& mode,
 /// The system and what is wanted go to a context of their own, which is gone when the kernel is made.
 ModeProgram ModeLibrary::derived(const ContactMode& mode, const std::vector<double>& stops) const {
   WantedFunctions wanted = wanted_;
-  std::vector<Expr>* const along[] = {&wanted.observables, &wanted.events};
+  // With events alone the equations stay as they are, also those that were found for a degenerate Lagrangian.
+  EquationsOfMotion equations = equations_;
+  ExprVector power{equations.power};
+  std::vector<std::vector<Expr>*> along{&wanted.observables, &wanted.events};
+  if (!system_.has_modes())
+    along.insert(along.end(), {&equations.residual, &equations.multipliers, &equations.constraint_forces,
+                               &equations.dissipative_terms, &power});
   const MechanicalSystem own = in_own_context(system_, along);
   const InterruptScope scope(*own.context, interrupt_of(*system_.context));
-  Diagnostics unheard;  // the system passed its checks with its contacts
-  const EquationsOfMotion equations =
-      *euler_lagrange(std::make_shared<const MechanicalSystem>(system_in_mode(own, mode)), unheard);
+  if (system_.has_modes()) {
+    Diagnostics unheard;  // the system passed its checks with its contacts
+    equations = *euler_lagrange(std::make_shared<const MechanicalSystem>(system_in_mode(own, mode)), unheard);
+  } else {
+    equations.system = std::make_shared<const MechanicalSystem>(own);
+    equations.power = power.front();
+  }
   std::vector<ModeWatch> watches;
   const bool until = wanted.events.size() > model_.experiment.events.size();
   for (std::size_t i = 0; i < wanted.events.size(); ++i)

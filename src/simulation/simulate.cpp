@@ -359,7 +359,7 @@ void add_errors(SimulationResult& result, Probe* probe, const Model& model, cons
 std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMotion& equations,
                                          const SimulationOptions& asked, Diagnostics& diagnostics, Probe* probe) {
   if (equations.determined) {
-    if (probe && refuse_undetermined(*probe, equations, diagnostics)) return std::nullopt;
+    if (refuse_undetermined(model.experiment, probe, equations, diagnostics)) return std::nullopt;
     auto result = simulate(with_determined_system(model, equations), *equations.determined, asked, diagnostics, probe);
     if (result) in_terms_of_system(*result, equations, diagnostics);
     return result;

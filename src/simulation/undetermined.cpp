@@ -87,16 +87,25 @@ void in_terms_of_system(SimulationResult& result, const EquationsOfMotion& equat
       "`gauge EXPR = EXPR` makes a choice of your own.");
 }
 
-bool refuse_undetermined(const Probe& probe, const EquationsOfMotion& equations, Diagnostics& diagnostics) {
-  if (!equations.degenerate || equations.degenerate->free.empty()) return false;
-  for (const Expr& e : probe.expressions) {
-    if (equations.degenerate->is_determined(e)) continue;
-    diagnostics.error(
-        "E0631", std::nullopt, fmt::format("{} depends on functions that are free", to_plain(e, equations.order)),
-        "The Lagrangian leaves them open, so that it has no value of its own.", "`gauge EXPR = EXPR` makes a choice.");
-    return true;
+bool refuse_undetermined(const Experiment& experiment, const Probe* probe, const EquationsOfMotion& equations,
+                         Diagnostics& diagnostics) {
+  if (!has_free_functions(equations)) return false;
+  bool refused = false;
+  const auto look_at = [&](Expr e, const std::optional<Span>& span, const std::string& what) {
+    if (!e || equations.degenerate->is_determined(e)) return;
+    diagnostics.error("E0631", span, fmt::format("{} depends on functions that are free", what),
+                      "The Lagrangian leaves them open, so that it has no value of its own.",
+                      "`gauge EXPR = EXPR` makes a choice.");
+    refused = true;
+  };
+  look_at(experiment.until, std::nullopt, "the condition of `run until`");
+  for (const ModelEvent& event : experiment.events) {
+    look_at(event.function, event.span, "the event");
+    for (const ModelEvent::Assignment& set : event.sets) look_at(set.value, set.span, "what the event sets");
   }
-  return false;
+  if (probe)
+    for (const Expr& e : probe->expressions) look_at(e, std::nullopt, to_plain(e, equations.order));
+  return refused;
 }
 
 }  // namespace maupertuis

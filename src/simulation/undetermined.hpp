@@ -8,7 +8,8 @@ namespace maupertuis {
 /// what remains of replaced rows, and without what depends on the free functions, which a run had to choose (N0630).
 void in_terms_of_system(SimulationResult& result, const EquationsOfMotion& equations, Diagnostics& diagnostics);
 
-/// E0631 where a formula that was asked for depends on the free functions.
-bool refuse_undetermined(const Probe& probe, const EquationsOfMotion& equations, Diagnostics& diagnostics);
+/// E0631 where an event, the end of the run or a formula that was asked for depends on the free functions.
+bool refuse_undetermined(const Experiment& experiment, const Probe* probe, const EquationsOfMotion& equations,
+                         Diagnostics& diagnostics);
 
 }  // namespace maupertuis

@@ -143,7 +143,7 @@ Json equations(Desk& desk, const Work& work) {
     out = content_json(
         compose_report(model, study.source(), equations, *study.derivation(true), *study.certificate(), {}, wanted),
         steps);
-    const auto start = look_into_start(model, equations, found);
+    const auto start = look_into_start(model, equations, found).start;
     out["coordinates"] = coordinates_json(model, equations.order, start);
     out["parameters"] = parameters_json(model.system, equations.order, desk.units());
     out["contacts"] = Json::array();

@@ -1,5 +1,6 @@
 #include "studio/requests.hpp"
 
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/field_report.hpp>
 #include <maupertuis/formula_document.hpp>
 #include <maupertuis/invariants.hpp>
@@ -128,8 +129,8 @@ std::string report_of(Desk& desk, Study& study, const Work& work) {
     search.drift = false;
     invariants = find_invariants(model, equations, search, unheard);
     const auto start = moves_in_time(model.system) ? consistent_start(model, equations, unheard) : std::nullopt;
-    if (start) {
-      PointEquations at_points(equations);
+    if (start && !has_free_functions(equations)) {
+      PointEquations at_points(solvable_equations(equations));
       modes = modal_study(at_points, start->state, unheard);
       if (modes) settle_driven(*modes, at_points, model, equations, work.interrupt);
     }

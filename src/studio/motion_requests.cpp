@@ -1,5 +1,6 @@
 #include "studio/requests.hpp"
 
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/diagram.hpp>
 #include <maupertuis/field_report.hpp>
 #include <maupertuis/modes.hpp>
@@ -230,8 +231,8 @@ Json modes(Desk& desk, const Work& work) {
   const InterruptScope scope = study.interruptible();
   Diagnostics said;
   const auto start = consistent_start(model, equations, said);
-  if (!start) desk.refuse(study, said);
-  PointEquations at_points(equations);
+  if (!start || refuse_free_functions(equations, "modes", said)) desk.refuse(study, said);
+  PointEquations at_points(solvable_equations(equations));
   auto found = modal_study(at_points, start->state, said);
   if (!found) desk.refuse(study, said);
   settle_driven(*found, at_points, model, equations, work.interrupt);

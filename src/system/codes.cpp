@@ -437,6 +437,11 @@ constexpr CodeEntry kEntries[] = {
      "has one T for all its parts, and that is right.",
      "coord x : length\nparam ρ = 1 kg/m\npoint P mass ρ x at (x, 0)\nstart x = 1 m\n",
      "coord x : length\nparam ρ = 1 kg/m, l = 2 m\nT = 1/2 ρ l x'^2\nstart x = 1 m\n"},
+    {"W0434", "an energy that is nowhere a real number",
+     "A root or a logarithm of something negative has no value. Derivatives can be formed all the same, and the "
+     "equations are certified; but no state has an energy, and a run ends before it begins.",
+     "coord x : length\nparam m = 1 kg, k = 2 N/m, h = 1 m\nT = 1/2 m x'^2\nV = 1/2 k (sqrt(-h^2 - x^2) - h)^2\n",
+     "coord x : length\nparam m = 1 kg, k = 2 N/m, h = 1 m\nT = 1/2 m x'^2\nV = 1/2 k (sqrt(h^2 + x^2) - h)^2\n"},
     // ------------------------------------------------------------------------------------------------ not supported
     // yet
     {"E0255", "as many names as components",

@@ -139,7 +139,9 @@ bool number_with_unit(Elaboration& e, const Expression& x) {
   const std::string number(e.texts.slice(left->span));
   const Span whole = operands(x);
   std::string unit(e.texts.slice({left->span.end, whole.end, whole.source}));
-  unit.erase(0, unit.find_first_not_of(" *·"));
+  const std::string_view dot = "·";  // of two bytes, and ° begins with the first of them
+  while (unit.starts_with(dot) || unit.starts_with(' ') || unit.starts_with('*'))
+    unit.erase(0, unit.starts_with(dot) ? dot.size() : 1);
   e.diagnostics.error("E0312", whole,
                       fmt::format("`{}` stands in a formula without brackets around its unit", e.texts.slice(whole)),
                       "In a formula a unit stands in square brackets, so that it cannot be taken for a name.",

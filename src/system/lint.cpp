@@ -80,6 +80,7 @@ void lint(const Model& model, const SourceText& source, Diagnostics& diagnostics
   lint_rules::Subject subject(model, source, diagnostics);
   if (!lint_rules::mass_matrix_rules(subject, lint_rules::unused_coordinates(subject)))
     lint_rules::quaternion_norms(subject);
+  lint_rules::values(subject);
   lint_rules::claims(subject);
   lint_rules::total_derivatives(subject);
   lint_rules::gravity_twice(subject);

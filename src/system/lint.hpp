@@ -34,6 +34,8 @@ struct Stretched {
   Span span;
 };
 std::optional<Stretched> stretched_rotation(const Subject& s);
+/// W0434: an energy is nowhere a real number.
+void values(Subject& s);
 /// W0427: there is one.
 void quaternion_norms(Subject& s);
 /// E0411: `T = …` beside points says something else than the points.

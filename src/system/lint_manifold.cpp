@@ -62,8 +62,8 @@ Eigen::MatrixXd kernel(const Matrix& rows, std::size_t n) {
   if (rows.empty()) return Eigen::MatrixXd::Identity(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(eigen_matrix(rows, n).transpose());
   qr.setThreshold(kSmall);
-  const Eigen::MatrixXd q = qr.householderQ();
-  return q.rightCols(static_cast<Eigen::Index>(n) - qr.rank());
+  const auto size = static_cast<Eigen::Index>(n);
+  return columns_of_q(qr, size).rightCols(size - qr.rank());
 }
 
 }  // namespace

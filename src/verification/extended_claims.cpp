@@ -57,7 +57,7 @@ const AgreedNumber& ExtendedClaims::value_in(const ExtendedState& state, Expr su
 void ExtendedClaims::judge(const expectation::ValueAt& e, const ExtendedState& state, const std::string& reason,
                            ExpectationResult& result) const {
   if (!state.reached) {
-    result.message = "The run ended before: " + reason + ".";
+    result.message = ended_before(reason);
     return;
   }
   const AgreedNumber& number = value_in(state, e.subject);

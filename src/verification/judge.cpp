@@ -82,6 +82,10 @@ std::string tolerance_text(const expectation::Tolerance& tolerance, const expect
                             : fmt::format("± {:g}{}", size / unit.factor, unit_after(unit));
 }
 
+std::string ended_before(const std::string& reason) {
+  return "The run ended before: " + reason + (reason.ends_with('.') ? "" : ".");
+}
+
 void judge_number(const expectation::Number& e, const MechanicalSystem& system, double actual,
                   ExpectationResult& result) {
   const double expected = number_of(system, e.value), error = std::abs(actual - expected);

@@ -14,8 +14,6 @@ namespace {
 
 constexpr const char* kNoStart = "The run could not start.";
 
-std::string ended_before(const SimulationResult& run) { return "The run ended before: " + run.reason + "."; }
-
 std::string beyond_digits(const ValueVerdict& verdict, const std::string& uncertainty) {
   const std::string known = uncertainty == "no digit is certain"
                                 ? "of what came out no digit is certain"
@@ -106,7 +104,7 @@ void RunClaims::find_end(std::vector<ExpectationResult>& results) {
     if (!run)
       result.message = kNoStart;
     else if (run->ending != Ending::UntilReached)
-      result.message = ended_before(*run);
+      result.message = ended_before(run->reason);
     else if (!end.subject)
       judge_value(*end.expected, run->final.t, run->final.errors ? run->final.errors->t : 0.0, result);
     else
@@ -167,7 +165,7 @@ void RunClaims::judge_values(const std::vector<Value>& values, const std::vector
     if (!run)
       result.message = kNoStart;
     else if (probe.values[row].empty())
-      result.message = ended_before(*run);
+      result.message = ended_before(run->reason);
     else
       judge_value(*values[column].expected, probe.values[row][column],
                   probe.errors.empty() ? 0 : probe.errors[row][column], result);
@@ -200,7 +198,7 @@ void RunClaims::judge_drift(const Drift& drift, std::size_t column, const std::o
   double low = std::numeric_limits<double>::infinity(), high = -low, largest = 0;
   for (const auto& row : probe.values) {
     if (row.empty()) {
-      result.message = ended_before(*run);
+      result.message = ended_before(run->reason);
       return;
     }
     low = std::min(low, row[column]);
@@ -226,7 +224,7 @@ void RunClaims::judge_event(const Event& event, const std::optional<SimulationRe
   result.actual = fmt::format("{} times", found.size());
   result.expected = fmt::format("at least {}", e.occurrence);
   result.message = fmt::format("`{}` happens {} times along the run.", called(e.name, e.change), found.size());
-  if (!run->ok()) result.message += " " + ended_before(*run);
+  if (!run->ok()) result.message += " " + ended_before(run->reason);
 }
 
 void RunClaims::judge_count(const EventCount& count, const std::optional<SimulationResult>& run,
@@ -241,7 +239,7 @@ void RunClaims::judge_count(const EventCount& count, const std::optional<Simulat
   result.expected = fmt::format("{:g}", expected);
   result.passed = found == expected && run->ok();
   result.message = run->ok() ? fmt::format("`{}` happens {:g} times along the run", called(e.name, e.change), found)
-                             : ended_before(*run);
+                             : ended_before(run->reason);
 }
 
 void RunClaims::judge_energy(const Energy& energy, const std::optional<SimulationResult>& run,
@@ -257,7 +255,7 @@ void RunClaims::judge_energy(const Energy& energy, const std::optional<Simulatio
         !jump ? "Forces, friction or an explicit time in L change the energy of this system."
               : fmt::format("The energy jumps where {}: what is switched there does work at once.", jump->place);
   } else if (!run->ok()) {
-    result.message = ended_before(*run);
+    result.message = ended_before(run->reason);
   } else if (const double lost = energy_exchanged(*run);
              lost > number(energy.expectation->tolerance.size, usual_tolerance)) {
     report_drift(result, lost, number(energy.expectation->tolerance.size, usual_tolerance));

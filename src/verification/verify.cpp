@@ -90,15 +90,31 @@ class Verifier {
     decide_class(e, model_.system, constraints(), result);
   }
 
-  void decide(const expectation::Frequencies& e, ExpectationResult& result) { modes().decide(e, result); }
-  void decide(const expectation::Eigenvalues& e, ExpectationResult& result) { modes().decide(e, result); }
-  void decide(const expectation::Matrix& e, ExpectationResult& result) { modes().decide(e, result); }
-  void decide(const expectation::Equilibrium& e, ExpectationResult& result) { modes().decide(e, result); }
-  void decide(const expectation::Stable& e, ExpectationResult& result) { modes().decide(e, result); }
+  void decide(const expectation::Frequencies& e, ExpectationResult& result) {
+    if (is_one_motion(result)) modes().decide(e, result);
+  }
+  void decide(const expectation::Eigenvalues& e, ExpectationResult& result) {
+    if (is_one_motion(result)) modes().decide(e, result);
+  }
+  void decide(const expectation::Matrix& e, ExpectationResult& result) {
+    if (is_one_motion(result)) modes().decide(e, result);
+  }
+  void decide(const expectation::Equilibrium& e, ExpectationResult& result) {
+    if (is_one_motion(result)) modes().decide(e, result);
+  }
+  void decide(const expectation::Stable& e, ExpectationResult& result) {
+    if (is_one_motion(result)) modes().decide(e, result);
+  }
 
-  void decide(const expectation::Multipliers& e, ExpectationResult& result) { orbits().decide(e, result); }
-  void decide(const expectation::Trace& e, ExpectationResult& result) { orbits().decide(e, result); }
-  void decide(const expectation::Period& e, ExpectationResult& result) { orbits().decide(e, result); }
+  void decide(const expectation::Multipliers& e, ExpectationResult& result) {
+    if (is_one_motion(result)) orbits().decide(e, result);
+  }
+  void decide(const expectation::Trace& e, ExpectationResult& result) {
+    if (is_one_motion(result)) orbits().decide(e, result);
+  }
+  void decide(const expectation::Period& e, ExpectationResult& result) {
+    if (is_one_motion(result)) orbits().decide(e, result);
+  }
 
   void decide(const expectation::Action& e, ExpectationResult& result) { paths().decide(e, result); }
   void decide(const expectation::ActionAlong& e, ExpectationResult& result) { paths().decide(e, result); }
@@ -123,13 +139,20 @@ class Verifier {
   /// False, and said, where it depends on functions that a degenerate Lagrangian leaves free.
   bool has_value(Expr subject, ExpectationResult& result) const {
     if (!equations_.degenerate || equations_.degenerate->is_determined(subject)) return true;
+    return leave_open(result);
+  }
+
+  /// False, and said, where functions stay free: modes and periods are those of one choice.
+  bool is_one_motion(ExpectationResult& result) const { return !has_free_functions(equations_) || leave_open(result); }
+
+  static bool leave_open(ExpectationResult& result) {
     result.actual = "any value";
     result.message = "It depends on functions of time that the Lagrangian leaves free: choose them with `gauge`.";
     return false;
   }
 
   /// Where L is degenerate, what determines all accelerations.
-  const EquationsOfMotion& solvable() const { return equations_.determined ? *equations_.determined : equations_; }
+  const EquationsOfMotion& solvable() const { return solvable_equations(equations_); }
   const Model& solvable_model() {
     if (!equations_.determined) return model_;
     if (!solvable_model_) solvable_model_ = with_determined_system(model_, equations_);

@@ -38,6 +38,24 @@ TEST_CASE("a Lagrangian of the first order has equilibria, frequencies, periods 
   CHECK(contains(quad.out, "x = 9.780002256569053638"));
 }
 
+TEST_CASE(
+    "a strict extremum of h_E, which a Lagrangian of the first order keeps, is stable; nothing else is said to be") {
+  const auto verdict = [](const std::string& model, const std::string& at) {
+    return json_of(maup({"modes", "-", "--at", at, "--json"}, model))["points"][0]["stability"];
+  };
+  const auto minimum = verdict(predators, "x=20, y=10");
+  CHECK(minimum["verdict"] == "stable");
+  CHECK(contains(minimum["reason"].get<std::string>(), "strict minimum"));
+  const std::string first = "dimensionless\ncoord x, y, u, v : number\nL = x y' + u v' ";
+  CHECK(contains(verdict(first + "+ x^2 + y^2 + u^2 + 3 v^2\n", "x=0, y=0, u=0, v=0")["reason"].get<std::string>(),
+                 "strict maximum"));
+  // The same eigenvalues ± i 2 and ± i 2 √3, and h_E is a saddle.
+  CHECK(verdict(first + "+ x^2 + y^2 - u^2 - 3 v^2\n", "x=0, y=0, u=0, v=0")["verdict"] == "undecided");
+  CHECK(verdict(first + "- x^2 + y^2 - u^2 - v^2\n", "x=0, y=0, u=0, v=0")["verdict"] == "unstable");
+  // A flat direction: v^4 decides nothing by second derivatives.
+  CHECK(verdict(first + "- x^2 - y^2 - u^2 - v^4\n", "x=0, y=0, u=0, v=0")["verdict"] == "undecided");
+}
+
 TEST_CASE("what depends on free functions is left out, and said") {
   const Outcome run = maup({"simulate", "-"}, cawley);
   CHECK(contains(run.err, "W0622"));
@@ -51,6 +69,41 @@ TEST_CASE("what depends on free functions is left out, and said") {
   CHECK(contains(many.err, "E0631"));
   const Outcome chosen = maup({"simulate", "-"}, cawley + "gauge y = 1 + t\n");
   CHECK(contains(chosen.out, "y = 2"));
+}
+
+TEST_CASE("what is asked of one motion is refused where functions stay free, and answered with a gauge") {
+  const std::string open =
+      "dimensionless\nparam k = 4\ncoord r, θ, z : number\nL = 1/2 r'^2 + 1/2 r^2 (θ' - z)^2 - 1/2 k r^2\n"
+      "start r = 1, r' = 0.1\nrun 3\n";
+  const std::string chosen = open + "gauge z = 0\n";
+  const auto refuses = [](const Outcome& outcome) {
+    CHECK_MESSAGE(outcome.code != 0, outcome.out);
+    CHECK_MESSAGE(contains(outcome.err, "E0631"), outcome.err);
+    CHECK(outcome.out.empty());
+  };
+  for (const std::vector<std::string>& command :
+       std::vector<std::vector<std::string>>{{"orbits", "-", "--section", "r = 0", "--duration", "9"},
+                                             {"orbits", "-", "--lyapunov", "--duration", "9"},
+                                             {"modes", "-"}}) {
+    refuses(maup(command, open));
+    CHECK(maup(command, chosen).code == 0);
+  }
+  refuses(maup({"simulate", "-", "--until", "z = 1", "--within", "3"}, open));
+  refuses(maup({"simulate", "-"}, open + "event turned when θ = 1 : record\n"));
+  refuses(maup({"simulate", "-"}, open + "event passed when r = 0.5 : set r' = z\n"));
+  // r is cos 2t + sin 2t / 20 for every choice, and so are the instants at which it passes 1/2.
+  const std::string event = "event passed when r = 0.5 : record\n";
+  for (const std::string& model : {open, chosen}) {
+    const auto run = json_of(maup({"simulate", "-", "--json"}, model + event));
+    REQUIRE(run["events"].size() == 2);
+    for (const auto& passed : run["events"]) {
+      const double t = passed["t"].get<double>();
+      CHECK(std::abs(std::cos(2 * t) + std::sin(2 * t) / 20 - 0.5) < 1e-14);
+    }
+  }
+  const Outcome frequencies = maup({"test", "-"}, open + "expect frequencies at r = 0, z = 0 : 1 rel 1e-9\n");
+  CHECK(frequencies.code == 4);
+  CHECK(contains(frequencies.out, "found     any value\n    It depends on functions of time"));
 }
 
 TEST_CASE("derive and hamiltonian tell the constraints of both sides") {

@@ -219,7 +219,7 @@ std::optional<Drawing> drawing_of(Study& study, const SimulationOptions& setting
   std::optional<Drawing> drawing = evaluate_drawing(*study.model(), result->trajectory, 12'000, study.equations(),
                                                     impulses_of(*result, study.model()->system));
   if (!drawing)
-    study.diagnostics().error("E0843", {}, fmt::format("{} has nothing to draw.", study.model()->system.name),
+    study.diagnostics().error("E0843", {}, "The model has nothing to draw.",
                               "A drawing shows points, bodies, springs and what `draw` names; this model has none.",
                               "Mark a point, `point P at (x, y)`, or plot the coordinates: maup plot.");
   return drawing;

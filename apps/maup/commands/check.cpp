@@ -117,32 +117,8 @@ std::string rate_text(const Rate& rate, const ReadingOrder& order) {
 
 std::string mode_name(const std::string& mode) { return mode.empty() ? "free" : mode; }
 
-/// What the check finds out beyond the text: the start on the constraints, and what these are; how contacts begin.
-struct Findings {
-  std::optional<ConsistentStart> start;
-  ConstraintAnalysis analysis;
-  std::optional<ContactStart> contacts = std::nullopt;
-};
-
-/// A model without start and run asks about no motion.
-bool asks_for_motion(const Experiment& experiment) {
-  return !experiment.start.empty() || experiment.duration || experiment.until;
-}
-
-Findings look_into(const Model& model, const EquationsOfMotion& equations, Diagnostics& diagnostics) {
-  Findings out;
-  out.start = consistent_start(model, equations, diagnostics);
-  const MotionState* start = out.start ? &out.start->state : nullptr;
-  out.analysis = analyse_constraints(equations, start);
-  report_constraints(out.analysis, equations, start, diagnostics);
-  if (start && model.system.has_modes() && asks_for_motion(model.experiment))
-    out.contacts = contact_start(model, equations, *start, diagnostics);
-  diagnostics.sort_by_place();
-  return out;
-}
-
 /// The coordinates with their kinds, the parts of each energy, … : one line each, in the order of a lecture.
-std::string summary(const Model& model, const EquationsOfMotion& equations, const Findings& findings) {
+std::string summary(const Model& model, const EquationsOfMotion& equations, const StartFindings& findings) {
   const MechanicalSystem& system = model.system;
   std::string out = system.name + (system.title.empty() ? "" : fmt::format(" — {}", system.title)) + "\n";
   const auto line = [&out](const char* head, const std::string& text) {
@@ -165,7 +141,7 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
     line("independent variable", unit.empty() ? system.independent : fmt::format("{} in {}", system.independent, unit));
   for (std::size_t i = 0; i < system.rates.size(); ++i)
     line(i == 0 ? "rates" : "", rate_text(system.rates[i], equations.order));
-  summarise_constraints(equations, findings.analysis, line);
+  summarise_constraints(equations, findings.constraints, line);
   if (equations.degenerate)
     line("degenerate", fmt::format("{} of the {} numbers of a state are left, {} single{} out a motion",
                                    equations.degenerate->chain.manifold_dimension, 2 * system.coordinates.size(),
@@ -262,10 +238,10 @@ ExitCode check(const ModelOptions& options, Console& console) {
   }
   const Model* model = study.model();
   const EquationsOfMotion* equations = study.equations();  // a singular mass matrix is found here
-  std::optional<Findings> findings;
+  std::optional<StartFindings> findings;
   std::optional<InterruptScope> scope;
   if (equations) scope.emplace(*model->system.context, &interrupt_flag());
-  if (equations) findings = look_into(*model, *equations, study.diagnostics());
+  if (equations) findings = look_into_start(*model, *equations, study.diagnostics());
   if (console.json()) {
     Json document = json_document("check");
     document["system"] = model ? Json(model->system.name) : Json(nullptr);
@@ -278,9 +254,9 @@ ExitCode check(const ModelOptions& options, Console& console) {
     }
     // Numbers are given only where they are known.
     const bool counted = findings && !study.wrong();
-    document["freedoms"] = counted ? Json(findings->analysis.configuration_freedoms) : Json(nullptr);
-    document["instantaneous_freedoms"] = counted ? Json(findings->analysis.instantaneous_freedoms) : Json(nullptr);
-    document["constraints"] = counted ? constraints_to_json(*equations, findings->analysis) : Json::array();
+    document["freedoms"] = counted ? Json(findings->constraints.configuration_freedoms) : Json(nullptr);
+    document["instantaneous_freedoms"] = counted ? Json(findings->constraints.instantaneous_freedoms) : Json(nullptr);
+    document["constraints"] = counted ? constraints_to_json(*equations, findings->constraints) : Json::array();
     if (counted && model->system.has_modes()) add_contacts(document, *equations, findings->contacts);
     return finish(console, study, document);
   }

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/mode_pictures.hpp>
 #include <maupertuis/modes.hpp>
 #include <maupertuis/orbits.hpp>
@@ -337,8 +338,9 @@ ExitCode modes(const ModesOptions& options, Console& console) {
   const auto start = consistent_start(*study.model(), *equations, study.diagnostics());
   if (!start) return finish(console, study, json_document("modes"));
   if (study.model()->system.has_modes()) return rest(study, start->state, console);
-  const EquationsOfMotion& solvable = equations->determined ? *equations->determined : *equations;
-  PointEquations at_points(solvable, measured(*study.model()));
+  if (refuse_free_functions(*equations, "modes", study.diagnostics()))
+    return finish(console, study, json_document("modes"));
+  PointEquations at_points(solvable_equations(*equations), measured(*study.model()));
   return options.locus() ? locus(options, study, at_points, start->state, console)
                          : points(options, study, at_points, start->state, console);
 }

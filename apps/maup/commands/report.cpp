@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/invariants.hpp>
 #include <maupertuis/report.hpp>
 #include <maupertuis/verification.hpp>
@@ -218,8 +219,8 @@ class Page {
   void find_modes(const Interrupt& interrupt) {
     Diagnostics unheard;
     const auto start = consistent_start(model(), equations(), unheard);
-    if (!start) return;
-    PointEquations at_points(equations());
+    if (!start || has_free_functions(equations())) return;
+    PointEquations at_points(solvable_equations(equations()));
     auto found = modal_study(at_points, start->state, unheard);
     if (found) settle_driven(*found, at_points, model(), equations(), interrupt);
     interrupt.throw_if_asked();

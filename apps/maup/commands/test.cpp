@@ -25,8 +25,9 @@ std::string text_of(const ExpectationResult& r, const std::string& file) {
                                 r.passed ? "holds, but asks for more digits than are known" : "fails");
   const auto and_then = [](const std::string& text) { return text.empty() ? text : " " + text; };
   if (!r.actual.empty())
-    out += fmt::format("    found     {}{}\n    expected  {}{}\n", r.actual,
-                       and_then(r.beyond_digits ? r.uncertainty : ""), r.expected, and_then(r.tolerance));
+    out += fmt::format("    found     {}{}\n", r.actual, and_then(r.beyond_digits ? r.uncertainty : ""));
+  if (!r.actual.empty() && !r.expected.empty())
+    out += fmt::format("    expected  {}{}\n", r.expected, and_then(r.tolerance));
   if (!r.message.empty()) out += fmt::format("    {}\n", r.message);
   if (!r.pitfall.empty()) out += fmt::format("    {}\n", r.pitfall);
   return out;

@@ -285,7 +285,7 @@ bool keeps_constraints(Problem& problem, Formulas& formulas, double start, doubl
     for (std::size_t i = 0; i < off.size(); ++i) {
       if (off[i] < 1e-9) continue;
       diagnostics.error("E1202", {},
-                        fmt::format("the path leaves {} at {}, by {:.3g} of the size of its terms",
+                        fmt::format("the path leaves {} at {}, by {:.2g} times the size of its terms",
                                     problem.model.system.constraint_label(i), place(t, problem.model.system), off[i]),
                         "Every point of a path has to satisfy the constraints.", "Give a path that keeps to them.");
       return false;

@@ -53,7 +53,7 @@ bool check_ends(Problem& problem, const ActionEnds& ends, Diagnostics& diagnosti
       if (off[i] < 1e-9) continue;
       diagnostics.error(
           "E1202", span,
-          fmt::format("the {} of the path is off {}, by {:.3g} of the size of its terms", first ? "beginning" : "end",
+          fmt::format("the {} of the path is off {}, by {:.2g} times the size of its terms", first ? "beginning" : "end",
                       system.constraint_label(i), off[i]),
           "Every point of a path has to satisfy the constraints, its ends included.",
           "Move the end onto the constraint, or leave a component `free` that the constraint then fixes.");

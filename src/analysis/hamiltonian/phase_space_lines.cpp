@@ -211,15 +211,21 @@ std::vector<DerivationStep> phase_space_lines(const Hamiltonian& h, const Routhi
 }
 
 void report_legendre(const Hamiltonian& h, Diagnostics& diagnostics) {
+  std::vector<std::size_t> singular;  // of all blocks: one sentence says it
+  for (const LegendreBlock& block : h.legendre.blocks)
+    if (block.kind == LegendreKind::Singular)
+      singular.insert(singular.end(), block.coordinates.begin(), block.coordinates.end());
+  std::sort(singular.begin(), singular.end());
+  if (!singular.empty())
+    diagnostics.warning("W1101", std::nullopt,
+                        fmt::format("the Legendre transform of {} is singular", names_of(singular, *h.system)),
+                        "M = ∂²L/∂q'∂q' has no inverse here, so that p = ∂L/∂q' cannot be solved for every velocity: "
+                        "the momenta obey primary constraints.",
+                        h.system->constrained() ? "Lagrange's equations with their multipliers need no inverse: "
+                                                  "`maup derive` and `maup simulate` are unaffected."
+                                                : "`maup derive` shows what Lagrange's equations make of it.");
   for (const LegendreBlock& block : h.legendre.blocks) {
     const std::string names = names_of(block.coordinates, *h.system);
-    if (block.kind == LegendreKind::Singular)
-      diagnostics.warning("W1101", std::nullopt, fmt::format("the Legendre transform of {} is singular", names),
-                          "M = ∂²L/∂q'∂q' has no inverse here, so that p = ∂L/∂q' cannot be solved for every velocity: "
-                          "the momenta obey primary constraints.",
-                          h.system->constrained() ? "Lagrange's equations with their multipliers need no inverse: "
-                                                    "`maup derive` and `maup simulate` are unaffected."
-                                                  : "`maup derive` shows what Lagrange's equations make of it.");
     if (block.kind == LegendreKind::Unsolved)
       diagnostics.warning(
           "W1103", std::nullopt, fmt::format("the velocities of {} are not written in terms of the momenta", names),

@@ -28,7 +28,7 @@ class Finder {
          Diagnostics& diagnostics)
       : model_(model),
         equations_(equations),
-        solvable_(equations.determined ? *equations.determined : equations),
+        solvable_(solvable_equations(equations)),
         system_(*equations.system),
         options_(options),
         diagnostics_(diagnostics),
@@ -109,7 +109,7 @@ class Finder {
   }
 
   bool singular() {
-    if (equations_.degenerate && !equations_.degenerate->free.empty()) {
+    if (has_free_functions(equations_)) {
       diagnostics_.error("E1002", {}, "functions of time are free, so that the accelerations are not determined",
                          "The search needs a rate of change at each point.", "`gauge EXPR = EXPR` makes a choice.");
       return false;
@@ -302,7 +302,7 @@ class Finder {
 
 std::optional<Invariants> find_invariants(const Model& model, const EquationsOfMotion& equations,
                                           const InvariantsOptions& options, Diagnostics& diagnostics) {
-  if (is_nonlinear_in_velocities(equations.determined ? *equations.determined : equations)) {
+  if (is_nonlinear_in_velocities(solvable_equations(equations))) {
     diagnostics.error(
         "E1003", {}, "a constraint is not linear in the velocities",
         "The search draws velocities that satisfy the constraints over a prime field, which needs linear equations.",
@@ -329,7 +329,7 @@ bool is_constant_along_motion(Expr e, const MotionRows& rows) {
 }  // namespace
 
 bool is_function_of(Expr e, const Invariants& found, const EquationsOfMotion& given) {
-  const EquationsOfMotion& equations = given.determined ? *given.determined : given;
+  const EquationsOfMotion& equations = solvable_equations(given);
   const MotionRows rows = motion_rows(equations);
   if (!is_constant_along_motion(e, rows)) return false;
   std::vector<Expr> functions;

@@ -31,7 +31,7 @@ KernelFirst kernel_first(const Matrix& a, double tolerance) {
   const Index diagonal = std::min(a.rows(), n);
   Index rank = 0;
   while (rank < diagonal && std::abs(qr.matrixQR()(rank, rank)) > tolerance) ++rank;
-  const Matrix q = qr.householderQ();
+  const Matrix q = columns_of_q(qr, n);
   KernelFirst out{n - rank, Matrix(n, n)};
   out.basis.leftCols(n - rank) = q.rightCols(n - rank);
   out.basis.rightCols(rank) = q.leftCols(rank);
@@ -43,7 +43,7 @@ Matrix triangular_factor(const Matrix& a) {
   return qr.matrixQR().topRows(a.cols()).triangularView<Eigen::Upper>();
 }
 
-Matrix orthogonal_factor(const Matrix& a) { return Eigen::HouseholderQR<Matrix>(a).householderQ(); }
+Matrix orthogonal_factor(const Matrix& a) { return columns_of_q(Eigen::HouseholderQR<Matrix>(a), a.rows()); }
 
 SymmetricEigen symmetric_eigen(const Matrix& a) {
   const Eigen::SelfAdjointEigenSolver<Matrix> solver(a);

@@ -120,6 +120,22 @@ bool has_potential(const ExprVector& forces, const MechanicalSystem& system) {
   return must_vanish.empty() || zero_test(must_vanish).verdict == Verdict::Zero;
 }
 
+/// ∂h_E/∂q of a Lagrangian of the first order that keeps h_E, a function of q alone: where every velocity follows from
+/// q.
+ExprVector slopes_of_kept_energy(const EquationsOfMotion& equations) {
+  const MechanicalSystem& system = *equations.system;
+  if (system.constraints.size() != system.coordinates.size() || !equations.power.is_zero()) return {};
+  for (const Constraint& c : system.constraints)
+    if (!c.forceless || c.level != Constraint::Level::Velocity) return {};
+  const Expr energy = Lowering(equations).plain({&equations.energy_function, 1}).front();
+  ExprVector q, by_velocity;
+  for (const Coordinate& c : system.coordinates) {
+    q.push_back(c.q);
+    by_velocity.push_back(differentiate(energy, c.velocity));
+  }
+  return zero_test(by_velocity).verdict == Verdict::Zero ? gradient(energy, q) : ExprVector();
+}
+
 }  // namespace
 
 PointEquations::Impl::Impl(const EquationsOfMotion& equations, std::span<const Expr> measured)
@@ -141,7 +157,8 @@ PointEquations::Impl::Impl(const EquationsOfMotion& equations, std::span<const E
       input_formulas(Lowering(equations).function(formulas(*system))),
       inputs(input_formulas),
       energy(Lowering(equations).function({&equations.energy_function, 1})),
-      energy_workspace(energy) {
+      energy_workspace(energy),
+      energy_slopes(Lowering(equations).rows(slopes_of_kept_energy(equations))) {
   for (std::size_t i = 0; i < m; ++i)
     if (system->constraints[i].level == Constraint::Level::Position) position_rows.push_back(i);
   holonomic = position_rows.size();
@@ -175,7 +192,8 @@ bool PointEquations::Impl::friction_takes(const FunctionKernel& friction) const 
 }
 
 void PointEquations::Impl::set_parameters() {
-  for (Rows* rows : {&balance, &positions, &velocities, &accelerations, &momenta, &resting, &rates, &outputs}) {
+  for (Rows* rows :
+       {&balance, &positions, &velocities, &accelerations, &momenta, &resting, &rates, &outputs, &energy_slopes}) {
     rows->values.set_parameters(parameters);
     rows->entries.set_parameters(parameters);
   }

@@ -41,6 +41,7 @@ struct PointEquations::Impl {
   FunctionWorkspace inputs;
   FunctionKernel energy;  // h_E: orders equilibria
   FunctionWorkspace energy_workspace;
+  Rows energy_slopes;  // [n] ∂h_E/∂q, where L is of the first order and keeps h_E(q); else none
   bool is_autonomous = true;
   bool is_passive = false;        // energy_never_grows
   std::vector<bool> is_periodic;  // [n]

@@ -1,6 +1,7 @@
 #include "analysis/linearization/stability.hpp"
 
 #include "analysis/linearization/dense.hpp"
+#include "analysis/linearization/point_equations.hpp"
 #include "linear_algebra/products.hpp"
 
 #include <fmt/format.h>
@@ -53,6 +54,17 @@ struct Verdicts {
 
   double hessian_tolerance() const {
     return 16 * static_cast<double>(form.k.rows()) * epsilon * (form.k.norm() + form.c.squaredNorm());
+  }
+
+  /// 1: h_E, which a Lagrangian of the first order keeps, has a strict minimum here; −1: a strict maximum; 0: neither
+  /// is known. Motions near it stay on levels of h_E that close around it (Dirichlet).
+  int extremum_of_kept_energy() const {
+    PointEquations::Impl& e = equations.impl();
+    const RowsAtPoint slopes = e.at(e.energy_slopes, equilibrium.point);
+    if (slopes.value.size() == 0 || !slopes.by_q.allFinite()) return 0;
+    const Vector values = symmetric_eigen(symmetric_part(slopes.by_q)).values;
+    const double rounding = 16 * static_cast<double>(values.size()) * epsilon * slopes.by_q.norm();
+    return values.minCoeff() > rounding ? 1 : values.maxCoeff() < -rounding ? -1 : 0;
   }
 
   std::size_t zeros() const {
@@ -115,6 +127,9 @@ StabilityReport judge_stability(const PointEquations& equations, const Lineariza
     out.verdict = Stability::Energetic;
     out.reason = has_hessian ? fmt::format("the Hessian of the {} is positive definite", potential)
                              : "only translations are left";
+  } else if (const int extremum = v.extremum_of_kept_energy(); extremum != 0) {
+    out.verdict = Stability::Energetic;
+    out.reason = fmt::format("h_E is conserved and has a strict {} here", extremum > 0 ? "minimum" : "maximum");
   } else if (has_hessian && out.hessian.front() < -tolerance) {
     out.reason = fmt::format(
         "no eigenvalue has a positive real part, but the Hessian of the {} is not positive: gyroscopic forces hold it",

@@ -134,6 +134,7 @@ void check(const EquationsOfMotion& equations, const Closed& closed, const Multi
 
 std::optional<FloquetResult> floquet(const Model& model, const EquationsOfMotion& equations,
                                      const FloquetOptions& options, Diagnostics& diagnostics) {
+  if (refuse_free_functions(equations, "multipliers of a periodic motion", diagnostics)) return std::nullopt;
   if (equations.determined)
     return floquet(with_determined_system(model, equations), *equations.determined, options, diagnostics);
   if (jumps_on_its_way(model) && !can_go_through_modes(equations, diagnostics)) return std::nullopt;

@@ -341,6 +341,7 @@ class LyapunovRun {
 
 std::optional<LyapunovResult> lyapunov_exponents(const Model& model, const EquationsOfMotion& equations,
                                                  const LyapunovOptions& options, Diagnostics& diagnostics) {
+  if (refuse_free_functions(equations, "Lyapunov exponents", diagnostics)) return std::nullopt;
   if (equations.determined)
     return lyapunov_exponents(with_determined_system(model, equations), *equations.determined, options, diagnostics);
   if (jumps_on_its_way(model) && !can_go_through_modes(equations, diagnostics)) return std::nullopt;

@@ -241,6 +241,7 @@ class SectionRun {
 
 std::optional<SectionResult> poincare_section(const Model& model, const EquationsOfMotion& equations,
                                               const SectionOptions& options, Diagnostics& diagnostics) {
+  if (refuse_free_functions(equations, "sections", diagnostics)) return std::nullopt;
   if (equations.determined)
     return poincare_section(with_determined_system(model, equations), *equations.determined, options, diagnostics);
   if (jumps_on_its_way(model) && !can_go_through_modes(equations, diagnostics)) return std::nullopt;

@@ -167,6 +167,23 @@ std::optional<EquationsOfMotion> determined_equations(const EquationsOfMotion& e
   return out;
 }
 
+const EquationsOfMotion& solvable_equations(const EquationsOfMotion& equations) {
+  return equations.determined ? *equations.determined : equations;
+}
+
+bool has_free_functions(const EquationsOfMotion& equations) {
+  return equations.degenerate && !equations.degenerate->free.empty();
+}
+
+bool refuse_free_functions(const EquationsOfMotion& equations, std::string_view who, Diagnostics& diagnostics) {
+  if (!has_free_functions(equations)) return false;
+  diagnostics.error("E0631", std::nullopt,
+                    fmt::format("functions of this motion are free, and {} want one choice of them", who),
+                    "The Lagrangian leaves them open; a run in double shows what does not depend on them.",
+                    "`gauge EXPR = EXPR` makes a choice.");
+  return true;
+}
+
 Model with_determined_system(const Model& model, const EquationsOfMotion& equations) {
   Model out = model;
   out.system = *equations.determined->system;

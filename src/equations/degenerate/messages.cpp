@@ -126,6 +126,8 @@ class Messages {
     std::string asked = lines.empty()       ? std::string("Nothing is asked of the state")
                         : lines.size() <= 3 ? "Every state of a motion has " + joined(lines)
                                             : "Every state of a motion fulfils " + count(lines.size(), "constraint");
+    if (analysis_.motions == 0)
+      return asked + (analysis_.free.empty() ? "; that leaves one motion." : "; motions differ by what is free alone.");
     asked += fmt::format("; {} single{} out a motion.", count(analysis_.motions, "number"),
                          analysis_.motions == 1 ? "s" : "");
     return asked;
