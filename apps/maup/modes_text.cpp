@@ -142,13 +142,19 @@ bool vanishes(const RealMatrix& m) {
   return std::all_of(m.entries.begin(), m.entries.end(), [](double x) { return x == 0; });
 }
 
+/// The parts of x: coordinates, then velocities, of which a Lagrangian of the first order has none.
+std::string state_listed(const MechanicalSystem& system, const Linearization& l, const char* between) {
+  const std::string q = listed(system, l.independent, ""), v = listed(system, l.independent_velocities, "'");
+  return q + (q.empty() || v.empty() ? "" : between) + v;
+}
+
 std::string matrices_text(const MechanicalSystem& system, const Linearization& l) {
   std::string out;
+  if (l.independent.empty() && l.independent_velocities.empty()) return "  independent: none\n";
   if (l.independent.size() < system.coordinates.size())
-    out += fmt::format(
-        "  independent: {}\n",
-        listed(system, l.independent, "") +
-            (l.independent == l.independent_velocities ? "" : "; " + listed(system, l.independent_velocities, "'")));
+    out +=
+        fmt::format("  independent: {}\n", l.independent == l.independent_velocities ? listed(system, l.independent, "")
+                                                                                     : state_listed(system, l, "; "));
   if (l.second_order() && l.independent.size() <= widest_matrix) {
     const std::pair<const char*, const RealMatrix*> all[] = {{"M", &l.mass},        {"C", &l.damping},
                                                              {"G", &l.gyroscopic},  {"K", &l.stiffness},
@@ -162,8 +168,7 @@ std::string matrices_text(const MechanicalSystem& system, const Linearization& l
     for (const auto& [name, matrix] : all)
       if (!vanishes(*matrix)) out += matrix_text(name, *matrix);
   } else if (l.a.rows <= widest_matrix) {
-    out += fmt::format("  x' = A x{},  x = ({}, {})\n", vanishes(l.b) ? "" : " + B u",
-                       listed(system, l.independent, ""), listed(system, l.independent_velocities, "'"));
+    out += fmt::format("  x' = A x{},  x = ({})\n", vanishes(l.b) ? "" : " + B u", state_listed(system, l, ", "));
     out += matrix_text("A", l.a);
     if (!vanishes(l.b)) out += matrix_text("B", l.b);
   }
@@ -175,8 +180,8 @@ std::string measured_text(const MechanicalSystem& system, const Linearization& l
                           const std::vector<std::string>& outputs) {
   if (outputs.empty()) return "";
   const MeasuredOutputs& y = l.measured;
-  std::string out = fmt::format("  y = y0 + C x{} (SI),  x = ({}, {})\n", vanishes(y.d) ? "" : " + D u",
-                                listed(system, l.independent, ""), listed(system, l.independent_velocities, "'"));
+  std::string out =
+      fmt::format("  y = y0 + C x{} (SI),  x = ({})\n", vanishes(y.d) ? "" : " + D u", state_listed(system, l, ", "));
   for (std::size_t i = 0; i < outputs.size(); ++i)
     out += fmt::format("  y{} = {},  y0 = {}\n", outputs.size() == 1 ? "" : fmt::format("{}", i + 1), outputs[i],
                        number(y.values[i]));
@@ -273,6 +278,7 @@ std::string modes_text(const MechanicalSystem& system, const ModalStudy& study,
     const auto symbolic = formulas[i] ? formulas_text(*formulas[i], order) : std::nullopt;
     out += symbolic ? *symbolic : matrices_text(system, e.linearization);
     out += measured_text(system, e.linearization, outputs);
+    if (e.analysis.modes.empty()) continue;
     out += modes_table(system, e.analysis);
     out += fmt::format("  residual of the eigenvalue problem {}\n", brief(e.analysis.residual));
   }
@@ -282,8 +288,7 @@ std::string modes_text(const MechanicalSystem& system, const ModalStudy& study,
 }
 
 std::string regulator_text(const MechanicalSystem& system, const Linearization& l, const Regulator& r) {
-  std::string out = fmt::format("\nregulator  u = u0 - F x,  x = ({}, {})\n", listed(system, l.independent, ""),
-                                listed(system, l.independent_velocities, "'"));
+  std::string out = fmt::format("\nregulator  u = u0 - F x,  x = ({})\n", state_listed(system, l, ", "));
   out += matrix_text("F", r.gain);
   std::string poles;
   for (const Complex& z : r.poles)

@@ -69,6 +69,7 @@ void HybridMotion::keep_instants() {
 
 const ContactMode& HybridMotion::mode() const { return now_->mode; }
 const EquationsOfMotion& HybridMotion::equations_in(const ContactMode& mode) {
+  if (!system_.has_modes()) return equations_;  // events alone: also those that were found for a degenerate Lagrangian
   std::unique_ptr<EquationsOfMotion>& slot = equations_of_modes_[key_of(mode, stops())];
   if (slot) return *slot;
   Diagnostics unheard;  // the system passed its checks with its contacts

@@ -26,6 +26,7 @@ TEST_CASE("a Lagrangian of the first order has equilibria, frequencies, periods 
   REQUIRE(modes["points"].size() == 1);
   CHECK(modes["points"][0]["multipliers"].empty());
   const Outcome text = maup({"modes", "-", "--at", "x=20, y=10"}, predators);
+  CHECK(contains(text.out, "x = (x, y)\n"));
   CHECK_MESSAGE(text.code == 0, text.err);
   CHECK(contains(text.out, "1.2247448"));
   const Outcome orbit = maup({"orbits", "-", "--floquet", "--period", "5.4"}, predators);

@@ -47,6 +47,16 @@ TEST_CASE("modes --json: schema, points, matrices, modes") {
   CHECK(point.at("linearization").at("state_space").at("A").size() == 4);
 }
 
+TEST_CASE("modes where the constraints leave nothing that could move") {
+  const Outcome held = maup({"modes", "-", "--at", "x=0, y=-1m"},
+                            "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\n"
+                            "V = m g y\nconstraint x^2 + y^2 = l^2\nconstraint x = 0\nstart y = -1 m\n");
+  CHECK_MESSAGE(held.code == 0, held.err);
+  CHECK(contains(held.out, "the constraints leave nothing that could move, to first order"));
+  CHECK(contains(held.out, "independent: none\n"));
+  CHECK_FALSE(contains(held.out, "eigenvalue"));
+}
+
 TEST_CASE("modes --at a time of the motion") {
   const Outcome along = maup({"modes", "-", "--at", "1s"}, pendulum);
   CHECK_MESSAGE(along.code == 0, along.err);

@@ -103,6 +103,10 @@ StabilityReport judge_stability(const PointEquations& equations, const Lineariza
         "a point of a motion is no state of rest: these are the eigenvalues of the coefficients at that instant";
     return out;
   }
+  if (linearization.independent.empty() && linearization.independent_velocities.empty()) {
+    out.reason = "the constraints leave nothing that could move, to first order";
+    return out;
+  }
   if (!equations.autonomous()) {
     out.reason = "the coefficients change with time: Floquet multipliers decide where they are periodic";
     return out;
