@@ -90,29 +90,15 @@ class Verifier {
     decide_class(e, model_.system, constraints(), result);
   }
 
-  void decide(const expectation::Frequencies& e, ExpectationResult& result) {
-    if (is_one_motion(result)) modes().decide(e, result);
-  }
-  void decide(const expectation::Eigenvalues& e, ExpectationResult& result) {
-    if (is_one_motion(result)) modes().decide(e, result);
-  }
-  void decide(const expectation::Matrix& e, ExpectationResult& result) {
-    if (is_one_motion(result)) modes().decide(e, result);
-  }
-  void decide(const expectation::Equilibrium& e, ExpectationResult& result) {
-    if (is_one_motion(result)) modes().decide(e, result);
-  }
-  void decide(const expectation::Stable& e, ExpectationResult& result) {
+  template <typename Claim>
+  requires requires(ModeClaims& claims, const Claim& e, ExpectationResult& result) { claims.decide(e, result); }
+  void decide(const Claim& e, ExpectationResult& result) {
     if (is_one_motion(result)) modes().decide(e, result);
   }
 
-  void decide(const expectation::Multipliers& e, ExpectationResult& result) {
-    if (is_one_motion(result)) orbits().decide(e, result);
-  }
-  void decide(const expectation::Trace& e, ExpectationResult& result) {
-    if (is_one_motion(result)) orbits().decide(e, result);
-  }
-  void decide(const expectation::Period& e, ExpectationResult& result) {
+  template <typename Claim>
+  requires requires(OrbitClaims& claims, const Claim& e, ExpectationResult& result) { claims.decide(e, result); }
+  void decide(const Claim& e, ExpectationResult& result) {
     if (is_one_motion(result)) orbits().decide(e, result);
   }
 

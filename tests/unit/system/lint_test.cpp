@@ -25,6 +25,25 @@ TEST_CASE("models that look suspicious and are not") {
     CHECK_MESSAGE(Elaborated(text).fine(), text << Elaborated(text).messages());
 }
 
+TEST_CASE("an energy that is nowhere a real number, and such as are real far from zero or near it alone") {
+  const auto warned = [](const std::string& line) {
+    const std::string codes = Elaborated(
+                                  "param m = 1 kg, k = 1 J, R = 1e-9 m, a = 1e6 m, c = 3 m/s\ncoord x, y : length\n"
+                                  "T = 1/2 m (x'^2 + y'^2) + 0 m c (R/a) y'\n" +
+                                  line + "\n")
+                                  .codes();
+    CHECK_MESSAGE(codes.find('E') == std::string::npos, line << ": " << codes);
+    return codes.find("W0434") != std::string::npos;
+  };
+  for (const char* somewhere : {"V = k sqrt(R^2 - x^2)/R", "V = k log(x/a - 1)", "V = k asin(x/R)",
+                                "V = k acos(x/a - 3)", "V = k sqrt((x - y)/R - 4)", "U = k sqrt(y'^2/c^2 - 4)",
+                                "D = k c/R sqrt(y'/c)", "U = k sqrt(x'/c - 1000)\nstart x' = 6000 m/s"})
+    CHECK_MESSAGE(!warned(somewhere), somewhere);
+  for (const char* nowhere : {"V = k sqrt(-R^2 - x^2)/R", "V = k log(-1 - x^2/a^2)", "V = k asin(2 + x^2/R^2)",
+                              "U = k sqrt(-1 - y'^2/c^2)", "D = k c/R sqrt(-1 - y'^2/c^2)"})
+    CHECK_MESSAGE(warned(nowhere), nowhere);
+}
+
 TEST_CASE("null vectors name the coordinates they move") {
   const Elaborated e(
       "param m = 1 kg, l = 2 m\ncoord x : length, θ : angle, y : length\npoint P mass m at (x + l θ, y)\n");
