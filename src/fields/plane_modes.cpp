@@ -14,22 +14,22 @@
 #include <cmath>
 #include <limits>
 
-/// Ritz's method on a rectangle: products of integrated Legendre polynomials along x and along y, one element over all
-/// of the domain, which converge exponentially where the coefficients are smooth. Degrees grow until the frequencies of
-/// two sizes agree.
+/// Ritz's method on a rectangle: products of integrated Legendre polynomials along x and along y, of twice integrated ones
+/// where the density holds second derivatives (plates), one element over all of the domain, which converge exponentially
+/// where the coefficients are smooth. Degrees grow until the frequencies of two sizes agree.
 namespace maupertuis {
 namespace {
 
 using Side = BoundaryCondition::Side;
 
-/// Functions along one direction with their values and slopes at the points of quadrature.
+/// Functions along one direction with their values, slopes and curvatures at the points of quadrature.
 struct Axis {
   ElementSpace space;
   Eigen::VectorXd weight;
-  Eigen::MatrixXd of[2];  // [points × functions]: values, slopes
+  Eigen::MatrixXd of[3];  // [points × functions]
 
-  Axis(double from, double to, int degree, bool periodic)
-      : space({{from, to}, degree, degree + 6, periodic}, ElementSpace::Kind::Continuous) {
+  Axis(double from, double to, int degree, bool periodic, ElementSpace::Kind kind)
+      : space({{from, to}, degree, degree + 6, periodic}, kind) {
     const auto q = static_cast<Eigen::Index>(space.points().size());
     weight.resize(q);
     for (Eigen::MatrixXd& m : of) m = Eigen::MatrixXd::Zero(q, size());
@@ -37,7 +37,7 @@ struct Axis {
       const ElementSpace::Point& point = space.points()[static_cast<std::size_t>(i)];
       weight(i) = point.weight;
       for (const ElementSpace::Part& part : point.parts)
-        for (int k = 0; k < 2; ++k) of[k](i, static_cast<Eigen::Index>(part.dof)) += part.of[k];
+        for (int k = 0; k < 3; ++k) of[k](i, static_cast<Eigen::Index>(part.dof)) += part.of[k];
     }
   }
   Eigen::Index size() const { return static_cast<Eigen::Index>(space.size()); }
@@ -53,8 +53,12 @@ struct Axis {
 
 class PlaneModes {
  public:
-  PlaneModes(const FieldEquations& equations, const DensityEntries& entries)
-      : equations_(equations), s_(equations.system()), entries_(entries) {
+  /// Of continuous slopes where `smooth`.
+  PlaneModes(const FieldEquations& equations, const DensityEntries& entries, bool smooth)
+      : equations_(equations),
+        s_(equations.system()),
+        entries_(entries),
+        kind_(smooth ? ElementSpace::Kind::Smooth : ElementSpace::Kind::Continuous) {
     for (const Parameter& p : equations.model->parameters) values_[p.symbol] = p.si_value;
     for (std::size_t i = 0; i < 2; ++i)
       from_[i] = evaluate(s_.expanded(s_.space[i].from), values_),
@@ -79,7 +83,7 @@ class PlaneModes {
     for (std::size_t i = 0; i < 2; ++i) {
       const int wanted = (i == 0) == across ? small : std::min(large, most_degree_);
       degrees_[i] = std::max(wanted, degrees_[i] + 2);
-      axes_.emplace_back(from_[i], to_[i], degrees_[i], s_.periodic);
+      axes_.emplace_back(from_[i], to_[i], degrees_[i], s_.periodic, kind_);
     }
     size_ = axes_[0].size() * axes_[1].size();
   }
@@ -270,12 +274,14 @@ class PlaneModes {
   Eigen::MatrixXd free_functions() const {
     std::vector<bool> held(equations_.varied.size() * static_cast<std::size_t>(size_), false);
     for (const BoundaryCondition& b : s_.boundary) {
-      if (b.jet.order() != 0) continue;  // a given slope is the force that it stands for
+      const bool slope = b.jet.order() != 0;
+      if (slope && kind_ != ElementSpace::Kind::Smooth) continue;  // it is the force that it stands for
       std::size_t a = 0;
       while (equations_.varied[a] != b.jet.field) ++a;
       const std::size_t along = b.side == Side::Left || b.side == Side::Right ? 0 : 1;
       const std::size_t border = b.side == Side::Right || b.side == Side::Top ? 1 : 0;
-      const std::size_t function = axes_[along].space.value_at_border(border);
+      const ElementSpace& space = axes_[along].space;
+      const std::size_t function = slope ? space.slope_at_border(border) : space.value_at_border(border);
       for (std::size_t other = 0; other < axes_[1 - along].space.size(); ++other)
         held[a * static_cast<std::size_t>(size_) +
              static_cast<std::size_t>(along == 0 ? index(function, other) : index(other, function))] = true;
@@ -312,6 +318,7 @@ class PlaneModes {
   const FieldEquations& equations_;
   const FieldSystem& s_;
   const DensityEntries& entries_;
+  const ElementSpace::Kind kind_;
   Bindings values_;
   double from_[2] = {0, 0}, to_[2] = {0, 0};
   int degrees_[2] = {0, 0};
@@ -328,17 +335,13 @@ bool says_the_force(const FieldEquations& equations, const BoundaryCondition& b)
 }
 
 /// Why there are no modes; empty: there are.
-std::string trouble_of(const FieldEquations& equations, const DensityEntries& entries) {
+std::string trouble_of(const FieldEquations& equations, bool smooth) {
   const FieldSystem& s = equations.system();
   if (!s.space[0].from || !s.space[1].from) return "It has no domain.";
   for (const BoundaryCondition& b : s.boundary)
-    if (b.jet.order() == 1 && !says_the_force(equations, b))
+    if (b.jet.order() == 1 && !smooth && !says_the_force(equations, b))
       return "A given slope at a side does not say what ∂ℒ/∂u_x is there, as other derivatives stand in it.";
-  if (equations.bodies) return "Bodies take hold of it in the plane.";
-  for (const DensityEntry& e : entries.list)
-    if (e.da + e.ya > 1 || e.db + e.yb > 1 || e.ta + e.da + e.ya > 1 || e.tb + e.db + e.yb > 1)
-      return "Its density holds second derivatives: modes of plates are not supported yet.";
-  return {};
+  return equations.bodies ? "Bodies take hold of it in the plane." : "";
 }
 
 /// What is left where two sizes agree. The eigenvalues μ = 1/(λ + σ) of n rows, with λ = ω² and σ the largest λ looked
@@ -358,12 +361,15 @@ double rounding_of(const std::vector<double>& frequencies, std::size_t i, Eigen:
 FieldModes plane_modes(const FieldEquations& equations, std::size_t count, Diagnostics& diagnostics) {
   DensityEntries entries;
   if (!entries_of(equations, entries, diagnostics)) return {};
-  if (const std::string trouble = trouble_of(equations, entries); !trouble.empty()) {
+  const bool smooth = std::any_of(entries.list.begin(), entries.list.end(), [](const DensityEntry& e) {
+    return e.da + e.ya > 1 || e.db + e.yb > 1;
+  });
+  if (const std::string trouble = trouble_of(equations, smooth); !trouble.empty()) {
     refuse_modes_of(equations, diagnostics, trouble);
     return {};
   }
   if (!has_modes_at_rest(equations, entries.linear, diagnostics)) return {};
-  PlaneModes problem(equations, entries);
+  PlaneModes problem(equations, entries, smooth);
   constexpr std::size_t beyond = 4;  // so that modes of one frequency are seen together
   constexpr double close = 1e-11, sizes[] = {250, 380, 580, 900}, sizes_sideways[] = {60, 90, 130};
   FieldModes out;
