@@ -8,7 +8,7 @@
 namespace maupertuis {
 
 /// Gauss's collocation with s stages: order 2s, symplectic and symmetric. A is diagonal in a complex basis, so that the
-/// equations of all stages fall apart into s banded systems, of which one of each conjugate pair is solved.
+/// equations of all stages fall apart into s sparse systems, of which one of each conjugate pair is solved.
 struct GaussTableau {
   explicit GaussTableau(int stages);
   std::size_t stages;
@@ -27,7 +27,8 @@ struct GaussTableau {
 /// ω(c) c' = ∇H. Solved by Newton's method with the matrices M + hλ G + (hλ)² K of one moment.
 class CollocationMotion final : public FieldMotion {
  public:
-  CollocationMotion(const FieldEquations& equations, const DensityForm& form, int cells, int degree, int stages);
+  CollocationMotion(const FieldEquations& equations, const DensityForm& form, const std::vector<int>& cells, int degree,
+                    int stages);
 
   void start() override;
   /// Where the equations of a step have no solution near, by halves of it, down to h/4096.
@@ -35,8 +36,9 @@ class CollocationMotion final : public FieldMotion {
   double energy(double& size) override;
   const std::vector<Expr>& point_inputs() const override { return form_.inputs; }
   void visit_points(const PointVisitor& visit) override;
+  void visit_sides(const std::vector<Expr>& jets, const SideVisitor& visit) override;
   double field_at(std::size_t field, const FieldJet& jet, const std::vector<double>& place) const override;
-  double width_of_cell() const { return mesh_.width(); }
+  double width_of_cell() const { return mesh_.axis(0).width(); }
 
   /// The longest step whose error, summed over the duration, is `goal` of the field's size; found by comparing a step
   /// with two of half of it from the start on. Leaves the state as it was.
@@ -44,25 +46,32 @@ class CollocationMotion final : public FieldMotion {
   /// Asked at each of Newton's rounds.
   void watch(const Interrupt& interrupt) { interrupt_ = interrupt; }
   /// What a run on such a mesh takes of memory, all but a factor 2.
-  static double bytes(const DensityForm& form, int cells, int degree, int stages);
+  static double bytes(const DensityForm& form, const std::vector<int>& cells, int degree, int stages);
 
  private:
   struct Factors {
-    std::vector<BandedMatrix<std::complex<double>>> of;   // [stages], empty where Im λ < 0
+    std::vector<MeshMatrix<std::complex<double>>> of;     // [stages], empty where Im λ < 0
     std::vector<std::vector<std::complex<double>>> null;  // J⁻¹ of each null vector, by stages with Im λ ≥ 0
   };
+  /// A condition or a force at an end, or along a side.
   struct Held {
-    std::size_t coefficient = 0, field = 0;
+    std::vector<std::size_t> coefficients;
+    std::size_t field = 0;
     int space = 0;
-    bool right = false, force = false;
-    double scale = 1;               // coefficient / value; a moment does work on the value
-    std::vector<Expr> derivatives;  // of the value: itself, once by t
+    BoundaryCondition::Side side = BoundaryCondition::Side::Left;
+    bool force = false;
+    double scale = 1;                            // coefficient / value; a moment does work on the value
+    std::vector<std::vector<Expr>> derivatives;  // of the value: itself, once by t; each with those along the side
   };
   struct State {
     std::vector<double> c, c_lost, p, p_lost;
     double t = 0;
   };
-  void hold(bool right, std::size_t field, int space, Expr value, bool force);
+  void hold(BoundaryCondition::Side side, std::size_t field, int space, Expr value, bool force);
+  /// What a condition says of its coefficients (`by_time` 0) or of their rates (1), at a moment.
+  void impose(const Held& held, int by_time, double t, std::vector<double>& to) const;
+  void note_clash(const Held& held, int by_time, const std::vector<double>& start,
+                  const std::vector<double>& condition);
   bool take_conditions();
   void start_field(std::size_t field, bool rate, std::vector<double>& to);
   void find_null_vectors();
@@ -75,10 +84,11 @@ class CollocationMotion final : public FieldMotion {
   double correct(double h, const Factors& factors);
   void leave_null_vectors_out(const Factors& factors, std::size_t stage, std::vector<std::complex<double>>& w) const;
   void add_end_forces(double t, double* f) const;
+  void note_size();
   void restore(const State& s) { state_ = s, t_ = s.t, rates_known_ = false, have_stages_ = false; }
   /// What gives velocities from momenta, or from the equations of first order, at one moment.
   struct RateMatrix {
-    BandedMatrix<double> factored, a;  // a = ∂p/∂c
+    MeshMatrix<double> factored, a;  // a = ∂p/∂c
     bool regular = false;
     std::size_t null_vectors = 0;  // that were known
   };
@@ -98,6 +108,8 @@ class CollocationMotion final : public FieldMotion {
   mutable bool rates_known_ = false;
   std::vector<std::vector<double>> stage_v_, stage_q_, residual_;  // [stages][size]
   bool have_stages_ = false;
+  std::vector<double> recent_size_;  // [fields], in the mean square
+  double rounding_ = 0;              // the last change of the last step that was solved, where it is rounding
   double last_h_ = 0;
   mutable GalerkinMesh::Matrices matrices_;
   mutable bool matrices_known_ = false;

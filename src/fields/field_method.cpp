@@ -38,7 +38,7 @@ std::string FieldMethod::name() const {
 }
 
 std::unique_ptr<FieldMotion> FieldMethod::mesh(const FieldEquations& equations, const Cells& cells, bool first) const {
-  if (stiff_) return std::make_unique<CollocationMotion>(equations, *stiff_, cells[0], order_, stages);
+  if (stiff_) return std::make_unique<CollocationMotion>(equations, *stiff_, cells, order_, stages);
   if (cells.size() == 2) return std::make_unique<PlaneMesh>(equations, *waves_, cells[0], cells[1], order_);
   auto out = std::make_unique<FieldMesh>(equations, *waves_, cells[0], order_);
   if (!first) out->lengthen_steps(2);
@@ -46,7 +46,7 @@ std::unique_ptr<FieldMotion> FieldMethod::mesh(const FieldEquations& equations, 
 }
 
 double FieldMethod::bytes(const FieldEquations& equations, const Cells& cells) const {
-  if (stiff_) return CollocationMotion::bytes(*stiff_, cells[0], order_, stages);
+  if (stiff_) return CollocationMotion::bytes(*stiff_, cells, order_, stages);
   return cells.size() == 2 ? PlaneMesh::bytes(equations, *waves_, cells[0], cells[1], order_) : 0;
 }
 

@@ -21,7 +21,7 @@
 namespace maupertuis {
 namespace {
 
-constexpr int usual_cells = 100, usual_cells_of_plane = 32;
+constexpr int usual_cells = 100, usual_cells_of_plane = 32, usual_cells_of_plate = 4;
 
 void refuse(const FieldMotion& mesh, const FieldEquations& equations, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
@@ -140,7 +140,7 @@ const char* side_name(BoundaryCondition::Side side, const FieldSystem& s) {
 
 std::string jet_name(const FieldMotion::StartClash& c, const FieldEquations& equations) {
   std::vector<int> space(equations.system().space.size(), 0);
-  space[0] = c.space;
+  space[c.side == BoundaryCondition::Side::Bottom || c.side == BoundaryCondition::Side::Top ? 1 : 0] = c.space;
   return equations.system().jet_name({equations.varied[c.field], std::move(space), c.time});
 }
 
@@ -392,7 +392,9 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   const FieldSystem& s = equations.system();
   Cells cells;
   for (const SpaceVariable& x : s.space) {
-    const int usual = s.space.size() == 1 ? usual_cells : usual_cells_of_plane;
+    const int usual = s.space.size() == 1 ? usual_cells
+                      : method->is_wave() ? usual_cells_of_plane
+                                          : usual_cells_of_plate;
     cells.push_back(x.cells ? x.cells : s.space.front().cells ? s.space.front().cells : usual);
   }
   if (refuse_large_mesh(equations, *method, cells, diagnostics)) return std::nullopt;

@@ -9,39 +9,25 @@
 #include <cmath>
 
 namespace maupertuis {
-namespace {
 
-bool holds_jets_or_time(const FieldSystem& s, Expr e) {
-  const std::vector<Expr> symbols = symbols_of({&e, 1});
-  return std::any_of(symbols.begin(), symbols.end(),
-                     [&](Expr symbol) { return s.jet_of(symbol) || symbol.role() == Role::Time; });
-}
-
-}  // namespace
-
-GalerkinMesh::GalerkinMesh(const FieldEquations& equations, const DensityForm& form, int cells, int degree,
-                           const Bindings& values, std::string& trouble)
-    : form_(form), cells_(cells), fields_(form.smooth.size()), rule_(degree + 2), values_(values) {
-  const FieldSystem& s = equations.system();
-  x_ = s.space.front().symbol;
-  left_ = evaluate(s.expanded(s.space.front().from), values);
-  width_ = (evaluate(s.expanded(s.space.front().to), values) - left_) / cells;
-  for (const bool smooth : form.smooth) elements_.emplace_back(smooth, smooth ? std::max(degree, 3) : degree);
-  for (const Element& e : elements_) local_ = std::max(local_, e.size());
-  number_coefficients(s.periodic);
-  for (const Element& e : elements_)
-    for (int k = 0; k < 3; ++k) {
-      std::vector<double> table(rule_.x.size() * e.size());
-      for (std::size_t q = 0; q < rule_.x.size(); ++q) {
-        double* row = table.data() + q * e.size();
-        e.at(rule_.x[q], k, row);
-        if (k > 0) row[0] = -row[e.at_end()];  // to the bit: forces act on differences of u
-        for (std::size_t i = 0; i < e.size(); ++i) row[i] *= std::pow(2 / width_, k);
-      }
-      tables_.push_back(std::move(table));
+GalerkinMesh::GalerkinMesh(const FieldEquations& equations, const DensityForm& form, const std::vector<int>& cells,
+                           int degree, const Bindings& values, std::string& trouble)
+    : s_(equations.system()), form_(form), fields_(form.smooth.size()), values_(values) {
+  for (std::size_t i = 0; i < s_.space.size(); ++i)
+    axes_[i] = MeshAxis(evaluate(s_.expanded(s_.space[i].from), values), evaluate(s_.expanded(s_.space[i].to), values),
+                        cells[i], degree, s_.periodic, s_.space.size() > 1);
+  for (std::size_t f = 0; f < fields_; ++f) local_ = std::max(local_, functions(f));
+  number_coefficients();
+  add_products();
+  for (const DensityForm::Slot& slot : form.slots) {
+    tables_.push_back(table_of(slot.field, slot.space));
+    loads_.push_back(loads_of(slot.field, tables_.back()));
+  }
+  for (std::size_t point = 0; point < points(); ++point)
+    for (std::size_t cell = 0; cell < this->cells(); ++cell) {
+      places_[0].push_back(axes_[0].point(cell % axes_[0].cells(), point % axes_[0].points()));
+      places_[1].push_back(axes_[1].point(cell / axes_[0].cells(), point / axes_[0].points()));
     }
-  for (const double xi : rule_.x)
-    for (int e = 0; e < cells; ++e) points_.push_back(left_ + width_ * (e + 0.5 * (1 + xi)));
   std::unordered_map<Expr, double, ExprHash> constants(values.begin(), values.end());
   std::vector<Expr> seconds;
   for (const DensityForm::Entry& e : form.hessian) seconds.push_back(e.value);
@@ -52,93 +38,129 @@ GalerkinMesh::GalerkinMesh(const FieldEquations& equations, const DensityForm& f
   if (!series || !hessian || !energies) return;
   series_ = std::move(*series), hessian_ = std::move(*hessian), energies_ = std::move(*energies);
   for (LaneSeries* lanes : {&series_, &hessian_, &energies_}) {
-    lanes->resize(points_.size(), 1);
-    std::copy(points_.begin(), points_.end(), lanes->input(form.slots.size(), 0));
+    lanes->resize(this->lanes(), 1);
+    for (std::size_t i = 0; i < s_.space.size(); ++i)
+      std::copy(places_[i].begin(), places_[i].end(), lanes->input(form.slots.size() + i, 0));
   }
 }
 
-/// From left to right: what stands at an end, then the inner coefficients of the element to its right. In a ring the
-/// elements are taken from both sides in turn, so that neighbours have near numbers all round.
-void GalerkinMesh::number_coefficients(bool periodic) {
-  const auto cells = static_cast<std::size_t>(cells_);
-  std::size_t block = 0, at_ends = 0;
-  for (const Element& e : elements_) block += e.at_end() + e.inner(), at_ends += e.at_end();
-  const auto first_of = [&](std::size_t node) {
-    if (!periodic) return node * block;
-    node %= cells;
-    return block * (2 * node < cells ? 2 * node : 2 * (cells - 1 - node) + 1);
-  };
-  size_ = periodic ? cells * block : cells * block + at_ends;
-  map_.assign(cells * fields_ * local_, 0);
-  for (std::size_t cell = 0; cell < cells; ++cell) {
-    std::size_t least = size_, most = 0, end = 0, inner = at_ends;
-    for (std::size_t f = 0; f < fields_; ++f) {
-      const Element& e = elements_[f];
-      std::size_t* to = map_.data() + (cell * fields_ + f) * local_;
-      for (std::size_t i = 0; i < e.at_end(); ++i) {
-        to[i] = first_of(cell) + end + i;
-        to[e.at_end() + i] = first_of(cell + 1) + end + i;
+/// Line by line, the lines along the direction with fewer functions, so that the matrices have a narrow band:
+///
+///     y ↑  3 — 7 — 11 …      in each place of a line the fields one after the other, of each what stands there (the
+///       |  2 — 6 — 10        value and slopes at a node, all inner functions between nodes)
+///          1 — 5 —  9  → x
+void GalerkinMesh::number_coefficients() {
+  const std::size_t slow = axes_[0].cells() < axes_[1].cells() ? 1 : 0, fast = 1 - slow;
+  using Key = std::array<std::uint32_t, 5>;  // ranks along both, the field, which of those there along both
+  std::vector<Key> keys;
+  for (std::size_t cell = 0; cell < cells(); ++cell)
+    for (std::size_t f = 0; f < fields_; ++f)
+      for (std::size_t i = 0; i < functions(f); ++i) {
+        const std::size_t of_cell[] = {cell % axes_[0].cells(), cell / axes_[0].cells()};
+        const std::size_t of_function[] = {i % along(f, 0), i / along(f, 0)};
+        const auto number = [&](std::size_t d) { return axes_[d].number(form_.smooth[f], of_cell[d], of_function[d]); };
+        const MeshAxis::Number a = number(slow), b = number(fast);
+        keys.push_back({a.rank, b.rank, static_cast<std::uint32_t>(f), a.own, b.own});
       }
-      for (std::size_t i = 0; i < e.inner(); ++i) to[2 * e.at_end() + i] = first_of(cell) + inner + i;
-      end += e.at_end(), inner += e.inner();
-      for (std::size_t i = 0; i < e.size(); ++i) least = std::min(least, to[i]), most = std::max(most, to[i]);
-    }
-    band_ = std::max(band_, most - least);
-  }
+  std::vector<Key> sorted = keys;
+  std::sort(sorted.begin(), sorted.end());
+  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  size_ = sorted.size();
+  map_.assign(cells() * fields_ * local_, 0);
+  std::size_t next = 0;
+  std::vector<std::vector<std::size_t>> of_cells(cells());
+  for (std::size_t cell = 0; cell < cells(); ++cell)
+    for (std::size_t f = 0; f < fields_; ++f)
+      for (std::size_t i = 0; i < functions(f); ++i) {
+        const auto at = std::lower_bound(sorted.begin(), sorted.end(), keys[next++]);
+        const auto number = static_cast<std::size_t>(at - sorted.begin());
+        map_[(cell * fields_ + f) * local_ + i] = number;
+        of_cells[cell].push_back(number);
+      }
+  pattern_ = std::make_shared<SparsityPattern>(SparsityPattern::of_groups(size_, of_cells));
 }
 
-const double* GalerkinMesh::table(std::size_t field, int k, std::size_t q) const {
-  return tables_[3 * field + static_cast<std::size_t>(k)].data() + q * elements_[field].size();
+std::vector<double> GalerkinMesh::table_of(std::size_t field, const std::array<int, 2>& space) const {
+  const bool smooth = form_.smooth[field];
+  const std::vector<double>&x = axes_[0].table(smooth, space[0]), &y = axes_[1].table(smooth, space[1]);
+  const std::size_t nx = along(field, 0), ny = along(field, 1);
+  std::vector<double> out;
+  for (std::size_t q = 0; q < axes_[1].points(); ++q)
+    for (std::size_t p = 0; p < axes_[0].points(); ++p)
+      for (std::size_t j = 0; j < ny; ++j)
+        for (std::size_t i = 0; i < nx; ++i) out.push_back(x[p * nx + i] * y[q * ny + j]);
+  return out;
+}
+
+std::vector<double> GalerkinMesh::loads_of(std::size_t field, const std::vector<double>& table) const {
+  const std::size_t n = functions(field);
+  std::vector<double> out(table.size());
+  for (std::size_t q = 0; q < points(); ++q)
+    for (std::size_t i = 0; i < n; ++i) out[i * points() + q] = point_weight(q) * table[q * n + i];
+  return out;
 }
 
 namespace {
 
-/// to = Σ_m c_m from_m, the from_m `stride` apart.
-MAUP_LANES void combine(double* __restrict to, const double* from, const double* c, std::size_t count,
-                        std::size_t stride, std::size_t n) {
-  std::size_t i = 0;
-  for (; i + kWide <= n; i += kWide) {
+/// So many lanes from one row to the next that rows are whole vectors.
+std::size_t padded(std::size_t lanes) { return (lanes + kWide - 1) / kWide * kWide; }
+
+/// to = Σ_m c_m from_m for n lanes; the from_m are `padded(n)` apart, what lies between is not used.
+MAUP_LANES void combine(double* __restrict to, const double* from, const double* c, std::size_t count, std::size_t n) {
+  const std::size_t stride = padded(n);
+  for (std::size_t i = 0; i < n; i += kWide) {
     Lanes sum = {};
     for (std::size_t m = 0; m < count; ++m) sum += c[m] * lanes_at(from + m * stride + i);
-    lanes_at(to + i) = sum;
-  }
-  for (; i < n; ++i) {
-    to[i] = 0;
-    for (std::size_t m = 0; m < count; ++m) to[i] += c[m] * from[m * stride + i];
+    if (i + kWide <= n)
+      lanes_at(to + i) = sum;
+    else
+      for (std::size_t k = i; k < n; ++k) to[k] = sum[k - i];
   }
 }
 
 }  // namespace
 
+/// Derivatives along a direction are taken of differences: what stands at the right ends of elements becomes its
+/// distance from the left ones, these become 0, so that rounding of a large constant does not enter slopes.
+void GalerkinMesh::take_differences(double* local, std::size_t field, std::size_t direction) const {
+  const std::size_t n = cells(), row = padded(n), other = 1 - direction;
+  const std::size_t step = direction == 0 ? 1 : along(field, 0), line = direction == 0 ? along(field, 0) : 1;
+  const std::size_t right = axes_[direction].at_end(form_.smooth[field]) * step;
+  for (std::size_t k = 0; k < along(field, other); ++k) {
+    double *l = local + k * line * row, *r = l + right * row;
+    for (std::size_t cell = 0; cell < n; ++cell) r[cell] -= l[cell], l[cell] = 0;
+  }
+}
+
 void GalerkinMesh::set(const double* c, const double* rates, double t, bool all) {
-  const std::size_t n = cells();
-  std::vector<double> local(local_ * n);
+  const std::size_t n = cells(), row = padded(n);
+  std::vector<double> local(local_ * row);
   for (std::size_t slot = 0; slot < form_.slots.size(); ++slot) {
     const DensityForm::Slot& s = form_.slots[slot];
     if (!s.stands && !all) continue;
-    const Element& e = elements_[s.field];
     const double* from = s.rate ? rates : c;
     for (std::size_t cell = 0; cell < n; ++cell)
-      for (std::size_t i = 0; i < e.size(); ++i) local[i * n + cell] = from[index(s.field, cell, i)];
-    if (s.space > 0)
-      for (std::size_t cell = 0; cell < n; ++cell) local[e.at_end() * n + cell] -= local[cell], local[cell] = 0;
-    for (std::size_t q = 0; q < rule_.x.size(); ++q)
-      combine(series_.input(slot, 0) + q * n, local.data(), table(s.field, s.space, q), e.size(), n, n);
+      for (std::size_t i = 0; i < functions(s.field); ++i) local[i * row + cell] = from[index(s.field, cell, i)];
+    for (std::size_t d = 0; d < 2; ++d)
+      if (s.space[d] > 0) take_differences(local.data(), s.field, d);
+    for (std::size_t q = 0; q < points(); ++q)
+      combine(series_.input(slot, 0) + q * n, local.data(), table(slot, q), functions(s.field), n);
   }
-  std::fill_n(series_.input(form_.slots.size() + 1, 0), lanes(), t);
+  std::fill_n(series_.input(form_.inputs.size() - 1, 0), lanes(), t);
   series_.advance(0);
 }
 
 void GalerkinMesh::assemble(double* out, bool rates) const {
   std::fill_n(out, size_, 0.0);
-  const std::size_t points = rule_.x.size(), n = cells();
-  std::vector<double> local(n), c(points);
+  const std::size_t n = cells(), row = padded(n);
+  std::vector<double> local(n), roots(points() * row);
   for (std::size_t slot = 0; slot < form_.slots.size(); ++slot) {
     const DensityForm::Slot& s = form_.slots[slot];
     if (s.rate != rates || form_.by_slot[slot].is_zero()) continue;
-    for (std::size_t i = 0; i < elements_[s.field].size(); ++i) {
-      for (std::size_t q = 0; q < points; ++q) c[q] = rule_.w[q] * width_ / 2 * table(s.field, s.space, q)[i];
-      combine(local.data(), series_.root(slot, 0), c.data(), points, n, n);
+    for (std::size_t q = 0; q < points(); ++q)
+      std::copy_n(series_.root(slot, 0) + q * n, n, roots.begin() + static_cast<std::ptrdiff_t>(q * row));
+    for (std::size_t i = 0; i < functions(s.field); ++i) {
+      combine(local.data(), roots.data(), loads_[slot].data() + i * points(), points(), n);
       for (std::size_t cell = 0; cell < n; ++cell) out[index(s.field, cell, i)] += local[cell];
     }
   }
@@ -150,31 +172,31 @@ void GalerkinMesh::forces(double* out) const { assemble(out, false); }
 GalerkinMesh::Matrices GalerkinMesh::matrices() {
   for (std::size_t i = 0; i < form_.inputs.size(); ++i) std::copy_n(series_.input(i, 0), lanes(), hessian_.input(i, 0));
   hessian_.advance(0);
-  const BandedMatrix<double> empty(size_, band_, band_);
-  Matrices out{empty, empty, empty, empty};
-  const std::size_t points = rule_.x.size();
+  Matrices out{MeshMatrix<double>(pattern_), MeshMatrix<double>(pattern_), MeshMatrix<double>(pattern_),
+               MeshMatrix<double>(pattern_)};
   std::vector<double> local(local_ * local_);
   for (std::size_t k = 0; k < form_.hessian.size(); ++k) {
-    const DensityForm::Slot &row = form_.slots[form_.hessian[k].row], &column = form_.slots[form_.hessian[k].column];
-    const Element &r = elements_[row.field], &c = elements_[column.field];
-    BandedMatrix<double>& to = row.rate ? (column.rate ? out.m : out.g) : column.rate ? out.g : out.k;
+    const std::size_t first = form_.hessian[k].row, second = form_.hessian[k].column;
+    const DensityForm::Slot &row = form_.slots[first], &column = form_.slots[second];
+    const std::size_t rows = functions(row.field), columns = functions(column.field);
+    MeshMatrix<double>& to = row.rate ? (column.rate ? out.m : out.g) : column.rate ? out.g : out.k;
     const double sign = row.rate ? 1 : -1;
     const double* value = hessian_.root(k, 0);
     for (std::size_t cell = 0; cell < cells(); ++cell) {
       std::fill(local.begin(), local.end(), 0.0);
-      for (std::size_t q = 0; q < points; ++q) {
-        const double weight = sign * rule_.w[q] * width_ / 2 * value[q * cells() + cell];
-        const double *a = table(row.field, row.space, q), *b = table(column.field, column.space, q);
-        for (std::size_t i = 0; i < r.size(); ++i)
-          for (std::size_t j = 0; j < c.size(); ++j) local[i * local_ + j] += weight * a[i] * b[j];
+      for (std::size_t q = 0; q < points(); ++q) {
+        const double weight = sign * point_weight(q) * value[q * cells() + cell];
+        const double *a = table(first, q), *b = table(second, q);
+        for (std::size_t i = 0; i < rows; ++i)
+          for (std::size_t j = 0; j < columns; ++j) local[i * local_ + j] += weight * a[i] * b[j];
       }
-      for (std::size_t i = 0; i < r.size(); ++i)
-        for (std::size_t j = 0; j < c.size(); ++j)
-          to.at(index(row.field, cell, i), index(column.field, cell, j)) += local[i * local_ + j];
-      if (!row.rate || column.rate) continue;
-      for (std::size_t i = 0; i < r.size(); ++i)
-        for (std::size_t j = 0; j < c.size(); ++j)
-          out.a.at(index(row.field, cell, i), index(column.field, cell, j)) += local[i * local_ + j];
+      const auto add_to = [&](MeshMatrix<double>& matrix) {
+        for (std::size_t i = 0; i < rows; ++i)
+          for (std::size_t j = 0; j < columns; ++j)
+            matrix.at(index(row.field, cell, i), index(column.field, cell, j)) += local[i * local_ + j];
+      };
+      add_to(to);
+      if (row.rate && !column.rate) add_to(out.a);
     }
   }
   return out;
@@ -197,76 +219,188 @@ double GalerkinMesh::integral(const std::vector<double>& f) const {
   return sum.value();
 }
 
-void GalerkinMesh::project(std::size_t field, const std::vector<Expr>& derivatives, double* c,
-                           std::string& trouble) const {
-  const Element& e = elements_[field];
-  const GaussRule fine(2 * e.degree() + 4);
-  const RepeatedEvaluation at(derivatives);
-  const auto values_at = [&](double x) {
-    std::vector<double> out = at([&](Expr symbol) { return symbol == x_ ? x : values_.at(symbol); });
-    for (const double value : out)
-      if (!std::isfinite(value)) trouble = "start";
+// --------------------------------------------------------------------------------------------- functions →
+// coefficients
+
+void GalerkinMesh::project(std::size_t field, Expr f, double* c, std::string& trouble) const {
+  const bool smooth = form_.smooth[field];
+  const std::vector<MeshAxis::Sample>&xs = axes_[0].samples(smooth), &ys = axes_[1].samples(smooth);
+  const std::vector<double>&px = axes_[0].projection(smooth), &py = axes_[1].projection(smooth);
+  std::vector<std::vector<RepeatedEvaluation>> at(3);  // [by y][by x]
+  Expr by_y = f;
+  for (std::size_t ky = 0; ky <= axes_[1].at_end(smooth); ++ky) {
+    if (ky > 0) by_y = differentiate(by_y, s_.space[1].symbol);
+    Expr derivative = by_y;
+    for (std::size_t kx = 0; kx <= axes_[0].at_end(smooth); ++kx) {
+      if (kx > 0) derivative = differentiate(derivative, s_.space[0].symbol);
+      at[ky].emplace_back(std::span<const Expr>(&derivative, 1));
+    }
+  }
+  const auto value = [&](const MeshAxis::Sample& i, const MeshAxis::Sample& j, std::size_t cell) {
+    const double place[] = {axes_[0].place(cell % axes_[0].cells(), i.xi),
+                            axes_[1].place(cell / axes_[0].cells(), j.xi)};
+    const double out =
+        at[static_cast<std::size_t>(j.derivative)][static_cast<std::size_t>(i.derivative)]([&](Expr symbol) {
+          for (std::size_t d = 0; d < s_.space.size(); ++d)
+            if (symbol == s_.space[d].symbol) return place[d];
+          return values_.at(symbol);
+        }).front();
+    if (!std::isfinite(out)) trouble = "start";
     return out;
   };
-  std::vector<double> highest(fine.x.size()), inner(e.inner());
+  const std::size_t nx = along(field, 0), ny = along(field, 1);
   for (std::size_t cell = 0; cell < cells(); ++cell) {
-    for (int side = 0; side < 2; ++side) {
-      const std::vector<double> v =
-          values_at(left_ + width_ * static_cast<double>(cell + static_cast<std::size_t>(side)));
-      for (std::size_t k = 0; k < e.at_end(); ++k)
-        c[index(field, cell, static_cast<std::size_t>(side) * e.at_end() + k)] = v[k] * (k == 1 ? width_ / 2 : 1);
+    std::vector<double> lines(nx * ys.size(), 0), row(xs.size());  // functions along x at the samples along y
+    for (std::size_t j = 0; j < ys.size(); ++j) {
+      for (std::size_t i = 0; i < xs.size(); ++i) row[i] = value(xs[i], ys[j], cell);
+      for (std::size_t k = 0; k < nx; ++k)
+        for (std::size_t i = 0; i < xs.size(); ++i) lines[k * ys.size() + j] += px[k * xs.size() + i] * row[i];
     }
-    for (std::size_t q = 0; q < fine.x.size(); ++q)
-      highest[q] = values_at(left_ + width_ * (static_cast<double>(cell) + 0.5 * (1 + fine.x[q])))[e.at_end()] *
-                   std::pow(width_ / 2, static_cast<double>(e.at_end()));
-    e.project(fine, highest, inner.data());
-    for (std::size_t i = 0; i < e.inner(); ++i) c[index(field, cell, 2 * e.at_end() + i)] = inner[i];
+    for (std::size_t l = 0; l < ny; ++l)
+      for (std::size_t k = 0; k < nx; ++k) {
+        double sum = 0;
+        for (std::size_t j = 0; j < ys.size(); ++j) sum += py[l * ys.size() + j] * lines[k * ys.size() + j];
+        c[index(field, cell, l * nx + k)] = sum;
+      }
   }
 }
 
-double GalerkinMesh::value(const double* c, std::size_t field, int derivatives, double x) const {
-  const Element& e = elements_[field];
-  const double place = (x - left_) / width_;
-  const int cell = std::clamp(static_cast<int>(std::floor(place + 1e-9)), 0, cells_ - 1);
-  std::vector<double> n(e.size());
-  e.at(2 * (place - cell) - 1, derivatives, n.data());
+double GalerkinMesh::value(const double* c, std::size_t field, const FieldJet& jet,
+                           const std::vector<double>& place) const {
+  std::vector<double> n[2];
+  std::size_t cell[2];
+  for (std::size_t d = 0; d < 2; ++d) {
+    const bool there = d < place.size();
+    cell[d] = axes_[d].at(form_.smooth[field], there ? jet.space[d] : 0, there ? place[d] : 0, n[d]);
+  }
   double out = 0;
-  for (std::size_t i = 0; i < e.size(); ++i) out += n[i] * c[index(field, static_cast<std::size_t>(cell), i)];
-  return out * std::pow(2 / width_, derivatives);
-}
-
-std::size_t GalerkinMesh::end_coefficient(std::size_t field, bool right, int space) const {
-  const auto k = static_cast<std::size_t>(space);
-  return right ? index(field, cells() - 1, elements_[field].at_end() + k) : index(field, 0, k);
-}
-
-double GalerkinMesh::largest_end(const double* c, std::size_t field) const {
-  double out = 0;
-  for (std::size_t cell = 0; cell < cells(); ++cell)
-    for (const std::size_t i : {std::size_t{0}, elements_[field].at_end()})
-      out = std::max(out, std::abs(c[index(field, cell, i)]));
+  for (std::size_t j = 0; j < n[1].size(); ++j)
+    for (std::size_t i = 0; i < n[0].size(); ++i)
+      out += n[0][i] * n[1][j] * c[index(field, cell[1] * axes_[0].cells() + cell[0], j * n[0].size() + i)];
   return out;
 }
 
-std::vector<std::size_t> GalerkinMesh::fields_of_coefficients() const {
-  std::vector<std::size_t> out(size_, 0);
-  for (std::size_t cell = 0; cell < cells(); ++cell)
-    for (std::size_t f = 0; f < fields_; ++f)
-      for (std::size_t i = 0; i < elements_[f].size(); ++i) out[index(f, cell, i)] = f;
+// ------------------------------------------------------------------------------------------------------------ the
+// sides
+
+std::vector<std::size_t> GalerkinMesh::side_coefficients(std::size_t field, Side side, bool slope) const {
+  const std::size_t d = across(side), other = 1 - d, nx = along(field, 0);
+  const std::size_t cell_across = is_far(side) ? axes_[d].cells() - 1 : 0;
+  const std::size_t function = (is_far(side) ? axes_[d].at_end(form_.smooth[field]) : 0) + (slope ? 1 : 0);
+  std::vector<std::size_t> out;
+  for (std::size_t along_side = 0; along_side < axes_[other].cells(); ++along_side)
+    for (std::size_t k = 0; k < along(field, other); ++k) {
+      const std::size_t cell =
+          d == 0 ? along_side * axes_[0].cells() + cell_across : cell_across * axes_[0].cells() + along_side;
+      out.push_back(index(field, cell, d == 0 ? k * nx + function : function * nx + k));
+    }
+  return out;
+}
+
+Expr GalerkinMesh::side_symbol(Side side) const {
+  return s_.space.size() > 1 ? s_.space[1 - across(side)].symbol : Expr{};
+}
+
+std::vector<Expr> GalerkinMesh::derivatives_along(std::size_t field, Side side, Expr f) const {
+  std::vector<Expr> out{f};
+  for (std::size_t k = 0; k < axes_[1 - across(side)].at_end(form_.smooth[field]); ++k)
+    out.push_back(differentiate(out.back(), side_symbol(side)));
+  return out;
+}
+
+std::vector<double> GalerkinMesh::side_values(std::size_t field, Side side, const std::vector<Expr>& derivatives,
+                                              double t) const {
+  const Expr along_side = side_symbol(side);
+  const RepeatedEvaluation at(derivatives);
+  return axes_[1 - across(side)].project(form_.smooth[field], [&](int k, double x) {
+    return at([&](Expr symbol) {
+      return symbol == s_.context->time() ? t : along_side && symbol == along_side ? x : values_.at(symbol);
+    })[static_cast<std::size_t>(k)];
+  });
+}
+
+std::vector<double> GalerkinMesh::side_loads(std::size_t field, Side side, Expr f, double t) const {
+  const MeshAxis& axis = axes_[1 - across(side)];
+  const Expr along_side = side_symbol(side);
+  const RepeatedEvaluation at(std::span<const Expr>(&f, 1));
+  const std::vector<double>& table = axis.table(form_.smooth[field], 0);
+  const std::size_t n = axis.size(form_.smooth[field]);
+  std::vector<double> out(axis.cells() * n, 0);
+  for (std::size_t cell = 0; cell < axis.cells(); ++cell)
+    for (std::size_t q = 0; q < axis.points(); ++q) {
+      const double x = axis.point(cell, q);
+      const double load = axis.weight(q) * at([&](Expr symbol) {
+                                             return symbol == s_.context->time()         ? t
+                                                    : along_side && symbol == along_side ? x
+                                                                                         : values_.at(symbol);
+                                           }).front();
+      for (std::size_t i = 0; i < n; ++i) out[cell * n + i] += load * table[q * n + i];
+    }
+  return out;
+}
+
+// -------------------------------------------------------------------------------------------------------- coefficients
+
+/// The functions of a cell that are 1 at one of its corners.
+std::vector<std::size_t> GalerkinMesh::values_at_ends(std::size_t field) const {
+  std::vector<std::size_t> ends[2];
+  for (std::size_t d = 0; d < 2; ++d) {
+    ends[d] = {0};
+    if (!axes_[d].is_point()) ends[d].push_back(axes_[d].at_end(form_.smooth[field]));
+  }
+  std::vector<std::size_t> out;
+  for (const std::size_t j : ends[1])
+    for (const std::size_t i : ends[0]) out.push_back(j * along(field, 0) + i);
+  return out;
+}
+
+double GalerkinMesh::largest_value(const double* c, std::size_t field) const {
+  double out = 0, any = 0;
+  for (std::size_t cell = 0; cell < cells(); ++cell) {
+    for (const std::size_t i : values_at_ends(field)) out = std::max(out, std::abs(c[index(field, cell, i)]));
+    for (std::size_t i = 0; i < functions(field); ++i) any = std::max(any, std::abs(c[index(field, cell, i)]));
+  }
+  return out > 0 ? out : any;
+}
+
+void GalerkinMesh::add_products() {
+  products_ = MeshMatrix<double>(pattern_);
+  field_of_.assign(size_, 0);
+  for (std::size_t f = 0; f < fields_; ++f) {
+    const std::vector<double> values = table_of(f, {0, 0}), loads = loads_of(f, values);
+    const std::size_t n = functions(f);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) {
+        double sum = 0;
+        for (std::size_t q = 0; q < points(); ++q) sum += loads[i * points() + q] * values[q * n + j];
+        for (std::size_t cell = 0; cell < cells(); ++cell) {
+          field_of_[index(f, cell, i)] = f;
+          products_.at(index(f, cell, i), index(f, cell, j)) += sum;
+        }
+      }
+  }
+}
+
+std::vector<double> GalerkinMesh::squares(const std::vector<double>& c) const {
+  std::vector<double> product(size_, 0), out(fields_, 0);
+  products_.add_product(c.data(), product.data());
+  for (std::size_t i = 0; i < size_; ++i) out[field_of_[i]] += c[i] * product[i];
+  for (double& value : out) value = std::max(value, 0.0);  // rounding
   return out;
 }
 
 bool GalerkinMesh::is_rough(const std::vector<double>& c) const {
   double all = 0, slow = 0;
   for (std::size_t f = 0; f < fields_; ++f) {
-    const Element& e = elements_[f];
+    const std::vector<double> values = table_of(f, {0, 0});
+    double whole = 0;
+    for (std::size_t q = 0; q < points(); ++q) whole += point_weight(q);
     for (std::size_t cell = 0; cell < cells(); ++cell) {
       double mean = 0;
-      for (std::size_t q = 0; q < rule_.x.size(); ++q) {
-        const double* n = table(f, 0, q);
+      for (std::size_t q = 0; q < points(); ++q) {
         double u = 0;
-        for (std::size_t i = 0; i < e.size(); ++i) u += n[i] * c[index(f, cell, i)];
-        mean += rule_.w[q] / 2 * u, all += rule_.w[q] / 2 * u * u;
+        for (std::size_t i = 0; i < functions(f); ++i) u += values[q * functions(f) + i] * c[index(f, cell, i)];
+        mean += point_weight(q) / whole * u, all += point_weight(q) / whole * u * u;
       }
       slow += mean * mean;
     }
@@ -278,164 +412,8 @@ bool GalerkinMesh::is_rough(const std::vector<double>& c) const {
 std::vector<double> GalerkinMesh::constant(std::size_t field) const {
   std::vector<double> out(size_, 0);
   for (std::size_t cell = 0; cell < cells(); ++cell)
-    for (const std::size_t i : {std::size_t{0}, elements_[field].at_end()}) out[index(field, cell, i)] = 1;
+    for (const std::size_t i : values_at_ends(field)) out[index(field, cell, i)] = 1;
   return out;
-}
-
-// ------------------------------------------------------------------------------------------------ the density's form
-
-namespace {
-
-void run_unsupported(Diagnostics& diagnostics, Span span, const std::string& what) {
-  diagnostics.error("E0508", span, "not supported yet: a run of " + what,
-                    "Runs are those of fields of one space variable on a bounded domain.",
-                    "`maup derive`, `maup invariants` and expectations about formulas work for all fields.");
-}
-
-struct FormBuilder {
-  const FieldEquations& equations;
-  Diagnostics& diagnostics;
-  const FieldSystem& s;
-  ExprMap given;
-  DensityForm out;
-  Expr density, dissipation;
-
-  Expr plain(Expr e) const { return s.expanded(substitute(s.expanded(e), given)); }
-  Expr jet(std::size_t varied, int space, bool rate) const {
-    return s.jet_symbol({equations.varied[varied], {space}, rate ? 1 : 0});
-  }
-
-  bool supported() {
-    if (s.space.size() != 1)
-      return run_unsupported(diagnostics, s.density_span, "fields of several space variables"), false;
-    if (!s.space.front().from) return run_unsupported(diagnostics, s.density_span, "a field without a domain"), false;
-    for (std::size_t f = 0; f < s.fields.size(); ++f) {
-      if (!s.fields[f].given) continue;
-      if (!s.fields[f].formula)
-        return run_unsupported(diagnostics, s.fields[f].span, "an input without a formula"), false;
-      given[s.jet_symbol({f, {0}, 0})] = s.fields[f].formula;
-    }
-    return true;
-  }
-
-  void slots() {
-    std::vector<Expr> all{density, dissipation};
-    for (const Expr& f : s.forces)
-      if (f) all.push_back(plain(f));
-    const std::size_t n = equations.varied.size();
-    out.smooth.assign(n, false);
-    for (const Expr& e : all)
-      for (const Expr& symbol : s.jets_in(e)) {
-        const FieldJet j = *s.jet_of(symbol);
-        for (std::size_t a = 0; a < n; ++a)
-          if (equations.varied[a] == j.field && j.space[0] > 1) out.smooth[a] = true;
-      }
-    // A field whose u_tx has a kinetic energy has slopes of its own too: its highest derivatives are those of a beam.
-    for (std::size_t a = 0; a < n; ++a)
-      for (const bool rate : {false, true})
-        for (int k = 0; k <= (out.smooth[a] && !rate ? 2 : 1); ++k)
-          out.slots.push_back({a, k, rate, false, jet(a, k, rate)});
-    for (const DensityForm::Slot& slot : out.slots) out.inputs.push_back(slot.jet);
-    out.inputs.push_back(s.space.front().symbol);
-    out.inputs.push_back(s.context->time());
-  }
-
-  void derivatives() {
-    std::vector<Expr> energy{-density};
-    for (const DensityForm::Slot& slot : out.slots) {
-      Expr e = differentiate(density, slot.jet);
-      if (slot.rate) {
-        energy.push_back(slot.jet * e);
-      } else {
-        if (slot.space < 2) e = e - differentiate(dissipation, jet(slot.field, slot.space, true));
-        if (const Expr f = s.forces[equations.varied[slot.field]]; slot.space == 0 && f) e = e + plain(f);
-      }
-      out.by_slot.push_back(e);
-    }
-    out.energy = s.context->sum(energy);
-    const std::vector<Expr> standing = symbols_of(out.by_slot);
-    for (DensityForm::Slot& slot : out.slots)
-      slot.stands = std::find(standing.begin(), standing.end(), slot.jet) != standing.end();
-    out.linear = out.steady = true;
-    out.first_order.assign(out.smooth.size(), true);
-    for (std::size_t row = 0; row < out.slots.size(); ++row)
-      for (std::size_t column = 0; column < out.slots.size(); ++column) {
-        const Expr value = differentiate(out.by_slot[row], out.slots[column].jet);
-        if (value.is_zero()) continue;
-        out.hessian.push_back({row, column, value});
-        if (out.slots[row].rate && out.slots[column].rate) out.first_order[out.slots[row].field] = false;
-        const bool changes = holds_jets_or_time(s, value);
-        out.linear = out.linear && !changes;
-        out.steady = out.steady && !(changes && (out.slots[row].rate || out.slots[column].rate));
-      }
-  }
-
-  bool well_formed() {
-    std::vector<bool> moves(out.smooth.size(), false);
-    for (const DensityForm::Entry& e : out.hessian) {
-      const DensityForm::Slot &row = out.slots[e.row], &column = out.slots[e.column];
-      if (row.rate) moves[row.field] = true, moves[column.field] = true;
-      if (row.rate && out.first_order[row.field] && holds_jets_or_time(s, e.value))
-        return run_unsupported(diagnostics, s.density_span,
-                               "a density whose part linear in the velocities has coefficients that change"),
-               false;
-    }
-    for (std::size_t a = 0; a < moves.size(); ++a)
-      if (!moves[a]) {
-        diagnostics.error("E0642", s.density_span,
-                          "the motion of " + s.fields[equations.varied[a]].name + " is not determined",
-                          "No equation holds its derivative by t.",
-                          "`maup derive` shows them; eliminate it, or give it a part in the kinetic energy.");
-        return false;
-      }
-    for (const FieldStart& start : equations.model->start)
-      for (std::size_t a = 0; a < moves.size(); ++a)
-        if (start.order == 1 && equations.varied[a] == start.field && out.first_order[a]) {
-          diagnostics.error("E0642", start.span,
-                            "the velocity of " + s.fields[start.field].name + " cannot be chosen at the start",
-                            "The density is linear in the velocities: its equations are of first order, and the field "
-                            "alone determines how it goes on.",
-                            "Leave it out.");
-          return false;
-        }
-    return true;
-  }
-};
-
-}  // namespace
-
-bool needs_collocation(const FieldEquations& equations) {
-  const FieldSystem& s = equations.system();
-  if (s.space.size() != 1) return false;
-  const Expr density = s.expanded(s.density);
-  const std::vector<Expr> jets = s.jets_in(density);
-  for (const Expr& symbol : jets)
-    if (s.jet_of(symbol)->order() > 1) return true;
-  for (const std::size_t f : equations.varied) {
-    const Expr p = differentiate(density, s.jet_symbol({f, {0}, 1}));
-    bool squared = false;
-    for (const Expr& symbol : jets)
-      squared = squared || (s.jet_of(symbol)->time > 0 && !differentiate(p, symbol).is_zero());
-    if (!squared) return true;
-  }
-  return false;
-}
-
-std::optional<DensityForm> density_form(const FieldEquations& equations, Diagnostics& diagnostics) {
-  FormBuilder b{equations, diagnostics, equations.system(), {}, {}, {}, {}};
-  if (!b.supported()) return std::nullopt;
-  const FieldSystem& s = equations.system();
-  b.density = b.plain(s.density);
-  b.dissipation = s.dissipation ? b.plain(s.dissipation) : s.context->number(0);
-  b.slots();
-  b.derivatives();
-  if (!b.well_formed()) return std::nullopt;
-  bool forced =
-      !b.dissipation.is_zero() || !differentiate(b.density, s.context->time()).is_zero() || !s.end_forces.empty();
-  for (const Expr& f : s.forces) forced = forced || static_cast<bool>(f);
-  for (const BoundaryCondition& c : s.boundary) forced = forced || s.context->depends_on_time(c.value.id());
-  b.out.conserves = !forced;
-  return std::move(b.out);
 }
 
 }  // namespace maupertuis

@@ -14,9 +14,9 @@
 #include <cmath>
 #include <limits>
 
-/// Ritz's method on a rectangle: products of integrated Legendre polynomials along x and along y, of twice integrated ones
-/// where the density holds second derivatives (plates), one element over all of the domain, which converge exponentially
-/// where the coefficients are smooth. Degrees grow until the frequencies of two sizes agree.
+/// Ritz's method on a rectangle: products of integrated Legendre polynomials along x and along y, of twice integrated
+/// ones where the density holds second derivatives (plates), one element over all of the domain, which converge
+/// exponentially where the coefficients are smooth. Degrees grow until the frequencies of two sizes agree.
 namespace maupertuis {
 namespace {
 
@@ -171,9 +171,7 @@ class PlaneModes {
   /// A coefficient at a place.
   double value_at(const RepeatedEvaluation& value, double x, double y) const {
     return value([&](Expr symbol) {
-             return symbol == s_.space[0].symbol   ? x
-                    : symbol == s_.space[1].symbol ? y
-                                                   : values_.at(symbol);
+             return symbol == s_.space[0].symbol ? x : symbol == s_.space[1].symbol ? y : values_.at(symbol);
            })
         .front();
   }
@@ -361,9 +359,8 @@ double rounding_of(const std::vector<double>& frequencies, std::size_t i, Eigen:
 FieldModes plane_modes(const FieldEquations& equations, std::size_t count, Diagnostics& diagnostics) {
   DensityEntries entries;
   if (!entries_of(equations, entries, diagnostics)) return {};
-  const bool smooth = std::any_of(entries.list.begin(), entries.list.end(), [](const DensityEntry& e) {
-    return e.da + e.ya > 1 || e.db + e.yb > 1;
-  });
+  const bool smooth = std::any_of(entries.list.begin(), entries.list.end(),
+                                  [](const DensityEntry& e) { return e.da + e.ya > 1 || e.db + e.yb > 1; });
   if (const std::string trouble = trouble_of(equations, smooth); !trouble.empty()) {
     refuse_modes_of(equations, diagnostics, trouble);
     return {};

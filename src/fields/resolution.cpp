@@ -215,15 +215,15 @@ std::optional<double> unresolved_moment(const FieldEquations& equations, const P
     const auto found = Scan(f, {time}, parameters.symbols, parameters.values).with_poles().find(steps);
     return found ? std::optional((*found)[0]) : std::nullopt;
   };
-  for (const BoundaryCondition& b : s.boundary)
-    if (b.value)
-      if (const auto found = look(s.expanded(b.value))) return found;
   for (const EndForce& force : s.end_forces)
     if (const auto found = look(s.expanded(force.value))) return found;
   for (const int part : {13, 29, 50, 83}) {  // hundredths of the domain
     ExprMap fixed;
     for (const SpaceVariable& x : s.space)
       fixed.emplace(x.symbol, s.expanded(x.from) + Rational(part, 100) * (s.expanded(x.to) - s.expanded(x.from)));
+    for (const BoundaryCondition& b : s.boundary)  // along a side
+      if (b.value)
+        if (const auto found = look(substitute(s.expanded(b.value), fixed))) return found;
     for (const Expr& input : form.inputs)
       if (input != time) fixed.emplace(input, number);
     for (const auto* list : {&form.a, &form.g, &form.s})

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 /// Frequencies and shapes of membranes against their closed forms.
 using namespace maupertuis;
@@ -99,13 +100,44 @@ TEST_CASE("a membrane that is heavier to one side: a string of the same density,
   for (std::size_t i = 0; i < 4; ++i) CHECK(std::abs(plane.frequencies[i] - string[i]) < 1e-10 * string[i]);
 }
 
-TEST_CASE("plates have no modes yet, and it is told") {
-  Study study(SourceText("field.lag",
-                         "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1\n"
-                         "density = 1/2 u'^2 - 1/2 (u_xx + u_yy)^2\n"));
-  Diagnostics diagnostics;
-  CHECK(field_modes(*study.field_equations(), 4, diagnostics).frequencies.empty());
-  CHECK(diagnostics.has_errors());
+/// Bending with Poisson's ratio 0.3 on the unit square, μ = D = 1.
+const std::string plate_density = "density = 1/2 w'^2 - 1/2 ((w_xx + w_yy)^2 - 2*0.7 (w_xx w_yy - w_xy^2))\n";
+
+TEST_CASE("frequencies of plates: hinged, clamped, free" * doctest::skip(under_sanitizers)) {
+  const std::string square = "dimensionless\nfield w(x, y) : number on x = 0 .. 1, y = 0 .. 1 ";
+  const FieldModes hinged = plane_modes_of(square + "boundary w = 0\n" + plate_density, 4);
+  const double pi2 = std::numbers::pi * std::numbers::pi;
+  const double of_hinged[] = {2 * pi2, 5 * pi2, 5 * pi2, 8 * pi2};
+  for (std::size_t i = 0; i < 4; ++i) {
+    CHECK(std::abs(hinged.frequencies[i] - of_hinged[i]) < hinged.errors[i]);
+    CHECK(hinged.errors[i] < 1e-8);
+  }
+  // Leissa, The free vibration of rectangular plates, J. Sound Vib. 31 (1973), with the digits of later works.
+  const FieldModes clamped = plane_modes_of(square +
+                                                "boundary w = 0\nboundary left : w_x = 0\nboundary right : w_x = 0\n"
+                                                "boundary bottom : w_y = 0\nboundary top : w_y = 0\n" +
+                                                plate_density,
+                                            4);
+  const double of_clamped[] = {35.98519, 73.39385, 73.39385, 108.2165};
+  for (std::size_t i = 0; i < 4; ++i) CHECK(clamped.frequencies[i] == doctest::Approx(of_clamped[i]).epsilon(2e-7));
+  const FieldModes free = plane_modes_of(square + "\n" + plate_density, 6);
+  const double of_free[] = {0, 0, 0, 13.4682, 19.5961, 24.2702};
+  for (std::size_t i = 0; i < 6; ++i) CHECK(std::abs(free.frequencies[i] - of_free[i]) < 1e-4);
+}
+
+TEST_CASE("a plate between two hinges without Poisson's ratio is a beam, with rotary inertia too") {
+  for (const std::string inertia : {"", " + 1/2*0.01 w_tx^2"}) {
+    const FieldModes plate = plane_modes_of(
+        "dimensionless\nfield w(x, y) : number on x = 0 .. 1, y = 0 .. 0.05\nboundary left : w = 0\n"
+        "boundary right : w = 0\ndensity = 1/2 w'^2" +
+            inertia + " - 1/2 (w_xx^2 + w_yy^2 + 2 w_xy^2)\n",
+        2);
+    const FieldModes beam =
+        plane_modes_of("dimensionless\nfield w(x) : number on x = 0 .. 1 boundary w = 0\ndensity = 1/2 w'^2" + inertia +
+                           " - 1/2 w_xx^2\n",
+                       2);
+    CHECK(std::abs(plate.frequencies[0] - beam.frequencies[0]) < 1e-9);
+  }
 }
 
 TEST_CASE("a mass that is narrow along both sides is not passed by") {
