@@ -38,9 +38,9 @@ struct DensityText {
   Span name_span;
 };
 
-/// boundary left : u = 0, u_x = 0
+/// boundary left : u = 0, u_x = 0;  boundary u = 0
 struct BoundaryText {
-  Name side;  // left, right, bottom, top
+  Name side;  // left, right, bottom, top; empty: all
   std::vector<Equation> conditions;
 };
 

@@ -141,14 +141,21 @@ class FieldVerifier {
   void decide(const expectation::EnergyConserved& e, ExpectationResult&) { energy_.push_back({line_, e.tolerance}); }
 
   void decide(const fe::Frequencies& e, ExpectationResult& r) {
-    const std::vector<double> found = field_frequencies(equations_, e.values.size(), diagnostics_);
+    const FieldModes modes = field_modes(equations_, e.values.size(), diagnostics_);
+    const std::vector<double>& found = modes.frequencies;
     r.passed = found.size() == e.values.size();
     const std::string unit = e.unit.name.empty() ? " rad/s" : " " + e.unit.name;
     for (std::size_t i = 0; i < found.size(); ++i) {
       const double expected = number_of(e.values[i]);
       const bool close = std::abs(found[i] - expected) <= allowed(e.tolerance, expected);
       if (!close && r.passed)
-        r.message = fmt::format("Frequency {} is off by {:.3g}{}.", i + 1, (found[i] - expected) / e.unit.factor, unit);
+        r.message = fmt::format("Frequency {} is off by {:.3g}{}; it is known to ± {:.1g}.", i + 1,
+                                (found[i] - expected) / e.unit.factor, unit, modes.errors[i] / e.unit.factor);
+      else if (close && r.message.empty() && modes.errors[i] > allowed(e.tolerance, expected))
+        r.message = fmt::format(
+            "Frequency {} is known to ± {:.1g}{} alone, so that the tolerance asks for more digits "
+            "than there are.",
+            i + 1, modes.errors[i] / e.unit.factor, unit);
       r.passed = r.passed && close;
       r.actual += fmt::format("{}{:.14g}", i ? ", " : "", found[i] / e.unit.factor);
       r.expected += fmt::format("{}{:.14g}", i ? ", " : "", expected / e.unit.factor);

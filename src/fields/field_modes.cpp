@@ -1,7 +1,9 @@
 #include <maupertuis/coupled_fields.hpp>
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/field_run.hpp>
+#include <maupertuis/interrupt_scope.hpp>
 #include <maupertuis/repeated_evaluation.hpp>
+#include <maupertuis/switches.hpp>
 
 #include "fields/field_elements.hpp"
 #include "fields/plane_modes.hpp"
@@ -26,12 +28,19 @@ using SpaceKind = ElementSpace::Kind;
 
 class ModeProblem {
  public:
-  ModeProblem(const FieldEquations& equations, const DensityEntries& entries, Diagnostics& diagnostics)
+  struct Size {
+    int cells;     // borders of elements lie at most so many-th of the domain apart
+    int unknowns;  // together, about
+    int degree;    // of an element, at most
+  };
+  /// Of a degree above `before`, so that two sizes never agree because they are one.
+  ModeProblem(const FieldEquations& equations, const DensityEntries& entries, const Size& size, int before,
+              Diagnostics& diagnostics)
       : equations_(equations), s_(equations.system()), entries_(entries), diagnostics_(diagnostics) {
     for (const Parameter& p : equations.model->parameters) values_[p.symbol] = p.si_value;
     if (equations.bodies)
       for (const Parameter& p : equations.bodies->system->parameters) values_[p.symbol] = p.si_value;
-    lay_out_unknowns();
+    lay_out_unknowns(size, before);
   }
 
   std::optional<SmallMotions> assemble() {
@@ -46,6 +55,32 @@ class ModeProblem {
     out.gyroscopic = quadratic_form(free_, gyroscopic_);
     return out;
   }
+
+  /// How much of a coefficient lies between the points of quadrature, beside its mean, at most.
+  double unseen() const {
+    constexpr int places = 4000;
+    const std::vector<ElementSpace::Point>& points = spaces_.front().points();
+    const double left = mesh_.borders.front(), length = mesh_.borders.back() - left;
+    double out = 0;
+    for (const DensityEntry& e : entries_.list) {
+      const RepeatedEvaluation value({&e.value, 1});
+      const auto at = [&](double x) {
+        return value([&](Expr symbol) { return symbol == s_.space.front().symbol ? x : values_.at(symbol); }).front();
+      };
+      double by_quadrature = 0, by_places = 0, size = 0;
+      for (const ElementSpace::Point& point : points) by_quadrature += point.weight / length * at(inside(point.x));
+      for (int i = 0; i < places; ++i) {
+        const double v = at(left + length * (i + 0.5) / places);
+        by_places += v / places, size += std::abs(v) / places;
+      }
+      if (size > 0) out = std::max(out, std::abs(by_quadrature - by_places) / size);
+    }
+    return out;
+  }
+
+  /// A number of elements, and their degree.
+  std::size_t elements() const { return mesh_.borders.size() - 1; }
+  int degree() const { return mesh_.degree; }
 
   std::vector<double> places() const {
     constexpr int shown = 20;
@@ -68,13 +103,13 @@ class ModeProblem {
   }
 
  private:
-  void lay_out_unknowns() {
+  void lay_out_unknowns(const Size& size, int before) {
     std::vector<bool> smooth(equations_.varied.size(), false);
     for (const DensityEntry& e : entries_.list) smooth[e.a] = smooth[e.a] || e.da == 2;
-    mesh_.borders = element_borders(equations_, 1);
-    const std::size_t elements = mesh_.borders.size() - 1;
-    const std::size_t unknowns = 160;  // so that all is done in a fraction of a second
-    mesh_.degree = static_cast<int>(std::clamp<std::size_t>(unknowns / (elements * equations_.varied.size()), 10, 40));
+    mesh_.borders = element_borders(equations_, size.cells);
+    const int elements = static_cast<int>((mesh_.borders.size() - 1) * equations_.varied.size());
+    constexpr int least = 8, step = 2;
+    mesh_.degree = std::max(std::clamp(size.unknowns / elements, least, size.degree), before + step);
     mesh_.points = 2 * mesh_.degree;
     mesh_.periodic = s_.periodic;
     for (std::size_t a = 0; a < equations_.varied.size(); ++a) {
@@ -109,6 +144,11 @@ class ModeProblem {
     return best;
   }
   double number(Expr e) const { return evaluate(s_.expanded(e), values_); }
+  /// Ends of the domain belong to neither side of a jump.
+  double inside(double x) const {
+    const double a = mesh_.borders.front(), b = mesh_.borders.back();
+    return std::clamp(x, a + 1e-13 * (b - a), b - 1e-13 * (b - a));
+  }
 
   void add_density() {
     std::vector<Expr> roots;
@@ -118,9 +158,9 @@ class ModeProblem {
     const std::size_t in_element = points.size() / (mesh_.borders.size() - 1);
     for (std::size_t q = 0; q < points.size(); ++q) {
       const double a = mesh_.borders[q / in_element], b = mesh_.borders[q / in_element + 1];
-      const double inside = std::clamp(points[q].x, a + 1e-13 * (b - a), b - 1e-13 * (b - a));
+      const double x = std::clamp(points[q].x, a + 1e-13 * (b - a), b - 1e-13 * (b - a));
       const std::vector<double> c =
-          at([&](Expr symbol) { return symbol == s_.space.front().symbol ? inside : values_.at(symbol); });
+          at([&](Expr symbol) { return symbol == s_.space.front().symbol ? x : values_.at(symbol); });
       for (std::size_t i = 0; i < entries_.list.size(); ++i) add_entry(entries_.list[i], points[q].weight * c[i], q);
     }
   }
@@ -140,36 +180,77 @@ class ModeProblem {
 
   // -------------------------------------------------------------------------------------------------------- bodies
 
-  /// Rows of the bodies without friction, in q, q', q''.
+  /// Rows of the bodies without friction, in q, q', q'', with inputs by their formulas; empty, and E0644, where one has
+  /// none.
   std::vector<Expr> body_rows() const {
     const EquationsOfMotion& bodies = *equations_.bodies;
+    ExprMap given;
+    for (const Input& input : bodies.system->inputs)
+      if (input.formula) given[input.symbol] = input.formula;
     std::vector<Expr> out;
     for (std::size_t i = 0; i < bodies.residual.size(); ++i)
-      out.push_back(expand_time_derivatives(bodies.residual[i] - bodies.dissipative_terms[i]));
+      out.push_back(substitute(expand_time_derivatives(bodies.residual[i] - bodies.dissipative_terms[i]), given));
+    for (const Expr& symbol : symbols_of(out))
+      for (const Input& input : bodies.system->inputs)
+        if (symbol == input.symbol) {
+          refuse_modes_of(equations_, diagnostics_, "The input " + input.name + " has no formula.");
+          return {};
+        }
     return out;
   }
   bool add_bodies() {
     const MechanicalSystem& system = *equations_.bodies->system;
     const std::vector<Expr> rows = body_rows();
     const std::size_t n = rows.size();
+    if (n < system.coordinates.size()) return false;
     Bindings at = values_;
     at[s_.context->time()] = 0;
     for (const Coordinate& c : system.coordinates) at[c.q] = at[c.velocity] = at[c.acceleration] = 0;
     for (const StartValue& v : equations_.body_start)
       if (v.order == 0 && v.coordinate < n) at[system.coordinates[v.coordinate].q] = number(v.value);
+    std::vector<Expr> switches;
+    for (const Expr& g : switches_of(rows))
+      if (holds_coordinates(g)) switches.push_back(g);
     std::vector<Expr> slopes[3];
-    bool linear = true;
+    bool linear = switches.empty();
     for (const Expr& row : rows)
       for (int order = 0; order < 3; ++order)
         for (const Coordinate& c : system.coordinates) {
           const Expr slope = differentiate(row, order == 0 ? c.q : order == 1 ? c.velocity : c.acceleration);
-          if (s_.context->depends_on_time(slope.id()) && !holds_coordinates(slope))
+          if (s_.context->depends_on_time(replaced_by_rest(slope).id()))
             return refuse_modes_of(equations_, diagnostics_, "The coefficients of its bodies change in time.");
           linear = linear && !holds_coordinates(slope);
           slopes[order].push_back(slope);
         }
-    if (!linear && !find_rest(rows, slopes[0], at)) return false;
+    if (!linear) {
+      for (const Expr& row : rows)
+        if (s_.context->depends_on_time(replaced_by_rest(row).id()))
+          return refuse_modes_of(equations_, diagnostics_, "Its bodies are driven, so that they have no rest.");
+      if (!find_rest(rows, slopes[0], at) || !is_beside_switches(switches, at)) return false;
+    }
     return add_linearized(slopes, at);
+  }
+  /// With numbers for coordinates, so that time alone is left of what changes.
+  Expr replaced_by_rest(Expr e) const {
+    ExprMap rest;
+    const Expr number = s_.context->number(Rational(618034, 1000000));
+    for (const Coordinate& c : equations_.bodies->system->coordinates)
+      rest[c.q] = rest[c.velocity] = rest[c.acceleration] = number;
+    return substitute(e, rest);
+  }
+  /// One formula holds around the rest; E0644 where it goes over into another there.
+  bool is_beside_switches(const std::vector<Expr>& switches, const Bindings& at) const {
+    constexpr double near = 1e-9;
+    for (const Expr& g : switches) {
+      double size = 0;
+      for (const Expr& symbol : symbols_of({&g, 1}))
+        if (symbol.role() == Role::Coordinate)
+          size += std::abs(evaluate(differentiate(g, symbol), at)) * std::max(std::abs(at.at(symbol)), near);
+      if (std::abs(evaluate(g, at)) <= near * size)
+        return refuse_modes_of(equations_, diagnostics_,
+                               "Its bodies rest where one formula of their energy goes over into another.");
+    }
+    return true;
   }
   bool holds_coordinates(Expr e) const {
     const Expr roots[] = {e};
@@ -352,18 +433,43 @@ FieldModes field_modes(const FieldEquations& equations, std::size_t count, Diagn
   DensityEntries entries;
   if (!entries_of(equations, entries, diagnostics) || !has_modes_at_rest(equations, entries.linear, diagnostics))
     return out;
-  ModeProblem problem(equations, entries, diagnostics);
-  const auto motions = problem.assemble();
-  if (!motions) return out;
-  const bool sideways = motions->gyroscopic.cwiseAbs().maxCoeff() > 0;
-  std::vector<Eigen::VectorXd> shapes;
-  if (sideways ? !solve_gyroscopic(*motions, count, out.frequencies)
-               : !solve_conservative(*motions, count, out.frequencies, shapes)) {
-    refuse_modes_of(equations, diagnostics, no_small_motions(*motions));
-    return {};
+  if (equations.bodies &&
+      std::any_of(equations.bodies->dissipative_terms.begin(), equations.bodies->dissipative_terms.end(),
+                  [](const Expr& e) { return !e.is_zero(); }))
+    diagnostics.warning("W0653", s.density_span, "these are the modes without the friction of the bodies",
+                        "Friction damps the motions, and shifts frequencies and shapes.",
+                        "`maup simulate` shows the decay.");
+  constexpr ModeProblem::Size sizes[] = {{1, 100, 30}, {1, 160, 40}, {4, 240, 40}, {8, 400, 40}};
+  constexpr std::size_t beyond = 2;
+  FrequencyErrors errors;
+  int degree = 0;
+  std::size_t elements = 0;
+  for (const ModeProblem::Size& size : sizes) {
+    interrupt_of(*s.context).throw_if_asked();
+    const bool more = element_borders(equations, size.cells).size() - 1 > elements;
+    ModeProblem problem(equations, entries, size, more ? 0 : degree, diagnostics);
+    elements = problem.elements(), degree = problem.degree();
+    const auto motions = problem.assemble();
+    if (!motions) return {};
+    std::vector<Eigen::VectorXd> shapes;
+    out = {};
+    const bool sideways = motions->gyroscopic.cwiseAbs().maxCoeff() > 0;
+    if (sideways ? !solve_gyroscopic(*motions, count + beyond, out.frequencies)
+                 : !solve_conservative(*motions, count + beyond, out.frequencies, shapes)) {
+      refuse_modes_of(equations, diagnostics, no_small_motions(*motions));
+      return {};
+    }
+    const bool settled = errors.settle(out.frequencies, count, motions->mass.rows());
+    if (!settled && &size + 1 != std::end(sizes)) continue;
+    out.errors = errors.errors();
+    if (!add_unseen(equations, problem.unseen(), out, diagnostics)) return {};
+    shapes.resize(std::min(count, shapes.size()));
+    out.places = problem.places();
+    for (Eigen::VectorXd& c : shapes) out.shapes.push_back(problem.shape(std::move(c)));
+    break;
   }
-  out.places = problem.places();
-  for (Eigen::VectorXd& c : shapes) out.shapes.push_back(problem.shape(std::move(c)));
+  out.frequencies.resize(std::min(count, out.frequencies.size()));
+  out.errors.resize(out.frequencies.size());
   return out;
 }
 

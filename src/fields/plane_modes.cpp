@@ -342,18 +342,6 @@ std::string trouble_of(const FieldEquations& equations, bool smooth) {
   return equations.bodies ? "Bodies take hold of it in the plane." : "";
 }
 
-/// What is left where two sizes agree. The eigenvalues μ = 1/(λ + σ) of n rows, with λ = ω² and σ the largest λ looked
-/// for, are rounded to n units in the last place of the largest μ; δλ = (λ + σ)² δμ. Four times that: so much is seen
-/// beside closed forms.
-double rounding_of(const std::vector<double>& frequencies, std::size_t i, Eigen::Index n) {
-  const auto square = [&](std::size_t k) { return frequencies[k] * frequencies[k]; };
-  const double lambda = square(i), sigma = square(frequencies.size() - 1), lowest = square(0);
-  if (!(lambda > 0)) return 0;  // a mode without frequency is told as such
-  const double unit = static_cast<double>(n) * std::numeric_limits<double>::epsilon();
-  const double sum = lambda + sigma;
-  return 4 * unit * sum * sum / (lowest + sigma) / (2 * std::sqrt(lambda));
-}
-
 }  // namespace
 
 FieldModes plane_modes(const FieldEquations& equations, std::size_t count, Diagnostics& diagnostics) {
@@ -368,49 +356,24 @@ FieldModes plane_modes(const FieldEquations& equations, std::size_t count, Diagn
   if (!has_modes_at_rest(equations, entries.linear, diagnostics)) return {};
   PlaneModes problem(equations, entries, smooth);
   constexpr std::size_t beyond = 4;  // so that modes of one frequency are seen together
-  constexpr double close = 1e-11, sizes[] = {250, 380, 580, 900}, sizes_sideways[] = {60, 90, 130};
+  constexpr double sizes[] = {250, 380, 580, 900}, sizes_sideways[] = {60, 90, 130};
   FieldModes out;
-  std::vector<double> before;
+  FrequencyErrors errors;
   std::vector<Eigen::VectorXd> shapes;
-  double off_before = 0, missing = 1;  // what is left of a geometric series beyond its last term
   for (std::size_t pass = 0; pass < (problem.gyroscopic() ? std::size(sizes_sideways) : std::size(sizes)); ++pass) {
     interrupt_of(*equations.system().context).throw_if_asked();
     problem.lay_out(problem.gyroscopic() ? sizes_sideways[pass] : sizes[pass]);
     const SmallMotions motions = problem.assemble();
-    before = std::move(out.frequencies);
     out.frequencies.clear(), shapes.clear();
     if (problem.gyroscopic() ? !solve_gyroscopic(motions, count + beyond, out.frequencies)
                              : !solve_conservative(motions, count + beyond, out.frequencies, shapes)) {
       refuse_modes_of(equations, diagnostics, no_small_motions(motions));
       return {};
     }
-    double off = 0, largest = 0;
-    out.errors.clear();
-    for (std::size_t i = 0; i < out.frequencies.size(); ++i) {
-      const double error =
-          i < before.size() ? std::abs(out.frequencies[i] - before[i]) : std::numeric_limits<double>::infinity();
-      out.errors.push_back(error + rounding_of(out.frequencies, i, motions.mass.rows()));
-      if (i < count) off = std::max(off, error), largest = std::max(largest, std::abs(out.frequencies[i]));
-    }
-    // Where coefficients jump within the domain convergence is slow, and the last change is less than what is left.
-    constexpr double slowest = 0.7, caution = 2;
-    const double ratio = off_before > 0 && std::isfinite(off_before) ? std::min(slowest, off / off_before) : 0;
-    off_before = off, missing = std::max(1.0, caution * ratio / (1 - ratio));
-    if (off <= close * largest) break;
+    if (errors.settle(out.frequencies, count, motions.mass.rows())) break;
   }
-  for (double& error : out.errors) error *= missing;
-  const double unseen = problem.unseen();
-  constexpr double much = 0.03, places = 1e-6;  // the latter: of the sum over places itself
-  if (!(unseen < much)) {
-    const FieldSystem& s = equations.system();
-    diagnostics.error(
-        "E0647", s.density_span, "the polynomials of the modes pass by what a coefficient has somewhere",
-        fmt::format("Between their points lie {:.2g} % of it, and no value could be trusted.", 100 * unseen),
-        "Make it wider, or `maup simulate` the motion with more `cells`.");
-    return {};
-  }
-  if (unseen > places)
-    for (std::size_t i = 0; i < out.errors.size(); ++i) out.errors[i] += 4 * unseen * std::abs(out.frequencies[i]);
+  out.errors = errors.errors();
+  if (!add_unseen(equations, problem.unseen(), out, diagnostics)) return {};
   problem.part_equals(out.frequencies, shapes);
   out.frequencies.resize(std::min(count, out.frequencies.size()));
   out.errors.resize(out.frequencies.size());

@@ -4,8 +4,11 @@
 
 #include "linear_algebra/products.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -19,11 +22,11 @@ bool refuse_modes_of(const FieldEquations& equations, Diagnostics& diagnostics, 
   return false;
 }
 
-Expr density_of(const FieldEquations& equations) {
+Expr with_given(const FieldEquations& equations, Expr e) {
   const FieldSystem& s = equations.system();
-  Expr out = s.expanded(s.density);
+  e = s.expanded(e);
   ExprMap given;
-  for (const Expr& symbol : s.jets_in(out)) {
+  for (const Expr& symbol : s.jets_in(e)) {
     const FieldJet jet = *s.jet_of(symbol);
     if (!s.fields[jet.field].given) continue;
     Expr value = s.fields[jet.field].formula;
@@ -33,8 +36,50 @@ Expr density_of(const FieldEquations& equations) {
     for (int k = 0; k < jet.time; ++k) value = differentiate(value, s.context->time());
     given[symbol] = value;
   }
-  return s.expanded(substitute(out, given));
+  return s.expanded(substitute(e, given));
 }
+
+Expr density_of(const FieldEquations& equations) { return with_given(equations, equations.system().density); }
+
+namespace {
+
+/// −∂f_a/∂φ_b of force densities is a part of the stiffness where it is symmetric.
+bool add_forces(const FieldEquations& equations, DensityEntries& out, Diagnostics& diagnostics) {
+  const FieldSystem& s = equations.system();
+  const std::size_t n = equations.varied.size();
+  std::vector<Expr> slopes(n * n, s.context->number(0));
+  for (std::size_t a = 0; a < n; ++a) {
+    const Expr force = s.forces[equations.varied[a]];
+    if (!force) continue;
+    const Expr f = with_given(equations, force);
+    if (!f) return refuse_modes_of(equations, diagnostics, "A given field has no formula.");
+    ExprMap rest;
+    for (const Expr& jet : s.jets_in(f)) rest[jet] = s.context->number(0);
+    for (const Expr& one : s.jets_in(f)) {
+      const FieldJet jet = *s.jet_of(one);
+      if (jet.time > 0)
+        return refuse_modes_of(equations, diagnostics,
+                               "A force density changes with a velocity: motions are damped or driven.");
+      if (jet.order() > 0)
+        return refuse_modes_of(equations, diagnostics, "A force density changes with a slope: it has no potential.");
+      const Expr slope = differentiate(f, one), value = substitute(slope, rest);
+      if (!s.jets_in(slope).empty()) out.linear = false;
+      if (s.context->depends_on_time(value.id()))
+        return refuse_modes_of(equations, diagnostics, "Its coefficients change in time.");
+      for (std::size_t b = 0; b < n; ++b)
+        if (equations.varied[b] == jet.field) slopes[a * n + b] = value;
+    }
+  }
+  for (std::size_t a = 0; a < n; ++a)
+    for (std::size_t b = 0; b < n; ++b) {
+      if (zero_test(slopes[a * n + b] - slopes[b * n + a]).verdict != Verdict::Zero)
+        return refuse_modes_of(equations, diagnostics, "Its force densities have no potential.");
+      if (!slopes[a * n + b].is_zero()) out.list.push_back({a, b, 0, 0, 0, 0, slopes[a * n + b]});
+    }
+  return true;
+}
+
+}  // namespace
 
 bool entries_of(const FieldEquations& equations, DensityEntries& out, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
@@ -59,7 +104,7 @@ bool entries_of(const FieldEquations& equations, DensityEntries& out, Diagnostic
       if (s.space.size() > 1) entry.ya = a.space[1], entry.yb = b.space[1];
       out.list.push_back(entry);
     }
-  return true;
+  return add_forces(equations, out, diagnostics);
 }
 
 bool has_modes_at_rest(const FieldEquations& equations, bool linear, Diagnostics& diagnostics) {
@@ -76,6 +121,8 @@ bool has_modes_at_rest(const FieldEquations& equations, bool linear, Diagnostics
   for (const BoundaryCondition& b : s.boundary)
     if (!s.expanded(b.value).is_zero())
       return refuse_modes_of(equations, diagnostics, "Its ends are held away from φ = 0.");
+  if (!s.end_forces.empty())
+    return refuse_modes_of(equations, diagnostics, "A force acts at its end, so that φ = 0 is no rest of it.");
   return true;
 }
 
@@ -161,6 +208,63 @@ bool solve_gyroscopic(const SmallMotions& motions, std::size_t count, std::vecto
   out.clear();
   for (Eigen::Index i = 4 * n - 1; i > 0 && out.size() < count; i -= 2)
     if (solver.eigenvalues()(i) > 0) out.push_back(1 / solver.eigenvalues()(i));
+  return true;
+}
+
+namespace {
+
+/// What is left where two sizes agree. The eigenvalues μ = 1/(λ + σ) of n rows, with λ = ω² and σ the largest λ looked
+/// for, are rounded to n units in the last place of the largest μ; δλ = (λ + σ)² δμ. Four times that: so much is seen
+/// beside closed forms.
+double rounding_of(const std::vector<double>& frequencies, std::size_t i, Eigen::Index n) {
+  const auto square = [&](std::size_t k) { return frequencies[k] * frequencies[k]; };
+  const double lambda = square(i), sigma = square(frequencies.size() - 1), lowest = square(0);
+  if (!(lambda > 0)) return 0;  // a mode without frequency is told as such
+  const double unit = static_cast<double>(n) * std::numeric_limits<double>::epsilon();
+  const double sum = lambda + sigma;
+  return 4 * unit * sum * sum / (lowest + sigma) / (2 * std::sqrt(lambda));
+}
+
+}  // namespace
+
+bool FrequencyErrors::settle(const std::vector<double>& frequencies, std::size_t counted, Eigen::Index rows) {
+  constexpr double close = 1e-11;
+  double off = 0, largest = 0;
+  changes_.clear(), rounding_.clear();
+  for (std::size_t i = 0; i < frequencies.size(); ++i) {
+    changes_.push_back(i < before_.size() ? std::abs(frequencies[i] - before_[i])
+                                          : std::numeric_limits<double>::infinity());
+    rounding_.push_back(rounding_of(frequencies, i, rows));
+    if (i < counted) off = std::max(off, changes_[i]), largest = std::max(largest, std::abs(frequencies[i]));
+  }
+  // Where coefficients jump within the domain convergence is slow, and the last change is less than what is left: that
+  // of a geometric series beyond its last term.
+  constexpr double slowest = 0.8, caution = 2;
+  const double ratio = off_before_ > 0 && std::isfinite(off_before_) ? std::min(slowest, off / off_before_) : 0;
+  off_before_ = off, missing_ = std::max(1.0, caution * ratio / (1 - ratio));
+  before_ = frequencies;
+  return off <= close * largest;
+}
+
+std::vector<double> FrequencyErrors::errors() const {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < changes_.size(); ++i) out.push_back(missing_ * (changes_[i] + rounding_[i]));
+  return out;
+}
+
+bool add_unseen(const FieldEquations& equations, double unseen, FieldModes& modes, Diagnostics& diagnostics) {
+  constexpr double much = 0.03, places = 1e-6;  // the latter: of the sum over places itself
+  if (!(unseen < much)) {
+    diagnostics.error(
+        "E0647", equations.system().density_span,
+        "the polynomials of the modes pass by what a coefficient has somewhere",
+        fmt::format("Between their points lie {:.2g} % of it, and no value could be trusted.", 100 * unseen),
+        "Make it wider, or `maup simulate` the motion with more `cells`.");
+    return false;
+  }
+  if (unseen > places)
+    for (std::size_t i = 0; i < modes.errors.size(); ++i)
+      modes.errors[i] += 4 * unseen * std::abs(modes.frequencies[i]);
   return true;
 }
 

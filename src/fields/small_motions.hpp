@@ -1,8 +1,10 @@
 #pragma once
+#include <maupertuis/field_run.hpp>
 #include <maupertuis/fields.hpp>
 
 #include "linear_algebra/dense.hpp"
 
+#include <string>
 #include <vector>
 
 /// What modes of fields have in common, of one and of two space variables: ℒ to second order about rest, M c̈ + G ċ + K
@@ -26,8 +28,10 @@ struct DensityEntries {
   bool linear = true;  // constant second derivatives: the same about every rest
 };
 
-/// The density with given fields by their formulas; an empty handle where one has none.
+/// With given fields by their formulas; an empty handle where one has none.
+Expr with_given(const FieldEquations& equations, Expr e);
 Expr density_of(const FieldEquations& equations);
+/// With force densities that have a potential. E0644 where one holds velocities or derivatives in space.
 bool entries_of(const FieldEquations& equations, DensityEntries& out, Diagnostics& diagnostics);
 /// Whether φ = 0 is a rest of it, where that counts.
 bool has_modes_at_rest(const FieldEquations& equations, bool linear, Diagnostics& diagnostics);
@@ -45,5 +49,23 @@ bool solve_conservative(const SmallMotions& motions, std::size_t count, std::vec
                         std::vector<Eigen::VectorXd>& shapes);
 /// (μ² + iμ Ĝ − M̂) y = 0 with μ = 1/ω, K = L Lᵀ, c = L⁻ᵀ y.
 bool solve_gyroscopic(const SmallMotions& motions, std::size_t count, std::vector<double>& out);
+
+/// What lies between the points of quadrature counts as an error, four times its part; false, and E0647, where it is
+/// much.
+bool add_unseen(const FieldEquations& equations, double unseen, FieldModes& modes, Diagnostics& diagnostics);
+
+/// Errors of frequencies that are computed on one size of functions after the other.
+class FrequencyErrors {
+ public:
+  /// The frequencies of the next size, of which the first `counted` decide; `rows` of the matrices. True where they are
+  /// those of the size before, but for rounding.
+  bool settle(const std::vector<double>& frequencies, std::size_t counted, Eigen::Index rows);
+  /// By how much each is off: the last change, several times it where changes fall slowly, and rounding.
+  std::vector<double> errors() const;
+
+ private:
+  std::vector<double> before_, changes_, rounding_;
+  double off_before_ = 0, missing_ = 1;
+};
 
 }  // namespace maupertuis

@@ -272,7 +272,10 @@ class Dumper {
     equations(s.boundary);
   }
   void field(const DensityText& s) { child(s.adds ? "adds" : "value", s.value); }
-  void field(const BoundaryText& s) { word("side", s.side.text), equations(s.conditions); }
+  void field(const BoundaryText& s) {
+    if (!s.side.text.empty()) word("side", s.side.text);
+    equations(s.conditions);
+  }
   void field(const FieldForce& s) { child("on", s.on), child("value", s.value); }
   void expected_field(const FieldExpectation::Natural& x) { head(expectation_, "natural"), equations(x.conditions); }
   void expected_field(const FieldExpectation::Solution& x) { head(expectation_, "solution"), equations(x.fields); }

@@ -94,12 +94,17 @@ StatementBody StatementParser::density_statement() {
   return field_clause(density.dissipation ? "dissipation density" : "density", {std::move(density)});
 }
 
-// boundary left : u = 0, u_x = 0
+// boundary left : u = 0, u_x = 0;  boundary u = 0, on all sides
 StatementBody StatementParser::boundary_statement() {
   next();
   BoundaryText boundary;
-  boundary.side = used_name("left, right, bottom or top");
-  expect(":", "the side of the boundary");
+  if (peek().is("periodic"))
+    fail_expected("a condition", "Write `boundary periodic` at the end of the field's line, behind its domain.");
+  const bool all_sides = peek().kind == Token::Kind::Name && peek(1).is("=");
+  if (!all_sides) {
+    boundary.side = used_name("left, right, bottom or top");
+    expect(":", "the side of the boundary");
+  }
   list([&] { boundary.conditions.push_back(boundary_condition()); });
   return field_clause("boundary", {std::move(boundary)});
 }

@@ -379,8 +379,13 @@ void boundaries(Elaboration& e) {
         condition_at(e, static_cast<Side>(side), one);
   });
   each_clause<syntax::BoundaryText>(e, [&](const syntax::BoundaryText& s, Span span) {
-    const auto side = side_named(e, s.side);
-    if (!side) return;
+    std::vector<Side> sides;
+    if (s.side.text.empty())
+      for (std::size_t i = 0; i < 2 * std::min<std::size_t>(system.space.size(), 2); ++i)
+        sides.push_back(static_cast<Side>(i));
+    else if (const auto side = side_named(e, s.side))
+      sides.push_back(*side);
+    if (sides.empty()) return;
     if (!bounded) return refuse_without_domain(e, span);
     if (system.periodic) {
       e.diagnostics.error("E0285", span, "a boundary of a periodic domain",
@@ -388,7 +393,8 @@ void boundaries(Elaboration& e) {
                           "Leave out `boundary periodic`, or this statement.");
       return;
     }
-    for (const syntax::Equation& one : s.conditions) condition_at(e, *side, one);
+    for (const syntax::Equation& one : s.conditions)
+      for (const Side side : sides) condition_at(e, side, one);
   });
 }
 

@@ -169,7 +169,7 @@ TEST_CASE("frequencies of a membrane whose tension jumps within the domain are w
           tension + " (u_x^2 + pi^2 u^2)\n",
       1);
   CHECK(std::abs(found.frequencies[0] - exact.frequencies[0]) < found.errors[0]);
-  CHECK(found.errors[0] < 0.1 * found.frequencies[0]);
+  CHECK(found.errors[0] < 0.2 * found.frequencies[0]);
 }
 
 TEST_CASE("modes without the dissipation of the field say so") {
@@ -272,4 +272,64 @@ TEST_CASE("modes that nothing is known of are refused") {
   // Free on all sides, and forces sideways: some displacements cost nothing.
   CHECK(refusal("dimensionless\nfield u(x, y), v(x, y) : number on x = 0 .. 1, y = 0 .. 1\n"
                 "density = 1/2 (u'^2 + v'^2) - 1/2 (u_x^2 + u_y^2 + v_x^2 + v_y^2) + 3 (u v' - v u')\n") == "E0644");
+}
+
+// ------------------------------------------------------------------------------------------------- one space variable
+
+TEST_CASE("frequencies of lines are within their errors, where coefficients oscillate and jump too") {
+  const auto first = [](const std::string& stiffness) {
+    return plane_modes_of("dimensionless\nfield u(x) : number on x = 0 .. 1 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 " +
+                              stiffness + " u_x^2\n",
+                          1);
+  };
+  // By shooting with 20,000 steps of Runge and Kutta's; the jump at x = 0.2 and 0.6 by tan and cot.
+  const std::pair<const char*, double> known[] = {{"(1 + 0.5*sin(30 x))", 2.96247806},
+                                                  {"(1 + 0.5*sin(100 x))", 2.9234},
+                                                  {"piecewise(abs(x - 0.4) < 0.2 : 4, else : 1)", 3.36675809},
+                                                  {"(1 + 3*step(0.2 - abs(x - 0.4)))", 3.36675809}};
+  for (const auto& [stiffness, right] : known) {
+    const FieldModes found = first(stiffness);
+    REQUIRE(found.frequencies.size() == 1);
+    CHECK_MESSAGE(std::abs(found.frequencies[0] - right) < found.errors[0] + 1e-8, stiffness);
+    CHECK(found.errors[0] < 0.05);
+  }
+  const FieldModes linear = first("abs(x - 0.5)");  // J_0(2 ω sqrt(1/2)) = 0
+  CHECK(std::abs(linear.frequencies[0] - 2.404825557695773 / std::sqrt(2.0)) < linear.errors[0]);
+  CHECK(refusal("dimensionless\nfield u(x) : number on x = 0 .. 1 boundary u = 0\ndensity = 1/2 u'^2*(1 + "
+                "1000*exp(-((x - 0.512)/0.0003)^2)) - 1/2 u_x^2\n") == "E0647");
+}
+
+TEST_CASE("force densities that have a potential belong to the modes, others are refused") {
+  const std::string line =
+      "dimensionless\nfield u(x) : number on x = 0 .. 2\nboundary left : u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\n";
+  const double quarter = std::numbers::pi / 4;
+  CHECK(plane_modes_of(line + "force density u = -4 u\n", 1).frequencies[0] ==
+        doctest::Approx(std::sqrt(quarter * quarter + 4)).epsilon(1e-10));
+  CHECK(plane_modes_of("dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 boundary u = 0\n"
+                       "density = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2)\nforce density u = -4 u\n",
+                       1)
+            .frequencies[0] == doctest::Approx(std::sqrt(32 * quarter * quarter + 4)).epsilon(1e-10));
+  CHECK(refusal(line + "force density u = -4 u'\n") == "E0644");
+  CHECK(refusal(line + "force density u = -4 u_x\n") == "E0644");
+  CHECK(refusal("dimensionless\nfield u(x), v(x) : number on x = 0 .. 2 boundary u = 0, v = 0\n"
+                "density = 1/2 (u'^2 + v'^2) - 1/2 (u_x^2 + v_x^2)\nforce density u = v\nforce density v = -v\n") ==
+        "E0644");
+}
+
+TEST_CASE("bodies on a line that are driven, that change in time or rest at a kink have no modes") {
+  const std::string line =
+      "dimensionless\nfield u(x) : number on x = 0 .. 2\nboundary left : u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
+      "T = 1/2 u(2)'^2\n";
+  CHECK(refusal(line + "V = -(1 + 0.5 cos(t)) cos(u(2))\n") == "E0644");
+  CHECK(refusal(line + "V = -cos(u(2)) - u(2) cos(3 t)\n") == "E0644");
+  CHECK(refusal(line + "V = abs(u(2) - 0.2)\n") == "E0644");
+  CHECK(refusal(line + "V = piecewise(u(2) < 0 : 1/2 u(2)^2, else : 5 u(2)^2)\n") == "E0644");
+  CHECK(refusal(line + "input F : [1]\nV = -cos(u(2)) - F u(2)\n") == "E0644");
+  CHECK(refusal(line + "V = -cos(u(2))\nforce density u = 0.1\nD = 1/2 u(2)'^2\n") == "W0653");
+  // Beside the kink, and with an input of a given value, there are.
+  const double held = plane_modes_of(line + "V = 1/2 u(2)^2 - 0.5 u(2) + 3*abs(u(2) + 7)\n", 1).frequencies[0];
+  const double given = plane_modes_of(line + "input F : [1] = 0.5\nV = 1/2 u(2)^2 - F u(2)\n", 1).frequencies[0];
+  CHECK(held == doctest::Approx(given).epsilon(1e-10));
+  // ω tan 2ω = 1 − ω² without the spring's part: tan 2ω (ω² − 1) = ω
+  CHECK(std::abs(std::tan(2 * given) * (given * given - 1) - given) < 1e-9);
 }
