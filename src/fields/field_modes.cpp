@@ -180,8 +180,7 @@ class ModeProblem {
 
   // -------------------------------------------------------------------------------------------------------- bodies
 
-  /// Rows of the bodies without friction, in q, q', q'', with inputs by their formulas; empty, and E0644, where one has
-  /// none.
+  /// Rows of the bodies without friction, in q, q', q'', with inputs by their formulas.
   std::vector<Expr> body_rows() const {
     const EquationsOfMotion& bodies = *equations_.bodies;
     ExprMap given;
@@ -190,19 +189,12 @@ class ModeProblem {
     std::vector<Expr> out;
     for (std::size_t i = 0; i < bodies.residual.size(); ++i)
       out.push_back(substitute(expand_time_derivatives(bodies.residual[i] - bodies.dissipative_terms[i]), given));
-    for (const Expr& symbol : symbols_of(out))
-      for (const Input& input : bodies.system->inputs)
-        if (symbol == input.symbol) {
-          refuse_modes_of(equations_, diagnostics_, "The input " + input.name + " has no formula.");
-          return {};
-        }
     return out;
   }
   bool add_bodies() {
     const MechanicalSystem& system = *equations_.bodies->system;
     const std::vector<Expr> rows = body_rows();
     const std::size_t n = rows.size();
-    if (n < system.coordinates.size()) return false;
     Bindings at = values_;
     at[s_.context->time()] = 0;
     for (const Coordinate& c : system.coordinates) at[c.q] = at[c.velocity] = at[c.acceleration] = 0;

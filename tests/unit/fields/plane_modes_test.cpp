@@ -324,8 +324,11 @@ TEST_CASE("bodies on a line that are driven, that change in time or rest at a ki
   CHECK(refusal(line + "V = -cos(u(2)) - u(2) cos(3 t)\n") == "E0644");
   CHECK(refusal(line + "V = abs(u(2) - 0.2)\n") == "E0644");
   CHECK(refusal(line + "V = piecewise(u(2) < 0 : 1/2 u(2)^2, else : 5 u(2)^2)\n") == "E0644");
-  CHECK(refusal(line + "input F : [1]\nV = -cos(u(2)) - F u(2)\n") == "E0644");
-  CHECK(refusal(line + "V = -cos(u(2))\nforce density u = 0.1\nD = 1/2 u(2)'^2\n") == "W0653");
+  Study rubbed(SourceText("field.lag", line + "D = 1/2 u(2)'^2\n"));
+  Diagnostics told;
+  CHECK(field_modes(*rubbed.field_equations(), 1, told).frequencies.size() == 1);
+  REQUIRE(told.items().size() == 1);
+  CHECK(told.items()[0].code == "W0653");
   // Beside the kink, and with an input of a given value, there are.
   const double held = plane_modes_of(line + "V = 1/2 u(2)^2 - 0.5 u(2) + 3*abs(u(2) + 7)\n", 1).frequencies[0];
   const double given = plane_modes_of(line + "input F : [1] = 0.5\nV = 1/2 u(2)^2 - F u(2)\n", 1).frequencies[0];
