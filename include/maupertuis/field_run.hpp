@@ -72,6 +72,7 @@ struct FieldQuestion {
 };
 
 struct FieldRunOptions {
+  double begin = 0;                  // s, of fields without bodies; the others begin as their model says
   double duration = 0;               // s
   double every = 0;                  // s; 0: a hundredth of the run
   bool trajectory = false;           // keep rows

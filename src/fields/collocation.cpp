@@ -169,8 +169,7 @@ void CollocationMotion::note_clash(const Held& held, int by_time, const std::vec
 void CollocationMotion::start() {
   const std::size_t n = mesh_.size();
   state_ = {std::vector<double>(n, 0), std::vector<double>(n, 0), std::vector<double>(n, 0), std::vector<double>(n, 0),
-            0};
-  t_ = 0;
+            t_};
   std::vector<double> v(n, 0);
   for (std::size_t f = 0; f < form_.smooth.size(); ++f)
     for (const bool rate : {false, true}) start_field(f, rate, rate ? v : state_.c);

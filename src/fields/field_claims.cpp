@@ -171,9 +171,10 @@ class FieldVerifier {
     if (questions_.empty() && energy_.empty()) return;
     FieldRunOptions options;
     options.interrupt = options_.interrupt;
+    if (model_.experiment.start_time) options.begin = number_of(model_.experiment.start_time);
     options.duration = options_.duration ? *options_.duration : number_of(model_.experiment.duration);
     if (model_.experiment.output_every) options.every = number_of(model_.experiment.output_every);
-    for (const FieldQuestion& q : questions_) options.duration = std::max(options.duration, q.time);
+    for (const FieldQuestion& q : questions_) options.duration = std::max(options.duration, q.time - options.begin);
     const auto run = runs_as_one_system(equations_) ? run_coupled(model_, equations_, questions_, options, diagnostics_)
                                                     : run_fields(equations_, questions_, options, diagnostics_);
     if (!run || !run->trouble.empty()) {
@@ -184,7 +185,7 @@ class FieldVerifier {
     for (std::size_t i = 0; i < asked_.size(); ++i) {
       ExpectationResult& r = out.results[asked_[i].line];
       judge(r, asked_[i].expected, run->answers[i]);
-      if (questions_[i].time >= 0) continue;
+      if (questions_[i].time >= options.begin) continue;
       r.passed = false, r.actual = "no value";
       r.message = "The moment lies before the start, and fields run forwards from there.";
     }
@@ -199,6 +200,11 @@ class FieldVerifier {
   }
   void judge(ExpectationResult& r, const expectation::Number& e, const FieldRunResult::Value& value) const {
     const double expected = number_of(e.value), tolerance = allowed(e.tolerance, expected);
+    if (!std::isfinite(value.value)) {
+      r.passed = false, r.actual = "no value";
+      r.message = "The elements have no such derivative, or the expression has no value there.";
+      return;
+    }
     const ValueVerdict verdict = value_verdict(value.value, expected, tolerance, value.error);
     const std::string unit = e.unit.name.empty() ? "" : " " + e.unit.name;
     r.passed = verdict.passed, r.beyond_digits = verdict.beyond_digits;

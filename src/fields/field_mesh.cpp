@@ -177,7 +177,6 @@ void FieldMesh::start() {
     for (const double value : (start.order == 0 ? u_ : v_)[a])
       if (!std::isfinite(value)) trouble_ = "start";
   }
-  t_ = 0;
   for (const Held& held : held_) {
     if (held.force) continue;
     const std::size_t n = held.right ? local(p_, cells_ - 1) : local(0, 0);

@@ -31,6 +31,8 @@ class FieldMotion {
   /// Fields (of those that are varied) whose value at the left end stands still, since ℒ holds their derivatives alone.
   const std::vector<std::size_t>& fixed_fields() const { return fixed_; }
 
+  /// The moment of the start, before it.
+  void begin_at(double t) { t_ = t; }
   virtual void start() = 0;
   /// False, and `trouble`, where it left the numbers.
   virtual bool step(double h) = 0;

@@ -157,9 +157,9 @@ void warn_of_clashes(const FieldMotion& mesh, const FieldEquations& equations, D
 }
 
 /// W0650: what acts for less than a step.
-void warn_of_short_action(const FieldEquations& equations, const FieldMethod& method, double step, double duration,
-                          Diagnostics& diagnostics) {
-  const auto moment = unresolved_moment(equations, method.functions(), step, duration);
+void warn_of_short_action(const FieldEquations& equations, const FieldMethod& method, double step,
+                          const FieldRunOptions& options, Diagnostics& diagnostics) {
+  const auto moment = unresolved_moment(equations, method.functions(), step, options.begin, options.duration);
   if (!moment) return;
   diagnostics.warning(
       "W0650", equations.system().density_span,
@@ -260,6 +260,8 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
   FieldMotion& mesh = *owner;
   OneRun out;
   double longest = options.duration;
+  const double end = options.begin + options.duration;
+  mesh.begin_at(options.begin);
   if (mesh.trouble().empty()) mesh.start();
   const double every = options.every > 0 ? options.every : options.duration / 100;
   if (mesh.trouble().empty())
@@ -268,14 +270,14 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
   if (first) warn_of_clashes(mesh, equations, diagnostics), tell_what_is_fixed(mesh, equations, diagnostics);
   std::vector<double> stops;
   for (const FieldQuestion& q : questions) stops.push_back(q.time);
-  stops.push_back(options.duration);
+  stops.push_back(end);
   for (const double t : options.moments)
-    if (first && t >= 0 && t <= options.duration) stops.push_back(t);
-  if (first) warn_of_short_action(equations, method, std::min(longest, every), options.duration, diagnostics);
+    if (first && t >= options.begin && t <= end) stops.push_back(t);
+  if (first) warn_of_short_action(equations, method, std::min(longest, every), options, diagnostics);
   // Where rows bound the steps, those of the other meshes are twice as long, so that their difference tells of steps
   // too.
   const double apart = first ? every : 2 * every;
-  for (double t = 0; (first || method.is_wave()) && t < options.duration; t += apart) stops.push_back(t);
+  for (double t = options.begin; (first || method.is_wave()) && t < end; t += apart) stops.push_back(t);
   std::sort(stops.begin(), stops.end());
   double size = 0;
   const double start = mesh.energy(size);
@@ -289,7 +291,7 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
   if (meter) meter->note_flux(mesh), meter->measure(mesh);
   constexpr int measurements = 20;
   const double apart_in_run = options.duration / measurements * (1 - 1e-9);
-  double measured = 0;
+  double measured = options.begin;
   for (const double stop : stops) {
     const double way = stop - mesh.time();
     const auto steps = static_cast<std::uint64_t>(std::ceil(way / longest - 1e-9));
@@ -300,10 +302,10 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
       ++out.steps;
       if (meter) meter->note_flux(mesh);
     }
-    if (meter && way > 0 && (stop - measured >= apart_in_run || stop == options.duration))
+    if (meter && way > 0 && (stop - measured >= apart_in_run || stop == end))
       meter->measure(mesh), measured = stop;
     double now = 0;
-    if (way > 0 || stop == 0) out.energy = mesh.energy(now), size = std::max(size, now);
+    if (way > 0 || stop == options.begin) out.energy = mesh.energy(now), size = std::max(size, now);
     out.drift = std::max(out.drift, std::abs(out.energy - start));
     for (std::size_t i = 0; i < questions.size(); ++i)
       if (questions[i].time == stop) {
@@ -412,7 +414,7 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   for (const int n : cells) out.nodes *= static_cast<std::size_t>(n) * static_cast<std::size_t>(out.order) + 1;
   out.steps = fine->steps, out.step = fine->h, out.omega_max = fine->omega;
   out.energy = fine->energy, out.energy_drift = method->conserves() ? fine->drift : -1;
-  out.end = options.duration;
+  out.end = options.begin + options.duration;
   out.trajectory = std::move(fine->trajectory);
   out.at_end = std::move(fine->at_end);
   out.charges = std::move(fine->charges);

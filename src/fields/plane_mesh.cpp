@@ -216,7 +216,6 @@ void PlaneMesh::start() {
       if (!std::isfinite(to[n])) trouble_ = "start";
     }
   }
-  t_ = 0;
   for (const Held& held : held_)
     for (std::size_t order = 0; order < 2 && !held.force; ++order) {
       Rows& values = (order == 0 ? u_ : v_)[held.field];

@@ -201,7 +201,7 @@ Elements elements_of(const FieldEquations& equations, const ParameterValues& par
 }  // namespace
 
 std::optional<double> unresolved_moment(const FieldEquations& equations, const PointForm& form, double step,
-                                        double duration) {
+                                        double begin, double duration) {
   constexpr double most_steps = 200'000;
   if (!(step > 0) || duration / step > most_steps) return std::nullopt;
   const FieldSystem& s = equations.system();
@@ -209,7 +209,7 @@ std::optional<double> unresolved_moment(const FieldEquations& equations, const P
   const Expr time = context.time(), number = context.number(Rational(618034, 1000000));
   const ParameterValues parameters(*equations.model);
   const Lobatto rule(2);
-  const Elements steps{rule, {0}, {step}, {static_cast<int>(std::ceil(duration / step))}};
+  const Elements steps{rule, {begin}, {step}, {static_cast<int>(std::ceil(duration / step))}};
   const auto look = [&](Expr f) -> std::optional<double> {
     if (!stands_in(time, f)) return std::nullopt;
     const auto found = Scan(f, {time}, parameters.symbols, parameters.values).with_poles().find(steps);

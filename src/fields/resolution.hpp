@@ -30,6 +30,6 @@ double left_out_of_start(const FieldEquations& equations, const std::vector<int>
 /// through the beginning, the middle and the end of each step. A series from the beginning of a step follows it about
 /// as far; jumps are found too. The moment, or nothing. Cost: some evaluations a step, function and place.
 std::optional<double> unresolved_moment(const FieldEquations& equations, const PointForm& form, double step,
-                                        double duration);
+                                        double begin, double duration);
 
 }  // namespace maupertuis

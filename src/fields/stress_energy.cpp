@@ -34,6 +34,9 @@ class BelinfanteTensor {
   }
 
   std::optional<StressEnergy> tensor() {
+    // Friction and forces take from what it counts.
+    if (s_.dissipation || std::any_of(s_.forces.begin(), s_.forces.end(), [](const Expr& f) { return bool(f); }))
+      return std::nullopt;
     for (const Expr& jet : s_.jets_in(density_))
       if (s_.jet_of(jet)->order() > 1 || s_.fields[s_.jet_of(jet)->field].given) return std::nullopt;
     for (std::size_t i = 0; i < n_; ++i)
