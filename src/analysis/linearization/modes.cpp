@@ -168,10 +168,15 @@ class Analysis {
     shape *= std::conj(shape[at]) / std::abs(shape[at]);
     const double modal_mass = (shape.adjoint() * mass_.cast<Complex>() * shape)(0).real();
     shape /= modal_mass > 0 ? std::sqrt(modal_mass) : std::abs(shape[at]);
+    // No minus signs from rounding. What has no inertia cannot be compared by it with the others, but with its like.
     const double size = shape.cwiseAbs().cwiseProduct(weight).maxCoeff();
-    for (Index i = 0; i < shape.size(); ++i) {  // no minus signs from rounding
-      if (std::abs(shape[i].imag()) * weight[i] < 1e-13 * size) shape[i].imag(0);
-      if (std::abs(shape[i].real()) * weight[i] < 1e-13 * size) shape[i].real(0);
+    double massless = 0;
+    for (Index i = 0; i < shape.size(); ++i)
+      if (weight[i] == 0) massless = std::max(massless, std::abs(shape[i]));
+    for (Index i = 0; i < shape.size(); ++i) {
+      const double unit = weight[i] > 0 ? weight[i] : 1, least = 1e-13 * (weight[i] > 0 ? size : massless);
+      if (std::abs(shape[i].imag()) * unit < least) shape[i].imag(0);
+      if (std::abs(shape[i].real()) * unit < least) shape[i].real(0);
     }
     return {shape.data(), shape.data() + shape.size()};
   }

@@ -227,6 +227,8 @@ class Formulas {
 
   bool agrees(const SymbolicLinearization& out) const {
     const auto same = [&](const ExprMatrix& formulas, const RealMatrix& x, const RealMatrix& y) {
+      // Where coordinates have no inertia the numbers are those of fewer unknowns.
+      if (x.entries.size() != formulas.entries.size() || (y.rows && y.entries.size() != x.entries.size())) return false;
       double size = 0, error = 0;
       for (std::size_t k = 0; k < formulas.entries.size(); ++k) {
         const double exact = x.entries[k] + (y.rows ? y.entries[k] : 0.0), value = number(formulas.entries[k]);

@@ -128,6 +128,12 @@ class Algorithm {
       return {row.rest, row.is_derivative};
     }
     const std::vector<std::size_t> columns = pivots(part);
+    if (columns.size() < part.size()) {  // independent at different points alone
+      const ExprVector& entries = out_.conditions[part.front()].coefficients;
+      out_.outcome = ConstraintChain::Outcome::Varies;
+      out_.varying = *std::find_if(entries.begin(), entries.end(), [](const Expr& e) { return !e.is_zero(); });
+      return {row.rest, false};
+    }
     Context& context = row.rest.context();
     ExprMatrix system{part.size(), part.size() + 1, {}};  // Σ_k c_k B_kj = r_j
     for (const std::size_t j : columns) {
@@ -195,13 +201,19 @@ class Algorithm {
     return out;
   }
 
-  /// As many columns as rows in which these are regular at the first point.
+  /// As many columns as rows in which these are regular at one of the points; fewer where they are so at none.
   std::vector<std::size_t> pivots(const std::vector<std::size_t>& rows) const {
-    const Matrix all = scaled_rows(coefficients_at(out_.conditions, points_->points().front()));
-    Matrix m(all.cols(), static_cast<Index>(rows.size()));
-    for (std::size_t k = 0; k < rows.size(); ++k)
-      m.col(static_cast<Index>(k)) = all.row(static_cast<Index>(rows[k])).transpose();
-    return independent_rows(m);
+    std::vector<std::size_t> out;
+    for (const Bindings& point : points_->points()) {
+      const Matrix all = scaled_rows(coefficients_at(out_.conditions, point));
+      Matrix m(all.cols(), static_cast<Index>(rows.size()));
+      for (std::size_t k = 0; k < rows.size(); ++k)
+        m.col(static_cast<Index>(k)) = all.row(static_cast<Index>(rows[k])).transpose();
+      std::vector<std::size_t> here = independent_rows(m);
+      if (here.size() > out.size()) out = std::move(here);
+      if (out.size() == rows.size()) break;
+    }
+    return out;
   }
 
   void find_points() {

@@ -328,3 +328,28 @@ TEST_CASE("jumps and kinks in space are told where they are, smooth starts and j
 TEST_CASE("a force that is infinite at a moment is told on beams too") {
   CHECK(told_by_run("density = 1/2 u'^2 - 1/2 u_xx^2\nforce density u = 1e-3/(t - 1.7)\nrun 2\n") == "W0650 ");
 }
+
+TEST_CASE("runs begin at the moment that the model says") {
+  // u'' = t from t = 1 on with rest there, of a wave, a beam and a membrane: t³/6 − t/2 + 1/3.
+  for (const std::string head : {"field u(x) : number on x = 0 .. 1 cells 4\ndensity = 1/2 u'^2 - 1/2 u_x^2\n",
+                                 "field u(x) : number on x = 0 .. 1 cells 4\ndensity = 1/2 u'^2 - 1/2 u_xx^2\n",
+                                 "field u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 2, 2\n"
+                                 "density = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2)\n"}) {
+    const std::string place = head.find("y = 0") == std::string::npos ? "u(0.5)" : "u(0.5, 0.5)";
+    Study study(SourceText("field.lag", "dimensionless\n" + head + "force density u = t\nstart at 1\nrun 1\nexpect " +
+                                            place + " at 2 = 2/3 ± 1e-9\nexpect " + place + " at 0.5 = 0 ± 9\n"));
+    REQUIRE(study.verification());
+    CHECK(study.verification()->results[0].passed);
+    CHECK(!study.verification()->results[1].passed);  // before the start
+  }
+}
+
+TEST_CASE("a value that the elements do not have is told as such") {
+  Study study(
+      SourceText("field.lag",
+                 "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 4\ndensity = 1/2 u'^2 - 1/2 u_x^2\nrun 1\n"
+                 "expect u_xx(0.5) at 1 = 0 ± 9\n"));
+  REQUIRE(study.verification());
+  CHECK(!study.verification()->results[0].passed);
+  CHECK(study.verification()->results[0].actual == "no value");
+}

@@ -112,3 +112,15 @@ TEST_CASE("no tensor where the density is not Lorentz-invariant") {
     CHECK(!stress_energy(equations, field_currents(equations)));
   }
 }
+
+TEST_CASE("no tensor where friction or forces take from what it counts") {
+  const std::string wave = "dimensionless\nfield u(x) : number on x = 0 .. 1\ndensity = 1/2 u'^2 - 1/2 u_x^2\n";
+  const auto has_tensor = [](const std::string& text) {
+    Study study(SourceText("field.lag", text));
+    REQUIRE(study.field_equations());
+    return stress_energy(*study.field_equations(), field_currents(*study.field_equations())).has_value();
+  };
+  CHECK(has_tensor(wave));
+  CHECK(!has_tensor(wave + "dissipation density = 1/2*0.1*u'^2\n"));
+  CHECK(!has_tensor(wave + "force density u = sin(3 x) cos(t)\n"));
+}

@@ -57,3 +57,16 @@ TEST_CASE("a damped wave has one complex relation, and begins with no minus") {
   REQUIRE(relation);
   CHECK(to_plain(readable(with_imaginary_unit(*relation), equations->order), equations->order) == "r ω i + ω^2 - k^2");
 }
+
+TEST_CASE("coefficients count in the domain, wherever that lies") {
+  // A chain that hangs down from x = 0, a tapered beam, a membrane whose tension ends beyond its corner.
+  CHECK_FALSE(ill_posed("field u(x) : number on x = 0 .. 0.8\ndensity = 1/2 u'^2 - 1/2 (0.8 - x) u_x^2\n"));
+  CHECK_FALSE(
+      ill_posed("field w(x) : number on x = 0 .. 1\ndensity = 1/2 (1 - 0.9*x) w'^2 - 1/2 (1 - 0.9*x)^3 w_xx^2\n"));
+  CHECK_FALSE(
+      ill_posed("field u(x, y) : number on x = 0 .. 0.5, y = 0 .. 0.5\n"
+                "density = 1/2 u'^2 - 1/2 (1.2 - x - y) (u_x^2 + u_y^2)\n"));
+  CHECK(said_of("field u(x) : number on x = 0 .. 1\ndensity = 1/2 u'^2 - 1/2 (0.4 - x)*(0.6 - x) u_x^2\n")
+            .find("x = 0.47") != std::string::npos);
+  CHECK(ill_posed("field u(x) : number on x = -0.5 .. 0.5\ndensity = 1/2 u'^2 - 1/2 (x^2 - 1) u_x^2\n"));
+}
