@@ -119,7 +119,7 @@ class Start {
 
   // ------------------------------------------------------------------------------------------------ positions
 
-  /// The written coordinates stay; then, unless they are exact, all may move; then a search over the unwritten ones.
+  /// The written coordinates stay; then a search over the others; then, unless they are exact, all may move.
   bool place(const ConstraintManifold& manifold) {
     if (system_.constraints.empty() || try_from(manifold, state_, written_q_)) return true;
     if (search(manifold, written_q_)) return true;
@@ -137,22 +137,67 @@ class Start {
     return true;
   }
 
-  /// Newton from scattered values of the free coordinates: first near, then far. The same points in every run.
+  /// Coordinates that may move, and the constraints on them: another group shares none of them.
+  struct Group {
+    std::vector<bool> rows, coordinates;  // [m], [n]
+  };
+
+  std::vector<Group> groups(const ConstraintManifold& manifold, const std::vector<bool>& fixed) const {
+    const std::size_t m = system_.constraints.size();
+    std::vector<Group> out;
+    for (std::size_t k = 0; k < m; ++k) {
+      if (system_.constraints[k].level != Constraint::Level::Position) continue;
+      out.push_back({std::vector<bool>(m, false), nothing()});
+      out.back().rows[k] = true;
+    }
+    const auto group_of = [&](std::size_t row) {
+      return std::find_if(out.begin(), out.end(), [&](const Group& g) { return g.rows[row]; });
+    };
+    std::vector<std::optional<std::size_t>> row_of(n_);  // one that holds the coordinate
+    for (const MatrixEntry& e : manifold.matrix_entries(written_state_)) {
+      const auto group = group_of(e.row);
+      if (fixed[e.column] || group == out.end()) continue;
+      group->coordinates[e.column] = true;
+      if (!row_of[e.column]) row_of[e.column] = e.row;
+      const auto other = group_of(*row_of[e.column]);
+      if (other == group) continue;
+      for (std::size_t k = 0; k < m; ++k) other->rows[k] = other->rows[k] || group->rows[k];
+      for (std::size_t i = 0; i < n_; ++i) other->coordinates[i] = other->coordinates[i] || group->coordinates[i];
+      out.erase(group);
+    }
+    return out;
+  }
+
+  /// Constraints that share no coordinate one group after the other: what none of them holds stays as it is, and so
+  /// does, but for a least change, what fits where it is.
   bool search(const ConstraintManifold& manifold, const std::vector<bool>& fixed) {
+    MotionState found = written_state_;
+    found.v.assign(n_, 0);
+    for (const Group& group : groups(manifold, fixed))
+      if (!search(manifold, group, found)) return false;
+    state_.q = found.q;
+    searched_ = true;
+    return true;
+  }
+
+  /// Newton from the values that are there, then from scattered ones: first near, then far. The same in every run.
+  bool search(const ConstraintManifold& manifold, const Group& group, MotionState& found) const {
     std::mt19937_64 random(1744);
     double length = 0;
     for (const Parameter& p : system_.parameters)
       if (p.dimension == dimensions::length()) length = std::max(length, std::abs(p.si_value));
-    for (int attempt = 0; attempt < searches; ++attempt) {
-      MotionState trial = written_state_;
-      for (std::size_t i = 0; i < n_; ++i) {
-        if (fixed[i]) continue;
+    std::vector<bool> others = group.coordinates;
+    others.flip();
+    for (int attempt = -1; attempt < searches; ++attempt) {
+      MotionState trial = found;
+      for (std::size_t i = 0; i < n_ && attempt >= 0; ++i) {
+        if (others[i]) continue;
         const bool is_length = system_.coordinates[i].kind == "length" && length > 0;
         const double size = (is_length ? length : attempt < searches / 2 ? 0.5 : 3.0);
         trial.q[i] += size * (std::generate_canonical<double, 53>(random) * 2 - 1 + (attempt == 0 ? 1 : 0));
       }
-      if (!try_from(manifold, trial, fixed)) continue;
-      searched_ = true;
+      if (!manifold.move_positions(trial, others, group.rows)) continue;
+      found.q = trial.q;
       return true;
     }
     return false;

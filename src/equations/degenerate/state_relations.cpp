@@ -6,6 +6,7 @@
 #include <maupertuis/transform.hpp>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace maupertuis {
@@ -13,6 +14,7 @@ namespace {
 
 constexpr int most_turns = 80, searches = 24;
 constexpr double reached = 1e-13, good_enough = 1e-10;
+constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();  // of a step in all unknowns together
 
 void add_terms(Expr e, ExprVector& out) {
   if (!e.is(Kind::Sum)) return out.push_back(e);
@@ -43,6 +45,16 @@ struct StateRelations::Impl {
     Eigen::MatrixXd slope;
     double worst() const { return relative.allFinite() ? relative.lpNorm<Eigen::Infinity>() : HUGE_VAL; }
   };
+  /// Of a relation such as x' = 0 the terms are no measure: what the others' sizes leave of x' is rounding.
+  static bool fulfilled(const Sizes& here, const MotionState& s) {
+    double square = 0;
+    for (std::size_t i = 0; i < s.q.size(); ++i) square += s.q[i] * s.q[i] + s.v[i] * s.v[i];
+    for (Eigen::Index i = 0; i < here.value.size(); ++i)
+      if (!(here.relative[i] <= good_enough) &&
+          !(std::abs(here.value[i]) <= rounding * here.slope.row(i).norm() * std::sqrt(square)))
+        return false;
+    return true;
+  }
   Sizes sizes(const MotionState& s) const {
     const Bindings point = at(s);
     const auto rows = static_cast<Eigen::Index>(relations.size()), columns = static_cast<Eigen::Index>(states.size());
@@ -91,7 +103,22 @@ struct StateRelations::Impl {
       }
       if (!closer) break;
     }
-    return here.worst() <= good_enough;
+    return fulfilled(here, s);
+  }
+
+  /// Least steps move what need not be moved: positions for which others fulfil the relations are again what they were.
+  void put_back_positions(MotionState& s, const MotionState& before, Eigen::VectorXd may_move) const {
+    for (std::size_t i = 0; i < s.q.size(); ++i) {
+      if (s.q[i] == before.q[i]) continue;
+      double& moves = may_move[static_cast<Eigen::Index>(i)];
+      moves = 0;
+      MotionState trial = s;
+      trial.q[i] = before.q[i];
+      if (newton(trial, may_move))
+        s = std::move(trial);
+      else
+        moves = 1;
+    }
   }
 };
 
@@ -137,13 +164,14 @@ Settled StateRelations::settle(MotionState& state, const std::vector<bool>& fixe
       Impl::move(trial, scatter, 1);
     }
     if (!impl_->newton(trial, may_move)) continue;
+    impl_->put_back_positions(trial, state, may_move);
     state = std::move(trial);
     return attempt == 0 ? Settled::Near : Settled::Elsewhere;
   }
   return Settled::Nowhere;
 }
 
-bool StateRelations::hold(const MotionState& state) const { return impl_->sizes(state).worst() <= good_enough; }
+bool StateRelations::hold(const MotionState& state) const { return Impl::fulfilled(impl_->sizes(state), state); }
 
 std::string StateRelations::worst_at(const MotionState& state) const {
   const Impl::Sizes here = impl_->sizes(state);

@@ -161,6 +161,20 @@ TEST_CASE("a written start is kept, the rest moves; contradictions move with a w
   CHECK(exact.diagnostics.items()[0].code == "E0707");
 }
 
+TEST_CASE("a search leaves alone what its constraints do not hold, and constraints that are fulfilled") {
+  // Where y = 0 the circle says nothing of it: y is searched for.
+  ModelText m(
+      "dimensionless\ncoord x, y, z, u, w : number\nT = 1/2 (x'^2 + y'^2 + z'^2 + u'^2 + w'^2) + 1/2 y' z'\n"
+      "constraint x^2 + y^2 = 1\nconstraint u = w\nstart x = 0.6, w = 0.25\n");
+  const auto start = consistent_start(m.model, m.equations, m.diagnostics);
+  REQUIRE(start);
+  CHECK(start->searched);
+  CHECK(start->state.q[1] == doctest::Approx(0.8).epsilon(1e-13));
+  CHECK(start->state.q[2] == 0);
+  CHECK(start->state.q[3] == doctest::Approx(0.25).epsilon(1e-13));
+  CHECK(start->state.q[4] == 0.25);
+}
+
 TEST_CASE("constraints that exclude each other are named, and only they") {
   ModelText m(
       "system p\nparam m = 1 kg\ncoord x, y, z : length\nT = 1/2 m (x'^2 + y'^2 + z'^2)\n"
