@@ -26,6 +26,7 @@ struct ExtendedEvent {
     int order = 0;  // 0: q, 1: q̇
   };
   std::vector<Assignment> sets{};
+  bool of_positions = false;  // impacts do not change its function
 };
 
 /// A mode of contacts and frictions: which equations hold between two instants.

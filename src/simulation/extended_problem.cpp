@@ -1,5 +1,6 @@
 #include "simulation/extended_problem.hpp"
 
+#include "simulation/contact/contact_functions.hpp"
 #include "simulation/ending.hpp"
 #include "simulation/mode_library.hpp"
 #include "simulation/motion_kernel.hpp"
@@ -77,7 +78,7 @@ class ExactPlanner {
   void watch_events(WantedFunctions& wanted) {
     for (const ModelEvent& e : model_.experiment.events) {
       wanted.events.push_back(with_reactions(equations_, {&e.function, 1}).front());
-      ExtendedEvent event{action_of(e.action), e.direction, {}};
+      ExtendedEvent event{action_of(e.action), e.direction, {}, is_of_positions(e.function)};
       for (const ModelEvent::Assignment& a : e.sets) event.sets.push_back({a.coordinate, a.order});
       out_.problem.events.push_back(std::move(event));
     }

@@ -91,12 +91,12 @@ void HybridMotion::record_impulses(const ImpactResult& result) {
 }
 
 /// When infinitely many bounces come to their end, told from the last three of a contact; nothing while they go on. The
-/// flights are then as short as their rounding allows to tell: speeds of a millionth of the fastest.
+/// flights are then as short as their rounding allows to tell: speeds of a millionth of the fastest impact there.
 std::optional<double> HybridMotion::accumulation(std::size_t contact, double speed) {
   auto& last = bounces_[contact].last;
   last.emplace_back(t_, speed);
   if (last.size() > 4) last.erase(last.begin());
-  if (last.size() < 4 || !(speed < 3e-6 * fastest_[contact])) return std::nullopt;
+  if (last.size() < 4 || !(speed < 3e-6 * bounces_[contact].fastest)) return std::nullopt;
   const double ratio = last[3].second / last[2].second, before = last[2].second / last[1].second;
   const double flight = last[3].first - last[2].first;
   if (!(ratio < 0.999 && std::abs(ratio - before) < 1e-3) || !(flight < last[2].first - last[1].first))
@@ -121,14 +121,14 @@ ImpactResult HybridMotion::last_impact(const ImpactProblem& p, const VectorXd& v
 /// Bounces whose flights are lower than the gap is known end at once: whether all of them that close here are so low.
 /// The acceleration that brings them back is that of the run so far; a contact without loss is left alone.
 bool HybridMotion::is_lost_in_rounding(const std::vector<std::size_t>& touching, const ContactValues& values) const {
-  constexpr double slow = 1e-6;  // of the fastest so far: never what is to be seen
+  constexpr double slow = 1e-6;  // of the fastest impact so far: never what is to be seen
   for (const std::size_t i : touching) {
     const double speed = -values.rate[i];
     if (speed <= rest_speed(i, values)) continue;
     double acceleration = 0;
     for (const auto& [k, g] : values.normal[i]) acceleration += std::abs(g) * acceleration_[kind_[k]];
     const bool is_low = speed * speed <= 2 * acceleration * rest_unit * widest_[i];
-    if (!(values.restitution[i] < 1) || !is_low || speed > slow * fastest_[i]) return false;
+    if (!(values.restitution[i] < 1) || !is_low || speed > slow * bounces_[i].fastest) return false;
   }
   return true;
 }
@@ -140,6 +140,7 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
   const bool closing = std::any_of(touching.begin(), touching.end(),
                                    [&](std::size_t i) { return values.rate[i] < -rest_speed(i, values); });
   if (!closing) return true;
+  for (const std::size_t i : touching) bounces_[i].fastest = std::max(bounces_[i].fastest, -values.rate[i]);
   std::optional<double> end;
   for (const std::size_t i : touching)
     if (values.rate[i] < -rest_speed(i, values))

@@ -160,7 +160,10 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
         w.what == Watch::What::Gap && !opens && std::find(touching.begin(), touching.end(), w.index) != touching.end();
     const bool starts_to_slide = w.what == Watch::What::Slip && !friction_of(system_, w.index).in_space() &&
                                  std::abs(values.slip[w.index]) <= rest_slip(w.index, values);
-    if (touches || starts_to_slide || (left && w.what == Watch::What::Force)) at_zero.push_back(k);
+    // A motion that is thrown back from the zero of an event has not passed it, whatever rounding makes of it.
+    const bool is_met = w.what == Watch::What::Event && std::find(pending_->at_zero.begin(), pending_->at_zero.end(),
+                                                                  w.index) != pending_->at_zero.end();
+    if (touches || starts_to_slide || is_met || (left && w.what == Watch::What::Force)) at_zero.push_back(k);
   }
   s.put_at_zero(at_zero);
   // A gap whose rate is rounding begins with the second power of time.

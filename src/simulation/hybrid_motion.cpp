@@ -274,6 +274,16 @@ void HybridMotion::record_event(const std::string& name, double t) {
   told.mode = mode_text(system_, now_->mode);
 }
 
+namespace {
+
+bool sets_positions(const std::vector<const ModelEvent*>& events) {
+  return std::any_of(events.begin(), events.end(), [](const ModelEvent* e) {
+    return std::any_of(e->sets.begin(), e->sets.end(), [](const ModelEvent::Assignment& a) { return a.order == 0; });
+  });
+}
+
+}  // namespace
+
 /// Roots of the step: events of the model are recorded at once; what changes the mode waits for the next step.
 void HybridMotion::classify(Step& step) {
   take_state();
@@ -285,6 +295,9 @@ void HybridMotion::classify(Step& step) {
       step.event = 0;
     } else if (watch.what == Watch::What::Event) {
       const ModelEvent& event = model_.experiment.events[watch.index];
+      constexpr double one_instant = 4 * std::numeric_limits<double>::epsilon();
+      if (std::abs(root.time - t_) <= one_instant * std::abs(t_) && is_of_positions(event.function))
+        pending->at_zero.push_back(watch.index);
       if (event.direction != 0 && root.direction != event.direction * (forwards_ ? 1 : -1)) continue;
       record_event(event.name, root.time);
       if (event.action == ModelEvent::Action::Stop && !record_.stopped_by) {
@@ -300,6 +313,7 @@ void HybridMotion::classify(Step& step) {
     }
   }
   step.events.clear();
+  if (sets_positions(pending->sets)) pending->at_zero.clear();
   if (!pending->hit.empty() || !pending->left.empty() || !pending->sets.empty()) pending_ = std::move(pending);
 }
 

@@ -212,6 +212,7 @@ class HybridMotion final : public Method {
   bool knows_compliance_ = false;                     // of all that touch at this instant
   struct Bounces {
     std::vector<std::pair<double, double>> last;  // (t, speed) of the last impacts
+    double fastest = 0;                           // of all impacts so far, not rounding of other speeds
   };
   std::vector<Bounces> bounces_;     // [contacts]
   std::vector<bool> released_;       // [contacts] λ is 0 to rounding at this instant, and falls

@@ -442,6 +442,14 @@ constexpr CodeEntry kEntries[] = {
      "equations are certified; but no state has an energy, and a run ends before it begins.",
      "coord x : length\nparam m = 1 kg, k = 2 N/m, h = 1 m\nT = 1/2 m x'^2\nV = 1/2 k (sqrt(-h^2 - x^2) - h)^2\n",
      "coord x : length\nparam m = 1 kg, k = 2 N/m, h = 1 m\nT = 1/2 m x'^2\nV = 1/2 k (sqrt(h^2 + x^2) - h)^2\n"},
+    {"W0435", "a slip velocity times a factor",
+     "Friction is μ times the normal force, against the velocity of the touching point. The force that acts on a "
+     "coordinate is this times the derivative of the slip velocity by the coordinate's own: a slip velocity of 2 x' "
+     "where the point moves with x' doubles it.",
+     "coord x, y : length\nparam m = 1 kg, g = 9.81 m/s^2\npoint P mass m at (x, y)\ngravity (0, -g)\ncontact y >= 0 "
+     "friction 0.3 slip 2 x'\n",
+     "coord x, y : length\nparam m = 1 kg, g = 9.81 m/s^2\npoint P mass m at (x, y)\ngravity (0, -g)\ncontact y >= 0 "
+     "friction 0.3 slip x'\n"},
     // ------------------------------------------------------------------------------------------------ not supported
     // yet
     {"E0255", "as many names as components",

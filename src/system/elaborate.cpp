@@ -213,6 +213,7 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& written, const SourceTe
     e.model.fields = e.fields;
   }
   if (!e.fields || e.fields->coupled) expand_definitions(e.model);
+  set_normal_forces(e.system(), diagnostics);
   return std::move(e.model);
 }
 

@@ -136,6 +136,8 @@ void elaborate_constraints(Elaboration& e);
 void elaborate_gauges(Elaboration& e);
 /// Contacts, friction and the law of impacts; after the constraints.
 void elaborate_contacts(Elaboration& e);
+/// Makes μ the part of λ that friction is, where the gap of a contact is not the distance to the surface; W0435.
+void set_normal_forces(MechanicalSystem& system, Diagnostics& diagnostics);
 /// `event` statements; after the contacts.
 void elaborate_event(Elaboration& e, const syntax::EventStatement& s, Span span);
 /// A relation is differentiated twice along the motion: a drive in it is taken as the formula of t that it is.

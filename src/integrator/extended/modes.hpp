@@ -22,6 +22,7 @@ class Modes {
     std::vector<std::size_t> hit;     // contacts whose gap came to 0
     std::vector<ExtendedWatch> left;  // conditions of the mode that end here
     std::vector<std::size_t> sets;    // events
+    std::vector<std::size_t> zeros;   // events on positions that are met here: their functions go on from 0
     bool begins = false, forces_jump = false;
     bool nothing() const { return hit.empty() && left.empty() && sets.empty() && !begins && !forces_jump; }
   };
@@ -83,6 +84,7 @@ class Modes {
   bool begins_slowly(InMode& candidate, const typename Stepper<T>::Outlook& outlook);
   bool fits(InMode& candidate, const std::vector<std::size_t>& touching, const Met& met, bool lenient,
             std::vector<T>* accelerations);
+  bool sets_positions(const Met& met) const;
   void put_at_zero(InMode& candidate, const std::vector<std::size_t>& touching, const Met& met);
   bool may_be_several(const ExtendedMode& mode) const;
   bool choose(const std::vector<std::size_t>& touching, const Met& met);

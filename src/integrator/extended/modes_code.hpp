@@ -352,6 +352,14 @@ ExtendedMode Modes<T>::mode_of(const std::vector<Choice>& list, const std::vecto
   return mode;
 }
 
+template <class T>
+bool Modes<T>::sets_positions(const Met& met) const {
+  return std::any_of(met.sets.begin(), met.sets.end(), [this](std::size_t event) {
+    const auto& sets = problem_.events[event].sets;
+    return std::any_of(sets.begin(), sets.end(), [](const ExtendedEvent::Assignment& a) { return a.order == 0; });
+  });
+}
+
 /// What is 0 here counts by what it does next: gaps that touch, slips that begin, forces that came to 0.
 template <class T>
 void Modes<T>::put_at_zero(InMode& candidate, const std::vector<std::size_t>& touching, const Met& met) {
@@ -364,6 +372,8 @@ void Modes<T>::put_at_zero(InMode& candidate, const std::vector<std::size_t>& to
       candidate.stepper->put_at_zero(k);
     } else if (w.what == What::Force && through_modes::holds(met.left, w.what, w.index)) {
       candidate.stepper->put_at_zero(k);
+    } else if (w.what == What::Event && !sets_positions(met) && through_modes::holds(met.zeros, w.index)) {
+      candidate.stepper->put_at_zero(k);  // thrown back from it, a motion has not passed it
     }
   }
 }

@@ -117,6 +117,7 @@ class Motion {
 
   void meet_event(std::size_t index, int direction, typename Modes<T>::Met& met) {
     const ExtendedEvent& event = problem_.events[index];
+    if (event.of_positions) met.zeros.push_back(index);
     if (event.direction != 0 && direction != event.direction) return;
     modes_.add({ExtendedRoot::Kind::Event, index, stepper().sample(stepper().time()), {}, {}}, stepper().time());
     out_.met = out_.met || event.action == ExtendedEvent::Action::Stop;

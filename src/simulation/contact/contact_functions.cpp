@@ -95,6 +95,13 @@ FunctionSource function_of_motion(const MechanicalSystem& system, const ExprVect
   return source;
 }
 
+bool is_of_positions(Expr function) {
+  const ExprVector symbols = symbols_of({&function, 1});
+  return std::none_of(symbols.begin(), symbols.end(), [](const Expr& s) {
+    return s.role() == Role::Multiplier || (s.role() == Role::Coordinate && s.order() > 0);
+  });
+}
+
 double dot(const SparseRow& row, const Eigen::VectorXd& x) {
   double sum = 0;
   for (const auto& [i, value] : row) sum += value * x(static_cast<Index>(i));

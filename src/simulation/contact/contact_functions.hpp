@@ -84,6 +84,9 @@ class ContactFunctions {
   ContactValues values_;
 };
 
+/// Whether impacts do not change it: no velocities, accelerations or forces stand in it.
+bool is_of_positions(Expr function);
+
 inline Eigen::Index at(std::size_t i) { return static_cast<Eigen::Index>(i); }
 double dot(const SparseRow& row, const Eigen::VectorXd& x);
 

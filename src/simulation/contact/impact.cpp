@@ -179,7 +179,7 @@ ImpactResult simultaneous_impact(const ImpactProblem& p, const VectorXd& v, bool
     const double impulse = (*found)(at(a));
     if (!(impulse > 0)) continue;
     const double before = rate(p, in[a], v), after = rate(p, in[a], out.v);
-    out.impulses.push_back({p.contacts[in[a]], impulse, 0, -before, -0.5 * impulse * (before + after)});
+    out.impulses.push_back({p.contacts[in[a]], impulse, 0, 0, -before, -0.5 * impulse * (before + after)});
     out.moving -= impulse * p.drive[in[a]];
     out.loss += out.impulses.back().loss;
   }
@@ -205,7 +205,8 @@ ImpactResult end_of_bounces(const ImpactProblem& p, const VectorXd& v) {
     out.moving -= impulses(at(a)) * p.drive[a];
     out.loss -= 0.5 * impulses(at(a)) * (before + after);
     if (before < -p.rest[a])
-      out.impulses.push_back({p.contacts[a], impulses(at(a)), 0, -before, -0.5 * impulses(at(a)) * (before + after)});
+      out.impulses.push_back(
+          {p.contacts[a], impulses(at(a)), 0, 0, -before, -0.5 * impulses(at(a)) * (before + after)});
   }
   return out;
 }

@@ -331,3 +331,65 @@ TEST_CASE("infinitely many bounces end at √(2 h/g) (1 + e)/(1 − e)") {
   REQUIRE(count(r, Happening::Kind::Made) == 1);
   CHECK(r.happenings.back().t == doctest::Approx(3 * std::sqrt(2.0)).epsilon(1e-10));
 }
+
+TEST_CASE("bounces go on while they are to be seen, however fast something else flies") {
+  const std::string ball =
+      "dimensionless\ncoord x, y : number\nT = 1/2 x'^2 + 1/2 y'^2\nV = y\n"
+      "contact y >= 0 restitution 0.9 name floor\nstart y = 1";
+  ModelText alone(ball + "\n"), beside(ball + ", x' = 1e6\n");
+  const auto a = run(alone, 10), b = run(beside, 10);
+  CHECK(count(b, Happening::Kind::Made) == 0);
+  CHECK(count(b, Happening::Kind::Impact) == count(a, Happening::Kind::Impact));
+  CHECK(b.final.q[1] == doctest::Approx(a.final.q[1]).epsilon(1e-13));
+  CHECK(b.final.v[1] == doctest::Approx(a.final.v[1]).epsilon(1e-13));
+}
+
+TEST_CASE("an impact at once loses what an impact alone does") {
+  ModelText m(
+      "dimensionless\ncoord z : number\nT = 1/2 z'^2\nV = z\ncontact z >= 0 restitution 0.5 name floor\n"
+      "impact simultaneous\nstart z = 1\n");
+  const auto r = run(m, 2);
+  REQUIRE(count(r, Happening::Kind::Impact) == 1);
+  CHECK(r.happenings[0].speed == doctest::Approx(std::sqrt(2.0)).epsilon(1e-14));
+  CHECK(r.books->impacts == doctest::Approx(0.75).epsilon(1e-14));
+  CHECK(r.statistics.energy_drift < 1e-14);
+}
+
+TEST_CASE("a motion that is thrown back from the zero of an event meets it once, and does not rise through it") {
+  for (const double height : {0.1, 0.3, 0.77, 1.0})
+    for (const char* thrown :
+         {"contact y >= 0 restitution e name floor\n", "event floor when y = 0 : set y' = -e y'\n"}) {
+      ModelText m("dimensionless\nparam e = 0.9\ncoord y : number\nT = 1/2 y'^2\nV = y\n" + std::string(thrown) +
+                  "event zero when y = 0 : record\nevent up when y = 0 rising : record\n"
+                  "event down when y = 0 falling : record\n" +
+                  fmt::format("start y = {}, y' = 0.3\n", height));
+      const auto r = run(m, 12);
+      const std::size_t bounces = count(r, Happening::Kind::Impact) + count(r, Happening::Kind::Event, "floor");
+      CHECK(bounces > 3);
+      CHECK(count(r, Happening::Kind::Event, "zero") == bounces);
+      CHECK(count(r, Happening::Kind::Event, "down") == bounces);
+      CHECK(count(r, Happening::Kind::Event, "up") == 0);
+    }
+}
+
+TEST_CASE("friction is μ times the normal force, also where the gap is not the distance to the surface") {
+  const std::string bead =
+      "dimensionless\nparam μ = 0.3\ncoord x, y : number\npoint P mass 1 at (x, y)\ngravity (0, -10)\n";
+  const std::string slip = " friction μ slip (x' + 2 x y')/sqrt(1 + 4 x^2) name bowl\nstart x = 1, y = 1\n";
+  ModelText height(bead + "contact y - x^2 >= 0" + slip);
+  ModelText distance(bead + "contact (y - x^2)/sqrt(1 + 4 x^2) >= 0" + slip);
+  const auto a = run(height, 0.5), b = run(distance, 0.5);
+  CHECK(a.final.q[0] == doctest::Approx(b.final.q[0]).epsilon(1e-13));
+  CHECK(a.books->friction == doctest::Approx(b.books->friction).epsilon(1e-12));
+  CHECK(height.diagnostics.items().empty());
+  // An impact: the tangential impulse is μ times the normal one, 1.5 · 2 · 0.3.
+  ModelText twice(bead + "contact 2 y >= 0 restitution 0.5 friction μ slip x' name floor\nstart x' = 5, y = 0.2\n");
+  const auto c = run(twice, 0.21);
+  REQUIRE(count(c, Happening::Kind::Impact) == 1);
+  CHECK(c.final.v[0] == doctest::Approx(5 - 0.9).epsilon(1e-13));
+  CHECK(c.final.v[1] == doctest::Approx(1 - 10 * 0.01).epsilon(1e-12));
+  // A factor of the slip is told: nothing says that it is none of a gear.
+  ModelText factor(bead + "contact y >= 0 friction μ slip 2 x' name floor\n");
+  REQUIRE(factor.diagnostics.items().size() == 1);
+  CHECK(factor.diagnostics.items()[0].code == "W0435");
+}

@@ -1,0 +1,159 @@
+#include <maupertuis/transform.hpp>
+
+#include "system/elaboration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <unordered_map>
+
+/// Coulomb's friction is μ times the normal force. That is λ |∂g/∂r|, where r is the place of what the contact pushes:
+/// λ itself only where g is the distance to the surface.
+namespace maupertuis::elaboration {
+namespace {
+
+/// ∂f/∂r of the one particle or body that it pushes.
+struct Push {
+  std::string name;
+  Expr square;  // |∂f/∂r|²
+};
+
+class Masses {
+ public:
+  explicit Masses(const MechanicalSystem& system) : system_(system) {
+    for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
+      numbers_.emplace(system.coordinates[i].q, i);
+      numbers_.emplace(system.coordinates[i].velocity, i);
+    }
+    for (const Point& p : system.points)
+      if (p.mass) add(p.name, p.position);
+    for (const Body& b : system.bodies) {
+      add(b.name, b.position);
+      turning_.merge(named(b.rotation.entries));
+    }
+  }
+
+  /// f: a gap, or a slip velocity, whose derivatives by the velocities count. Nothing where several masses are moved,
+  /// or where the coordinates are not along directions at right angles. Coordinates that turn a body take torques.
+  std::optional<Push> pushed(Expr f, bool is_velocity) const {
+    std::map<std::size_t, Expr> row;
+    for (const std::size_t i : named({f})) {
+      const Coordinate& c = system_.coordinates[i];
+      const Expr slope = differentiate(f, is_velocity ? c.velocity : c.q);
+      if (!slope.is_zero() && turning_.count(i) == 0) row.emplace(i, slope);
+    }
+    const Mass* mass = nullptr;
+    for (const Mass& m : masses_) {
+      if (std::none_of(row.begin(), row.end(), [&](const auto& entry) { return m.moved_by.count(entry.first) > 0; }))
+        continue;
+      if (mass) return std::nullopt;
+      mass = &m;
+    }
+    if (!mass) return std::nullopt;
+    Context& context = *system_.context;
+    const ExprVector& r = *mass->position;
+    const auto slope = [&](std::size_t k, std::size_t i) { return differentiate(r[k], system_.coordinates[i].q); };
+    ExprVector direction(r.size(), context.number(0)), squares;
+    for (const auto& [i, value] : row)
+      for (std::size_t k = 0; k < r.size(); ++k) direction[k] = direction[k] + value * slope(k, i);
+    for (const auto& [i, value] : row) {
+      ExprVector rest{-value};
+      for (std::size_t k = 0; k < r.size(); ++k) rest.push_back(direction[k] * slope(k, i));
+      if (!vanishes(context.sum(rest))) return std::nullopt;
+    }
+    for (const Expr& component : direction) squares.push_back(component * component);
+    return Push{*mass->name, context.sum(squares)};
+  }
+
+  /// Whether |∂f/∂r| is 1 on the surface g = 0.
+  bool is_unit(const Push& push, Expr gap) const {
+    const Expr off = push.square - system_.context->number(1);
+    return vanishes(off) || zero_test_where({&off, 1}, {&gap, 1}, coordinates(), center()).verdict == Verdict::Zero;
+  }
+
+ private:
+  struct Mass {
+    const std::string* name;
+    const ExprVector* position;
+    std::set<std::size_t> moved_by;
+  };
+
+  void add(const std::string& name, const ExprVector& position) {
+    masses_.push_back({&name, &position, named(position)});
+  }
+  /// The coordinates that stand in them, or their velocities.
+  std::set<std::size_t> named(const ExprVector& formulas) const {
+    std::set<std::size_t> out;
+    for (const Expr& symbol : symbols_of(formulas))
+      if (const auto found = numbers_.find(symbol); found != numbers_.end()) out.insert(found->second);
+    return out;
+  }
+  static bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
+
+  ExprVector coordinates() const {
+    ExprVector out;
+    for (const Coordinate& c : system_.coordinates) out.push_back(c.q);
+    return out;
+  }
+
+  /// Away from symmetric places.
+  Bindings center() const {
+    Bindings out;
+    for (const Parameter& p : system_.parameters) out[p.symbol] = p.si_value;
+    double x = 0.3;
+    for (const Coordinate& c : system_.coordinates) {
+      out[c.q] = x += 0.17;
+      out[c.velocity] = 0.1 * x;
+    }
+    for (const Input& u : system_.inputs) out[u.symbol] = 0.5;
+    out[system_.context->time()] = 0.3;
+    return out;
+  }
+
+  const MechanicalSystem& system_;
+  std::unordered_map<Expr, std::size_t, ExprHash> numbers_;
+  std::vector<Mass> masses_;
+  std::set<std::size_t> turning_;  // coordinates that turn a body
+};
+
+/// W0435 where a component of the slip is not the velocity of what it moves along some direction.
+void look_at_slip(const Masses& masses, const Contact& contact, Diagnostics& diagnostics) {
+  for (const Expr& slip : contact.friction.slip) {
+    const auto push = masses.pushed(slip, true);
+    if (!push || masses.is_unit(*push, contact.gap)) continue;
+    diagnostics.warning(
+        "W0435", contact.friction.span, fmt::format("this slip velocity is no velocity of {}", push->name),
+        fmt::format("It is the velocity of {} along the surface times a factor, and so is the friction on {}: not μ "
+                    "times the normal force.",
+                    push->name, push->name),
+        "Divide by the factor, as in slip (x' + 2 a x y')/sqrt(1 + 4 a^2 x^2); leave it where a gear between the two "
+        "makes the factor.");
+    return;
+  }
+}
+
+}  // namespace
+
+void set_normal_forces(MechanicalSystem& system, Diagnostics& diagnostics) {
+  std::optional<Masses> masses;
+  for (std::size_t k = 0; k < system.contacts.size(); ++k) {
+    Contact& contact = system.contacts[k];
+    if (!contact.friction.present() || contact.friction.sticking) continue;
+    if (!masses) masses.emplace(system);
+    look_at_slip(*masses, contact, diagnostics);
+    const auto push = masses->pushed(contact.gap, false);
+    if (!push || masses->is_unit(*push, contact.gap)) continue;
+    const Expr factor = sqrt(push->square);
+    contact.friction.kinetic = contact.friction.kinetic * factor;
+    contact.friction.static_ = contact.friction.static_ * factor;
+    if (!system.written) continue;
+    MechanicalSystem written = *system.written;
+    written.contacts[k].friction.kinetic = written.contacts[k].friction.kinetic * factor;
+    written.contacts[k].friction.static_ = written.contacts[k].friction.static_ * factor;
+    system.written = std::make_shared<const MechanicalSystem>(std::move(written));
+  }
+}
+
+}  // namespace maupertuis::elaboration
