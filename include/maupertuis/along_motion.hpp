@@ -39,6 +39,12 @@ class AlongMotion {
 
  private:
   bool constrained() const { return equations_.system->constrained() || equations_.degenerate; }
+  /// What points along the motion fulfil, in which unknowns, and where to look for them.
+  struct Where {
+    std::vector<Expr> relations, unknowns;
+    Bindings center;
+  };
+  Where relations_for(Expr e) const;
   std::vector<Expr> relations() const;
   Bindings center() const;
 

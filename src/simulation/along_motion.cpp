@@ -2,8 +2,11 @@
 
 #include <maupertuis/degenerate.hpp>
 #include <maupertuis/simulation.hpp>
+#include <maupertuis/transform.hpp>
 
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace maupertuis {
 
@@ -39,32 +42,24 @@ Expr AlongMotion::put_in(Expr e) const {
 ZeroTest AlongMotion::vanishes(Expr e) const {
   const Expr plain = put_in(e);
   if (!constrained() || plain.is_zero()) return zero_test(plain);
-  ExprVector unknowns = equations_.multipliers;
-  for (const Coordinate& c : equations_.system->coordinates)
-    unknowns.insert(unknowns.end(), {c.q, c.velocity, c.acceleration});
-  return zero_test_where({&plain, 1}, relations(), unknowns, center());
+  const Where where = relations_for(plain);
+  return zero_test_where({&plain, 1}, where.relations, where.unknowns, where.center);
 }
 
 ZeroTest AlongMotion::vanishes_on(Expr e, std::span<const Expr> level) const {
   const Expr plain = put_in(e);
   if (plain.is_zero()) return zero_test(plain);
-  std::vector<Expr> all = constrained() ? relations() : std::vector<Expr>();
-  for (const Expr& x : level) all.push_back(put_in(x));
-  ExprVector unknowns = constrained() ? equations_.multipliers : ExprVector();
-  for (const Coordinate& c : equations_.system->coordinates) {
-    unknowns.insert(unknowns.end(), {c.q, c.velocity});
-    if (constrained()) unknowns.push_back(c.acceleration);
-  }
-  Bindings near = center();
-  const ZeroTest test = zero_test_where({&plain, 1}, all, unknowns, near);
+  Where where = relations_for(plain);
+  for (const Expr& x : level) where.relations.push_back(put_in(x));
+  const ZeroTest test = zero_test_where({&plain, 1}, where.relations, where.unknowns, where.center);
   if (test.verdict != Verdict::Undecided) return test;
   // r² φ' = 0: from the start Newton's method may run towards r = 0; from rest it need not.
-  for (const Coordinate& c : equations_.system->coordinates) near[c.velocity] = 0.0;
-  return zero_test_where({&plain, 1}, all, unknowns, near);
+  for (const Coordinate& c : equations_.system->coordinates) where.center[c.velocity] = 0.0;
+  return zero_test_where({&plain, 1}, where.relations, where.unknowns, where.center);
 }
 
 Expr AlongMotion::rate(Expr integral) const {
-  return put_in(total_time_derivative(in_terms_of_motion(*equations_.system, {&integral, 1}).front()));
+  return put_in(total_time_derivative(put_in(integral)));  // d/dt of q̈ is that of its formula
 }
 
 AcrossSwitches AlongMotion::across(Expr integral) const {
@@ -82,6 +77,40 @@ std::vector<Expr> AlongMotion::relations() const {
   for (const auto* list : {&equations_.constraint_rates, &equations_.constraint_accelerations, &residual_})
     out.insert(out.end(), list->begin(), list->end());
   return in_terms_of_motion(system, expand_time_derivatives(out));
+}
+
+/// Of e, which may hold q⃛: then the derivatives of the equations too, with q⃛ and dλ/dt as further unknowns.
+AlongMotion::Where AlongMotion::relations_for(Expr e) const {
+  Where out;
+  const std::vector<Coordinate>& coordinates = equations_.system->coordinates;
+  out.center = center();
+  for (const Coordinate& c : coordinates) out.unknowns.insert(out.unknowns.end(), {c.q, c.velocity});
+  if (!constrained()) return out;
+  out.relations = relations();
+  for (const Coordinate& c : coordinates) out.unknowns.push_back(c.acceleration);
+  out.unknowns.insert(out.unknowns.end(), equations_.multipliers.begin(), equations_.multipliers.end());
+  const auto is_third = [](const Expr& s) { return s.role() == Role::Coordinate && s.order() == 3; };
+  const std::vector<Expr> symbols = symbols_of({&e, 1});
+  if (std::none_of(symbols.begin(), symbols.end(), is_third)) return out;
+
+  ExprVector further;
+  for (const Coordinate& c : coordinates) further.push_back(total_time_derivative(c.acceleration));
+  for (const Expr& multiplier : equations_.multipliers)
+    further.push_back(equations_.system->context->symbol("d/dt " + multiplier.name(), Role::Auxiliary));
+  const std::size_t known = out.relations.size();
+  for (std::size_t k = 0; k < known; ++k) {
+    const ExprVector slopes = gradient(out.relations[k], equations_.multipliers);
+    ExprVector terms{total_time_derivative(out.relations[k])};  // with λ held
+    for (std::size_t i = 0; i < slopes.size(); ++i) terms.push_back(slopes[i] * further[coordinates.size() + i]);
+    const Expr rate = equations_.system->context->sum(terms);
+    const std::vector<Expr> in_rate = symbols_of({&rate, 1});
+    if (std::any_of(in_rate.begin(), in_rate.end(),
+                    [&](const Expr& s) { return std::find(further.begin(), further.end(), s) != further.end(); }))
+      out.relations.push_back(rate);
+  }
+  for (const Expr& s : further) out.center[s] = 0.0;
+  out.unknowns.insert(out.unknowns.end(), further.begin(), further.end());
+  return out;
 }
 
 Bindings AlongMotion::center() const {

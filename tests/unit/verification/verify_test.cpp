@@ -163,3 +163,19 @@ TEST_CASE("what fails an identity is named: the derivative of a quantity, the di
   CHECK(only(fall + "expect equation y''^2 = g y''\n").message ==
         "Along the motion, left side − right side is 2 g^2, not 0.");
 }
+
+TEST_CASE("accelerations in what is conserved stand for what the equations say of them") {
+  const std::string fall = "dimensionless\nparam g = 9.81\ncoord y : number\nT = 1/2 y'^2\nV = g y\n";
+  passes(fall, "expect conserved y''");
+  fails(fall, "expect y'' + g not conserved");
+  const std::string oscillator =
+      "dimensionless\nparam m = 3, k = 2\ncoord x : number\nT = 1/2 m x'^2\nV = 1/2 k x^2\nstart x = 1\n";
+  passes(oscillator, "expect conserved m x''^2 + k x'^2");
+  passes(oscillator, "expect x''^2 not conserved");
+  const std::string rod =
+      "dimensionless\nparam g = 9.81\ncoord x, y : number\npoint P mass 1 at (x, y)\ngravity (0, -g)\n"
+      "constraint x^2 + y^2 = 1\nstart x = 0.6, y = -0.8\n";
+  passes(rod, "expect conserved x x'' + y y'' + x'^2 + y'^2");
+  passes(rod, "expect conserved x y'' - y x'' + g x");
+  passes(rod, "expect y'' not conserved");
+}
