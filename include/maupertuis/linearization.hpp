@@ -53,6 +53,8 @@ class PointEquations {
   /// Whether an energy exists that never grows while inputs are held: no explicit time, forces that have a potential
   /// (both proved), friction that takes at random states. With holonomic constraints alone.
   bool energy_never_grows() const;
+  /// The same near a point: friction takes at random states at all distances from it where it has values.
+  bool energy_never_grows_near(const OperatingPoint& point) const;
   /// Coordinates after which the equations repeat at 2π [n]; by values at random points.
   const std::vector<bool>& periodic() const;
   /// All translations that are symmetries; by the rank of ∂(R, φ, ψ)/∂q at random points. Pivots are chosen among

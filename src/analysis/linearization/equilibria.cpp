@@ -174,11 +174,25 @@ class Search {
       auto solution = system.solve(from);
       if (!solution) continue;
       settle(*solution, system);
+      if (search_.fixed.any()) find_all_ways(*solution, at_rest);
       if (!balances(solution->point, system)) continue;
       if (!at_rest && is_at_rest(solution->point)) continue;
       if (!holds_for_all_times(solution->point)) continue;
       keep({solution->point, at_rest, solution->residual, solution->family, solution->along, false, {}}, system);
     }
+  }
+
+  /// How it can be moved on and stay a solution, whatever was given: a family is one of the equations.
+  void find_all_ways(SteadyState::Solution& solution, bool at_rest) const {
+    SteadyState::Held pivots{std::vector<bool>(e_.n), std::vector<bool>(translations_.size(), at_rest)};
+    std::vector<double> momenta(translations_.size(), std::numeric_limits<double>::quiet_NaN());
+    const Vector p = at_rest ? Vector() : e_.value(e_.momenta, solution.point);
+    for (std::size_t k = 0; k < translations_.size(); ++k) {
+      pivots.q[translations_[k].pivot] = true;
+      if (!at_rest && translations_[k].conserved) momenta[k] = to_eigen(translations_[k].direction).dot(p);
+    }
+    const auto there = SteadyState(e_, translations_, pivots, momenta, sizes_).solve(solution.point);
+    if (there) solution.family = there->family, solution.along = there->along;
   }
 
   bool is_at_rest(const OperatingPoint& point) const {

@@ -158,6 +158,7 @@ PointEquations::Impl::Impl(const EquationsOfMotion& equations, std::span<const E
       inputs(input_formulas),
       energy(Lowering(equations).function({&equations.energy_function, 1})),
       energy_workspace(energy),
+      friction(Lowering(equations).function(equations.dissipative_terms)),
       energy_slopes(Lowering(equations).rows(slopes_of_kept_energy(equations))) {
   for (std::size_t i = 0; i < m; ++i)
     if (system->constraints[i].level == Constraint::Level::Position) position_rows.push_back(i);
@@ -169,26 +170,17 @@ PointEquations::Impl::Impl(const EquationsOfMotion& equations, std::span<const E
   ExprVector all = lowering.plain(equations.balance());
   for (const Constraint& c : system->constraints) all.push_back(lowering.plain({&c.value, 1}).front());
   is_autonomous = free_of_time(all, system->context->time());
-  is_passive = is_autonomous && holonomic == m &&
-               has_potential(lowering.plain(equations.generalized_forces), *system) &&
-               friction_takes(lowering.function(equations.dissipative_terms));
+  has_energy = is_autonomous && holonomic == m && has_potential(lowering.plain(equations.generalized_forces), *system);
   is_periodic.assign(n, false);
 }
 
-/// v·∂D/∂v ≥ 0 at random states.
-bool PointEquations::Impl::friction_takes(const FunctionKernel& friction) const {
-  FunctionWorkspace work(friction);
-  work.set_parameters(parameters);
+/// v·∂D/∂v; not a number where D has no value.
+Power PointEquations::Impl::power_of_friction(const OperatingPoint& point) {
   std::vector<double> force(n);
-  constexpr std::uint64_t states = 32;
-  for (std::uint64_t s = 0; s < states; ++s) {
-    const OperatingPoint point = random_point(*this, 31 + s);
-    work.evaluate(gather(point), force);
-    double power = 0, size = 0;
-    for (std::size_t i = 0; i < n; ++i) power += force[i] * point.v[i], size += std::abs(force[i] * point.v[i]);
-    if (power < -1e-12 * size) return false;
-  }
-  return true;
+  friction.evaluate(gather(point), force);
+  Power out;
+  for (std::size_t i = 0; i < n; ++i) out.value += force[i] * point.v[i], out.size += std::abs(force[i] * point.v[i]);
+  return out;
 }
 
 void PointEquations::Impl::set_parameters() {
@@ -199,6 +191,7 @@ void PointEquations::Impl::set_parameters() {
   }
   inputs.set_parameters(parameters);
   energy_workspace.set_parameters(parameters);
+  friction.set_parameters(parameters);
 }
 
 std::vector<double> PointEquations::Impl::gather(const OperatingPoint& point) const {
@@ -275,6 +268,7 @@ std::vector<double> typical_sizes(const MechanicalSystem& system, const MotionSt
 namespace {
 
 constexpr double turn = 6.283185307179586;
+constexpr std::uint64_t states_of_friction = 32;  // at which its power is looked at
 constexpr int samples = 3;
 
 /// Whether R and the constraints are the same 2π further.
@@ -304,7 +298,33 @@ PointEquations::PointEquations(PointEquations&&) noexcept = default;
 
 const MechanicalSystem& PointEquations::system() const { return *impl_->system; }
 bool PointEquations::autonomous() const { return impl_->is_autonomous; }
-bool PointEquations::energy_never_grows() const { return impl_->is_passive; }
+bool PointEquations::energy_never_grows() const {
+  if (!impl_->has_energy) return false;
+  for (std::uint64_t s = 0; s < states_of_friction; ++s)
+    if (impl_->power_of_friction(random_point(*impl_, 31 + s)).is_given()) return false;
+  return true;
+}
+
+/// At all distances: what pumps within some distance of the point alone keeps a motion from coming to rest there.
+bool PointEquations::energy_never_grows_near(const OperatingPoint& point) const {
+  if (!impl_->has_energy) return false;
+  constexpr double farthest = 0.1, nearest = 1e-8, step = 0.3;  // of the sizes of coordinates
+  std::uint64_t seed = 31;
+  bool has_value = false;
+  for (double size = farthest; size > nearest; size *= step) {
+    has_value = false;
+    for (std::uint64_t s = 0; s < states_of_friction; ++s) {
+      const OperatingPoint away = random_point(*impl_, seed++);
+      OperatingPoint near = point;
+      for (std::size_t i = 0; i < impl_->n; ++i) near.q[i] += size * away.q[i], near.v[i] += size * away.v[i];
+      const Power power = impl_->power_of_friction(near);
+      if (power.is_given()) return false;
+      has_value = has_value || std::isfinite(power.value);
+    }
+  }
+  return has_value;
+}
+
 const std::vector<bool>& PointEquations::periodic() const { return impl_->is_periodic; }
 double PointEquations::parameter(std::size_t index) const { return impl_->parameters[index]; }
 

@@ -11,6 +11,12 @@ struct RowsAtPoint {
   Matrix by_q, by_v, by_a, by_multipliers, by_inputs;
 };
 
+/// Of a sum of terms: what friction takes, positive.
+struct Power {
+  double value = 0, size = 0;
+  bool is_given() const { return value < -1e-12 * size; }
+};
+
 struct PointEquations::Impl {
   Impl(const EquationsOfMotion& equations, std::span<const Expr> measured);
 
@@ -25,6 +31,7 @@ struct PointEquations::Impl {
   Vector value(Rows& rows, const OperatingPoint& point) const;
   RowsAtPoint at(Rows& rows, const OperatingPoint& point) const;
   double energy_at(const OperatingPoint& point);  // h_E
+  Power power_of_friction(const OperatingPoint& point);
   void set_parameters();
 
   std::shared_ptr<const MechanicalSystem> system;
@@ -41,13 +48,13 @@ struct PointEquations::Impl {
   FunctionWorkspace inputs;
   FunctionKernel energy;  // h_E: orders equilibria
   FunctionWorkspace energy_workspace;
-  Rows energy_slopes;  // [n] ∂h_E/∂q, where L is of the first order and keeps h_E(q); else none
+  FunctionWorkspace friction;  // [n] ∂D/∂q̇
+  Rows energy_slopes;          // [n] ∂h_E/∂q, where L is of the first order and keeps h_E(q); else none
   bool is_autonomous = true;
-  bool is_passive = false;        // energy_never_grows
+  bool has_energy = false;        // that no force changes while inputs are held, but for friction
   std::vector<bool> is_periodic;  // [n]
 
  private:
-  bool friction_takes(const FunctionKernel& friction) const;
   std::vector<double> gather(const OperatingPoint& point) const;
 };
 

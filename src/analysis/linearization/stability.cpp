@@ -45,7 +45,7 @@ struct Verdicts {
 
   /// Eigenvalues of the Hessian; empty where the energy says nothing.
   std::vector<double> hessian() const {
-    if (!form.valid || !form.potential || !equations.energy_never_grows()) return {};
+    if (!form.valid || !form.potential || !equations.energy_never_grows_near(equilibrium.point)) return {};
     if (!equilibrium.at_rest && !all_conserved()) return {};
     const Matrix k = effective_stiffness(form, all_conserved());
     if (k.size() == 0) return {};
@@ -117,7 +117,8 @@ StabilityReport judge_stability(const PointEquations& equations, const Lineariza
   const bool has_hessian = !out.hessian.empty();
   const double tolerance = has_hessian ? v.hessian_tolerance() : 0;
   const bool strict_minimum = has_hessian ? out.hessian.front() > tolerance
-                                          : form.valid && form.potential && equations.energy_never_grows() &&
+                                          : form.valid && form.potential &&
+                                                equations.energy_never_grows_near(equilibrium->point) &&
                                                 v.all_conserved() && form.translations.cols() == form.k.rows();
   const std::string_view potential = equilibrium->at_rest && translations.empty() ? "potential" : "effective potential";
   if (margin > 0) {

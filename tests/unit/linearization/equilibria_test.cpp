@@ -277,3 +277,27 @@ TEST_CASE("dry friction as a quotient has no value at rest, whatever else vanish
   Diagnostics told;
   CHECK_FALSE(modal_study(m.at, m.start, told));
 }
+
+TEST_CASE("friction that pumps near the point alone keeps it from being called stable") {
+  const auto verdict = [](const std::string& dissipation) {
+    Linearized m("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\nD = " + dissipation + "\n");
+    return m.here().analysis.stability.verdict;
+  };
+  CHECK(verdict("1/2 x^4 x'^2") == Stability::Energetic);
+  for (const char* radius : {"1e-2", "1e-4", "1e-6", "1e-10"})
+    CHECK(verdict(std::string("1/2 (x^4 - ") + radius + " x^2) x'^2") == Stability::Undecided);
+  CHECK(verdict("-1/4 x'^4 sqrt(1e-6 - x^2)") == Stability::Undecided);  // real near the point alone
+  CHECK(verdict("1/4 x'^4 sqrt(1e-6 - x^2)") == Stability::Energetic);
+}
+
+TEST_CASE("values that are given do not hide the family that a point belongs to") {
+  Linearized sleigh(
+      "dimensionless\ncoord x, y, ψ : number\nparam a = 0.3, I = 0.4, m = 2\n"
+      "point C mass m at (x + a cos ψ, y + a sin ψ)\nT += 1/2 I ψ'^2\n"
+      "constraint y' cos ψ - x' sin ψ = 0 name edge\nstart x' = 1\n");
+  const ModalEntry e = sleigh.here({0});
+  CHECK(e.equilibrium.family == 2);  // its direction and its speed
+  CHECK(e.analysis.stability.verdict == Stability::Asymptotic);
+  Linearized ring("dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = (x^2 + y^2 - 1)^2\nstart x = 1\n");
+  CHECK(ring.here().equilibrium.family == 1);
+}

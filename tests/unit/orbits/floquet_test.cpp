@@ -238,3 +238,16 @@ TEST_CASE("what has no Floquet multipliers is told") {
   CHECK(code("system kepler\ndimensionless\ncoord r : number, φ : angle\nT = 1/2 (r'^2 + r^2 φ'^2)\nV = -1/r\n"
              "start r = 1, φ' = 0.001\nrun 20\n") == "E1401");
 }
+
+TEST_CASE("the divergence is integrated as finely as it changes, also where the motion rests and steps are long") {
+  const ModelText m(
+      "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 (1 + 0.3 cos(t)^2) x^2\nD = 0.05 sin(t)^2 x'^2\n");
+  const PointEquations points(m.equations);
+  Diagnostics told;
+  auto study = modal_study(points, {0, {0.0}, {0.0}}, told);
+  REQUIRE(study);
+  const auto neighbours = settle_driven(*study, points, m.model, m.equations, nullptr);
+  REQUIRE(neighbours.at(0));
+  CHECK(*neighbours[0]->integrated_divergence == doctest::Approx(-0.1 * std::numbers::pi).epsilon(1e-12));
+  CHECK(study->entries[0].analysis.stability.verdict == Stability::Asymptotic);
+}
