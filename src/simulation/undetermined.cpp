@@ -75,6 +75,11 @@ void in_terms_of_system(SimulationResult& result, const EquationsOfMotion& equat
   const std::size_t multipliers = equations.multipliers.size();
   for (State* state : {&result.start, &result.final}) without_rests(*state, multipliers);
   for (State& state : result.at) without_rests(state, multipliers);
+  if (result.ending == Ending::SingularConstraints || result.ending == Ending::SingularMass)
+    result.reason =
+        "The equations that determine the motion of this degenerate Lagrangian, some of its rows and the derivatives "
+        "of "
+        "its constraints, are singular near here or jump. They were chosen once, and the motion itself may go on.";
   if (equations.degenerate->free.empty()) return;
   result.undetermined = undetermined_names(equations);
   if (result.undetermined.empty()) return;

@@ -117,6 +117,12 @@ TEST_CASE("derive and hamiltonian tell the constraints of both sides") {
   const Outcome dirac = maup({"hamiltonian", "-"}, cawley);
   CHECK(contains(dirac.out, "Secondary constraints\n  z = 0\n"));
   CHECK(contains(dirac.out, "Dirac's conjecture"));
+  // Both counts are of L, whatever a gauge leaves open: here a constant rotation.
+  const Outcome turned = maup({"hamiltonian", "-"},
+                              "dimensionless\ncoord x, y, w : number\n"
+                              "L = 1/2 ((x' - w y)^2 + (y' + w x)^2) - 1/2 (x^2 + y^2)\ngauge w = 1 + t\n");
+  CHECK(contains(turned.out, "without the gauge count alike: 2 numbers"));
+  CHECK_FALSE(contains(turned.out, "conjecture"));
   const auto phase = json_of(maup({"hamiltonian", "-", "--json", "--dirac-bracket", "x", "y"}, predators));
   CHECK(phase["dirac"]["second_class"] == 2);
   CHECK(phase["brackets"][0]["kind"] == "dirac");

@@ -84,6 +84,14 @@ void judge(const Certificate& certificate, Diagnostics& diagnostics) {
   }
 }
 
+/// The constraints in phase space are those of L, whatever a gauge chooses: Lagrange's count beside them is so too.
+std::optional<DegenerateAnalysis> count_of_lagrange(Study& study) {
+  const DegenerateAnalysis* found = study.degenerate();
+  if (!found) return std::nullopt;
+  if (found->gauges == 0) return *found;
+  return analyse_degenerate(*study.equations(), generic_state(*study.model()), false);
+}
+
 PhaseSpace analyse(const HamiltonianOptions& options, Study& study) {
   PhaseSpace found;
   const InterruptScope scope = study.interruptible();
@@ -101,9 +109,11 @@ PhaseSpace analyse(const HamiltonianOptions& options, Study& study) {
       found.certificate.checks.push_back(std::move(check));
   judge(found.certificate, study.diagnostics());
   found.lines = phase_space_lines(found.hamiltonian, found.routhian ? &*found.routhian : nullptr, equations);
-  if (found.dirac)
-    for (DerivationStep& line : dirac_lines(*found.dirac, found.hamiltonian, study.degenerate()))
+  if (found.dirac) {
+    const auto lagrange = count_of_lagrange(study);
+    for (DerivationStep& line : dirac_lines(*found.dirac, found.hamiltonian, lagrange ? &*lagrange : nullptr))
       found.lines.push_back(std::move(line));
+  }
   return found;
 }
 

@@ -99,15 +99,17 @@ class DiracLines {
   void counts(const DegenerateAnalysis& lagrange) {
     if (!lagrange.closed()) return;
     const std::string section = "Classes";
+    const std::string who =
+        h_.system->gauges.empty() ? "Lagrange's equations" : "Lagrange's equations without the gauge";
     if (lagrange.motions == found_.physical_dimension) {
-      sentence(section, fmt::format("Lagrange's equations count alike: {} out a motion.",
+      sentence(section, fmt::format("{} count alike: {} out a motion.", who,
                                     plural(lagrange.motions, "number singles", "numbers single")));
       return;
     }
     sentence(section,
-             fmt::format("Lagrange's equations count otherwise: {} out a motion, not {}. Some constraint of "
+             fmt::format("{} count otherwise: {} out a motion, not {}. Some constraint of "
                          "the first class moves no motion: Dirac's conjecture, that all of them do, fails here.",
-                         plural(lagrange.motions, "number singles", "numbers single"), found_.physical_dimension));
+                         who, plural(lagrange.motions, "number singles", "numbers single"), found_.physical_dimension));
   }
 
   const DiracAnalysis& found_;

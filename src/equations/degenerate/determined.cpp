@@ -1,11 +1,14 @@
 #include "equations/degenerate/lagrange_problem.hpp"
+#include "linear_algebra/dense.hpp"
 
 #include <maupertuis/degenerate.hpp>
+#include <maupertuis/evaluate.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <random>
 
 namespace maupertuis {
 namespace {
@@ -76,33 +79,79 @@ std::vector<Bindings> with_rest(const std::vector<Bindings>& points) {
   return out;
 }
 
+/// Whether the determinant of the rows has one sign wherever it is looked at, on the constraints or beside them: where
+/// it changes its sign there are states at which the rows do not determine what is sought.
+bool keep_their_sign(const std::vector<LinearCondition>& rows, Bindings at) {
+  ExprVector entries;
+  for (const LinearCondition& row : rows)
+    entries.insert(entries.end(), row.coefficients.begin(), row.coefficients.end());
+  const auto size = static_cast<Eigen::Index>(rows.size());
+  if (entries.size() != rows.size() * rows.size()) return false;
+  std::mt19937_64 random(1744);
+  constexpr int states = 64;
+  int positive = 0, negative = 0;
+  for (int state = 0; state < states; ++state) {
+    for (auto& [symbol, value] : at)
+      if (symbol.role() == Role::Coordinate) value = 4 * std::generate_canonical<double, 53>(random) - 2;
+    const std::vector<double> numbers = evaluate(entries, at);
+    const double found =
+        Eigen::FullPivLU<Eigen::MatrixXd>(Eigen::Map<const Eigen::MatrixXd>(numbers.data(), size, size)).determinant();
+    positive += found > 0, negative += found < 0;
+  }
+  return positive == 0 || negative == 0;
+}
+
+/// Relations that are held by rows of their own are met to rounding; so they come before Lagrange's rows, which keep
+/// them too. Where that makes equations that are singular somewhere, and Lagrange's rows first do not, these are first.
 Choice choose_rows(const EquationsOfMotion& equations, const DegenerateAnalysis& analysis, std::vector<Held> held) {
   const std::size_t n = equations.system->coordinates.size(), m = equations.multipliers.size();
   const auto& all = analysis.chain.conditions;
-  std::vector<LinearCondition> rows(all.begin() + static_cast<std::ptrdiff_t>(n),
-                                    all.begin() + static_cast<std::ptrdiff_t>(n + m));
+  const std::vector<LinearCondition> given(all.begin() + static_cast<std::ptrdiff_t>(n),
+                                           all.begin() + static_cast<std::ptrdiff_t>(n + m));
+  const std::vector<LinearCondition> lagrange(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(n));
   const auto& points = analysis.chain.where->points();
-  std::vector<Held> safe;
+  std::vector<LinearCondition> safe = given;  // then those of what is held
+  std::vector<Held> kept;
   for (const Held& h : held) {
-    std::vector<LinearCondition> with_it = rows;
+    std::vector<LinearCondition> with_it = safe;
     with_it.push_back(row_of(h, *equations.system, m));
     const bool everywhere = independent_at_all(with_it, points) && independent_at_all(with_it, with_rest(points));
     if (!everywhere && h.level == Constraint::Level::Velocity) continue;
-    rows = std::move(with_it);
-    safe.push_back(h);
+    safe = std::move(with_it);
+    kept.push_back(h);
   }
-  held = std::move(safe);
-  rows.insert(rows.end(), all.begin(), all.begin() + static_cast<std::ptrdiff_t>(n));
-  Choice out;
-  out.keeps_row.assign(n, false);
-  for (const std::size_t r : independent_conditions(rows, analysis.chain.where->points())) {
-    if (r < m) continue;
-    if (r < m + held.size())
-      out.held.push_back(held[r - m]);
-    else
-      out.keeps_row[r - m - held.size()] = true;
-  }
-  return out;
+
+  struct Tried {
+    Choice choice;
+    bool keeps_sign = false;
+  };
+  const auto chosen = [&](bool lagrange_first) {
+    std::vector<LinearCondition> rows = lagrange_first ? given : safe;
+    rows.insert(rows.end(), lagrange.begin(), lagrange.end());
+    if (lagrange_first) rows.insert(rows.end(), safe.begin() + static_cast<std::ptrdiff_t>(m), safe.end());
+    const std::size_t first_held = lagrange_first ? m + n : m, first_row = lagrange_first ? m : m + kept.size();
+    Tried out;
+    out.choice.keeps_row.assign(n, false);
+    std::vector<LinearCondition> taken;
+    for (const std::size_t r : independent_conditions(rows, points)) {
+      taken.push_back(rows[r]);
+      if (r >= first_held && r < first_held + kept.size())
+        out.choice.held.push_back(kept[r - first_held]);
+      else if (r >= first_row && r < first_row + n)
+        out.choice.keeps_row[r - first_row] = true;
+    }
+    Context& context = *equations.system->context;
+    for (const std::size_t f : analysis.free) {
+      taken.push_back({ExprVector(n + m, context.number(0)), context.number(0)});
+      taken.back().coefficients[f] = context.number(1);
+    }
+    out.keeps_sign = keep_their_sign(taken, points.front());
+    return out;
+  };
+  Tried out = chosen(false);
+  if (out.keeps_sign) return out.choice;
+  Tried other = chosen(true);
+  return other.keeps_sign ? other.choice : out.choice;
 }
 
 Constraint as_constraint(const Held& held, std::size_t number, Context& context) {

@@ -110,3 +110,41 @@ TEST_CASE("expectations about fourth derivatives can fail") {
   CHECK_FALSE(verdict("q''' at 1 = -0.8414709848078965 ± 1e-13"));
   CHECK(verdict("energy conserved"));
 }
+
+TEST_CASE("what a start of a degenerate Lagrangian does not give stays 0 where that fits") {
+  // a = (x' + y')/2, the other constraints ask for velocities: a' = x − y
+  const State fixed = end_with(
+      "coord x, y, a : number\nL = 1/2 (x' - a)^2 + 1/2 (y' - a)^2 - 1/2 (x - y)^2\ngauge x = 0\nstart y = 1\nrun 3\n");
+  CHECK(fixed.q[1] == doctest::Approx(std::cos(3 * std::sqrt(2.0))).epsilon(1e-11));
+  // w has to be 1; y need not move, since y' = −1 does it.
+  const State turned = end_with(
+      "coord x, y, w : number\nL = 1/2 ((x' - w y)^2 + (y' + w x)^2) - 1/2 (x^2 + y^2)\ngauge w = 1 + t\n"
+      "start x = 1, x' = 0.3\nrun 1\n");
+  CHECK(turned.q[0] == doctest::Approx((std::cos(1.0) + 0.3 * std::sin(1.0)) * std::cos(1.5)).epsilon(1e-11));
+}
+
+TEST_CASE("degenerate motions go through states where other rows would be singular") {
+  // A pendulum with its multiplier as a coordinate, through the horizontal: x = sin θ, y = −cos θ.
+  const State pendulum = end_with(
+      "coord x, y, l : number\nL = 1/2 (x'^2 + y'^2) - 9.81 y + l (x^2 + y^2 - 1)\n"
+      "start x = 0.6, y = -0.8, x' = 4, y' = 3\nrun 2\n");
+  const State angle =
+      end_with("coord θ : angle\nT = 1/2 θ'^2\nV = -9.81 cos θ\nstart θ = asin(0.6) rad, θ' = 5 rad\nrun 2\n");
+  CHECK(pendulum.q[0] == doctest::Approx(std::sin(angle.q[0])).epsilon(1e-11));
+  CHECK(pendulum.q[1] == doctest::Approx(-std::cos(angle.q[0])).epsilon(1e-11));
+  // Radial motion in a turned frame, r = cos t, through r = 0.
+  const State radial = end_with(
+      "coord x, y, w : number\nL = 1/2 ((x' - w y)^2 + (y' + w x)^2) - 1/2 (x^2 + y^2)\ngauge w = 1 + t\n"
+      "start x = 1\nrun 3\n");
+  CHECK(radial.q[0] == doctest::Approx(std::cos(3.0) * std::cos(7.5)).epsilon(1e-11));
+  CHECK(radial.q[1] == doctest::Approx(-std::cos(3.0) * std::sin(7.5)).epsilon(1e-11));
+}
+
+TEST_CASE("a run whose chosen rows jump says so, and nothing of the motion") {
+  Study study =
+      study_of("coord x, y : number\nL = 1/2 (x y' - y x') - abs(x) - 1/2 y^2\nstart x = 0.3, y = 0.1\nrun 8\n");
+  const auto result = study.motion();
+  REQUIRE(result);
+  CHECK_FALSE(result->ok());
+  CHECK(result->reason.find("the motion itself may go on") != std::string::npos);
+}
