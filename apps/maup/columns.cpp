@@ -140,6 +140,10 @@ std::optional<Trajectory> AskedColumns::added_to(Trajectory rows, Study& study) 
   const Model& model = *study.model();
   for (const auto& [formula, index] : formulas_) {
     if (rows.column(formula)) continue;  // sat.qw is a coordinate
+    if (const auto column = rows.column(asked_column(index))) {
+      rows.columns[*column].name = formula;
+      continue;
+    }
     const AskedFormula& asked = model.experiment.asked.at(index);
     FormulaColumn column(asked.value, *study.equations());
     if (column.needs_motion()) {

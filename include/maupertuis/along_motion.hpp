@@ -12,6 +12,11 @@ namespace maupertuis {
 /// On what ground a difference vanishes; `constrained`: along the motion of a system with constraints.
 std::string ground_of(const ZeroTest& test, bool constrained);
 
+/// The column of a trajectory that holds formula `index` of `Experiment::asked`. Where contacts and friction act a
+/// formula in accelerations and forces has another value in each mode, so the run itself fills its column; without them
+/// the state says it, and there is no such column.
+std::string asked_column(std::size_t index);
+
 /// Proofs about functions along the motion. Without constraints q̈ is replaced by −M⁻¹ h as a shared DAG, and the rest
 /// is the zero test's. With constraints nothing is put in: the test looks at points that satisfy the constraints and
 /// the equations with their multipliers, near the start, to 60 digits. So with degenerate Lagrangians, at points that

@@ -20,6 +20,8 @@ std::string ground_of(const ZeroTest& test, bool constrained) {
   return test.reason.empty() ? fmt::format("vanishes at {} random points", test.points) : test.reason;
 }
 
+std::string asked_column(std::size_t index) { return fmt::format("asked({})", index); }
+
 AlongMotion::AlongMotion(const EquationsOfMotion& equations) : AlongMotion(equations, equations.balance()) {}
 
 AlongMotion::AlongMotion(const EquationsOfMotion& equations, const ExprVector& residual)

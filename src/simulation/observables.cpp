@@ -2,7 +2,10 @@
 
 #include "simulation/energy_terms.hpp"
 
+#include <maupertuis/along_motion.hpp>
+#include <maupertuis/momentum.hpp>
 #include <maupertuis/reactions.hpp>
+#include <maupertuis/transform.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -54,6 +57,34 @@ void add_frictions(Observables& out, const MechanicalSystem& system) {
       if (c.name == f.name) add(f, system.lagrangian_dimension / c.dimension);
 }
 
+/// A release that the model does not determine has a symbol that no equation holds.
+bool is_in_equations(const EquationsOfMotion& equations, Expr formula) {
+  const MechanicalSystem& system = *equations.system;
+  ExprVector forces = equations.multipliers;
+  for (const Contact& c : system.contacts) {
+    forces.push_back(c.multiplier);
+    forces.insert(forces.end(), c.friction.multipliers.begin(), c.friction.multipliers.end());
+  }
+  for (const Friction& f : system.frictions) forces.insert(forces.end(), f.multipliers.begin(), f.multipliers.end());
+  const std::vector<Expr> symbols = symbols_of({&formula, 1});
+  return std::all_of(symbols.begin(), symbols.end(), [&](const Expr& s) {
+    return s.role() != Role::Multiplier || std::find(forces.begin(), forces.end(), s) != forces.end();
+  });
+}
+
+void add_asked(Observables& out, const EquationsOfMotion& equations, std::span<const AskedFormula> asked) {
+  ExprMap momenta;
+  for (std::size_t i = 0; i < equations.momenta.size(); ++i)
+    momenta.emplace(momentum_symbol(*equations.system, i), equations.momenta[i]);
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    const Expr of_state = substitute(asked[i].value, momenta);
+    const Expr value = with_reactions(equations, {&of_state, 1}).front();
+    if (!is_in_equations(equations, value)) continue;
+    out.expressions.push_back(value);
+    out.asked.push_back({asked_column(i), asked[i].dimension});
+  }
+}
+
 void find_dependences(Observables& out, const EquationsOfMotion& equations) {
   const auto& multipliers = equations.multipliers;
   if (multipliers.empty()) return;
@@ -67,7 +98,8 @@ void find_dependences(Observables& out, const EquationsOfMotion& equations) {
 
 }  // namespace
 
-Observables collect_observables(const EquationsOfMotion& equations, const Probe* probe) {
+Observables collect_observables(const EquationsOfMotion& equations, const Probe* probe,
+                                std::span<const AskedFormula> asked) {
   Observables out;
   out.expressions = energy_terms(equations);
   out.energy_terms = out.expressions.size();
@@ -76,6 +108,7 @@ Observables collect_observables(const EquationsOfMotion& equations, const Probe*
   out.points = out.expressions.size() - out.energy_terms;
   add_reactions(out, equations);
   add_frictions(out, *equations.system);
+  add_asked(out, equations, asked);
   if (probe) {
     const std::vector<Expr> wanted = with_reactions(equations, probe->expressions);
     out.expressions.insert(out.expressions.end(), wanted.begin(), wanted.end());
@@ -89,7 +122,7 @@ void append_row(std::vector<double>& values, const Sample& sample, const Observa
   values.insert(values.end(), sample.q.begin(), sample.q.end());
   values.insert(values.end(), sample.v.begin(), sample.v.end());
   const auto energies = sample.observables.begin() + static_cast<std::ptrdiff_t>(observables.energy_terms);
-  const std::size_t shown = observables.points + observables.reactions.size();
+  const std::size_t shown = observables.points + observables.reactions.size() + observables.asked.size();
   values.insert(values.end(), energies, energies + static_cast<std::ptrdiff_t>(shown));
   values.push_back(std::accumulate(sample.observables.begin(), energies, 0.0));
 }
@@ -115,6 +148,7 @@ void name_trajectory_columns(const MechanicalSystem& system, const Observables& 
     reactions.push_back({r.name, torque ? "N m" : unit(r.dimension)});
     columns.push_back(reactions.back());
   }
+  for (const Observables::Named& a : observables.asked) columns.push_back({a.name, unit(a.dimension)});
   columns.push_back({"energy", unit(system.lagrangian_dimension)});
 }
 

@@ -30,7 +30,8 @@
 #include <numeric>
 
 /// One run, in named stages: plan (numbers), kernel (program), steps, measures, companions (errors). The observables of
-/// the kernel are, in this order: the terms of h_E, the positions of the points, the reactions, the probes.
+/// the kernel are, in this order: the terms of h_E, the positions of the points, the reactions, formulas that were
+/// asked, the probes.
 namespace maupertuis {
 namespace {
 
@@ -371,7 +372,9 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   if (!start_keeps_contacts(model, plan->begin, plan->q, diagnostics)) return std::nullopt;
 
   const auto begin = Clock::now();
-  const Observables observables = collect_observables(equations, probe);
+  std::span<const AskedFormula> formulas;  // elsewhere the state of a row says them
+  if (model.system.has_modes()) formulas = model.experiment.asked;
+  const Observables observables = collect_observables(equations, probe, formulas);
   WantedFunctions wanted{observables.expressions, {}, {}};
   if (!equations.power.is_zero()) wanted.integrands.push_back(equations.power);
   if (plan->until) wanted.events.push_back(plan->condition);

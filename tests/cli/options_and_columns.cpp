@@ -145,6 +145,26 @@ TEST_CASE("forces of constraints in formulas") {
   for (const auto& row : numbers(read(file))) CHECK(row[2] == doctest::Approx(2 * row[1] / 9.81));
 }
 
+TEST_CASE("accelerations of a block that slides on a floor and comes to rest are those of the mode that it is in") {
+  const std::string block =
+      "system block\nparam m = 1 kg, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\ngravity (0, -g)\n"
+      "contact y >= 0 friction 0.3 slip x' name floor\nstart x' = 1 m/s\nrun 0.6 s\n";  // it stops at 0.34 s
+  const Folder folder;
+  const std::string file = folder.path("m.csv");
+  const Outcome outcome =
+      maup({"simulate", "-", "--every", "0.1 s", "-o", file, "--columns", "x'', y'', 2 reaction(floor), p_x"}, block);
+  REQUIRE_MESSAGE(outcome.code == 0, outcome.err);
+  const std::string csv = read(file);
+  CHECK(contains(csv, "x'' [m/s^2],y'' [m/s^2],2 reaction(floor) [N],p_x"));
+  for (const auto& row : numbers(csv)) {
+    const bool slides = row[0] < 0.339;
+    CHECK(row[1] == doctest::Approx(slides ? -2.943 : 0));
+    CHECK(row[2] == doctest::Approx(0));
+    CHECK(row[3] == doctest::Approx(19.62));
+    CHECK(row[4] == doctest::Approx(slides ? 1 - 2.943 * row[0] : 0));
+  }
+}
+
 TEST_CASE("--sweep with one unit and without its number of values") {
   const Outcome outcome = maup({"modes", "-", "--sweep", "l2 = 1 .. 2 m", "--json"}, kDouble);
   CHECK(outcome.code == 0);
