@@ -398,6 +398,30 @@ void boundaries(Elaboration& e) {
   });
 }
 
+/// u_x at an end is the force there where the density has no second derivative of u: beside a given u it says nothing.
+void refuse_slopes_beside_values(Elaboration& e) {
+  const FieldSystem& system = system_of(e);
+  for (const BoundaryCondition& slope : system.boundary) {
+    if (slope.jet.order() == 0 || !system.density) continue;
+    bool bends = false;
+    for (const Expr& one : system.jets_in(system.density)) {
+      const FieldJet jet = *system.jet_of(one);
+      bends = bends || (jet.field == slope.jet.field && jet.order() - jet.time > 1);
+    }
+    for (const BoundaryCondition& value : system.boundary) {
+      if (bends || value.jet.order() != 0 || value.jet.field != slope.jet.field || value.side != slope.side) continue;
+      e.diagnostics.error(
+          "E0285", slope.span,
+          fmt::format("`{}` and `{}` are both given at the {} end", system.jet_name(value.jet),
+                      system.jet_name(slope.jet), name_of(slope.side)),
+          "The density holds first derivatives alone: an end takes one condition, and the slope there is what "
+          "the support makes of it.",
+          "Keep one of them.");
+      return;
+    }
+  }
+}
+
 // ------------------------------------------------------------------------------------------------------- the forces
 
 /// force density u = f
@@ -510,6 +534,7 @@ void elaborate_fields(Elaboration& e) {
   given_formulas(e);
   densities(e);
   boundaries(e);
+  refuse_slopes_beside_values(e);
   forces(e);
   for (const Definition& d : e.system().definitions)
     if (d.symbol) system_of(e).definitions[d.symbol] = d.value;

@@ -281,6 +281,15 @@ bool check_usage(const ModesOptions& o, Diagnostics& diagnostics) {
 ExitCode modes_of_fields(const ModesOptions& options, Study& study, Console& console) {
   constexpr std::size_t shown = 8;
   Json document = json_document("modes");
+  if (options.orbit || options.asks_of_one_point()) {
+    study.diagnostics().error(
+        "E0809", {},
+        "--at, --sweep, --plot, --roots, --csv, --Q, --y and --orbit are about coordinates, and the model has fields.",
+        "Modes of fields are those about rest, for the values of the model.",
+        "Leave these options out; other values are given by `--set k=2`.");
+    finish(console, study, std::move(document));
+    return ExitCode::Usage;
+  }
   if (!study.field_equations()) return finish(console, study, std::move(document));
   const InterruptScope scope = study.interruptible();
   if (options.dispersion) {
