@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -86,9 +87,23 @@ bool are_independent(const ExprVector& a, const ExprVector& b) {
   return false;
 }
 
+/// Two components are those in the plane of contact, in a model of any dimension.
+Value slip_value(Elaboration& e, const syntax::Expression& slip) {
+  if (slip.kind != syntax::Expression::Kind::Vector || slip.arguments.size() != 2) return evaluate_formula(e, slip);
+  Value first = evaluate_formula(e, *slip.arguments[0]);
+  const Value second = evaluate_formula(e, *slip.arguments[1]);
+  if (first.poisoned || second.poisoned) return Value::poison();
+  if (first.is_vector || second.is_vector) return evaluate_formula(e, slip);  // which says what is wrong
+  if (!first.fits_any && !check_dimension(e, second, first.dimension, "the first component", *slip.arguments[1]))
+    return Value::poison();
+  first.parts.push_back(second.scalar());
+  first.is_vector = true;
+  return first;
+}
+
 /// v_t: linear in the velocities, and not along the normal. Empty after a mistake.
 ExprVector slip_of(Elaboration& e, const ContactStatement& s, Expr gap) {
-  Value v = evaluate_formula(e, *s.slip);
+  Value v = slip_value(e, *s.slip);
   if (v.poisoned) return {};
   std::erase_if(v.parts, [&](const Expr& part) { return v.parts.size() > 1 && part.is_zero(); });
   if (v.parts.size() > 2) {
@@ -199,6 +214,21 @@ void contact(Elaboration& e, const ContactStatement& s, Span span) {
   e.system().contacts.push_back(std::move(c));
 }
 
+/// E0225: the force of a contact is not one of the equations while the contact is open.
+bool refuse_force_of_contact(Elaboration& e, Expr normal, const syntax::Expression& x) {
+  const ExprVector symbols = symbols_of({&normal, 1});
+  for (const Contact& c : e.system().contacts) {
+    if (std::none_of(symbols.begin(), symbols.end(),
+                     [&](const Expr& s) { return s == c.reaction || s == c.multiplier; }))
+      continue;
+    e.diagnostics.error("E0225", x.span, "the force of a contact cannot be the normal force of another friction",
+                        "A contact has friction of its own, which begins and ends with it.",
+                        "Write it there: contact … friction μ slip x'.");
+    return true;
+  }
+  return false;
+}
+
 /// friction x coefficient μ static μs normal m g,   friction θ limit M static Ms
 void friction(Elaboration& e, const FrictionStatement& s, Span span) {
   const auto of = start_variable(e, *s.coordinate);
@@ -229,7 +259,7 @@ void friction(Elaboration& e, const FrictionStatement& s, Span span) {
     Place along_motion;
     along_motion.reactions = true;
     const Value normal = scalar_of(e, *s.normal, force, "the normal force", along_motion);
-    if (!kinetic || !static_ || normal.poisoned) return;
+    if (!kinetic || !static_ || normal.poisoned || refuse_force_of_contact(e, normal.scalar(), *s.normal)) return;
     f.kinetic = *kinetic, f.static_ = *static_, f.normal = normal.scalar();
   }
   if (s.static_friction && refuse_order_of_coefficients(e, f.kinetic, f.static_, *s.static_friction)) return;

@@ -34,6 +34,12 @@ class Critical {
     result.expected = sentence(value_);
     result.tolerance = tolerance_text(e_.critical.tolerance, e_.critical.unit, system_);
     const bool inside = holds(tolerance_), outside = holds(-tolerance_);
+    if (outside && !inside) {
+      result.actual = fmt::format("{} on the other side, {} {} {}", word(), system_.parameters[e_.parameter].name,
+                                  e_.above ? "<" : ">", number(value_ + sign_ * bisected(-tolerance_, tolerance_)));
+      result.message = fmt::format("It is not {} at {}.", word(), shown(tolerance_));
+      return;
+    }
     const std::optional<double> change =
         inside == outside ? change_elsewhere(inside) : std::optional(bisected(tolerance_, -tolerance_));
     if (!change) {
@@ -42,7 +48,7 @@ class Critical {
       return;
     }
     result.actual = sentence(value_ + sign_ * *change);
-    if (!inside || outside) {
+    if (inside == outside) {
       result.message = "The stability changes elsewhere.";
       return;
     }

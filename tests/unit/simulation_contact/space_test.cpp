@@ -33,6 +33,15 @@ TEST_CASE("a block pushed sideways on an incline with μ = tan α ends downhill,
   CHECK(r.books->friction == doctest::Approx(0.5 * (4 - 1) + downhill * r.final.q[0]).epsilon(1e-12));
 }
 
+TEST_CASE("the plane of contact has two directions, also where points are in space") {
+  const auto r = run_text(
+      "param m = 1 kg, g = 10 m/s^2\ncoord x, y, z : length\npoint P mass m at (x, y, z)\ngravity (0, 0, -g)\n"
+      "contact z >= 0 friction 0.3 slip (x', y') name floor\nstart x' = 3 m/s, y' = 4 m/s\n",
+      1);
+  CHECK(r.final.v[0] == doctest::Approx(3 - 0.6 * 3).epsilon(1e-12));
+  CHECK(r.final.v[1] == doctest::Approx(4 - 0.8 * 3).epsilon(1e-12));
+}
+
 TEST_CASE("a block let go on an incline sticks or slides down, from rest and to the last digits") {
   CHECK(run_text(block("1.001 tan α", "start x = 0 m"), 5).first_mode == "plane sticking");
   const auto r = run_text(block("0.3", "start x = 0 m"), 1);

@@ -84,6 +84,8 @@ TEST_CASE("critical parameters: the change lies within the tolerance, and the ve
   boundary(hoop, "expect stable for Ω < 4.43 rad/s rel TOL at θ = 0 deg", (4.43 - 4.4294469180700204) / 4.43);
   fails(hoop, "expect unstable for Ω < 4.43 rad/s ± 1e-2 at θ = 0 deg");
   fails(hoop, "expect stable for Ω > 4.43 rad/s ± 1e-2 at θ = 0 deg");
+  CHECK(only(hoop + "expect stable for Ω > 4.43 rad/s ± 1e-2 at θ = 0 deg\n").actual ==
+        "stable on the other side, Ω < 4.429446918 rad/s");
   const ExpectationResult elsewhere = only(hoop + "expect stable for Ω < 3 rad/s ± 1e-2 at θ = 0 deg\n");
   CHECK_FALSE(elsewhere.passed);
   CHECK(elsewhere.actual.find("Ω < 4.42944691") != std::string::npos);
