@@ -157,7 +157,7 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
   const VectorXd v = vector_of(v_);
   const bool at_once = system_.impact_law == ImpactLaw::Simultaneous || (rests && !rubs);
   ImpactResult result = end       ? last_impact(p, v)
-                        : at_once ? simultaneous_impact(p, v, false)
+                        : at_once ? impact_at_once(p, v)
                                   : sequential_impact(p, v, ImpactOrder::FastestFirst);
   if (end) {  // what rests beside them is not pressed through
     ImpactProblem all = impact_problem(touching, values);
@@ -173,12 +173,20 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
     reason = "No impulses keep all contacts that are hit here from closing.";
     return false;
   }
+  if (result.rubs_at_once) {
+    reason = fmt::format(
+        "Several contacts are hit here, {} with friction among them, and `impact simultaneous` says nothing of "
+        "friction: "
+        "leave it out, and one contact after the other is hit, with its friction.",
+        system_.contact_label(*result.rubs_at_once));
+    return false;
+  }
   note_impact(p, result, v, end.has_value());
   if (!at_once && !end) note_order(p, result, v);
   if (result.bounded)
     remark(
         fmt::format("At t = {:.9g} impacts followed each other without an end; the rest of them was done at once, "
-                    "without bounce.",
+                    "without bounce and without friction.",
                     t_));
   v_.assign(result.v.data(), result.v.data() + result.v.size());
   // Forces after an impact are others: what came to 0 before it may press.

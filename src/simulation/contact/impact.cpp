@@ -118,6 +118,14 @@ void polish(const ImpactProblem& p, const std::vector<std::size_t>& contacts, co
   for (std::size_t a = 0; a < contacts.size(); ++a) v += more(at(a)) * p.response.col(at(contacts[a]));
 }
 
+/// `before`, `after`: ġ.
+Impulse without_friction(std::size_t contact, double normal, double before, double after) {
+  Impulse out;
+  out.contact = contact, out.normal = normal, out.speed = -before;
+  out.loss = -0.5 * normal * (before + after);
+  return out;
+}
+
 /// Many impulses leave what is nearly closed at some roundings of zero: it is closed.
 void settle(const ImpactProblem& p, ImpactResult& out) {
   constexpr double roundings = 16;
@@ -179,10 +187,28 @@ ImpactResult simultaneous_impact(const ImpactProblem& p, const VectorXd& v, bool
     const double impulse = (*found)(at(a));
     if (!(impulse > 0)) continue;
     const double before = rate(p, in[a], v), after = rate(p, in[a], out.v);
-    out.impulses.push_back({p.contacts[in[a]], impulse, 0, 0, -before, -0.5 * impulse * (before + after)});
+    out.impulses.push_back(without_friction(p.contacts[in[a]], impulse, before, after));
     out.moving -= impulse * p.drive[in[a]];
     out.loss += out.impulses.back().loss;
   }
+  return out;
+}
+
+ImpactResult impact_at_once(const ImpactProblem& p, const VectorXd& v) {
+  ImpactResult out = simultaneous_impact(p, v, false);
+  constexpr double rounding = 1e-9;
+  double largest = 0;
+  for (const Impulse& i : out.impulses) largest = std::max(largest, i.normal);
+  const auto rubs = std::find_if(out.impulses.begin(), out.impulses.end(), [&](const Impulse& i) {
+    const auto k = std::find(p.contacts.begin(), p.contacts.end(), i.contact) - p.contacts.begin();
+    return i.normal > rounding * largest && has_friction(p, static_cast<std::size_t>(k));
+  });
+  if (rubs == out.impulses.end()) return out;
+  ImpactResult alone = sequential_impact(p, v, ImpactOrder::FastestFirst);
+  if (std::all_of(alone.impulses.begin(), alone.impulses.end(),
+                  [&](const Impulse& i) { return i.contact == alone.impulses.front().contact; }))
+    return alone;
+  out.rubs_at_once = rubs->contact;
   return out;
 }
 
@@ -204,9 +230,7 @@ ImpactResult end_of_bounces(const ImpactProblem& p, const VectorXd& v) {
     const double before = rate(p, a, v), after = rate(p, a, out.v);
     out.moving -= impulses(at(a)) * p.drive[a];
     out.loss -= 0.5 * impulses(at(a)) * (before + after);
-    if (before < -p.rest[a])
-      out.impulses.push_back(
-          {p.contacts[a], impulses(at(a)), 0, 0, -before, -0.5 * impulses(at(a)) * (before + after)});
+    if (before < -p.rest[a]) out.impulses.push_back(without_friction(p.contacts[a], impulses(at(a)), before, after));
   }
   return out;
 }

@@ -3,6 +3,7 @@
 
 #include <maupertuis/contact.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct ImpactResult {
   double loss = 0;                // of energy otherwise
   bool bounded = false;           // the bound of sequential impulses was met: the rest was done at once, without bounce
   bool unsolved = false;          // no impulses were found that keep all contacts from closing
+  std::optional<std::size_t> rubs_at_once{};  // a contact with friction that is hit together with others
 };
 
 /// What an impact is made of: at one configuration, contacts with g = 0.
@@ -54,6 +56,10 @@ ImpactResult sequential_impact(const ImpactProblem& problem, const Eigen::Vector
 
 /// 0 ≤ Λ ⟂ ġ⁺ + e ġ⁻ ≥ 0 over the contacts that close or rest. Without friction. `plastic`: e = 0.
 ImpactResult simultaneous_impact(const ImpactProblem& problem, const Eigen::VectorXd& v, bool plastic);
+
+/// The same with the friction of a contact that is hit alone, as sequential_impact has it. Where one with friction is
+/// hit together with others `rubs_at_once` names it: friction has no law there.
+ImpactResult impact_at_once(const ImpactProblem& problem, const Eigen::VectorXd& v);
 
 /// ġ⁺ = 0 at all contacts: what infinitely many bounces between them end in.
 ImpactResult end_of_bounces(const ImpactProblem& problem, const Eigen::VectorXd& v);

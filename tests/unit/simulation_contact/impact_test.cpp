@@ -64,6 +64,22 @@ TEST_CASE("three equal balls by complementarity: -1/3, 2/3, 2/3") {
   CHECK(r.v(2) == doctest::Approx(2.0 / 3));
 }
 
+TEST_CASE("impacts at once: what each takes is the loss of kinetic energy, and its speed is the one before") {
+  // 2 Λ1 − Λ2 = 1.7, 2 Λ2 − Λ1 = 0: ½ − ½ Σ v² of (−2/15, 17/30, 17/30)
+  const ImpactResult r = simultaneous_impact(row_of_balls({1, 1, 1}, 0.7), velocities({1, 0, 0}), false);
+  CHECK(r.loss == doctest::Approx(0.5 - 0.5 * r.v.squaredNorm()));
+  CHECK(r.loss > 0.1);
+  REQUIRE(r.impulses.size() == 2);
+  CHECK(r.impulses[0].speed == doctest::Approx(1));
+  CHECK(r.impulses[1].speed == 0);
+  CHECK(r.impulses[0].loss + r.impulses[1].loss == doctest::Approx(r.loss));
+  const ImpactResult end = end_of_bounces(row_of_balls({1, 1}, 0.7), velocities({1, 0}));
+  CHECK(end.loss == doctest::Approx(0.25));
+  REQUIRE(end.impulses.size() == 1);
+  CHECK(end.impulses[0].speed == doctest::Approx(1));
+  CHECK(end.impulses[0].loss == doctest::Approx(0.25));
+}
+
 TEST_CASE("two stacked balls 3 : 1 that fall with speed 1: the floor first, then each other, give (0, 2)") {
   ImpactProblem p = row_of_balls({3, 1}, 1);
   p.contacts.push_back(1);
