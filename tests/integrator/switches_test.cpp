@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
+#include <vector>
 
 // Functions with a switch, and events, against closed forms.
 
@@ -204,4 +206,111 @@ TEST_CASE("an event that is never zero does not end the run; a double root does"
     CHECK(std::abs(stepper.time() - (touches ? std::acos(-1.0) : 30)) <
           3e-8);  // a double root is known to half of the digits
   }
+}
+
+namespace {
+
+using Formula = std::function<Expr(Context&, Expr)>;
+
+/// x(5) of x'' = f(t) from rest at 0.
+double pushed(const Formula& f, StepEnding& ending) {
+  Mechanics m;
+  const auto x = m.coordinate("x", 0, 0);
+  m.natural(pow(m.dot(x), 2) / Rational(2), m.context.number(0));
+  with_force(m, x, f(m.context, m.context.time()));
+  auto stepper = m.stepper();
+  ending = StepEnding::None;
+  while (stepper.time() < 5 && ending == StepEnding::None) ending = stepper.step(5).ending;
+  return stepper.q()[0];
+}
+
+Expr is_above(Context& c, Expr x, int bound) {
+  const std::vector<Expr> sides{c.number(bound), x};
+  const std::vector<Expr> pieces{c.function(Kind::Less, sides), c.number(1), c.number(0)};
+  return c.function(Kind::Piecewise, pieces);
+}
+
+/// Times at which f(t) is zero up to 10.
+std::vector<double> zeros(const Formula& f) {
+  Mechanics m;
+  const auto x = m.coordinate("x", 0, 0);
+  m.natural(pow(m.dot(x), 2) / Rational(2), m.context.number(0));
+  m.source.events = {f(m.context, m.context.time())};
+  auto stepper = m.stepper();
+  std::vector<double> out;
+  while (stepper.time() < 10) {
+    const Step step = stepper.step(10);
+    REQUIRE(step.ending == StepEnding::None);
+    for (const EventRoot& root : step.events) out.push_back(root.time);
+  }
+  return out;
+}
+
+void check_zeros(const std::vector<double>& found, const std::vector<double>& expected) {
+  REQUIRE(found.size() == expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) CHECK(std::abs(found[i] - expected[i]) < 1e-12);
+}
+
+}  // namespace
+
+TEST_CASE("a switch function with a pole changes its side there") {
+  constexpr double pi = 3.14159265358979323846;
+  const auto tan = [](Expr t) { return apply(Kind::Tan, t); };
+  StepEnding ending{};
+  // x(5) = Σ ∫ (5 − t) over where the force is 1.
+  const auto within = [](double a, double b) { return ((5 - a) * (5 - a) - (5 - b) * (5 - b)) / 2; };
+  const Formula reciprocal = [](Context& c, Expr t) { return is_above(c, pow(t - c.number(2), -1), 1); };
+  CHECK(std::abs(pushed(reciprocal, ending) - 2.5) < 1e-13);
+  const Formula below_too = [](Context& c, Expr t) { return is_above(c, pow(t - c.number(2), -1), -1); };
+  CHECK(std::abs(pushed(below_too, ending) - (within(0, 1) + within(2, 5))) < 1e-13);
+  const Formula of_tangent = [&](Context&, Expr t) { return apply(Kind::Step, tan(t)); };
+  CHECK(std::abs(pushed(of_tangent, ending) - (within(0, pi / 2) + within(pi, 1.5 * pi))) < 1e-13);
+  const Formula of_log = [](Context& c, Expr t) {
+    return apply(Kind::Step, apply(Kind::Log, apply(Kind::Abs, t - c.number(2))));
+  };
+  CHECK(std::abs(pushed(of_log, ending) - (within(0, 1) + within(3, 5))) < 1e-13);
+  CHECK(ending == StepEnding::None);
+}
+
+TEST_CASE("a switch function without a value ends the run, unless nothing depends on it") {
+  StepEnding ending{};
+  const auto root_less_one = [](Context& c, Expr t) { return sqrt(t - c.number(2)) - c.number(1); };
+  pushed([&](Context& c, Expr t) { return apply(Kind::Step, root_less_one(c, t)); }, ending);
+  CHECK(ending == StepEnding::Overflow);
+  pushed([](Context& c, Expr t) { return apply(Kind::Step, sqrt(c.number(4) - t) - c.number(1)); }, ending);
+  CHECK(ending == StepEnding::Overflow);
+  const Formula guarded = [&](Context& c, Expr t) {
+    const std::vector<Expr> sides{c.number(2), t};
+    const std::vector<Expr> pieces{c.function(Kind::Less, sides), apply(Kind::Step, root_less_one(c, t)), c.number(0)};
+    return c.function(Kind::Piecewise, pieces);
+  };
+  CHECK(std::abs(pushed(guarded, ending) - 2) < 1e-13);
+  CHECK(ending == StepEnding::None);
+}
+
+TEST_CASE("events at the border of a domain, and of fractional powers beside their branch points") {
+  const auto tenth = [](Context& c) { return c.number(1) / Rational(10); };
+  check_zeros(zeros([&](Context& c, Expr t) { return sqrt(t - c.number(2)) - tenth(c); }), {2.01});
+  check_zeros(zeros([&](Context& c, Expr t) { return pow(t - c.number(2), Rational(3, 2)) - tenth(c); }),
+              {2 + std::pow(0.1, 2.0 / 3)});
+  check_zeros(
+      zeros([&](Context& c, Expr t) { return sqrt(c.number(1) - Rational(2) * cos(t)) - tenth(c); }),
+      {std::acos(0.495), 2 * 3.14159265358979323846 - std::acos(0.495), 2 * 3.14159265358979323846 + std::acos(0.495)});
+  const Formula both = [&](Context& c, Expr t) {
+    return pow(apply(Kind::Abs, t - c.number(1)), Rational(3, 2)) - tenth(c);
+  };
+  check_zeros(zeros(both), {1 - std::pow(0.1, 2.0 / 3), 1 + std::pow(0.1, 2.0 / 3)});
+}
+
+TEST_CASE("the cut of an angle is no crossing, and ends a force in time") {
+  constexpr double pi = 3.14159265358979323846;
+  const auto angle = [](Context& c, Expr t) {
+    const std::vector<Expr> of{apply(Kind::Sin, t), apply(Kind::Cos, t)};
+    return c.function(Kind::Atan2, of);
+  };
+  check_zeros(zeros([&](Context& c, Expr t) { return angle(c, t) + c.number(2); }), {2 * pi - 2});
+  check_zeros(zeros([&](Context& c, Expr t) { return angle(c, t) - c.number(1); }), {1, 1 + 2 * pi});
+  StepEnding ending{};
+  const Formula force = [&](Context& c, Expr t) { return is_above(c, angle(c, t), 1); };
+  CHECK(std::abs(pushed(force, ending) - (16 - (5 - pi) * (5 - pi)) / 2) < 1e-13);
 }

@@ -63,6 +63,7 @@ class Stepper {
     bool found = false;
     std::vector<std::size_t> roots;      // switches, then events
     std::vector<int> directions;         // [roots]
+    std::vector<bool> jumps;             // [roots] a switch function jumps there: it has no zero
     std::vector<taylor::Watched> after;  // the same, as the step leaves them
   };
 
@@ -75,9 +76,15 @@ class Stepper {
   void choose_first_sides();
   T judged_length(const T& bound) const;
   std::optional<Outcome> decide_sides(const T& bound);
+  std::optional<Outcome> without_value();
+  bool has_value(std::size_t switch_function) const {
+    const T here = work_.switch_function(switch_function, 0);
+    return here == here;
+  }
   bool watches() const { return !switch_state_.empty() || !event_state_.empty(); }
   bool begins_past_root(std::size_t index, const T& h, taylor::Watched& watched) const;
-  void note(Crossing& crossing, const T& x, std::size_t index, const T& together, int direction) const;
+  void note(Crossing& crossing, const T& x, std::size_t index, const T& together, int direction,
+            bool jump = false) const;
   Crossing first_crossing(const T& h);
   void leave(const Crossing& crossing);
   double safe_length(double log2_wanted, double log2_left);

@@ -171,7 +171,7 @@ std::optional<typename Stepper<T>::Outcome> Stepper<T>::decide_sides(const T& bo
   });
   switch (chooser.decide(judged_length(bound))) {
     case Chooser::Outcome::Decided:
-      return std::nullopt;
+      return without_value();
     case Chooser::Outcome::Failed:
       return failure(KernelStatus::NonFinite);
     case Chooser::Outcome::Sliding:
@@ -179,6 +179,31 @@ std::optional<typename Stepper<T>::Outcome> Stepper<T>::decide_sides(const T& bo
   }
   return Outcome{StepEnding::Sliding,
                  "Both sides of a switch push the motion back to it, so that it would slide along the switch."};
+}
+
+/// See TaylorStepper::Impl::switches_have_values.
+template <class T>
+std::optional<typename Stepper<T>::Outcome> Stepper<T>::without_value() {
+  const auto motion_on = [&](taylor::Watched& w, std::int8_t side) {
+    w.side = side;
+    set_sides(work_);
+    std::vector<T> coefficients;
+    if (work_.expand(t_, q_, v_) != KernelStatus::Ok) return coefficients;
+    for (int k = 2; k <= control_.order; ++k)
+      coefficients.insert(coefficients.end(), work_.coordinate(k), work_.coordinate(k) + n_);
+    return coefficients;
+  };
+  for (std::size_t i = 0; i < switch_state_.size(); ++i) {
+    if (has_value(i)) continue;
+    taylor::Watched& w = switch_state_[i];
+    const std::vector<T> above = motion_on(w, 1), below = motion_on(w, -1);
+    if (above.empty() || above != below)
+      return Outcome{StepEnding::Overflow,
+                     "The argument of a switch (step, sign, abs, min, max or a comparison) is no real number here, and "
+                     "the motion depends on it."};
+    static_cast<void>(motion_on(w, 0));
+  }
+  return std::nullopt;
 }
 
 /// See TaylorStepper::Impl::begins_past_root.
@@ -193,13 +218,16 @@ bool Stepper<T>::begins_past_root(std::size_t index, const T& h, taylor::Watched
 
 /// Roots that rounding does not tell apart are one crossing.
 template <class T>
-void Stepper<T>::note(Crossing& crossing, const T& x, std::size_t index, const T& together, int direction) const {
+void Stepper<T>::note(Crossing& crossing, const T& x, std::size_t index, const T& together, int direction,
+                      bool jump) const {
   if (crossing.found && x > crossing.x * (1 + together) + together) return;
-  if (x < crossing.x * (1 - together) - together) crossing.roots.clear(), crossing.directions.clear();
+  if (x < crossing.x * (1 - together) - together)
+    crossing.roots.clear(), crossing.directions.clear(), crossing.jumps.clear();
   crossing.x = std::min(crossing.x, x);
   crossing.found = true;
   crossing.roots.push_back(index);
   crossing.directions.push_back(direction);
+  crossing.jumps.push_back(jump);
 }
 
 template <class T>
@@ -217,16 +245,21 @@ typename Stepper<T>::Crossing Stepper<T>::first_crossing(const T& h) {
   for (std::size_t i = 0; i < first.after.size(); ++i) {
     const bool is_switch = i < count;
     taylor::Watched& watched = first.after[i];
-    if (is_switch && watched.side == 0) continue;  // it vanishes along the motion
+    if (is_switch && watched.side == 0 && has_value(i)) continue;  // it vanishes
     if (!is_switch && !roots_->is_clear(i) && begins_past_root(i - count, h, watched))
       note(first, T(0), i, together, watched.side);
     const T until = std::min(roots_->window(), T(first.x * (1 + together) + together));
     const auto root = roots_->first(i, watched, T(0), until, !is_switch, is_switch);
-    if (root) note(first, root->x, i, together, root->kind == taylor::RootKind::Touching ? 0 : -watched.side);
+    if (!root) continue;
+    const bool jump = root->kind == taylor::RootKind::Jump;
+    note(first, root->x, i, together, root->kind == taylor::RootKind::Touching ? 0 : -watched.side, jump);
+    if (jump) watched = {root->after, false};
   }
   // A step of no length leaves the others where they were.
   for (std::size_t i = 0; i < count && first.x == 0; ++i) first.after[i].at_zero = switch_state_[i].at_zero;
-  for (const std::size_t i : first.roots) {
+  for (std::size_t k = 0; k < first.roots.size(); ++k) {
+    if (first.jumps[k]) continue;  // what lies beyond is known
+    const std::size_t i = first.roots[k];
     taylor::Watched& watched = first.after[i];
     watched = {i < count ? static_cast<std::int8_t>(-watched.side) : std::int8_t{0}, true};
   }

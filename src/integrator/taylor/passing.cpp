@@ -122,6 +122,7 @@ bool TaylorStepper::Impl::Collocation::ask_beside(double x) {
     bool changed = false;
     for (std::size_t i = 0; i < sides.size(); ++i) {
       const double value = s_.probe.switch_function(i, 0);
+      if (std::isnan(value)) return false;
       const std::int8_t side = value > 0 ? 1 : value < 0 ? -1 : sides[i];
       changed = changed || side != sides[i];
       sides[i] = side;

@@ -4,6 +4,7 @@
 #include "kernel/disks/scaled_rows.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,7 +14,7 @@ namespace maupertuis::taylor {
 enum class RootKind {
   Crossing,  // the function goes through zero
   Touching,  // it comes to zero, up to rounding, and goes back
-  Jump,      // its sign changes where it has no zero: at a pole, or at the cut of atan2
+  Jump,      // its sign changes where it has no zero, at a pole, or it ceases or begins to have a value
 };
 
 /// Where in a step: x = s/h in [0, 1].
@@ -21,6 +22,7 @@ template <class T>
 struct RootOf {
   T x;
   RootKind kind;
+  std::int8_t after = 0;  // of a jump: the side beyond it; 0: the function has no value there
 };
 
 /// Roots of functions along a step whose motion is a known polynomial.
@@ -35,7 +37,8 @@ struct RootOf {
 ///
 /// In a piece the function is a polynomial with a remainder; all its roots are found by Bernstein coefficients, never
 /// by sampling, and each is refined on the function itself. Functions that a disk about the beginning of the step keeps
-/// clear of zero are not expanded at all.
+/// clear of zero are not expanded at all. Where a function has no value (√ of what is negative), the gap reaches to the
+/// border of its domain.
 template <class T>
 class RootSearchOf {
  public:
@@ -150,6 +153,13 @@ class RootSearchOf {
     std::optional<RootOf<T>> root;
   };
   Gap gap(std::size_t index, const T& x, const T& until, std::int8_t side);
+  bool has_value(std::size_t index, const T& x);
+  T border(std::size_t index, T without, T with);
+  struct Beyond {
+    T last, place;  // the last place that was looked at before, and this one
+  };
+  Beyond analytic_beyond(std::size_t index, const T& x, const T& until);
+  std::optional<RootOf<T>> change_of_sign(std::size_t index, T low, T high, std::int8_t side, const T& end);
 
   std::vector<Slot> slots_;
   Retrace<T> retrace_;
@@ -162,9 +172,10 @@ class RootSearchOf {
   bool expanded_ = false;  // the rows are those of the place
   Time t_;
   T h_ = T(1), resolution_ = T(0), window_ = T(1);
-  double last_window_ = 0;     // in time; 0: there was none
-  std::vector<T> constants_;   // those that are set
-  std::vector<double> rough_;  // the same
+  double last_radius_ = std::numeric_limits<double>::infinity();  // of the disk of the piece before, in time
+  double last_window_ = 0;                                        // in time; 0: there was none
+  std::vector<T> constants_;                                      // those that are set
+  std::vector<double> rough_;                                     // the same
 };
 
 using RootSearch = RootSearchOf<double>;

@@ -185,14 +185,15 @@ void RootSearchOf<T>::go_to(const T& x, const T& most) {
   disks_.begin(rows_.of(retrace_.row(0), retrace_.stride(), retrace_.order(), std::ilogb(length)));
 }
 
-/// What the step leaves out of a function on the disk number `disk`: their radii fall from 8 lengths on by a third.
+/// What the step leaves out of a function on the disk number `disk`: their radii fall by a third, from 8 lengths on, or
+/// from somewhat more than the one of the piece before.
 template <class T>
 double RootSearchOf<T>::tail(std::size_t disk, std::size_t near) {
   using std::abs;
   while (place_.tails.size() <= disk) {
     expand();
-    const double radius =
-        place_.radii.empty() ? 8 * static_cast<double>(abs(h_) * place_.most) : place_.radii.back() / 1.5;
+    const double first = std::min(8 * static_cast<double>(abs(h_) * place_.most), 20 * last_radius_);
+    const double radius = place_.radii.empty() ? first : place_.radii.back() / 1.5;
     disks_.evaluate(radius);
     place_.radii.push_back(radius);
     place_.tails.emplace_back();
@@ -221,10 +222,10 @@ typename RootSearchOf<T>::Piece RootSearchOf<T>::piece(std::size_t index, const 
   T remainder = T(0);
   Piece result{{}, T(0)};
   const double least = static_cast<double>(resolution_ / most);
-  double radius = 8 * length;
-  for (std::size_t i = 0; i < 200 && best < 1 && most_of_radius * radius > std::max(best, least) * length;
-       ++i, radius /= 1.5) {
-    const double left = tail(i, near);
+  double best_radius = last_radius_;
+  for (std::size_t i = 0; i < 200 && best < 1; ++i) {
+    const double left = tail(i, near), radius = place_.radii[i];
+    if (!(most_of_radius * radius > std::max(best, least) * length)) break;
     if (!(left < std::numeric_limits<double>::infinity())) continue;
     for (double part = std::min(1.0, most_of_radius * radius / length);
          part > best && part * length > least_of_radius * radius; part *= 0.75) {
@@ -232,12 +233,13 @@ typename RootSearchOf<T>::Piece RootSearchOf<T>::piece(std::size_t index, const 
       const T left_out = left == 0 ? T(0) : T(left) * T(std::pow(ratio, known + 1) / (1 - ratio));
       auto polynomial = polynomial_over(part);
       if (!(left_out <= unit * polynomial.reach)) continue;
-      best = part, remainder = left_out;
+      best = part, remainder = left_out, best_radius = radius;
       result.polynomial = std::move(polynomial);
       break;
     }
   }
   if (!(best > least)) return {{}, T(0)};
+  last_radius_ = best_radius;
   result.width = T(best) * most;
   result.polynomial.scale += remainder / unit;
   result.polynomial.reach += remainder / unit;
@@ -289,24 +291,45 @@ T RootSearchOf<T>::refined(std::size_t index, const Piece& piece, const T& begin
   return std::clamp(x, begin, T(begin + piece.width));
 }
 
-/// Looks for the other side of a point where the function is not analytic, and for what its sign does there.
 template <class T>
-typename RootSearchOf<T>::Gap RootSearchOf<T>::gap(std::size_t index, const T& x, const T& until, std::int8_t side) {
-  using std::abs;
-  Gap result{until, side, std::nullopt};
-  const auto sign_at = [&](const T& at) { return watching::sign(value(index, at)); };
-  T beyond = resolution_;
-  for (;; beyond *= 2) {
-    if (x + beyond >= until) break;
-    const Piece there = piece(index, T(x + beyond), std::min(beyond, T(until - x - beyond)));
-    if (there.width > 0) {
-      result.end = x + beyond;
-      break;
-    }
+bool RootSearchOf<T>::has_value(std::size_t index, const T& x) {
+  const T here = value(index, x);
+  return here == here;
+}
+
+/// The border of the domain of a function, on the side where it has a value.
+template <class T>
+T RootSearchOf<T>::border(std::size_t index, T without, T with) {
+  for (int turn = 0; turn < 2 * std::numeric_limits<T>::digits; ++turn) {
+    const T middle = T(0.5) * (without + with);
+    if (middle == without || middle == with) break;
+    (has_value(index, middle) ? with : without) = middle;
   }
-  result.side = sign_at(result.end);
-  if (side == 0 || result.side == 0 || result.side == side) return result;
-  T low = x, high = result.end, at_low = abs(value(index, low)), at_high = abs(value(index, high));
+  return with;
+}
+
+/// The first place, of those looked at, where a function is analytic again, or where it has a value as it had none at
+/// the place before; `until` where there is none.
+template <class T>
+typename RootSearchOf<T>::Beyond RootSearchOf<T>::analytic_beyond(std::size_t index, const T& x, const T& until) {
+  const T widest = T(1) / T(32);  // of the step, from one place to the next
+  Beyond at{x, until};
+  for (T width = resolution_; at.last + width < until; width = std::min(T(2 * width), widest)) {
+    const T place = at.last + width;
+    if (has_value(index, place) &&
+        (!has_value(index, at.last) || piece(index, place, std::min(T(place - x), T(until - place))).width > 0))
+      return {at.last, place};
+    at.last = place;
+  }
+  return at;
+}
+
+/// The change of sign from `side` at `low` to the other at `high`, beyond which the function is analytic from `end` on.
+template <class T>
+std::optional<RootOf<T>> RootSearchOf<T>::change_of_sign(std::size_t index, T low, T high, std::int8_t side,
+                                                         const T& end) {
+  using std::abs;
+  T at_low = abs(value(index, low)), at_high = abs(value(index, high));
   const T before = std::max(at_low, at_high);
   for (int turn = 0; turn < 2 * std::numeric_limits<T>::digits; ++turn) {
     const T middle = T(0.5) * (low + high);
@@ -317,7 +340,40 @@ typename RootSearchOf<T>::Gap RootSearchOf<T>::gap(std::size_t index, const T& x
   }
   // A zero gets smaller on both sides, a jump does not.
   const bool is_zero = std::max(at_low, at_high) <= T(0.5) * before || std::max(at_low, at_high) == 0;
-  result.root = RootOf<T>{high, is_zero ? RootKind::Crossing : RootKind::Jump};
+  if (is_zero) return RootOf<T>{high, RootKind::Crossing};
+  // The motion goes on from where the function has a value with its new sign; at a pole itself it has none.
+  const auto is_beyond = [&](const T& x) {
+    const T there = value(index, x);
+    return abs(there) <= std::numeric_limits<T>::max() && watching::sign(there) == -side;
+  };
+  T place = high;
+  for (T width = std::numeric_limits<T>::epsilon() * high; place < end && !is_beyond(place); width *= 2)
+    place = std::min(end, T(high + width));
+  return RootOf<T>{place, RootKind::Jump, static_cast<std::int8_t>(-side)};
+}
+
+/// Looks for the other side of a point, or of a stretch, where the function is not analytic, and for what its sign does
+/// there.
+template <class T>
+typename RootSearchOf<T>::Gap RootSearchOf<T>::gap(std::size_t index, const T& x, const T& until, std::int8_t side) {
+  Gap result{until, side, std::nullopt};
+  const auto sign_at = [&](const T& at) { return watching::sign(value(index, at)); };
+  const Beyond beyond = analytic_beyond(index, x, until);
+  result.end = beyond.place;
+  const bool ends_with_value = has_value(index, result.end);
+  if (!ends_with_value || !has_value(index, beyond.last)) {  // it has none for a while
+    const T without = ends_with_value ? beyond.last : result.end;
+    if (ends_with_value) result.end = analytic_beyond(index, border(index, without, result.end), until).place;
+    result.side = sign_at(result.end);
+    if (has_value(index, x))
+      result.root = RootOf<T>{std::min(until, T(border(index, without, x) + 2 * resolution_)), RootKind::Jump, 0};
+    else if (result.side != 0)
+      result.root = RootOf<T>{result.end, RootKind::Jump, result.side};
+    return result;
+  }
+  result.side = sign_at(result.end);
+  if (side != 0 && result.side != 0 && result.side != side)
+    result.root = change_of_sign(index, x, result.end, side, result.end);
   return result;
 }
 
@@ -327,8 +383,9 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watc
   if (is_clear(index)) {
     const bool wrong = watched.side == -clear_[index] && wants_jumps;
     watched = {clear_[index], false};
-    return wrong ? std::optional<RootOf<T>>({from, RootKind::Jump}) : std::nullopt;
+    return wrong ? std::optional<RootOf<T>>({from, RootKind::Jump, clear_[index]}) : std::nullopt;
   }
+  last_radius_ = std::numeric_limits<double>::infinity();
   T x = from;
   while (x < until) {
     const Piece now = x == T(0) ? up_to(piece(index, x, window_), until) : piece(index, x, T(until - x));

@@ -52,7 +52,7 @@ bool TaylorStepper::Impl::decide_sides(double bound, Step& result) {
   SideChooser chooser(work, watched.switches, [&](const std::vector<std::int8_t>&) { return trial(bound); });
   switch (chooser.decide(std::copysign(std::min(h, std::abs(remaining(bound))), remaining(bound)))) {
     case SideChooser::Outcome::Decided:
-      return true;
+      return switches_have_values(bound, result);
     case SideChooser::Outcome::Failed:
       return fail(result, KernelStatus::NonFinite);
     case SideChooser::Outcome::Sliding:
@@ -61,6 +61,32 @@ bool TaylorStepper::Impl::decide_sides(double bound, Step& result) {
   end(result, StepEnding::Sliding,
       "Both sides of a switch push the motion back to it, so that it would slide along the switch.");
   return false;
+}
+
+/// A switch function without a value (√ of what is negative) decides nothing. It may stand where it changes nothing: in
+/// a branch that is not in force.
+bool TaylorStepper::Impl::switches_have_values(double bound, Step& result) {
+  const auto motion_on = [&](taylor::Watched& w, std::int8_t side) {
+    w.side = side;
+    std::vector<double> coefficients;
+    if (!trial(bound)) return coefficients;
+    for (int k = 2; k <= control.order; ++k)
+      coefficients.insert(coefficients.end(), work.coordinate(k), work.coordinate(k) + n);
+    return coefficients;
+  };
+  for (std::size_t i = 0; i < watched.switches.size(); ++i) {
+    if (!std::isnan(work.switch_function(i, 0))) continue;
+    taylor::Watched& w = watched.switches[i];
+    const std::vector<double> above = motion_on(w, 1), below = motion_on(w, -1);
+    w.side = 0;
+    if (above.empty() || above != below || !trial(bound)) {
+      end(result, StepEnding::Overflow,
+          "The argument of a switch (step, sign, abs, min, max or a comparison) is no real number here, and the motion "
+          "depends on it.");
+      return false;
+    }
+  }
+  return true;
 }
 
 /// Up to the first crossing, or to the end of the step.

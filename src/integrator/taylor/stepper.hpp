@@ -38,6 +38,7 @@ struct TaylorStepper::Impl {
   bool expand(double bound, Step& result);
   bool decide_sides(double bound, Step& result);
   std::optional<double> trial(double bound);
+  bool switches_have_values(double bound, Step& result);
   double choose_length(double bound);
   bool is_at_rest() const;
   bool make_step(double bound, double h, Step& result);

@@ -20,11 +20,11 @@ T unit() {
   return 16 * std::numeric_limits<T>::epsilon();
 }
 
-/// Whether a value is nothing but rounding of its terms.
+/// Whether a value is nothing but rounding of its terms; at a pole both are infinite.
 template <class T>
 bool is_zero(const T& value, const T& scale) {
   using std::abs;
-  return abs(value) <= unit<T>() * scale;
+  return abs(value) <= unit<T>() * scale && abs(value) <= std::numeric_limits<T>::max();
 }
 
 template <class T, class Coefficient>

@@ -12,13 +12,15 @@ std::int8_t sign(double x) { return static_cast<std::int8_t>((x > 0) - (x < 0));
 constexpr double unresolved = 1e-12;  // of the step
 
 /// Roots that rounding does not tell apart are one crossing.
-void note(Crossing& crossing, double x, std::size_t index, double together, int direction) {
+void note(Crossing& crossing, double x, std::size_t index, double together, int direction, bool jump = false) {
   if (crossing.found && x > crossing.x * (1 + together) + together) return;
-  if (x < crossing.x * (1 - together) - together) crossing.roots.clear(), crossing.directions.clear();
+  if (x < crossing.x * (1 - together) - together)
+    crossing.roots.clear(), crossing.directions.clear(), crossing.jumps.clear();
   crossing.x = std::min(crossing.x, x);
   crossing.found = true;
   crossing.roots.push_back(index);
   crossing.directions.push_back(direction);
+  crossing.jumps.push_back(jump);
 }
 
 /// Switch functions, then events, as a workspace has them.
@@ -97,7 +99,7 @@ Crossing WatchedFunctions::first_crossing(const KernelWorkspace& work, const Com
   for (std::size_t i = 0; i < out.after.size(); ++i) {
     const bool is_switch = i < count;
     Watched& watched = out.after[i];
-    if (is_switch && watched.side == 0) continue;  // it vanishes along the motion
+    if (is_switch && watched.side == 0 && !std::isnan(work.switch_function(i, 0))) continue;  // it vanishes
     if (!is_switch && !ends_step(i - count)) continue;
     if (!is_switch && !roots_->is_clear(i) && begins_past_root(work, i - count, h, watched))
       note(out, 0, i, together, watched.side);
@@ -106,12 +108,17 @@ Crossing WatchedFunctions::first_crossing(const KernelWorkspace& work, const Com
     const double beyond = is_switch ? together : std::max(together, unresolved);
     const double until = std::min(roots_->window(), out.x * (1 + together) + beyond);
     const bool touches = !is_switch && tells_touches(i - count);
-    if (const auto root = roots_->first(i, watched, 0, until, touches, is_switch))
-      note(out, root->x, i, together, root->kind == RootKind::Touching ? 0 : -watched.side);
+    if (const auto root = roots_->first(i, watched, 0, until, touches, is_switch)) {
+      const bool jump = root->kind == RootKind::Jump;
+      note(out, root->x, i, together, root->kind == RootKind::Touching ? 0 : -watched.side, jump);
+      if (jump) watched = {root->after, false};
+    }
   }
   // A step of no length leaves the others where they were.
   for (std::size_t i = 0; i < count && out.x == 0; ++i) out.after[i].at_zero = switches[i].at_zero;
-  for (const std::size_t i : out.roots) {
+  for (std::size_t k = 0; k < out.roots.size(); ++k) {
+    if (out.jumps[k]) continue;  // what lies beyond is known
+    const std::size_t i = out.roots[k];
     Watched& watched = out.after[i];
     watched = {i < count ? static_cast<std::int8_t>(-watched.side) : std::int8_t{0}, true};
   }

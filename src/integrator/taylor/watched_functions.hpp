@@ -23,6 +23,7 @@ struct Crossing {
   bool found = false;
   std::vector<std::size_t> roots;  // switches, then events
   std::vector<int> directions;     // [roots] 1: rising, −1: falling, 0: touching
+  std::vector<bool> jumps;         // [roots] a switch function jumps there: it has no zero
   std::vector<Watched> after;      // the same, as the step leaves them
   std::vector<PassedRoot> passed;  // in time order
 };

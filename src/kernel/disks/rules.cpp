@@ -151,10 +151,11 @@ Disks::Bounds Disks::quotient(const Node& node) const {
 }
 
 /// f′ = c w^{c−1}, largest where |w| is largest or smallest; a disk about 0 is one of whole positive powers alone.
+/// Others have a branch point there: values of bounded modulus, but no series, whatever they are multiplied by.
 Disks::Bounds Disks::power(std::uint32_t a, double c, double value) const {
   if (c == 0) return {0, 0, 1, 1};
   const bool is_whole = c > 0 && c == std::nearbyint(c);
-  if (!(low_[a] > 0) && !is_whole) return {infinity, infinity, 0, c > 0 ? power_of(high_[a], c) : infinity};
+  if (!(low_[a] > 0) && !is_whole) return {infinity, infinity, 0, infinity};
   const double slope = std::abs(c) * power_of(c >= 1 ? high_[a] : low_[a], c - 1);
   const double at_low = power_of(low_[a], c), at_high = power_of(high_[a], c);
   const double low = std::min(at_low, at_high), high = std::max(at_low, at_high);

@@ -22,6 +22,8 @@ Outputs lower_outputs(Lowering& lowering, const KernelSource& source) {
   for (Roots* list : std::initializer_list<Roots*>{&source.residual, &rows, &values, &rates, &source.events,
                                                    &source.integrands, &source.observables})
     roots.insert(roots.end(), list->begin(), list->end());
+  const std::size_t followed = roots.size() - source.observables.size();  // between points of the motion too
+  lowering.let_angles_jump({roots.data(), followed});
   const std::vector<NodeIndex> nodes = lowering.lower(roots);
   auto next = nodes.begin();
   const auto take = [&](std::size_t count) {

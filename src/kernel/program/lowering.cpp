@@ -34,6 +34,11 @@ void Lowering::lower_into_scope(std::span<const Expr> roots) {
     if (!scope_.done.count(e.id())) scope_.done.emplace(e.id(), lower_node(e));
 }
 
+void Lowering::let_angles_jump(std::span<const Expr> roots) {
+  for (const Expr& e : topological_order(roots))
+    if (e.is(Kind::Atan2)) jumping_.insert(e.id());
+}
+
 std::vector<NodeIndex> Lowering::lower(std::span<const Expr> roots) {
   lower_into_scope(roots);
   std::vector<NodeIndex> nodes;
@@ -55,7 +60,7 @@ Scaled Lowering::lower_node(Expr e) {
     case Family::Function:
       return function(e.kind(), of(e[0]));
     case Family::Angle:
-      return atan2(of(e[0]), of(e[1]));
+      return angle(e);
     case Family::Switch:
       return with_switch(e);
     case Family::Extremum:
@@ -238,14 +243,29 @@ Scaled Lowering::lower_rule(Expr rule, Expr x, NodeIndex u, Expr f, NodeIndex y)
 }
 
 /// d atan2(y, x) = (x dy − y dx)/(x² + y²).
-Scaled Lowering::atan2(Scaled y, Scaled x) {
+NodeIndex Lowering::atan2(NodeIndex y, NodeIndex x) {
   const ConstantId one = graph.constants.literal(1), minus_one = graph.constants.literal(-1);
-  const NodeIndex up = graph.node_of(y), right = graph.node_of(x);
   const NodeIndex square =
-      graph.node_of(graph.linear({{one, graph.unary(Op::Square, up)}, {one, graph.unary(Op::Square, right)}}));
-  return graph.scaled(
-      graph.function(Kind::Atan2, up, right,
-                     {{one, graph.quotient(right, square), up}, {minus_one, graph.quotient(up, square), right}}));
+      graph.node_of(graph.linear({{one, graph.unary(Op::Square, y)}, {one, graph.unary(Op::Square, x)}}));
+  return graph.function(Kind::Atan2, y, x,
+                        {{one, graph.quotient(x, square), y}, {minus_one, graph.quotient(y, square), x}});
+}
+
+/// An angle jumps by 2π where y goes through 0 while x < 0, which its series does not show. On either side s of y it is
+///
+///     atan2(y, x) = s (π/2 − atan2(x, s y)),      s = 1 for y ≥ 0, −1 for y < 0
+///
+/// and the right-hand side goes on beyond y = 0: so y is a switch function.
+Scaled Lowering::angle(Expr e) {
+  const Scaled y = of(e[0]), x = of(e[1]);
+  if (y.is_constant() || !jumping_.count(e.id())) return graph.scaled(atan2(graph.node_of(y), graph.node_of(x)));
+  ConstantPool& pool = graph.constants;
+  const ConstantId zero = pool.literal(0), two = pool.literal(2), minus_one = pool.literal(-1);
+  const ConstantId is_up = pool.apply(Kind::LessEqual, std::array{zero, side(y, {e.kind(), e[0], {}})});
+  const ConstantId s = pool.add(pool.multiply(two, is_up), minus_one);
+  const NodeIndex beside = atan2(graph.node_of(x), graph.node_of({pool.multiply(s, y.coefficient), y.node}));
+  const ConstantId quarter = pool.multiply(pool.apply(Kind::Pi, {}), pool.literal(Rational(1, 2)));
+  return graph.linear({{pool.multiply(s, quarter), graph.leaf(Op::One)}, {pool.multiply(s, minus_one), beside}});
 }
 
 }  // namespace maupertuis::lowering

@@ -4,6 +4,7 @@
 #include <maupertuis/kernel.hpp>
 
 #include <unordered_map>
+#include <unordered_set>
 
 namespace maupertuis::lowering {
 
@@ -11,6 +12,8 @@ namespace maupertuis::lowering {
 class Lowering {
  public:
   explicit Lowering(const KernelSource& source);
+  /// Steps end where an angle of these roots goes through its cut. Call it before lower().
+  void let_angles_jump(std::span<const Expr> roots);
   /// The node of each root.
   std::vector<NodeIndex> lower(std::span<const Expr> roots);
 
@@ -37,7 +40,8 @@ class Lowering {
   Scaled by_differential(Kind kind, NodeIndex u);
   /// An expression of another context, whose `x` and `f` are u and y.
   Scaled lower_rule(Expr rule, Expr x, NodeIndex u, Expr f, NodeIndex y);
-  Scaled atan2(Scaled y, Scaled x);
+  Scaled angle(Expr e);
+  NodeIndex atan2(NodeIndex y, NodeIndex x);
   Scaled time_derivative(Scaled argument);
 
   // Switches: everything here is linear in its operands once the sides are fixed.
@@ -62,6 +66,7 @@ class Lowering {
   Scope scope_;
   std::unordered_map<NodeId, std::uint32_t> coordinates_, multipliers_, parameters_;
   std::unordered_map<NodeIndex, std::uint32_t> switch_of_node_;
+  std::unordered_set<NodeId> jumping_;  // angles with a switch at their cut
 };
 
 }  // namespace maupertuis::lowering

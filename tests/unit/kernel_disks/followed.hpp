@@ -102,6 +102,8 @@ inline const std::vector<Case>& cases() {
        [](Complex x, Complex y, Complex) { return y / (x + 1.0); }, 0.6, 1.6},
       {"sqrt(x)", [](Followed& f) { return pow(f.x, Rational(1, 2)); },
        [](Complex x, Complex, Complex) { return std::sqrt(x); }, 0.6, 0.6},
+      {"x^(3/2)", [](Followed& f) { return pow(f.x, Rational(3, 2)); },
+       [](Complex x, Complex, Complex) { return x * std::sqrt(x); }, 0.6, 0.6},
       {"x^(5/3)", [](Followed& f) { return pow(f.x, Rational(5, 3)); },
        [](Complex x, Complex, Complex) { return std::pow(x, 5.0 / 3); }, 0.6, 0.6},
       {"x^(-3/2)", [](Followed& f) { return pow(f.x, Rational(-3, 2)); },
