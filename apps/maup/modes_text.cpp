@@ -92,9 +92,9 @@ std::string kind_text(const Mode& m) {
     case Mode::Kind::Zero:
       return m.cause.empty() ? "zero" : m.cause;
     case Mode::Kind::Oscillation:
-      return m.eigenvalue.real() > 0   ? "growing oscillation"
-             : m.eigenvalue.real() < 0 ? "damped oscillation"
-                                       : "oscillation";
+      return std::abs(m.eigenvalue.real()) <= m.error ? "oscillation"  // or growing, or damped: rounding hides it
+             : m.eigenvalue.real() > 0                ? "growing oscillation"
+                                                      : "damped oscillation";
     case Mode::Kind::Decay:
       return "decay";
     case Mode::Kind::Growth:
@@ -299,6 +299,21 @@ std::string regulator_text(const MechanicalSystem& system, const Linearization& 
                            brief(r.residual));
 }
 
+namespace {
+
+/// One word where the verdict does not change along the branch; where it does is told behind the table.
+std::string verdicts_text(const LocusBranch& branch) {
+  std::string out;
+  for (std::size_t i = 0; i < branch.points.size(); ++i) {
+    const Stability verdict = branch.points[i].stability.verdict;
+    if (i > 0 && verdict == branch.points[i - 1].stability.verdict) continue;
+    out += (i > 0 ? ", then " : "") + std::string(stability_word(verdict));
+  }
+  return out;
+}
+
+}  // namespace
+
 std::string locus_text(const MechanicalSystem& system, const Locus& locus) {
   const Parameter& p = system.parameters[locus.parameter];
   const auto value = [&](double x) { return value_text(system, x, p.dimension); };
@@ -311,7 +326,7 @@ std::string locus_text(const MechanicalSystem& system, const Locus& locus) {
     rows.push_back({fmt::format("{}", b + 1), fmt::format("{} … {}", value(first.parameter), value(last.parameter)),
                     fmt::format("from {}", point_text(system, first.equilibrium, locus.translations)),
                     fmt::format("to {}", point_text(system, last.equilibrium, locus.translations)),
-                    std::string(stability_word(last.stability.verdict))});
+                    verdicts_text(locus.branches[b])});
   }
   out += table(rows, 5);
   for (const StabilityChange& c : locus.changes)

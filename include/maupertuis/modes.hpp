@@ -70,7 +70,8 @@ struct ModalEntry {
 /// An equilibrium on a kink beyond which the forces do not balance: no linearization.
 struct Kink {
   Equilibrium equilibrium;
-  std::string side;  // where they do not
+  std::string side;    // where they do not
+  bool steep = false;  // they do, but the stiffness grows without bound: |x|^1.5 at 0
 };
 
 struct ModalStudy {

@@ -4,6 +4,7 @@
 #include <maupertuis/switch_text.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -23,6 +24,21 @@ bool moves(const SwitchSearch& search, Expr e) {
   return std::any_of(symbols.begin(), symbols.end(), [&](Expr s) { return search.center.count(s) != 0; });
 }
 
+/// atan2(y, x) jumps at y = 0 where x < 0: written by its switch function y, s (π/2 − atan2(x, s y)) with the side s.
+Expr with_cuts_as_switches(Expr e) {
+  ExprMap switched;
+  for (const Expr& angle : topological_order({&e, 1})) {
+    if (!angle.is(Kind::Atan2)) continue;
+    Context& c = e.context();
+    const Expr y = angle[0], x = angle[1], quarter = c.pi() / Rational(2);
+    const auto atan2 = [&](Expr a, Expr b) { return c.function(Kind::Atan2, std::array{a, b}); };
+    const Expr is_up = c.function(Kind::LessEqual, std::array{c.number(0), y});
+    const std::array pieces{is_up, quarter - atan2(x, y), atan2(x, -y) - quarter};
+    switched.emplace(angle, c.function(Kind::Piecewise, pieces));
+  }
+  return switched.empty() ? e : substitute(e, switched);
+}
+
 }  // namespace
 
 SwitchSearch search_of_states(const MechanicalSystem& system) {
@@ -38,7 +54,7 @@ AcrossSwitches across_switches(const MechanicalSystem& system, Expr function, co
                                const std::function<Expr(Expr)>& rate) {
   AcrossSwitches out;
   const auto moving = [&](Expr e) { return in_terms_of_motion(system, expand_time_derivatives({&e, 1})).front(); };
-  function = moving(function);
+  function = with_cuts_as_switches(moving(function));
   const ExprVector all = switches_of({&function, 1});
   if (all.empty()) return out;
   SwitchSearch search = search_of_states(system);

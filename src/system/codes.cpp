@@ -450,6 +450,14 @@ constexpr CodeEntry kEntries[] = {
      "friction 0.3 slip 2 x'\n",
      "coord x, y : length\nparam m = 1 kg, g = 9.81 m/s^2\npoint P mass m at (x, y)\ngravity (0, -g)\ncontact y >= 0 "
      "friction 0.3 slip x'\n"},
+    {"E0436", "gravity, or a damping coefficient, depends on the motion",
+     "`gravity` is one vector for all bodies, whose weights m g come from the potential −m g·r; a field that differs "
+     "from place to place has a potential of its own. A damper is D = ½ c ṡ², which gives the force c ṡ only where c "
+     "holds no velocity: the force c |ṡ| ṡ has D = c |ṡ|³/3.",
+     "coord x : length\nparam m = 1 kg, c = 0.5 N s^2/m^2\npoint P mass m at (x, 0)\npoint W at (-1 [m], 0)\ndamper P "
+     "- "
+     "W coefficient c*abs(x')\n",
+     "coord x : length\nparam m = 1 kg, c = 0.5 N s^2/m^2\npoint P mass m at (x, 0)\nD = 1/3 c abs(x')^3\n"},
     // ------------------------------------------------------------------------------------------------ not supported
     // yet
     {"E0255", "as many names as components",

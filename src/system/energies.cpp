@@ -40,9 +40,19 @@ void kinetic_of_masses(MechanicalSystem& s) {
   }
 }
 
+/// −m g·r is a potential of the weight m g where g is the same everywhere.
+bool refuse_motion(Elaboration& e, const Value& v, const syntax::GravityStatement& g) {
+  if (v.order < 0) return false;
+  e.diagnostics.error("E0436", culprit_of_order(e, *g.vector, v.order),
+                      "gravity depends on where a body is or how it moves",
+                      "`gravity` is the same for all bodies: their potential −m g·r gives the weight m g only then.",
+                      "Write the potential of such a field, V = -G M m/r.");
+  return true;
+}
+
 void gravity(Elaboration& e, const syntax::GravityStatement& g, Span span) {
   const Value v = vector_of(e, *g.vector, dimensions::acceleration(), "gravity");
-  if (v.poisoned) return;
+  if (v.poisoned || refuse_motion(e, v, g)) return;
   MechanicalSystem& s = e.system();
   s.gravity = v.parts;
   const auto weigh = [&](Expr mass, const ExprVector& position, const std::string& name) {
@@ -75,6 +85,26 @@ void check_positive(Elaboration& e, const Value& v, const syntax::Expression& x,
   if (size && *size < 0) e.diagnostics.warning("W0419", x.span, fmt::format("{} is negative", what), reason, "");
 }
 
+/// A spring stores what depends on positions: no stiffness and no rest length holds a velocity.
+bool refuse_velocity(Elaboration& e, const Value& v, const syntax::Expression& x, const char* what) {
+  if (v.poisoned || v.order < 1) return v.poisoned;
+  e.diagnostics.error(
+      "E0405", culprit_of_order(e, x, v.order), fmt::format("a velocity stands in {}", what),
+      "The energy of a spring is a potential energy, ½ k s²: it depends on positions (and perhaps on time).",
+      "Write `U = …` for forces with a potential that depends on velocities, `force …` for others.");
+  return true;
+}
+
+/// D = ½ c ṡ² gives the force c ṡ where c holds no velocity; c |ṡ| ṡ has D = c |ṡ|³/3.
+bool refuse_velocity_in_coefficient(Elaboration& e, const Value& c, const syntax::Expression& x) {
+  if (c.poisoned || c.order < 1) return c.poisoned;
+  e.diagnostics.error("E0436", culprit_of_order(e, x, c.order), "a velocity stands in a damping coefficient",
+                      "A damper is D = ½ c ṡ², with ṡ the rate of its length. Its force −∂D/∂ṡ is −c ṡ only where c "
+                      "depends on no velocity.",
+                      "Write D itself: D = 1/3 c abs(s')^3 has the force c abs(s') s'.");
+  return true;
+}
+
 /// V = ½ k (|r| − l₀)², without the root where l₀ = 0.
 void spring(Elaboration& e, const syntax::SpringStatement& s, Span span) {
   const std::optional<ExprVector> r = between(e, Link::Kind::Spring, *s.from, *s.to);
@@ -83,7 +113,9 @@ void spring(Elaboration& e, const syntax::SpringStatement& s, Span span) {
                             : Value::of(e.number(0), Dimension{});
   check_positive(e, k, *s.stiffness, "this stiffness",
                  "Such a spring pushes away from its rest length: every rest is unstable.");
-  if (!r || k.poisoned || l0.poisoned) return;
+  const bool refused = refuse_velocity(e, k, *s.stiffness, "the stiffness of a spring") ||
+                       (s.length && refuse_velocity(e, l0, *s.length, "the rest length of a spring"));
+  if (!r || refused) return;
   const Expr square = dot_of(*r, *r);
   const Expr stretch = l0.scalar().is_zero() ? square : pow(sqrt(square) - l0.scalar(), Rational(2));
   e.system().potential.push_back(
@@ -104,7 +136,9 @@ void torsion_spring(Elaboration& e, const syntax::TorsionSpringStatement& s, Spa
   const Value rest = s.rest ? scalar_of(e, *s.rest, angle, "its rest angle") : Value::of(e.number(0), angle);
   check_positive(e, k, *s.stiffness, "this stiffness",
                  "Such a spring pushes away from its rest angle: every rest is unstable.");
-  if (!d || !d->done || d->value.poisoned || d->value.is_vector || k.poisoned || rest.poisoned) return;
+  const bool refused = refuse_velocity(e, k, *s.stiffness, "the stiffness of a torsion spring") ||
+                       (s.rest && refuse_velocity(e, rest, *s.rest, "the rest angle of a torsion spring"));
+  if (!d || !d->done || d->value.poisoned || d->value.is_vector || refused) return;
   const Expr turn = d->value.scalar() - rest.scalar();
   e.system().potential.push_back(
       {Rational(1, 2) * (k.scalar() * pow(turn, Rational(2))), "torsion spring " + d->name, span});
@@ -116,7 +150,7 @@ void damper(Elaboration& e, const syntax::DamperStatement& s, Span span) {
   const Value c = scalar_of(e, *s.coefficient, dimensions::force() / dimensions::velocity(), "a damping coefficient");
   check_positive(e, c, *s.coefficient, "this damping coefficient",
                  "Such a damper feeds energy in instead of taking it out.");
-  if (!r || c.poisoned) return;
+  if (!r || refuse_velocity_in_coefficient(e, c, *s.coefficient)) return;
   const Expr rate = e.context.time_derivative(sqrt(dot_of(*r, *r)));
   e.system().dissipation.push_back(
       {Rational(1, 2) * (c.scalar() * pow(rate, Rational(2))), "damper " + pair_name(e, s.from, s.to), span});

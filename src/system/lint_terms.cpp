@@ -84,7 +84,17 @@ std::vector<bool> unused_coordinates(Subject& s) {
   return out;
 }
 
+/// At a free end of a path such a term changes what p = 0 says there.
+bool has_free_end(const Experiment& experiment) {
+  if (!experiment.path) return false;
+  const auto is_free = [](Expr end) { return !end; };
+  const PathEnds& path = *experiment.path;
+  return std::any_of(path.from.begin(), path.from.end(), is_free) ||
+         std::any_of(path.to.begin(), path.to.end(), is_free);
+}
+
 void total_derivatives(Subject& s) {
+  if (has_free_end(s.model.experiment)) return;
   for (const auto* terms : {&s.system.generalized_potential, &s.system.lagrangian_extra, &s.system.kinetic})
     for (const EnergyTerm& t : *terms)
       if (t.origin.size() == 1) check_terms(s, t);

@@ -84,8 +84,10 @@ void ModeClaims::decide_at(const MotionState& begin, const std::vector<StartValu
   }
   if (study->kinks.empty()) return;
   result.passed = false;
-  result.message = fmt::format("On the side {} of a kink forces are left over: there is no linearization.",
-                               study->kinks.front().side);
+  const Kink& kink = study->kinks.front();
+  result.message =
+      kink.steep ? "The stiffness grows without bound near the point: there is no linearization."
+                 : fmt::format("On the side {} of a kink forces are left over: there is no linearization.", kink.side);
 }
 
 void ModeClaims::decide_linear(const std::vector<StartValue>& at, const char* what, const Judge& judge,

@@ -50,12 +50,13 @@ constexpr CodeEntry entries[] = {
     {"E1307", "an equilibrium on a kink",
      "Where a force jumps, at abs(x) or dry friction, the system may rest although forces are left over on every side, "
      "which push it back. There is no "
-     "stiffness, and no frequency: it does not answer in proportion to a small displacement.",
+     "stiffness, and no frequency: it does not answer in proportion to a small displacement. So it is where the "
+     "stiffness grows without bound, as that of abs(x)^1.5 at 0.",
      "# maup modes\nparam m = 1 kg, F = 2 N\ncoord x : length\nT = 1/2 m x'^2\nV = F abs(x)\n",
      "# maup modes\nparam m = 1 kg, F = 2 N, d = 1 mm\ncoord x : length\nT = 1/2 m x'^2\nV = F sqrt(x^2 + d^2)\n"},
     {"W1302", "a side of an equilibrium without a linearization",
      "The equilibrium is on a kink, and on this side the forces do not balance beside it. What the other sides have is "
-     "shown for each of them.",
+     "shown for each of them. Or they balance, and the stiffness grows without bound.",
      "# maup modes\nparam m = 1 kg, k = 4 N/m, F = 2 N\ncoord x : length\nT = 1/2 m x'^2\n"
      "V = 1/2 k x^2 + F max(x, 0)\n",
      "# maup modes\nparam m = 1 kg, k = 4 N/m, K = 12 N/m\ncoord x : length\nT = 1/2 m x'^2\n"
@@ -116,6 +117,13 @@ constexpr CodeEntry entries[] = {
      "A locus follows equilibria while one parameter changes: the model says `sweep NAME = FROM .. TO steps N`, or "
      "--sweep does.",
      "", ""},
+    {"W1303", "an input acts by its rate",
+     "A linearization holds inputs at constant values, M ξ'' + C ξ' + K ξ = B u. A support at the input s acts on what "
+     "hangs from it by s'', of which B says nothing, and a damper between them by s'.",
+     "# maup modes\ncoord x : length\ninput s : [m] = 0\nparam m = 1 kg, k = 4 N/m, c = 1 N s/m\nT = 1/2 m x'^2\n"
+     "V = 1/2 k (x - s)^2\nD = 1/2 c (x' - s')^2\n",
+     "# maup modes\ncoord x, s : length\ninput F : [N] = 0\nparam m = 1 kg, k = 4 N/m, c = 1 N s/m\n"
+     "T = 1/2 m (x'^2 + s'^2)\nV = 1/2 k (x - s)^2 + 1/2 k s^2\nD = 1/2 c (x' - s')^2\nforce s = F\n"},
     {"W1301", "an equilibrium at which the coordinates fail",
      "The forces vanish, so the system can rest there; but the mass matrix is singular in these coordinates, so that "
      "frequencies cannot be told.",

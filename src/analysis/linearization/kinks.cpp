@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -112,7 +113,41 @@ bool equal(const RealMatrix& a, const RealMatrix& b) {
   return off <= same * size;
 }
 
+/// Whether the stiffness on the way from the point goes on changing, as much or more from each decade to the next.
+bool grows_along(PointEquations::Impl& e, const OperatingPoint& point, const std::vector<double>& way) {
+  constexpr double no_less = 0.7, much = 1e-6;
+  constexpr std::array<double, 4> distances{1e-4, 1e-6, 1e-8, 1e-10};  // of typical sizes
+  Matrix before;
+  double change = 0;
+  for (std::size_t k = 0; k < distances.size(); ++k) {
+    OperatingPoint aside = point;
+    for (std::size_t i = 0; i < way.size(); ++i) aside.q[i] += distances[k] * way[i];
+    const Matrix here = e.at(e.balance, aside).by_q;
+    if (!here.allFinite()) return false;
+    const double now = k > 0 ? (here - before).norm() : 0;
+    if (k > 1 && !(now > no_less * change)) return false;
+    if (k > 0 && !(now > much * here.norm())) return false;
+    change = now, before = here;
+  }
+  return true;
+}
+
 }  // namespace
+
+bool is_stiffness_unbounded(const PointEquations& equations, const OperatingPoint& point) {
+  PointEquations::Impl& e = equations.impl();
+  const std::vector<double> sizes = typical_sizes(*e.system, {});
+  std::mt19937_64 random(1788);
+  for (int k = 0; k < 4; ++k) {
+    std::vector<double> way(sizes.size());
+    for (std::size_t i = 0; i < way.size(); ++i)
+      way[i] = sizes[i] * (2 * std::generate_canonical<double, 53>(random) - 1);
+    if (grows_along(e, point, way)) return true;
+    for (double& x : way) x = -x;
+    if (grows_along(e, point, way)) return true;
+  }
+  return false;
+}
 
 std::vector<OneSide> sides_at(const PointEquations& equations, const Equilibrium& x,
                               const std::vector<Translation>& translations) {

@@ -18,4 +18,9 @@ struct OneSide {
 std::vector<OneSide> sides_at(const PointEquations& equations, const Equilibrium& x,
                               const std::vector<Translation>& translations);
 
+/// Whether the stiffness grows without bound, as that of |x|^p with 1 < p < 2 or of x² log x² does at 0: what stands in
+/// place of its value is how far from the point rounding has left it. Asked beside the point, ever nearer; ways on
+/// which it has no value are left out.
+bool is_stiffness_unbounded(const PointEquations& equations, const OperatingPoint& point);
+
 }  // namespace maupertuis

@@ -19,13 +19,14 @@ class Tracer {
   Tracer(PointEquations& equations, const MotionState& start, std::size_t parameter)
       : equations_(equations), start_(start), parameter_(parameter), sizes_(typical_sizes(equations.system(), start)) {
     locus_.parameter = parameter;
-    locus_.translations = equations.translations();
   }
 
   Locus trace(double from, double to, std::size_t steps) {
     for (std::size_t i = 0; i < steps; ++i) {
       const double value = from + (to - from) * static_cast<double>(i) / static_cast<double>(steps - 1);
       locus_.values.push_back(value);
+      set_parameter(value);
+      note_translations(i == 0);
       join(points_at(value));
     }
     find_changes();
@@ -34,14 +35,35 @@ class Tracer {
   }
 
  private:
+  /// A force that vanishes at one value leaves symmetries there that the others do not have.
+  void set_parameter(double value) {
+    equations_.set_parameter(parameter_, value);
+    symmetries_ = equations_.translations();
+  }
+
+  /// Those of the locus are the ones at all values.
+  void note_translations(bool first) {
+    if (first) locus_.translations = symmetries_;
+    std::erase_if(locus_.translations, [&](const Translation& x) {
+      return std::none_of(symmetries_.begin(), symmetries_.end(), [&](const Translation& y) { return is_same(x, y); });
+    });
+  }
+
+  bool is_same(const Translation& x, const Translation& y) const {
+    constexpr double rounding = 1e-6;  // of typical sizes
+    if (x.pivot != y.pivot || x.conserved != y.conserved) return false;
+    for (std::size_t i = 0; i < sizes_.size(); ++i)
+      if (std::abs(x.direction[i] - y.direction[i]) * sizes_[x.pivot] > rounding * sizes_[i]) return false;
+    return true;
+  }
+
   LocusPoint judged(double value, const Equilibrium& x) const {
     const Linearization l = linearize(equations_, x.point).linearization;
-    const ModalAnalysis analysis = modal_analysis(equations_, l, locus_.translations, &x);
+    const ModalAnalysis analysis = modal_analysis(equations_, l, symmetries_, &x);
     return {value, x, analysis.stability, analysis.eigenvalues};
   }
 
   std::vector<LocusPoint> points_at(double value) {
-    equations_.set_parameter(parameter_, value);
     EquilibriumSearch search;
     search.start = start_;
     for (const std::size_t b : open_) search.guesses.push_back(locus_.branches[b].points.back().equilibrium.point);
@@ -98,7 +120,7 @@ class Tracer {
 
   /// The equilibrium of a branch near a guess, at any value of the parameter.
   std::optional<LocusPoint> follow(double value, const Equilibrium& guess) {
-    equations_.set_parameter(parameter_, value);
+    set_parameter(value);
     EquilibriumSearch search;
     search.start = {guess.point.t, guess.point.q, start_.v};
     search.steady = !guess.at_rest;
@@ -167,7 +189,8 @@ class Tracer {
   const MotionState& start_;
   std::size_t parameter_;
   std::vector<double> sizes_;
-  std::vector<std::size_t> open_;  // branches that have a point at the last value
+  std::vector<Translation> symmetries_;  // at the present value
+  std::vector<std::size_t> open_;        // branches that have a point at the last value
   Locus locus_;
 };
 

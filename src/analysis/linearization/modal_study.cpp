@@ -41,14 +41,21 @@ ModalStudy analysed(const PointEquations& equations, std::vector<Equilibrium> fo
   ModalStudy study;
   study.translations = std::move(translations);
   for (Equilibrium& x : found) {
+    const std::vector<OneSide> sides =
+        x.coordinates_fail ? std::vector<OneSide>() : sides_at(equations, x, study.translations);
+    if (sides.empty() && is_stiffness_unbounded(equations, x.point)) {
+      study.kinks.push_back({x, {}, true});
+      continue;
+    }
     if (x.coordinates_fail) {
       study.failing.push_back(std::move(x));
       continue;
     }
-    const std::vector<OneSide> sides = sides_at(equations, x, study.translations);
     if (sides.empty()) add_entry(study, equations, x, {});
     for (const OneSide& side : sides) {
-      if (side.residual <= balanced)
+      if (is_stiffness_unbounded(side.equations, x.point))
+        study.kinks.push_back({x, side.where, true});
+      else if (side.residual <= balanced)
         add_entry(study, side.equations, x, side.where);
       else
         study.kinks.push_back({x, side.where});
@@ -57,29 +64,70 @@ ModalStudy analysed(const PointEquations& equations, std::vector<Equilibrium> fo
   return study;
 }
 
+constexpr const char* unbounded_stiffness =
+    "The forces balance there, but the stiffness grows without bound near the point, as that of abs(x)^1.5 at 0: small "
+    "oscillations have frequencies that depend on their amplitudes.";
+constexpr const char* smooth_instead = "`maup simulate` runs the model as it is.";
+
 /// E1307: all that was found is on kinks, and balances on no side of them.
 bool refuse_kinks_alone(const PointEquations& equations, const ModalStudy& study, std::optional<Span> place,
                         Diagnostics& diagnostics) {
   if (!study.entries.empty() || study.kinks.empty()) return false;
-  diagnostics.error(
-      "E1307", place,
-      fmt::format("{} is on a kink",
-                  point_text(equations.system(), study.kinks.front().equilibrium, study.translations)),
-      "Beside it forces are left over on every side, however small the distance: there is no linearization and no "
-      "frequency.",
-      "A smooth function, as sqrt(x^2 + d^2) for abs(x), has one; `maup simulate` runs the model as it is.");
+  const bool steep = std::any_of(study.kinks.begin(), study.kinks.end(), [](const Kink& k) { return k.steep; });
+  if (steep)
+    diagnostics.error("E1307", place,
+                      fmt::format("no linearization at {}",
+                                  point_text(equations.system(), study.kinks.front().equilibrium, study.translations)),
+                      unbounded_stiffness, smooth_instead);
+  else
+    diagnostics.error(
+        "E1307", place,
+        fmt::format("{} is on a kink",
+                    point_text(equations.system(), study.kinks.front().equilibrium, study.translations)),
+        "Beside it forces are left over on every side, however small the distance: there is no linearization and no "
+        "frequency.",
+        "A smooth function, as sqrt(x^2 + d^2) for abs(x), has one; `maup simulate` runs the model as it is.");
   return true;
 }
 
 void tell_of_kinks(const PointEquations& equations, const ModalStudy& study, Diagnostics& diagnostics) {
   for (const Kink& k : study.kinks)
+    if (k.steep)
+      diagnostics.warning(
+          "W1302", std::nullopt,
+          fmt::format("no linearization at {}{}", point_text(equations.system(), k.equilibrium, study.translations),
+                      k.side.empty() ? "" : " on the side " + k.side),
+          unbounded_stiffness, smooth_instead);
+    else
+      diagnostics.warning(
+          "W1302", std::nullopt,
+          fmt::format("no linearization at {}{}", point_text(equations.system(), k.equilibrium, study.translations),
+                      k.side.empty() ? "" : " on the side " + k.side),
+          "The point is on a kink, and beside it forces are left over: they push back or away, however small the "
+          "distance, so that there is no frequency.",
+          "A smooth function, as sqrt(x^2 + d^2) for abs(x), has one; `maup simulate` runs the model as it is.");
+}
+
+/// W1303: B has the effect of inputs themselves, and none of their rates.
+void tell_of_rates(const PointEquations& equations, Diagnostics& diagnostics) {
+  const PointEquations::Impl& e = equations.impl();
+  ExprVector rows = e.balance_rows;
+  rows.insert(rows.end(), e.measured.begin(), e.measured.end());
+  const std::vector<Expr> symbols = symbols_of(rows);
+  for (const Input& u : equations.system().inputs) {
+    const auto holds = [&](Expr x) { return std::find(symbols.begin(), symbols.end(), x) != symbols.end(); };
+    const Expr rate = u.symbol.context().time_derivative(u.symbol), second = rate.context().time_derivative(rate);
+    if (!holds(rate) && !holds(second)) continue;
     diagnostics.warning(
-        "W1302", std::nullopt,
-        fmt::format("no linearization at {}{}", point_text(equations.system(), k.equilibrium, study.translations),
-                    k.side.empty() ? "" : " on the side " + k.side),
-        "The point is on a kink, and beside it forces are left over: they push back or away, however small the "
-        "distance, so that there is no frequency.",
-        "A smooth function, as sqrt(x^2 + d^2) for abs(x), has one; `maup simulate` runs the model as it is.");
+        "W1303", u.span, fmt::format("the rate of the input {} acts on the system", u.name),
+        fmt::format("The linearization holds inputs at constant values: what {} does to the motion is not in B, nor in "
+                    "D.",
+                    holds(rate) && holds(second) ? fmt::format("{0}' and {0}''", u.name)
+                    : holds(rate)                ? u.name + "'"
+                                                 : u.name + "''"),
+        fmt::format("Make {0} a coordinate that a force moves: the force is the input, and {0} and {0}' are states.",
+                    u.name));
+  }
 }
 
 void warn_of_failing(const PointEquations& equations, const ModalStudy& study, Diagnostics& diagnostics) {
@@ -216,6 +264,7 @@ std::optional<ModalStudy> modal_study(const PointEquations& equations, const Mot
     refuse_none(equations, result.starts, diagnostics);
     return std::nullopt;
   }
+  tell_of_rates(equations, diagnostics);
   ModalStudy study = analysed(equations, std::move(result.found), std::move(result.translations));
   study.starts = result.starts;
   study.outside = result.outside;
@@ -244,12 +293,13 @@ std::optional<ModalStudy> modal_study_at(const PointEquations& equations, const 
                       "`maup modes` without --at searches for all equilibria.");
     return std::nullopt;
   }
-  if (found.front().coordinates_fail) {
+  if (found.front().coordinates_fail && !is_stiffness_unbounded(equations, found.front().point)) {
     const std::size_t culprit = linearize(equations, found.front().point).singular_coordinate;
     refuse_singular(equations.system(), culprit, "at " + point_text(equations.system(), found.front(), translations),
                     diagnostics);
     return std::nullopt;
   }
+  tell_of_rates(equations, diagnostics);
   ModalStudy study = analysed(equations, {found.front()}, seen_in_frame(found.front().point, translations));
   if (refuse_kinks_alone(equations, study, place, diagnostics)) return std::nullopt;
   tell_of_kinks(equations, study, diagnostics);
@@ -263,6 +313,7 @@ std::optional<ModalStudy> modal_study_of(const PointEquations& equations, const 
     refuse_singular(equations.system(), 0, fmt::format("at t = {:g} s", state.t), diagnostics);
     return std::nullopt;
   }
+  tell_of_rates(equations, diagnostics);
   ModalStudy study;
   study.translations = equations.translations();
   ModalEntry entry{{*point, false, 0, 0, {}, false, {}}, linearize(equations, *point).linearization, {}, {}};

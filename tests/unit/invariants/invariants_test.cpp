@@ -312,6 +312,11 @@ TEST_CASE("no integral across a jump: what one side has is told apart") {
   CHECK(meissner.count("energy") == 0);
   CHECK_FALSE(meissner.result.on_one_side.empty());
   CHECK_FALSE(conserved_quantities(meissner.m.equations).energy_conserved);
+  // An angle jumps by 2π at its cut, and goes on elsewhere on y = 0.
+  const Found turned(
+      "coord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = 1/2 (x^2 + y^2) - 1/20*atan2(y, x)\nstart x = 1, y' = 1\n");
+  CHECK(turned.count("energy") == 0);
+  CHECK_FALSE(conserved_quantities(turned.m.equations).energy_conserved);
   const Found kink("coord x : number\nT = 1/2 x'^2\nV = abs(x)\n");
   CHECK(kink.count("energy") == 1);
   CHECK(conserved_quantities(kink.m.equations).energy_conserved);

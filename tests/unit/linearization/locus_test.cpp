@@ -44,6 +44,21 @@ TEST_CASE("The bead on the hoop: a pitchfork at Ω = √(g/R), by bisection to r
   CHECK(m.at.parameter(index_of(*m.system, "Ω")) == 8);  // as before
 }
 
+TEST_CASE("A symmetry of one value of the parameter explains nothing at the others") {
+  Linearized m(R"(dimensionless
+param k = 0
+coord x, y : number
+T = 1/2 (x'^2 + y'^2)
+V = -k x^4 + 1/2 y^2
+start x = 0.1
+)");
+  const Locus locus = parameter_locus(m.at, m.start, index_of(*m.system, "k"), 0, 0.5, 3);
+  CHECK(locus.translations.empty());
+  for (const LocusBranch& b : locus.branches)
+    for (const LocusPoint& x : b.points)
+      if (x.parameter > 0) CHECK(x.stability.verdict != Stability::Energetic);
+}
+
 TEST_CASE("Formulas of the linearization") {
   Linearized m(hoop);
   const ModalStudy study = m.study();

@@ -203,3 +203,34 @@ TEST_CASE("A long chain of masses: 2 √(k/m) sin(j π/(2n + 2))") {
   for (int j = 1; j <= n; ++j)
     CHECK(near(w[static_cast<std::size_t>(j - 1)], 2 * std::sin(j * std::numbers::pi / (2 * n + 2)), 1e-12));
 }
+
+TEST_CASE("Where the stiffness grows without bound there is no linearization") {
+  for (const char* const potential :
+       {"1/2*x^2 + abs(x)^1.9", "abs(x)^1.5", "1/2*x^2 + max(0, x)^1.5", "1/2*x^2 + 0.1*x^2*log(x^2)"}) {
+    CAPTURE(potential);
+    Linearized m(std::string("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = ") + potential + "\nstart x = 0.1\n");
+    const auto study = modal_study(m.at, m.start, m.diagnostics);
+    const std::string told = render(m.diagnostics, m.source);
+    CAPTURE(told);
+    CHECK(told.find("stiffness grows without bound") != std::string::npos);
+    for (const ModalEntry& e : study ? study->entries : std::vector<ModalEntry>())
+      for (const Mode& mode : e.analysis.modes) CHECK(std::abs(mode.eigenvalue) < 2);
+  }
+  for (const char* const potential : {"1/2*x^2 + abs(x)^2.5", "1/2*x^2 + max(0, x)^2", "1 - cos(x)"}) {
+    Linearized m(std::string("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = ") + potential + "\nstart x = 0.1\n");
+    CHECK(!m.study().entries.empty());
+    CHECK(render(m.diagnostics, m.source).empty());
+  }
+}
+
+TEST_CASE("An input that acts by its rate is told, since B does not have it") {
+  Linearized m(R"(dimensionless
+input s : [1] = 0.2*t
+coord x : number
+T = 1/2 x'^2
+V = 1/2 (x-s)^2
+D = 1/2*0.4*(x'-s')^2
+)");
+  static_cast<void>(m.study());
+  CHECK(render(m.diagnostics, m.source).find("W1303") != std::string::npos);
+}

@@ -12,6 +12,8 @@ TEST_CASE("models that look suspicious and are not") {
         "param m = 1 kg, k = 2 N/m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = 1/2 k (x - y)^2 + 3 [J]\n",
         // a gyroscopic term is linear in the velocities and no total derivative
         "param m = 1 kg, b = 2 kg/s\ncoord x, y : length\nL = 1/2 m (x'^2 + y'^2) + b (x y' - y x')\n",
+        // a total derivative beside a free end of the path, where it counts
+        "dimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2 + x x'\npath from 1 at 0 to free at 7\n",
         // relativistic: T is not quadratic
         "param m = 1 kg, c = 3 m/s\ncoord x : length\nL = -m c^2 sqrt(1 - x'^2/c^2)\n",
         // weight of a mass that no point carries
