@@ -6,17 +6,11 @@
 /// What is rounding in a motion: measured by the largest that coordinates of one unit have done so far.
 namespace maupertuis {
 
-/// What a located instant leaves of a speed, in units of rounding: the rounding of t times an acceleration.
-double HybridMotion::speed_left_by_time(const SparseRow& row) const {
-  double acceleration = 0;
-  for (const auto& [i, g] : row) acceleration += std::abs(g) * acceleration_[kind_[i]];
-  return 0.25 * std::abs(t_) * acceleration;
-}
-
 /// ġ below this counts as 0.
 double HybridMotion::rest_speed(std::size_t contact, const ContactValues& values) const {
-  return rest_unit *
-         (std::max(values.rate_scale[contact], fastest_[contact]) + speed_left_by_time(values.normal[contact]));
+  double acceleration = 0;  // times the rounding of t: what a located instant leaves of a speed
+  for (const auto& [i, g] : values.normal[contact]) acceleration += std::abs(g) * acceleration_[kind_[i]];
+  return rest_unit * (std::max(values.rate_scale[contact], fastest_[contact]) + 0.25 * std::abs(t_) * acceleration);
 }
 
 /// Of the terms of g so far, and of what rounding of its coordinates may make of it.
@@ -27,8 +21,7 @@ double HybridMotion::size_of_gap(std::size_t contact, const ContactValues& value
 }
 
 double HybridMotion::rest_slip(std::size_t friction, const ContactValues& values) const {
-  return rest_unit * (std::max(values.slip_scale[friction], fastest_slip_[friction]) +
-                      speed_left_by_time(values.tangent[friction]));
+  return rest_unit * std::max(values.slip_scale[friction], fastest_slip_[friction]);
 }
 
 /// What a step shows of the sizes of the motion.
