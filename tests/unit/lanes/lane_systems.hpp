@@ -81,10 +81,6 @@ void add_functions(Systems& list) {
                  [p = p, d = d](Expr u) { return pow(u, Rational(p, d)); });
   add_function(list, "quotient", 0.6, [](Expr u) { return sin(u) / (u + Rational(2)); });
   add_function(list, "power of itself", 0.9, [](Expr u) { return u.context().power(u, u); });
-  add_function(list, "atan2", 0.6, [](Expr u) {
-    const std::vector<Expr> arguments{u * u, u + Rational(1)};
-    return u.context().function(Kind::Atan2, arguments);
-  });
 }
 
 void add_chain(Systems& list, int links) {
