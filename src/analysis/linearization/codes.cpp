@@ -117,13 +117,6 @@ constexpr CodeEntry entries[] = {
      "A locus follows equilibria while one parameter changes: the model says `sweep NAME = FROM .. TO steps N`, or "
      "--sweep does.",
      "", ""},
-    {"W1303", "an input acts by its rate",
-     "A linearization holds inputs at constant values, M ξ'' + C ξ' + K ξ = B u. A support at the input s acts on what "
-     "hangs from it by s'', of which B says nothing, and a damper between them by s'.",
-     "# maup modes\ncoord x : length\ninput s : [m] = 0\nparam m = 1 kg, k = 4 N/m, c = 1 N s/m\nT = 1/2 m x'^2\n"
-     "V = 1/2 k (x - s)^2\nD = 1/2 c (x' - s')^2\n",
-     "# maup modes\ncoord x, s : length\ninput F : [N] = 0\nparam m = 1 kg, k = 4 N/m, c = 1 N s/m\n"
-     "T = 1/2 m (x'^2 + s'^2)\nV = 1/2 k (x - s)^2 + 1/2 k s^2\nD = 1/2 c (x' - s')^2\nforce s = F\n"},
     {"W1301", "an equilibrium at which the coordinates fail",
      "The forces vanish, so the system can rest there; but the mass matrix is singular in these coordinates, so that "
      "frequencies cannot be told.",

@@ -108,29 +108,6 @@ void tell_of_kinks(const PointEquations& equations, const ModalStudy& study, Dia
           "A smooth function, as sqrt(x^2 + d^2) for abs(x), has one; `maup simulate` runs the model as it is.");
 }
 
-/// W1303: B has the effect of inputs themselves, and none of their rates.
-void tell_of_rates(const PointEquations& equations, Diagnostics& diagnostics) {
-  const PointEquations::Impl& e = equations.impl();
-  ExprVector rows = e.balance_rows;
-  rows.insert(rows.end(), e.measured.begin(), e.measured.end());
-  for (const Input& u : equations.system().inputs) {
-    const Expr rate = u.symbol.context().time_derivative(u.symbol), second = rate.context().time_derivative(rate);
-    const ExprVector without = substitute(rows, {{second, rate.context().number(0)}});
-    const bool has_second = without != rows;
-    const bool has_rate = substitute(without, {{rate, rate.context().number(0)}}) != without;
-    if (!has_rate && !has_second) continue;
-    diagnostics.warning(
-        "W1303", u.span, fmt::format("the rate of the input {} acts on the system", u.name),
-        fmt::format("The linearization holds inputs at constant values: what {} does to the motion is not in B, nor in "
-                    "D.",
-                    has_rate && has_second ? fmt::format("{0}' and {0}''", u.name)
-                    : has_rate             ? u.name + "'"
-                                           : u.name + "''"),
-        fmt::format("Make {0} a coordinate that a force moves: the force is the input, and {0} and {0}' are states.",
-                    u.name));
-  }
-}
-
 void warn_of_failing(const PointEquations& equations, const ModalStudy& study, Diagnostics& diagnostics) {
   if (study.failing.empty()) return;
   const std::size_t others = study.failing.size() - 1;
@@ -265,7 +242,6 @@ std::optional<ModalStudy> modal_study(const PointEquations& equations, const Mot
     refuse_none(equations, result.starts, diagnostics);
     return std::nullopt;
   }
-  tell_of_rates(equations, diagnostics);
   ModalStudy study = analysed(equations, std::move(result.found), std::move(result.translations));
   study.starts = result.starts;
   study.outside = result.outside;
@@ -300,7 +276,6 @@ std::optional<ModalStudy> modal_study_at(const PointEquations& equations, const 
                     diagnostics);
     return std::nullopt;
   }
-  tell_of_rates(equations, diagnostics);
   ModalStudy study = analysed(equations, {found.front()}, seen_in_frame(found.front().point, translations));
   if (refuse_kinks_alone(equations, study, place, diagnostics)) return std::nullopt;
   tell_of_kinks(equations, study, diagnostics);
@@ -314,7 +289,6 @@ std::optional<ModalStudy> modal_study_of(const PointEquations& equations, const 
     refuse_singular(equations.system(), 0, fmt::format("at t = {:g} s", state.t), diagnostics);
     return std::nullopt;
   }
-  tell_of_rates(equations, diagnostics);
   ModalStudy study;
   study.translations = equations.translations();
   ModalEntry entry{{*point, false, 0, 0, {}, false, {}}, linearize(equations, *point).linearization, {}, {}};

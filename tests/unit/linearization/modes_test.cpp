@@ -222,15 +222,3 @@ TEST_CASE("Where the stiffness grows without bound there is no linearization") {
     CHECK(render(m.diagnostics, m.source).empty());
   }
 }
-
-TEST_CASE("An input that acts by its rate is told, since B does not have it") {
-  Linearized m(R"(dimensionless
-input s : [1] = 0.2*t
-coord x : number
-T = 1/2 x'^2
-V = 1/2 (x-s)^2
-D = 1/2*0.4*(x'-s')^2
-)");
-  static_cast<void>(m.study());
-  CHECK(render(m.diagnostics, m.source).find("W1303") != std::string::npos);
-}
