@@ -42,9 +42,9 @@ struct KernelSource {
 };
 
 /// A function whose zero changes the formula in force: the argument of abs, sign or step, the difference of the
-/// arguments of min, max or a comparison.
+/// arguments of min, max or a comparison, y of atan2(y, x).
 struct SwitchFunction {
-  Kind kind = Kind::Abs;  // what it first stood in: Abs, Sign, Step, Min, Max, Less, LessEqual
+  Kind kind = Kind::Abs;  // what it first stood in: Abs, Sign, Step, Min, Max, Less, LessEqual, Atan2 (its cut)
   Expr left, right;       // the function is left − right; `right` is empty for Abs, Sign, Step
 };
 

@@ -35,7 +35,7 @@ struct StressEnergy {
 };
 
 /// Nothing where the boosts along all space variables and the rotations are not among `found`, where the density holds
-/// higher derivatives, or where the certificate fails.
+/// higher derivatives, where friction or forces act, or where the certificate fails.
 std::optional<StressEnergy> stress_energy(const FieldEquations& equations, const FieldCurrents& found);
 
 }  // namespace maupertuis

@@ -1,6 +1,7 @@
 #include "fields/charge_meter.hpp"
 
 #include "fields/careful_sum.hpp"
+#include "fields/given_fields.hpp"
 
 #include <maupertuis/evaluate.hpp>
 
@@ -26,22 +27,6 @@ std::vector<double> weights_of(const std::vector<double>& nodes, double a, doubl
       out[m] += product;
     }
   return out;
-}
-
-/// With the formulas of given fields in the place of their jets.
-Expr with_given(const FieldSystem& s, Expr e) {
-  e = s.expanded(e);
-  ExprMap map;
-  for (const Expr& symbol : s.jets_in(e)) {
-    const FieldJet jet = *s.jet_of(symbol);
-    Expr value = s.fields[jet.field].formula;
-    if (!s.fields[jet.field].given || !value) continue;
-    for (std::size_t x = 0; x < s.space.size(); ++x)
-      for (int k = 0; k < jet.space[x]; ++k) value = differentiate(value, s.space[x].symbol);
-    for (int k = 0; k < jet.time; ++k) value = differentiate(value, s.context->time());
-    map[symbol] = value;
-  }
-  return s.expanded(substitute(e, map));
 }
 
 bool holds(const std::vector<Expr>& list, Expr e) { return std::find(list.begin(), list.end(), e) != list.end(); }
@@ -105,7 +90,7 @@ ChargeMeter::ChargeMeter(const FieldMotion& motion, const FieldEquations& equati
     return;
   std::vector<Expr> densities, fluxes;
   for (const FieldCurrent& c : currents.currents) {
-    const Expr density = with_given(s, c.density);
+    const Expr density = with_given_fields(s, c.density);
     if (!knows(s, motion.point_inputs(), density)) continue;
     FieldCharge charge;
     charge.current = static_cast<std::size_t>(&c - currents.currents.data());
@@ -114,7 +99,7 @@ ChargeMeter::ChargeMeter(const FieldMotion& motion, const FieldEquations& equati
     densities.push_back(density);
     flows_.emplace_back();
     for (std::size_t x = 0; x < s.space.size(); ++x) {
-      const Expr flux = with_given(s, c.fluxes[x]);
+      const Expr flux = with_given_fields(s, c.fluxes[x]);
       const std::vector<Expr> symbols = symbols_of({&flux, 1});
       // Around a ring as much comes in as goes out, where the flux is the same function on both sides.
       flows_.back().push_back(!flux.is_zero() && !(s.periodic && !holds(symbols, s.space[x].symbol)));

@@ -58,22 +58,17 @@ class ModeProblem {
 
   /// How much of a coefficient lies between the points of quadrature, beside its mean, at most.
   double unseen() const {
-    constexpr int places = 4000;
-    const std::vector<ElementSpace::Point>& points = spaces_.front().points();
     const double left = mesh_.borders.front(), length = mesh_.borders.back() - left;
+    std::vector<std::pair<double, double>> points;
+    for (const ElementSpace::Point& point : spaces_.front().points())
+      points.emplace_back(inside(point.x), point.weight);
     double out = 0;
     for (const DensityEntry& e : entries_.list) {
       const RepeatedEvaluation value({&e.value, 1});
       const auto at = [&](double x) {
         return value([&](Expr symbol) { return symbol == s_.space.front().symbol ? x : values_.at(symbol); }).front();
       };
-      double by_quadrature = 0, by_places = 0, size = 0;
-      for (const ElementSpace::Point& point : points) by_quadrature += point.weight / length * at(inside(point.x));
-      for (int i = 0; i < places; ++i) {
-        const double v = at(left + length * (i + 0.5) / places);
-        by_places += v / places, size += std::abs(v) / places;
-      }
-      if (size > 0) out = std::max(out, std::abs(by_quadrature - by_places) / size);
+      out = std::max(out, unseen_along(at, left, length, points));
     }
     return out;
   }

@@ -302,8 +302,7 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
       ++out.steps;
       if (meter) meter->note_flux(mesh);
     }
-    if (meter && way > 0 && (stop - measured >= apart_in_run || stop == end))
-      meter->measure(mesh), measured = stop;
+    if (meter && way > 0 && (stop - measured >= apart_in_run || stop == end)) meter->measure(mesh), measured = stop;
     double now = 0;
     if (way > 0 || stop == options.begin) out.energy = mesh.energy(now), size = std::max(size, now);
     out.drift = std::max(out.drift, std::abs(out.energy - start));

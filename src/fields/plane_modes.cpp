@@ -175,28 +175,16 @@ class PlaneModes {
            })
         .front();
   }
-  /// By how much two means of it differ, as a part of its size.
-  static double apart(double by_quadrature, double by_places, double size) {
-    return size > 0 ? std::abs(by_quadrature - by_places) / size : 0;
-  }
-
-  /// Along a line: the mean by quadrature against that of many places.
   double unseen(Expr value, std::size_t along, double across) const {
-    constexpr int places = 4000;
     const Expr root[] = {value};
     const RepeatedEvaluation evaluation(root);
     const auto at = [&](double x) {
       return along == 0 ? value_at(evaluation, x, across) : value_at(evaluation, across, x);
     };
-    const double length = to_[along] - from_[along];
-    double by_quadrature = 0, by_places = 0, size = 0;
+    std::vector<std::pair<double, double>> points;
     for (Eigen::Index q = 0; q < axes_[along].points(); ++q)
-      by_quadrature += axes_[along].weight(q) * at(axes_[along].place(q)) / length;
-    for (int i = 0; i < places; ++i) {
-      const double v = at(from_[along] + length * (i + 0.5) / places);
-      by_places += v / places, size += std::abs(v) / places;
-    }
-    return apart(by_quadrature, by_places, size);
+      points.emplace_back(axes_[along].place(q), axes_[along].weight(q));
+    return unseen_along(at, from_[along], to_[along] - from_[along], points);
   }
 
   /// Over the plane: what is narrow in both directions lies between the lines too.
@@ -219,7 +207,7 @@ class PlaneModes {
       }
     }
     constexpr double all = static_cast<double>(places) * places;
-    return apart(by_quadrature, by_places / all, size / all);
+    return size > 0 ? std::abs(by_quadrature - by_places / all) / (size / all) : 0;
   }
 
   Eigen::Index index(std::size_t i, std::size_t j) const {

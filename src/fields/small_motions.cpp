@@ -2,6 +2,7 @@
 
 #include <maupertuis/evaluate.hpp>
 
+#include "fields/given_fields.hpp"
 #include "linear_algebra/products.hpp"
 
 #include <fmt/format.h>
@@ -22,24 +23,21 @@ bool refuse_modes_of(const FieldEquations& equations, Diagnostics& diagnostics, 
   return false;
 }
 
-Expr with_given(const FieldEquations& equations, Expr e) {
+namespace {
+
+/// An empty handle where a given field has no formula.
+Expr known(const FieldEquations& equations, Expr e) {
   const FieldSystem& s = equations.system();
-  e = s.expanded(e);
-  ExprMap given;
-  for (const Expr& symbol : s.jets_in(e)) {
-    const FieldJet jet = *s.jet_of(symbol);
-    if (!s.fields[jet.field].given) continue;
-    Expr value = s.fields[jet.field].formula;
-    if (!value) return {};
-    for (std::size_t x = 0; x < s.space.size(); ++x)
-      for (int k = 0; k < jet.space[x]; ++k) value = differentiate(value, s.space[x].symbol);
-    for (int k = 0; k < jet.time; ++k) value = differentiate(value, s.context->time());
-    given[symbol] = value;
-  }
-  return s.expanded(substitute(e, given));
+  const Expr out = with_given_fields(s, e);
+  const std::vector<Expr> jets = s.jets_in(out);
+  const bool all =
+      std::none_of(jets.begin(), jets.end(), [&](Expr jet) { return s.fields[s.jet_of(jet)->field].given; });
+  return all ? out : Expr{};
 }
 
-Expr density_of(const FieldEquations& equations) { return with_given(equations, equations.system().density); }
+}  // namespace
+
+Expr density_of(const FieldEquations& equations) { return known(equations, equations.system().density); }
 
 namespace {
 
@@ -51,7 +49,7 @@ bool add_forces(const FieldEquations& equations, DensityEntries& out, Diagnostic
   for (std::size_t a = 0; a < n; ++a) {
     const Expr force = s.forces[equations.varied[a]];
     if (!force) continue;
-    const Expr f = with_given(equations, force);
+    const Expr f = known(equations, force);
     if (!f) return refuse_modes_of(equations, diagnostics, "A given field has no formula.");
     ExprMap rest;
     for (const Expr& jet : s.jets_in(f)) rest[jet] = s.context->number(0);
@@ -250,6 +248,18 @@ std::vector<double> FrequencyErrors::errors() const {
   std::vector<double> out;
   for (std::size_t i = 0; i < changes_.size(); ++i) out.push_back(missing_ * (changes_[i] + rounding_[i]));
   return out;
+}
+
+double unseen_along(const std::function<double(double)>& f, double from, double length,
+                    const std::vector<std::pair<double, double>>& points) {
+  constexpr int places = 4000;
+  double by_points = 0, by_places = 0, size = 0;
+  for (const auto& [place, weight] : points) by_points += weight / length * f(place);
+  for (int i = 0; i < places; ++i) {
+    const double v = f(from + length * (i + 0.5) / places);
+    by_places += v / places, size += std::abs(v) / places;
+  }
+  return size > 0 ? std::abs(by_points - by_places) / size : 0;
 }
 
 bool add_unseen(const FieldEquations& equations, double unseen, FieldModes& modes, Diagnostics& diagnostics) {

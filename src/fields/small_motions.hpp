@@ -4,7 +4,9 @@
 
 #include "linear_algebra/dense.hpp"
 
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// What modes of fields have in common, of one and of two space variables: ℒ to second order about rest, M c̈ + G ċ + K
@@ -29,7 +31,6 @@ struct DensityEntries {
 };
 
 /// With given fields by their formulas; an empty handle where one has none.
-Expr with_given(const FieldEquations& equations, Expr e);
 Expr density_of(const FieldEquations& equations);
 /// With force densities that have a potential. E0644 where one holds velocities or derivatives in space.
 bool entries_of(const FieldEquations& equations, DensityEntries& out, Diagnostics& diagnostics);
@@ -50,6 +51,10 @@ bool solve_conservative(const SmallMotions& motions, std::size_t count, std::vec
 /// (μ² + iμ Ĝ − M̂) y = 0 with μ = 1/ω, K = L Lᵀ, c = L⁻ᵀ y.
 bool solve_gyroscopic(const SmallMotions& motions, std::size_t count, std::vector<double>& out);
 
+/// How much of a function of a line lies between the points of quadrature, beside its size: its mean by them against
+/// that of many places. `points`: place and weight.
+double unseen_along(const std::function<double(double)>& f, double from, double length,
+                    const std::vector<std::pair<double, double>>& points);
 /// What lies between the points of quadrature counts as an error, four times its part; false, and E0647, where it is
 /// much.
 bool add_unseen(const FieldEquations& equations, double unseen, FieldModes& modes, Diagnostics& diagnostics);

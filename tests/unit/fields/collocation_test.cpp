@@ -284,7 +284,8 @@ TEST_CASE("a plate that moves as a beam does, with supports that move") {
   };
   const std::string end =
       "start w = 0.1*x^2*(3 - 2*x), w' = 1 - 3*x^2 + 2*x^3\nrun 0.1\nexpect w(0.4AT) at 0.1 = 0 ± 9\n";
-  const std::string left = "boundary left : w = sin(t), w_x = 0\n", right = "boundary right : w = 0.1, w_x = 0\n";
+  const std::string left = "boundary left : w = sin(t), w_x = 0\n",
+                    right = "boundary right : w = 0.1, w_x = 0.05*t^2\n";
   const auto placed = [&](const std::string& at) {
     std::string out = end;
     return out.replace(out.find("AT"), 2, at);
@@ -296,7 +297,7 @@ TEST_CASE("a plate that moves as a beam does, with supports that move") {
             "density = 1/2 w'^2 - 1/2 (w_xx^2 + w_yy^2 + 2 w_xy^2)\n" + placed(", 0.3"));
   const double turned = value(
       "dimensionless\nfield w(y, x) : number on y = 0 .. 0.7, x = 0 .. 1 cells 2, 3 order 7\n"
-      "boundary bottom : w = sin(t), w_x = 0\nboundary top : w = 0.1, w_x = 0\n"
+      "boundary bottom : w = sin(t), w_x = 0\nboundary top : w = 0.1, w_x = 0.05*t^2\n"
       "density = 1/2 w'^2 - 1/2 (w_xx^2 + w_yy^2 + 2 w_xy^2)\n" +
       std::string(placed("")).replace(placed("").find("w(0.4)"), 6, "w(0.3, 0.4)"));
   CHECK(std::abs(beam) > 0.01);
@@ -325,4 +326,30 @@ TEST_CASE("a field of first order in time in the plane") {
       "density = i/2 (conj(ψ) ψ' - ψ conj(ψ')) - 1/2 (abs(ψ_x)^2 + abs(ψ_y)^2) + 1/2 abs(ψ)^4\n"
       "start ψ = 0.5*exp(i (x + y))\nrun 0.2\nexpect energy conserved rel 1e-12\n"
       "expect total re(ψ) cos(x + y) at 0.2 = pi^2 cos((1 - 0.25)*0.2) ± 1e-5\n");
+}
+
+TEST_CASE("given slopes of a field of first order act along the sides of a rectangle as at the ends of a line") {
+  // a and b of ψ = a + i b; nothing depends on the other variable. 3/4 of a side, so that its length counts.
+  const auto value = [](const std::string& text) {
+    Study study = study_of_text(text);
+    REQUIRE(study.verification());
+    for (const Diagnostic& d : study.diagnostics().items()) CHECK_MESSAGE(d.code == "", d.code << " " << d.message);
+    return std::stod(study.verification()->results[0].actual);
+  };
+  const std::string line = "density = b a' - a b' - 1/2 (a_x^2 + b_x^2)\n";
+  const std::string plane = "density = b a' - a b' - 1/2 (a_x^2 + b_x^2 + a_y^2 + b_y^2)\n";
+  const std::string start = "start a = cos(pi*x), b = 0.5*x^2\nrun 0.05\n";
+  const auto ends = [](const std::string& near, const std::string& far) {
+    return "boundary " + near + " : b_x = 0\nboundary " + far + " : b_x = 1\n";
+  };
+  const double on_line = value("dimensionless\nfield a(x), b(x) : number on x = 0 .. 1 cells 3 order 8\n" +
+                               ends("left", "right") + line + start + "expect a(0.8) at 0.05 = 0 ± 9\n");
+  const double along_x =
+      value("dimensionless\nfield a(x, y), b(x, y) : number on x = 0 .. 1, y = 0 .. 0.75 cells 3, 1 order 8\n" +
+            ends("left", "right") + plane + start + "expect a(0.8, 0.3) at 0.05 = 0 ± 9\n");
+  const double along_y =
+      value("dimensionless\nfield a(y, x), b(y, x) : number on y = 0 .. 0.75, x = 0 .. 1 cells 1, 3 order 8\n" +
+            ends("bottom", "top") + plane + start + "expect a(0.3, 0.8) at 0.05 = 0 ± 9\n");
+  CHECK(std::abs(along_x - on_line) < 1e-8);
+  CHECK(std::abs(along_y - on_line) < 1e-8);
 }
