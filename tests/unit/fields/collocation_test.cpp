@@ -353,3 +353,13 @@ TEST_CASE("given slopes of a field of first order act along the sides of a recta
   CHECK(std::abs(along_x - on_line) < 1e-8);
   CHECK(std::abs(along_y - on_line) < 1e-8);
 }
+
+TEST_CASE("given slopes of a field of first order, by closed forms") {
+  // 2 a' + b_xx = 0, 2 b' = a_xx: b = x²/2 and −(1 − x)²/2 stay, a = ∓t/2.
+  const std::string line = "dimensionless\nfield a(x), b(x) : number on x = 0 .. 1 cells 2 order 6\n";
+  const std::string density = "density = b a' - a b' - 1/2 (a_x^2 + b_x^2)\n";
+  holds(line + "boundary right : b_x = 1\n" + density +
+        "start b = 1/2 x^2\nrun 0.2\nexpect a(0.8) at 0.2 = -0.1 ± 1e-11\nexpect b(0.8) at 0.2 = 0.32 ± 1e-11\n");
+  holds(line + "boundary left : b_x = 1\n" + density +
+        "start b = -1/2 (1 - x)^2\nrun 0.2\nexpect a(0.8) at 0.2 = 0.1 ± 1e-11\n");
+}
