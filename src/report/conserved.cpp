@@ -55,13 +55,20 @@ void add_momentum(ReportContent& content, const EquationsOfMotion& equations, st
   const MechanicalSystem& system = *equations.system;
   const Coordinate& c = system.coordinates[i];
   ReportContent::Conserved quantity_row;
-  quantity_row.sentence = fmt::format("{} is cyclic, and nothing acts on it: its momentum is conserved.", c.name);
+  quantity_row.sentence =
+      system.has_modes()
+          ? fmt::format(
+                "{} is cyclic, and nothing but contacts and friction acts on it: without them its momentum is "
+                "conserved.",
+                c.name)
+          : fmt::format("{} is cyclic, and nothing acts on it: its momentum is conserved.", c.name);
   quantity_row.formula = formula(layouts::indexed(layouts::name("p"), {lay_out(c.q, equations.order)}),
                                  equations.shown().momenta[i], equations.order);
   if (run) {
     const std::string unit =
         system.dimensionless ? "" : to_string(system.lagrangian_dimension * system.independent_dimension / c.dimension);
     add_values_along_run(quantity_row, equations, equations.momenta[i], unit, run->trajectory);
+    if (system.has_modes()) quantity_row.drift.clear();  // what contacts and friction do is no drift
   }
   content.conserved.push_back(std::move(quantity_row));
 }
@@ -78,13 +85,14 @@ void add_energy(ReportContent& content, const EquationsOfMotion& equations, cons
     content.conserved.push_back(std::move(row));
     return;
   }
-  row.sentence += " It is conserved.";
+  const bool has_modes = equations.system->has_modes();
+  row.sentence += has_modes ? " Without contacts and friction it is conserved." : " It is conserved.";
   row.formula = formula(layouts::name("h_E"), equations.shown().energy_function, equations.order);
   const auto column = run ? run->trajectory.column("energy") : std::nullopt;
   // A run that ended where it began may have no energy to show.
   if (column && run->trajectory.rows() > 0 && std::isfinite(run->trajectory.at(0, *column))) {
     row.value = quantity(run->trajectory.at(0, *column), run->trajectory.columns[*column].unit, 10);
-    row.drift = short_number(run->statistics.energy_drift, 2);
+    if (!has_modes) row.drift = short_number(run->statistics.energy_drift, 2);
   }
   content.conserved.push_back(std::move(row));
 }

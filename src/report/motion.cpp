@@ -133,8 +133,9 @@ void add_motion(ReportContent& content, const Model& model, const EquationsOfMot
   content.trajectory = run.trajectory;
   content.drawing =
       evaluate_drawing(model, run.trajectory, frames_within_budget(model), &equations, impulses_of(run, model.system));
-  if (energy_conserved) add_drift_column(content.trajectory);
-  add_pictures(content, model.system, run.reactions, energy_conserved);
+  const bool is_constant = energy_conserved && !model.system.has_modes();  // impacts and friction take of it
+  if (is_constant) add_drift_column(content.trajectory);
+  add_pictures(content, model.system, run.reactions, is_constant);
   for (ReportContent::Picture& picture : content.pictures)
     if (picture.options.against.empty()) show_happenings(picture.options, run, model.system);
 }

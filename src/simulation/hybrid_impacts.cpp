@@ -173,6 +173,15 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
     reason = "No impulses keep all contacts that are hit here from closing.";
     return false;
   }
+  if (!result.v.allFinite()) {
+    reason = fmt::format(
+        "The constraints move the contact {} through zero, and leave nothing that an impact could change: no motion "
+        "obeys "
+        "both.",
+        system_.contact_label(*std::find_if(touching.begin(), touching.end(),
+                                            [&](std::size_t i) { return values.rate[i] < -rest_speed(i, values); })));
+    return false;
+  }
   if (result.rubs_at_once) {
     reason = fmt::format(
         "Several contacts are hit here, {} with friction among them, and `impact simultaneous` says nothing of "

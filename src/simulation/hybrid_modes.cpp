@@ -138,6 +138,19 @@ bool HybridMotion::presses_again(std::size_t contact, std::span<const double> ac
   return sum < -digits * size;
 }
 
+/// A friction that gives way as its force comes to the limit, with μ_s = μ, lets go without a jump where nothing else
+/// happens: its slip, against that force, begins with the second power of time, whatever rounding makes of the first.
+///
+///     λ_t = −μ_s N: it slides forwards        λ_t = μ_s N: it slides backwards
+bool HybridMotion::begins_slowly(const Watch& slip, FrictionState way, const ContactValues& values) const {
+  const bool forwards = way == FrictionState::Forward;
+  const bool gives_way = std::all_of(pending_->left.begin(), pending_->left.end(), [&](const Watch& x) {
+    return x.what == Watch::What::Hold && x.index == slip.index && x.lower == forwards;
+  });
+  return gives_way && !pending_->left.empty() && pending_->hit.empty() && pending_->sets.empty() &&
+         !friction_of(system_, slip.index).in_space() && values.fixed[slip.index] == values.kinetic[slip.index];
+}
+
 /// Whether the motion in a mode keeps its conditions: gaps that do not close, forces that press, friction that holds
 /// or opposes. A condition that is 0 here counts by the first of its derivatives that is not. Lenient: what is violated
 /// at once is 0 here to rounding.
@@ -151,8 +164,9 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
   std::vector<std::size_t> at_zero;
   for (std::size_t k = 0; k < motion.watches().size(); ++k) {
     const Watch& w = motion.watches()[k];
-    const bool left = std::any_of(pending_->left.begin(), pending_->left.end(),
-                                  [&](const Watch& x) { return x.what == w.what && x.index == w.index; });
+    const bool left = std::any_of(pending_->left.begin(), pending_->left.end(), [&](const Watch& x) {
+      return x.what == w.what && x.index == w.index && x.lower == w.lower;
+    });
     // A gap that opens and is not negative begins as it is: next to rounding, but with the way that it has.
     const bool opens =
         w.what == Watch::What::Gap && values.gap[w.index] > 0 && values.rate[w.index] > rest_speed(w.index, values);
@@ -163,7 +177,8 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
     // A motion that is thrown back from the zero of an event has not passed it, whatever rounding makes of it.
     const bool is_met = w.what == Watch::What::Event && std::find(pending_->at_zero.begin(), pending_->at_zero.end(),
                                                                   w.index) != pending_->at_zero.end();
-    if (touches || starts_to_slide || is_met || (left && w.what == Watch::What::Force)) at_zero.push_back(k);
+    const bool is_located_force = left && (w.what == Watch::What::Force || w.what == Watch::What::Hold);
+    if (touches || starts_to_slide || is_met || is_located_force) at_zero.push_back(k);
   }
   s.put_at_zero(at_zero);
   // A gap whose rate is rounding begins with the second power of time.
@@ -171,6 +186,7 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
     const Watch& w = motion.watches()[k];
     if (w.what == Watch::What::Gap && std::abs(values.rate[w.index]) <= rest_speed(w.index, values))
       s.put_at_zero({&k, 1}, 2);
+    if (w.what == Watch::What::Slip && begins_slowly(w, mode.friction[w.index], values)) s.put_at_zero({&k, 1}, 2);
   }
   // λ falls through 0, and so does g̈ rise from it: the gap begins with the third power of time.
   for (std::size_t k = 0; k < motion.watches().size(); ++k)

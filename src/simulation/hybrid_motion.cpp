@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t most_at_once = 1000;  // changes at the same time
 constexpr std::size_t most_happenings = 10'000'000;
 constexpr std::size_t most_numbers = 2'000'000;  // of states that are kept with what happens
+constexpr double digits_of_sets = 1e-9;          // to which what an event sets keeps constraints and contacts
 
 }  // namespace
 
@@ -330,10 +331,12 @@ std::optional<std::size_t> HybridMotion::violated() {
   return std::nullopt;
 }
 
-/// Contacts with g = 0: closed ones, those that were hit, and those whose gap is rounding.
+/// Contacts with g = 0: closed ones, those that were hit, and those whose gap is rounding. Not those that an event has
+/// just set apart.
 std::vector<std::size_t> HybridMotion::touching(const ContactValues& values) const {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < values.gap.size(); ++i) {
+    if (!pending_->sets.empty() && values.gap[i] > digits_of_sets * size_of_gap(i, values)) continue;
     const bool hit = std::find(pending_->hit.begin(), pending_->hit.end(), i) != pending_->hit.end();
     // What has come through zero by more than rounding, unseen, and does not come back by itself, is hit too.
     const bool through = values.gap[i] < 0 && values.rate[i] < -rest_speed(i, values);
@@ -401,20 +404,42 @@ bool HybridMotion::carry_out_sets(std::string& reason) {
     const double* value = first[static_cast<std::size_t>(event - model_.experiment.events.data())];
     for (const ModelEvent::Assignment& a : event->sets) (a.order == 0 ? q : v)[a.coordinate] = *value++;
   }
-  constexpr double digits = 1e-9;
-  if (const auto k = violated_constraint({t_, q, v}, digits)) {
+  if (const auto k = violated_constraint({t_, q, v}, digits_of_sets)) {
     reason = fmt::format("The event `{}` sets a state that violates {}.", before, system_.constraint_label(*k));
     return false;
   }
   const ContactValues& values = functions_.at(t_, q, v);
   for (std::size_t i = 0; i < values.gap.size(); ++i)
-    if (values.gap[i] < -digits * values.gap_scale[i]) {
+    if (values.gap[i] < -digits_of_sets * values.gap_scale[i]) {
       reason =
           fmt::format("The event `{}` sets a state that violates the contact {}.", before, system_.contact_label(i));
       return false;
     }
   carried_[0] += energy_and_sets_at(t_, q, v)[0] - found[0];  // what a set puts in is work
   q_ = q, v_ = v;
+  return true;
+}
+
+/// False, and why, where a contact that never slides has a slip: the constraint that it is would take it away, with the
+/// energy, and no impact that would do so is part of the model.
+bool HybridMotion::keeps_sticking(const std::vector<std::size_t>& touching, std::string& reason) {
+  constexpr double digits = 1e-9;
+  const ContactValues& values = functions_.at(t_, q_, v_);
+  for (const std::size_t i : touching) {
+    if (!system_.contacts[i].friction.sticking || values.rate[i] > rest_speed(i, values)) continue;
+    if (slip_speed_at(i, values) <= digits * fastest_slip_[i]) continue;
+    const std::string label = system_.contact_label(i);
+    if (pending_->begins && record_.happenings.empty())
+      reason = fmt::format("The start slides on the contact {}, which is `sticking` and never slides.", label);
+    else if (!pending_->sets.empty())
+      reason = fmt::format("The event `{}` sets a state that slides on the contact {}, which never slides.",
+                           pending_->sets.front()->name, label);
+    else
+      reason = fmt::format(
+          "The contact {} slides after what happens here, and it is `sticking`: the model does not say what stops it.",
+          label);
+    return false;
+  }
   return true;
 }
 
@@ -453,6 +478,7 @@ std::optional<Step> HybridMotion::settle(double bound) {
   std::vector<std::size_t> touch = touching(functions_.at(t_, q_, v_));
   if (!hit(touch, reason)) return stopped(StepEnding::Paradox, reason);
   if (!pending_->begins) close_lowest_flights(touch, bound);
+  if (!keeps_sticking(touch, reason)) return stopped(StepEnding::Paradox, reason);
   come_to_rest(touch, bound);
   if (!choose_slips(touch, bound, reason)) return stopped(StepEnding::Paradox, reason);
   // Constraints of the mode to come may move the next contact through zero: that is hit at the same instant.

@@ -103,6 +103,7 @@ class HybridMotion final : public Method {
   std::optional<Step> settle(double bound);
   bool carry_out_sets(std::string& reason);
   std::vector<std::size_t> touching(const ContactValues& values) const;
+  bool keeps_sticking(const std::vector<std::size_t>& touching, std::string& reason);
   bool is_lost_in_rounding(const std::vector<std::size_t>& touching, const ContactValues& values) const;
   bool hit(std::vector<std::size_t>& touching, std::string& reason);
   static ImpactResult last_impact(const ImpactProblem& problem, const Eigen::VectorXd& v);
@@ -110,6 +111,7 @@ class HybridMotion final : public Method {
   void note_order(const ImpactProblem& problem, const ImpactResult& first, const Eigen::VectorXd& v);
   void record_impulses(const ImpactResult& result);
   std::optional<double> accumulation(std::size_t contact, double speed);
+  double speed_left_by_time(const SparseRow& row) const;
   double rest_speed(std::size_t contact, const ContactValues& values) const;
   double rest_slip(std::size_t friction, const ContactValues& values) const;
 
@@ -141,9 +143,11 @@ class HybridMotion final : public Method {
   bool interrupted() const;
   bool fits(const ContactMode& mode, const std::vector<std::size_t>& touching, double bound, Leniency leniency,
             std::vector<double>* accelerations);
+  bool begins_slowly(const Watch& slip, FrictionState way, const ContactValues& values) const;
   bool vanishes(const Watch& watch, double size, const ContactValues& values) const;
   double size_of_gap(std::size_t contact, const ContactValues& values) const;
   void note_sizes(const ContactValues& values);
+  void note_limits(const ContactValues& values);
   void note_gaps(const ContactValues& values);
   void note_usual_gaps(const ContactValues& values);
   void note_accelerations(std::span<const double> a, const ContactValues& values);

@@ -1,16 +1,24 @@
 #include "simulation/hybrid_parts.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 /// What is rounding in a motion: measured by the largest that coordinates of one unit have done so far.
 namespace maupertuis {
 
+/// What a located instant leaves of a speed, in units of rounding: the rounding of t times an acceleration.
+double HybridMotion::speed_left_by_time(const SparseRow& row) const {
+  double acceleration = 0;
+  for (const auto& [i, g] : row) acceleration += std::abs(g) * acceleration_[kind_[i]];
+  return 0.25 * std::abs(t_) * acceleration;
+}
+
 /// ġ below this counts as 0.
 double HybridMotion::rest_speed(std::size_t contact, const ContactValues& values) const {
-  double acceleration = 0;  // times the rounding of t: what a located instant leaves of a speed
-  for (const auto& [i, g] : values.normal[contact]) acceleration += std::abs(g) * acceleration_[kind_[i]];
-  return rest_unit * (std::max(values.rate_scale[contact], fastest_[contact]) + 0.25 * std::abs(t_) * acceleration);
+  return rest_unit *
+         (std::max(values.rate_scale[contact], fastest_[contact]) + speed_left_by_time(values.normal[contact]));
 }
 
 /// Of the terms of g so far, and of what rounding of its coordinates may make of it.
@@ -21,7 +29,8 @@ double HybridMotion::size_of_gap(std::size_t contact, const ContactValues& value
 }
 
 double HybridMotion::rest_slip(std::size_t friction, const ContactValues& values) const {
-  return rest_unit * std::max(values.slip_scale[friction], fastest_slip_[friction]);
+  return rest_unit * (std::max(values.slip_scale[friction], fastest_slip_[friction]) +
+                      speed_left_by_time(values.tangent[friction]));
 }
 
 /// What a step shows of the sizes of the motion.
@@ -30,8 +39,23 @@ void HybridMotion::note_step() {
   take_state();
   const ContactValues& values = functions_.at(t_, q_, v_);
   note_sizes(values);
+  note_limits(values);
   const std::vector<double>& a = s.step_start().a;
   if (std::all_of(a.begin(), a.end(), [](double x) { return std::isfinite(x); })) note_accelerations(a, values);
+}
+
+/// A limit of friction below zero is none: the force would drive what it is to brake.
+void HybridMotion::note_limits(const ContactValues& values) {
+  const std::size_t contacts = system_.contacts.size();
+  for (std::size_t i = 0; i < values.kinetic.size(); ++i)
+    if (values.kinetic[i] < 0)
+      remark(i < contacts
+                 ? fmt::format("The coefficient of friction of the contact {} becomes negative: friction drives "
+                               "the motion there, which none does.",
+                               system_.contact_label(i))
+                 : fmt::format("The friction along {} has a limit or a coefficient that becomes negative: it "
+                               "drives the motion there, which no friction does.",
+                               system_.frictions[i - contacts].name));
 }
 
 /// Motions of one kind of coordinates have one size: a pendulum that hangs still among others that swing is at rest to

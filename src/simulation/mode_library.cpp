@@ -56,8 +56,9 @@ void watch_frictions(const MechanicalSystem& system, const ContactMode& mode, co
               most * most - f.multipliers[0] * f.multipliers[0] - f.multipliers[1] * f.multipliers[1]);
         continue;
       }
-      for (const Expr& event : {most - f.multipliers[0], most + f.multipliers[0]})
-        watch(ModeWatch::What::Hold, i, event);
+      watch(ModeWatch::What::Hold, i, most - f.multipliers[0]);
+      watch(ModeWatch::What::Hold, i, most + f.multipliers[0]);
+      watches.back().lower = true;
     } else if (f.in_space()) {
       const Expr stop = system.context->number(Rational::from_double(stops[i]));
       watch(ModeWatch::What::Slip, i, f.slip[0] * f.slip[0] + f.slip[1] * f.slip[1] - stop * stop);

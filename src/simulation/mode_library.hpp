@@ -18,6 +18,7 @@ namespace maupertuis {
 struct ModeWatch {
   enum class What { Until, Event, Gap, Force, Hold, Slip, Normal } what = What::Event;
   std::size_t index = 0;  // of the event, the contact, the friction
+  bool lower = false;     // Hold in the plane: of its two limits the one at −μ_s N
   bool keeps_sign() const { return what != What::Until && what != What::Event; }  // must not be negative in its mode
   /// A gap or a force that comes to 0 and goes back changes nothing; a slip may come to rest there.
   bool touches_count() const { return !keeps_sign() || what == What::Slip; }

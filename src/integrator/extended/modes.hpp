@@ -77,6 +77,7 @@ class Modes {
   std::vector<std::size_t> touching(const Met& met) const;
   bool carry_out_sets(const Met& met);
   bool hit(const std::vector<std::size_t>& touching, Met& met);
+  bool keeps_sticking(const std::vector<std::size_t>& touching, const Met& met);
   std::optional<T> end_of_bounces(std::size_t contact, const T& speed);
   std::vector<Choice> choices(const std::vector<std::size_t>& touching, const Met& met) const;
   Choice choice_of_contact(std::size_t contact, const Met& met) const;

@@ -202,10 +202,16 @@ T Modes<T>::rest_slip(std::size_t f) const {
 template <class T>
 std::vector<std::size_t> Modes<T>::touching(const Met& met) const {
   std::vector<std::size_t> out;
-  for (std::size_t c = 0; c < point_->gap.size(); ++c)
-    if (through_modes::holds(met.hit, c) || now_->mode.closed[c] ||
-        abs(point_->gap[c]) <= through_modes::roundings * epsilon<T>() * widest_[problem_.contacts.gap_kind[c]])
+  constexpr double digits_of_sets = 1e-9;
+  const auto is_set_apart = [&](std::size_t c) {
+    return !met.sets.empty() && point_->gap[c] > T(digits_of_sets) * size_of_gap(c);
+  };
+  for (std::size_t c = 0; c < point_->gap.size(); ++c) {
+    const bool is_next_to_zero =
+        abs(point_->gap[c]) <= through_modes::roundings * epsilon<T>() * widest_[problem_.contacts.gap_kind[c]];
+    if (!is_set_apart(c) && (through_modes::holds(met.hit, c) || now_->mode.closed[c] || is_next_to_zero))
       out.push_back(c);
+  }
   return out;
 }
 
@@ -276,7 +282,17 @@ bool Modes<T>::hit(const std::vector<std::size_t>& touching, Met& met) {
   const ExtendedSample before = stepper().sample(stepper().time());
   std::vector<T> v = v_;
   const bool at_once = all.simultaneous && !ends;
-  const auto blows = at_once ? impact.all_at_once(v) : impact.one_after_the_other(v, rest);
+  auto blows = at_once ? impact.all_at_once(v) : impact.one_after_the_other(v, rest);
+  const auto rubs = [&](const auto& blow) { return all.frictions[blow.contact].present; };
+  if (at_once && blows && std::any_of(blows->begin(), blows->end(), rubs)) {
+    v = v_;
+    blows = impact.one_after_the_other(v, rest);  // it has its friction where it is hit alone
+    for (std::size_t i = 1; blows && i < blows->size(); ++i)
+      if ((*blows)[i].contact != blows->front().contact)
+        return stop(StepEnding::Paradox, closing.front(),
+                    "several contacts are hit, one with friction among them, and `impact simultaneous` says nothing of "
+                    "friction.");
+  }
   if (!blows)
     return stop(at_once ? StepEnding::Paradox : StepEnding::Unending, closing.front(),
                 at_once ? "no impulses were found that keep all contacts that are hit from closing."
@@ -292,6 +308,22 @@ bool Modes<T>::hit(const std::vector<std::size_t>& touching, Met& met) {
     return stop(StepEnding::Unending, closing.front(),
                 "the flights between impacts have become too short to be told apart in so many digits.");
   return evaluate();
+}
+
+/// False where a contact that never slides has a slip, which no law of the model would stop.
+template <class T>
+bool Modes<T>::keeps_sticking(const std::vector<std::size_t>& touching, const Met& met) {
+  constexpr double digits = 1e-9;
+  for (const std::size_t c : touching) {
+    if (!problem_.contacts.frictions[c].sticking || point_->rate[c] > rest_rate(c)) continue;
+    if (abs(point_->slip[c]) <= T(digits) * fastest_slip_[c]) continue;
+    return stop(StepEnding::Paradox, c,
+                met.begins          ? "the start slides on it, and it is `sticking` and never slides."
+                : !met.sets.empty() ? "an event sets a state that slides on it, and it is `sticking` and never slides."
+                                    : "it slides after what happens here, and it is `sticking`: the model does not say "
+                                      "what stops it.");
+  }
+  return true;
 }
 
 // -------------------------------------------------------------------------------------------------- the mode after it
@@ -554,7 +586,7 @@ void Modes<T>::settle(const Met& given) {
     return;
   }
   const std::vector<std::size_t> touches = touching(met);
-  if (!hit(touches, met) || !choose(touches, met)) stepper().start(t_, q_, v_);
+  if (!hit(touches, met) || !keeps_sticking(touches, met) || !choose(touches, met)) stepper().start(t_, q_, v_);
 }
 
 }  // namespace maupertuis::extended

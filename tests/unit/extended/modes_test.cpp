@@ -102,6 +102,19 @@ TEST_CASE("three balls in a row that are hit at once share the impact by complem
   check_digits(r.final.v[2], second, 95);
 }
 
+TEST_CASE("impacts at once: a contact that is hit alone has its friction, and is open where an event sets it so") {
+  const std::string ball =
+      "dimensionless\nparam g = 8\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = g y\n"
+      "contact y >= 0 restitution 1/2 friction 1/4 slip x' name floor\nimpact simultaneous\n";
+  const ExtendedResult hit = run_for(ball + "start x' = 3, y = 1\n", Rational(3, 4));  // it falls with 4 after 1/2
+  check_digits(hit.final.v[0], Decimal("1.5"), 95);
+  check_digits(hit.final.v[1], 0, 95);
+  const ExtendedResult set = run_for(ball + "event up when x = 1 : set y = 1\nstart x' = 3, x = -1/8\n", 1);
+  const auto lost = all_of_kind(set, Happening::Kind::Lost);
+  REQUIRE(lost.size() == 1);  // x' = 3 − 2 t, x = 1 at t = (3 − √4.5)/2
+  check_digits(lost.front().t, (3 - sqrt(Decimal("4.5"))) / 2, 95);
+}
+
 TEST_CASE("a particle leaves a sphere where its height is (2 + v²/(g R))/3 of the radius") {
   const ExtendedResult r = run_for(
       "dimensionless\nparam g = 9.81, v0 = 0.5\ncoord r, w : number\nT = 1/2 (r'^2 + r^2 w'^2)\nV = g r cos w\n"

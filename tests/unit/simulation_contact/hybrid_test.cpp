@@ -57,6 +57,104 @@ TEST_CASE("the threshold of sticking is tan α, to nine digits on either side") 
   CHECK(mode(std::tan(0.3) * (1 - 1e-9)) == "plane sliding −");
 }
 
+TEST_CASE("impacts at once: a contact that is hit alone has its friction; one that is hit with others ends the run") {
+  const std::string ball =
+      "param m = 1 kg, g = 9.81 m/s^2\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = m g y\n"
+      "contact y >= 0 restitution 0.5 friction 0.3 slip x' name floor\nimpact simultaneous\n";
+  ModelText alone(ball + "contact x <= 9 m name wall\nstart y = 1 m, x' = 3 m/s\n");
+  const auto r = run(alone, 0.5);
+  const double before = std::sqrt(2 * 9.81);
+  CHECK(r.final.v[0] == doctest::Approx(3 - 0.3 * 1.5 * before));
+  CHECK(r.books->impacts == doctest::Approx(4.5 + 9.81 - 0.5 * std::pow(r.final.v[0], 2) - 0.25 * 9.81));
+  CHECK(r.statistics.energy_drift < 1e-13);
+  ModelText corner(ball + "contact x <= 3 m restitution 0.5 name wall\nstart x' = 3 m/s, y' = 4.905 m/s\n");
+  const auto refused = run(corner, 1.5);
+  CHECK(refused.ending == Ending::Paradox);
+  CHECK(refused.reason.find("floor with friction among them") != std::string::npos);
+}
+
+TEST_CASE("a block under a harmonic force gives way and comes to rest in turns, each once, for as long as the run is") {
+  ModelText m(
+      "param m = 1 kg, F = 3.2 N, w = 12 rad/s\ncoord x : length\nT = 1/2 m x'^2\nforce x = F cos(w t)\n"
+      "friction x limit 2.943 N\n");
+  const auto r = run(m, 30);
+  CHECK(r.ending == Ending::Finished);
+  // It gives way where the force comes to the limit in either direction, half a period after the time before.
+  const double first = (3.141592653589793 - std::acos(2.943 / 3.2)) / 12, half = 3.141592653589793 / 12;
+  std::size_t slips = 0;
+  for (const Happening& h : r.happenings) {
+    if (h.kind != Happening::Kind::Slip) continue;
+    CHECK(h.t == doctest::Approx(first + static_cast<double>(slips) * half).epsilon(1e-13));
+    ++slips;
+  }
+  CHECK(slips == 1 + static_cast<std::size_t>((30 - first) / half));
+  CHECK(count(r, Happening::Kind::Stick) == slips + 1);  // it slides as it begins
+}
+
+TEST_CASE("a break-away is seen however soon the run ends after it") {
+  for (const double end : {0.0975, 0.098, 0.1, 0.102, 0.104, 0.1061, 0.107, 0.11, 0.113}) {
+    ModelText m(
+        "param m = 1 kg, F = 3.2 N, w = 12 rad/s\ncoord x : length\nT = 1/2 m x'^2\nforce x = F sin(w t)\n"
+        "friction x limit 2.943 N\n");
+    const auto r = run(m, end);
+    const double from = std::asin(2.943 / 3.2) / 12;
+    CHECK(count(r, Happening::Kind::Slip) == 1);
+    CHECK(r.final.v[0] ==
+          doctest::Approx(3.2 / 12 * (std::cos(12 * from) - std::cos(12 * end)) - 2.943 * (end - from)).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("an event that sets a body above the floor on which it lies lets it fall") {
+  ModelText m(
+      "param m = 1 kg, g = 9.81 m/s^2\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = m g y\n"
+      "contact y >= 0 name floor\nevent up when x = 2 m : set y = 0.5 m\nstart x' = 1 m/s\n");
+  const auto r = run(m, 2.2);
+  CHECK(r.final.q[1] == doctest::Approx(0.5 - 0.5 * 9.81 * 0.04).epsilon(1e-12));
+  CHECK(count(r, Happening::Kind::Lost, "floor") == 1);
+  CHECK(r.statistics.energy_drift < 1e-13);
+}
+
+TEST_CASE("what never slides is not begun, nor set, with a slip") {
+  const std::string wheel =
+      "param m = 1 kg, g = 9.81 m/s^2, R = 0.1 m\ncoord x, y : length, φ : angle\n"
+      "T = 1/2 m (x'^2 + y'^2) + 1/4 m R^2 φ'^2\nV = m g y\ncontact y >= R slip x' + R φ' sticking name floor\n"
+      "start y = R, x' = 3 m/s";
+  ModelText rolls(wheel + ", φ' = -30 rad/s\n");
+  const auto good = run(rolls, 0.6);
+  CHECK(good.final.q[0] == doctest::Approx(1.8));
+  ModelText slides(wheel + "\n");
+  const auto start = run(slides, 0.6);
+  CHECK(start.ending == Ending::Paradox);
+  CHECK(start.reason == "The start slides on the contact floor, which is `sticking` and never slides.");
+  CHECK(start.final.v[0] == 3);
+  ModelText set(wheel + ", φ' = -30 rad/s\nevent push when x = 1 m : set x' = 4 m/s\n");
+  const auto pushed = run(set, 0.6);
+  CHECK(pushed.ending == Ending::Paradox);
+  CHECK(pushed.reason == "The event `push` sets a state that slides on the contact floor, which never slides.");
+}
+
+TEST_CASE("friction whose limit becomes negative is told") {
+  const std::string block = "param m = 1 kg, F0 = 5 N, w = 1 rad/s\ncoord x : length\nT = 1/2 m x'^2\n";
+  ModelText drives(block + "friction x limit F0 cos(w t)\nstart x' = 10 m/s\n");
+  const auto told = run(drives, 4).remarks;
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].find("drives the motion there, which no friction does") != std::string::npos);
+  ModelText brakes(block + "friction x limit F0 abs(cos(w t))\nstart x' = 10 m/s\n");
+  CHECK(run(brakes, 4).remarks.empty());
+}
+
+TEST_CASE("a constraint that drives a contact through zero leaves no motion") {
+  ModelText m(
+      "param m = 1 kg, A = 0.1 m, w = 3 rad/s\ncoord x : length\nT = 1/2 m x'^2\nconstraint x = A sin(w t) name drive\n"
+      "contact x <= 0.05 m restitution 0.5 name stop\nstart x = 0\n");
+  const auto r = run(m, 1);
+  CHECK(r.ending == Ending::Paradox);
+  CHECK(r.reason.find("move the contact stop through zero") != std::string::npos);
+  CHECK(r.final.t == doctest::Approx(3.141592653589793 / 18));
+  CHECK(std::isfinite(r.final.q[0]));
+  CHECK(r.books->impacts == 0);
+}
+
 TEST_CASE("two blocks and a wall count the digits of π") {
   const std::pair<double, std::size_t> counts[] = {{1, 3}, {100, 31}, {10'000, 314}};
   for (const auto& [ratio, expected] : counts) {
