@@ -156,6 +156,8 @@ class KernelWorkspace {
   double constraint_rate(std::size_t i) const;
   double constraint_scale(std::size_t i) const;
   double constraint_rate_scale(std::size_t i) const;
+  /// The sizes of the terms that add up to R_i where q̈ = 0 and λ = 0: forces that balance leave rounding of these.
+  double force_scale(std::size_t i) const;
   /// The smallest changes of q and q̇, in the metric M, that bring the constraints back to zero, to first order.
   /// [n] each. Precondition: the last call returned Ok.
   void corrections(std::span<double> dq, std::span<double> dv);

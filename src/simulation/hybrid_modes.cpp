@@ -15,6 +15,15 @@ constexpr std::size_t most_choices = 1024;    // modes that are tried
 constexpr std::size_t most_modes = 128;       // whose motions are kept
 constexpr std::size_t most_kept = 32;         // motions of modes that were tried in vain at an instant
 
+bool equal_to_rounding(const std::vector<double>& a, const std::vector<double>& b) {
+  double off = 0, size = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    off = std::max(off, std::abs(a[i] - b[i]));
+    size = std::max({size, std::abs(a[i]), std::abs(b[i])});
+  }
+  return off <= 1e-9 * size;
+}
+
 }  // namespace
 
 /// Recorded events end no step. Directions (keep_instants) have to know of gaps that are touched too.
@@ -45,19 +54,26 @@ std::vector<double> HybridMotion::stops() const {
   return out;
 }
 
-HybridMotion::ModeMotion& HybridMotion::motion_in(const ContactMode& mode) {
-  const std::vector<double> slips = in_space_ ? stops() : std::vector<double>();
-  std::unique_ptr<ModeMotion>& slot = modes_[key_of(mode, slips)];
+/// `given`: forces of its contacts at rest, of which there is another motion each time.
+HybridMotion::ModeMotion& HybridMotion::motion_in(const ContactMode& mode, std::span<const double> given) {
+  const ModeDetails details{in_space_ ? stops() : std::vector<double>(), !given.empty()};
+  std::string key = key_of(mode, details);
+  const auto known = modes_.find(key);
+  if (details.preloaded && known != modes_.end() && known->second.get() == now_) key += " again";
+  std::unique_ptr<ModeMotion>& slot = modes_[key];
   ++asked_for_;
-  if (slot) {
+  if (slot && std::equal(given.begin(), given.end(), slot->given.begin(), slot->given.end())) {
     slot->asked_for = asked_for_;
     return *slot;
   }
   auto made = std::make_unique<ModeMotion>();
   made->mode = mode;
+  made->given.assign(given.begin(), given.end());
   made->asked_for = asked_for_;
-  made->program = library_->program(mode, slips);
-  made->stepper = std::make_unique<TaylorStepper>(made->program->kernel, parameters_, options_);
+  made->program = library_->program(mode, details);
+  std::vector<double> parameters = parameters_;
+  parameters.insert(parameters.end(), given.begin(), given.end());
+  made->stepper = std::make_unique<TaylorStepper>(made->program->kernel, parameters, options_);
   treat_events(*made);
   slot = std::move(made);
   ModeMotion& out = *slot;
@@ -151,13 +167,31 @@ bool HybridMotion::begins_slowly(const Watch& slip, FrictionState way, const Con
          !friction_of(system_, slip.index).in_space() && values.fixed[slip.index] == values.kinetic[slip.index];
 }
 
+/// A rest whose forces are not determined ends when none are left to 10⁻¹⁴ of the limits: slips whose acceleration is
+/// less than that leaves open begin with the second power of time too.
+bool HybridMotion::has_slow_slips(ModeMotion& motion, const std::vector<std::size_t>& at_zero,
+                                  const TaylorStepper::Outlook& outlook, const ContactValues& values) const {
+  constexpr double slow = 1e-9;
+  bool has_some = false;
+  for (const std::size_t k : at_zero) {
+    const Watch& w = motion.watches()[k];
+    if (w.what != Watch::What::Slip || values.fixed[w.index] != values.kinetic[w.index]) continue;
+    double acceleration = 0;
+    for (const auto& [i, x] : values.tangent[w.index]) acceleration += std::abs(x) * acceleration_[kind_[i]];
+    if (std::abs(outlook.slopes[k]) > slow * acceleration) continue;
+    motion.stepper->put_at_zero({&k, 1}, 2);
+    has_some = true;
+  }
+  return has_some;
+}
+
 /// Whether the motion in a mode keeps its conditions: gaps that do not close, forces that press, friction that holds
 /// or opposes. A condition that is 0 here counts by the first of its derivatives that is not. Lenient: what is violated
 /// at once is 0 here to rounding.
 bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>& touching, double bound,
-                        Leniency leniency, std::vector<double>* accelerations) {
+                        Leniency leniency, std::vector<double>* accelerations, std::span<const double> given) {
   const bool lenient = leniency != Leniency::None;
-  ModeMotion& motion = motion_in(mode);
+  ModeMotion& motion = motion_in(mode, given);
   TaylorStepper& s = *motion.stepper;
   s.start(t_, q_, v_);
   const ContactValues& values = functions_.at(t_, q_, v_);
@@ -177,7 +211,8 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
     // A motion that is thrown back from the zero of an event has not passed it, whatever rounding makes of it.
     const bool is_met = w.what == Watch::What::Event && std::find(pending_->at_zero.begin(), pending_->at_zero.end(),
                                                                   w.index) != pending_->at_zero.end();
-    const bool is_located_force = left && (w.what == Watch::What::Force || w.what == Watch::What::Hold);
+    const bool is_located_force =
+        left && given.empty() && (w.what == Watch::What::Force || w.what == Watch::What::Hold);
     if (touches || starts_to_slide || is_met || is_located_force) at_zero.push_back(k);
   }
   s.put_at_zero(at_zero);
@@ -194,8 +229,10 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
   std::vector<double> places, speeds;
   for (const std::size_t k : kind_) places.push_back(place_[k]), speeds.push_back(speed_[k]);
   s.set_usual_sizes(places, speeds);
-  const TaylorStepper::Outlook outlook = s.outlook(bound);
+  TaylorStepper::Outlook outlook = s.outlook(bound);
   if (outlook.ending != StepEnding::None) return false;
+  if (!now_->given.empty() && given.empty() && has_slow_slips(motion, at_zero, outlook, values))
+    outlook = s.outlook(bound);
   constexpr double located = 1e-11;
   constexpr double met = 1e-9;  // heights at which bounces have ended
   const auto touches_now = [&](std::size_t i) {
@@ -215,6 +252,7 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
     if (!w.keeps_sign()) continue;
     const bool zero = std::find(at_zero.begin(), at_zero.end(), k) != at_zero.end();
     const bool must_move = w.what == Watch::What::Slip && zero;
+    if (must_move && is_held(w.index, mode, values)) return false;
     const bool lost = vanishes(w, outlook.reach[k], values);
     if (w.what == Watch::What::Gap && lost) continue;
     if (w.what == Watch::What::Gap && released_[w.index]) {
@@ -306,14 +344,59 @@ std::vector<std::pair<HybridMotion::Leniency, std::size_t>> HybridMotion::attemp
   return out;
 }
 
+/// The first of the modes that fits; another one too is a paradox. Nothing, and why, where there is none.
+std::optional<HybridMotion::Found> HybridMotion::search_mode(const std::vector<Choice>& list,
+                                                             const std::vector<std::size_t>& touching, double bound,
+                                                             std::string& reason) {
+  const ContactValues& values = functions_.at(t_, q_, v_);
+  std::vector<std::size_t> counts;
+  for (const Choice& c : list) counts.push_back(c.options.size());
+  Combinations tries(std::move(counts), most_choices);
+  std::optional<Found> found;
+  for (const auto& [leniency, most] : attempts_with(list.size())) {
+    for (std::size_t turn = 0; turn < (found ? most_choices : most); ++turn) {
+      const std::vector<std::size_t>* taken = tries.number(turn);
+      if (!taken) break;
+      if (interrupted()) return Found{now_->mode, {}, {}};  // the step that follows says so
+      Found next{mode_of(list, *taken), {}, {}};
+      met_.reset();
+      if (!fits(next.mode, touching, bound, leniency, &next.accelerations)) {
+        if (turn == 0 && met_ && list.size() > 1) return std::nullopt;
+        if (turn >= most_kept) forget(next.mode);
+        continue;
+      }
+      if (!found) {
+        found = std::move(next);
+        if (!may_be_several(found->mode, values)) break;
+        continue;
+      }
+      if (equal_to_rounding(found->accelerations, next.accelerations)) continue;
+      reason = fmt::format(
+          "Painlevé's paradox: friction turns the contact force around here, and more than one motion fits: in the "
+          "mode `{}` and in the mode `{}`.",
+          mode_text(system_, found->mode), mode_text(system_, next.mode));
+      return std::nullopt;
+    }
+    if (!found) continue;
+    if (may_be_several(found->mode, values))  // others were begun after it
+      static_cast<void>(fits(found->mode, touching, bound, Leniency::Gaps, nullptr));
+    return found;
+  }
+  const bool rubs = std::any_of(list.begin(), list.end(), [](const Choice& c) { return c.options.size() > 2; }) ||
+                    std::any_of(touching.begin(), touching.end(),
+                                [&](std::size_t i) { return system_.contacts[i].friction.present(); });
+  reason = rubs ? "Painlevé's paradox: no finite forces of contact and friction fit the motion here."
+           : tries.number(most_choices - 1)
+               ? fmt::format("None of the {} modes that were tried fits the contacts that touch here.", most_choices)
+               : "No forces keep all contacts that touch here from closing.";
+  return std::nullopt;
+}
+
 bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason) {
   const ContactValues& values = functions_.at(t_, q_, v_);  // of one point throughout
   if (!touching.empty() && !knows_compliance_) note_compliance(touching, values);
   std::vector<Choice> list = choices(touching, values);
   if (list.size() > 1) order_by_forces(list, values, bound);
-  std::vector<std::size_t> counts;
-  for (const Choice& c : list) counts.push_back(c.options.size());
-  Combinations tries(std::move(counts), most_choices);
   released_.assign(system_.contacts.size(), false);
   for (const Watch& w : pending_->left)
     if (w.what == Watch::What::Force) released_[w.index] = true;
@@ -322,90 +405,18 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
     if (!free.empty()) note_accelerations(free, values);
     std::fill(released_.begin(), released_.end(), false);
   }
-  std::optional<ContactMode> found;
-  ContactMode last;  // whose motion was begun last
-  std::vector<double> first;
-  for (const auto& [leniency, most] : attempts_with(list.size())) {
-    for (std::size_t turn = 0; turn < (found ? most_choices : most); ++turn) {
-      const std::vector<std::size_t>* taken = tries.number(turn);
-      if (!taken) break;
-      if (interrupted()) return true;  // the step that follows says so
-      const ContactMode mode = mode_of(list, *taken);
-      std::vector<double> accelerations;
-      last = mode;
-      met_.reset();
-      if (!fits(mode, touching, bound, leniency, &accelerations)) {
-        if (turn == 0 && met_ && list.size() > 1) return false;
-        if (turn >= most_kept) forget(mode);
-        continue;
-      }
-      if (!found) {
-        found = mode;
-        first = accelerations;
-        if (!may_be_several(mode, values)) break;
-        continue;
-      }
-      double off = 0, size = 0;
-      for (std::size_t i = 0; i < first.size(); ++i) {
-        off = std::max(off, std::abs(first[i] - accelerations[i]));
-        size = std::max({size, std::abs(first[i]), std::abs(accelerations[i])});
-      }
-      if (off <= 1e-9 * size) continue;
-      reason = fmt::format(
-          "Painlevé's paradox: friction turns the contact force around here, and more than one motion fits: in the "
-          "mode "
-          "`{}` and in the mode `{}`.",
-          mode_text(system_, *found), mode_text(system_, mode));
-      return false;
-    }
-    if (found) break;
-  }
-  if (!found) {
-    const bool rubs = std::any_of(list.begin(), list.end(), [](const Choice& c) { return c.options.size() > 2; }) ||
-                      std::any_of(touching.begin(), touching.end(),
-                                  [&](std::size_t i) { return system_.contacts[i].friction.present(); });
-    reason = rubs ? "Painlevé's paradox: no finite forces of contact and friction fit the motion here."
-             : tries.number(most_choices - 1)
-                 ? fmt::format("None of the {} modes that were tried fits the contacts that touch here.", most_choices)
-                 : "No forces keep all contacts that touch here from closing.";
-    return false;
-  }
-  note_accelerations(first, values);  // those of modes that do not fit are no measure
-  if (last != *found) static_cast<void>(fits(*found, touching, bound, Leniency::Gaps, nullptr));
+  std::optional<Found> found = undetermined_rest(list, touching, bound);
+  if (!found) found = search_mode(list, touching, bound, reason);
+  if (!found) return false;
+  if (interrupted()) return true;
+  note_accelerations(found->accelerations, values);  // those of modes that do not fit are no measure
   for (std::size_t i = 0; i < released_.size(); ++i)
-    if (released_[i] && !found->closed[i]) released_at_[i] = t_;
-  note_indeterminate(list, values);
+    if (released_[i] && !found->mode.closed[i]) released_at_[i] = t_;
+  note_indeterminate(list, found->mode, values);
   const ContactMode before = now_->mode;
-  now_ = &motion_in(*found);
-  record_changes(before, *found);
+  now_ = &motion_in(found->mode, found->given);
+  record_changes(before, found->mode);
   return true;
-}
-
-/// More contacts than the motion needs: their forces are not unique, and what friction makes of them is not either.
-void HybridMotion::note_indeterminate(const std::vector<Choice>& list, const ContactValues& values) {
-  std::vector<std::size_t> contacts;
-  bool rubs = false;
-  for (const Choice& c : list)
-    if (c.contact < values.gap.size()) {
-      contacts.push_back(c.contact);
-      rubs = rubs || (system_.contacts[c.contact].friction.present() && !system_.contacts[c.contact].friction.sticking);
-    }
-  if (contacts.size() < 2) return;
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(at(contacts.size()), at(q_.size()));
-  for (std::size_t r = 0; r < contacts.size(); ++r)
-    for (const auto& [k, x] : values.normal[contacts[r]]) rows(at(r), at(k)) = x;
-  if (Eigen::FullPivLU<Eigen::MatrixXd>(rows).rank() == rows.rows()) return;
-  std::string names;
-  constexpr std::size_t shown = 6;
-  for (std::size_t k = 0; k < std::min(shown, contacts.size()); ++k)
-    names += (k == 0 ? "" : ", ") + system_.contact_label(contacts[k]);
-  if (contacts.size() > shown) names += ", …";
-  remark(
-      fmt::format("The contacts {} are more than the motion needs, so that it does not determine their forces "
-                  "(statically indeterminate). One distribution that carries it is shown{}.",
-                  names,
-                  rubs ? ", and friction follows that one: with another the motion may be another"
-                       : "; the motion is the same for all"));
 }
 
 void HybridMotion::record_changes(const ContactMode& before, const ContactMode& after) {

@@ -259,9 +259,13 @@ bool HybridMotion::goes_on(double bound) {
 bool HybridMotion::pulls() const {
   constexpr double digits = 1e-9;
   const std::vector<double>& multipliers = now_->stepper->step_start().multipliers;
-  std::size_t k = equations_.system->constraints.size();
-  for (std::size_t i = 0; i < now_->mode.closed.size(); ++i)
-    if (now_->mode.closed[i] && multipliers[k++] < -digits * std::max(hardest_[i], 1e-280)) return true;
+  const std::size_t first = equations_.system->constraints.size();
+  for (std::size_t i = 0, k = 0; i < now_->mode.closed.size(); ++i) {
+    if (!now_->mode.closed[i]) continue;
+    const double force = multipliers[first + k] + (now_->given.empty() ? 0 : now_->given[k]);
+    if (force < -digits * std::max(hardest_[i], 1e-280)) return true;
+    ++k;
+  }
   return false;
 }
 

@@ -81,10 +81,11 @@ class HybridMotion final : public Method {
   struct Pending;
   struct Choice;
   struct Cones;
+  struct Found;
   struct Settled;
   enum class Leniency { None, Forces, Gaps };  // what may be violated by rounding
 
-  ModeMotion& motion_in(const ContactMode& mode);
+  ModeMotion& motion_in(const ContactMode& mode, std::span<const double> given = {});
   void forget_oldest();
   void treat_events(ModeMotion& motion) const;
   void leave_mode();
@@ -118,6 +119,14 @@ class HybridMotion final : public Method {
   // The mode after it.
   static std::vector<std::pair<Leniency, std::size_t>> attempts_with(std::size_t contacts);
   bool choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason);
+  std::optional<Found> search_mode(const std::vector<Choice>& list, const std::vector<std::size_t>& touching,
+                                   double bound, std::string& reason);
+  std::optional<Found> undetermined_rest(const std::vector<Choice>& list, const std::vector<std::size_t>& touching,
+                                         double bound);
+  std::optional<std::vector<double>> forces_at_rest(const std::vector<std::size_t>& resting,
+                                                    const ContactValues& values, double bound);
+  bool is_held(std::size_t contact, const ContactMode& mode, const ContactValues& values);
+  bool has_dependent_rows(const ContactMode& mode, const ContactValues& values) const;
   std::vector<Choice> choices(const std::vector<std::size_t>& touching, const ContactValues& values) const;
   ContactMode mode_without_contacts(const std::vector<Choice>& list) const;
   Choice choice_of_contact(std::size_t contact, const ContactValues& values) const;
@@ -142,7 +151,9 @@ class HybridMotion final : public Method {
   ContactMode mode_of(const std::vector<Choice>& list, const std::vector<std::size_t>& taken) const;
   bool interrupted() const;
   bool fits(const ContactMode& mode, const std::vector<std::size_t>& touching, double bound, Leniency leniency,
-            std::vector<double>* accelerations);
+            std::vector<double>* accelerations, std::span<const double> given = {});
+  bool has_slow_slips(ModeMotion& motion, const std::vector<std::size_t>& at_zero,
+                      const TaylorStepper::Outlook& outlook, const ContactValues& values) const;
   bool begins_slowly(const Watch& slip, FrictionState way, const ContactValues& values) const;
   bool vanishes(const Watch& watch, double size, const ContactValues& values) const;
   double size_of_gap(std::size_t contact, const ContactValues& values) const;
@@ -155,7 +166,7 @@ class HybridMotion final : public Method {
   void note_compliance(const ImpactProblem& problem);
   std::optional<std::size_t> violated();
   bool may_be_several(const ContactMode& mode, const ContactValues& values);
-  void note_indeterminate(const std::vector<Choice>& list, const ContactValues& values);
+  void note_indeterminate(const std::vector<Choice>& list, const ContactMode& mode, const ContactValues& values);
   void record_changes(const ContactMode& before, const ContactMode& after);
   void add(Happening::Kind kind, const std::string& name, double impulse = 0, double speed = 0,
            const std::string& remark = {});

@@ -24,6 +24,7 @@ struct HybridMotion::ModeMotion {
   ContactMode mode;
   std::shared_ptr<const ModeProgram> program;
   const std::vector<Watch>& watches() const { return program->watches; }
+  std::vector<double> given;  // forces along its contacts and frictions at rest, in the order of their multipliers
   std::unique_ptr<TaylorStepper> stepper;
   std::size_t asked_for = 0;  // the last time, in turns of asking
 };
@@ -47,6 +48,13 @@ struct HybridOption {
 struct HybridMotion::Choice {
   std::size_t contact = 0;  // or contacts + friction of a coordinate
   std::vector<HybridOption> options;
+};
+
+/// A mode that fits.
+struct HybridMotion::Found {
+  ContactMode mode;
+  std::vector<double> accelerations;
+  std::vector<double> given;  // forces of its contacts at rest, where they are not determined
 };
 
 }  // namespace maupertuis

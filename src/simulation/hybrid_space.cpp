@@ -65,6 +65,7 @@ struct HybridMotion::Cones {
   std::vector<std::size_t> contacts;
   std::vector<std::size_t> first;       // [contacts] of its rows
   std::vector<SparseRow> rows, forces;  // ∂g/∂q, ∂v_t/∂q̇ of those at rest; what a unit of each force does
+  Eigen::MatrixXd response;             // of q̈ to the forces
   ConeProblem problem;
 };
 
@@ -95,13 +96,37 @@ HybridMotion::Cones HybridMotion::cones_of(const std::vector<std::size_t>& touch
     }
     out.problem.contacts.push_back(contact);
   }
-  const Eigen::MatrixXd response = functions_.response(t_, q_, v_, out.forces);
+  const ContactMode base = mode_without_contacts(choices({}, values));
+  std::vector<SparseRow> held;  // coordinates with friction that sticks
+  for (std::size_t i = contacts; i < base.friction.size(); ++i)
+    if (base.friction[i] == FrictionState::Stick) held.push_back(values.tangent[i]);
+  out.response = functions_.response(t_, q_, v_, out.forces, held);
   const auto size = at(out.rows.size());
   out.problem.response.resize(size, size);
   for (Index r = 0; r < size; ++r)
     for (Index c = 0; c < size; ++c)
-      out.problem.response(r, c) = dot(out.rows[static_cast<std::size_t>(r)], response.col(c));
+      out.problem.response(r, c) = dot(out.rows[static_cast<std::size_t>(r)], out.response.col(c));
   out.problem.free = Eigen::Map<const VectorXd>(free.data(), size);
+  return out;
+}
+
+/// Forces under which contacts that rest stay so, in the order of their multipliers in the mode: normal forces, then
+/// friction. Nothing where there are none within the limits of friction.
+std::optional<std::vector<double>> HybridMotion::forces_at_rest(const std::vector<std::size_t>& resting,
+                                                                const ContactValues& values, double bound) {
+  const auto outlook = outlook_without_contacts(values, bound);
+  if (!outlook) return std::nullopt;
+  const Cones cones = cones_of(resting, values, outlook->accelerations);
+  if (cones.contacts.size() < resting.size()) return std::nullopt;
+  const auto found = resting_forces(cones.problem);
+  if (!found) return std::nullopt;
+  std::vector<std::size_t> order(resting.size());
+  for (std::size_t c = 0; c < order.size(); ++c) order[c] = c;
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return resting[a] < resting[b]; });
+  std::vector<double> out;
+  for (const std::size_t c : order) out.push_back((*found)(at(cones.first[c])));
+  for (const std::size_t c : order)
+    for (int k = 1; k <= cones.problem.contacts[c].tangents; ++k) out.push_back((*found)(at(cones.first[c]) + k));
   return out;
 }
 
@@ -176,7 +201,7 @@ void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double
   const Cones cones = cones_of(touching, values, outlook->accelerations);
   const auto found = cone_forces(cones.problem);
   if (!found) return;
-  const VectorXd changes = functions_.response(t_, q_, v_, cones.forces) * found->forces;
+  const VectorXd changes = cones.response * found->forces;
   const VectorXd a = Eigen::Map<const VectorXd>(outlook->accelerations.data(), changes.size()) + changes;
   const std::vector<double> drifts(functions_.drifts(t_, q_, v_).begin(), functions_.drifts(t_, q_, v_).end());
   const std::size_t contacts = values.gap.size(), seconds = drifts.size() - contacts;
@@ -237,6 +262,7 @@ bool HybridMotion::choose_slips(const std::vector<std::size_t>& touching, double
       return false;
     }
     cone_residual_ = std::max(cone_residual_, found->residual);
+    const VectorXd sizes = cones.problem.free.cwiseAbs() + cones.problem.response.cwiseAbs() * found->forces.cwiseAbs();
     for (std::size_t c = 0; c < cones.contacts.size(); ++c) {
       const std::size_t i = cones.contacts[c];
       if (!may_begin(i)) continue;
@@ -244,7 +270,8 @@ bool HybridMotion::choose_slips(const std::vector<std::size_t>& touching, double
       const VectorXd force = found->forces.segment(n + 1, 2), slip = found->accelerations.segment(n + 1, 2);
       const double most = cones.problem.contacts[c].friction * found->forces(n);
       const bool is_at_limit = force.norm() >= most * (1 - small);
-      slides[c] = found->forces(n) > 0 && is_at_limit && (reaches_limit(i) || slip.norm() > 0);
+      slides[c] = found->forces(n) > 0 && is_at_limit &&
+                  (reaches_limit(i) || slip.norm() > small * sizes.segment(n + 1, 2).norm());
       if (!slides[c] || pass == 0) continue;
       slip_scale_[i] = std::max({slip_scale_[i], fastest_slip_[i], slip.norm() * outlook->length});
       begins_to_slide_[i] = true;
@@ -252,7 +279,7 @@ bool HybridMotion::choose_slips(const std::vector<std::size_t>& touching, double
     forces = found->forces;
   }
   if (std::find(slides.begin(), slides.end(), true) == slides.end()) return true;
-  const VectorXd changes = functions_.response(t_, q_, v_, cones.forces) * forces;
+  const VectorXd changes = cones.response * forces;
   constexpr double told_apart = 1e-13;  // of t: two times are different
   const double by = std::max(moment * outlook->length, told_apart * std::abs(t_));
   move_on(forwards_ ? by : -by, Eigen::Map<const VectorXd>(outlook->accelerations.data(), changes.size()) + changes);

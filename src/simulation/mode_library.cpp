@@ -96,6 +96,39 @@ ExprMap forces_in(const MechanicalSystem& system, const ContactMode& mode, ExprV
   return out;
 }
 
+/// Along each closed contact and each friction that sticks a given force acts besides its multiplier. `given`: the
+/// multiplier with it.
+void preload(MechanicalSystem& own, MechanicalSystem& in_mode, const ContactMode& mode, ExprMap& given) {
+  ExprVector work(own.coordinates.size(), own.context->number(0));  // generalized forces
+  const auto add = [&](Expr multiplier, const auto& slope) {
+    const std::string name = fmt::format("force given along {}", given.size() + 1);
+    Parameter p;
+    p.name = name;
+    p.symbol = own.context->symbol(name, Role::Parameter);
+    own.parameters.push_back(p), in_mode.parameters.push_back(p);
+    for (std::size_t i = 0; i < work.size(); ++i) work[i] = work[i] + p.symbol * slope(own.coordinates[i]);
+    given[multiplier] = multiplier + p.symbol;
+  };
+  for (std::size_t i = 0; i < mode.closed.size(); ++i)
+    if (mode.closed[i])
+      add(own.contacts[i].multiplier, [&](const Coordinate& c) { return differentiate(own.contacts[i].gap, c.q); });
+  for (std::size_t i = 0; i < mode.closed.size(); ++i) {
+    if (mode.friction[i] != FrictionState::Stick) continue;
+    const Friction& f = own.contacts[i].friction;
+    for (std::size_t k = 0; k < f.slip.size(); ++k)
+      add(f.multipliers[k], [&](const Coordinate& c) { return differentiate(f.slip[k], c.velocity); });
+  }
+  for (std::size_t i = 0; i < work.size(); ++i) {
+    if (work[i].is_zero()) continue;
+    AppliedForce force;
+    force.kind = AppliedForce::Kind::Generalized;
+    force.target = own.coordinates[i].name;
+    force.coordinate = i;
+    force.components = {work[i]};
+    in_mode.forces.push_back(std::move(force));
+  }
+}
+
 bool sets_states(const Model& model) {
   const auto& events = model.experiment.events;
   return std::any_of(events.begin(), events.end(), [](const ModelEvent& e) { return !e.sets.empty(); });
@@ -122,14 +155,14 @@ ExprVector constraints_of(const EquationsOfMotion& equations) {
 
 }  // namespace
 
-std::string key_of(const ContactMode& mode, const std::vector<double>& stops) {
+std::string key_of(const ContactMode& mode, const ModeDetails& details) {
   std::string key;
   for (const bool closed : mode.closed) key += closed ? '1' : '0';
   for (const FrictionState state : mode.friction) key += static_cast<char>('a' + static_cast<int>(state));
   for (const std::int8_t sign : mode.normal_sign) key += sign < 0 ? '-' : '+';
   for (std::size_t i = 0; i < mode.closed.size(); ++i)  // the motion knows at which slip friction in space stops
-    if (mode.friction[i] == FrictionState::Slide) key += fmt::format(" {}", stops[i]);
-  return key;
+    if (mode.friction[i] == FrictionState::Slide) key += fmt::format(" {}", details.stops[i]);
+  return details.preloaded ? key + " preloaded" : key;
 }
 
 ModeLibrary::ModeLibrary(const Model& model, const EquationsOfMotion& equations, const WantedFunctions& wanted)
@@ -153,11 +186,11 @@ ModeLibrary::ModeLibrary(const Model& model, const EquationsOfMotion& equations,
     constraints_ = build_function(function_of_motion(system_, constraints_of(equations)));
 }
 
-std::shared_ptr<const ModeProgram> ModeLibrary::program(const ContactMode& mode, const std::vector<double>& stops) {
+std::shared_ptr<const ModeProgram> ModeLibrary::program(const ContactMode& mode, const ModeDetails& details) {
   const std::lock_guard lock(guard_);
-  Kept& kept = kept_[key_of(mode, stops)];
+  Kept& kept = kept_[key_of(mode, details)];
   kept.asked_for = ++asked_for_;
-  if (!kept.program) kept.program = std::make_shared<const ModeProgram>(derived(mode, stops));
+  if (!kept.program) kept.program = std::make_shared<const ModeProgram>(derived(mode, details));
   std::shared_ptr<const ModeProgram> out = kept.program;
   const auto older = [](const auto& a, const auto& b) { return a.second.asked_for < b.second.asked_for; };
   if (kept_.size() > most_programs) kept_.erase(std::min_element(kept_.begin(), kept_.end(), older));
@@ -165,7 +198,7 @@ std::shared_ptr<const ModeProgram> ModeLibrary::program(const ContactMode& mode,
 }
 
 /// The system and what is wanted go to a context of their own, which is gone when the kernel is made.
-ModeProgram ModeLibrary::derived(const ContactMode& mode, const std::vector<double>& stops) const {
+ModeProgram ModeLibrary::derived(const ContactMode& mode, const ModeDetails& details) const {
   WantedFunctions wanted = wanted_;
   // With events alone the equations stay as they are, also those that were found for a degenerate Lagrangian.
   EquationsOfMotion equations = equations_;
@@ -174,11 +207,14 @@ ModeProgram ModeLibrary::derived(const ContactMode& mode, const std::vector<doub
   if (!system_.has_modes())
     along.insert(along.end(), {&equations.residual, &equations.multipliers, &equations.constraint_forces,
                                &equations.dissipative_terms, &power});
-  const MechanicalSystem own = in_own_context(system_, along);
+  MechanicalSystem own = in_own_context(system_, along);
   const InterruptScope scope(*own.context, interrupt_of(*system_.context));
+  ExprMap given;  // of each multiplier the force that it is part of
   if (system_.has_modes()) {
     Diagnostics unheard;  // the system passed its checks with its contacts
-    equations = *euler_lagrange(std::make_shared<const MechanicalSystem>(system_in_mode(own, mode)), unheard);
+    MechanicalSystem in_mode = system_in_mode(own, mode);
+    if (details.preloaded) preload(own, in_mode, mode, given);
+    equations = *euler_lagrange(std::make_shared<const MechanicalSystem>(std::move(in_mode)), unheard);
   } else {
     equations.system = std::make_shared<const MechanicalSystem>(own);
     equations.power = power.front();
@@ -189,9 +225,10 @@ ModeProgram ModeLibrary::derived(const ContactMode& mode, const std::vector<doub
     watches.push_back(until && i == 0 ? ModeWatch{ModeWatch::What::Until, 0}
                                       : ModeWatch{ModeWatch::What::Event, i - until});
   watch_contacts(own, mode, watches, wanted.events);
-  watch_frictions(own, mode, stops, watches, wanted.events);
+  watch_frictions(own, mode, details.stops, watches, wanted.events);
   ExprVector rubbed{own.context->number(0)}, damped{own.context->number(0)};
-  const ExprMap forces = forces_in(own, mode, rubbed);
+  ExprMap forces = forces_in(own, mode, rubbed);
+  forces.insert(given.begin(), given.end());
   for (std::size_t i = 0; i < own.coordinates.size(); ++i)
     damped.push_back(equations.dissipative_terms[i] * own.coordinates[i].velocity);
   wanted.integrands = {equations.power, own.context->sum(rubbed), own.context->sum(damped)};

@@ -24,6 +24,15 @@ struct ModeWatch {
   bool touches_count() const { return !keeps_sign() || what == What::Slip; }
 };
 
+/// What the motion in a mode needs to be told besides.
+struct ModeDetails {
+  std::vector<double> stops;  // [contacts] the speed at which a slip in space counts as stopped, where it slides
+  /// Closed contacts and their friction carry given forces, and multipliers add to these: so that a statically
+  /// indeterminate rest has forces that keep its conditions. They are parameters after those of the model, in the order
+  /// of the constraints of the mode that contacts make.
+  bool preloaded = false;
+};
+
 /// The motion in one mode as a program: its events are what is watched, its integrands the work on h_E, what friction
 /// took, what D took.
 struct ModeProgram {
@@ -51,11 +60,10 @@ class ModeLibrary {
   /// A by rows [m × n], φ or ψ [m], dφ/dt or ψ [m]; of q, q̇, t. Empty where no event sets a state.
   const FunctionKernel& constraints() const { return constraints_; }
 
-  /// `stops` [contacts]: the speed at which a slip in space counts as stopped in this mode, where it slides.
-  std::shared_ptr<const ModeProgram> program(const ContactMode& mode, const std::vector<double>& stops);
+  std::shared_ptr<const ModeProgram> program(const ContactMode& mode, const ModeDetails& details);
 
  private:
-  ModeProgram derived(const ContactMode& mode, const std::vector<double>& stops) const;
+  ModeProgram derived(const ContactMode& mode, const ModeDetails& details) const;
 
   const Model& model_;
   const EquationsOfMotion& equations_;
@@ -72,7 +80,7 @@ class ModeLibrary {
   std::size_t asked_for_ = 0;
 };
 
-/// What tells one mode from another; that of the motion with `stops` too.
-std::string key_of(const ContactMode& mode, const std::vector<double>& stops);
+/// What tells one mode from another, and motions in it.
+std::string key_of(const ContactMode& mode, const ModeDetails& details);
 
 }  // namespace maupertuis

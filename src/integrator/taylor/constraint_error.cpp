@@ -36,6 +36,14 @@ double rounding_of_position(const KernelWorkspace& work, std::size_t row, std::s
   return 64 * std::numeric_limits<double>::epsilon() * size;
 }
 
+/// What rounding makes of the speed of a coordinate in a step in which forces balance.
+double rounding_of_speed(const KernelWorkspace& work, std::size_t i, double h) {
+  const double mass = work.mass(i, i);
+  return mass > 0 ? 64 * std::numeric_limits<double>::epsilon() * h * work.force_scale(i) / mass : 0;
+}
+
+constexpr double small = 1e-13;  // of a correction: it is looked at no further
+
 double beyond(double value, double threshold) { return std::max(0.0, std::abs(value) - threshold); }
 
 }  // namespace
@@ -50,10 +58,20 @@ double constraint_error(const KernelWorkspace& work, std::size_t freedoms, std::
   };
   for (std::size_t j = 0; j < constraints; ++j) {
     const double rate = rate_bound(work, j, freedoms, h) + along(j, usual.v);
-    const double unseen = h > 0 ? rounding_of_position(work, j, freedoms) / h : 0;
-    largest =
-        std::max({largest, ratio(work.constraint_value(j), work.constraint_scale(j) + h * rate + along(j, usual.q)),
-                  ratio(beyond(work.constraint_rate(j), unseen), work.constraint_rate_scale(j) + rate)});
+    const double place = work.constraint_scale(j) + h * rate + along(j, usual.q);
+    const double motion = work.constraint_rate_scale(j) + rate;
+    double unseen = h > 0 ? rounding_of_position(work, j, freedoms) / h : 0;
+    double off =
+        std::max(ratio(work.constraint_value(j), place), ratio(beyond(work.constraint_rate(j), unseen), motion));
+    if (off > rounding_of_constraints) {  // seldom: what a rest leaves of forces that balance
+      double speed = 0;
+      for (std::size_t i = 0; i < freedoms; ++i)
+        speed += std::abs(work.constraint_matrix(j, i)) * rounding_of_speed(work, i, h);
+      unseen = std::max(unseen, speed);
+      off = std::max(ratio(beyond(work.constraint_value(j), h * speed), place),
+                     ratio(beyond(work.constraint_rate(j), unseen), motion));
+    }
+    largest = std::max(largest, off);
   }
   return largest;
 }
@@ -68,12 +86,20 @@ double correction_size(const KernelWorkspace& work, std::span<const double> dq, 
     place += mass * work.coordinate(0)[i] * work.coordinate(0)[i];
   }
   // What rounding of q is in a step is no motion.
-  const double rounding = 64 * std::numeric_limits<double>::epsilon() * std::sqrt(place);
-  const double by_position =
-      std::sqrt(positions) <= rounding ? 0 : ratio(std::sqrt(positions), std::sqrt(place) + h * std::sqrt(motion));
-  const double by_velocity =
-      h * std::sqrt(velocities) <= rounding ? 0 : ratio(std::sqrt(velocities), std::sqrt(motion));
-  return std::max(by_position, by_velocity);
+  double rounding = 64 * std::numeric_limits<double>::epsilon() * std::sqrt(place);
+  const auto off = [&] {
+    const double by_position =
+        std::sqrt(positions) <= rounding ? 0 : ratio(std::sqrt(positions), std::sqrt(place) + h * std::sqrt(motion));
+    const double by_velocity =
+        h * std::sqrt(velocities) <= rounding ? 0 : ratio(std::sqrt(velocities), std::sqrt(motion));
+    return std::max(by_position, by_velocity);
+  };
+  if (const double size = off(); size <= small) return size;
+  double speeds = 0;  // nor is what it makes of forces that balance
+  for (std::size_t i = 0; i < dq.size(); ++i)
+    if (work.mass(i, i) > 0) speeds += work.mass(i, i) * std::pow(rounding_of_speed(work, i, h), 2);
+  rounding += h * std::sqrt(speeds);
+  return off();
 }
 
 void ConstraintRecord::start() {

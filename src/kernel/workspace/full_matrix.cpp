@@ -99,19 +99,23 @@ bool StageSolver::inverts_bordered() {
          solver_->negative_inverse(inverse_.data(), x_.padded_unknowns());
 }
 
-/// Whether the rows of A that were dropped as dependent hold for the accelerations of the others.
+/// Whether the rows of A that were dropped as dependent hold for the accelerations of the others. Where forces balance
+/// (a ladder at rest between rough walls) accelerations are what rounding leaves of them, and ask nothing.
 bool StageSolver::constraints_agree() {
+  constexpr double rounding = 1e-12;
   const std::size_t n = x_.program.freedoms;
+  const auto size_of = [&](Slot slot) { return reference::term_size(x_.memory, x_.producer[slot], slot); };
   for (std::size_t j = 0; n + j < x_.unknowns; ++j) {
     if (keeps(j)) continue;
     const Slot slot = x_.program.residual[n + j];
-    double rest = x_.memory.row(0)[slot], size = reference::term_size(x_.memory, x_.producer[slot], slot);
+    double rest = x_.memory.row(0)[slot], size = size_of(slot), left = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      const double term = bordered_[(n + j) * x_.unknowns + i] * unknown_[i];
-      rest += term;
-      size += std::abs(term);
+      const double a = bordered_[(n + j) * x_.unknowns + i], mass = std::abs(bordered_[i * x_.unknowns + i]);
+      rest += a * unknown_[i];
+      size += std::abs(a * unknown_[i]);
+      if (a != 0 && mass > 0) left += std::abs(a) * size_of(x_.program.residual[i]) / mass;
     }
-    if (std::abs(rest) <= 1e-6 * size) continue;
+    if (std::abs(rest) <= 1e-6 * size + rounding * left) continue;
     contradicting_ = j;
     return false;
   }

@@ -125,4 +125,61 @@ std::optional<ConeForces> cone_forces(const ConeProblem& problem) {
   return out;
 }
 
+namespace {
+
+/// λ with W λ + free = 0 that is next to another one.
+class Resting {
+ public:
+  explicit Resting(const ConeProblem& p) : p_(p) {
+    solver_.setThreshold(converged);
+    solver_.compute(p.response);
+  }
+
+  VectorXd next_to(const VectorXd& x) const { return x - solver_.solve(p_.free + p_.response * x); }
+  bool exists() const {
+    const VectorXd off = p_.free + p_.response * next_to(VectorXd::Zero(p_.free.size()));
+    return off.cwiseAbs().maxCoeff() <= converged * p_.free.cwiseAbs().maxCoeff();
+  }
+
+ private:
+  const ConeProblem& p_;
+  Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver_;
+};
+
+/// The point of the cones |λ_t| ≤ part μ λ_n that is next to x.
+VectorXd in_cones(const ConeProblem& p, double part, VectorXd x) {
+  Index n = 0;
+  for (const auto& c : p.contacts) {
+    const double mu = part * c.friction, size = x.segment(n + 1, c.tangents).norm();
+    if (size > mu * x(n)) {
+      const double normal = std::max(0.0, (x(n) + mu * size) / (1 + mu * mu));
+      x(n) = normal;
+      x.segment(n + 1, c.tangents) *= size > 0 ? mu * normal / size : 0;
+    }
+    n += 1 + c.tangents;
+  }
+  return x;
+}
+
+}  // namespace
+
+std::optional<VectorXd> resting_forces(const ConeProblem& problem) {
+  if (problem.free.size() == 0) return std::nullopt;
+  const Resting resting(problem);
+  if (!resting.exists()) return std::nullopt;
+  constexpr int turns = 1000, most_quarters = 23;
+  double margin = 1;
+  for (int quarter = 0; quarter < most_quarters; ++quarter) {
+    margin *= quarter == 0 ? 0.5 : 0.25;
+    const double close = std::min(converged, 0.01 * margin);
+    VectorXd z = resting.next_to(VectorXd::Zero(problem.free.size()));
+    for (int turn = 0; turn < turns; ++turn) {
+      const VectorXd x = resting.next_to(z), inside = in_cones(problem, 1 - margin, x);
+      if ((x - inside).norm() <= close * x.norm()) return x;
+      z += in_cones(problem, 1 - margin, 2 * x - z) - x;
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace maupertuis

@@ -155,6 +155,49 @@ TEST_CASE("a constraint that drives a contact through zero leaves no motion") {
   CHECK(r.books->impacts == 0);
 }
 
+namespace {
+
+const std::string ladder =
+    "param m = 1 kg, l = 2 m, g = 9.81 m/s^2\ncoord x, y : length, θ : angle\n"
+    "T = 1/2 m (x'^2 + y'^2) + 1/24 m l^2 θ'^2\nV = m g y\n"
+    "contact y - l/2 sin θ >= 0 friction 0.4 slip x' - l/2 sin θ θ' name floor\n"
+    "contact x - l/2 cos θ >= 0 friction 0.3 slip y' + l/2 cos θ θ' name wall\n"
+    "start x = l/2 cos θ0, y = l/2 sin θ0, θ = θ0\n";
+
+}  // namespace
+
+TEST_CASE("a ladder between rough walls rests where some forces within the limits hold it, and nowhere else") {
+  const double limit = std::atan((1 - 0.4 * 0.3) / (2 * 0.4));
+  for (const double above : {-1e-6, 1e-6, 1e-4, 0.01, 0.05, 0.2}) {
+    ModelText m("param θ0 = " + fmt::format("{:.17g}", limit + above) + " rad\n" + ladder);
+    const auto r = run(m, 0.5);
+    CHECK(r.ending == Ending::Finished);
+    CHECK(r.first_mode == (above < 0 ? "floor sliding +, wall sliding −" : "floor sticking, wall sticking"));
+    if (above < 0) continue;
+    REQUIRE(r.final.reactions.size() == 4);  // normal forces of floor and wall, then friction
+    const double floor = r.final.reactions[0], wall = r.final.reactions[1];
+    const double along_floor = r.final.reactions[2], along_wall = r.final.reactions[3];
+    CHECK(std::abs(r.final.v[2]) < 1e-14);
+    CHECK(std::abs(along_floor) <= 0.4 * floor);
+    CHECK(std::abs(along_wall) <= 0.3 * wall);
+    CHECK(floor + along_wall == doctest::Approx(9.81).epsilon(1e-13));  // they carry the weight
+    CHECK(std::abs(wall + along_floor) < 1e-12);
+    REQUIRE(r.remarks.size() == 1);
+    CHECK(r.remarks[0].find("statically indeterminate") != std::string::npos);
+  }
+}
+
+TEST_CASE("a ladder whose foot is pulled slides when no forces within the limits hold it any more") {
+  ModelText m("param θ0 = 60 deg, c = 0.1 N/s\n" + ladder +
+              "point foot at (x + l/2 cos θ, y - l/2 sin θ)\nforce on foot = (c t, 0)\n");
+  const auto r = run(m, 13);
+  const double s = std::sin(std::acos(0.5)), wall = 9.81 * 0.5 / (2 * (s + 0.3 * 0.5)), floor = 9.81 - 0.3 * wall;
+  REQUIRE(r.happenings.size() == 2);  // both at once
+  CHECK(r.happenings[0].t == doctest::Approx((0.4 * floor - wall) / 0.1).epsilon(1e-12));
+  CHECK(r.happenings[1].t == r.happenings[0].t);
+  CHECK(r.happenings[1].mode == "floor sliding +, wall sliding −");
+}
+
 TEST_CASE("two blocks and a wall count the digits of π") {
   const std::pair<double, std::size_t> counts[] = {{1, 3}, {100, 31}, {10'000, 314}};
   for (const auto& [ratio, expected] : counts) {

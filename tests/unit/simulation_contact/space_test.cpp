@@ -50,6 +50,44 @@ TEST_CASE("a block let go on an incline sticks or slides down, from rest and to 
   CHECK(r.final.v[0] == doctest::Approx(downhill - 0.3 * pressing).epsilon(1e-13));
 }
 
+TEST_CASE("a body on three rough feet stops and rests, with forces that carry it") {
+  const std::string body =
+      "param m = 1 kg, g = 9.81 m/s^2, a = 0.5 m, h = 0.3 m, J = 0.1 kg m^2\ncoord x, y, z : length, u, v, w : angle\n"
+      "body B mass m inertia diag(J, J, J) at (x, y, z) rotation rpy (u, v, w)\ngravity (0, 0, -g)\n"
+      "point P1 at (a, 0.1*a, -h) in B\npoint P2 at (-a, -0.9*a, -h) in B\npoint P3 at (-0.8*a, a, -h) in B\n"
+      "contact P1.z >= 0 friction 0.3 slip (P1.x', P1.y') name l1\n"
+      "contact P2.z >= 0 friction 0.3 slip (P2.x', P2.y') name l2\n"
+      "contact P3.z >= 0 friction 0.3 slip (P3.x', P3.y') name l3\nstart z = h";
+  for (const char* end : {"0.5", "100"}) {
+    const auto stops = run_text(body + ", x' = 0.1 m/s\n", std::stod(end));
+    REQUIRE(stops.happenings.size() == 3);
+    CHECK(stops.happenings[0].t == doctest::Approx(0.1 / (0.3 * 9.81)).epsilon(1e-6));
+    CHECK(stops.final.q[0] == doctest::Approx(0.01 / (2 * 0.3 * 9.81)).epsilon(1e-13));
+    const auto rests = run_text(body + "\n", std::stod(end));
+    CHECK(rests.first_mode == "l1 sticking, l2 sticking, l3 sticking");
+    CHECK(rests.happenings.empty());
+    for (std::size_t i = 0; i < 6; ++i) CHECK(std::abs(rests.final.q[i] - (i == 2 ? 0.3 : 0)) < 1e-15);
+  }
+}
+
+TEST_CASE("forces of an undetermined rest are those of cones with a margin, and none beyond them") {
+  ConeProblem p;  // a rod between two walls that face each other, pulled along them by F
+  p.contacts = {{1, 0.5}, {1, 0.25}};
+  p.response.resize(4, 4);
+  p.response << 1, 0, -1, 0, 0, 1, 0, 1, -1, 0, 1, 0, 0, 1, 0, 1;
+  p.free = Eigen::VectorXd::Zero(4);
+  p.free << 0, 1, 0, 1;
+  const auto found = resting_forces(p);
+  REQUIRE(found);
+  CHECK((p.free + p.response * *found).cwiseAbs().maxCoeff() < 1e-13);
+  for (const Eigen::Index n : {0, 2}) {
+    const double most = (n == 0 ? 0.5 : 0.25) * (*found)(n);
+    CHECK(std::abs((*found)(n + 1)) <= 0.9 * most);
+  }
+  p.contacts = {{1, 0.0}, {1, 0.0}};
+  CHECK_FALSE(resting_forces(p));
+}
+
 TEST_CASE("a block on a level floor stops after v²/(2 μ g), and stays") {
   const auto r = run_text(
       "param m = 1 kg, g = 10 m/s^2\ncoord x, y, z : length\nT = 1/2 m (x'^2 + y'^2 + z'^2)\nV = m g z\n"

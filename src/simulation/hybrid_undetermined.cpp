@@ -1,0 +1,116 @@
+#include "simulation/hybrid_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+/// Contacts whose forces the motion does not determine: which they are, and forces that hold a rest.
+namespace maupertuis {
+namespace {
+
+constexpr std::size_t most_that_hold = 32;  // contacts whose forces at rest are sought
+
+bool are_dependent(const std::vector<SparseRow>& rows, std::size_t n) {
+  if (rows.size() < 2) return false;
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(at(rows.size()), at(n));
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    for (const auto& [k, x] : rows[r]) all(at(r), at(k)) = x;
+  return Eigen::FullPivLU<Eigen::MatrixXd>(all).rank() < all.rows();
+}
+
+}  // namespace
+
+/// Whether the others that are closed or stick leave a contact no slip.
+bool HybridMotion::is_held(std::size_t contact, const ContactMode& mode, const ContactValues& values) {
+  constexpr double digits = 1e-12;
+  const SparseRow& own = values.tangent[contact];
+  std::vector<SparseRow> held;
+  for (std::size_t i = 0; i < mode.friction.size(); ++i) {
+    if (i < mode.closed.size() && mode.closed[i] && i != contact) held.push_back(values.normal[i]);
+    if (mode.friction[i] == FrictionState::Stick) held.push_back(values.tangent[i]);
+  }
+  if (held.empty()) return false;
+  if (contact < mode.closed.size()) held.push_back(values.normal[contact]);
+  const double alone = dot(own, functions_.response(t_, q_, v_, {&own, 1}).col(0));
+  return std::abs(dot(own, functions_.response(t_, q_, v_, {&own, 1}, held).col(0))) <= digits * std::abs(alone);
+}
+
+/// Contacts that hold each other where they rest (a ladder between rough walls, three rough feet) have forces that the
+/// equations do not determine: some that keep the limits of friction are given. Nothing where the forces are
+/// determined, or where none hold the rest.
+std::optional<HybridMotion::Found> HybridMotion::undetermined_rest(const std::vector<Choice>& list,
+                                                                   const std::vector<std::size_t>& touching,
+                                                                   double bound) {
+  const std::size_t contacts = system_.contacts.size();
+  std::vector<std::size_t> resting, taken;
+  for (const Choice& c : list) {
+    const auto rests = std::find_if(c.options.begin(), c.options.end(), [&](const HybridOption& o) {
+      return o.closed && (o.state == FrictionState::Stick || o.state == FrictionState::None);
+    });
+    if (c.contact < contacts && rests == c.options.end()) return std::nullopt;  // it slides
+    taken.push_back(c.contact < contacts ? static_cast<std::size_t>(rests - c.options.begin()) : 0);
+    if (c.contact < contacts) resting.push_back(c.contact);
+  }
+  if (resting.size() < 2 || resting.size() > most_that_hold) return std::nullopt;
+  const ContactValues values = functions_.at(t_, q_, v_);
+  Found out{mode_of(list, taken), {}, {}};
+  if (!has_dependent_rows(out.mode, values)) return std::nullopt;
+  const auto forces = forces_at_rest(resting, values, bound);
+  if (!forces) return std::nullopt;
+  out.given = *forces;
+  if (!fits(out.mode, touching, bound, Leniency::None, &out.accelerations, out.given)) return std::nullopt;
+  return out;
+}
+
+/// ∂g/∂q of closed contacts with ∂v_t/∂q̇ of those that stick.
+bool HybridMotion::has_dependent_rows(const ContactMode& mode, const ContactValues& values) const {
+  std::vector<SparseRow> rows;
+  for (std::size_t i = 0; i < mode.closed.size(); ++i) {
+    if (!mode.closed[i]) continue;
+    rows.push_back(values.normal[i]);
+    if (mode.friction[i] != FrictionState::Stick) continue;
+    rows.push_back(values.tangent[i]);
+    if (!values.second_tangent[i].empty()) rows.push_back(values.second_tangent[i]);
+  }
+  return are_dependent(rows, q_.size());
+}
+
+/// More contacts than the motion needs: their forces are not unique, and what friction makes of them is not either.
+void HybridMotion::note_indeterminate(const std::vector<Choice>& list, const ContactMode& mode,
+                                      const ContactValues& values) {
+  std::vector<std::size_t> contacts;
+  std::vector<SparseRow> normals;
+  bool rubs = false, holds = false;
+  for (const Choice& c : list) {
+    const std::size_t i = c.contact;
+    if (i >= values.gap.size()) continue;
+    const Friction& f = system_.contacts[i].friction;
+    contacts.push_back(i);
+    normals.push_back(values.normal[i]);
+    rubs = rubs || (f.present() && !f.sticking);
+    holds = holds || (mode.friction[i] == FrictionState::Stick && !f.sticking);
+  }
+  if (contacts.size() < 2) return;
+  const bool are_normals = are_dependent(normals, q_.size());
+  if (!are_normals && !(holds && has_dependent_rows(mode, values))) return;
+  std::string names;
+  constexpr std::size_t shown = 6;
+  for (std::size_t k = 0; k < std::min(shown, contacts.size()); ++k)
+    names += (k == 0 ? "" : ", ") + system_.contact_label(contacts[k]);
+  if (contacts.size() > shown) names += ", …";
+  if (are_normals)
+    remark(fmt::format(
+        "The contacts {} are more than the motion needs, so that it does not determine their forces (statically "
+        "indeterminate). One distribution that carries it is shown{}.",
+        names,
+        rubs ? ", and friction follows that one: with another the motion may be another"
+             : "; the motion is the same for all"));
+  else
+    remark(fmt::format(
+        "Friction at the contacts {} holds more than the motion needs, so that it does not determine their forces "
+        "(statically indeterminate). One distribution within the limits of friction is shown.",
+        names));
+}
+
+}  // namespace maupertuis
