@@ -59,7 +59,7 @@ struct HybridMotion::Settled {
   std::optional<ImpactProblem> problem;
   ImpactResult impact;
   VectorXd v_before_impact;
-  bool ends_bounces = false, was_given = false;  // forces of contacts were given before
+  bool ends_bounces = false, was_preload = false;
 };
 
 void HybridMotion::keep_instants() {
@@ -70,7 +70,7 @@ void HybridMotion::keep_instants() {
 const ContactMode& HybridMotion::mode() const { return now_->mode; }
 const EquationsOfMotion& HybridMotion::equations_in(const ContactMode& mode) {
   if (!system_.has_modes()) return equations_;  // events alone: also those that were found for a degenerate Lagrangian
-  std::unique_ptr<EquationsOfMotion>& slot = equations_of_modes_[key_of(mode, {stops()})];
+  std::unique_ptr<EquationsOfMotion>& slot = equations_of_modes_[key_of(mode, {stops(), false, {}})];
   if (slot) return *slot;
   Diagnostics unheard;  // the system passed its checks with its contacts
   MechanicalSystem in_mode = system_in_mode(system_, mode);
@@ -94,7 +94,7 @@ void HybridMotion::note_before(double bound) {
   TaylorStepper& stepper = *now_->stepper;
   s.instant.a_before = stepper.sample(stepper.time()).a;
   s.hit = pending_->hit;
-  s.was_given = !now_->given.empty();
+  s.was_preload = now_->given.is_preload;
   s.events = pending_->sets;
   if (pending_->left.empty() && pending_->sets.empty()) return;
   stepper.start(t_, q_, v_);
@@ -138,7 +138,7 @@ void HybridMotion::note_after(double bound) {
         "Friction in space is hit, begins or stops to slide at t = {:.9g}: neighbours are not carried through that "
         "yet.",
         t_);
-  else if (!now_->given.empty() || s.was_given)
+  else if (now_->given.is_preload || s.was_preload)
     out.obstacle = fmt::format(
         "Contacts hold each other with forces that the motion does not determine at t = {:.9g}: when friction gives "
         "way "

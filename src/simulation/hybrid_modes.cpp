@@ -54,25 +54,27 @@ std::vector<double> HybridMotion::stops() const {
   return out;
 }
 
-/// `given`: forces of its contacts at rest, of which there is another motion each time.
-HybridMotion::ModeMotion& HybridMotion::motion_in(const ContactMode& mode, std::span<const double> given) {
-  const ModeDetails details{in_space_ ? stops() : std::vector<double>(), !given.empty()};
+HybridMotion::ModeMotion& HybridMotion::motion_in(const ContactMode& mode) { return motion_in(mode, {}); }
+
+/// Of what is given there is another motion each time.
+HybridMotion::ModeMotion& HybridMotion::motion_in(const ContactMode& mode, const Given& given) {
+  const ModeDetails details{in_space_ ? stops() : std::vector<double>(), given.is_preload, given.begins};
   std::string key = key_of(mode, details);
   const auto known = modes_.find(key);
-  if (details.preloaded && known != modes_.end() && known->second.get() == now_) key += " again";
+  if (!given.values.empty() && known != modes_.end() && known->second.get() == now_) key += " again";
   std::unique_ptr<ModeMotion>& slot = modes_[key];
   ++asked_for_;
-  if (slot && std::equal(given.begin(), given.end(), slot->given.begin(), slot->given.end())) {
+  if (slot && slot->given == given) {
     slot->asked_for = asked_for_;
     return *slot;
   }
   auto made = std::make_unique<ModeMotion>();
   made->mode = mode;
-  made->given.assign(given.begin(), given.end());
+  made->given = given;
   made->asked_for = asked_for_;
   made->program = library_->program(mode, details);
   std::vector<double> parameters = parameters_;
-  parameters.insert(parameters.end(), given.begin(), given.end());
+  parameters.insert(parameters.end(), given.values.begin(), given.values.end());
   made->stepper = std::make_unique<TaylorStepper>(made->program->kernel, parameters, options_);
   treat_events(*made);
   slot = std::move(made);
@@ -188,9 +190,10 @@ bool HybridMotion::has_slow_slips(ModeMotion& motion, const std::vector<std::siz
 /// Whether the motion in a mode keeps its conditions: gaps that do not close, forces that press, friction that holds
 /// or opposes. A condition that is 0 here counts by the first of its derivatives that is not. Lenient: what is violated
 /// at once is 0 here to rounding.
-bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>& touching, double bound,
-                        Leniency leniency, std::vector<double>* accelerations, std::span<const double> given) {
+bool HybridMotion::fits(Found& found, const std::vector<std::size_t>& touching, double bound, Leniency leniency) {
   const bool lenient = leniency != Leniency::None;
+  const ContactMode& mode = found.mode;
+  const Given& given = found.given;
   ModeMotion& motion = motion_in(mode, given);
   TaylorStepper& s = *motion.stepper;
   s.start(t_, q_, v_);
@@ -212,7 +215,7 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
     const bool is_met = w.what == Watch::What::Event && std::find(pending_->at_zero.begin(), pending_->at_zero.end(),
                                                                   w.index) != pending_->at_zero.end();
     const bool is_located_force =
-        left && given.empty() && (w.what == Watch::What::Force || w.what == Watch::What::Hold);
+        left && !given.is_preload && (w.what == Watch::What::Force || w.what == Watch::What::Hold);
     if (touches || starts_to_slide || is_met || is_located_force) at_zero.push_back(k);
   }
   s.put_at_zero(at_zero);
@@ -231,14 +234,14 @@ bool HybridMotion::fits(const ContactMode& mode, const std::vector<std::size_t>&
   s.set_usual_sizes(places, speeds);
   TaylorStepper::Outlook outlook = s.outlook(bound);
   if (outlook.ending != StepEnding::None) return false;
-  if (!now_->given.empty() && given.empty() && has_slow_slips(motion, at_zero, outlook, values))
+  if (now_->given.is_preload && !given.is_preload && has_slow_slips(motion, at_zero, outlook, values))
     outlook = s.outlook(bound);
   constexpr double located = 1e-11;
   constexpr double met = 1e-9;  // heights at which bounces have ended
   const auto touches_now = [&](std::size_t i) {
     return std::find(touching.begin(), touching.end(), i) != touching.end();
   };
-  if (accelerations) *accelerations = outlook.accelerations;
+  found.accelerations = outlook.accelerations;
   double largest_force = 0;
   const auto is_squared = [&](const Watch& w) {
     return w.what == Watch::What::Hold && friction_of(system_, w.index).in_space();
@@ -360,7 +363,9 @@ std::optional<HybridMotion::Found> HybridMotion::search_mode(const std::vector<C
       if (interrupted()) return Found{now_->mode, {}, {}};  // the step that follows says so
       Found next{mode_of(list, *taken), {}, {}};
       met_.reset();
-      if (!fits(next.mode, touching, bound, leniency, &next.accelerations)) {
+      const std::optional<Given> given = given_in(next.mode, bound);
+      if (given) next.given = *given;
+      if (!given || !fits(next, touching, bound, leniency)) {
         if (turn == 0 && met_ && list.size() > 1) return std::nullopt;
         if (turn >= most_kept) forget(next.mode);
         continue;
@@ -379,7 +384,7 @@ std::optional<HybridMotion::Found> HybridMotion::search_mode(const std::vector<C
     }
     if (!found) continue;
     if (may_be_several(found->mode, values))  // others were begun after it
-      static_cast<void>(fits(found->mode, touching, bound, Leniency::Gaps, nullptr));
+      static_cast<void>(fits(*found, touching, bound, Leniency::Gaps));
     return found;
   }
   const bool rubs = std::any_of(list.begin(), list.end(), [](const Choice& c) { return c.options.size() > 2; }) ||
@@ -400,9 +405,9 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
   released_.assign(system_.contacts.size(), false);
   for (const Watch& w : pending_->left)
     if (w.what == Watch::What::Force) released_[w.index] = true;
-  if (std::vector<double> free; !started_) {  // what acts without contact is a first measure of forces
-    static_cast<void>(fits(open_mode(system_), touching, bound, Leniency::Forces, &free));
-    if (!free.empty()) note_accelerations(free, values);
+  if (Found free{open_mode(system_), {}, {}}; !started_) {  // what acts without contact is a first measure of forces
+    static_cast<void>(fits(free, touching, bound, Leniency::Forces));
+    if (!free.accelerations.empty()) note_accelerations(free.accelerations, values);
     std::fill(released_.begin(), released_.end(), false);
   }
   std::optional<Found> found = undetermined_rest(list, touching, bound);

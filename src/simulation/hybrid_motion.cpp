@@ -77,6 +77,7 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   record_ = {};
   left_out_remarks_ = 0;
   begins_to_slide_.assign(system_.contacts.size(), false);
+  begins_towards_.assign(system_.contacts.size(), 0);
   slip_scale_.assign(system_.contacts.size(), 0);
   cone_residual_ = -1;
   gap_begin_ = std::numeric_limits<double>::quiet_NaN();
@@ -152,7 +153,8 @@ Step HybridMotion::step(double bound) {
   if (pending_) {
     if (auto failed = settle(bound)) return std::move(*failed);
   }
-  Step out = now_->stepper->step(bound);
+  const double end = now_->given.end;
+  Step out = now_->stepper->step(forwards_ ? std::min(bound, end) : bound);
   if (out.end != out.begin) same_time_ = 0;
   if (!just_moved_on_) gap_begin_ = std::numeric_limits<double>::quiet_NaN();
   just_moved_on_ = false;
@@ -169,6 +171,7 @@ Step HybridMotion::step(double bound) {
                     label));
   }
   if (!out.events.empty()) classify(out);
+  if (!pending_ && out.end >= end) pending_ = std::make_unique<Pending>();
   // A force that jumps may let a contact or a friction go, though none of their conditions has a root.
   if (!pending_ && ((out.switches > 0 && !goes_on(bound)) || pulls())) {
     take_state();
@@ -262,7 +265,7 @@ bool HybridMotion::pulls() const {
   const std::size_t first = equations_.system->constraints.size();
   for (std::size_t i = 0, k = 0; i < now_->mode.closed.size(); ++i) {
     if (!now_->mode.closed[i]) continue;
-    const double force = multipliers[first + k] + (now_->given.empty() ? 0 : now_->given[k]);
+    const double force = multipliers[first + k] + (now_->given.is_preload ? now_->given.values[k] : 0);
     if (force < -digits * std::max(hardest_[i], 1e-280)) return true;
     ++k;
   }
@@ -484,9 +487,15 @@ std::optional<Step> HybridMotion::settle(double bound) {
   if (!pending_->begins) close_lowest_flights(touch, bound);
   if (!keeps_sticking(touch, reason)) return stopped(StepEnding::Paradox, reason);
   come_to_rest(touch, bound);
-  if (!choose_slips(touch, bound, reason)) return stopped(StepEnding::Paradox, reason);
+  if (!choose_slips(touch, bound, false, reason)) return stopped(StepEnding::Paradox, reason);
+  bool gave_way = !now_->given.is_preload || !in_space_;  // a rest that was not determined
   // Constraints of the mode to come may move the next contact through zero: that is hit at the same instant.
   for (std::size_t turn = 0; !choose_mode(touch, bound, reason); ++turn) {
+    if (!met_ && !gave_way) {
+      gave_way = true;
+      if (!choose_slips(touch, bound, true, reason)) return stopped(StepEnding::Paradox, reason);
+      continue;
+    }
     if (!met_ || turn >= system_.contacts.size()) return stopped(StepEnding::Paradox, reason);
     touch.push_back(*met_);
     if (!hit(touch, reason)) return stopped(StepEnding::Paradox, reason);

@@ -82,10 +82,12 @@ class HybridMotion final : public Method {
   struct Choice;
   struct Cones;
   struct Found;
+  struct Given;
   struct Settled;
   enum class Leniency { None, Forces, Gaps };  // what may be violated by rounding
 
-  ModeMotion& motion_in(const ContactMode& mode, std::span<const double> given = {});
+  ModeMotion& motion_in(const ContactMode& mode);
+  ModeMotion& motion_in(const ContactMode& mode, const Given& given);
   void forget_oldest();
   void treat_events(ModeMotion& motion) const;
   void leave_mode();
@@ -145,13 +147,13 @@ class HybridMotion final : public Method {
   std::optional<TaylorStepper::Outlook> outlook_without_contacts(const ContactValues& values, double bound);
   void take_out_slips(const std::vector<std::size_t>& stopping, const std::vector<std::size_t>& touching);
   void come_to_rest(const std::vector<std::size_t>& touching, double bound);
-  bool choose_slips(const std::vector<std::size_t>& touching, double bound, std::string& reason);
+  bool choose_slips(const std::vector<std::size_t>& touching, double bound, bool gives_way, std::string& reason);
+  std::optional<Given> given_in(const ContactMode& mode, double bound);
   void close_lowest_flights(const std::vector<std::size_t>& touching, double bound);
   void order_by_forces(std::vector<Choice>& list, const ContactValues& values, double bound);
   ContactMode mode_of(const std::vector<Choice>& list, const std::vector<std::size_t>& taken) const;
   bool interrupted() const;
-  bool fits(const ContactMode& mode, const std::vector<std::size_t>& touching, double bound, Leniency leniency,
-            std::vector<double>* accelerations, std::span<const double> given = {});
+  bool fits(Found& found, const std::vector<std::size_t>& touching, double bound, Leniency leniency);
   bool has_slow_slips(ModeMotion& motion, const std::vector<std::size_t>& at_zero,
                       const TaylorStepper::Outlook& outlook, const ContactValues& values) const;
   bool begins_slowly(const Watch& slip, FrictionState way, const ContactValues& values) const;
@@ -237,10 +239,11 @@ class HybridMotion final : public Method {
   double accumulated_at_ = 0;
   HybridRecord record_;
   std::size_t left_out_remarks_ = 0;
-  bool in_space_ = false;              // a contact has friction in space
-  std::vector<bool> begins_to_slide_;  // [contacts] in space, at this instant
-  std::vector<double> slip_scale_;     // [contacts] of friction in space, the largest slips so far
-  double cone_residual_ = 0;           // the largest so far
+  bool in_space_ = false;               // a contact has friction in space
+  std::vector<bool> begins_to_slide_;   // [contacts] in space, at this instant
+  std::vector<double> begins_towards_;  // [contacts] in which direction, an angle in the plane of contact
+  std::vector<double> slip_scale_;      // [contacts] of friction in space, the largest slips so far
+  double cone_residual_ = 0;            // the largest so far
   double gap_begin_ = std::numeric_limits<double>::quiet_NaN();  // of a moment in which a slip began
   std::vector<double> moment_accelerations_;                     // [n] in it
   bool just_moved_on_ = false;                                   // the last step follows it

@@ -20,11 +20,20 @@ inline constexpr double rest_unit = 64 * std::numeric_limits<double>::epsilon();
 /// Of the terms of g̈: what a located instant leaves of a force that falls through 0.
 inline constexpr double located_force = 1e-9;
 
+/// What the motion in a mode is given besides the parameters of the model (ModeDetails).
+struct HybridMotion::Given {
+  bool is_preload = false;
+  std::vector<bool> begins;                              // [contacts] or empty
+  std::vector<double> values;                            // of its parameters
+  double end = std::numeric_limits<double>::infinity();  // until when directions of slips that begin hold
+  friend bool operator==(const Given&, const Given&) = default;
+};
+
 struct HybridMotion::ModeMotion {
   ContactMode mode;
   std::shared_ptr<const ModeProgram> program;
   const std::vector<Watch>& watches() const { return program->watches; }
-  std::vector<double> given;  // forces along its contacts and frictions at rest, in the order of their multipliers
+  Given given;
   std::unique_ptr<TaylorStepper> stepper;
   std::size_t asked_for = 0;  // the last time, in turns of asking
 };
@@ -54,7 +63,7 @@ struct HybridMotion::Choice {
 struct HybridMotion::Found {
   ContactMode mode;
   std::vector<double> accelerations;
-  std::vector<double> given;  // forces of its contacts at rest, where they are not determined
+  Given given;
 };
 
 }  // namespace maupertuis

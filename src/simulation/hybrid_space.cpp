@@ -13,8 +13,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double slow = 1e-8;    // of the slips of the run: below, the direction of a slip is lost in rounding
-constexpr double moment = 1e-8;  // of the length of a step: its third power is rounding
+constexpr double slow_slip = 1e-8;  // of the slips of the run: below, the direction of a slip is lost in rounding
 constexpr double small = 1e-10;
 
 double product(const SparseRow& row, std::span<const double> x) {
@@ -48,7 +47,7 @@ bool HybridMotion::slides_in_space(std::size_t i, const ContactValues& values) c
 /// The speed at which a slip counts as stopped, in steps of ten so that the motion of a mode serves many of them.
 double HybridMotion::stop_slip(std::size_t i) const {
   const double scale = std::max(slip_scale_[i], 1e-200);
-  return slow * std::pow(10, std::floor(std::log10(scale)));
+  return slow_slip * std::pow(10, std::floor(std::log10(scale)));
 }
 
 /// ∂g/∂q − μ Σ_k v_tk/|v_t| ∂v_tk/∂q̇: what a unit of the normal force does while it slides.
@@ -230,10 +229,10 @@ void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double
     if (std::abs(v_[i]) <= rest_unit * speed_[kind_[i]]) v_[i] = 0;
 }
 
-/// Where contacts in space rest on friction: each sticks, or begins to slide. The direction of friction is that of the
-/// slip, and there is none yet: the motion moves on by a moment with the accelerations that the cones give. False, and
-/// why, where the cones have no solution that is found.
-bool HybridMotion::choose_slips(const std::vector<std::size_t>& touching, double bound, std::string& reason) {
+/// Where contacts in space rest on friction: each sticks, or begins to slide against the force that the cones give.
+/// `gives_way`: no forces hold the rest any more. False, and why, where the cones have no solution that is found.
+bool HybridMotion::choose_slips(const std::vector<std::size_t>& touching, double bound, bool gives_way,
+                                std::string& reason) {
   if (!in_space_) return true;
   const ContactValues values = functions_.at(t_, q_, v_);
   const auto may_begin = [&](std::size_t i) {
@@ -245,10 +244,11 @@ bool HybridMotion::choose_slips(const std::vector<std::size_t>& touching, double
   if (!outlook) return true;
   Cones cones = cones_of(touching, values, outlook->accelerations);
   const auto reaches_limit = [&](std::size_t i) {
-    return std::any_of(pending_->left.begin(), pending_->left.end(),
-                       [&](const Watch& w) { return w.what == Watch::What::Hold && w.index == i; });
+    return gives_way ||
+           (!now_->given.is_preload && std::any_of(pending_->left.begin(), pending_->left.end(), [&](const Watch& w) {
+             return w.what == Watch::What::Hold && w.index == i;
+           }));
   };
-  VectorXd forces;
   std::vector<bool> slides(cones.contacts.size(), false);
   for (int pass = 0; pass < 2; ++pass) {  // with static friction, then with the kinetic one of those that slide
     for (std::size_t c = 0; c < cones.contacts.size(); ++c)
@@ -275,14 +275,9 @@ bool HybridMotion::choose_slips(const std::vector<std::size_t>& touching, double
       if (!slides[c] || pass == 0) continue;
       slip_scale_[i] = std::max({slip_scale_[i], fastest_slip_[i], slip.norm() * outlook->length});
       begins_to_slide_[i] = true;
+      begins_towards_[i] = std::atan2(-force(1), -force(0));
     }
-    forces = found->forces;
   }
-  if (std::find(slides.begin(), slides.end(), true) == slides.end()) return true;
-  const VectorXd changes = cones.response * forces;
-  constexpr double told_apart = 1e-13;  // of t: two times are different
-  const double by = std::max(moment * outlook->length, told_apart * std::abs(t_));
-  move_on(forwards_ ? by : -by, Eigen::Map<const VectorXd>(outlook->accelerations.data(), changes.size()) + changes);
   return true;
 }
 

@@ -58,8 +58,9 @@ std::optional<HybridMotion::Found> HybridMotion::undetermined_rest(const std::ve
   if (!has_dependent_rows(out.mode, values)) return std::nullopt;
   const auto forces = forces_at_rest(resting, values, bound);
   if (!forces) return std::nullopt;
-  out.given = *forces;
-  if (!fits(out.mode, touching, bound, Leniency::None, &out.accelerations, out.given)) return std::nullopt;
+  out.given.is_preload = true;
+  out.given.values = *forces;
+  if (!fits(out, touching, bound, Leniency::None)) return std::nullopt;
   return out;
 }
 

@@ -1,5 +1,6 @@
 #include "simulation/mode_library.hpp"
 
+#include "simulation/given_forces.hpp"
 #include "simulation/motion_kernel.hpp"
 
 #include <maupertuis/interrupt_scope.hpp>
@@ -96,37 +97,11 @@ ExprMap forces_in(const MechanicalSystem& system, const ContactMode& mode, ExprV
   return out;
 }
 
-/// Along each closed contact and each friction that sticks a given force acts besides its multiplier. `given`: the
-/// multiplier with it.
-void preload(MechanicalSystem& own, MechanicalSystem& in_mode, const ContactMode& mode, ExprMap& given) {
-  ExprVector work(own.coordinates.size(), own.context->number(0));  // generalized forces
-  const auto add = [&](Expr multiplier, const auto& slope) {
-    const std::string name = fmt::format("force given along {}", given.size() + 1);
-    Parameter p;
-    p.name = name;
-    p.symbol = own.context->symbol(name, Role::Parameter);
-    own.parameters.push_back(p), in_mode.parameters.push_back(p);
-    for (std::size_t i = 0; i < work.size(); ++i) work[i] = work[i] + p.symbol * slope(own.coordinates[i]);
-    given[multiplier] = multiplier + p.symbol;
-  };
-  for (std::size_t i = 0; i < mode.closed.size(); ++i)
-    if (mode.closed[i])
-      add(own.contacts[i].multiplier, [&](const Coordinate& c) { return differentiate(own.contacts[i].gap, c.q); });
-  for (std::size_t i = 0; i < mode.closed.size(); ++i) {
-    if (mode.friction[i] != FrictionState::Stick) continue;
-    const Friction& f = own.contacts[i].friction;
-    for (std::size_t k = 0; k < f.slip.size(); ++k)
-      add(f.multipliers[k], [&](const Coordinate& c) { return differentiate(f.slip[k], c.velocity); });
-  }
-  for (std::size_t i = 0; i < work.size(); ++i) {
-    if (work[i].is_zero()) continue;
-    AppliedForce force;
-    force.kind = AppliedForce::Kind::Generalized;
-    force.target = own.coordinates[i].name;
-    force.coordinate = i;
-    force.components = {work[i]};
-    in_mode.forces.push_back(std::move(force));
-  }
+/// The mode without the friction of slips that begin.
+ContactMode without_beginnings(ContactMode mode, const ModeDetails& details) {
+  for (std::size_t i = 0; i < details.begins.size(); ++i)
+    if (details.begins[i]) mode.friction[i] = FrictionState::None;
+  return mode;
 }
 
 bool sets_states(const Model& model) {
@@ -162,7 +137,10 @@ std::string key_of(const ContactMode& mode, const ModeDetails& details) {
   for (const std::int8_t sign : mode.normal_sign) key += sign < 0 ? '-' : '+';
   for (std::size_t i = 0; i < mode.closed.size(); ++i)  // the motion knows at which slip friction in space stops
     if (mode.friction[i] == FrictionState::Slide) key += fmt::format(" {}", details.stops[i]);
-  return details.preloaded ? key + " preloaded" : key;
+  if (details.preloaded) key += " preloaded";
+  if (!details.begins.empty()) key += " begins ";
+  for (const bool begins : details.begins) key += begins ? '1' : '0';
+  return key;
 }
 
 ModeLibrary::ModeLibrary(const Model& model, const EquationsOfMotion& equations, const WantedFunctions& wanted)
@@ -209,12 +187,20 @@ ModeProgram ModeLibrary::derived(const ContactMode& mode, const ModeDetails& det
                                &equations.dissipative_terms, &power});
   MechanicalSystem own = in_own_context(system_, along);
   const InterruptScope scope(*own.context, interrupt_of(*system_.context));
-  ExprMap given;  // of each multiplier the force that it is part of
+  const ContactMode plain = without_beginnings(mode, details);
+  ExprVector rubbed{own.context->number(0)}, damped{own.context->number(0)}, slips;
+  ExprMap forces = forces_in(own, plain, rubbed);
   if (system_.has_modes()) {
+    GivenForces given(own, plain);
+    if (details.preloaded) given.preload(mode);
+    for (std::size_t i = 0; i < details.begins.size(); ++i) {
+      if (!details.begins[i]) continue;
+      given.direct(i, rubbed);
+      slips.insert(slips.end(), own.contacts[i].friction.slip.begin(), own.contacts[i].friction.slip.end());
+    }
+    for (const auto& [multiplier, force] : given.all()) forces[multiplier] = force;
     Diagnostics unheard;  // the system passed its checks with its contacts
-    MechanicalSystem in_mode = system_in_mode(own, mode);
-    if (details.preloaded) preload(own, in_mode, mode, given);
-    equations = *euler_lagrange(std::make_shared<const MechanicalSystem>(std::move(in_mode)), unheard);
+    equations = *euler_lagrange(std::make_shared<const MechanicalSystem>(given.system()), unheard);
   } else {
     equations.system = std::make_shared<const MechanicalSystem>(own);
     equations.power = power.front();
@@ -225,16 +211,19 @@ ModeProgram ModeLibrary::derived(const ContactMode& mode, const ModeDetails& det
     watches.push_back(until && i == 0 ? ModeWatch{ModeWatch::What::Until, 0}
                                       : ModeWatch{ModeWatch::What::Event, i - until});
   watch_contacts(own, mode, watches, wanted.events);
-  watch_frictions(own, mode, details.stops, watches, wanted.events);
-  ExprVector rubbed{own.context->number(0)}, damped{own.context->number(0)};
-  ExprMap forces = forces_in(own, mode, rubbed);
-  forces.insert(given.begin(), given.end());
+  watch_frictions(own, plain, details.stops, watches, wanted.events);
   for (std::size_t i = 0; i < own.coordinates.size(); ++i)
     damped.push_back(equations.dissipative_terms[i] * own.coordinates[i].velocity);
   wanted.integrands = {equations.power, own.context->sum(rubbed), own.context->sum(damped)};
   for (auto* list : {&wanted.observables, &wanted.events, &wanted.integrands})
     if (!forces.empty() && !list->empty()) *list = substitute(*list, forces);
-  return {std::move(watches), motion_kernel(equations, wanted)};
+  ModeProgram out{std::move(watches), motion_kernel(equations, wanted), std::nullopt};
+  if (!slips.empty()) {
+    WantedFunctions alone;
+    alone.events = std::move(slips);
+    out.slips = motion_kernel(equations, alone);
+  }
+  return out;
 }
 
 }  // namespace maupertuis

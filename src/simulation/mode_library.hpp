@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,6 +25,9 @@ struct ModeWatch {
   bool touches_count() const { return !keeps_sign() || what == What::Slip; }
 };
 
+/// The degree to which the direction of a slip that begins is known.
+inline constexpr int direction_degree = 20;
+
 /// What the motion in a mode needs to be told besides.
 struct ModeDetails {
   std::vector<double> stops;  // [contacts] the speed at which a slip in space counts as stopped, where it slides
@@ -31,6 +35,10 @@ struct ModeDetails {
   /// indeterminate rest has forces that keep its conditions. They are parameters after those of the model, in the order
   /// of the constraints of the mode that contacts make.
   bool preloaded = false;
+  /// [contacts] or empty. A slip in space begins: its friction is −μ N d with d = Σ_k d_k (t − t_0)^k instead of
+  /// v_t/|v_t|. Of each such contact parameters after those of the model: t_0, then the coefficients of one component
+  /// of d, then those of the other.
+  std::vector<bool> begins;
 };
 
 /// The motion in one mode as a program: its events are what is watched, its integrands the work on h_E, what friction
@@ -38,6 +46,7 @@ struct ModeDetails {
 struct ModeProgram {
   std::vector<ModeWatch> watches;
   Kernel kernel;
+  std::optional<Kernel> slips;  // where slips begin: the motion with their components as events, two a contact
 };
 
 /// The programs that runs of one model through modes share: of its modes, each made when it is first asked for, of its

@@ -50,6 +50,65 @@ TEST_CASE("a block let go on an incline sticks or slides down, from rest and to 
   CHECK(r.final.v[0] == doctest::Approx(downhill - 0.3 * pressing).epsilon(1e-13));
 }
 
+TEST_CASE(
+    "a force that grows breaks a block away in its direction, with a slip that begins with the second power of time") {
+  for (const char* end : {"1.4", "3", "10"}) {
+    const auto r = run_text(
+        "param m = 1 kg, g = 9.81 m/s^2\ncoord x, y, z : length\npoint P mass m at (x, y, z)\ngravity (0, 0, -g)\n"
+        "force on P = (2 [N/s] t, 1 [N/s] t, 0)\ncontact z >= 0 friction 0.3 slip (x', y') name floor\n",
+        std::stod(end));
+    const double from = 0.3 * 9.81 / std::sqrt(5.0), left = std::stod(end) - from;
+    REQUIRE(r.happenings.size() == 1);
+    CHECK(r.happenings[0].t == doctest::Approx(from).epsilon(1e-14));
+    CHECK(r.final.q[0] == doctest::Approx(std::pow(left, 3) / 3).epsilon(1e-11));
+    CHECK(r.final.q[1] == doctest::Approx(std::pow(left, 3) / 6).epsilon(1e-11));
+  }
+}
+
+TEST_CASE("a puck on a plate that is shaken in one direction moves in space as in the plane") {
+  for (const char* u : {"0.25", "0.26", "0.3"}) {
+    const auto with = [&](const std::string& slip) {
+      return run_text("param m = 1 kg, g = 9.81 m/s^2, w = 12 rad/s, u = " + std::string(u) +
+                          " m/s\ncoord x, y, z : length\nT = 1/2 m (x'^2 + y'^2 + z'^2)\nV = m g z\n"
+                          "contact z >= 0 friction 0.3 slip " +
+                          slip + " name plate\n",
+                      3);
+    };
+    const auto in_space = with("(x' - u cos(w t), y')"), in_plane = with("x' - u cos(w t)");
+    CHECK(in_space.final.q[0] == doctest::Approx(in_plane.final.q[0]).epsilon(1e-10));
+    CHECK(in_space.final.v[0] == doctest::Approx(in_plane.final.v[0]).epsilon(1e-9));
+    CHECK(std::abs(in_space.final.q[1]) < 1e-12);
+    CHECK(in_space.happenings.size() == in_plane.happenings.size());
+  }
+}
+
+TEST_CASE("a puck on a plate that is shaken in two directions turns as it begins to slide") {
+  const std::string puck =
+      "param m = 1 kg, g = 9.81 m/s^2, w = 12 rad/s, u = 0.2 m/s\ncoord x, y, z : length\n"
+      "T = 1/2 m (x'^2 + y'^2 + z'^2)\nV = m g z\n"
+      "contact z >= 0 friction 0.3 slip (x' - u cos(w t), y' - 0.5 u sin(2 w t)) name plate\n";
+  const auto with_order = [&](int order) {
+    ModelText m(puck);
+    SimulationOptions options;
+    options.duration = 3;
+    options.order = order;
+    options.errors = ErrorEstimates::None;
+    auto result = simulate(m.model, m.equations, options, m.diagnostics);
+    REQUIRE(result);
+    return std::move(*result);
+  };
+  const auto r = with_order(20), other = with_order(28);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK(r.final.q[i] == doctest::Approx(other.final.q[i]).epsilon(1e-12));
+    CHECK(r.final.v[i] == doctest::Approx(other.final.v[i]).epsilon(1e-12));
+  }
+  // v_t/√(v_t² + ε²) for v_t/|v_t|, by Runge and Kutta's formula at ε = 4e-5, 2e-5, 1e-5 m/s, extrapolated
+  CHECK(r.final.q[0] == doctest::Approx(-0.021996).epsilon(1e-4));
+  CHECK(r.final.q[1] == doctest::Approx(0.011741).epsilon(3e-4));
+  CHECK(r.statistics.steps < 3000);
+  CHECK(r.statistics.energy_drift < 1e-11);
+}
+
 TEST_CASE("a body on three rough feet stops and rests, with forces that carry it") {
   const std::string body =
       "param m = 1 kg, g = 9.81 m/s^2, a = 0.5 m, h = 0.3 m, J = 0.1 kg m^2\ncoord x, y, z : length, u, v, w : angle\n"

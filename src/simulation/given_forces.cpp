@@ -1,0 +1,66 @@
+#include "simulation/given_forces.hpp"
+
+#include <fmt/format.h>
+
+namespace maupertuis {
+
+Expr GivenForces::parameter() {
+  Parameter p;
+  p.name = fmt::format("given {}", ++count_);
+  p.symbol = own_.context->symbol(p.name, Role::Parameter);
+  own_.parameters.push_back(p), in_mode_.parameters.push_back(p);
+  return p.symbol;
+}
+
+template <class Lever>
+void GivenForces::add(Expr force, Lever&& lever) {
+  for (std::size_t i = 0; i < work_.size(); ++i) work_[i] = work_[i] + force * lever(own_.coordinates[i]);
+}
+
+void GivenForces::preload(const ContactMode& mode) {
+  for (std::size_t i = 0; i < mode.closed.size(); ++i)
+    if (mode.closed[i]) {
+      const Expr gap = own_.contacts[i].gap, force = parameter();
+      add(force, [&](const Coordinate& c) { return differentiate(gap, c.q); });
+      all_[own_.contacts[i].multiplier] = own_.contacts[i].multiplier + force;
+    }
+  for (std::size_t i = 0; i < mode.closed.size(); ++i) {
+    if (mode.friction[i] != FrictionState::Stick) continue;
+    const Friction& f = own_.contacts[i].friction;
+    for (std::size_t k = 0; k < f.slip.size(); ++k) {
+      const Expr force = parameter();
+      add(force, [&](const Coordinate& c) { return differentiate(f.slip[k], c.velocity); });
+      all_[f.multipliers[k]] = f.multipliers[k] + force;
+    }
+  }
+}
+
+void GivenForces::direct(std::size_t i, ExprVector& rubbed) {
+  const Friction& f = own_.contacts[i].friction;
+  const Expr since = own_.context->time() - parameter(), most = f.kinetic * own_.contacts[i].multiplier;
+  for (std::size_t k = 0; k < f.slip.size(); ++k) {
+    ExprVector coefficients;
+    for (int power = 0; power <= direction_degree; ++power) coefficients.push_back(parameter());
+    Expr direction = coefficients.back();
+    for (int power = direction_degree; power-- > 0;)
+      direction = direction * since + coefficients[static_cast<std::size_t>(power)];
+    add(-(most * direction), [&](const Coordinate& c) { return differentiate(f.slip[k], c.velocity); });
+    all_[f.multipliers[k]] = -(most * direction);
+    rubbed.push_back(most * direction * f.slip[k]);
+  }
+}
+
+MechanicalSystem GivenForces::system() {
+  for (std::size_t i = 0; i < work_.size(); ++i) {
+    if (work_[i].is_zero()) continue;
+    AppliedForce force;
+    force.kind = AppliedForce::Kind::Generalized;
+    force.target = own_.coordinates[i].name;
+    force.coordinate = i;
+    force.components = {work_[i]};
+    in_mode_.forces.push_back(std::move(force));
+  }
+  return in_mode_;
+}
+
+}  // namespace maupertuis

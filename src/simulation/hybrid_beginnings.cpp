@@ -1,0 +1,209 @@
+#include "simulation/hybrid_parts.hpp"
+
+#include <maupertuis/kernel.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+/// How slips in space begin. At the first instant v_t/|v_t| has no value, and next to it the equations are as stiff as
+/// can be: what is across to the force that pulls is braked at the rate μ N/(m |v_t|). The direction d(τ) that the slip
+/// has from its beginning on is sought as a polynomial of time, so that v_t(τ) with friction −μ N d(τ) goes along d(τ):
+///
+///     v_t = τ (v_1 + v_2 τ + …) where friction jumps from μ_s to μ, or is too weak from the beginning
+///     v_t = τ² (v_2 + v_3 τ + …) where a force grows beyond what it holds
+///
+/// With d = (cos φ, sin φ), φ = Σ φ_k τ^k, the coefficient v_{k+1} of the slip depends on φ_0, …, φ_k, on the last of
+/// them linearly, and what v_t has across to d vanishes order by order. In the second case the series is an asymptotic
+/// one (the origin is an irregular singular point of φ' = …/|v_t|): it is cut where its last terms are rounding.
+namespace maupertuis {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using Series = std::vector<double>;  // coefficients of powers of τ
+
+constexpr int degree = direction_degree;
+
+/// cos φ and sin φ: c' = −s φ', s' = c φ'.
+std::pair<Series, Series> cosine_and_sine(const Series& phi) {
+  Series c(degree + 1, 0), s(degree + 1, 0);
+  c[0] = std::cos(phi[0]), s[0] = std::sin(phi[0]);
+  for (std::size_t k = 1; k <= degree; ++k) {
+    for (std::size_t j = 1; j <= k; ++j) {
+      c[k] -= static_cast<double>(j) * phi[j] * s[k - j];
+      s[k] += static_cast<double>(j) * phi[j] * c[k - j];
+    }
+    c[k] /= static_cast<double>(k), s[k] /= static_cast<double>(k);
+  }
+  return {c, s};
+}
+
+/// The motion with friction along given directions, and its slips.
+class Slips {
+ public:
+  Slips(const Kernel& kernel, std::span<const double> parameters, double t, std::span<const double> q,
+        std::span<const double> v)
+      : work_(kernel, degree + 1), parameters_(parameters.begin(), parameters.end()), t_(t), q_(q), v_(v) {}
+
+  /// φ of each contact.
+  bool follow(const std::vector<Series>& angles) {
+    directions_.clear();
+    std::vector<double> all = parameters_;
+    for (const Series& phi : angles) {
+      directions_.push_back(cosine_and_sine(phi));
+      all.push_back(t_);
+      all.insert(all.end(), directions_.back().first.begin(), directions_.back().first.end());
+      all.insert(all.end(), directions_.back().second.begin(), directions_.back().second.end());
+    }
+    given_.assign(all.begin() + static_cast<std::ptrdiff_t>(parameters_.size()), all.end());
+    work_.set_parameters(all);
+    return work_.expand(t_, q_, v_) == KernelStatus::Ok;
+  }
+
+  /// Coefficient k ≥ 1 of what the slip of contact c has across to d, and along it; what is there at the beginning is
+  /// rounding.
+  double across(std::size_t c, int k) const { return sum(c, k, -1); }
+  double along(std::size_t c, int k) const { return sum(c, k, 1); }
+  const std::vector<double>& given() const { return given_; }
+
+ private:
+  double sum(std::size_t c, int k, int which) const {
+    const auto& [cosine, sine] = directions_[c];
+    double out = 0;
+    for (int j = 1; j <= k; ++j) {
+      const double x = work_.event(2 * c, j), y = work_.event(2 * c + 1, j);
+      const auto rest = static_cast<std::size_t>(k - j);
+      if (rest > static_cast<std::size_t>(degree)) continue;
+      out += which > 0 ? x * cosine[rest] + y * sine[rest] : y * cosine[rest] - x * sine[rest];
+    }
+    return out;
+  }
+
+  KernelWorkspace work_;
+  std::vector<double> parameters_;
+  double t_;
+  std::span<const double> q_, v_;
+  std::vector<std::pair<Series, Series>> directions_;
+  std::vector<double> given_;
+};
+
+/// The directions of slips that begin together, one order after the other.
+class Directions {
+ public:
+  Directions(Slips& slips, const std::vector<double>& towards) : slips_(slips) {
+    for (const double angle : towards) {
+      angles_.emplace_back(degree + 1, 0.0);
+      angles_.back()[0] = angle;
+    }
+  }
+
+  bool find() {
+    constexpr int most_turns = 8;
+    for (int turn = 0; turn < most_turns; ++turn)  // the cones give φ_0 to their own rounding only
+      if (!improve(0)) return false;
+    for (std::size_t k = 1; k <= degree; ++k)
+      if (!improve(k)) return false;
+    return slips_.follow(angles_);
+  }
+
+  /// How long from the beginning on they are right to rounding, and the slips grow: infinite where nothing tells.
+  double length() const {
+    constexpr double rounding = 1e-16;
+    constexpr std::size_t last = 6;
+    double out = std::numeric_limits<double>::infinity();
+    for (std::size_t c = 0; c < angles_.size(); ++c) {
+      for (std::size_t k = degree - last + 1; k <= degree; ++k)
+        if (angles_[c][k] != 0)
+          out = std::min(out, std::pow(rounding / std::abs(angles_[c][k]), 1 / static_cast<double>(k)));
+      out = std::min(out, growth(c));
+    }
+    return out;
+  }
+
+ private:
+  std::optional<VectorXd> across(std::size_t k) {
+    if (!slips_.follow(angles_)) return std::nullopt;
+    VectorXd out(at(angles_.size()));
+    for (std::size_t c = 0; c < angles_.size(); ++c) out(at(c)) = slips_.across(c, static_cast<int>(k) + 1);
+    return out;
+  }
+
+  /// φ_k from the coefficient k + 1 of what the slips have across, which is linear in it for k ≥ 1.
+  bool improve(std::size_t k) {
+    constexpr double change = 1e-4;  // of an angle φ_0
+    const auto here = across(k);
+    if (!here) return false;
+    if (k <= 1) {  // later slopes are known from this one
+      slope_.resize(at(angles_.size()), at(angles_.size()));
+      for (std::size_t c = 0; c < angles_.size(); ++c) {
+        const double by = k == 0 ? change : 1;
+        angles_[c][k] += by;
+        const auto there = across(k);
+        angles_[c][k] -= by;
+        if (!there) return false;
+        slope_.col(at(c)) = (*there - *here) / by;
+      }
+      along_.resize(at(angles_.size()));
+      for (std::size_t c = 0; c < angles_.size(); ++c) along_(at(c)) = slips_.along(c, 1);
+    }
+    MatrixXd slope = slope_;
+    if (k > 1) {  // ∂v̇_t/∂d goes with 1/(k + 1), what turns the slip itself does not
+      slope.diagonal() += along_;
+      slope *= 2 / static_cast<double>(k + 1);
+      slope.diagonal() -= along_;
+    }
+    const VectorXd by = slope.fullPivLu().solve(-*here);
+    if (!by.allFinite()) return false;
+    for (std::size_t c = 0; c < angles_.size(); ++c) angles_[c][k] += by(at(c));
+    return true;
+  }
+
+  /// Until the later powers of a slip add up to half of what its first one is.
+  double growth(std::size_t c) const {
+    const int first = std::abs(slips_.along(c, 1)) > negligible_ * size(c) ? 1 : 2;
+    const double leads = first * slips_.along(c, first);
+    if (!(leads > 0)) return 0;
+    double most = std::numeric_limits<double>::infinity();
+    for (int k = first + 1; k <= degree + 1; ++k)
+      if (const double x = std::abs(k * slips_.along(c, k)); x > 0)
+        most = std::min(most, std::pow(0.5 * leads / x, 1.0 / (k - first)));
+    return 0.5 * most;
+  }
+
+  double size(std::size_t c) const {
+    return std::abs(slope_(at(c), at(c)));  // of v̇_t, by what friction does there
+  }
+
+  static constexpr double negligible_ = 1e-9;
+  Slips& slips_;
+  std::vector<Series> angles_;
+  MatrixXd slope_;  // of v_{t,2} across by φ_1
+  VectorXd along_;  // v_{t,1}
+};
+
+}  // namespace
+
+/// What a motion in this mode is given: the directions of slips that begin. Nothing where it has none.
+std::optional<HybridMotion::Given> HybridMotion::given_in(const ContactMode& mode, double bound) {
+  Given out;
+  std::vector<bool> begins(system_.contacts.size(), false);
+  std::vector<double> towards;
+  for (std::size_t i = 0; i < begins.size(); ++i) {
+    begins[i] = begins_to_slide_[i] && mode.friction[i] == FrictionState::Slide && std::isfinite(begins_towards_[i]);
+    if (begins[i]) towards.push_back(begins_towards_[i]);
+  }
+  if (towards.empty()) return out;
+  out.begins = begins;
+  const auto program = library_->program(mode, {stops(), false, begins});
+  Slips slips(*program->slips, parameters_, t_, q_, v_);
+  Directions directions(slips, towards);
+  if (!directions.find()) return std::nullopt;
+  out.values = slips.given();
+  const double length = std::min(directions.length(), std::abs(bound - t_));
+  if (!(length > 0)) return std::nullopt;
+  out.end = t_ + length;
+  return out;
+}
+
+}  // namespace maupertuis
