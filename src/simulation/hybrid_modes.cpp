@@ -215,7 +215,8 @@ bool HybridMotion::fits(Found& found, const std::vector<std::size_t>& touching, 
     const bool is_met = w.what == Watch::What::Event && std::find(pending_->at_zero.begin(), pending_->at_zero.end(),
                                                                   w.index) != pending_->at_zero.end();
     const bool is_located_force =
-        left && !given.is_preload && (w.what == Watch::What::Force || w.what == Watch::What::Hold);
+        left && !given.is_preload &&
+        (w.what == Watch::What::Force || w.what == Watch::What::Hold || w.what == Watch::What::Normal);
     if (touches || starts_to_slide || is_met || is_located_force) at_zero.push_back(k);
   }
   s.put_at_zero(at_zero);

@@ -198,6 +198,40 @@ TEST_CASE("a ladder whose foot is pulled slides when no forces within the limits
   CHECK(r.happenings[1].mode == "floor sliding +, wall sliding −");
 }
 
+TEST_CASE("dry friction beside a reaction that goes through zero") {
+  for (const char* from : {"99", "101", "120", "150"}) {
+    const std::string start = ", th = " + std::string(from) + " deg\n";
+    ModelText by_reaction(
+        "param m = 1 kg, R = 1 m, μ = 0.2, g = 9.81 m/s^2\ncoord r : length, th : angle\n"
+        "T = 1/2 m (r'^2 + r^2 th'^2)\nV = -m g r cos th\nconstraint r = R name hoop\n"
+        "friction th coefficient μ normal R reaction(hoop)\nstart r = R" +
+        start);
+    ModelText by_hand(
+        "param m = 1 kg, R = 1 m, μ = 0.2, g = 9.81 m/s^2, r0 = 0 m\ncoord th : angle\nT = 1/2 m R^2 th'^2\n"
+        "V = -m g R cos th\nfriction th limit μ R abs(m R th'^2 + m g cos th)\nstart th' = 0" +
+        start);
+    const auto r = run(by_reaction, 3), hand = run(by_hand, 3);
+    CHECK(r.ending == Ending::Finished);
+    CHECK(r.final.q[1] == doctest::Approx(hand.final.q[0]).epsilon(1e-12));
+    CHECK(r.final.v[1] == doctest::Approx(hand.final.v[0]).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("a slider-crank with dry friction in its guide goes through the dead centres, where slip and force vanish") {
+  ModelText m(
+      "param m = 1 kg, r = 0.3 m, l = 0.8 m, μ = 0.2, J = 0.1 kg m^2\ncoord θ, φ : angle, x, y : length\n"
+      "T = 1/2 J θ'^2 + 1/2 m (x'^2 + y'^2)\nconstraint x = r cos θ + l cos φ name cx\n"
+      "constraint y = r sin θ - l sin φ name cy\nconstraint y = 0 name guide\n"
+      "friction x coefficient μ normal reaction(guide)\n"
+      "start θ = 30 deg, φ = asin(0.1875), x = 1.045619303410417 m, θ' = 20 rad/s\n");
+  const auto r = run(m, 1);
+  CHECK(r.ending == Ending::Finished);
+  CHECK(count(r, Happening::Kind::Slip) == 5);                    // five dead centres
+  CHECK(r.final.q[0] == doctest::Approx(18.7846).epsilon(1e-5));  // by Runge and Kutta's formula
+  CHECK(r.final.v[0] == doctest::Approx(20.477).epsilon(1e-4));
+  CHECK(r.statistics.energy_drift < 1e-13);
+}
+
 TEST_CASE("two blocks and a wall count the digits of π") {
   const std::pair<double, std::size_t> counts[] = {{1, 3}, {100, 31}, {10'000, 314}};
   for (const auto& [ratio, expected] : counts) {
