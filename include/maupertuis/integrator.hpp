@@ -51,8 +51,8 @@ class TaylorStepper {
   TaylorStepper(TaylorStepper&&) noexcept;
 
   int order() const;
-  /// Begins a run; integrals and statistics start at zero.
-  void start(double t, std::span<const double> q, std::span<const double> v);
+  /// Begins a run; integrals and statistics start at zero. `rest`: what t leaves of the time, where it is known better.
+  void start(double t, std::span<const double> q, std::span<const double> v, double rest = 0);
   /// What a root of an event does. Those that do not end the step are told with it, at their own times, and cost it
   /// nothing: the motion is the one without them, to the bit.
   struct EventTreatment {
@@ -85,6 +85,7 @@ class TaylorStepper {
   Step step(double bound);
 
   double time() const;
+  double time_rest() const;  // what time() leaves of the time at which q and q̇ are
   std::span<const double> q() const;  // [n]
   std::span<const double> v() const;  // [n]
   double integral(std::size_t index) const;

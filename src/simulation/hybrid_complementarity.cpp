@@ -46,7 +46,7 @@ std::optional<ContactForceProblem> HybridMotion::force_problem(const std::vector
                                                                const ContactValues& values, double bound) {
   const ContactMode base = mode_without_contacts(list);
   TaylorStepper& stepper = *motion_in(base).stepper;
-  stepper.start(t_, q_, v_);
+  stepper.start(t_, q_, v_, t_rest_);
   const TaylorStepper::Outlook outlook = stepper.outlook(bound);
   if (outlook.ending != StepEnding::None) return std::nullopt;
   const std::span<const double> drifts = functions_.drifts(t_, q_, v_);

@@ -97,7 +97,7 @@ void HybridMotion::note_before(double bound) {
   s.was_preload = now_->given.is_preload;
   s.events = pending_->sets;
   if (pending_->left.empty() && pending_->sets.empty()) return;
-  stepper.start(t_, q_, v_);
+  stepper.start(t_, q_, v_, t_rest_);
   const TaylorStepper::Outlook outlook = stepper.outlook(bound);
   // Of the two sides of what holds, the one that is met.
   const auto find = [&](Watch::What what, std::size_t index) {

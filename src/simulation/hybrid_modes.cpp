@@ -196,7 +196,7 @@ bool HybridMotion::fits(Found& found, const std::vector<std::size_t>& touching, 
   const Given& given = found.given;
   ModeMotion& motion = motion_in(mode, given);
   TaylorStepper& s = *motion.stepper;
-  s.start(t_, q_, v_);
+  s.start(t_, q_, v_, t_rest_);
   const ContactValues& values = functions_.at(t_, q_, v_);
   std::vector<std::size_t> at_zero;
   for (std::size_t k = 0; k < motion.watches().size(); ++k) {

@@ -45,6 +45,7 @@ int HybridMotion::order() const { return now_->stepper->order(); }
 
 void HybridMotion::start(double t, std::span<const double> q, std::span<const double> v) {
   t_ = t;
+  t_rest_ = 0;
   q_.assign(q.begin(), q.end());
   v_.assign(v.begin(), v.end());
   std::fill(std::begin(carried_), std::end(carried_), 0.0);
@@ -85,7 +86,7 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   instant_.reset();
   started_ = false;
   now_ = &motion_in(open_mode(system_));
-  now_->stepper->start(t_, q_, v_);
+  now_->stepper->start(t_, q_, v_, t_rest_);
   pending_ = std::make_unique<Pending>();
   pending_->begins = true;
   forwards_ = true;
@@ -233,6 +234,7 @@ void HybridMotion::add(Happening::Kind kind, const std::string& name, double imp
 void HybridMotion::take_state() {
   const TaylorStepper& s = *now_->stepper;
   t_ = s.time();
+  t_rest_ = s.time_rest();
   q_.assign(s.q().begin(), s.q().end());
   v_.assign(s.v().begin(), s.v().end());
 }
@@ -273,7 +275,8 @@ bool HybridMotion::pulls() const {
 }
 
 /// An event of the last step, with the state that the motion has there.
-void HybridMotion::record_event(const std::string& name, double t) {
+void HybridMotion::record_event(const std::string& name, double at) {
+  const double t = forwards_ ? std::min(at, t_) : std::max(at, t_);  // rounding may lead beyond the step
   add(Happening::Kind::Event, name);
   Happening& told = record_.happenings.back();
   if (t == t_) return;
@@ -452,7 +455,7 @@ bool HybridMotion::keeps_sticking(const std::vector<std::size_t>& touching, std:
 
 /// A motion that cannot go on stays where it is, with all that was counted so far.
 Step HybridMotion::stopped(StepEnding ending, std::string reason) {
-  now_->stepper->start(t_, q_, v_);
+  now_->stepper->start(t_, q_, v_, t_rest_);
   return ended(ending, std::move(reason));
 }
 

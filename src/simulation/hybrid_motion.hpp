@@ -211,7 +211,7 @@ class HybridMotion final : public Method {
   std::unique_ptr<Pending> pending_;
   std::optional<Step> failed_;  // the start allows no motion
 
-  double t_ = 0;
+  double t_ = 0, t_rest_ = 0;  // a located instant is t_ + t_rest_
   std::vector<double> q_, v_;
   bool forwards_ = true, started_ = false;
   double carried_[3] = {0, 0, 0};  // integrals of the modes before

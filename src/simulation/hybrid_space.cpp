@@ -140,6 +140,7 @@ void HybridMotion::move_on(double by, const VectorXd& accelerations) {
   gap_begin_ = t_;
   just_moved_on_ = true;
   t_ += by;
+  t_rest_ = 0;
   knows_compliance_ = false;
   const double gained = energy_and_sets_at(t_, q_, v_)[0] - before;  // what other contacts rub meanwhile, as a rule
   carried_[0] += gained;
@@ -151,7 +152,7 @@ std::optional<TaylorStepper::Outlook> HybridMotion::outlook_without_contacts(con
                                                                              double bound) {
   const ContactMode base = mode_without_contacts(choices({}, values));
   TaylorStepper& stepper = *motion_in(base).stepper;
-  stepper.start(t_, q_, v_);
+  stepper.start(t_, q_, v_, t_rest_);
   TaylorStepper::Outlook outlook = stepper.outlook(bound);
   if (outlook.ending != StepEnding::None) return std::nullopt;
   return outlook;

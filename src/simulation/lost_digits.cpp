@@ -9,6 +9,9 @@ namespace {
 /// Of the largest value among columns of one unit: what is smaller is rounding noise about zero, not a motion.
 constexpr double noise_of_unit = 1e-6;
 
+/// An angle has a size of its own, a radian: where nothing turns by more than this, what turns less by far is noise.
+constexpr double small_turn = 1e-6;
+
 double largest_of(const Trajectory& trajectory, std::size_t column) {
   double out = 0;
   for (std::size_t row = 0; row < trajectory.rows(); ++row)
@@ -23,13 +26,12 @@ LostDigits::LostDigits(const CompanionPlan& plan) {
   const auto& names = plan.result.trajectory.columns;
   for (std::size_t c = 0; c < 2 * n; ++c) sizes_.push_back(largest_of(plan.result.trajectory, c));
   for (std::size_t c = 0; c < 2 * n; ++c) {
-    double of_unit = 0;
+    double of_unit = names[c].unit == "rad" ? small_turn : 0;
     for (std::size_t other = 0; other < 2 * n; ++other)
       if (names[other].unit == names[c].unit) of_unit = std::max(of_unit, sizes_[other]);
     // What moves a coordinate along the whole run by less than its noise is noise too.
     if (const double length = std::abs(plan.run.end - plan.run.begin); c >= n && length > 0)
-      for (std::size_t other = 0; other < n; ++other)
-        if (names[other].unit == names[c - n].unit) of_unit = std::max(of_unit, sizes_[other] / length);
+      of_unit = std::max(of_unit, of_unit_[c - n] / length);
     of_unit_.push_back(of_unit);
   }
 }

@@ -199,10 +199,11 @@ TaylorStepper::TaylorStepper(TaylorStepper&&) noexcept = default;
 
 int TaylorStepper::order() const { return impl_->control.order; }
 
-void TaylorStepper::start(double t, std::span<const double> q, std::span<const double> v) {
+void TaylorStepper::start(double t, std::span<const double> q, std::span<const double> v, double rest) {
   Impl& s = *impl_;
   MAUP_REQUIRE(q.size() == s.n && v.size() == s.n);
   s.state.start(t, q, v);
+  s.state.t.lo = rest;
   s.watched.start();
   s.constraints.start();
   s.shrinking.start(t);
@@ -263,6 +264,7 @@ TaylorStepper::Outlook TaylorStepper::outlook(double bound) {
 Step TaylorStepper::step(double bound) { return impl_->step(bound); }
 
 double TaylorStepper::time() const { return impl_->state.t.hi; }
+double TaylorStepper::time_rest() const { return impl_->state.t.lo; }
 std::span<const double> TaylorStepper::q() const {
   const Impl& s = *impl_;
   s.q_unwound.resize(s.n);

@@ -232,6 +232,14 @@ TEST_CASE("a slider-crank with dry friction in its guide goes through the dead c
   CHECK(r.statistics.energy_drift < 1e-13);
 }
 
+TEST_CASE("the clock keeps what located instants leave of t: a thousand bounces without loss") {
+  ModelText m(
+      "param m = 1 kg, g = 9.81 m/s^2\ncoord y : length\nT = 1/2 m y'^2\nV = m g y\n"
+      "contact y >= 0 restitution 1 name floor\nstart y = 1 m\n");
+  CHECK(std::abs(run(m, 1000).final.q[0] - 0.47660702466227468009) < 2e-12);
+  CHECK(std::abs(run(m, 20000).final.q[0] - 0.77986947055821752211) < 1e-10);
+}
+
 TEST_CASE("two blocks and a wall count the digits of π") {
   const std::pair<double, std::size_t> counts[] = {{1, 3}, {100, 31}, {10'000, 314}};
   for (const auto& [ratio, expected] : counts) {
