@@ -87,9 +87,36 @@ class Teller {
 
   // ------------------------------------------------------------------------------------------------------------ rows
 
+  /// The instants at which the state jumps, in their order.
+  std::vector<double> jumps() const {
+    const auto sets = [&](const std::string& name) {
+      const auto& events = plan_.model.experiment.events;
+      return std::any_of(events.begin(), events.end(),
+                         [&](const ModelEvent& e) { return e.name == name && !e.sets.empty(); });
+    };
+    std::vector<double> out;
+    for (const Happening& h : result_.happenings)
+      if (h.kind == Happening::Kind::Impact || (h.kind == Happening::Kind::Event && sets(h.name))) out.push_back(h.t);
+    std::sort(out.begin(), out.end());
+    return out;
+  }
+
+  /// Whether a row stands at one of them: companions may have it on the other side.
+  bool is_at(const std::vector<double>& jumps, std::size_t g) const {
+    constexpr double at_once = 1e-12;
+    const double t = plan_.time(g), near = at_once * std::abs(t);
+    const auto next = std::lower_bound(jumps.begin(), jumps.end(), t - near);
+    return next != jumps.end() && *next <= t + near;
+  }
+
   /// [grid × columns] differences; with a running maximum the largest so far.
   void find_rows() {
-    for (std::size_t g = 0; g < plan_.grid.size(); ++g)
+    const std::vector<double> at_jumps = jumps();
+    for (std::size_t g = 0; g < plan_.grid.size(); ++g) {
+      if (g > 0 && is_at(at_jumps, g)) {
+        for (std::size_t c = 0; c < columns_; ++c) errors_.push_back(errors_[(g - 1) * columns_ + c]);
+        continue;
+      }
       for (std::size_t c = 0; c < columns_; ++c) {
         double e = companions_.factor *
                    std::sqrt(companions_.squares[g * columns_ + c] / static_cast<double>(companions_.runs.size()));
@@ -97,6 +124,7 @@ class Teller {
         if (companions_.running_maximum && g > 0) e = std::max(e, errors_[(g - 1) * columns_ + c]);
         errors_.push_back(e);
       }
+    }
   }
 
   bool is_given(std::size_t column) const {

@@ -445,6 +445,8 @@ void HybridMotion::record_changes(const ContactMode& before, const ContactMode& 
       const std::string label =
           i < after.closed.size() ? system_.contact_label(i) : system_.frictions[i - after.closed.size()].name;
       add(now == FrictionState::Stick ? Happening::Kind::Stick : Happening::Kind::Slip, label);
+      const bool is_made_then = i < after.closed.size() && after.closed[i] && !before.closed[i];
+      if (accumulated_ && is_made_then) record_.happenings.back().t = accumulated_at_;
     }
   }
   for (std::size_t k = record_.happenings.size(); k-- > 0;) {

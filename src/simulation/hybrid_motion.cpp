@@ -151,6 +151,10 @@ Step HybridMotion::step(double bound) {
   if (failed_) return *failed_;
   instant_.reset();
   forwards_ = bound >= time();
+  if (!forwards_ && steps() == 0 && hits_at_start())
+    return ended(StepEnding::Paradox,
+                 "Backwards in time there is no motion from a start at which a contact is hit: what was before the "
+                 "impact does not follow from what is after it.");
   if (pending_) {
     if (auto failed = settle(bound)) return std::move(*failed);
   }
@@ -181,6 +185,12 @@ Step HybridMotion::step(double bound) {
   return out;
 }
 
+/// Whether the motion begins with an impact.
+bool HybridMotion::hits_at_start() const {
+  return !record_.happenings.empty() && record_.happenings.front().kind == Happening::Kind::Impact &&
+         record_.happenings.front().t == time();
+}
+
 void HybridMotion::remark(const std::string& sentence) {
   constexpr std::size_t most = 6;
   if (std::find(record_.remarks.begin(), record_.remarks.end(), sentence) != record_.remarks.end()) return;
@@ -192,6 +202,10 @@ void HybridMotion::remark(const std::string& sentence) {
 }
 
 void HybridMotion::finish() {
+  if (now_) {  // an end of bounces that is told may lie beyond the end of the run
+    const double end = time();
+    std::erase_if(record_.happenings, [&](const Happening& h) { return forwards_ ? h.t > end : h.t < end; });
+  }
   if (system_.contacts.empty() || !started_) return;
   take_state();
   const ContactValues& values = functions_.at(t_, q_, v_);

@@ -193,6 +193,7 @@ class HybridMotion final : public Method {
   void take_state();
   bool pulls() const;
   bool goes_on(double bound);
+  bool hits_at_start() const;
   void note_step();
   std::optional<std::size_t> violated_constraint(const MotionState& state, double digits);
 

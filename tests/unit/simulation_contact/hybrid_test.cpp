@@ -240,6 +240,43 @@ TEST_CASE("the clock keeps what located instants leave of t: a thousand bounces 
   CHECK(std::abs(run(m, 20000).final.q[0] - 0.77986947055821752211) < 1e-10);
 }
 
+TEST_CASE("backwards in time there is no motion from a start that hits") {
+  const std::string ball =
+      "param m = 1 kg, g = 9.81 m/s^2\ncoord y : length\nT = 1/2 m y'^2\nV = m g y\n"
+      "contact y >= 0 restitution 1 name floor\n";
+  ModelText hits(ball + "start y' = -2 m/s\n"), rises(ball + "start y = 1 m, y' = -2 m/s\n");
+  const auto refused = run(hits, -0.1), fine = run(rises, -0.1);
+  CHECK(refused.ending == Ending::Paradox);
+  CHECK(refused.reason.find("a start at which a contact is hit") != std::string::npos);
+  CHECK(fine.final.q[0] == doctest::Approx(1 + 0.2 - 0.5 * 9.81 * 0.01));
+}
+
+TEST_CASE("nothing is told to happen beyond the end of a run") {
+  ModelText m(
+      "param m = 1 kg, g = 9.81 m/s^2\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = m g y\n"
+      "contact y >= 0 restitution 0.5 friction 0.1 slip x' name floor\nstart y = 0.1 m, x' = 1 m/s\n");
+  const double end = std::sqrt(0.2 / 9.81) * 3;  // of the bounces
+  for (const auto& [duration, made] : {std::pair(end * (1 - 1e-7), 0), std::pair(end * (1 + 1e-7), 1)}) {
+    const auto r = run(m, duration);
+    CHECK(count(r, Happening::Kind::Made) == static_cast<std::size_t>(made));
+    for (std::size_t k = 1; k < r.happenings.size(); ++k) CHECK(r.happenings[k - 1].t <= r.happenings[k].t);
+    CHECK(r.happenings.back().t <= duration);
+  }
+}
+
+TEST_CASE("a row at an instant at which an event sets the state takes no digits from those after it") {
+  ModelText m(
+      "param m = 1 kg, v0 = 0.7 m/s\ncoord x : length\nT = 1/2 m x'^2\n"
+      "event per when x = 0.7 m rising : set x = 0.1 m\nstart x' = v0, x = 0.1 m\n");
+  SimulationOptions options;
+  options.duration = 10;
+  options.output_every = 0.5;
+  const auto r = simulate(m.model, m.equations, options, m.diagnostics);
+  REQUIRE(r);
+  CHECK(r->uncertain.columns.empty());
+  CHECK(r->final.q[0] == doctest::Approx(0.5).epsilon(1e-14));
+}
+
 TEST_CASE("two blocks and a wall count the digits of π") {
   const std::pair<double, std::size_t> counts[] = {{1, 3}, {100, 31}, {10'000, 314}};
   for (const auto& [ratio, expected] : counts) {
