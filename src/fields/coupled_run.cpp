@@ -3,6 +3,7 @@
 #include <maupertuis/repeated_evaluation.hpp>
 
 #include "fields/breaks.hpp"
+#include "fields/resolution.hpp"
 #include "fields/semi_discrete.hpp"
 
 #include <fmt/format.h>
@@ -202,7 +203,7 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
   const int cells = s.space.front().cells ? s.space.front().cells : usual_coupled_cells;
   const int order = s.element_order ? s.element_order : usual_coupled_order;
   const auto mesh = SemiDiscrete::make(model, equations, cells, order, diagnostics);
-  if (!mesh) return std::nullopt;
+  if (!mesh || refuse_unresolved(equations, {mesh->borders()}, mesh->order(), diagnostics)) return std::nullopt;
   if (mesh->start_clashes())
     diagnostics.warning("W0646", equations.model->start.empty() ? s.density_span : equations.model->start.front().span,
                         "the start does not fit the condition at an end",

@@ -50,13 +50,6 @@ double FieldMethod::bytes(const FieldEquations& equations, const Cells& cells) c
   return cells.size() == 2 ? PlaneMesh::bytes(equations, *waves_, cells[0], cells[1], order_) : 0;
 }
 
-PointForm FieldMethod::functions() const {
-  if (waves_) return *waves_;
-  PointForm out;
-  out.inputs = stiff_->inputs, out.g = stiff_->by_slot;
-  return out;
-}
-
 double FieldMethod::longest_step(FieldMotion& mesh, double duration, double every, const Interrupt& interrupt,
                                  double& omega) {
   if (waves_) {

@@ -25,8 +25,6 @@ class FieldMethod {
   std::unique_ptr<FieldMotion> mesh(const FieldEquations& equations, const Cells& cells, bool first) const;
   /// Bytes that a mesh takes; 0: it is small.
   double bytes(const FieldEquations& equations, const Cells& cells) const;
-  /// Functions of the density and their inputs, for a look at what a mesh resolves.
-  PointForm functions() const;
   /// By collocation as much longer on the other meshes as their cells are wider, so that their difference tells the
   /// error of steps as well. `omega` is set where steps depend on it.
   double longest_step(FieldMotion& mesh, double duration, double every, const Interrupt& interrupt, double& omega);

@@ -96,28 +96,6 @@ struct OneRun {
   std::vector<FieldCharge> charges;
 };
 
-/// E0647 where both meshes would pass something by, and their difference would tell nothing of it.
-bool refuse_coarse_mesh(const FieldEquations& equations, const FieldMethod& method, const Cells& cells,
-                        Diagnostics& diagnostics) {
-  const auto found = unresolved_feature(equations, method.functions(), cells, method.order());
-  if (!found) return false;
-  const FieldSystem& s = equations.system();
-  const bool at_start = found->of_start && !equations.model->start.empty();
-  std::string place, width;
-  for (std::size_t i = 0; i < found->place.size(); ++i) {
-    place += fmt::format("{}{} = {:.6g}", i ? ", " : "", s.space[i].name, found->place[i]);
-    width += fmt::format("{}{:.3g}", i ? " × " : "", found->element[i]);
-  }
-  diagnostics.error(
-      "E0647", at_start ? equations.model->start.front().span : s.density_span,
-      fmt::format("the mesh is too coarse for what {} has at {}", found->of_start ? "the start" : "the density", place),
-      fmt::format("Elements are {} wide (SI units), and what lies between their nodes is not seen by a "
-                  "second mesh either: no value of this run could be trusted.",
-                  width),
-      "Take more `cells`, or make it wider.");
-  return true;
-}
-
 /// Whether the mesh leaves so much of the start out that two meshes may agree by chance; W0652 where it is much.
 bool is_coarse_for_start(const FieldEquations& equations, const FieldMethod& method, const Cells& cells,
                          Diagnostics& diagnostics) {
@@ -157,9 +135,9 @@ void warn_of_clashes(const FieldMotion& mesh, const FieldEquations& equations, D
 }
 
 /// W0650: what acts for less than a step.
-void warn_of_short_action(const FieldEquations& equations, const FieldMethod& method, double step,
-                          const FieldRunOptions& options, Diagnostics& diagnostics) {
-  const auto moment = unresolved_moment(equations, method.functions(), step, options.begin, options.duration);
+void warn_of_short_action(const FieldEquations& equations, double step, const FieldRunOptions& options,
+                          Diagnostics& diagnostics) {
+  const auto moment = unresolved_moment(equations, step, options.begin, options.duration);
   if (!moment) return;
   diagnostics.warning(
       "W0650", equations.system().density_span,
@@ -273,7 +251,7 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
   stops.push_back(end);
   for (const double t : options.moments)
     if (first && t >= options.begin && t <= end) stops.push_back(t);
-  if (first) warn_of_short_action(equations, method, std::min(longest, every), options, diagnostics);
+  if (first) warn_of_short_action(equations, std::min(longest, every), options, diagnostics);
   // Where rows bound the steps, those of the other meshes are twice as long, so that their difference tells of steps
   // too.
   const double apart = first ? every : 2 * every;
@@ -399,7 +377,7 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
     cells.push_back(x.cells ? x.cells : s.space.front().cells ? s.space.front().cells : usual);
   }
   if (refuse_large_mesh(equations, *method, cells, diagnostics)) return std::nullopt;
-  if (refuse_coarse_mesh(equations, *method, cells, diagnostics)) return std::nullopt;
+  if (refuse_unresolved(equations, even_borders(equations, cells), method->order(), diagnostics)) return std::nullopt;
   const Rough start = warn_of_breaks(equations, cells, diagnostics)                 ? Rough::Breaks
                       : is_coarse_for_start(equations, *method, cells, diagnostics) ? Rough::Coarse
                                                                                     : Rough::No;

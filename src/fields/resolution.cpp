@@ -1,8 +1,11 @@
 #include "fields/resolution.hpp"
 
+#include "fields/given_fields.hpp"
 #include "fields/lobatto.hpp"
 
 #include <maupertuis/function_disks.hpp>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,36 +20,52 @@ constexpr double unresolved = 0.25;  // off from the polynomial, of the function
 
 using Place = std::vector<double>;  // [space variables]
 
+/// An element: an interval, or a rectangle.
+struct Box {
+  Place corner, width;
+};
+
 /// The elements of a mesh with their nodes.
 struct Elements {
   const Lobatto& rule;
-  Place from, width;
-  std::vector<int> cells;
+  Borders borders;
+  double inside = 0;  // of nodes off the borders between elements, in widths: a function may jump there
 
-  std::size_t directions() const { return cells.size(); }
+  std::size_t directions() const { return borders.size(); }
   std::size_t count() const {
-    return counted([](int n) { return n; });
-  }
-  std::size_t nodes() const {
-    return counted([this](int) { return rule.order + 1; });
-  }
-  Place corner(std::size_t element) const {
-    Place out = from;
-    for (std::size_t i = 0; i < directions(); element /= static_cast<std::size_t>(cells[i++]))
-      out[i] += width[i] * static_cast<double>(element % static_cast<std::size_t>(cells[i]));
+    std::size_t out = 1;
+    for (const std::vector<double>& along : borders) out *= along.size() - 1;
     return out;
   }
-  Place node(const Place& corner, std::size_t n) const {
-    Place out = corner;
-    for (std::size_t i = 0; i < directions(); ++i, n /= rule.x.size())
-      out[i] += width[i] * 0.5 * (1 + rule.x[n % rule.x.size()]);
+  std::size_t nodes() const {
+    std::size_t out = 1;
+    for (std::size_t i = 0; i < directions(); ++i) out *= rule.x.size();
+    return out;
+  }
+  Box box(std::size_t element) const {
+    Box out;
+    for (const std::vector<double>& along : borders) {
+      const std::size_t cells = along.size() - 1, k = element % cells;
+      out.corner.push_back(along[k]), out.width.push_back(along[k + 1] - along[k]);
+      element /= cells;
+    }
+    return out;
+  }
+  Place node(const Box& box, std::size_t n) const {
+    Place out = box.corner;
+    for (std::size_t i = 0; i < directions(); ++i, n /= rule.x.size()) {
+      const double first = box.corner[i] > borders[i].front() ? inside : 0,
+                   last = box.corner[i] + box.width[i] < borders[i].back() ? 1 - inside : 1;
+      out[i] += box.width[i] * std::clamp(0.5 * (1 + rule.x[n % rule.x.size()]), first, last);
+    }
     return out;
   }
   /// The polynomial through the values at the nodes.
-  double between(const std::vector<double>& values, const Place& corner, const Place& at) const {
+  double between(const std::vector<double>& values, const Box& box, const Place& at) const {
     std::vector<std::vector<double>> factor(directions());
     std::vector<double> slope;
-    for (std::size_t i = 0; i < directions(); ++i) rule.at(2 * (at[i] - corner[i]) / width[i] - 1, factor[i], slope);
+    for (std::size_t i = 0; i < directions(); ++i)
+      rule.at(2 * (at[i] - box.corner[i]) / box.width[i] - 1, factor[i], slope);
     double sum = 0;
     for (std::size_t n = 0; n < values.size(); ++n) {
       double product = values[n];
@@ -56,14 +75,10 @@ struct Elements {
     }
     return sum;
   }
+};
 
- private:
-  template <class F>
-  std::size_t counted(F&& f) const {
-    std::size_t out = 1;
-    for (const int n : cells) out *= static_cast<std::size_t>(f(n));
-    return out;
-  }
+struct Unseen {
+  Place place, element;  // the widths of the element that it lies in
 };
 
 /// One function of places and parameters.
@@ -84,32 +99,33 @@ class Scan {
     for (std::size_t i = 0; i < mesh.directions(); ++i) in_all *= looks;
     double worst = 0, size = 0;
     for (std::size_t e = 0; e < mesh.count(); ++e) {
-      const Place corner = mesh.corner(e);
-      const std::vector<double>& nodes = values_at_nodes(mesh, corner);
+      const Box box = mesh.box(e);
+      const std::vector<double>& nodes = values_at_nodes(mesh, box);
       for (std::size_t k = 0; k < in_all; ++k) {
-        Place x = corner;
+        Place x = box.corner;
         for (std::size_t i = 0, rest = k; i < x.size(); ++i, rest /= looks)
-          x[i] += mesh.width[i] * (static_cast<double>(rest % looks) + 0.5) / looks;
+          x[i] += box.width[i] * (static_cast<double>(rest % looks) + 0.5) / looks;
         const double f = at(x);
         size = std::max(size, std::abs(f));
-        worst = std::max(worst, std::abs(f - mesh.between(nodes, corner, x)));
+        worst = std::max(worst, std::abs(f - mesh.between(nodes, box, x)));
       }
     }
     return size > 0 ? worst / size : 0;
   }
 
-  /// The place of what the polynomials through the nodes do not follow; nothing where there is none.
-  std::optional<Place> find(const Elements& mesh) {
+  /// What the polynomials through the nodes do not follow; nothing where there is none.
+  std::optional<Unseen> find(const Elements& mesh) {
     size_ = 0;
     for (std::size_t e = 0; e < mesh.count(); ++e) {
-      const std::vector<double>& values = values_at_nodes(mesh, mesh.corner(e));
+      const Box box = mesh.box(e);
+      const std::vector<double>& values = values_at_nodes(mesh, box);
       for (std::size_t n = 0; n < values.size(); ++n) {
-        if (poles_ && !std::isfinite(values[n])) return mesh.node(mesh.corner(e), n);
+        if (poles_ && !std::isfinite(values[n])) return Unseen{mesh.node(box, n), box.width};
         size_ = std::max(size_, std::abs(values[n]));
       }
     }
     for (std::size_t e = 0; e < mesh.count(); ++e)
-      if (const auto place = find_in(mesh, mesh.corner(e))) return place;
+      if (const auto place = find_in(mesh, mesh.box(e))) return Unseen{*place, mesh.box(e).width};
     return std::nullopt;
   }
 
@@ -119,9 +135,9 @@ class Scan {
     work_.evaluate(x, {&out, 1});
     return out;
   }
-  const std::vector<double>& values_at_nodes(const Elements& mesh, const Place& corner) {
+  const std::vector<double>& values_at_nodes(const Elements& mesh, const Box& box) {
     nodes_.resize(mesh.nodes());
-    for (std::size_t n = 0; n < nodes_.size(); ++n) nodes_[n] = at(mesh.node(corner, n));
+    for (std::size_t n = 0; n < nodes_.size(); ++n) nodes_[n] = at(mesh.node(box, n));
     return nodes_;
   }
 
@@ -130,24 +146,24 @@ class Scan {
     int halvings;
   };
 
-  std::optional<Place> find_in(const Elements& mesh, const Place& corner) {
-    const std::vector<double>& nodes = values_at_nodes(mesh, corner);
-    Piece whole{corner, mesh.width, 0};
-    for (std::size_t i = 0; i < corner.size(); ++i) whole.middle[i] += whole.half[i] /= 2;
+  std::optional<Place> find_in(const Elements& mesh, const Box& box) {
+    const std::vector<double>& nodes = values_at_nodes(mesh, box);
+    Piece whole{box.corner, box.width, 0};
+    for (std::size_t i = 0; i < mesh.directions(); ++i) whole.middle[i] += whole.half[i] /= 2;
     std::vector<Piece> open{whole};
     for (int seen = 0; !open.empty() && seen < most_pieces; ++seen) {
       const Piece piece = open.back();
       open.pop_back();
       const double f = at(piece.middle);
       if (poles_ && !std::isfinite(f)) return piece.middle;
-      if (std::abs(f - mesh.between(nodes, corner, piece.middle)) > unresolved * std::max(size_, std::abs(f)))
+      if (std::abs(f - mesh.between(nodes, box, piece.middle)) > unresolved * std::max(size_, std::abs(f)))
         return piece.middle;
       disks_.set_centre(piece.middle);
       disks_.evaluate(piece.half);
       if (disks_.reach(0) <= settled * size_ || piece.halvings == most_halvings) continue;
-      for (std::size_t part = 0; part < std::size_t(1) << corner.size(); ++part) {
+      for (std::size_t part = 0; part < std::size_t(1) << mesh.directions(); ++part) {
         Piece smaller{piece.middle, piece.half, piece.halvings + 1};
-        for (std::size_t i = 0; i < corner.size(); ++i)
+        for (std::size_t i = 0; i < mesh.directions(); ++i)
           smaller.middle[i] += (part >> i & 1 ? 1 : -1) * (smaller.half[i] /= 2);
         open.push_back(std::move(smaller));
       }
@@ -187,33 +203,77 @@ std::vector<Expr> space_of(const FieldEquations& equations) {
   return out;
 }
 
-Elements elements_of(const FieldEquations& equations, const ParameterValues& parameters, const Lobatto& rule,
-                     const std::vector<int>& cells) {
+/// A function of places and t, and what it is a part of.
+struct Acting {
+  Expr value;
+  const char* of;
+};
+
+/// ∂ℒ and ∂𝒟 by each jet and the force densities, for one set of values of the field.
+std::vector<Acting> what_acts(const FieldEquations& equations) {
   const FieldSystem& s = equations.system();
-  Elements out{rule, {}, {}, cells};
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    out.from.push_back(evaluate(s.expanded(s.space[i].from), parameters.known));
-    out.width.push_back((evaluate(s.expanded(s.space[i].to), parameters.known) - out.from.back()) / cells[i]);
+  std::vector<Acting> out;
+  const auto add_slopes = [&](Expr density, const char* of) {
+    if (!density) return;
+    const Expr e = with_given_fields(s, density);
+    for (const Expr& jet : s.jets_in(e)) out.push_back({differentiate(e, jet), of});
+  };
+  add_slopes(s.density, "the density");
+  add_slopes(s.dissipation, "the dissipation density");
+  for (const Expr& force : s.forces)
+    if (force) out.push_back({with_given_fields(s, force), "a force density"});
+  for (Acting& one : out) {
+    ExprMap values;
+    for (const Expr& jet : s.jets_in(one.value)) values.emplace(jet, s.context->number(Rational(618034, 1000000)));
+    one.value = substitute(one.value, values);
   }
   return out;
 }
 
+/// E0647 where both meshes of an error estimate would pass something by, and their difference would tell nothing of it.
+void refuse(const FieldEquations& equations, const Unseen& found, Span span, const char* of, Diagnostics& diagnostics) {
+  const FieldSystem& s = equations.system();
+  std::string place, width;
+  for (std::size_t i = 0; i < found.place.size(); ++i) {
+    place += fmt::format("{}{} = {:.6g}", i ? ", " : "", s.space[i].name, found.place[i]);
+    width += fmt::format("{}{:.3g}", i ? " × " : "", found.element[i]);
+  }
+  diagnostics.error("E0647", span, fmt::format("the mesh is too coarse for what {} has at {}", of, place),
+                    fmt::format("Elements are {} wide (SI units), and what lies between their nodes is not seen by a "
+                                "second mesh either: no value of this run could be trusted.",
+                                width),
+                    "Take more `cells`, or make it wider.");
+}
+
 }  // namespace
 
-std::optional<double> unresolved_moment(const FieldEquations& equations, const PointForm& form, double step,
-                                        double begin, double duration) {
+Borders even_borders(const FieldEquations& equations, const std::vector<int>& cells) {
+  const FieldSystem& s = equations.system();
+  const ParameterValues parameters(*equations.model);
+  Borders out;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const double from = evaluate(s.expanded(s.space[i].from), parameters.known),
+                 to = evaluate(s.expanded(s.space[i].to), parameters.known);
+    out.emplace_back();
+    for (int k = 0; k <= cells[i]; ++k) out.back().push_back(from + (to - from) / cells[i] * k);
+  }
+  return out;
+}
+
+std::optional<double> unresolved_moment(const FieldEquations& equations, double step, double begin, double duration) {
   constexpr double most_steps = 200'000;
   if (!(step > 0) || duration / step > most_steps) return std::nullopt;
   const FieldSystem& s = equations.system();
   Context& context = *s.context;
-  const Expr time = context.time(), number = context.number(Rational(618034, 1000000));
+  const Expr time = context.time();
   const ParameterValues parameters(*equations.model);
   const Lobatto rule(2);
-  const Elements steps{rule, {begin}, {step}, {static_cast<int>(std::ceil(duration / step))}};
+  Elements steps{rule, {{}}};
+  for (double k = 0; k <= std::ceil(duration / step); ++k) steps.borders[0].push_back(begin + step * k);
   const auto look = [&](Expr f) -> std::optional<double> {
     if (!stands_in(time, f)) return std::nullopt;
     const auto found = Scan(f, {time}, parameters.symbols, parameters.values).with_poles().find(steps);
-    return found ? std::optional((*found)[0]) : std::nullopt;
+    return found ? std::optional(found->place[0]) : std::nullopt;
   };
   for (const EndForce& force : s.end_forces)
     if (const auto found = look(s.expanded(force.value))) return found;
@@ -224,11 +284,8 @@ std::optional<double> unresolved_moment(const FieldEquations& equations, const P
     for (const BoundaryCondition& b : s.boundary)  // along a side
       if (b.value)
         if (const auto found = look(substitute(s.expanded(b.value), fixed))) return found;
-    for (const Expr& input : form.inputs)
-      if (input != time) fixed.emplace(input, number);
-    for (const auto* list : {&form.a, &form.g, &form.s})
-      for (const Expr& f : *list)
-        if (const auto found = look(substitute(f, fixed))) return found;
+    for (const Acting& f : what_acts(equations))
+      if (const auto found = look(substitute(f.value, fixed))) return found;
   }
   return std::nullopt;
 }
@@ -236,7 +293,7 @@ std::optional<double> unresolved_moment(const FieldEquations& equations, const P
 double left_out_of_start(const FieldEquations& equations, const std::vector<int>& cells, int order) {
   const ParameterValues parameters(*equations.model);
   const Lobatto rule(order);
-  const Elements mesh = elements_of(equations, parameters, rule, cells);
+  const Elements mesh{rule, even_borders(equations, cells)};
   double out = 0;
   for (const FieldStart& start : equations.model->start)
     out = std::max(
@@ -245,29 +302,24 @@ double left_out_of_start(const FieldEquations& equations, const std::vector<int>
   return out;
 }
 
-std::optional<Unresolved> unresolved_feature(const FieldEquations& equations, const PointForm& form,
-                                             const std::vector<int>& cells, int order) {
+bool refuse_unresolved(const FieldEquations& equations, const Borders& borders, int order, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
   Context& context = *s.context;
   const std::vector<Expr> x = space_of(equations);
   const ParameterValues parameters(*equations.model);
   const Lobatto rule(order);
-  const Elements mesh = elements_of(equations, parameters, rule, cells);
-  const auto look = [&](Expr f, bool of_start) -> std::optional<Unresolved> {
-    if (std::none_of(x.begin(), x.end(), [&](Expr one) { return stands_in(one, f); })) return std::nullopt;
-    const auto place = Scan(f, x, parameters.symbols, parameters.values).find(mesh);
-    return place ? std::optional(Unresolved{*place, mesh.width, of_start}) : std::nullopt;
+  const Elements mesh{rule, borders, 1e-13};
+  const auto look = [&](Expr f, Span span, const char* of) {
+    if (std::none_of(x.begin(), x.end(), [&](Expr one) { return stands_in(one, f); })) return false;
+    const auto found = Scan(f, x, parameters.symbols, parameters.values).find(mesh);
+    if (found) refuse(equations, *found, span, of, diagnostics);
+    return found.has_value();
   };
   for (const FieldStart& start : equations.model->start)
-    if (const auto found = look(s.expanded(start.value), true)) return found;
-  ExprMap fixed{{context.time(), context.number(0)}};
-  const Expr number = context.number(Rational(618034, 1000000));  // any value of φ, φ', φ_x, φ_tx
-  for (const Expr& input : form.inputs)
-    if (std::find(x.begin(), x.end(), input) == x.end() && input != context.time()) fixed.emplace(input, number);
-  for (const auto* part : {&form.a, &form.g, &form.s})
-    for (const Expr& f : *part)
-      if (const auto found = look(substitute(f, fixed), false)) return found;
-  return std::nullopt;
+    if (look(s.expanded(start.value), start.span, "the start")) return true;
+  for (const Acting& f : what_acts(equations))
+    if (look(substitute(f.value, {{context.time(), context.number(0)}}), s.density_span, f.of)) return true;
+  return false;
 }
 
 }  // namespace maupertuis

@@ -4,6 +4,7 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/repeated_evaluation.hpp>
 
+#include "fields/given_fields.hpp"
 #include "linear_algebra/dense.hpp"
 
 #include <fmt/format.h>
@@ -87,7 +88,6 @@ std::optional<SemiDiscrete> SemiDiscrete::make(const Model& model, const FieldEq
   for (std::size_t f = 0; f < s.fields.size(); ++f) {
     if (!s.fields[f].given) continue;
     if (!s.fields[f].formula) return refuse_run(diagnostics, s.fields[f].span, "an input without a formula");
-    out.given_[s.jet_symbol({f, {0}, 0})] = s.fields[f].formula;
   }
   if (!out.set_mesh(cells, order, diagnostics)) return std::nullopt;
   out.set_degrees_of_freedom();
@@ -216,35 +216,29 @@ Expr SemiDiscrete::combination(std::size_t a, const std::vector<ElementSpace::Pa
   return context.sum(terms);
 }
 
-ExprMap SemiDiscrete::at_point(const std::vector<Expr>& jets, std::size_t point, double x) const {
+Expr SemiDiscrete::at_point(Expr f, const std::vector<Expr>& jets, std::size_t point) const {
   const FieldSystem& s = equations_->system();
-  ExprMap map{{s.space.front().symbol, constant(x)}};
+  const std::vector<ElementSpace::Point>& points = spaces_.front().points();
+  const std::size_t element = point / (points.size() / elements());
+  // A border belongs to the element that is summed: the formulas of its own side hold there.
+  const double left = mesh_.borders[element], right = mesh_.borders[element + 1], near = 1e-13 * (right - left);
+  ExprMap map{{s.space.front().symbol, constant(std::clamp(points[point].x, left + near, right - near))}};
   for (const Expr& symbol : jets) {
     const FieldJet jet = *s.jet_of(symbol);
     std::size_t a = 0;
     while (a < spaces_.size() && equations_->varied[a] != jet.field) ++a;
     if (a < spaces_.size()) map[symbol] = combination(a, spaces_[a].points()[point].parts, jet.space[0], jet.time);
   }
-  return map;
+  return substitute(f, map);
 }
 
 Expr SemiDiscrete::integral(Expr density) const {
   const FieldSystem& s = equations_->system();
-  const Expr e = s.expanded(substitute(s.expanded(density), given_));
+  const Expr e = with_given_fields(s, density);
   const std::vector<Expr> jets = s.jets_in(e);
   const std::vector<ElementSpace::Point>& points = spaces_.front().points();
-  const std::vector<double>& borders = mesh_.borders;
   std::vector<Expr> terms;
-  std::size_t element = 0;
-  const std::size_t per_element = points.size() / elements();
-  for (std::size_t q = 0; q < points.size(); ++q) {
-    element = q / per_element;
-    // A border belongs to the element that is summed: the formulas of its own side hold there.
-    const double width = borders[element + 1] - borders[element];
-    const double inside =
-        std::clamp(points[q].x, borders[element] + 1e-13 * width, borders[element + 1] - 1e-13 * width);
-    terms.push_back(constant(points[q].weight) * substitute(e, at_point(jets, q, inside)));
-  }
+  for (std::size_t q = 0; q < points.size(); ++q) terms.push_back(constant(points[q].weight) * at_point(e, jets, q));
   return s.context->sum(terms);
 }
 
@@ -256,7 +250,7 @@ bool SemiDiscrete::add_lagrangian(Diagnostics&) {
     system.lagrangian_given->value = system.lagrangian_given->value + l;
   else
     system.lagrangian_extra.push_back({l, "density", s.density_span});
-  const Expr density = s.expanded(substitute(s.expanded(s.density), given_));
+  const Expr density = with_given_fields(s, s.density);
   forced_ = forced_ || !differentiate(density, s.context->time()).is_zero();
   if (!s.dissipation) return true;
   system.dissipation.push_back({integral(s.dissipation), "dissipation density", s.density_span});
@@ -281,11 +275,11 @@ void SemiDiscrete::add_force_densities() {
   const std::vector<ElementSpace::Point>& points = spaces_.front().points();
   for (std::size_t a = 0; a < spaces_.size(); ++a) {
     if (!s.forces[equations_->varied[a]]) continue;
-    const Expr f = s.expanded(substitute(s.expanded(s.forces[equations_->varied[a]]), given_));
+    const Expr f = with_given_fields(s, s.forces[equations_->varied[a]]);
     const std::vector<Expr> jets = s.jets_in(f);
     std::vector<std::vector<Expr>> sums(spaces_[a].size());
     for (std::size_t q = 0; q < points.size(); ++q) {
-      const Expr here = substitute(f, at_point(jets, q, points[q].x));
+      const Expr here = at_point(f, jets, q);
       for (const ElementSpace::Part& part : spaces_[a].points()[q].parts)
         if (part.of[0] != 0) sums[part.dof].push_back(constant(points[q].weight * part.of[0]) * here);
     }
@@ -315,8 +309,8 @@ bool SemiDiscrete::add_given_slopes(Diagnostics& diagnostics) {
     if (b.jet.order() != 1 || spaces_[a].kind() == EKind::Smooth) continue;
     const bool right = b.side == Side::Right;
     const FieldJet strain{b.jet.field, b.jet.space, 1};
-    Expr slope = differentiate(s.expanded(s.density), s.jet_symbol(b.jet));
-    if (s.dissipation) slope = slope - differentiate(s.expanded(s.dissipation), s.jet_symbol(strain));
+    Expr slope = differentiate(with_given_fields(s, s.density), s.jet_symbol(b.jet));
+    if (s.dissipation) slope = slope - differentiate(with_given_fields(s, s.dissipation), s.jet_symbol(strain));
     const Expr p = substitute(slope, {{s.jet_symbol(b.jet), s.expanded(b.value)},
                                       {s.jet_symbol(strain), total_time_derivative(s.expanded(b.value))},
                                       {s.space.front().symbol, right ? s.space.front().to : s.space.front().from}});
@@ -381,31 +375,6 @@ std::vector<double> projected(const ElementSpace& space, const std::vector<doubl
 
 }  // namespace
 
-/// E0647 where a start is another function between the nodes than what the elements make of it.
-bool SemiDiscrete::refuse_unresolved(std::size_t a, const std::vector<double>& c, const RepeatedEvaluation& start,
-                                     Diagnostics& diagnostics) const {
-  constexpr int looks = 101;  // in an element, at places that share no pattern with the nodes
-  double size = 0, worst = 0, place = 0;
-  for (std::size_t e = 0; e + 1 < mesh_.borders.size(); ++e)
-    for (int k = 0; k < looks; ++k) {
-      const double x = mesh_.borders[e] + (mesh_.borders[e + 1] - mesh_.borders[e]) * (k + 0.5) / looks;
-      const double value = start([&](Expr symbol) {
-                             return symbol == equations_->system().space.front().symbol ? x : numbers_.at(symbol);
-                           }).front();
-      double here = 0;
-      for (const ElementSpace::Part& part : spaces_[a].at(x)) here += part.of[0] * c[part.dof];
-      size = std::max(size, std::abs(value));
-      if (std::abs(value - here) > worst) worst = std::abs(value - here), place = x;
-    }
-  if (worst <= size / 4) return false;
-  diagnostics.error("E0647", equations_->model->start.front().span,
-                    fmt::format("the mesh passes something of the start by, at {} = {:.6g}",
-                                equations_->system().space.front().name, place),
-                    "Between the nodes the start is another function than the polynomials through them.",
-                    "Write more cells, or a higher order of the elements.");
-  return true;
-}
-
 bool SemiDiscrete::set_start(Diagnostics& diagnostics) {
   const FieldSystem& s = equations_->system();
   Bindings at_start = numbers_;
@@ -441,7 +410,6 @@ bool SemiDiscrete::set_start(Diagnostics& diagnostics) {
           clashes_ = true;
       }
       const std::vector<double> c = projected(spaces_[a], function, given);
-      if (!clashes_ && refuse_unresolved(a, c, at, diagnostics)) return false;
       for (std::size_t j = 0; j < c.size(); ++j)
         if (coordinates_[a][j]) {
           StartValue v;

@@ -51,11 +51,10 @@ class SemiDiscrete {
   void add_end_forces();
   bool set_start(Diagnostics& diagnostics);
   bool replace_places(Diagnostics& diagnostics);
-  bool refuse_unresolved(std::size_t a, const std::vector<double>& c, const RepeatedEvaluation& start,
-                         Diagnostics& diagnostics) const;
   Expr constant(double value) const;
   Expr combination(std::size_t a, const std::vector<ElementSpace::Part>& parts, int by_space, int by_time) const;
-  ExprMap at_point(const std::vector<Expr>& jets, std::size_t point, double x) const;
+  /// A function of places and jets at a point of the quadrature.
+  Expr at_point(Expr f, const std::vector<Expr>& jets, std::size_t point) const;
   Expr integral(Expr density) const;
   void generalized_force(std::size_t a, std::size_t dof, Expr force, Span span);
   double number(Expr e) const;
@@ -67,7 +66,6 @@ class SemiDiscrete {
   std::vector<std::vector<Expr>> values_;  // [varied][dof] u of it: a coordinate, or what is given
   std::vector<std::vector<std::optional<std::size_t>>> coordinates_;  // [varied][dof]
   Bindings numbers_;                                                  // of parameters
-  ExprMap given_;                                                     // inputs by their formulas
   std::size_t dofs_ = 0;
   bool forced_ = false, clashes_ = false;
 };
