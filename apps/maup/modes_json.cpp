@@ -77,19 +77,27 @@ Json point_json(const MechanicalSystem& system, const OperatingPoint& point) {
 Json linearization_json(const MechanicalSystem& system, const Linearization& l) {
   Json out = {{"independent", names_json(system, l.independent, "")},
               {"independent_velocities", names_json(system, l.independent_velocities, "'")}};
-  const std::pair<const char*, const RealMatrix*> second[] = {{"M", &l.mass},        {"C", &l.damping},
-                                                              {"G", &l.gyroscopic},  {"K", &l.stiffness},
-                                                              {"N", &l.circulatory}, {"input", &l.input}};
+  const std::pair<const char*, const RealMatrix*> second[] = {{"M", &l.mass},
+                                                              {"C", &l.damping},
+                                                              {"G", &l.gyroscopic},
+                                                              {"K", &l.stiffness},
+                                                              {"N", &l.circulatory},
+                                                              {"input", &l.input},
+                                                              {"input_rate", &l.input_rate},
+                                                              {"input_acceleration", &l.input_acceleration}};
   if (l.second_order())
     for (const auto& [name, matrix] : second) out["second_order"][name] = matrix_json(*matrix);
   else
     out["second_order"] = nullptr;
-  const std::pair<const char*, const RealMatrix*> first[] = {{"A", &l.a}, {"B", &l.b}, {"C", &l.c}, {"D", &l.d}};
+  const std::pair<const char*, const RealMatrix*> first[] = {
+      {"A", &l.a}, {"B", &l.b}, {"B1", &l.b_rate}, {"B2", &l.b_acceleration}, {"C", &l.c}, {"D", &l.d}};
   for (const auto& [name, matrix] : first) out["state_space"][name] = matrix_json(*matrix);
-  out["measured"] =
-      l.measured.values.empty()
-          ? Json(nullptr)
-          : Json{{"values", l.measured.values}, {"C", matrix_json(l.measured.c)}, {"D", matrix_json(l.measured.d)}};
+  out["measured"] = l.measured.values.empty() ? Json(nullptr)
+                                              : Json{{"values", l.measured.values},
+                                                     {"C", matrix_json(l.measured.c)},
+                                                     {"D", matrix_json(l.measured.d)},
+                                                     {"D1", matrix_json(l.measured.d_rate)},
+                                                     {"D2", matrix_json(l.measured.d_acceleration)}};
   return out;
 }
 
@@ -155,9 +163,14 @@ Json symbolic_json(const SymbolicLinearization& s, const ReadingOrder& order) {
   };
   Json equilibrium = Json::object();
   for (const auto& [left, right] : s.equilibrium) equilibrium[to_plain(left, order)] = to_plain(right.value, order);
-  return {{"equilibrium", equilibrium}, {"M", matrix(s.mass)},
-          {"C", matrix(s.damping)},     {"K", matrix(s.stiffness)},
-          {"B", matrix(s.input)},       {"omega_squared", s.square ? Json(to_plain(s.square, order)) : Json(nullptr)}};
+  return {{"equilibrium", equilibrium},
+          {"M", matrix(s.mass)},
+          {"C", matrix(s.damping)},
+          {"K", matrix(s.stiffness)},
+          {"B", matrix(s.input)},
+          {"B1", matrix(s.input_rate)},
+          {"B2", matrix(s.input_acceleration)},
+          {"omega_squared", s.square ? Json(to_plain(s.square, order)) : Json(nullptr)}};
 }
 
 Json regulator_json(const Regulator& r) {

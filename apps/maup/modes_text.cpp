@@ -8,6 +8,7 @@
 #include <maupertuis/print.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace maupertuis::app {
@@ -148,6 +149,33 @@ std::string state_listed(const MechanicalSystem& system, const Linearization& l,
   return q + (q.empty() || v.empty() ? "" : between) + v;
 }
 
+bool vanishes(const ExprMatrix& m) {
+  return std::all_of(m.entries.begin(), m.entries.end(), [](const Expr& e) { return e.is_zero(); });
+}
+
+constexpr const char* indices[] = {"", "₁", "₂"};
+
+/// What u, u' and u'' bring: "B u + B₁ u'", without what vanishes.
+template <class Matrix>
+std::string inputs_text(const std::string& name, const std::array<const Matrix*, 3>& by_rates) {
+  std::string out;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!vanishes(*by_rates[i])) out += (out.empty() ? "" : " + ") + name + indices[i] + " u" + std::string(i, '\'');
+  return out;
+}
+
+template <class Matrix, class... Order>
+std::string input_matrices_text(const std::string& name, const std::array<const Matrix*, 3>& by_rates,
+                                const Order&... order) {
+  std::string out;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!vanishes(*by_rates[i])) out += matrix_text(name + indices[i], *by_rates[i], order...);
+  return out;
+}
+
+std::string or_zero(const std::string& sum) { return sum.empty() ? "0" : sum; }
+std::string added(const std::string& sum) { return sum.empty() ? "" : " + " + sum; }
+
 std::string matrices_text(const MechanicalSystem& system, const Linearization& l) {
   std::string out;
   if (l.independent.empty() && l.independent_velocities.empty()) return "  independent: none\n";
@@ -156,21 +184,22 @@ std::string matrices_text(const MechanicalSystem& system, const Linearization& l
         fmt::format("  independent: {}\n", l.independent == l.independent_velocities ? listed(system, l.independent, "")
                                                                                      : state_listed(system, l, "; "));
   if (l.second_order() && l.independent.size() <= widest_matrix) {
-    const std::pair<const char*, const RealMatrix*> all[] = {{"M", &l.mass},        {"C", &l.damping},
-                                                             {"G", &l.gyroscopic},  {"K", &l.stiffness},
-                                                             {"N", &l.circulatory}, {"B", &l.input}};
+    const std::pair<const char*, const RealMatrix*> all[] = {
+        {"M", &l.mass}, {"C", &l.damping}, {"G", &l.gyroscopic}, {"K", &l.stiffness}, {"N", &l.circulatory}};
+    const std::array by_rates{&l.input, &l.input_rate, &l.input_acceleration};
     std::string sum = "M ξ''";
     const bool c = !vanishes(l.damping), g = !vanishes(l.gyroscopic), k = !vanishes(l.stiffness),
                n = !vanishes(l.circulatory);
     if (c || g) sum += fmt::format(" + {} ξ'", c && g ? "(C + G)" : c ? "C" : "G");
     if (k || n) sum += fmt::format(" + {} ξ", k && n ? "(K + N)" : k ? "K" : "N");
-    out += fmt::format("  {} = {}\n", sum, vanishes(l.input) ? "0" : "B u");
+    out += fmt::format("  {} = {}\n", sum, or_zero(inputs_text("B", by_rates)));
     for (const auto& [name, matrix] : all)
       if (!vanishes(*matrix)) out += matrix_text(name, *matrix);
+    out += input_matrices_text("B", by_rates);
   } else if (l.a.rows <= widest_matrix) {
-    out += fmt::format("  x' = A x{},  x = ({})\n", vanishes(l.b) ? "" : " + B u", state_listed(system, l, ", "));
-    out += matrix_text("A", l.a);
-    if (!vanishes(l.b)) out += matrix_text("B", l.b);
+    const std::array by_rates{&l.b, &l.b_rate, &l.b_acceleration};
+    out += fmt::format("  x' = A x{},  x = ({})\n", added(inputs_text("B", by_rates)), state_listed(system, l, ", "));
+    out += matrix_text("A", l.a) + input_matrices_text("B", by_rates);
   }
   return out;
 }
@@ -180,17 +209,13 @@ std::string measured_text(const MechanicalSystem& system, const Linearization& l
                           const std::vector<std::string>& outputs) {
   if (outputs.empty()) return "";
   const MeasuredOutputs& y = l.measured;
-  std::string out =
-      fmt::format("  y = y0 + C x{} (SI),  x = ({})\n", vanishes(y.d) ? "" : " + D u", state_listed(system, l, ", "));
+  const std::array by_rates{&y.d, &y.d_rate, &y.d_acceleration};
+  std::string out = fmt::format("  y = y0 + C x{} (SI),  x = ({})\n", added(inputs_text("D", by_rates)),
+                                state_listed(system, l, ", "));
   for (std::size_t i = 0; i < outputs.size(); ++i)
     out += fmt::format("  y{} = {},  y0 = {}\n", outputs.size() == 1 ? "" : fmt::format("{}", i + 1), outputs[i],
                        number(y.values[i]));
-  out += matrix_text("C", y.c);
-  return vanishes(y.d) ? out : out + matrix_text("D", y.d);
-}
-
-bool vanishes(const ExprMatrix& m) {
-  return std::all_of(m.entries.begin(), m.entries.end(), [](const Expr& e) { return e.is_zero(); });
+  return out + matrix_text("C", y.c) + input_matrices_text("D", by_rates);
 }
 
 /// Formulas instead of numbers where they fit a line.
@@ -198,12 +223,14 @@ std::optional<std::string> formulas_text(const SymbolicLinearization& s, const R
   std::string out;
   for (const auto& [left, right] : s.equilibrium)
     out += fmt::format("  {} = {}\n", to_plain(left, order), to_plain(right.value, order));
-  const bool c = !vanishes(s.damping), k = !vanishes(s.stiffness), b = !vanishes(s.input);
-  out += fmt::format("  M ξ''{}{} = {}\n", c ? " + C ξ'" : "", k ? " + K ξ" : "", b ? "B u" : "0");
+  const bool c = !vanishes(s.damping), k = !vanishes(s.stiffness);
+  const std::array by_rates{&s.input, &s.input_rate, &s.input_acceleration};
+  out += fmt::format("  M ξ''{}{} = {}\n", c ? " + C ξ'" : "", k ? " + K ξ" : "", or_zero(inputs_text("B", by_rates)));
   const std::tuple<const char*, const ExprMatrix*, bool> all[] = {
-      {"M", &s.mass, true}, {"C", &s.damping, c}, {"K", &s.stiffness, k}, {"B", &s.input, b}};
+      {"M", &s.mass, true}, {"C", &s.damping, c}, {"K", &s.stiffness, k}};
   for (const auto& [name, matrix, shown] : all)
     if (shown) out += matrix_text(name, *matrix, order);
+  out += input_matrices_text("B", by_rates, order);
   if (s.square) out += fmt::format("  ω² = {}\n", to_plain(s.square, order));
   constexpr std::size_t widest = 110;
   for (std::size_t begin = 0, end; begin < out.size(); begin = end + 1) {

@@ -28,6 +28,7 @@ struct OperatingPoint {
   /// Ξ [n × n], a symmetry: what lies beside the motion is seen in the frame that turns along with it, q = q₀(t) +
   /// exp(Ξ t) ξ, in which the coefficients are constant. Empty: none.
   RealMatrix turning = {};
+  std::vector<double> input_rates = {};  // [2k] u', then u'', of a point of a motion; empty: inputs are held
 };
 
 /// A translation q → q + ε d of the coordinates that changes neither the equations nor the constraints: one cyclic
@@ -127,17 +128,22 @@ std::vector<Equilibrium> equilibrium_near(const PointEquations& equations, const
 
 // ------------------------------------------------------------------------------------------------------ linearization
 
-/// What is measured, to first order: y = y₀ + C x + D w. An output that holds q̈ or λ passes inputs on directly, D ≠ 0.
+/// What is measured, to first order: y = y₀ + C x + D w + D₁ ẇ + D₂ ẅ. An output that holds q̈ or λ passes inputs on
+/// directly, D ≠ 0.
 /// Values that are not finite: y has none at the point; a row of C and D that is not: y has no derivative there.
 struct MeasuredOutputs {
-  std::vector<double> values;  // [p] y₀ at the point, SI
-  RealMatrix c, d;             // [p × (f+g)], [p × k]
+  std::vector<double> values;         // [p] y₀ at the point, SI
+  RealMatrix c, d;                    // [p × (f+g)], [p × k]
+  RealMatrix d_rate, d_acceleration;  // D₁, D₂ [p × k]
 };
 
 /// The equations to first order about a point, ξ = q − q₀ and w = u − u₀.
 ///
-///     M ξ̈ + (C + G) ξ̇ + (K + N) ξ = B u         C, K symmetric, G, N skew; in the independent coordinates
-///     ẋ = A x + B u,  y = C x + D u              x = (independent positions, independent velocities), y = (q, q̇)
+///     M ξ̈ + (C + G) ξ̇ + (K + N) ξ = B w + B₁ ẇ + B₂ ẅ     C, K symmetric, G, N skew; in the independent coordinates
+///     ẋ = A x + B w + B₁ ẇ + B₂ ẅ,  y = C x + D w           x = (independent positions, independent velocities),
+///                                                           y = (q, q̇)
+///
+/// B₁ and B₂ are those of inputs that act by their rates: a support that moves, a damper whose other end does.
 struct Linearization {
   OperatingPoint point;
   std::vector<std::size_t> independent;             // [f] coordinates
@@ -146,9 +152,10 @@ struct Linearization {
   /// The second-order form; absent (0 × 0) where non-holonomic constraints couple velocities with positions, and along
   /// a trajectory on which the independent directions turn.
   RealMatrix mass, damping, gyroscopic, stiffness, circulatory;  // [f × f]
-  RealMatrix input;                                              // [f × k]
-  RealMatrix a, b, c, d;     // [(f+g) × (f+g)], [(f+g) × k], [2n × (f+g)], [2n × k]
-  MeasuredOutputs measured;  // of the outputs of PointEquations; empty without
+  RealMatrix input, input_rate, input_acceleration;              // B, B₁, B₂ [f × k]
+  RealMatrix a, b, c, d;              // [(f+g) × (f+g)], [(f+g) × k], [2n × (f+g)], [2n × k]
+  RealMatrix b_rate, b_acceleration;  // B₁, B₂ of the states [(f+g) × k]
+  MeasuredOutputs measured;           // of the outputs of PointEquations; empty without
   bool second_order() const { return mass.rows > 0 || independent.empty(); }
 };
 

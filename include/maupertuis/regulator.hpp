@@ -23,9 +23,9 @@ bool has_lapack();
 /// P from the stable invariant subspace of the Hamiltonian matrix [A  −B R⁻¹Bᵀ; −Q  −Aᵀ], by LAPACK's ordered real
 /// Schur form (dgees with a selection). Nothing, and a diagnostic: E1310 no inputs, E1311 Q or R of wrong size or not
 /// definite, E1312 a mode that grows or stays and that the inputs do not reach, E1313 one that stays and that Q does
-/// not see, E1314 the equation is not solved to the digits that are promised, E1315 no LAPACK. Shapes: Q [s × s]
-/// symmetric, not negative; R [k × k] symmetric, positive; s = f + g states. Reference: Laub, A Schur method for
-/// solving algebraic Riccati equations, IEEE Trans. Automat. Control 24 (1979).
+/// not see, E1314 the equation is not solved to the digits that are promised, E1315 no LAPACK, E1316 inputs that act by
+/// their rates. Shapes: Q [s × s] symmetric, not negative; R [k × k] symmetric, positive; s = f + g states. Reference:
+/// Laub, A Schur method for solving algebraic Riccati equations, IEEE Trans. Automat. Control 24 (1979).
 std::optional<Regulator> linear_quadratic_regulator(const Linearization& linearization, const RealMatrix& q,
                                                     const RealMatrix& r, Diagnostics& diagnostics);
 

@@ -11,8 +11,9 @@ namespace maupertuis {
 struct SymbolicLinearization {
   /// cos θ or a coordinate, and what it is at the equilibrium: "r = l0 + g m/k", "cos θ = g/(R Ω²)".
   std::vector<std::pair<Expr, ReadableForm>> equilibrium;
-  ExprMatrix mass, damping, stiffness, input;  // M, C + G, K + N [n × n], B [n × k]; readable entries
-  Expr square;                                 // K/M of one coordinate without C: ω²; else empty
+  ExprMatrix mass, damping, stiffness;               // M, C + G, K + N [n × n]; readable entries
+  ExprMatrix input, input_rate, input_acceleration;  // B, B₁, B₂ [n × k]
+  Expr square;                                       // K/M of one coordinate without C: ω²; else empty
 };
 
 /// For unconstrained systems of at most four coordinates at rest. Coordinates are found as 0 or a part of π; by solving

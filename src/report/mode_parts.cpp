@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace maupertuis {
@@ -41,15 +42,27 @@ Layout term(const char* matrix, int dots) {
 }
 
 struct Shown {
-  bool velocity = false, position = false, input = false;
+  bool velocity = false, position = false;
+  std::array<bool, 3> inputs = {};  // u, u', u''
 };
+
+/// B, B₁, B₂
+Layout input_name(std::size_t rate) {
+  return rate == 0 ? layouts::bold("B")
+                   : layouts::indexed(layouts::bold("B"), {layouts::number(rate == 1 ? "1" : "2")});
+}
+
+Layout sum_of(std::vector<Layout> terms) { return terms.size() == 1 ? terms.front() : layouts::sum(std::move(terms)); }
 
 Formula balance(const Shown& shown) {
   std::vector<Layout> terms{term("M", 2)};
   if (shown.velocity) terms.push_back(term("C", 1));
   if (shown.position) terms.push_back(term("K", 0));
-  const Layout right = shown.input ? layouts::product({layouts::bold("B"), layouts::name("u")}) : layouts::number("0");
-  return {terms.size() == 1 ? terms.front() : layouts::sum(std::move(terms)), right, "", ""};
+  std::vector<Layout> right;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (shown.inputs[i]) right.push_back(layouts::product({input_name(i), layouts::name("u", static_cast<int>(i))}));
+  if (right.empty()) right.push_back(layouts::number("0"));
+  return {sum_of(std::move(terms)), sum_of(std::move(right)), "", ""};
 }
 
 bool any(const RealMatrix& m) {
@@ -62,16 +75,18 @@ bool any(const ExprMatrix& m) {
 std::vector<Formula> formulas_of(const SymbolicLinearization& s, const ReadingOrder& order) {
   std::vector<Formula> out;
   for (const auto& [left, right] : s.equilibrium) out.push_back({lay_out(left, order), lay_out(right, order), "", ""});
-  const Shown shown{any(s.damping), any(s.stiffness), any(s.input)};
+  const Shown shown{any(s.damping), any(s.stiffness), {any(s.input), any(s.input_rate), any(s.input_acceleration)}};
   out.push_back(balance(shown));
-  const std::tuple<const char*, const ExprMatrix*, bool> all[] = {{"M", &s.mass, true},
-                                                                  {"C", &s.damping, shown.velocity},
-                                                                  {"K", &s.stiffness, shown.position},
-                                                                  {"B", &s.input, shown.input}};
+  const std::tuple<Layout, const ExprMatrix*, bool> all[] = {{layouts::bold("M"), &s.mass, true},
+                                                             {layouts::bold("C"), &s.damping, shown.velocity},
+                                                             {layouts::bold("K"), &s.stiffness, shown.position},
+                                                             {input_name(0), &s.input, shown.inputs[0]},
+                                                             {input_name(1), &s.input_rate, shown.inputs[1]},
+                                                             {input_name(2), &s.input_acceleration, shown.inputs[2]}};
   for (const auto& [name, matrix, is_shown] : all)
     if (is_shown)
       out.push_back(
-          {layouts::bold(name),
+          {name,
            matrix_layout(matrix->rows, matrix->columns,
                          [&, m = matrix](std::size_t i, std::size_t j) { return lay_out(m->at(i, j), order); }),
            "", ""});
@@ -88,13 +103,17 @@ RealMatrix sum(RealMatrix a, const RealMatrix& b) {
 std::vector<Formula> formulas_of(const Linearization& l) {
   if (!l.second_order() || l.independent.size() > widest_matrix || l.independent.empty()) return {};
   const RealMatrix c = sum(l.damping, l.gyroscopic), k = sum(l.stiffness, l.circulatory);
-  const Shown shown{any(c), any(k), any(l.input)};
+  const Shown shown{any(c), any(k), {any(l.input), any(l.input_rate), any(l.input_acceleration)}};
   std::vector<Formula> out{balance(shown)};
-  const std::tuple<const char*, const RealMatrix*, bool> all[] = {
-      {"M", &l.mass, true}, {"C", &c, shown.velocity}, {"K", &k, shown.position}, {"B", &l.input, shown.input}};
+  const std::tuple<Layout, const RealMatrix*, bool> all[] = {{layouts::bold("M"), &l.mass, true},
+                                                             {layouts::bold("C"), &c, shown.velocity},
+                                                             {layouts::bold("K"), &k, shown.position},
+                                                             {input_name(0), &l.input, shown.inputs[0]},
+                                                             {input_name(1), &l.input_rate, shown.inputs[1]},
+                                                             {input_name(2), &l.input_acceleration, shown.inputs[2]}};
   for (const auto& [name, matrix, is_shown] : all)
     if (is_shown)
-      out.push_back({layouts::bold(name),
+      out.push_back({name,
                      matrix_layout(matrix->rows, matrix->columns,
                                    [m = matrix](std::size_t i, std::size_t j) { return number_layout(m->at(i, j)); }),
                      "", ""});

@@ -113,6 +113,15 @@ constexpr CodeEntry entries[] = {
     {"E1315", "this build has no LAPACK",
      "The regulator needs an ordered Schur form, which LAPACK has. Everything else of `maup modes` works without it.",
      "", ""},
+    {"E1316", "a regulator whose input acts by its rate",
+     "The regulator chooses u anew at every instant, along x' = A x + B u. A support at the input s acts on what hangs "
+     "from it by s'', and a damper between them by s': then x' = A x + B u + B1 u' + B2 u'', which `maup modes` shows, "
+     "and u cannot be chosen freely, since a jump of it would throw the system. What moves the support can be: a "
+     "force on it.",
+     "# maup modes --at x=0 --Q 1\nparam m = 1 kg, k = 4 N/m, c = 1 N s/m\ncoord x : length\ninput s : [m] = 0\n"
+     "T = 1/2 m x'^2\nV = 1/2 k (x - s)^2\nD = 1/2 c (x' - s')^2\n",
+     "# maup modes --at x=0,s=0 --Q 1\nparam m = 1 kg, k = 4 N/m, c = 1 N s/m\ncoord x, s : length\n"
+     "input F : [N] = 0\nT = 1/2 m (x'^2 + s'^2)\nV = 1/2 k (x - s)^2\nD = 1/2 c (x' - s')^2\nforce s = F\n"},
     {"E1320", "a locus without a sweep",
      "A locus follows equilibria while one parameter changes: the model says `sweep NAME = FROM .. TO steps N`, or "
      "--sweep does.",

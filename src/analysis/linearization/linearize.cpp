@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <tuple>
 
 /// The equations to first order, in three steps: which coordinates and which velocities are independent; ξ and ξ̇ of all
 /// from theirs; ξ̈ and δλ from the bordered system. Everything is linear and holds at any point of a motion:
@@ -13,7 +14,8 @@
 ///     φ_q ξ = 0,   r_v ξ̇ + r_q ξ = 0,   [M  −Aᵀ] [ξ̈ ]   [−R_v ξ̇ − R_q ξ + B w]
 ///                                       [A   0 ] [δλ] = [−α_v ξ̇ − α_q ξ      ]
 ///
-/// with r = (dφ/dt, ψ), α = A q̈ − b, and B = −∂R/∂u. About a motion that turns all rows are seen in the frame that
+/// with r = (dφ/dt, ψ), α = A q̈ − b, and B w short for B w + B₁ ẇ + B₂ ẅ =
+/// −∂R/∂(u, u', u'') (w, ẇ, ẅ): three columns an input. About a motion that turns all rows are seen in the frame that
 /// turns along (turning_frame.hpp); its Ξ is a symmetry, so that they are the same at all times up to exp(−Ξᵀ t) in
 /// front.
 namespace maupertuis {
@@ -124,7 +126,8 @@ void second_order_form(Linearization& out, const Pieces& p, const Matrix& direct
   out.gyroscopic = to_real(skew_part(velocity));
   out.stiffness = to_real(clean_symmetric_part(position));
   out.circulatory = to_real(skew_part(position));
-  out.input = to_real(-directions.transpose() * p.balance.by_inputs);
+  const Matrix input = -directions.transpose() * p.balance.by_inputs;
+  std::tie(out.input, out.input_rate, out.input_acceleration) = thirds(input);
 }
 
 bool vanishes(const Matrix& part, const Matrix& beside) {
@@ -153,7 +156,7 @@ LinearizationResult linearize(const PointEquations& equations, const OperatingPo
   const Matrix rate_w = null_basis(p.rates.by_v, at_velocities);  // ξ̇ by velocities [n × g]
   const Matrix rate_q =
       spread(p.rates.by_v, at_velocities, negated_product(p.rates.by_q, xi));  // ξ̇ by positions [n × f]
-  const auto n = static_cast<Index>(e.n), m = static_cast<Index>(e.m), k = static_cast<Index>(e.k);
+  const auto n = static_cast<Index>(e.n), m = static_cast<Index>(e.m), k = static_cast<Index>(3 * e.k);
   const Index f = xi.cols(), g = rate_w.cols();
 
   Matrix right = Matrix::Zero(n + m, f + g + k);
@@ -182,9 +185,9 @@ LinearizationResult linearize(const PointEquations& equations, const OperatingPo
   if (turning.size() > 0) clear_rounding_of_states(a, out, sizes);
   out.positions = to_real(xi);
   out.a = to_real(a);
-  out.b = to_real(b);
+  std::tie(out.b, out.b_rate, out.b_acceleration) = thirds(b);
   out.c = to_real(c);
-  out.d = to_real(Matrix::Zero(2 * n, k));
+  out.d = to_real(Matrix::Zero(2 * n, static_cast<Index>(e.k)));
   Matrix motion = Matrix::Zero(2 * n, f + g + k);
   motion.leftCols(f + g) = c;
   Matrix answer = bordered.x;
@@ -201,6 +204,8 @@ std::optional<OperatingPoint> operating_point(const PointEquations& equations, c
   PointEquations::Impl& e = equations.impl();
   OperatingPoint point{
       state.t, state.q, state.v, std::vector<double>(e.n), std::vector<double>(e.m), equations.inputs_at(state.t)};
+  const std::vector<double> inputs = e.inputs_and_rates_at(state.t);
+  point.input_rates.assign(inputs.begin() + static_cast<std::ptrdiff_t>(e.k), inputs.end());
   const RowsAtPoint balance = e.at(e.balance, point), rows = e.at(e.accelerations, point);
   Matrix right(static_cast<Index>(e.n + e.m), 1);
   right.topRows(static_cast<Index>(e.n)) = -balance.value;

@@ -3,6 +3,8 @@
 
 #include <eigen3/Eigen/Core>
 
+#include <tuple>
+
 namespace maupertuis {
 
 using Matrix = Eigen::MatrixXd;
@@ -15,6 +17,12 @@ inline RealMatrix to_real(const Matrix& m) {
   for (Index i = 0; i < m.rows(); ++i)
     for (Index j = 0; j < m.cols(); ++j) out.entries.push_back(m(i, j));
   return out;
+}
+
+/// Columns of u, u' and u'' apart.
+inline std::tuple<RealMatrix, RealMatrix, RealMatrix> thirds(const Matrix& m) {
+  const Index k = m.cols() / 3;
+  return {to_real(m.leftCols(k)), to_real(m.middleCols(k, k)), to_real(m.rightCols(k))};
 }
 
 inline Matrix to_eigen(const RealMatrix& m) {

@@ -43,7 +43,7 @@ class Beside {
     add(there.v, by, n);
     add(there.a, answer, 0);
     add(there.multipliers, answer, n);
-    if (input_ >= 0) there.inputs[static_cast<std::size_t>(input_)] += step * size_;
+    if (input_ >= 0) move_input(there, static_cast<std::size_t>(input_), step * size_);
     const RowsAtPoint y = e_.at(e_.outputs, there);
     Vector slope = y.by_q * motion_.topRows(n) + y.by_v * motion_.bottomRows(n) + y.by_a * answer_.topRows(n) +
                    y.by_multipliers * answer_.bottomRows(y.by_multipliers.cols());
@@ -52,6 +52,12 @@ class Beside {
   }
 
  private:
+  /// u, u' or u'' of one.
+  void move_input(OperatingPoint& there, std::size_t i, double by) const {
+    there.input_rates.resize(2 * e_.k);
+    (i < e_.k ? there.inputs[i] : there.input_rates[i - e_.k]) += by;
+  }
+
   PointEquations::Impl& e_;
   const OperatingPoint& point_;
   Matrix motion_, answer_;
@@ -116,7 +122,8 @@ MeasuredOutputs measured_outputs(PointEquations::Impl& e, const OperatingPoint& 
   }
   if (point.turning.rows > 0)
     for (const Index i : changing_rows(e, point)) by.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
-  return {to_list(y.value), to_real(by.leftCols(response.states)), to_real(by.rightCols(k))};
+  const auto [d, d_rate, d_acceleration] = thirds(by.rightCols(k));
+  return {to_list(y.value), to_real(by.leftCols(response.states)), d, d_rate, d_acceleration};
 }
 
 // -------------------------------------------------------------------------------------------------------------

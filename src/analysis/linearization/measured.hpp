@@ -3,10 +3,11 @@
 
 namespace maupertuis {
 
-/// How a small change of the state or of an input moves everything at the point: the columns are those of (x, u).
+/// How a small change of the state or of an input moves everything at the point: the columns are those of (x, u, u',
+/// u'').
 struct Response {
-  Matrix motion;  // [2n × (f+g+k)] of (q, q̇)
-  Matrix answer;  // [(n+m) × (f+g+k)] of (q̈, λ)
+  Matrix motion;  // [2n × (f+g+3k)] of (q, q̇)
+  Matrix answer;  // [(n+m) × (f+g+3k)] of (q̈, λ)
   Index states = 0;
 };
 

@@ -9,9 +9,17 @@
 #include <cmath>
 #include <random>
 
-/// Inputs of every program here, in this order: q, v, a, λ, t, u, and u', u'' of inputs, which are held at 0.
+/// Inputs of every program here, in this order: q, v, a, λ, t, u, u', u''.
 namespace maupertuis {
 namespace {
+
+/// u of all inputs, then u', then u''.
+ExprVector inputs_and_rates(const MechanicalSystem& system) {
+  ExprVector out;
+  for (const Input& u : system.inputs) out.push_back(u.symbol);
+  for (std::size_t i = 0; i < 2 * system.inputs.size(); ++i) out.push_back(system.context->time_derivative(out[i]));
+  return out;
+}
 
 class Lowering {
  public:
@@ -23,30 +31,25 @@ class Lowering {
     for (const Coordinate& c : system.coordinates) inputs_.push_back(c.acceleration);
     inputs_.insert(inputs_.end(), equations.multipliers.begin(), equations.multipliers.end());
     inputs_.push_back(system.context->time());
-    const std::size_t first_input = inputs_.size();
-    for (const Input& u : system.inputs) inputs_.push_back(u.symbol);
-    differentiated_ = inputs_.size();
-    const Expr zero = system.context->number(0);
-    for (std::size_t i = first_input; i < differentiated_; ++i) {  // an input is held: its rates vanish
-      const Expr rate = system.context->time_derivative(inputs_[i]);
-      held_.emplace(rate, zero);
-      held_.emplace(system.context->time_derivative(rate), zero);
-    }
+    for (const Expr& u : inputs_and_rates(system)) inputs_.push_back(u);
+    for (std::size_t i = inputs_.size() - 2 * system.inputs.size(); i < inputs_.size(); ++i)
+      held_.emplace(inputs_[i], system.context->number(0));
     for (const Parameter& p : system.parameters) parameters_.push_back(p.symbol);
   }
 
+  /// Inputs are held: their rates vanish.
   ExprVector plain(std::span<const Expr> expressions) const {
     return substitute(expand_time_derivatives(expressions), held_);
   }
   DifferentiableKernel rows(std::span<const Expr> expressions) const {
-    return build_differentiable({inputs_, parameters_, plain(expressions)}, 0, differentiated_);
+    return build_differentiable({inputs_, parameters_, expand_time_derivatives(expressions)}, 0, inputs_.size());
   }
   /// The same where nothing moves.
   DifferentiableKernel resting_rows(std::span<const Expr> expressions) const {
     ExprMap at_rest;
     const std::size_t n = coordinates_;
     for (std::size_t i = n; i < 3 * n; ++i) at_rest.emplace(inputs_[i], inputs_[i].context().number(0));
-    return build_differentiable({inputs_, parameters_, substitute(plain(expressions), at_rest)}, 0, differentiated_);
+    return build_differentiable({inputs_, parameters_, substitute(plain(expressions), at_rest)}, 0, inputs_.size());
   }
   FunctionKernel function(std::span<const Expr> expressions) const {
     return build_function({inputs_, parameters_, plain(expressions)});
@@ -55,7 +58,7 @@ class Lowering {
  private:
   ExprVector inputs_, parameters_;
   ExprMap held_;
-  std::size_t coordinates_ = 0, differentiated_ = 0;
+  std::size_t coordinates_ = 0;
 };
 
 ExprVector chosen(const EquationsOfMotion& equations, Constraint::Level level, bool rates) {
@@ -66,11 +69,8 @@ ExprVector chosen(const EquationsOfMotion& equations, Constraint::Level level, b
   return out;
 }
 
-ExprVector formulas(const MechanicalSystem& system) {
-  ExprVector out;
-  for (const Input& u : system.inputs) out.push_back(in_terms_of_motion(system, {&u.formula, 1}).front());
-  return out;
-}
+/// The inputs' formulas, and those of their rates.
+ExprVector formulas(const MechanicalSystem& system) { return in_terms_of_motion(system, inputs_and_rates(system)); }
 
 /// Reactions stand for forces in q, q̇, q̈ and λ; those that the model does not determine stay symbols.
 ExprVector with_reactions(const EquationsOfMotion& equations, std::span<const Expr> outputs) {
@@ -200,6 +200,8 @@ std::vector<double> PointEquations::Impl::gather(const OperatingPoint& point) co
     out.insert(out.end(), part->begin(), part->end());
   out.push_back(point.t);
   out.insert(out.end(), point.inputs.begin(), point.inputs.end());
+  if (point.input_rates.empty()) out.resize(out.size() + 2 * k);
+  out.insert(out.end(), point.input_rates.begin(), point.input_rates.end());
   return out;
 }
 
@@ -214,7 +216,7 @@ RowsAtPoint PointEquations::Impl::at(Rows& rows, const OperatingPoint& point) co
   std::vector<double> numbers(count + rows.kernel.entries.size());
   rows.entries.evaluate(gather(point), numbers);
   const auto size = static_cast<Index>(count);
-  Matrix all = Matrix::Zero(size, static_cast<Index>(3 * n + m + 1 + k));
+  Matrix all = Matrix::Zero(size, static_cast<Index>(3 * n + m + 1 + 3 * k));
   for (std::size_t e = 0; e < rows.kernel.entries.size(); ++e)
     all(static_cast<Index>(rows.kernel.entries[e].row), static_cast<Index>(rows.kernel.entries[e].column)) =
         numbers[count + e];
@@ -224,12 +226,19 @@ RowsAtPoint PointEquations::Impl::at(Rows& rows, const OperatingPoint& point) co
           all.middleCols(N, N),
           all.middleCols(2 * N, N),
           all.middleCols(3 * N, m_),
-          all.rightCols(k_)};
+          all.rightCols(3 * k_)};
 }
 
 double PointEquations::Impl::energy_at(const OperatingPoint& point) {
   double out = 0;
   energy_workspace.evaluate(gather(point), {&out, 1});
+  return out;
+}
+
+std::vector<double> PointEquations::Impl::inputs_and_rates_at(double t) {
+  std::vector<double> at(3 * n + m + 1 + 3 * k), out(3 * k);
+  at[3 * n + m] = t;
+  inputs.evaluate(at, out);
   return out;
 }
 
@@ -334,15 +343,8 @@ void PointEquations::set_parameter(std::size_t index, double value) {
 }
 
 std::vector<double> PointEquations::inputs_at(double t) const {
-  OperatingPoint point{t,
-                       std::vector<double>(impl_->n),
-                       std::vector<double>(impl_->n),
-                       std::vector<double>(impl_->n),
-                       std::vector<double>(impl_->m),
-                       std::vector<double>(impl_->k)};
-  std::vector<double> at(3 * impl_->n + impl_->m + 1 + impl_->k), out(impl_->k);
-  at[3 * impl_->n + impl_->m] = t;
-  impl_->inputs.evaluate(at, out);
+  std::vector<double> out = impl_->inputs_and_rates_at(t);
+  out.resize(impl_->k);
   return out;
 }
 

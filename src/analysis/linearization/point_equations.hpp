@@ -8,7 +8,8 @@ namespace maupertuis {
 /// Functions at a point and their derivatives by its parts.
 struct RowsAtPoint {
   Vector value;  // [rows]
-  Matrix by_q, by_v, by_a, by_multipliers, by_inputs;
+  Matrix by_q, by_v, by_a, by_multipliers;
+  Matrix by_inputs;  // [rows × 3k] by u, u', u''
 };
 
 /// Of a sum of terms: what friction takes, positive.
@@ -30,7 +31,8 @@ struct PointEquations::Impl {
 
   Vector value(Rows& rows, const OperatingPoint& point) const;
   RowsAtPoint at(Rows& rows, const OperatingPoint& point) const;
-  double energy_at(const OperatingPoint& point);  // h_E
+  double energy_at(const OperatingPoint& point);      // h_E
+  std::vector<double> inputs_and_rates_at(double t);  // [3k] u, u', u''
   Power power_of_friction(const OperatingPoint& point);
   void set_parameters();
 

@@ -109,6 +109,16 @@ std::optional<Regulator> linear_quadratic_regulator(const Linearization& l, cons
                       "Declare one: `input u : [N] = 0`, and use it in a force.");
     return std::nullopt;
   }
+  const auto acts = [](const RealMatrix& m) {
+    return std::any_of(m.entries.begin(), m.entries.end(), [](double x) { return x != 0; });
+  };
+  if (acts(l.b_rate) || acts(l.b_acceleration)) {
+    diagnostics.error(
+        "E1316", std::nullopt, "an input acts by its rate, and is no free choice from instant to instant",
+        "The system moves by ẋ = A x + B u + B₁ u' + B₂ u'': where u jumps, so do velocities or positions.",
+        "Make the input a coordinate that a force moves: the force is the input then.");
+    return std::nullopt;
+  }
   if (!has_lapack()) {
     diagnostics.error("E1315", std::nullopt, "this build has no LAPACK, which the regulator needs", "",
                       "`maup doctor` tells what this installation can do.");

@@ -31,7 +31,7 @@ class Formulas {
 
   std::optional<SymbolicLinearization> find() {
     if (system_.constrained() || system_.coordinates.size() > most_coordinates || !at_rest()) return std::nullopt;
-    residual_ = held(expand_time_derivatives(equations_.balance()));
+    residual_ = expand_time_derivatives(equations_.balance());
     if (topological_order(residual_).size() > most_nodes) return std::nullopt;
     if (!solved(true) && !solved(false)) return std::nullopt;
     SymbolicLinearization out = matrices();
@@ -57,15 +57,13 @@ class Formulas {
            std::all_of(numbers_.point.a.begin(), numbers_.point.a.end(), zero);
   }
 
-  /// Inputs are held: their rates vanish.
-  ExprVector held(const ExprVector& expressions) const {
-    ExprMap rates;
-    for (const Input& u : system_.inputs) {
-      const Expr first = context_.time_derivative(u.symbol);
-      rates.emplace(first, context_.number(0));
-      rates.emplace(context_.time_derivative(first), context_.number(0));
-    }
-    return substitute(expressions, rates);
+  /// u, u' or u'' of all inputs.
+  ExprVector inputs(int rate) const {
+    ExprVector out;
+    for (const Input& u : system_.inputs) out.push_back(u.symbol);
+    for (; rate > 0; --rate)
+      for (Expr& u : out) u = context_.time_derivative(u);
+    return out;
   }
 
   ExprVector at_rest(const ExprVector& expressions) const {
@@ -74,6 +72,8 @@ class Formulas {
       rest.emplace(c.velocity, context_.number(0));
       rest.emplace(c.acceleration, context_.number(0));
     }
+    for (const int rate : {1, 2})  // inputs are held
+      for (const Expr& u : inputs(rate)) rest.emplace(u, context_.number(0));
     rest.emplace(context_.time(), context_.number(0));  // t drops out: the equations are autonomous
     for (const Input& u : system_.inputs)
       if (!context_.depends_on_time(u.formula.id())) rest.emplace(u.symbol, u.formula);
@@ -207,11 +207,17 @@ class Formulas {
   // ---------------------------------------------------------------------------------------------------------- matrices
 
   SymbolicLinearization matrices() const {
-    ExprVector q, v, a, u;
+    ExprVector q, v, a;
     for (const Coordinate& c : system_.coordinates)
       q.push_back(c.q), v.push_back(c.velocity), a.push_back(c.acceleration);
-    for (const Input& x : system_.inputs) u.push_back(x.symbol);
-    SymbolicLinearization out{shown_, derivative(a, 1), derivative(v, 1), derivative(q, 1), derivative(u, -1), {}};
+    SymbolicLinearization out{shown_,
+                              derivative(a, 1),
+                              derivative(v, 1),
+                              derivative(q, 1),
+                              derivative(inputs(0), -1),
+                              derivative(inputs(1), -1),
+                              derivative(inputs(2), -1),
+                              {}};
     if (q.size() == 1 && out.damping.at(0, 0).is_zero())
       out.square = readable(out.stiffness.at(0, 0) / out.mass.at(0, 0), equations_.order).value;
     return out;
@@ -237,12 +243,15 @@ class Formulas {
       }
       return error <= digits * size || error == 0;
     };
-    for (const ExprMatrix* m : {&out.mass, &out.damping, &out.stiffness, &out.input})
+    for (const ExprMatrix* m :
+         {&out.mass, &out.damping, &out.stiffness, &out.input, &out.input_rate, &out.input_acceleration})
       for (const Expr& e : m->entries)
         for (const Expr& s : symbols_of({&e, 1}))
           if (!bindings_.count(s)) return false;
     return same(out.mass, numbers_.mass, {}) && same(out.damping, numbers_.damping, numbers_.gyroscopic) &&
-           same(out.stiffness, numbers_.stiffness, numbers_.circulatory) && same(out.input, numbers_.input, {});
+           same(out.stiffness, numbers_.stiffness, numbers_.circulatory) && same(out.input, numbers_.input, {}) &&
+           same(out.input_rate, numbers_.input_rate, {}) &&
+           same(out.input_acceleration, numbers_.input_acceleration, {});
   }
 
   const EquationsOfMotion& equations_;

@@ -1,5 +1,8 @@
 #include "support.hpp"
 
+#include <maupertuis/regulator.hpp>
+#include <maupertuis/symbolic_linearization.hpp>
+
 using namespace maupertuis;
 
 // What is measured: y = y₀ + C x + D u, against closed forms and against differences along the motion.
@@ -80,4 +83,48 @@ V = 0
   CHECK(std::isinf(found.values[5]));
   CHECK(row(1) == std::vector<double>{0, 0, 0, 0});  // x |x| is flat at 0
   CHECK(row(4) == std::vector<double>{0, 1, 1, 0});
+}
+
+TEST_CASE("inputs that act by their rates have matrices of their own") {
+  const ModelText m(R"(dimensionless
+param A = 0.1, w = 3
+input s : [1] = A cos(w t)
+coord θ : number
+point P mass 2 at (s + sin θ, -cos θ)
+gravity (0, -9.81)
+D = 1/2*0.4*(θ' - s')^2
+)");
+  const Expr s = m.system->inputs[0].symbol, rate = m.system->context->time_derivative(s);
+  const Expr outputs[] = {m.v(0) - rate, m.a(0), m.system->context->function(Kind::Abs, std::vector{rate})};
+  const PointEquations at(m.equations, outputs);
+
+  SUBCASE("at rest: 2 θ'' + 2 s'' + 0.4 (θ' - s') + 19.62 θ = 0") {
+    const Linearization l = linearize(at, {0, {0}, {0}, {0}, {}, {0.1}}).linearization;
+    CHECK(l.input.entries == std::vector<double>{0});
+    CHECK(l.input_rate.entries == std::vector<double>{0.4});
+    CHECK(l.input_acceleration.entries == std::vector<double>{-2});
+    CHECK(l.b_rate.entries == std::vector<double>{0, 0.2});
+    CHECK(l.b_acceleration.entries == std::vector<double>{0, -1});
+    CHECK(l.measured.d.at(0, 0) == 0);
+    CHECK(l.measured.d_rate.at(0, 0) == -1);
+    CHECK(l.measured.d_rate.at(1, 0) == doctest::Approx(0.2));
+    CHECK(l.measured.d_acceleration.at(1, 0) == doctest::Approx(-1));
+    CHECK(std::isnan(l.measured.d_rate.at(2, 0)));  // |s'| has no slope at 0
+
+    const auto formulas = symbolic_linearization(m.equations, l, {});
+    REQUIRE(formulas);
+    CHECK(evaluate(formulas->input_acceleration.at(0, 0), parameter_bindings(*m.system)) == -2);
+
+    Diagnostics refused;
+    CHECK_FALSE(linear_quadratic_regulator(l, {2, 2, {1, 0, 0, 1}}, {1, 1, {1}}, refused));
+    CHECK(refused.items().front().code == "E1316");
+  }
+
+  SUBCASE("along a motion the inputs have the rates of their formula") {
+    const auto point = operating_point(at, {0.2, {0.3}, {0.7}});
+    REQUIRE(point);
+    const double first = -0.3 * std::sin(0.6), second = -0.9 * std::cos(0.6);
+    CHECK(near(point->a[0], -9.81 * std::sin(0.3) - second * std::cos(0.3) - 0.2 * (0.7 - first), 1e-13));
+    CHECK(near(linearize(at, *point).linearization.measured.values[0], 0.7 - first, 1e-14));
+  }
 }
