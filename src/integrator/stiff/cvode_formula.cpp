@@ -17,7 +17,6 @@ Failure failure_of(int flag) {
     case CV_FIRST_RHSFUNC_ERR:
     case CV_REPTD_RHSFUNC_ERR:
     case CV_UNREC_RHSFUNC_ERR:
-    case CV_RTFUNC_FAIL:
     case CV_LSETUP_FAIL:
     case CV_ILL_INPUT:
       return Failure::Value;
@@ -47,7 +46,6 @@ class CvodeFormula final : public Formula {
   static int rates(double t, N_Vector y, N_Vector rate, void* self);
   static int jacobian(double t, N_Vector y, N_Vector, SUNMatrix matrix, void* self, N_Vector, N_Vector, N_Vector);
   static int weights(N_Vector y, N_Vector weight, void* self);
-  static int roots(double t, N_Vector y, double* out, void* self);
 
   Motion& motion_;
   Context context_;
@@ -69,10 +67,6 @@ CvodeFormula::CvodeFormula(Motion& motion)
   require_success(CVodeSetLinearSolver(memory_, linear_.solver, linear_.matrix));
   require_success(CVodeSetJacFn(memory_, jacobian));
   require_success(CVodeSetMaxNumSteps(memory_, -1));
-  if (const std::size_t events = motion.functions.events.outputs(); events > 0) {
-    require_success(CVodeRootInit(memory_, static_cast<int>(events), roots));
-    require_success(CVodeSetNoInactiveRootWarn(memory_));
-  }
 }
 
 int CvodeFormula::rates(double t, N_Vector y, N_Vector rate, void* self) {
@@ -102,13 +96,6 @@ int CvodeFormula::weights(N_Vector y, N_Vector weight, void* self) {
   return static_cast<CvodeFormula*>(self)->motion_.weigh(values(y), values(weight)) ? 0 : -1;
 }
 
-int CvodeFormula::roots(double t, N_Vector y, double* out, void* self) {
-  Motion& motion = static_cast<CvodeFormula*>(self)->motion_;
-  if (!motion.solve(t, values(y))) return -1;
-  motion.event_values({out, motion.functions.events.outputs()});
-  return 0;
-}
-
 void CvodeFormula::restart(double t, std::span<const double> y) {
   std::copy(y.begin(), y.end(), values(state_).begin());
   require_success(CVodeReInit(memory_, t, state_));
@@ -123,12 +110,6 @@ Advance CvodeFormula::advance(double bound, std::span<double> y) {
     return out;
   }
   std::copy(values(state_).begin(), values(state_).end(), y.begin());
-  if (flag == CV_ROOT_RETURN) {
-    std::vector<int> found(motion_.functions.events.outputs());
-    CVodeGetRootInfo(memory_, found.data());
-    out.event = static_cast<std::size_t>(std::find_if(found.begin(), found.end(), [](int f) { return f != 0; }) -
-                                         found.begin());
-  }
   return out;
 }
 

@@ -17,7 +17,6 @@ enum class Failure {
 
 struct Advance {
   double reached = 0;
-  std::optional<std::size_t> event;
   std::optional<Failure> failure;  // then nothing was reached
   bool history_ends = false;       // the next step needs a restart
   bool drifted = false;            // over a jump, without the formula

@@ -54,7 +54,6 @@ class IdaFormula final : public Formula {
   static int jacobian(double t, double c, N_Vector y, N_Vector rate, N_Vector, SUNMatrix out, void* self, N_Vector,
                       N_Vector, N_Vector);
   static int weights(N_Vector y, N_Vector weight, void* self);
-  static int roots(double t, N_Vector y, N_Vector, double* out, void* self);
   static int integrands(double t, N_Vector y, N_Vector, N_Vector out, void* self);
   double guess_first_step();
   Advance settle(Advance out, std::span<double> y);
@@ -98,10 +97,6 @@ IdaFormula::IdaFormula(Motion& motion)
   require_success(IDASetMaxErrTestFails(memory_, 30));  // the first step is a guess
   require_success(IDASetMaxConvFails(memory_, 30));
   if (integrals() > 0) require_success(IDAQuadInit(memory_, integrands, integrals_));
-  if (const std::size_t events = motion.functions.events.outputs(); events > 0) {
-    require_success(IDARootInit(memory_, static_cast<int>(events), roots));
-    require_success(IDASetNoInactiveRootWarn(memory_));
-  }
 }
 
 int IdaFormula::residual(double t, N_Vector y, N_Vector rate, N_Vector out, void* self) {
@@ -121,13 +116,6 @@ int IdaFormula::jacobian(double t, double c, N_Vector y, N_Vector rate, N_Vector
 
 int IdaFormula::weights(N_Vector y, N_Vector weight, void* self) {
   return static_cast<IdaFormula*>(self)->motion_.weigh(values(y), values(weight)) ? 0 : -1;
-}
-
-int IdaFormula::roots(double t, N_Vector y, N_Vector, double* out, void* self) {
-  Motion& motion = static_cast<IdaFormula*>(self)->motion_;
-  if (!motion.solve(t, values(y))) return -1;
-  motion.event_values({out, motion.functions.events.outputs()});
-  return 0;
 }
 
 int IdaFormula::integrands(double t, N_Vector y, N_Vector, N_Vector out, void* self) {
@@ -178,12 +166,6 @@ Advance IdaFormula::advance(double bound, std::span<double> y) {
   if (flag < 0) {
     out.failure = failure_of(flag);
     return out;
-  }
-  if (flag == IDA_ROOT_RETURN) {
-    std::vector<int> found(motion_.functions.events.outputs());
-    IDAGetRootInfo(memory_, found.data());
-    out.event = static_cast<std::size_t>(std::find_if(found.begin(), found.end(), [](int f) { return f != 0; }) -
-                                         found.begin());
   }
   return settle(out, y);
 }

@@ -10,9 +10,7 @@ Motion::Motion(const MotionFunctions& f, std::span<const double> values, const S
       options(o),
       parameters(values.begin(), values.end()),
       at_point(f, values),
-      events_(f.events),
       integrands_(f.integrands) {
-  events_.set_parameters(values);
   integrands_.set_parameters(values);
   if (options.absolute == 0) options.absolute = 1e-4 * options.tolerance;
   forget_sizes();

@@ -28,7 +28,6 @@ class Motion {
   }
   /// At the point of the last solve.
   void integrand_values(std::span<double> out) { integrands_.evaluate(at_point.point(), out); }
-  void event_values(std::span<double> out) { events_.evaluate(at_point.point(), out); }
 
   void forget_sizes() { sizes_.assign(2 * freedoms(), 0); }
   /// The reciprocals of the errors that a step may make. Each coordinate and velocity is measured against its own size,
@@ -45,7 +44,7 @@ class Motion {
   PointStatus status = PointStatus::Ok;  // of the last point that a formula asked for
 
  private:
-  FunctionWorkspace events_, integrands_;
+  FunctionWorkspace integrands_;
   std::vector<double> sizes_;  // [2n]
 };
 

@@ -1,4 +1,5 @@
 #ifdef MAUPERTUIS_SUNDIALS
+#include "integrator/point/event_search.hpp"
 #include "integrator/point/sample.hpp"
 #include "integrator/stiff/force_check.hpp"
 #include "integrator/stiff/formula.hpp"
@@ -25,6 +26,7 @@ struct StiffStepper::Impl {
         observables(functions.observables),
         formula(functions.constraints > 0 ? stiff::index_two(motion) : stiff::explicit_rates(motion)),
         check(motion),
+        events(functions, parameters),
         now(motion.states()) {
     observables.set_parameters(parameters);
   }
@@ -38,6 +40,7 @@ struct StiffStepper::Impl {
     return ended(ending, std::move(reason));
   }
   std::optional<Step> advance(double bound, std::vector<double>& next, stiff::Advance& reached);
+  std::optional<Step> end_at_root(std::vector<double>& next, stiff::Advance& reached, Step& result);
   void drift(double h, std::vector<double>& next, stiff::Advance& reached);
   void begin_anew(double bound, std::vector<double>& next);
   void bound_steps(double length);
@@ -51,6 +54,7 @@ struct StiffStepper::Impl {
   mutable FunctionWorkspace observables;
   std::unique_ptr<stiff::Formula> formula;
   stiff::ForceCheck check;
+  EventSearch events;
 
   double t = 0, t_before = 0;
   std::vector<double> now, before;  // the states at the ends of the last step
@@ -109,13 +113,14 @@ Step StiffStepper::Impl::step(double bound) {
   else if (const auto end = advance(bound, next, reached))
     return *end;
   const bool drifted = reached.drifted;
+  if (!close && !drifted && !events.empty())
+    if (const auto end = end_at_root(next, reached, result)) return *end;
   t_before = t;
   before.swap(now);
   now.swap(next);
   result.end = t = reached.reached;
-  result.event = reached.event;
   history = !close && !drifted;
-  history_ends = reached.history_ends || reached.event;
+  history_ends = reached.history_ends || result.event;
   ++steps;
   if (motion.functions.constraints > 0 && motion.solve(t, now))
     residual = std::max(residual, motion.at_point.constraint_residual(t - t_before));
@@ -152,6 +157,31 @@ std::optional<Step> StiffStepper::Impl::advance(double bound, std::vector<double
     bound_steps(length);
   }
   if (longest > 0) bound_steps(2 * longest < std::abs(bound - reached.reached) ? 2 * longest : 0);
+  return std::nullopt;
+}
+
+/// Shortens the step that was accepted so that it ends at the first root of an event function.
+std::optional<Step> StiffStepper::Impl::end_at_root(std::vector<double>& next, stiff::Advance& reached, Step& result) {
+  const double end = reached.reached;
+  std::vector<double> y;
+  const auto find_state = [&](double time) {
+    y = time == end ? next : now;
+    if (time == t || time == end) return;
+    formula->interpolate(time, y);
+    motion.project(time, y);
+  };
+  const auto found = events.first(t, end, [&](double time) {
+    find_state(time);
+    motion.solve(time, y);
+    return motion.at_point.point();
+  });
+  if (found.outcome != EventSearch::Outcome::Seen)
+    return ended(StepEnding::NoConvergence, reason_of(found.outcome, t, end));
+  if (!found.root) return std::nullopt;
+  result.event = found.root->event;
+  reached.reached = found.root->t;
+  find_state(reached.reached);
+  next = y;
   return std::nullopt;
 }
 

@@ -1,3 +1,4 @@
+#include "integrator/point/event_search.hpp"
 #include "integrator/point/sample.hpp"
 #include "integrator/variational/force_check.hpp"
 #include "integrator/variational/stages.hpp"
@@ -36,23 +37,17 @@ struct VariationalStepper::Impl {
         partial(solver),
         check(f, parameters),
         observables(f.motion.observables),
-        events(f.motion.events),
-        integrands(f.motion.integrands) {
-    for (FunctionWorkspace* work : {&observables, &events, &integrands}) work->set_parameters(parameters);
-    event_values.resize(functions.events.outputs());
+        integrands(f.motion.integrands),
+        events(f.motion, parameters) {
+    for (FunctionWorkspace* work : {&observables, &integrands}) work->set_parameters(parameters);
     integrals.resize(functions.integrands.outputs());
   }
 
   void start(double t, std::span<const double> q, std::span<const double> v);
   Step step(double bound);
-  struct Root {
-    std::size_t event = 0;
-    double t = 0;
-  };
-  double refine(std::size_t i, double low, double high, bool rising) const;
-  std::optional<Root> first_root() const;
+  EventSearch::Result first_root();
   void end_at(double t);
-  double event_value(std::size_t i, const Phase& phase) const;
+  Step taken_back(std::string reason);
   StageStatus part_of_step(double t, Phase& end) const;
   void add_integrals(StageSolver& stages, double h, std::vector<Compensated>& sums) const;
   Sample sample(double t) const;
@@ -68,8 +63,8 @@ struct VariationalStepper::Impl {
   StageSolver solver;
   mutable StageSolver partial;  // shorter steps within the last one
   variational::ForceCheck check;
-  mutable FunctionWorkspace observables, events, integrands;
-  mutable std::vector<double> event_values;
+  mutable FunctionWorkspace observables, integrands;
+  EventSearch events;
 
   Phase before, now;  // the ends of the last step
   std::vector<double> q_now, p_now;
@@ -190,9 +185,13 @@ Step VariationalStepper::Impl::step(double bound) {
   ++steps, ++counted;
   Step result;
   result.begin = before.t;
-  if (const auto root = event_values.empty() ? std::nullopt : first_root()) {
-    result.event = root->event;
-    end_at(root->t);
+  if (!events.empty()) {
+    const EventSearch::Result found = first_root();
+    if (found.outcome != EventSearch::Outcome::Seen) return taken_back(reason_of(found.outcome, before.t, now.t));
+    if (found.root) {
+      result.event = found.root->event;
+      end_at(found.root->t);
+    }
   }
   add_integrals(solver, h, integrals);
   result.end = now.t;
@@ -208,48 +207,14 @@ StageStatus VariationalStepper::Impl::part_of_step(double t, Phase& end) const {
   return partial.solve(before, t - before.t, t, end);
 }
 
-double VariationalStepper::Impl::event_value(std::size_t i, const Phase& phase) const {
-  at_point.solve(phase.t, leading(phase.q), phase.v);
-  events.evaluate(at_point.point(), event_values);
-  return event_values[i];
-}
-
-/// Halves [low, high] until nothing lies between: the time just at or after the root of event i.
-double VariationalStepper::Impl::refine(std::size_t i, double low, double high, bool rising) const {
-  Phase phase;
-  while (true) {
-    const double middle = low + (high - low) / 2;
-    if (middle == low || middle == high || part_of_step(middle, phase) != StageStatus::Ok) return high;
-    const double value = event_value(i, phase);
-    (value != 0 && (value < 0) == rising ? low : high) = middle;
-  }
-}
-
-/// The first root of an event function in the step, seen by its signs at a few times. A zero at the very beginning does
-/// not count.
-std::optional<VariationalStepper::Impl::Root> VariationalStepper::Impl::first_root() const {
-  constexpr int parts = 4;
-  std::vector<double> last(event_values.size());
-  for (std::size_t i = 0; i < last.size(); ++i) last[i] = event_value(i, before);
-  double last_t = before.t;
-  for (int part = 1; part <= parts; ++part) {
-    const double t = part == parts ? now.t : before.t + h * part / parts;
-    Phase phase = now;
-    if (part < parts && part_of_step(t, phase) != StageStatus::Ok) continue;
-    std::optional<Root> root;
-    for (std::size_t i = 0; i < last.size(); ++i) {
-      const double value = event_value(i, phase);
-      const bool crosses = last[i] != 0 && (value == 0 || (value > 0) != (last[i] > 0));
-      if (crosses) {
-        const double at = refine(i, last_t, t, last[i] < 0);
-        if (!root || std::abs(at - before.t) < std::abs(root->t - before.t)) root = Root{i, at};
-      }
-      last[i] = value;
-    }
-    if (root) return root;
-    last_t = t;
-  }
-  return std::nullopt;
+/// The first root of an event function in the step.
+EventSearch::Result VariationalStepper::Impl::first_root() {
+  return events.first(before.t, now.t, [&](double t) {
+    Phase phase = t == now.t ? now : before;
+    if (t != before.t && t != now.t) part_of_step(t, phase);
+    at_point.solve(t, leading(phase.q), phase.v);
+    return at_point.point();
+  });
 }
 
 /// Shortens the last step so that it ends at t; the next one begins a new count.
@@ -261,6 +226,13 @@ void VariationalStepper::Impl::end_at(double t) {
     solver = partial;
   }
   t_start = now.t, counted = 0;
+}
+
+/// The last step, which cannot be searched for events, is none.
+Step VariationalStepper::Impl::taken_back(std::string reason) {
+  now = before;
+  --steps, --counted;
+  return ended(StepEnding::NoConvergence, std::move(reason));
 }
 
 void VariationalStepper::Impl::add_integrals(StageSolver& stages, double length, std::vector<Compensated>& sums) const {

@@ -197,6 +197,26 @@ TEST_CASE("a constraint between velocities: a skate on a slope comes back") {
   CHECK(std::abs(stepper.v()[0] * std::sin(stepper.q()[2]) - stepper.v()[1] * std::cos(stepper.q()[2])) < 1e-15);
 }
 
+TEST_CASE("a pair of roots within a step is found, and a jump is no root") {
+  const auto first = [](auto&& event) {
+    const Stiff m("system line\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\n");
+    const MotionFunctions functions = motion_functions(m.equations, {{}, {event(m)}, {}});
+    StiffOptions options;
+    options.tolerance = 1e-9;
+    StiffStepper stepper(functions, {}, options);
+    stepper.start(0, State{1}, State{0});
+    Step step;
+    while (!step.event && stepper.time() != 10) step = stepper.step(10);
+    return stepper.time();
+  };
+  const double pi = std::numbers::pi;
+  CHECK(first([](const ModelText& m) { return sin(2000 * m.q(0)) - Rational(999, 1000); }) ==
+        doctest::Approx(std::acos((637 * pi - std::asin(0.999)) / 2000)).epsilon(1e-6));
+  CHECK(first([](const ModelText& m) {
+          return m.system->context->function(Kind::Atan2, std::vector{m.v(0), m.q(0)}) - Rational(3);
+        }) == doctest::Approx(2 * pi - 3).epsilon(1e-6));
+}
+
 TEST_CASE("energy and the integral of the power agree; backwards brings back the start; events are located") {
   const std::string text = "system damped\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - 2 x^2\nD = 0.1 x'^2\n";
   const ModelText symbols(text);

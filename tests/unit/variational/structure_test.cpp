@@ -236,4 +236,38 @@ TEST_CASE("an event is located by the method itself") {
   CHECK(step.end == doctest::Approx(std::acos(0.0) + 0.1).epsilon(1e-12));
 }
 
+namespace {
+
+/// The first root of f(x) along x = cos t, with long steps; −1: none within 10.
+double first_root(const std::string& text, Expr (*f)(const ModelText&), StepEnding ending = StepEnding::None) {
+  const ModelText model(text);
+  const VariationalFunctions functions = variational_functions(model.equations, {{}, {f(model)}, {}});
+  VariationalOptions options;
+  options.step = 0.5, options.order = 12;
+  VariationalStepper stepper(functions, {}, options);
+  stepper.start(0, State{1}, State{0});
+  Step step;
+  while (!step.event && stepper.time() != 10 && step.ending == StepEnding::None) step = stepper.step(10);
+  CHECK(step.ending == ending);
+  return step.event ? stepper.time() : -1;
+}
+
+}  // namespace
+
+TEST_CASE("events are found everywhere in a step: pairs of roots and touches; a jump is none") {
+  const std::string oscillator = "system line\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\n";
+  const auto near = [](double x) { return doctest::Approx(x).epsilon(1e-10); };
+  CHECK(first_root(oscillator, [](const ModelText& m) { return sin(200 * m.q(0)) - Rational(999, 1000); }) ==
+        near(std::acos((63 * std::acos(-1.0) - std::asin(0.999)) / 200)));
+  CHECK(first_root(oscillator, [](const ModelText& m) { return pow(m.q(0) - Rational(1, 10), Rational(2)); }) ==
+        near(std::acos(0.1)));
+  const auto angle = [](const ModelText& m) {
+    return m.system->context->function(Kind::Atan2, std::vector{m.v(0), m.q(0)}) - Rational(3);
+  };
+  CHECK(first_root(oscillator, angle) == near(2 * std::acos(-1.0) - 3));  // −t, and π − … behind the cut
+  CHECK(first_root(
+            oscillator, [](const ModelText& m) { return sqrt(m.q(0)) - Rational(2); }, StepEnding::NoConvergence) ==
+        -1);
+}
+
 }  // namespace structure_test
