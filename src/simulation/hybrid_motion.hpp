@@ -83,6 +83,7 @@ class HybridMotion final : public Method {
   struct Cones;
   struct Found;
   struct Given;
+  struct Trial;
   struct Settled;
   enum class Leniency { None, Forces, Gaps };  // what may be violated by rounding
 
@@ -154,8 +155,6 @@ class HybridMotion final : public Method {
   ContactMode mode_of(const std::vector<Choice>& list, const std::vector<std::size_t>& taken) const;
   bool interrupted() const;
   bool fits(Found& found, const std::vector<std::size_t>& touching, double bound, Leniency leniency);
-  bool has_slow_slips(ModeMotion& motion, const std::vector<std::size_t>& at_zero,
-                      const TaylorStepper::Outlook& outlook, const ContactValues& values) const;
   bool begins_slowly(const Watch& slip, FrictionState way, const ContactValues& values) const;
   bool vanishes(const Watch& watch, double size, const ContactValues& values) const;
   double size_of_gap(std::size_t contact, const ContactValues& values) const;

@@ -1,0 +1,241 @@
+#include "simulation/hybrid_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+/// Whether the motion in a mode keeps its conditions: gaps that do not close, forces that press, friction that holds or
+/// opposes.
+namespace maupertuis {
+namespace {
+
+constexpr double rounding_of_forces = 1e-13;  // of the terms of g̈
+
+bool holds(const std::vector<std::size_t>& list, std::size_t x) {
+  return std::find(list.begin(), list.end(), x) != list.end();
+}
+
+}  // namespace
+
+/// Whether what a condition does over the length that is judged is lost in rounding.
+bool HybridMotion::vanishes(const Watch& watch, double size, const ContactValues& values) const {
+  constexpr double digits = 1e-12;
+  if (watch.what == Watch::What::Gap) return size <= digits * size_of_gap(watch.index, values);
+  if (watch.what == Watch::What::Force) return size <= digits * hardest_[watch.index];
+  return false;
+}
+
+/// Whether these accelerations close the gap of a contact beyond so many digits of the terms of g̈.
+bool HybridMotion::presses_again(std::size_t contact, std::span<const double> accelerations,
+                                 const ContactValues& values, double digits) {
+  double sum = functions_.drifts(t_, q_, v_)[contact], size = std::abs(sum);
+  for (const auto& [k, g] : values.normal[contact]) {
+    sum += g * accelerations[k];
+    size += std::abs(g) * acceleration_[kind_[k]];
+  }
+  return sum < -digits * size;
+}
+
+/// A friction that gives way as its force comes to the limit, with μ_s = μ, lets go without a jump where nothing else
+/// happens: its slip, against that force, begins with the second power of time, whatever rounding makes of the first.
+///
+///     λ_t = −μ_s N: it slides forwards        λ_t = μ_s N: it slides backwards
+bool HybridMotion::begins_slowly(const Watch& slip, FrictionState way, const ContactValues& values) const {
+  const bool forwards = way == FrictionState::Forward;
+  const bool gives_way = std::all_of(pending_->left.begin(), pending_->left.end(), [&](const Watch& x) {
+    return x.what == Watch::What::Hold && x.index == slip.index && x.lower == forwards;
+  });
+  return gives_way && !pending_->left.empty() && pending_->hit.empty() && pending_->sets.empty() &&
+         !friction_of(system_, slip.index).in_space() && values.fixed[slip.index] == values.kinetic[slip.index];
+}
+
+/// A mode that is tried at an instant. A condition that is 0 there counts by the first of its derivatives that is not.
+/// Lenient: what is violated at once is 0 there to rounding.
+struct HybridMotion::Trial {
+  HybridMotion& in;
+  Found& found;
+  const std::vector<std::size_t>& touching;
+  Leniency leniency;
+  ModeMotion& motion;
+  const ContactValues& values;
+  std::vector<std::size_t> at_zero{};  // of the watches
+  TaylorStepper::Outlook outlook{};
+  double largest_force = 0;
+
+  const Watch& watch(std::size_t k) const { return motion.watches()[k]; }
+  bool lenient() const { return leniency != Leniency::None; }
+  bool begins_at_zero(const Watch& w) const;
+  void put_at_zero();
+  bool has_slow_slips();
+  bool look(double bound);
+
+  bool is_squared(const Watch& w) const {
+    return w.what == Watch::What::Hold && friction_of(in.system_, w.index).in_space();
+  }
+  bool is_rounding_of_forces(std::size_t k) const;
+  bool keeps(std::size_t k);
+  bool keeps_gap(std::size_t k);
+  bool keeps_force(std::size_t k);
+  bool keeps_slip(std::size_t k);
+};
+
+/// Whether a condition begins at 0, whatever rounding makes of it.
+bool HybridMotion::Trial::begins_at_zero(const Watch& w) const {
+  using What = Watch::What;
+  const bool left = std::any_of(in.pending_->left.begin(), in.pending_->left.end(), [&](const Watch& x) {
+    return x.what == w.what && x.index == w.index && x.lower == w.lower;
+  });
+  switch (w.what) {
+    case What::Gap: {
+      // One that opens and is not negative begins as it is: next to rounding, but with the way that it has.
+      const bool opens = values.gap[w.index] > 0 && values.rate[w.index] > in.rest_speed(w.index, values);
+      return !opens && holds(touching, w.index);
+    }
+    case What::Slip:
+      return !friction_of(in.system_, w.index).in_space() &&
+             std::abs(values.slip[w.index]) <= in.rest_slip(w.index, values);
+    case What::Event:  // a motion that is thrown back from its zero has not passed it
+      return holds(in.pending_->at_zero, w.index);
+    case What::Force:
+    case What::Hold:
+    case What::Normal:
+      return left && !found.given.is_preload;
+    case What::Until:
+      return false;
+  }
+  return false;
+}
+
+void HybridMotion::Trial::put_at_zero() {
+  TaylorStepper& s = *motion.stepper;
+  for (std::size_t k = 0; k < motion.watches().size(); ++k)
+    if (begins_at_zero(watch(k))) at_zero.push_back(k);
+  s.put_at_zero(at_zero);
+  for (const std::size_t k : at_zero) {
+    const Watch& w = watch(k);
+    // A gap whose rate is rounding begins with the second power of time.
+    if (w.what == Watch::What::Gap && std::abs(values.rate[w.index]) <= in.rest_speed(w.index, values))
+      s.put_at_zero({&k, 1}, 2);
+    if (w.what == Watch::What::Slip && in.begins_slowly(w, found.mode.friction[w.index], values))
+      s.put_at_zero({&k, 1}, 2);
+  }
+  // λ falls through 0, and so does g̈ rise from it: the gap begins with the third power of time.
+  for (std::size_t k = 0; k < motion.watches().size(); ++k)
+    if (watch(k).what == Watch::What::Gap && in.released_[watch(k).index]) s.put_at_zero({&k, 1}, 3);
+}
+
+/// A rest whose forces are not determined ends when none are left to 10⁻¹⁴ of the limits: slips whose acceleration is
+/// less than that leaves open begin with the second power of time too.
+bool HybridMotion::Trial::has_slow_slips() {
+  constexpr double slow = 1e-9;
+  if (!in.now_->given.is_preload || found.given.is_preload) return false;
+  bool has_some = false;
+  for (const std::size_t k : at_zero) {
+    const Watch& w = watch(k);
+    if (w.what != Watch::What::Slip || values.fixed[w.index] != values.kinetic[w.index]) continue;
+    double acceleration = 0;
+    for (const auto& [i, x] : values.tangent[w.index]) acceleration += std::abs(x) * in.acceleration_[in.kind_[i]];
+    if (std::abs(outlook.slopes[k]) > slow * acceleration) continue;
+    motion.stepper->put_at_zero({&k, 1}, 2);
+    has_some = true;
+  }
+  return has_some;
+}
+
+/// False where there is no motion.
+bool HybridMotion::Trial::look(double bound) {
+  TaylorStepper& s = *motion.stepper;
+  s.start(in.t_, in.q_, in.v_, in.t_rest_);
+  put_at_zero();
+  std::vector<double> places, speeds;
+  for (const std::size_t k : in.kind_) places.push_back(in.place_[k]), speeds.push_back(in.speed_[k]);
+  s.set_usual_sizes(places, speeds);
+  outlook = s.outlook(bound);
+  if (outlook.ending != StepEnding::None) return false;
+  if (has_slow_slips()) outlook = s.outlook(bound);
+  found.accelerations = outlook.accelerations;
+  for (std::size_t k = 0; k < motion.watches().size(); ++k) {
+    const double force = std::abs(outlook.values[k]);
+    if (watch(k).what == Watch::What::Force || watch(k).what == Watch::What::Hold)
+      largest_force = std::max(largest_force, is_squared(watch(k)) ? std::sqrt(force) : force);
+  }
+  return true;
+}
+
+bool HybridMotion::Trial::is_rounding_of_forces(std::size_t k) const {
+  constexpr double digits = 1e-12;
+  const double force = std::abs(outlook.values[k]);
+  return force < 1e-280 || force <= digits * (is_squared(watch(k)) ? largest_force * largest_force : largest_force);
+}
+
+bool HybridMotion::Trial::keeps_gap(std::size_t k) {
+  constexpr double met = 1e-9;  // heights at which bounces have ended
+  const std::size_t i = watch(k).index;
+  if (in.vanishes(watch(k), outlook.reach[k], values)) return true;
+  if (in.released_[i]) return !in.presses_again(i, outlook.accelerations, values, located_force);
+  if (outlook.sides[k] >= 0) return true;
+  // Meeting the constraints of others may move a gap that opens through zero, by what they are known to.
+  const double rest = in.rest_speed(i, values), reached = met * in.widest_[i];
+  const bool is_moved = -outlook.values[k] <= reached;
+  if (is_moved && outlook.slopes[k] > rest) {
+    motion.stepper->put_at_zero({&k, 1});
+    return true;
+  }
+  // One that closes is hit now: it is as near as constraints are known, but not among those that touch.
+  if (is_moved && !holds(touching, i) && values.rate[i] < -rest && values.gap[i] <= reached) in.met_ = i;
+  return leniency == Leniency::Gaps && holds(at_zero, k) && std::abs(values.rate[i]) <= rest &&
+         !in.presses_again(i, outlook.accelerations, values, rounding_of_forces);
+}
+
+bool HybridMotion::Trial::keeps_force(std::size_t k) {
+  constexpr double located = 1e-11;
+  const std::size_t i = watch(k).index;
+  // What does not press needs not be closed.
+  if (!lenient() && in.vanishes(watch(k), outlook.reach[k], values)) return false;
+  if (std::abs(outlook.values[k]) <= located * in.hardest_[i]) {
+    // λ was located to rounding of the time alone: what it does next counts, and where it falls the contact opens
+    // whatever rounding makes of its gap.
+    if (outlook.slopes[k] >= 0) return true;
+    in.released_[i] = true;
+    return false;
+  }
+  return outlook.sides[k] >= 0 || (lenient() && is_rounding_of_forces(k));
+}
+
+/// From rest it goes the way that it is let go.
+bool HybridMotion::Trial::keeps_slip(std::size_t k) {
+  const std::size_t i = watch(k).index;
+  if (holds(at_zero, k)) return outlook.sides[k] > 0 && !in.is_held(i, found.mode, values);
+  // One that begins in space has not yet the speed at which it counts as stopped.
+  if (friction_of(in.system_, i).in_space() && in.begins_to_slide_[i]) return true;
+  return outlook.sides[k] >= 0;
+}
+
+bool HybridMotion::Trial::keeps(std::size_t k) {
+  using What = Watch::What;
+  switch (watch(k).what) {
+    case What::Gap:
+      return keeps_gap(k);
+    case What::Force:
+      return keeps_force(k);
+    case What::Slip:
+      return keeps_slip(k);
+    case What::Hold:
+      return outlook.sides[k] >= 0 || (lenient() && is_rounding_of_forces(k));
+    case What::Normal:
+      return outlook.sides[k] >= 0;
+    case What::Until:
+    case What::Event:
+      return true;
+  }
+  return true;
+}
+
+bool HybridMotion::fits(Found& found, const std::vector<std::size_t>& touching, double bound, Leniency leniency) {
+  Trial trial{*this, found, touching, leniency, motion_in(found.mode, found.given), functions_.at(t_, q_, v_)};
+  if (!trial.look(bound)) return false;
+  for (std::size_t k = 0; k < trial.motion.watches().size(); ++k)
+    if (!trial.keeps(k)) return false;
+  return true;
+}
+
+}  // namespace maupertuis
