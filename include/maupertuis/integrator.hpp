@@ -64,9 +64,9 @@ class TaylorStepper {
   /// After start(): event functions that vanish here, to rounding. They are on the side that the motion goes to.
   /// order: of the zero, where it is known; what rounding makes of lower powers of time does not count.
   void put_at_zero(std::span<const std::size_t> events, std::uint8_t order = 1);
-  /// Sizes that q and q̇ have had elsewhere in the motion [n]: constraints on coordinates that have come to rest are
+  /// Sizes that q, q̇ and q̈ have had elsewhere in the motion [n]: constraints on coordinates that have come to rest are
   /// met to rounding of these.
-  void set_usual_sizes(std::span<const double> q, std::span<const double> v);
+  void set_usual_sizes(std::span<const double> q, std::span<const double> v, std::span<const double> a);
   /// What is seen of the motion at its start, before a step is made.
   struct Outlook {
     StepEnding ending = StepEnding::None;  // None: there is a motion
@@ -85,7 +85,7 @@ class TaylorStepper {
   Step step(double bound);
 
   double time() const;
-  double time_rest() const;  // what time() leaves of the time at which q and q̇ are
+  double time_rest() const;           // what time() leaves of the time at which q and q̇ are
   std::span<const double> q() const;  // [n]
   std::span<const double> v() const;  // [n]
   double integral(std::size_t index) const;

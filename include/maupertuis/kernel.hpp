@@ -128,6 +128,9 @@ class KernelWorkspace {
   int order() const;
   /// Precondition: values.size() == kernel.parameters(). Constant sub-expressions are computed here, once.
   void set_parameters(std::span<const double> values);
+  /// Accelerations [n] that forces cause elsewhere in the motion, or none: where they balance, what they leave of
+  /// dependent rows of A is rounding of these.
+  void set_usual_accelerations(std::span<const double> accelerations);
   /// Which side of its zero each switch function is taken to be on: +1, −1, or 0 (it vanishes identically).
   /// [switches]; initially +1.
   void set_branches(std::span<const std::int8_t> sides);
@@ -156,8 +159,6 @@ class KernelWorkspace {
   double constraint_rate(std::size_t i) const;
   double constraint_scale(std::size_t i) const;
   double constraint_rate_scale(std::size_t i) const;
-  /// The sizes of the terms that add up to R_i where q̈ = 0 and λ = 0: forces that balance leave rounding of these.
-  double force_scale(std::size_t i) const;
   /// The smallest changes of q and q̇, in the metric M, that bring the constraints back to zero, to first order.
   /// [n] each. Precondition: the last call returned Ok.
   void corrections(std::span<double> dq, std::span<double> dv);

@@ -146,9 +146,13 @@ bool HybridMotion::Trial::look(double bound) {
   TaylorStepper& s = *motion.stepper;
   s.start(in.t_, in.q_, in.v_, in.t_rest_);
   put_at_zero();
-  std::vector<double> places, speeds;
-  for (const std::size_t k : in.kind_) places.push_back(in.place_[k]), speeds.push_back(in.speed_[k]);
-  s.set_usual_sizes(places, speeds);
+  std::vector<double> places, speeds, accelerations;
+  for (const std::size_t k : in.kind_) {
+    places.push_back(in.place_[k]);
+    speeds.push_back(in.speed_[k]);
+    accelerations.push_back(in.acceleration_[k]);
+  }
+  s.set_usual_sizes(places, speeds, accelerations);
   outlook = s.outlook(bound);
   if (outlook.ending != StepEnding::None) return false;
   if (has_slow_slips()) outlook = s.outlook(bound);

@@ -119,6 +119,9 @@ std::optional<std::vector<double>> HybridMotion::forces_at_rest(const std::vecto
   if (cones.contacts.size() < resting.size()) return std::nullopt;
   const auto found = resting_forces(cones.problem);
   if (!found) return std::nullopt;
+  const VectorXd balanced = cones.response.cwiseAbs() * found->cwiseAbs();  // what they would do alone
+  for (std::size_t k = 0; k < kind_.size(); ++k)
+    acceleration_[kind_[k]] = std::max(acceleration_[kind_[k]], balanced(at(k)));
   std::vector<std::size_t> order(resting.size());
   for (std::size_t c = 0; c < order.size(); ++c) order[c] = c;
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return resting[a] < resting[b]; });

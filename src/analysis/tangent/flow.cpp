@@ -144,7 +144,7 @@ class Group {
         largest = std::max({largest, std::abs(q_[j * n_ + i]) / sizes[i], std::abs(v_[j * n_ + i]) / sizes[n_ + i]});
       for (std::size_t i = 0; i < n_; ++i) q[j * n_ + i] = largest * sizes[i], v[j * n_ + i] = largest * sizes[n_ + i];
     }
-    stepper_.set_usual_sizes(q, v);
+    stepper_.set_usual_sizes(q, v, {});
   }
 
   std::optional<TangentStop> step(double t) {

@@ -37,9 +37,8 @@ double rounding_of_position(const KernelWorkspace& work, std::size_t row, std::s
 }
 
 /// What rounding makes of the speed of a coordinate in a step in which forces balance.
-double rounding_of_speed(const KernelWorkspace& work, std::size_t i, double h) {
-  const double mass = work.mass(i, i);
-  return mass > 0 ? 64 * std::numeric_limits<double>::epsilon() * h * work.force_scale(i) / mass : 0;
+double rounding_of_speed(const UsualSizes& usual, std::size_t i, double h) {
+  return usual.a.empty() ? 0 : 64 * std::numeric_limits<double>::epsilon() * h * usual.a[i];
 }
 
 constexpr double small = 1e-13;  // of a correction: it is looked at no further
@@ -66,7 +65,7 @@ double constraint_error(const KernelWorkspace& work, std::size_t freedoms, std::
     if (off > rounding_of_constraints) {  // seldom: what a rest leaves of forces that balance
       double speed = 0;
       for (std::size_t i = 0; i < freedoms; ++i)
-        speed += std::abs(work.constraint_matrix(j, i)) * rounding_of_speed(work, i, h);
+        speed += std::abs(work.constraint_matrix(j, i)) * rounding_of_speed(usual, i, h);
       unseen = std::max(unseen, speed);
       off = std::max(ratio(beyond(work.constraint_value(j), h * speed), place),
                      ratio(beyond(work.constraint_rate(j), unseen), motion));
@@ -76,7 +75,8 @@ double constraint_error(const KernelWorkspace& work, std::size_t freedoms, std::
   return largest;
 }
 
-double correction_size(const KernelWorkspace& work, std::span<const double> dq, std::span<const double> dv, double h) {
+double correction_size(const KernelWorkspace& work, std::span<const double> dq, std::span<const double> dv, double h,
+                       const UsualSizes& usual) {
   double positions = 0, velocities = 0, motion = 0, place = 0;
   for (std::size_t i = 0; i < dq.size(); ++i) {
     const double mass = work.mass(i, i) > 0 ? work.mass(i, i) : 0, moving = speed(work, i, h);
@@ -97,7 +97,7 @@ double correction_size(const KernelWorkspace& work, std::span<const double> dq, 
   if (const double size = off(); size <= small) return size;
   double speeds = 0;  // nor is what it makes of forces that balance
   for (std::size_t i = 0; i < dq.size(); ++i)
-    if (work.mass(i, i) > 0) speeds += work.mass(i, i) * std::pow(rounding_of_speed(work, i, h), 2);
+    if (work.mass(i, i) > 0) speeds += work.mass(i, i) * std::pow(rounding_of_speed(usual, i, h), 2);
   rounding += h * std::sqrt(speeds);
   return off();
 }

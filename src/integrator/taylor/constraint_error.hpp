@@ -10,9 +10,9 @@ namespace maupertuis::taylor {
 /// What the evaluation of a constraint leaves by rounding, relative to the sizes of its terms.
 inline constexpr double rounding_of_constraints = 1e-14;
 
-/// Sizes of a motion that are known from elsewhere, [n] each or empty: of q, and of q̇.
+/// Sizes of a motion that are known from elsewhere, [n] each or empty.
 struct UsualSizes {
-  std::vector<double> q, v;
+  std::vector<double> q, v, a;  // of q, q̇, q̈
 };
 
 /// The largest of φ, and of dφ/dt or ψ, at the point of the workspace, each divided by the sizes of its terms and by
@@ -23,7 +23,8 @@ double constraint_error(const KernelWorkspace& work, std::size_t freedoms, std::
 
 /// How far corrections of q and q̇ go, relative to q̇ and to what it moves in a step of length h, in the metric of the
 /// diagonal of M.
-double correction_size(const KernelWorkspace& work, std::span<const double> dq, std::span<const double> dv, double h);
+double correction_size(const KernelWorkspace& work, std::span<const double> dq, std::span<const double> dv, double h,
+                       const UsualSizes& usual = {});
 
 /// What the steps so far have shown of the constraints.
 struct ConstraintRecord {

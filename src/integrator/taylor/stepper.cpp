@@ -232,9 +232,12 @@ void TaylorStepper::treat_events(std::span<const EventTreatment> treatments) {
   impl_->watched.treat(treatments);
 }
 
-void TaylorStepper::set_usual_sizes(std::span<const double> q, std::span<const double> v) {
+void TaylorStepper::set_usual_sizes(std::span<const double> q, std::span<const double> v, std::span<const double> a) {
   impl_->constraints.usual.q.assign(q.begin(), q.end());
   impl_->constraints.usual.v.assign(v.begin(), v.end());
+  impl_->constraints.usual.a.assign(a.begin(), a.end());
+  impl_->work.set_usual_accelerations(a);
+  impl_->probe.set_usual_accelerations(a);
 }
 
 TaylorStepper::Outlook TaylorStepper::outlook(double bound) {

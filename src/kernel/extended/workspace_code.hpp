@@ -102,14 +102,13 @@ bool Workspace<T>::constraints_agree() {
   if (solver_.rank() == unknowns_) return true;
   for (std::size_t j = 0; program_.freedoms + j < unknowns_; ++j) {
     const Slot slot = program_.residual[program_.freedoms + j];
-    T rest = memory_.row(0)[slot], size = size_of(slot), left(0);  // left: what rounding leaves of forces that balance
+    T rest = memory_.row(0)[slot], size = size_of(slot);
     for (std::size_t i = 0; i < program_.freedoms; ++i) {
-      const T a = constraint_matrix(j, i), inertia = abs(mass(i, i));
-      rest -= a * unknown_[i];
-      size += abs(a * unknown_[i]);
-      if (a != 0 && inertia > 0) left += abs(a) * size_of(program_.residual[i]) / inertia;
+      const T term = constraint_matrix(j, i) * unknown_[i];
+      rest -= term;
+      size += abs(term);
     }
-    if (abs(rest) <= epsilon_to<T>(share_power) * size + T(4096) * epsilon<T>() * left) continue;
+    if (abs(rest) <= epsilon_to<T>(share_power) * size) continue;
     contradicting_ = j;
     return false;
   }

@@ -100,20 +100,19 @@ bool StageSolver::inverts_bordered() {
 }
 
 /// Whether the rows of A that were dropped as dependent hold for the accelerations of the others. Where forces balance
-/// (a ladder at rest between rough walls) accelerations are what rounding leaves of them, and ask nothing.
+/// (a ladder at rest between rough walls) accelerations are what rounding leaves of the usual ones, and ask nothing.
 bool StageSolver::constraints_agree() {
   constexpr double rounding = 1e-12;
   const std::size_t n = x_.program.freedoms;
-  const auto size_of = [&](Slot slot) { return reference::term_size(x_.memory, x_.producer[slot], slot); };
   for (std::size_t j = 0; n + j < x_.unknowns; ++j) {
     if (keeps(j)) continue;
     const Slot slot = x_.program.residual[n + j];
-    double rest = x_.memory.row(0)[slot], size = size_of(slot), left = 0;
+    double rest = x_.memory.row(0)[slot], size = reference::term_size(x_.memory, x_.producer[slot], slot), left = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      const double a = bordered_[(n + j) * x_.unknowns + i], mass = std::abs(bordered_[i * x_.unknowns + i]);
+      const double a = bordered_[(n + j) * x_.unknowns + i];
       rest += a * unknown_[i];
       size += std::abs(a * unknown_[i]);
-      if (a != 0 && mass > 0) left += std::abs(a) * size_of(x_.program.residual[i]) / mass;
+      if (!usual_accelerations_.empty()) left += std::abs(a) * usual_accelerations_[i];
     }
     if (std::abs(rest) <= 1e-6 * size + rounding * left) continue;
     contradicting_ = j;

@@ -34,6 +34,7 @@ class StageSolver {
 
   /// After the constants have changed.
   void constants_changed();
+  void set_usual_accelerations(std::span<const double> a) { usual_accelerations_.assign(a.begin(), a.end()); }
   /// Before a point: `alone` if its coefficients are not corrected.
   void begin(bool alone) { alone_ = alone; }
   /// What the solutions of so many stages need.
@@ -109,6 +110,7 @@ class StageSolver {
   bool alone_ = false;
   std::size_t singular_ = 0, contradicting_ = 0;
 
+  std::vector<double> usual_accelerations_;  // [n] or empty
   Doubles solution_;           // q̈_k and λ_k, padded
   std::span<double> unknown_;  // [n + m] of it: −R_k, then q̈_k and λ_k
   Doubles rough_;              // a solution that is being corrected, padded

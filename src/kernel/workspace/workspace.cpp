@@ -181,6 +181,10 @@ void KernelWorkspace::set_parameters(std::span<const double> values) {
   x.stale = true;
 }
 
+void KernelWorkspace::set_usual_accelerations(std::span<const double> accelerations) {
+  impl_->solver.set_usual_accelerations(accelerations);
+}
+
 void KernelWorkspace::set_branches(std::span<const std::int8_t> sides) {
   workspace::Expansion& x = impl_->expansion;
   MAUP_REQUIRE(sides.size() == x.sides.size());

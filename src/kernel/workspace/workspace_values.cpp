@@ -75,7 +75,6 @@ double KernelWorkspace::constraint_scale(std::size_t i) const {
   const Slot slot = program().constraint_values[i];
   return slot == no_slot ? 0.0 : impl_->expansion.scale(slot);
 }
-double KernelWorkspace::force_scale(std::size_t i) const { return impl_->expansion.scale(program().residual[i]); }
 double KernelWorkspace::constraint_rate_scale(std::size_t i) const {
   double size = impl_->expansion.scale(program().constraint_rates[i]);
   for (std::size_t k = 0; k < program().freedoms; ++k)
