@@ -1,5 +1,7 @@
 #include "simulation/contact/cone_forces.hpp"
 
+#include "linear_algebra/complementarity.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -127,58 +129,121 @@ std::optional<ConeForces> cone_forces(const ConeProblem& problem) {
 
 namespace {
 
-/// λ with W λ + free = 0 that is next to another one.
-class Resting {
+/// Forces of an undetermined rest: λ = λ_0 + N c with the solutions N of W N = 0, c the shortest that keeps the cones.
+/// A cone is told by planes that touch it, λ_n ≥ 0 and part μ λ_n ≥ u·λ_t for unit vectors u, more of them where a
+/// solution lies outside (J. E. Kelley, J. Soc. Ind. Appl. Math. 8 (1960) 703). With the rows G of all planes the
+/// shortest c = Nᵀ Gᵀ z belongs to 0 ≤ z ⟂ G λ_0 + G N Nᵀ Gᵀ z ≥ 0.
+class UndeterminedRest {
  public:
-  explicit Resting(const ConeProblem& p) : p_(p) {
+  explicit UndeterminedRest(const ConeProblem& p)
+      : p_(p), solver_(p.response, Eigen::ComputeFullU | Eigen::ComputeFullV) {
     solver_.setThreshold(converged);
-    solver_.compute(p.response);
+    least_ = solver_.solve(VectorXd(-p.free));
+    free_ = solver_.matrixV().rightCols(p.response.cols() - solver_.rank());
+    Index n = 0;
+    for (const auto& c : p.contacts) {
+      first_.push_back(n);
+      touch(first_.size() - 1, VectorXd::Zero(c.tangents));
+      for (Index k = 0; k < c.tangents; ++k)
+        for (const double side : {1.0, -1.0}) touch(first_.size() - 1, side * VectorXd::Unit(c.tangents, k));
+      n += 1 + c.tangents;
+    }
   }
 
-  VectorXd next_to(const VectorXd& x) const { return x - solver_.solve(p_.free + p_.response * x); }
+  /// Whether nothing accelerates under some forces, be they in their cones or not.
   bool exists() const {
-    const VectorXd off = p_.free + p_.response * next_to(VectorXd::Zero(p_.free.size()));
+    const VectorXd off = p_.free + p_.response * least_;
     return off.cwiseAbs().maxCoeff() <= converged * p_.free.cwiseAbs().maxCoeff();
   }
 
- private:
-  const ConeProblem& p_;
-  Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver_;
-};
-
-/// The point of the cones |λ_t| ≤ part μ λ_n that is next to x.
-VectorXd in_cones(const ConeProblem& p, double part, VectorXd x) {
-  Index n = 0;
-  for (const auto& c : p.contacts) {
-    const double mu = part * c.friction, size = x.segment(n + 1, c.tangents).norm();
-    if (size > mu * x(n)) {
-      const double normal = std::max(0.0, (x(n) + mu * size) / (1 + mu * mu));
-      x(n) = normal;
-      x.segment(n + 1, c.tangents) *= size > 0 ? mu * normal / size : 0;
+  std::optional<VectorXd> with_margin(double margin) {
+    constexpr int most_turns = 30;
+    for (int turn = 0; turn < most_turns; ++turn) {
+      const auto x = between_planes(1 - margin);
+      if (!x) return std::nullopt;
+      bool is_inside = true;
+      for (std::size_t c = 0; c < first_.size(); ++c) {
+        const VectorXd t = x->segment(first_[c] + 1, p_.contacts[c].tangents);
+        const double most = (1 - 0.9 * margin) * p_.contacts[c].friction * (*x)(first_[c]);
+        if (!(t.norm() > most)) continue;
+        if (p_.contacts[c].tangents == 1) return std::nullopt;  // its planes are there: rounding
+        is_inside = false;
+        touch(c, t.normalized());
+      }
+      if (is_inside) return x;
     }
-    n += 1 + c.tangents;
+    return std::nullopt;
   }
-  return x;
-}
+
+ private:
+  struct Plane {
+    std::size_t contact;
+    VectorXd along;  // [tangents] u; 0: λ_n ≥ 0
+  };
+  void touch(std::size_t contact, VectorXd along) { planes_.push_back({contact, std::move(along)}); }
+
+  std::optional<VectorXd> between_planes(double part) const {
+    MatrixXd rows = MatrixXd::Zero(static_cast<Index>(planes_.size()), p_.free.size());
+    for (Index k = 0; k < rows.rows(); ++k) {
+      const auto& [c, along] = planes_[static_cast<std::size_t>(k)];
+      const bool is_normal = along.size() == 0 || along.norm() == 0;
+      rows(k, first_[c]) = is_normal ? 1 : part * p_.contacts[c].friction;
+      rows.row(k).segment(first_[c] + 1, along.size()) = -along.transpose();
+      rows.row(k).normalize();
+    }
+    const MatrixXd moved = rows * free_;
+    const VectorXd here = rows * least_;
+    const auto c = free_.cols() == 1 ? on_line(moved.col(0), here) : shortest(moved, here);
+    return c ? std::optional(VectorXd(least_ + free_ * *c)) : std::nullopt;
+  }
+
+  /// The c next to 0 with moved c + here ≥ 0.
+  static std::optional<VectorXd> on_line(const VectorXd& moved, const VectorXd& here) {
+    double low = -HUGE_VAL, high = HUGE_VAL;
+    for (Index k = 0; k < here.size(); ++k) {
+      if (std::abs(moved(k)) > fixed)
+        (moved(k) > 0 ? low : high) =
+            moved(k) > 0 ? std::max(low, -here(k) / moved(k)) : std::min(high, -here(k) / moved(k));
+      else if (here(k) < 0)
+        return std::nullopt;
+    }
+    if (!(low <= high)) return std::nullopt;
+    return VectorXd::Constant(1, std::clamp(0.0, low, high));
+  }
+
+  /// The same in more dimensions.
+  static std::optional<VectorXd> shortest(const MatrixXd& moved, const VectorXd& here) {
+    std::vector<Index> free;  // planes that c can leave
+    for (Index k = 0; k < here.size(); ++k) {
+      if (moved.row(k).norm() > fixed)
+        free.push_back(k);
+      else if (here(k) < 0)
+        return std::nullopt;
+    }
+    const MatrixXd rows = moved(free, Eigen::all);
+    const auto z = linear_complementarity(rows * rows.transpose(), here(free));
+    return z ? std::optional(VectorXd(rows.transpose() * *z)) : std::nullopt;
+  }
+
+  static constexpr double fixed = 1e-10;  // of a row of unit length: what c does not change
+  const ConeProblem& p_;
+  Eigen::JacobiSVD<MatrixXd> solver_;
+  VectorXd least_;
+  MatrixXd free_;
+  std::vector<Index> first_;  // [contacts] where each begins
+  std::vector<Plane> planes_;
+};
 
 }  // namespace
 
 std::optional<VectorXd> resting_forces(const ConeProblem& problem) {
   if (problem.free.size() == 0) return std::nullopt;
-  const Resting resting(problem);
-  if (!resting.exists()) return std::nullopt;
-  constexpr int turns = 1000, most_quarters = 23;
-  double margin = 1;
-  for (int quarter = 0; quarter < most_quarters; ++quarter) {
-    margin *= quarter == 0 ? 0.5 : 0.25;
-    const double close = std::min(converged, 0.01 * margin);
-    VectorXd z = resting.next_to(VectorXd::Zero(problem.free.size()));
-    for (int turn = 0; turn < turns; ++turn) {
-      const VectorXd x = resting.next_to(z), inside = in_cones(problem, 1 - margin, x);
-      if ((x - inside).norm() <= close * x.norm()) return x;
-      z += in_cones(problem, 1 - margin, 2 * x - z) - x;
-    }
-  }
+  UndeterminedRest rest(problem);
+  if (!rest.exists()) return std::nullopt;
+  constexpr int most_quarters = 20;
+  double margin = 0.5;
+  for (int quarter = 0; quarter < most_quarters; ++quarter, margin *= 0.25)
+    if (auto found = rest.with_margin(margin)) return found;
   return std::nullopt;
 }
 

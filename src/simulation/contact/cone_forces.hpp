@@ -32,11 +32,10 @@ struct ConeForces {
 std::optional<ConeForces> cone_forces(const ConeProblem& problem);
 
 /// Forces within their cones under which nothing accelerates, W λ + free = 0, where there are such: of the many that a
-/// statically indeterminate rest may have one that leaves friction a margin: of the parts ½, ⅛, 1/32, … of its limits that
-/// may be left, the largest that can. Nothing where less than 10⁻¹⁴ is left. By the
-/// Douglas-Rachford iteration between the cones and the solutions of the equations (H. H. Bauschke and P. L. Combettes,
-/// Convex Analysis and Monotone Operator Theory in Hilbert Spaces, 2017, ch. 26). Cost: at most some thousand products
-/// with a matrix of the size of W.
+/// statically indeterminate rest may have one that leaves friction a margin: of the parts ½, ⅛, 1/32, … of its limits
+/// that may be left, the largest that can, and there the forces next to the least ones. Nothing where less than 10⁻¹²
+/// is left. By planes that touch the cones and linear complementarity. Cost: some solutions of a complementarity
+/// problem of three to five unknowns a contact.
 std::optional<Eigen::VectorXd> resting_forces(const ConeProblem& problem);
 
 }  // namespace maupertuis
