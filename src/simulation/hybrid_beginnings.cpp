@@ -100,6 +100,7 @@ class Directions {
 
   bool find() {
     constexpr int most_turns = 8;
+    if (!find_sizes()) return false;
     for (int turn = 0; turn < most_turns; ++turn)  // the cones give φ_0 to their own rounding only
       if (!improve(0)) return false;
     for (std::size_t k = 1; k <= degree; ++k)
@@ -122,6 +123,20 @@ class Directions {
   }
 
  private:
+  /// What friction does to v̇_t: half of what changes where it is turned round.
+  bool find_sizes() {
+    sizes_.assign(angles_.size(), 0);
+    for (const double turned : {0.0, half_turn}) {
+      for (Series& phi : angles_) phi[0] += turned;
+      const bool moves = slips_.follow(angles_);
+      for (Series& phi : angles_) phi[0] -= turned;
+      if (!moves) return false;
+      for (std::size_t c = 0; c < angles_.size(); ++c) sizes_[c] += 0.5 * slips_.along(c, 1);
+    }
+    for (double& size : sizes_) size = std::abs(size);
+    return true;
+  }
+
   std::optional<VectorXd> across(std::size_t k) {
     if (!slips_.follow(angles_)) return std::nullopt;
     VectorXd out(at(angles_.size()));
@@ -153,15 +168,36 @@ class Directions {
       slope *= 2 / static_cast<double>(k + 1);
       slope.diagonal() -= along_;
     }
-    const VectorXd by = slope.fullPivLu().solve(-*here);
+    return correct(k, slope, VectorXd(-*here));
+  }
+
+  /// Where slips are bound to each other (two feet of a bar have one velocity along it) friction across does the same
+  /// to all of them: then v_{t,k+1} tells but sums of the φ_k, and differences of the φ_{k−1}, by what they turn
+  /// v_{t,2}.
+  bool correct(std::size_t k, const MatrixXd& slope, const VectorXd& right) {
+    const Index n = slope.cols();
+    Eigen::JacobiSVD<MatrixXd> parts(slope, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    parts.setThreshold(negligible_);
+    const MatrixXd bound = parts.matrixV().rightCols(n - parts.rank());
+    MatrixXd all(n, n + bound.cols());
+    all.leftCols(n) = slope;
+    for (Index c = 0; c < n && bound.cols() > 0; ++c)
+      all.row(c).tail(bound.cols()) = (k > 0 ? -slips_.along(static_cast<std::size_t>(c), 2) : 0.0) * bound.row(c);
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver;
+    solver.setThreshold(negligible_);
+    const VectorXd by = solver.compute(all).solve(right);
     if (!by.allFinite()) return false;
-    for (std::size_t c = 0; c < angles_.size(); ++c) angles_[c][k] += by(at(c));
+    const VectorXd before = bound * by.tail(bound.cols());
+    for (std::size_t c = 0; c < angles_.size(); ++c) {
+      angles_[c][k] += by(at(c));
+      if (k > 0) angles_[c][k - 1] += before(at(c));
+    }
     return true;
   }
 
   /// Until the later powers of a slip add up to half of what its first one is.
   double growth(std::size_t c) const {
-    const int first = std::abs(slips_.along(c, 1)) > negligible_ * size(c) ? 1 : 2;
+    const int first = std::abs(slips_.along(c, 1)) > negligible_ * sizes_[c] ? 1 : 2;
     const double leads = first * slips_.along(c, first);
     if (!(leads > 0)) return 0;
     double most = std::numeric_limits<double>::infinity();
@@ -171,15 +207,12 @@ class Directions {
     return 0.5 * most;
   }
 
-  double size(std::size_t c) const {
-    return std::abs(slope_(at(c), at(c)));  // of v̇_t, by what friction does there
-  }
-
-  static constexpr double negligible_ = 1e-9;
+  static constexpr double negligible_ = 1e-9, half_turn = 3.141592653589793;
   Slips& slips_;
   std::vector<Series> angles_;
-  MatrixXd slope_;  // of v_{t,2} across by φ_1
-  VectorXd along_;  // v_{t,1}
+  std::vector<double> sizes_;  // of v̇_t, by what friction does there
+  MatrixXd slope_;             // of v_{t,2} across by φ_1
+  VectorXd along_;             // v_{t,1}
 };
 
 }  // namespace

@@ -223,8 +223,8 @@ bool HybridMotion::Trial::keeps(std::size_t k) {
       return keeps_force(k);
     case What::Slip:
       return keeps_slip(k);
-    case What::Hold:
-      return outlook.sides[k] >= 0 || (lenient() && is_rounding_of_forces(k));
+    case What::Hold:  // one that was located where it goes through 0 is over
+      return outlook.sides[k] >= 0 || (lenient() && !holds(at_zero, k) && is_rounding_of_forces(k));
     case What::Normal:
       return outlook.sides[k] >= 0;
     case What::Until:
