@@ -434,7 +434,7 @@ bool HybridMotion::carry_out_sets(std::string& reason) {
   }
   const ContactValues& values = functions_.at(t_, q, v);
   for (std::size_t i = 0; i < values.gap.size(); ++i)
-    if (values.gap[i] < -digits_of_sets * values.gap_scale[i]) {
+    if (values.gap[i] < -digits_of_sets * size_of_gap(i, values)) {
       reason =
           fmt::format("The event `{}` sets a state that violates the contact {}.", before, system_.contact_label(i));
       return false;

@@ -126,8 +126,8 @@ class HybridMotion final : public Method {
                                    double bound, std::string& reason);
   std::optional<Found> undetermined_rest(const std::vector<Choice>& list, const std::vector<std::size_t>& touching,
                                          double bound);
-  std::optional<std::vector<double>> forces_at_rest(const std::vector<std::size_t>& resting,
-                                                    const ContactValues& values, double bound);
+  std::optional<std::vector<double>> forces_at_rest(const std::vector<std::size_t>& closed, const ContactValues& values,
+                                                    double bound);
   bool is_held(std::size_t contact, const ContactMode& mode, const ContactValues& values);
   bool has_dependent_rows(const ContactMode& mode, const ContactValues& values) const;
   std::vector<Choice> choices(const std::vector<std::size_t>& touching, const ContactValues& values) const;

@@ -63,6 +63,7 @@ SparseRow HybridMotion::sliding_force(std::size_t i, const ContactValues& values
 struct HybridMotion::Cones {
   std::vector<std::size_t> contacts;
   std::vector<std::size_t> first;       // [contacts] of its rows
+  std::vector<bool> slides;             // [contacts]
   std::vector<SparseRow> rows, forces;  // ∂g/∂q, ∂v_t/∂q̇ of those at rest; what a unit of each force does
   Eigen::MatrixXd response;             // of q̈ to the forces
   ConeProblem problem;
@@ -85,6 +86,7 @@ HybridMotion::Cones HybridMotion::cones_of(const std::vector<std::size_t>& touch
     const bool slides =
         f.present() && (f.in_space() ? slides_in_space(i, values) : std::abs(values.slip[i]) > rest_slip(i, values));
     out.contacts.push_back(i);
+    out.slides.push_back(slides && !f.sticking);
     out.first.push_back(out.rows.size());
     add(values.normal[i], slides && !f.sticking ? sliding_force(i, values) : values.normal[i], drifts[i]);
     ConeProblem::Contact contact{0, 0};
@@ -109,24 +111,25 @@ HybridMotion::Cones HybridMotion::cones_of(const std::vector<std::size_t>& touch
   return out;
 }
 
-/// Forces under which contacts that rest stay so, in the order of their multipliers in the mode: normal forces, then
-/// friction. Nothing where there are none within the limits of friction.
-std::optional<std::vector<double>> HybridMotion::forces_at_rest(const std::vector<std::size_t>& resting,
+/// Forces under which closed contacts that rest stay so, in the order of their multipliers in the mode: normal forces,
+/// then friction. Those of contacts that slide are left to the constraints. Nothing where there are none within the
+/// limits of friction.
+std::optional<std::vector<double>> HybridMotion::forces_at_rest(const std::vector<std::size_t>& closed,
                                                                 const ContactValues& values, double bound) {
   const auto outlook = outlook_without_contacts(values, bound);
   if (!outlook) return std::nullopt;
-  const Cones cones = cones_of(resting, values, outlook->accelerations);
-  if (cones.contacts.size() < resting.size()) return std::nullopt;
+  const Cones cones = cones_of(closed, values, outlook->accelerations);
+  if (cones.contacts.size() < closed.size()) return std::nullopt;
   const auto found = resting_forces(cones.problem);
   if (!found) return std::nullopt;
   const VectorXd balanced = cones.response.cwiseAbs() * found->cwiseAbs();  // what they would do alone
   for (std::size_t k = 0; k < kind_.size(); ++k)
     acceleration_[kind_[k]] = std::max(acceleration_[kind_[k]], balanced(at(k)));
-  std::vector<std::size_t> order(resting.size());
+  std::vector<std::size_t> order(closed.size());
   for (std::size_t c = 0; c < order.size(); ++c) order[c] = c;
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return resting[a] < resting[b]; });
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return closed[a] < closed[b]; });
   std::vector<double> out;
-  for (const std::size_t c : order) out.push_back((*found)(at(cones.first[c])));
+  for (const std::size_t c : order) out.push_back(cones.slides[c] ? 0 : (*found)(at(cones.first[c])));
   for (const std::size_t c : order)
     for (int k = 1; k <= cones.problem.contacts[c].tangents; ++k) out.push_back((*found)(at(cones.first[c]) + k));
   return out;

@@ -43,20 +43,24 @@ std::optional<HybridMotion::Found> HybridMotion::undetermined_rest(const std::ve
                                                                    const std::vector<std::size_t>& touching,
                                                                    double bound) {
   const std::size_t contacts = system_.contacts.size();
-  std::vector<std::size_t> resting, taken;
+  std::vector<std::size_t> closed, taken;
+  std::size_t resting = 0;
   for (const Choice& c : list) {
     const auto rests = std::find_if(c.options.begin(), c.options.end(), [&](const HybridOption& o) {
       return o.closed && (o.state == FrictionState::Stick || o.state == FrictionState::None);
     });
-    if (c.contact < contacts && rests == c.options.end()) return std::nullopt;  // it slides
-    taken.push_back(c.contact < contacts ? static_cast<std::size_t>(rests - c.options.begin()) : 0);
-    if (c.contact < contacts) resting.push_back(c.contact);
+    const bool stays = c.contact < contacts && rests != c.options.end();  // others slide, and are closed as they do
+    taken.push_back(stays ? static_cast<std::size_t>(rests - c.options.begin()) : 0);
+    if (c.contact >= contacts) continue;
+    if (!stays && !c.options[0].closed) return std::nullopt;
+    closed.push_back(c.contact);
+    resting += stays ? 1 : 0;
   }
-  if (resting.size() < 2 || resting.size() > most_that_hold) return std::nullopt;
+  if (resting < 2 || closed.size() > most_that_hold) return std::nullopt;
   const ContactValues values = functions_.at(t_, q_, v_);
   Found out{mode_of(list, taken), {}, {}};
   if (!has_dependent_rows(out.mode, values)) return std::nullopt;
-  const auto forces = forces_at_rest(resting, values, bound);
+  const auto forces = forces_at_rest(closed, values, bound);
   if (!forces) return std::nullopt;
   out.given.is_preload = true;
   out.given.values = *forces;

@@ -79,6 +79,7 @@ class Modes {
   bool hit(const std::vector<std::size_t>& touching, Met& met);
   bool keeps_sticking(const std::vector<std::size_t>& touching, const Met& met);
   std::optional<T> end_of_bounces(std::size_t contact, const T& speed);
+  bool holds_undetermined(const ExtendedMode& mode) const;
   std::vector<Choice> choices(const std::vector<std::size_t>& touching, const Met& met) const;
   Choice choice_of_contact(std::size_t contact, const Met& met) const;
   ExtendedMode mode_of(const std::vector<Choice>& list, const std::vector<std::size_t>& taken) const;

@@ -478,6 +478,33 @@ bool Modes<T>::may_be_several(const ExtendedMode& mode) const {
   return false;
 }
 
+/// Whether contacts that stick hold each other: rows of their normals and slips depend on each other.
+template <class T>
+bool Modes<T>::holds_undetermined(const ExtendedMode& mode) const {
+  bool holds = false;
+  std::vector<std::vector<T>> rows;  // at right angles to each other
+  bool are_dependent = false;
+  const auto add = [&](std::vector<T> row) {
+    const T size = along<T>(row, row);
+    for (const std::vector<T>& other : rows) {
+      const T part = along<T>(row, other) / along<T>(other, other);
+      for (std::size_t k = 0; k < row.size(); ++k) row[k] -= part * other[k];
+    }
+    if (along<T>(row, row) <= T(1e-20) * size)
+      are_dependent = true;
+    else
+      rows.push_back(std::move(row));
+  };
+  for (std::size_t c = 0; c < problem_.contacts.count; ++c) {
+    if (!mode.closed[c]) continue;
+    add(point_->normal[c]);
+    if (mode.friction[c] != ExtendedMode::Friction::Stick) continue;
+    add(point_->tangent[c]);
+    holds = holds || !problem_.contacts.frictions[c].sticking;
+  }
+  return holds && are_dependent;
+}
+
 template <class T>
 bool Modes<T>::choose(const std::vector<std::size_t>& touching, const Met& met) {
   const std::vector<Choice> list = choices(touching, met);
@@ -530,6 +557,10 @@ bool Modes<T>::choose(const std::vector<std::size_t>& touching, const Met& met) 
   if (!found)
     return stop(StepEnding::Paradox, std::nullopt,
                 "No mode of the contacts and frictions was found that keeps its conditions here.");
+  if (holds_undetermined(found->mode))
+    return stop(StepEnding::Paradox, std::nullopt,
+                "friction at several contacts holds more than the rest needs, and its forces are not determined: with "
+                "more digits none are sought within its limits.");
   note_accelerations(first);
   if (last != found) static_cast<void>(fits(*found, touching, met, by_leniency, &first));
   const ExtendedMode before = now_->mode;

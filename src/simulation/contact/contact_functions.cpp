@@ -13,14 +13,12 @@ namespace {
 
 using Eigen::Index;
 
-/// Σ |terms|
+/// Σ |terms|, those of sums that are factors too: 2 (b − x) is known no better than 2 b − 2 x.
 Expr size_of_terms(Expr e) {
+  if (!e.is(Kind::Sum) && !e.is(Kind::Product)) return apply(Kind::Abs, e);
   ExprVector sizes;
-  if (e.is(Kind::Sum))
-    for (std::size_t i = 0; i < e.size(); ++i) sizes.push_back(apply(Kind::Abs, e[i]));
-  else
-    sizes.push_back(apply(Kind::Abs, e));
-  return e.context().sum(sizes);
+  for (std::size_t i = 0; i < e.size(); ++i) sizes.push_back(size_of_terms(e[i]));
+  return e.is(Kind::Sum) ? e.context().sum(sizes) : e.context().product(sizes);
 }
 
 ExprVector gaps_of(const MechanicalSystem& s) {
