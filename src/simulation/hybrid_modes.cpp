@@ -203,7 +203,9 @@ std::optional<HybridMotion::Found> HybridMotion::search_mode(const std::vector<C
       met_.reset();
       const std::optional<Given> given = given_in(next.mode, bound);
       if (given) next.given = *given;
-      if (!given || !fits(next, touching, bound, leniency)) {
+      const bool is_right = given && (fits(next, touching, bound, leniency) ||
+                                      (leniency == Leniency::None && fits_by_given_forces(next, touching, bound)));
+      if (!is_right) {
         if (turn == 0 && met_ && list.size() > 1) return std::nullopt;
         if (turn >= most_kept) forget(next.mode);
         continue;

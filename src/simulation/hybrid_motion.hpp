@@ -126,8 +126,8 @@ class HybridMotion final : public Method {
                                    double bound, std::string& reason);
   std::optional<Found> undetermined_rest(const std::vector<Choice>& list, const std::vector<std::size_t>& touching,
                                          double bound);
-  std::optional<std::vector<double>> forces_at_rest(const std::vector<std::size_t>& closed, const ContactValues& values,
-                                                    double bound);
+  bool fits_by_given_forces(Found& found, const std::vector<std::size_t>& touching, double bound);
+  std::optional<std::vector<double>> forces_at_rest(const ContactMode& mode, const ContactValues& values, double bound);
   bool is_held(std::size_t contact, const ContactMode& mode, const ContactValues& values);
   bool has_dependent_rows(const ContactMode& mode, const ContactValues& values) const;
   std::vector<Choice> choices(const std::vector<std::size_t>& touching, const ContactValues& values) const;
@@ -140,7 +140,13 @@ class HybridMotion final : public Method {
   bool slides_in_space(std::size_t contact, const ContactValues& values) const;
   double stop_slip(std::size_t contact) const;
   SparseRow sliding_force(std::size_t contact, const ContactValues& values) const;
-  Cones cones_of(const std::vector<std::size_t>& touching, const ContactValues& values,
+  struct Pressed {
+    std::size_t contact;
+    std::optional<SparseRow> sliding;  // what a unit of its normal force does with its friction, where it slides
+  };
+  std::vector<Pressed> pressed_of(const std::vector<std::size_t>& touching, const ContactValues& values) const;
+  std::vector<Pressed> pressed_in(const ContactMode& mode, const ContactValues& values) const;
+  Cones cones_of(const std::vector<Pressed>& pressed, const ContactValues& values,
                  std::span<const double> accelerations);
   std::vector<double> stops() const;
   std::vector<double> energy_and_sets_at(double t, std::span<const double> q, std::span<const double> v);

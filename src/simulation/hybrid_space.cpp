@@ -69,7 +69,37 @@ struct HybridMotion::Cones {
   ConeProblem problem;
 };
 
-HybridMotion::Cones HybridMotion::cones_of(const std::vector<std::size_t>& touching, const ContactValues& values,
+/// Contacts that touch and do not open, with the friction that they have here.
+std::vector<HybridMotion::Pressed> HybridMotion::pressed_of(const std::vector<std::size_t>& touching,
+                                                            const ContactValues& values) const {
+  std::vector<Pressed> out;
+  for (const std::size_t i : touching) {
+    if (values.rate[i] > rest_speed(i, values)) continue;
+    const Friction& f = system_.contacts[i].friction;
+    const bool slides = f.present() && !f.sticking &&
+                        (f.in_space() ? slides_in_space(i, values) : std::abs(values.slip[i]) > rest_slip(i, values));
+    out.push_back({i, slides ? std::optional(sliding_force(i, values)) : std::nullopt});
+  }
+  return out;
+}
+
+/// Closed contacts of a mode.
+std::vector<HybridMotion::Pressed> HybridMotion::pressed_in(const ContactMode& mode,
+                                                            const ContactValues& values) const {
+  std::vector<Pressed> out;
+  for (std::size_t i = 0; i < mode.closed.size(); ++i) {
+    if (!mode.closed[i]) continue;
+    const FrictionState state = mode.friction[i];
+    out.push_back({i, std::nullopt});
+    if (state == FrictionState::Slide) out.back().sliding = sliding_force(i, values);
+    if (state == FrictionState::Forward || state == FrictionState::Backward)
+      out.back().sliding =
+          sum_of(values.normal[i], values.tangent[i], (state == FrictionState::Forward ? -1 : 1) * values.kinetic[i]);
+  }
+  return out;
+}
+
+HybridMotion::Cones HybridMotion::cones_of(const std::vector<Pressed>& pressed, const ContactValues& values,
                                            std::span<const double> accelerations) {
   const std::span<const double> drifts = functions_.drifts(t_, q_, v_);
   const std::size_t contacts = values.gap.size(), seconds = drifts.size() - contacts;
@@ -80,17 +110,14 @@ HybridMotion::Cones HybridMotion::cones_of(const std::vector<std::size_t>& touch
     out.forces.push_back(force);
     free.push_back(drift + product(row, accelerations));
   };
-  for (const std::size_t i : touching) {
-    if (values.rate[i] > rest_speed(i, values)) continue;
+  for (const auto& [i, sliding] : pressed) {
     const Friction& f = system_.contacts[i].friction;
-    const bool slides =
-        f.present() && (f.in_space() ? slides_in_space(i, values) : std::abs(values.slip[i]) > rest_slip(i, values));
     out.contacts.push_back(i);
-    out.slides.push_back(slides && !f.sticking);
+    out.slides.push_back(sliding.has_value());
     out.first.push_back(out.rows.size());
-    add(values.normal[i], slides && !f.sticking ? sliding_force(i, values) : values.normal[i], drifts[i]);
+    add(values.normal[i], sliding ? *sliding : values.normal[i], drifts[i]);
     ConeProblem::Contact contact{0, 0};
-    if (f.present() && (!slides || f.sticking)) {
+    if (f.present() && !sliding) {
       contact = {f.in_space() ? 2 : 1, f.sticking ? held_fast : values.fixed[i]};
       add(values.tangent[i], values.tangent[i], drifts[contacts + i]);
       if (f.in_space()) add(values.second_tangent[i], values.second_tangent[i], drifts[seconds + i]);
@@ -111,26 +138,24 @@ HybridMotion::Cones HybridMotion::cones_of(const std::vector<std::size_t>& touch
   return out;
 }
 
-/// Forces under which closed contacts that rest stay so, in the order of their multipliers in the mode: normal forces,
-/// then friction. Those of contacts that slide are left to the constraints. Nothing where there are none within the
-/// limits of friction.
-std::optional<std::vector<double>> HybridMotion::forces_at_rest(const std::vector<std::size_t>& closed,
-                                                                const ContactValues& values, double bound) {
+/// Forces under which the closed contacts of a mode stay so, in the order of their multipliers in it: normal forces,
+/// then friction of those that rest. Those of contacts that slide are left to the constraints. Nothing where there are
+/// none within the limits of friction.
+std::optional<std::vector<double>> HybridMotion::forces_at_rest(const ContactMode& mode, const ContactValues& values,
+                                                                double bound) {
   const auto outlook = outlook_without_contacts(values, bound);
   if (!outlook) return std::nullopt;
-  const Cones cones = cones_of(closed, values, outlook->accelerations);
-  if (cones.contacts.size() < closed.size()) return std::nullopt;
+  const Cones cones = cones_of(pressed_in(mode, values), values, outlook->accelerations);
+  if (!cones.problem.response.allFinite()) return std::nullopt;  // a slip that has no direction yet
   const auto found = resting_forces(cones.problem);
   if (!found) return std::nullopt;
   const VectorXd balanced = cones.response.cwiseAbs() * found->cwiseAbs();  // what they would do alone
   for (std::size_t k = 0; k < kind_.size(); ++k)
     acceleration_[kind_[k]] = std::max(acceleration_[kind_[k]], balanced(at(k)));
-  std::vector<std::size_t> order(closed.size());
-  for (std::size_t c = 0; c < order.size(); ++c) order[c] = c;
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return closed[a] < closed[b]; });
   std::vector<double> out;
-  for (const std::size_t c : order) out.push_back(cones.slides[c] ? 0 : (*found)(at(cones.first[c])));
-  for (const std::size_t c : order)
+  for (std::size_t c = 0; c < cones.contacts.size(); ++c)
+    out.push_back(cones.slides[c] ? 0 : (*found)(at(cones.first[c])));
+  for (std::size_t c = 0; c < cones.contacts.size(); ++c)
     for (int k = 1; k <= cones.problem.contacts[c].tangents; ++k) out.push_back((*found)(at(cones.first[c]) + k));
   return out;
 }
@@ -204,7 +229,7 @@ void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double
   if (std::none_of(touching.begin(), touching.end(), is_slow)) return;
   const auto outlook = outlook_without_contacts(values, bound);
   if (!outlook) return;
-  const Cones cones = cones_of(touching, values, outlook->accelerations);
+  const Cones cones = cones_of(pressed_of(touching, values), values, outlook->accelerations);
   const auto found = cone_forces(cones.problem);
   if (!found) return;
   const VectorXd changes = cones.response * found->forces;
@@ -249,7 +274,7 @@ bool HybridMotion::choose_slips(const std::vector<std::size_t>& touching, double
   if (std::none_of(touching.begin(), touching.end(), may_begin)) return true;
   const auto outlook = outlook_without_contacts(values, bound);
   if (!outlook) return true;
-  Cones cones = cones_of(touching, values, outlook->accelerations);
+  Cones cones = cones_of(pressed_of(touching, values), values, outlook->accelerations);
   const auto reaches_limit = [&](std::size_t i) {
     return gives_way ||
            (!now_->given.is_preload && std::any_of(pending_->left.begin(), pending_->left.end(), [&](const Watch& w) {

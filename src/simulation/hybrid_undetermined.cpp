@@ -37,35 +37,36 @@ bool HybridMotion::is_held(std::size_t contact, const ContactMode& mode, const C
 }
 
 /// Contacts that hold each other where they rest (a ladder between rough walls, three rough feet) have forces that the
-/// equations do not determine: some that keep the limits of friction are given. Nothing where the forces are
-/// determined, or where none hold the rest.
+/// equations do not determine: some that keep the limits of friction are given. False where the forces are determined,
+/// where none hold the rest, or where another condition of the mode is broken.
+bool HybridMotion::fits_by_given_forces(Found& found, const std::vector<std::size_t>& touching, double bound) {
+  const ContactMode& mode = found.mode;
+  const ContactValues values = functions_.at(t_, q_, v_);
+  const auto closed = static_cast<std::size_t>(std::count(mode.closed.begin(), mode.closed.end(), true));
+  if (closed < 2 || closed > most_that_hold || !found.given.begins.empty() || !has_dependent_rows(mode, values))
+    return false;
+  const auto forces = forces_at_rest(mode, values, bound);
+  if (!forces) return false;
+  found.given.is_preload = true;
+  found.given.values = *forces;
+  return fits(found, touching, bound, Leniency::None);
+}
+
+/// The mode in which all that may rest does, with forces that are given: before the least forces are tried, which may
+/// lie beyond the limits of friction though others do not.
 std::optional<HybridMotion::Found> HybridMotion::undetermined_rest(const std::vector<Choice>& list,
                                                                    const std::vector<std::size_t>& touching,
                                                                    double bound) {
-  const std::size_t contacts = system_.contacts.size();
-  std::vector<std::size_t> closed, taken;
-  std::size_t resting = 0;
+  std::vector<std::size_t> taken;
   for (const Choice& c : list) {
     const auto rests = std::find_if(c.options.begin(), c.options.end(), [&](const HybridOption& o) {
       return o.closed && (o.state == FrictionState::Stick || o.state == FrictionState::None);
     });
-    const bool stays = c.contact < contacts && rests != c.options.end();  // others slide, and are closed as they do
+    const bool stays = c.contact < system_.contacts.size() && rests != c.options.end();  // others slide as they do
     taken.push_back(stays ? static_cast<std::size_t>(rests - c.options.begin()) : 0);
-    if (c.contact >= contacts) continue;
-    if (!stays && !c.options[0].closed) return std::nullopt;
-    closed.push_back(c.contact);
-    resting += stays ? 1 : 0;
   }
-  if (resting < 2 || closed.size() > most_that_hold) return std::nullopt;
-  const ContactValues values = functions_.at(t_, q_, v_);
   Found out{mode_of(list, taken), {}, {}};
-  if (!has_dependent_rows(out.mode, values)) return std::nullopt;
-  const auto forces = forces_at_rest(closed, values, bound);
-  if (!forces) return std::nullopt;
-  out.given.is_preload = true;
-  out.given.values = *forces;
-  if (!fits(out, touching, bound, Leniency::None)) return std::nullopt;
-  return out;
+  return fits_by_given_forces(out, touching, bound) ? std::optional(out) : std::nullopt;
 }
 
 /// ∂g/∂q of closed contacts with ∂v_t/∂q̇ of those that stick.

@@ -277,6 +277,33 @@ TEST_CASE("a row at an instant at which an event sets the state takes no digits 
   CHECK(r->final.q[0] == doctest::Approx(0.5).epsilon(1e-14));
 }
 
+TEST_CASE("a block begins to slide beside another one whose feet hold each other") {
+  ModelText m(
+      "param m = 1 kg, g = 9.81 m/s^2, a = 0.5 m, h = 0.3 m, J = 0.1 kg m^2, k = 1 N/s\n"
+      "coord x, y : length, w : angle, X, Y : length\nbody B mass m inertia J at (x, y) rotation angle w\n"
+      "point C mass m at (X, Y)\ngravity (0, -g)\npoint P1 at (a, -h) in B\npoint P2 at (-a, -h) in B\n"
+      "force on C = (k t, 0)\nforce on B = (2 [N], 0)\ncontact P1.y >= 0 friction 0.3 slip P1.x' name l1\n"
+      "contact P2.y >= 0 friction 0.3 slip P2.x' name l2\ncontact Y >= 0 friction 0.3 slip X' name c\nstart y = h\n");
+  const auto r = run(m, 4);
+  REQUIRE(r.happenings.size() == 1);
+  CHECK(r.happenings[0].mode == "l1 sticking, l2 sticking, c sliding +");
+  CHECK(r.happenings[0].t == doctest::Approx(0.3 * 9.81).epsilon(1e-12));
+  CHECK(r.final.q[3] == doctest::Approx(std::pow(4 - 0.3 * 9.81, 3) / 6).epsilon(1e-11));
+}
+
+TEST_CASE("a mass that is pressed against a wall rests, however its gap is written") {
+  for (const char* gap : {"x - b <= 0", "2 (b - x) >= 0", "-(x - b) >= 0", "x <= b"}) {
+    ModelText m("param m = 1 kg, b = 0.7 m\ncoord x : length\nT = 1/2 m x'^2\nforce x = 3 [N]\ncontact " +
+                std::string(gap) + " name wall\nstart x = b\n");
+    SimulationOptions options;
+    options.duration = 1;
+    const auto r = simulate(m.model, m.equations, options, m.diagnostics);
+    REQUIRE(r);
+    CHECK(r->uncertain.columns.empty());
+    CHECK(r->final.q[0] == 0.7);
+  }
+}
+
 TEST_CASE("two blocks and a wall count the digits of π") {
   const std::pair<double, std::size_t> counts[] = {{1, 3}, {100, 31}, {10'000, 314}};
   for (const auto& [ratio, expected] : counts) {

@@ -129,6 +129,25 @@ TEST_CASE("a body on three rough feet stops and rests, with forces that carry it
   }
 }
 
+TEST_CASE("a bar on two rough feet gives way where its friction is determined, though along the bar it is not") {
+  const auto bar = [](const std::string& forces, double end) {
+    return run_text(
+        "param m = 1 kg, g = 9.81 m/s^2, a = 0.5 m, J = 0.1 kg m^2, k = 1 N/s\ncoord x, y, z : length, v, w : angle\n"
+        "T = 1/2 m (x'^2 + y'^2 + z'^2) + 1/2 J (v'^2 + w'^2)\nV = m g z\n" +
+            forces +
+            "contact z - a v >= 0 friction 0.3 slip (x', y' + a w') name l1\n"
+            "contact z + a v >= 0 friction 0.3 slip (x', y' - a w') name l2\n",
+        end);
+  };
+  const auto pushed = bar("force y = k t\n", 4), turned = bar("force w = k t 1[m]\n", 4);
+  CHECK(pushed.happenings[0].t == doctest::Approx(0.3 * 9.81).epsilon(1e-12));
+  CHECK(pushed.final.q[1] == doctest::Approx(std::pow(4 - 0.3 * 9.81, 3) / 6).epsilon(1e-11));
+  CHECK(turned.happenings[0].t == doctest::Approx(0.15 * 9.81).epsilon(1e-12));
+  CHECK(turned.final.q[4] == doctest::Approx(std::pow(4 - 0.15 * 9.81, 3) / 0.6).epsilon(1e-10));
+  const auto swings = bar("force w = 2 [N m] sin(t/1[s])\n", 1);
+  CHECK(swings.happenings[0].t == doctest::Approx(std::asin(0.15 * 9.81 / 2)).epsilon(1e-12));
+}
+
 TEST_CASE("forces of an undetermined rest are those of cones with a margin, and none beyond them") {
   ConeProblem p;  // a rod between two walls that face each other, pulled along them by F
   p.contacts = {{1, 0.5}, {1, 0.25}};
