@@ -17,6 +17,8 @@ struct DensityBorder {
 };
 /// In ascending order, without the ends; of one space variable.
 std::vector<DensityBorder> density_borders(const FieldEquations& equations);
+/// Along one space variable of several: the lines across it.
+std::vector<DensityBorder> density_borders_along(const FieldEquations& equations, std::size_t direction);
 
 /// The place as it stands in names: l of u(l).
 std::string place_text(const FieldEquations& equations, Expr place);

@@ -96,13 +96,17 @@ Expr jet_at_place(const FieldEquations& equations, const FieldJet& jet, Expr pla
 }
 
 std::vector<DensityBorder> density_borders(const FieldEquations& equations) {
+  return equations.system().space.size() == 1 ? density_borders_along(equations, 0) : std::vector<DensityBorder>{};
+}
+
+std::vector<DensityBorder> density_borders_along(const FieldEquations& equations, std::size_t direction) {
   const FieldSystem& s = equations.system();
-  if (s.space.size() != 1) return {};
+  const SpaceVariable& along = s.space[direction];
   std::vector<Expr> roots{expand_time_derivatives(s.density)};
   if (s.dissipation) roots.push_back(s.dissipation);
   for (const Expr& f : s.forces)
     if (f) roots.push_back(f);
-  const Expr x = s.space.front().symbol;
+  const Expr x = along.symbol;
   Bindings values = parameter_values(equations);
   std::vector<DensityBorder> out;
   for (const Expr& g : switches_of(roots)) {
@@ -113,8 +117,8 @@ std::vector<DensityBorder> density_borders(const FieldEquations& equations) {
     if (!constant) continue;
     const Expr place = readable(-rest / slope, equations.order).value;
     const double at = evaluate(s.expanded(place), values), up = evaluate(s.expanded(slope), values);
-    const bool inside = !s.space.front().from || (at > evaluate(s.expanded(s.space.front().from), values) &&
-                                                  at < evaluate(s.expanded(s.space.front().to), values));
+    const bool inside =
+        !along.from || (at > evaluate(s.expanded(along.from), values) && at < evaluate(s.expanded(along.to), values));
     if (std::isfinite(at) && inside) out.push_back({place, at, g, up > 0});
   }
   std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.at < b.at; });

@@ -449,7 +449,7 @@ FieldModes field_modes(const FieldEquations& equations, std::size_t count, Diagn
     const bool settled = errors.settle(out.frequencies, count, motions->mass.rows());
     if (!settled && &size + 1 != std::end(sizes)) continue;
     out.errors = errors.errors();
-    if (!add_unseen(equations, problem.unseen(), out, diagnostics)) return {};
+    if (!add_unseen(equations, {problem.unseen(), 0}, out, diagnostics)) return {};
     shapes.resize(std::min(count, shapes.size()));
     out.places = problem.places();
     for (Eigen::VectorXd& c : shapes) out.shapes.push_back(problem.shape(std::move(c)));

@@ -1,5 +1,6 @@
 #include "fields/plane_modes.hpp"
 
+#include <maupertuis/coupled_fields.hpp>
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/interrupt_scope.hpp>
 #include <maupertuis/repeated_evaluation.hpp>
@@ -15,8 +16,9 @@
 #include <limits>
 
 /// Ritz's method on a rectangle: products of integrated Legendre polynomials along x and along y, of twice integrated
-/// ones where the density holds second derivatives (plates), one element over all of the domain, which converge
-/// exponentially where the coefficients are smooth. Degrees grow until the frequencies of two sizes agree.
+/// ones where the density holds second derivatives (plates), on elements that end where coefficients jump along a side,
+/// which converge exponentially where the coefficients are smooth. Degrees grow until the frequencies of two sizes
+/// agree.
 namespace maupertuis {
 namespace {
 
@@ -24,12 +26,13 @@ using Side = BoundaryCondition::Side;
 
 /// Functions along one direction with their values, slopes and curvatures at the points of quadrature.
 struct Axis {
+  std::vector<double> borders;  // of elements
   ElementSpace space;
   Eigen::VectorXd weight;
   Eigen::MatrixXd of[3];  // [points × functions]
 
-  Axis(double from, double to, int degree, bool periodic, ElementSpace::Kind kind)
-      : space({{from, to}, degree, degree + 6, periodic}, kind) {
+  Axis(std::vector<double> ends, int degree, bool periodic, ElementSpace::Kind kind)
+      : borders(std::move(ends)), space({borders, degree, degree + 6, periodic}, kind) {
     const auto q = static_cast<Eigen::Index>(space.points().size());
     weight.resize(q);
     for (Eigen::MatrixXd& m : of) m = Eigen::MatrixXd::Zero(q, size());
@@ -42,7 +45,12 @@ struct Axis {
   }
   Eigen::Index size() const { return static_cast<Eigen::Index>(space.size()); }
   Eigen::Index points() const { return weight.size(); }
-  double place(Eigen::Index point) const { return space.points()[static_cast<std::size_t>(point)].x; }
+  /// Inside of its element, as coefficients may jump at borders.
+  double place(Eigen::Index point) const {
+    const std::size_t q = static_cast<std::size_t>(point), cell = q / (space.points().size() / (borders.size() - 1));
+    const double near = 1e-13 * (borders[cell + 1] - borders[cell]);
+    return std::clamp(space.points()[q].x, borders[cell] + near, borders[cell + 1] - near);
+  }
   /// ∫ of two derivatives.
   Eigen::MatrixXd integrals(int one, int other) const {
     Eigen::MatrixXd weighted = of[other];
@@ -60,9 +68,11 @@ class PlaneModes {
         entries_(entries),
         kind_(smooth ? ElementSpace::Kind::Smooth : ElementSpace::Kind::Continuous) {
     for (const Parameter& p : equations.model->parameters) values_[p.symbol] = p.si_value;
-    for (std::size_t i = 0; i < 2; ++i)
-      from_[i] = evaluate(s_.expanded(s_.space[i].from), values_),
+    for (std::size_t i = 0; i < 2; ++i) {
+      from_[i] = evaluate(s_.expanded(s_.space[i].from), values_);
       to_[i] = evaluate(s_.expanded(s_.space[i].to), values_);
+      borders_[i] = borders_along(i);
+    }
     for (const DensityEntry& e : entries.list) gyroscopic_ = gyroscopic_ || e.ta != e.tb;
   }
 
@@ -81,9 +91,11 @@ class PlaneModes {
     const int small = static_cast<int>(least + n), large = std::max(small, static_cast<int>(least + ratio * n));
     axes_.clear();
     for (std::size_t i = 0; i < 2; ++i) {
-      const int wanted = (i == 0) == across ? small : std::min(large, most_degree_);
-      degrees_[i] = std::max(wanted, degrees_[i] + 2);
-      axes_.emplace_back(from_[i], to_[i], degrees_[i], s_.periodic, kind_);
+      constexpr int least_of_element = 6;
+      const int elements = static_cast<int>(borders_[i].size()) - 1,
+                wanted = ((i == 0) == across ? small : std::min(large, most_degree_)) / elements;
+      degrees_[i] = std::max({wanted, least_of_element, degrees_[i] + 2});
+      axes_.emplace_back(borders_[i], degrees_[i], s_.periodic, kind_);
     }
     size_ = axes_[0].size() * axes_[1].size();
   }
@@ -107,18 +119,17 @@ class PlaneModes {
     return out;
   }
 
-  /// How much of a coefficient lies between the points of quadrature, beside its mean, at most: along each side for
-  /// some places of the other, and over the plane.
-  double unseen() const {
-    double out = 0;
+  /// At most, of the coefficients: along each side for some places of the other, and over the plane.
+  UnseenParts unseen() const {
+    UnseenParts out;
     for (const DensityEntry& e : entries_.list) {
       if (holds_symbol(e.value, s_.space[0].symbol) && holds_symbol(e.value, s_.space[1].symbol))
-        out = std::max(out, unseen(e.value));
+        out.between = std::max(out.between, unseen(e.value));
       for (std::size_t along = 0; along < 2; ++along) {
         if (!holds_symbol(e.value, s_.space[along].symbol)) continue;
         const Axis& other = axes_[1 - along];
         for (Eigen::Index i = 0; i < other.points(); i += std::max<Eigen::Index>(1, other.points() / 5))
-          out = std::max(out, unseen(e.value, along, other.place(i)));
+          add_unseen_along(e, along, other.place(i), out);
       }
     }
     return out;
@@ -175,16 +186,18 @@ class PlaneModes {
            })
         .front();
   }
-  double unseen(Expr value, std::size_t along, double across) const {
-    const Expr root[] = {value};
-    const RepeatedEvaluation evaluation(root);
+  void add_unseen_along(const DensityEntry& e, std::size_t along, double across, UnseenParts& out) const {
+    const RepeatedEvaluation evaluation({&e.value, 1});
     const auto at = [&](double x) {
       return along == 0 ? value_at(evaluation, x, across) : value_at(evaluation, across, x);
     };
     std::vector<std::pair<double, double>> points;
     for (Eigen::Index q = 0; q < axes_[along].points(); ++q)
       points.emplace_back(axes_[along].place(q), axes_[along].weight(q));
-    return unseen_along(at, from_[along], to_[along] - from_[along], points);
+    out.between = std::max(out.between, unseen_along(at, from_[along], to_[along] - from_[along], points));
+    // A stiffness or a mass: what it is off by counts beside its own value.
+    const bool square = e.a == e.b && e.da == e.db && e.ya == e.yb && e.ta == e.tb && e.da + e.ya + e.ta > 0;
+    out.unfollowed = std::max(out.unfollowed, unfollowed_along(at, borders_[along], degrees_[along], square));
   }
 
   /// Over the plane: what is narrow in both directions lies between the lines too.
@@ -208,6 +221,18 @@ class PlaneModes {
     }
     constexpr double all = static_cast<double>(places) * places;
     return size > 0 ? std::abs(by_quadrature - by_places / all) / (size / all) : 0;
+  }
+
+  /// Elements end where a coefficient jumps or has a kink across the whole of a line, if there are few of these.
+  std::vector<double> borders_along(std::size_t along) const {
+    constexpr std::size_t most = 3;
+    std::vector<double> out{from_[along]};
+    const double near = 1e-9 * (to_[along] - from_[along]);
+    for (const DensityBorder& b : density_borders_along(equations_, along))
+      if (b.at > out.back() + near && b.at < to_[along] - near) out.push_back(b.at);
+    if (out.size() - 1 > most) out.resize(1);
+    out.push_back(to_[along]);
+    return out;
   }
 
   Eigen::Index index(std::size_t i, std::size_t j) const {
@@ -265,7 +290,7 @@ class PlaneModes {
       std::size_t a = 0;
       while (equations_.varied[a] != b.jet.field) ++a;
       const std::size_t along = b.side == Side::Left || b.side == Side::Right ? 0 : 1;
-      const std::size_t border = b.side == Side::Right || b.side == Side::Top ? 1 : 0;
+      const std::size_t border = b.side == Side::Right || b.side == Side::Top ? borders_[along].size() - 1 : 0;
       const ElementSpace& space = axes_[along].space;
       const std::size_t function = slope ? space.slope_at_border(border) : space.value_at_border(border);
       for (std::size_t other = 0; other < axes_[1 - along].space.size(); ++other)
@@ -307,6 +332,7 @@ class PlaneModes {
   const ElementSpace::Kind kind_;
   Bindings values_;
   double from_[2] = {0, 0}, to_[2] = {0, 0};
+  std::vector<double> borders_[2];  // of elements
   int degrees_[2] = {0, 0};
   std::vector<Axis> axes_;
   Eigen::Index size_ = 0;  // functions of a field

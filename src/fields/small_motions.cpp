@@ -3,6 +3,7 @@
 #include <maupertuis/evaluate.hpp>
 
 #include "fields/given_fields.hpp"
+#include "fields/lobatto.hpp"
 #include "linear_algebra/products.hpp"
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <string>
 
@@ -262,19 +264,50 @@ double unseen_along(const std::function<double(double)>& f, double from, double 
   return size > 0 ? std::abs(by_points - by_places) / size : 0;
 }
 
-bool add_unseen(const FieldEquations& equations, double unseen, FieldModes& modes, Diagnostics& diagnostics) {
-  constexpr double much = 0.03, places = 1e-6;  // the latter: of the sum over places itself
-  if (!(unseen < much)) {
-    diagnostics.error(
-        "E0647", equations.system().density_span,
-        "the polynomials of the modes pass by what a coefficient has somewhere",
-        fmt::format("Between their points lie {:.2g} % of it, and no value could be trusted.", 100 * unseen),
-        "Make it wider, or `maup simulate` the motion with more `cells`.");
+double unfollowed_along(const std::function<double(double)>& f, const std::vector<double>& borders, int degree,
+                        bool beside_itself) {
+  constexpr int places = 400;  // of an element
+  const Lobatto rule(degree);
+  const double length = borders.back() - borders.front();
+  double off = 0, size = 0, ratio = 0;
+  for (std::size_t e = 0; e + 1 < borders.size(); ++e) {
+    const double width = borders[e + 1] - borders[e];
+    const auto value = [&](double xi) {  // inside: at a border it may jump
+      return f(borders[e] + width * std::clamp((1 + xi) / 2, 1e-13, 1 - 1e-13));
+    };
+    std::vector<double> nodes, factor, slope;
+    for (const double xi : rule.x) nodes.push_back(value(xi));
+    for (int i = 0; i < places; ++i) {
+      const double xi = 2 * (i + 0.5) / places - 1, v = value(xi);
+      rule.at(xi, factor, slope);
+      const double polynomial = std::inner_product(nodes.begin(), nodes.end(), factor.begin(), 0.0);
+      const double part = width / length / places, distance = std::abs(v - polynomial);
+      off += part * distance, size += part * std::abs(v);
+      ratio += part * std::min(1.0, distance / std::max(std::abs(v), 1e-300));
+    }
+  }
+  return beside_itself ? ratio : size > 0 ? off / size : 0;
+}
+
+bool add_unseen(const FieldEquations& equations, const UnseenParts& unseen, FieldModes& modes,
+                Diagnostics& diagnostics) {
+  constexpr double much = 0.03, much_unfollowed = 0.25, places = 1e-6;  // the last: of the sum over places itself
+  std::string why;
+  if (!(unseen.between < much))
+    why = fmt::format("Between their points lie {:.2g} % of it, and no value could be trusted.", 100 * unseen.between);
+  else if (!(unseen.unfollowed < much_unfollowed))
+    why =
+        fmt::format("Polynomials of their degree are off by {:.2g} % of it in the mean, and no value could be trusted.",
+                    100 * unseen.unfollowed);
+  if (!why.empty()) {
+    diagnostics.error("E0647", equations.system().density_span,
+                      "the polynomials of the modes pass by what a coefficient has somewhere", why,
+                      "Make it wider, or `maup simulate` the motion with more `cells`.");
     return false;
   }
-  if (unseen > places)
-    for (std::size_t i = 0; i < modes.errors.size(); ++i)
-      modes.errors[i] += 4 * unseen * std::abs(modes.frequencies[i]);
+  const double part =
+      (unseen.between > places ? 4 * unseen.between : 0) + (unseen.unfollowed > places ? unseen.unfollowed : 0);
+  for (std::size_t i = 0; i < modes.errors.size(); ++i) modes.errors[i] += part * std::abs(modes.frequencies[i]);
   return true;
 }
 

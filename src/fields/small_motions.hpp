@@ -55,9 +55,20 @@ bool solve_gyroscopic(const SmallMotions& motions, std::size_t count, std::vecto
 /// that of many places. `points`: place and weight.
 double unseen_along(const std::function<double(double)>& f, double from, double length,
                     const std::vector<std::pair<double, double>>& points);
-/// What lies between the points of quadrature counts as an error, four times its part; false, and E0647, where it is
-/// much.
-bool add_unseen(const FieldEquations& equations, double unseen, FieldModes& modes, Diagnostics& diagnostics);
+/// By how much a function of a line and the polynomials through the nodes of its elements differ, in the mean: beside
+/// its own mean, or `beside_itself`, each place beside the value there. Squares of frequencies are Rayleigh's
+/// quotients, so that a stiffness or a mass that is off by a part everywhere makes them wrong by that part at most.
+double unfollowed_along(const std::function<double(double)>& f, const std::vector<double>& borders, int degree,
+                        bool beside_itself);
+
+/// What is not known of the coefficients, in parts of them.
+struct UnseenParts {
+  double between = 0;     // the points of quadrature
+  double unfollowed = 0;  // by polynomials of the degree of the modes
+};
+/// They count as errors, what lies between points four times; false, and E0647, where they are much.
+bool add_unseen(const FieldEquations& equations, const UnseenParts& unseen, FieldModes& modes,
+                Diagnostics& diagnostics);
 
 /// Errors of frequencies that are computed on one size of functions after the other.
 class FrequencyErrors {

@@ -168,8 +168,16 @@ TEST_CASE("frequencies of a membrane whose tension jumps within the domain are w
       "density = 1/2 u'^2 - 1/2 " +
           tension + " (u_x^2 + pi^2 u^2)\n",
       1);
-  CHECK(std::abs(found.frequencies[0] - exact.frequencies[0]) < found.errors[0]);
-  CHECK(found.errors[0] < 0.2 * found.frequencies[0]);
+  CHECK(std::abs(found.frequencies[0] - exact.frequencies[0]) < found.errors[0] + 1e-12);
+  CHECK(found.errors[0] < 1e-9);
+  // With sin π y, the tension 0.001 + s at the distance s from the line x = 1/2: J_1(a) Y_0(b) = Y_1(a) J_0(b) with
+  // a² = 0.004 ω², b² = 2.004 ω² has the root 1.7049955005707.
+  const FieldModes kink = plane_modes_of(
+      "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 boundary u = 0\n"
+      "density = 1/2 u'^2 - 1/2 (0.001 + abs(x - 0.5)) u_x^2 - 1/2 u_y^2\n",
+      1);
+  CHECK(std::abs(kink.frequencies[0] - std::hypot(1.7049955005707, std::numbers::pi)) < kink.errors[0]);
+  CHECK(kink.errors[0] < 1e-4);
 }
 
 TEST_CASE("modes without the dissipation of the field say so") {
@@ -265,6 +273,9 @@ TEST_CASE("modes that nothing is known of are refused") {
   CHECK(
       refusal(square + "boundary u = 0\ndensity = 1/2 (1 + 50 exp(-(400 (x - 0.5))^2)) u'^2 - 1/2 (u_x^2 + u_y^2)\n") ==
       "E0647");
+  // Sixteen waves of a stiffness: sizes agree with each other on its mean, which is not what slow waves feel.
+  CHECK(refusal(square + "boundary u = 0\ndensity = 1/2 u'^2 - 1/2 (1 + 0.5 sin(100 x)) u_x^2 - 1/2 u_y^2\n") ==
+        "E0647");
   CHECK(refusal(square + "boundary u = 0\ndensity = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2) - u^2/(x - 0.5)^2\n") == "E0644");
   CHECK(refusal(square + "boundary u = 0\nparam s = 0\ndensity = 1/2 s u'^2 - 1/2 (u_x^2 + u_y^2)\n") == "E0644");
   CHECK(refusal(square + "\nboundary left : u_x = 0\ndensity = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2) - 0.3 u_x u_y\n") ==
