@@ -135,6 +135,40 @@ bool vanishes(const Matrix& part, const Matrix& beside) {
          part.lpNorm<Eigen::Infinity>() <= 1e-12 * (beside.size() == 0 ? 0 : beside.lpNorm<Eigen::Infinity>());
 }
 
+/// ∂ρ of the relations that motions keep, by the states; what cancels up to rounding is none.
+Matrix relations_by_states(const RowsAtPoint& relations, const Matrix& states) {
+  constexpr double rounding = 1e-12;
+  Matrix by(relations.value.size(), states.rows());
+  by << relations.by_q, relations.by_v;
+  Matrix out = product(by, states);
+  const Matrix sizes = product(by.cwiseAbs(), states.cwiseAbs());
+  for (Index i = 0; i < out.rows(); ++i)
+    for (Index j = 0; j < out.cols(); ++j)
+      if (std::abs(out(i, j)) <= rounding * sizes(i, j)) out(i, j) = 0;
+  return out;
+}
+
+/// No motion leaves ∂ρ x = 0: the states that are independent there, and the others by them.
+void keep_to(const Matrix& relations, const Vector& sizes, Linearization& out) {
+  const Split split = split_columns(relations, sizes);
+  if (split.dependent.empty()) return;
+  const Matrix all = null_basis(relations, split);
+  std::vector<std::size_t> positions, velocities;
+  const std::size_t f = out.independent.size();
+  for (const std::size_t i : split.independent)
+    if (i < f)
+      positions.push_back(out.independent[i]);
+    else
+      velocities.push_back(out.independent_velocities[i - f]);
+  const auto at_positions = static_cast<Index>(f), left = static_cast<Index>(positions.size());
+  out.positions = to_real(product(to_eigen(out.positions), Matrix(all.topLeftCorner(at_positions, left))));
+  out.a = to_real(product(rows_of(to_eigen(out.a), split.independent), all));
+  out.b = to_real(rows_of(to_eigen(out.b), split.independent));
+  out.c = to_real(product(to_eigen(out.c), all));
+  out.measured.c = to_real(product(to_eigen(out.measured.c), all));
+  out.independent = std::move(positions), out.independent_velocities = std::move(velocities);
+}
+
 }  // namespace
 
 LinearizationResult linearize(const PointEquations& equations, const OperatingPoint& point) {
@@ -196,7 +230,14 @@ LinearizationResult linearize(const PointEquations& equations, const OperatingPo
 
   const bool uniform =
       turning.size() > 0 || std::all_of(point.a.begin(), point.a.end(), [](double x) { return x == 0; });
-  if (e.m == 0 || (e.holonomic == e.m && uniform && vanishes(rate_q, rate_w))) second_order_form(out, p, xi, sizes);
+  if (uniform && e.relations.kernel.size() > 0) {
+    Vector of_states(f + g);
+    of_states << rows_of(sizes, out.independent), rows_of(sizes, out.independent_velocities);
+    keep_to(relations_by_states(rows_at(e.relations), c), of_states, out);
+  }
+  const bool whole = to_eigen(out.a).rows() == f + g;
+  if (whole && (e.m == 0 || (e.holonomic == e.m && uniform && vanishes(rate_q, rate_w))))
+    second_order_form(out, p, xi, sizes);
   return result;
 }
 

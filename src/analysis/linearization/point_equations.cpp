@@ -1,5 +1,6 @@
 #include "analysis/linearization/point_equations.hpp"
 
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/kinds.hpp>
 #include <maupertuis/reactions.hpp>
@@ -87,6 +88,17 @@ ExprVector with_reactions(const EquationsOfMotion& equations, std::span<const Ex
   return substitute(out, forces);
 }
 
+/// Of the constraints that were found for a degenerate Lagrangian those that no row of these equations holds.
+ExprVector kept_relations(const EquationsOfMotion& equations) {
+  ExprVector out;
+  if (!equations.degenerate) return out;
+  const std::vector<Constraint>& held = equations.system->constraints;
+  for (const FoundConstraint& found : equations.degenerate->chain.constraints)
+    if (std::none_of(held.begin(), held.end(), [&](const Constraint& c) { return c.value == found.value; }))
+      out.push_back(found.value);
+  return out;
+}
+
 bool switches_within(Expr e) {
   const ExprVector nodes = topological_order({&e, 1});
   return std::any_of(nodes.begin(), nodes.end(), [](const Expr& node) { return has_switch(node.kind()); });
@@ -153,6 +165,7 @@ PointEquations::Impl::Impl(const EquationsOfMotion& equations, std::span<const E
       momenta(Lowering(equations).rows(equations.momenta)),
       resting(Lowering(equations).resting_rows(equations.balance())),
       rates(Lowering(equations).rows(equations.constraint_rates)),
+      relations(Lowering(equations).rows(kept_relations(equations))),
       outputs(Lowering(equations).rows(with_reactions(equations, measured))),
       input_formulas(Lowering(equations).function(formulas(*system))),
       inputs(input_formulas),
@@ -184,8 +197,8 @@ Power PointEquations::Impl::power_of_friction(const OperatingPoint& point) {
 }
 
 void PointEquations::Impl::set_parameters() {
-  for (Rows* rows :
-       {&balance, &positions, &velocities, &accelerations, &momenta, &resting, &rates, &outputs, &energy_slopes}) {
+  for (Rows* rows : {&balance, &positions, &velocities, &accelerations, &momenta, &resting, &rates, &relations,
+                     &outputs, &energy_slopes}) {
     rows->values.set_parameters(parameters);
     rows->entries.set_parameters(parameters);
   }

@@ -44,8 +44,9 @@ struct PointEquations::Impl {
   Rows balance, positions, velocities, accelerations, momenta;  // [n], [holonomic], [m - holonomic], [m], [n]
   Rows resting;                                                 // the balance where q̇ = q̈ = 0: much shorter
   Rows rates;                                                   // [m] dφ/dt and ψ
-  Rows outputs;                                                 // what is measured
-  std::vector<bool> output_switches;                            // whether abs, min, piecewise … stand in it
+  Rows relations;  // of a degenerate system: what every state obeys and motions keep without a row of their own
+  Rows outputs;    // what is measured
+  std::vector<bool> output_switches;  // whether abs, min, piecewise … stand in it
   FunctionKernel input_formulas;
   FunctionWorkspace inputs;
   FunctionKernel energy;  // h_E: orders equilibria

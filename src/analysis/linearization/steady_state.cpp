@@ -43,13 +43,14 @@ SteadyState::System SteadyState::system_at(const OperatingPoint& point) const {
   const auto q = static_cast<Index>(free_q_.size()), c = static_cast<Index>(free_rates_.size()),
              m = static_cast<Index>(e_.m);
   const RowsAtPoint balance = e_.at(balance_of(point), point), positions = e_.at(e_.positions, point),
-                    velocities = e_.at(e_.velocities, point);
+                    velocities = e_.at(e_.velocities, point), relations = e_.at(e_.relations, point);
   const RowsAtPoint momenta = kept_momenta_.empty() ? RowsAtPoint{} : e_.at(e_.momenta, point);
   const auto kept = static_cast<Index>(kept_momenta_.size());
-  const Index rows = balance.value.size() + positions.value.size() + velocities.value.size() + kept;
+  const Index rows =
+      balance.value.size() + positions.value.size() + velocities.value.size() + relations.value.size() + kept;
   System out{Vector::Zero(rows), Matrix::Zero(rows, q + c + m)};
   Index row = 0;
-  for (const RowsAtPoint* part : {&balance, &positions, &velocities}) {
+  for (const RowsAtPoint* part : {&balance, &positions, &velocities, &relations}) {
     const Index count = part->value.size();
     out.f.segment(row, count) = part->value;
     for (Index j = 0; j < q; ++j)
