@@ -110,13 +110,14 @@ struct FieldModes {
   std::vector<double> places;
   std::vector<double> upwards;  // in the plane those of y
   std::vector<double> errors;   // rad/s, from fewer functions
+  std::string about;            // the rest, where frequencies depend on it: "u = 0"
 };
 
-/// The lowest `count`: Ritz's method with Legendre polynomials on elements between the places of bodies and the borders
-/// of the density, for densities of first and second derivatives; rectangles: products of polynomials over all of the
-/// domain, without bodies. Functions become more until frequencies stand still, up to 400 unknowns, in the plane some
-/// 1000. Friction is left out, and told (W0653). Empty, and E0644, where there are none, E0647 where a coefficient is
-/// passed by.
+/// The lowest `count` about the start, where that is a rest, else about φ = 0: Ritz's method with Legendre polynomials
+/// on elements between the places of bodies and the borders of the density, for densities of first and second
+/// derivatives; rectangles: products of polynomials over all of the domain, without bodies. Functions become more until
+/// frequencies stand still, up to 400 unknowns, in the plane some 1000. Friction is left out, and told (W0653). Empty,
+/// and E0644, where there are none, E0647 where a coefficient is passed by.
 FieldModes field_modes(const FieldEquations& equations, std::size_t count, Diagnostics& diagnostics);
 /// Their frequencies alone.
 std::vector<double> field_frequencies(const FieldEquations& equations, std::size_t count, Diagnostics& diagnostics);

@@ -418,8 +418,7 @@ FieldModes field_modes(const FieldEquations& equations, std::size_t count, Diagn
     return out;
   }
   DensityEntries entries;
-  if (!entries_of(equations, entries, diagnostics) || !has_modes_at_rest(equations, entries.linear, diagnostics))
-    return out;
+  if (!entries_of(equations, entries, diagnostics) || !has_modes_at_rest(equations, entries, diagnostics)) return out;
   if (equations.bodies &&
       std::any_of(equations.bodies->dissipative_terms.begin(), equations.bodies->dissipative_terms.end(),
                   [](const Expr& e) { return !e.is_zero(); }))
@@ -455,6 +454,7 @@ FieldModes field_modes(const FieldEquations& equations, std::size_t count, Diagn
     for (Eigen::VectorXd& c : shapes) out.shapes.push_back(problem.shape(std::move(c)));
     break;
   }
+  out.about = entries.about(equations);
   out.frequencies.resize(std::min(count, out.frequencies.size()));
   out.errors.resize(out.frequencies.size());
   return out;

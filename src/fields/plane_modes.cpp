@@ -367,7 +367,7 @@ FieldModes plane_modes(const FieldEquations& equations, std::size_t count, Diagn
     refuse_modes_of(equations, diagnostics, trouble);
     return {};
   }
-  if (!has_modes_at_rest(equations, entries.linear, diagnostics)) return {};
+  if (!has_modes_at_rest(equations, entries, diagnostics)) return {};
   PlaneModes problem(equations, entries, smooth);
   constexpr std::size_t beyond = 4;  // so that modes of one frequency are seen together
   constexpr double sizes[] = {250, 380, 580, 900}, sizes_sideways[] = {60, 90, 130};
@@ -386,7 +386,7 @@ FieldModes plane_modes(const FieldEquations& equations, std::size_t count, Diagn
     }
     if (errors.settle(out.frequencies, count, motions.mass.rows())) break;
   }
-  out.errors = errors.errors();
+  out.about = entries.about(equations), out.errors = errors.errors();
   if (!add_unseen(equations, problem.unseen(), out, diagnostics)) return {};
   problem.part_equals(out.frequencies, shapes);
   out.frequencies.resize(std::min(count, out.frequencies.size()));

@@ -53,8 +53,7 @@ bool add_forces(const FieldEquations& equations, DensityEntries& out, Diagnostic
     if (!force) continue;
     const Expr f = known(equations, force);
     if (!f) return refuse_modes_of(equations, diagnostics, "A given field has no formula.");
-    ExprMap rest;
-    for (const Expr& jet : s.jets_in(f)) rest[jet] = s.context->number(0);
+    const ExprMap rest = out.rest.values(equations, f);
     for (const Expr& one : s.jets_in(f)) {
       const FieldJet jet = *s.jet_of(one);
       if (jet.time > 0)
@@ -85,8 +84,8 @@ bool entries_of(const FieldEquations& equations, DensityEntries& out, Diagnostic
   const FieldSystem& s = equations.system();
   const Expr density = density_of(equations);
   if (!density) return refuse_modes_of(equations, diagnostics, "A given field has no formula.");
-  ExprMap rest;
-  for (const Expr& jet : s.jets_in(density)) rest[jet] = s.context->number(0);
+  out.rest = rest_of(equations);
+  const ExprMap rest = out.rest.values(equations, density);
   const auto place = [&](std::size_t field) {
     return static_cast<std::size_t>(std::find(equations.varied.begin(), equations.varied.end(), field) -
                                     equations.varied.begin());
@@ -107,23 +106,15 @@ bool entries_of(const FieldEquations& equations, DensityEntries& out, Diagnostic
   return add_forces(equations, out, diagnostics);
 }
 
-bool has_modes_at_rest(const FieldEquations& equations, bool linear, Diagnostics& diagnostics) {
+bool has_modes_at_rest(const FieldEquations& equations, const DensityEntries& entries, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
-  if (linear) return true;
-  ExprMap rest;
-  for (const Expr& r : equations.residuals)
-    for (const Expr& jet : s.jets_in(r)) rest[jet] = s.context->number(0);
-  for (const Expr& r : equations.residuals) {
-    const Expr at_rest = s.expanded(substitute(r, rest));
-    if (zero_test(at_rest).verdict != Verdict::Zero)
-      return refuse_modes_of(equations, diagnostics, "φ = 0 is no rest of it.");
-  }
-  for (const BoundaryCondition& b : s.boundary)
-    if (!s.expanded(b.value).is_zero())
-      return refuse_modes_of(equations, diagnostics, "Its ends are held away from φ = 0.");
+  if (entries.linear || is_rest(equations, entries.rest)) return true;
   if (!s.end_forces.empty())
     return refuse_modes_of(equations, diagnostics, "A force acts at its end, so that φ = 0 is no rest of it.");
-  return true;
+  if (std::any_of(s.boundary.begin(), s.boundary.end(),
+                  [&](const BoundaryCondition& b) { return !s.expanded(b.value).is_zero(); }))
+    return refuse_modes_of(equations, diagnostics, "Its ends are held away from φ = 0, and its start is no rest.");
+  return refuse_modes_of(equations, diagnostics, "φ = 0 is no rest of it, nor is its start.");
 }
 
 std::string no_small_motions(const SmallMotions& motions) {

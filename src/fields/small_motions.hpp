@@ -2,6 +2,7 @@
 #include <maupertuis/field_run.hpp>
 #include <maupertuis/fields.hpp>
 
+#include "fields/field_rest.hpp"
 #include "linear_algebra/dense.hpp"
 
 #include <functional>
@@ -28,14 +29,17 @@ struct DensityEntry {
 struct DensityEntries {
   std::vector<DensityEntry> list;
   bool linear = true;  // constant second derivatives: the same about every rest
+  FieldRest rest;
+  /// What they are about, where that matters: "u = 0".
+  std::string about(const FieldEquations& equations) const { return linear ? "" : rest.text(equations); }
 };
 
 /// With given fields by their formulas; an empty handle where one has none.
 Expr density_of(const FieldEquations& equations);
 /// With force densities that have a potential. E0644 where one holds velocities or derivatives in space.
 bool entries_of(const FieldEquations& equations, DensityEntries& out, Diagnostics& diagnostics);
-/// Whether φ = 0 is a rest of it, where that counts.
-bool has_modes_at_rest(const FieldEquations& equations, bool linear, Diagnostics& diagnostics);
+/// Whether what they are about is a rest, where that counts.
+bool has_modes_at_rest(const FieldEquations& equations, const DensityEntries& entries, Diagnostics& diagnostics);
 
 /// M c̈ + G ċ + K c = 0 in the free unknowns, those that constraints tie together replaced.
 struct SmallMotions {

@@ -177,6 +177,7 @@ class FieldComposer {
     if (!parts.dispersion && (!parts.modes || parts.modes->frequencies.empty())) return;
     ReportContent::ModePoint rest;
     rest.name = "Waves and modes about the field at rest";
+    if (parts.modes && !parts.modes->about.empty()) rest.name += ", modes about " + parts.modes->about;
     rest.stability = parts.dispersion ? "Waves exp(i(k·x − ω t)) of the linearized equations obey" : "";
     if (parts.dispersion)
       rest.formulas.push_back({shown(with_imaginary_unit(*parts.dispersion)), layouts::number("0"), "", ""});

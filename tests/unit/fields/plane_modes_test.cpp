@@ -268,6 +268,32 @@ TEST_CASE("a rest that is unstable grows, at its rate") {
   CHECK(std::abs(found.frequencies[1] - std::sqrt(5 * pi * pi - 20)) < 1e-10);
 }
 
+TEST_CASE("modes are about the start where it is a rest, and say which rest it is") {
+  // Two wells at u = ±1, where ω² = 2 + k², and a hill at 0.
+  const double pi = std::numbers::pi;
+  const std::string wells = " - 1/4 (u^2 - 1)^2\nstart u = ";
+  for (const std::string sides : {"(x) : number on x = 0 .. 1", "(x, y) : number on x = 0 .. 1, y = 0 .. 1"}) {
+    const std::string head = "dimensionless\nfield u" + sides + "\ndensity = 1/2 u'^2 - 1/2 u_x^2" +
+                             (sides.find('y') < sides.size() ? " - 1/2 u_y^2" : "") + wells;
+    const FieldModes well = plane_modes_of(head + "-1\nrun 1\n", 2);
+    CHECK(well.about == "u = -1");
+    CHECK(well.frequencies[0] == doctest::Approx(std::sqrt(2)).epsilon(1e-10));
+    CHECK(well.frequencies[1] == doctest::Approx(std::sqrt(2 + pi * pi)).epsilon(1e-10));
+    const FieldModes hill = plane_modes_of(head + "0.1 cos(pi x)\nrun 1\n", 1);
+    CHECK(hill.about == "u = 0");
+    CHECK(hill.frequencies[0] == doctest::Approx(-1).epsilon(1e-10));
+  }
+  // A kink between them, held at its ends: without these its first mode would be its translation.
+  const std::string kink =
+      "dimensionless\nfield u(x) : number on x = -3 .. 3\nboundary left : u = -tanh(3/sqrt(2))\n"
+      "boundary right : u = tanh(3/sqrt(2))\ndensity = 1/2 u'^2 - 1/2 u_x^2" +
+      wells;
+  const double slow = plane_modes_of(kink + "tanh(x/sqrt(2))\nrun 1\n", 1).frequencies[0];
+  CHECK(slow > 0);
+  CHECK(slow < 0.1);
+  CHECK(refusal(kink + "x/3 tanh(3/sqrt(2))\nrun 1\n") == "E0644");
+}
+
 TEST_CASE("modes that nothing is known of are refused") {
   // Narrower than the distance of any points, infinite, without inertia, and a slope that says nothing of the force.
   CHECK(

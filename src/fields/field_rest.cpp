@@ -1,0 +1,108 @@
+#include "fields/field_rest.hpp"
+
+#include <maupertuis/evaluate.hpp>
+
+#include "fields/given_fields.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace maupertuis {
+namespace {
+
+using Side = BoundaryCondition::Side;
+
+bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
+
+std::size_t direction_of(Side side) { return side == Side::Left || side == Side::Right ? 0 : 1; }
+
+/// With the variable across a side at its value there.
+Expr on_side(const FieldSystem& s, Expr e, Side side) {
+  const SpaceVariable& x = s.space[direction_of(side)];
+  return s.expanded(substitute(e, {{x.symbol, side == Side::Left || side == Side::Bottom ? x.from : x.to}}));
+}
+
+/// Whether what a side holds says what the natural condition says at a free one.
+bool is_given(const FieldSystem& s, const NaturalCondition& n, Side side) {
+  return std::any_of(s.boundary.begin(), s.boundary.end(), [&](const BoundaryCondition& b) {
+    return b.side == side && b.jet.field == n.field && (b.jet.order() == 1 || !n.moment);
+  });
+}
+
+Expr at_rest(const FieldEquations& equations, const FieldRest& rest, Expr e) {
+  e = with_given_fields(equations.system(), e);
+  return substitute(e, rest.values(equations, e));
+}
+
+bool closes(const FieldSystem& s, const FieldRest& rest) {
+  for (const Expr& field : rest.fields)
+    for (const SpaceVariable& x : s.space)
+      for (const Expr& e : {field, differentiate(field, x.symbol)})
+        if (!vanishes(s.expanded(substitute(e, {{x.symbol, x.from}}) - substitute(e, {{x.symbol, x.to}}))))
+          return false;
+  return true;
+}
+
+bool stays_inside(const FieldEquations& equations, const FieldRest& rest) {
+  return std::all_of(equations.residuals.begin(), equations.residuals.end(),
+                     [&](const Expr& r) { return vanishes(equations.system().expanded(at_rest(equations, rest, r))); });
+}
+
+/// Where bodies act, their equations say the rest.
+bool stays_at_ends(const FieldEquations& equations, const FieldRest& rest) {
+  const FieldSystem& s = equations.system();
+  if (!s.end_forces.empty()) return false;
+  if (!s.space.front().from || equations.bodies) return true;
+  if (s.periodic) return closes(s, rest);
+  for (const BoundaryCondition& b : s.boundary) {
+    const Expr jet = s.jet_symbol(b.jet);
+    if (!vanishes(on_side(s, at_rest(equations, rest, jet), b.side) - s.expanded(b.value))) return false;
+  }
+  for (const NaturalCondition& n : equations.natural)
+    for (const Side side : n.along == 0 ? std::vector{Side::Left, Side::Right} : std::vector{Side::Bottom, Side::Top})
+      if (!is_given(s, n, side) && !vanishes(on_side(s, at_rest(equations, rest, n.value), side))) return false;
+  return true;
+}
+
+}  // namespace
+
+ExprMap FieldRest::values(const FieldEquations& equations, Expr e) const {
+  const FieldSystem& s = equations.system();
+  ExprMap out;
+  for (const Expr& symbol : s.jets_in(e)) {
+    const FieldJet jet = *s.jet_of(symbol);
+    const auto a = std::find(equations.varied.begin(), equations.varied.end(), jet.field) - equations.varied.begin();
+    if (static_cast<std::size_t>(a) == fields.size()) continue;  // given
+    Expr value = jet.time > 0 ? s.context->number(0) : fields[static_cast<std::size_t>(a)];
+    for (std::size_t x = 0; x < s.space.size(); ++x)
+      for (int k = 0; k < jet.space[x]; ++k) value = differentiate(value, s.space[x].symbol);
+    out.emplace(symbol, value);
+  }
+  return out;
+}
+
+std::string FieldRest::text(const FieldEquations& equations) const {
+  std::string out;
+  for (std::size_t a = 0; a < fields.size(); ++a)
+    out += fmt::format("{}{} = {}", out.empty() ? "" : ", ", equations.system().fields[equations.varied[a]].name,
+                       to_plain(lay_out(readable(fields[a], equations.order), equations.order)));
+  return out;
+}
+
+bool is_rest(const FieldEquations& equations, const FieldRest& rest) {
+  return stays_inside(equations, rest) && stays_at_ends(equations, rest);
+}
+
+FieldRest rest_of(const FieldEquations& equations) {
+  const FieldSystem& s = equations.system();
+  const FieldRest none{std::vector<Expr>(equations.varied.size(), s.context->number(0))};
+  FieldRest start = none;
+  for (const FieldStart& one : equations.model->start)
+    for (std::size_t a = 0; a < start.fields.size(); ++a)
+      if (equations.varied[a] == one.field && one.order == 0) start.fields[a] = s.expanded(one.value);
+  const bool is_other = std::any_of(start.fields.begin(), start.fields.end(), [](Expr e) { return !e.is_zero(); });
+  return is_other && !equations.bodies && is_rest(equations, start) ? start : none;
+}
+
+}  // namespace maupertuis
