@@ -3,6 +3,7 @@
 #include <maupertuis/repeated_evaluation.hpp>
 
 #include "fields/breaks.hpp"
+#include "fields/field_sides.hpp"
 #include "fields/resolution.hpp"
 #include "fields/semi_discrete.hpp"
 
@@ -202,6 +203,7 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
   const FieldSystem& s = equations.system();
   const int cells = s.space.front().cells ? s.space.front().cells : usual_coupled_cells;
   const int order = s.element_order ? s.element_order : usual_coupled_order;
+  if (refuse_too_many_conditions(equations, diagnostics)) return std::nullopt;
   const auto mesh = SemiDiscrete::make(model, equations, cells, order, diagnostics);
   if (!mesh || refuse_unresolved(equations, {mesh->borders()}, mesh->order(), diagnostics)) return std::nullopt;
   if (mesh->start_clashes())

@@ -6,6 +6,7 @@
 #include <maupertuis/switches.hpp>
 
 #include "fields/field_elements.hpp"
+#include "fields/field_sides.hpp"
 #include "fields/plane_modes.hpp"
 #include "fields/semi_discrete.hpp"
 #include "fields/small_motions.hpp"
@@ -412,6 +413,7 @@ FieldModes field_modes(const FieldEquations& equations, std::size_t count, Diagn
         "W0653", s.density_span, "these are the modes without the dissipation of the field",
         "Dissipation damps the motions, and shifts frequencies and shapes.",
         "`maup modes --dispersion` has it in the relation of waves, and `maup simulate` shows the decay.");
+  if (refuse_too_many_conditions(equations, diagnostics)) return out;
   if (s.space.size() == 2) return plane_modes(equations, count, diagnostics);
   if (s.space.size() != 1 || !s.space.front().from) {
     refuse_modes_of(equations, diagnostics, "It has three space variables, or no domain.");

@@ -2,6 +2,7 @@
 
 #include <maupertuis/evaluate.hpp>
 
+#include "fields/field_sides.hpp"
 #include "fields/given_fields.hpp"
 
 #include <fmt/format.h>
@@ -13,23 +14,6 @@ namespace {
 
 using Side = BoundaryCondition::Side;
 
-bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
-
-std::size_t direction_of(Side side) { return side == Side::Left || side == Side::Right ? 0 : 1; }
-
-/// With the variable across a side at its value there.
-Expr on_side(const FieldSystem& s, Expr e, Side side) {
-  const SpaceVariable& x = s.space[direction_of(side)];
-  return s.expanded(substitute(e, {{x.symbol, side == Side::Left || side == Side::Bottom ? x.from : x.to}}));
-}
-
-/// Whether what a side holds says what the natural condition says at a free one.
-bool is_given(const FieldSystem& s, const NaturalCondition& n, Side side) {
-  return std::any_of(s.boundary.begin(), s.boundary.end(), [&](const BoundaryCondition& b) {
-    return b.side == side && b.jet.field == n.field && (b.jet.order() == 1 || !n.moment);
-  });
-}
-
 Expr at_rest(const FieldEquations& equations, const FieldRest& rest, Expr e) {
   e = with_given_fields(equations.system(), e);
   return substitute(e, rest.values(equations, e));
@@ -39,14 +23,15 @@ bool closes(const FieldSystem& s, const FieldRest& rest) {
   for (const Expr& field : rest.fields)
     for (const SpaceVariable& x : s.space)
       for (const Expr& e : {field, differentiate(field, x.symbol)})
-        if (!vanishes(s.expanded(substitute(e, {{x.symbol, x.from}}) - substitute(e, {{x.symbol, x.to}}))))
+        if (!vanishes_identically(s.expanded(substitute(e, {{x.symbol, x.from}}) - substitute(e, {{x.symbol, x.to}}))))
           return false;
   return true;
 }
 
 bool stays_inside(const FieldEquations& equations, const FieldRest& rest) {
-  return std::all_of(equations.residuals.begin(), equations.residuals.end(),
-                     [&](const Expr& r) { return vanishes(equations.system().expanded(at_rest(equations, rest, r))); });
+  return std::all_of(equations.residuals.begin(), equations.residuals.end(), [&](const Expr& r) {
+    return vanishes_identically(equations.system().expanded(at_rest(equations, rest, r)));
+  });
 }
 
 /// Where bodies act, their equations say the rest.
@@ -57,11 +42,12 @@ bool stays_at_ends(const FieldEquations& equations, const FieldRest& rest) {
   if (s.periodic) return closes(s, rest);
   for (const BoundaryCondition& b : s.boundary) {
     const Expr jet = s.jet_symbol(b.jet);
-    if (!vanishes(on_side(s, at_rest(equations, rest, jet), b.side) - s.expanded(b.value))) return false;
+    if (!vanishes_identically(on_side(s, at_rest(equations, rest, jet), b.side) - s.expanded(b.value))) return false;
   }
   for (const NaturalCondition& n : equations.natural)
-    for (const Side side : n.along == 0 ? std::vector{Side::Left, Side::Right} : std::vector{Side::Bottom, Side::Top})
-      if (!is_given(s, n, side) && !vanishes(on_side(s, at_rest(equations, rest, n.value), side))) return false;
+    for (const Side side : sides_across(n.along))
+      if (!is_given(s, n, side) && !vanishes_identically(on_side(s, at_rest(equations, rest, n.value), side)))
+        return false;
   return true;
 }
 

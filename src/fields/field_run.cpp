@@ -4,6 +4,7 @@
 #include "fields/breaks.hpp"
 #include "fields/charge_meter.hpp"
 #include "fields/field_method.hpp"
+#include "fields/field_sides.hpp"
 #include "fields/resolution.hpp"
 
 #include <fmt/format.h>
@@ -367,7 +368,7 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
                                          const FieldRunOptions& options, Diagnostics& diagnostics) {
   const auto begin = std::chrono::steady_clock::now();
   auto method = FieldMethod::of(equations, diagnostics);
-  if (!method) return std::nullopt;
+  if (!method || refuse_too_many_conditions(equations, diagnostics)) return std::nullopt;
   const FieldSystem& s = equations.system();
   Cells cells;
   for (const SpaceVariable& x : s.space) {

@@ -227,6 +227,27 @@ TEST_CASE("a potential on a ring keeps its constant, which is told") {
             .find("E0642") != std::string::npos);
 }
 
+TEST_CASE("an end that asks for two conditions where the equation takes one is refused") {
+  // u u_xx = (u u_x)_x - u_x²: the equation is u'' = 3 u_xx, and free ends ask for u_x = 0 and u = 0.
+  const auto codes = [](const std::string& ends, const std::string& more, const std::string& ask) {
+    return codes_of_run("dimensionless\nfield u(x) : number on x = 0 .. 1 cells 4 order 7\n" + ends +
+                        "density = 1/2 u'^2 - 1/2 u_x^2" + more +
+                        "\nstart u = " + (ends.empty() ? "cos(pi x)" : "sin(pi x)") + "\nrun 1\n" + ask + "\n");
+  };
+  CHECK(codes("", " + u u_xx", "expect u(0.5) at 1 = 0 ± 9") == "E0642");
+  CHECK(codes("", " + u u_xx", "expect frequencies of u : 1 rel 9").find("E0642") == 0);
+  CHECK(codes("boundary left : u = 0\nboundary right : u = 0.1\n", " + u u_xx", "expect u(0.5) at 1 = 0 ± 9") ==
+        "E0642");
+  CHECK(codes("", " + u_x u_xx", "expect u(0) at 1 = -1 ± 1e-6") == "E0642");
+  // Ends that are held at 0 say what the moment says.
+  CHECK(codes("boundary left : u = 0\nboundary right : u = 0\n", " + u u_xx",
+              "expect u(0.5) at 1 = cos(pi sqrt(3)) ± 1e-6") == "");
+  // On a hinged square curvatures along its sides vanish with the deflection.
+  CHECK(codes_of_run("dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 2 order 5 boundary u = 0\n"
+                     "density = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2) - 0.1 (u_xx u_yy - u_xy^2)\n"
+                     "expect frequencies of u : pi sqrt(2) rel 1e-9\n") == "");
+}
+
 TEST_CASE("sparse factors of a mesh, within a band and without, solve what a product made") {
   // A line, whose band is narrow, and a square of 9 × 9 cells with a node at each corner.
   std::vector<std::vector<std::size_t>> line, square;
