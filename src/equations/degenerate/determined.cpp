@@ -60,11 +60,12 @@ struct Choice {
   std::vector<bool> keeps_row;  // [n]
 };
 
-/// Whether the rows are independent at each of the points where they are defined.
-bool independent_at_all(const std::vector<LinearCondition>& rows, const std::vector<Bindings>& points) {
-  for (const Bindings& point : points)
-    if (independent_conditions(rows, {point}).size() < rows.size()) return false;
-  return true;
+/// Whether the last row is independent of those before it at each of the points where they are defined.
+bool last_adds_at_all(const std::vector<LinearCondition>& rows, const std::vector<Bindings>& points) {
+  return std::all_of(points.begin(), points.end(), [&](const Bindings& point) {
+    const std::vector<std::size_t> independent = independent_conditions(rows, {point});
+    return !independent.empty() && independent.back() + 1 == rows.size();
+  });
 }
 
 /// The points, and the same with all velocities 0, where a row like that of v² + … vanishes: what it says is then left
@@ -98,7 +99,7 @@ bool keep_their_sign(const std::vector<LinearCondition>& rows, Bindings at) {
         Eigen::FullPivLU<Eigen::MatrixXd>(Eigen::Map<const Eigen::MatrixXd>(numbers.data(), size, size)).determinant();
     positive += found > 0, negative += found < 0;
   }
-  return positive == 0 || negative == 0;
+  return (positive == 0) != (negative == 0);
 }
 
 /// Relations that are held by rows of their own are met to rounding; so they come before Lagrange's rows, which keep
@@ -115,7 +116,7 @@ Choice choose_rows(const EquationsOfMotion& equations, const DegenerateAnalysis&
   for (const Held& h : held) {
     std::vector<LinearCondition> with_it = safe;
     with_it.push_back(row_of(h, *equations.system, m));
-    const bool everywhere = independent_at_all(with_it, points) && independent_at_all(with_it, with_rest(points));
+    const bool everywhere = last_adds_at_all(with_it, points) && last_adds_at_all(with_it, with_rest(points));
     if (!everywhere && h.level == Constraint::Level::Velocity) continue;
     safe = std::move(with_it);
     kept.push_back(h);
