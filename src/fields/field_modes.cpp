@@ -61,8 +61,8 @@ class ModeProblem {
   double unseen() const {
     const double left = mesh_.borders.front(), length = mesh_.borders.back() - left;
     std::vector<std::pair<double, double>> points;
-    for (const ElementSpace::Point& point : spaces_.front().points())
-      points.emplace_back(inside(point.x), point.weight);
+    for (std::size_t q = 0; q < spaces_.front().points().size(); ++q)
+      points.emplace_back(place_of(q), spaces_.front().points()[q].weight);
     double out = 0;
     for (const DensityEntry& e : entries_.list) {
       const RepeatedEvaluation value({&e.value, 1});
@@ -140,10 +140,12 @@ class ModeProblem {
     return best;
   }
   double number(Expr e) const { return evaluate(s_.expanded(e), values_); }
-  /// Ends of the domain belong to neither side of a jump.
-  double inside(double x) const {
-    const double a = mesh_.borders.front(), b = mesh_.borders.back();
-    return std::clamp(x, a + 1e-13 * (b - a), b - 1e-13 * (b - a));
+  /// Of a point of quadrature, inside of its element: coefficients may jump at borders.
+  double place_of(std::size_t q) const {
+    const std::vector<ElementSpace::Point>& points = spaces_.front().points();
+    const std::size_t element = q / (points.size() / (mesh_.borders.size() - 1));
+    const double a = mesh_.borders[element], b = mesh_.borders[element + 1];
+    return std::clamp(points[q].x, a + 1e-13 * (b - a), b - 1e-13 * (b - a));
   }
 
   void add_density() {
@@ -151,10 +153,8 @@ class ModeProblem {
     for (const DensityEntry& e : entries_.list) roots.push_back(e.value);
     const RepeatedEvaluation at(roots);
     const std::vector<ElementSpace::Point>& points = spaces_.front().points();
-    const std::size_t in_element = points.size() / (mesh_.borders.size() - 1);
     for (std::size_t q = 0; q < points.size(); ++q) {
-      const double a = mesh_.borders[q / in_element], b = mesh_.borders[q / in_element + 1];
-      const double x = std::clamp(points[q].x, a + 1e-13 * (b - a), b - 1e-13 * (b - a));
+      const double x = place_of(q);
       const std::vector<double> c =
           at([&](Expr symbol) { return symbol == s_.space.front().symbol ? x : values_.at(symbol); });
       for (std::size_t i = 0; i < entries_.list.size(); ++i) add_entry(entries_.list[i], points[q].weight * c[i], q);
@@ -328,7 +328,7 @@ class ModeProblem {
       if (s_.forces[f] && s_.jets_in(s_.forces[f]).empty()) add(f, 0, s_.forces[f]);
     const RepeatedEvaluation at(roots);
     for (std::size_t q = 0; q < spaces_.front().points().size(); ++q) {
-      const double x = spaces_.front().points()[q].x;
+      const double x = place_of(q);
       const auto c = at([&](Expr symbol) { return symbol == s_.space.front().symbol ? x : values_.at(symbol); });
       for (std::size_t i = 0; i < loads.size(); ++i)
         for (const ElementSpace::Part& part : spaces_[loads[i].a].points()[q].parts)

@@ -330,6 +330,8 @@ TEST_CASE("frequencies of lines are within their errors, where coefficients osci
     CHECK_MESSAGE(std::abs(found.frequencies[0] - right) < found.errors[0] + 1e-8, stiffness);
     CHECK(found.errors[0] < 0.05);
   }
+  // Elements end at 0.3: the points at their ends take the formula of their side.
+  CHECK(first("(1 + 3*step(x - 0.3))").errors[0] < 1e-9);
   const FieldModes linear = first("abs(x - 0.5)");  // J_0(2 ω sqrt(1/2)) = 0
   CHECK(std::abs(linear.frequencies[0] - 2.404825557695773 / std::sqrt(2.0)) < linear.errors[0]);
   CHECK(refusal("dimensionless\nfield u(x) : number on x = 0 .. 1 boundary u = 0\ndensity = 1/2 u'^2*(1 + "
