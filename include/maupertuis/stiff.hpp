@@ -32,6 +32,10 @@ class StiffStepper {
   StiffStepper(StiffStepper&&) noexcept;
 
   int order() const { return 5; }  // the highest
+  /// Whether the parts of the motion near a state that are too fast for steps of a length die out by themselves:
+  /// eigenvalues λ of the linearized accelerations with |λ| length > ½ lie within 70° of the negative real axis, and
+  /// there are some. Others the formulas damp, or follow with short steps. Cost: one solve, O(n³).
+  bool fast_parts_die_out(double t, std::span<const double> q, std::span<const double> v, double length);
   void start(double t, std::span<const double> q, std::span<const double> v);
   /// One step towards `bound`, at most up to it; time() == bound exactly when it is reached. Backwards if bound <
   /// time().

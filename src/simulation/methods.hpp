@@ -40,4 +40,10 @@ std::unique_ptr<Method> variational_method(const EquationsOfMotion& equations, c
 std::unique_ptr<Method> stiff_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
                                      const StiffOptions& options, Diagnostics& diagnostics);
 
+/// The same to go on with from a state where steps have been of a length. Nothing, without a diagnostic, unless what
+/// keeps them short dies out.
+std::unique_ptr<Method> stiff_method_from(const Sample& state, double length, const EquationsOfMotion& equations,
+                                          const WantedFunctions& wanted, const StiffOptions& options,
+                                          Diagnostics& diagnostics);
+
 }  // namespace maupertuis

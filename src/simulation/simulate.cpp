@@ -49,13 +49,12 @@ double stiff_tolerance(const SimulationOptions& options) {
   return options.tolerance != 0 ? options.tolerance : StiffOptions{}.tolerance;
 }
 
-std::unique_ptr<Method> stiff_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
-                                     const SimulationOptions& options, Diagnostics& diagnostics) {
+StiffOptions stiff_options(const SimulationOptions& options) {
   StiffOptions out;
   out.tolerance = stiff_tolerance(options);
   out.maximum_steps = options.maximum_steps;
   out.interrupt = options.interrupt;
-  return stiff_method(equations, wanted, out, diagnostics);
+  return out;
 }
 
 /// Contacts, friction and events go through modes, by Taylor's steps.
@@ -75,7 +74,7 @@ std::unique_ptr<HybridMotion> hybrid_method(const Model& model, const EquationsO
 
 std::unique_ptr<Method> first_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
                                      const SimulationOptions& options, Diagnostics& diagnostics) {
-  if (options.method == StepMethod::Stiff) return stiff_method(equations, wanted, options, diagnostics);
+  if (options.method == StepMethod::Stiff) return stiff_method(equations, wanted, stiff_options(options), diagnostics);
   if (options.method != StepMethod::Variational) return taylor_method(equations, wanted, options);
   VariationalOptions out;
   out.step = options.step;
@@ -93,10 +92,12 @@ std::string with_blank(const std::string& unit) { return unit.empty() ? unit : "
 
 class Run {
  public:
-  /// `stiff` makes the method that takes over where stability limits the steps; it may be empty.
+  /// Makes the method that takes over at a state where steps have become short, if what keeps them so dies out.
+  using StiffFrom = std::function<std::unique_ptr<Method>(const Sample& state, double length)>;
+
+  /// `stiff` may be empty.
   Run(const Model& model, const SimulationOptions& options, const RunPlan& plan, const Observables& observables,
-      std::unique_ptr<Method> method, std::function<std::unique_ptr<Method>()> stiff, Probe* probe, bool energy_jumps,
-      HybridMotion* hybrid)
+      std::unique_ptr<Method> method, StiffFrom stiff, Probe* probe, bool energy_jumps, HybridMotion* hybrid)
       : model_(model),
         options_(options),
         plan_(plan),
@@ -186,10 +187,10 @@ class Run {
 
   /// From the state that is reached. What the last step covers has to be recorded before.
   void change_method() {
-    auto stiff = std::exchange(stiff_, nullptr)();
-    if (!stiff) return;
     record_covered();
     const Sample last = method_->sample(method_->time());
+    auto stiff = std::exchange(stiff_, nullptr)(last, watch_.length());
+    if (!stiff) return;
     balance_.carry_over(last);
     backend_ = method_->backend();
     steps_before_ += method_->steps();
@@ -283,7 +284,7 @@ class Run {
   const Observables& observables_;
   Probe* probe_;
   std::unique_ptr<Method> method_;
-  std::function<std::unique_ptr<Method>()> stiff_;
+  StiffFrom stiff_;
   HybridMotion* hybrid_;  // the method, where the model has contacts, friction or events
   StiffnessWatch watch_;
   BackendUse backend_;
@@ -386,9 +387,11 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   std::unique_ptr<Method> method = is_hybrid ? std::unique_ptr<Method>(std::move(through_modes))
                                              : first_method(equations, wanted, options, diagnostics);
   if (!method) return std::nullopt;
-  std::function<std::unique_ptr<Method>()> stiff;
+  Run::StiffFrom stiff;
   if (!is_hybrid && options.method == StepMethod::Automatic && has_stiff_method())
-    stiff = [&] { return stiff_method(equations, wanted, options, diagnostics); };
+    stiff = [&](const Sample& state, double length) {
+      return stiff_method_from(state, length, equations, wanted, stiff_options(options), diagnostics);
+    };
   const bool energy_jumps =
       across_switches(*equations.system, equations.energy_function, equations.order).jump.has_value();
   Run run(model, options, *plan, observables, std::move(method), std::move(stiff), probe, energy_jumps, hybrid);

@@ -15,6 +15,9 @@ StiffStepper::StiffStepper(const MotionFunctions&, std::span<const double>, cons
 }
 StiffStepper::~StiffStepper() = default;
 StiffStepper::StiffStepper(StiffStepper&&) noexcept = default;
+bool StiffStepper::fast_parts_die_out(double, std::span<const double>, std::span<const double>, double) {
+  return false;
+}
 void StiffStepper::start(double, std::span<const double>, std::span<const double>) {}
 Step StiffStepper::step(double) { return {}; }
 double StiffStepper::time() const { return 0; }

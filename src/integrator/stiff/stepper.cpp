@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 
 namespace maupertuis {
@@ -45,6 +46,7 @@ struct StiffStepper::Impl {
   void begin_anew(double bound, std::vector<double>& next);
   void bound_steps(double length);
   bool stands_still(double bound);
+  bool fast_parts_die_out(double length);
   Step ended(StepEnding ending, std::string reason) const { return {t, t, ending, std::move(reason), {}, {}, 0}; }
   Sample sample(double time) const;
   void state_at(double time, std::span<double> out) const;
@@ -216,6 +218,26 @@ bool StiffStepper::Impl::stands_still(double bound) {
   return advanced < 1e-9 * std::max(std::abs(t), std::abs(bound - t));
 }
 
+/// At the point of the last solve.
+bool StiffStepper::Impl::fast_parts_die_out(double length) {
+  constexpr double fast = 0.5, inclination = 0.34;  // of |λ| length; cos 70°
+  Eigen::MatrixXd by_q, by_v;
+  motion.at_point.derivatives(by_q, by_v);
+  const auto size = static_cast<Eigen::Index>(n);
+  Eigen::MatrixXd rates = Eigen::MatrixXd::Zero(2 * size, 2 * size);
+  rates.topRightCorner(size, size).setIdentity();
+  rates.bottomRows(size) << by_q, by_v;
+  if (!rates.allFinite()) return false;
+  bool some = false;
+  const Eigen::VectorXcd values = Eigen::EigenSolver<Eigen::MatrixXd>(rates, false).eigenvalues();
+  for (const std::complex<double>& z : values) {
+    if (std::abs(z) * length <= fast) continue;
+    if (z.real() > -inclination * std::abs(z)) return false;
+    some = true;
+  }
+  return some;
+}
+
 /// The state at a time of the last step, on the constraints.
 void StiffStepper::Impl::state_at(double time, std::span<double> out) const {
   if (time == t || !history) {
@@ -247,6 +269,11 @@ StiffStepper::~StiffStepper() = default;
 StiffStepper::StiffStepper(StiffStepper&&) noexcept = default;
 
 void StiffStepper::start(double t, std::span<const double> q, std::span<const double> v) { impl_->start(t, q, v); }
+bool StiffStepper::fast_parts_die_out(double t, std::span<const double> q, std::span<const double> v, double length) {
+  std::vector<double> y(q.begin(), q.end());
+  y.insert(y.end(), v.begin(), v.end());
+  return impl_->motion.solve(t, y) && impl_->fast_parts_die_out(length);
+}
 Step StiffStepper::step(double bound) { return impl_->step(bound); }
 double StiffStepper::time() const { return impl_->t; }
 std::span<const double> StiffStepper::q() const { return impl_->motion.q_of(impl_->now); }

@@ -242,6 +242,25 @@ TEST_CASE("a parallelogram through its flat position: on with the motion where n
   CHECK(std::abs(stuck.final.q[0] - stuck.final.q[1]) < 1e-7);
 }
 
+TEST_CASE("steps that accuracy keeps short are no reason for the stiff method, nor those that are few") {
+  ModelText smooth(
+      "system s\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = 1/2*x^2 + 1/4*y^4\nstart x = 1, y = "
+      "1\n");
+  for (const int order : {4, 8}) {
+    SimulationOptions options;
+    options.duration = 100, options.order = order;
+    options.errors = ErrorEstimates::None;
+    const auto r = simulate(smooth.model, smooth.equations, options, smooth.diagnostics);
+    REQUIRE(r);
+    CHECK(r->statistics.method == "taylor");
+    CHECK(r->statistics.energy_drift < 1e-12);
+  }
+  ModelText follows(
+      "system f\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = 1/2*1e8*(x - sin(y))^2 + 1/2*y^2\n"
+      "D = 1/2*1e4*(x' - cos(y)*y')^2\nstart x = sin(1), y = 1\n");
+  CHECK(run(follows, 10).statistics.method == "taylor");
+}
+
 TEST_CASE("the stiff method takes over where stability limits the steps, and says so") {
   ModelText m(
       "system s\ndimensionless\nparam k = 1e7, c = 1e7\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 k x^2\nD = 1/2 c x'^2\n"

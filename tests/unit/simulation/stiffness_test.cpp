@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 using namespace maupertuis;
 
 namespace {
@@ -32,16 +34,27 @@ struct Watched {
 
 }  // namespace
 
-TEST_CASE("two windows of short steps, of which many are left, are stiffness") {
-  CHECK(Watched().seen_after(0.019, 2000) == 800);
-  CHECK(Watched().seen_after(0.021, 2000) == 0);         // no shorter than the motion asks for
-  CHECK(Watched().seen_after(0.01, 900, 8 + 199) == 0);  // 19 900 steps are left
-  CHECK(Watched().seen_after(0.01, 900, 8 + 201) == 800);
+TEST_CASE("steps far shorter than the time scale, of which many are left, are stiffness") {
+  CHECK(Watched().seen_after(0.99e-4, 4000) == 1600);
+  CHECK(Watched().seen_after(1.01e-4, 4000) == 0);             // as many as cost no more than the implicit ones
+  CHECK(Watched().seen_after(5e-5, 1900, 0.08 + 0.995) == 0);  // 19 900 steps are left
+  CHECK(Watched().seen_after(5e-5, 1900, 0.08 + 1.005) == 1600);
+}
+
+TEST_CASE("a moment without acceleration is no long time scale") {
+  StiffnessWatch watch;
+  const double h = 3e-4;
+  for (int k = 0; k < 30'000; ++k) {  // x = cos t
+    const double t = k * h;
+    Step step;
+    step.begin = t, step.end = t + h;
+    CHECK_FALSE(watch.sees_stiffness({t, {std::cos(t)}, {-std::sin(t)}, {-std::cos(t)}, {}, {}, {}}, step, 1e6));
+  }
 }
 
 TEST_CASE("after a switch the windows begin anew, with the first step behind it") {
   Watched w;
   for (int k = 0; k < 300; ++k) w.step(10);
   w.step(0.5, 1);
-  CHECK(w.seen_after(0.01, 2000) == 800);
+  CHECK(w.seen_after(5e-5, 4000) == 1600);
 }

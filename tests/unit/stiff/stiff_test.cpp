@@ -197,6 +197,20 @@ TEST_CASE("a constraint between velocities: a skate on a slope comes back") {
   CHECK(std::abs(stepper.v()[0] * std::sin(stepper.q()[2]) - stepper.v()[1] * std::cos(stepper.q()[2])) < 1e-15);
 }
 
+TEST_CASE("what is too fast for steps of a length dies out, or goes on") {
+  const auto dies_out = [](const std::string& forces, double length) {
+    const Stiff m("system s\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n" + forces);
+    return m.stepper(1e-9).fast_parts_die_out(0, State{0.1, 0}, State{0, 0}, length);
+  };
+  const std::string damped = "V = 1/2*1e8*x^2 + 1/2*y^2\nD = 1/2*1e6*x'^2\n";  // rates −10⁶, −10², ±i
+  CHECK(dies_out(damped, 1e-5));
+  CHECK_FALSE(dies_out(damped, 1e-7));                                           // nothing is too fast
+  CHECK_FALSE(dies_out(damped, 1));                                              // ±i is, and goes on
+  CHECK_FALSE(dies_out("V = 1/2*1e8*x^2 + 1/2*y^2\n", 1e-3));                    // swings for ever
+  CHECK_FALSE(dies_out("V = 1/2*1e8*x^2 + 1/2*y^2\nD = 1/2*1e3*x'^2\n", 1e-3));  // … for long
+  CHECK_FALSE(dies_out("V = 1/2*1e8*x^2\nD = 1/2*1e6*(x'^2 - y'^2)\n", 1e-5));   // grows
+}
+
 TEST_CASE("a pair of roots within a step is found, and a jump is no root") {
   const auto first = [](auto&& event) {
     const Stiff m("system line\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\n");
