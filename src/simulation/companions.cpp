@@ -36,6 +36,13 @@ void take_in(Companions& to, CompanionRun run, const CompanionPlan& plan) {
   to.runs.push_back(std::move(run));
 }
 
+/// Of two runs, where both have values.
+std::vector<double> differences(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> out(a.size());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = std::abs(a[i] - b[i]);
+  return out;
+}
+
 /// Indices of the times asked for, in the order of the run.
 std::vector<std::size_t> order_of_requests(const CompanionPlan& plan) {
   const std::vector<double>& at = plan.options.at;
@@ -106,7 +113,14 @@ class Recorder {
     if (plan_.whole_rows) return append_row(out_.rows, sample(t), plan_.observables);
     const std::size_t n = plan_.run.q.size(), from = out_.rows.size();
     out_.rows.resize(from + 2 * n);
-    method_.state(t, std::span(out_.rows).subspan(from, n), std::span(out_.rows).subspan(from + n, n));
+    const std::span<double> q = std::span(out_.rows).subspan(from, n), v = std::span(out_.rows).subspan(from + n, n);
+    if (plan_.result.statistics.method == "variational") {  // its polynomials are worse than the ends of steps
+      const Sample there = method_.sample(t);
+      std::copy(there.q.begin(), there.q.end(), q.begin());
+      std::copy(there.v.begin(), there.v.end(), v.begin());
+    } else {
+      method_.state(t, q, v);
+    }
     if (lost_ && lost_->look(next_row_, out_.rows.data() + from)) last_row_ = std::min(last_row_, next_row_);
   }
 
@@ -171,6 +185,7 @@ Companions one_after_the_other(const CompanionPlan& plan, const WantedFunctions&
   Companions out;
   const int count = taylor ? 3 : 2;
   std::size_t last_row = std::numeric_limits<std::size_t>::max();
+  std::vector<double> with_longer_steps;  // of the variational method
   for (int k = 0; k < count; ++k) {
     RoundedNumbers::Draw draw = numbers.draw(seed + static_cast<std::uint64_t>(k));
     if (!taylor) draw.q = plan.run.q, draw.v = plan.run.v;  // rounding is nothing beside their tolerances
@@ -191,6 +206,8 @@ Companions one_after_the_other(const CompanionPlan& plan, const WantedFunctions&
     if (!run) return interrupted();
     last_row = recorder.last_row();
     if (through_modes) run->happenings = through_modes->record().happenings;
+    if (name == "variational" && k == 0) with_longer_steps = run->rows;
+    if (name == "variational" && k == 1) out.between = differences(run->rows, with_longer_steps);
     take_in(out, std::move(*run), plan);
   }
   return out;

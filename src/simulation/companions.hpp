@@ -39,6 +39,9 @@ struct CompanionRun {
 struct Companions {
   std::vector<CompanionRun> runs;
   std::vector<double> squares;  // [grid × columns] of the differences, of all runs; infinite where one had no value
+  /// [grid × columns] what the two of the variational method differ by; else empty. With a step that is short enough
+  /// shorter ones come to the same motion: it is a small part of what they differ from the run by.
+  std::vector<double> between;
   double factor = 3;            // the error is so many times the root of the mean square of the differences
   bool running_maximum = true;  // and the largest of these so far
   bool interrupted = false;

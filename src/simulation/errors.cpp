@@ -13,6 +13,9 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t usual_rows = 400;  // that are compared where no row is to have its errors
 
+constexpr double shrinking = 0.5;  // of what shorter steps change: what still shorter ones change
+constexpr double noise = 1e-6;     // of a column's largest value
+
 /// No number is known better than it is rounded; zero is exact where all agree on it.
 double with_rounding(double error, double value) {
   return std::max(error, std::numeric_limits<double>::epsilon() * std::abs(value));
@@ -125,6 +128,9 @@ class Teller {
         errors_.push_back(e);
       }
     }
+    largest_between_ = companions_.between;
+    for (std::size_t i = columns_; i < largest_between_.size(); ++i)
+      largest_between_[i] = std::max(largest_between_[i], largest_between_[i - columns_]);
   }
 
   bool is_given(std::size_t column) const {
@@ -156,10 +162,19 @@ class Teller {
     const std::size_t rows = plan_.grid.size();
     std::size_t first = rows, lost = 0;
     for (std::size_t g = rows; g-- > 0;) {
-      if (!digits.is_lost(column, errors_[g * columns_ + column])) continue;
+      const std::size_t at = g * columns_ + column;
+      if (!digits.is_lost(column, errors_[at]) && !(unsettled(g, column) && errors_[at] > noise * digits.size(column)))
+        continue;
       if (static_cast<double>(++lost) >= most * static_cast<double>(rows - g)) first = g;
     }
     return first;
+  }
+
+  /// Whether the two companions of the variational method differ, so far, by most of what they differ from the run by:
+  /// with shorter steps the motion goes on changing, and the differences bound nothing.
+  bool unsettled(std::size_t row, std::size_t column) const {
+    const std::size_t at = row * columns_ + column;
+    return !companions_.between.empty() && largest_between_[at] * companions_.factor > shrinking * errors_[at];
   }
 
   void note_loss(std::size_t column) {
@@ -269,8 +284,9 @@ class Teller {
   const Companions& companions_;
   const RoundedNumbers& numbers_;
   std::size_t n_, columns_;
-  std::vector<double> errors_;     // [grid × columns]
-  std::vector<double> lost_from_;  // [2n] s; infinite: it is not
+  std::vector<double> errors_;           // [grid × columns]
+  std::vector<double> largest_between_;  // [grid × columns] Companions::between, the largest so far; or empty
+  std::vector<double> lost_from_;        // [2n] s; infinite: it is not
 };
 
 }  // namespace

@@ -197,6 +197,19 @@ TEST_CASE("constraints, switches, stiff and variational runs are compared with c
   CHECK(coarse.final.errors->q[0] <= 100 * std::abs(coarse.final.q[0] - right));
 }
 
+TEST_CASE("where shorter variational steps do not come to one motion no digit is certain") {
+  // Steps of eight periods of x, which pushes y: with 1/3 and 1/4 of them y comes elsewhere again.
+  SimulationOptions options;
+  options.method = StepMethod::Variational;
+  options.step = 0.5;
+  const SimulationResult coarse =
+      run("system s\ndimensionless\nparam w = 100\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n"
+          "V = 1/2 w^2 (x - 0.1*sin(y))^2 + 1/2 y^2\nstart x = 0.2, y = 1\nrun 10\n",
+          options);
+  CHECK(std::abs(coarse.final.q[1] - 0.05277) > 0.5);
+  CHECK(coarse.final.errors->q[1] == infinity);
+}
+
 TEST_CASE("probes have errors of their own") {
   const ModelText m(oscillator);
   Probe probe;
