@@ -53,11 +53,13 @@ ZeroTest AlongMotion::vanishes_on(Expr e, std::span<const Expr> level) const {
   if (plain.is_zero()) return zero_test(plain);
   Where where = relations_for(plain);
   for (const Expr& x : level) where.relations.push_back(put_in(x));
-  const ZeroTest test = zero_test_where({&plain, 1}, where.relations, where.unknowns, where.center);
+  ZeroTestOptions options;
+  options.hold_parameters = true;  // a level of numbers belongs to the values of the model
+  const ZeroTest test = zero_test_where({&plain, 1}, where.relations, where.unknowns, where.center, options);
   if (test.verdict != Verdict::Undecided) return test;
   // r² φ' = 0: from the start Newton's method may run towards r = 0; from rest it need not.
   for (const Coordinate& c : equations_.system->coordinates) where.center[c.velocity] = 0.0;
-  return zero_test_where({&plain, 1}, where.relations, where.unknowns, where.center);
+  return zero_test_where({&plain, 1}, where.relations, where.unknowns, where.center, options);
 }
 
 Expr AlongMotion::rate(Expr integral) const {
