@@ -52,24 +52,59 @@ std::vector<Complex> expected_spectrum(const expectation::Spectrum& e, const Mec
   return out;
 }
 
-/// Of all pairs that are left the nearest first: actual[i] belongs to expected[partner[i]].
-std::vector<std::size_t> partners(const std::vector<Complex>& actual, const std::vector<Complex>& expected) {
-  struct Pair {
-    double distance;
-    std::size_t actual, expected;
-  };
-  std::vector<Pair> pairs;
-  for (std::size_t i = 0; i < actual.size(); ++i)
-    for (std::size_t j = 0; j < expected.size(); ++j) pairs.push_back({std::abs(actual[i] - expected[j]), i, j});
-  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
-  std::vector<std::size_t> out(actual.size(), expected.size());
-  std::vector<bool> taken(expected.size(), false);
-  for (const Pair& p : pairs) {
-    if (out[p.actual] != expected.size() || taken[p.expected]) continue;
-    out[p.actual] = p.expected;
-    taken[p.expected] = true;
+/// Pairs of rows and columns of a square matrix, by paths that make room (Kuhn): each entry of a pair at most `most`.
+class Pairing {
+ public:
+  Pairing(const std::vector<std::vector<double>>& entries, double most)
+      : entries_(entries), most_(most), row_of_(entries.size(), none) {}
+
+  /// The column of each row; empty where not all rows have one.
+  std::vector<std::size_t> columns() {
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      seen_.assign(entries_.size(), false);
+      if (!place(i)) return {};
+    }
+    std::vector<std::size_t> out(entries_.size());
+    for (std::size_t j = 0; j < row_of_.size(); ++j) out[row_of_[j]] = j;
+    return out;
   }
-  return out;
+
+ private:
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+  bool place(std::size_t row) {
+    for (std::size_t j = 0; j < row_of_.size(); ++j) {
+      if (seen_[j] || entries_[row][j] > most_) continue;
+      seen_[j] = true;
+      if (row_of_[j] != none && !place(row_of_[j])) continue;
+      row_of_[j] = row;
+      return true;
+    }
+    return false;
+  }
+
+  const std::vector<std::vector<double>>& entries_;
+  double most_;
+  std::vector<std::size_t> row_of_;  // of columns
+  std::vector<bool> seen_;
+};
+
+/// Of all ways to pair them the one whose worst pair is best, errors counted in what is allowed: actual[i] belongs to
+/// expected[partner[i]].
+std::vector<std::size_t> partners(const std::vector<Complex>& actual, const std::vector<Complex>& expected,
+                                  const std::vector<double>& allowed) {
+  std::vector<std::vector<double>> errors(actual.size(), std::vector<double>(actual.size()));
+  std::vector<double> levels;
+  for (std::size_t i = 0; i < actual.size(); ++i)
+    for (std::size_t j = 0; j < actual.size(); ++j) {
+      const double error = std::abs(actual[i] - expected[j]), counted = error == 0 ? 0 : error / allowed[j];
+      levels.push_back(errors[i][j] = std::isfinite(counted) ? counted : HUGE_VAL);
+    }
+  std::sort(levels.begin(), levels.end());
+  const auto least = std::partition_point(levels.begin(), levels.end(), [&](double most) {
+    return Pairing(errors, most).columns().size() < actual.size();
+  });
+  return least == levels.end() ? std::vector<std::size_t>() : Pairing(errors, *least).columns();
 }
 
 }  // namespace
@@ -117,15 +152,16 @@ void judge_spectrum(const expectation::Spectrum& e, const MechanicalSystem& syst
                     expected.size(), actual.size());
     return;
   }
-  const std::vector<std::size_t> partner = partners(actual, expected);
+  std::vector<double> allowed;
+  for (const Complex& z : expected) allowed.push_back(allowed_difference(e.tolerance, system, std::abs(z)));
+  const std::vector<std::size_t> partner = partners(actual, expected, allowed);
   double largest = 0;
   result.passed = true;
   for (std::size_t i = 0; i < actual.size() && result.passed; ++i) {
-    // Infinite or no number: no pair was nearest.
-    const Complex z = partner[i] < expected.size() ? expected[partner[i]] : Complex(std::nan(""), 0);
+    const Complex z = expected[partner[i]];
     const double error = std::abs(actual[i] - z);
     largest = std::max(largest, error);
-    result.passed = error <= allowed_difference(e.tolerance, system, std::abs(z));
+    result.passed = error <= allowed[partner[i]];
     result.message =
         fmt::format("{} is off by {:.2g}{}.", complex_text(z, e.unit), error / e.unit.factor, unit_after(e.unit));
   }
