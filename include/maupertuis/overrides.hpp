@@ -10,6 +10,7 @@ namespace maupertuis {
 /// What a text beside a model says, and how it is read.
 enum class OverrideKind {
   Parameters,  // m = 2 kg, l = 1 m: values in the place of the model's; a dimension stays
+  Constants,   // the same, and formulas hold the values in the place of the names: 4 and k are one where k = 4
   Start,       // θ = 60 deg, θ' = 0: replaces and adds
   At,          // θ = 0: fills Experiment::at
   Run,         // 10 s; until P.y = 0 within 60 s: in the place of the model's run
@@ -41,7 +42,7 @@ class ExperimentOverrides {
   const std::vector<SourceText>& texts() const { return texts_; }
 
   // What was read.
-  std::vector<syntax::ParamStatement> parameters;
+  std::vector<syntax::ParamStatement> parameters, constants;
   std::vector<syntax::StartStatement> start, at;
   std::optional<syntax::RunStatement> run;
   std::optional<syntax::SweepStatement> sweep;

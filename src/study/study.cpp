@@ -238,7 +238,7 @@ void Study::verify_with_other_values(const SimulationOptions& options, Verificat
     if (!e.with.empty() && std::find(texts.begin(), texts.end(), e.with) == texts.end()) texts.push_back(e.with);
   for (const std::string& with : texts) {
     Study other(source_, interrupt_);
-    other.override_with(OverrideKind::Parameters, "with", with);
+    other.override_with(OverrideKind::Constants, "with", with);
     other.equations();
     std::optional<Verification> found;
     if (!other.wrong() && other.certificate())

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 /// What was said beside the model, in the place of its own: values of parameters, of the start and of a point.
 namespace maupertuis::elaboration {
@@ -19,7 +20,13 @@ struct Beside {
   Beside(const Elaboration& e, const Part& part, Span span) : text(e.texts.of(span)) {
     tree.statements.push_back({part, span});
   }
-  bool hand_over(Elaboration& e) const { return tell_of_override(found, text, e.diagnostics); }
+  /// Warnings, and the first error as one of the text; true where there was one.
+  bool hand_over(Elaboration& e) {
+    const Diagnostics told = std::exchange(found, {});
+    for (const Diagnostic& d : told.items())
+      if (d.severity == Severity::Warning) e.diagnostics.append(d);
+    return tell_of_override(told, text, e.diagnostics);
+  }
 };
 
 void unknown_parameter(Elaboration& e, const Beside& said, const Declaration& given, const Declaration* d) {
@@ -62,7 +69,7 @@ bool check_kept_dimension(Elaboration& e, const Beside& said, const Declaration&
   return false;
 }
 
-void set_parameter(Elaboration& e, const Beside& said, Elaboration& inner, Declaration& given) {
+void set_parameter(Elaboration& e, Beside& said, Elaboration& inner, Declaration& given) {
   Declaration* d = e.table.find(given.name);
   if (!d || d->kind != Declaration::Kind::Parameter) return unknown_parameter(e, said, given, d);
   elaborate_parameter(inner, given);
@@ -95,14 +102,32 @@ Elaboration::Elaboration(const Elaboration& outer, const syntax::SyntaxTree& tre
   model.system.independent_dimension = outer.model.system.independent_dimension;
 }
 
-void override_parameters(Elaboration& e) {
-  for (const syntax::ParamStatement& part : e.overrides.parameters) {
-    Beside said(e, part, part.items.front().name.span);
-    Elaboration inner(e, said.tree, said.found);
-    if (said.hand_over(e)) continue;
-    for (Declaration& given : inner.table.declarations())
-      if (given.kind == Declaration::Kind::Parameter) set_parameter(e, said, inner, given);
+namespace {
+
+/// Formulas that follow hold its value.
+void make_constant(Elaboration& e, const std::string& name) {
+  Declaration* d = e.table.find(name);
+  if (!d || d->kind != Declaration::Kind::Parameter || d->value.poisoned) return;
+  for (Expr& part : d->value.parts)
+    if (const auto value = e.exact_values.find(part); value != e.exact_values.end()) part = value->second;
+}
+
+void set_parameters(Elaboration& e, const syntax::ParamStatement& part, bool constant) {
+  Beside said(e, part, part.items.front().name.span);
+  Elaboration inner(e, said.tree, said.found);
+  if (said.hand_over(e)) return;
+  for (Declaration& given : inner.table.declarations()) {
+    if (given.kind != Declaration::Kind::Parameter) continue;
+    set_parameter(e, said, inner, given);
+    if (constant) make_constant(e, given.name);
   }
+}
+
+}  // namespace
+
+void override_parameters(Elaboration& e) {
+  for (const syntax::ParamStatement& part : e.overrides.parameters) set_parameters(e, part, false);
+  for (const syntax::ParamStatement& part : e.overrides.constants) set_parameters(e, part, true);
 }
 
 namespace {

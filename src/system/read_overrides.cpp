@@ -66,6 +66,8 @@ void ExperimentOverrides::read(OverrideKind kind, const SourceText& text, const 
   switch (kind) {
     case OverrideKind::Parameters:
       return read_values(text, model, parameters, diagnostics, syntax::parse_parameters);
+    case OverrideKind::Constants:
+      return read_values(text, model, constants, diagnostics, syntax::parse_parameters);
     case OverrideKind::Start:
       return read_values(text, model, start, diagnostics, syntax::parse_start);
     case OverrideKind::At:

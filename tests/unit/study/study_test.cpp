@@ -167,3 +167,16 @@ TEST_CASE("questions that a model does not allow are refused with a reason") {
   CHECK_FALSE(held.motion());
   CHECK(held.diagnostics().items().back().code == "E0244");
 }
+
+TEST_CASE("lines about formulas hold at the values that they name") {
+  Study study(SourceText("m.lag",
+                         "dimensionless\nparam k = 1\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 k x^2\n"
+                         "start x = 1\nrun 1\nexpect equation x'' + 4*x = 0 with k = 4\n"
+                         "expect conserved x'^2 + 4*x^2 with k = 4\nexpect equation x'' + k x = 0 with k = 4\n"
+                         "expect equation x'' + 4*x = 0\n"));
+  const auto verified = study.verification();
+  REQUIRE(verified);
+  std::vector<bool> passed;
+  for (const ExpectationResult& r : verified->results) passed.push_back(r.passed);
+  CHECK(passed == std::vector<bool>{true, true, true, false});
+}

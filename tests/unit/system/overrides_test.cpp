@@ -140,3 +140,16 @@ TEST_CASE("a path by formulas: every coordinate once, in any order") {
   CHECK(path("x = y, y = 2").codes() == "E0222");
   CHECK(Elaborated(plane, {{OverrideKind::GivenPath, "path", "x = t, y = t"}}).codes() == "E0243");
 }
+
+TEST_CASE("warnings about what was said are told once") {
+  CHECK(with({}, {"θ=60"}).codes() == "W0310");
+  CHECK(with({}, {"θ=60, θ'=1 rad/s"}).codes() == "W0310");
+}
+
+TEST_CASE("a constant stands for its name in formulas") {
+  const Elaborated e = saying(OverrideKind::Constants, "m = 2 kg");
+  CHECK_MESSAGE(e.fine(), e.messages());
+  CHECK(e.system().find_parameter("m")->si_value == 2);
+  const Expr j = e.system().definitions.front().value, l = e.system().find_parameter("l")->symbol;
+  CHECK(j == 2 * pow(l, Rational(2)));
+}
