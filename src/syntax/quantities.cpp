@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <numeric>
 
 /// Quantity places and units (rules 1 and 8). Which words are units is not known here: a number followed only by
@@ -222,7 +223,7 @@ bool ExpressionParser::unit_factor(UnitExpression& unit, int sign) {
   return true;
 }
 
-// 2, -2, (1/2), (-3/2), 0.5
+// 2, -2, (1/2), (-3/2), 0.5, 1.5
 bool ExpressionParser::unit_exponent(UnitExpression::Factor& factor) {
   const auto whole = [&](int& value) {
     const Token& token = peek();
@@ -236,8 +237,11 @@ bool ExpressionParser::unit_exponent(UnitExpression::Factor& factor) {
   };
   const bool brackets = accept("(");
   const bool negative = accept("-");
-  if (!brackets && peek().kind == Token::Kind::Number && peek().text == "0.5") {
+  const std::string_view text = peek().text;
+  if (!brackets && peek().kind == Token::Kind::Number && text.size() == 3 && std::isdigit(text[0]) &&
+      text.substr(1) == ".5") {
     next();
+    factor.exponent_numerator = 2 * (text[0] - '0') + 1;
     factor.exponent_denominator = 2;
   } else if (!whole(factor.exponent_numerator)) {
     return false;

@@ -49,6 +49,7 @@ std::optional<expectation::Number> expected_number(Elaboration& e, const written
                                                    const Dimension& dimension, const std::string& what) {
   const Value value = constant_of(e, *number.value, dimension, what);
   if (value.poisoned) return std::nullopt;
+  warn_of_degrees(e, value, dimension, *number.value);
   const expectation::DisplayUnit unit = display_unit(e, *number.value, dimension).value_or(expectation::DisplayUnit{});
   const auto tolerance = tolerance_of(e, number.tolerance, dimension, unit);
   if (!tolerance) return std::nullopt;

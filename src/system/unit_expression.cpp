@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace maupertuis::elaboration {
 namespace {
 
@@ -60,6 +62,15 @@ std::optional<Rational> exact_power(const Rational& base, int numerator, int den
   return denominator == 1 ? std::optional(raised) : exact_root(raised, denominator);
 }
 
+/// Whether a mistake within these words was told: a unit behind a list is read for each of its numbers.
+bool is_told(const Elaboration& e, const syntax::UnitExpression& words) {
+  const auto items = e.diagnostics.items();
+  return std::any_of(items.begin(), items.end(), [&](const Diagnostic& d) {
+    return d.severity == Severity::Error && d.span && d.span->source == words.span.source &&
+           words.span.begin <= d.span->begin && d.span->end <= words.span.end;
+  });
+}
+
 }  // namespace
 
 bool all_units(const syntax::UnitExpression& words) {
@@ -69,6 +80,7 @@ bool all_units(const syntax::UnitExpression& words) {
 }
 
 std::optional<Unit> unit_of(Elaboration& e, const syntax::UnitExpression& words) {
+  if (is_told(e, words)) return std::nullopt;
   Unit out;
   bool known = true;
   for (const auto& word : words.factors) {

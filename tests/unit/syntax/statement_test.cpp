@@ -36,6 +36,8 @@ TEST_CASE("declarations") {
   REQUIRE(param.items.size() == 2);
   CHECK(param.items[1].name.text == "l");
   CHECK(shape(*param.items[1].value) == "[60 cm:1]");
+  CHECK(shape(*only<ParamStatement>("param k = 1e6 N/m^1.5").items[0].value) ==
+        shape(*only<ParamStatement>("param k = 1e6 N/m^(3/2)").items[0].value));
 
   const auto coord = only<CoordStatement>("coord x, y : length, θ : angle, s : [m^2]");
   REQUIRE(coord.items.size() == 4);

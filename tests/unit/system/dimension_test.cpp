@@ -130,6 +130,7 @@ TEST_CASE("degrees that were written without a unit are asked for, in starts and
   const std::string model = "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ : angle\nT = 1/2 m l^2 θ'^2\n";
   CHECK(Elaborated(model + "V = m g l cos(θ + 30)\n").codes() == "W0310");
   CHECK(Elaborated(model + "V = m g l cos θ sin(30)\n").codes() == "W0310");
+  CHECK(Elaborated(model + "V = m g l cos θ\nrun 1 s\nexpect θ at 0 s = 60 ± 1e-9\n").codes() == "W0310");
   CHECK(Elaborated(model + "V = m g l cos(θ + 30 [deg]) + m g l sin(1)\n").fine());
   CHECK(Elaborated(model + "V = m g l cos θ\nstart θ = 3.2\n").fine());
 }
@@ -139,4 +140,10 @@ TEST_CASE("values that no run could begin with") {
   CHECK(Elaborated(model + "let c = b/a\nV = 1 [J] c x/b\n").codes() == "E0218");
   CHECK(Elaborated(model + "start x = b^2/a\n").codes() == "E0218");
   CHECK(Elaborated(model + "V = 1 [J] sqrt(a - b) x/b^(3/2)\nstart x = sqrt(a - b) sqrt(b)\n").codes() == "E0218");
+}
+
+TEST_CASE("a unit that does not fit is told once, however many numbers it stands behind") {
+  CHECK(Elaborated("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\n"
+                   "expect eigenvalues at x = 0 : (0, 1) 1/s rel 1e-9\n")
+            .codes() == "E0308");
 }
