@@ -278,7 +278,11 @@ std::vector<double> typical_sizes(const MechanicalSystem& system, const MotionSt
     if (c.kind != "angle" && !c.dimension.same_as(Dimension{}))
       for (const Parameter& p : system.parameters)
         if (p.dimension == c.dimension) size = std::max(size, std::abs(p.si_value));
-    if (size == 0 && i < start.q.size() && c.kind != "angle") size = std::abs(start.q[i]);
+    if (size == 0 && c.kind != "angle")
+      for (std::size_t j = 0; j < start.q.size(); ++j) {  // one size for all: a start may lie near zero in one of them
+        const Coordinate& other = system.coordinates[j];
+        if (other.kind != "angle" && other.dimension == c.dimension) size = std::max(size, std::abs(start.q[j]));
+      }
     out.push_back(size > 0 ? size : 1);
   }
   return out;

@@ -64,7 +64,8 @@ struct PointEquations::Impl {
 /// A random point of moderate size: for ranks and periods.
 OperatingPoint random_point(const PointEquations::Impl& e, std::uint64_t seed);
 
-/// The size of a coordinate that counts as far: 1 for angles and numbers, else the largest parameter of its dimension.
+/// The size of a coordinate that counts as far: 1 for angles and numbers, else the largest parameter of its dimension,
+/// or the largest start of such a coordinate.
 std::vector<double> typical_sizes(const MechanicalSystem& system, const MotionState& start);
 
 }  // namespace maupertuis

@@ -301,3 +301,21 @@ TEST_CASE("values that are given do not hide the family that a point belongs to"
   Linearized ring("dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = (x^2 + y^2 - 1)^2\nstart x = 1\n");
   CHECK(ring.here().equilibrium.family == 1);
 }
+
+TEST_CASE("a coordinate that starts near zero is as large as the others of its dimension") {
+  Linearized m(R"(dimensionless
+coord x, y, u, v : number
+point A mass 1 at (x, y)
+point B mass 1 at (u, v)
+gravity (0, -1)
+constraint x^2 + y^2 = 1 name a
+constraint (u-x)^2 + (v-y)^2 = 1 name b
+start x = sin(2), y = -cos(2), u = sin(2)+sin(1), v = -cos(2)-cos(1)
+)");
+  std::vector<double> heights;
+  for (const ModalEntry& e : m.study().entries) heights.push_back(e.equilibrium.point.q[3]);
+  std::sort(heights.begin(), heights.end());
+  REQUIRE(heights.size() == 4);  // hanging, twice folded, upright
+  const double right[] = {-2, 0, 0, 2};
+  for (std::size_t i = 0; i < 4; ++i) CHECK(std::abs(heights[i] - right[i]) < 1e-9);
+}
