@@ -53,8 +53,8 @@ bool check_ends(Problem& problem, const ActionEnds& ends, Diagnostics& diagnosti
       if (off[i] < 1e-9) continue;
       diagnostics.error(
           "E1202", span,
-          fmt::format("the {} of the path is off {}, by {:.2g} times the size of its terms", first ? "beginning" : "end",
-                      system.constraint_label(i), off[i]),
+          fmt::format("the {} of the path is off {}, by {:.2g} times the size of its terms",
+                      first ? "beginning" : "end", system.constraint_label(i), off[i]),
           "Every point of a path has to satisfy the constraints, its ends included.",
           "Move the end onto the constraint, or leave a component `free` that the constraint then fixes.");
       return false;
@@ -281,6 +281,17 @@ std::vector<std::pair<ActionEnds, std::vector<int>>> with_turns(const ActionEnds
   return out;
 }
 
+/// The paths that leave S as it is along a variation, and share S with another such path: as members of one family do.
+std::size_t members_of_families(const std::vector<StationaryPath>& paths) {
+  const auto shares = [](const StationaryPath& a, const StationaryPath& b) {
+    return &a != &b && a.second.nullity > 0 && b.second.nullity > 0 &&
+           std::abs(a.action - b.action) <= a.action_error + b.action_error;
+  };
+  return static_cast<std::size_t>(std::count_if(paths.begin(), paths.end(), [&](const StationaryPath& a) {
+    return std::any_of(paths.begin(), paths.end(), [&](const StationaryPath& b) { return shares(a, b); });
+  }));
+}
+
 }  // namespace
 
 std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOfMotion& equations,
@@ -316,6 +327,11 @@ std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOf
       out.paths.back().turns = turns;
     }
   }
+  if (const std::size_t members = members_of_families(out.paths); members > 0)
+    out.bound += fmt::format(
+        " {} of them have a variation that leaves S as it is, and the same S as another one: members of a family of "
+        "stationary paths, whose number says nothing.",
+        members);
   if (out.paths.empty()) {
     refuse_no_path(Search(problem, ends, options), problem, ends, diagnostics);
     return std::nullopt;

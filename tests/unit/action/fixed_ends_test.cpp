@@ -51,6 +51,15 @@ TEST_CASE("the action of the harmonic oscillator in closed form, and its index b
   }
 }
 
+TEST_CASE("members of a family are told to be such") {
+  const ModelText m(oscillator);
+  const PathSearch half_period = paths_of(m, fixed_ends({0}, 0, {0}, pi / 1.3));  // A sin(1.3 t), S = 0
+  CHECK(half_period.paths.size() > 1);
+  CHECK(half_period.bound.find("members of a family") != std::string::npos);
+  const PathSearch shorter = paths_of(m, fixed_ends({0}, 0, {0}, 2));
+  CHECK(shorter.bound.find("family") == std::string::npos);
+}
+
 TEST_CASE("the reference value of action_harmonic, and dS/dx2 = p, -dS/dT = E by differences") {
   const ModelText m(oscillator);
   const auto S = [&](double x, double T) { return paths_of(m, fixed_ends({0.4}, 0, {x}, T)).paths.at(0); };
