@@ -258,6 +258,11 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
   for (std::size_t i = 0; i < released_.size(); ++i)
     if (released_[i] && !found->mode.closed[i]) released_at_[i] = t_;
   note_indeterminate(list, found->mode, values);
+  if (now_->given.is_preload && !found->given.is_preload && pending_->hit.empty() && pending_->sets.empty())
+    remark(
+        "A rest that friction at several contacts holds ends where no forces within its limits are found any more: "
+        "that "
+        "time is known to some 1e-10 of itself.");
   const ContactMode before = now_->mode;
   now_ = &motion_in(found->mode, found->given);
   record_changes(before, found->mode);

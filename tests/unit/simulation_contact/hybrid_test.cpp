@@ -277,6 +277,19 @@ TEST_CASE("a row at an instant at which an event sets the state takes no digits 
   CHECK(r->final.q[0] == doctest::Approx(0.5).epsilon(1e-14));
 }
 
+TEST_CASE("a ladder that is pushed off its rough wall leaves it where the wall presses no more") {
+  for (const char* degrees : {"63", "65", "70", "75", "80", "84"}) {
+    const std::string angle = std::string(degrees) + " deg";
+    ModelText m("param θ0 = " + angle + "\n" + ladder + "point centre at (x, y)\nforce on centre = (1 [N/s] t, 0)\n");
+    const auto r = run(m, 6);
+    CHECK(r.ending == Ending::Finished);
+    REQUIRE(count(r, Happening::Kind::Lost, "wall") == 1);
+    const double right = 9.81 / std::tan(std::stod(degrees) * 3.141592653589793 / 180);
+    CHECK(r.happenings[0].t == doctest::Approx(right).epsilon(1e-9));
+    CHECK(r.happenings[0].mode == "floor sticking");
+  }
+}
+
 TEST_CASE("a block begins to slide beside another one whose feet hold each other") {
   ModelText m(
       "param m = 1 kg, g = 9.81 m/s^2, a = 0.5 m, h = 0.3 m, J = 0.1 kg m^2, k = 1 N/s\n"
