@@ -262,7 +262,7 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
     remark(
         "A rest that friction at several contacts holds ends where no forces within its limits are found any more: "
         "that "
-        "time is known to some 1e-10 of itself.");
+        "time is known to some 1e-8 of itself.");
   const ContactMode before = now_->mode;
   now_ = &motion_in(found->mode, found->given);
   record_changes(before, found->mode);

@@ -504,7 +504,9 @@ std::optional<Step> HybridMotion::settle(double bound) {
   if (!pending_->begins) close_lowest_flights(touch, bound);
   if (!keeps_sticking(touch, reason)) return stopped(StepEnding::Paradox, reason);
   come_to_rest(touch, bound);
-  if (!choose_slips(touch, bound, false, reason)) return stopped(StepEnding::Paradox, reason);
+  // Cones may have a solution that slides where others hold the rest.
+  const bool rests = in_space_ && undetermined_rest(choices(touch, functions_.at(t_, q_, v_)), touch, bound);
+  if (!rests && !choose_slips(touch, bound, false, reason)) return stopped(StepEnding::Paradox, reason);
   bool gave_way = !now_->given.is_preload || !in_space_;  // a rest that was not determined
   // Constraints of the mode to come may move the next contact through zero: that is hit at the same instant.
   for (std::size_t turn = 0; !choose_mode(touch, bound, reason); ++turn) {
