@@ -67,6 +67,8 @@ class MotionThroughModes {
   /// What was settled as the last step began; null: nothing.
   const ModeInstant* instant() const;
   const ContactMode& mode() const;
+  /// Whether a slip in space is at its beginning: its direction is not that of the slip yet.
+  bool begins_to_slide() const;
   /// Of the system in a mode; they stay as long as this.
   const EquationsOfMotion& equations_in(const ContactMode& mode);
   /// The event of the model that stopped the run.

@@ -68,6 +68,7 @@ void HybridMotion::keep_instants() {
 }
 
 const ContactMode& HybridMotion::mode() const { return now_->mode; }
+bool HybridMotion::begins_to_slide() const { return !now_->given.begins.empty(); }
 const EquationsOfMotion& HybridMotion::equations_in(const ContactMode& mode) {
   if (!system_.has_modes()) return equations_;  // events alone: also those that were found for a degenerate Lagrangian
   std::unique_ptr<EquationsOfMotion>& slot = equations_of_modes_[key_of(mode, {stops(), false, {}})];

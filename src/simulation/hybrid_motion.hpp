@@ -70,6 +70,7 @@ class HybridMotion final : public Method {
   void keep_instants();
   const ModeInstant* instant() const { return instant_ ? &*instant_ : nullptr; }
   const ContactMode& mode() const;
+  bool begins_to_slide() const;  // in space, at its beginning
   /// In the context of the model; they stay as long as this.
   const EquationsOfMotion& equations_in(const ContactMode& mode);
   /// Sizes that q and q' have elsewhere in the motion [n]: of later starts, what is much smaller is rounding.

@@ -63,6 +63,7 @@ MotionState MotionThroughModes::state() const {
 }
 const ModeInstant* MotionThroughModes::instant() const { return impl_->motion.instant(); }
 const ContactMode& MotionThroughModes::mode() const { return impl_->motion.mode(); }
+bool MotionThroughModes::begins_to_slide() const { return impl_->motion.begins_to_slide(); }
 const EquationsOfMotion& MotionThroughModes::equations_in(const ContactMode& mode) {
   return impl_->motion.equations_in(mode);
 }

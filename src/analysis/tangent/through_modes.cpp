@@ -89,7 +89,7 @@ std::optional<TangentStop> TangentFlow::ThroughModes::advance(TangentPoint& poin
   stand_at(point.state);
   log_volume = rubs_ ? std::nullopt : std::optional(0.0);
   fewest = point.width();
-  if (motion_.time() != point.state.t)
+  if (motion_.time() != point.state.t || motion_.begins_to_slide())
     return TangentStop{StepEnding::None, point.state.t,
                        "A slip in space begins at the start: neighbours are not carried through that yet.",
                        "Start with a slip."};
