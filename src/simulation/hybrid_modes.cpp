@@ -260,9 +260,9 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
   note_indeterminate(list, found->mode, values);
   if (now_->given.is_preload && !found->given.is_preload && pending_->hit.empty() && pending_->sets.empty())
     remark(
-        "A rest that friction at several contacts holds ends where no forces within its limits are found any more: "
-        "that "
-        "time is known to some 1e-8 of itself.");
+        "A rest whose contact forces are not determined ends where none within their limits are found any more: that "
+        "time "
+        "is known to some 1e-8 of itself.");
   const ContactMode before = now_->mode;
   now_ = &motion_in(found->mode, found->given);
   record_changes(before, found->mode);

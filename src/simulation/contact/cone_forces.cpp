@@ -1,6 +1,6 @@
 #include "simulation/contact/cone_forces.hpp"
 
-#include "linear_algebra/complementarity.hpp"
+#include "linear_algebra/least_distance.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -131,8 +131,7 @@ namespace {
 
 /// Forces of an undetermined rest: λ = λ_0 + N c with the solutions N of W N = 0, c the shortest that keeps the cones.
 /// A cone is told by planes that touch it, λ_n ≥ 0 and part μ λ_n ≥ u·λ_t for unit vectors u, more of them where a
-/// solution lies outside (J. E. Kelley, J. Soc. Ind. Appl. Math. 8 (1960) 703). With the rows G of all planes the
-/// shortest c = Nᵀ Gᵀ z belongs to 0 ≤ z ⟂ G λ_0 + G N Nᵀ Gᵀ z ≥ 0.
+/// solution lies outside (J. E. Kelley, J. Soc. Ind. Appl. Math. 8 (1960) 703).
 class UndeterminedRest {
  public:
   explicit UndeterminedRest(const ConeProblem& p)
@@ -191,41 +190,10 @@ class UndeterminedRest {
       rows.row(k).segment(first_[c] + 1, along.size()) = -along.transpose();
       rows.row(k).normalize();
     }
-    const MatrixXd moved = rows * free_;
-    const VectorXd here = rows * least_;
-    const auto c = free_.cols() == 1 ? on_line(moved.col(0), here) : shortest(moved, here);
+    const auto c = least_distance(rows * free_, -(rows * least_));
     return c ? std::optional(VectorXd(least_ + free_ * *c)) : std::nullopt;
   }
 
-  /// The c next to 0 with moved c + here ≥ 0.
-  static std::optional<VectorXd> on_line(const VectorXd& moved, const VectorXd& here) {
-    double low = -HUGE_VAL, high = HUGE_VAL;
-    for (Index k = 0; k < here.size(); ++k) {
-      if (std::abs(moved(k)) > fixed)
-        (moved(k) > 0 ? low : high) =
-            moved(k) > 0 ? std::max(low, -here(k) / moved(k)) : std::min(high, -here(k) / moved(k));
-      else if (here(k) < 0)
-        return std::nullopt;
-    }
-    if (!(low <= high)) return std::nullopt;
-    return VectorXd::Constant(1, std::clamp(0.0, low, high));
-  }
-
-  /// The same in more dimensions.
-  static std::optional<VectorXd> shortest(const MatrixXd& moved, const VectorXd& here) {
-    std::vector<Index> free;  // planes that c can leave
-    for (Index k = 0; k < here.size(); ++k) {
-      if (moved.row(k).norm() > fixed)
-        free.push_back(k);
-      else if (here(k) < 0)
-        return std::nullopt;
-    }
-    const MatrixXd rows = moved(free, Eigen::all);
-    const auto z = linear_complementarity(rows * rows.transpose(), here(free));
-    return z ? std::optional(VectorXd(rows.transpose() * *z)) : std::nullopt;
-  }
-
-  static constexpr double fixed = 1e-10;  // of a row of unit length: what c does not change
   const ConeProblem& p_;
   Eigen::JacobiSVD<MatrixXd> solver_;
   VectorXd least_;
