@@ -78,7 +78,10 @@ std::optional<VectorXd> least_distance(const MatrixXd& g, const VectorXd& h) {
   const VectorXd f = VectorXd::Unit(n + 1, n);
   const VectorXd rest = e * NonNegativeLeastSquares(e, f).solve() - f;
   if (!(rest(n) < -rounding)) return std::nullopt;
-  return VectorXd(-size * rest.head(n) / rest(n));
+  // Where the inequalities exclude each other the rest is what rounding leaves of large parts.
+  constexpr double digits = 1e-12;
+  const VectorXd x = -size * rest.head(n) / rest(n);
+  return (g * x - h).minCoeff() >= -digits * (size + x.norm()) ? std::optional(x) : std::nullopt;
 }
 
 }  // namespace maupertuis

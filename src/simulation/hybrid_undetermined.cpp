@@ -1,3 +1,4 @@
+#include "linear_algebra/independent_rows.hpp"
 #include "simulation/hybrid_parts.hpp"
 
 #include <fmt/format.h>
@@ -12,11 +13,13 @@ namespace {
 constexpr std::size_t most_that_hold = 32;  // contacts whose forces at rest are sought
 
 bool are_dependent(const std::vector<SparseRow>& rows, std::size_t n) {
-  if (rows.size() < 2) return false;
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(at(rows.size()), at(n));
-  for (std::size_t r = 0; r < rows.size(); ++r)
-    for (const auto& [k, x] : rows[r]) all(at(r), at(k)) = x;
-  return Eigen::FullPivLU<Eigen::MatrixXd>(all).rank() < all.rows();
+  IndependentRows independent;
+  for (const SparseRow& row : rows) {
+    std::vector<double> whole(n, 0);
+    for (const auto& [k, x] : row) whole[k] = x;
+    if (!independent.add(std::move(whole))) return true;
+  }
+  return false;
 }
 
 }  // namespace

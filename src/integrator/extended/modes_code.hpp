@@ -1,6 +1,7 @@
 #pragma once
 #include "integrator/extended/modes.hpp"
 #include "integrator/extended/stepper_code.hpp"
+#include "linear_algebra/independent_rows.hpp"
 
 namespace maupertuis::extended {
 
@@ -482,18 +483,12 @@ bool Modes<T>::may_be_several(const ExtendedMode& mode) const {
 template <class T>
 bool Modes<T>::holds_undetermined(const ExtendedMode& mode) const {
   bool holds = false;
-  std::vector<std::vector<T>> rows;  // at right angles to each other
   bool are_dependent = false;
-  const auto add = [&](std::vector<T> row) {
-    const T size = along<T>(row, row);
-    for (const std::vector<T>& other : rows) {
-      const T part = along<T>(row, other) / along<T>(other, other);
-      for (std::size_t k = 0; k < row.size(); ++k) row[k] -= part * other[k];
-    }
-    if (along<T>(row, row) <= T(1e-20) * size)
-      are_dependent = true;
-    else
-      rows.push_back(std::move(row));
+  IndependentRows independent;
+  const auto add = [&](const std::vector<T>& row) {
+    std::vector<double> rounded;
+    for (const T& x : row) rounded.push_back(static_cast<double>(x));
+    are_dependent = !independent.add(std::move(rounded)) || are_dependent;
   };
   for (std::size_t c = 0; c < problem_.contacts.count; ++c) {
     if (!mode.closed[c]) continue;

@@ -1,6 +1,7 @@
 // Impulses against closed forms and against what energy allows.
 #include "simulation/contact/impact.hpp"
 #include "linear_algebra/complementarity.hpp"
+#include "linear_algebra/least_distance.hpp"
 
 #include <doctest/doctest.h>
 
@@ -38,6 +39,26 @@ Eigen::VectorXd velocities(std::initializer_list<double> v) {
 }
 
 }  // namespace
+
+TEST_CASE("the shortest solution of inequalities, and none where they exclude each other") {
+  Eigen::MatrixXd g(4, 2);
+  Eigen::VectorXd h(4);
+  g << 1, 0, 0.6, 0.8, 0.6, 0.8, -1, 0;  // x ≥ 1, twice 0.6 x + 0.8 y ≥ 2, x ≤ 3
+  h << 1, 2, 2, -3;
+  const auto corner = least_distance(g, h);
+  REQUIRE(corner);
+  CHECK((*corner)(0) == doctest::Approx(1.2).epsilon(1e-13));  // on the aslant line, the foot of the perpendicular
+  CHECK((*corner)(1) == doctest::Approx(1.6).epsilon(1e-13));
+  h << 2, 2, 2, -3;
+  const auto both = least_distance(g, h);
+  REQUIRE(both);
+  CHECK((*both)(0) == doctest::Approx(2).epsilon(1e-13));
+  CHECK((*both)(1) == doctest::Approx(1).epsilon(1e-13));
+  h << 3.001, 2, 2, -3;
+  CHECK_FALSE(least_distance(g, h));
+  h << -1, -2, -2, -3;
+  CHECK(least_distance(g, h)->norm() == 0);
+}
 
 TEST_CASE("a contact that opens is turned round by what is hit beside it, and is not pressed through") {
   // A wall of great mass, a ball that leaves it, another that hits this one.
