@@ -24,21 +24,15 @@ bool HybridMotion::vanishes(const Watch& watch, double size, const ContactValues
   return false;
 }
 
-/// g̈ of a contact with these accelerations, in units of the terms that it is made of.
-double HybridMotion::gap_acceleration(std::size_t contact, std::span<const double> accelerations,
-                                      const ContactValues& values) {
+/// Whether these accelerations close the gap of a contact beyond so many digits of the terms of g̈.
+bool HybridMotion::presses_again(std::size_t contact, std::span<const double> accelerations,
+                                 const ContactValues& values, double digits) {
   double sum = functions_.drifts(t_, q_, v_)[contact], size = std::abs(sum);
   for (const auto& [k, g] : values.normal[contact]) {
     sum += g * accelerations[k];
     size += std::abs(g) * acceleration_[kind_[k]];
   }
-  return size > 0 ? sum / size : 0;
-}
-
-/// Whether these accelerations close the gap of a contact beyond so many digits of the terms of g̈.
-bool HybridMotion::presses_again(std::size_t contact, std::span<const double> accelerations,
-                                 const ContactValues& values, double digits) {
-  return gap_acceleration(contact, accelerations, values) < -digits;
+  return sum < -digits * size;
 }
 
 /// A friction that gives way as its force comes to the limit, with μ_s = μ, lets go without a jump where nothing else
@@ -71,7 +65,7 @@ struct HybridMotion::Trial {
   bool lenient() const { return leniency != Leniency::None; }
   bool begins_at_zero(const Watch& w) const;
   void put_at_zero();
-  bool has_slow_beginnings();
+  bool has_slow_slips();
   bool look(double bound);
 
   bool is_squared(const Watch& w) const {
@@ -129,24 +123,20 @@ void HybridMotion::Trial::put_at_zero() {
     if (watch(k).what == Watch::What::Gap && in.released_[watch(k).index]) s.put_at_zero({&k, 1}, 3);
 }
 
-/// A rest whose forces are not determined ends when none are left to 10⁻¹² of the limits: slips and gaps whose
-/// accelerations are less than that leaves open begin with the next power of time too.
-bool HybridMotion::Trial::has_slow_beginnings() {
+/// A rest whose forces are not determined ends when none are left to 10⁻¹² of the limits: slips whose acceleration is
+/// less than that leaves open begin with the second power of time too.
+bool HybridMotion::Trial::has_slow_slips() {
   constexpr double slow = 1e-9;
   if (!in.now_->given.is_preload || found.given.is_preload) return false;
   bool has_some = false;
-  const auto begin_slowly = [&](std::size_t k, std::uint8_t order) {
-    motion.stepper->put_at_zero({&k, 1}, order);
-    has_some = true;
-  };
   for (const std::size_t k : at_zero) {
     const Watch& w = watch(k);
-    if (w.what == Watch::What::Gap && std::abs(in.gap_acceleration(w.index, outlook.accelerations, values)) <= slow)
-      begin_slowly(k, 3);
     if (w.what != Watch::What::Slip || values.fixed[w.index] != values.kinetic[w.index]) continue;
     double acceleration = 0;
     for (const auto& [i, x] : values.tangent[w.index]) acceleration += std::abs(x) * in.acceleration_[in.kind_[i]];
-    if (std::abs(outlook.slopes[k]) <= slow * acceleration) begin_slowly(k, 2);
+    if (std::abs(outlook.slopes[k]) > slow * acceleration) continue;
+    motion.stepper->put_at_zero({&k, 1}, 2);
+    has_some = true;
   }
   return has_some;
 }
@@ -165,7 +155,7 @@ bool HybridMotion::Trial::look(double bound) {
   s.set_usual_sizes(places, speeds, accelerations);
   outlook = s.outlook(bound);
   if (outlook.ending != StepEnding::None) return false;
-  if (has_slow_beginnings()) outlook = s.outlook(bound);
+  if (has_slow_slips()) outlook = s.outlook(bound);
   found.accelerations = outlook.accelerations;
   for (std::size_t k = 0; k < motion.watches().size(); ++k) {
     const double force = std::abs(outlook.values[k]);

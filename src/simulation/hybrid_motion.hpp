@@ -103,7 +103,6 @@ class HybridMotion final : public Method {
   void forget(const ContactMode& mode);
   void record_event(const std::string& name, double t);
   bool is_just_released(std::size_t contact);
-  double gap_acceleration(std::size_t contact, std::span<const double> accelerations, const ContactValues& values);
   bool presses_again(std::size_t contact, std::span<const double> accelerations, const ContactValues& values,
                      double digits);
   std::optional<Step> settle(double bound);
