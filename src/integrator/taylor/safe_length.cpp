@@ -58,7 +58,9 @@ SafeLength::SafeLength(const Program& program, int order, double tolerance, std:
       ratio_(largest_ratio_ / from_disk_to_disk) {
   for (double ratio = largest_ratio_; most_of_radius * ratio > 0.999; ratio /= from_disk_to_disk)
     all_ratios_.push_back(ratio);
-  ratios_ = {ratio_};
+  const auto last = static_cast<double>(ratios_.size() - 1);
+  for (std::size_t i = 0; i < ratios_.size(); ++i)
+    ratios_[i] = std::pow(most_of_radius * largest_ratio_, 1 - static_cast<double>(i) / last) / most_of_radius;
 }
 
 std::shared_ptr<KnownLengths> SafeLength::shared_by_motions(const Program& program, int order, double tolerance) {
@@ -72,7 +74,6 @@ void SafeLength::forget() {
   asked_ = asked_momenta_ = 0;
   needs_coefficients_ = false;
   ratio_ = largest_ratio_ / from_disk_to_disk;
-  ratios_ = {ratio_};
   own_.forget();
   allow();
   best_radius_ = radius_ = 0;
@@ -128,9 +129,9 @@ bool SafeLength::passes(double h) {
   return true;
 }
 
-/// Whether the disks of this step allow a length h, each term by the one that suits it.
-bool SafeLength::passes_by_terms(double h, std::uint32_t without) {
-  disks_.find_left_out(h, without);
+/// Whether the many disks of this step allow a length h, each term by the one that suits it.
+bool SafeLength::passes_by_terms(double h) {
+  disks_.find_left_out(h);
   for (std::size_t j = 0; j < disks_.residuals(); ++j) {
     const double tail = disks_.residual_left_out(j);
     if (!(h * tail <= tolerance_ * momentum(j)) && !(tail <= tolerance_ * disks_.residual_rounding(j, radius_)))
@@ -228,42 +229,20 @@ double SafeLength::passing_length(double passes_at, double most) {
   return passes_at;
 }
 
-/// Limits of the sizes of many bodies would be left again and again, and one or a few disks say as much of a step:
-/// those that were needed last, else all. Where these do not allow h, they mostly allow a little less. 0: far less, or
-/// they say nothing, as where a square is beyond the range of numbers.
+/// Limits of the sizes of many bodies would be left again and again, and some disks say as much of a step. Where they
+/// do not allow h, they mostly allow a little less. 0: far less, or they say nothing, as where a square is beyond the
+/// range of numbers.
 double SafeLength::within_bases(const SlotCoefficients& coefficients, double h) {
-  using enum Disks::Depth;
   constexpr double little_less = 0.9, less = 0.5;
-  const auto ask = [&](std::span<const double> ratios) {
-    disks_.begin(coefficients);
-    radius_ = ratios.front() * h;
-    if (disks_.needs_larger_disk()) disks_.evaluate(from_disk_to_disk * radius_, Derivatives);
-    for (const double ratio : ratios) disks_.evaluate(ratio * h, Rules);
-  };
-  ask(ratios_);
-  if (passes_by_terms(h)) return h;
+  std::array<double, Disks::many> radii;
+  for (std::size_t i = 0; i < radii.size(); ++i) radii[i] = ratios_[i] * h;
+  radius_ = radii.front();
+  disks_.begin_many(coefficients, radii);
+  while (disks_.ask_more())
+    if (passes_by_terms(h)) return h;
   if (passes_by_terms(little_less * h)) return passing_length(little_less * h, h);
-  ask(all_ratios_);
-  const double length = passes_by_terms(h) ? h : passing_length(0, h);
-  if (!(length > less * h)) return 0;
-  choose_ratios(length);
-  return length;
-}
-
-/// As few of the disks of this step as allow its length: one, if there is one.
-void SafeLength::choose_ratios(double length) {
-  const std::size_t count = all_ratios_.size();
-  const std::uint32_t all = (std::uint32_t{1} << count) - 1;
-  std::uint32_t without = 0;
-  for (std::size_t disk = 0; disk < count && without == 0; ++disk)
-    if (const std::uint32_t others = all & ~(std::uint32_t{1} << disk); passes_by_terms(length, others))
-      without = others;
-  for (std::size_t disk = 0; disk < count; ++disk)
-    if (const std::uint32_t more = without | std::uint32_t{1} << disk; more != all && passes_by_terms(length, more))
-      without = more;
-  ratios_.clear();
-  for (std::size_t disk = 0; disk < count; ++disk)
-    if ((without >> disk & 1) == 0) ratios_.push_back(all_ratios_[disk]);
+  const double length = passing_length(0, little_less * h);
+  return length > less * h ? length : 0;
 }
 
 double SafeLength::within(const SlotCoefficients& coefficients, double time, double wanted, double most,

@@ -3,6 +3,7 @@
 
 #include <maupertuis/disks.hpp>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <memory>
@@ -65,8 +66,7 @@ class SafeLength {
   double within_bases(const SlotCoefficients& coefficients, double h);
   bool passes_somewhere(const SlotCoefficients& coefficients, double h);
   bool passes(double h);
-  bool passes_by_terms(double h, std::uint32_t without = 0);
-  void choose_ratios(double length);
+  bool passes_by_terms(double h);
   bool passes_on(double radius, double h, Disks::Depth depth);
   double allowed();
   double search(const SlotCoefficients& coefficients, double most);
@@ -86,10 +86,10 @@ class SafeLength {
   std::vector<double> momenta_, momentum_rates_;  // [n] or empty; the rates that they belong to
   unsigned asked_momenta_ = 0;
   double largest_ratio_;
-  double ratio_;                    // radius over length that was right last
-  std::vector<double> all_ratios_;  // that are asked about, from large to small
-  std::vector<double> ratios_;      // where there are bases: of the disks that were needed last, from large to small
-  double best_radius_ = 0;          // of the last search; 0: none yet
+  double ratio_;                            // radius over length that was right last
+  std::vector<double> all_ratios_;          // that are asked about, from large to small
+  std::array<double, Disks::many> ratios_;  // where there are bases: of the disks of a step, from the largest to 2
+  double best_radius_ = 0;                  // of the last search; 0: none yet
   double radius_ = 0;
   bool needs_coefficients_ = false;  // since the rules alone did not do in the last steps
   unsigned asked_ = 0;               // by coefficients so far

@@ -1,22 +1,30 @@
 #pragma once
-#include <algorithm>
+#include "kernel/disks/reals.hpp"
+
 #include <cmath>
 
-namespace maupertuis {
+namespace maupertuis::disk_rules {
+namespace {
 
 /// A lower bound of |a + b s + c s²| on |s| ≤ r: |a| − |b| r − |c| r², or |c| (|s₁| − r) (|s₂| − r) with its roots, so
 /// that the square of a distance that shrinks, (d − v s)², is told from 0 up to r = d/v; the former ends at 0.41 of
 /// that.
-inline double least_modulus(double a, double b, double c, double r) {
-  const double by_terms = std::max(0.0, std::abs(a) - (std::abs(b) + std::abs(c) * r) * r);
+template <class V>
+V least_modulus(double a, double b, double c, const V& r) {
+  const double size_of_b = std::abs(b), size_of_c = std::abs(c);
+  const V none = all<V>(0);
+  const V by_terms = larger(none, all<V>(std::abs(a)) - (r * size_of_c + all<V>(size_of_b)) * r);
   const double discriminant = b * b - 4 * a * c;
   if (discriminant < 0) {
-    const double root = std::sqrt(a / c);
-    return root > r ? std::max(by_terms, std::abs(c) * (root - r) * (root - r)) : by_terms;
+    const V gap = all<V>(std::sqrt(a / c)) - r;
+    return select(none < gap, larger(by_terms, gap * gap * size_of_c), by_terms);
   }
-  const double q = 0.5 * (std::abs(b) + std::sqrt(discriminant));  // |c s₁|, the larger root; s₂ = a/q
-  const double larger = q - std::abs(c) * r, smaller = std::abs(a) / q - r;
-  return q > 0 && larger > 0 && smaller > 0 ? std::max(by_terms, larger * smaller) : by_terms;
+  const double q = 0.5 * (size_of_b + std::sqrt(discriminant));  // |c s₁|, the larger root; s₂ = a/q
+  if (!(q > 0)) return by_terms;
+  const V of_larger = all<V>(q) - r * size_of_c, of_smaller = all<V>(std::abs(a) / q) - r;
+  const V both = select(none < of_larger, select(none < of_smaller, of_larger * of_smaller, none), none);
+  return larger(by_terms, both);
 }
 
-}  // namespace maupertuis
+}  // namespace
+}  // namespace maupertuis::disk_rules

@@ -8,6 +8,7 @@
 
 using namespace maupertuis;
 using namespace maupertuis::test;
+using maupertuis::disk_rules::least_modulus;
 
 namespace {
 
@@ -57,7 +58,7 @@ TEST_CASE("the least modulus of a quadratic function on a disk is bounded from b
   for (const double r : {0.1, 1.0, 1.9, 1.999})  // (2 − s)²
     CHECK(least_modulus(4, -4, 1, r) == doctest::Approx((2 - r) * (2 - r)));
   CHECK(least_modulus(4, -4, 1, 2.001) == 0);
-  CHECK(least_modulus(0, 0, 0, 1) == 0);
+  CHECK(least_modulus(0, 0, 0, 1.0) == 0);
   CHECK(least_modulus(3, 0, 0, 1e6) == 3);
 }
 

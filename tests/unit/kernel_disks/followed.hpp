@@ -37,11 +37,13 @@ struct Followed {
 
   /// R_x = x'' + in_residual.
   void follow(const Expr& f) { follow(f, f); }
-  void follow(const Expr& f, const Expr& in_residual) {
+  void follow(const Expr& f, const Expr& in_residual) { follow(f, in_residual, context.number(0)); }
+  /// R_y = y'' + in_second besides.
+  void follow(const Expr& f, const Expr& in_residual, const Expr& in_second) {
     KernelSource source;
     source.coordinates = {x, y};
     const auto second = [&](const Expr& q) { return context.time_derivative(context.time_derivative(q)); };
-    source.residual = {second(x) + in_residual, second(y)};
+    source.residual = {second(x) + in_residual, second(y) + in_second};
     source.events = {f};
     kernel = std::make_shared<Kernel>(build_kernel(source));
     const Program& program = kernel->program();

@@ -49,7 +49,7 @@ TEST_CASE("a coordinate without inertia counts by its own speed") {
   const double terms = 10.001 + 2 * 5, motion = 10.001 + std::sqrt(3 * 25 * 4.0 / 3);
   CHECK(tied.work.acceleration(0) == 0);
   CHECK(taylor::constraint_error(tied.work, 2, 1, 0) == doctest::Approx(1e-3 / (terms + motion)).epsilon(1e-6));
-  const taylor::UsualSizes usual{{0, 0}, {3, 4}};  // a motion that is known to have been larger
+  const taylor::UsualSizes usual{{0, 0}, {3, 4}, {}};  // a motion that is known to have been larger
   CHECK(taylor::constraint_error(tied.work, 2, 1, 0, usual) < taylor::constraint_error(tied.work, 2, 1, 0));
 }
 
