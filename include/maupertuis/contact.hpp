@@ -16,6 +16,7 @@ struct Friction {
   std::vector<Expr> slip;         // v_t in q, q', t: one component, or two in space; empty: without friction
   std::vector<Expr> multipliers;  // λ_t while it sticks, one a component
   Expr kinetic, static_;  // μ, μ_s: coefficients of N; or where there is no N the limits of the force themselves
+  Expr per_multiplier;    // N/λ where the gap is no distance, in kinetic and static_ already; empty: 1
   Expr normal;            // N, of a coordinate; empty: the force of the contact, or 1
   bool sticking = false;  // it never slides while the contact is closed
   Span span;

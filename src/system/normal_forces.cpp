@@ -146,12 +146,15 @@ void set_normal_forces(MechanicalSystem& system, Diagnostics& diagnostics) {
     const auto push = masses->pushed(contact.gap, false);
     if (!push || masses->is_unit(*push, contact.gap)) continue;
     const Expr factor = sqrt(push->square);
-    contact.friction.kinetic = contact.friction.kinetic * factor;
-    contact.friction.static_ = contact.friction.static_ * factor;
+    const auto scale = [&](Friction& friction) {
+      friction.kinetic = friction.kinetic * factor;
+      friction.static_ = friction.static_ * factor;
+      friction.per_multiplier = factor;
+    };
+    scale(contact.friction);
     if (!system.written) continue;
     MechanicalSystem written = *system.written;
-    written.contacts[k].friction.kinetic = written.contacts[k].friction.kinetic * factor;
-    written.contacts[k].friction.static_ = written.contacts[k].friction.static_ * factor;
+    scale(written.contacts[k].friction);
     system.written = std::make_shared<const MechanicalSystem>(std::move(written));
   }
 }

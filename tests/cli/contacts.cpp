@@ -83,3 +83,24 @@ TEST_CASE("rows beside impacts, marks and bars in plots, surfaces and arrows in 
   REQUIRE(maup({"animate", model, "--still", "0.95s", "-o", still}).code == 0);
   CHECK(contains(read(still), "</svg>"));
 }
+
+TEST_CASE("a coefficient of friction is shown as it was written, also where the multiplier is no normal force") {
+  const Folder folder;
+  const std::string bowl = folder.write(
+      "bowl.lag",
+      "coord x, y : length\nparam m = 1 kg, g = 9.81 m/s^2, a = 1/m\npoint P mass m at (x, y)\ngravity (0, -g)\n"
+      "contact y >= a x^2 friction 0.3 static 0.4 slip (x' + 2 a x y')/sqrt(1 + 4 a^2 x^2) name bowl\n"
+      "start x = 0.5 m, y = 0.25 m\n");
+  const Outcome checked = maup({"check", bowl});
+  CHECK_MESSAGE(checked.code == 0, checked.err);
+  CHECK(contains(checked.out, "friction 0.3, static 0.4"));
+  const Json document = json_of(maup({"check", bowl, "--json"}));
+  CHECK(document["contacts"][0]["friction"]["kinetic"] == 0.3);
+  CHECK(document["contacts"][0]["friction"]["static"] == 0.4);
+}
+
+TEST_CASE("a step of low order finds where a gap that swings within it closes") {
+  // A flight is a polynomial of degree 2, one step at any order; the table swings seven times in it.
+  const Outcome low = maup({"test", PROJECT_DIR "/models/ball_on_vibrating_table.lag", "--order", "4"});
+  CHECK_MESSAGE(low.code == 0, low.err + low.out);
+}

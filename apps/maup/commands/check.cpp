@@ -71,10 +71,16 @@ std::string held_text(const IntegralConstraint& held, const EquationsOfMotion& e
                      system.dimensionless ? value : with_unit(value, held.dimension));
 }
 
+/// A coefficient of friction as it was written: of the normal force, not of the multiplier.
+double coefficient_of(Expr coefficient, const Friction& friction, const MechanicalSystem& system) {
+  return value_of(friction.per_multiplier ? coefficient / friction.per_multiplier : coefficient, system);
+}
+
 /// "friction 0.3, static 0.4"
 std::string friction_text(const Friction& friction, const MechanicalSystem& system) {
   if (friction.sticking) return "never slides while it is closed";
-  const double kinetic = value_of(friction.kinetic, system), fixed = value_of(friction.static_, system);
+  const double kinetic = coefficient_of(friction.kinetic, friction, system),
+               fixed = coefficient_of(friction.static_, friction, system);
   return fmt::format("friction {}", brief(kinetic)) + (fixed != kinetic ? ", static " + brief(fixed) : "");
 }
 
@@ -193,7 +199,8 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
 
 Json friction_json(const Friction& f, const EquationsOfMotion& equations) {
   if (f.sticking) return {{"sticking", true}};
-  return {{"kinetic", value_of(f.kinetic, *equations.system)}, {"static", value_of(f.static_, *equations.system)}};
+  return {{"kinetic", coefficient_of(f.kinetic, f, *equations.system)},
+          {"static", coefficient_of(f.static_, f, *equations.system)}};
 }
 
 /// contacts: [{name, gap, restitution, friction, start: {gap, rate, closed, impact}}], frictions: [{along, kinetic,

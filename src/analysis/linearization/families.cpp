@@ -44,9 +44,10 @@ double distance(const PointEquations::Impl& e, const std::vector<double>& sizes,
 
 bool Families::linked(const Equilibrium& x, const Equilibrium& y, const SteadyState& system) const {
   constexpr double same = 1e-6, longest = 0.1;  // of typical sizes
+  constexpr double most_steps = 200;            // since where V falls off for ever some lie as far out as one likes
   OperatingPoint at = x.point;
   double left = distance(e_, sizes_, at, y.point);
-  const double step = std::min(left / 4, longest);
+  const double step = std::max(std::min(left / 4, longest), left / most_steps);
   for (int turns = static_cast<int>(4 * left / std::max(step, same)); left > std::max(step, same); --turns) {
     const auto next =
         turns > 0 ? system.solve(between(e_, at, y.point, step / left), false, turns_from_nearby) : std::nullopt;

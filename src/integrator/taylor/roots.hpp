@@ -45,7 +45,9 @@ class RootSearchOf {
   /// The functions are numbered as their slots are. The program must outlive this.
   RootSearchOf(const Program& program, int order, std::span<const Slot> slots)
       : slots_(slots.begin(), slots.end()),
-        retrace_(program, order, slots),
+        order_(order),
+        retrace_(program, std::max(order, least_order), slots),
+        none_(program.unknowns, T(0)),
         all_disks_(program, slots),
         disks_(program, slots),
         clear_(slots.size(), 0) {
@@ -78,6 +80,8 @@ class RootSearchOf {
   template <class Row, class Expansion>
   void begin(const Time& time, const T& h, Row&& row, const Expansion& work) {
     begin_with(time, h, row);
+    start_ = {};
+    if (retrace_.order() != order_) return;
     const int orders = retrace_.order() + 2;
     start_.coefficients.resize(near_.size() * static_cast<std::size_t>(orders));
     start_.scales.resize(near_.size());
@@ -125,7 +129,7 @@ class RootSearchOf {
 
   template <class Row>
   void begin_with(const Time& time, const T& h, Row&& row) {
-    retrace_.set_motion(time.hi, time.lo, row);
+    retrace_.set_motion(time.hi, time.lo, [&](int k) -> const T* { return k <= order_ + 1 ? row(k) : none_.data(); });
     t_ = time;
     h_ = h;
     const T& t = time.hi;
@@ -161,8 +165,14 @@ class RootSearchOf {
   Beyond analytic_beyond(std::size_t index, const T& x, const T& until);
   std::optional<RootOf<T>> change_of_sign(std::size_t index, T low, T high, std::int8_t side, const T& end);
 
+  /// A step of low order is long where the motion is a polynomial, in which a function of it may still swing: its
+  /// pieces would be no longer than (their rounding)^{1/order} of a period.
+  static constexpr int least_order = 16;
+
   std::vector<Slot> slots_;
+  int order_;  // of the step
   Retrace<T> retrace_;
+  std::vector<T> none_;      // [unknowns] 0: coefficients beyond those of the step
   Disks all_disks_, disks_;  // of all functions; of those that come near zero
   ScaledRows<T> rows_;
   std::vector<std::int8_t> clear_;               // [slots] side on which it stays; 0: it may come to zero

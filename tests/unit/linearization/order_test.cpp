@@ -65,6 +65,17 @@ TEST_CASE("A ring of equilibria is one family, and two rings are two") {
   CHECK(near(found[3], 2, 1e-9));
 }
 
+TEST_CASE("A family whose members lie as far apart as one likes is one, and found soon") {
+  // At rest at y = 0, wherever z is; searches that slide down y²/(2 z) end anywhere.
+  Linearized trough(
+      "dimensionless\nparam m = 2\ncoord y, z : number\nT = 1/2 m (y'^2 + z'^2)\nV = y^2/(2 z)\nstart y = 0.3, z = "
+      "1\n");
+  const ModalStudy study = trough.study();
+  REQUIRE_FALSE(study.entries.empty());
+  CHECK(std::abs(study.entries[0].equilibrium.point.q[0]) < 1e-6);
+  CHECK(study.entries[0].equilibrium.family == 1);
+}
+
 TEST_CASE("A potential that repeats in a length: those near the start are shown, the others counted") {
   Linearized m(
       "system lattice\nparam m = 1 kg, E = 1 J, a = 1 m\ncoord x : length\nT = 1/2 m x'^2\n"
