@@ -2,6 +2,7 @@
 #include "simulation/hybrid_parts.hpp"
 
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/slip_signs.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <fmt/format.h>
@@ -336,7 +337,8 @@ Expr HybridMotion::function_of(const Watch& watch, bool second) const {
     case Watch::What::Hold: {
       const Friction& f = friction_of(system_, i);
       const Expr normal = normal_force(system_, mode, i);
-      const Expr most = normal ? f.static_ * normal : f.static_;
+      const Expr limit = on_side_of_slip(system_, f, f.static_, second);
+      const Expr most = normal ? limit * normal : limit;
       return second ? most + f.multipliers[0] : most - f.multipliers[0];
     }
     case Watch::What::Until:

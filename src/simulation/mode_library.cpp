@@ -5,6 +5,7 @@
 
 #include <maupertuis/interrupt_scope.hpp>
 #include <maupertuis/simulation.hpp>
+#include <maupertuis/slip_signs.hpp>
 #include <maupertuis/system_expressions.hpp>
 #include <maupertuis/transform.hpp>
 
@@ -51,14 +52,18 @@ void watch_frictions(const MechanicalSystem& system, const ContactMode& mode, co
     const Expr normal = normal_force(system, mode, i);
     if (state == FrictionState::Stick) {
       if (f.sticking) continue;
-      const Expr most = normal ? f.static_ * normal : f.static_;
+      const auto most_of = [&](bool forwards) {  // that it holds before it slides this way
+        const Expr limit = on_side_of_slip(system, f, f.static_, forwards);
+        return normal ? limit * normal : limit;
+      };
       if (f.in_space()) {
+        const Expr most = most_of(true);
         watch(ModeWatch::What::Hold, i,
               most * most - f.multipliers[0] * f.multipliers[0] - f.multipliers[1] * f.multipliers[1]);
         continue;
       }
-      watch(ModeWatch::What::Hold, i, most - f.multipliers[0]);
-      watch(ModeWatch::What::Hold, i, most + f.multipliers[0]);
+      watch(ModeWatch::What::Hold, i, most_of(false) - f.multipliers[0]);
+      watch(ModeWatch::What::Hold, i, most_of(true) + f.multipliers[0]);
       watches.back().lower = true;
     } else if (f.in_space()) {
       const Expr stop = system.context->number(Rational::from_double(stops[i]));
@@ -81,7 +86,8 @@ ExprMap forces_in(const MechanicalSystem& system, const ContactMode& mode, ExprV
     for (const Expr& multiplier : f.multipliers) out[multiplier] = context.number(0);
     if (state == FrictionState::None) continue;
     const Expr normal = normal_force(system, mode, i);
-    const Expr force = normal ? f.kinetic * normal : f.kinetic;
+    const Expr kinetic = on_side_of_slip(system, f, f.kinetic, state == FrictionState::Forward);
+    const Expr force = normal ? kinetic * normal : kinetic;
     if (state == FrictionState::Slide) {
       const Expr speed = slip_speed(f);
       rubbed.push_back(force * speed);

@@ -656,3 +656,41 @@ TEST_CASE("friction is μ times the normal force, also where the gap is not the 
   REQUIRE(factor.diagnostics.items().size() == 1);
   CHECK(factor.diagnostics.items()[0].code == "W0435");
 }
+
+TEST_CASE("Stribeck friction by |x'|, however written, goes on while a slip has one direction") {
+  // 0.57613206 m after 27 changes by Runge-Kutta steps of 2e-5 s between events.
+  const std::string laws[] = {"exp(-abs(x')/v0)", "exp(-abs(x'/v0))", "exp(-max(x', -x')/v0)",
+                              "piecewise(x' > 0 [m/s] : exp(-x'/v0), else : exp(x'/v0))"};
+  for (const std::string& law : laws)
+    for (const std::string still : {"", " static 3 [N]"}) {
+      CAPTURE(law);
+      ModelText m(
+          "param m = 1 kg, k = 10 N/m, v0 = 0.05 m/s\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"
+          "force x = 3.5 [N] sin(2 [rad/s] t)\nfriction x limit 2 [N] + 1 [N] " +
+          law + still + "\n");
+      const auto r = run(m, 20);
+      REQUIRE(r.ok());
+      CHECK(r.final.q[0] == doctest::Approx(0.57613206).epsilon(1e-8));
+      CHECK(r.happenings.size() == 27);
+      CHECK(r.statistics.switches == 0);
+    }
+}
+
+TEST_CASE("friction that is stronger in one direction holds, gives way and slides by the limit of each") {
+  const auto slip = [](const std::string& limit, const std::string& force) {
+    ModelText m("param m = 2 kg\ncoord x : length\nT = 1/2 m x'^2\nforce x = " + force + "\nfriction x limit " + limit +
+                "\n");
+    const auto r = run(m, 4);
+    REQUIRE(r.ok());
+    REQUIRE(r.happenings.size() == 1);
+    CHECK(r.happenings[0].kind == Happening::Kind::Slip);
+    CHECK(r.final.q[0] == doctest::Approx(std::copysign(std::pow(4 - r.happenings[0].t, 3) / 12, r.final.q[0])));
+    return std::copysign(r.happenings[0].t, r.final.q[0]);
+  };
+  for (const std::string limit :
+       {"2.5 [N] + 0.5 [N] sign(x')", "piecewise(x' > 0 [m/s] : 3 [N], else : 2 [N])", "2 [N] + 1 [N] step(3 x')"}) {
+    CAPTURE(limit);
+    CHECK(slip(limit, "1 [N/s] t") == doctest::Approx(3).epsilon(1e-14));
+    CHECK(slip(limit, "-1 [N/s] t") == doctest::Approx(-2).epsilon(1e-14));
+  }
+}
