@@ -75,7 +75,11 @@ void HybridMotion::note_sizes(const ContactValues& values) {
   note_gaps(values);
   for (std::size_t i = 0; i < fastest_slip_.size(); ++i)
     fastest_slip_[i] = std::max({fastest_slip_[i], values.slip_scale[i], size_along(values.tangent[i])});
-  for (std::size_t i = 0; i < slip_scale_.size(); ++i) slip_scale_[i] = std::max(slip_scale_[i], fastest_slip_[i]);
+  for (std::size_t i = 0; i < slip_scale_.size(); ++i) {  // of what the slip is made of, however fast others are
+    double usual = 0;
+    for (const auto& [k, x] : values.tangent[i]) usual += usual_v_.empty() ? 0 : std::abs(x) * usual_v_[k];
+    slip_scale_[i] = std::max({slip_scale_[i], values.slip_scale[i], usual});
+  }
 }
 
 /// Gaps of one dimension have one size too.

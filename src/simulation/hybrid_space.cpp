@@ -44,10 +44,12 @@ bool HybridMotion::slides_in_space(std::size_t i, const ContactValues& values) c
   return begins_to_slide_[i] || slip_speed_at(i, values) > rest_slip(i, values);
 }
 
-/// The speed at which a slip counts as stopped, in steps of ten so that the motion of a mode serves many of them.
+/// The speed at which a slip counts as stopped, well above what is rounding of it; in steps of ten so that the motion
+/// of a mode serves many of them.
 double HybridMotion::stop_slip(std::size_t i) const {
-  const double scale = std::max(slip_scale_[i], 1e-200);
-  return slow_slip * std::pow(10, std::floor(std::log10(scale)));
+  constexpr double above_rounding = 100;
+  const double speed = std::max({slow_slip * slip_scale_[i], above_rounding * rest_unit * fastest_slip_[i], 1e-200});
+  return std::pow(10, std::floor(std::log10(speed)));
 }
 
 /// ∂g/∂q − μ Σ_k v_tk/|v_t| ∂v_tk/∂q̇: what a unit of the normal force does while it slides.
@@ -305,7 +307,7 @@ bool HybridMotion::choose_slips(const std::vector<std::size_t>& touching, double
       slides[c] = found->forces(n) > 0 && is_at_limit &&
                   (reaches_limit(i) || slip.norm() > small * sizes.segment(n + 1, 2).norm());
       if (!slides[c] || pass == 0) continue;
-      slip_scale_[i] = std::max({slip_scale_[i], fastest_slip_[i], slip.norm() * outlook->length});
+      slip_scale_[i] = std::max(slip_scale_[i], slip.norm() * outlook->length);
       begins_to_slide_[i] = true;
       begins_towards_[i] = std::atan2(-force(1), -force(0));
     }

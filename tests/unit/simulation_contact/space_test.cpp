@@ -300,3 +300,19 @@ TEST_CASE("a table on four feet slides, turns and stops: friction takes all its 
   CHECK(level.books->friction == doctest::Approx(0.5 * 1.09 + 0.05 * 9).epsilon(1e-12));
   for (const double v : level.final.v) CHECK(std::abs(v) < 1e-12);
 }
+
+TEST_CASE("a slip in space stops by its own sizes, whatever flies past at a million times its speed") {
+  const auto end = [](const std::string& speed) {
+    const auto r = run_text(
+        "param m = 1 kg, g = 9.81 m/s^2, k = 40 N/m, v = 0.1 m/s, w = 1.3 rad/s, A = 0.1 m\n"
+        "coord q, x, y, z : length\npoint P mass m at (x, y, z)\nT += 1/2 m q'^2\ngravity (0, 0, -g)\n"
+        "force on P = (k (v t - x), k (A sin(w t) - y), 0)\n"
+        "contact z >= 0 friction 0.3 static 0.5 slip (x', y', 0) name plate\nstart q' = " +
+            speed + "\n",
+        10);
+    return r.final.q[1];
+  };
+  const double alone = end("0 m/s");
+  CHECK(std::abs(end("1e4 m/s") - alone) < 1e-14);
+  CHECK(std::abs(end("1e6 m/s") - alone) < 1e-14);
+}
