@@ -220,9 +220,11 @@ ModeProgram ModeLibrary::derived(const ContactMode& mode, const ModeDetails& det
   watch_frictions(own, plain, details.stops, watches, wanted.events);
   for (std::size_t i = 0; i < own.coordinates.size(); ++i)
     damped.push_back(equations.dissipative_terms[i] * own.coordinates[i].velocity);
-  wanted.integrands = {equations.power, own.context->sum(rubbed), own.context->sum(damped)};
+  wanted.integrands = {own.context->sum(rubbed), own.context->sum(damped)};
   for (auto* list : {&wanted.observables, &wanted.events, &wanted.integrands})
     if (!forces.empty() && !list->empty()) *list = substitute(*list, forces);
+  // The power is of the system that moves: given forces are in it already, beside the multipliers.
+  wanted.integrands.insert(wanted.integrands.begin(), equations.power);
   ModeProgram out{std::move(watches), motion_kernel(equations, wanted), std::nullopt};
   if (!slips.empty()) {
     WantedFunctions alone;

@@ -286,3 +286,22 @@ TEST_CASE("a contact that is hit as the run ends is told") {
   REQUIRE(r.remarks.size() == 1);
   CHECK(r.remarks[0].find("before the impact") != std::string::npos);
 }
+
+TEST_CASE("friction that is not determined and sticks to what moves has its work in the books") {
+  const auto drift = [](const std::string& slip, const std::string& floor) {
+    const std::string foot = " friction 0.3 slip P";
+    const auto r = run_text(
+        "param m = 1 kg, g = 9.81 m/s^2, a = 0.5 m, h = 0.3 m, J = 0.1 kg m^2, k = 10 N/m, v = 0.1 m/s, b = 0.2 "
+        "m/s^2\n"
+        "coord x, y : length, w : angle\nbody B mass m inertia J at (x, y) rotation angle w\ngravity (0, -g)\n"
+        "V += 1/2 k x^2\npoint P1 at (a, -h) in B\npoint P2 at (-a, -h) in B\ncontact P1.y >= " +
+            floor + foot + "1.x' - " + slip + " name l1\ncontact P2.y >= " + floor + foot + "2.x' - " + slip +
+            " name l2\nstart y = h, x' = v\n",
+        1.5);
+    CHECK(r.first_mode == "l1 sticking, l2 sticking");
+    return r.statistics.energy_drift;
+  };
+  CHECK(drift("v", "0 m") < 1e-14);
+  CHECK(drift("(v + b t)", "0 m") < 1e-14);
+  CHECK(drift("v", "1/2 b t^2") < 1e-14);
+}
