@@ -99,11 +99,15 @@ bool invert(std::vector<double>& b, std::size_t n) {
 std::vector<double> acceleration_roundings(std::vector<double> b, std::size_t n, std::size_t m, Disks& disks,
                                            double length, double unit) {
   const std::size_t unknowns = n + m;
-  std::vector<double> result(n, 0.0);
+  std::vector<double> result(n, 0.0), masses(n, 0.0);
+  for (std::size_t i = 0; i < n && !b.empty(); ++i) masses[i] = std::abs(b[i * unknowns + i]);
   if (b.empty() || !invert(b, unknowns)) return result;
-  for (std::size_t i = 0; i < n; ++i)
+  for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < unknowns; ++j)
       result[i] += unit * std::abs(b[i * unknowns + j]) * disks.residual_rounding(j, length);
+    // Constraints that hold a coordinate leave it what rounding of the forces that balance there does.
+    if (masses[i] > 0) result[i] = std::max(result[i], unit * disks.residual_rounding(i, length) / masses[i]);
+  }
   return result;
 }
 
