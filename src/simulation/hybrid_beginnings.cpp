@@ -91,7 +91,9 @@ class Slips {
 /// The directions of slips that begin together, one order after the other.
 class Directions {
  public:
-  Directions(Slips& slips, const std::vector<double>& towards) : slips_(slips) {
+  /// `loose`: combinations of the directions that friction does not hold to their slips, the weakest ones, besides
+  /// those that it cannot.
+  Directions(Slips& slips, const std::vector<double>& towards, Index loose) : slips_(slips), loose_(loose) {
     for (const double angle : towards) {
       angles_.emplace_back(degree + 1, 0.0);
       angles_.back()[0] = angle;
@@ -118,6 +120,21 @@ class Directions {
         if (angles_[c][k] != 0)
           out = std::min(out, std::pow(rounding / std::abs(angles_[c][k]), 1 / static_cast<double>(k)));
       out = std::min(out, growth(c));
+    }
+    return out;
+  }
+
+  /// The largest angle between a slip and its direction a while later.
+  double deviation(double since) const {
+    double out = 0;
+    for (std::size_t c = 0; c < angles_.size(); ++c) {
+      double across = 0, along = 0, power = 1;
+      for (int k = 1; k <= degree + 1; ++k) {
+        power *= since;
+        across += slips_.across(c, k) * power;
+        along += slips_.along(c, k) * power;
+      }
+      out = std::max(out, std::abs(across / along));
     }
     return out;
   }
@@ -173,14 +190,17 @@ class Directions {
 
   /// Where slips are bound to each other (two feet of a bar have one velocity along it) friction across does the same
   /// to all of them: then v_{t,k+1} tells but sums of the φ_k, and differences of the φ_{k−1}, by what they turn
-  /// v_{t,2}.
+  /// v_{t,2}. Where they are nearly bound (the bar turns, and slides along itself a little) the series of the
+  /// differences is right for next to no time: they may be taken as if they were bound, and whether the slips go along
+  /// then is seen.
   bool correct(std::size_t k, const MatrixXd& slope, const VectorXd& right) {
     const Index n = slope.cols();
     Eigen::JacobiSVD<MatrixXd> parts(slope, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    parts.setThreshold(negligible_);
-    const MatrixXd bound = parts.matrixV().rightCols(n - parts.rank());
+    const double least = negligible_ * *std::max_element(sizes_.begin(), sizes_.end()) / static_cast<double>(k + 1);
+    const Index free = (parts.singularValues().array() > least).count();
+    const MatrixXd bound = parts.matrixV().rightCols(std::min(n - free + loose_, n));
     MatrixXd all(n, n + bound.cols());
-    all.leftCols(n) = slope;
+    all.leftCols(n) = slope - slope * bound * bound.transpose();
     for (Index c = 0; c < n && bound.cols() > 0; ++c)
       all.row(c).tail(bound.cols()) = (k > 0 ? -slips_.along(static_cast<std::size_t>(c), 2) : 0.0) * bound.row(c);
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver;
@@ -209,6 +229,7 @@ class Directions {
 
   static constexpr double negligible_ = 1e-9, half_turn = 3.141592653589793;
   Slips& slips_;
+  Index loose_;
   std::vector<Series> angles_;
   std::vector<double> sizes_;  // of v̇_t, by what friction does there
   MatrixXd slope_;             // of v_{t,2} across by φ_1
@@ -230,10 +251,15 @@ std::optional<HybridMotion::Given> HybridMotion::given_in(const ContactMode& mod
   out.begins = begins;
   const auto program = library_->program(mode, {stops(), false, begins});
   Slips slips(*program->slips, parameters_, t_, q_, v_);
-  Directions directions(slips, towards);
-  if (!directions.find()) return std::nullopt;
-  out.values = slips.given();
-  const double length = std::min(directions.length(), std::abs(bound - t_));
+  constexpr double astray = 1e-12;
+  double length = 0;
+  for (std::size_t loose = 0; loose < towards.size(); ++loose) {  // the one that leads furthest
+    Directions directions(slips, towards, at(loose));
+    const double reached = directions.find() ? std::min(directions.length(), std::abs(bound - t_)) : 0;
+    if (!(reached > length) || (loose > 0 && directions.deviation(reached) > astray)) continue;
+    length = reached;
+    out.values = slips.given();
+  }
   if (!(length > 0)) return std::nullopt;
   out.end = t_ + length;
   return out;

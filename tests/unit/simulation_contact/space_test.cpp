@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -146,6 +147,28 @@ TEST_CASE("a bar on two rough feet gives way where its friction is determined, t
   CHECK(turned.final.q[4] == doctest::Approx(std::pow(4 - 0.15 * 9.81, 3) / 0.6).epsilon(1e-10));
   const auto swings = bar("force w = 2 [N m] sin(t/1[s])\n", 1);
   CHECK(swings.happenings[0].t == doctest::Approx(std::asin(0.15 * 9.81 / 2)).epsilon(1e-12));
+}
+
+TEST_CASE("a bar that is turned and pushed gives way at one foot, then at the other") {
+  // x, y, w at 4 s: by the implicit midpoint rule in steps of 1e-5 s with friction v_t/√(v_t² + ε²), ε → 0.
+  const auto slides = [](const std::string& x, const std::string& y, const std::array<double, 3>& end) {
+    CAPTURE(x);
+    const auto r = run_text(
+        "param m = 1 kg, g = 9.81 m/s^2, a = 0.5 m, J = 0.1 kg m^2, k = 1 N/s\ncoord x, y, z : length, v, w : angle\n"
+        "T = 1/2 m (x'^2 + y'^2 + z'^2) + 1/2 J (v'^2 + w'^2)\nV = m g z\nforce w = k t 1[m]\nforce x = " +
+            x + " k t\nforce y = " + y +
+            " k t\ncontact z - a v >= 0 friction 0.3 slip (x', y' + a w') name l1\n"
+            "contact z + a v >= 0 friction 0.3 slip (x', y' - a w') name l2\n",
+        4);
+    for (const std::size_t i : {0, 1}) CHECK(r.final.q[i] == doctest::Approx(end[i]).epsilon(2e-5));
+    CHECK(r.final.q[4] == doctest::Approx(end[2]).epsilon(2e-5));
+    CHECK(r.statistics.energy_drift < 1e-14);
+    return r.happenings[0].t;
+  };
+  CHECK(slides("0.001", "0", {0.00398530, 0, 26.94249}) == doctest::Approx(1.4715 / std::sqrt(1 + 0.25e-6)));
+  CHECK(slides("0.1", "0", {0.398958, 0, 26.97415}) == doctest::Approx(1.4715 / std::sqrt(1.0025)));
+  CHECK(slides("0", "0.3", {0, 2.283096, 27.17334}) == doctest::Approx(1.4715 / 1.15));
+  CHECK(slides("0.1", "0.3", {0.391662, 2.277944, 27.20992}) == doctest::Approx(1.4715 / 1.15));
 }
 
 TEST_CASE("forces of an undetermined rest are those of cones with a margin, and none beyond them") {
