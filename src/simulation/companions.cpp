@@ -192,6 +192,7 @@ Companions one_after_the_other(const CompanionPlan& plan, const WantedFunctions&
     HybridMotion* through_modes = nullptr;
     const auto hybrid = [&] {
       auto made = std::make_unique<HybridMotion>(plan.modes, draw.parameters, taylor_options(plan, k));
+      made->meet_hidden_roots_late();
       through_modes = made.get();
       return made;
     };

@@ -694,3 +694,23 @@ TEST_CASE("friction that is stronger in one direction holds, gives way and slide
     CHECK(slip(limit, "-1 [N/s] t") == doctest::Approx(-2).epsilon(1e-14));
   }
 }
+
+TEST_CASE("a limit that is reached at a root of third order is located as well as it is said to be") {
+  const auto of = [](const std::string& rest) {
+    ModelText m("param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n" + rest);
+    SimulationOptions options;
+    options.duration = 3;
+    auto r = simulate(m.model, m.equations, options, m.diagnostics);
+    REQUIRE(r);
+    REQUIRE(r->ok());
+    REQUIRE(r->happenings.size() == 1);
+    REQUIRE(r->final.errors);
+    CHECK(std::abs(r->happenings[0].t - 1) < r->happenings[0].error);
+    CHECK(r->happenings[0].error < 1e-3);
+    return std::move(*r);
+  };
+  const auto slips = of("force x = 3 [N] + 1 [N/s^3] (t - 1 [s])^3\nfriction x limit 2 N static 3 N\n");
+  CHECK(std::abs(slips.final.q[0] - 3.6) < slips.final.errors->q[0]);
+  const auto opens = of("force x = 1 [N/s^3] (t - 1 [s])^3\ncontact x >= 0 name floor\n");
+  CHECK(opens.final.q[0] == doctest::Approx(1.6).epsilon(1e-14));
+}
