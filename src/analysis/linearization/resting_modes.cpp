@@ -1,6 +1,7 @@
 #include <maupertuis/resting_modes.hpp>
 
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/transform.hpp>
 
 #include <fmt/format.h>
 
@@ -52,7 +53,7 @@ class AtRest {
 
   /// Closed contacts press and open ones are open, by more than rounding. `touching`: whether nothing but rounding is
   /// missing.
-  bool presses(const OperatingPoint& point, bool* touching = nullptr) const {
+  bool presses(const OperatingPoint& point, bool* touching = nullptr, double gap_digits = touches) const {
     const Bindings b = at(point);
     double largest = 0;
     for (const double x : point.multipliers) largest = std::max(largest, std::abs(x));
@@ -61,11 +62,21 @@ class AtRest {
     for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
       const Contact& c = system_.contacts[i];
       const double x = mode_.closed[i] ? value(c.multiplier, b) : value(c.gap, b),
-                   rounding = touches * (mode_.closed[i] ? largest : size(c.gap, b));
+                   rounding = mode_.closed[i] ? touches * largest : gap_digits * size(c.gap, b);
       good = good && x > rounding;
       if (touching) *touching = *touching && x >= -rounding;
     }
     return good;
+  }
+
+  /// Whether no open contact comes nearer or goes farther along this translation.
+  bool is_free_along(const Translation& translation) const {
+    for (std::size_t i = 0; i < system_.contacts.size(); ++i)
+      for (std::size_t k = 0; k < system_.coordinates.size(); ++k)
+        if (!mode_.closed[i] && translation.direction[k] != 0 &&
+            !differentiate(system_.contacts[i].gap, system_.coordinates[k].q).is_zero())
+          return false;
+    return true;
   }
 
   std::vector<StaticHold> holds(const OperatingPoint& point) const {
@@ -185,10 +196,12 @@ class RangeSearch {
     const auto here = equilibrium_near(sticking_.points(), search);
     if (here.empty()) return std::nullopt;
     const auto translations = sticking_.points().translations();
-    if (here.front().family == 0 && translations.size() == 1)
+    const bool moves_along = here.front().family == 0 && translations.size() == 1;
+    if (moves_along && sticking_.is_free_along(translations.front()))
       return RestingRange{translations.front().pivot, -HUGE_VAL, HUGE_VAL};
-    if (here.front().family != 1 || here.front().family_along.empty() || !translations.empty()) return std::nullopt;
-    const std::size_t k = here.front().family_along.front();
+    const bool is_family = here.front().family == 1 && !here.front().family_along.empty() && translations.empty();
+    if (!moves_along && !is_family) return std::nullopt;
+    const std::size_t k = moves_along ? translations.front().pivot : here.front().family_along.front();
     const double down = end(here.front().point, k, -1), up = end(here.front().point, k, 1);
     return RestingRange{k, down, up};
   }
@@ -204,9 +217,10 @@ class RangeSearch {
     const auto found = equilibrium_near(sticking_.points(), search);
     return found.empty() ? std::nullopt : std::optional(found.front().point);
   }
+  /// Up to where the next contact touches.
   bool holds_at(const OperatingPoint& from, std::size_t k, double value) const {
     const auto there = moved_to(from, k, value);
-    return there && sticking_.presses(*there) && sticking_.friction_holds(*there);
+    return there && sticking_.presses(*there, nullptr, 0) && sticking_.friction_holds(*there);
   }
 
   double end(const OperatingPoint& from, std::size_t k, int direction) const {
@@ -224,7 +238,8 @@ class RangeSearch {
       const double middle = 0.5 * (inside + outside);
       (holds_at(from, k, place + direction * middle) ? inside : outside) = middle;
     }
-    return place + direction * inside;
+    const double found = place + direction * inside;
+    return std::abs(found) <= 1e-15 * size ? 0 : found;
   }
 
   const AtRest& sticking_;

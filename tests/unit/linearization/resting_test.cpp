@@ -58,6 +58,29 @@ TEST_CASE("static friction holds a spring within μs m g/k, not beyond") {
   CHECK(found[0].study.entries[0].analysis.modes[0].frequency() == doctest::Approx(std::sqrt(40)).epsilon(1e-12));
 }
 
+TEST_CASE("what rests anywhere along a rough floor does so between the walls") {
+  const auto range = [](const std::string& walls) {
+    const ModelText m(
+        "dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = y\n"
+        "contact y >= 0 friction 0.3 slip x' name floor\n" +
+        walls);
+    const auto found = rests(m);
+    REQUIRE(!found.empty());
+    REQUIRE(found[0].text == "floor");
+    REQUIRE(found[0].ranges.at(0));
+    return *found[0].ranges[0];
+  };
+  const auto none = range("");
+  CHECK(std::isinf(none.from));
+  CHECK(std::isinf(none.to));
+  const auto one = range("contact x - y >= -0.5 name wall\n");
+  CHECK(one.from == doctest::Approx(-0.5).epsilon(1e-14));
+  CHECK(std::isinf(one.to));
+  const auto two = range("contact x >= -0.1 name left\ncontact x <= 3 name right\n");
+  CHECK(two.from == doctest::Approx(-0.1).epsilon(1e-14));
+  CHECK(two.to == doctest::Approx(3).epsilon(1e-14));
+}
+
 TEST_CASE("friction of a coordinate with a limit of its own") {
   const ModelText m("dimensionless\nparam M0 = 0.5\ncoord θ : angle\nT = 1/2 θ'^2\nV = -cos θ\nfriction θ limit M0\n");
   const auto found = rests(m);
