@@ -22,6 +22,7 @@ struct CompanionPlan {
   std::vector<std::size_t> grid;         // rows of the trajectory that are compared, in the order of the run
   bool whole_rows = false;               // all their columns, else q and q' alone
   std::shared_ptr<ModeLibrary> modes{};  // of the run, where it goes through modes
+  std::vector<double> accelerations{};   // [n] then: the largest, also of forces that balance
 
   double time(std::size_t g) const { return result.trajectory.times[grid[g]]; }
   std::size_t columns() const { return whole_rows ? result.trajectory.columns.size() : 2 * run.q.size(); }

@@ -1,6 +1,7 @@
 #pragma once
 #include "simulation/method.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 
@@ -18,7 +19,11 @@ class EnergyBalance {
   /// Another method takes over: its integrals start at zero again.
   void carry_over(const Sample& last) { work_before_ += work_of(last); }
 
-  double drift() const { return largest_scale_ > 0 ? largest_error_ / largest_scale_ : 0; }
+  /// `rounding`: of energies; where there have been no larger ones they do not drift.
+  double drift(double rounding = 0) const {
+    if (std::max(largest_scale_, largest_error_) <= rounding) return 0;
+    return largest_scale_ > 0 ? largest_error_ / largest_scale_ : 0;
+  }
   /// Nothing is known of it: a term was infinite, or it had no value at any state.
   bool is_lost() const { return overflows_ || (terms_ > 0 && !begun_); }
   static constexpr const char* lost =

@@ -119,7 +119,7 @@ class Member {
     motion_.finish();
     ending.t = last.t;
     ending.steps = motion_.steps();
-    ending.energy_drift = balance_.drift();
+    ending.energy_drift = balance_.drift(motion_.rounding_of_energy());
     ending.alone = true;
     if (ending.ok() && balance_.is_lost()) ending.ending = StepEnding::Overflow, ending.reason = EnergyBalance::lost;
     const auto place = static_cast<std::ptrdiff_t>(number_ * members_.freedoms);

@@ -85,7 +85,7 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   settled_.reset();
   instant_.reset();
   started_ = false;
-  late_by_ = 0;
+  late_by_ = longest_step_ = 0;
   now_ = &motion_in(open_mode(system_));
   now_->stepper->start(t_, q_, v_, t_rest_);
   pending_ = std::make_unique<Pending>();
@@ -163,6 +163,7 @@ Step HybridMotion::step(double bound) {
   const double end = now_->given.end;
   Step out = now_->stepper->step(forwards_ ? std::min(bound, end) : bound);
   if (out.end != out.begin) same_time_ = 0;
+  longest_step_ = std::max(longest_step_, std::abs(out.end - out.begin));
   if (!just_moved_on_) gap_begin_ = std::numeric_limits<double>::quiet_NaN();
   just_moved_on_ = false;
   if (out.ending != StepEnding::None) return out;

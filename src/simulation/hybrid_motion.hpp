@@ -73,6 +73,10 @@ class HybridMotion final : public Method {
   bool begins_to_slide() const;  // in space, at its beginning
   /// In the context of the model; they stay as long as this.
   const EquationsOfMotion& equations_in(const ContactMode& mode);
+  /// [n] The largest that q'' of the dimension of each coordinate has been, or that forces which balance would make it.
+  std::vector<double> largest_accelerations() const;
+  /// What rounding of forces that balance makes of the energy in a step; 0 where it is not known.
+  double rounding_of_energy();
   /// A companion, whose difference tells the error, meets roots that rounding hides later by what it may hide of them:
   /// the roots of conditions that end a rest or a contact so slowly are found at the same place by all.
   void meet_hidden_roots_late() { meets_late_ = true; }
@@ -223,6 +227,7 @@ class HybridMotion final : public Method {
   std::unique_ptr<Pending> pending_;
   std::optional<Step> failed_;  // the start allows no motion
 
+  double longest_step_ = 0;
   double t_ = 0, t_rest_ = 0;  // a located instant is t_ + t_rest_
   std::vector<double> q_, v_;
   bool forwards_ = true, started_ = false;

@@ -118,6 +118,27 @@ void HybridMotion::note_accelerations(std::span<const double> a, const ContactVa
   }
 }
 
+std::vector<double> HybridMotion::largest_accelerations() const {
+  std::vector<double> out;
+  for (const std::size_t k : kind_) out.push_back(acceleration_[k]);
+  return out;
+}
+
+double HybridMotion::rounding_of_energy() {
+  if (library_->sets().outputs() == 0) return 0;
+  const std::vector<double> still(v_.size(), 0);
+  const double here = energy_and_sets_at(t_, q_, still)[0];
+  double out = 0;
+  for (std::size_t i = 0; i < q_.size(); ++i) {
+    const double speed = rest_unit * acceleration_[kind_[i]] * longest_step_;
+    std::vector<double> q = q_, v = still;
+    q[i] += speed * longest_step_;
+    v[i] = speed;
+    out += std::abs(energy_and_sets_at(t_, q, still)[0] - here) + std::abs(energy_and_sets_at(t_, q_, v)[0] - here);
+  }
+  return std::isfinite(out) ? out : 0;
+}
+
 void HybridMotion::note_compliance(const std::vector<std::size_t>& touching, const ContactValues& values) {
   std::vector<SparseRow> rows;
   for (const std::size_t i : touching) rows.push_back(values.normal[i]);

@@ -9,6 +9,9 @@ namespace {
 /// Of the largest value among columns of one unit: what is smaller is rounding noise about zero, not a motion.
 constexpr double noise_of_unit = 1e-6;
 
+/// Of what a coordinate would have done along the run if the forces on it had not balanced.
+constexpr double noise_of_balance = 1e-12;
+
 /// An angle has a size of its own, a radian: where nothing turns by more than this, what turns less by far is noise.
 constexpr double small_turn = 1e-6;
 
@@ -33,11 +36,15 @@ LostDigits::LostDigits(const CompanionPlan& plan) {
     if (const double length = std::abs(plan.run.end - plan.run.begin); c >= n && length > 0)
       of_unit = std::max(of_unit, of_unit_[c - n] / length);
     of_unit_.push_back(of_unit);
+    const double length = std::abs(plan.run.end - plan.run.begin);
+    const double speed = plan.accelerations.empty() ? 0 : noise_of_balance * plan.accelerations[c % n] * length;
+    rounding_.push_back(c < n ? speed * length : speed);
   }
 }
 
 bool LostDigits::is_lost(std::size_t column, double error) const {
-  return error > 0 && error >= saturated_error * sizes_[column] && error >= noise_of_unit * of_unit_[column];
+  return error > 0 && error >= saturated_error * sizes_[column] && error >= noise_of_unit * of_unit_[column] &&
+         error >= rounding_[column];
 }
 
 LostCompanion::LostCompanion(const CompanionPlan& plan, double share)

@@ -9,7 +9,7 @@ namespace maupertuis {
 inline constexpr double saturated_error = 0.5;
 
 /// From which error on a column of the state has no digit left: half of the largest value that it takes, unless that
-/// is noise beside other columns of its unit.
+/// is noise beside other columns of its unit, or what rounding of forces that balance leaves.
 class LostDigits {
  public:
   explicit LostDigits(const CompanionPlan& plan);
@@ -19,7 +19,7 @@ class LostDigits {
   bool is_lost(std::size_t column, double error) const;
 
  private:
-  std::vector<double> sizes_, of_unit_;  // [2n]
+  std::vector<double> sizes_, of_unit_, rounding_;  // [2n]
 };
 
 /// Whether a companion has lost the motion: from there on it tells nothing of the state any more.

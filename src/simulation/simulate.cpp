@@ -262,7 +262,7 @@ class Run {
     result_.statistics.rejected = rejected_before_ + method_->rejected();
     result_.statistics.switches = method_->switches();
     result_.statistics.constraint_residual = std::max(residual_before_, method_->constraint_residual());
-    result_.statistics.energy_drift = balance_.drift();
+    result_.statistics.energy_drift = balance_.drift(hybrid_ ? hybrid_->rounding_of_energy() : 0);
     if (hybrid_) take_record(last);
   }
 
@@ -333,7 +333,7 @@ void warn_of_backend(const BackendUse& use, Backend wanted, Diagnostics& diagnos
 /// The errors, as companion runs tell them.
 void add_errors(SimulationResult& result, Probe* probe, const Model& model, const EquationsOfMotion& equations,
                 const SimulationOptions& options, const RunPlan& plan, const Observables& observables,
-                const WantedFunctions& wanted, const std::shared_ptr<ModeLibrary>& modes) {
+                const WantedFunctions& wanted, const HybridMotion* hybrid) {
   const auto begin = Clock::now();
   const RoundedNumbers numbers(model, equations, plan, wanted);
   const CompanionPlan companion_plan{model,
@@ -344,7 +344,8 @@ void add_errors(SimulationResult& result, Probe* probe, const Model& model, cons
                                      result,
                                      comparison_grid(result.trajectory, plan, options.errors),
                                      options.errors == ErrorEstimates::Rows,
-                                     modes};
+                                     hybrid ? hybrid->library() : nullptr,
+                                     hybrid ? hybrid->largest_accelerations() : std::vector<double>()};
   const Companions companions = run_companions(companion_plan, wanted, numbers);
   if (companions.interrupted) {
     result.ending = Ending::Interrupted;
@@ -383,7 +384,6 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   std::unique_ptr<HybridMotion> through_modes;
   if (is_hybrid) through_modes = hybrid_method(model, equations, wanted, options, diagnostics);
   HybridMotion* const hybrid = through_modes.get();
-  const std::shared_ptr<ModeLibrary> modes = hybrid ? hybrid->library() : nullptr;
   std::unique_ptr<Method> method = is_hybrid ? std::unique_ptr<Method>(std::move(through_modes))
                                              : first_method(equations, wanted, options, diagnostics);
   if (!method) return std::nullopt;
@@ -399,7 +399,7 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
 
   SimulationResult result = run.carry_out();
   if (options.errors != ErrorEstimates::None && result.ending != Ending::Interrupted)
-    add_errors(result, probe, model, equations, options, *plan, observables, wanted, modes);
+    add_errors(result, probe, model, equations, options, *plan, observables, wanted, hybrid);
   if (run.turned_stiff()) note_stiffness(result, model.system, stiff_tolerance(options), diagnostics);
   if (options.method == StepMethod::Automatic || options.method == StepMethod::Taylor ||
       options.backend == Backend::Compiled)

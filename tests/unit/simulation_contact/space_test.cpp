@@ -339,3 +339,23 @@ TEST_CASE("a slip in space stops by its own sizes, whatever flies past at a mill
   CHECK(std::abs(end("1e4 m/s") - alone) < 1e-14);
   CHECK(std::abs(end("1e6 m/s") - alone) < 1e-14);
 }
+
+TEST_CASE(
+    "what friction holds at height 0 under loads that grow is known to be at rest, and its energy does not drift") {
+  ModelText m(
+      "param m = 1 kg, g = 9.81 m/s^2, a = 0.5 m, J = 0.1 kg m^2, k = 1 N/s\ncoord x, y, z : length, u, v, w : angle\n"
+      "T = 1/2 m (x'^2 + y'^2 + z'^2) + 1/2 J (u'^2 + v'^2 + w'^2)\nV = m g z\nforce x = 0.2 k t\n"
+      "force w = 0.1 k t 1[m]\ncontact z - a v >= 0 friction 0.3 slip (x', y' + a w') name l1\n"
+      "contact z + a/2 v - a*sqrt(3)/2 u >= 0 friction 0.3 slip (x' + a*sqrt(3)/2 w', y' - a/2 w') name l2\n"
+      "contact z + a/2 v + a*sqrt(3)/2 u >= 0 friction 0.3 slip (x' - a*sqrt(3)/2 w', y' - a/2 w') name l3\n");
+  SimulationOptions options;
+  options.duration = 5;
+  const auto r = simulate(m.model, m.equations, options, m.diagnostics);
+  REQUIRE(r);
+  REQUIRE(r->ok());
+  CHECK(r->happenings.empty());
+  CHECK(r->statistics.energy_drift < 1e-14);
+  REQUIRE(r->final.errors);
+  for (const auto* errors : {&r->final.errors->q, &r->final.errors->v})
+    for (const double error : *errors) CHECK(error < 1e-14);
+}
