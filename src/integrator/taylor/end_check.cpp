@@ -96,17 +96,39 @@ bool invert(std::vector<double>& b, std::size_t n) {
 
 }  // namespace
 
+namespace {
+
+/// Forces that balance on what constraints hold leave their rounding there, shared in the measure of the masses by what
+/// a constraint ties together: [n] in units of e.
+std::vector<double> held_roundings(const std::vector<double>& b, std::size_t n, std::size_t m,
+                                   const std::vector<double>& of_residual) {
+  const std::size_t unknowns = n + m;
+  const auto mass = [&](std::size_t i) { return b[i * unknowns + i]; };
+  std::vector<double> out(n, 0.0);
+  for (std::size_t j = n; j < unknowns; ++j) {
+    const auto is_tied = [&](std::size_t i) { return b[j * unknowns + i] != 0 && mass(i) > 0; };
+    double largest = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      if (is_tied(i)) largest = std::max(largest, of_residual[i] / std::sqrt(mass(i)));
+    for (std::size_t i = 0; i < n; ++i)
+      if (is_tied(i)) out[i] = std::max(out[i], largest / std::sqrt(mass(i)));
+  }
+  return out;
+}
+
+}  // namespace
+
 std::vector<double> acceleration_roundings(std::vector<double> b, std::size_t n, std::size_t m, Disks& disks,
                                            double length, double unit) {
   const std::size_t unknowns = n + m;
-  std::vector<double> result(n, 0.0), masses(n, 0.0);
-  for (std::size_t i = 0; i < n && !b.empty(); ++i) masses[i] = std::abs(b[i * unknowns + i]);
-  if (b.empty() || !invert(b, unknowns)) return result;
+  std::vector<double> result(n, 0.0), of_residual;
+  if (b.empty()) return result;
+  for (std::size_t j = 0; j < unknowns; ++j) of_residual.push_back(disks.residual_rounding(j, length));
+  const std::vector<double> held = held_roundings(b, n, m, of_residual);
+  if (!invert(b, unknowns)) return result;
   for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j < unknowns; ++j)
-      result[i] += unit * std::abs(b[i * unknowns + j]) * disks.residual_rounding(j, length);
-    // Constraints that hold a coordinate leave it what rounding of the forces that balance there does.
-    if (masses[i] > 0) result[i] = std::max(result[i], unit * disks.residual_rounding(i, length) / masses[i]);
+    for (std::size_t j = 0; j < unknowns; ++j) result[i] += unit * std::abs(b[i * unknowns + j]) * of_residual[j];
+    result[i] = std::max(result[i], unit * held[i]);
   }
   return result;
 }

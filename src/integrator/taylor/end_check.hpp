@@ -52,8 +52,9 @@ std::vector<double> bordered_matrix(const Work& work, std::size_t freedoms, std:
   return b;
 }
 
-/// [n] Σ_j |B⁻¹_ij| e_j, at least e_i/M_ii: what rounding of the residual makes of q̈ at the centre of the disks; 0
-/// where B is empty or singular. `length`: of the step; `unit`: the rounding of 1.
+/// [n] Σ_j |B⁻¹_ij| e_j, at least e_k/√(M_ii M_kk) of all k that a constraint ties to i: what rounding of the residual
+/// makes of q̈ at the centre of the disks; 0 where B is empty or singular. `unit`: the rounding of 1; `length`: of a
+/// step.
 std::vector<double> acceleration_roundings(std::vector<double> bordered, std::size_t freedoms, std::size_t constraints,
                                            Disks& disks, double length, double unit);
 

@@ -305,3 +305,23 @@ TEST_CASE("friction that is not determined and sticks to what moves has its work
   CHECK(drift("(v + b t)", "0 m") < 1e-14);
   CHECK(drift("v", "1/2 b t^2") < 1e-14);
 }
+
+TEST_CASE("a disc in a rough corner turns when it has to, whatever its radius is rounded to") {
+  // Both contacts at their limits, N = P + μ₁ (m g − μ₂ N) at the wall: M = R (μ₁ N₁ + μ₂ N₂).
+  const double weight = 9.81, push = 5, floor = 0.4, wall = 0.3;
+  const double up = (weight - wall * push) / (1 + floor * wall), along = push + floor * up;
+  const double most = floor * up + wall * along;
+  for (const std::string radius : {"0.1", "0.1000000000000001", "0.09999999999999999", "0.2", "1.1"}) {
+    CAPTURE(radius);
+    const auto r = run_text("param m = 1 kg, R = " + radius +
+                                " m, g = 9.81 m/s^2, P = 5 N, k = 1 N/s\ncoord x, y : length, φ : angle\n"
+                                "body D mass m inertia 1/2 m R^2 at (x, y) rotation angle φ\ngravity (0, -g)\n"
+                                "force on D = (-P, 0)\ntorque on D = k R t\n"
+                                "contact y >= R friction 0.4 slip x' + R φ' name floor\n"
+                                "contact x >= R friction 0.3 slip y' - R φ' name wall\nstart x = R, y = R\n",
+                            6);
+    REQUIRE(r.happenings.size() == 2);
+    CHECK(r.happenings[0].t == doctest::Approx(most).epsilon(1e-10));
+    CHECK(r.statistics.steps < 300);
+  }
+}
