@@ -6,36 +6,69 @@
 namespace maupertuis::invariants {
 namespace {
 
-void scale_row(FieldMatrix& m, std::size_t row, std::size_t from, Value factor, const PrimeField& field) {
-  for (std::size_t k = from; k < m.columns; ++k) m.at(row, k) = field.multiply(m.at(row, k), factor);
-}
+using evaluation::Wide;
 
-/// row −= factor · pivot row, from a column on.
-void subtract_row(FieldMatrix& m, std::size_t row, std::size_t pivot, std::size_t from, const PrimeField& field) {
-  const Value factor = m.at(row, from);
-  if (factor == 0) return;
-  Value* target = &m.at(row, from);
-  const Value* source = &m.at(pivot, from);
-  for (std::size_t k = 0; k < m.columns - from; ++k)
-    if (source[k] != 0) target[k] = field.subtract(target[k], field.multiply(factor, source[k]));
-}
+constexpr std::size_t none = ~std::size_t{0};
+
+/// Takes rows one after the other and keeps those that are new, with unit pivots.
+class Elimination {
+ public:
+  Elimination(FieldMatrix& m, const PrimeField& field)
+      : m_(m), field_(field), row_of_(m.columns, none), rest_(m.columns) {}
+
+  std::size_t rank() const { return rank_; }
+
+  /// Subtracts the rows before it; what is left, if anything, takes the place after them. Sums are reduced only when
+  /// their column is reached.
+  void take(std::size_t row) {
+    for (std::size_t k = 0; k < m_.columns; ++k) rest_[k] = field_.unreduced(m_.at(row, k));
+    for (std::size_t column = 0; column < m_.columns; ++column) {
+      const Value value = field_.reduced(rest_[column]);
+      if (value == 0) continue;
+      if (row_of_[column] == none) return keep(column, field_.inverse(value));
+      const Value* source = &m_.at(row_of_[column], 0);
+      const Value factor = field_.negate(value);
+      for (std::size_t k = column + 1; k < m_.columns; ++k) rest_[k] = field_.add_product(rest_[k], factor, source[k]);
+    }
+  }
+
+  /// Puts the rows in the order of their pivots, those that are left over last, as zeros; the columns of the pivots.
+  std::vector<std::size_t> finish() {
+    std::vector<std::size_t> pivots;
+    FieldMatrix sorted(m_.rows, m_.columns);
+    for (std::size_t column = 0; column < m_.columns; ++column) {
+      if (row_of_[column] == none) continue;
+      const Value* row = &m_.at(row_of_[column], 0);
+      std::copy(row, row + m_.columns, &sorted.at(pivots.size(), 0));
+      pivots.push_back(column);
+    }
+    m_ = std::move(sorted);
+    return pivots;
+  }
+
+ private:
+  void keep(std::size_t column, Value scale) {
+    for (std::size_t k = 0; k < m_.columns; ++k)
+      m_.at(rank_, k) = k < column ? 0 : field_.multiply(field_.reduced(rest_[k]), scale);
+    row_of_[column] = rank_++;
+  }
+
+  FieldMatrix& m_;
+  const PrimeField& field_;
+  std::vector<std::size_t> row_of_;  // [columns] the row whose pivot stands there
+  std::vector<Wide> rest_;           // [columns] of the row that is taken
+  std::size_t rank_ = 0;
+};
 
 }  // namespace
 
 std::vector<std::size_t> echelon(FieldMatrix& m, const PrimeField& field, const Interrupt& interrupt) {
-  std::vector<std::size_t> pivots;
-  for (std::size_t column = 0; column < m.columns && pivots.size() < m.rows; ++column) {
+  Elimination elimination(m, field);
+  for (std::size_t row = 0; row < m.rows && elimination.rank() < m.columns; ++row) {
     interrupt.throw_if_asked();
-    const std::size_t top = pivots.size();
-    std::size_t row = top;
-    while (row < m.rows && m.at(row, column) == 0) ++row;
-    if (row == m.rows) continue;
-    if (row != top) std::swap_ranges(&m.at(row, 0), &m.at(row, 0) + m.columns, &m.at(top, 0));
-    scale_row(m, top, column, field.inverse(m.at(top, column)), field);
-    for (std::size_t below = top + 1; below < m.rows; ++below) subtract_row(m, below, top, column, field);
-    pivots.push_back(column);
+    elimination.take(row);
   }
-  return pivots;
+  return elimination.finish();
 }
 
 std::vector<NullVector> null_vectors(FieldMatrix m, const PrimeField& field, const Interrupt& interrupt) {

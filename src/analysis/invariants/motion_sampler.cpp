@@ -63,16 +63,23 @@ MotionSampler::MotionSampler(const MotionRows& rows, std::vector<Expr> functions
       functions_(functions.size()),
       with_rates_(with_rates),
       seed_(seed) {
-  std::vector<Expr> roots = rows.mass.entries;
-  const auto append = [&](const std::vector<Expr>& more) { roots.insert(roots.end(), more.begin(), more.end()); };
-  append(rows.bias);
-  append(rows.constraint.entries);
-  append(rows.acceleration);
-  append(rows.velocity);
+  std::vector<Expr> roots;
+  const auto append = [&](const std::vector<Expr>& more) {
+    const std::size_t first = roots.size();
+    roots.insert(roots.end(), more.begin(), more.end());
+    return first;
+  };
   functions = in_state_variables(*system_, functions);
   append(functions);
-  if (with_rates)
+  constraint_ = append(rows.constraint.entries);
+  velocity_ = append(rows.velocity);
+  if (with_rates) {
+    mass_ = append(rows.mass.entries);
+    bias_ = append(rows.bias);
+    acceleration_ = append(rows.acceleration);
+    rates_ = roots.size();
     for (const Expr& f : functions) roots.push_back(total_time_derivative(f));
+  }
   tape_ = std::make_unique<evaluation::Tape>(evaluation::flatten_arguments(roots));
   hints_ = evaluation::field_hints(*tape_);
   find_orders();
@@ -136,12 +143,11 @@ void MotionSampler::bind_parameters(const ParameterRoots& roots) {
 /// Random velocities, the dependent ones from A q̇ = a₀.
 bool MotionSampler::bind_velocities(const std::vector<Value>& at) {
   const auto root = [&](std::size_t i) { return at[tape_->roots()[i]]; };
-  const std::size_t first = n_ * n_ + n_, first_velocity = first + m_ * n_ + m_;
   // Columns in reverse: the solution leaves the first coordinates free, and these are drawn.
   FieldMatrix rows(m_, n_ + 1);
   for (std::size_t i = 0; i < m_; ++i) {
-    for (std::size_t j = 0; j < n_; ++j) rows.at(i, n_ - 1 - j) = root(first + i * n_ + j);
-    rows.at(i, n_) = root(first_velocity + i);
+    for (std::size_t j = 0; j < n_; ++j) rows.at(i, n_ - 1 - j) = root(constraint_ + i * n_ + j);
+    rows.at(i, n_) = root(velocity_ + i);
   }
   std::vector<Value> drawn(n_);
   FieldMatrix shifted = rows;
@@ -159,17 +165,17 @@ bool MotionSampler::bind_velocities(const std::vector<Value>& at) {
 
 bool MotionSampler::bind_accelerations(const std::vector<Value>& at) {
   const auto root = [&](std::size_t i) { return at[tape_->roots()[i]]; };
-  const std::size_t first = n_ * n_ + n_, size = n_ + m_;
+  const std::size_t size = n_ + m_;
   FieldMatrix bordered(size, size + 1);
   for (std::size_t i = 0; i < n_; ++i) {
-    for (std::size_t j = 0; j < n_; ++j) bordered.at(i, j) = root(i * n_ + j);
+    for (std::size_t j = 0; j < n_; ++j) bordered.at(i, j) = root(mass_ + i * n_ + j);
     for (std::size_t k = 0; k < m_; ++k) {
-      bordered.at(i, n_ + k) = field().negate(root(first + k * n_ + i));
-      bordered.at(n_ + k, i) = root(first + k * n_ + i);
+      bordered.at(i, n_ + k) = field().negate(root(constraint_ + k * n_ + i));
+      bordered.at(n_ + k, i) = root(constraint_ + k * n_ + i);
     }
-    bordered.at(i, size) = field().negate(root(n_ * n_ + i));
+    bordered.at(i, size) = field().negate(root(bias_ + i));
   }
-  for (std::size_t k = 0; k < m_; ++k) bordered.at(n_ + k, size) = root(first + m_ * n_ + k);
+  for (std::size_t k = 0; k < m_; ++k) bordered.at(n_ + k, size) = root(acceleration_ + k);
   FieldMatrix reduced = bordered;
   const auto pivots = echelon(reduced, field(), interrupt_of(*system_->context));
   // Redundant constraints leave multipliers open; accelerations must not be.
@@ -183,10 +189,8 @@ bool MotionSampler::bind_accelerations(const std::vector<Value>& at) {
 
 MotionSampler::Sample MotionSampler::collect(const std::vector<Value>& at) const {
   Sample sample;
-  const std::size_t first = n_ * n_ + n_ + m_ * n_ + 2 * m_;
-  for (std::size_t i = 0; i < functions_; ++i) sample.values.push_back(at[tape_->roots()[first + i]]);
-  for (std::size_t i = 0; with_rates_ && i < functions_; ++i)
-    sample.rates.push_back(at[tape_->roots()[first + functions_ + i]]);
+  for (std::size_t i = 0; i < functions_; ++i) sample.values.push_back(at[tape_->roots()[i]]);
+  for (std::size_t i = 0; with_rates_ && i < functions_; ++i) sample.rates.push_back(at[tape_->roots()[rates_ + i]]);
   for (const Coordinate& c : system_->coordinates) sample.velocities.push_back(numbers_->symbol(c.velocity));
   return sample;
 }

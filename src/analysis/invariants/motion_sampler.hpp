@@ -73,6 +73,8 @@ class MotionSampler {
   std::shared_ptr<const MechanicalSystem> system_;
   std::size_t n_, m_, functions_;
   bool with_rates_, singular_ = false;
+  // The first root of A, a₀, and with rates of M, h, b and dB/dt; the functions themselves come first.
+  std::size_t constraint_ = 0, velocity_ = 0, mass_ = 0, bias_ = 0, acceleration_ = 0, rates_ = 0;
   std::vector<Expr> parameters_;
   std::unique_ptr<evaluation::Tape> tape_;
   std::vector<std::uint8_t> parametric_;     // [nodes] holds parameters alone
