@@ -13,10 +13,9 @@ inline std::size_t orders_needed(const evaluation::Tape& tape) {
 /// d'Alembert's principle where quaternions turn bodies: along a path of rotations.
 template <class Numbers>
 std::vector<typename Numbers::Value> dalembert_among_rotations(const Questions& questions, const evaluation::Tape& tape,
-                                                               Numbers& numbers,
+                                                               Numbers& numbers, std::size_t orders,
                                                                std::vector<typename Numbers::Value> direction,
                                                                std::vector<Jet<typename Numbers::Value>>& values) {
-  const std::size_t orders = orders_needed(tape);
   RandomPath<Numbers> path(questions, numbers, orders, direction);
   path.keep_to_rotations(questions, direction);
   JetNumbers<Numbers> jets(numbers, orders, [&](Expr symbol) { return path(symbol); });
@@ -24,15 +23,16 @@ std::vector<typename Numbers::Value> dalembert_among_rotations(const Questions& 
   return dalembert_route(PathValues<Numbers>{questions, jets, tape, values, std::move(direction)});
 }
 
-/// Walks the questions once along the random path that belongs to `numbers` and the direction.
-template <class Numbers>
+/// Walks the questions once along the random path that belongs to `numbers` and the direction. Positions of the tape
+/// that are not `chosen` keep their values.
+template <class Numbers, class Chosen>
 std::array<std::vector<typename Numbers::Value>, RouteCount> differences(
-    const Questions& questions, const evaluation::Tape& tape, Numbers& numbers,
-    const std::vector<typename Numbers::Value>& direction, std::vector<Jet<typename Numbers::Value>>& values) {
-  const std::size_t orders = orders_needed(tape);
+    const Questions& questions, const evaluation::Tape& tape, Numbers& numbers, std::size_t orders,
+    const std::vector<typename Numbers::Value>& direction, std::vector<Jet<typename Numbers::Value>>& values,
+    Chosen chosen) {
   RandomPath<Numbers> path(questions, numbers, orders, direction);
   JetNumbers<Numbers> jets(numbers, orders, [&](Expr symbol) { return path(symbol); });
-  evaluation::run(tape, jets, values);
+  evaluation::run(tape, jets, values, chosen);
   const PathValues<Numbers> along{questions, jets, tape, values, direction};
   std::array<std::vector<typename Numbers::Value>, RouteCount> out;
   out[Action] = action_route(along);
@@ -41,9 +41,11 @@ std::array<std::vector<typename Numbers::Value>, RouteCount> differences(
   out[Power] = power_route(along);
   if (!questions.constraints.empty()) out[ConstraintRows] = constraint_route(along);
   if (questions.has_matter && rotations)
-    out[Dalembert] = dalembert_among_rotations(questions, tape, numbers, direction, values);
+    out[Dalembert] = dalembert_among_rotations(questions, tape, numbers, orders, direction, values);
   return out;
 }
+
+inline bool every_position(evaluation::Position) { return true; }
 
 /// The direction of one equation alone.
 template <class Numbers>

@@ -5,7 +5,9 @@
 #include "symbolic/evaluate/degree.hpp"
 #include "symbolic/evaluate/field_numbers.hpp"
 #include "symbolic/evaluate/normalize.hpp"
+#include "symbolic/evaluate/stale_nodes.hpp"
 
+#include <functional>
 #include <optional>
 
 namespace maupertuis::certification {
@@ -31,12 +33,13 @@ bool any_nonzero(const std::vector<FieldNumbers::Value>& differences) {
 /// One direction at a time at the same point, to name the equation. Of the differences about constraints only the first
 /// depends on the direction.
 void find_rows(const Questions& questions, const evaluation::Tape& tape, FieldNumbers& numbers, RoutesResult& result) {
-  const std::size_t n = questions.system.coordinates.size();
+  const std::size_t n = questions.system.coordinates.size(), orders = orders_needed(tape);
   std::array<bool, RouteCount> found{};
   result.routes[ConstraintRows].row = n;
   Values values;
   for (std::size_t row = 0; row < n; ++row) {
-    auto difference = differences(questions, tape, numbers, unit_direction(numbers, n, row), values);
+    auto difference =
+        differences(questions, tape, numbers, orders, unit_direction(numbers, n, row), values, every_position);
     difference[ConstraintRows].resize(questions.constraints.empty() ? 0 : 1);
     for (std::size_t route = 0; route < RouteCount; ++route) {
       if (found[route] || !result.routes[route].fails || !any_nonzero(difference[route])) continue;
@@ -49,7 +52,8 @@ void find_rows(const Questions& questions, const evaluation::Tape& tape, FieldNu
 /// False: no point was found modulo this prime within the attempts.
 bool compare_at_points(const Questions& questions, const evaluation::Tape& tape, const evaluation::FieldHints& hints,
                        int wanted, std::uint64_t& seed, RoutesResult& result, double& smallest_group) {
-  const std::size_t n = questions.system.coordinates.size();
+  const std::size_t n = questions.system.coordinates.size(), orders = orders_needed(tape);
+  const bool walked_twice = !questions.unit_quaternions.empty();  // no value is left of the first path
   Values values;
   int found = 0, mends_left = evaluation::mends_allowed(tape);
   for (int prime = 0; prime < 20 && found < wanted; ++prime) {
@@ -57,19 +61,24 @@ bool compare_at_points(const Questions& questions, const evaluation::Tape& tape,
     const evaluation::PrimeTriple primes = evaluation::random_prime_triple(hints.m, seed);
     smallest_group = static_cast<double>(std::min(primes.q, primes.r));
     std::optional<FieldNumbers> numbers;
+    evaluation::StaleNodes stale(tape);
     bool mended = false;
     for (int attempt = 0; attempt < 60 + 8 * wanted && found < wanted; attempt += !mended) {
       interrupt_of(*questions.system.context).throw_if_asked();
       try {
         if (!mended) {
           seed = mix(seed);
+          stale.all();
           if (numbers)
             numbers->set_seed(seed);
           else
             numbers.emplace(primes, hints, seed);
         }
         mended = false;
-        const auto difference = differences(questions, tape, *numbers, random_direction(*numbers, n), values);
+        const auto difference = walked_twice ? differences(questions, tape, *numbers, orders,
+                                                           random_direction(*numbers, n), values, every_position)
+                                             : differences(questions, tape, *numbers, orders,
+                                                           random_direction(*numbers, n), values, std::ref(stale));
         bool fails = false;
         for (std::size_t route = 0; route < RouteCount; ++route) {
           RouteResult& r = result.routes[route];
@@ -85,7 +94,7 @@ bool compare_at_points(const Questions& questions, const evaluation::Tape& tape,
         }
       } catch (const evaluation::Redraw& redraw) {
         if (redraw.another_prime || (attempt >= 60 && found == 0)) break;
-        mended = numbers && mends_left-- > 0 && numbers->mend(redraw);
+        mended = numbers && mends_left-- > 0 && stale.mend(*numbers, redraw);
       }
     }
   }

@@ -72,13 +72,14 @@ RoutesResult compare_over_reals(const Questions& questions, std::uint64_t seed, 
   RoutesResult result;
   const std::size_t n = questions.system.coordinates.size();
   const Tape tape = Tape::with_gaussians(questions.roots);
-  result.complete = orders_needed(tape) <= Jet<Real100>::max_orders;
+  const std::size_t orders = orders_needed(tape);
+  result.complete = orders <= Jet<Real100>::max_orders;
   std::vector<Jet<Real100>> values;
   int found = 0;
   for (int attempt = 0; result.complete && found < points && attempt < 20 * points; ++attempt) {
     interrupt_of(*questions.system.context).throw_if_asked();
     HundredDigits numbers(mix(seed + static_cast<std::uint64_t>(attempt)));
-    const auto all = differences(questions, tape, numbers, some_direction(numbers, n), values);
+    const auto all = differences(questions, tape, numbers, orders, some_direction(numbers, n), values, every_position);
     const Real100 scale = largest(values), tolerance = scale * Real100(1e-60);
     const auto undefined = [](const Real100& x) { return !isfinite(x); };
     const bool any_undefined = std::any_of(all.begin(), all.end(), [&](const std::vector<Real100>& route) {

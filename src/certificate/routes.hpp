@@ -251,7 +251,7 @@ class RandomPath {
   using Scalar = typename Numbers::Value;
 
   RandomPath(const Questions& questions, Numbers& numbers, std::size_t orders, const std::vector<Scalar>& direction)
-      : numbers_(numbers), orders_(orders) {
+      : numbers_(numbers), half_(numbers.number(Rational(1, 2))), orders_(orders) {
     const auto& coordinates = questions.system.coordinates;
     for (std::size_t i = 0; i < coordinates.size(); ++i)
       tracks_.emplace(coordinates[i].name, Track{track_of(coordinates[i]), direction[i]});
@@ -324,7 +324,7 @@ class RandomPath {
   /// Coefficients of q(t) whose first three values belong to the symbols q, q', q''.
   std::vector<Scalar> track_of(const Coordinate& c) const {
     std::vector<Scalar> out{numbers_.symbol(c.q), numbers_.symbol(c.velocity),
-                            numbers_.multiply(numbers_.symbol(c.acceleration), numbers_.number(Rational(1, 2)))};
+                            numbers_.multiply(numbers_.symbol(c.acceleration), half_)};
     for (std::size_t k = 3; k < track_length; ++k) out.push_back(numbers_.random(c.q.id(), k));
     return out;
   }
@@ -349,6 +349,7 @@ class RandomPath {
   }
 
   Numbers& numbers_;
+  Scalar half_;
   std::size_t orders_;
   std::unordered_map<std::string, Track> tracks_;
   std::unordered_map<std::string, std::vector<Scalar>> inputs_;

@@ -1,6 +1,7 @@
 #include "analysis/invariants/field_linear_algebra.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace maupertuis::invariants {
@@ -18,17 +19,16 @@ class Elimination {
 
   std::size_t rank() const { return rank_; }
 
-  /// Subtracts the rows before it; what is left, if anything, takes the place after them. Sums are reduced only when
-  /// their column is reached.
+  /// Subtracts the rows before it; what is left, if anything, takes the place after them.
   void take(std::size_t row) {
     for (std::size_t k = 0; k < m_.columns; ++k) rest_[k] = field_.unreduced(m_.at(row, k));
+    forget_waiting();
     for (std::size_t column = 0; column < m_.columns; ++column) {
-      const Value value = field_.reduced(rest_[column]);
+      const Value value = field_.reduced(with_waiting(column));
       if (value == 0) continue;
       if (row_of_[column] == none) return keep(column, field_.inverse(value));
-      const Value* source = &m_.at(row_of_[column], 0);
-      const Value factor = field_.negate(value);
-      for (std::size_t k = column + 1; k < m_.columns; ++k) rest_[k] = field_.add_product(rest_[k], factor, source[k]);
+      waiting_[waiting_count_++] = {field_.negate(value), &m_.at(row_of_[column], 0)};
+      if (waiting_count_ == waiting_.size()) add_waiting(column + 1);
     }
   }
 
@@ -47,7 +47,28 @@ class Elimination {
   }
 
  private:
+  struct Multiple {
+    Value factor;
+    const Value* row;
+  };
+
+  /// An entry of the row that is taken, with the multiples of four rows at once.
+  Wide with_waiting(std::size_t k) const {
+    const auto product = [&](const Multiple& m) { return static_cast<Wide>(m.factor) * m.row[k]; };
+    return field_.lessened(rest_[k] + product(waiting_[0]) + product(waiting_[1]) + product(waiting_[2]) +
+                           product(waiting_[3]));
+  }
+  void add_waiting(std::size_t from) {
+    for (std::size_t k = from; k < m_.columns; ++k) rest_[k] = with_waiting(k);
+    forget_waiting();
+  }
+  void forget_waiting() {
+    waiting_.fill({0, &m_.at(0, 0)});
+    waiting_count_ = 0;
+  }
+
   void keep(std::size_t column, Value scale) {
+    add_waiting(column);
     for (std::size_t k = 0; k < m_.columns; ++k)
       m_.at(rank_, k) = k < column ? 0 : field_.multiply(field_.reduced(rest_[k]), scale);
     row_of_[column] = rank_++;
@@ -57,7 +78,8 @@ class Elimination {
   const PrimeField& field_;
   std::vector<std::size_t> row_of_;  // [columns] the row whose pivot stands there
   std::vector<Wide> rest_;           // [columns] of the row that is taken
-  std::size_t rank_ = 0;
+  std::array<Multiple, 4> waiting_;  // not added to the rest yet
+  std::size_t waiting_count_ = 0, rank_ = 0;
 };
 
 }  // namespace
@@ -99,8 +121,9 @@ std::vector<NullVector> null_vectors(FieldMatrix m, const PrimeField& field, con
   return out;
 }
 
-std::optional<std::vector<Value>> solve(FieldMatrix m, const PrimeField& field) {
+std::optional<std::vector<Value>> solve(FieldMatrix m, const PrimeField& field, std::size_t determined) {
   const std::vector<std::size_t> pivots = echelon(m, field);
+  if (pivots.size() < determined || (determined > 0 && pivots[determined - 1] >= determined)) return std::nullopt;
   if (!pivots.empty() && pivots.back() + 1 == m.columns) return std::nullopt;
   std::vector<Value> x(m.columns - 1, 0);
   for (std::size_t i = pivots.size(); i-- > 0;) {

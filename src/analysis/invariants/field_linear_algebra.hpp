@@ -36,8 +36,9 @@ struct NullVector {
 /// circuits have the smallest supports: restricted to its columns, the null space of each has dimension 1.
 std::vector<NullVector> null_vectors(FieldMatrix m, const PrimeField& field, const Interrupt& interrupt = {});
 
-/// Some x with N x = c, for the augmented matrix [N | c]; nothing where there is none. Free unknowns are 0.
-std::optional<std::vector<Value>> solve(FieldMatrix augmented, const PrimeField& field);
+/// Some x with N x = c, for the augmented matrix [N | c]; nothing where there is none, or where one of the first
+/// `determined` unknowns is free. Free unknowns are 0.
+std::optional<std::vector<Value>> solve(FieldMatrix augmented, const PrimeField& field, std::size_t determined = 0);
 
 /// The fraction a/b with |a| b < 2^44 of this residue (Wang 1981), or nothing: most residues have none.
 std::optional<Rational> rational_of(Value value, const PrimeField& field);

@@ -15,7 +15,7 @@ class GivenNumbers : public evaluation::FieldNumbers {
   }
   void give(Expr e, Value v) { given_[e.id()] = v; }
   void take_back(Expr e) { given_.erase(e.id()); }
-  bool is_given(NodeId symbol) const { return given_.count(symbol) > 0; }
+  bool is_given(Expr symbol) const { return given_.count(symbol.id()) > 0; }
 
  private:
   std::unordered_map<NodeId, Value> given_;

@@ -7,6 +7,7 @@
 #include "symbolic/evaluate/normalize.hpp"
 
 #include <algorithm>
+#include <functional>
 
 namespace maupertuis::invariants {
 
@@ -81,6 +82,7 @@ MotionSampler::MotionSampler(const MotionRows& rows, std::vector<Expr> functions
     for (const Expr& f : functions) roots.push_back(total_time_derivative(f));
   }
   tape_ = std::make_unique<evaluation::Tape>(evaluation::flatten_arguments(roots));
+  stale_ = std::make_unique<evaluation::StaleNodes>(*tape_);
   hints_ = evaluation::field_hints(*tape_);
   find_orders();
   for (const Parameter& p : system_->parameters) parameters_.push_back(p.symbol);
@@ -103,15 +105,13 @@ void MotionSampler::find_orders() {
 }
 
 /// Evaluates what depends on coordinates of this order or a higher one; the rest stays.
-void MotionSampler::evaluate(std::vector<Value>& at, int from_order) {
-  if (from_order > 0) {
-    bool angles = false;
-    for (evaluation::Position p = 0; p < tape_->size(); ++p)
-      angles |= highest_order_[p] >= from_order &&
-                (tape_->kind(p) == Kind::Sin || tape_->kind(p) == Kind::Cos || tape_->kind(p) == Kind::Tan);
-    if (angles) numbers_->symbols_changed();
-  }
-  evaluation::run(*tape_, *numbers_, at, [&](evaluation::Position p) { return highest_order_[p] >= from_order; });
+void MotionSampler::evaluate_again(int from_order) {
+  bool angles = false;
+  for (evaluation::Position p = 0; p < tape_->size(); ++p)
+    angles |= highest_order_[p] >= from_order &&
+              (tape_->kind(p) == Kind::Sin || tape_->kind(p) == Kind::Cos || tape_->kind(p) == Kind::Tan);
+  if (angles) numbers_->symbols_changed();
+  evaluation::run(*tape_, *numbers_, at_, [&](evaluation::Position p) { return highest_order_[p] >= from_order; });
 }
 
 const PrimeField& MotionSampler::field() const { return numbers_->field(); }
@@ -141,8 +141,8 @@ void MotionSampler::bind_parameters(const ParameterRoots& roots) {
 }
 
 /// Random velocities, the dependent ones from A q̇ = a₀.
-bool MotionSampler::bind_velocities(const std::vector<Value>& at) {
-  const auto root = [&](std::size_t i) { return at[tape_->roots()[i]]; };
+bool MotionSampler::bind_velocities() {
+  const auto root = [&](std::size_t i) { return at_[tape_->roots()[i]]; };
   // Columns in reverse: the solution leaves the first coordinates free, and these are drawn.
   FieldMatrix rows(m_, n_ + 1);
   for (std::size_t i = 0; i < m_; ++i) {
@@ -163,8 +163,8 @@ bool MotionSampler::bind_velocities(const std::vector<Value>& at) {
   return true;
 }
 
-bool MotionSampler::bind_accelerations(const std::vector<Value>& at) {
-  const auto root = [&](std::size_t i) { return at[tape_->roots()[i]]; };
+bool MotionSampler::bind_accelerations() {
+  const auto root = [&](std::size_t i) { return at_[tape_->roots()[i]]; };
   const std::size_t size = n_ + m_;
   FieldMatrix bordered(size, size + 1);
   for (std::size_t i = 0; i < n_; ++i) {
@@ -176,62 +176,59 @@ bool MotionSampler::bind_accelerations(const std::vector<Value>& at) {
     bordered.at(i, size) = field().negate(root(bias_ + i));
   }
   for (std::size_t k = 0; k < m_; ++k) bordered.at(n_ + k, size) = root(acceleration_ + k);
-  FieldMatrix reduced = bordered;
-  const auto pivots = echelon(reduced, field(), interrupt_of(*system_->context));
   // Redundant constraints leave multipliers open; accelerations must not be.
-  for (std::size_t i = 0; i < n_; ++i)
-    if (i >= pivots.size() || pivots[i] != i) return false;
-  const auto solution = solve(std::move(bordered), field());
+  const auto solution = solve(std::move(bordered), field(), n_);
   if (!solution) return false;
   for (std::size_t i = 0; i < n_; ++i) numbers_->give(system_->coordinates[i].acceleration, (*solution)[i]);
   return true;
 }
 
-MotionSampler::Sample MotionSampler::collect(const std::vector<Value>& at) const {
+MotionSampler::Sample MotionSampler::collect() const {
   Sample sample;
-  for (std::size_t i = 0; i < functions_; ++i) sample.values.push_back(at[tape_->roots()[i]]);
-  for (std::size_t i = 0; with_rates_ && i < functions_; ++i) sample.rates.push_back(at[tape_->roots()[rates_ + i]]);
+  for (std::size_t i = 0; i < functions_; ++i) sample.values.push_back(at_[tape_->roots()[i]]);
+  for (std::size_t i = 0; with_rates_ && i < functions_; ++i) sample.rates.push_back(at_[tape_->roots()[rates_ + i]]);
   for (const Coordinate& c : system_->coordinates) sample.velocities.push_back(numbers_->symbol(c.velocity));
   return sample;
 }
 
 std::optional<MotionSampler::Sample> MotionSampler::draw(const ParameterRoots& roots) {
   constexpr int attempts = 400;
-  std::vector<Value> at;
   int mends = evaluation::mends_allowed(*tape_), unsolved = 0;
-  bool mended = false;
+  bool mended = false, solved = false;  // solved: some velocities and accelerations were given values
   bind_parameters(roots);
   for (int attempt = 0; attempt < attempts && unsolved < 8; attempt += !mended) {
     interrupt_of(*system_->context).throw_if_asked();
     if (!mended) numbers_->set_seed(seed_ = mix(seed_));
-    mended = false;
+    if (!mended || solved) stale_->all();
+    mended = solved = false;
     for (const Coordinate& c : system_->coordinates)
       for (const Expr& symbol : {c.velocity, c.acceleration}) numbers_->take_back(symbol);
     try {
-      evaluate(at, 0);
+      evaluation::run(*tape_, *numbers_, at_, std::ref(*stale_));
+      solved = true;
       if (m_ > 0) {
-        if (!bind_velocities(at)) {
+        if (!bind_velocities()) {
           ++unsolved;
           continue;
         }
-        evaluate(at, 1);
+        evaluate_again(1);
       }
       if (with_rates_) {
-        if (!bind_accelerations(at)) {
+        if (!bind_accelerations()) {
           ++unsolved;
           singular_ = true;
           continue;
         }
-        evaluate(at, 2);
+        evaluate_again(2);
       }
       singular_ = false;
-      return collect(at);
+      return collect();
     } catch (const evaluation::Redraw& redraw) {
       if (redraw.at < parametric_.size() && parametric_[redraw.at]) return std::nullopt;
       // A symbol with a given value is no help: then all are drawn again.
       const auto symbol = hints_.free.find(redraw.at);
-      mended =
-          symbol != hints_.free.end() && !numbers_->is_given(symbol->second) && mends-- > 0 && numbers_->mend(redraw);
+      mended = symbol != hints_.free.end() && !numbers_->is_given(symbol->second) && mends-- > 0 &&
+               stale_->mend(*numbers_, redraw);
     }
   }
   return std::nullopt;

@@ -3,6 +3,7 @@
 
 #include "analysis/invariants/field_linear_algebra.hpp"
 #include "analysis/invariants/given_numbers.hpp"
+#include "symbolic/evaluate/stale_nodes.hpp"
 
 #include <memory>
 #include <optional>
@@ -65,10 +66,10 @@ class MotionSampler {
  private:
   void bind_parameters(const ParameterRoots& roots);
   void find_orders();
-  void evaluate(std::vector<Value>& at, int from_order);
-  bool bind_velocities(const std::vector<Value>& at);
-  bool bind_accelerations(const std::vector<Value>& at);
-  Sample collect(const std::vector<Value>& at) const;
+  void evaluate_again(int from_order);
+  bool bind_velocities();
+  bool bind_accelerations();
+  Sample collect() const;
 
   std::shared_ptr<const MechanicalSystem> system_;
   std::size_t n_, m_, functions_;
@@ -77,6 +78,8 @@ class MotionSampler {
   std::size_t constraint_ = 0, velocity_ = 0, mass_ = 0, bias_ = 0, acceleration_ = 0, rates_ = 0;
   std::vector<Expr> parameters_;
   std::unique_ptr<evaluation::Tape> tape_;
+  std::unique_ptr<evaluation::StaleNodes> stale_;
+  std::vector<Value> at_;                    // [nodes] values at the point
   std::vector<std::uint8_t> parametric_;     // [nodes] holds parameters alone
   std::vector<std::uint8_t> highest_order_;  // [nodes] of the coordinates below: 0, 1, 2; what a solved q̇ or q̈ changes
   evaluation::FieldHints hints_;

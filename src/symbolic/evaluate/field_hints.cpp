@@ -79,7 +79,7 @@ void find_free_symbols(const Tape& tape, const std::vector<Position>& askers, Fi
   }
   for (const Position asker : askers) {
     const Position symbol = latest[tape.argument(asker, 0)];
-    if (symbol != none) hints.free.emplace(asker, tape.expression(symbol).id());
+    if (symbol != none) hints.free.emplace(asker, tape.expression(symbol));
   }
 }
 

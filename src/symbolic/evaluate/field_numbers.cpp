@@ -30,13 +30,13 @@ void FieldNumbers::set_seed(std::uint64_t seed) {
   choose_generators();
 }
 
-bool FieldNumbers::mend(const Redraw& redraw) {
+Expr FieldNumbers::mend(const Redraw& redraw) {
   const auto free = hints_.free.find(redraw.at);
-  if (redraw.another_prime || free == hints_.free.end()) return false;
-  ++drawn_again_[free->second];
+  if (redraw.another_prime || free == hints_.free.end()) return {};
+  ++drawn_again_[free->second.id()];
   angles_.clear();
   units_.clear();
-  return true;
+  return free->second;
 }
 
 FieldNumbers::Value FieldNumbers::random(std::uint64_t key, std::uint64_t second) const {
@@ -126,8 +126,7 @@ FieldNumbers::Value FieldNumbers::power(const Tape& tape, Position at, const std
     }
   }
   if (!has_sign(base, values[base], 1)) throw Redraw{false, at};
-  if (number && *number == Rational(1, 2)) return square_root(values[base]);
-  return positive_power(values[base], number ? exponent_of(*number) : exponent_of(tape, exponent, values));
+  return field_.power(values[base], number ? exponent_of(*number) : exponent_of(tape, exponent, values));
 }
 
 // ------------------------------------------------------------------------------------------------- exp and log

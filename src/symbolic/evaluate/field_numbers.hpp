@@ -11,7 +11,7 @@ namespace maupertuis::evaluation {
 /// Thrown where a random point is of no use: a denominator vanishes, a radicand is no square. Draw another.
 struct Redraw {
   bool another_prime = false;  // a constant is to blame: another point does not help
-  Position at = ~Position{0};  // the node whose argument has the wrong sign
+  Position at = ~Position{0};  // the node whose argument has the wrong sign, at which the walk ended
 };
 
 /// What an evaluation over a prime field must know of an expression beside its nodes.
@@ -20,7 +20,7 @@ struct FieldHints {
   std::uint64_t m = 840;                // lcm of that and 840
   std::vector<std::int8_t> sign;        // [tape] +1, −1 where the value has this sign at all real points, else 0
   std::unordered_set<NodeId> positive;  // symbols under a root or a logarithm: drawn positive
-  std::unordered_map<Position, NodeId>
+  std::unordered_map<Position, Expr>
       free;  // of a node with a sign to meet: the symbol that fewest earlier such nodes see
 };
 FieldHints field_hints(const Tape& tape);
@@ -53,8 +53,8 @@ class FieldNumbers {
   Value random(std::uint64_t key, std::uint64_t second = 0) const;
   void set_seed(std::uint64_t seed);
   /// Another value for one symbol, such that most signs that were met before stay as they are: many roots cost a few
-  /// draws each and not 2^roots. False where no symbol stands below the root.
-  bool mend(const Redraw& redraw);
+  /// draws each and not 2^roots. Which symbol; an empty handle where none stands below the root.
+  Expr mend(const Redraw& redraw);
   /// To be told where a kind of numbers derived from this one gives a symbol another value within one point.
   void symbols_changed() {
     angles_.clear();

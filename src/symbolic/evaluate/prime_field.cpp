@@ -20,6 +20,7 @@ PrimeField::PrimeField(std::uint64_t prime) : prime_(prime) {
 PrimeField::Value PrimeField::from(const Rational& value) const {
   const Value numerator = from_residue(value.numerator_mod(prime_));
   if (value.is_integer()) return numerator;
+  if (value.denominator_mod(prime_) == 2) return multiply(numerator, from_residue((prime_ + 1) / 2));
   return multiply(numerator, inverse(from_residue(value.denominator_mod(prime_))));
 }
 

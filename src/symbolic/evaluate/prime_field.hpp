@@ -35,10 +35,10 @@ class PrimeField {
   Value subtract(Value a, Value b) const { return a >= b ? a - b : a + prime_ - b; }
   Value negate(Value a) const { return a == 0 ? 0 : prime_ - a; }
   Value multiply(Value a, Value b) const { return reduce(static_cast<Wide>(a) * b); }
-  /// Sums of products that are reduced once, at their end: each stays below p·2^64.
+  /// Sums of products that are reduced once, at their end. They stay below p·2^64: up to four products may be added
+  /// before the next `lessened`, since p < 2^62.
   Wide unreduced(Value a) const { return static_cast<Wide>(a) << 64; }
-  Wide add_product(Wide sum, Value a, Value b) const {
-    sum += static_cast<Wide>(a) * b;
+  Wide lessened(Wide sum) const {
     const auto high = static_cast<std::uint64_t>(sum >> 64), less = high - prime_;  // wraps where it was below p
     return static_cast<Wide>(high < less ? high : less) << 64 | static_cast<std::uint64_t>(sum);
   }

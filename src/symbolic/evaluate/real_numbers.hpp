@@ -21,6 +21,11 @@ inline std::optional<bool> less(double a, double b) {
 inline double unknown_between(double, double) { return std::nan(""); }
 inline double integer_power(double x, long n) { return std::pow(x, static_cast<double>(n)); }
 inline double real_power(double x, double y) { return std::pow(x, y); }
+/// x^y of a constant y, which is `exponent`.
+template <class Real>
+Real constant_power(const Real& x, const Rational&, const Real& y) {
+  return real_power(x, y);
+}
 
 template <class Real>
 class RealNumbers {
@@ -101,7 +106,7 @@ class RealNumbers {
     if (const auto n = number->as_integer()) return integer_power(v[base], *n);
     using std::sqrt;
     if (*number == Rational(1, 2)) return sqrt(v[base]);
-    return real_power(v[base], v[exponent]);
+    return constant_power(v[base], *number, v[exponent]);
   }
 
   Real piecewise(const Tape& tape, Position at, const std::vector<Real>& v) const {

@@ -5,8 +5,10 @@
 #include "symbolic/evaluate/degree.hpp"
 #include "symbolic/evaluate/field_numbers.hpp"
 #include "symbolic/evaluate/normalize.hpp"
+#include "symbolic/evaluate/stale_nodes.hpp"
 #include "symbolic/evaluate/witness.hpp"
 
+#include <functional>
 #include <optional>
 
 namespace maupertuis {
@@ -31,19 +33,21 @@ FieldResult test_over_primes(const Tape& tape, const FieldHints& hints, int poin
       const PrimeTriple primes = random_prime_triple(hints.m, seed);
       result.smallest_group = static_cast<double>(std::min(primes.r, primes.q));
       std::optional<FieldNumbers> numbers;
+      StaleNodes stale(tape);
       bool mended = false;
       for (int attempt = 0; attempt < 60 + 8 * points_per_prime && found < points_per_prime; attempt += !mended) {
         interrupt.throw_if_asked();
         try {
           if (!mended) {
             seed = mix(seed);
+            stale.all();
             numbers ? numbers->set_seed(seed) : static_cast<void>(numbers.emplace(primes, hints, seed));
           }
           mended = false;
-          run(tape, *numbers, values);
+          run(tape, *numbers, values, std::ref(stale));
         } catch (const Redraw& redraw) {
           if (redraw.another_prime || (attempt >= 60 && found == 0)) break;
-          mended = numbers && mends_left-- > 0 && numbers->mend(redraw);
+          mended = numbers && mends_left-- > 0 && stale.mend(*numbers, redraw);
           continue;
         }
         ++found;

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 using namespace maupertuis;
 using namespace maupertuis::invariants;
 
@@ -37,6 +39,42 @@ TEST_CASE("solutions, and systems without one") {
   REQUIRE(x);
   CHECK(*x == std::vector<Value>{field.from(Rational(1)), field.from(Rational(3))});
   CHECK_FALSE(solve(matrix(2, 3, {1, 1, 1, 2, 2, 3}), field));
+}
+
+TEST_CASE("unknowns that must be determined") {
+  const FieldMatrix m = matrix(2, 4, {1, 0, 2, 5, 0, 1, 1, 3});  // the third is free
+  CHECK(solve(m, field, 2));
+  CHECK_FALSE(solve(m, field, 3));
+  CHECK_FALSE(solve(matrix(2, 4, {1, 2, 0, 5, 0, 0, 1, 3}), field, 2));
+}
+
+TEST_CASE("rank and null space of a large matrix of known rank, for primes up to 62 bits") {
+  for (const std::uint64_t prime : {2305843009213693951ull, 4611686018427387847ull}) {  // 2^61 − 1, 2^62 − 57
+    const PrimeField f(prime);
+    const std::size_t rows = 40, columns = 33, rank = 21;
+    std::uint64_t state = 5;
+    const auto draw = [&] { return f.from_residue((state = evaluation::mix(state)) % prime); };
+    FieldMatrix m(rows, columns), left(rows, rank), right(rank, columns);
+    for (Value& v : left.entries) v = draw();
+    for (Value& v : right.entries) v = draw();
+    for (std::size_t i = 0; i < rows; ++i)
+      for (std::size_t j = 0; j < columns; ++j)
+        for (std::size_t k = 0; k < rank; ++k)
+          m.at(i, j) = f.add(m.at(i, j), f.multiply(left.at(i, k), right.at(k, j)));
+    FieldMatrix reduced = m;
+    CHECK(echelon(reduced, f).size() == rank);
+    for (std::size_t i = 0; i < rows; ++i)
+      for (std::size_t j = 0; j < std::min(i, columns); ++j) CHECK(reduced.at(i, j) == 0);
+    const auto vectors = null_vectors(m, f);
+    CHECK(vectors.size() == columns - rank);
+    for (const NullVector& v : vectors)
+      for (std::size_t i = 0; i < rows; ++i) {
+        Value sum = 0;
+        for (std::size_t k = 0; k < v.columns.size(); ++k)
+          sum = f.add(sum, f.multiply(v.entries[k], m.at(i, v.columns[k])));
+        CHECK(sum == 0);
+      }
+  }
 }
 
 TEST_CASE("fractions come back from their residues") {
