@@ -202,6 +202,11 @@ namespace {
 
 /// The small result n/d in lowest terms, if it fits. Precondition: d > 0.
 std::optional<Rational::Small> reduce(Wide n, Wide d) {
+  if (fits(n) && fits(d)) {  // nearly always, at a tenth of the price
+    const auto numerator = static_cast<std::int64_t>(n), denominator = static_cast<std::int64_t>(d);
+    const std::int64_t g = denominator == 1 ? 1 : std::gcd(numerator, denominator);
+    return Rational::Small{numerator / g, denominator / g};
+  }
   const Wide g = greatest_common_divisor(n, d);
   n /= g;
   d /= g;

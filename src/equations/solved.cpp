@@ -2,6 +2,7 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/linear_system.hpp>
 #include <maupertuis/print.hpp>
+#include <maupertuis/seen_nonzero.hpp>
 
 #include "equations/simplified.hpp"
 
@@ -31,13 +32,15 @@ bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict != Verdict::N
 /// cancels is gone before it is multiplied on.
 class LargeBlock {
  public:
+  static constexpr std::size_t largest = 6;  // rows
+
   LargeBlock(const ExprMatrix& m, const std::vector<std::size_t>& block) : m_(m), block_(block) {}
 
   /// Right sides in the order of the block; empty where one is too long, or M is singular.
   std::vector<ReadableForm> solve(const ExprVector& h, const ReadingOrder& order) {
     const std::size_t n = block_.size();
     const unsigned all = (1u << n) - 1;
-    const Expr determinant = n <= largest ? minor(all, all) : Expr();
+    const Expr determinant = minor(all, all);
     if (!determinant || vanishes(determinant)) return {};
     std::vector<ReadableForm> out;
     for (std::size_t j = 0; j < n; ++j) {
@@ -56,7 +59,7 @@ class LargeBlock {
   }
 
  private:
-  static constexpr std::size_t largest = 6, most_terms = 120, longest = 400;  // rows, terms of a sum, characters
+  static constexpr std::size_t most_terms = 120, longest = 400;  // of a sum, in characters
 
   /// The determinant of the rows and columns whose bits are set, as many of each; an empty handle where it is long.
   Expr minor(unsigned rows, unsigned columns) {
@@ -83,11 +86,16 @@ class LargeBlock {
   std::map<std::pair<unsigned, unsigned>, Expr> minors_;
 };
 
+void make_canonical(Expr& entry) {
+  if (const Expr canonical = fourier_form(entry)) entry = canonical;
+}
+
 std::vector<SolvedAcceleration> solved_for(const EquationsOfMotion& equations, const ExprVector& h) {
   const std::size_t n = equations.system->coordinates.size();
   ExprMatrix m = mass_matrix(equations);
-  for (Expr& entry : m.entries)
-    if (const Expr canonical = fourier_form(entry)) entry = canonical;  // zeros become visible to the grouping
+  const std::vector<bool> seen = seen_nonzero(expand_time_derivatives(m.entries));
+  for (std::size_t k = 0; k < seen.size(); ++k)
+    if (!seen[k]) make_canonical(m.entries[k]);  // zeros become visible to the grouping
 
   std::vector<SolvedAcceleration> solved(n);
   for (const auto& block : coupled_rows(m)) {
@@ -95,6 +103,10 @@ std::vector<SolvedAcceleration> solved_for(const EquationsOfMotion& equations, c
       solved[i].coordinate = i;
       solved[i].coupled_with = block;
     }
+    if (block.size() > LargeBlock::largest) continue;
+    for (const std::size_t i : block)
+      for (const std::size_t j : block)
+        if (seen[i * n + j]) make_canonical(m.at(i, j));
     if (block.size() == 1) {
       const std::size_t i = block[0];
       if (!vanishes(m.at(i, i))) solved[i].right = quotient(-h[i], m.at(i, i), equations.order);

@@ -29,6 +29,7 @@ Fraction to_fraction(const Rational& value) {
 }
 
 Fraction operator+(Fraction a, Fraction b) {
+  if (a.den == 1 && b.den == 1 && std::abs(a.num + b.num) <= largest_part) return {a.num + b.num, 1};
   return fraction(std::int64_t{a.num} * b.den + std::int64_t{b.num} * a.den, std::int64_t{a.den} * b.den);
 }
 Fraction operator-(Fraction a, Fraction b) { return a + Fraction{-b.num, b.den}; }

@@ -16,6 +16,42 @@ bool key_less(const Term& a, const Term& b) {
   return a.monomial != b.monomial ? a.monomial < b.monomial : a.harmonic < b.harmonic;
 }
 
+/// Terms in the order of their first appearance, like ones added up as they come: a product of sums of sines has ten
+/// times as many terms as are left of it. They are found by a table of places.
+class LikeTerms {
+ public:
+  void add(MonomialId monomial, HarmonicId harmonic, Rational coefficient) {
+    if (2 * terms_.size() >= slots_.size()) grow();
+    std::uint32_t& slot = slot_of(monomial, harmonic);
+    if (slot != free) {
+      terms_[slot].coefficient += coefficient;
+      return;
+    }
+    slot = static_cast<std::uint32_t>(terms_.size());
+    terms_.push_back({monomial, harmonic, std::move(coefficient)});
+  }
+  std::vector<Term> take() { return std::move(terms_); }
+
+ private:
+  static constexpr std::uint32_t free = ~std::uint32_t{0};
+
+  std::uint32_t& slot_of(MonomialId monomial, HarmonicId harmonic) {
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t at = (pair_key(monomial, harmonic) * 0x9E3779B97F4A7C15ull >> 32) & mask;
+    while (slots_[at] != free && (terms_[slots_[at]].monomial != monomial || terms_[slots_[at]].harmonic != harmonic))
+      at = (at + 1) & mask;
+    return slots_[at];
+  }
+  void grow() {
+    slots_.assign(std::max<std::size_t>(32, 4 * slots_.size()), free);
+    terms_.reserve(slots_.size() / 2);
+    for (std::uint32_t i = 0; i < terms_.size(); ++i) slot_of(terms_[i].monomial, terms_[i].harmonic) = i;
+  }
+
+  std::vector<Term> terms_;
+  std::vector<std::uint32_t> slots_;  // a power of two, at most half full
+};
+
 }  // namespace
 
 std::size_t TermAlgebra::KeyHash::operator()(const Monomial& m) const {
@@ -176,21 +212,20 @@ Polynomial TermAlgebra::multiply(const Polynomial& a, const Polynomial& b) {
   // whole is bounded too: a large system must not take seconds before its form turns out to be too long.
   work_ += a.size() * b.size();
   if (a.size() * b.size() > 16 * budget_ || work_ > 250 * budget_) throw TooManyTerms{};
-  std::vector<Term> raw;
-  raw.reserve(a.size() * b.size());
+  LikeTerms terms;
   for (const Term& x : a) {
     for (const Term& y : b) {
       const MonomialId monomial = product(x.monomial, y.monomial);
       const Rational coefficient = x.coefficient * y.coefficient;
       if (x.harmonic == 0 || y.harmonic == 0) {
-        raw.push_back({monomial, x.harmonic | y.harmonic, coefficient});
+        terms.add(monomial, x.harmonic | y.harmonic, coefficient);
         continue;
       }
       for (const Term& h : harmonic_product(x.harmonic, y.harmonic))
-        raw.push_back({monomial, h.harmonic, coefficient * h.coefficient});
+        terms.add(monomial, h.harmonic, coefficient * h.coefficient);
     }
   }
-  return normalized(std::move(raw));
+  return normalized(terms.take());
 }
 
 std::string key_text(const Polynomial& p) {

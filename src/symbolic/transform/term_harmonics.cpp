@@ -8,6 +8,7 @@ namespace {
 
 std::vector<Frequency> combined(const std::vector<Frequency>& a, const std::vector<Frequency>& b, int sign) {
   std::vector<Frequency> result;
+  result.reserve(a.size() + b.size());
   std::size_t i = 0, j = 0;
   while (i < a.size() || j < b.size()) {
     if (j == b.size() || (i < a.size() && a[i].angle < b[j].angle)) {
@@ -75,19 +76,20 @@ const std::vector<Term>& TermAlgebra::harmonic_product(HarmonicId a, HarmonicId 
   const std::uint64_t key = (std::uint64_t{a} << 32) | b;
   const auto known = harmonic_products_.find(key);
   if (known != harmonic_products_.end()) return known->second;
-  const Harmonic x = harmonics_[a], y = harmonics_[b];
-  std::vector<Frequency> difference = combined(x.argument, y.argument, -1);
-  std::vector<Frequency> total = combined(x.argument, y.argument, 1);
+  const bool first_sine = harmonics_[a].sine, second_sine = harmonics_[b].sine;
+  std::vector<Frequency> difference = combined(harmonics_[a].argument, harmonics_[b].argument, -1);
+  std::vector<Frequency> total = combined(harmonics_[a].argument, harmonics_[b].argument, 1);
   const Rational half(1, 2), minus_half(-1, 2);
   std::vector<Term> result;
-  if (x.sine == y.sine) {
+  result.reserve(2);
+  if (first_sine == second_sine) {
     // cos a cos b = ½cos(a−b) + ½cos(a+b),  sin a sin b = ½cos(a−b) − ½cos(a+b)
     result.push_back(harmonic_term(false, std::move(difference), half));
-    result.push_back(harmonic_term(false, std::move(total), x.sine ? minus_half : half));
+    result.push_back(harmonic_term(false, std::move(total), first_sine ? minus_half : half));
   } else {
     // sin a cos b = ½sin(a+b) + ½sin(a−b);  cos a sin b = ½sin(a+b) − ½sin(a−b)
     result.push_back(harmonic_term(true, std::move(total), half));
-    result.push_back(harmonic_term(true, std::move(difference), x.sine ? half : minus_half));
+    result.push_back(harmonic_term(true, std::move(difference), first_sine ? half : minus_half));
   }
   std::erase_if(result, [](const Term& t) { return t.coefficient.is_zero(); });
   return harmonic_products_.emplace(key, std::move(result)).first->second;
