@@ -36,6 +36,7 @@ class SteadyState {
     Matrix j;  // by the unknowns
   };
   PointEquations::Impl::Rows& balance_of(const OperatingPoint& point) const;
+  Vector rows_at(const OperatingPoint& point) const;
   System system_at(const OperatingPoint& point) const;
   Vector unknowns(const OperatingPoint& point) const;
   void place(const Vector& z, OperatingPoint& point) const;

@@ -8,6 +8,8 @@ namespace {
 
 constexpr int largest_multiple = 12;
 
+void append(const Polynomial& more, std::vector<Term>& terms) { terms.insert(terms.end(), more.begin(), more.end()); }
+
 /// sin α and cos α as indeterminates, and the polynomials of their multiples.
 class Circle {
  public:
@@ -27,12 +29,12 @@ class Circle {
 
   /// Applies Pythagoras to every whole even power of the removed one.
   Polynomial reduced(const Polynomial& p) {
-    Polynomial untouched, result;
+    std::vector<Term> raw;
     for (const Term& t : p) {
       const Monomial& m = algebra_.monomial(t.monomial);
       const auto place = std::find_if(m.begin(), m.end(), [&](const Factor& f) { return f.atom == removed_; });
       if (place == m.end() || !place->exponent.is_integer() || place->exponent.num < 2) {
-        untouched.push_back(t);
+        raw.push_back(t);
         continue;
       }
       const int squares = place->exponent.num / 2;
@@ -43,9 +45,9 @@ class Circle {
           algebra_.add(algebra_.constant(1), algebra_.scale(algebra_.of_atom(kept_, Fraction{2, 1}), -1));
       const Polynomial power = algebra_.power(one_minus_square, Fraction{squares, 1});
       const MonomialId monomial = algebra_.intern(rest);
-      result = algebra_.add(result, algebra_.multiply(power, Polynomial{Term{monomial, t.harmonic, t.coefficient}}));
+      append(algebra_.multiply(power, Polynomial{Term{monomial, t.harmonic, t.coefficient}}), raw);
     }
-    return algebra_.add(untouched, result);
+    return algebra_.normalized(std::move(raw));
   }
 
  private:
@@ -93,13 +95,13 @@ bool split_argument(const std::vector<Frequency>& argument, const std::vector<Fr
 Polynomial power_form(TermAlgebra& algebra, const Polynomial& p, const std::vector<Frequency>& angle,
                       Eliminate eliminate) {
   Circle circle(algebra, angle, eliminate);
-  Polynomial result;
+  std::vector<Term> raw;
   std::vector<Frequency> rest;
   for (const Term& t : p) {
     int k = 0;
     const Harmonic h = algebra.harmonic(t.harmonic);
     if (t.harmonic == 0 || !split_argument(h.argument, angle, k, rest)) {
-      result = algebra.add(result, {t});
+      raw.push_back(t);
       continue;
     }
     const int sign = k < 0 ? -1 : 1;
@@ -111,11 +113,10 @@ Polynomial power_form(TermAlgebra& algebra, const Polynomial& p, const std::vect
       return {term};
     };
     // cos(kα + β) = cos kα cos β − sin kα sin β;  sin(kα + β) = sin kα cos β + cos kα sin β
-    const Polynomial first = algebra.multiply(h.sine ? sin_k : cos_k, rest_term(false));
-    const Polynomial second = algebra.multiply(h.sine ? cos_k : sin_k, rest_term(true));
-    result = algebra.add(result, algebra.add(first, algebra.scale(second, h.sine ? 1 : -1)));
+    append(algebra.multiply(h.sine ? sin_k : cos_k, rest_term(false)), raw);
+    append(algebra.scale(algebra.multiply(h.sine ? cos_k : sin_k, rest_term(true)), h.sine ? 1 : -1), raw);
   }
-  return circle.reduced(result);
+  return circle.reduced(algebra.normalized(std::move(raw)));
 }
 
 std::vector<std::vector<Frequency>> candidate_angles(const TermAlgebra& algebra, const Polynomial& p,

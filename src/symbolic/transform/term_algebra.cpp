@@ -7,8 +7,6 @@
 namespace maupertuis::terms {
 namespace {
 
-std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) { return (std::uint64_t{a} << 32) | b; }
-
 void mix(std::size_t& seed, std::uint64_t value) { seed ^= value + 0x9E3779B97F4A7C15ull + (seed << 6) + (seed >> 2); }
 
 bool same_key(const Term& a, const Term& b) { return a.monomial == b.monomial && a.harmonic == b.harmonic; }
@@ -17,39 +15,23 @@ bool key_less(const Term& a, const Term& b) {
 }
 
 /// Terms in the order of their first appearance, like ones added up as they come: a product of sums of sines has ten
-/// times as many terms as are left of it. They are found by a table of places.
+/// times as many terms as are left of it.
 class LikeTerms {
  public:
-  void add(MonomialId monomial, HarmonicId harmonic, Rational coefficient) {
-    if (2 * terms_.size() >= slots_.size()) grow();
-    std::uint32_t& slot = slot_of(monomial, harmonic);
-    if (slot != free) {
-      terms_[slot].coefficient += coefficient;
+  void add(MonomialId monomial, HarmonicId harmonic, const Rational& coefficient) {
+    std::uint32_t& place = places_[pair_key(monomial, harmonic)];
+    if (place != KeyTable::none) {
+      terms_[place].coefficient += coefficient;
       return;
     }
-    slot = static_cast<std::uint32_t>(terms_.size());
-    terms_.push_back({monomial, harmonic, std::move(coefficient)});
+    place = static_cast<std::uint32_t>(terms_.size());
+    terms_.push_back({monomial, harmonic, coefficient});
   }
   std::vector<Term> take() { return std::move(terms_); }
 
  private:
-  static constexpr std::uint32_t free = ~std::uint32_t{0};
-
-  std::uint32_t& slot_of(MonomialId monomial, HarmonicId harmonic) {
-    const std::size_t mask = slots_.size() - 1;
-    std::size_t at = (pair_key(monomial, harmonic) * 0x9E3779B97F4A7C15ull >> 32) & mask;
-    while (slots_[at] != free && (terms_[slots_[at]].monomial != monomial || terms_[slots_[at]].harmonic != harmonic))
-      at = (at + 1) & mask;
-    return slots_[at];
-  }
-  void grow() {
-    slots_.assign(std::max<std::size_t>(32, 4 * slots_.size()), free);
-    terms_.reserve(slots_.size() / 2);
-    for (std::uint32_t i = 0; i < terms_.size(); ++i) slot_of(terms_[i].monomial, terms_[i].harmonic) = i;
-  }
-
   std::vector<Term> terms_;
-  std::vector<std::uint32_t> slots_;  // a power of two, at most half full
+  KeyTable places_;
 };
 
 }  // namespace
@@ -104,8 +86,8 @@ MonomialId TermAlgebra::product(MonomialId a, MonomialId b) {
   if (a == 0) return b;
   if (b == 0) return a;
   if (a > b) std::swap(a, b);
-  const auto known = products_.find(pair_key(a, b));
-  if (known != products_.end()) return known->second;
+  std::uint32_t& known = products_[pair_key(a, b)];
+  if (known != KeyTable::none) return known;
   const Monomial &x = monomials_[a], &y = monomials_[b];
   Monomial merged;
   merged.reserve(x.size() + y.size());
@@ -121,9 +103,7 @@ MonomialId TermAlgebra::product(MonomialId a, MonomialId b) {
       ++i, ++j;
     }
   }
-  const MonomialId result = intern(merged);
-  products_.emplace(pair_key(a, b), result);
-  return result;
+  return known = intern(merged);
 }
 
 MonomialId TermAlgebra::power(MonomialId a, Fraction exponent) {
@@ -222,7 +202,7 @@ Polynomial TermAlgebra::multiply(const Polynomial& a, const Polynomial& b) {
         continue;
       }
       for (const Term& h : harmonic_product(x.harmonic, y.harmonic))
-        terms.add(monomial, h.harmonic, coefficient * h.coefficient);
+        if (!h.coefficient.is_zero()) terms.add(monomial, h.harmonic, coefficient * h.coefficient);
     }
   }
   return normalized(terms.take());

@@ -1,6 +1,8 @@
 #pragma once
 #include <maupertuis/expression.hpp>
 
+#include "symbolic/transform/key_table.hpp"
+
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -87,6 +89,9 @@ struct Atom {
   Expr shown;                         // what a reader sees; the canonical expression until a pass sets it
 };
 
+/// Two numbers of monomials or harmonics as one.
+inline std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) { return (std::uint64_t{a} << 32) | b; }
+
 /// Owns the atoms, monomials and harmonics that polynomials of one context refer to.
 class TermAlgebra {
  public:
@@ -111,8 +116,9 @@ class TermAlgebra {
   const Harmonic& harmonic(HarmonicId id) const { return harmonics_[id]; }
   /// coefficient · harmonic of any argument, brought to normal form (sign, multiples of π/2).
   Term harmonic_term(bool sine, std::vector<Frequency> argument, Rational coefficient);
-  /// At most two terms, both with monomial 1.
-  const std::vector<Term>& harmonic_product(HarmonicId a, HarmonicId b);
+  /// cos a cos b = ½ cos(a − b) + ½ cos(a + b), …: two terms with monomial 1, of which one may be 0.
+  using HarmonicProduct = std::array<Term, 2>;
+  const HarmonicProduct& harmonic_product(HarmonicId a, HarmonicId b);
 
   Polynomial constant(const Rational& value) const;
   Polynomial of_atom(AtomId id, Fraction exponent = {1, 1});
@@ -154,11 +160,13 @@ class TermAlgebra {
   std::vector<Monomial> monomials_;
   std::vector<char> whole_base_power_;  // by monomial: a Base atom stands in it with an exponent of at least 1
   std::unordered_map<Monomial, MonomialId, KeyHash> monomial_ids_;
-  std::unordered_map<std::uint64_t, MonomialId> products_;
+  KeyTable products_;  // of monomials
   std::vector<Harmonic> harmonics_;
   std::unordered_map<Harmonic, HarmonicId, KeyHash> harmonic_ids_;
-  std::unordered_map<std::uint64_t, std::vector<Term>> harmonic_products_;
-  // Expressions made before, by harmonic and by monomial without exponentials; `shown_monomials_` until an atom is shown otherwise.
+  KeyTable harmonic_product_places_;
+  std::vector<HarmonicProduct> harmonic_products_;
+  // Expressions made before, by harmonic and by monomial without exponentials; `shown_monomials_` until an atom is
+  // shown otherwise.
   std::vector<Expr> harmonic_expressions_, monomial_expressions_, shown_monomials_;
 };
 

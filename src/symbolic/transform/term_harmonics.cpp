@@ -71,28 +71,27 @@ Term TermAlgebra::harmonic_term(bool sine, std::vector<Frequency> argument, Rati
   return {0, intern(Harmonic{sine, std::move(argument)}), std::move(coefficient)};
 }
 
-const std::vector<Term>& TermAlgebra::harmonic_product(HarmonicId a, HarmonicId b) {
+const TermAlgebra::HarmonicProduct& TermAlgebra::harmonic_product(HarmonicId a, HarmonicId b) {
   if (a > b) std::swap(a, b);
-  const std::uint64_t key = (std::uint64_t{a} << 32) | b;
-  const auto known = harmonic_products_.find(key);
-  if (known != harmonic_products_.end()) return known->second;
+  std::uint32_t& place = harmonic_product_places_[pair_key(a, b)];
+  if (place != KeyTable::none) return harmonic_products_[place];
   const bool first_sine = harmonics_[a].sine, second_sine = harmonics_[b].sine;
   std::vector<Frequency> difference = combined(harmonics_[a].argument, harmonics_[b].argument, -1);
   std::vector<Frequency> total = combined(harmonics_[a].argument, harmonics_[b].argument, 1);
   const Rational half(1, 2), minus_half(-1, 2);
-  std::vector<Term> result;
-  result.reserve(2);
+  HarmonicProduct result;
   if (first_sine == second_sine) {
     // cos a cos b = ½cos(a−b) + ½cos(a+b),  sin a sin b = ½cos(a−b) − ½cos(a+b)
-    result.push_back(harmonic_term(false, std::move(difference), half));
-    result.push_back(harmonic_term(false, std::move(total), first_sine ? minus_half : half));
+    result[0] = harmonic_term(false, std::move(difference), half);
+    result[1] = harmonic_term(false, std::move(total), first_sine ? minus_half : half);
   } else {
     // sin a cos b = ½sin(a+b) + ½sin(a−b);  cos a sin b = ½sin(a+b) − ½sin(a−b)
-    result.push_back(harmonic_term(true, std::move(total), half));
-    result.push_back(harmonic_term(true, std::move(difference), first_sine ? half : minus_half));
+    result[0] = harmonic_term(true, std::move(total), half);
+    result[1] = harmonic_term(true, std::move(difference), first_sine ? half : minus_half);
   }
-  std::erase_if(result, [](const Term& t) { return t.coefficient.is_zero(); });
-  return harmonic_products_.emplace(key, std::move(result)).first->second;
+  place = static_cast<std::uint32_t>(harmonic_products_.size());
+  harmonic_products_.push_back(std::move(result));
+  return harmonic_products_.back();
 }
 
 }  // namespace maupertuis::terms

@@ -64,6 +64,22 @@ TEST_CASE("field axioms hold across the boundary of the small representation") {
   });
 }
 
+TEST_CASE("sums and products are in lowest terms, whatever stands below") {
+  const auto is = [](const Rational& value, std::int64_t numerator, std::int64_t denominator) {
+    const auto parts = value.small();
+    return parts && parts->numerator == numerator && parts->denominator == denominator;
+  };
+  CHECK(is(Rational(-6, 4) * Rational(2, 3), -1, 1));
+  CHECK(is(Rational(3, 8) + Rational(1, 8), 1, 2));
+  CHECK(is(Rational(3, 8) + Rational(-3, 8), 0, 1));
+  CHECK(is(Rational(0) * Rational(5, 16), 0, 1));
+  CHECK(is(Rational(1, 6) + Rational(1, 3), 1, 2));
+  CHECK(is(Rational(-24, 32), -3, 4));
+  const std::int64_t large = std::int64_t{1} << 62;
+  CHECK(is(Rational(large) * Rational(-3, large), -3, 1));
+  CHECK(is(Rational(-large, 3) * Rational(3, large), -1, 1));
+}
+
 TEST_CASE("exact roots") {
   CHECK(*exact_root(Rational(9, 4), 2) == Rational(3, 2));
   CHECK(*exact_root(Rational(27), 3) == Rational(3));
