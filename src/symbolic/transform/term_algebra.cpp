@@ -9,10 +9,9 @@ namespace {
 
 void mix(std::size_t& seed, std::uint64_t value) { seed ^= value + 0x9E3779B97F4A7C15ull + (seed << 6) + (seed >> 2); }
 
-bool same_key(const Term& a, const Term& b) { return a.monomial == b.monomial && a.harmonic == b.harmonic; }
-bool key_less(const Term& a, const Term& b) {
-  return a.monomial != b.monomial ? a.monomial < b.monomial : a.harmonic < b.harmonic;
-}
+std::uint64_t key(const Term& t) { return pair_key(t.monomial, t.harmonic); }
+bool same_key(const Term& a, const Term& b) { return key(a) == key(b); }
+constexpr auto key_less = [](const Term& a, const Term& b) { return key(a) < key(b); };  // of a type that sort knows
 
 /// Terms in the order of their first appearance, like ones added up as they come: a product of sums of sines has ten
 /// times as many terms as are left of it.
@@ -27,7 +26,10 @@ class LikeTerms {
     place = static_cast<std::uint32_t>(terms_.size());
     terms_.push_back({monomial, harmonic, coefficient});
   }
-  std::vector<Term> take() { return std::move(terms_); }
+  std::vector<Term> take() {
+    std::erase_if(terms_, [](const Term& t) { return t.coefficient.is_zero(); });
+    return std::move(terms_);
+  }
 
  private:
   std::vector<Term> terms_;
@@ -205,7 +207,9 @@ Polynomial TermAlgebra::multiply(const Polynomial& a, const Polynomial& b) {
         if (!h.coefficient.is_zero()) terms.add(monomial, h.harmonic, coefficient * h.coefficient);
     }
   }
-  return normalized(terms.take());
+  std::vector<Term> left = terms.take();
+  if (left.size() > budget_) throw TooManyTerms{};  // before they are sorted
+  return normalized(std::move(left));
 }
 
 std::string key_text(const Polynomial& p) {
