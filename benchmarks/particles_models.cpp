@@ -75,7 +75,7 @@ Particles kepler() {
           "dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = -1/sqrt(x^2 + y^2)\nstart x = 0.4, y' = 2\n",
           {0.4, 0},
           {0, 2},
-          1000,
+          100000,
           {},
           [](const Numbers&, const double* q, const double* v, std::size_t) {
             return 0.5 * (v[0] * v[0] + v[1] * v[1]) - 1 / std::hypot(q[0], q[1]);
@@ -89,7 +89,7 @@ Particles henon_heiles() {
           "start x' = 0.5, y = 0\n",
           {0, 0},
           {0.5, 0},
-          1000,
+          100000,
           {},
           [](const Numbers&, const double* q, const double* v, std::size_t) {
             return 0.5 * (v[0] * v[0] + v[1] * v[1] + q[0] * q[0] + q[1] * q[1]) + q[0] * q[0] * q[1] -
