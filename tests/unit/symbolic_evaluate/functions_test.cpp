@@ -56,6 +56,28 @@ TEST_CASE("the derivative of every function is its difference quotient, to 60 di
   }
 }
 
+TEST_CASE("half-integer powers in 100 digits are those by logarithm and exponential, and their intervals hold them") {
+  Context c;
+  const Expr x = c.symbol("x", Role::Coordinate);
+  const Real100 at = evaluation::real100_from(Rational(3, 10));
+  for (const int n : {-5, -3, -1, 1, 3, 5, 201}) {
+    CAPTURE(n);
+    const Expr power = pow(x, Rational(n, 2));
+    const Real100 exact = exp(Real100(n) / 2 * log(at));
+    CHECK(abs(at_100_digits(power, x, at) / exact - 1) < Real100("1e-95"));
+    const evaluation::Tape tape({&power, 1});
+    evaluation::RealNumbers<evaluation::Interval<Real100>> numbers([&](Expr) {
+      return evaluation::Interval<Real100>{at, at};
+    });
+    std::vector<evaluation::Interval<Real100>> values;
+    evaluation::run(tape, numbers, values);
+    const auto& range = values[tape.roots()[0]];
+    CHECK((range.low <= exact && exact <= range.high));
+    CHECK(range.high - range.low < exact * Real100("1e-80"));
+    CHECK(isnan(at_100_digits(power, x, Real100(-1))));
+  }
+}
+
 TEST_CASE("values of every function in double and as intervals agree with 100 digits") {
   using Range = evaluation::Interval<double>;
   for (const Kind kind : functions_of_the_table()) {
