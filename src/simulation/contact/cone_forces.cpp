@@ -101,28 +101,46 @@ class Projections {
 
 }  // namespace
 
+namespace {
+
+/// The best of the points that Newton's steps come to, each step halved until the residual falls (`damped`) or whole:
+/// next to forces at the limit of friction that nothing determines along it, steps that must descend are too short.
+VectorXd newton(const Projections& projections, VectorXd x, bool damped) {
+  constexpr int turns = 60, most_halvings = 30;
+  VectorXd off = projections.residual(x), best = x;
+  double least = off.norm();
+  for (int turn = 0; turn < turns && least > 1e-15 * (1e-300 + x.norm()); ++turn) {
+    VectorXd change = Eigen::CompleteOrthogonalDecomposition<MatrixXd>(projections.slope(x)).solve(off);
+    VectorXd next = x - change, next_off = projections.residual(next);
+    for (int halving = 1; damped && halving < most_halvings && !(next_off.norm() < off.norm()); ++halving) {
+      change *= 0.5;
+      next = x - change;
+      next_off = projections.residual(next);
+    }
+    if (!next_off.allFinite() || (damped && !(next_off.norm() < off.norm()))) break;
+    x = next, off = next_off;
+    if (off.norm() < least) best = x, least = off.norm();
+  }
+  return best;
+}
+
+double residual_of(const Projections& projections, const VectorXd& x) {
+  const double size = x.cwiseAbs().maxCoeff(), off = projections.residual(x).cwiseAbs().maxCoeff();
+  return size > 0 ? off / size : off;
+}
+
+}  // namespace
+
 std::optional<ConeForces> cone_forces(const ConeProblem& problem) {
   const Projections projections(problem);
-  constexpr int first_turns = 60, newton_turns = 60;
-  VectorXd x = projections.gauss_seidel(first_turns);
-  VectorXd off = projections.residual(x);
-  for (int turn = 0; turn < newton_turns && off.norm() > 1e-15 * (1e-300 + x.norm()); ++turn) {
-    const VectorXd change = Eigen::CompleteOrthogonalDecomposition<MatrixXd>(projections.slope(x)).solve(off);
-    double part = 1;
-    VectorXd next, next_off;
-    for (int halving = 0; halving < 30; ++halving, part *= 0.5) {
-      next = x - part * change;
-      next_off = projections.residual(next);
-      if (next_off.norm() < off.norm()) break;
-    }
-    if (!(next_off.norm() < off.norm())) break;
-    x = next, off = next_off;
-  }
+  constexpr int first_turns = 60;
+  const VectorXd begin = projections.gauss_seidel(first_turns);
+  VectorXd x = newton(projections, begin, true);
+  if (!(residual_of(projections, x) <= converged)) x = newton(projections, begin, false);
   ConeForces out;
   out.forces = x;
   out.accelerations = problem.free + problem.response * x;
-  const double size = x.cwiseAbs().maxCoeff();
-  out.residual = size > 0 ? off.cwiseAbs().maxCoeff() / size : off.cwiseAbs().maxCoeff();
+  out.residual = residual_of(projections, x);
   if (!(out.residual <= converged)) return std::nullopt;
   return out;
 }

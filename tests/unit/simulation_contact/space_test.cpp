@@ -171,6 +171,22 @@ TEST_CASE("a bar that is turned and pushed gives way at one foot, then at the ot
   CHECK(slides("0.1", "0.3", {0.391662, 2.277944, 27.20992}) == doctest::Approx(1.4715 / 1.15));
 }
 
+TEST_CASE("a bar gives way at one foot whose friction is determined, while forces along the bar are not") {
+  // The foot at −b comes to its limit first: its friction is (a P + M(t))/(a + b) across the bar.
+  const auto r = run_text(
+      "param m = 1 kg, g = 9.81 m/s^2, a = 0.394 m, b = 0.362 m, J = 0.228 kg m^2\n"
+      "coord x, y, z : length, v, w : angle\nT = 1/2 m (x'^2 + y'^2 + z'^2) + 1/2 J (v'^2 + w'^2)\nV = m g z\n"
+      "force x = -0.1 [N/s] t\nforce y = -0.294 [N]\nforce w = 0.041 [N m] + 0.413 [N m/s] t\n"
+      "contact z - a v >= 0 friction 0.365 slip (x', y' + a w') name l1\n"
+      "contact z + b v >= 0 friction 0.365 slip (x', y' - b w') name l2\n",
+      6);
+  const double limit = 0.365 * 9.81 * 0.394 / 0.756;
+  REQUIRE(r.happenings.size() >= 2);
+  CHECK(r.happenings[0].name == "l2");
+  CHECK(r.happenings[0].t == doctest::Approx((limit * 0.756 - 0.394 * 0.294 - 0.041) / 0.413).epsilon(1e-8));
+  CHECK(r.statistics.energy_drift < 1e-14);
+}
+
 TEST_CASE("forces of an undetermined rest are those of cones with a margin, and none beyond them") {
   ConeProblem p;  // a rod between two walls that face each other, pulled along them by F
   p.contacts = {{1, 0.5}, {1, 0.25}};
