@@ -47,7 +47,7 @@ void HybridMotion::forget_oldest() {
 }
 
 /// [contacts] the speeds at which slips in space count as stopped.
-std::vector<double> HybridMotion::stops() const {
+std::vector<double> HybridMotion::stops() {
   std::vector<double> out;
   for (std::size_t i = 0; i < system_.contacts.size(); ++i) out.push_back(stop_slip(i));
   return out;
@@ -70,6 +70,7 @@ HybridMotion::ModeMotion& HybridMotion::motion_in(const ContactMode& mode, const
   auto made = std::make_unique<ModeMotion>();
   made->mode = mode;
   made->given = given;
+  made->stops = details.stops;
   made->asked_for = asked_for_;
   made->program = library_->program(mode, details);
   std::vector<double> parameters = parameters_;

@@ -180,7 +180,7 @@ Step HybridMotion::step(double bound) {
   }
   if (!out.events.empty()) classify(out);
   if (meets_late_ && pending_) late_by_ = hidden_by_rounding(bound);
-  if (!pending_ && out.end >= end) pending_ = std::make_unique<Pending>();
+  if (!pending_ && (out.end >= end || outgrows_stops())) pending_ = std::make_unique<Pending>();
   // A force that jumps may let a contact or a friction go, though none of their conditions has a root.
   if (!pending_ && ((out.switches > 0 && !goes_on(bound)) || pulls())) {
     take_state();

@@ -148,7 +148,8 @@ class HybridMotion final : public Method {
   // Friction in space.
   double slip_speed_at(std::size_t contact, const ContactValues& values) const;
   bool slides_in_space(std::size_t contact, const ContactValues& values) const;
-  double stop_slip(std::size_t contact) const;
+  double stop_slip(std::size_t contact);
+  bool outgrows_stops();
   SparseRow sliding_force(std::size_t contact, const ContactValues& values) const;
   struct Pressed {
     std::size_t contact;
@@ -158,7 +159,7 @@ class HybridMotion final : public Method {
   std::vector<Pressed> pressed_in(const ContactMode& mode, const ContactValues& values) const;
   Cones cones_of(const std::vector<Pressed>& pressed, const ContactValues& values,
                  std::span<const double> accelerations);
-  std::vector<double> stops() const;
+  std::vector<double> stops();
   std::vector<double> energy_and_sets_at(double t, std::span<const double> q, std::span<const double> v);
   void move_on(double by, const Eigen::VectorXd& accelerations);
   std::optional<TaylorStepper::Outlook> outlook_without_contacts(const ContactValues& values, double bound);

@@ -34,6 +34,7 @@ struct HybridMotion::ModeMotion {
   std::shared_ptr<const ModeProgram> program;
   const std::vector<Watch>& watches() const { return program->watches; }
   Given given;
+  std::vector<double> stops;  // [contacts] as in ModeDetails; empty without friction in space
   std::unique_ptr<TaylorStepper> stepper;
   std::size_t asked_for = 0;  // the last time, in turns of asking
 };

@@ -46,10 +46,20 @@ bool HybridMotion::slides_in_space(std::size_t i, const ContactValues& values) c
 
 /// The speed at which a slip counts as stopped, well above what is rounding of it; in steps of ten so that the motion
 /// of a mode serves many of them.
-double HybridMotion::stop_slip(std::size_t i) const {
+double HybridMotion::stop_slip(std::size_t i) {
   constexpr double above_rounding = 100;
-  const double speed = std::max({slow_slip * slip_scale_[i], above_rounding * rest_unit * fastest_slip_[i], 1e-200});
+  const double rest = rest_slip(i, functions_.at(t_, q_, v_));
+  const double speed = std::max({slow_slip * slip_scale_[i], above_rounding * rest, 1e-200});
   return std::pow(10, std::floor(std::log10(speed)));
+}
+
+/// Whether a slip has become so fast since its mode began that the speed at which it was to stop is rounding.
+bool HybridMotion::outgrows_stops() {
+  if (now_->stops.empty()) return false;
+  const ContactValues& values = functions_.at(t_, q_, v_);
+  for (std::size_t i = 0; i < now_->stops.size(); ++i)
+    if (now_->mode.friction[i] == FrictionState::Slide && now_->stops[i] < rest_slip(i, values)) return true;
+  return false;
 }
 
 /// ∂g/∂q − μ Σ_k v_tk/|v_t| ∂v_tk/∂q̇: what a unit of the normal force does while it slides.

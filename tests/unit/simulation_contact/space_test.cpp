@@ -187,6 +187,24 @@ TEST_CASE("a bar gives way at one foot whose friction is determined, while force
   CHECK(r.statistics.energy_drift < 1e-14);
 }
 
+TEST_CASE("a slip that gives way to a force that grows stops though it was slow beyond measure when it began") {
+  // As one mass that is pulled along y, x carrying it a little aside: in the plane without the latter.
+  const std::string body =
+      "param m = 1 kg, g = 9.81 m/s^2, a = 0.4 m, J = 0.2 kg m^2\ncoord x, y, z : length, v, w : angle\n"
+      "T = 1/2 m (x'^2 + y'^2 + z'^2) + 1/2 J (v'^2 + w'^2)\nV = m g z\nforce y = 4.3 [N] sin(3 [rad/s] t)\n";
+  const std::string feet =
+      "contact z - a v >= 0 friction 0.35 slip (x', y' + a w') name l1\n"
+      "contact z + a v >= 0 friction 0.35 slip (x', y' - a w') name l2\n";
+  const auto aside = run_text(body + "force x = 1e-7 [N]\n" + feet, 3);
+  const auto plane = run_text(
+      "param m = 1 kg\ncoord y : length\nT = 1/2 m y'^2\nforce y = 4.3 [N] sin(3 [rad/s] t)\n"
+      "friction y limit 0.35*9.81 [N]\n",
+      3);
+  CHECK(plane.happenings.size() >= 4);
+  CHECK(aside.final.q[1] == doctest::Approx(plane.final.q[0]).epsilon(1e-9));
+  CHECK(aside.statistics.energy_drift < 1e-13);
+}
+
 TEST_CASE("forces of an undetermined rest are those of cones with a margin, and none beyond them") {
   ConeProblem p;  // a rod between two walls that face each other, pulled along them by F
   p.contacts = {{1, 0.5}, {1, 0.25}};
