@@ -11,7 +11,7 @@ void mix(std::size_t& seed, std::uint64_t value) { seed ^= value + 0x9E3779B97F4
 
 std::uint64_t key(const Term& t) { return pair_key(t.monomial, t.harmonic); }
 bool same_key(const Term& a, const Term& b) { return key(a) == key(b); }
-constexpr auto key_less = [](const Term& a, const Term& b) { return key(a) < key(b); };  // not a function: std::sort inlines it
+constexpr auto key_less = [](const Term& a, const Term& b) { return key(a) < key(b); };  // std::sort inlines it
 
 /// Terms in the order of their first appearance, like ones added up as they come: a product of sums of sines has ten
 /// times as many terms as are left of it.
