@@ -18,6 +18,7 @@ class OnLanes final : public ManyDisks::Values {
     Lanes on_lanes;
     for (std::size_t l = 0; l < width; ++l) on_lanes[l] = radii[pass + count * l];
     values_.begin(coefficients);
+    if (!plan_.derived.empty()) values_.evaluate(on_lanes * larger, plan_.derived, false);
     values_.evaluate(on_lanes, plan_.needed, false);
     for (std::size_t t = 0; t < terms.size(); ++t) {
       const Lanes of_term = tails_of(terms[t]);
@@ -26,6 +27,7 @@ class OnLanes final : public ManyDisks::Values {
   }
 
  private:
+  static constexpr double larger = 1.4142135623730951;  // the disk that derivatives need
   static constexpr std::size_t width = disk_rules::lanes, count = Disks::many / width;
   Lanes tails_of(const ResidualTerms::Term& term) const {
     return term.b == no_slot ? values_.shifted_tail(term.a, term.shift) : values_.tail_of_product(term.a, term.b);

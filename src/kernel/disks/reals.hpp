@@ -58,14 +58,5 @@ inline Lanes lane_by_lane(F&& f, const Lanes& x, const Lanes& y) {
   return out;
 }
 
-/// Of each lane what the one on its left has; of the first what the last one had before.
-inline double from_left(double, double before) { return before; }
-inline Lanes from_left(const Lanes& x, const Lanes& before) {
-  Lanes out;
-  out[0] = before[lanes - 1];
-  for (int l = 1; l < lanes; ++l) out[l] = x[l - 1];
-  return out;
-}
-
 }  // namespace
 }  // namespace maupertuis::disk_rules

@@ -12,11 +12,8 @@
 
 namespace maupertuis {
 
-/// Bounds of the values of a program on one disk (V = double), or on several about one centre (V = Lanes). The *larger
-/// disk* of a lane is the one on its left, of the first the last one of the call before, since begin():
-///
-///     lane       0    1    2    3
-///     radius     r₀ > r₁ > r₂ > r₃
+/// Bounds of the values of a program on one disk (V = double), or on several about one centre (V = Lanes, a disk a
+/// lane). The *larger disk* of a lane is the one that it had in the call before, since begin().
 template <class V>
 class DiskValues {
  public:
@@ -67,7 +64,6 @@ class DiskValues {
   V series_of_derivative(std::uint32_t slot, std::uint32_t shift) const;
   V low_of_base(std::uint32_t slot) const;
   V beyond(std::uint32_t slot) const;
-  V on_larger(std::uint32_t slot, V Bounds::*bound) const;
   void set(std::uint32_t slot, const Bounds& bounds);
 
   double coefficient(int k, std::uint32_t slot) const {
@@ -98,7 +94,7 @@ class DiskValues {
 template <class V>
 void DiskValues<V>::evaluate(const V& radius, const std::vector<std::uint32_t>& nodes, bool by_coefficients) {
   before_.swap(values_);
-  larger_ = disk_rules::from_left(radius, radius_);
+  larger_ = radius_;
   radius_ = radius;
   find_powers();
   by_coefficients_ = by_coefficients;
@@ -202,17 +198,12 @@ template <class V>
   values_[slot].tail = tail;
   if (by_coefficients_ && plan_.has_series[slot]) {
     const auto lag = static_cast<std::size_t>(std::max<int>(0, plan_.program.lags[slot]));
-    reach = smaller(series_[slot] + on_larger(slot, &Bounds::tail) * passed_on_[lag], reach);
+    reach = smaller(series_[slot] + before_[slot].tail * passed_on_[lag], reach);
   }
   if (plan_.is_base[slot]) low = larger(low, low_of_base(slot));
   values_[slot].reach = reach;
   values_[slot].low = larger(low, larger(number(0), c - reach));
   values_[slot].high = smaller(b.high, c + reach);
-}
-
-template <class V>
-V DiskValues<V>::on_larger(std::uint32_t slot, V Bounds::*bound) const {
-  return disk_rules::from_left(values_[slot].*bound, before_[slot].*bound);
 }
 
 template <class V>
@@ -316,7 +307,7 @@ V DiskValues<V>::shifted_reach(std::uint32_t slot, std::uint32_t shift) const {
   if (slot < plan_.program.unknowns) return rate_reach_[shift - 1][slot];
   if (plan_.degree[slot] < static_cast<int>(shift) || slot == plan_.program.time) return number(0);
   // Cauchy's estimate of the derivative between the two circles …
-  const V gap = larger_ - radius_, reach = on_larger(slot, &Bounds::reach);
+  const V gap = larger_ - radius_, reach = before_[slot].reach;
   V least = shift == 1 ? reach * 2.0 / gap : reach * 4.0 / (gap * gap);
   if (plan_.has_series[slot]) least = disk_rules::smaller(least, series_of_derivative(slot, shift));
   return disk_rules::select(radius_ < larger_, least, number(infinity));
@@ -333,7 +324,7 @@ V DiskValues<V>::series_of_derivative(std::uint32_t slot, std::uint32_t shift) c
                     (weight(k, static_cast<int>(shift)) * std::abs(coefficient(k, slot)));
   const V widened = number(last + 2) / (radius_ * (number(1) - radius_ / larger_));
   return sum / in_seconds(static_cast<int>(shift)) +
-         on_larger(slot, &Bounds::tail) * passed_on_[lag] * (shift == 1 ? widened : widened * widened);
+         before_[slot].tail * passed_on_[lag] * (shift == 1 ? widened : widened * widened);
 }
 
 /// The k-th coefficient of the derivative is at most (k + s)^s tail/r^{k+s}; with x ≤ ½ its sum is this tail's.

@@ -101,3 +101,34 @@ TEST_CASE("polynomials in t of degrees that the step keeps have no tail, of high
     CHECK((f.disks->tail(f.slot) == 0) == (degree < order));
   }
 }
+
+TEST_CASE("derivatives of functions are bounded with a larger disk, and not without one") {
+  Followed f;
+  f.c[0][0] = 0.4, f.c[0][1] = 0.5, f.c[0][2] = -0.2, f.c[0][3] = 0.1;
+  f.follow(f.context.time_derivative(sin(f.x * Rational(3))));
+  REQUIRE(f.disks->needs_larger_disk());
+  const auto value = [&](Complex s) {
+    const Complex x = f.polynomial(0, s), v = 0.5 + s * (-0.4 + s * 0.3);
+    return 3.0 * std::cos(3.0 * x) * v;
+  };
+  const SlotCoefficients rows{f.retrace->row(0), f.retrace->stride(), order};
+  for (const double r : {0.6, 0.3, 0.1}) {
+    CAPTURE(r);
+    f.disks->begin(rows);
+    f.disks->evaluate(r, Disks::Depth::Rules);
+    CHECK(f.disks->reach(f.slot) == infinity);
+    f.disks->begin(rows);
+    f.disks->evaluate(1.4 * r, Disks::Depth::Derivatives);
+    f.disks->evaluate(r, Disks::Depth::Rules);
+    double largest = 0;
+    for (int k = 0; k < 64; ++k) largest = std::max(largest, std::abs(value(on_circle(r, k, 64)) - value(0)));
+    CHECK(f.disks->reach(f.slot) >= largest);
+    CHECK(f.disks->reach(f.slot) < 100 * largest + 1);
+    for (const double x : {0.45, -0.45}) {
+      double by_series = 0;
+      for (int k = order; k >= 0; --k) by_series = by_series * x * r + f.retrace->row(k)[f.slot];
+      CHECK(std::abs(value(x * r) - by_series) <=
+            f.disks->tail(f.slot) * std::pow(std::abs(x), order + 1) / (1 - std::abs(x)) + 1e-13 * std::abs(value(0)));
+    }
+  }
+}
