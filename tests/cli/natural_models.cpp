@@ -64,3 +64,16 @@ TEST_CASE("derive: L with a condition between a coordinate and its velocity is c
     CHECK(run.out.find("Certificate: passed") != std::string::npos);
   }
 }
+
+TEST_CASE("a force that begins as a root of time is told from one that is infinite") {
+  const Folder folder;
+  const auto run = [&](const char* force) {
+    return maup({"simulate", folder.write("a.lag", "dimensionless\ncoord x : number\nT = 1/2 x'^2\nforce x = " +
+                                                       std::string(force) + "\nstart x = 1\nrun 5\n")});
+  };
+  const Outcome root = run("sqrt(max(t - 2, 0))"), pole = run("1/max(t - 2, 0)");
+  CHECK(root.code != 0);
+  CHECK(contains(root.err, "The accelerations are finite here"));
+  CHECK(pole.code != 0);
+  CHECK(contains(pole.err, "A force or an acceleration is infinite or undefined here"));
+}

@@ -71,7 +71,7 @@ class Stepper {
   std::optional<Outcome> project();
   T constraint_error() const;
   T speed(std::size_t i) const;
-  Outcome failure(KernelStatus status) const;
+  Outcome failure(KernelStatus status);
   void set_sides(Workspace<T>& work) const;
   void choose_first_sides();
   T judged_length(const T& bound) const;

@@ -1,5 +1,6 @@
 #pragma once
 #include "integrator/extended/stepper.hpp"
+#include "integrator/taylor/reasons.hpp"
 #include "integrator/taylor/roots_code.hpp"
 #include "kernel/extended/workspace_code.hpp"
 
@@ -48,16 +49,12 @@ void Stepper<T>::start(const T& t, std::vector<T> q, std::vector<T> v) {
 }
 
 template <class T>
-typename Stepper<T>::Outcome Stepper<T>::failure(KernelStatus status) const {
-  if (status == KernelStatus::SingularMass)
-    return {StepEnding::SingularMass,
-            "The mass matrix is singular here: the equations do not determine the acceleration of " +
-                kernel_.coordinate_name(work_.singular_coordinate()) + "."};
-  if (status == KernelStatus::Contradiction)
-    return {StepEnding::SingularConstraints, "The constraints are singular here: what " +
-                                                 kernel_.constraint_name(work_.contradicting_constraint()) +
-                                                 " asks of the accelerations, the others exclude."};
-  return {StepEnding::Overflow, "A force or an acceleration is infinite or undefined here."};
+typename Stepper<T>::Outcome Stepper<T>::failure(KernelStatus status) {
+  const StepEnding ending = status == KernelStatus::SingularMass    ? StepEnding::SingularMass
+                            : status == KernelStatus::Contradiction ? StepEnding::SingularConstraints
+                                                                    : StepEnding::Overflow;
+  const bool is_finite = ending == StepEnding::Overflow && work_.evaluate(t_, q_, v_) == KernelStatus::Ok;
+  return {ending, taylor::reason_of(status, kernel_, work_, is_finite)};
 }
 
 /// |q̇| + h |q̈| of a coordinate: its speed in the course of a step.

@@ -1,5 +1,7 @@
 #include "integrator/taylor/stepper.hpp"
 
+#include "integrator/taylor/reasons.hpp"
+
 #include <maupertuis/require.hpp>
 
 #include <algorithm>
@@ -15,17 +17,13 @@ void TaylorStepper::Impl::end(Step& result, StepEnding ending, std::string reaso
   result.reason = std::move(reason);
 }
 
-bool TaylorStepper::Impl::fail(Step& result, KernelStatus status) const {
-  if (status == KernelStatus::SingularMass)
-    end(result, StepEnding::SingularMass,
-        "The mass matrix is singular here: the equations do not determine the acceleration of " +
-            kernel.coordinate_name(work.singular_coordinate()) + ".");
-  else if (status == KernelStatus::Contradiction)
-    end(result, StepEnding::SingularConstraints,
-        "The constraints are singular here: what " + kernel.constraint_name(work.contradicting_constraint()) +
-            " asks of the accelerations, the others exclude.");
-  else
-    end(result, StepEnding::Overflow, "A force or an acceleration is infinite or undefined here.");
+bool TaylorStepper::Impl::fail(Step& result, KernelStatus status) {
+  const StepEnding ending = status == KernelStatus::SingularMass    ? StepEnding::SingularMass
+                            : status == KernelStatus::Contradiction ? StepEnding::SingularConstraints
+                                                                    : StepEnding::Overflow;
+  const bool is_finite =
+      ending == StepEnding::Overflow && work.evaluate(state.t.hi, state.q_now, state.v_now) == KernelStatus::Ok;
+  end(result, ending, taylor::reason_of(status, kernel, work, is_finite));
   return false;
 }
 

@@ -44,7 +44,7 @@ struct TaylorStepper::Impl {
   bool make_step(double bound, double h, Step& result);
   void advance(double bound, double h, const taylor::Crossing& crossing, Step& result);
   void end(Step& result, StepEnding ending, std::string reason) const;
-  bool fail(Step& result, KernelStatus status) const;
+  bool fail(Step& result, KernelStatus status);
   double remaining(double bound) const { return (bound - state.t.hi) - state.t.lo; }
 
   // Its end (step_end.cpp).
