@@ -62,9 +62,8 @@ class Disks {
   /// Bounds them, by the rules, on as many more of these disks as a register of this processor holds; those first that
   /// were asked last in the step before. False: all have been asked. Cost: some 20 operations an instruction.
   bool ask_more();
-  /// What a step of length h leaves out of the rows, each term bounded on that of the disks asked so far
-  /// which suits it. Cost:
-  /// some 3 operations a term and disk.
+  /// What a step of length h leaves out of the rows, each term bounded on that of the disks asked so far which suits
+  /// it. Cost: some 3 operations a term and disk.
   void find_left_out(double h);
   double residual_left_out(std::size_t j) const;
   /// What rounding makes of R_j at s = 0, in units of the rounding of 1: each value adds its own size to what its

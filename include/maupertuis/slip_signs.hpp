@@ -9,4 +9,9 @@ namespace maupertuis {
 /// itself.
 Expr on_side_of_slip(const MechanicalSystem& system, const Friction& friction, Expr function, bool forwards);
 
+/// The largest force of a friction that slides, or would slide, forwards or backwards: a coefficient, friction.kinetic
+/// or static_, times the normal force; where that is empty, the coefficient is the force itself.
+Expr limit_of_friction(const MechanicalSystem& system, const Friction& friction, Expr coefficient, Expr normal,
+                       bool forwards);
+
 }  // namespace maupertuis

@@ -31,8 +31,7 @@ void add_sticking(MechanicalSystem& out, const Friction& friction, const std::st
 
 /// −σ μ N ∂v_t/∂q̇; in space −μ N Σ_k v_tk/|v_t| ∂v_tk/∂q̇
 void add_sliding(MechanicalSystem& out, const Friction& friction, Expr normal, FrictionState state) {
-  const Expr kinetic = on_side_of_slip(out, friction, friction.kinetic, state == FrictionState::Forward);
-  const Expr most = normal ? kinetic * normal : kinetic;
+  const Expr most = limit_of_friction(out, friction, friction.kinetic, normal, state == FrictionState::Forward);
   const Expr speed = friction.in_space() ? slip_speed(friction) : Expr();
   for (std::size_t i = 0; i < out.coordinates.size(); ++i) {
     ExprVector terms;

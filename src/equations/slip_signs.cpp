@@ -39,4 +39,10 @@ Expr on_side_of_slip(const MechanicalSystem& system, const Friction& friction, E
   return out;
 }
 
+Expr limit_of_friction(const MechanicalSystem& system, const Friction& friction, Expr coefficient, Expr normal,
+                       bool forwards) {
+  const Expr limit = on_side_of_slip(system, friction, coefficient, forwards);
+  return normal ? limit * normal : limit;
+}
+
 }  // namespace maupertuis

@@ -189,36 +189,6 @@ Step HybridMotion::step(double bound) {
   return out;
 }
 
-/// How far rounding may hide the time at which a force comes to its limit: |f/ḟ| where f is as small as it is told from
-/// 0, a third of the whole at a triple root, a fifth at one of five. 0 where the root is a simple one.
-double HybridMotion::hidden_by_rounding(double bound) {
-  constexpr double simple = 1e-8, most = 5;
-  if (pending_->left.empty() || !pending_->hit.empty() || !pending_->sets.empty()) return 0;
-  const TaylorStepper::Outlook outlook = now_->stepper->outlook(bound);
-  if (outlook.ending != StepEnding::None) return 0;
-  double out = 0;
-  for (std::size_t k = 0; k < now_->watches().size(); ++k) {
-    const Watch& w = now_->watches()[k];
-    if (w.what != Watch::What::Hold && w.what != Watch::What::Force) continue;
-    const bool ends = std::any_of(pending_->left.begin(), pending_->left.end(), [&](const Watch& x) {
-      return x.what == w.what && x.index == w.index && x.lower == w.lower;
-    });
-    const double hidden = std::abs(outlook.values[k] / outlook.slopes[k]);
-    if (ends && hidden > simple * outlook.length && hidden < outlook.length) out = std::max(out, most * hidden);
-  }
-  return out;
-}
-
-/// On in the mode that ends here.
-Step HybridMotion::wait(double bound) {
-  const double until = time() + (forwards_ ? late_by_ : -late_by_);
-  late_by_ = 0;
-  Step out = now_->stepper->step(forwards_ ? std::min(bound, until) : std::max(bound, until));
-  out.events.clear();
-  if (out.ending == StepEnding::None) note_step();
-  return out;
-}
-
 /// Whether the motion begins with an impact.
 bool HybridMotion::hits_at_start() const {
   return !record_.happenings.empty() && record_.happenings.front().kind == Happening::Kind::Impact &&

@@ -52,10 +52,7 @@ void watch_frictions(const MechanicalSystem& system, const ContactMode& mode, co
     const Expr normal = normal_force(system, mode, i);
     if (state == FrictionState::Stick) {
       if (f.sticking) continue;
-      const auto most_of = [&](bool forwards) {  // that it holds before it slides this way
-        const Expr limit = on_side_of_slip(system, f, f.static_, forwards);
-        return normal ? limit * normal : limit;
-      };
+      const auto most_of = [&](bool forwards) { return limit_of_friction(system, f, f.static_, normal, forwards); };
       if (f.in_space()) {
         const Expr most = most_of(true);
         watch(ModeWatch::What::Hold, i,
@@ -86,8 +83,7 @@ ExprMap forces_in(const MechanicalSystem& system, const ContactMode& mode, ExprV
     for (const Expr& multiplier : f.multipliers) out[multiplier] = context.number(0);
     if (state == FrictionState::None) continue;
     const Expr normal = normal_force(system, mode, i);
-    const Expr kinetic = on_side_of_slip(system, f, f.kinetic, state == FrictionState::Forward);
-    const Expr force = normal ? kinetic * normal : kinetic;
+    const Expr force = limit_of_friction(system, f, f.kinetic, normal, state == FrictionState::Forward);
     if (state == FrictionState::Slide) {
       const Expr speed = slip_speed(f);
       rubbed.push_back(force * speed);

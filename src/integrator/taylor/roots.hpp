@@ -167,7 +167,7 @@ class RootSearchOf {
 
   /// A step of low order is long where the motion is a polynomial, in which a function of it may still swing: its
   /// pieces would be no longer than (their rounding)^{1/order} of a period.
-  static constexpr int least_order = 16;
+  static constexpr int least_order = 10;
 
   std::vector<Slot> slots_;
   int order_;  // of the step

@@ -1,5 +1,7 @@
 #include "integrator/taylor/safe_length.hpp"
 
+#include "kernel/disks/whole_power.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,13 +18,6 @@ constexpr double rest = 1e-40;
 constexpr int most_disks = 400;
 /// The rules alone are tried again after so many steps that needed coefficients; momenta are found anew after so many.
 constexpr unsigned period = 32, period_of_momenta = 256;
-
-double whole_power(double x, int n) {
-  double result = 1;
-  for (; n > 0; n /= 2, x *= x)
-    if (n % 2 != 0) result *= x;
-  return result;
-}
 
 /// Down to 8 bits, so that rounding of bounds does not decide on the last digits of a motion.
 double rounded_down(double h) {

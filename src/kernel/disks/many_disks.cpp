@@ -1,5 +1,6 @@
 #include "kernel/disks/many_disks.hpp"
 
+#include "kernel/disks/whole_power.hpp"
 #include "kernel/program/processor.hpp"
 
 #include <cmath>
@@ -18,13 +19,6 @@ std::unique_ptr<ManyDisks::Values> widest(const DiskPlan& plan) {
   if (vector_instructions() >= VectorInstructions::Avx2)
     if (auto values = avx2_disks(plan)) return values;
   return baseline_disks(plan);
-}
-
-double whole_power(double x, int n) {
-  double result = 1;
-  for (; n > 0; n /= 2, x *= x)
-    if (n % 2 != 0) result *= x;
-  return result;
 }
 
 /// The smallest of the numbers; ∞ where there is none. In pairs, since each comparison waits for its operands.

@@ -1,6 +1,8 @@
 #include "kernel/disks/many_disks.hpp"
 #include "kernel/disks/values.hpp"
 
+#include <numbers>
+
 /// Compiled for each instruction set, by the lanes that its registers hold.
 namespace maupertuis {
 namespace {
@@ -18,7 +20,8 @@ class OnLanes final : public ManyDisks::Values {
     Lanes on_lanes;
     for (std::size_t l = 0; l < width; ++l) on_lanes[l] = radii[pass + count * l];
     values_.begin(coefficients);
-    if (!plan_.derived.empty()) values_.evaluate(on_lanes * larger, plan_.derived, false);
+    if (!plan_.derived.empty())  // the larger disk
+      values_.evaluate(on_lanes * std::numbers::sqrt2, plan_.derived, false);
     values_.evaluate(on_lanes, plan_.needed, false);
     for (std::size_t t = 0; t < terms.size(); ++t) {
       const Lanes of_term = tails_of(terms[t]);
@@ -27,7 +30,6 @@ class OnLanes final : public ManyDisks::Values {
   }
 
  private:
-  static constexpr double larger = 1.4142135623730951;  // the disk that derivatives need
   static constexpr std::size_t width = disk_rules::lanes, count = Disks::many / width;
   Lanes tails_of(const ResidualTerms::Term& term) const {
     return term.b == no_slot ? values_.shifted_tail(term.a, term.shift) : values_.tail_of_product(term.a, term.b);

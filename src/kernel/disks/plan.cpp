@@ -32,7 +32,6 @@ DiskPlan::DiskPlan(const Program& of, std::span<const std::uint32_t> slots) : pr
 }
 
 void DiskPlan::bound_only(std::span<const std::uint32_t> slots) {
-  bounds_residual = false;
   needed.clear();
   derived.clear();
   most_rates = 0;

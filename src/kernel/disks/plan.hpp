@@ -45,7 +45,6 @@ struct DiskPlan {
   std::vector<std::uint32_t> derived;                // those of them that derivatives need on a larger disk
   std::vector<std::int8_t> needs_reach, needs_tail;  // [slots]
   int most_rates = 0;                                // up to this shift the reach of coordinates is needed
-  bool bounds_residual = true;
   bool residual_has_tails = false;
   std::vector<int> residual;            // node that makes R_j; −1: none
   std::vector<int> maker;               // [slots] node; −1: none

@@ -1,8 +1,7 @@
 #pragma once
+#include "kernel/series/vector.hpp"
+
 #include <cmath>
-#if defined(__x86_64__)
-#include <immintrin.h>
-#endif
 
 /// What rules are written in: V is double, or Lanes with a disk a lane, as wide as the registers that a file is
 /// compiled for. Results do not depend on that: nothing is fused. Unnamed, since a linker keeps one copy of an inline
@@ -10,13 +9,7 @@
 namespace maupertuis::disk_rules {
 namespace {
 
-#if defined(__AVX512F__)
-constexpr int lanes = 8;
-#elif defined(__AVX2__)
-constexpr int lanes = 4;
-#else
-constexpr int lanes = 2;
-#endif
+constexpr int lanes = series::register_width;
 typedef double Lanes __attribute__((vector_size(8 * lanes)));
 using Masks = decltype(Lanes{} < Lanes{});
 

@@ -1,0 +1,346 @@
+// Dry friction in runs through modes, in the plane and along coordinates: what holds, gives way and stops, by closed
+// forms.
+#include <maupertuis/contact_mode.hpp>
+#include <maupertuis/simulation.hpp>
+
+#include "run_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace maupertuis;
+
+TEST_CASE("a block at rest stays where it is for ten thousand seconds, to the last bit") {
+  ModelText m(
+      "param m = 1 kg, g = 9.81 m/s^2, α = 0.3 rad\ncoord s, n : length\nT = 1/2 m (s'^2 + n'^2)\n"
+      "V = m g (s sin α + n cos α)\ncontact n >= 0 friction 0.4 slip s' name plane\nstart s = 0.7 m\n");
+  const auto r = run(m, 1e4);
+  CHECK(r.first_mode == "plane sticking");
+  CHECK(r.final.q[0] == 0.7);
+  CHECK(r.final.v[0] == 0);
+  CHECK(r.happenings.empty());
+}
+
+TEST_CASE("the threshold of sticking is tan α, to nine digits on either side") {
+  const auto mode = [](double mu) {
+    ModelText m(
+        "param m = 1 kg, g = 9.81 m/s^2, α = 0.3 rad\ncoord s, n : length\nT = 1/2 m (s'^2 + n'^2)\n"
+        "V = m g (s sin α + n cos α)\ncontact n >= 0 friction " +
+        fmt::format("{:.17g}", mu) + " slip s' name plane\n");
+    return run(m, 0.1).first_mode;
+  };
+  CHECK(mode(std::tan(0.3) * (1 + 1e-9)) == "plane sticking");
+  CHECK(mode(std::tan(0.3) * (1 - 1e-9)) == "plane sliding −");
+}
+
+TEST_CASE("a block under a harmonic force gives way and comes to rest in turns, each once, for as long as the run is") {
+  ModelText m(
+      "param m = 1 kg, F = 3.2 N, w = 12 rad/s\ncoord x : length\nT = 1/2 m x'^2\nforce x = F cos(w t)\n"
+      "friction x limit 2.943 N\n");
+  const auto r = run(m, 30);
+  CHECK(r.ending == Ending::Finished);
+  // It gives way where the force comes to the limit in either direction, half a period after the time before.
+  const double first = (3.141592653589793 - std::acos(2.943 / 3.2)) / 12, half = 3.141592653589793 / 12;
+  std::size_t slips = 0;
+  for (const Happening& h : r.happenings) {
+    if (h.kind != Happening::Kind::Slip) continue;
+    CHECK(h.t == doctest::Approx(first + static_cast<double>(slips) * half).epsilon(1e-13));
+    ++slips;
+  }
+  CHECK(slips == 1 + static_cast<std::size_t>((30 - first) / half));
+  CHECK(count(r, Happening::Kind::Stick) == slips + 1);  // it slides as it begins
+}
+
+TEST_CASE("a break-away is seen however soon the run ends after it") {
+  for (const double end : {0.0975, 0.098, 0.1, 0.102, 0.104, 0.1061, 0.107, 0.11, 0.113}) {
+    ModelText m(
+        "param m = 1 kg, F = 3.2 N, w = 12 rad/s\ncoord x : length\nT = 1/2 m x'^2\nforce x = F sin(w t)\n"
+        "friction x limit 2.943 N\n");
+    const auto r = run(m, end);
+    const double from = std::asin(2.943 / 3.2) / 12;
+    CHECK(count(r, Happening::Kind::Slip) == 1);
+    CHECK(r.final.v[0] ==
+          doctest::Approx(3.2 / 12 * (std::cos(12 * from) - std::cos(12 * end)) - 2.943 * (end - from)).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("what never slides is not begun, nor set, with a slip") {
+  const std::string wheel =
+      "param m = 1 kg, g = 9.81 m/s^2, R = 0.1 m\ncoord x, y : length, φ : angle\n"
+      "T = 1/2 m (x'^2 + y'^2) + 1/4 m R^2 φ'^2\nV = m g y\ncontact y >= R slip x' + R φ' sticking name floor\n"
+      "start y = R, x' = 3 m/s";
+  ModelText rolls(wheel + ", φ' = -30 rad/s\n");
+  const auto good = run(rolls, 0.6);
+  CHECK(good.final.q[0] == doctest::Approx(1.8));
+  ModelText slides(wheel + "\n");
+  const auto start = run(slides, 0.6);
+  CHECK(start.ending == Ending::Paradox);
+  CHECK(start.reason == "The start slides on the contact floor, which is `sticking` and never slides.");
+  CHECK(start.final.v[0] == 3);
+  ModelText set(wheel + ", φ' = -30 rad/s\nevent push when x = 1 m : set x' = 4 m/s\n");
+  const auto pushed = run(set, 0.6);
+  CHECK(pushed.ending == Ending::Paradox);
+  CHECK(pushed.reason == "The event `push` sets a state that slides on the contact floor, which never slides.");
+}
+
+TEST_CASE("friction whose limit becomes negative is told") {
+  const std::string block = "param m = 1 kg, F0 = 5 N, w = 1 rad/s\ncoord x : length\nT = 1/2 m x'^2\n";
+  ModelText drives(block + "friction x limit F0 cos(w t)\nstart x' = 10 m/s\n");
+  const auto told = run(drives, 4).remarks;
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].find("drives the motion there, which no friction does") != std::string::npos);
+  ModelText brakes(block + "friction x limit F0 abs(cos(w t))\nstart x' = 10 m/s\n");
+  CHECK(run(brakes, 4).remarks.empty());
+}
+
+namespace {
+
+const std::string ladder =
+    "param m = 1 kg, l = 2 m, g = 9.81 m/s^2\ncoord x, y : length, θ : angle\n"
+    "T = 1/2 m (x'^2 + y'^2) + 1/24 m l^2 θ'^2\nV = m g y\n"
+    "contact y - l/2 sin θ >= 0 friction 0.4 slip x' - l/2 sin θ θ' name floor\n"
+    "contact x - l/2 cos θ >= 0 friction 0.3 slip y' + l/2 cos θ θ' name wall\n"
+    "start x = l/2 cos θ0, y = l/2 sin θ0, θ = θ0\n";
+
+}  // namespace
+
+TEST_CASE("a ladder between rough walls rests where some forces within the limits hold it, and nowhere else") {
+  const double limit = std::atan((1 - 0.4 * 0.3) / (2 * 0.4));
+  for (const double above : {-1e-6, 1e-6, 1e-4, 0.01, 0.05, 0.2}) {
+    ModelText m("param θ0 = " + fmt::format("{:.17g}", limit + above) + " rad\n" + ladder);
+    const auto r = run(m, 0.5);
+    CHECK(r.ending == Ending::Finished);
+    CHECK(r.first_mode == (above < 0 ? "floor sliding +, wall sliding −" : "floor sticking, wall sticking"));
+    if (above < 0) continue;
+    REQUIRE(r.final.reactions.size() == 4);  // normal forces of floor and wall, then friction
+    const double floor = r.final.reactions[0], wall = r.final.reactions[1];
+    const double along_floor = r.final.reactions[2], along_wall = r.final.reactions[3];
+    CHECK(std::abs(r.final.v[2]) < 1e-14);
+    CHECK(std::abs(along_floor) <= 0.4 * floor);
+    CHECK(std::abs(along_wall) <= 0.3 * wall);
+    CHECK(floor + along_wall == doctest::Approx(9.81).epsilon(1e-13));  // they carry the weight
+    CHECK(std::abs(wall + along_floor) < 1e-12);
+    REQUIRE(r.remarks.size() == 1);
+    CHECK(r.remarks[0].find("statically indeterminate") != std::string::npos);
+  }
+}
+
+TEST_CASE("a ladder whose foot is pulled slides when no forces within the limits hold it any more") {
+  ModelText m("param θ0 = 60 deg, c = 0.1 N/s\n" + ladder +
+              "point foot at (x + l/2 cos θ, y - l/2 sin θ)\nforce on foot = (c t, 0)\n");
+  const auto r = run(m, 13);
+  const double s = std::sin(std::acos(0.5)), wall = 9.81 * 0.5 / (2 * (s + 0.3 * 0.5)), floor = 9.81 - 0.3 * wall;
+  REQUIRE(r.happenings.size() == 2);  // both at once
+  CHECK(r.happenings[0].t == doctest::Approx((0.4 * floor - wall) / 0.1).epsilon(1e-12));
+  CHECK(r.happenings[1].t == r.happenings[0].t);
+  CHECK(r.happenings[1].mode == "floor sliding +, wall sliding −");
+}
+
+TEST_CASE("dry friction beside a reaction that goes through zero") {
+  for (const char* from : {"99", "101", "120", "150"}) {
+    const std::string start = ", th = " + std::string(from) + " deg\n";
+    ModelText by_reaction(
+        "param m = 1 kg, R = 1 m, μ = 0.2, g = 9.81 m/s^2\ncoord r : length, th : angle\n"
+        "T = 1/2 m (r'^2 + r^2 th'^2)\nV = -m g r cos th\nconstraint r = R name hoop\n"
+        "friction th coefficient μ normal R reaction(hoop)\nstart r = R" +
+        start);
+    ModelText by_hand(
+        "param m = 1 kg, R = 1 m, μ = 0.2, g = 9.81 m/s^2, r0 = 0 m\ncoord th : angle\nT = 1/2 m R^2 th'^2\n"
+        "V = -m g R cos th\nfriction th limit μ R abs(m R th'^2 + m g cos th)\nstart th' = 0" +
+        start);
+    const auto r = run(by_reaction, 3), hand = run(by_hand, 3);
+    CHECK(r.ending == Ending::Finished);
+    CHECK(r.final.q[1] == doctest::Approx(hand.final.q[0]).epsilon(1e-12));
+    CHECK(r.final.v[1] == doctest::Approx(hand.final.v[0]).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("a slider-crank with dry friction in its guide goes through the dead centres, where slip and force vanish") {
+  ModelText m(
+      "param m = 1 kg, r = 0.3 m, l = 0.8 m, μ = 0.2, J = 0.1 kg m^2\ncoord θ, φ : angle, x, y : length\n"
+      "T = 1/2 J θ'^2 + 1/2 m (x'^2 + y'^2)\nconstraint x = r cos θ + l cos φ name cx\n"
+      "constraint y = r sin θ - l sin φ name cy\nconstraint y = 0 name guide\n"
+      "friction x coefficient μ normal reaction(guide)\n"
+      "start θ = 30 deg, φ = asin(0.1875), x = 1.045619303410417 m, θ' = 20 rad/s\n");
+  const auto r = run(m, 1);
+  CHECK(r.ending == Ending::Finished);
+  CHECK(count(r, Happening::Kind::Slip) == 5);                    // five dead centres
+  CHECK(r.final.q[0] == doctest::Approx(18.7846).epsilon(1e-5));  // by Runge and Kutta's formula
+  CHECK(r.final.v[0] == doctest::Approx(20.477).epsilon(1e-4));
+  CHECK(r.statistics.energy_drift < 1e-13);
+}
+
+TEST_CASE("a ladder that is pushed off its rough wall leaves it where the wall presses no more") {
+  std::string rough = ladder;
+  for (const auto& [from, to] : {std::pair("friction 0.4", "friction 0.6"), std::pair("friction 0.3", "friction 0.5")})
+    rough.replace(rough.find(from), std::string(from).size(), to);
+  for (const char* degrees : {"63", "65", "70", "75", "80", "84"}) {
+    const std::string angle = std::string(degrees) + " deg";
+    ModelText m("param θ0 = " + angle + "\n" + rough + "point centre at (x, y)\nforce on centre = (1 [N/s] t, 0)\n");
+    const auto r = run(m, 6);
+    CHECK(r.ending == Ending::Finished);
+    REQUIRE(count(r, Happening::Kind::Lost, "wall") == 1);
+    const double right = 9.81 / std::tan(std::stod(degrees) * 3.141592653589793 / 180);
+    CHECK(r.happenings[0].t == doctest::Approx(right).epsilon(1e-9));
+    CHECK(r.happenings[0].mode == "floor sticking");
+  }
+}
+
+TEST_CASE("a block begins to slide beside another one whose feet hold each other") {
+  ModelText m(
+      "param m = 1 kg, g = 9.81 m/s^2, a = 0.5 m, h = 0.3 m, J = 0.1 kg m^2, k = 1 N/s\n"
+      "coord x, y : length, w : angle, X, Y : length\nbody B mass m inertia J at (x, y) rotation angle w\n"
+      "point C mass m at (X, Y)\ngravity (0, -g)\npoint P1 at (a, -h) in B\npoint P2 at (-a, -h) in B\n"
+      "force on C = (k t, 0)\nforce on B = (2 [N], 0)\ncontact P1.y >= 0 friction 0.3 slip P1.x' name l1\n"
+      "contact P2.y >= 0 friction 0.3 slip P2.x' name l2\ncontact Y >= 0 friction 0.3 slip X' name c\nstart y = h\n");
+  const auto r = run(m, 4);
+  REQUIRE(r.happenings.size() == 1);
+  CHECK(r.happenings[0].mode == "l1 sticking, l2 sticking, c sliding +");
+  CHECK(r.happenings[0].t == doctest::Approx(0.3 * 9.81).epsilon(1e-12));
+  CHECK(r.final.q[3] == doctest::Approx(std::pow(4 - 0.3 * 9.81, 3) / 6).epsilon(1e-11));
+}
+
+TEST_CASE("friction with the force of a constraint as its normal force, whichever way that presses") {
+  const auto slide = [](const char* lift) {
+    ModelText m(std::string("param m = 2 kg, g = 9.81 m/s^2, F = ") + lift +
+                "\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = m g y\nforce y = F\nconstraint y = 0 name rail\n"
+                "friction x coefficient 0.2 normal reaction(rail)\nstart x' = 3 m/s\n");
+    return run(m, 0.5);
+  };
+  CHECK(slide("0 N").final.v[0] == doctest::Approx(3 - 0.5 * 0.2 * 9.81).epsilon(1e-13));
+  CHECK(slide("50 N").final.v[0] == doctest::Approx(3 - 0.5 * 0.2 * (25 - 9.81)).epsilon(1e-13));
+}
+
+TEST_CASE("a bead on a horizontal hoop: v = v0/(1 + μ v0 t/R), the normal force written out, and never negative") {
+  ModelText m(
+      "param m = 1 kg, R = 0.5 m, μ = 0.25\ncoord θ : angle\nT = 1/2 m R^2 θ'^2\n"
+      "friction θ coefficient μ normal -m R^2 θ'^2\nstart θ' = 6 rad/s\n");
+  const auto r = run(m, 2);
+  CHECK(r.final.v[0] == doctest::Approx(6 / (1 + 0.25 * 6 * 2)).epsilon(1e-13));
+  REQUIRE(r.books);
+  CHECK(r.books->friction == doctest::Approx(0.125 * (36 - r.final.v[0] * r.final.v[0])).epsilon(1e-12));
+}
+
+TEST_CASE("friction with a limit: an oscillator stops where the spring is weaker than static friction") {
+  ModelText m(
+      "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\nfriction x limit 0.1 static 0.15\nstart x = 1\n");
+  const auto r = run(m, 50);
+  // Half cycles take 0.2 off the amplitude: 1 → −0.8 → 0.6 → −0.4 → 0.2 → 0, where |x| ≤ 0.15 holds.
+  CHECK(std::abs(r.final.q[0]) < 1e-12);
+  CHECK(r.final.v[0] == 0);
+  CHECK(count(r, Happening::Kind::Stick) == 1);
+}
+
+TEST_CASE("a force that jumps lets a contact and a friction go") {
+  ModelText lifted(
+      "param m = 1 kg, g = 10 m/s^2, F = 20 N, T0 = 1 s\ncoord z : length\nT = 1/2 m z'^2\nV = m g z\n"
+      "force z = F step(t - T0)\ncontact z >= 0 name floor\n");
+  const auto a = run(lifted, 3);
+  CHECK(count(a, Happening::Kind::Lost, "floor") == 1);
+  CHECK(a.final.q[0] == doctest::Approx(20).epsilon(1e-14));
+  ModelText pushed(
+      "param m = 1 kg, F = 4 N, T0 = 1 s\ncoord x : length\nT = 1/2 m x'^2\nforce x = F step(t - T0)\n"
+      "friction x limit 3 N\n");
+  const auto b = run(pushed, 3);
+  CHECK(count(b, Happening::Kind::Slip, "x") == 1);
+  CHECK(b.final.q[0] == doctest::Approx(2).epsilon(1e-14));
+}
+
+TEST_CASE("a block that slides in a bowl turns, stops and stays, by x and y as by the angle") {
+  const std::string friction = "param m = 1 kg, R = 1 m, g = 10 m/s^2, μ = 0.3\n";
+  ModelText plane(
+      friction +
+      "coord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = m g y\n"
+      "contact sqrt(x^2 + y^2) <= R friction μ slip (x y' - y x')/sqrt(x^2 + y^2) name bowl\nstart x = R\n");
+  ModelText angle(friction +
+                  "coord φ : angle\nT = 1/2 m R^2 φ'^2\nV = -m g R sin φ\n"
+                  "friction φ coefficient μ normal m R^2 φ'^2 + m g R sin φ\n");  // from the right end, downwards
+  const auto a = run(plane, 5), b = run(angle, 5);
+  REQUIRE(a.ok());
+  CHECK(count(a, Happening::Kind::Impact) == 0);
+  CHECK(a.final.q[0] == doctest::Approx(std::cos(b.final.q[0])).epsilon(1e-12));
+  CHECK(a.final.q[1] == doctest::Approx(-std::sin(b.final.q[0])).epsilon(1e-12));
+  CHECK(a.books->friction == doctest::Approx(b.books->friction).epsilon(1e-12));
+}
+
+TEST_CASE("friction is μ times the normal force, also where the gap is not the distance to the surface") {
+  const std::string bead =
+      "dimensionless\nparam μ = 0.3\ncoord x, y : number\npoint P mass 1 at (x, y)\ngravity (0, -10)\n";
+  const std::string slip = " friction μ slip (x' + 2 x y')/sqrt(1 + 4 x^2) name bowl\nstart x = 1, y = 1\n";
+  ModelText height(bead + "contact y - x^2 >= 0" + slip);
+  ModelText distance(bead + "contact (y - x^2)/sqrt(1 + 4 x^2) >= 0" + slip);
+  const auto a = run(height, 0.5), b = run(distance, 0.5);
+  CHECK(a.final.q[0] == doctest::Approx(b.final.q[0]).epsilon(1e-13));
+  CHECK(a.books->friction == doctest::Approx(b.books->friction).epsilon(1e-12));
+  CHECK(height.diagnostics.items().empty());
+  // An impact: the tangential impulse is μ times the normal one, 1.5 · 2 · 0.3.
+  ModelText twice(bead + "contact 2 y >= 0 restitution 0.5 friction μ slip x' name floor\nstart x' = 5, y = 0.2\n");
+  const auto c = run(twice, 0.21);
+  REQUIRE(count(c, Happening::Kind::Impact) == 1);
+  CHECK(c.final.v[0] == doctest::Approx(5 - 0.9).epsilon(1e-13));
+  CHECK(c.final.v[1] == doctest::Approx(1 - 10 * 0.01).epsilon(1e-12));
+  // A factor of the slip is told: nothing says that it is none of a gear.
+  ModelText factor(bead + "contact y >= 0 friction μ slip 2 x' name floor\n");
+  REQUIRE(factor.diagnostics.items().size() == 1);
+  CHECK(factor.diagnostics.items()[0].code == "W0435");
+}
+
+TEST_CASE("Stribeck friction by |x'|, however written, goes on while a slip has one direction") {
+  // 0.57613206 m after 27 changes by Runge-Kutta steps of 2e-5 s between events.
+  const std::string laws[] = {"exp(-abs(x')/v0)", "exp(-abs(x'/v0))", "exp(-max(x', -x')/v0)",
+                              "piecewise(x' > 0 [m/s] : exp(-x'/v0), else : exp(x'/v0))"};
+  for (const std::string& law : laws)
+    for (const std::string still : {"", " static 3 [N]"}) {
+      CAPTURE(law);
+      ModelText m(
+          "param m = 1 kg, k = 10 N/m, v0 = 0.05 m/s\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"
+          "force x = 3.5 [N] sin(2 [rad/s] t)\nfriction x limit 2 [N] + 1 [N] " +
+          law + still + "\n");
+      const auto r = run(m, 20);
+      REQUIRE(r.ok());
+      CHECK(r.final.q[0] == doctest::Approx(0.57613206).epsilon(1e-8));
+      CHECK(r.happenings.size() == 27);
+      CHECK(r.statistics.switches == 0);
+    }
+}
+
+TEST_CASE("friction that is stronger in one direction holds, gives way and slides by the limit of each") {
+  const auto slip = [](const std::string& limit, const std::string& force) {
+    ModelText m("param m = 2 kg\ncoord x : length\nT = 1/2 m x'^2\nforce x = " + force + "\nfriction x limit " + limit +
+                "\n");
+    const auto r = run(m, 4);
+    REQUIRE(r.ok());
+    REQUIRE(r.happenings.size() == 1);
+    CHECK(r.happenings[0].kind == Happening::Kind::Slip);
+    CHECK(r.final.q[0] == doctest::Approx(std::copysign(std::pow(4 - r.happenings[0].t, 3) / 12, r.final.q[0])));
+    return std::copysign(r.happenings[0].t, r.final.q[0]);
+  };
+  for (const std::string limit :
+       {"2.5 [N] + 0.5 [N] sign(x')", "piecewise(x' > 0 [m/s] : 3 [N], else : 2 [N])", "2 [N] + 1 [N] step(3 x')"}) {
+    CAPTURE(limit);
+    CHECK(slip(limit, "1 [N/s] t") == doctest::Approx(3).epsilon(1e-14));
+    CHECK(slip(limit, "-1 [N/s] t") == doctest::Approx(-2).epsilon(1e-14));
+  }
+}
+
+TEST_CASE("a limit that is reached at a root of third order is located as well as it is said to be") {
+  const auto of = [](const std::string& rest) {
+    ModelText m("param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n" + rest);
+    SimulationOptions options;
+    options.duration = 3;
+    auto r = simulate(m.model, m.equations, options, m.diagnostics);
+    REQUIRE(r);
+    REQUIRE(r->ok());
+    REQUIRE(r->happenings.size() == 1);
+    REQUIRE(r->final.errors);
+    CHECK(std::abs(r->happenings[0].t - 1) < r->happenings[0].error);
+    CHECK(r->happenings[0].error < 1e-3);
+    return std::move(*r);
+  };
+  const auto slips = of("force x = 3 [N] + 1 [N/s^3] (t - 1 [s])^3\nfriction x limit 2 N static 3 N\n");
+  CHECK(std::abs(slips.final.q[0] - 3.6) < slips.final.errors->q[0]);
+  const auto opens = of("force x = 1 [N/s^3] (t - 1 [s])^3\ncontact x >= 0 name floor\n");
+  CHECK(opens.final.q[0] == doctest::Approx(1.6).epsilon(1e-14));
+}
