@@ -315,6 +315,7 @@ TEST_CASE("friction that is stronger in one direction holds, gives way and slide
     REQUIRE(r.happenings.size() == 1);
     CHECK(r.happenings[0].kind == Happening::Kind::Slip);
     CHECK(r.final.q[0] == doctest::Approx(std::copysign(std::pow(4 - r.happenings[0].t, 3) / 12, r.final.q[0])));
+    CHECK(r.books->friction == doctest::Approx((r.final.q[0] > 0 ? 3 : 2) * std::abs(r.final.q[0])).epsilon(1e-13));
     return std::copysign(r.happenings[0].t, r.final.q[0]);
   };
   for (const std::string limit :
