@@ -372,7 +372,7 @@ std::string range_text(const MechanicalSystem& system, const RestingRange& range
   const auto value = [&](double x) { return value_text(system, x, c.dimension, c.kind == "angle"); };
   if (std::isinf(range.from) && std::isinf(range.to)) return fmt::format("at every {}", c.name);
   if (std::isinf(range.from)) return fmt::format("for {} up to {}", c.name, value(range.to));
-  if (std::isinf(range.to)) return fmt::format("for {} from {}", c.name, value(range.from));
+  if (std::isinf(range.to)) return fmt::format("for {} from {} on", c.name, value(range.from));
   return fmt::format("for {} from {} to {}", c.name, value(range.from), value(range.to));
 }
 
@@ -384,8 +384,9 @@ std::string holds_text(const MechanicalSystem& system, const RestingMode& mode, 
     if (std::isinf(h.limit))
       out += fmt::format("  friction of {} holds with {}: it never slides\n", h.friction, number(h.force));
     else
-      out += fmt::format("  static friction of {} holds with {} (SI) of {} at most\n", h.friction, number(h.force),
-                         number(h.limit));
+      out +=
+          fmt::format("  static friction of {} holds with {} of {} at most\n", h.friction,
+                      value_text(system, h.force, h.dimension, false), value_text(system, h.limit, h.dimension, false));
   if (std::all_of(holds.begin(), holds.end(), [](const StaticHold& h) { return std::isinf(h.limit); })) return out;
   out += "  rest is a set of points, not one: static friction holds neighbours as well";
   if (mode.ranges[entry]) out += ", here " + range_text(system, *mode.ranges[entry]);

@@ -14,6 +14,7 @@ struct StaticHold {
   std::string friction;  // of the contact or the coordinate
   double force = 0;      // |λ_t| with which it holds the point
   double limit = 0;      // the most that it may be: μ_s N
+  Dimension dimension;   // of both: a force, or a moment along an angle
 };
 
 /// The values of one coordinate at which static friction holds the system.

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t most_sets = 64;  // of closed contacts
 constexpr double touches = 1e-9;       // of the sizes of the terms of a gap, and of the largest force
+constexpr double no_force = 1e-14;     // of a limit of friction
 constexpr double first_step = 1e-3, growth = 1.3, farthest = 1e6;
 constexpr double pi = 3.141592653589793;
 
@@ -90,9 +91,18 @@ class AtRest {
       const double limit = f.sticking ? HUGE_VAL : value(f.static_, b) * (normal ? std::abs(value(normal, b)) : 1);
       const std::string name =
           i < system_.contacts.size() ? system_.contact_label(i) : system_.frictions[i - system_.contacts.size()].name;
-      out.push_back({name, force_of(f, b), limit});
+      const double force = force_of(f, b);
+      const bool is_rounding = force <= no_force * limit && std::isfinite(limit);
+      out.push_back({name, is_rounding ? 0.0 : force, limit, dimension_of_friction(i)});
     }
     return out;
+  }
+  Dimension dimension_of_friction(std::size_t i) const {
+    if (i < system_.contacts.size()) return dimensions::force();
+    const std::string& name = system_.frictions[i - system_.contacts.size()].name;
+    for (const Coordinate& c : system_.coordinates)
+      if (c.name == name) return system_.lagrangian_dimension / c.dimension;
+    return {};
   }
   static bool slides(FrictionState state) { return state != FrictionState::None && state != FrictionState::Stick; }
   double force_of(const Friction& f, const Bindings& b) const {
