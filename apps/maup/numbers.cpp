@@ -9,12 +9,21 @@
 namespace maupertuis::app {
 namespace {
 
-/// "/points/0/modes/1/frequency", or empty.
-std::string place_of_no_number(const Json& value, const std::string& place) {
-  if (value.is_number_float() && !std::isfinite(value.get<double>())) return place.empty() ? "/" : place;
+/// "/points/0/modes/1/frequency" below `value`, "/" if it is that itself; or empty. Written where one is found alone:
+/// there may be a million numbers.
+std::string place_of_no_number(const Json& value) {
+  if (value.is_number_float() && !std::isfinite(value.get<double>())) return "/";
   if (!value.is_structured()) return {};
-  for (const auto& [key, part] : value.items())
-    if (std::string found = place_of_no_number(part, place + "/" + key); !found.empty()) return found;
+  const auto below = [](const std::string& name, const std::string& found) {
+    return "/" + name + (found == "/" ? "" : found);
+  };
+  if (value.is_array())
+    for (std::size_t i = 0; i < value.size(); ++i)
+      if (const std::string found = place_of_no_number(value[i]); !found.empty())
+        return below(std::to_string(i), found);
+  if (value.is_object())
+    for (const auto& [name, part] : value.items())
+      if (const std::string found = place_of_no_number(part); !found.empty()) return below(name, found);
   return {};
 }
 
@@ -31,7 +40,7 @@ bool may_be_open(const std::string& column) {
 }  // namespace
 
 bool check_numbers(const Json& document, Diagnostics& diagnostics) {
-  const std::string place = place_of_no_number(document, "");
+  const std::string place = place_of_no_number(document);
   if (!place.empty()) tell(fmt::format("the result at {}", place), diagnostics);
   return place.empty();
 }

@@ -125,6 +125,20 @@ void Unrolling::look_ahead() {
   }
 }
 
+/// Whether A and B of each lane are of the direction that its T has: not so where q̈_i = f(q, q̇_j), as in polar
+/// coordinates.
+bool Unrolling::keeps_directions(const Step& step, const std::vector<Source>& all) {
+  const auto is_moved_by = [&](const Source& s, std::size_t lane, int d) {
+    const auto has = [&](Step::Part part) { return !to_.is_zero(tangent(part, s.slots[lane], d)); };
+    return (s.f != none && (has(Step::A) || has(Step::B))) || ((s.g != none || s.h != none) && has(Step::T));
+  };
+  for (const Source& s : all)
+    for (std::size_t lane = 0; lane < step.out.size(); ++lane)
+      for (int d = 0; d < static_cast<int>(n_); ++d)
+        if (d != step.direction[lane] && is_moved_by(s, lane, d)) return false;
+  return true;
+}
+
 void Unrolling::find_second_tangents(Step& step) {
   const std::vector<Source> all = sources(step);
   const auto add = [&](int name, const std::vector<int>& direction) {
@@ -142,7 +156,7 @@ void Unrolling::find_second_tangents(Step& step) {
     if (const Value sum = to_.sum(a); !to_.is_zero(sum)) step.tangents[Step::A][name] = sum;
     if (const Value sum = to_.sum(b); !to_.is_zero(sum)) step.tangents[Step::B][name] = sum;
   };
-  if (step.tangents[Step::T].contains(Step::own)) return add(Step::own, step.direction);
+  if (step.tangents[Step::T].contains(Step::own) && keeps_directions(step, all)) return add(Step::own, step.direction);
   for (int d = 0; d < static_cast<int>(n_); ++d) add(d, std::vector<int>(step.out.size(), d));
 }
 

@@ -131,6 +131,7 @@ class Unrolling {
   void find_tangents(Step& step);
   bool can_look_ahead() const;
   void look_ahead();
+  bool keeps_directions(const Step& step, const std::vector<Source>& all);
   void find_second_tangents(Step& step);
 
   // -------------------------------------------------------------------------------------------- solution
