@@ -1,5 +1,5 @@
 # Thin: each rule calls a script of scripts/, which installs what is missing, configures by a CMake preset and builds.
-.PHONY: demo build test test-long bench instructions sanitize fuzz mutants steep-models gallery format site vscode studio wasm wasm-test install package clean
+.PHONY: demo build test test-long bench instructions sanitize fuzz mutants steep-models gallery format site vscode studio wasm wasm-test arm install package clean
 
 demo:     # check, derive, simulate and report models/double_pendulum.lag
 	@scripts/demo
@@ -35,9 +35,11 @@ wasm:     # build-wasm/bin/maup.wasm: the core for a browser, with emscripten
 	@scripts/wasm
 wasm-test:  # the module in Node and in Chromium over the whole gallery, against the program of this machine
 	@scripts/wasm_test
+arm:      # build-arm/bin/maup: the program for 64-bit ARM, and models whose expected lines have to hold there
+	@scripts/arm
 install:  # PREFIX=/usr/local by default
 	@scripts/install
 package:  # build/packages/*.deb: the program, the module with LLVM, what other programs are built with
 	@scripts/package
 clean:
-	@rm -rf build build-sanitize build-fuzz build-wasm
+	@rm -rf build build-sanitize build-fuzz build-wasm build-arm

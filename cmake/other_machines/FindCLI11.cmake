@@ -1,0 +1,6 @@
+include(${CMAKE_CURRENT_LIST_DIR}/header_libraries.cmake)
+maup_show_headers(CLI)
+if(NOT TARGET CLI11::CLI11)
+  add_library(CLI11::CLI11 INTERFACE IMPORTED)
+endif()
+set(CLI11_FOUND TRUE)
