@@ -3,6 +3,7 @@
 #include <maupertuis/transform.hpp>
 
 #include "simulation/function_kernels.hpp"
+#include "simulation/motion_balance.hpp"
 
 #include <algorithm>
 
@@ -42,7 +43,7 @@ DynamicsSource dynamics_source(const EquationsOfMotion& equations) {
       out.parameters.push_back(0);
     }
   }
-  const ExprVector balance = equations.balance();
+  const ExprVector balance = motion_balance(equations);
   kernel.residual = without_definitions(system, moves ? expand_time_derivatives(balance) : balance);
   kernel.multipliers = equations.multipliers;
   for (std::size_t i = 0; i < system.constraints.size(); ++i) {

@@ -1,6 +1,7 @@
 #include "simulation/motion_kernel.hpp"
 
 #include "simulation/energy_terms.hpp"
+#include "simulation/motion_balance.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/motion_kernel.hpp>
@@ -13,7 +14,7 @@ KernelSource motion_source(const EquationsOfMotion& equations) {
   KernelSource source;
   for (const Coordinate& c : system.coordinates) source.coordinates.push_back(c.q);
   for (const Parameter& p : system.parameters) source.parameters.push_back(p.symbol);
-  source.residual = in_terms_of_motion(system, equations.balance());
+  source.residual = in_terms_of_motion(system, motion_balance(equations));
   source.multipliers = equations.multipliers;
   for (std::size_t i = 0; i < system.constraints.size(); ++i) {
     const Constraint& c = system.constraints[i];

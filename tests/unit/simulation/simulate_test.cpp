@@ -1,7 +1,10 @@
 #include "../model_text.hpp"
+#include "kernel/program/program.hpp"
 
+#include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/simulation.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace maupertuis;
@@ -225,6 +228,35 @@ TEST_CASE("what is switched in time does work at once: the books close") {
   // A kink of V does no work.
   CHECK(run(ModelText("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = abs(x)\nstart x = 1\nrun 20\n"))
             .statistics.energy_drift < 1e-14);
+}
+
+TEST_CASE("a Lagrangian that is given whole needs no more products than points") {
+  const std::string head =
+      "param m = 1 kg, l = 1 m, g = 9.81 m/s^2, c = 0.3 N m s\ncoord a, b : angle\n"
+      "start a = 110 deg, b = 60 deg, b' = 0.4 rad/s\nD = 1/2 c b'^2\n";
+  const ModelText points("system points\n" + head +
+                         "point P mass m at (l sin a, -l cos a)\npoint Q mass m at P + (l sin b, -l cos b)\n"
+                         "gravity (0, -g)\nrun 2 s\n"),
+      whole("system whole\n" + head +
+            "L = m l^2 a'^2 + 1/2 m l^2 b'^2 + m l^2 a' b' cos(a - b) + 2 m g l cos a + m g l cos b\nrun 2 s\n");
+  const auto products = [](const ModelText& m) {
+    const MotionKernel motion = motion_kernel(m.equations);
+    const Program& program = motion.kernel.program();
+    std::ptrdiff_t count = 0;
+    for (const Run& part : program.runs[Dynamics])
+      for (std::uint32_t at = part.first; at < part.last; ++at) {
+        const Instruction& i = program.instructions[at];
+        const auto first = program.terms.begin() + i.first_term, last = program.terms.begin() + i.last_term;
+        count += i.op == Op::SinCos ? 2 : i.op == Op::Square ? 1 : 0;
+        if (i.op == Op::Products) count += std::count_if(first, last, [](const Term& x) { return x.b != no_slot; });
+      }
+    return count;
+  };
+  CHECK(products(points) == 8);
+  CHECK(products(whole) == products(points));
+  const SimulationResult by_points = run(points), by_lagrangian = run(whole);
+  for (std::size_t i = 0; i < 2; ++i)
+    CHECK(by_lagrangian.final.q[i] == doctest::Approx(by_points.final.q[i]).epsilon(1e-12));
 }
 
 }  // namespace simulate_test
