@@ -28,6 +28,8 @@ const Endless endless[] = {
     {"a square wave without end near a time", "force x = sign(sin(1/(t - 2)))\nrun 3\n", 1.9, 2.1},
     {"steps below the spacing of t", "V = 1e12 x^2\nstart at 1e12\nstart x = 1\nrun 10\n", 1e12 - 1, 1e12 + 11},
     {"an energy beyond the range of double", "V = 1/2 x^2 + exp(700) exp(700 + 0 x)\nstart x' = 1\nrun 3\n", 3, 3},
+    {"a coordinate that runs away in finite time, and one that oscillates across it ever faster",
+     "coord y : number\nT += 1/2 y'^2\nV = -1/5 x^3 + 1/2 x^3 y^2\nstart x = 1, y = 0.1\nrun 100\n", 3.5, 3.9},
     {"a collision", "V = -1/abs(x)\nstart x = 1\nrun 5\n", 1.1, 1.12},
 };
 

@@ -5,27 +5,31 @@
 
 namespace maupertuis::taylor {
 
-/// Sees steps that shrink as the inverse square of their number, or faster, while what is left would take more of them
-/// than a run has. Looked at where their number doubles, so that equal runs end alike.
+/// Sees steps that shrink as the inverse square of their number, or faster, or for long as its power −3/2 (an
+/// oscillation across a coordinate that runs away in finite time), while what is left would take more of them than a
+/// run has. From the power −1 on, all steps together come to an end. Looked at where their number doubles, so that
+/// equal runs end alike.
 class ShrinkingSteps {
  public:
   void start(double time) { *this = {}, time_ = time; }
 
   bool come_to_a_stop(std::size_t steps, double time, double left) {
     constexpr std::size_t first_look = 4096;
-    constexpr double shrinks = 0.3, too_many = 1e8;
+    constexpr double shrinks = 0.3, shrinks_for_long = 0.4, too_many = 1e8;
     if (steps < first_look || (steps & (steps - 1)) != 0 || steps == steps_) return false;
     // The mean of the steps since the last look: single ones differ by more than that.
     const double mean = std::abs(time - time_) / static_cast<double>(steps - steps_);
     steps_ = steps;
     time_ = time;
-    const double before = std::exchange(mean_, mean);
-    return before > 0 && mean < shrinks * before && std::abs(left) > too_many * mean;
+    const double before = std::exchange(mean_, mean), ratio = before > 0 ? mean / before : 1;
+    const double ratio_before = std::exchange(ratio_, ratio);
+    const bool goes_on = ratio < shrinks || (ratio < shrinks_for_long && ratio_before < shrinks_for_long);
+    return goes_on && std::abs(left) > too_many * mean;
   }
 
  private:
-  std::size_t steps_ = 0;  // at the last look
-  double time_ = 0, mean_ = 0;
+  std::size_t steps_ = 0;                   // at the last look
+  double time_ = 0, mean_ = 0, ratio_ = 1;  // of the mean to the one before
 };
 
 }  // namespace maupertuis::taylor

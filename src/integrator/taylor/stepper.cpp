@@ -127,8 +127,8 @@ bool TaylorStepper::Impl::may_go_on(double bound, Step& result) {
     end(result, StepEnding::TooManySteps, "The run used up its steps.");
   else if (shrinking.come_to_a_stop(steps, state.t.hi, remaining(bound)))
     end(result, StepEnding::StepUnderflow,
-        "The steps go on shrinking, so that their number would have no bound: a force or a switch oscillates without "
-        "end near here.");
+        "The steps go on shrinking, so that their number would have no bound: near here a force or a switch oscillates "
+        "without end, or a coordinate grows beyond all bounds.");
   return result.ending == StepEnding::None;
 }
 
