@@ -51,6 +51,7 @@ class DiskValues {
   void find_powers();
   void find_what_is_passed_on();
   void evaluate_coordinates();
+  V series(std::uint32_t slot, int first, int last) const;
   V reach_of_rate(std::uint32_t slot, int shift) const;
   void evaluate_series();
   void add_to_series(std::uint32_t first, std::uint32_t last, int lag);
@@ -136,20 +137,23 @@ void DiskValues<V>::evaluate_coordinates() {
   const int degree = now_.order + 1, half = now_.order / 2;
   for (std::uint32_t slot = 0; slot < plan_.program.unknowns; ++slot) {
     if (!plan_.needs_reach[slot]) continue;
-    const auto sum = [&](int first, int end) {
-      V even = number(0), odd = even;
-      for (int k = first; k < end; k += 2) {
-        even = even + powers_[static_cast<std::size_t>(k)] * std::abs(coefficient(k, slot));
-        if (k + 1 < end) odd = odd + powers_[static_cast<std::size_t>(k) + 1] * std::abs(coefficient(k + 1, slot));
-      }
-      return even + odd;
-    };
-    upper_[slot] = sum(half, degree + 1);
-    const V reach = sum(1, half) + upper_[slot], c = number(size(slot));
+    upper_[slot] = series(slot, half, degree);
+    const V reach = series(slot, 1, half - 1) + upper_[slot], c = number(size(slot));
     for (int shift = 1; shift <= plan_.most_rates; ++shift)
       rate_reach_[static_cast<std::size_t>(shift) - 1][slot] = reach_of_rate(slot, shift);
     values_[slot] = {reach, number(0), disk_rules::larger(number(0), c - reach), c + reach};
   }
+}
+
+/// Σ |f_k| r^k from first to last, in two strands, since each sum waits for the one before.
+template <class V>
+V DiskValues<V>::series(std::uint32_t slot, int first, int last) const {
+  V even = number(0), odd = even;
+  for (int k = first; k <= last; k += 2) {
+    even = even + powers_[static_cast<std::size_t>(k)] * std::abs(coefficient(k, slot));
+    if (k < last) odd = odd + powers_[static_cast<std::size_t>(k) + 1] * std::abs(coefficient(k + 1, slot));
+  }
+  return even + odd;
 }
 
 template <class V>
@@ -341,9 +345,7 @@ V DiskValues<V>::shifted_tail(std::uint32_t slot, std::uint32_t shift) const {
 /// bodies meet. Its terms up to the second, less all others.
 template <class V>
 V DiskValues<V>::low_of_base(std::uint32_t slot) const {
-  V rest = number(0);
-  for (int k = 3; k <= last_order(slot); ++k)
-    rest = rest + powers_[static_cast<std::size_t>(k)] * std::abs(coefficient(k, slot));
+  const V rest = series(slot, 3, last_order(slot));
   const V least = disk_rules::least_modulus(coefficient(0, slot), coefficient(1, slot), coefficient(2, slot),
                                             V(radius_ / now_.unit));
   return disk_rules::larger(number(0), least - rest - beyond(slot));
@@ -357,7 +359,8 @@ V DiskValues<V>::beyond(std::uint32_t slot) const {
   if (slot < plan_.program.unknowns) return upper_[slot];
   if (plan_.maker[slot] < 0) return number(0);
   const auto of_product = [this](std::uint32_t a, std::uint32_t b) {
-    return beyond(a) * values_[b].high + values_[a].high * beyond(b);
+    const V by_a = beyond(a) * values_[b].high;
+    return a == b ? by_a * 2.0 : by_a + values_[a].high * beyond(b);
   };
   const Instruction& i = plan_.nodes[static_cast<std::size_t>(plan_.maker[slot])].instruction;
   if (i.op == Op::Square) return of_product(i.a, i.a);
