@@ -70,8 +70,9 @@ struct PlaceValue {
 struct PlaceCoordinate {
   std::size_t coordinate = 0;                  // in MechanicalSystem::coordinates
   FieldJet jet;                                // u or u_x
-  Expr place;                                  // SI, parameters and numbers only
+  Expr place;                                  // SI, parameters and numbers only; where it moves, t too
   std::optional<BoundaryCondition::Side> end;  // nothing: inside, or of a periodic domain
+  bool moves = false;                          // its velocity is that along the motion, d/dt u(X(t), t)
   Span span;
 };
 

@@ -34,6 +34,17 @@ const PlaceCoordinate* attached_at(const FieldEquations& equations, const FieldJ
   return nullptr;
 }
 
+/// Of what moves with a place, X'; 0 of a place at rest.
+Expr velocity_of(const FieldEquations& equations, Expr place) {
+  return total_time_derivative(equations.system().expanded(place));
+}
+
+/// Its value: of a place that moves none, which no border of the density can be told by.
+double number_of(const FieldEquations& equations, Expr place, const Bindings& parameters) {
+  if (equations.system().context->depends_on_time(place.id())) return std::nan("");
+  return evaluate(equations.system().expanded(place), parameters);
+}
+
 /// e as it is at a place, in the limit from one side.
 Expr limit_at(const FieldEquations& equations, Expr e, Expr place, int side, const std::vector<DensityBorder>& borders,
               double at) {
@@ -52,6 +63,14 @@ Expr natural_of(const FieldEquations& equations, std::size_t field, bool moment)
   return equations.system().context->number(0);
 }
 
+/// The part of p and m that a place takes along as it moves: what B^t has with δφ or δφ_x.
+Expr carried_by(const FieldEquations& equations, std::size_t field, bool moment) {
+  const FieldSystem& s = equations.with_variations;
+  std::size_t a = 0;
+  while (equations.varied[a] != field) ++a;
+  return differentiate(equations.boundary_terms.back(), s.jet_symbol({equations.variation_of(a), {moment ? 1 : 0}, 0}));
+}
+
 /// What the density adds to the row of a place: ∓p at ends, the jump inside.
 Expr share_of_density(const FieldEquations& equations, Expr p, Expr place, std::optional<Side> end,
                       const std::vector<DensityBorder>& borders, double at) {
@@ -62,7 +81,9 @@ Expr share_of_density(const FieldEquations& equations, Expr p, Expr place, std::
 
 void add_interface(FieldEquations& out, std::size_t field, bool moment, Expr place, std::optional<Side> end,
                    std::optional<std::size_t> coordinate, const std::vector<DensityBorder>& borders, double at) {
-  const Expr p = natural_of(out, field, moment);
+  Expr p = natural_of(out, field, moment);
+  const Expr velocity = velocity_of(out, place);
+  if (!velocity.is_zero()) p = p - velocity * carried_by(out, field, moment);
   Expr value = share_of_density(out, p, place, end, borders, at);
   if (coordinate) value = out.bodies->shown().balance()[*coordinate] + value;
   out.interfaces.push_back({field, moment, place, end, coordinate, value});
@@ -81,18 +102,32 @@ std::string place_text(const FieldEquations& equations, Expr place) {
   return to_plain(lay_out(place, equations.order));
 }
 
+namespace {
+
+/// u_x(l), whose rate is its order; at a place that moves u_t(X), which is none of d/dt u(X).
+std::string place_jet_name(const FieldSystem& s, const FieldJet& jet, bool moves) {
+  if (!moves) return s.jet_name({jet.field, jet.space, 0});
+  if (jet.space[0] > 0) return s.jet_name(jet);
+  return s.fields[jet.field].name + "_" + std::string(static_cast<std::size_t>(jet.time), 't');
+}
+
+}  // namespace
+
 Expr jet_at_place(const FieldEquations& equations, const FieldJet& jet, Expr place, int side) {
   const FieldSystem& s = equations.with_variations;
-  if (const PlaceCoordinate* p = attached_at(equations, {jet.field, jet.space, 0}, place))
+  const PlaceCoordinate* p = attached_at(equations, {jet.field, jet.space, 0}, place);
+  const bool along = jet.time > 0 && s.context->depends_on_time(place.id());  // not d/dt of the value there
+  if (p && !along)
     return s.context->symbol(equations.bodies->system->coordinates[p->coordinate].name, Role::Coordinate, jet.time);
   const std::size_t varied = jet.field < equations.system().fields.size()
                                  ? jet.field
                                  : equations.varied[jet.field - equations.system().fields.size()];
-  const bool continuous = jet.space[0] == 0 || (jet.space[0] == 1 && has_derivative(s, varied, 2));
+  const int slopes = jet.space[0] + (along ? jet.time : 0);
+  const bool continuous = slopes == 0 || (slopes == 1 && has_derivative(s, varied, 2));
   const char* mark = side == 0 || continuous ? "" : side > 0 ? "+" : "-";
-  const std::string name =
-      fmt::format("{}({}{})", s.jet_name({jet.field, jet.space, 0}), place_text(equations, place), mark);
-  return s.context->symbol(name, Role::Coordinate, jet.time);
+  const int order = along ? 0 : jet.time;  // u_t(v t+) is a name
+  const std::string name = fmt::format("{}({}{})", place_jet_name(s, jet, along), place_text(equations, place), mark);
+  return s.context->symbol(name, Role::Coordinate, order);
 }
 
 std::vector<DensityBorder> density_borders(const FieldEquations& equations) {
@@ -138,7 +173,7 @@ void attach_bodies(FieldEquations& equations, std::shared_ptr<const Model> model
   const std::vector<DensityBorder> borders = density_borders(equations);
   for (const PlaceCoordinate& p : equations.model->attached)
     add_interface(equations, p.jet.field, p.jet.space[0] == 1, p.place, p.end, p.coordinate, borders,
-                  evaluate(s.expanded(p.place), values));
+                  number_of(equations, p.place, values));
   std::vector<double> done;  // a place may be the border of several formulas
   for (const DensityBorder& b : borders) {
     const auto same = [&](double at) { return std::abs(at - b.at) <= 1e-12 * (1 + std::abs(at)); };
@@ -148,7 +183,7 @@ void attach_bodies(FieldEquations& equations, std::shared_ptr<const Model> model
       const bool attached = std::any_of(equations.model->attached.begin(), equations.model->attached.end(),
                                         [&](const PlaceCoordinate& p) {
                                           return p.jet.field == n.field && (p.jet.space[0] == 1) == n.moment &&
-                                                 same(evaluate(s.expanded(p.place), values));
+                                                 same(number_of(equations, p.place, values));
                                         });
       if (!attached) add_interface(equations, n.field, n.moment, b.place, {}, {}, borders, b.at);
     }
@@ -222,13 +257,15 @@ CertificateCheck interface_identity(const FieldEquations& equations) {
   for (const InterfaceCondition& c : equations.interfaces)
     if (std::none_of(places.begin(), places.end(), [&](const auto& p) { return p.first == c.place; }))
       places.push_back({c.place, c.end});
-  Expr b = equations.boundary_terms.front();
+  Expr b_along = equations.boundary_terms.front();
   if (s.dissipation)  // internal friction does virtual work along δφ_x: at an end −∂𝒟/∂φ_tx δφ
     for (std::size_t a = 0; a < equations.varied.size(); ++a)
-      b = b - differentiate(s.dissipation, s.jet_symbol({equations.varied[a], {1}, 1})) *
-                  s.jet_symbol({equations.variation_of(a), {0}, 0});
+      b_along = b_along - differentiate(s.dissipation, s.jet_symbol({equations.varied[a], {1}, 1})) *
+                              s.jet_symbol({equations.variation_of(a), {0}, 0});
   for (const auto& [place, end] : places) {
-    const double at = evaluate(s.expanded(place), values);
+    const double at = number_of(equations, place, values);
+    // A place that moves leaves B^x − X' B^t on each side of its path.
+    const Expr b = b_along - velocity_of(equations, place) * equations.boundary_terms.back();
     Expr left = s.context->number(0);
     if (end != Side::Left) left = left + limit_at(equations, b, place, end ? 0 : -1, borders, at);
     if (end != Side::Right) left = left - limit_at(equations, b, place, end ? 0 : 1, borders, at);
@@ -331,7 +368,7 @@ Layout place_layout(const FieldEquations& equations, Layout layout) {
     out.text = std::move(text);
     return out;
   };
-  std::string below(static_cast<std::size_t>(layout.symbol.order()), 't');
+  std::string below(static_cast<std::size_t>(layout.symbol.order() + jet->time), 't');
   for (std::size_t x = 0; x < s.space.size(); ++x)
     for (int k = 0; k < jet->space[x]; ++k) below += s.space[x].name;
   const Layout field = layouts::symbol(s.jet_symbol({jet->field, std::vector<int>(s.space.size(), 0), 0}));

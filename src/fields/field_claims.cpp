@@ -178,8 +178,10 @@ class FieldVerifier {
     const auto run = runs_as_one_system(equations_) ? run_coupled(model_, equations_, questions_, options, diagnostics_)
                                                     : run_fields(equations_, questions_, options, diagnostics_);
     if (!run || !run->trouble.empty()) {
-      for (const auto& [line, expected] : asked_) out.results[line].message = "The run did not come to it.";
-      for (const auto& [line, tolerance] : energy_) out.results[line].message = "The run did not come to it.";
+      const std::string early =
+          run ? fmt::format("The run ended early: {}.", run->trouble) : "The run did not come to it.";
+      for (const auto& [line, expected] : asked_) out.results[line].message = early;
+      for (const auto& [line, tolerance] : energy_) out.results[line].message = early;
       return;
     }
     for (std::size_t i = 0; i < asked_.size(); ++i) {

@@ -39,7 +39,7 @@ ElementSpace::ElementSpace(const ElementMesh& mesh, Kind kind) : mesh_(mesh), ki
   for (std::size_t e = 0; e < elements; ++e) {
     const double a = mesh_.borders[e], half = (mesh_.borders[e + 1] - a) / 2;
     for (std::size_t q = 0; q < rule.x.size(); ++q)
-      points_.push_back({a + half * (1 + rule.x[q]), half * rule.w[q], parts_in(e, rule.x[q])});
+      points_.push_back({a + half * (1 + rule.x[q]), half * rule.w[q], in(e, rule.x[q])});
   }
 }
 
@@ -53,7 +53,7 @@ std::size_t ElementSpace::dofs_of_border(std::size_t border) const {
 std::size_t ElementSpace::value_at_border(std::size_t border) const { return dofs_of_border(border); }
 std::size_t ElementSpace::slope_at_border(std::size_t border) const { return dofs_of_border(border) + 1; }
 
-std::vector<ElementSpace::Part> ElementSpace::parts_in(std::size_t element, double xi) const {
+std::vector<ElementSpace::Part> ElementSpace::in(std::size_t element, double xi) const {
   const double half = (mesh_.borders[element + 1] - mesh_.borders[element]) / 2;
   const std::size_t left = dofs_of_border(element), right = dofs_of_border(element + 1);
   const std::size_t degree = static_cast<std::size_t>(mesh_.degree);
@@ -96,7 +96,7 @@ std::vector<ElementSpace::Part> ElementSpace::at(double x, bool from_left) const
   const std::size_t elements = mesh_.borders.size() - 1;
   const std::size_t after = static_cast<std::size_t>(above - mesh_.borders.begin());
   const std::size_t e = std::min(after == 0 ? 0 : after - 1, elements - 1);
-  return parts_in(e, 2 * (x - mesh_.borders[e]) / (mesh_.borders[e + 1] - mesh_.borders[e]) - 1);
+  return in(e, 2 * (x - mesh_.borders[e]) / (mesh_.borders[e + 1] - mesh_.borders[e]) - 1);
 }
 
 }  // namespace maupertuis

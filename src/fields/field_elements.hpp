@@ -36,13 +36,14 @@ class ElementSpace {
   const std::vector<Point>& points() const { return points_; }
   /// The parts at any place of the domain; of the element to the left where `from_left`.
   std::vector<Part> at(double x, bool from_left = false) const;
+  /// The parts at ξ in [−1, 1] of an element.
+  std::vector<Part> in(std::size_t element, double xi) const;
   /// The degree of freedom that is the value, or the slope, at a border.
   std::size_t value_at_border(std::size_t border) const;
   std::size_t slope_at_border(std::size_t border) const;  // Smooth alone
   const std::vector<double>& borders() const { return mesh_.borders; }
 
  private:
-  std::vector<Part> parts_in(std::size_t element, double xi) const;
   std::size_t dofs_of_border(std::size_t border) const;
 
   ElementMesh mesh_;

@@ -419,6 +419,11 @@ FieldModes field_modes(const FieldEquations& equations, std::size_t count, Diagn
     refuse_modes_of(equations, diagnostics, "It has three space variables, or no domain.");
     return out;
   }
+  for (const PlaceCoordinate& p : equations.model->attached)
+    if (p.moves) {
+      refuse_modes_of(equations, diagnostics, "A place at which bodies or forces take hold of it moves in time.");
+      return out;
+    }
   DensityEntries entries;
   if (!entries_of(equations, entries, diagnostics) || !has_modes_at_rest(equations, entries, diagnostics)) return out;
   if (equations.bodies &&

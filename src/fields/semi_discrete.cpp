@@ -3,15 +3,18 @@
 #include <maupertuis/coupled_fields.hpp>
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/repeated_evaluation.hpp>
+#include <maupertuis/system_expressions.hpp>
 
 #include "fields/given_fields.hpp"
+#include "fields/lobatto.hpp"
 #include "linear_algebra/dense.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <map>
+#include <utility>
 
 namespace maupertuis {
 namespace {
@@ -64,7 +67,8 @@ std::vector<double> element_borders(const FieldEquations& equations, int cells) 
   const double left = evaluate(s.expanded(s.space.front().from), values),
                right = evaluate(s.expanded(s.space.front().to), values), near = 1e-12 * (right - left);
   std::vector<double> fixed{left, right};
-  for (const PlaceCoordinate& p : equations.model->attached) fixed.push_back(evaluate(s.expanded(p.place), values));
+  for (const PlaceCoordinate& p : equations.model->attached)
+    if (!p.moves) fixed.push_back(evaluate(s.expanded(p.place), values));
   for (const DensityBorder& b : density_borders(equations)) fixed.push_back(b.at);
   std::sort(fixed.begin(), fixed.end());
   fixed.erase(std::unique(fixed.begin(), fixed.end(), [&](double a, double b) { return b - a <= near; }), fixed.end());
@@ -95,23 +99,37 @@ std::optional<SemiDiscrete> SemiDiscrete::make(const Model& model, const FieldEq
   if (!out.add_lagrangian(diagnostics) || !out.add_given_slopes(diagnostics)) return std::nullopt;
   out.add_force_densities();
   out.add_end_forces();
-  if (!out.set_start(diagnostics) || !out.replace_places(diagnostics)) return std::nullopt;
+  if (!out.set_start(diagnostics) || !out.set_moving_places(diagnostics) || !out.replace_places(diagnostics))
+    return std::nullopt;
   return out;
+}
+
+/// What rides on a field has the velocity u_t + X' u_x, which must not jump where it passes from one element to the
+/// next.
+bool SemiDiscrete::has_slopes(std::size_t field) const {
+  const std::vector<PlaceCoordinate>& places = equations_->model->attached;
+  return depth_of(*equations_, field) > 1 || std::any_of(places.begin(), places.end(), [&](const PlaceCoordinate& p) {
+           return p.moves && p.jet.field == field;
+         });
+}
+
+bool SemiDiscrete::bends() const {
+  const std::vector<PlaceCoordinate>& places = equations_->model->attached;
+  return std::all_of(places.begin(), places.end(),
+                     [&](const PlaceCoordinate& p) { return !p.moves || depth_of(*equations_, p.jet.field) > 1; });
 }
 
 bool SemiDiscrete::set_mesh(int cells, int order, Diagnostics& diagnostics) {
   const FieldSystem& s = equations_->system();
   mesh_.borders = element_borders(*equations_, cells);
   bool bends = false;
-  for (const std::size_t f : equations_->varied) bends = bends || depth_of(*equations_, f) > 1;
+  for (const std::size_t f : equations_->varied) bends = bends || has_slopes(f);
   mesh_.degree = bends ? std::max(order, 5) : order;
   // Lobatto's rule of the nodes where masses are to be diagonal; else one that is exact for products.
   mesh_.points = bends ? mesh_.degree + 2 : mesh_.degree;
   mesh_.periodic = s.periodic;
   for (const std::size_t f : equations_->varied)
-    spaces_.emplace_back(mesh_, depth_of(*equations_, f) > 1 ? EKind::Smooth
-                                : bends                      ? EKind::Continuous
-                                                             : EKind::Nodal);
+    spaces_.emplace_back(mesh_, has_slopes(f) ? EKind::Smooth : bends ? EKind::Continuous : EKind::Nodal);
   for (const ElementSpace& space : spaces_) dofs_ += space.size();
   if (dofs_ <= most_degrees_of_freedom) return true;
   const bool bodies = equations_->model->coupled;  // else a density that changes at a place
@@ -135,7 +153,7 @@ void SemiDiscrete::set_degrees_of_freedom() {
     coordinates_.emplace_back(space.size());
     const double near = 1e-12 * (mesh_.borders.back() - mesh_.borders.front());
     for (const PlaceCoordinate& p : equations_->model->attached) {
-      if (p.jet.field != field) continue;
+      if (p.jet.field != field || p.moves) continue;
       const double at = number(p.place);
       std::size_t border = 0;
       while (std::abs(mesh_.borders[border] - at) > near) ++border;
@@ -166,7 +184,7 @@ void SemiDiscrete::hold_ends() {
     std::size_t a = 0;
     while (equations_->varied[a] != b.jet.field) ++a;
     const std::size_t border = b.side == Side::Right ? mesh_.borders.size() - 1 : 0;
-    if (b.jet.order() == 1 && spaces_[a].kind() != EKind::Smooth) continue;
+    if (b.jet.order() == 1 && depth_of(*equations_, b.jet.field) < 2) continue;
     const std::size_t dof =
         b.jet.order() == 0 ? spaces_[a].value_at_border(border) : spaces_[a].slope_at_border(border);
     if (coordinates_[a][dof]) gone.insert(*coordinates_[a][dof]);
@@ -174,6 +192,11 @@ void SemiDiscrete::hold_ends() {
     values_[a][dof] = s.expanded(b.value);
     forced_ = forced_ || s.context->depends_on_time(b.value.id());
   }
+  remove_coordinates(gone);
+}
+
+/// Whatever says a coordinate by its number says it by the new one.
+void SemiDiscrete::remove_coordinates(const std::set<std::size_t>& gone) {
   std::vector<Coordinate>& list = model_.system.coordinates;
   std::vector<Coordinate> kept;
   std::vector<std::size_t> now(list.size());
@@ -181,10 +204,15 @@ void SemiDiscrete::hold_ends() {
     now[i] = kept.size();
     if (!gone.count(i)) kept.push_back(list[i]);
   }
-  list = std::move(kept);  // those of the model stand before all that can go
+  list = std::move(kept);
   for (auto& row : coordinates_)
     for (auto& c : row)
       if (c) c = now[*c];
+  for (AppliedForce& f : model_.system.forces)
+    if (f.kind == AppliedForce::Kind::Generalized) f.coordinate = now[f.coordinate];
+  for (StartValue& v : model_.experiment.start) v.coordinate = now[v.coordinate];
+  for (ModelEvent& event : model_.experiment.events)
+    for (ModelEvent::Assignment& a : event.sets) a.coordinate = now[a.coordinate];
 }
 
 Expr SemiDiscrete::constant(double value) const {
@@ -294,7 +322,7 @@ void SemiDiscrete::add_end_forces() {
     while (equations_->varied[a] != f.jet.field) ++a;
     const std::size_t border = f.side == Side::Right ? mesh_.borders.size() - 1 : 0;
     const bool slope = f.jet.order() == 1;
-    if (slope && spaces_[a].kind() != EKind::Smooth) continue;
+    if (slope && depth_of(*equations_, f.jet.field) < 2) continue;
     generalized_force(a, slope ? spaces_[a].slope_at_border(border) : spaces_[a].value_at_border(border),
                       s.expanded(f.value), f.span);
   }
@@ -306,7 +334,7 @@ bool SemiDiscrete::add_given_slopes(Diagnostics& diagnostics) {
   for (const BoundaryCondition& b : s.boundary) {
     std::size_t a = 0;
     while (equations_->varied[a] != b.jet.field) ++a;
-    if (b.jet.order() != 1 || spaces_[a].kind() == EKind::Smooth) continue;
+    if (b.jet.order() != 1 || depth_of(*equations_, b.jet.field) > 1) continue;
     const bool right = b.side == Side::Right;
     const FieldJet strain{b.jet.field, b.jet.space, 1};
     Expr slope = differentiate(with_given_fields(s, s.density), s.jet_symbol(b.jet));
@@ -447,7 +475,135 @@ Expr SemiDiscrete::discretised(const FieldQuestion& question, Diagnostics& diagn
         "Runs have the fields, their slopes and, where the density bends, their curvatures at places.", "");
     return {};
   }
-  return s.expanded(substitute(s.expanded(question.value), map));
+  return substitute(s.expanded(substitute(s.expanded(question.value), map)), moving_);
+}
+
+// ------------------------------------------------------------------------------------------------- places that move
+
+namespace {
+
+/// The numbers a_k of Σ a_k P_k(ξ), f known at the points of a rule that is exact for f P_k.
+std::vector<double> legendre_parts(const Lobatto& rule, const std::vector<double>& f) {
+  std::vector<double> out(rule.x.size() - 1, 0);
+  for (std::size_t q = 0; q < rule.x.size(); ++q) {
+    double before = 0, p = 1;
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      const double n = static_cast<double>(k);
+      out[k] += (n + 0.5) * rule.w[q] * p * f[q];
+      before = std::exchange(p, ((2 * n + 1) * rule.x[q] * p - n * before) / (n + 1));
+    }
+  }
+  return out;
+}
+
+/// P_0 … P_last of an expression.
+std::vector<Expr> legendre_polynomials(Expr xi, std::size_t last) {
+  std::vector<Expr> p{xi.context().number(1), xi};
+  while (p.size() <= last) {
+    const Rational n(static_cast<long>(p.size()) - 1);
+    p.push_back(xi.context().number((2 * n + 1) / (n + 1)) * xi * p.back() -
+                xi.context().number(n / (n + 1)) * p[p.size() - 2]);
+  }
+  return p;
+}
+
+}  // namespace
+
+/// Σ N_j(X) c_j of one element, by_space times differentiated: a polynomial in X.
+Expr SemiDiscrete::polynomial_in(std::size_t element, std::size_t a, int by_space, Expr place) const {
+  const Lobatto rule(mesh_.degree + 1);
+  const double left = mesh_.borders[element], half = (mesh_.borders[element + 1] - left) / 2;
+  std::map<std::size_t, std::vector<double>> functions;  // [dof] at the points of the rule
+  for (std::size_t q = 0; q < rule.x.size(); ++q)
+    for (const ElementSpace::Part& part : spaces_[a].in(element, rule.x[q])) {
+      std::vector<double>& f = functions[part.dof];
+      f.resize(rule.x.size(), 0);
+      f[q] += part.of[by_space];
+    }
+  const Expr xi = constant(1 / half) * (place - constant(left)) - constant(1);
+  const std::vector<Expr> p = legendre_polynomials(xi, static_cast<std::size_t>(mesh_.degree));
+  std::vector<std::vector<Expr>> parts(p.size());
+  for (const auto& [dof, f] : functions) {
+    const std::vector<double> numbers = legendre_parts(rule, f);
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+      if (std::abs(numbers[k]) > 1e-15) parts[k].push_back(constant(numbers[k]) * values_[a][dof]);
+  }
+  std::vector<Expr> terms;
+  for (std::size_t k = 0; k < p.size(); ++k) terms.push_back(equations_->system().context->sum(parts[k]) * p[k]);
+  return equations_->system().context->sum(terms);
+}
+
+/// u(X) or u_x(X), a polynomial in each element. Steps end where X passes from one to the next.
+Expr SemiDiscrete::along_place(std::size_t a, int by_space, Expr place) const {
+  Context& context = *equations_->system().context;
+  std::vector<Expr> branches;
+  for (std::size_t e = 0; e < elements(); ++e) {
+    if (e + 1 < elements()) {
+      const Expr sides[] = {place, constant(mesh_.borders[e + 1])};
+      branches.push_back(context.function(Kind::Less, sides));
+    }
+    branches.push_back(polynomial_in(e, a, by_space, place));
+  }
+  return branches.size() == 1 ? branches.front() : context.function(Kind::Piecewise, branches);
+}
+
+/// Values at places that move are no coordinates of the elements: they are functions of those and of t.
+bool SemiDiscrete::set_moving_places(Diagnostics& diagnostics) {
+  const FieldSystem& s = equations_->system();
+  std::set<std::size_t> gone;
+  for (const PlaceCoordinate& p : equations_->model->attached) {
+    if (!p.moves) continue;
+    if (!follow(p, diagnostics)) return false;
+    std::size_t a = 0;
+    while (equations_->varied[a] != p.jet.field) ++a;
+    const Coordinate& c = model_.system.coordinates[p.coordinate];
+    const Expr value = along_place(a, p.jet.space[0], s.expanded(p.place)), rate = total_time_derivative(value);
+    moving_[c.q] = value, moving_[c.velocity] = rate, moving_[c.acceleration] = total_time_derivative(rate);
+    gone.insert(p.coordinate);
+  }
+  if (moving_.empty()) return true;
+  forced_ = true;
+  share_forces(gone);
+  remove_coordinates(gone);
+  for_each_expression(model_.system, [&](Expr& e) {
+    if (e) e = substitute(e, moving_);
+  });
+  return true;
+}
+
+/// The run ends where a place leaves the domain, by more than rounding; it begins inside.
+bool SemiDiscrete::follow(const PlaceCoordinate& p, Diagnostics& diagnostics) {
+  const FieldSystem& s = equations_->system();
+  const double a = mesh_.borders.front(), b = mesh_.borders.back(), rounding = 1e-12 * (b - a);
+  const Expr x = s.expanded(p.place), inside = (x - constant(a - rounding)) * (constant(b + rounding) - x);
+  Bindings at_start = numbers_;
+  at_start[s.context->time()] = model_.experiment.start_time ? number(model_.experiment.start_time) : 0;
+  if (evaluate(inside, at_start) < 0) {
+    diagnostics.error("E0289", p.span, "this place lies outside of the domain at the start",
+                      "The field has no value there.", "Let it begin between the ends.");
+    return false;
+  }
+  ModelEvent leaves;
+  leaves.name = fmt::format("{} leaves the domain", model_.system.coordinates[p.coordinate].name);
+  leaves.function = inside, leaves.direction = -1, leaves.action = ModelEvent::Action::Stop, leaves.span = p.span;
+  departures_.push_back(leaves.name);
+  model_.experiment.events.push_back(std::move(leaves));
+  return true;
+}
+
+/// A force F on u(X) does the virtual work F N_j(X) δc_j.
+void SemiDiscrete::share_forces(const std::set<std::size_t>& gone) {
+  std::vector<AppliedForce> kept, shared;
+  for (const AppliedForce& f : model_.system.forces)
+    (f.kind == AppliedForce::Kind::Generalized && gone.count(f.coordinate) ? shared : kept).push_back(f);
+  model_.system.forces = std::move(kept);
+  for (const AppliedForce& f : shared) {
+    const Expr value = moving_.at(model_.system.coordinates[f.coordinate].q);
+    for (std::size_t a = 0; a < spaces_.size(); ++a)
+      for (std::size_t dof = 0; dof < spaces_[a].size(); ++dof)
+        if (coordinates_[a][dof])
+          generalized_force(a, dof, f.components.front() * differentiate(value, values_[a][dof]), f.span);
+  }
 }
 
 /// Values at places in events and in the end of the run.

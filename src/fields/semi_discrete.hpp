@@ -5,6 +5,8 @@
 #include "fields/field_elements.hpp"
 
 #include <optional>
+#include <set>
+#include <string>
 #include <vector>
 
 namespace maupertuis {
@@ -36,9 +38,15 @@ class SemiDiscrete {
   std::size_t elements() const { return mesh_.borders.size() - 1; }
   int order() const { return mesh_.degree; }
   bool forced() const { return forced_; }
+  /// Whether the density of all fields that bodies take hold of along a path holds second derivatives.
+  bool bends() const;
   const std::vector<double>& borders() const { return mesh_.borders; }
   /// Where a start does not fit what is given at an end.
   bool start_clashes() const { return clashes_; }
+  /// Names of events that end a run: a place that moves left the domain.
+  const std::vector<std::string>& departures() const { return departures_; }
+  /// The value at a place that moves, by the symbol of its coordinate, in the coordinates and t.
+  const ExprMap& moving() const { return moving_; }
 
  private:
   SemiDiscrete(const Model& model, const FieldEquations& equations);
@@ -51,6 +59,13 @@ class SemiDiscrete {
   void add_end_forces();
   bool set_start(Diagnostics& diagnostics);
   bool replace_places(Diagnostics& diagnostics);
+  bool has_slopes(std::size_t field) const;
+  bool set_moving_places(Diagnostics& diagnostics);
+  bool follow(const PlaceCoordinate& place, Diagnostics& diagnostics);
+  void share_forces(const std::set<std::size_t>& gone);
+  void remove_coordinates(const std::set<std::size_t>& gone);
+  Expr polynomial_in(std::size_t element, std::size_t a, int by_space, Expr place) const;
+  Expr along_place(std::size_t a, int by_space, Expr place) const;
   Expr constant(double value) const;
   Expr combination(std::size_t a, const std::vector<ElementSpace::Part>& parts, int by_space, int by_time) const;
   /// A function of places and jets at a point of the quadrature.
@@ -66,6 +81,8 @@ class SemiDiscrete {
   std::vector<std::vector<Expr>> values_;  // [varied][dof] u of it: a coordinate, or what is given
   std::vector<std::vector<std::optional<std::size_t>>> coordinates_;  // [varied][dof]
   Bindings numbers_;                                                  // of parameters
+  ExprMap moving_;                                                    // coordinates that are functions of others and t
+  std::vector<std::string> departures_;
   std::size_t dofs_ = 0;
   bool forced_ = false, clashes_ = false;
 };

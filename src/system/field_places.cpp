@@ -1,3 +1,4 @@
+#include <maupertuis/evaluate.hpp>
 #include <maupertuis/field_statements.hpp>
 #include <maupertuis/field_system.hpp>
 
@@ -33,12 +34,12 @@ bool goes_with_fields(const syntax::Statement& s) {
   const auto* constraint = std::get_if<syntax::ConstraintStatement>(&s.body);
   if (constraint && constraint->integral) return false;
   return is_mechanics(s) || std::get_if<syntax::SystemStatement>(&s.body) ||
-         std::get_if<syntax::SourceStatement>(&s.body) || std::get_if<syntax::NoteStatement>(&s.body) || std::get_if<syntax::DimensionlessStatement>(&s.body) ||
-         std::get_if<syntax::ParamStatement>(&s.body) || std::get_if<syntax::LetStatement>(&s.body) ||
-         std::get_if<syntax::InputStatement>(&s.body) || std::get_if<syntax::StartStatement>(&s.body) ||
-         std::get_if<syntax::RunStatement>(&s.body) || std::get_if<syntax::OutputStatement>(&s.body) ||
-         std::get_if<syntax::ExpectStatement>(&s.body) || std::get_if<syntax::SweepStatement>(&s.body) ||
-         std::get_if<syntax::FieldStatement>(&s.body);
+         std::get_if<syntax::SourceStatement>(&s.body) || std::get_if<syntax::NoteStatement>(&s.body) ||
+         std::get_if<syntax::DimensionlessStatement>(&s.body) || std::get_if<syntax::ParamStatement>(&s.body) ||
+         std::get_if<syntax::LetStatement>(&s.body) || std::get_if<syntax::InputStatement>(&s.body) ||
+         std::get_if<syntax::StartStatement>(&s.body) || std::get_if<syntax::RunStatement>(&s.body) ||
+         std::get_if<syntax::OutputStatement>(&s.body) || std::get_if<syntax::ExpectStatement>(&s.body) ||
+         std::get_if<syntax::SweepStatement>(&s.body) || std::get_if<syntax::FieldStatement>(&s.body);
 }
 
 /// Where in the domain `at` lies: an end of it, or nothing for the inside.
@@ -51,14 +52,18 @@ std::optional<Side> end_at(Elaboration& e, double at) {
   return std::nullopt;
 }
 
-/// The coordinate that already stands for this value, however its place was written.
-const PlaceCoordinate* find_attached(Elaboration& e, const FieldJet& jet, double at) {
+bool is_same_place(Elaboration& e, Expr a, Expr b) {
+  const auto first = constant_value(e, a), second = constant_value(e, b);
+  if (!first || !second) return !first && !second && (a == b || zero_test(a - b).verdict == Verdict::Zero);
   const SpaceVariable& x = fields_of(e).space.front();
-  const double size = x.from ? *constant_value(e, x.to) - *constant_value(e, x.from) : std::max(std::abs(at), 1.0);
+  const double size = x.from ? *constant_value(e, x.to) - *constant_value(e, x.from) : std::max(std::abs(*second), 1.0);
+  return std::abs(*first - *second) <= 1e-12 * size;
+}
+
+/// The coordinate that already stands for this value, however its place was written.
+const PlaceCoordinate* find_attached(Elaboration& e, const FieldJet& jet, Expr place) {
   for (const PlaceCoordinate& p : e.fields->attached)
-    if (p.jet.field == jet.field && p.jet.space == jet.space &&
-        std::abs(*constant_value(e, p.place) - at) <= 1e-12 * size)
-      return &p;
+    if (p.jet.field == jet.field && p.jet.space == jet.space && is_same_place(e, p.place, place)) return &p;
   return nullptr;
 }
 
@@ -112,8 +117,8 @@ Value coordinate_at_place(Elaboration& e, const Expression& x, const FieldJet& j
   if (refuse_as_coordinate(e, x, jet)) return Value::poison();
   FieldSystem& s = fields_of(e);
   const FieldJet still{jet.field, jet.space, 0};
-  const double at = *constant_value(e, place);
-  const PlaceCoordinate* known = find_attached(e, still, at);
+  const std::optional<double> at = constant_value(e, place);
+  const PlaceCoordinate* known = find_attached(e, still, place);
   if (!known) {
     Coordinate c;
     c.name = name_of_place_value(e, x, still);
@@ -123,7 +128,8 @@ Value coordinate_at_place(Elaboration& e, const Expression& x, const FieldJet& j
     c.dimension = s.dimension_of(still);
     c.kind = still.order() == 0 ? s.fields[jet.field].kind : "";
     c.span = x.span;
-    e.fields->attached.push_back({e.system().coordinates.size(), still, place, end_at(e, at), x.span});
+    e.fields->attached.push_back(
+        {e.system().coordinates.size(), still, place, at ? end_at(e, *at) : std::nullopt, !at, x.span});
     e.system().coordinates.push_back(std::move(c));
     known = &e.fields->attached.back();
   }
@@ -133,7 +139,7 @@ Value coordinate_at_place(Elaboration& e, const Expression& x, const FieldJet& j
 
 std::optional<Expr> attached_symbol(Elaboration& e, const FieldJet& jet, Expr place) {
   if (fields_of(e).space.size() != 1) return std::nullopt;
-  const PlaceCoordinate* known = find_attached(e, {jet.field, jet.space, 0}, *constant_value(e, place));
+  const PlaceCoordinate* known = find_attached(e, {jet.field, jet.space, 0}, place);
   if (!known) return std::nullopt;
   return e.context.symbol(e.system().coordinates[known->coordinate].name, Role::Coordinate, jet.time);
 }

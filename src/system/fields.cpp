@@ -436,8 +436,17 @@ void force_density(Elaboration& e, const syntax::FieldForce& s, const FieldJet& 
   force = force ? force + value : value;
 }
 
+/// Whether a place is a function of t.
+bool moves(Elaboration& e, const Expression& place) {
+  Place quiet;
+  quiet.inline_constants = true;
+  const Value read = evaluate_formula(e, place, quiet);
+  return !read.poisoned && !read.is_vector && !constant_value(e, read.scalar());
+}
+
 /// force u(l) = F at an end of the domain; beside bodies, or inside, a force on a coordinate
 void force_at_place(Elaboration& e, const syntax::FieldForce& s, const FieldJet& jet, Span span) {
+  if (!e.fields->coupled) e.fields->coupled = moves(e, *s.on->arguments.front());
   if (e.fields->coupled) return force_on_place(e, s, jet, span);
   FieldSystem& system = system_of(e);
   const SpaceVariable& x = system.space.front();
@@ -606,6 +615,59 @@ bool refuse_without_place(Elaboration& e, Expr value, const syntax::Expression& 
   return true;
 }
 
+namespace {
+
+bool is_outside(Elaboration& e, const SpaceVariable& along, double at) {
+  return along.from && (at < *constant_value(e, along.from) || at > *constant_value(e, along.to));
+}
+
+/// E0289 where a place that holds t is none that can be followed.
+bool refuse_moving_place(Elaboration& e, const Expression& x, const FieldJet& jet, Span place) {
+  const FieldSystem& system = system_of(e);
+  if (!e.fields->coupled || system.space.size() > 1) {
+    e.diagnostics.error("E0289", place, "this place is not known before the run",
+                        fmt::format("`{}(…)` is the value of the field at a place, never a product.", x.text),
+                        fmt::format("Write the other factor first, or `{} * (…)`.", x.text));
+    return true;
+  }
+  if (jet.time <= x.primes) return false;
+  const std::string value = fmt::format("{}({})", system.jet_name({jet.field, jet.space, 0}), e.texts.slice(place));
+  e.diagnostics.error(
+      "E0289", x.span, fmt::format("the velocity `{}` at a place that moves", x.text),
+      fmt::format("What rides on the field has the velocity d/dt {}, the field's own and that along its slope.", value),
+      fmt::format("Write {}'.", value));
+  return true;
+}
+
+/// The place along one space variable: a constant, or a function of t; nothing, and told, where it is neither.
+std::optional<Expr> place_along(Elaboration& e, const Expression& x, const FieldJet& jet, std::size_t i) {
+  const SpaceVariable& along = system_of(e).space[i];
+  const Expression& written = *x.arguments[i];
+  Place quiet;
+  quiet.inline_constants = true;
+  const Value read = evaluate_formula(e, written, quiet);
+  if (!read.poisoned && !read.is_vector && read.order >= 0) {
+    e.diagnostics.error("E0289", written.span, "not supported yet: a place that moves with a coordinate",
+                        "Places are constant, or known functions of time: a load that crosses a bridge.",
+                        "Write a number, parameters or a formula of t.");
+    return std::nullopt;
+  }
+  if (!read.poisoned && (read.is_vector || !constant_value(e, read.scalar()))) {
+    if (refuse_moving_place(e, x, jet, written.span)) return std::nullopt;
+    const Value v = scalar_of(e, written, along.dimension, "a place");
+    if (v.poisoned) return std::nullopt;
+    return drives_as_formulas(e, v.scalar());
+  }
+  const Value v = read.poisoned ? read : constant_of(e, written, along.dimension, "a place");
+  if (v.poisoned) return std::nullopt;
+  if (!is_outside(e, along, constant_value(e, v.scalar()).value_or(0))) return v.scalar();
+  e.diagnostics.error("E0289", written.span, "this place lies outside of the domain", "The field has no value there.",
+                      fmt::format("Choose a place between the ends of {}.", along.name));
+  return std::nullopt;
+}
+
+}  // namespace
+
 Value value_at_place(Elaboration& e, const syntax::Expression& x) {
   FieldSystem& system = system_of(e);
   std::optional<FieldJet> jet = system.jet_of_name(x.text);
@@ -620,38 +682,20 @@ Value value_at_place(Elaboration& e, const syntax::Expression& x) {
   }
   PlaceValue out{{}, system.jet_symbol(*jet), {}, x.span};
   for (std::size_t i = 0; i < x.arguments.size(); ++i) {
-    const SpaceVariable& along = system.space[i];
-    Place quiet;
-    quiet.inline_constants = true;
-    const Value read = evaluate_formula(e, *x.arguments[i], quiet);
-    if (!read.poisoned && !read.is_vector && read.order >= 0) {
-      e.diagnostics.error("E0289", x.arguments[i]->span, "this place moves",
-                          "Places are constant: a field is asked for, and held, at one place for the whole motion.",
-                          "Write a number or parameters.");
-      return Value::poison();
-    }
-    if (!read.poisoned && (read.is_vector || !constant_value(e, read.scalar()))) {
-      e.diagnostics.error("E0289", x.arguments[i]->span, "this place is not known before the run",
-                          fmt::format("`{}(…)` is the value of the field at a place, never a product.", x.text),
-                          fmt::format("Write the other factor first, or `{} * (…)`.", x.text));
-      return Value::poison();
-    }
-    const Value v = read.poisoned ? read : constant_of(e, *x.arguments[i], along.dimension, "a place");
-    if (v.poisoned) return v;
-    const double at = constant_value(e, v.scalar()).value_or(0);
-    const bool outside = along.from && (at < *constant_value(e, along.from) || at > *constant_value(e, along.to));
-    if (outside) {
-      e.diagnostics.error("E0289", x.arguments[i]->span, "this place lies outside of the domain",
-                          "The field has no value there.",
-                          fmt::format("Choose a place between the ends of {}.", along.name));
-      return Value::poison();
-    }
-    out.place.push_back(v.scalar());
+    const std::optional<Expr> place = place_along(e, x, *jet, i);
+    if (!place) return Value::poison();
+    out.place.push_back(*place);
   }
   if (e.fields->coupled && !e.fields->complete) return coordinate_at_place(e, x, *jet, out.place.front());
   if (e.fields->coupled)
     if (const auto q = attached_symbol(e, *jet, out.place.front()))
       return Value::of(*q, system.dimension_of(*jet), jet->time);
+  if (!std::all_of(out.place.begin(), out.place.end(), [&](Expr at) { return constant_value(e, at).has_value(); })) {
+    e.diagnostics.error("E0289", x.span, "not supported yet: a place that moves where nothing takes hold of the field",
+                        "Runs follow the places of masses and forces; other values are asked for at fixed places.",
+                        "Ask at the place where the load is at that time.");
+    return Value::poison();
+  }
   out.symbol = e.context.symbol(name_of_place_value(e, x, *jet), Role::Coordinate, jet->time);
   const Expr symbol = out.symbol;
   const bool known = std::any_of(e.fields->places.begin(), e.fields->places.end(),

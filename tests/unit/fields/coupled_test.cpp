@@ -364,3 +364,161 @@ TEST_CASE("internal friction pulls at the mass at the end of a bar") {
   CHECK(verification->passed());
   CHECK(study.field_certificate()->passed());
 }
+
+// ------------------------------------------------------------------------------------------------- places that move
+
+namespace {
+
+std::vector<FieldRunResult::Value> answers_of(Study& study) {
+  REQUIRE(study.model());
+  std::vector<FieldQuestion> questions;
+  double end = 0;
+  for (const Expectation& e : study.model()->experiment.expectations) {
+    const auto& at = std::get<expectation::ValueAt>(e.kind);
+    questions.push_back({at.subject, false, evaluate(at.time, {})});
+    end = std::max(end, questions.back().time);
+  }
+  FieldRunOptions options;
+  options.duration = end;
+  const auto run = run_coupled(*study.model(), *study.field_equations(), questions, options, study.diagnostics());
+  REQUIRE(run);
+  CHECK(run->trouble.empty());
+  return run->answers;
+}
+
+void check_against(const std::vector<FieldRunResult::Value>& answers, const std::vector<double>& expected) {
+  REQUIRE(answers.size() == expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    CAPTURE(answers[i].value);
+    CAPTURE(expected[i]);
+    CHECK(std::abs(answers[i].value - expected[i]) <= answers[i].error);
+  }
+}
+
+/// −1 at x = v t on a string or a hinged beam of length 1 (Frýba, ch. 1), in modes of ω = (n π)^power.
+double under_moving_force(double x, double t, double v, int power) {
+  double sum = 0;
+  for (int n = 20000; n > 0; --n) {
+    const double k = n * M_PI, w = std::pow(k, power), force = k * v;
+    sum -= 2 * std::sin(k * x) / (w * w - force * force) * (std::sin(force * t) - force / w * std::sin(w * t));
+  }
+  return sum;
+}
+
+/// A hinged beam of length 1 under a mass m that rolls along X = x0 + v t, in `count` modes that the mass couples:
+/// q̈ + ω² q = −2 m s (g + d²/dt² w(X, t)). The value at the middle at T.
+double under_moving_mass(double x0, double v, double m, double g, double end, std::size_t count) {
+  using Vector = std::vector<double>;
+  const auto acceleration = [&](double t, const Vector& q, const Vector& p) {
+    Vector a(count), s(count);
+    double load = g, ss = 0, sa = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double k = static_cast<double>(i + 1) * M_PI, at = k * (x0 + v * t);
+      s[i] = std::sin(at);
+      load += 2 * k * v * std::cos(at) * p[i] - k * k * v * v * s[i] * q[i];
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const double k = static_cast<double>(i + 1) * M_PI;
+      a[i] = -k * k * k * k * q[i] - 2 * m * s[i] * load;
+      ss += s[i] * s[i], sa += s[i] * a[i];
+    }
+    for (std::size_t i = 0; i < count; ++i) a[i] -= 2 * m * s[i] * sa / (1 + 2 * m * ss);
+    return a;
+  };
+  const auto moved = [](Vector a, double h, const Vector& b) {
+    for (std::size_t i = 0; i < a.size(); ++i) a[i] += h * b[i];
+    return a;
+  };
+  const std::size_t steps = 8 * count * count;
+  const double h = end / static_cast<double>(steps);
+  Vector q(count), p(count);
+  for (std::size_t step = 0; step < steps; ++step) {
+    const double t = h * static_cast<double>(step);
+    const Vector a1 = acceleration(t, q, p), p2 = moved(p, h / 2, a1);
+    const Vector a2 = acceleration(t + h / 2, moved(q, h / 2, p), p2), p3 = moved(p, h / 2, a2);
+    const Vector a3 = acceleration(t + h / 2, moved(q, h / 2, p2), p3), p4 = moved(p, h, a3);
+    const Vector a4 = acceleration(t + h, moved(q, h, p3), p4);
+    for (std::size_t i = 0; i < count; ++i) {
+      q[i] += h / 6 * (p[i] + 2 * p2[i] + 2 * p3[i] + p4[i]);
+      p[i] += h / 6 * (a1[i] + 2 * a2[i] + 2 * a3[i] + a4[i]);
+    }
+  }
+  double w = 0;
+  for (std::size_t i = 0; i < count; i += 4) w += q[i];
+  for (std::size_t i = 2; i < count; i += 4) w -= q[i];
+  return w;
+}
+
+}  // namespace
+
+TEST_CASE("the condition at a force that moves along a string, and a certificate that sees a wrong one") {
+  Study study = coupled_study(
+      "dimensionless\nparam ρ = 2, T0 = 3, F = 0.7, v = 0.5\nfield u(x) : number on x = 0 .. 1 boundary u = 0\n"
+      "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nforce u(v t) = F\n");
+  REQUIRE(study.field_equations());
+  CHECK(study.field_certificate()->passed());
+  const FieldEquations& equations = *study.field_equations();
+  REQUIRE(equations.interfaces.size() == 1);
+  const Expr place = equations.interfaces[0].place;
+  const auto jet = [&](int space, int time, int side) {
+    return jet_at_place(equations, {0, {space}, time}, place, side);
+  };
+  Bindings at{{jet(1, 0, -1), 0.25}, {jet(1, 0, 1), 0.5}, {jet(0, 1, -1), 0.125}, {jet(0, 1, 1), 1.0}};
+  for (const Parameter& p : study.model()->system.parameters) at[p.symbol] = p.si_value;
+  // momentum: F = −T0 [u_x] − v ρ [u_t]
+  CHECK(evaluate(expand_time_derivatives(equations.interfaces[0].value), at) ==
+        doctest::Approx(-0.7 - 3 * 0.25 - 0.5 * 2 * 0.875));
+  FieldEquations wrong = equations;  // at rest
+  wrong.interfaces[0].value = wrong.interfaces[0].value + (jet(0, 1, 1) - jet(0, 1, -1));
+  Certificate certificate;
+  certify_bodies(wrong, certificate);
+  CHECK_FALSE(certificate.passed());
+}
+
+TEST_CASE("a force that crosses a string and a hinged beam, against the sum over modes") {
+  const std::string string =
+      "dimensionless\nparam v = 0.4\nfield u(x) : number on x = 0 .. 1 cells 6 order 8 boundary u = 0\n"
+      "density = 1/2 u'^2 - 1/2 u_x^2\nforce u(v t) = -1\n";
+  Study crossed = coupled_study(string + "expect u(0.3) at 1 = 0 ± 1\nexpect u(0.1) at 2 = 0 ± 1\n");
+  const std::vector<FieldRunResult::Value> answers = answers_of(crossed);
+  check_against(answers, {under_moving_force(0.3, 1, 0.4, 1), under_moving_force(0.1, 2, 0.4, 1)});
+  for (const FieldRunResult::Value& a : answers) CHECK(a.error < 0.01);
+  Study beam = coupled_study(
+      "dimensionless\nparam v = 1\nfield w(x) : number on x = 0 .. 1 cells 4 order 8 boundary w = 0\n"
+      "density = 1/2 w'^2 - 1/2 w_xx^2\nforce w(v t) = -1\n"
+      "expect w(0.5) at 0.15 = 0 ± 1\nexpect w(0.3) at 0.3 = 0 ± 1\n");
+  const std::vector<FieldRunResult::Value> bent = answers_of(beam);
+  check_against(bent, {under_moving_force(0.5, 0.15, 1, 2), under_moving_force(0.3, 0.3, 1, 2)});
+  for (const FieldRunResult::Value& a : bent) CHECK(a.error < 3e-5);
+}
+
+TEST_CASE("a mass that rolls along a beam takes its Coriolis and centrifugal parts along") {
+  Study study = coupled_study(
+      "dimensionless\nparam m = 0.3, g = 9.81\nfield w(x) : number on x = 0 .. 1 cells 3 order 8 boundary w = 0\n"
+      "density = 1/2 w'^2 - 1/2 w_xx^2\nT = 1/2 m w(0.2 + t)'^2\nV = m g w(0.2 + t)\n"
+      "expect w(0.5) at 0.3 = 0 ± 1\n");
+  const std::vector<FieldRunResult::Value> answers = answers_of(study);
+  const double expected = under_moving_mass(0.2, 1, 0.3, 9.81, 0.3, 24);
+  check_against(answers, {expected});
+  CHECK(std::abs(answers[0].value - expected) < 1e-5);  // of 0.09; without either part off by more than 1e-4
+}
+
+TEST_CASE("a load that leaves the domain ends the run; one that rests at its end does not") {
+  const auto run_of = [](const std::string& place) {
+    Study study = coupled_study(
+        "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 4 order 6 boundary u = 0\n"
+        "density = 1/2 u'^2 - 1/2 u_x^2\nforce u(" +
+        place + ") = -1\n");
+    FieldRunOptions options;
+    options.duration = 3;
+    const auto run = run_coupled(*study.model(), *study.field_equations(), {}, options, study.diagnostics());
+    REQUIRE(run);
+    return *run;
+  };
+  const FieldRunResult gone = run_of("t/2"), resting = run_of("min(t/2, 1)");
+  CHECK(gone.trouble == "u(t/2) leaves the domain");
+  CHECK(gone.end == doctest::Approx(2));
+  CHECK(resting.trouble.empty());
+  CHECK(resting.end == 3);
+  CHECK(gone.energy == doctest::Approx(resting.energy).epsilon(1e-10));  // a support takes the load
+}
