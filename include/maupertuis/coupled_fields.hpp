@@ -27,7 +27,8 @@ std::string place_text(const FieldEquations& equations, Expr place);
 /// right (+1) where the jet may jump.
 Expr jet_at_place(const FieldEquations& equations, const FieldJet& jet, Expr place, int side);
 
-/// The rows of the coordinates that are no values at places, R − Aᵀλ, with the coordinate's index in `bodies`.
+/// The rows of the coordinates that are no values at places, with the coordinate's index in `bodies`: R − Aᵀλ, and of
+/// those that move places the jump of the stress there.
 struct CoordinateRow {
   std::size_t coordinate = 0;
   Expr value;

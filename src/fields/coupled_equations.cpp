@@ -89,6 +89,31 @@ void add_interface(FieldEquations& out, std::size_t field, bool moment, Expr pla
   out.interfaces.push_back({field, moment, place, end, coordinate, value});
 }
 
+/// What the row of a coordinate has of a place X that it moves. On each side of the path δφ = δU − φ_x δX and
+/// δφ_x = δU_x − φ_xx δX, and the sides change by ∓ℒ δX: [ℒ − Π φ_x − Μ φ_xx] ∂X/∂q, with Π = p − X' ∂ℒ/∂φ' and Μ
+/// alike.
+Expr stress_across(const FieldEquations& equations, Expr place, Expr coordinate) {
+  const FieldSystem& s = equations.system();
+  const Expr along = differentiate(s.expanded(place), coordinate);
+  if (along.is_zero()) return along;
+  Expr stress = s.density;
+  for (const std::size_t field : equations.varied)
+    for (const bool moment : {false, true}) {
+      const Expr p =
+          natural_of(equations, field, moment) - velocity_of(equations, place) * carried_by(equations, field, moment);
+      stress = stress - p * s.jet_symbol({field, {moment ? 2 : 1}, 0});
+    }
+  return share_of_density(equations, stress, place, {}, density_borders(equations), std::nan("")) * along;
+}
+
+/// Each place once.
+std::vector<Expr> moving_places(const FieldEquations& equations) {
+  std::vector<Expr> out;
+  for (const PlaceCoordinate& p : equations.model->attached)
+    if (p.moves && std::find(out.begin(), out.end(), p.place) == out.end()) out.push_back(p.place);
+  return out;
+}
+
 }  // namespace
 
 std::string place_text(const FieldEquations& equations, Expr place) {
@@ -123,7 +148,9 @@ Expr jet_at_place(const FieldEquations& equations, const FieldJet& jet, Expr pla
                                  ? jet.field
                                  : equations.varied[jet.field - equations.system().fields.size()];
   const int slopes = jet.space[0] + (along ? jet.time : 0);
-  const bool continuous = slopes == 0 || (slopes == 1 && has_derivative(s, varied, 2));
+  // Where no moment acts, curvatures do not jump either, nor with them u_tx and u_tt along a path.
+  const bool moved = s.context->depends_on_time(place.id()) && !attached_at(equations, {varied, {1}, 0}, place);
+  const bool continuous = slopes == 0 || (slopes <= (moved ? 2 : 1) && has_derivative(s, varied, 2));
   const char* mark = side == 0 || continuous ? "" : side > 0 ? "+" : "-";
   const int order = along ? 0 : jet.time;  // u_t(v t+) is a name
   const std::string name = fmt::format("{}({}{})", place_jet_name(s, jet, along), place_text(equations, place), mark);
@@ -197,7 +224,11 @@ std::vector<CoordinateRow> coordinate_rows(const FieldEquations& equations) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const bool place = std::any_of(equations.model->attached.begin(), equations.model->attached.end(),
                                    [&](const PlaceCoordinate& p) { return p.coordinate == i; });
-    if (!place) out.push_back({i, rows[i]});
+    if (place) continue;
+    Expr row = rows[i];
+    for (const Expr& x : moving_places(equations))
+      row = row + stress_across(equations, x, equations.bodies->system->coordinates[i].q);
+    out.push_back({i, row});
   }
   return out;
 }
@@ -244,6 +275,30 @@ std::optional<bool> row_of_bodies(const FieldEquations& equations, Expr differen
 
 namespace {
 
+Expr variation_of(const FieldEquations& equations, std::size_t coordinate) {
+  return equations.system().context->symbol("δ" + equations.bodies->system->coordinates[coordinate].name,
+                                            Role::Coordinate, 0);
+}
+
+/// B(η) where the variation of coordinates moves the place by δX: the field there changes by δU = η + φ_x δX, and what
+/// the sides of the path hold of the action by ℒ δX.
+Expr beside_path(const FieldEquations& equations, Expr b, Expr place) {
+  const FieldSystem& s = equations.with_variations;
+  Expr shift = s.context->number(0);
+  if (equations.bodies && !velocity_of(equations, place).is_zero())
+    for (std::size_t i = 0; i < equations.bodies->system->coordinates.size(); ++i)
+      shift = shift +
+              differentiate(s.expanded(place), equations.bodies->system->coordinates[i].q) * variation_of(equations, i);
+  if (shift.is_zero()) return b;
+  ExprMap changed;
+  for (std::size_t a = 0; a < equations.varied.size(); ++a)
+    for (int order = 0; order <= 1; ++order) {
+      const Expr eta = s.jet_symbol({equations.variation_of(a), {order}, 0});
+      changed[eta] = eta - s.jet_symbol({equations.varied[a], {order + 1}, 0}) * shift;
+    }
+  return substitute(b, changed) + s.density * shift;
+}
+
 /// −R η of the bodies and B(η) of the density on each side, against −(the row) η, for any η and η_x at the place.
 CertificateCheck interface_identity(const FieldEquations& equations) {
   CertificateCheck check;
@@ -253,6 +308,11 @@ CertificateCheck interface_identity(const FieldEquations& equations) {
   const std::vector<DensityBorder> borders = density_borders(equations);
   const Bindings values = parameter_values(equations);
   std::vector<Expr> differences;
+  Expr moved = s.context->number(0);  // what δq leaves, of coordinates that move places
+  ExprMap still;
+  if (equations.bodies)
+    for (std::size_t i = 0; i < equations.bodies->system->coordinates.size(); ++i)
+      still[variation_of(equations, i)] = s.context->number(0);
   std::vector<std::pair<Expr, std::optional<Side>>> places;
   for (const InterfaceCondition& c : equations.interfaces)
     if (std::none_of(places.begin(), places.end(), [&](const auto& p) { return p.first == c.place; }))
@@ -265,7 +325,8 @@ CertificateCheck interface_identity(const FieldEquations& equations) {
   for (const auto& [place, end] : places) {
     const double at = number_of(equations, place, values);
     // A place that moves leaves B^x − X' B^t on each side of its path.
-    const Expr b = b_along - velocity_of(equations, place) * equations.boundary_terms.back();
+    Expr b = b_along - velocity_of(equations, place) * equations.boundary_terms.back();
+    b = beside_path(equations, b, place);
     Expr left = s.context->number(0);
     if (end != Side::Left) left = left + limit_at(equations, b, place, end ? 0 : -1, borders, at);
     if (end != Side::Right) left = left - limit_at(equations, b, place, end ? 0 : 1, borders, at);
@@ -288,8 +349,14 @@ CertificateCheck interface_identity(const FieldEquations& equations) {
             silent[jet_at_place(equations, {equations.variation_of(a), {order}, 0}, place, side)] =
                 s.context->number(0);
       }
-    differences.push_back(s.expanded(substitute(left, silent)));
+    left = s.expanded(substitute(left, silent));
+    differences.push_back(substitute(left, still));
+    moved = moved + left - differences.back();
   }
+  for (const CoordinateRow& row : coordinate_rows(equations))
+    moved = moved + s.expanded(row.value - equations.bodies->shown().balance()[row.coordinate]) *
+                        variation_of(equations, row.coordinate);
+  differences.push_back(moved);
   const ZeroTest test = zero_test(differences);
   check.verdict = test.verdict, check.points = test.points, check.error_bound = test.error_bound;
   check.reason = test.reason;

@@ -547,7 +547,8 @@ Expr SemiDiscrete::along_place(std::size_t a, int by_space, Expr place) const {
   return branches.size() == 1 ? branches.front() : context.function(Kind::Piecewise, branches);
 }
 
-/// Values at places that move are no coordinates of the elements: they are functions of those and of t.
+/// Values at places that move are no coordinates of the elements: they are functions of those, of
+/// coordinates and of t.
 bool SemiDiscrete::set_moving_places(Diagnostics& diagnostics) {
   const FieldSystem& s = equations_->system();
   std::set<std::size_t> gone;
@@ -560,9 +561,9 @@ bool SemiDiscrete::set_moving_places(Diagnostics& diagnostics) {
     const Expr value = along_place(a, p.jet.space[0], s.expanded(p.place)), rate = total_time_derivative(value);
     moving_[c.q] = value, moving_[c.velocity] = rate, moving_[c.acceleration] = total_time_derivative(rate);
     gone.insert(p.coordinate);
+    forced_ = forced_ || !differentiate(s.expanded(p.place), s.context->time()).is_zero();
   }
   if (moving_.empty()) return true;
-  forced_ = true;
   share_forces(gone);
   remove_coordinates(gone);
   for_each_expression(model_.system, [&](Expr& e) {
@@ -578,6 +579,9 @@ bool SemiDiscrete::follow(const PlaceCoordinate& p, Diagnostics& diagnostics) {
   const Expr x = s.expanded(p.place), inside = (x - constant(a - rounding)) * (constant(b + rounding) - x);
   Bindings at_start = numbers_;
   at_start[s.context->time()] = model_.experiment.start_time ? number(model_.experiment.start_time) : 0;
+  for (const Coordinate& c : model_.system.coordinates) at_start[c.q] = 0;
+  for (const StartValue& v : model_.experiment.start)
+    if (v.order == 0) at_start[model_.system.coordinates[v.coordinate].q] = number(v.value);
   if (evaluate(inside, at_start) < 0) {
     diagnostics.error("E0289", p.span, "this place lies outside of the domain at the start",
                       "The field has no value there.", "Let it begin between the ends.");

@@ -436,7 +436,7 @@ void force_density(Elaboration& e, const syntax::FieldForce& s, const FieldJet& 
   force = force ? force + value : value;
 }
 
-/// Whether a place is a function of t.
+/// Whether a place is a function of coordinates or t.
 bool moves(Elaboration& e, const Expression& place) {
   Place quiet;
   quiet.inline_constants = true;
@@ -621,13 +621,31 @@ bool is_outside(Elaboration& e, const SpaceVariable& along, double at) {
   return along.from && (at < *constant_value(e, along.from) || at > *constant_value(e, along.to));
 }
 
-/// E0289 where a place that holds t is none that can be followed.
-bool refuse_moving_place(Elaboration& e, const Expression& x, const FieldJet& jet, Span place) {
+bool holds_field_values(Elaboration& e, Expr place) {
+  const std::vector<Expr> symbols = symbols_of({&place, 1});
+  return std::any_of(symbols.begin(), symbols.end(), [&](const Expr& symbol) {
+    return system_of(e).jet_of(symbol) ||
+           std::any_of(e.fields->attached.begin(), e.fields->attached.end(), [&](const PlaceCoordinate& p) {
+             const Coordinate& c = e.system().coordinates[p.coordinate];
+             return symbol == c.q;
+           });
+  });
+}
+
+/// E0289 where a place that holds t or coordinates is none that can be followed.
+bool refuse_moving_place(Elaboration& e, const Expression& x, const FieldJet& jet, const Value& read, Span place) {
   const FieldSystem& system = system_of(e);
-  if (!e.fields->coupled || system.space.size() > 1) {
+  if (!e.fields->coupled || system.space.size() > 1 || read.is_vector) {
     e.diagnostics.error("E0289", place, "this place is not known before the run",
                         fmt::format("`{}(…)` is the value of the field at a place, never a product.", x.text),
                         fmt::format("Write the other factor first, or `{} * (…)`.", x.text));
+    return true;
+  }
+  if (read.order > 0 || holds_field_values(e, read.scalar())) {
+    e.diagnostics.error("E0289", place, "this place moves with a velocity, or with the field",
+                        "What takes hold of a field does so at a constant place, or at one that coordinates and the "
+                        "time tell.",
+                        "Write a formula of coordinates, t and parameters.");
     return true;
   }
   if (jet.time <= x.primes) return false;
@@ -639,21 +657,16 @@ bool refuse_moving_place(Elaboration& e, const Expression& x, const FieldJet& je
   return true;
 }
 
-/// The place along one space variable: a constant, or a function of t; nothing, and told, where it is neither.
+/// The place along one space variable: a constant, or a function of coordinates and t; nothing, and told, where it is
+/// neither.
 std::optional<Expr> place_along(Elaboration& e, const Expression& x, const FieldJet& jet, std::size_t i) {
   const SpaceVariable& along = system_of(e).space[i];
   const Expression& written = *x.arguments[i];
   Place quiet;
   quiet.inline_constants = true;
   const Value read = evaluate_formula(e, written, quiet);
-  if (!read.poisoned && !read.is_vector && read.order >= 0) {
-    e.diagnostics.error("E0289", written.span, "not supported yet: a place that moves with a coordinate",
-                        "Places are constant, or known functions of time: a load that crosses a bridge.",
-                        "Write a number, parameters or a formula of t.");
-    return std::nullopt;
-  }
   if (!read.poisoned && (read.is_vector || !constant_value(e, read.scalar()))) {
-    if (refuse_moving_place(e, x, jet, written.span)) return std::nullopt;
+    if (refuse_moving_place(e, x, jet, read, written.span)) return std::nullopt;
     const Value v = scalar_of(e, written, along.dimension, "a place");
     if (v.poisoned) return std::nullopt;
     return drives_as_formulas(e, v.scalar());

@@ -4,6 +4,7 @@
 #include <maupertuis/study.hpp>
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 
@@ -521,4 +522,48 @@ TEST_CASE("a load that leaves the domain ends the run; one that rests at its end
   CHECK(resting.trouble.empty());
   CHECK(resting.end == 3);
   CHECK(gone.energy == doctest::Approx(resting.energy).epsilon(1e-10));  // a support takes the load
+}
+
+TEST_CASE("a bead that slides on a beam: its equation, energy, and the same bead in modes of the beam") {
+  Study study = coupled_study(
+      "dimensionless\nparam m = 0.3, g = 9.81\nfield w(x) : number on x = 0 .. 1 cells 3 order 8 boundary w = 0\n"
+      "coord s : number\ndensity = 1/2 w'^2 - 1/2 w_xx^2\nT = 1/2 m (s'^2 + w(s)'^2)\nV = m g w(s)\n"
+      "start s = 0.3, s' = 0.2\nexpect s at 0.2 = 0 ± 1\n");
+  REQUIRE(study.field_equations());
+  CHECK(study.field_certificate()->passed());
+  const FieldEquations& equations = *study.field_equations();
+  const std::vector<CoordinateRow> rows = coordinate_rows(equations);
+  REQUIRE(rows.size() == 1);
+  const Expr place = equations.interfaces[0].place;
+  const auto jet = [&](int space, int side) { return jet_at_place(equations, {0, {space}, 0}, place, side); };
+  const MechanicalSystem& bodies = *equations.bodies->system;
+  Bindings at{
+      {bodies.coordinates[rows[0].coordinate].acceleration, 3}, {jet(1, 0), 0.5}, {jet(3, -1), 4}, {jet(3, 1), 5}};
+  at[bodies.coordinates[rows[0].coordinate].velocity] = 0.7;  // what does not jump falls out
+  at[jet(2, 0)] = 1.3, at[jet_at_place(equations, {0, {0}, 1}, place, 0)] = 0.9;
+  for (const Parameter& p : bodies.parameters) at[p.symbol] = p.si_value;
+  const Expr row = expand_time_derivatives(rows[0].value);
+  CHECK(evaluate(row, at) == doctest::Approx(0.3 * 3 - 0.5));  // + [w_xxx] side
+
+  FieldRunOptions options;
+  options.duration = 0.2;
+  const Expr s = std::get<expectation::ValueAt>(study.model()->experiment.expectations[0].kind).subject;
+  const auto run = run_coupled(*study.model(), equations, {{s, false, 0.2}}, options, study.diagnostics());
+  REQUIRE(run);
+  CHECK(run->energy_drift >= 0);
+  CHECK(run->energy_drift < 1e-13);
+  std::string kinetic = "0.5 m s'^2", potential, modes, deflection;
+  for (int i = 1; i <= 10; ++i) {
+    modes += fmt::format("{}a{} : number", i > 1 ? ", " : "", i);
+    kinetic += fmt::format(" + 0.25 a{}'^2", i);
+    potential += fmt::format("0.25 ({} pi)^4 a{}^2 + ", i, i);
+    deflection += fmt::format("{}a{} sin({} pi s)", i > 1 ? " + " : "", i, i);
+  }
+  Study same =
+      coupled_study(fmt::format("dimensionless\nparam m = 0.3, g = 9.81\ncoord {}, s : number\nT = {} + 0.5 m ({})'^2\n"
+                                "V = {}m g ({})\nstart s = 0.3, s' = 0.2\nrun 0.2\nexpect s at 0.2 = {} ± 2e-5\n",
+                                modes, kinetic, deflection, potential, deflection, run->answers[0].value));
+  const auto verification = same.verification();
+  REQUIRE(verification);
+  CHECK(verification->passed());
 }
