@@ -554,7 +554,7 @@ bool SemiDiscrete::set_moving_places(Diagnostics& diagnostics) {
   std::set<std::size_t> gone;
   for (const PlaceCoordinate& p : equations_->model->attached) {
     if (!p.moves) continue;
-    if (!follow(p, diagnostics)) return false;
+    if (refuse_turning(p, diagnostics) || !follow(p, diagnostics)) return false;
     std::size_t a = 0;
     while (equations_->varied[a] != p.jet.field) ++a;
     const Coordinate& c = model_.system.coordinates[p.coordinate];
@@ -569,6 +569,22 @@ bool SemiDiscrete::set_moving_places(Diagnostics& diagnostics) {
   for_each_expression(model_.system, [&](Expr& e) {
     if (e) e = substitute(e, moving_);
   });
+  return true;
+}
+
+/// E0508: u_x(X)' = u_xt + X' u_xx jumps at the borders of elements, and a momentum of it would be hit there.
+bool SemiDiscrete::refuse_turning(const PlaceCoordinate& p, Diagnostics& diagnostics) const {
+  if (p.jet.space[0] == 0) return false;
+  const MechanicalSystem& system = model_.system;
+  const Coordinate& c = system.coordinates[p.coordinate];
+  std::vector<Expr> roots{expand_time_derivatives(system.lagrangian())};
+  for (const Constraint& k : system.constraints) roots.push_back(total_time_derivative(k.value));
+  const std::vector<Expr> symbols = symbols_of(roots);
+  if (std::find(symbols.begin(), symbols.end(), c.velocity) == symbols.end()) return false;
+  diagnostics.error(
+      "E0508", p.span, fmt::format("not supported yet: a run in which inertia turns with {}", c.name),
+      "The curvatures of the elements jump at their borders, and with them the angular velocity of what rolls there.",
+      "Leave the rotary inertia and the constraint on the slope out, or put them at a constant place.");
   return true;
 }
 
