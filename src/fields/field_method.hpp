@@ -28,8 +28,10 @@ class FieldMethod {
   /// By collocation as much longer on the other meshes as their cells are wider, so that their difference tells the
   /// error of steps as well. `omega` is set where steps depend on it.
   double longest_step(FieldMotion& mesh, double duration, double every, const Interrupt& interrupt, double& omega);
-  /// Of a cell of the first mesh by collocation.
+  /// Of a cell of the first mesh where values are looked at beside their places: by collocation, and where `width` was
+  /// given; else 0.
   double width() const { return width_; }
+  void look_beside(double width) { width_ = width; }
   /// The power of the width of a cell by which an answer is off on two meshes with their steps; `half`: the coarser.
   int power(const FieldEquations& equations, const FieldQuestion& question, const Cells& half) const;
 

@@ -6,6 +6,7 @@
 #include "fields/field_method.hpp"
 #include "fields/field_sides.hpp"
 #include "fields/resolution.hpp"
+#include "fields/start_fit.hpp"
 
 #include <fmt/format.h>
 
@@ -83,8 +84,8 @@ void refuse_infinite_density(const FieldEquations& equations, Diagnostics& diagn
                     "Look for a division by zero, or a logarithm or a root of a negative number.");
 }
 
-/// Where a value of smooth elements is looked at beside its place, in widths of the first mesh's cells: the error
-/// inside an element goes through zero several times.
+/// Where a value of smooth elements, or of a wave with a jump in it, is looked at beside its place, in widths of the
+/// first mesh's cells: the error inside an element goes through zero several times, and two meshes agree by chance.
 constexpr double beside[] = {-1, -0.7, -0.4, 0.4, 0.7, 1};
 
 struct OneRun {
@@ -290,7 +291,7 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
         out.answers[i] = mesh.answer(questions[i]);
         out.near[i].clear();
         for (const double shift : beside)
-          if (!method.is_wave() && !questions[i].total)
+          if (method.width() > 0 && !questions[i].total)
             out.near[i].push_back(mesh.answer_beside(questions[i], shift * method.width()));
       }
     if (!rows.empty() && (out.trajectory.times.empty() || mesh.time() > out.trajectory.times.back()))
@@ -318,14 +319,30 @@ Cells divided(const Cells& cells, int parts) {
   return out;
 }
 
-/// Whether a mesh follows the start: not where it has jumps or kinks, and in part where it is too coarse.
-enum class Rough { No, Coarse, Breaks };
+/// Whether a mesh follows the start: not where it has jumps or kinks, in part where it is too coarse, and by a lower
+/// power of its cells where a derivative of the order `jump` runs in from a side that the start does not fit.
+struct Rough {
+  enum { No, Coarse, Breaks } how = No;
+  std::optional<int> jump;
+};
+
+Rough roughness_of_start(const FieldEquations& equations, const FieldMethod& method, const Cells& cells, double begin,
+                         Diagnostics& diagnostics) {
+  Rough out;
+  if (method.is_wave()) out.jump = jump_from_sides(equations, begin);
+  if (warn_of_breaks(equations, cells, diagnostics) || (out.jump && *out.jump <= 1))
+    out.how = Rough::Breaks;
+  else if (is_coarse_for_start(equations, method, cells, diagnostics))
+    out.how = Rough::Coarse;
+  return out;
+}
 
 /// The other meshes, and how far off the answers on the first are.
 ///
 /// Meshes and their steps are off by a power of the width of a cell, but never by less than rounding. Where a third
-/// mesh shows that the difference falls more slowly, by that; where the start breaks, by the first power. Where the
-/// mesh follows the start in part alone, a mesh of twice the cells tells what both others miss.
+/// mesh shows that the difference falls more slowly, by that; where the start breaks, by the first power; where it does
+/// not fit a side, by that of the derivative that jumps, and twice the difference counts. Where the mesh follows the
+/// start in part alone, a mesh of twice the cells tells what both others miss.
 std::vector<double> errors_of(const OneRun& fine, const FieldEquations& equations, FieldMethod& method,
                               const Cells& cells, const std::vector<FieldQuestion>& questions,
                               const FieldRunOptions& options, Rough start, Diagnostics& diagnostics) {
@@ -339,7 +356,7 @@ std::vector<double> errors_of(const OneRun& fine, const FieldEquations& equation
   if (!method.is_wave() && cells[0] >= 4)
     coarser = run_on(equations, method, quarter, questions, options, {}, false, ignored);
   std::optional<OneRun> finer;
-  if (start != Rough::No) {
+  if (start.how != Rough::No) {
     Cells twice = cells;
     for (int& n : twice) n *= 2;
     finer = run_on(equations, method, twice, questions, options, {}, false, diagnostics);
@@ -350,7 +367,8 @@ std::vector<double> errors_of(const OneRun& fine, const FieldEquations& equation
     if (cells[i] > 1) ratio = std::min(ratio, static_cast<double>(cells[i]) / half[i]);
   const double rounding = 2.2e-16 * std::sqrt(static_cast<double>(fine.steps) + 1);
   for (std::size_t i = 0; i < questions.size(); ++i) {
-    double gain = start == Rough::Breaks ? 2 : std::pow(ratio, method.power(equations, questions[i], half));
+    double gain = start.how == Rough::Breaks ? 2 : std::pow(ratio, method.power(equations, questions[i], half));
+    if (start.jump && *start.jump > 1) gain = std::min(gain, (std::pow(ratio, *start.jump) + 1) / 2);
     if (!method.is_wave()) {
       const double seen = coarser ? difference(*coarser, *coarse, i) / difference(*coarse, fine, i) : 2;
       gain = std::isfinite(seen) ? std::min(gain, std::max(seen, 2.0)) : gain;
@@ -379,9 +397,11 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   }
   if (refuse_large_mesh(equations, *method, cells, diagnostics)) return std::nullopt;
   if (refuse_unresolved(equations, even_borders(equations, cells), method->order(), diagnostics)) return std::nullopt;
-  const Rough start = warn_of_breaks(equations, cells, diagnostics)                 ? Rough::Breaks
-                      : is_coarse_for_start(equations, *method, cells, diagnostics) ? Rough::Coarse
-                                                                                    : Rough::No;
+  const Rough start = roughness_of_start(equations, *method, cells, options.begin, diagnostics);
+  if (start.jump) {
+    const std::vector<double> borders = even_borders(equations, cells).front();
+    method->look_beside(borders[1] - borders[0]);
+  }
   std::vector<std::vector<double>> rows;
   if (options.trajectory) rows = places_of_rows(equations, cells, options.least_values);
   auto fine = run_on(equations, *method, cells, questions, options, rows, true, diagnostics);

@@ -22,6 +22,7 @@ using Side = BoundaryCondition::Side;
 FieldSystem& fields_of(Elaboration& e) { return e.fields->system; }
 
 bool is_mechanics(const syntax::Statement& s) {
+  if (const auto* run = std::get_if<syntax::RunStatement>(&s.body)) return run->until_left != nullptr;
   return std::get_if<syntax::CoordStatement>(&s.body) || std::get_if<syntax::FrameStatement>(&s.body) ||
          std::get_if<syntax::PointStatement>(&s.body) || std::get_if<syntax::BodyStatement>(&s.body) ||
          std::get_if<syntax::GravityStatement>(&s.body) || std::get_if<syntax::SpringStatement>(&s.body) ||

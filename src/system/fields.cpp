@@ -93,6 +93,10 @@ void declare_space(Elaboration& e, const FieldDeclaration& s) {
   for (const syntax::Name& x : s.items.front().variables) {
     Declaration* d = e.table.find(x.text);
     if (!d || d->kind != Kind::Space) continue;
+    if (std::any_of(system.space.begin(), system.space.end(), [&](const auto& one) { return one.name == x.text; })) {
+      e.diagnostics.error("E0202", x.span, fmt::format("`{}` is declared twice", x.text),
+                          "It is a space variable of this field already.", "Give one of them another name.");
+    }
     system.space.push_back(
         {x.text, e.context.symbol(x.text, Role::Auxiliary), e.dimension(dimensions::length()), {}, {}, 0, x.span});
   }
@@ -214,8 +218,22 @@ Dimension density_dimension(Elaboration& e) {
   return out;
 }
 
-/// E0282, E0283 for what a density cannot hold; `time` and `space`: derivatives that it may hold.
+/// E0299 for a value at a place, which would act on every piece of the field at once.
+bool refuse_values_at_places(Elaboration& e, Expr value, const Expression& x) {
+  const std::vector<Expr> symbols = symbols_of({&value, 1});
+  for (const PlaceValue& place : e.fields->places) {
+    if (std::find(symbols.begin(), symbols.end(), place.symbol) == symbols.end()) continue;
+    e.diagnostics.error("E0299", x.span, fmt::format("`{}` stands in a density", e.texts.slice(place.span)),
+                        "A density is local: what it says of a piece of space is the field there.",
+                        "Values at places stand in T, V, L, D, constraints and forces at places.");
+    return true;
+  }
+  return false;
+}
+
+/// E0282, E0283 and E0299 for what a density cannot hold; `time` and `space`: derivatives that it may hold.
 bool check_jets(Elaboration& e, Expr value, const Expression& x, int time, int space) {
+  if (refuse_values_at_places(e, value, x)) return false;
   for (const Expr& symbol : system_of(e).jets_in(value)) {
     const FieldJet jet = *system_of(e).jet_of(symbol);
     if (system_of(e).fields[jet.field].given) continue;
@@ -326,6 +344,12 @@ Expr boundary_value(Elaboration& e, const Expression& x, const Dimension& dimens
   return {};
 }
 
+/// A formula of x, as it is on the side across x.
+Expr on_side(const FieldSystem& system, Expr value, Side side) {
+  const SpaceVariable& x = system.space[side == Side::Left || side == Side::Right ? 0 : 1];
+  return substitute(value, {{x.symbol, side == Side::Right || side == Side::Top ? x.to : x.from}});
+}
+
 /// u = 0, u_x = 0 at one side
 void condition_at(Elaboration& e, Side side, const syntax::Equation& s) {
   FieldSystem& system = system_of(e);
@@ -340,8 +364,9 @@ void condition_at(Elaboration& e, Side side, const syntax::Equation& s) {
         "`maup derive` shows the natural conditions.");
     return;
   }
-  const Expr value = boundary_value(e, *s.right, system.dimension_of(*jet), "a value at the boundary");
+  Expr value = boundary_value(e, *s.right, system.dimension_of(*jet), "a value at the boundary");
   if (!value) return;
+  value = on_side(system, value, side);
   for (const BoundaryCondition& other : system.boundary) {
     if (other.side != side || other.jet.field != jet->field || other.jet.order() != jet->order()) continue;
     e.diagnostics.error(
@@ -462,7 +487,8 @@ void force_at_place(Elaboration& e, const syntax::FieldForce& s, const FieldJet&
   }
   const Dimension dimension = e.dimension(dimensions::energy()) / system.dimension_of(jet);
   const Expr value = boundary_value(e, *s.value, dimension, "a force at an end");
-  if (value) system.end_forces.push_back({std::abs(at - a) <= near ? Side::Left : Side::Right, jet, value, span});
+  const Side side = std::abs(at - a) <= near ? Side::Left : Side::Right;
+  if (value) system.end_forces.push_back({side, jet, on_side(system, value, side), span});
 }
 
 void forces(Elaboration& e) {

@@ -1,0 +1,124 @@
+#include "fields/start_fit.hpp"
+
+#include <maupertuis/evaluate.hpp>
+
+#include "fields/field_sides.hpp"
+#include "fields/given_fields.hpp"
+#include "fields/on_shell.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace maupertuis {
+namespace {
+
+using Side = BoundaryCondition::Side;
+
+constexpr int most_times = 3;   // differentiated by t
+constexpr double small = 1e-8;  // beside what the expression has inside
+
+/// jets = given at a side; `order` of the derivative that jumps if it does not hold.
+struct SideCondition {
+  Side side;
+  Expr jets, given;
+  int order;
+};
+
+std::vector<SideCondition> conditions_of(const FieldEquations& equations) {
+  const FieldSystem& s = equations.system();
+  std::vector<SideCondition> out;
+  for (const BoundaryCondition& b : s.boundary)
+    out.push_back({b.side, s.jet_symbol(b.jet), s.expanded(b.value), b.jet.order()});
+  for (const NaturalCondition& n : equations.natural)
+    for (const Side side : sides_across(n.along)) {
+      if (n.moment || is_given(s, n, side)) continue;
+      Expr force = s.context->number(0);  // p + F = 0 on the right, −p + F = 0 on the left
+      for (const EndForce& f : s.end_forces)
+        if (f.side == side && f.jet.field == n.field && f.jet.order() == 0)
+          force = side == Side::Left ? force + s.expanded(f.value) : force - s.expanded(f.value);
+      out.push_back({side, n.value, force, 1});
+    }
+  return out;
+}
+
+class Start {
+ public:
+  Start(const FieldEquations& equations, double begin) : equations_(equations), s_(equations.system()) {
+    for (const Parameter& p : equations.model->parameters) values_[p.symbol] = p.si_value;
+    values_[s_.context->time()] = begin;
+    for (const SpaceVariable& x : s_.space) {
+      from_.push_back(evaluate(s_.expanded(x.from), values_));
+      width_.push_back(evaluate(s_.expanded(x.to), values_) - from_.back());
+    }
+  }
+
+  /// Jets of at most one derivative in time as functions of space; nothing where others stand in e.
+  std::optional<Expr> inserted(Expr e) const {
+    e = with_given_fields(s_, e);
+    ExprMap map;
+    for (const Expr& symbol : s_.jets_in(e)) {
+      const FieldJet jet = *s_.jet_of(symbol);
+      if (jet.time > 1) return std::nullopt;
+      Expr value = s_.context->number(0);
+      for (const FieldStart& one : equations_.model->start)
+        if (one.field == jet.field && one.order == jet.time) value = s_.expanded(one.value);
+      for (std::size_t x = 0; x < s_.space.size(); ++x)
+        for (int k = 0; k < jet.space[x]; ++k) value = differentiate(value, s_.space[x].symbol);
+      map[symbol] = value;
+    }
+    return s_.expanded(substitute(e, map));
+  }
+
+  bool fits(const SideCondition& c, Expr jets) const {
+    const std::size_t across = c.side == Side::Left || c.side == Side::Right ? 0 : 1;
+    const double at = c.side == Side::Right || c.side == Side::Top ? 1 : 0;
+    double size = 0, off = 0;
+    for (const double along : {0.23, 0.37, 0.71}) {
+      const double given = value(c.given, across, at, along);
+      off = std::max(off, std::abs(value(jets, across, at, along) - given));
+      size = std::max(size, std::abs(given));
+      for (const double inside : {0.07, 0.19, 0.31, 0.47, 0.63, 0.78, 0.91})
+        size = std::max(size, std::abs(value(jets, across, inside, along)));
+    }
+    return !(off > small * size);
+  }
+
+ private:
+  /// At shares of the domain across the side and along it.
+  double value(Expr e, std::size_t across, double at, double along) const {
+    Bindings values = values_;
+    for (std::size_t x = 0; x < s_.space.size(); ++x)
+      values[s_.space[x].symbol] = from_[x] + width_[x] * (x == across ? at : along);
+    return evaluate(e, values);
+  }
+
+  const FieldEquations& equations_;
+  const FieldSystem& s_;
+  Bindings values_;
+  std::vector<double> from_, width_;
+};
+
+}  // namespace
+
+std::optional<int> jump_from_sides(const FieldEquations& equations, double begin) {
+  const FieldSystem& s = equations.system();
+  if (s.periodic || !s.space.front().from) return std::nullopt;
+  const Start start(equations, begin);
+  const OnShell shell(equations);
+  std::optional<int> out;
+  for (SideCondition c : conditions_of(equations))
+    for (int k = 0; k <= most_times && (!out || c.order < *out); ++k, ++c.order) {
+      const auto reduced = shell.reduced(c.jets);
+      const auto jets = reduced ? start.inserted(*reduced) : std::nullopt;
+      if (!jets) break;
+      if (!start.fits(c, *jets)) {
+        out = c.order;
+        break;
+      }
+      c.jets = s.total_derivative(*reduced, s.space.size());
+      c.given = total_time_derivative(c.given);
+    }
+  return out;
+}
+
+}  // namespace maupertuis

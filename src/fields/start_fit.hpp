@@ -1,0 +1,17 @@
+#pragma once
+#include <maupertuis/fields.hpp>
+
+#include <optional>
+
+namespace maupertuis {
+
+/// Which derivative of a wave jumps where the start does not fit the sides of its domain, and where the jump runs in:
+/// 0 the field itself, 1 its slope, …; nothing up to the fourth.
+///
+/// φ = g at a side asks for D_t^k (φ − g) = 0 at the start for every k, the derivatives in time beyond the first being
+/// those that the equations say; a natural side for D_t^k (p + F) = 0. u = x (1 − x) between held ends has u'' = −2 at
+/// both, where nothing moves: its curvature jumps. Meshes gain by halving their cells what that derivative lets them.
+/// At the first k that does not hold beside what the same expression has inside. Cost: milliseconds.
+std::optional<int> jump_from_sides(const FieldEquations& equations, double begin);
+
+}  // namespace maupertuis
