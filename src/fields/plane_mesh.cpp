@@ -54,10 +54,39 @@ MAUP_LANES void sum_series(double* __restrict u, double* __restrict v, const dou
   }
 }
 
+/// max |a|
+MAUP_LANES double largest(const double* __restrict a, std::size_t n) {
+  Lanes most = {};
+  std::size_t i = 0;
+  for (; i + kWide <= n; i += kWide) {
+    const Lanes value = lanes_at(a + i), size = value < 0.0 ? -value : value;
+    most = size > most ? size : most;
+  }
+  double out = 0;
+  for (std::size_t k = 0; k < kWide; ++k) out = std::max(out, most[k]);
+  for (; i < n; ++i) out = std::max(out, std::abs(a[i]));
+  return out;
+}
+
 std::vector<Expr> roots_of(const PointForm& form) {
   std::vector<Expr> roots;
   for (const auto* part : {&form.a, &form.g, &form.s}) roots.insert(roots.end(), part->begin(), part->end());
   return roots;
+}
+
+/// A product without its constants, whose product is `factor`: that goes into the scale of slopes.
+Expr without_constants(Expr e, const std::unordered_map<Expr, double, ExprHash>& constants, double& factor) {
+  factor = 1;
+  if (!e.is(Kind::Product)) return e;
+  std::vector<Expr> rest;
+  for (std::size_t i = 0; i < e.size(); ++i)
+    if (const auto known = constants.find(e[i]); known != constants.end())
+      factor *= known->second;
+    else if (e[i].is_number())
+      factor *= e[i].number().to_double();
+    else
+      rest.push_back(e[i]);
+  return e.context().product(rest);
 }
 
 /// φ, the places and t keep their past: the mesh writes and reads it.
@@ -86,7 +115,11 @@ PlaneMesh::PlaneMesh(const FieldEquations& equations, const PointForm& form, int
   }
   line_ = points() * cells(), lanes_ = points() * line_;
   slopes_.emplace(rule_);
-  const std::vector<Expr> roots = roots_of(form), sizes{form.energy};
+  std::vector<Expr> roots = roots_of(form);
+  const std::vector<Expr> sizes{form.energy};
+  stress_scale_.resize(form.s.size());
+  for (std::size_t i = 0; i < form.s.size(); ++i)
+    roots[roots.size() - form.s.size() + i] = without_constants(form.s[i], constants, stress_scale_[i]);
   auto series = LaneSeries::make(roots, form.inputs, constants, trouble_);
   auto energies = LaneSeries::make(sizes, form.inputs, constants, trouble_);
   if (!series || !energies) return;
@@ -96,6 +129,7 @@ PlaneMesh::PlaneMesh(const FieldEquations& equations, const PointForm& form, int
     for (const std::size_t i : {RateX, RateY})
       uses_rate_ = uses_rate_ || stands_in_any(roots, form.inputs[kInputs * f + i]);
   }
+  uses_time_ = stands_in_any(roots, s_.context->time());
   series_.keep(inputs_with_a_past(fields_), form.a.size());
   series_.resize(lanes_, kOrder + 2, rows());
   energies_.resize(lanes_, 1);
@@ -201,7 +235,7 @@ void PlaneMesh::each_held(const Held& held, std::size_t row, std::size_t k, std:
 }
 
 void PlaneMesh::start() {
-  u_.assign(fields_, Rows(lanes_ * rows(), 0)), v_ = u_;
+  u_.assign(fields_, Rows(lanes_ * rows(), 0)), v_ = next_u_ = next_v_ = u_;
   for (const FieldStart& start : equations_.model->start) {
     std::size_t a = 0;
     while (equations_.varied[a] != start.field) ++a;
@@ -258,7 +292,8 @@ void PlaneMesh::prepare(std::size_t k) {
     scale_into(series_.input(i + Velocity, k), phi(f, k + 1), static_cast<double>(k + 1), lanes_);
     if (uses_rate_) slopes(series_.input(i + RateX, k), series_.input(i + RateY, k), series_.input(i + Velocity, k));
   }
-  if (k < 2) std::fill_n(series_.input(kInputs * fields_ + 2, k), lanes_, k == 0 ? t_ : 1.0);  // the rest of t is 0
+  if (uses_time_ && k < 2)  // the rest of t is 0
+    std::fill_n(series_.input(kInputs * fields_ + 2, k), lanes_, k == 0 ? t_ : 1.0);
 }
 
 /// The nodes that neighbours in a row have in common take the mean of both.
@@ -302,18 +337,18 @@ void PlaneMesh::masses(std::size_t row) {
 /// −A φ'' of coefficient k, element by element: g + ∂_x s_x + ∂_y s_y and the sides.
 void PlaneMesh::force(std::size_t f, std::size_t row, std::size_t k) {
   const std::size_t pairs = fields_ * fields_, g = pairs + f, n = cells(), last = points() - 1;
+  const double scale_x = 2 / axes_[0].width * stress_scale_[f],
+               scale_y = 2 / axes_[1].width * stress_scale_[fields_ + f];
   double* out = force_.data() + f * lanes_;
   const double* base = series_.number_root(g) == 0.0 ? nullptr : series_.root(g, k);
-  const double end_weight = 2 / rule_.w[0];
   if (const std::size_t r = g + fields_; !series_.number_root(r)) {
     const double* s = series_.root(r, k);
     for (std::size_t j = 0; j <= last; ++j)
-      slopes_->apply(other_.data() + j * line_, base ? base + j * line_ : nullptr, s + j * line_, 2 / axes_[0].width, n,
-                     n);
+      slopes_->apply(other_.data() + j * line_, base ? base + j * line_ : nullptr, s + j * line_, scale_x, n, n);
     base = other_.data();
   }
   if (const std::size_t r = g + 2 * fields_; !series_.number_root(r)) {
-    slopes_->apply(out, base, series_.root(r, k), 2 / axes_[1].width, line_, line_);
+    slopes_->apply(out, base, series_.root(r, k), scale_y, line_, line_);
   } else if (base) {
     std::copy_n(base, lanes_, out);
   } else {
@@ -322,13 +357,13 @@ void PlaneMesh::force(std::size_t f, std::size_t row, std::size_t k) {
   if (const std::size_t r = g + fields_; series_.number_root(r) != 0.0)
     for (std::size_t j = 0; j <= last; ++j) {
       const double* s = series_.root(r, k) + j * line_;
-      add_scaled(out + j * line_, s, end_weight / axes_[0].width, n);
-      add_scaled(out + (j + 1) * line_ - n, s + line_ - n, -end_weight / axes_[0].width, n);
+      add_scaled(out + j * line_, s, scale_x / rule_.w[0], n);
+      add_scaled(out + (j + 1) * line_ - n, s + line_ - n, -scale_x / rule_.w[0], n);
     }
   if (const std::size_t r = g + 2 * fields_; series_.number_root(r) != 0.0) {
     const double* s = series_.root(r, k);
-    add_scaled(out, s, end_weight / axes_[1].width, line_);
-    add_scaled(out + last * line_, s + last * line_, -end_weight / axes_[1].width, line_);
+    add_scaled(out, s, scale_y / rule_.w[0], line_);
+    add_scaled(out + last * line_, s + last * line_, -scale_y / rule_.w[0], line_);
   }
   for (std::size_t o = 0; o < fields_ && !form_.constant_mass; ++o)
     for (std::size_t i = 1; i <= k; ++i)
@@ -337,7 +372,7 @@ void PlaneMesh::force(std::size_t f, std::size_t row, std::size_t k) {
   for (const Held& held : held_) {
     if (!held.force || held.field != f) continue;
     const bool across = held.side == Side::Left || held.side == Side::Right;
-    const double factor = end_weight / axes_[across ? 0 : 1].width;
+    const double factor = 2 / rule_.w[0] / axes_[across ? 0 : 1].width;
     each_held(held, row, k, 0, points(), [&](std::size_t lane, double value) { out[lane] -= factor * value; });
   }
   share_columns(out);
@@ -408,19 +443,17 @@ void PlaneMesh::sweep(std::size_t orders, const std::function<void(std::size_t r
   }
 }
 
-/// The sum of the series after h. The last term beside the field: what is too long for the series is found afterwards,
-/// since a row's coefficients are gone when the next is there.
+/// The sum of the series after h, as the next values. The last term beside the field: what is too long for the series
+/// is found afterwards, since a row's coefficients are gone when the next is there.
 double PlaneMesh::advance(double h) {
   std::vector<double> size(fields_, 0), last(fields_, 0);
-  const auto take = [&](double& to, const double* c, double factor) {
-    for (std::size_t n = 0; n < lanes_; ++n) to = std::max(to, std::abs(c[n]) * factor);
-  };
+  const double power = std::pow(h, static_cast<double>(kOrder));
   sweep(kOrder, [&](std::size_t row) {
     series_.select(row);
     for (std::size_t f = 0; f < fields_; ++f) {
-      take(size[f], phi(f, 0), 1), take(size[f], phi(f, 1), h);
-      take(last[f], phi(f, kOrder), std::pow(h, static_cast<double>(kOrder)));
-      sum_series(u_[f].data() + row * lanes_, v_[f].data() + row * lanes_, phi(f, 0), h, lanes_);
+      size[f] = std::max({size[f], largest(phi(f, 0), lanes_), h * largest(phi(f, 1), lanes_)});
+      last[f] = std::max(last[f], power * largest(phi(f, kOrder), lanes_));
+      sum_series(next_u_[f].data() + row * lanes_, next_v_[f].data() + row * lanes_, phi(f, 0), h, lanes_);
     }
   });
   constexpr double at_rest = 1e-30;
@@ -433,19 +466,18 @@ double PlaneMesh::advance(double h) {
 bool PlaneMesh::step(double h) {
   constexpr double least = 1e-12, most = 1e-8, room = 4, shortest = 1e-7;
   for (double left = h; left > 0 && trouble_.empty();) {
-    const std::vector<Rows> u = u_, v = v_;
     double tau = left;
     const double ratio = advance(tau);
     if (!allowed_) allowed_ = std::clamp(room * ratio, least, most);
     if (ratio > *allowed_) {
       tau *= std::pow(*allowed_ / ratio, 1.0 / static_cast<double>(kOrder));
-      u_ = u, v_ = v;
       ++further_steps_;
       if (tau > shortest * h)
         advance(tau);
       else
         trouble_ = "step";
     }
+    std::swap(u_, next_u_), std::swap(v_, next_v_);
     t_ += tau;
     left = tau < left ? left - tau : 0;
     for (std::size_t f = 0; f < fields_; ++f)

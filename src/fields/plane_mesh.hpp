@@ -84,14 +84,15 @@ class PlaneMesh final : public WaveMesh {
   Lobatto rule_;
   std::optional<EvenOddSlopes> slopes_;
   LaneSeries series_, energies_;
-  bool uses_velocity_ = false, uses_rate_ = false;
-  std::vector<Rows> u_, v_;                   // [fields]
-  std::optional<double> allowed_;             // of the last term of the series beside the field
-  std::vector<double> force_, other_;         // of one row: [fields × lanes], [lanes]
-  std::vector<std::vector<double>> pending_;  // [orders] the last line of the row before, [fields × line]
-  std::vector<std::vector<double>> first_;    // the same of the first line, where the plane is periodic
-  std::vector<double> scalar_inverse_;        // of A where it is a matrix of numbers, [fields²]
-  std::vector<double> inverse_;               // else [rows][fields² × lanes]
+  std::vector<double> stress_scale_;  // [directions × fields] constant factors of s, which its roots are without
+  bool uses_time_ = false, uses_velocity_ = false, uses_rate_ = false;
+  std::vector<Rows> u_, v_, next_u_, next_v_;  // [fields]
+  std::optional<double> allowed_;              // of the last term of the series beside the field
+  std::vector<double> force_, other_;          // of one row: [fields × lanes], [lanes]
+  std::vector<std::vector<double>> pending_;   // [orders] the last line of the row before, [fields × line]
+  std::vector<std::vector<double>> first_;     // the same of the first line, where the plane is periodic
+  std::vector<double> scalar_inverse_;         // of A where it is a matrix of numbers, [fields²]
+  std::vector<double> inverse_;                // else [rows][fields² × lanes]
   std::vector<double> a_pending_, a_first_, a_;
   bool mass_known_ = false;
   std::vector<Held> held_;

@@ -63,14 +63,21 @@ struct Elements {
   /// The polynomial through the values at the nodes.
   double between(const std::vector<double>& values, const Box& box, const Place& at) const {
     std::vector<std::vector<double>> factor(directions());
+    std::vector<const double*> lagrange;
     std::vector<double> slope;
-    for (std::size_t i = 0; i < directions(); ++i)
+    for (std::size_t i = 0; i < directions(); ++i) {
       rule.at(2 * (at[i] - box.corner[i]) / box.width[i] - 1, factor[i], slope);
+      lagrange.push_back(factor[i].data());
+    }
+    return between(values, lagrange);
+  }
+  /// Where Lagrange's polynomials have these values along each direction.
+  double between(const std::vector<double>& values, const std::vector<const double*>& lagrange) const {
     double sum = 0;
     for (std::size_t n = 0; n < values.size(); ++n) {
       double product = values[n];
       for (std::size_t i = 0, rest = n; i < directions(); ++i, rest /= rule.x.size())
-        product *= factor[i][rest % rule.x.size()];
+        product *= lagrange[i][rest % rule.x.size()];
       sum += product;
     }
     return sum;
@@ -97,6 +104,10 @@ class Scan {
     constexpr std::size_t looks = 13;  // in an element, along each direction
     std::size_t in_all = 1;
     for (std::size_t i = 0; i < mesh.directions(); ++i) in_all *= looks;
+    const auto share = [](std::size_t look) { return (static_cast<double>(look) + 0.5) / looks; };
+    std::vector<double> lagrange[looks], slope;
+    for (std::size_t look = 0; look < looks; ++look) mesh.rule.at(2 * share(look) - 1, lagrange[look], slope);
+    std::vector<const double*> here(mesh.directions());
     double worst = 0, size = 0;
     for (std::size_t e = 0; e < mesh.count(); ++e) {
       const Box box = mesh.box(e);
@@ -104,10 +115,10 @@ class Scan {
       for (std::size_t k = 0; k < in_all; ++k) {
         Place x = box.corner;
         for (std::size_t i = 0, rest = k; i < x.size(); ++i, rest /= looks)
-          x[i] += box.width[i] * (static_cast<double>(rest % looks) + 0.5) / looks;
+          x[i] += box.width[i] * share(rest % looks), here[i] = lagrange[rest % looks].data();
         const double f = at(x);
         size = std::max(size, std::abs(f));
-        worst = std::max(worst, std::abs(f - mesh.between(nodes, box, x)));
+        worst = std::max(worst, std::abs(f - mesh.between(nodes, here)));
       }
     }
     return size > 0 ? worst / size : 0;
