@@ -59,7 +59,7 @@ std::optional<CoupledRun> run_once(const SemiDiscrete& mesh, const std::vector<F
   if (!equations) return std::nullopt;
   SimulationOptions settings;
   settings.at = times_of(questions);
-  if (settings.at.empty()) settings.at.push_back(options.duration);
+  if (settings.at.empty()) settings.at.push_back(options.begin + options.duration);
   if (options.duration > 0) settings.duration = options.duration;
   if (options.every > 0) settings.output_every = options.every;
   settings.errors = ErrorEstimates::None;

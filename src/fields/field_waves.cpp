@@ -96,6 +96,11 @@ std::optional<ComplexExpr> dispersion(const FieldEquations& equations, std::stri
     return std::nullopt;
   }
   const ComplexExpr relation = determinant(rows, context);
+  const Expr parts[] = {s.expanded(relation.re), s.expanded(relation.im)};
+  if (zero_test(parts).verdict == Verdict::Zero) {
+    trouble = "The equations are not independent: part of the fields is free, a gauge, and goes with any wave.";
+    return std::nullopt;
+  }
   const auto begins_with_minus = [&](Expr e) {
     return to_plain(field_layout(s, lay_out(readable(e, equations.order), equations.order))).front() == '-';
   };

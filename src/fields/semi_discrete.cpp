@@ -219,6 +219,8 @@ Expr SemiDiscrete::constant(double value) const {
   return equations_->system().context->number(Rational::from_double(value));
 }
 
+double SemiDiscrete::begin() const { return model_.experiment.start_time ? number(model_.experiment.start_time) : 0; }
+
 double SemiDiscrete::number(Expr e) const { return evaluate(equations_->system().expanded(e), numbers_); }
 
 Expr SemiDiscrete::combination(std::size_t a, const std::vector<ElementSpace::Part>& parts, int by_space,
@@ -406,7 +408,7 @@ std::vector<double> projected(const ElementSpace& space, const std::vector<doubl
 bool SemiDiscrete::set_start(Diagnostics& diagnostics) {
   const FieldSystem& s = equations_->system();
   Bindings at_start = numbers_;
-  at_start[s.context->time()] = 0;
+  at_start[s.context->time()] = begin();
   for (std::size_t a = 0; a < spaces_.size(); ++a)
     for (int order = 0; order < 2; ++order) {
       Expr start = s.context->number(0);
@@ -594,7 +596,7 @@ bool SemiDiscrete::follow(const PlaceCoordinate& p, Diagnostics& diagnostics) {
   const double a = mesh_.borders.front(), b = mesh_.borders.back(), rounding = 1e-12 * (b - a);
   const Expr x = s.expanded(p.place), inside = (x - constant(a - rounding)) * (constant(b + rounding) - x);
   Bindings at_start = numbers_;
-  at_start[s.context->time()] = model_.experiment.start_time ? number(model_.experiment.start_time) : 0;
+  at_start[s.context->time()] = begin();
   for (const Coordinate& c : model_.system.coordinates) at_start[c.q] = 0;
   for (const StartValue& v : model_.experiment.start)
     if (v.order == 0) at_start[model_.system.coordinates[v.coordinate].q] = number(v.value);

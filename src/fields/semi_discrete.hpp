@@ -74,6 +74,7 @@ class SemiDiscrete {
   Expr integral(Expr density) const;
   void generalized_force(std::size_t a, std::size_t dof, Expr force, Span span);
   double number(Expr e) const;
+  double begin() const;  // of the run, s
 
   Model model_;
   const FieldEquations* equations_;

@@ -567,3 +567,24 @@ TEST_CASE("a bead that slides on a beam: its equation, energy, and the same bead
   REQUIRE(verification);
   CHECK(verification->passed());
 }
+
+TEST_CASE("fields with bodies begin at the moment of the model: the same motion by a clock that is late") {
+  const std::string rest =
+      "density = 1/2 u'^2 - 1/2 u_x^2\nT = 0.2 u(1)'^2\nstart u = sin(1) (1 - x), u' = 2 cos(1) (1 - x)\n";
+  const std::string domain = "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 4 order 8\nboundary left : u = ";
+  double found[2];
+  for (const bool late : {false, true}) {
+    Study study = coupled_study(domain + (late ? "sin(2 t)\n" : "sin(2 t + 1)\n") + rest +
+                                (late ? "start at 0.5\nrun 0.4\n" : "run 0.4\n"));
+    REQUIRE(study.field_equations());
+    FieldRunOptions options;
+    options.begin = late ? 0.5 : 0, options.duration = 0.4;
+    Diagnostics diagnostics;
+    const auto run = run_coupled(*study.model(), *study.field_equations(), {}, options, diagnostics);
+    REQUIRE(run);
+    CHECK(diagnostics.items().empty());  // the start fits the side at its own moment
+    REQUIRE(run->final_coordinates.size() == 1);
+    found[late] = run->final_coordinates[0].q;
+  }
+  CHECK(found[0] == doctest::Approx(found[1]).epsilon(1e-12));
+}
