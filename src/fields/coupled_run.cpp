@@ -3,9 +3,11 @@
 #include <maupertuis/repeated_evaluation.hpp>
 
 #include "fields/breaks.hpp"
+#include "fields/density_form.hpp"
 #include "fields/field_sides.hpp"
 #include "fields/resolution.hpp"
 #include "fields/semi_discrete.hpp"
+#include "fields/start_fit.hpp"
 
 #include <fmt/format.h>
 
@@ -182,6 +184,21 @@ std::vector<double> errors_of(const CoupledRun& fine, const std::optional<Couple
   return out;
 }
 
+/// What halving the elements gains at least beside a break; 0 where there is none. A plucked string and one under a
+/// moving load have kinks, a beam under a load a jump of its third derivative; of waves without bodies at their ends a
+/// higher derivative may jump where the start does not fit them.
+double gain_at_breaks(const FieldEquations& equations, const SemiDiscrete& mesh, bool start_breaks, double begin) {
+  constexpr double of_kinks = 2, of_loads_on_beams = 8;
+  const std::vector<PlaceCoordinate>& places = equations.model->attached;
+  if (start_breaks) return of_kinks;
+  if (!mesh.departures().empty()) return mesh.bends() ? of_loads_on_beams : of_kinks;
+  const bool held = std::any_of(places.begin(), places.end(), [](const PlaceCoordinate& p) { return p.end; });
+  if (held || needs_collocation(equations)) return 0;
+  const std::optional<int> jump = jump_from_sides(equations, begin);
+  if (jump && *jump <= 1) return of_kinks;
+  return jump ? std::pow(2.0, *jump + 1) : 0;
+}
+
 /// Whether forces or what changes in time feed the bodies, or friction takes from them.
 bool bodies_are_forced(const FieldEquations& equations) {
   if (!equations.bodies) return false;
@@ -275,10 +292,9 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
     };
     half = coarser(2), quarter = coarser(4);
   }
-  // A plucked string and one under a moving load have kinks; a beam under a load has a jump of its third derivative.
-  const double gain = breaks ? 2 : mesh->departures().empty() ? 0 : mesh->bends() ? 8 : 2;
+  const double gain = gain_at_breaks(equations, *mesh, breaks, options.begin);
   std::vector<double> errors = errors_of(*fine, half, quarter, gain);
-  if (!mesh->departures().empty())
+  if (gain > 0 && !breaks)
     for (double& e : errors) e *= 2;
   const double rounding = 2.2e-16 * std::sqrt(static_cast<double>(out.steps) + 1);
   for (std::size_t i = 0; i < questions.size(); ++i)

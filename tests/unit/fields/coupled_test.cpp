@@ -588,3 +588,24 @@ TEST_CASE("fields with bodies begin at the moment of the model: the same motion 
   }
   CHECK(found[0] == doctest::Approx(found[1]).epsilon(1e-12));
 }
+
+TEST_CASE("a string beside an event: its estimate knows of a start that does not fit the ends") {
+  const auto exact = [](double x, double t) {  // x (1 - x) in modes
+    double sum = 0;
+    for (int n = 20001; n > 0; n -= 2)
+      sum += 8 / std::pow(n * M_PI, 3) * std::sin(n * M_PI * x) * std::cos(n * M_PI * t);
+    return sum;
+  };
+  std::string text =
+      "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 12 order 8 boundary u = 0\n"
+      "density = 1/2 u'^2 - 1/2 u_x^2\nevent high when u(0.5) = 9 : record\nstart u = x (1 - x)\n";
+  std::vector<double> expected;
+  for (const double x : {0.5, 0.25, 0.37}) {
+    text += fmt::format("expect u({}) at 0.71 = 0 ± 1\n", x);
+    expected.push_back(exact(x, 0.71));
+  }
+  Study study = coupled_study(text + "run 1\n");
+  const std::vector<FieldRunResult::Value> answers = answers_of(study);
+  check_against(answers, expected);
+  for (const FieldRunResult::Value& a : answers) CHECK(a.error < 1e-4);
+}
