@@ -371,7 +371,7 @@ TEST_CASE("internal friction pulls at the mass at the end of a bar") {
 namespace {
 
 std::vector<FieldRunResult::Value> answers_of(Study& study) {
-  REQUIRE(study.model());
+  REQUIRE(study.field_equations());
   std::vector<FieldQuestion> questions;
   double end = 0;
   for (const Expectation& e : study.model()->experiment.expectations) {
