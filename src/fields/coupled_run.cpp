@@ -194,7 +194,10 @@ double gain_at_breaks(const FieldEquations& equations, const SemiDiscrete& mesh,
   if (!mesh.departures().empty()) return mesh.bends() ? of_loads_on_beams : of_kinks;
   const bool held = std::any_of(places.begin(), places.end(), [](const PlaceCoordinate& p) { return p.end; });
   if (held || needs_collocation(equations)) return 0;
-  const std::optional<int> jump = jump_from_sides(equations, begin);
+  double spacing = 0;
+  for (std::size_t i = 1; i < mesh.borders().size(); ++i)
+    spacing = std::max(spacing, (mesh.borders()[i] - mesh.borders()[i - 1]) / mesh.order());
+  const std::optional<int> jump = jump_from_sides(equations, begin, spacing);
   if (jump && *jump <= 1) return of_kinks;
   return jump ? std::pow(2.0, *jump + 1) : 0;
 }

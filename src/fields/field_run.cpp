@@ -329,7 +329,8 @@ struct Rough {
 Rough roughness_of_start(const FieldEquations& equations, const FieldMethod& method, const Cells& cells, double begin,
                          Diagnostics& diagnostics) {
   Rough out;
-  if (method.is_wave()) out.jump = jump_from_sides(equations, begin);
+  const std::vector<double> borders = even_borders(equations, cells).front();
+  if (method.is_wave()) out.jump = jump_from_sides(equations, begin, (borders[1] - borders[0]) / method.order());
   if (warn_of_breaks(equations, cells, diagnostics) || (out.jump && *out.jump <= 1))
     out.how = Rough::Breaks;
   else if (is_coarse_for_start(equations, method, cells, diagnostics))

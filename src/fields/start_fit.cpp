@@ -8,14 +8,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace maupertuis {
 namespace {
 
 using Side = BoundaryCondition::Side;
 
-constexpr int most_times = 3;   // differentiated by t
-constexpr double small = 1e-8;  // beside what the expression has inside
+constexpr int most_times = 3;  // differentiated by t
+constexpr double rounding = 1e-12;
+constexpr double small = 1e-8;  // change of the field from node to node, beside the field
 
 /// jets = given at a side; `order` of the derivative that jumps if it does not hold.
 struct SideCondition {
@@ -69,18 +72,22 @@ class Start {
     return s_.expanded(substitute(e, map));
   }
 
-  bool fits(const SideCondition& c, Expr jets) const {
+  struct Misfit {
+    double off = 0, size = 0;  // at the side, and of both parts there and inside
+  };
+  Misfit misfit(const SideCondition& c, Expr jets) const {
     const std::size_t across = c.side == Side::Left || c.side == Side::Right ? 0 : 1;
     const double at = c.side == Side::Right || c.side == Side::Top ? 1 : 0;
-    double size = 0, off = 0;
+    Misfit out;
     for (const double along : {0.23, 0.37, 0.71}) {
       const double given = value(c.given, across, at, along);
-      off = std::max(off, std::abs(value(jets, across, at, along) - given));
-      size = std::max(size, std::abs(given));
+      out.off = std::max(out.off, std::abs(value(jets, across, at, along) - given));
+      out.size = std::max(out.size, std::abs(given));
       for (const double inside : {0.07, 0.19, 0.31, 0.47, 0.63, 0.78, 0.91})
-        size = std::max(size, std::abs(value(jets, across, inside, along)));
+        out.size = std::max(out.size, std::abs(value(jets, across, inside, along)));
     }
-    return !(off > small * size);
+    if (!(out.off > rounding * out.size)) out.off = 0;
+    return out;
   }
 
  private:
@@ -100,24 +107,28 @@ class Start {
 
 }  // namespace
 
-std::optional<int> jump_from_sides(const FieldEquations& equations, double begin) {
+std::optional<int> jump_from_sides(const FieldEquations& equations, double begin, double spacing) {
   const FieldSystem& s = equations.system();
   if (s.periodic || !s.space.front().from) return std::nullopt;
   const Start start(equations, begin);
   const OnShell shell(equations);
-  std::optional<int> out;
+  std::vector<std::pair<int, double>> jumps;
+  double size = 0;
   for (SideCondition c : conditions_of(equations))
-    for (int k = 0; k <= most_times && (!out || c.order < *out); ++k, ++c.order) {
+    for (int k = 0; k <= most_times; ++k, ++c.order) {
       const auto reduced = shell.reduced(c.jets);
       const auto jets = reduced ? start.inserted(*reduced) : std::nullopt;
       if (!jets) break;
-      if (!start.fits(c, *jets)) {
-        out = c.order;
-        break;
-      }
+      const Start::Misfit found = start.misfit(c, *jets);
+      const double unit = std::pow(spacing, c.order);
+      jumps.emplace_back(c.order, unit * found.off);
+      size = std::max(size, unit * found.size);
       c.jets = s.total_derivative(*reduced, s.space.size());
       c.given = total_time_derivative(c.given);
     }
+  std::optional<int> out;
+  for (const auto& [order, change] : jumps)
+    if (change > small * size && (!out || order < *out)) out = order;
   return out;
 }
 

@@ -11,7 +11,7 @@ namespace maupertuis {
 /// φ = g at a side asks for D_t^k (φ − g) = 0 at the start for every k, the derivatives in time beyond the first being
 /// those that the equations say; a natural side for D_t^k (p + F) = 0. u = x (1 − x) between held ends has u'' = −2 at
 /// both, where nothing moves: its curvature jumps. Meshes gain by halving their cells what that derivative lets them.
-/// At the first k that does not hold beside what the same expression has inside. Cost: milliseconds.
-std::optional<int> jump_from_sides(const FieldEquations& equations, double begin);
+/// The lowest one that counts beside the field from node to node, `spacing` apart. Cost: milliseconds.
+std::optional<int> jump_from_sides(const FieldEquations& equations, double begin, double spacing);
 
 }  // namespace maupertuis
