@@ -18,8 +18,9 @@ std::string colours(bool dark) {
   std::string css =
       dark ? "color-scheme:dark;--paper:#14161a;--figure:#1a1d22;--ink:#e8e5de;--muted:#a09c93;--grid:#2c3037;"
              "--rule:#353a42;--accent:#7cc0ee;--good:#6cc98a;--warn:#e0a040;--bad:#ff8a80;"
+             "--turned:invert(0.9) hue-rotate(180deg);"
            : "color-scheme:light;--paper:#fffdf8;--figure:#ffffff;--ink:#1d1b18;--muted:#69635a;--grid:#e8e3d8;"
-             "--rule:#dad4c6;--accent:#0b5a8a;--good:#23703a;--warn:#b06a00;--bad:#b3261e;";
+             "--rule:#dad4c6;--accent:#0b5a8a;--good:#23703a;--warn:#b06a00;--bad:#b3261e;--turned:none;";
   const auto& palette = plot_palette(dark);
   for (std::size_t i = 0; i < palette.size(); ++i) css += fmt::format("--series-{}:{};", i + 1, palette[i]);
   return css;

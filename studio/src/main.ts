@@ -12,7 +12,6 @@ import {expectationsPanel} from './panels/expectations';
 import {showMessages} from './panels/messages';
 import {MotionPanel} from './panels/motion';
 import {ValuesPanel} from './panels/values';
-import {paintMaps} from './plots/maps';
 import {PlotsPanel} from './plots/panel';
 import {initialState, type Pane, type State} from './state';
 import {Store} from './store';
@@ -58,7 +57,6 @@ new Exercises(store, study, storage, files);
 themes(storage, () => {
   for (const one of stages) one.recolour();
   plots.recolour();
-  paintMaps(document);
 });
 
 // ----------------------------------------------------------------------------------------------------------- the bar

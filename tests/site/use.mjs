@@ -101,6 +101,10 @@ async function checkModel(check, browser, open) {
     document.getElementById('film-play').textContent,
   ]);
   check('the film of a field stops', stopped[0] === true && stopped[1] === 'play', stopped);
+  const turned = () => page.evaluate(() => getComputedStyle(document.querySelector('#film > svg')).filter);
+  check('a film on light paper is as it was drawn', (await turned()) === 'none', await turned());
+  await page.click('#theme');
+  check('a film on dark paper is dark', (await turned()).startsWith('invert('), await turned());
   await page.context().close();
 }
 

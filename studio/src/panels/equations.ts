@@ -1,7 +1,6 @@
 import type {Check, Conserved, Happening, ModesAnswer, Section, Trouble} from '../contract';
 import {byId, h, prose} from '../dom';
 import {loopDrawing} from '../drawing/loop';
-import {paintMaps} from '../plots/maps';
 import type {State} from '../state';
 import type {Store} from '../store';
 import {betweenEnds, inTime, noDuration, unfinished, type Study} from '../study';
@@ -353,11 +352,7 @@ export class EquationsPanel {
   }
 
   private shape({caption, drawing, svg}: ModesAnswer['points'][number]['shapes'][number]): HTMLElement {
-    if (!drawing) {
-      const figure = h('figure', {}, h('div', {html: svg}), h('figcaption', {}, ...prose(caption)));
-      paintMaps(figure);
-      return figure;
-    }
+    if (!drawing) return h('figure', {}, h('div', {html: svg}), h('figcaption', {}, ...prose(caption)));
     const {element, stop} = loopDrawing(drawing, caption);
     this.loops.push(stop);
     return element;

@@ -6,7 +6,6 @@ import type {Store} from '../store';
 import {nearestRow} from '../study';
 import {pretty, unitText} from '../panels/words';
 import {movingFields, type MovingField} from './field';
-import {paintMaps} from './maps';
 import {Chart, type Curve} from './chart';
 
 const withUnitOf = (name: string, unit: string): string =>
@@ -89,11 +88,9 @@ export class PlotsPanel {
   }
 
   private figures(run: RunAnswer): HTMLElement[] {
-    return run.figures.map(({caption, svg}) => {
-      const figure = h('figure', {class: 'given'}, h('div', {html: svg}), h('figcaption', {}, caption));
-      paintMaps(figure);
-      return figure;
-    });
+    return run.figures.map(({caption, svg}) =>
+      h('figure', {class: 'given'}, h('div', {html: svg}), h('figcaption', {}, caption)),
+    );
   }
 
   private build(specs: ChartSpec[], run: RunAnswer): void {

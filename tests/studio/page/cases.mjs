@@ -701,7 +701,7 @@ export const cases = {
     check('two themes', themes.length === 2, themes);
     for (const theme of themes)
       for (const rule of theme.split(';').filter(Boolean))
-        check(`the page has ${rule}`, own.includes(`${rule};`), rule);
+        check(`the page has ${rule}`, own.includes(`${rule.replaceAll(' ', '')};`), rule);
     for (const colour of style
       .match(/_palette\{[^}]*\}/g)
       .join()
