@@ -276,10 +276,7 @@ Json fields_json(Study& study) {
     }
   }
   document["density"] = plain_of(equations, s.density);
-  Json checks = Json::array();
-  for (const CertificateCheck& check : study.field_certificate()->checks)
-    checks.push_back({{"name", check.name}, {"points", check.points}, {"error_bound", check.error_bound}});
-  document["certificate"] = {{"passed", study.field_certificate()->passed()}, {"checks", checks}};
+  document["certificate"] = to_json(*study.field_certificate());
   if (const auto tensor = tensor_of(study)) document["stress_energy"] = tensor_json(equations, *tensor);
   return document;
 }

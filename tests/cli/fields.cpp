@@ -130,4 +130,11 @@ TEST_CASE("simulate shows charges with what flowed out, derive the symmetric ten
   CHECK(maup({"report", folder.write("s.lag", string_text), "-o", page}).code == 0);
   CHECK(contains(read(page), "symmetric stress-energy tensor"));
   CHECK(contains(read(page), "What is left over is at most"));
+  const Json certificate = Json::parse(document.out).at("certificate");
+  CHECK(certificate.at("passed") == true);
+  REQUIRE(certificate.at("checks").size() >= 2);
+  for (const Json& check : certificate.at("checks")) {
+    CHECK(check.at("statement").get<std::string>().size() > 20);
+    CHECK(check.at("verdict") == "zero");
+  }
 }

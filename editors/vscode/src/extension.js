@@ -43,8 +43,11 @@ async function stop() {
 
 /// The page of one text; it follows the text until it is closed.
 class Preview {
+  static open = new Map(); // by the address of the text
+
   constructor(document) {
     this.uri = document.uri.toString();
+    Preview.open.set(this.uri, this);
     this.panel = vscode.window.createWebviewPanel(
       "maupertuis.preview",
       `Preview: ${document.fileName.split(/[\\/]/).pop()}`,
@@ -57,6 +60,7 @@ class Preview {
       if (event.document.uri.toString() === this.uri) this.later(event.document);
     });
     this.panel.onDidDispose(() => {
+      Preview.open.delete(this.uri);
       changes.dispose();
       clearTimeout(this.timer);
       if (this.abort) this.abort.abort();
@@ -83,7 +87,10 @@ class Preview {
 
 function preview() {
   const editor = vscode.window.activeTextEditor;
-  if (editor && editor.document.languageId === "lag") new Preview(editor.document);
+  if (!editor || editor.document.languageId !== "lag") return;
+  const shown = Preview.open.get(editor.document.uri.toString());
+  if (shown) shown.panel.reveal(vscode.ViewColumn.Beside, true);
+  else new Preview(editor.document);
 }
 
 async function test() {

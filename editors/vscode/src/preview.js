@@ -38,7 +38,7 @@ async function drawing(program, text, options) {
   const folder = await fs.mkdtemp(path.join(os.tmpdir(), "maupertuis-"));
   try {
     const file = path.join(folder, "drawing.svg");
-    const made = await run(program, ["animate", "-", "-o", file, "--size", "480x360"], text, options);
+    const made = await run(program, ["animate", "-", "-o", file, "--size", "480"], text, options);
     return made.code === 0 ? await fs.readFile(file, "utf8") : null;
   } finally {
     await fs.rm(folder, { recursive: true, force: true });
@@ -67,6 +67,8 @@ body { font: var(--vscode-font-size, 13px)/1.5 var(--vscode-font-family, sans-se
 h1 { font-size: 1.3em; font-weight: 600; margin: 1em 0 0.6em; }
 h2 { font-size: 1em; font-weight: 600; margin: 1.6em 0 0.4em; }
 img { width: 100%; max-width: 480px; background: #fff; border-radius: 4px; }
+/* Drawings have the colours of white paper; in a dark editor their lightness is turned round. */
+.vscode-dark img, .vscode-high-contrast:not(.vscode-high-contrast-light) img { filter: invert(0.9) hue-rotate(180deg); }
 .equations { overflow-x: auto; padding: 0.4em 0; }
 math { font-size: 1.25em; }
 mtd { padding: 0.35em 0; text-align: left; }

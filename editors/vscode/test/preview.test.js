@@ -18,7 +18,15 @@ test("equations, certificate and drawing of a model", async () => {
   const html = page(shown);
   assert.match(html, /Certificate: passed/);
   assert.match(html, /data:image\/svg\+xml;base64,/);
-  assert.doesNotMatch(html, /<script/);
+  assert.doesNotMatch(html, /<script|undefined/);
+});
+
+test("a field: equations, every check of the certificate in words, the film", async () => {
+  const shown = await look(program, model("fields/membrane.lag"));
+  assert.match(shown.svg, /<animate /);
+  const html = page(shown);
+  assert.match(html, /<li>The equations shown are the computed ones/);
+  assert.doesNotMatch(html, /undefined|null/);
 });
 
 test("a model with a mistake shows the mistake, and no equations", async () => {
