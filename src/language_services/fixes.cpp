@@ -1,4 +1,5 @@
 #include <maupertuis/language_services.hpp>
+#include <maupertuis/look_alikes.hpp>
 
 #include <fmt/format.h>
 
@@ -93,12 +94,16 @@ class Proposals {
           continue;
         }
         for (const std::string& reading : readings(text)) propose(reading);
+        propose_head(text);
       }
     }
     if (help.find("Remove the indentation") != std::string_view::npos) remove_indentation();
-    if (help.find("Remove it") != std::string_view::npos || help.find("Leave it out") != std::string_view::npos ||
-        help.find("Remove the line") != std::string_view::npos)
+    const auto says = [&](std::string_view words) { return help.find(words) != std::string_view::npos; };
+    if (says("Remove it") || says("Leave it out") || says("Remove the line") || says("Keep one of them") ||
+        says("Leave one of them out"))
       remove();
+    if (says("Leave the unit out")) add("Leave the unit out", with_blank_before(span_), "");
+    if (says("Write it with Latin letters")) rename(latin_look(written()));
     of_code();
     return std::move(out_);
   }
@@ -113,10 +118,16 @@ class Proposals {
 
   void propose(const std::string& text) { add(fmt::format("Write {}", text), place_of(text), text); }
 
-  /// The words at fault; with their arguments where the proposal has these in brackets too: cos(θ) for cosine(θ).
+  /// The words at fault; with the number before them where the proposal begins with it: 2 [m] for 2 m; with their
+  /// arguments where the proposal has these in brackets too: cos(θ) for cosine(θ).
   Span place_of(const std::string& text) const {
     const std::string_view source = document_.source().text();
     Span place = span_;
+    const std::string number = text.substr(0, text.find(' ')) + " ";
+    if (text[0] >= '0' && text[0] <= '9' && source.substr(0, place.begin).size() >= number.size() &&
+        source.substr(place.begin - number.size(), number.size()) == number)
+      place.begin -= static_cast<std::uint32_t>(number.size());
+    if (text[0] == '/' && place.begin > 0 && source[place.begin - 1] == '/') --place.begin;
     if (text.empty() || text.back() != ')' || written().find('(') != std::string_view::npos) return place;
     std::uint32_t end = span_.end;
     int depth = 0;
@@ -127,6 +138,40 @@ class Proposals {
     } while (depth > 0);
     place.end = end;
     return place;
+  }
+
+  /// What a form such as `T += …` says of how the statement begins, up to its sign of equality.
+  void propose_head(std::string_view form) {
+    const std::size_t begin = form.find('`'), end = form.find(" …`");
+    if (begin == std::string_view::npos || end == std::string_view::npos || end < begin) return;
+    const std::string head(form.substr(begin + 1, end - begin - 1));
+    const syntax::TextStatement* statement = statement_at();
+    if (!statement || head.back() != '=' || statement->declares.size() > 1) return;
+    const auto& tokens = document_.reading().tokens;
+    for (std::size_t i = statement->begin; i < statement->end; ++i)
+      if (tokens[i].is("=") || tokens[i].is("+="))
+        return add(fmt::format("Write {} …", head), cover(tokens[statement->begin].span, tokens[i].span), head);
+  }
+
+  /// The statement that holds the span.
+  const syntax::TextStatement* statement_at() {
+    const syntax::TextReading& reading = document_.reading();
+    for (const syntax::TextStatement& s : reading.statements)
+      if (s.begin != s.end && reading.tokens[s.begin].span.begin <= span_.begin &&
+          span_.end <= reading.tokens[s.end - 1].span.end)
+        return &s;
+    return nullptr;
+  }
+
+  Span with_blank_before(Span span) const { return {line_before(span.begin).begin, span.end, span.source}; }
+
+  /// The name at the span, wherever it stands.
+  void rename(const std::string& to) {
+    Proposal proposal{fmt::format("Write {}", to), {}};
+    for (const syntax::TextToken& token : document_.reading().tokens)
+      if (token.kind == syntax::TextToken::Kind::Name && document_.source().slice(token.span) == written())
+        proposal.edits.push_back({token.span, to});
+    if (!proposal.edits.empty()) out_.push_back(std::move(proposal));
   }
 
   /// Where the statement ends that holds the span.
@@ -155,20 +200,41 @@ class Proposals {
 
   bool of_text() const { return diagnostic_.code[1] == '0' && diagnostic_.code[2] == '1'; }
 
-  /// The words at fault, with the blank before them; or the statement that they are in, unless it says other things
-  /// too.
+  /// The words at fault, the statement that they are in, or of a statement that declares several names the one at
+  /// fault.
   void remove() {
     const std::string_view text = document_.source().text();
     if (of_text()) return add("Remove it", span_, "");
-    const syntax::TextReading& reading = document_.reading();
-    for (const syntax::TextStatement& s : reading.statements) {
-      if (s.begin == s.end || s.declares.size() > 1) continue;
-      Span whole = cover(reading.tokens[s.begin].span, reading.tokens[s.end - 1].span);
-      if (whole.begin > span_.begin || whole.end < span_.end) continue;
-      while (whole.end < text.size() && text[whole.end] != '\n') ++whole.end;
-      if (whole.end < text.size()) ++whole.end;
-      add("Remove the statement", whole, "");
+    const syntax::TextStatement* statement = statement_at();
+    if (!statement) return;
+    if (statement->declares.size() > 1) return remove_of_list(*statement);
+    const auto& tokens = document_.reading().tokens;
+    Span whole = cover(tokens[statement->begin].span, tokens[statement->end - 1].span);
+    while (whole.end < text.size() && text[whole.end] != '\n') ++whole.end;
+    if (whole.end < text.size()) ++whole.end;
+    add("Remove the statement", whole, "");
+  }
+
+  /// Of `param m = 1 kg, k = 5 N/m` the one that holds the span, with a comma. In `coord x, y : length` the kind is
+  /// that of both, and stays.
+  void remove_of_list(const syntax::TextStatement& statement) {
+    const auto& tokens = document_.reading().tokens;
+    std::size_t first = statement.begin + 1, end = first;  // tokens of the item that holds the span
+    int depth = 0;
+    for (; end < statement.end; ++end) {
+      depth += tokens[end].is("(") || tokens[end].is("[") ? 1 : tokens[end].is(")") || tokens[end].is("]") ? -1 : 0;
+      if (depth != 0 || !tokens[end].is(",")) continue;
+      if (tokens[end].span.begin >= span_.end) break;
+      first = end + 1;
     }
+    if (first >= end) return;
+    const bool begins = first == statement.begin + 1, kind = first + 1 < end && tokens[first + 1].is(":");
+    const bool shares = kind && !begins && (first - 3 == statement.begin || tokens[first - 3].is(","));
+    const std::uint32_t from = begins ? tokens[first].span.begin : tokens[first - 2].span.end;
+    const std::uint32_t to = !begins                   ? tokens[shares ? first : end - 1].span.end
+                             : end + 1 < statement.end ? tokens[end + 1].span.begin
+                                                       : tokens[end - 1].span.end;
+    add(fmt::format("Remove {}", written()), {from, to, span_.source}, "");
   }
 
   bool ends_line() const {
@@ -188,6 +254,14 @@ class Proposals {
     if (code == "E0104" && text == "{") propose("(");
     if (code == "E0104" && text == "}") propose(")");
     if (code == "E0104" && (text == "&" || text == "&&")) propose("and");
+    if (code == "E0115")  // sin^-1 x: what most readers take it for
+      propose("a" + text.substr(0, text.find_first_of(" ^⁻")));
+    if (code == "E0306") {  // turns a second
+      const syntax::TextStatement* statement = statement_at();
+      const auto& tokens = document_.reading().tokens;
+      for (std::size_t i = statement ? statement->begin : 0; statement && i < statement->end; ++i)
+        if (tokens[i].unit && tokens[i].text == "Hz") add("Write rev/s", tokens[i].span, "rev/s");
+    }
     if (code == "E0110") {  // a line that is no statement: a definition
       const Span at{span_.begin, span_.begin, span_.source};
       for (const char* word : {"let ", "param ", "start "})

@@ -30,6 +30,7 @@ const std::vector<Case> cases = {
     {"E0110", model("potental = -m g l cos θ\n"), model("potential = -m g l cos θ\n")},
     {"E0113", model("V = m g l sin -θ\n"), model("V = m g l sin(-θ)\n")},
     {"E0114", model("V = m g l cos θ^2\n"), model("V = m g l cos^2 θ\n")},
+    {"E0115", model("V = m g l cos^-1 (1/3) cos θ\n"), model("V = m g l acos (1/3) cos θ\n")},
     {"E0117", model("param e1 = 2\nV = -m g l cos θ (2e1)\n"), model("param e1 = 2\nV = -m g l cos θ (2 e1)\n")},
     {"W0103", "param m = 1 kg, a = 1 J\ncoord α, β : angle\nT = 1/2 m (1 [m^2]) (α'^2 + β'^2)\nV = -a (cos α - β)\n",
      "param m = 1 kg, a = 1 J\ncoord α, β : angle\nT = 1/2 m (1 [m^2]) (α'^2 + β'^2)\nV = -a (cos(α - β))\n"},
@@ -44,8 +45,35 @@ const std::vector<Case> cases = {
     {"E0312", model("V = -3 J cos θ\n"), model("V = -3 [J] cos θ\n")},
     {"W0102", model("V = -m g l cos θ/2\n"), model("V = -m g l cos(θ/2)\n")},
     {"W0310", model("V = -m g l cos θ\nstart θ = 60\n"), model("V = -m g l cos θ\nstart θ = 60 deg\n")},
+    {"E0118", "param c = 4186 J/kg K, m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n",
+     "param c = 4186 J/(kg K), m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n"},
+    {"E0120", "system a\nparam L = 2 m, m = 1 kg\ncoord x : length\nL = 1/2 m x'^2\n",
+     "system a\nparam L = 2 m, m = 1 kg\ncoord x : length\nlagrangian = 1/2 m x'^2\n"},
+    {"E0207", model("T = 1/2 m l^2 θ'^2\n"), model("T += 1/2 m l^2 θ'^2\n")},
+    {"E0208", model("point P mass m at (l sin θ, -l cos θ)\ngravity (0, -g)\ngravity (0, g)\n"),
+     model("point P mass m at (l sin θ, -l cos θ)\ngravity (0, -g)\n")},
+    {"E0209", model("param J = 1/3 m l^2\n"), model("let J = 1/3 m l^2\n")},
+    {"E0306", model("V = -m g l cos θ\nstart θ' = 2 Hz\n"), model("V = -m g l cos θ\nstart θ' = 2 rev/s\n")},
+    {"E0307", "param M = 1 kg, m = 3 m\ncoord x : length\nT = 1/2 M x'^2\nstart x = 2 m\n",
+     "param M = 1 kg, m = 3 m\ncoord x : length\nT = 1/2 M x'^2\nstart x = 2 [m]\n"},
+    {"E0308", "system a\ndimensionless\nparam m = 1 kg\ncoord x : number\nT = 1/2 m x'^2\n",
+     "system a\ndimensionless\nparam m = 1\ncoord x : number\nT = 1/2 m x'^2\n"},
+    {"E0406", "system a\nparam m = 1 kg\ncoord x, y : length\nT = 1/2 m x'^2\n",
+     "system a\nparam m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n"},
+    {"E0406", "system a\nparam m = 1 kg\ncoord y, x : length\nT = 1/2 m x'^2\n",
+     "system a\nparam m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n"},
+    {"E0406", "system a\nparam m = 1 kg\ncoord x : length, φ : angle\nT = 1/2 m x'^2\n",
+     "system a\nparam m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n"},
+    {"W0107", model("param lоad = 1\nV = -lоad m g l cos θ\n"), model("param load = 1\nV = -load m g l cos θ\n")},
+    {"W0415", model("param k = 5 N/m, c = 1\nV = -c m g l cos θ\n"), model("param c = 1\nV = -c m g l cos θ\n")},
+    {"W0415", model("param c = 1, k = 5 N/m\nV = -c m g l cos θ\n"), model("param c = 1\nV = -c m g l cos θ\n")},
     {"W0416", model("V = -m g l cos θ\nlet v = l θ'\n"), model("V = -m g l cos θ\n")},
 };
+
+std::ptrdiff_t count_of(Document& document, const std::string& code) {
+  const auto items = document.diagnostics().items();
+  return std::count_if(items.begin(), items.end(), [&](const Diagnostic& d) { return d.code == code; });
+}
 
 const Diagnostic* find(Document& document, const std::string& code) {
   for (const Diagnostic& d : document.diagnostics().items())
@@ -73,7 +101,7 @@ TEST_CASE("the fix of each mistake is the text that its author meant") {
   CHECK(codes.size() >= 18);
 }
 
-TEST_CASE("what a fix leaves is looked at: in all refused models none brings a new error") {
+TEST_CASE("what a fix leaves is looked at: in all refused models it takes its mistake away and brings none") {
   std::set<std::string> codes;
   for (const auto& path : models_in("tests/golden/reject")) {
     const std::string text = read_file(path);
@@ -90,10 +118,11 @@ TEST_CASE("what a fix leaves is looked at: in all refused models none brings a n
         CAPTURE(fix.title);
         Document mended = document(edited(text, fix.edits));
         CHECK(errors(mended) <= before);
+        CHECK(count_of(mended, fix.code) < count_of(asked, fix.code));
         codes.insert(fix.code);
       }
   }
-  CHECK(codes.size() >= 25);
+  CHECK(codes.size() >= 38);
 }
 
 TEST_CASE("a proposal that does not mend is not offered") {
