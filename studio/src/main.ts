@@ -44,9 +44,10 @@ const carrier = carrierOf(),
   study = new Study(store, asker, clock);
 const stage = new Stage(byId<HTMLCanvasElement>('drawing'), store, clock, study),
   stages = new Set([stage]);
-const editor: Editor = new Editor(store, study, (messages, fixes) =>
-  showMessages(messages, fixes, () => editor, asker),
-);
+const editor: Editor = new Editor(store, study, (messages, fixes) => {
+  showMessages(messages, fixes, () => editor, asker);
+  countMistakes(messages.filter(one => one.severity === 'error').length);
+});
 const plots = new PlotsPanel(store, clock);
 new ValuesPanel(store, study);
 new EquationsPanel(store, study);
@@ -60,6 +61,14 @@ themes(storage, () => {
 });
 
 // ----------------------------------------------------------------------------------------------------------- the bar
+
+/** On the tab of the text, as its messages may not be in sight. */
+function countMistakes(count: number): void {
+  const sign = byId('mistakes');
+  sign.hidden = count === 0;
+  sign.textContent = String(count);
+  sign.parentElement!.setAttribute('aria-label', count === 0 ? 'Model' : `Model, ${count} to mend`);
+}
 
 function panes(): void {
   const small = matchMedia('(max-width: 759px)'),
@@ -114,6 +123,13 @@ function bar(): void {
   byId('format-button').addEventListener('click', () => void editor.format());
   byId('rename-button').addEventListener('click', () => void editor.rename());
   byId('search-button').addEventListener('click', () => editor.find());
+  byId('undo-button').addEventListener('click', () => editor.undo());
+  byId('redo-button').addEventListener('click', () => editor.redo());
+  // The keyboard of a phone stays open where the text keeps the focus.
+  byId('signs').addEventListener('pointerdown', event => event.preventDefault());
+  byId('signs').append(
+    ...[..."θφωψαΩ'^=()[]#"].map(sign => h('button', {type: 'button', onclick: () => editor.type(sign)}, sign)),
+  );
   byId('reset-values').addEventListener('click', () => study.resetValues());
   byId('apply-values').addEventListener('click', applyValues);
   byId('duration').addEventListener('change', event =>

@@ -9,7 +9,16 @@ import {
   type CompletionContext,
   type CompletionResult,
 } from '@codemirror/autocomplete';
-import {defaultKeymap, history, historyKeymap, indentWithTab} from '@codemirror/commands';
+import {
+  defaultKeymap,
+  history,
+  historyKeymap,
+  indentWithTab,
+  redo,
+  redoDepth,
+  undo,
+  undoDepth,
+} from '@codemirror/commands';
 import {bracketMatching, codeFolding, foldGutter, foldKeymap} from '@codemirror/language';
 import {lintGutter, lintKeymap, setDiagnostics, type Diagnostic as Lint} from '@codemirror/lint';
 import {highlightSelectionMatches, openSearchPanel, search, searchKeymap} from '@codemirror/search';
@@ -71,7 +80,8 @@ export class Editor {
   private take({text, loads}: State): void {
     if (loads !== this.loaded) {
       this.loaded = loads;
-      return this.view.setState(this.fresh(text));
+      this.view.setState(this.fresh(text));
+      return this.depths(this.view.state);
     }
     if (text === this.view.state.doc.toString()) return;
     this.view.dispatch({
@@ -103,8 +113,29 @@ export class Editor {
     openSearchPanel(this.view);
   }
 
+  undo(): void {
+    undo(this.view);
+  }
+
+  redo(): void {
+    redo(this.view);
+  }
+
+  /** A sign that a keyboard of glass hides or lacks, as if it had been typed. */
+  type(sign: string): void {
+    this.view.dispatch(this.view.state.replaceSelection(sign), {userEvent: 'input.type', scrollIntoView: true});
+    this.view.focus();
+  }
+
+  /** What can be taken back, and what can be done again. */
+  private depths(state: EditorState): void {
+    byId<HTMLButtonElement>('undo-button').disabled = undoDepth(state) === 0;
+    byId<HTMLButtonElement>('redo-button').disabled = redoDepth(state) === 0;
+  }
+
   private extensions() {
     return [
+      EditorView.updateListener.of(update => this.depths(update.state)),
       lineNumbers(),
       foldGutter(),
       codeFolding(),

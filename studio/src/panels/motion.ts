@@ -110,7 +110,9 @@ export class MotionPanel {
           ? ''
           : 'No motion yet.';
     none.hidden = none.textContent === '';
-    byId('motion').classList.toggle('stale', runLate || (opened !== null && !readable));
+    const mistake = opened !== null && !readable;
+    byId('motion').classList.toggle('stale', runLate || mistake);
+    byId('stage-stale').hidden = !(mistake && run);
     byId('transport').hidden = !run;
     byId('trail-label').hidden = !drawing;
     byId('forces-label').hidden = !drawing?.elements.some(e => e.kind === 'arrow');

@@ -89,6 +89,7 @@ export async function openBrowser(variant) {
     still = true,
     wait = true,
     storage = true,
+    touch = false,
     allow = [],
     url = null,
     before = () => {},
@@ -97,6 +98,8 @@ export async function openBrowser(variant) {
       viewport: {width, height},
       colorScheme: dark ? 'dark' : 'light',
       reducedMotion: still ? 'reduce' : 'no-preference',
+      hasTouch: touch,
+      isMobile: touch,
       permissions: ['clipboard-read', 'clipboard-write'],
       acceptDownloads: true,
     });

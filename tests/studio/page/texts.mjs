@@ -51,6 +51,36 @@ export const texts = {
     await page.context().close();
   },
 
+  async 'a mistake on a phone'({open}, variant, picture) {
+    const page = await open({width: 400, height: 800, touch: true, hash: '#example=pendulum'}),
+      tab = name => page.locator(`#tabs [data-pane=${name}]`),
+      own = await text(page),
+      stale = page.locator('#stage-stale');
+    check('nothing to mend, nothing to take back', await page.locator('#mistakes').isHidden());
+    check('undo has nothing to do', await page.locator('#undo-button').isDisabled());
+    await tab('model').tap();
+    await typeAtEnd(page, 'let W = m g l missin');
+    await page.locator('#signs button', {hasText: 'θ'}).tap();
+    check('a sign is typed where the text ends', (await text(page)).endsWith('missinθ'), await text(page));
+    check('the text keeps the focus', await page.evaluate(() => document.activeElement.closest('#editor') !== null));
+    await page.waitForFunction(() => document.getElementById('mistakes').textContent === '1');
+    check('the tab tells how many', (await tab('model').getAttribute('aria-label')) === 'Model, 1 to mend');
+    check('in the pane of the text its message is enough', await stale.isHidden());
+    await tab('motion').tap();
+    check('beside the drawing it is said why that is pale', await stale.isVisible());
+    await picture(page, 'phone-mistake');
+    await tab('model').tap();
+    while (await page.locator('#undo-button').isEnabled()) await page.locator('#undo-button').tap();
+    check('undo leads back to the text as it was', (await text(page)) === own, await text(page));
+    await page.waitForFunction(() => document.getElementById('mistakes').hidden);
+    await tab('motion').tap();
+    check('the drawing is that of the text again', await stale.isHidden());
+    await tab('model').tap();
+    await page.locator('#redo-button').tap();
+    check('redo does it again', (await text(page)) !== own);
+    await page.context().close();
+  },
+
   async 'ends of lines'({open}, variant) {
     if (!variant.folder) return;
     const file = join(variant.folder, 'pendulum.lag'),
