@@ -78,13 +78,14 @@ export class Exercises {
     if (!(await this.files.mayLeave())) return;
     this.current = name;
     this.study.load({text, name});
-    const {question, comments: said} = notesIn(text);
+    const {question, comments: said} = notesIn(text),
+      coordinate = / motion of ([^.,;]* )?(\S+?)[.,;]/.exec(question.join(' '))?.[2] ?? 'q';
     const field = h('input', {
       type: 'text',
       id: 'claim',
       autocomplete: 'off',
       spellcheck: 'false',
-      placeholder: "θ'' = …",
+      placeholder: `${coordinate}'' = …`,
       'aria-describedby': 'claim-verdict',
     });
     const verdict = h('div', {id: 'claim-verdict', role: 'status', 'aria-live': 'polite'});
@@ -111,7 +112,7 @@ export class Exercises {
       form,
       verdict,
       comments,
-      h('p', {class: 'muted'}, "Derivatives are θ' and θ''; products need a blank. ", leave),
+      h('p', {class: 'muted'}, `Derivatives are ${coordinate}' and ${coordinate}''; products need a blank. `, leave),
     );
     byId('exercise')?.remove();
     byId('equations').prepend(panel);

@@ -30,6 +30,16 @@ function stepsOf(state: State): Step[] {
   return steps;
 }
 
+/** A formula that is wider than the board takes the place of its rule too, and is set smaller if that is not enough. */
+function fit(line: HTMLElement): void {
+  const tooWide = (): number =>
+    Math.max(...[line, ...line.querySelectorAll('.mathematics, .formula')].map(one => one.scrollWidth / one.clientWidth));
+  if (tooWide() <= 1.001) return;
+  line.classList.add('wide');
+  const over = tooWide();
+  if (over > 1.001) line.querySelector<HTMLElement>('.mathematics')!.style.fontSize = `${Math.max(0.45, 0.98 / over)}em`;
+}
+
 /** Full screen, large type: the derivation line by line, the drawing beside it. */
 export async function lecture(store: Store<State>, study: Study, clock: Clock, stages: Set<Stage>): Promise<void> {
   await study.wantSteps();
@@ -70,6 +80,7 @@ export async function lecture(store: Store<State>, study: Study, clock: Clock, s
     const shown = steps.slice(first, at + 1).map(one => lineElement(one.line));
     shown.at(-1)!.classList.add('now');
     lines.replaceChildren(...shown);
+    shown.forEach(fit);
     shown.at(-1)!.scrollIntoView({block: 'nearest'});
     const said =
       steps

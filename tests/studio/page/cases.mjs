@@ -405,6 +405,24 @@ export const cases = {
     await page.keyboard.press('Escape');
     await page.waitForFunction(() => !document.querySelector('#lecture'));
     await page.context().close();
+    // Every line is seen whole, at the width of a hall and of a phone.
+    for (const width of [1600, 400]) {
+      const board = await open({width, hash: '#example=cart_pendulum'}),
+        cut = [];
+      await board.locator('#lecture-button').click();
+      await board.waitForSelector('#lecture .line.now');
+      const count = Number((await board.locator('#lecture output').innerText()).split('/')[1]);
+      for (let i = 1; i < count; ++i) {
+        await board.keyboard.press('ArrowRight');
+        const over = await board.evaluate(() => {
+          const line = document.querySelector('#lecture .line.now');
+          return [line, ...line.querySelectorAll('.mathematics, .formula')].some(one => one.scrollWidth > one.clientWidth + 1);
+        });
+        if (over) cut.push(i + 1);
+      }
+      check(`${width}: no line of the lecture is cut off`, count > 20 && cut.length === 0, cut);
+      await board.context().close();
+    }
   },
 
   async exercises({open}, variant, picture) {
@@ -429,6 +447,8 @@ export const cases = {
       await settled(page);
       check(`${name}: the equations are hidden`, await page.locator('#equations-body').isHidden());
       check(`${name}: it asks`, /Find|find/.test(await page.locator('#exercise').innerText()));
+      const begins = (await page.locator('#claim').getAttribute('placeholder')).replace(/ =.*/, '');
+      check(`${name}: it shows how an answer begins`, right[0].includes(begins), [begins, right]);
       const told = await claim(wrong[0][0]);
       check(
         `${name}: a wrong claim is told with its pitfall`,
