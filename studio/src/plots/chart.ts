@@ -1,4 +1,5 @@
 import {raised} from '../panels/words';
+import {corners} from './straighten';
 
 /** A curve of a chart; `upTo`: it is drawn to this row only, as it grows with the motion. */
 export interface Curve {
@@ -208,18 +209,20 @@ export class Chart {
     context.strokeStyle = colour;
     context.lineWidth = width;
     context.beginPath();
-    let pen = false;
+    let xs: number[] = [],
+      ys: number[] = [];
+    const draw = (): void => {
+      if (xs.length > 0)
+        corners(xs, ys, 0.15).forEach((k, i) => (i ? context.lineTo(xs[k], ys[k]) : context.moveTo(xs[k], ys[k])));
+      [xs, ys] = [[], []];
+    };
     for (let i = first; i < Math.min(end, curve.x.length); ++i) {
       const x = curve.x[i],
         y = curve.y[i];
-      if (x === null || y === null || !Number.isFinite(x) || !Number.isFinite(y)) {
-        pen = false;
-        continue;
-      }
-      if (pen) context.lineTo(this.across(x), this.down(y));
-      else context.moveTo(this.across(x), this.down(y));
-      pen = true;
+      if (x === null || y === null || !Number.isFinite(x) || !Number.isFinite(y)) draw();
+      else xs.push(this.across(x)), ys.push(this.down(y));
     }
+    draw();
     context.stroke();
     context.restore();
   }

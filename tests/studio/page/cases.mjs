@@ -1,8 +1,11 @@
 // What a user does in the studio, each as a case over any variant: (browser, variant, picture) → checks.
 import {readFileSync, writeFileSync} from 'node:fs';
+import {createRequire} from 'node:module';
 import {join} from 'node:path';
 import {axe, check, gripNear, root, settled} from './harness.mjs';
 import {energies, field, setSlider, text, toExample, typeAtEnd} from './steps.mjs';
+
+const require = createRequire(join(root, 'studio/package.json'));
 
 export const cases = {
   async typing({open}, variant, picture) {
@@ -709,6 +712,50 @@ export const cases = {
     );
     await picture(page, 'space');
     await page.context().close();
+  },
+
+  async 'corners of curves'() {
+    const file = join(root, 'studio/src/plots/straighten.ts'),
+      {transformWithOxc} = await import(require.resolve('vite')),
+      {code} = await transformWithOxc(readFileSync(file, 'utf8'), file),
+      {corners} = await import(`data:text/javascript,${encodeURIComponent(code)}`);
+    // Distance of every point to the piece of line that stands for it.
+    const farthest = (x, y, kept) => {
+      let most = 0;
+      for (let k = 0; k + 1 < kept.length; ++k)
+        for (let i = kept[k]; i <= kept[k + 1]; ++i) {
+          const [ax, ay] = [x[kept[k]], y[kept[k]]],
+            [ux, uy] = [x[kept[k + 1]] - ax, y[kept[k + 1]] - ay],
+            part = Math.min(1, Math.max(0, ((x[i] - ax) * ux + (y[i] - ay) * uy) / (ux * ux + uy * uy || 1)));
+          most = Math.max(most, Math.hypot(x[i] - ax - part * ux, y[i] - ay - part * uy));
+        }
+      return most;
+    };
+    let seed = 1;
+    const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647;
+    const shapes = {
+      wave: i => [0.2 * i, 90 + 70 * Math.sin(0.02 * i)],
+      rest: () => [3, 4],
+      noise: i => [0.01 * i, 50 * random()],
+      walk: (() => {
+        let [x, y] = [0, 0];
+        return () => [(x += random() - 0.5), (y += random() - 0.5)];
+      })(),
+      loop: i => [100 * Math.cos(0.01 * i), 60 * Math.sin(0.03 * i)],
+      'there and back': i => [Math.abs(((0.37 * i) % 200) - 100), 0],
+      jump: i => [0.1 * i, i % 700 < 350 ? 0 : 80],
+    };
+    for (const [name, at] of Object.entries(shapes)) {
+      const points = Array.from({length: 4000}, (_, i) => at(i)),
+        [x, y] = [0, 1].map(k => points.map(p => p[k])),
+        kept = corners(x, y, 0.15);
+      check(`${name}: no point is farther than it may be`, farthest(x, y, kept) <= 0.15 + 1e-9, farthest(x, y, kept));
+      check(`${name}: from the first to the last, in order`, kept[0] === 0 && kept.at(-1) === 3999);
+      check(`${name}: each once`, kept.every((k, i) => i === 0 || k > kept[i - 1]));
+      if (name === 'wave') check('of a wave few are left', kept.length < 300, kept.length);
+      if (name === 'loop') check('of a curve that crosses itself too', kept.length < 1500, kept.length);
+    }
+    check('one point stays one', corners([1], [1], 0.15).join() === '0');
   },
 
   async 'colours are those of reports'() {
