@@ -134,7 +134,7 @@ const remarked = html => html.replace(/(^|\s)(#.*)$/gm, '$1<span class="comment"
 const inlineMath = html =>
   html
     .replace(
-      /(?<![\p{L}\p{N}_∂δ])([∂δ]?\p{L}[\u0300-\u036f]*'*|∂|[)\]])_(\{[^}]*\}|[\p{L}0-9]{1,3})(?![\p{L}0-9_])/gu,
+      /((?<![\p{L}\p{N}_∂δ])(?:[∂δd]?\p{L}[\u0300-\u036f]*'*|∂)|[)\]])_(\{[^}]*\}|[\p{L}0-9]{1,3})(?![\p{L}0-9_])/gu,
       (all, base, index) => `${base}<sub>${index.replace(/[{}]/g, '')}</sub>`,
     )
     .replace(/∂_(\p{L})(?![\p{L}0-9_])/gu, '∂<sub>$1</sub>')

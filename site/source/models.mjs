@@ -72,7 +72,7 @@ export async function studyModels(root, models, program, width) {
   await together(models, width, async model => {
     model.picture = await picture(root, model, program);
     model.film = filmOf(await program.written(`${model.name}.html`, 'animate', model.file), model);
-    model.derivation = JSON.parse((await program.run('derive', '--json', model.file)).out);
+    model.derivation = JSON.parse((await program.run('derive', '--json', '--steps', model.file)).out);
     model.expectations = await expectationsOf(model, program);
   });
 }
@@ -133,21 +133,20 @@ ${row.where ? `<span class="said">${escape(row.where)}</span>` : ''}</div>\n`,
     )
     .join('');
 
-const checkNames = {
-  divergence: 'δℒ = E·δφ + ∂B identically: equations and boundary terms',
-  interface_identity: 'what is left at places where bodies meet the field is the condition there',
-  rows_agree: 'the rows of the bodies are those of Lagrange’s equations',
-  forms_agree: 'the printed equations are the computed ones',
-};
+/** 2.5 · 10⁻²⁰ */
+function power(x) {
+  const [mantissa, exponent] = x.toExponential(1).split('e');
+  return `${mantissa} · 10<sup>${Number(exponent)}</sup>`.replace('>-', '>−');
+}
 
 function certificate({certificate}) {
   if (!certificate) return '';
   const rows = certificate.checks.map(
     check =>
       `<tr><td><code>${escape(check.name)}</code></td>
-<td>${escape(check.statement ?? checkNames[check.name] ?? check.name.replaceAll('_', ' '))}</td>
+<td>${escape(check.statement)}</td>
 <td class="number">${check.points}</td>
-<td class="number">${check.error_bound ? check.error_bound.toExponential(1) : '0'}</td></tr>`,
+<td class="number">${check.error_bound ? power(check.error_bound) : '0'}</td></tr>`,
   );
   const [manner, word] = certificate.passed ? ['good', 'Passed'] : ['bad', 'Not passed'];
   return `<h2 id="certificate">Certificate</h2>
@@ -196,12 +195,33 @@ function equations(model) {
   if (d.reactions?.length)
     html += `<h3 id="reactions">Reactions</h3>
 <ul>${d.reactions.map(r => `<li>${code(r.plain)}${unit(r)}: ${escape(r.meaning)}</li>`).join('\n')}</ul>\n`;
-  if (d.energy) html += `<h3 id="energy">Energy function</h3>\n<p class="long-code">${code(d.energy)}</p>\n`;
-  if (d.momenta?.length)
-    html += `<h3 id="momenta">Momenta</h3>
-<ul class="plain">${d.momenta.map((p, i) => `<li>${code(`p_${d.coordinates[i]} = ${p}`)}</li>`).join('\n')}</ul>\n`;
+  html += part('Lagrangian', step(d, s => s.section === 'Lagrangian'));
+  if (d.energy_latex) html += part('Energy function', [{latex: `h_E = ${d.energy_latex}`}]);
+  html += part('Momenta', step(d, s => / the momentum p_/.test(s.rule)));
   if (d.conserved?.length) html += `<p>Conserved: ${d.conserved.map(nameOf).join(', ')}.</p>\n`;
-  return html + messages(d);
+  return html + derivation(d, where) + messages(d);
+}
+
+const step = ({steps}, wanted) => (steps ?? []).filter(s => s.latex && wanted(s));
+
+/** θ1 and p_θ1, which stand in words. */
+const named = text =>
+  escape(text)
+    .replace(/(?<![\p{L}\p{N}])p_([\p{L}\p{N}]+)/gu, 'p<sub>$1</sub>')
+    .replace(/(?<![\p{L}\p{N}])(\p{L})(\d+)(?![\p{L}\p{N}])/gu, '$1<sub>$2</sub>');
+
+/** The steps from the text to the equations, to be unfolded; of long ones one is better served by `maup report`. */
+const longest = 8000;
+function derivation({steps}, where) {
+  if (!steps?.length || steps.reduce((sum, s) => sum + s.latex.length, 0) > longest) return '';
+  let html = '',
+    section = '';
+  for (const s of steps) {
+    if (s.section !== section) html += `<h4>${named((section = s.section))}</h4>\n`;
+    const formula = s.latex && formulas([s], where);
+    html += `<div class="step">${formula}<p class="muted">${named([s.rule, s.sentence].filter(Boolean).join('. '))}</p></div>\n`;
+  }
+  return `<details class="derivation"><summary>The derivation, ${steps.length} steps</summary>\n${html}</details>\n`;
 }
 
 const messages = ({diagnostics}) =>

@@ -47,6 +47,8 @@ TEST_CASE("derive --json") {
   CHECK(contains(json.at("equations").at(0).at("latex"), "\\theta"));
   CHECK(json.at("mass_matrix") == Json::array({Json::array({"m l^2"})}));
   CHECK(json.at("momenta").at(0) == "m l^2 θ'");
+  CHECK(json.at("momenta_latex").at(0) == "m\\, l^{2}\\, \\dot{\\theta}");
+  CHECK(contains(json.at("energy_latex"), "\\frac{1}{2} m\\, l^{2}\\, \\dot{\\theta}^{2}"));
   CHECK(json.at("energy").is_string());
   CHECK(json.at("certificate").at("passed") == true);
   REQUIRE(json.at("certificate").at("checks").size() >= 4);

@@ -87,6 +87,18 @@ async function checkModel(check, browser, open) {
   await page.click('[data-control=play]');
   check('the drawing of a model moves', (await picture()) !== first);
   check('its equations are set', (await page.locator('#content .katex').count()) >= 2);
+  for (const [part, begins] of [
+    ['lagrangian', 'L ='],
+    ['energy-function', 'h_E ='],
+    ['momenta', '\\frac{\\partial L}{\\partial \\dot{\\theta}_1} ='],
+  ]) {
+    const latex = await page.locator(`#${part} + .formula annotation`).first().textContent();
+    check(`${part} is set as a formula`, latex.replace('\\displaystyle ', '').startsWith(begins), latex);
+  }
+  const steps = page.locator('.derivation .step');
+  check('the derivation is folded', (await steps.count()) > 20 && (await steps.first().isHidden()));
+  await page.locator('.derivation summary').click();
+  check('and unfolds', await steps.last().isVisible());
   check(
     'its tests are shown',
     /All 11 expectations of the model hold/.test(await page.locator('#content').innerText()),

@@ -60,6 +60,14 @@ std::string readable_text(Expr e, const ReadingOrder& order) {
   return text;
 }
 
+std::string readable_latex(Expr e, const ReadingOrder& order) {
+  const ReadableForm form = readable(e, order);
+  std::string text = to_latex(form.value, order);
+  for (const Intermediate& i : form.intermediates)
+    text += fmt::format(" \\quad \\text{{with }} {} = {}", to_latex(i.symbol, order), to_latex(i.value, order));
+  return text;
+}
+
 /// multipliers, constraints, A and b of A q'' = b.
 void add_constraints(Json& document, Study& study) {
   const EquationsOfMotion& equations = study.equations()->shown();
@@ -166,9 +174,13 @@ Json document_of(const DeriveOptions& options, Study& study, const EquationForm&
   if (equations->system->constrained()) add_constraints(document, study);
   if (Json list = reactions_json(*equations); !list.empty()) document["reactions"] = std::move(list);
   if (entry_by_entry) {
-    document["momenta"] = Json::array();
-    for (const Expr p : equations->shown().momenta) document["momenta"].push_back(readable_text(p, order));
+    document["momenta"] = document["momenta_latex"] = Json::array();
+    for (const Expr p : equations->shown().momenta) {
+      document["momenta"].push_back(readable_text(p, order));
+      document["momenta_latex"].push_back(readable_latex(p, order));
+    }
     document["energy"] = readable_text(equations->shown().energy_function, order);
+    document["energy_latex"] = readable_latex(equations->shown().energy_function, order);
     document["power"] = readable_text(equations->shown().power, order);
   }
   const ConservedQuantities conserved = conserved_quantities(*equations);
