@@ -47,13 +47,25 @@ std::string_view before_explanation(std::string_view text) {
   return text;
 }
 
+/// "one statement a line": words of a sentence, and no text of a model, which is letters, signs or `in ticks`.
+bool is_sentence(std::string_view text) {
+  std::size_t words = 0, length = 0;
+  for (const char c : text) {
+    if (c != ' ' && (c < 'a' || c > 'z')) return false;
+    length = c == ' ' ? 0 : length + 1;
+    if (length == 4) ++words;
+  }
+  return words >= 2;
+}
+
 /// The texts that a proposal holds: one, or those between which it leaves the choice.
 std::vector<std::string> readings(std::string_view proposed) {
   std::vector<std::string> out = choices(proposed);
   if (!out.empty()) return out;
   const auto add = [&](std::string_view text) {
     const std::string reading = without_ticks(before_explanation(text));
-    const bool form = reading.empty() || reading.find("…") != std::string::npos;  // with places to fill in
+    const bool form = reading.empty() || reading.find("…") != std::string::npos ||  // with places to fill in
+                      is_sentence(text);
     if (!form && std::find(out.begin(), out.end(), reading) == out.end()) out.push_back(reading);
   };
   const std::size_t either = proposed.find(" or ");
@@ -84,6 +96,7 @@ class Proposals {
 
   std::vector<Proposal> run() {
     const std::string_view help = diagnostic_.help;
+    if (quotient_of_leibniz()) return std::move(out_);
     for (const std::string_view text : after_word(help, "Did you mean "))
       propose(without_ticks(text.substr(0, text.find('?'))));
     for (const std::string_view word :
@@ -186,7 +199,7 @@ class Proposals {
   }
 
   void insert_at_end(const std::string& text) {
-    add(fmt::format("Write the missing {}", text), end_of_statement(), text);
+    add(fmt::format("Write the missing {}", text.substr(text[0] == ' ')), end_of_statement(), text);
   }
 
   Span line_before(std::uint32_t offset) const {
@@ -251,22 +264,83 @@ class Proposals {
     if (code == "E0104" && text == "//") propose("#");
     if (code == "E0104" && text == ";" && !ends_line()) add("Write the statements on lines of their own", span_, "\n");
     if (code == "E0104" && (text == ":=" || text == "==")) propose("=");
+    if (code == "E0104" && text == "**") propose("^");
     if (code == "E0104" && text == "{") propose("(");
     if (code == "E0104" && text == "}") propose(")");
     if (code == "E0104" && (text == "&" || text == "&&")) propose("and");
     if (code == "E0115")  // sin^-1 x: what most readers take it for
       propose("a" + text.substr(0, text.find_first_of(" ^⁻")));
+    if (code == "E0129" && diagnostic_.help.rfind("Write " + text + " : ", 0) == 0)
+      for (const char* kind : {" : angle", " : length", " : charge", " : number"}) insert(kind);
+    if (code == "E0304") bare_number();
+    if (code == "E0210" && statement_begins_with("gravity"))
+      for (const char* zeros : {"(0, -", "(0, 0, -"}) propose(zeros + text + ")");
+    if (code == "E0111" && text == "=" && statement_begins_with("gravity"))
+      add("Leave = out", {span_.begin, skip_blanks(span_.end), span_.source}, "");
+    if (code == "E0111" && text == "(" && after().rfind("(0)", 0) == 0 && statement_begins_with("start"))
+      add("Leave (0) out", {span_.begin, span_.begin + 3, span_.source}, "");
+    if (code == "E0111" && statement_begins_with("constraint") &&
+        diagnostic_.message.find("expected `=`") != std::string::npos)
+      insert_at_end(" = 0");
     if (code == "E0306") {  // turns a second
       const syntax::TextStatement* statement = statement_at();
       const auto& tokens = document_.reading().tokens;
       for (std::size_t i = statement ? statement->begin : 0; statement && i < statement->end; ++i)
         if (tokens[i].unit && tokens[i].text == "Hz") add("Write rev/s", tokens[i].span, "rev/s");
     }
-    if (code == "E0110") {  // a line that is no statement: a definition
+    if (code == "E0110" && after().substr(text.size()).rfind("(0)", 0) == 0)  // x(0) = 1 m
+      return add("Write start " + text, {span_.begin, span_.end + 3, span_.source}, "start " + text);
+    if (code == "E0110" && diagnostic_.help.find("A definition is") == 0) {  // a line that is an equation
       const Span at{span_.begin, span_.begin, span_.source};
       for (const char* word : {"let ", "param ", "start "})
         add("Begin it with " + std::string(word, std::strlen(word) - 1), at, word);
     }
+  }
+
+  /// The text from the words at fault on.
+  std::string_view after() const { return document_.source().text().substr(span_.begin); }
+
+  std::uint32_t skip_blanks(std::uint32_t offset) const {
+    const std::string_view text = document_.source().text();
+    while (offset < text.size() && text[offset] == ' ') ++offset;
+    return offset;
+  }
+
+  void insert(const std::string& text) {
+    add(fmt::format("Write {}{}", written(), text), {span_.end, span_.end, span_.source}, text);
+  }
+
+  bool statement_begins_with(std::string_view word) {
+    const syntax::TextStatement* statement = statement_at();
+    return statement && document_.reading().tokens[statement->begin].is(word);
+  }
+
+  /// dθ/dt, of which each half is a name that is not declared.
+  bool quotient_of_leibniz() {
+    const std::string text(written());
+    if (diagnostic_.code != "E0201" || text.size() < 2 || text[0] != 'd') return false;
+    if (after().substr(text.size()).rfind("/dt", 0) != 0) return false;
+    const std::string derivative = text.substr(1) + "'";
+    add(fmt::format("Write {}", derivative), {span_.begin, span_.end + 3, span_.source}, derivative);
+    return true;
+  }
+
+  /// "the duration of a run is a time (s), this is a bare number": the number with that unit.
+  void bare_number() {
+    const std::string& message = diagnostic_.message;
+    const std::size_t close = message.find("), this is a bare number"), open = message.rfind('(', close);
+    if (close == std::string::npos || open == std::string::npos) return;
+    const std::string unit = " " + message.substr(open + 1, close - open - 1), text(written());
+    if (!text.empty() && text.find_first_not_of("0123456789.e+-") == std::string::npos) return insert(unit);
+    // Or the parameter that the help names, where it is declared: `name = number`.
+    const std::vector<std::string_view> named = after_word(diagnostic_.help, "Give ");
+    if (named.empty()) return;
+    const std::string name = without_ticks(named[0].substr(0, named[0].find(' ')));
+    const auto& tokens = document_.reading().tokens;
+    for (std::size_t i = 0; i + 2 < tokens.size(); ++i)
+      if (tokens[i].is(name) && tokens[i + 1].is("=") && tokens[i + 2].kind == syntax::TextToken::Kind::Number)
+        add(fmt::format("Write {} = {}{}", name, tokens[i + 2].text, unit),
+            {tokens[i + 2].span.end, tokens[i + 2].span.end, span_.source}, unit);
   }
 
   Document& document_;

@@ -150,6 +150,9 @@ StatementBody StatementParser::body_statement() {
 
 StatementBody StatementParser::gravity_statement() {
   next();
+  if (peek().is("="))
+    fail("E0111", peek().span, "`gravity` stands without `=`", "It is the acceleration of free fall, a vector.",
+         "Write `gravity (0, -g)`, in space `gravity (0, 0, -g)`.");
   return GravityStatement{quantity()};
 }
 

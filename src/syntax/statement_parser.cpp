@@ -92,6 +92,40 @@ Span StatementParser::statement_span() const {
   return cover(context_.list.tokens[begin_].span, context_.list.tokens[std::max(index_, begin_ + 1) - 1].span);
 }
 
+namespace {
+
+/// What other languages and books call a statement; empty for a word that is none of theirs.
+std::string_view meant_by(std::string_view word) {
+  static constexpr std::pair<std::string_view, std::string_view> meanings[] = {{"parameter", "param"},
+                                                                               {"parameters", "param"},
+                                                                               {"params", "param"},
+                                                                               {"const", "param"},
+                                                                               {"constant", "param"},
+                                                                               {"constants", "param"},
+                                                                               {"coordinate", "coord"},
+                                                                               {"coordinates", "coord"},
+                                                                               {"coords", "coord"},
+                                                                               {"dof", "coord"},
+                                                                               {"dofs", "coord"},
+                                                                               {"variable", "coord"},
+                                                                               {"variables", "coord"},
+                                                                               {"particle", "point"},
+                                                                               {"define", "let"},
+                                                                               {"def", "let"},
+                                                                               {"initial", "start"},
+                                                                               {"init", "start"},
+                                                                               {"ic", "start"},
+                                                                               {"simulate", "run"},
+                                                                               {"integrate", "run"},
+                                                                               {"duration", "run"},
+                                                                               {"constraints", "constraint"}};
+  for (const auto& [theirs, ours] : meanings)
+    if (word == theirs) return ours;
+  return {};
+}
+
+}  // namespace
+
 void StatementParser::unknown_statement() {
   const Token& word = peek();
   if (word.kind != Token::Kind::Name) {
@@ -105,7 +139,8 @@ void StatementParser::unknown_statement() {
   std::string lower(word.text);
   std::transform(lower.begin(), lower.end(), lower.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  std::string near = is_statement_word(lower) ? lower : did_you_mean(word.text, words);
+  std::string near = is_statement_word(lower) ? lower : std::string(meant_by(lower));
+  if (near.empty()) near = did_you_mean(word.text, words);
   if (near.size() == 1 || (equation && !energy_of(near))) near.clear();
   std::string help;
   if (!near.empty()) {

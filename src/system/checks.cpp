@@ -10,6 +10,27 @@ namespace {
 
 using syntax::Expression;
 
+/// The first name in an expression whose value has no unit; empty if there is none.
+std::string bare_name(Elaboration& e, const Expression& x) {
+  if (x.kind == Expression::Kind::Name) {
+    const Value v = evaluate_formula(e, x);  // it was evaluated before: no new message can come of it
+    const bool constant = !v.poisoned && v.order < 0;
+    return constant && v.dimension.same_as(Dimension{}) ? x.text : std::string();
+  }
+  for (const syntax::ExpressionPtr& a : x.arguments)
+    if (std::string name = bare_name(e, *a); !name.empty()) return name;
+  return {};
+}
+
+/// A bare number in a place for a quantity is most often a parameter whose unit was left out.
+std::string advice_on(Elaboration& e, const Value& v, const Dimension& expected, const Expression& x) {
+  if (x.kind == Expression::Kind::Quantity || x.kind == Expression::Kind::Number) return "";
+  if (v.dimension.same_as(Dimension{}))
+    if (const std::string name = bare_name(e, x); !name.empty())
+      return fmt::format("Give `{}` its unit where it is declared, if it has one.", name);
+  return dimension_advice(v.dimension, expected);
+}
+
 }  // namespace
 
 std::string dimension_advice(const Dimension& found, const Dimension& expected) {
@@ -36,10 +57,7 @@ bool check_dimension(Elaboration& e, const Value& v, const Dimension& expected, 
   if (!v.dimension.same_as(expected)) {
     e.diagnostics.error("E0304", x.span,
                         fmt::format("{} is {}, this is {}", what, describe(expected), describe(v.dimension)),
-                        "Both sides of an equation have one dimension.",
-                        x.kind == Expression::Kind::Quantity || x.kind == Expression::Kind::Number
-                            ? ""
-                            : dimension_advice(v.dimension, expected));
+                        "Both sides of an equation have one dimension.", advice_on(e, v, expected, x));
     return false;
   }
   if (v.hertz && expected.angle() != Dimension::Exponent{}) {

@@ -28,6 +28,23 @@ const std::vector<Case> cases = {
     {"E0107", model("  V = -m g l cos θ\n"), model("V = -m g l cos θ\n")},
     {"E0110", model("W0 = 3 m\nV = -m g (l + W0) cos θ\n"), model("let W0 = 3 m\nV = -m g (l + W0) cos θ\n")},
     {"E0110", model("potental = -m g l cos θ\n"), model("potential = -m g l cos θ\n")},
+    {"E0110", "parameters m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n",
+     "param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n"},
+    {"E0110", model("V = -m g l cos θ\nθ(0) = 1\n"), model("V = -m g l cos θ\nstart θ = 1\n")},
+    {"E0111", head + "point P mass m at l (sin θ, -cos θ)\ngravity = (0, -g)\n",
+     head + "point P mass m at l (sin θ, -cos θ)\ngravity (0, -g)\n"},
+    {"E0111", model("V = -m g l cos θ\nstart θ(0) = 1\n"), model("V = -m g l cos θ\nstart θ = 1\n")},
+    {"E0111", "param m = 1 kg, l = 1 m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint x^2 + y^2 - l^2\n",
+     "param m = 1 kg, l = 1 m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint x^2 + y^2 - l^2 = 0\n"},
+    {"E0104", model("V = m g l θ**2\n"), model("V = m g l θ^2\n")},
+    {"E0129", "param m = 1 kg\ncoord x\nT = 1/2 m x'^2\n", "param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n"},
+    {"E0201", "param m = 1 kg\ncoord x : length\nT = 1/2 m (dx/dt)^2\n",
+     "param m = 1 kg\ncoord x : length\nT = 1/2 m (x')^2\n"},
+    {"E0210", head + "point P mass m at l (sin θ, -cos θ)\ngravity g\n",
+     head + "point P mass m at l (sin θ, -cos θ)\ngravity (0, -g)\n"},
+    {"E0304", "param m = 1, g = 9.81 m/s^2\ncoord x : length\npoint P mass m at (x, 0)\ngravity (0, -g)\n",
+     "param m = 1 kg, g = 9.81 m/s^2\ncoord x : length\npoint P mass m at (x, 0)\ngravity (0, -g)\n"},
+    {"E0304", model("V = -m g l cos θ\nrun 10\n"), model("V = -m g l cos θ\nrun 10 s\n")},
     {"E0113", model("V = m g l sin -θ\n"), model("V = m g l sin(-θ)\n")},
     {"E0114", model("V = m g l cos θ^2\n"), model("V = m g l cos^2 θ\n")},
     {"E0115", model("V = m g l cos^-1 (1/3) cos θ\n"), model("V = m g l acos (1/3) cos θ\n")},
@@ -123,6 +140,14 @@ TEST_CASE("what a fix leaves is looked at: in all refused models it takes its mi
       }
   }
   CHECK(codes.size() >= 38);
+}
+
+TEST_CASE("words of a help are no text of a model") {
+  const std::string text = "param m = 1 kg; l = 1 m; g = 9.81 m/s^2\ncoord θ : angle\nT = 1/2 m l^2 θ'^2\n";
+  Document asked = document(text);
+  for (const Diagnostic& d : asked.diagnostics().items())
+    for (const Fix& fix : fixes_of(asked, d))
+      CHECK_MESSAGE(edited(text, fix.edits).find("one statement") == std::string::npos, fix.title);
 }
 
 TEST_CASE("a proposal that does not mend is not offered") {
