@@ -2,14 +2,41 @@ import type {Line, Section} from '../contract';
 import {pretty} from './words';
 import {copyText, h, prose} from '../dom';
 
+/** By how much mathematics is wider than its place. */
+export function excess(element: HTMLElement): number {
+  const parts = [element, ...element.querySelectorAll<HTMLElement>('.mathematics, .formula')];
+  return Math.max(...parts.map(one => one.scrollWidth / (one.clientWidth || Infinity)));
+}
+
+/** Sets mathematics smaller where a piece that cannot be broken is wider than its place: nothing of it is cut off. */
+export function fit(element: HTMLElement, least: number): void {
+  if (element.style.fontSize) return;
+  const over = excess(element);
+  if (over > 1.001) element.style.fontSize = `${Math.max(least, 0.985 / over)}em`;
+}
+
+/** Lines out of sight have no size yet; each is fitted as it comes into sight, and anew when the window changes. */
+const coming = new IntersectionObserver(entries => {
+  for (const {isIntersecting, target} of entries) if (isIntersecting) fit(target as HTMLElement, 0.6);
+});
+addEventListener('resize', () => {
+  for (const one of document.querySelectorAll<HTMLElement>('.mathematics')) {
+    one.style.fontSize = '';
+    coming.unobserve(one);
+    coming.observe(one);
+  }
+});
+
 /** A line of mathematics with its sentence before it and the rule that made it at its side. */
 export function lineElement(line: Line): HTMLElement {
   const long = line.mathml.includes('class="formula long"');
+  const mathematics = line.mathml && h('div', {class: long ? 'mathematics long' : 'mathematics', html: line.mathml});
+  if (mathematics) coming.observe(mathematics);
   return h(
     'div',
     {class: line.rule ? 'line ruled' : 'line'},
     line.sentence && h('p', {class: 'sentence'}, ...prose(line.sentence)),
-    line.mathml && h('div', {class: long ? 'mathematics long' : 'mathematics', html: line.mathml}),
+    mathematics,
     line.rule && h('p', {class: 'rule'}, line.rule),
   );
 }

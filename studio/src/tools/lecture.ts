@@ -2,7 +2,7 @@ import type {Clock} from '../clock';
 import type {Line} from '../contract';
 import {h, prose} from '../dom';
 import {Stage} from '../drawing/stage';
-import {lineElement} from '../panels/formulas';
+import {excess, fit, lineElement} from '../panels/formulas';
 import {pretty} from '../panels/words';
 import type {State} from '../state';
 import type {Store} from '../store';
@@ -31,13 +31,11 @@ function stepsOf(state: State): Step[] {
 }
 
 /** A formula that is wider than the board takes the place of its rule too, and is set smaller if that is not enough. */
-function fit(line: HTMLElement): void {
-  const tooWide = (): number =>
-    Math.max(...[line, ...line.querySelectorAll('.mathematics, .formula')].map(one => one.scrollWidth / one.clientWidth));
-  if (tooWide() <= 1.001) return;
+function whole(line: HTMLElement): void {
+  if (excess(line) <= 1.001) return;
   line.classList.add('wide');
-  const over = tooWide();
-  if (over > 1.001) line.querySelector<HTMLElement>('.mathematics')!.style.fontSize = `${Math.max(0.45, 0.98 / over)}em`;
+  const mathematics = line.querySelector<HTMLElement>('.mathematics');
+  if (mathematics) fit(mathematics, 0.45);
 }
 
 /** Full screen, large type: the derivation line by line, the drawing beside it. */
@@ -80,7 +78,7 @@ export async function lecture(store: Store<State>, study: Study, clock: Clock, s
     const shown = steps.slice(first, at + 1).map(one => lineElement(one.line));
     shown.at(-1)!.classList.add('now');
     lines.replaceChildren(...shown);
-    shown.forEach(fit);
+    shown.forEach(whole);
     shown.at(-1)!.scrollIntoView({block: 'nearest'});
     const said =
       steps

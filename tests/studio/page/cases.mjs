@@ -270,6 +270,27 @@ export const cases = {
     await page.context().close();
   },
 
+  async 'equations are seen whole'({open}) {
+    const cut = page =>
+      page.evaluate(() =>
+        [...document.querySelectorAll('#equations-body .mathematics, #equations-body .formula')]
+          .filter(one => one.getBoundingClientRect().top < innerHeight && one.scrollWidth > one.clientWidth + 1)
+          .map(one => [one.textContent.slice(0, 30), one.scrollWidth, one.clientWidth]),
+      );
+    for (const name of ['coupled_pendulums', 'robot_arm']) {
+      const page = await open({hash: `#example=${name}`});
+      await page.waitForTimeout(100);
+      check(`${name}: nothing is cut off`, (await cut(page)).length === 0, await cut(page));
+      const size = () =>
+        page.locator('#equations-body .mathematics').first().evaluate(one => parseFloat(getComputedStyle(one).fontSize));
+      const narrow = await size();
+      await page.setViewportSize({width: 2600, height: 900});
+      await page.waitForTimeout(300);
+      check(`${name}: with more room it is as large as ever`, (await size()) > narrow, [narrow, await size()]);
+      await page.context().close();
+    }
+  },
+
   async share({open}, variant) {
     const page = await open({hash: '#example=pendulum'});
     await setSlider(page, 'l', 0.7);
