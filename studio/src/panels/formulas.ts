@@ -10,14 +10,23 @@ export function excess(element: HTMLElement): number {
 
 /** Sets mathematics smaller where a piece that cannot be broken is wider than its place: nothing of it is cut off. */
 export function fit(element: HTMLElement, least: number): void {
-  if (element.style.fontSize) return;
   const over = excess(element);
-  if (over > 1.001) element.style.fontSize = `${Math.max(least, 0.985 / over)}em`;
+  if (over > 1.001) element.style.fontSize = `${Math.max(least, (0.985 / over) * sizeOf(element))}em`;
+}
+const sizeOf = (element: HTMLElement): number => parseFloat(element.style.fontSize) || 1;
+
+/** The equations of motion have one size. */
+function asOne(element: HTMLElement): void {
+  const all = [...(element.closest('.numbered')?.querySelectorAll<HTMLElement>('.mathematics') ?? [])],
+    least = Math.min(...all.map(sizeOf));
+  if (least < 1) for (const one of all) one.style.fontSize = `${least}em`;
 }
 
 /** Lines out of sight have no size yet; each is fitted as it comes into sight, and anew when the window changes. */
 const coming = new IntersectionObserver(entries => {
-  for (const {isIntersecting, target} of entries) if (isIntersecting) fit(target as HTMLElement, 0.6);
+  const lines = entries.filter(one => one.isIntersecting).map(one => one.target as HTMLElement);
+  for (const line of lines) fit(line, 0.6);
+  for (const line of lines) asOne(line);
 });
 addEventListener('resize', () => {
   for (const one of document.querySelectorAll<HTMLElement>('.mathematics')) {

@@ -281,6 +281,10 @@ export const cases = {
       const page = await open({hash: `#example=${name}`});
       await page.waitForTimeout(100);
       check(`${name}: nothing is cut off`, (await cut(page)).length === 0, await cut(page));
+      const sizes = await page
+        .locator('#equations-body .numbered .mathematics')
+        .evaluateAll(all => all.map(one => getComputedStyle(one).fontSize));
+      check(`${name}: the equations have one size`, sizes.length > 1 && new Set(sizes).size === 1, sizes);
       const size = () =>
         page.locator('#equations-body .mathematics').first().evaluate(one => parseFloat(getComputedStyle(one).fontSize));
       const narrow = await size();
