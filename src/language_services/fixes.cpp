@@ -213,19 +213,28 @@ class Proposals {
 
   bool of_text() const { return diagnostic_.code[1] == '0' && diagnostic_.code[2] == '1'; }
 
-  /// The words at fault, the statement that they are in, or of a statement that declares several names the one at
-  /// fault.
+  /// The words at fault, the statement that they are in, or of a statement that says several things the one at fault.
   void remove() {
     const std::string_view text = document_.source().text();
     if (of_text()) return add("Remove it", span_, "");
     const syntax::TextStatement* statement = statement_at();
     if (!statement) return;
-    if (statement->declares.size() > 1) return remove_of_list(*statement);
+    if (is_list(*statement)) return remove_of_list(*statement);
     const auto& tokens = document_.reading().tokens;
     Span whole = cover(tokens[statement->begin].span, tokens[statement->end - 1].span);
     while (whole.end < text.size() && text[whole.end] != '\n') ++whole.end;
     if (whole.end < text.size()) ++whole.end;
     add("Remove the statement", whole, "");
+  }
+
+  bool is_list(const syntax::TextStatement& statement) const {
+    const auto& tokens = document_.reading().tokens;
+    int depth = 0;
+    for (std::size_t i = statement.begin; i < statement.end; ++i) {
+      depth += tokens[i].is("(") || tokens[i].is("[") ? 1 : tokens[i].is(")") || tokens[i].is("]") ? -1 : 0;
+      if (depth == 0 && tokens[i].is(",")) return true;
+    }
+    return false;
   }
 
   /// Of `param m = 1 kg, k = 5 N/m` the one that holds the span, with a comma. In `coord x, y : length` the kind is

@@ -69,6 +69,8 @@ const std::vector<Case> cases = {
     {"E0207", model("T = 1/2 m l^2 θ'^2\n"), model("T += 1/2 m l^2 θ'^2\n")},
     {"E0208", model("point P mass m at (l sin θ, -l cos θ)\ngravity (0, -g)\ngravity (0, g)\n"),
      model("point P mass m at (l sin θ, -l cos θ)\ngravity (0, -g)\n")},
+    {"E0208", model("V = -m g l cos θ\nstart θ = 1\nstart θ' = 2 rad/s, θ = 3\n"),
+     model("V = -m g l cos θ\nstart θ = 1\nstart θ' = 2 rad/s\n")},
     {"E0209", model("param J = 1/3 m l^2\n"), model("let J = 1/3 m l^2\n")},
     {"E0306", model("V = -m g l cos θ\nstart θ' = 2 Hz\n"), model("V = -m g l cos θ\nstart θ' = 2 rev/s\n")},
     {"E0307", "param M = 1 kg, m = 3 m\ncoord x : length\nT = 1/2 M x'^2\nstart x = 2 m\n",
@@ -140,6 +142,19 @@ TEST_CASE("what a fix leaves is looked at: in all refused models it takes its mi
       }
   }
   CHECK(codes.size() >= 38);
+}
+
+TEST_CASE("a fix takes away one thing of a statement that says several") {
+  const std::string text =
+      read_file(std::filesystem::path(PROJECT_DIR) / "tests/golden/reject/field_boundary_twice.lag");
+  Document asked = document(text);
+  std::size_t count = 0;
+  for (const Diagnostic& d : asked.diagnostics().items())
+    for (const Fix& fix : fixes_of(asked, d)) {
+      CHECK_MESSAGE(edited(text, fix.edits).find("boundary left : u = 0") != std::string::npos, fix.title);
+      ++count;
+    }
+  CHECK(count == 1);
 }
 
 TEST_CASE("words of a help are no text of a model") {
