@@ -377,7 +377,10 @@ bool mends(Document& document, const Diagnostic& diagnostic, const std::vector<T
   const Diagnostics& after = mended.diagnostics();
   if (count(after, diagnostic.code) >= count(before, diagnostic.code)) return false;
   const std::size_t errors = count(before, Severity::Error);
-  if (diagnostic.severity == Severity::Error) return count(after, Severity::Error) < errors;
+  // What follows the word of a statement is read for the first time when the word is right, and may have its own
+  // mistake.
+  const bool word = diagnostic.code == "E0110" && diagnostic.help.rfind("Did you mean", 0) == 0;
+  if (diagnostic.severity == Severity::Error) return count(after, Severity::Error) < errors + (word ? 1 : 0);
   return count(after, Severity::Error) <= errors && count(after, Severity::Warning) <= count(before, Severity::Warning);
 }
 

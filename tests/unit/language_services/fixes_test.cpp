@@ -30,6 +30,8 @@ const std::vector<Case> cases = {
     {"E0110", model("potental = -m g l cos θ\n"), model("potential = -m g l cos θ\n")},
     {"E0110", "parameters m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n",
      "param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n"},
+    {"E0110", "param m = 1 kg\ncoordinate x\nT = 1/2 m (1 [m/s])^2\n",
+     "param m = 1 kg\ncoord x\nT = 1/2 m (1 [m/s])^2\n"},
     {"E0110", model("V = -m g l cos θ\nθ(0) = 1\n"), model("V = -m g l cos θ\nstart θ = 1\n")},
     {"E0111", head + "point P mass m at l (sin θ, -cos θ)\ngravity = (0, -g)\n",
      head + "point P mass m at l (sin θ, -cos θ)\ngravity (0, -g)\n"},
