@@ -269,41 +269,55 @@ class Proposals {
   void of_code() {
     const std::string& code = diagnostic_.code;
     const std::string text(written());
-    if (code == "E0104" && text == "%") propose("#");
-    if (code == "E0104" && text == "//") propose("#");
-    if (code == "E0104" && text == ";" && !ends_line()) add("Write the statements on lines of their own", span_, "\n");
-    if (code == "E0104" && (text == ":=" || text == "==")) propose("=");
-    if (code == "E0104" && text == "**") propose("^");
-    if (code == "E0104" && text == "{") propose("(");
-    if (code == "E0104" && text == "}") propose(")");
-    if (code == "E0104" && (text == "&" || text == "&&")) propose("and");
+    if (code == "E0104") sign_of_another_language(text);
+    if (code == "E0110") no_statement(text);
+    if (code == "E0111") something_else_expected(text);
     if (code == "E0115")  // sin^-1 x: what most readers take it for
       propose("a" + text.substr(0, text.find_first_of(" ^⁻")));
     if (code == "E0129" && diagnostic_.help.rfind("Write " + text + " : ", 0) == 0)
       for (const char* kind : {" : angle", " : length", " : charge", " : number"}) insert(kind);
-    if (code == "E0304") bare_number();
     if (code == "E0210" && statement_begins_with("gravity"))
       for (const char* zeros : {"(0, -", "(0, 0, -"}) propose(zeros + text + ")");
-    if (code == "E0111" && text == "=" && statement_begins_with("gravity"))
-      add("Leave = out", {span_.begin, skip_blanks(span_.end), span_.source}, "");
-    if (code == "E0111" && text == "(" && after().rfind("(0)", 0) == 0 && statement_begins_with("start"))
-      add("Leave (0) out", {span_.begin, span_.begin + 3, span_.source}, "");
-    if (code == "E0111" && statement_begins_with("constraint") &&
-        diagnostic_.message.find("expected `=`") != std::string::npos)
-      insert_at_end(" = 0");
-    if (code == "E0306") {  // turns a second
-      const syntax::TextStatement* statement = statement_at();
-      const auto& tokens = document_.reading().tokens;
-      for (std::size_t i = statement ? statement->begin : 0; statement && i < statement->end; ++i)
-        if (tokens[i].unit && tokens[i].text == "Hz") add("Write rev/s", tokens[i].span, "rev/s");
-    }
-    if (code == "E0110" && after().substr(text.size()).rfind("(0)", 0) == 0)  // x(0) = 1 m
+    if (code == "E0304") bare_number();
+    if (code == "E0306") turns_a_second();
+  }
+
+  void sign_of_another_language(const std::string& text) {
+    static constexpr std::pair<std::string_view, std::string_view> signs[] = {{"%", "#"},  {"//", "#"},  {":=", "="},
+                                                                              {"==", "="}, {"**", "^"},  {"{", "("},
+                                                                              {"}", ")"},  {"&", "and"}, {"&&", "and"}};
+    for (const auto& [theirs, ours] : signs)
+      if (text == theirs) propose(std::string(ours));
+    if (text == ";" && !ends_line()) add("Write the statements on lines of their own", span_, "\n");
+  }
+
+  /// x(0) = 1 m, or an equation that could be several things.
+  void no_statement(const std::string& text) {
+    if (after().substr(text.size()).rfind("(0)", 0) == 0)
       return add("Write start " + text, {span_.begin, span_.end + 3, span_.source}, "start " + text);
-    if (code == "E0110" && diagnostic_.help.find("A definition is") == 0) {  // a line that is an equation
-      const Span at{span_.begin, span_.begin, span_.source};
-      for (const char* word : {"let ", "param ", "start "})
-        add("Begin it with " + std::string(word, std::strlen(word) - 1), at, word);
-    }
+    if (diagnostic_.help.find("A definition is") != 0) return;
+    const Span at{span_.begin, span_.begin, span_.source};
+    for (const char* word : {"let ", "param ", "start "})
+      add("Begin it with " + std::string(word, std::strlen(word) - 1), at, word);
+  }
+
+  /// gravity = (0, -g); start x(0) = 1 m; constraint x^2 + y^2 - l^2
+  void something_else_expected(const std::string& text) {
+    if (text == "=" && statement_begins_with("gravity"))
+      add("Leave = out", {span_.begin, skip_blanks(span_.end), span_.source}, "");
+    if (after().rfind("(0)", 0) == 0 && statement_begins_with("start"))
+      add("Leave (0) out", {span_.begin, span_.begin + 3, span_.source}, "");
+    if (diagnostic_.message.find("expected `=`") != std::string::npos && statement_begins_with("constraint"))
+      insert_at_end(" = 0");
+  }
+
+  /// 50 Hz, where an angular velocity is meant.
+  void turns_a_second() {
+    const syntax::TextStatement* statement = statement_at();
+    if (!statement) return;
+    const auto& tokens = document_.reading().tokens;
+    for (std::size_t i = statement->begin; i < statement->end; ++i)
+      if (tokens[i].unit && tokens[i].text == "Hz") add("Write rev/s", tokens[i].span, "rev/s");
   }
 
   /// The text from the words at fault on.
