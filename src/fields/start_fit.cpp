@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 namespace maupertuis {
@@ -18,7 +17,7 @@ using Side = BoundaryCondition::Side;
 
 constexpr int most_times = 3;  // differentiated by t
 constexpr double rounding = 1e-12;
-constexpr double small = 1e-8;  // change of the field from node to node, beside the field
+constexpr double small = 1e-8;  // of the field: a change from node to node
 
 /// jets = given at a side; `order` of the derivative that jumps if it does not hold.
 struct SideCondition {
@@ -43,6 +42,8 @@ std::vector<SideCondition> conditions_of(const FieldEquations& equations) {
     }
   return out;
 }
+
+constexpr double places_along[] = {0.23, 0.37, 0.71}, places_inside[] = {0.07, 0.19, 0.31, 0.47, 0.63, 0.78, 0.91};
 
 class Start {
  public:
@@ -72,21 +73,36 @@ class Start {
     return s_.expanded(substitute(e, map));
   }
 
-  struct Misfit {
-    double off = 0, size = 0;  // at the side, and of both parts there and inside
-  };
-  Misfit misfit(const SideCondition& c, Expr jets) const {
+  /// Of what a condition asks for at a side, beside what the same expression has there and inside: at most 1.
+  double misfit(const SideCondition& c, Expr jets) const {
     const std::size_t across = c.side == Side::Left || c.side == Side::Right ? 0 : 1;
     const double at = c.side == Side::Right || c.side == Side::Top ? 1 : 0;
-    Misfit out;
-    for (const double along : {0.23, 0.37, 0.71}) {
-      const double given = value(c.given, across, at, along);
-      out.off = std::max(out.off, std::abs(value(jets, across, at, along) - given));
-      out.size = std::max(out.size, std::abs(given));
-      for (const double inside : {0.07, 0.19, 0.31, 0.47, 0.63, 0.78, 0.91})
-        out.size = std::max(out.size, std::abs(value(jets, across, inside, along)));
+    double off = 0, size = 0;
+    for (const double along : places_along) {
+      const double given = value(c.given, across, at, along), found = value(jets, across, at, along);
+      off = std::max(off, std::abs(found - given));
+      size = std::max({size, std::abs(given), std::abs(found)});
+      for (const double inside : places_inside) size = std::max(size, std::abs(value(jets, across, inside, along)));
     }
-    if (!(out.off > rounding * out.size)) out.off = 0;
+    return off > rounding * size ? off / size : 0;
+  }
+
+  /// How fast the fields change in space: |∂φ/∂x|/|φ|, and 1 over the width at least.
+  double wave_number() const {
+    double out = 0;
+    for (std::size_t x = 0; x < s_.space.size(); ++x) {
+      out = std::max(out, 1 / width_[x]);
+      for (const FieldStart& one : equations_.model->start) {
+        const Expr field = s_.expanded(one.value), slope = differentiate(field, s_.space[x].symbol);
+        double size = 0, change = 0;
+        for (const double along : places_along)
+          for (const double inside : places_inside) {
+            size = std::max(size, std::abs(value(field, x, inside, along)));
+            change = std::max(change, std::abs(value(slope, x, inside, along)));
+          }
+        if (size > 0) out = std::max(out, change / size);
+      }
+    }
     return out;
   }
 
@@ -112,23 +128,20 @@ std::optional<int> jump_from_sides(const FieldEquations& equations, double begin
   if (s.periodic || !s.space.front().from) return std::nullopt;
   const Start start(equations, begin);
   const OnShell shell(equations);
-  std::vector<std::pair<int, double>> jumps;
-  double size = 0;
+  const double from_node_to_node = std::min(1.0, spacing * start.wave_number());
+  std::optional<int> out;
   for (SideCondition c : conditions_of(equations))
-    for (int k = 0; k <= most_times; ++k, ++c.order) {
+    for (int k = 0; k <= most_times && (!out || c.order < *out); ++k, ++c.order) {
       const auto reduced = shell.reduced(c.jets);
       const auto jets = reduced ? start.inserted(*reduced) : std::nullopt;
       if (!jets) break;
-      const Start::Misfit found = start.misfit(c, *jets);
-      const double unit = std::pow(spacing, c.order);
-      jumps.emplace_back(c.order, unit * found.off);
-      size = std::max(size, unit * found.size);
+      if (std::pow(from_node_to_node, c.order) * start.misfit(c, *jets) > small) {
+        out = c.order;
+        break;
+      }
       c.jets = s.total_derivative(*reduced, s.space.size());
       c.given = total_time_derivative(c.given);
     }
-  std::optional<int> out;
-  for (const auto& [order, change] : jumps)
-    if (change > small * size && (!out || order < *out)) out = order;
   return out;
 }
 

@@ -91,7 +91,8 @@ export const texts = {
     const page = await open();
     await openFile(page, 'pendulum.lag');
     check('it is not changed by reading', (await page.locator('#document-state').innerText()) === '');
-    check('words are coloured', (await page.locator('.cm-content .tok-coordinate').count()) > 0);
+    await page.waitForSelector('.cm-content .tok-coordinate');  // the server tells what a name is
+    await settled(page);
     await page.keyboard.press('Control+s');
     await page.waitForFunction(() => /Saved/.test(document.querySelector('#word').textContent));
     check('saved as it was, it is the same to the byte', read() === ended);
