@@ -32,7 +32,7 @@ std::optional<FieldJet> beyond(const FieldJet& high, const FieldJet& low) {
 
 }  // namespace
 
-OnShell::OnShell(const FieldEquations& equations) : equations_(equations), s_(equations.system()) {
+OnShell::OnShell(const FieldEquations& equations) : s_(equations.system()) {
   for (const Expr& written : equations.residuals) {
     const Expr residual = s_.expanded(written);
     const std::vector<Expr> jets = s_.jets_in(residual);

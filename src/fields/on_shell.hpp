@@ -21,7 +21,6 @@ class OnShell {
     FieldJet jet;
     Expr value;
   };
-  const FieldEquations& equations_;
   const FieldSystem& s_;
   bool complete_ = true;
   std::vector<Expr> leading_, coefficient_;

@@ -502,7 +502,7 @@ std::vector<double> legendre_parts(const Lobatto& rule, const std::vector<double
 std::vector<Expr> legendre_polynomials(Expr xi, std::size_t last) {
   std::vector<Expr> p{xi.context().number(1), xi};
   while (p.size() <= last) {
-    const Rational n(static_cast<long>(p.size()) - 1);
+    const Rational n(static_cast<std::int64_t>(p.size()) - 1);
     p.push_back(xi.context().number((2 * n + 1) / (n + 1)) * xi * p.back() -
                 xi.context().number(n / (n + 1)) * p[p.size() - 2]);
   }
