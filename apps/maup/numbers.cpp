@@ -9,21 +9,14 @@
 namespace maupertuis::app {
 namespace {
 
-/// "/points/0/modes/1/frequency" below `value`, "/" if it is that itself; or empty. Written where one is found alone:
-/// there may be a million numbers.
+/// "/points/0/modes/1/frequency" below `value`, "/" if it is that itself; or empty. The path is written where one is
+/// found alone: there may be a million numbers.
 std::string place_of_no_number(const Json& value) {
   if (value.is_number_float() && !std::isfinite(value.get<double>())) return "/";
   if (!value.is_structured()) return {};
-  const auto below = [](const std::string& name, const std::string& found) {
-    return "/" + name + (found == "/" ? "" : found);
-  };
-  if (value.is_array())
-    for (std::size_t i = 0; i < value.size(); ++i)
-      if (const std::string found = place_of_no_number(value[i]); !found.empty())
-        return below(std::to_string(i), found);
-  if (value.is_object())
-    for (const auto& [name, part] : value.items())
-      if (const std::string found = place_of_no_number(part); !found.empty()) return below(name, found);
+  for (const auto& part : value.items())
+    if (const std::string found = place_of_no_number(part.value()); !found.empty())
+      return "/" + part.key() + (found == "/" ? "" : found);
   return {};
 }
 

@@ -52,20 +52,19 @@ Json lines_json(const std::vector<EquationLine>& lines, const ReadingOrder& orde
   return list;
 }
 
-std::string readable_text(Expr e, const ReadingOrder& order) {
+using Writer = std::string (*)(Expr, const ReadingOrder&);
+
+/// A formula and what the names in it stand for, after `with`.
+std::string readable_line(Expr e, const ReadingOrder& order, Writer write, const char* with) {
   const ReadableForm form = readable(e, order);
-  std::string text = to_plain(form.value, order);
+  std::string text = write(form.value, order);
   for (const Intermediate& i : form.intermediates)
-    text += fmt::format(" with {} = {}", to_plain(i.symbol, order), to_plain(i.value, order));
+    text += fmt::format("{} {} = {}", with, write(i.symbol, order), write(i.value, order));
   return text;
 }
-
+std::string readable_text(Expr e, const ReadingOrder& order) { return readable_line(e, order, to_plain, " with"); }
 std::string readable_latex(Expr e, const ReadingOrder& order) {
-  const ReadableForm form = readable(e, order);
-  std::string text = to_latex(form.value, order);
-  for (const Intermediate& i : form.intermediates)
-    text += fmt::format(" \\quad \\text{{with }} {} = {}", to_latex(i.symbol, order), to_latex(i.value, order));
-  return text;
+  return readable_line(e, order, to_latex, " \\quad \\text{with }");
 }
 
 /// multipliers, constraints, A and b of A q'' = b.

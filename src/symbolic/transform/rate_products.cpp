@@ -37,18 +37,30 @@ class RateProducts {
   }
 
  private:
+  /// Whether a sine or cosine and two velocities stand in it: to look costs less than to expand.
+  bool may_gain(Expr e) const {
+    std::size_t velocities = 0;
+    bool has_angle = false;
+    for (const Expr& node : topological_order({&e, 1})) {
+      velocities += coordinate_of_.count(node);
+      has_angle = has_angle || node.is(Kind::Sin) || node.is(Kind::Cos);
+    }
+    return velocities > 1 && has_angle;
+  }
+
   Expr of_term(Expr e) {
-    if (context_.has_time_derivative(e.id())) return e;
+    if (context_.has_time_derivative(e.id()) || !may_gain(e)) return e;
     try {
       const Polynomial polynomial = reader_.read(e);
+      Polynomial others;
       std::vector<Expr> out;
-      bool found = false;
-      for (const Term& term : polynomial) {
-        const std::optional<Expr> product = product_of_rates(term);
-        found |= product.has_value();
-        out.push_back(product ? *product : algebra_.expression({term}));
-      }
-      if (!found) return e;
+      for (const Term& term : polynomial)
+        if (const std::optional<Expr> product = product_of_rates(term))
+          out.push_back(*product);
+        else
+          others.push_back(term);
+      if (out.empty()) return e;
+      out.push_back(algebra_.expression(others));
       const Expr result = context_.sum(out);
       return is_same(reader_.read(expand_time_derivatives(result)), polynomial) ? result : e;
     } catch (const terms::TooManyTerms&) {
