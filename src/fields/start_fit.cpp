@@ -17,7 +17,8 @@ using Side = BoundaryCondition::Side;
 
 constexpr int most_times = 3;  // differentiated by t
 constexpr double rounding = 1e-12;
-constexpr double small = 1e-8;  // of the field: a change from node to node
+constexpr double of_tails = 1e-5;  // what ends far from a pulse may be off by, beside the same inside
+constexpr double small = 1e-8;     // of the field: a change from node to node, which such tails may make
 
 /// jets = given at a side; `order` of the derivative that jumps if it does not hold.
 struct SideCondition {
@@ -135,7 +136,8 @@ std::optional<int> jump_from_sides(const FieldEquations& equations, double begin
       const auto reduced = shell.reduced(c.jets);
       const auto jets = reduced ? start.inserted(*reduced) : std::nullopt;
       if (!jets) break;
-      if (std::pow(from_node_to_node, c.order) * start.misfit(c, *jets) > small) {
+      const double misfit = start.misfit(c, *jets);
+      if (misfit > of_tails || misfit * std::pow(from_node_to_node, c.order) > small) {
         out = c.order;
         break;
       }

@@ -11,8 +11,8 @@ namespace maupertuis {
 /// φ = g at a side asks for D_t^k (φ − g) = 0 at the start for every k, the derivatives in time beyond the first being
 /// those that the equations say; a natural side for D_t^k (p + F) = 0. u = x (1 − x) between held ends has u'' = −2 at
 /// both, where nothing moves: its curvature jumps. Meshes gain by halving their cells what that derivative lets them.
-/// The lowest one that counts: the part of its condition that does not hold, by the power of the distance of nodes,
-/// `spacing`, in units of the length in which the start changes. Cost: milliseconds.
+/// The lowest one that counts: of tails of pulses, where less than 1e-5 of the condition does not hold, those that are
+/// seen from node to node, `spacing` apart. Cost: milliseconds.
 std::optional<int> jump_from_sides(const FieldEquations& equations, double begin, double spacing);
 
 }  // namespace maupertuis
