@@ -154,6 +154,7 @@ bool HybridMotion::Trial::look(double bound) {
   }
   s.set_usual_sizes(places, speeds, accelerations);
   outlook = s.outlook(bound);
+  in.no_motion_ = outlook.reason;
   if (outlook.ending != StepEnding::None) return false;
   if (has_slow_slips()) outlook = s.outlook(bound);
   found.accelerations = outlook.accelerations;

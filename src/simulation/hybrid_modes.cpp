@@ -231,7 +231,8 @@ std::optional<HybridMotion::Found> HybridMotion::search_mode(const std::vector<C
   const bool rubs = std::any_of(list.begin(), list.end(), [](const Choice& c) { return c.options.size() > 2; }) ||
                     std::any_of(touching.begin(), touching.end(),
                                 [&](std::size_t i) { return system_.contacts[i].friction.present(); });
-  reason = rubs ? "Painlevé's paradox: no finite forces of contact and friction fit the motion here."
+  reason = list.empty() && !no_motion_.empty() ? no_motion_
+           : rubs ? "Painlevé's paradox: no finite forces of contact and friction fit the motion here."
            : tries.number(most_choices - 1)
                ? fmt::format("None of the {} modes that were tried fits the contacts that touch here.", most_choices)
                : "No forces keep all contacts that touch here from closing.";

@@ -268,6 +268,7 @@ class HybridMotion final : public Method {
   std::vector<double> moment_accelerations_;                     // [n] in it
   bool just_moved_on_ = false;                                   // the last step follows it
   std::optional<std::size_t> met_;  // a contact that the constraints of the mode that was tried move through zero
+  std::string no_motion_;           // why the mode that was tried last has none, if that is so
   std::shared_ptr<ImpactDerivative> derivative_;  // where instants are kept
   std::shared_ptr<Settled> settled_;              // the instant that is being settled
   std::optional<ModeInstant> instant_;            // the one at the beginning of the last step

@@ -68,3 +68,24 @@ TEST_CASE("a long chaotic run is not taken for one whose steps go on shrinking")
   CHECK(document["ended"].value("reason", "").find("interrupted") != std::string::npos);
   CHECK(document["statistics"]["steps"] > 16384);
 }
+
+TEST_CASE("a run that no event helps to begin says why, and speaks of no contacts") {
+  const Folder folder;
+  const Outcome run =
+      maup({"simulate", folder.write("root.lag", head + "force x = sqrt(t)\nevent a when x = 1 : record\n"
+                                                        "run 3\n")});
+  CHECK(run.code == 3);
+  CHECK(contains(run.err + run.out, "not all of their derivatives are"));
+  CHECK_FALSE(contains(run.err + run.out, "contacts"));
+}
+
+TEST_CASE("a load that leaves its bridge ends the run before its time: exit code 3, with the reason") {
+  const Folder folder;
+  const std::string bridge =
+      "system bridge\ndimensionless\nfield w(x) : number on x = 0 .. 1 cells 2 order 5 boundary w = 0\n"
+      "density = 1/2 w'^2 - 1/2 w_x^2\nforce w(t/2) = -1\n";
+  const Outcome over = maup({"simulate", folder.write("over.lag", bridge + "run 3\n"), "--json"});
+  CHECK(over.code == 3);
+  CHECK(nlohmann::json::parse(over.out)["trouble"] == "w(t/2) leaves the domain");
+  CHECK(maup({"simulate", folder.write("on.lag", bridge + "run 2\n")}).code == 0);
+}

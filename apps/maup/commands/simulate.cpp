@@ -370,7 +370,8 @@ ExitCode simulate_fields(const SimulateOptions& options, Study& study, Console& 
   if (!options.plot.empty())
     write_picture(options.plot, pictures_of_fields(study, *equations, *run, {}), study.diagnostics());
   if (!console.json()) console.print(field_run_text(*run));
-  return finish(console, study, field_run_json(*run));
+  const ExitCode told = finish(console, study, field_run_json(*run));
+  return run->trouble.empty() || told != ExitCode::Fine ? told : ExitCode::RunFailed;
 }
 
 /// The precision of the command line, else that of the model. A word that is none is for the model to refuse.
