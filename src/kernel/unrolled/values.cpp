@@ -265,15 +265,14 @@ Value Unrolling::functions(const Step& step) {
 
 Value Unrolling::quotient(const Step& step) {
   const Product& p = step.products[0];
-  std::vector<Term> terms{{1, operand(p.a, k_)}};
-  if (k_ > 0) terms.push_back({-1, product(p.b, step.out, 1)});
-  return to_.sum(terms, none, operand(p.b, 0));
+  if (k_ == 0) return to_.sum({{1, operand(p.a, 0)}}, none, operand(p.b, 0));
+  return to_.sum({{1, operand(p.a, k_)}, {-1, product(p.b, step.out, 1)}}, to_.reciprocal(operand(p.b, 0)));
 }
 
 Value Unrolling::root(const Step& step) {
   const Value u = operand(step.products[0].a, k_);
   if (k_ == 0) return to_.root(u);
-  return to_.sum({{0.5, u}, {-0.5, square(step.out, 1)}}, none, operand(step.out, 0));
+  return to_.sum({{0.5, u}, {-0.5, square(step.out, 1)}}, to_.reciprocal(operand(step.out, 0)));
 }
 
 /// y = a^p: a y' = p y a'
