@@ -71,14 +71,15 @@ struct ExtendedProblem {
   /// Without coordinates and parameters. Its observables are, in this order: the parameters of `kernel` [p], begin,
   /// end, the time between two rows, q [n] and q̇ [n] at the begin, the times asked for.
   Kernel numbers;
-  std::vector<bool> fixed_q, fixed_v;     // [n] not to be moved when the start is brought onto the constraints
-  std::size_t first_rate = 0, rates = 0;  // observables of `kernel` that q̇ must bring to zero at the start, each
-                                          // followed by its derivatives by q̇: [rates × (1 + n)]
-  std::size_t rows = 0;                   // states wanted at begin, begin ± every, …, this many; then one at the end
-  std::size_t times = 0;                  // states wanted at the times asked for, in the order of the run
-  bool until = false;                     // the first event of the kernel ends the run
-  std::vector<ExtendedEvent> events{};    // what the next ones do, in their order
-  std::size_t first_set = 0;              // observables: the values that events set, one after the other
+  std::vector<bool> fixed_q, fixed_v;   // [n] not to be moved when the start is brought onto the constraints
+  std::size_t first_condition = 0;      // observables of `kernel` that q, or q̇, must bring to zero at the start, each
+                                        // followed by its derivatives by q, or q̇: [conditions × (1 + n)]
+  std::vector<bool> conditions;         // whether q is to do it
+  std::size_t rows = 0;                 // states wanted at begin, begin ± every, …, this many; then one at the end
+  std::size_t times = 0;                // states wanted at the times asked for, in the order of the run
+  bool until = false;                   // the first event of the kernel ends the run
+  std::vector<ExtendedEvent> events{};  // what the next ones do, in their order
+  std::size_t first_set = 0;            // observables: the values that events set, one after the other
   ExtendedContacts contacts{};
 };
 

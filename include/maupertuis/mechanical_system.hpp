@@ -275,11 +275,15 @@ struct DrawElement {
   std::string text = {};           // Label: what is written there
 };
 
-/// start sat.ω = (0.01, 2, 0.01) rad/s: a body rate that the velocities must give.
-struct StartRate {
-  Expr rate;  // in q, q', parameters
+/// start sat.ω = (0.01, 2, 0.01) rad/s, start P.x = 1 m: what the state must give, each a number. The positions give
+/// what holds no velocity, the velocities the rest.
+struct StartCondition {
+  Expr formula;  // in q, q', t, parameters; affine in q'
   Expr value;
+  std::string name;  // as written: sat.ω
   Span span;
+
+  bool is_of_positions() const;
 };
 
 /// sweep Ω = 0 .. 12 rad/s steps 121: equally spaced values of one parameter.
@@ -320,7 +324,7 @@ struct AskedFormula {
 /// What to do with a system: where it starts, how long it runs, what is drawn and what is expected.
 struct Experiment {
   std::vector<StartValue> start;  // unwritten = 0
-  std::vector<StartRate> start_rates;
+  std::vector<StartCondition> start_conditions;
   std::vector<StartValue>
       at;  // the point that is asked about; by overrides alone, as `asked`, `section` and `given_path`
   bool start_exactly = false;

@@ -16,7 +16,7 @@ Model started_at(const Model& model, double t, const std::vector<double>& q, con
   Context& context = *model.system.context;
   const auto number = [&](double x) { return context.number(Rational::from_double(x)); };
   out.experiment.start.clear();
-  out.experiment.start_rates.clear();
+  out.experiment.start_conditions.clear();
   out.experiment.start_exactly = false;
   out.experiment.until = out.experiment.within = Expr();
   out.experiment.start_time = number(t);

@@ -478,6 +478,21 @@ Expr SemiDiscrete::discretised(const FieldQuestion& question, Diagnostics& diagn
 }
 
 /// Values at places in events and in the end of the run.
+/// What the start says of a point that hangs on a field is said of the field, which has a start of its own.
+bool SemiDiscrete::refuse_starts_of_places(Diagnostics& diagnostics) const {
+  for (const StartCondition& c : model_.experiment.start_conditions) {
+    const std::vector<Expr> held = symbols_of({&c.formula, 1});
+    for (const PlaceValue& place : equations_->model->places) {
+      if (std::find(held.begin(), held.end(), place.symbol) == held.end()) continue;
+      diagnostics.error("E0504", c.span, fmt::format("a start of `{}`, which the field moves", c.name),
+                        "Where the field is at the start, and how it moves, its own start says.",
+                        "Write it into the start of the field, or give coordinates alone.");
+      return true;
+    }
+  }
+  return false;
+}
+
 bool SemiDiscrete::replace_places(Diagnostics& diagnostics) {
   bool good = true;
   const auto replace = [&](Expr& e) {
@@ -491,7 +506,7 @@ bool SemiDiscrete::replace_places(Diagnostics& diagnostics) {
     for (ModelEvent::Assignment& a : event.sets) replace(a.value);
   }
   replace(model_.experiment.until);
-  return good;
+  return good && !refuse_starts_of_places(diagnostics);
 }
 
 }  // namespace maupertuis

@@ -58,6 +58,7 @@ class SemiDiscrete {
   void add_force_densities();
   void add_end_forces();
   bool set_start(Diagnostics& diagnostics);
+  bool refuse_starts_of_places(Diagnostics& diagnostics) const;
   bool replace_places(Diagnostics& diagnostics);
   bool has_slopes(std::size_t field) const;
   bool set_moving_places(Diagnostics& diagnostics);

@@ -32,16 +32,17 @@ class Start {
       : model_(model),
         system_(model.system),
         equations_(equations),
+        placed_(with_places()),
         diagnostics_(diagnostics),
         bindings_(parameter_bindings(model.system)),
         n_(model.system.coordinates.size()) {}
 
   std::optional<ConsistentStart> find() {
     if (!read()) return std::nullopt;
-    if (equations_.degenerate) return find_on_degenerate();
-    if (!system_.constrained() && model_.experiment.start_rates.empty()) return ConsistentStart{state_, {}, false};
+    if (equations_.degenerate) return refuse_conditions() ? std::nullopt : find_on_degenerate();
+    if (!system_.constrained() && model_.experiment.start_conditions.empty()) return ConsistentStart{state_, {}, false};
     const ConstraintManifold manifold(equations_, rates());
-    if (!place(manifold) || !set_going(manifold)) return std::nullopt;
+    if (!(placed_ ? place(ConstraintManifold(*placed_)) : place(manifold)) || !set_going(manifold)) return std::nullopt;
     ConsistentStart out{state_, {}, searched_};
     list(out.adjustments, state_.q, written_state_.q, written_q_, 0);
     list(out.adjustments, state_.v, written_state_.v, written_v_, 1);
@@ -97,21 +98,54 @@ class Start {
     return true;
   }
 
+  bool refuse_conditions() {
+    if (model_.experiment.start_conditions.empty()) return false;
+    const StartCondition& c = model_.experiment.start_conditions.front();
+    diagnostics_.error("E0504", c.span, fmt::format("a start of `{}` beside a degenerate Lagrangian", c.name),
+                       "Its constraints tie positions and velocities to each other, and are solved for coordinates and "
+                       "velocities that are given or left open.",
+                       "Give the coordinates and velocities that belong to it.");
+    return true;
+  }
+
+  /// Equations in which places that the start gives, P.x = 1 m, are constraints: so the positions are sought. Nothing
+  /// where it gives none.
+  std::optional<EquationsOfMotion> with_places() const {
+    if (model_.experiment.start_conditions.empty()) return std::nullopt;
+    const auto system = std::make_shared<MechanicalSystem>(system_);
+    EquationsOfMotion out = equations_;
+    for (const StartCondition& c : model_.experiment.start_conditions) {
+      if (!c.is_of_positions()) continue;
+      Constraint place;
+      place.name = fmt::format("the start of `{}`", c.name);
+      place.value = c.formula - c.value;
+      place.span = c.span;
+      system->constraints.push_back(place);
+      out.constraint_rates.push_back(total_time_derivative(place.value));
+    }
+    if (system->constraints.size() == system_.constraints.size()) return std::nullopt;
+    out.system = system;
+    return out;
+  }
+  const MechanicalSystem& placed() const { return placed_ ? *placed_->system : system_; }
+
   std::vector<Expr> rates() const {
     std::vector<Expr> out;
-    for (const StartRate& r : model_.experiment.start_rates) out.push_back(r.rate - r.value);
+    for (const StartCondition& c : model_.experiment.start_conditions)
+      if (!c.is_of_positions()) out.push_back(c.formula - c.value);
     return out;
   }
 
   std::string labels(const std::vector<std::size_t>& of) const {
     std::string out;
     for (std::size_t k = 0; k < of.size(); ++k)
-      out += (k == 0 ? "" : k + 1 == of.size() ? " and " : ", ") + system_.constraint_label(of[k]);
+      out += (k == 0 ? "" : k + 1 == of.size() ? " and " : ", ") + placed().constraint_label(of[k]);
     return out;
   }
 
   std::optional<Span> span() const {
     if (!model_.experiment.start.empty()) return model_.experiment.start.front().span;
+    if (!model_.experiment.start_conditions.empty()) return model_.experiment.start_conditions.front().span;
     return std::nullopt;
   }
 
@@ -121,7 +155,7 @@ class Start {
 
   /// The written coordinates stay; then a search over the others; then, unless they are exact, all may move.
   bool place(const ConstraintManifold& manifold) {
-    if (system_.constraints.empty() || try_from(manifold, state_, written_q_)) return true;
+    if (placed().constraints.empty() || try_from(manifold, state_, written_q_)) return true;
     if (search(manifold, written_q_)) return true;
     if (model_.experiment.start_exactly && !possible_elsewhere(manifold)) return refuse_clash(manifold);
     if (model_.experiment.start_exactly) return refuse_written(manifold);
@@ -143,10 +177,10 @@ class Start {
   };
 
   std::vector<Group> groups(const ConstraintManifold& manifold, const std::vector<bool>& fixed) const {
-    const std::size_t m = system_.constraints.size();
+    const std::size_t m = placed().constraints.size();
     std::vector<Group> out;
     for (std::size_t k = 0; k < m; ++k) {
-      if (system_.constraints[k].level != Constraint::Level::Position) continue;
+      if (placed().constraints[k].level != Constraint::Level::Position) continue;
       out.push_back({std::vector<bool>(m, false), nothing()});
       out.back().rows[k] = true;
     }
@@ -214,7 +248,7 @@ class Start {
     const auto off = manifold.relative_values(written_state_);
     const auto worst = static_cast<std::size_t>(std::max_element(off.begin(), off.end()) - off.begin());
     diagnostics_.error(
-        "E0707", span(), fmt::format("the start violates {}", system_.constraint_label(worst)),
+        "E0707", span(), fmt::format("the start violates {}", placed().constraint_label(worst)),
         "`start exactly` keeps the written values, and no choice of the others satisfies the constraints.",
         "Correct the values, give fewer of them, or leave out `exactly`.");
     return false;
@@ -226,7 +260,7 @@ class Start {
     const std::vector<std::size_t> clash = manifold.smallest_clash(trial);
     const std::string names = labels(clash);
     const std::optional<Span> place =
-        clash.empty() ? std::nullopt : std::optional(system_.constraints[clash.back()].span);
+        clash.empty() ? std::nullopt : std::optional(placed().constraints[clash.back()].span);
     diagnostics_.error("E0708", place, fmt::format("no configuration satisfies {}", names),
                        "These constraints exclude each other from where the motion starts: the loop cannot close.",
                        "Check the lengths in them, or start nearer to a configuration that is possible.");
@@ -240,7 +274,8 @@ class Start {
     const auto off = manifold.relative_rates(written_state_at(state_.q));
     const auto worst = static_cast<std::size_t>(std::max_element(off.begin(), off.end()) - off.begin());
     const bool is_rate = worst >= manifold.constraints();
-    const std::string label = is_rate ? "the angular velocity of the start" : system_.constraint_label(worst);
+    const StartCondition* const rate = is_rate ? rate_of_start(worst - manifold.constraints()) : nullptr;
+    const std::string label = rate ? fmt::format("the start of `{}`", rate->name) : system_.constraint_label(worst);
     if (model_.experiment.start_exactly) {
       diagnostics_.error(
           "E0707", span(), fmt::format("the velocities of the start violate {}", label),
@@ -250,11 +285,18 @@ class Start {
     }
     if (move(manifold, nothing())) return true;
     const auto clash = is_rate ? std::vector<std::size_t>{} : manifold.smallest_clash(written_state_at(state_.q));
-    diagnostics_.error("E0709", is_rate ? model_.experiment.start_rates.front().span : system_.constraints[worst].span,
+    diagnostics_.error("E0709", rate ? rate->span : system_.constraints[worst].span,
                        fmt::format("no velocities satisfy {} at the start", clash.empty() ? label : labels(clash)),
                        "At this configuration the constraints on the velocities exclude each other.",
                        "Start from another configuration, or check the constraints.");
     return false;
+  }
+
+  /// Of those that velocities give.
+  const StartCondition* rate_of_start(std::size_t index) const {
+    for (const StartCondition& c : model_.experiment.start_conditions)
+      if (!c.is_of_positions() && index-- == 0) return &c;
+    return nullptr;
   }
 
   MotionState written_state_at(const std::vector<double>& q) const { return {state_.t, q, written_state_.v}; }
@@ -298,6 +340,7 @@ class Start {
   const Model& model_;
   const MechanicalSystem& system_;
   const EquationsOfMotion& equations_;
+  std::optional<EquationsOfMotion> placed_;
   Diagnostics& diagnostics_;
   Bindings bindings_;
   std::size_t n_;

@@ -46,7 +46,7 @@ class ExactPlanner {
   /// In numbers and π alone.
   Expr value_of(Expr e) const { return substitute(in_terms_of_motion(system_, {&e, 1}).front(), values_); }
 
-  /// Observables: the energy, the points, the reactions, the rates of the start with their derivatives.
+  /// Observables: the energy, the points, the reactions, the conditions of the start with their derivatives.
   void choose_functions(const Observables& all) {
     WantedFunctions wanted;
     const auto energies = all.expressions.begin() + static_cast<std::ptrdiff_t>(all.energy_terms);
@@ -57,15 +57,16 @@ class ExactPlanner {
     WantedFunctions along = wanted;
     if (plan_.until) along.events.push_back(plan_.condition);
     if (system_.has_modes()) library_ = std::make_shared<ModeLibrary>(model_, equations_, along);
-    out_.problem.first_rate = wanted.observables.size();
-    ExprVector velocities;
-    for (const Coordinate& c : system_.coordinates) velocities.push_back(c.velocity);
-    for (const StartRate& r : model_.experiment.start_rates) {
-      const Expr difference = r.rate - r.value;
-      const Expr rate = expand_time_derivatives(in_terms_of_motion(system_, {&difference, 1}).front());
-      wanted.observables.push_back(rate);
-      for (const Expr& slope : gradient(rate, velocities)) wanted.observables.push_back(slope);
-      ++out_.problem.rates;
+    out_.problem.first_condition = wanted.observables.size();
+    ExprVector positions, velocities;
+    for (const Coordinate& c : system_.coordinates) positions.push_back(c.q), velocities.push_back(c.velocity);
+    for (const StartCondition& c : model_.experiment.start_conditions) {
+      const Expr difference = c.formula - c.value;
+      const Expr zero = expand_time_derivatives(in_terms_of_motion(system_, {&difference, 1}).front());
+      wanted.observables.push_back(zero);
+      for (const Expr& slope : gradient(zero, c.is_of_positions() ? positions : velocities))
+        wanted.observables.push_back(slope);
+      out_.problem.conditions.push_back(c.is_of_positions());
     }
     if (plan_.until) wanted.events.push_back(plan_.condition);
     out_.problem.until = plan_.until;
@@ -268,7 +269,7 @@ class ExactPlanner {
   Context& context_;
   ExprMap values_;
   std::shared_ptr<ModeLibrary> library_;  // where the model has contacts or friction
-  ExtendedPlan out_{{Kernel(nullptr), Kernel(nullptr), {}, {}, 0, 0, 0, 0, false}, {}, 0, {}, 0, 0};
+  ExtendedPlan out_{{Kernel(nullptr), Kernel(nullptr), {}, {}, 0, {}, 0, 0, false}, {}, 0, {}, 0, 0};
 };
 
 }  // namespace

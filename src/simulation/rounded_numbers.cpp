@@ -83,7 +83,7 @@ void RoundedNumbers::take_literals(KernelSource& source) {
 
 void RoundedNumbers::take_start(const Model& model, const RunPlan& plan) {
   const MechanicalSystem& system = model.system;
-  const bool moved = system.constrained() || !model.experiment.start_rates.empty();
+  const bool moved = system.constrained() || !model.experiment.start_conditions.empty();
   ExprMap values;
   for (const Parameter& p : system.parameters) values[p.symbol] = p.value;
   values[system.context->time()] = system.context->number(0);

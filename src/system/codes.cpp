@@ -605,11 +605,14 @@ constexpr CodeEntry kEntries[] = {
     {"E0509", "an expectation of fields at other values of parameters",
      "`expect … with a = 2` is carried out for models of coordinates; one with fields is verified at its own values.",
      "", ""},
-    {"E0504", "a start that is not supported yet",
-     "A start gives coordinates, their velocities, and the angular velocities of bodies, B.ω. What else follows from "
-     "them, such as the velocity of a point, is solved for by a later version.",
-     "coord x : length\nparam m = 1 kg\npoint P mass m at (x, x)\nstart P.x' = 1 m/s\n",
-     "coord x : length\nparam m = 1 kg\npoint P mass m at (x, x)\nstart x' = 1 m/s\n"},
+    {"E0504", "a value that is given for what has none here",
+     "A start gives coordinates, their velocities, the angular velocities of bodies, B.ω, and points and bodies by "
+     "their place and velocity, P.x = 1 m, P' = (1, 0) m/s: coordinates and velocities that give it are solved for. A "
+     "configuration that is asked about, as in `expect M at x = 1 m : …`, is given by its coordinates and rates, and "
+     "so is the "
+     "start of a degenerate Lagrangian.",
+     "coord x : length\nparam m = 1 kg\npoint P mass m at (x, x)\nexpect M at P.x = 1 m : ((2)) rel 1e-9\n",
+     "coord x : length\nparam m = 1 kg\npoint P mass m at (x, x)\nexpect M at x = 1 m : ((2)) rel 1e-9\n"},
     {"E0293", "a density that is not real",
      "The action is a real number, and so is its density. i conj(ψ) ψ' alone is not: its imaginary part is half the "
      "derivative of |ψ|² by t.",

@@ -170,10 +170,12 @@ Value constant_vector_of(Elaboration& e, const syntax::Expression& x, const Dime
 std::optional<StartValue> start_value(Elaboration& e, const syntax::StartStatement::Item& item);
 /// Whether a start gives a rate: `v` of `rates v = …`, or that of a body: `sat.ω`, `sat.ω_world`, `sat.ω.x`.
 bool is_rate(Elaboration& e, const syntax::Expression& x);
-/// `sat.ω = (0, 2, 0) rad/s`: one rate a component; none, and a message, after a mistake.
-std::vector<StartRate> start_rates(Elaboration& e, const syntax::StartStatement::Item& item);
+/// Whether a start gives a rate, or a point or body by its place or velocity: `P`, `P.x`, `P'`, `P.x'`.
+bool is_start_condition(Elaboration& e, const syntax::Expression& x);
+/// `sat.ω = (0, 2, 0) rad/s`, `P.x = 1 m`: one condition a component; none, and a message, after a mistake.
+std::vector<StartCondition> start_conditions(Elaboration& e, const syntax::StartStatement::Item& item);
 /// The velocities that rates of a point ask for, added to its values. False, and a message, where none give them.
-bool add_velocities_of_rates(Elaboration& e, const std::vector<StartRate>& rates, std::vector<StartValue>& values);
+bool add_velocities_of_rates(Elaboration& e, const std::vector<StartCondition>& rates, std::vector<StartValue>& values);
 void elaborate_experiment(Elaboration& e);
 void elaborate_notes(Elaboration& e);
 void elaborate_expectation(Elaboration& e, const syntax::ExpectStatement& s, Span span);

@@ -84,8 +84,8 @@ void visit_experiment(Experiment& x, const std::function<void(Expr&)>& visit,
   }
   if (x.sweep)
     for (Expr* e : {&x.sweep->from, &x.sweep->to}) visit(*e);
-  for (StartRate& r : x.start_rates)
-    for (Expr* e : {&r.rate, &r.value}) visit(*e);
+  for (StartCondition& r : x.start_conditions)
+    for (Expr* e : {&r.formula, &r.value}) visit(*e);
   for (Expr* e : {&x.start_time, &x.duration, &x.until, &x.within, &x.output_every}) present(*e);
   if (x.method) present(x.method->step);
   for (ModelEvent& event : x.events) {

@@ -67,11 +67,11 @@ std::optional<Value> number_of(Elaboration& e, const Expression& x, const Place&
 
 std::optional<std::vector<StartValue>> point_of_expectation(Elaboration& e, const written::Point& point) {
   std::vector<StartValue> out;
-  std::vector<StartRate> rates;
+  std::vector<StartCondition> rates;
   bool good = true;
   for (const auto& item : point) {
     if (is_rate(e, *item.variable)) {
-      const std::vector<StartRate> given = start_rates(e, item);
+      const std::vector<StartCondition> given = start_conditions(e, item);
       good = good && !given.empty();
       rates.insert(rates.end(), given.begin(), given.end());
     } else if (auto value = start_value(e, item)) {

@@ -34,10 +34,9 @@ std::optional<StartValue> start_variable(Elaboration& e, const Expression& x) {
     if (!base && x.arguments[0]->kind == Expression::Kind::Name)
       unknown_name(e, x.arguments[0]->text, x.arguments[0]->name_span);
     else
-      e.diagnostics.error("E0504", x.span, fmt::format("not supported yet: a start of `{}`", e.texts.slice(x.span)),
-                          "A start gives coordinates, their velocities and the angular velocities of bodies; what else "
-                          "follows from them "
-                          "is solved for by a later version.",
+      e.diagnostics.error("E0504", x.span, fmt::format("`{}` is nothing that can be given here", e.texts.slice(x.span)),
+                          "A start gives coordinates, their velocities, angular velocities of bodies, and points by "
+                          "their place and velocity; a configuration that is asked about, coordinates and rates.",
                           "Give the coordinates and velocities that belong to it.");
     return std::nullopt;
   }
@@ -139,13 +138,13 @@ std::optional<StartValue> start_value(Elaboration& e, const syntax::StartStateme
 
 namespace {
 
-void start_of_rates(Elaboration& e, const syntax::StartStatement::Item& item) {
-  std::vector<StartRate>& list = e.experiment().start_rates;
-  const std::vector<StartRate> rates = start_rates(e, item);
-  for (const StartRate& rate : rates)
-    for (const StartRate& first : list)
-      if (first.rate == rate.rate) return duplicate_start(e, rate.span, first.span);
-  list.insert(list.end(), rates.begin(), rates.end());
+void start_of_conditions(Elaboration& e, const syntax::StartStatement::Item& item) {
+  std::vector<StartCondition>& list = e.experiment().start_conditions;
+  const std::vector<StartCondition> found = start_conditions(e, item);
+  for (const StartCondition& condition : found)
+    for (const StartCondition& first : list)
+      if (first.formula == condition.formula) return duplicate_start(e, condition.span, first.span);
+  list.insert(list.end(), found.begin(), found.end());
 }
 
 void start(Elaboration& e, const syntax::StartStatement& s) {
@@ -157,8 +156,8 @@ void start(Elaboration& e, const syntax::StartStatement& s) {
   }
   for (const auto& item : s.items) {
     if (start_of_field(e, item)) continue;
-    if (is_rate(e, *item.variable)) {
-      start_of_rates(e, item);
+    if (is_start_condition(e, *item.variable)) {
+      start_of_conditions(e, item);
       continue;
     }
     const std::optional<StartValue> value = start_value(e, item);

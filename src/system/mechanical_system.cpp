@@ -2,6 +2,8 @@
 #include <maupertuis/mechanical_system.hpp>
 #include <maupertuis/transform.hpp>
 
+#include <algorithm>
+
 namespace maupertuis {
 namespace {
 
@@ -30,6 +32,12 @@ std::string MechanicalSystem::independent_unit() const {
 std::string MechanicalSystem::moment(const std::string& number) const {
   const std::string unit = independent_unit();
   return independent + " = " + number + (unit.empty() ? "" : " " + unit);
+}
+
+bool StartCondition::is_of_positions() const {
+  const std::vector<Expr> held = symbols_of({&formula, 1});
+  return std::none_of(held.begin(), held.end(),
+                      [](const Expr& s) { return s.role() == Role::Coordinate && s.order() > 0; });
 }
 
 Expr MechanicalSystem::kinetic_energy() const { return total(kinetic, *context); }

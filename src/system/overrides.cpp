@@ -132,12 +132,22 @@ void override_parameters(Elaboration& e) {
 
 namespace {
 
-void override_rates(Elaboration& e, const std::vector<StartRate>& rates) {
-  std::vector<StartRate>& list = e.experiment().start_rates;
-  for (const StartRate& rate : rates) {
-    std::erase_if(list, [&](const StartRate& old) { return old.rate == rate.rate; });
-    list.push_back(rate);
+void override_conditions(Elaboration& e, const std::vector<StartCondition>& said) {
+  std::vector<StartCondition>& list = e.experiment().start_conditions;
+  for (const StartCondition& condition : said) {
+    std::erase_if(list, [&](const StartCondition& old) { return old.formula == condition.formula; });
+    list.push_back(condition);
   }
+}
+
+/// What the model asks of the places that this coordinate moves: what is said of the coordinate itself counts.
+void forget_places_with(Elaboration& e, const StartValue& said) {
+  if (said.order != 0) return;
+  const Expr q = e.system().coordinates[said.coordinate].q;
+  std::erase_if(e.experiment().start_conditions, [&](const StartCondition& old) {
+    const std::vector<Expr> held = symbols_of({&old.formula, 1});
+    return old.is_of_positions() && std::find(held.begin(), held.end(), q) != held.end();
+  });
 }
 
 /// The items of `θ=1, φ'=2`, each handed to `take(inner, item)` until a mistake was told.
@@ -166,14 +176,17 @@ void replace_start(std::vector<StartValue>& list, StartValue value) {
 void override_start(Elaboration& e) {
   for (const syntax::StartStatement& part : e.overrides.start)
     for_each_item(e, part, [&](Elaboration& inner, const auto& item) {
-      if (is_rate(inner, *item.variable)) return override_rates(e, start_rates(inner, item));
-      if (auto value = start_value(inner, item)) replace_start(e.experiment().start, std::move(*value));
+      if (is_start_condition(inner, *item.variable)) return override_conditions(e, start_conditions(inner, item));
+      auto value = start_value(inner, item);
+      if (!value) return;
+      forget_places_with(e, *value);
+      replace_start(e.experiment().start, std::move(*value));
     });
-  std::vector<StartRate> rates;
+  std::vector<StartCondition> rates;
   for (const syntax::StartStatement& part : e.overrides.at)
     for_each_item(e, part, [&](Elaboration& inner, const auto& item) {
       if (is_rate(inner, *item.variable)) {
-        const std::vector<StartRate> given = start_rates(inner, item);
+        const std::vector<StartCondition> given = start_conditions(inner, item);
         rates.insert(rates.end(), given.begin(), given.end());
         return;
       }

@@ -119,13 +119,14 @@ Expr rate_of(Elaboration&, const Constraint& c) {
 
 }  // namespace
 
-bool add_velocities_of_rates(Elaboration& e, const std::vector<StartRate>& rates, std::vector<StartValue>& values) {
+bool add_velocities_of_rates(Elaboration& e, const std::vector<StartCondition>& rates,
+                             std::vector<StartValue>& values) {
   if (rates.empty()) return true;
   complete_quaternions(e, rates.front().span, values);
   const ExprMap at = configuration(e, values);
   PointRows rows(e);
-  for (const StartRate& r : rates)
-    if (!rows.add(row_at(e, r.rate, r.value, at))) {
+  for (const StartCondition& r : rates)
+    if (!rows.add(row_at(e, r.formula, r.value, at))) {
       e.diagnostics.error("E0223", r.span,
                           fmt::format("no velocity gives `{}` this value there", e.texts.slice(r.span)),
                           "At this configuration it is a combination of the other rates that are given, or no velocity "

@@ -43,8 +43,9 @@ class Start {
       for (std::size_t i = 0; i < n_; ++i) row.a[i] = work_.constraint_matrix(j, i);
       out.push_back(std::move(row));
     }
-    for (std::size_t j = 0; !positions && j < problem_.rates; ++j) {
-      const std::size_t at = problem_.first_rate + j * (n_ + 1);
+    for (std::size_t j = 0; j < problem_.conditions.size(); ++j) {
+      if (problem_.conditions[j] != positions) continue;
+      const std::size_t at = problem_.first_condition + j * (n_ + 1);
       Row row{std::vector<T>(n_), work_.observable(at)};
       for (std::size_t i = 0; i < n_; ++i) row.a[i] = work_.observable(at + 1 + i);
       out.push_back(std::move(row));

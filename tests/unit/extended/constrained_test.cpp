@@ -96,3 +96,18 @@ TEST_CASE("a top that a quaternion turns keeps 12 digits of 113 bits in double, 
     CHECK(difference < 1e-12 * largest);
   }
 }
+
+TEST_CASE("a start that gives a point by its place and velocity, in all digits") {
+  const ModelText m(
+      "system arm\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord a, b : angle\npoint elbow mass m at l (cos a, sin "
+      "a)\n"
+      "point hand mass m at elbow + l (cos b, sin b)\ngravity (0, -g)\n"
+      "start hand = (1.2, 0.5) m, a' = 0.1 rad/s, hand.y' = 0.7 m/s\nrun 1e-150 s\n");
+  const ExtendedResult r = run(m, digits100());
+  REQUIRE(r.ok());
+  const Decimal a(r.final.q[0].text), b(r.final.q[1].text);
+  CHECK(abs(cos(a) + cos(b) - Decimal("1.2")) < Decimal("1e-97"));
+  CHECK(abs(sin(a) + sin(b) - Decimal("0.5")) < Decimal("1e-97"));
+  check_digits(r.final.v[0], Decimal("0.1"), 98);
+  CHECK(abs(cos(a) * Decimal("0.1") + cos(b) * Decimal(r.final.v[1].text) - Decimal("0.7")) < Decimal("1e-97"));
+}

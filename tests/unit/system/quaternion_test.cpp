@@ -131,17 +131,17 @@ TEST_CASE("the coordinates of a quaternion stand in starts, expectations, lets a
   CHECK(start[1].order == 1);
   CHECK(start[2].coordinate == 1);  // the w that belongs to the x of the text
   CHECK(evaluate(start[2].value, {}) == doctest::Approx(0.8));
-  REQUIRE(m.experiment().start_rates.size() == 3);
+  REQUIRE(m.experiment().start_conditions.size() == 3);
   const Bindings at = m.at({0, 1, 0, 0, 0}, {0, 0, 0.5, 0, 0});
-  CHECK(evaluate(m.experiment().start_rates[0].rate, at) == doctest::Approx(1));
-  CHECK(evaluate(m.experiment().start_rates[1].value, {}) == doctest::Approx(2));
+  CHECK(evaluate(m.experiment().start_conditions[0].formula, at) == doctest::Approx(1));
+  CHECK(evaluate(m.experiment().start_conditions[1].value, {}) == doctest::Approx(2));
   CHECK(m.expected<expectation::ValueAt>(0).subject == m.system().coordinates[1].q);
 
   const Elaborated o(
       std::string(kSatellite) + "start sat.ω.y = 1 rad/s\n",
       {{OverrideKind::Start, "--start", "sat.qw=0.5"}, {OverrideKind::Start, "--start", "sat.ω=(7,8,9)rad/s"}});
-  REQUIRE_MESSAGE(o.experiment().start_rates.size() == 3, o.messages());
-  CHECK(evaluate(o.experiment().start_rates[1].value, {}) == doctest::Approx(8));
+  REQUIRE_MESSAGE(o.experiment().start_conditions.size() == 3, o.messages());
+  CHECK(evaluate(o.experiment().start_conditions[1].value, {}) == doctest::Approx(8));
   REQUIRE(o.experiment().start.size() == 1);
   CHECK(evaluate(o.experiment().start[0].value, {}) == doctest::Approx(0.5));
 }
