@@ -72,10 +72,66 @@ std::optional<ContactForceProblem> HybridMotion::force_problem(const std::vector
   return problem;
 }
 
+namespace {
+
+bool begins_to_slide(const ContactForceProblem& problem, const ContactForces& forces, std::size_t k) {
+  return problem.contacts[k].sliding == 0 && !problem.contacts[k].tangent.empty() &&
+         forces.friction[k] != FrictionState::Stick;
+}
+
+/// Static friction holds what it can. Contacts that begin to slide have the kinetic coefficient [contacts of the
+/// problem], which is less, so that others may be held that were not; a contact that would be held beside the kinetic
+/// friction of the others is. `left`: those that would be held too, but not beside one that is.
+std::optional<ContactForces> forces_that_hold(ContactForceProblem& problem, const std::vector<double>& kinetic,
+                                              std::vector<std::size_t>& left) {
+  auto forces = contact_forces(problem);
+  std::vector<double> static_;
+  for (const auto& c : problem.contacts) static_.push_back(c.friction);
+  std::vector<std::size_t> sliding;
+  for (bool more = forces.has_value(); more;) {
+    more = false;
+    for (std::size_t k = 0; k < kinetic.size(); ++k) {
+      auto& contact = problem.contacts[k];
+      if (!begins_to_slide(problem, *forces, k) || contact.friction == kinetic[k]) continue;
+      contact.friction = kinetic[k];
+      sliding.push_back(k);
+      more = true;
+    }
+    if (!more) break;
+    if (auto next = contact_forces(problem))
+      forces = std::move(next);
+    else
+      return forces;
+  }
+  const auto held = [&](std::size_t k) -> std::optional<ContactForces> {
+    problem.contacts[k].friction = static_[k];
+    auto out = contact_forces(problem);
+    if (out && !begins_to_slide(problem, *out, k)) return out;
+    problem.contacts[k].friction = kinetic[k];
+    return std::nullopt;
+  };
+  for (const std::size_t k : sliding)
+    if (held(k)) left.push_back(k), problem.contacts[k].friction = kinetic[k];
+  for (const std::size_t k : sliding)
+    if (auto out = held(k)) forces = std::move(out), std::erase(left, k);
+  return forces;
+}
+
+}  // namespace
+
 void HybridMotion::order_by_forces(std::vector<Choice>& list, const ContactValues& values, double bound) {
-  const auto problem = force_problem(list, values, bound);
-  const auto forces = problem ? contact_forces(*problem) : std::nullopt;
+  auto problem = force_problem(list, values, bound);
+  std::vector<double> kinetic;
+  for (const Choice& c : list)
+    if (c.contact < system_.contacts.size())
+      kinetic.push_back(system_.contacts[c.contact].friction.sticking ? held_fast : values.kinetic[c.contact]);
+  std::vector<std::size_t> left;
+  const auto forces = problem ? forces_that_hold(*problem, kinetic, left) : std::nullopt;
   if (!forces) return;
+  if (!left.empty())
+    remark(
+        "Static friction leaves a choice: where several contacts begin to slide at once, one of some can be held, and "
+        "the one that is written first is.");
   double largest = 0, fastest = 0;
   for (std::size_t k = 0; k < problem->contacts.size(); ++k) {
     largest = std::max(largest, forces->normal[k]);

@@ -239,22 +239,68 @@ std::optional<HybridMotion::Found> HybridMotion::search_mode(const std::vector<C
   return std::nullopt;
 }
 
+/// Of frictions at rest those give way first that are at their limit, or beyond it where all rest.
+void HybridMotion::order_by_limits(std::vector<Choice>& list, const std::vector<std::size_t>& touching, double bound) {
+  std::vector<std::size_t> at_limit;
+  for (const Watch& w : pending_->left)
+    if (w.what == Watch::What::Hold) at_limit.push_back(w.index);
+  if (at_limit.empty() && std::any_of(list.begin(), list.end(), [&](const Choice& c) { return may_hold(c); })) {
+    Found rest{mode_of(list, std::vector<std::size_t>(list.size(), 0)), {}, {}};
+    at_limit = beyond_limits(rest, touching, bound);
+  }
+  std::stable_partition(list.begin(), list.end(), [&](const Choice& c) {
+    return std::find(at_limit.begin(), at_limit.end(), c.contact) != at_limit.end();
+  });
+}
+
+/// Friction at rest whose static coefficient, or limit, is more than the kinetic one: where it holds another motion
+/// fits as well, in which it slides.
+bool HybridMotion::may_hold(const Choice& c) {
+  const ContactValues& values = functions_.at(t_, q_, v_);
+  return c.options.size() > 2 && values.fixed[c.contact] > values.kinetic[c.contact];
+}
+
+/// Friction that begins to slide in the mode that was found, and would hold beside all else as it is there, holds: a
+/// friction gives way only where it comes to its own limit.
+void HybridMotion::hold_what_holds(const std::vector<Choice>& list, Found& found,
+                                   const std::vector<std::size_t>& touching, double bound) {
+  bool changed = false;
+  for (const Choice& c : list) {
+    const FrictionState state = found.mode.friction[c.contact];
+    if (!may_hold(c) || (state != FrictionState::Forward && state != FrictionState::Backward)) continue;
+    Found next = found;
+    next.mode.friction[c.contact] = FrictionState::Stick;
+    const std::optional<Given> given = given_in(next.mode, bound);
+    if (!given) continue;
+    next.given = *given;
+    if (!fits(next, touching, bound, Leniency::None)) {
+      changed = true;
+      continue;
+    }
+    found = std::move(next);
+    changed = false;
+  }
+  if (changed) static_cast<void>(fits(found, touching, bound, Leniency::Gaps));  // others were begun after it
+}
+
 bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason) {
   const ContactValues& values = functions_.at(t_, q_, v_);  // of one point throughout
   if (!touching.empty() && !knows_compliance_) note_compliance(touching, values);
   std::vector<Choice> list = choices(touching, values);
   if (list.size() > 1) order_by_forces(list, values, bound);
+  if (list.size() > 1) order_by_limits(list, touching, bound);
   released_.assign(system_.contacts.size(), false);
   for (const Watch& w : pending_->left)
     if (w.what == Watch::What::Force) released_[w.index] = true;
   if (Found free{open_mode(system_), {}, {}}; !started_) {  // what acts without contact is a first measure of forces
     static_cast<void>(fits(free, touching, bound, Leniency::Forces));
-    if (!free.accelerations.empty()) note_accelerations(free.accelerations, values);
+    if (!free.accelerations.empty()) note_accelerations(free.accelerations, values), note_slip_rates(values);
     std::fill(released_.begin(), released_.end(), false);
   }
   std::optional<Found> found = undetermined_rest(list, touching, bound);
   if (!found) found = search_mode(list, touching, bound, reason);
   if (!found) return false;
+  if (!interrupted()) hold_what_holds(list, *found, touching, bound);
   if (interrupted()) return true;
   note_accelerations(found->accelerations, values);  // those of modes that do not fit are no measure
   for (std::size_t i = 0; i < released_.size(); ++i)

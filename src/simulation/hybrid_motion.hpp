@@ -132,6 +132,11 @@ class HybridMotion final : public Method {
   // The mode after it.
   static std::vector<std::pair<Leniency, std::size_t>> attempts_with(std::size_t contacts);
   bool choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason);
+  void order_by_limits(std::vector<Choice>& list, const std::vector<std::size_t>& touching, double bound);
+  bool may_hold(const Choice& choice);
+  void hold_what_holds(const std::vector<Choice>& list, Found& found, const std::vector<std::size_t>& touching,
+                       double bound);
+  std::vector<std::size_t> beyond_limits(Found& found, const std::vector<std::size_t>& touching, double bound);
   std::optional<Found> search_mode(const std::vector<Choice>& list, const std::vector<std::size_t>& touching,
                                    double bound, std::string& reason);
   std::optional<Found> undetermined_rest(const std::vector<Choice>& list, const std::vector<std::size_t>& touching,
@@ -162,6 +167,7 @@ class HybridMotion final : public Method {
   std::vector<double> stops();
   std::vector<double> energy_and_sets_at(double t, std::span<const double> q, std::span<const double> v);
   void move_on(double by, const Eigen::VectorXd& accelerations);
+  void book_rubbing(double gained);
   std::optional<TaylorStepper::Outlook> outlook_without_contacts(const ContactValues& values, double bound);
   void take_out_slips(const std::vector<std::size_t>& stopping, const std::vector<std::size_t>& touching);
   void come_to_rest(const std::vector<std::size_t>& touching, double bound);
@@ -176,6 +182,7 @@ class HybridMotion final : public Method {
   bool vanishes(const Watch& watch, double size, const ContactValues& values) const;
   double size_of_gap(std::size_t contact, const ContactValues& values) const;
   void note_sizes(const ContactValues& values);
+  void note_slip_rates(const ContactValues& values);
   void note_limits(const ContactValues& values);
   void note_gaps(const ContactValues& values);
   void note_usual_gaps(const ContactValues& values);
@@ -263,6 +270,7 @@ class HybridMotion final : public Method {
   std::vector<bool> begins_to_slide_;   // [contacts] in space, at this instant
   std::vector<double> begins_towards_;  // [contacts] in which direction, an angle in the plane of contact
   std::vector<double> slip_scale_;      // [contacts] of friction in space, the largest slips so far
+  std::vector<double> slip_rate_;       // [contacts] … and how fast they change
   double cone_residual_ = 0;            // the largest so far
   double gap_begin_ = std::numeric_limits<double>::quiet_NaN();  // of a moment in which a slip began
   std::vector<double> moment_accelerations_;                     // [n] in it

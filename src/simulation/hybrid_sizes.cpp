@@ -80,6 +80,16 @@ void HybridMotion::note_sizes(const ContactValues& values) {
     for (const auto& [k, x] : values.tangent[i]) usual += usual_v_.empty() ? 0 : std::abs(x) * usual_v_[k];
     slip_scale_[i] = std::max({slip_scale_[i], values.slip_scale[i], usual});
   }
+  note_slip_rates(values);
+}
+
+/// Not while a mode is sought: the speed at which a slip stops depends on it, and with it the motion of a mode.
+void HybridMotion::note_slip_rates(const ContactValues& values) {
+  for (std::size_t i = 0; i < slip_rate_.size(); ++i) {
+    double rate = 0;
+    for (const auto& [k, x] : values.tangent[i]) rate += std::abs(x) * acceleration_[kind_[k]];
+    slip_rate_[i] = std::max(slip_rate_[i], rate);
+  }
 }
 
 /// Gaps of one dimension have one size too.

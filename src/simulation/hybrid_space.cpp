@@ -13,7 +13,10 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double slow_slip = 1e-8;  // of the slips of the run: below, the direction of a slip is lost in rounding
+constexpr double slow_slip = 1e-10;  // of the slips of the run: below, the direction of a slip is lost in rounding
+/// The direction of a slip changes in a time of |v_t|/|v̇_t|, and coefficients of order k are beyond the range of
+/// numbers where that is less than 10^(−308/k).
+constexpr double largest_exponent = 270;
 constexpr double small = 1e-10;
 
 double product(const SparseRow& row, std::span<const double> x) {
@@ -45,12 +48,17 @@ bool HybridMotion::slides_in_space(std::size_t i, const ContactValues& values) c
 }
 
 /// The speed at which a slip counts as stopped, well above what is rounding of it; in steps of ten so that the motion
-/// of a mode serves many of them.
+/// of a mode serves many of them. Companions stop it earlier, so that their difference tells what the moment to the end
+/// of the slip leaves open.
 double HybridMotion::stop_slip(std::size_t i) {
-  constexpr double above_rounding = 100;
-  const double rest = rest_slip(i, functions_.at(t_, q_, v_));
-  const double speed = std::max({slow_slip * slip_scale_[i], above_rounding * rest, 1e-200});
-  return std::pow(10, std::floor(std::log10(speed)));
+  constexpr double above_rounding = 100, earlier = 10;
+  const ContactValues& values = functions_.at(t_, q_, v_);
+  const int steps_order = options_.order > 0 ? options_.order : taylor_order(options_.tolerance);
+  const double speed =
+      std::max({slow_slip * slip_scale_[i], above_rounding * rest_slip(i, values), std::numeric_limits<double>::min()});
+  const double coefficients_end = slip_rate_[i] * std::pow(10, -largest_exponent / (steps_order + 2));
+  return (meets_late_ ? earlier : 1) *
+         std::max(std::pow(10, std::floor(std::log10(speed))), std::pow(10, std::ceil(std::log10(coefficients_end))));
 }
 
 /// Whether a slip has become so fast since its mode began that the speed at which it was to stop is rounding.
@@ -185,7 +193,11 @@ void HybridMotion::move_on(double by, const VectorXd& accelerations) {
   t_ += by;
   t_rest_ = 0;
   knows_compliance_ = false;
-  const double gained = energy_and_sets_at(t_, q_, v_)[0] - before;  // what other contacts rub meanwhile, as a rule
+  book_rubbing(energy_and_sets_at(t_, q_, v_)[0] - before);
+}
+
+/// What a moment does to the energy is what contacts rub in it.
+void HybridMotion::book_rubbing(double gained) {
   carried_[0] += gained;
   carried_[1] -= gained;
 }
@@ -202,13 +214,13 @@ std::optional<TaylorStepper::Outlook> HybridMotion::outlook_without_contacts(con
 }
 
 /// What the moment leaves of slips that stop: the least change of velocities that ends them and opens no contact.
+/// Friction alone takes part in it, whose impulse is what ends a slip, however its direction turned meanwhile and
+/// whenever in the moment it ended.
 void HybridMotion::take_out_slips(const std::vector<std::size_t>& stopping, const std::vector<std::size_t>& touching) {
-  constexpr double part = 0.1;  // of the speed at which they count as stopped
   const ContactValues values = functions_.at(t_, q_, v_);
   std::vector<SparseRow> rows;
   std::vector<double> rates;
   for (const std::size_t i : stopping) {
-    if (slip_speed_at(i, values) > part * stop_slip(i)) continue;
     rows.push_back(values.tangent[i]), rates.push_back(-values.slip[i]);
     rows.push_back(values.second_tangent[i]), rates.push_back(-values.second_slip[i]);
   }
@@ -223,7 +235,9 @@ void HybridMotion::take_out_slips(const std::vector<std::size_t>& stopping, cons
   solver.setThreshold(1e-10);
   const VectorXd right = Eigen::Map<const VectorXd>(rates.data(), at(rates.size()));
   const VectorXd change = response * VectorXd(solver.compute(w).solve(right));
+  const double before = energy_and_sets_at(t_, q_, v_)[0];
   for (std::size_t i = 0; i < v_.size(); ++i) v_[i] += change(at(i));
+  book_rubbing(energy_and_sets_at(t_, q_, v_)[0] - before);
 }
 
 /// A slip that is slow and falls comes to rest after v_t²/(−v_t·v̇_t): the motion moves on to there, where both
@@ -232,11 +246,10 @@ void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double
   if (!in_space_) return;
   const ContactValues values = functions_.at(t_, q_, v_);
   const auto is_slow = [&](std::size_t i) {
-    constexpr double rounding = 1 + 1e-6;
     const double speed = slip_speed_at(i, values);
     return system_.contacts[i].friction.in_space() && !system_.contacts[i].friction.sticking &&
            !(values.rate[i] > rest_speed(i, values)) && speed > rest_slip(i, values) &&
-           speed <= rounding * stop_slip(i);
+           speed <= stop_slip(i) + rest_slip(i, values);
   };
   if (std::none_of(touching.begin(), touching.end(), is_slow)) return;
   const auto outlook = outlook_without_contacts(values, bound);
@@ -255,10 +268,14 @@ void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double
     return falls > 0 ? speed * speed / falls : 0;
   };
   double by = 0;
+  std::vector<std::size_t> slow;  // and falling
   for (const std::size_t i : touching) {
     if (!is_slow(i)) continue;
     by = std::max(by, time_to_stop(i));
-    if (time_to_stop(i) == 0) begins_to_slide_[i] = true;
+    if (time_to_stop(i) == 0)
+      begins_to_slide_[i] = true;
+    else
+      slow.push_back(i);
   }
   if (!(by > 0)) return;
   std::vector<std::size_t> stopping;  // feet of one body stop together, though their slips are not equal
@@ -268,6 +285,12 @@ void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double
         std::abs(time_to_stop(i) - by) <= together * by)
       stopping.push_back(i);
   move_on(forwards_ ? by : -by, a);
+  constexpr double part = 0.1;  // of the speed at which others count as stopped
+  const ContactValues after = functions_.at(t_, q_, v_);
+  std::erase_if(stopping, [&](std::size_t i) {
+    const bool ends = std::find(slow.begin(), slow.end(), i) != slow.end();
+    return !ends && slip_speed_at(i, after) > part * stop_slip(i);
+  });
   take_out_slips(stopping, touching);
   for (std::size_t i = 0; i < v_.size(); ++i)  // what rounding leaves of all that stops is no motion
     if (std::abs(v_[i]) <= rest_unit * speed_[kind_[i]]) v_[i] = 0;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int nodes = 8;
 constexpr int looks = 33;  // beside the nodes
-constexpr int most_sweeps = 40;
+constexpr int most_sweeps = 40, enough_to_settle = 3;
 constexpr double settled = 1e-16;  // change of q̈ h by a sweep, of the velocity
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
@@ -58,7 +58,7 @@ double value(const Nodes& p, double x) {
 class TaylorStepper::Impl::Collocation {
  public:
   /// `stepper.probe` has the sides of the last point that was asked for, afterwards.
-  Collocation(Impl& stepper, double h);
+  Collocation(Impl& stepper, double h, Place place);
   /// q̈ at the nodes, until it is that of the polynomial through it.
   bool converges();
   bool is_smooth();
@@ -74,14 +74,19 @@ class TaylorStepper::Impl::Collocation {
   /// What q̈ h may be off beside the nodes, of the velocity. Next to a singular configuration of the constraints q̈ has
   /// rounding errors across the branch on which the motion goes; the projection takes them out at the end, where the
   /// branches are apart.
-  double smooth() const { return s_.m > 0 ? 1e-6 : 2e-13; }
+  double smooth() const { return place_ == Place::OfConstraints ? 1e-6 : 2e-13; }
 
   Impl& s_;
+  Place place_;
   std::vector<double> size_;  // [n] of the velocities
 };
 
-TaylorStepper::Impl::Collocation::Collocation(Impl& stepper, double length)
-    : h(length), acceleration(stepper.n, Nodes{}), integrand(stepper.state.integrals.size(), Nodes{}), s_(stepper) {
+TaylorStepper::Impl::Collocation::Collocation(Impl& stepper, double length, Place place)
+    : h(length),
+      acceleration(stepper.n, Nodes{}),
+      integrand(stepper.state.integrals.size(), Nodes{}),
+      s_(stepper),
+      place_(place) {
   const taylor::MotionState& now = stepper.state;
   for (std::size_t i = 0; i < stepper.n; ++i)
     size_.push_back(std::max(std::abs(now.v_now[i]), epsilon * std::abs(now.q_now[i]) / std::abs(h)));
@@ -161,6 +166,7 @@ bool TaylorStepper::Impl::Collocation::converges() {
     acceleration = std::move(now);
     integrand = std::move(integrand_now);
     if (change <= settled || (change <= smooth() / 2 && change > before / 2)) return true;
+    if (sweep >= enough_to_settle && change >= before && change > smooth()) return false;  // the force jumps there
     before = change;
   }
   return false;
@@ -210,9 +216,9 @@ void TaylorStepper::Impl::pass(const Collocation& c, double bound, Step& result)
   ++steps;
 }
 
-bool TaylorStepper::Impl::passes(double h, double bound, Step& result) {
+bool TaylorStepper::Impl::passes(double h, double bound, Place place, Step& result) {
   if (!(h > 0 && h < std::abs(remaining(bound))) || control.order < nodes) return false;
-  Collocation c(*this, std::copysign(h, remaining(bound)));
+  Collocation c(*this, std::copysign(h, remaining(bound)), place);
   const bool found = c.converges() && c.is_smooth();
   watched.set_sides(probe);
   if (found) pass(c, bound, result);
@@ -220,11 +226,15 @@ bool TaylorStepper::Impl::passes(double h, double bound, Step& result) {
 }
 
 /// Where there is no series: from small shares of the longest step, or of the run, downward. Such a step looks at
-/// points alone, and must be too short for anything to happen between them.
+/// points alone, and must be too short for anything to happen between them. At a singular configuration of the
+/// constraints not even q̈ is there.
 bool TaylorStepper::Impl::passes_from_here(double bound, Step& result) {
+  const double* const half_a = work.coordinate(2);
+  const bool has_accelerations = std::all_of(half_a, half_a + n, [](double a) { return std::isfinite(a); });
+  const Place place = m > 0 && !has_accelerations ? Place::OfConstraints : Place::OfFormulas;
   const double whole = longest > 0 ? longest : std::abs(remaining(bound));
   for (double share = 1e-5; share > 1e-11; share *= 0.2)
-    if (passes(share * whole, bound, result)) return true;
+    if (passes(share * whole, bound, place, result)) return true;
   return false;
 }
 
@@ -249,8 +259,10 @@ bool TaylorStepper::Impl::passes_shrinking(double chosen, double bound, Step& re
   const bool by_multipliers =
       m > 0 && taylor::step_within_multipliers(work, n, m, control, 3.6 * chosen) < 3.6 * chosen;
   if (!by_multipliers && !(chosen < endless * longest)) return false;
+  // A force that jumps beside constraints, friction that turns round, is no such place.
+  const Place place = by_multipliers ? Place::OfConstraints : Place::OfFormulas;
   for (const double times : {by_multipliers ? 3.6 : 5, by_multipliers ? 4.4 : 15, 8.0})
-    if (seems_smooth(times * chosen) && passes(times * chosen, bound, result)) return true;
+    if (seems_smooth(times * chosen) && passes(times * chosen, bound, place, result)) return true;
   return false;
 }
 

@@ -60,7 +60,8 @@ struct TaylorStepper::Impl {
 
   // Steps that no series makes (passing.cpp).
   class Collocation;
-  bool passes(double h, double bound, Step& result);
+  enum class Place { OfFormulas, OfConstraints };  // singular where a step passes
+  bool passes(double h, double bound, Place place, Step& result);
   void pass(const Collocation& c, double bound, Step& result);
   bool passes_from_here(double bound, Step& result);
   bool seems_smooth(double h) const;

@@ -345,3 +345,54 @@ TEST_CASE("a limit that is reached at a root of third order is located as well a
   const auto opens = of("force x = 1 [N/s^3] (t - 1 [s])^3\ncontact x >= 0 name floor\n");
   CHECK(opens.final.q[0] == doctest::Approx(1.6).epsilon(1e-14));
 }
+
+TEST_CASE("the friction that comes to its limit gives way, in whatever order two are written; the other one holds") {
+  // The floor lets go at F = 2, while the upper block needs F/2 of the 4 that hold it: both move with a = (t − 2)/2.
+  const std::string between = "contact y - Y >= 1 friction 0.1 static 0.4 slip x' - X' name between\n",
+                    floor = "contact Y >= 0 friction 0.1 slip X' name floor\n";
+  for (const std::string& contacts : {between + floor, floor + between}) {
+    const auto r = run_text(
+        "dimensionless\nparam g = 10\ncoord X, Y, x, y : length\npoint lower mass 1 at (X, Y)\n"
+        "point upper mass 1 at (x, y)\ngravity (0, -g)\n" +
+            contacts + "force x = t\nstart y = 1\n",
+        3);
+    CHECK(r.final.q[0] == doctest::Approx(1 / 12.0).epsilon(1e-13));
+    CHECK(r.final.q[2] == doctest::Approx(1 / 12.0).epsilon(1e-13));
+    REQUIRE(r.happenings.size() == 1);
+    CHECK(r.happenings[0].name == "floor");
+    CHECK(r.happenings[0].t == doctest::Approx(2).epsilon(1e-14));
+  }
+  const std::string r_limit = "friction r limit 1 static 4\n", X_limit = "friction X limit 2\n";
+  for (const std::string& frictions : {r_limit + X_limit, X_limit + r_limit}) {
+    const auto r = run_text(
+        "dimensionless\ncoord r, X : length\nT = 1/2 X'^2 + 1/2 (X' + r')^2\nforce r = t\nforce X = t\n" + frictions,
+        3);
+    CHECK(r.final.q[0] == 0);
+    CHECK(r.final.q[1] == doctest::Approx(1 / 12.0).epsilon(1e-13));
+  }
+}
+
+TEST_CASE("what comes to rest is held where the others' kinetic friction lets it be, and begins so") {
+  // Both blocks slow down together and stop. The force overcomes what holds them to each other, 0.58 · 13, and then
+  // 0.44 · 13 acts on the lower one, less than the 0.35 · 18.4 that hold it.
+  const auto r = run_text(
+      "dimensionless\ncoord x, y, X, Y : length\npoint A mass 0.54 at (x, y)\npoint B mass 1.3 at (X, Y)\n"
+      "gravity (0, -10)\ncontact y >= 0 friction 0.2 static 0.35 slip x' name floor\n"
+      "contact Y - y >= 1 friction 0.44 static 0.58 slip X' - x' name between\nforce on B = (-22.9, 0)\n"
+      "start Y = 1, x' = 1, X' = 1\n",
+      0.3);
+  const double a = (22.9 + 0.2 * 18.4) / 1.84, stop = 1 / a, b = (22.9 - 0.44 * 13) / 1.3;
+  CHECK(r.final.q[0] == doctest::Approx(0.5 / a).epsilon(1e-13));
+  CHECK(r.final.v[0] == 0);
+  CHECK(r.final.q[2] == doctest::Approx(0.5 / a - 0.5 * b * (0.3 - stop) * (0.3 - stop)).epsilon(1e-13));
+  // Beyond the limits from the start: the one that is overcome by far gives way, whichever is written first.
+  for (const bool swapped : {false, true}) {
+    const std::string first = "friction r limit 1 static 4\n", second = "friction X limit 2 static 2.1\n";
+    const auto both =
+        run_text("dimensionless\ncoord r, X : length\nT = 1/2 X'^2 + 1/2 (X' + r')^2\nforce r = 2.5\nforce X = 2.5\n" +
+                     (swapped ? second + first : first + second),
+                 1);
+    CHECK(both.final.q[0] == 0);
+    CHECK(both.final.q[1] == doctest::Approx(0.125).epsilon(1e-13));
+  }
+}
