@@ -173,8 +173,9 @@ void as_generalized(const Tie& tie, Reaction& r) {
                            force ? "force" : "torque", fmt::join(names, ", "));
 }
 
-/// Of a contact: it presses, or a string pulls, whatever the sense of its gap: never negative.
-Reaction reaction_of_contact(const Tie& tie, std::string label) {
+/// Of a contact: it presses, or a string pulls, whatever the sense of its gap: never negative. `per_multiplier`: what
+/// friction takes for the normal force where two masses are pushed apart; empty: λ.
+Reaction reaction_of_contact(const Tie& tie, std::string label, Expr per_multiplier) {
   Reaction r;
   r.name = std::move(label);
   r.symbol = tie.constraint.reaction;
@@ -185,6 +186,7 @@ Reaction reaction_of_contact(const Tie& tie, std::string label) {
       as_multiplier(tie, r);
     else
       as_generalized(tie, r);
+    if (per_multiplier) r.value = tie.constraint.multiplier * per_multiplier;
   }
   r.sentence = "the force of the contact, which is 0 while it is open and positive while it presses";
   return r;
@@ -259,7 +261,7 @@ std::vector<Reaction> reactions(const EquationsOfMotion& equations) {
       tie.row.push_back(is_named ? differentiate(closed.value, q) : system.context->number(0));
       if (!tie.row[i].is_zero()) tie.coordinates.push_back(i);
     }
-    all.push_back(reaction_of_contact(tie, closed.name));
+    all.push_back(reaction_of_contact(tie, closed.name, system.contacts[k].friction.per_multiplier));
   }
   for (const Release& release : system.releases) all.push_back(reaction_of(equations, release));
   return all;

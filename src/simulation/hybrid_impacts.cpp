@@ -133,6 +133,20 @@ bool HybridMotion::is_lost_in_rounding(const std::vector<std::size_t>& touching,
   return true;
 }
 
+/// Impacts that follow each other in one instant, each smaller, as of a disc that rolls into a corner, end below what
+/// the rates of gaps are known to: what they leave of slips that they bring to rest is no motion.
+void HybridMotion::end_series(const std::vector<std::size_t>& touching) {
+  constexpr double left = 1e-10;  // of the fastest slip
+  const ContactValues& values = functions_.at(t_, q_, v_);
+  std::vector<std::size_t> resting;
+  for (const std::size_t i : touching) {
+    if (values.rate[i] > rest_speed(i, values) || values.tangent[i].empty()) continue;
+    const double slip = slip_speed_at(i, values);
+    if (slip > 0 && slip <= left * fastest_slip_[i]) resting.push_back(i);
+  }
+  if (!resting.empty()) take_out_slips(resting, touching);
+}
+
 /// What closing contacts do to the velocities. False, and why, where no impulses are found.
 bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) {
   accumulated_.reset();
@@ -202,6 +216,7 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
   if (!result.impulses.empty())
     std::erase_if(pending_->left, [](const Watch& w) { return w.what == Watch::What::Force; });
   record_impulses(result);
+  if (result.impulses.size() > 4 * p.contacts.size()) end_series(touching);
   if (end) {
     accumulated_ = fmt::format("the end of infinitely many bounces at t = {:.12g}", *end);
     accumulated_at_ = *end;

@@ -152,6 +152,20 @@ bool HybridMotion::may_be_several(const ContactMode& mode, const ContactValues& 
   return false;
 }
 
+/// Whether in one of the modes that are possible more normal force makes a contact close faster.
+bool HybridMotion::may_be_painleve(const std::vector<Choice>& list, const ContactValues& values) {
+  constexpr std::size_t most = 256;
+  std::vector<std::size_t> counts;
+  for (const Choice& c : list) counts.push_back(c.options.size());
+  Combinations tries(std::move(counts), most);
+  for (std::size_t turn = 0; turn < most; ++turn) {
+    const std::vector<std::size_t>* taken = tries.number(turn);
+    if (!taken) return false;
+    if (may_be_several(mode_of(list, *taken), values)) return true;
+  }
+  return true;
+}
+
 ContactMode HybridMotion::mode_of(const std::vector<Choice>& list, const std::vector<std::size_t>& taken) const {
   ContactMode mode = open_mode(system_);
   for (std::size_t k = 0; k < list.size(); ++k) {
@@ -232,7 +246,10 @@ std::optional<HybridMotion::Found> HybridMotion::search_mode(const std::vector<C
                     std::any_of(touching.begin(), touching.end(),
                                 [&](std::size_t i) { return system_.contacts[i].friction.present(); });
   reason = list.empty() && !no_motion_.empty() ? no_motion_
-           : rubs ? "Painlevé's paradox: no finite forces of contact and friction fit the motion here."
+           : rubs
+               ? (may_be_painleve(list, values)
+                      ? "Painlevé's paradox: no finite forces of contact and friction fit the motion here."
+                      : "No mode of the contacts and frictions that touch here keeps its own conditions, to rounding.")
            : tries.number(most_choices - 1)
                ? fmt::format("None of the {} modes that were tried fits the contacts that touch here.", most_choices)
                : "No forces keep all contacts that touch here from closing.";

@@ -120,6 +120,7 @@ class HybridMotion final : public Method {
   bool keeps_sticking(const std::vector<std::size_t>& touching, std::string& reason);
   bool is_lost_in_rounding(const std::vector<std::size_t>& touching, const ContactValues& values) const;
   bool hit(std::vector<std::size_t>& touching, std::string& reason);
+  void end_series(const std::vector<std::size_t>& touching);
   static ImpactResult last_impact(const ImpactProblem& problem, const Eigen::VectorXd& v);
   ImpactProblem impact_problem(const std::vector<std::size_t>& touching, const ContactValues& values);
   void note_order(const ImpactProblem& problem, const ImpactResult& first, const Eigen::VectorXd& v);
@@ -191,6 +192,7 @@ class HybridMotion final : public Method {
   void note_compliance(const ImpactProblem& problem);
   std::optional<std::size_t> violated();
   bool may_be_several(const ContactMode& mode, const ContactValues& values);
+  bool may_be_painleve(const std::vector<Choice>& list, const ContactValues& values);
   void note_indeterminate(const std::vector<Choice>& list, const ContactMode& mode, const ContactValues& values);
   void record_changes(const ContactMode& before, const ContactMode& after);
   void add(Happening::Kind kind, const std::string& name, double impulse = 0, double speed = 0,

@@ -222,7 +222,8 @@ void HybridMotion::take_out_slips(const std::vector<std::size_t>& stopping, cons
   std::vector<double> rates;
   for (const std::size_t i : stopping) {
     rows.push_back(values.tangent[i]), rates.push_back(-values.slip[i]);
-    rows.push_back(values.second_tangent[i]), rates.push_back(-values.second_slip[i]);
+    if (!values.second_tangent[i].empty())
+      rows.push_back(values.second_tangent[i]), rates.push_back(-values.second_slip[i]);
   }
   if (rows.empty()) return;
   for (const std::size_t i : touching)
@@ -235,9 +236,9 @@ void HybridMotion::take_out_slips(const std::vector<std::size_t>& stopping, cons
   solver.setThreshold(1e-10);
   const VectorXd right = Eigen::Map<const VectorXd>(rates.data(), at(rates.size()));
   const VectorXd change = response * VectorXd(solver.compute(w).solve(right));
-  const double before = energy_and_sets_at(t_, q_, v_)[0];
+  const double before = in_space_ ? energy_and_sets_at(t_, q_, v_)[0] : 0;
   for (std::size_t i = 0; i < v_.size(); ++i) v_[i] += change(at(i));
-  book_rubbing(energy_and_sets_at(t_, q_, v_)[0] - before);
+  if (in_space_) book_rubbing(energy_and_sets_at(t_, q_, v_)[0] - before);  // else it is below rounding
 }
 
 /// A slip that is slow and falls comes to rest after v_t²/(−v_t·v̇_t): the motion moves on to there, where both

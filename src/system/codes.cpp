@@ -450,6 +450,15 @@ constexpr CodeEntry kEntries[] = {
      "friction 0.3 slip 2 x'\n",
      "coord x, y : length\nparam m = 1 kg, g = 9.81 m/s^2\npoint P mass m at (x, y)\ngravity (0, -g)\ncontact y >= 0 "
      "friction 0.3 slip x'\n"},
+    {"W0437", "a gap that is no distance",
+     "Friction is μ times the normal force, λ |∂g/∂r| with r the place of what the contact pushes. Where the model has "
+     "the masses as points or bodies that is calculated; energies as formulas do not say which coordinates are the "
+     "place of one mass, and λ itself is taken. It is the normal force where the gap is the distance to the surface, "
+     "whose derivatives by the coordinates of one point are those of a direction: (0, 1), and not (−2 a x, 1).",
+     "coord x, y : length\nparam m = 1 kg, g = 9.81 m/s^2, a = 1 m^-1\nT = 1/2 m (x'^2 + y'^2)\nV = m g y\n"
+     "contact y - a x^2 >= 0 friction 0.3 slip (x' + 2 a x y')/sqrt(1 + 4 a^2 x^2)\nstart y = 1 m\n",
+     "coord x, y : length\nparam m = 1 kg, g = 9.81 m/s^2, a = 1 m^-1\npoint P mass m at (x, y)\ngravity (0, -g)\n"
+     "contact y - a x^2 >= 0 friction 0.3 slip (x' + 2 a x y')/sqrt(1 + 4 a^2 x^2)\nstart y = 1 m\n"},
     {"E0436", "gravity, or a damping coefficient, depends on the motion",
      "`gravity` is one vector for all bodies, whose weights m g come from the potential −m g·r; a field that differs "
      "from place to place has a potential of its own. A damper is D = ½ c ṡ², which gives the force c ṡ only where c "

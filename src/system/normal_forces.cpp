@@ -35,36 +35,43 @@ class Masses {
     }
   }
 
-  /// f: a gap, or a slip velocity, whose derivatives by the velocities count. Nothing where several masses are moved,
-  /// or where the coordinates are not along directions at right angles. Coordinates that turn a body take torques.
+  /// f: a gap, or a slip velocity, whose derivatives by the velocities count. Nothing where the place of what is moved
+  /// is not known, or the coordinates are not along directions at right angles. Coordinates that turn a body take
+  /// torques. Of two masses that a contact pushes apart each takes the same force, and one that moves along a rail says
+  /// nothing of what acts across it.
   std::optional<Push> pushed(Expr f, bool is_velocity) const {
-    std::map<std::size_t, Expr> row;
-    for (const std::size_t i : named({f})) {
-      const Coordinate& c = system_.coordinates[i];
-      const Expr slope = differentiate(f, is_velocity ? c.velocity : c.q);
-      if (!slope.is_zero() && turning_.count(i) == 0) row.emplace(i, slope);
-    }
-    const Mass* mass = nullptr;
+    const std::map<std::size_t, Expr> row = slopes(f, is_velocity);
+    std::vector<const Mass*> moved, free;
     for (const Mass& m : masses_) {
-      if (std::none_of(row.begin(), row.end(), [&](const auto& entry) { return m.moved_by.count(entry.first) > 0; }))
-        continue;
-      if (mass) return std::nullopt;
-      mass = &m;
+      const auto count =
+          std::count_if(row.begin(), row.end(), [&](const auto& e) { return m.moved_by.count(e.first); });
+      if (count == 0) continue;
+      moved.push_back(&m);
+      if (m.moved_by.size() >= dimensions_of(m)) free.push_back(&m);
     }
-    if (!mass) return std::nullopt;
-    Context& context = *system_.context;
-    const ExprVector& r = *mass->position;
-    const auto slope = [&](std::size_t k, std::size_t i) { return differentiate(r[k], system_.coordinates[i].q); };
-    ExprVector direction(r.size(), context.number(0)), squares;
-    for (const auto& [i, value] : row)
-      for (std::size_t k = 0; k < r.size(); ++k) direction[k] = direction[k] + value * slope(k, i);
-    for (const auto& [i, value] : row) {
-      ExprVector rest{-value};
-      for (std::size_t k = 0; k < r.size(); ++k) rest.push_back(direction[k] * slope(k, i));
-      if (!vanishes(context.sum(rest))) return std::nullopt;
+    if (moved.size() == 1) return push_on(*moved.front(), row, is_velocity);
+    std::optional<Push> out;
+    for (const Mass* m : is_velocity ? std::vector<const Mass*>() : free) {
+      auto push = push_on(*m, row, is_velocity);
+      if (!push || (out && !vanishes(out->square - push->square))) return std::nullopt;
+      if (!out) out = std::move(push);
     }
-    for (const Expr& component : direction) squares.push_back(component * component);
-    return Push{*mass->name, context.sum(squares)};
+    return out;
+  }
+
+  /// Whether ∂f/∂q holds ±1 beside what is neither 0 nor ±1, or more than 1: of lengths that move one point, or two
+  /// points apart, that is no direction.
+  bool is_no_distance(Expr gap) const {
+    bool has_one = false, has_part = false;
+    for (const auto& [i, slope] : slopes(gap, false)) {
+      if (system_.coordinates[i].kind != "length") continue;
+      const Expr square_less_one = slope * slope - system_.context->number(1);
+      const bool is_one = vanishes(square_less_one);
+      has_one = has_one || is_one;
+      has_part = has_part || !is_one;
+      if (!is_one && square_less_one.is_number() && square_less_one.number().sign() > 0) return true;
+    }
+    return has_one && has_part;
   }
 
   /// Whether |∂f/∂r| is 1 on the surface g = 0.
@@ -90,6 +97,43 @@ class Masses {
       if (const auto found = numbers_.find(symbol); found != numbers_.end()) out.insert(found->second);
     return out;
   }
+  /// [coordinates that do not turn a body] that are not 0
+  std::map<std::size_t, Expr> slopes(Expr f, bool is_velocity) const {
+    std::map<std::size_t, Expr> row;
+    for (const std::size_t i : named({f})) {
+      const Coordinate& c = system_.coordinates[i];
+      const Expr slope = differentiate(f, is_velocity ? c.velocity : c.q);
+      if (!slope.is_zero() && turning_.count(i) == 0) row.emplace(i, slope);
+    }
+    return row;
+  }
+  /// Of the components of a place those that a coordinate moves.
+  std::size_t dimensions_of(const Mass& m) const {
+    std::size_t out = 0;
+    for (const Expr& component : *m.position) out += named({component}).empty() ? 0 : 1;
+    return std::max<std::size_t>(out, 2);
+  }
+
+  std::optional<Push> push_on(const Mass& mass, const std::map<std::size_t, Expr>& all, bool is_velocity) const {
+    std::map<std::size_t, Expr> row;
+    for (const auto& entry : all)
+      if (mass.moved_by.count(entry.first) > 0) row.insert(entry);
+    if (is_velocity && row.size() != all.size()) return std::nullopt;
+    Context& context = *system_.context;
+    const ExprVector& r = *mass.position;
+    const auto slope = [&](std::size_t k, std::size_t i) { return differentiate(r[k], system_.coordinates[i].q); };
+    ExprVector direction(r.size(), context.number(0)), squares;
+    for (const auto& [i, value] : row)
+      for (std::size_t k = 0; k < r.size(); ++k) direction[k] = direction[k] + value * slope(k, i);
+    for (const auto& [i, value] : row) {
+      ExprVector rest{-value};
+      for (std::size_t k = 0; k < r.size(); ++k) rest.push_back(direction[k] * slope(k, i));
+      if (!vanishes(context.sum(rest))) return std::nullopt;
+    }
+    for (const Expr& component : direction) squares.push_back(component * component);
+    return Push{*mass.name, context.sum(squares)};
+  }
+
   static bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
 
   ExprVector coordinates() const {
@@ -144,6 +188,13 @@ void set_normal_forces(MechanicalSystem& system, Diagnostics& diagnostics) {
     if (!masses) masses.emplace(system);
     look_at_slip(*masses, contact, diagnostics);
     const auto push = masses->pushed(contact.gap, false);
+    const bool is_length = system.dimensionless || contact.dimension == dimensions::length();
+    if (!push && is_length && masses->is_no_distance(contact.gap))
+      diagnostics.warning(
+          "W0437", contact.span, fmt::format("the gap of {} is no distance", system.contact_label(k)),
+          "What it pushes is not known from the energies, so that friction takes λ for the normal force. That is λ "
+          "times the length of ∂g/∂r, r the place of what the contact pushes.",
+          "Divide the gap by that length, as in (y - a x^2)/sqrt(1 + 4 a^2 x^2) >= 0, or give the masses as points.");
     if (!push || masses->is_unit(*push, contact.gap)) continue;
     const Expr factor = sqrt(push->square);
     const auto scale = [&](Friction& friction) {

@@ -287,6 +287,36 @@ TEST_CASE("friction is μ times the normal force, also where the gap is not the 
   CHECK(factor.diagnostics.items()[0].code == "W0435");
 }
 
+TEST_CASE("a block on a wedge that slides, by a gap that is no distance") {
+  // Newton's equations by hand: N = m (g cos α)/(1 + m/M sin α (sin α − μ cos α)), X'' = −N (sin α − μ cos α)/M.
+  const double a = 50 * 3.14159265358979323846 / 180, mu = 0.3, m = 1, M = 3, g = 9.81;
+  const double share = std::sin(a) - mu * std::cos(a);
+  const double N = m * g * std::cos(a) / (1 + m / M * std::sin(a) * share);
+  const std::string wedge =
+      "param m = 1 kg, M = 3 kg, g = 9.81 m/s^2, α = 50 deg, μ = 0.3\ncoord X, x, y : length\npoint W mass M at (X, "
+      "0)\n"
+      "point P mass m at (x, y)\ngravity (0, -g)\n";
+  const std::string rest = " friction μ slip (x' - X') cos α + y' sin α name face\nstart x = 2 m, y = 2 [m] * tan(α)\n";
+  for (const std::string& gap : {"contact y >= (x - X) tan α", "contact 3 y cos α - 3 (x - X) sin α >= 0"}) {
+    ModelText model(wedge + gap + rest);
+    const auto r = run(model, 0.4);
+    CHECK(model.diagnostics.items().empty());
+    CHECK(r.final.q[0] == doctest::Approx(-N * -share / M * 0.08).epsilon(1e-12));
+    CHECK(r.final.reactions[0] == doctest::Approx(N).epsilon(1e-12));
+  }
+  const auto code = [](const std::string& text) {
+    ModelText model(text);
+    return model.diagnostics.items().empty() ? std::string() : model.diagnostics.items()[0].code;
+  };
+  const std::string formulas = "dimensionless\ncoord x, y : length\nT = 1/2 (x'^2 + y'^2)\nV = 10 y\n",
+                    slope = " friction 0.3 slip (x' + 2 x y')/sqrt(1 + 4 x^2)\nstart y = 1\n";
+  CHECK(code(formulas + "contact y - x^2 >= 0" + slope) == "W0437");
+  CHECK(code(formulas + "contact (y - x^2)/sqrt(1 + 4 x^2) >= 0" + slope) == "");
+  CHECK(code(formulas + "contact 2 y >= 0 friction 0.3 slip x'\n") == "W0437");
+  CHECK(code(formulas + "contact y >= 0 friction 0.3 slip x'\n") == "");
+  CHECK(code(formulas + "contact x cos(0.3) + y sin(0.3) >= 0 friction 0.3 slip x' sin(0.3) - y' cos(0.3)\n") == "");
+}
+
 TEST_CASE("Stribeck friction by |x'|, however written, goes on while a slip has one direction") {
   // 0.57613206 m after 27 changes by Runge-Kutta steps of 2e-5 s between events.
   const std::string laws[] = {"exp(-abs(x')/v0)", "exp(-abs(x'/v0))", "exp(-max(x', -x')/v0)",
@@ -394,5 +424,22 @@ TEST_CASE("what comes to rest is held where the others' kinetic friction lets it
                  1);
     CHECK(both.final.q[0] == 0);
     CHECK(both.final.q[1] == doctest::Approx(0.125).epsilon(1e-13));
+  }
+}
+
+TEST_CASE("a disc that rolls into a corner comes to rest there, after impacts without end") {
+  // It rolls down a slope of 0.7 rad against a wall; slope and wall then hold it in balance.
+  for (const double speed : {1.08, 0.4, 2.3}) {
+    const auto r = run_text(
+        "dimensionless\nparam α = 0.7, R = 0.4\ncoord x, y : length, a : angle\n"
+        "body disc mass 1 inertia 1/2 R^2 at (x, y) rotation angle a\ngravity (0, -10)\n"
+        "contact y cos α - x sin α >= R friction 0.31 slip x' cos α + y' sin α + R a' name slope\n"
+        "contact x >= -1.1 + R friction 0.51 slip y' - R a' name wall\n" +
+            fmt::format("start y = R/cos α, x' = -{0} cos α, y' = -{0} sin α, a' = {0}/R\n", speed),
+        2);
+    for (const double v : r.final.v) CHECK(std::abs(v) < 1e-15);
+    CHECK(r.final.q[0] == doctest::Approx(-0.7).epsilon(1e-14));
+    CHECK(r.final.q[1] == doctest::Approx((0.4 - 0.7 * std::sin(0.7)) / std::cos(0.7)).epsilon(1e-14));
+    CHECK(r.statistics.energy_drift < 1e-13);
   }
 }
