@@ -256,18 +256,21 @@ std::optional<HybridMotion::Found> HybridMotion::search_mode(const std::vector<C
   return std::nullopt;
 }
 
-/// Of frictions at rest those give way first that are at their limit, or beyond it where all rest.
+/// Of frictions at rest those give way first that are at their limit, or beyond it where all rest; of the latter the
+/// one that is written last, so that the first one is held where one can be.
 void HybridMotion::order_by_limits(std::vector<Choice>& list, const std::vector<std::size_t>& touching, double bound) {
   std::vector<std::size_t> at_limit;
   for (const Watch& w : pending_->left)
     if (w.what == Watch::What::Hold) at_limit.push_back(w.index);
-  if (at_limit.empty() && std::any_of(list.begin(), list.end(), [&](const Choice& c) { return may_hold(c); })) {
+  const bool overcome = at_limit.empty();
+  if (overcome && std::any_of(list.begin(), list.end(), [&](const Choice& c) { return may_hold(c); })) {
     Found rest{mode_of(list, std::vector<std::size_t>(list.size(), 0)), {}, {}};
     at_limit = beyond_limits(rest, touching, bound);
   }
-  std::stable_partition(list.begin(), list.end(), [&](const Choice& c) {
+  const auto first = std::stable_partition(list.begin(), list.end(), [&](const Choice& c) {
     return std::find(at_limit.begin(), at_limit.end(), c.contact) != at_limit.end();
   });
+  if (overcome) std::reverse(list.begin(), first);
 }
 
 /// Friction at rest whose static coefficient, or limit, is more than the kinetic one: where it holds another motion

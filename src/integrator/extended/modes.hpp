@@ -89,6 +89,10 @@ class Modes {
   bool sets_positions(const Met& met) const;
   void put_at_zero(InMode& candidate, const std::vector<std::size_t>& touching, const Met& met);
   bool may_be_several(const ExtendedMode& mode) const;
+  bool may_hold(const Choice& choice) const;
+  void order_by_limits(std::vector<Choice>& list, const std::vector<std::size_t>& touching, const Met& met);
+  InMode* hold_what_holds(const std::vector<Choice>& list, InMode* found, const std::vector<std::size_t>& touching,
+                          const Met& met, std::vector<T>* accelerations);
   bool choose(const std::vector<std::size_t>& touching, const Met& met);
   void record(ExtendedRoot::Kind kind, std::size_t index, const std::optional<T>& time = std::nullopt);
   void record_changes(const ExtendedMode& before, const ExtendedMode& after, bool begins);

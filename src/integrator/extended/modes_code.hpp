@@ -500,9 +500,57 @@ bool Modes<T>::holds_undetermined(const ExtendedMode& mode) const {
   return holds && are_dependent;
 }
 
+/// At rest, with a static limit beyond the kinetic one: where it holds another motion fits as well, in which it slides.
+template <class T>
+bool Modes<T>::may_hold(const Choice& c) const {
+  return c.options.size() > 2 && point_->fixed[c.index] > point_->friction[c.index];
+}
+
+/// Of frictions at rest those give way first that are at their limit, or beyond it where all rest; of the latter the
+/// one that is written last, so that the first one is held where one can be (HybridMotion::order_by_limits).
+template <class T>
+void Modes<T>::order_by_limits(std::vector<Choice>& list, const std::vector<std::size_t>& touching, const Met& met) {
+  std::vector<std::size_t> at_limit;
+  for (const ExtendedWatch& w : met.left)
+    if (w.what == What::Hold) at_limit.push_back(w.index);
+  const bool overcome = at_limit.empty();
+  if (overcome && std::any_of(list.begin(), list.end(), [&](const Choice& c) { return may_hold(c); })) {
+    InMode& rest = in_mode(mode_of(list, std::vector<std::size_t>(list.size(), 0)));
+    rest.stepper->start(t_, q_, v_);
+    put_at_zero(rest, touching, met);
+    const auto outlook = rest.stepper->outlook(bound_);
+    for (std::size_t k = 0; outlook.ending == StepEnding::None && k < outlook.sides.size(); ++k)
+      if (rest.program.watches[k].what == What::Hold && outlook.sides[k] < 0)
+        at_limit.push_back(rest.program.watches[k].index);
+  }
+  const auto first = std::stable_partition(list.begin(), list.end(), [&](const Choice& c) {
+    return std::find(at_limit.begin(), at_limit.end(), c.index) != at_limit.end();
+  });
+  if (overcome) std::reverse(list.begin(), first);
+}
+
+/// Friction that begins to slide in the mode that was found, and would hold beside all else as it is there, holds.
+template <class T>
+typename Modes<T>::InMode* Modes<T>::hold_what_holds(const std::vector<Choice>& list, InMode* found,
+                                                     const std::vector<std::size_t>& touching, const Met& met,
+                                                     std::vector<T>* accelerations) {
+  for (const Choice& c : list) {
+    const Slides state = found->mode.friction[c.index];
+    if (!may_hold(c) || (state != Slides::Forward && state != Slides::Backward)) continue;
+    ExtendedMode mode = found->mode;
+    mode.friction[c.index] = Slides::Stick;
+    InMode& next = in_mode(mode);
+    std::vector<T> held;
+    if (!fits(next, touching, met, false, &held)) continue;
+    found = &next, *accelerations = std::move(held);
+  }
+  return found;
+}
+
 template <class T>
 bool Modes<T>::choose(const std::vector<std::size_t>& touching, const Met& met) {
-  const std::vector<Choice> list = choices(touching, met);
+  std::vector<Choice> list = choices(touching, met);
+  if (list.size() > 1) order_by_limits(list, touching, met);
   std::vector<std::size_t> counts;
   for (const Choice& c : list) counts.push_back(c.options.size());
   Combinations tries(counts, through_modes::most_choices);
@@ -556,6 +604,10 @@ bool Modes<T>::choose(const std::vector<std::size_t>& touching, const Met& met) 
     return stop(StepEnding::Paradox, std::nullopt,
                 "friction at several contacts holds more than the rest needs, and its forces are not determined: with "
                 "more digits none are sought within its limits.");
+  if (InMode* const held = hold_what_holds(list, found, touching, met, &first); held != found)
+    found = held, last = nullptr, by_leniency = false;
+  else if (std::any_of(list.begin(), list.end(), [&](const Choice& c) { return may_hold(c); }))
+    last = nullptr;  // others were begun after it
   note_accelerations(first);
   if (last != found) static_cast<void>(fits(*found, touching, met, by_leniency, &first));
   const ExtendedMode before = now_->mode;

@@ -172,3 +172,31 @@ TEST_CASE("models of the gallery meet in quad what they meet in double, at times
     }
   }
 }
+
+TEST_CASE(
+    "the friction that comes to its limit gives way, and what can hold holds, in whatever order two are written") {
+  const std::string between = "contact y - Y >= 1 friction 0.1 static 0.4 slip x' - X' name between\n",
+                    floor = "contact Y >= 0 friction 0.1 slip X' name floor\n";
+  for (const std::string& contacts : {between + floor, floor + between}) {
+    const ExtendedResult r = run_for(
+        "dimensionless\nparam g = 10\ncoord X, Y, x, y : length\npoint lower mass 1 at (X, Y)\n"
+        "point upper mass 1 at (x, y)\ngravity (0, -g)\n" +
+            contacts + "force x = t\nstart y = 1\n",
+        3);
+    check_digits(r.final.q[0], Decimal(1) / 12, 95);
+    check_digits(r.final.q[2], Decimal(1) / 12, 95);
+  }
+  const std::string upper = "contact Y - y >= 1 friction 0.44 static 0.58 slip X' - x' name between\n",
+                    lower = "contact y >= 0 friction 0.2 static 0.35 slip x' name floor\n";
+  for (const std::string& contacts : {lower + upper}) {
+    const ExtendedResult r = run_for(
+        "dimensionless\ncoord x, y, X, Y : length\npoint A mass 0.54 at (x, y)\npoint B mass 1.3 at (X, Y)\n"
+        "gravity (0, -10)\n" +
+            contacts + "force on B = (-22.9, 0)\nstart Y = 1, x' = 1, X' = 1\n",
+        Rational(3, 10));
+    const Decimal a = (Decimal("22.9") + Decimal("0.2") * Decimal("18.4")) / Decimal("1.84"),
+                  rest = Decimal("0.3") - 1 / a, b = (Decimal("22.9") - Decimal("0.44") * 13) / Decimal("1.3");
+    check_digits(r.final.q[0], 1 / (2 * a), 95);
+    check_digits(r.final.q[2], 1 / (2 * a) - b * rest * rest / 2, 94);
+  }
+}
