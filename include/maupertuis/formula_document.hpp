@@ -31,6 +31,4 @@ std::string latex_text(const FormulaLine& line);
 /// A name that the language reads, of pieces that it may not: "M_θ1_θ2".
 std::string identifier(std::string_view text);
 
-std::string xml_text(const std::string& text);
-
 }  // namespace maupertuis

@@ -1,6 +1,8 @@
 #include "drawing/frame.hpp"
 #include "drawing/moments.hpp"
 
+#include <maupertuis/escape_xml.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -47,13 +49,6 @@ std::string css(const FrameColour& colour, const Colours& c) {
   for (std::size_t k = 0; k < 3; ++k)
     out += fmt::format("{:02x}", static_cast<int>(std::lround(c.paper[k] + std::clamp(colour.strength, 0.0, 1.0) *
                                                                                (to[k] - c.paper[k]))));
-  return out;
-}
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char ch : text)
-    out += ch == '&' ? "&amp;" : ch == '<' ? "&lt;" : ch == '>' ? "&gt;" : ch == '"' ? "&quot;" : std::string(1, ch);
   return out;
 }
 
@@ -107,10 +102,10 @@ std::string letters(const NameParts& t, double size) {
   std::string dots;
   for (int i = 0; i < t.dots; ++i) dots += "\u0307";
   std::string out =
-      t.upright ? escaped(t.base) : fmt::format("<tspan font-style=\"italic\">{}{}</tspan>", escaped(t.base), dots);
+      t.upright ? escape_xml(t.base) : fmt::format("<tspan font-style=\"italic\">{}{}</tspan>", escape_xml(t.base), dots);
   if (!t.index.empty())
     out += fmt::format("<tspan dy=\"{}\" font-size=\"{}\">{}</tspan>", number(0.22 * size), number(0.72 * size),
-                       escaped(t.index));
+                       escape_xml(t.index));
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include "plot/style.hpp"
 
 #include <maupertuis/diagram.hpp>
+#include <maupertuis/escape_xml.hpp>
 #include <maupertuis/require.hpp>
 
 #include <fmt/format.h>

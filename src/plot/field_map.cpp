@@ -2,6 +2,7 @@
 #include "plot/panel.hpp"
 #include "plot/style.hpp"
 
+#include <maupertuis/escape_xml.hpp>
 #include <maupertuis/field_map.hpp>
 #include <maupertuis/require.hpp>
 

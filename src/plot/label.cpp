@@ -1,5 +1,6 @@
 #include "plot/label.hpp"
 
+#include <maupertuis/escape_xml.hpp>
 #include <maupertuis/plot.hpp>
 
 #include <fmt/format.h>
@@ -162,25 +163,6 @@ std::string to_svg(const RichText& text, double font_size) {
 std::string plain(const RichText& text) {
   std::string result;
   for (const auto& run : text) result += (run.level > 0 ? "^" + run.text : run.text) + std::string(run.dots, '\'');
-  return result;
-}
-
-std::string escape_xml(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&')
-      result += "&amp;";
-    else if (c == '<')
-      result += "&lt;";
-    else if (c == '>')
-      result += "&gt;";
-    else if (c == '"')
-      result += "&quot;";
-    else if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t')
-      result += ' ';
-    else
-      result += c;
-  }
   return result;
 }
 

@@ -29,6 +29,4 @@ double text_width(const RichText& text, double font_size);
 std::string to_svg(const RichText& text, double font_size);
 std::string plain(const RichText& text);
 
-std::string escape_xml(std::string_view text);
-
 }  // namespace maupertuis

@@ -2,6 +2,7 @@
 #include "plot/style.hpp"
 
 #include <maupertuis/diagnostic.hpp>
+#include <maupertuis/escape_xml.hpp>
 #include <maupertuis/plot.hpp>
 #include <maupertuis/require.hpp>
 

@@ -2,6 +2,7 @@
 #include "report/page.hpp"
 #include "report/sections.hpp"
 
+#include <maupertuis/escape_xml.hpp>
 #include <maupertuis/field_pictures.hpp>
 
 #include <fmt/format.h>
@@ -49,8 +50,8 @@ std::string facts_line(const ReportContent& content) {
 
 std::string header(const ReportContent& content) {
   std::string html =
-      fmt::format("<header>\n<h1>{}</h1>\n", escape_html(content.title.empty() ? content.name : content.title));
-  if (!content.source.empty()) html += fmt::format("<p class=\"citation\">{}</p>\n", escape_html(content.source));
+      fmt::format("<header>\n<h1>{}</h1>\n", escape_xml(content.title.empty() ? content.name : content.title));
+  if (!content.source.empty()) html += fmt::format("<p class=\"citation\">{}</p>\n", escape_xml(content.source));
   return html + notes_html(content.notes) + facts_line(content);
 }
 
@@ -96,7 +97,7 @@ std::string report_html(const ReportContent& content) {
       navigation += fmt::format("<a href=\"#{}\">{}</a>\n", part.id, part.title);
     body += part.html;
   }
-  const std::string title = escape_html(content.title.empty() ? content.name : content.title);
+  const std::string title = escape_xml(content.title.empty() ? content.name : content.title);
   std::string page = head(title);
   page += header(content);
   page += fmt::format("<nav aria-label=\"Contents\">\n{}</nav>\n</header>\n<main>\n{}</main>\n", navigation, body);
@@ -111,7 +112,7 @@ std::string report_html(const ReportContent& content) {
 std::string turned_pictures_html(const std::vector<std::string>& frames, double seconds, const std::string& title) {
   ReportContent content;
   content.title = title;
-  return head(escape_html(title)) + header(content) + "</header>\n<main>\n<figure id=\"film\">\n" +
+  return head(escape_xml(title)) + header(content) + "</header>\n<main>\n<figure id=\"film\">\n" +
          turned_pictures_svg(frames, seconds, true) +
          fmt::format(R"(<div class="controls">
 <button id="film-play" type="button">pause</button>
@@ -153,7 +154,7 @@ std::string animation_html(const Drawing& drawing, const std::string& title) {
   ReportContent content;
   content.title = title;
   content.drawing = drawing;
-  return head(escape_html(title)) + header(content) + "</header>\n<main>\n" + drawing_section(content) +
+  return head(escape_xml(title)) + header(content) + "</header>\n<main>\n" + drawing_section(content) +
          "</main>\n<footer>Made by Maupertuis. Everything on this page is contained in it.</footer>\n" +
          fmt::format("<script>\n{}</script>\n<script>\n{}</script>\n</body>\n</html>\n", page_script, animation_script);
 }

@@ -1,5 +1,7 @@
 #include "report/markup.hpp"
 
+#include <maupertuis/escape_xml.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,30 +10,11 @@
 
 namespace maupertuis {
 
-std::string escape_html(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&')
-      result += "&amp;";
-    else if (c == '<')
-      result += "&lt;";
-    else if (c == '>')
-      result += "&gt;";
-    else if (c == '"')
-      result += "&quot;";
-    else if (c == '\0')
-      result += "\uFFFD";
-    else
-      result += c;
-  }
-  return result;
-}
-
 std::string unit_html(std::string_view unit) {
   std::string result;
   for (std::size_t i = 0; i < unit.size();) {
     if (unit[i] != '^') {
-      result += escape_html(unit.substr(i++, 1));
+      result += escape_xml(unit.substr(i++, 1));
       continue;
     }
     const std::size_t end = std::min(unit.find_first_not_of("-0123456789", i + 1), unit.size());
@@ -48,7 +31,7 @@ std::string number_html(std::string_view number) {
   const bool plain = e == std::string_view::npos || e == 0 || number.find_first_not_of("+-0123456789.", 0) != e;
   const bool quantity = !number.empty() && std::string_view("+-.0123456789").find(number[0]) != std::string_view::npos;
   const std::string_view rest = number.substr(0, plain ? number.size() : e);
-  std::string mantissa = quantity ? unit_html(rest) : escape_html(rest);
+  std::string mantissa = quantity ? unit_html(rest) : escape_xml(rest);
   if (!mantissa.empty() && mantissa[0] == '-' && mantissa.size() > 1) mantissa.replace(0, 1, "−");
   if (plain) return mantissa;
   std::size_t end = e + 1;
@@ -122,7 +105,7 @@ std::string prose_html(std::string_view text) {
       html += " − ";
       i += 3;
     } else {
-      html += escape_html(text.substr(i, 1));
+      html += escape_xml(text.substr(i, 1));
       ++i;
     }
   }
@@ -137,7 +120,7 @@ std::string sentence_html(std::string_view sentence) {
   for (std::size_t at = 0; at <= sentence.size();) {
     const std::size_t next = std::min(sentence.find('`', at), sentence.size());
     const std::string_view part = sentence.substr(at, next - at);
-    html += code ? escape_html(part) : prose_html(part);
+    html += code ? escape_xml(part) : prose_html(part);
     if (next == sentence.size()) break;
     html += code ? "</code>" : "<code>";
     code = !code;
@@ -172,10 +155,10 @@ std::string line_html(std::string_view line) {
   const bool known =
       std::find(statement_words.begin(), statement_words.end(), statement.substr(0, word)) != statement_words.end();
   std::string html = known ? fmt::format("<span class=\"word\">{}</span>", statement.substr(0, word))
-                           : escape_html(statement.substr(0, word));
-  html += escape_html(statement.substr(word));
+                           : escape_xml(statement.substr(0, word));
+  html += escape_xml(statement.substr(word));
   if (comment < line.size())
-    html += fmt::format("<span class=\"comment\">{}</span>", escape_html(line.substr(comment)));
+    html += fmt::format("<span class=\"comment\">{}</span>", escape_xml(line.substr(comment)));
   return html;
 }
 

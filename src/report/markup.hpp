@@ -7,8 +7,6 @@
 
 namespace maupertuis {
 
-std::string escape_html(std::string_view text);
-
 /// "kg m^2/s" with raised exponents.
 std::string unit_html(std::string_view unit);
 /// 1.2e-15 as 1.2 × 10⁻¹⁵; other text as it is.

@@ -1,6 +1,8 @@
 #include "report/markup.hpp"
 #include "report/sections.hpp"
 
+#include <maupertuis/escape_xml.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,7 +37,7 @@ std::string shape_figure(const ReportContent::ModeShape& shape, const std::strin
     attributes = fmt::format(" data-drawing=\"{}\" data-loop data-rate=\"{:.6g}\"", id, period / 2);
     inside = fmt::format(
         "<canvas role=\"img\" aria-label=\"{}\"></canvas>\n<script type=\"application/json\" id=\"{}\">{}</script>",
-        escape_html(shape.caption), id, drawing_json(*shape.drawing));
+        escape_xml(shape.caption), id, drawing_json(*shape.drawing));
   } else if (shape.diagram) {
     Diagram d = *shape.diagram;
     d.theme = PlotTheme::Page;

@@ -2,6 +2,8 @@
 
 #include "report/markup.hpp"
 
+#include <maupertuis/escape_xml.hpp>
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -18,7 +20,7 @@ std::string facts_list(const std::vector<std::pair<std::string, std::string>>& f
   if (facts.empty()) return {};
   std::string html = "<dl class=\"facts-list\">\n";
   for (const auto& [name, value] : facts)
-    html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape_html(name), number_html(value));
+    html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape_xml(name), number_html(value));
   return html + "</dl>\n";
 }
 
@@ -44,8 +46,8 @@ std::string bound_html(double bound) {
 
 std::string verdict_html(bool applies, bool passed, const std::string& verdict) {
   if (!applies) return "<span class=\"muted mark\">does not apply</span>";
-  return passed ? "<span class=\"good mark\">✓ " + escape_html(verdict) + "</span>"
-                : "<span class=\"bad mark\">✗ " + escape_html(verdict) + "</span>";
+  return passed ? "<span class=\"good mark\">✓ " + escape_xml(verdict) + "</span>"
+                : "<span class=\"bad mark\">✗ " + escape_xml(verdict) + "</span>";
 }
 
 std::string_view message_class(Severity severity) {
@@ -64,9 +66,9 @@ std::string messages_section(const ReportContent& content) {
   std::string html;
   for (const auto& message : content.messages) {
     html += fmt::format("<div class=\"message {0}\"><p><b>{1}</b> <span class=\"code\">{2}{3}</span></p>",
-                        message_class(message.severity), sentence_html(message.message), escape_html(message.code),
+                        message_class(message.severity), sentence_html(message.message), escape_xml(message.code),
                         message.line > 0 ? fmt::format(", line {}", message.line) : "");
-    if (!message.text.empty()) html += fmt::format("<pre>{}</pre>", escape_html(message.text));
+    if (!message.text.empty()) html += fmt::format("<pre>{}</pre>", escape_xml(message.text));
     for (const auto* sentence : {&message.reason, &message.help})
       if (!sentence->empty()) html += fmt::format("<p>{}</p>", sentence_html(*sentence));
     html += "</div>\n";
@@ -90,7 +92,7 @@ std::string drawing_section(const ReportContent& content) {
 </figure>
 <script type="application/json" id="drawing-data">{}</script>
 )",
-                     escape_html(content.title), escape_html(content.title),
+                     escape_xml(content.title), escape_xml(content.title),
                      spatial ? ", dragging turns the view, a double click turns it back" : "",
                      drawing_json(*content.drawing));
 }
@@ -100,14 +102,14 @@ std::string equations_section(const ReportContent& content) {
   std::size_t number = 0;
   for (const auto& equation : content.equations) {
     ++number;
-    const std::string label = equation.sentence.empty() ? std::to_string(number) : escape_html(equation.sentence);
+    const std::string label = equation.sentence.empty() ? std::to_string(number) : escape_xml(equation.sentence);
     html += fmt::format("<div class=\"equation\">{}<div class=\"number\">({})</div></div>\n",
                         display_math(equation.left, equation.right), label);
   }
   if (!content.intermediates.empty()) html += "<p>with</p>\n";
   for (const auto& intermediate : content.intermediates)
     html += fmt::format("<div class=\"where\">{}</div>\n", formula_block(intermediate));
-  if (!content.energies.empty()) html += fmt::format("<h3>{}</h3>\n", escape_html(content.energies_title));
+  if (!content.energies.empty()) html += fmt::format("<h3>{}</h3>\n", escape_xml(content.energies_title));
   for (const auto& energy : content.energies)
     html += fmt::format("<div class=\"where\">{}</div>\n", formula_block(energy));
   return section("equations", "Equations of motion", html);
@@ -120,7 +122,7 @@ std::string coordinates_table(const ReportContent& content) {
   for (const auto& c : content.coordinates) started = started || !c.start.empty();
   std::string rows;
   for (const auto& c : content.coordinates) {
-    const std::string name = c.name.empty() ? "" : fmt::format(" <code>{}</code>", escape_html(c.name));
+    const std::string name = c.name.empty() ? "" : fmt::format(" <code>{}</code>", escape_xml(c.name));
     rows += fmt::format("<tr><td>{}{}</td><td>{}</td>", inline_math(c.symbol), name, unit_html(c.kind));
     if (started)
       rows += fmt::format("<td class=\"number\">{}</td><td class=\"number\">{}</td>", number_html(c.start),
@@ -154,7 +156,7 @@ std::string model_section(const ReportContent& content) {
   for (const auto& definition : content.definitions)
     html += fmt::format("<div class=\"where\">{}</div>\n", formula_block(definition));
   if (!content.model_text.empty()) {
-    html += fmt::format("<h3>Model text{}</h3>\n", content.file.empty() ? "" : ", " + escape_html(content.file));
+    html += fmt::format("<h3>Model text{}</h3>\n", content.file.empty() ? "" : ", " + escape_xml(content.file));
     html += fmt::format("<pre class=\"model\"><code>{}</code></pre>\n", model_html(content.model_text));
   }
   return section("model", "Model", html);
@@ -251,7 +253,7 @@ std::string motion_section(const ReportContent& content) {
 std::string orbits_section(const ReportContent& content) {
   std::string html;
   for (const ReportContent::Finding& finding : content.orbits) {
-    html += fmt::format("<h3>{}</h3>\n{}", escape_html(finding.title), facts_list(finding.facts));
+    html += fmt::format("<h3>{}</h3>\n{}", escape_xml(finding.title), facts_list(finding.facts));
     if (finding.caption.empty()) continue;
     PlotOptions options = finding.picture;
     options.theme = PlotTheme::Page;
@@ -275,7 +277,7 @@ std::string diagrams_html(const std::vector<ReportContent::Locus>& diagrams) {
 std::string paths_section(const ReportContent& content) {
   std::string html;
   for (const ReportContent::Finding& path : content.paths)
-    html += fmt::format("<h3>{}</h3>\n{}", escape_html(path.title), facts_list(path.facts));
+    html += fmt::format("<h3>{}</h3>\n{}", escape_xml(path.title), facts_list(path.facts));
   html += diagrams_html(content.path_pictures);
   if (!html.empty()) html = fmt::format("<p class=\"muted\">{}</p>\n", sentence_html(content.path_search)) + html;
   return section("paths", "Stationary paths of the action", html);
@@ -285,7 +287,7 @@ std::string expectations_section(const ReportContent& content) {
   std::string rows;
   for (const auto& result : content.expectations)
     rows +=
-        fmt::format("<tr><td><code>{}</code>{}</td><td>{}</td><td>{}</td></tr>\n", escape_html(result.text),
+        fmt::format("<tr><td><code>{}</code>{}</td><td>{}</td><td>{}</td></tr>\n", escape_xml(result.text),
                     result.passed || result.message.empty() ? "" : "<br>" + sentence_html(result.message),
                     number_html(result.actual), verdict_html(true, result.passed, result.passed ? "passed" : "failed"));
   return section("expectations", "Expectations",

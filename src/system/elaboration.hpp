@@ -241,7 +241,7 @@ std::optional<Pose> pose_of(Elaboration& e, const Declaration& d, const syntax::
 /// ½ m v²
 Expr translational_energy(Expr mass, const ExprVector& position);
 
-// fields.cpp, field_expectations.cpp
+// fields.cpp, field_values.cpp, field_expectations.cpp
 /// The space variables and the fields of the model, before anything is made of them. False where there are none.
 bool declare_fields(Elaboration& e);
 /// Densities, boundaries, forces; after the definitions.
@@ -250,9 +250,9 @@ void elaborate_fields(Elaboration& e);
 bool start_of_field(Elaboration& e, const syntax::StartStatement::Item& item);
 /// u_x, u_tx of a field; nothing where the name is none.
 std::optional<Value> value_of_jet(Elaboration& e, const syntax::Expression& x);
-/// u(3 m)
 /// E0289 where a field or a space variable stands in a value that is asked at a time: no place says where.
 bool refuse_without_place(Elaboration& e, Expr value, const syntax::Expression& x);
+/// u(3 m)
 Value value_at_place(Elaboration& e, const syntax::Expression& x);
 Expected meaning_of(Elaboration& e, const written::OfField& x, Span line);
 void check_statement_counts(Elaboration& e);

@@ -1,5 +1,7 @@
 #include <maupertuis/formula_document.hpp>
 
+#include <maupertuis/escape_xml.hpp>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -147,14 +149,14 @@ std::string mathml_document(const std::vector<FormulaLine>& lines) {
   const auto row = [&](const std::string& content) { out += "<mtr><mtd><mrow>" + content + "</mrow></mtd></mtr>\n"; };
   for (const FormulaLine& line : lines) {
     if (line.right.empty()) {
-      row(fmt::format("<mtext>{}</mtext>", xml_text(line.sentence)));
+      row(fmt::format("<mtext>{}</mtext>", escape_xml(line.sentence)));
       continue;
     }
     const std::vector<Layout> pieces = broken_lines(line.left, line.right, mathml_width, mathml_width - indent);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const bool last = i + 1 == pieces.size();
       row((i ? "<mspace width=\"2em\"/>" : "") + to_mathml(pieces[i]) +
-          (last && !line.note.empty() ? fmt::format("<mtext>\u2003({})</mtext>", xml_text(line.note)) : std::string()));
+          (last && !line.note.empty() ? fmt::format("<mtext>\u2003({})</mtext>", escape_xml(line.note)) : std::string()));
     }
   }
   return out + "</mtable>\n</math>\n";
@@ -194,21 +196,6 @@ std::string identifier(std::string_view text) {
       out += '_';
   }
   while (!out.empty() && out.back() == '_') out.pop_back();
-  return out;
-}
-
-std::string xml_text(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '&')
-      out += "&amp;";
-    else
-      out += c;
-  }
   return out;
 }
 

@@ -4,6 +4,8 @@
 #include "symbolic/print/layout.hpp"
 #include "symbolic/print/symbol_name.hpp"
 
+#include <maupertuis/escape_xml.hpp>
+
 /// Presentation MathML: what browsers draw without any script.
 namespace maupertuis {
 namespace print {
@@ -19,25 +21,10 @@ std::string tag(const char* name, const std::string& content) {
 }
 std::string row(const std::string& content) { return tag("mrow", content); }
 
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&')
-      result += "&amp;";
-    else if (c == '<')
-      result += "&lt;";
-    else if (c == '>')
-      result += "&gt;";
-    else
-      result += c;
-  }
-  return result;
-}
-
 // ---------------------------------------------------------------------------------------------------------- names
 
 /// A letter is set in italics, a word upright: that is what <mi> does by itself.
-std::string identifier(std::string_view text) { return tag("mi", escaped(text)); }
+std::string identifier(std::string_view text) { return tag("mi", escape_xml(text)); }
 
 std::string write_index(const std::string& part) {
   if (is_digits(part)) return tag("mn", part);
@@ -87,9 +74,9 @@ Script script_of(const std::string& text, int dots, bool primes) {
 Script script_of_symbol(Expr symbol, const std::string& within_body) {
   if (symbol.role() == Role::Constant) {
     const QuantityName quantity = split_quantity(symbol.name());
-    const std::string number = tag("mn", escaped(quantity.number));
+    const std::string number = tag("mn", escape_xml(quantity.number));
     if (quantity.unit.empty()) return {number, {}, {}};
-    return {row(number + thin_space + tag("mtext", escaped(quantity.unit))), {}, {}};
+    return {row(number + thin_space + tag("mtext", escape_xml(quantity.unit))), {}, {}};
   }
   const ShownSymbol shown = shown_symbol(symbol, within_body);
   const std::size_t cut = shown.name.find('_');
@@ -302,9 +289,9 @@ std::string write_unsigned(const Layout& l) {
     case Shape::Cases:
       return write_cases(l);
     case Shape::Bold:
-      return dotted("<mi mathvariant=\"bold\">" + escaped(l.text) + "</mi>", l.dots);
+      return dotted("<mi mathvariant=\"bold\">" + escape_xml(l.text) + "</mi>", l.dots);
     case Shape::Words:
-      return tag("mtext", escaped(l.text));
+      return tag("mtext", escape_xml(l.text));
     case Shape::Indexed:
       return write_indexed(l);
     case Shape::Partial:
