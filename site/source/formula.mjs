@@ -263,9 +263,21 @@ function unbroken(latex) {
   return result;
 }
 
+// A formula of several lines goes on with the sign of its next term, as in books; KaTeX breaks after signs by itself.
+function brokenBeforeSigns(latex) {
+  const isBinary = before => !/(^|[=(<>,&]|\\(leq?|geq?|approx|equiv|cdot|times|quad|pm|in))\s*$/.test(before);
+  let depth = 0;
+  return latex.replace(/\\(left|right|begin|end)(?![a-z])|\\.|[{}]|(?<=\s)[-+−](?=\s)/gu, (part, pair, at) => {
+    if (part === '{' || pair === 'left' || pair === 'begin') ++depth;
+    else if (part === '}' || pair) --depth;
+    else if (!part.startsWith('\\') && depth === 0 && isBinary(latex.slice(0, at))) return `\\allowbreak ${part}\\nobreak `;
+    return part;
+  });
+}
+
 export function katexHtml(latex, where) {
   try {
-    return katex.renderToString(`\\displaystyle ${unbroken(latex)}`, {
+    return katex.renderToString(`\\displaystyle ${unbroken(brokenBeforeSigns(latex))}`, {
       throwOnError: true,
       strict: 'error',
       output: 'htmlAndMathml',

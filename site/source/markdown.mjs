@@ -2,6 +2,7 @@
 import MarkdownIt from 'markdown-it';
 import {escape} from './highlight.mjs';
 import {formulaBlock} from './formula.mjs';
+import {italic, prose} from './prose.mjs';
 
 export const slug = text =>
   text
@@ -34,7 +35,10 @@ export class Documents {
     this.md = new MarkdownIt({html: true, typographer: false});
     const rules = this.md.renderer.rules;
     rules.fence = (tokens, i, options, env) => this.fence(tokens[i], env);
-    rules.text = (tokens, i) => inlineMath(escape(tokens[i].content));
+    rules.text = (tokens, i, options, env) => {
+      const html = prose(escape(tokens[i].content));
+      return env.file.startsWith('docs/theory') ? italic(html) : html;
+    };
     rules.code_block = (tokens, i, options, env) => {
       throw new Error(
         `${env.file}:${tokens[i].map[0] + 1}: an indented block says not what it is; write \`\`\`sh, lag, formula, …`,
@@ -129,23 +133,6 @@ export class Documents {
 }
 
 const remarked = html => html.replace(/(^|\s)(#.*)$/gm, '$1<span class="comment">$2</span>');
-
-// Symbols within sentences: what is lowered or raised, and primes. Names of programs stand in code and are left alone.
-const inlineMath = html =>
-  html
-    .replace(
-      /((?<![\p{L}\p{N}_∂δ])(?:[∂δd]?\p{L}[\u0300-\u036f]*'*|∂)|[)\]])_(\{[^}]*\}|[\p{L}0-9]{1,3})(?![\p{L}0-9_])/gu,
-      (all, base, index) => `${base}<sub>${index.replace(/[{}]/g, '')}</sub>`,
-    )
-    .replace(/∂_(\p{L})(?![\p{L}0-9_])/gu, '∂<sub>$1</sub>')
-    .replace(
-      /(?<=[\p{L}\p{N})\]>])\^(\{[^}]*\}|[-−]?[\p{L}0-9]{1,3}|\([^()]{1,8}\))(?![\p{L}0-9])/gu,
-      (all, power) => `<sup>${power.replace(/[{}]/g, '')}</sup>`,
-    )
-    .replace(
-      /((?<![\p{L}\p{N}])[∂δ]?\p{L}[\u0300-\u036f]*|(?<=\p{L}\([\p{L}\d,\s]{1,8})\))('+)(?![\p{L}'])/gu,
-      (all, base, primes) => base + '′'.repeat(primes.length),
-    );
 
 const align = token => (token.attrGet('style') ? ` style="${token.attrGet('style')}"` : '');
 

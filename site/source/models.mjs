@@ -5,6 +5,7 @@ import {basename, join} from 'node:path';
 import {escape} from './highlight.mjs';
 import {katexHtml} from './formula.mjs';
 import {together} from './program.mjs';
+import {italic, prose} from './prose.mjs';
 import {fragmentOf} from './studio.mjs';
 
 // What a model is about, by the statements that it has; the first group that fits.
@@ -204,11 +205,16 @@ function equations(model) {
 
 const step = ({steps}, wanted) => (steps ?? []).filter(s => s.latex && wanted(s));
 
-/** θ1 and p_θ1, which stand in words. */
+/** A sentence with θ1 and p_θ1 in it. */
 const named = text =>
-  escape(text)
-    .replace(/(?<![\p{L}\p{N}])p_([\p{L}\p{N}]+)/gu, 'p<sub>$1</sub>')
-    .replace(/(?<![\p{L}\p{N}])(\p{L})(\d+)(?![\p{L}\p{N}])/gu, '$1<sub>$2</sub>');
+  italic(
+    prose(
+      escape(text)
+        .replace(/^\p{Ll}(?=\p{Ll})/u, first => first.toUpperCase())
+        .replace(/(?<![\p{L}\p{N}])p_([\p{L}\p{N}]+)/gu, 'p<sub>$1</sub>')
+        .replace(/(?<![\p{L}\p{N}])(\p{L})(\d+)(?![\p{L}\p{N}])/gu, '$1<sub>$2</sub>'),
+    ),
+  );
 
 /** The steps from the text to the equations, to be unfolded; of long ones one is better served by `maup report`. */
 const longest = 8000;

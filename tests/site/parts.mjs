@@ -37,6 +37,14 @@ export async function checkParts(check, root) {
     (set.match(/class="mfrac"/g) ?? []).length,
   );
   check('a matrix is one', formulaBlock('[ M  −Aᵀ ]\n[ A   0 ]', 'x.md:1').includes('mtable'));
+  const long = katexHtml('a + b - \\left(c + d\\right) = - e + f', 'x');
+  const lines = long.split('class="katex-base"').slice(1);
+  check(
+    'lines are broken before signs between terms',
+    JSON.stringify(lines.map(part => part.replace(/^>|<[^>]*(>|$)/g, ''))) ===
+      JSON.stringify(['a', '+b', '−(c+d)=', '−e', '+f']),
+    lines.map(part => part.replace(/^>|<[^>]*(>|$)/g, '')),
+  );
   check(
     'an unknown sign is refused',
     refuses(() => formulaBlock('a ☃ b', 'x.md:1'), FormulaError),
@@ -78,6 +86,15 @@ export async function checkParts(check, root) {
     page.html.includes('h<sub>E</sub> of q′′') && page.html.includes('<code>h_E</code>'),
     page.html,
   );
+  const theory = text => documents.render(`# t\n\n${text}\n`, 'docs/theory/x.md').html.replace(/<\/?p>|\n/g, '');
+  for (const [text, html] of [
+    ['with h_E of q\'\' and δu', 'with <i>h</i><sub><i>E</i></sub> of <i>q</i>′′ and <i>δu</i>'],
+    ['A value u(a) of a string, 2 m long', 'A value <i>u</i>(<i>a</i>) of a string, 2 m long'],
+    ['the rows A q = b (D. E. Knuth) at 3 rad/s', 'the rows <i>A</i> <i>q</i> = <i>b</i> (D. E. Knuth) at 3 rad/s'],
+    ['Lagrange\'s "to reach", 2.9e-03 and 1e-12', 'Lagrange’s “to reach”, 2.9 · 10<sup>−3</sup> and 10<sup>−12</sup>'],
+    ['d/dt of M⁻¹ and Aᵀλ', 'd/dt of <i>M</i>⁻¹ and <i>A</i>ᵀ<i>λ</i>'],
+  ])
+    check(`a sentence is set as in a book: ${text}`, theory(text) === html, theory(text));
   check(
     'anchors are those of the links',
     page.headings[0].id === 'one-two' &&
