@@ -49,6 +49,15 @@ class Rewriter {
  private:
   std::string slice(Span span) const { return std::string(source_.slice(span)); }
   std::string plain(Expr e) const { return to_plain(e, order_); }
+  /// As it is written in a formula, where the unit of a quantity stands in brackets: `1 N` as `1 [N]`.
+  std::string in_formula(const Expression& x) const {
+    if (x.kind == Expression::Kind::Unary) return "-" + in_formula(*x.arguments[0]);
+    if (x.kind != Expression::Kind::Quantity || x.unit_bracketed) return slice(x.span);
+    const Span number = x.arguments[0]->span;
+    std::string unit = slice({number.end, x.span.end, x.span.source});
+    unit.erase(0, unit.find_first_not_of(' '));
+    return fmt::format("{} [{}]", slice(number), unit);
+  }
 
   // ---------------------------------------------------------------------------------------- statements
   void statement(const Statement& s) {
@@ -175,7 +184,7 @@ class Rewriter {
       if (q.role() != Role::Coordinate) continue;
       const ReadableForm slope = readable(differentiate(value, q), order_);
       const Expr shown = slope.intermediates.empty() ? slope.value : differentiate(value, q);
-      lines += fmt::format("{}force {} = ({}) ({})", lines.empty() ? "" : "\n", q.name(), slice(s.value->span),
+      lines += fmt::format("{}force {} = ({}) ({})", lines.empty() ? "" : "\n", q.name(), in_formula(*s.value),
                            plain(shown));
     }
     if (lines.empty())
@@ -187,8 +196,8 @@ class Rewriter {
   void torsion(Span span, const TorsionSpringStatement& s) {
     if (!gone_.count(s.coordinate.text)) return;
     const std::string stretch =
-        s.rest ? fmt::format("({} - ({}))", s.coordinate.text, slice(s.rest->span)) : s.coordinate.text;
-    text_.replace(span, fmt::format("V += 1/2 ({}) {}^2", slice(s.stiffness->span), stretch));
+        s.rest ? fmt::format("({} - ({}))", s.coordinate.text, in_formula(*s.rest)) : s.coordinate.text;
+    text_.replace(span, fmt::format("V += 1/2 ({}) {}^2", in_formula(*s.stiffness), stretch));
   }
 
   // --------------------------------------------------------------------------------------------- start

@@ -117,6 +117,21 @@ run 2 s
   CHECK(r.reduction.text.find("force φ") == std::string::npos);
 }
 
+TEST_CASE("a force and a spring that are given as quantities: their units stand in brackets then") {
+  const Reduced r = reduce_text(R"(system wheel
+param m = 1 kg, R = 1 m
+coord x : length, φ : angle
+T = 1/2 m x'^2 + 1/4 m R^2 φ'^2
+constraint φ = x/R
+torsion spring φ stiffness 2 N m/rad rest -10 deg
+force φ = -1.5 N m
+start x = 1 m
+run 2 s
+)");
+  check_reduced(r, 1);
+  CHECK(r.reduction.text.find("[N m]") != std::string::npos);
+}
+
 TEST_CASE("a moving constraint: the reduced model is rheonomic") {
   check_reduced(reduce_text(R"(system driven
 param m = 1 kg, l = 1 m, g = 9.81 m/s^2, b = 10 cm, w = 7 rad/s
