@@ -33,27 +33,31 @@ constexpr CodeEntry own_codes[] = {
     {"E0801", "a file cannot be read",
      "The operating system refused to open or read the file; its reason is quoted. Check the spelling of the path and "
      "the permission of the file. `-` stands for standard input.",
-     "", ""},
+     "maup check penduluum.lag", "maup check pendulum.lag"},
     {"E0802", "a directory was given where a model file is expected",
-     "Name one file, or let the shell expand a pattern: `maup test models/*.lag`.", "", ""},
+     "Name one file, or let the shell expand a pattern: `maup test models/*.lag`.", "maup test models",
+     "maup test models/*.lag"},
     {"E0803", "a file is too large to be a model",
      "At most 64 MiB are read, so that a wrong path (a disk image, an endless device) ends with a message instead of a "
      "full memory.",
-     "", ""},
+     "maup check /dev/zero", "maup check pendulum.lag"},
     {"E0804", "a file cannot be written",
      "The system refused to create or complete the file; its reason is quoted. A result goes to a temporary name in "
      "the "
      "same folder and is renamed when complete, so that a file that was there before is untouched.",
-     "", ""},
+     "maup simulate pendulum.lag -o nowhere/motion.csv", "maup simulate pendulum.lag -o motion.csv"},
     {"E0805", "the result could not be written to standard output",
      "The disk behind the redirection is full, or the program at the other end of the pipe has stopped reading. The "
      "result is incomplete there.",
-     "", ""},
+     "maup derive pendulum.lag > /dev/full", "maup derive pendulum.lag > equations.txt"},
     {"E0806", "a command of a later version",
-     "The command is part of the plan and its name is taken, but this version does not carry it out.", "", ""},
+     "The command is part of the plan and its name is taken, but this version does not carry it out.",
+     "maup sweep pendulum.lag", "maup modes pendulum.lag --sweep \"l = 1 m .. 2 m steps 3\""},
     {"E0807", "a file exists already",
-     "`maup new` never overwrites a model. Choose another name with -o, or say --force.", "", ""},
-    {"E0808", "there is no starter of this name", "`maup new --list` shows the starters.", "", ""},
+     "`maup new` never overwrites a model. Choose another name with -o, or say --force.",
+     "maup new pendulum -o pendulum.lag", "maup new pendulum -o second.lag"},
+    {"E0808", "there is no starter of this name", "`maup new --list` shows the starters.", "maup new penduluum",
+     "maup new --list"},
     {"E0809", "an option has a wrong value",
      "A time is a number with a unit of time: 3s, 250ms, 2 min; a bare number is in seconds. A tolerance is a positive "
      "number below 1.",
@@ -91,7 +95,10 @@ constexpr CodeEntry own_codes[] = {
      "A result is a number, or says that there is none. Where NaN or an infinity would stand in it the command has "
      "failed: the quantity grew beyond the range of "
      "numbers, or its formula has no value there (a root of a negative number, a division by zero).",
-     "", ""},
+     "# maup simulate\ncoord x : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\nstart x = 1e200 "
+     "m\nrun 1 s\n",
+     "# maup simulate\ncoord x : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\nstart x = 1 m\nrun "
+     "1 s\n"},
     {"E0814", "the budget of a report was used up before its equations were certified",
      "Every section of a page stands on the certified equations: without them there is none.",
      "maup report chain.lag --budget 1s", "maup report chain.lag --budget none"},
@@ -105,13 +112,19 @@ constexpr CodeEntry own_codes[] = {
      "there, or it could not do what "
      "it was asked for; what it says is quoted. Pages and animated SVG are written by maup itself.",
      "", ""},
-    {"E0842", "a film that is too long", "The frames are more than a file of this kind can hold and be of use.", "",
-     ""},
+    {"E0842", "a film that is too long", "The frames are more than a file of this kind can hold and be of use.",
+     "# maup animate -o film.svg --speed 0.01\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ : angle\npoint P mass "
+     "m at l (sin θ, -cos θ)\ngravity (0, -g)\nstart θ = 1 rad\nrun 100 s\n",
+     "# maup animate -o film.svg --speed 10\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ : angle\npoint P mass m "
+     "at l (sin θ, -cos θ)\ngravity (0, -g)\nstart θ = 1 rad\nrun 100 s\n"},
     {"E0843", "nothing to draw",
      "A drawing shows where things are: points, bodies, springs, and what a `draw` statement names. A model of "
      "coordinates and energies alone says "
      "nothing of that.",
-     "", ""},
+     "# maup animate\ncoord x : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\nstart x = 1 m\nrun 1 "
+     "s\n",
+     "# maup animate\ncoord x : length\nparam m = 1 kg, k = 1 N/m\npoint P mass m at (x, 0)\nV = 1/2 k x^2\nstart x = "
+     "1 m\nrun 1 s\n"},
     {"E0850", "the studio is not here",
      "`maup studio` shows a page in the browser, served by a program of its own, maup-studio, from the files of the "
      "page. One of the two is not installed with this program. A build makes the page with npm (`make studio`) and the "
@@ -123,11 +136,14 @@ constexpr CodeEntry own_codes[] = {
     {"E1305", "the motion does not reach the time asked for",
      "`maup modes --at 3s` linearizes about the state of the motion at that time; the run ended before. Its reason is "
      "quoted.",
-     "", ""},
+     "# maup modes --at 3s\nparam m = 1 kg, c = 1 N/m^2\ncoord x : length\nT = 1/2 m x'^2\nV = -1/3 c x^3\nstart x = 1 "
+     "m, x' = 1 m/s\nrun 1 s\n",
+     "# maup modes --at 0.3s\nparam m = 1 kg, c = 1 N/m^2\ncoord x : length\nT = 1/2 m x'^2\nV = -1/3 c x^3\nstart x = "
+     "1 m, x' = 1 m/s\nrun 1 s\n"},
     {"E0811", "there is no such column to plot",
      "A plot shows the columns of the trajectory: coordinates (θ), velocities (θ'), coordinates of points (B.x), "
      "energies.",
-     "maup plot pendulum.lag --y w", "maup plot pendulum.lag --y \"θ'\""},
+     "maup plot pendulum.lag --y t", "maup plot pendulum.lag --y \"θ'\""},
 };
 
 }  // namespace

@@ -13,9 +13,10 @@ constexpr CodeEntry kEntries[] = {
      "Model texts are UTF-8, the encoding that most editors use by default. In other encodings θ, ° and é are other "
      "bytes, "
      "so that they cannot be read. Save the file as UTF-8.",
-     "", ""},
+     "maup check latin1.lag", "iconv --from latin1 --to utf-8 latin1.lag -o utf8.lag\nmaup check utf8.lag"},
     {"E0103", "the file is no text",
-     "The file contains control characters, as programs, pictures and archives do. A model is plain text.", "", ""},
+     "The file contains control characters, as programs, pictures and archives do. A model is plain text.",
+     "maup check picture.png", "maup check pendulum.lag"},
     {"E0104", "a character or sign that the language does not have",
      "The signs of the language are + - * / ^ ( ) [ ] , : = += < <= > >= ' . .. ±, the typeset · × − √ ½ ² and "
      "quotation marks "
@@ -160,7 +161,8 @@ constexpr CodeEntry kEntries[] = {
     {"W0107", "a name mixes alphabets",
      "A letter of another alphabet that looks Latin stands among Latin letters. The name cannot be found by typing "
      "what is seen.",
-     "", ""},
+     "coord x : length\nparam m\u0430ss = 1 kg  # the second letter is Cyrillic\nT = 1/2 m\u0430ss x'^2\n",
+     "coord x : length\nparam mass = 1 kg\nT = 1/2 mass x'^2\n"},
     {"W0108", "a character that is not shown",
      "Unicode has characters that turn the direction of writing and are not shown themselves. In a comment or a title "
      "they make an editor show other text than is read.",

@@ -94,7 +94,8 @@ constexpr CodeEntry kEntries[] = {
     {"E0224", "a value given beside the model does not fit it",
      "--set takes a parameter and a quantity of its dimension, --set m=2kg; --start takes a coordinate or its "
      "velocity, --start θ=30deg.",
-     "", ""},
+     "# maup check --set m=2m\ncoord x : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\n",
+     "# maup check --set m=2kg\ncoord x : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"},
     {"E0225", "a force of constraint where it cannot stand",
      "Multipliers and reactions follow from the equations of motion. They may be expected and claimed; energies, "
      "forces "
@@ -613,7 +614,12 @@ constexpr CodeEntry kEntries[] = {
      "current ρ u' flux -T u_x\n"},
     {"E0509", "an expectation of fields at other values of parameters",
      "`expect … with a = 2` is carried out for models of coordinates; one with fields is verified at its own values.",
-     "", ""},
+     "# maup test\nparam ρ = 1 kg/m, F = 1 N, l = 1 m, a = 1 mm\nfield u(x) : length on x = 0 m .. l cells 4 boundary "
+     "u = 0\ndensity = 1/2 ρ u'^2 - 1/2 F u_x^2\nstart u = a sin(pi x/l)\nrun 1 s\nexpect u(l/2) at 0 s = 1 mm ± 1e-6 "
+     "with F = 2 N\n",
+     "# maup test\nparam ρ = 1 kg/m, F = 1 N, l = 1 m, a = 1 mm\nfield u(x) : length on x = 0 m .. l cells 4 boundary "
+     "u = 0\ndensity = 1/2 ρ u'^2 - 1/2 F u_x^2\nstart u = a sin(pi x/l)\nrun 1 s\nexpect u(l/2) at 0 s = 1 mm ± "
+     "1e-6\n"},
     {"E0504", "a value that is given for what has none here",
      "A start gives coordinates, their velocities, the angular velocities of bodies, B.ω, and points and bodies by "
      "their place and velocity, P.x = 1 m, P' = (1, 0) m/s: coordinates and velocities that give it are solved for. A "

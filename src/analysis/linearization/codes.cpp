@@ -125,7 +125,9 @@ constexpr CodeEntry entries[] = {
     {"E1320", "a locus without a sweep",
      "A locus follows equilibria while one parameter changes: the model says `sweep NAME = FROM .. TO steps N`, or "
      "--sweep does.",
-     "", ""},
+     "# maup modes --csv locus.csv\ncoord x : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\n",
+     "# maup modes --csv locus.csv\ncoord x : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\nsweep "
+     "k = 1 N/m .. 4 N/m steps 4\n"},
     {"W1301", "an equilibrium at which the coordinates fail",
      "The forces vanish, so the system can rest there; but the mass matrix is singular in these coordinates, so that "
      "frequencies cannot be told.",
