@@ -19,6 +19,9 @@ export interface ChartContent {
   moves?: boolean; // the curves are those of the moment, and are drawn whole
 }
 
+/** Left, top, right, bottom. */
+type Box = [number, number, number, number];
+
 const room = {left: 62, right: 14, top: 12, bottom: 40};
 const faces = `'STIX Two Text','Latin Modern Roman','Latin Modern Math',Cambria,'Times New Roman','DejaVu Serif',serif`;
 
@@ -80,13 +83,14 @@ export function extent(curves: Curve[], key: 'x' | 'y'): [number, number] {
 
 /**
  * Curves on a canvas: what stays is drawn once, what has been passed grows on a second sheet, the present over both at
- * every tick.
+ * every tick, which puts back what it covered.
  */
 export class Chart {
   private readonly canvas: HTMLCanvasElement;
   private readonly still = document.createElement('canvas');
   private readonly passed = document.createElement('canvas');
   private passedTo = 0; // row up to which `passed` is drawn
+  private covered: Box[] | null = null; // by the present; null: everything is to be drawn
   private seen = true;
   private unpainted = false; // what stays was not drawn, as nobody saw it
   private content: ChartContent = {curves: [], x: '', y: '', overTime: true};
@@ -176,6 +180,7 @@ export class Chart {
     }
     this.begin(this.passed);
     this.passedTo = 0;
+    this.covered = null;
     this.present(...this.lastPresent);
   }
 
@@ -260,50 +265,90 @@ export class Chart {
     context.restore();
   }
 
-  private grow(row: number, colour: (name: string) => string): void {
-    if (row < this.passedTo) {
-      this.begin(this.passed);
-      this.passedTo = 0;
-    }
-    if (row === this.passedTo) return;
-    const context = this.passed.getContext('2d')!;
-    for (const curve of this.content.curves)
-      if (!curve.faint)
-        this.stroke(context, curve, colour(`--series-${curve.series + 1}`), 1.6, this.passedTo, row + 1);
+  /** Draws what was passed up to this row; where it drew, or null where it began anew. */
+  private grow(row: number, colour: (name: string) => string): Box[] | null {
+    const anew = row < this.passedTo,
+      first = anew ? 0 : this.passedTo;
+    if (anew) this.begin(this.passed);
+    if (row === first) return anew ? null : [];
+    const context = this.passed.getContext('2d')!,
+      curves = this.content.curves.filter(curve => !curve.faint);
+    for (const curve of curves) this.stroke(context, curve, colour(`--series-${curve.series + 1}`), 1.6, first, row + 1);
     this.passedTo = row;
+    return anew ? null : curves.map(curve => this.boxOf(curve, first, row + 1));
   }
 
-  /** The present: the time, and the row that is next to it. */
+  private boxOf(curve: Curve, first: number, end: number): Box {
+    const box: Box = [Infinity, Infinity, -Infinity, -Infinity];
+    for (let i = first; i < end; ++i) {
+      const x = curve.x[i],
+        y = curve.y[i];
+      if (x !== null && y !== null && Number.isFinite(x) && Number.isFinite(y))
+        include(box, this.across(x), this.down(y), 2);
+    }
+    return box;
+  }
+
+  /** What lies under the present is put back here, to whole pixels. */
+  private putBack(context: CanvasRenderingContext2D, box: Box): void {
+    const ratio = window.devicePixelRatio || 1,
+      [left, top] = [0, 1].map(k => Math.max(0, Math.floor(box[k] * ratio))),
+      right = Math.min(this.canvas.width, Math.ceil(box[2] * ratio)),
+      bottom = Math.min(this.canvas.height, Math.ceil(box[3] * ratio)),
+      [width, height] = [right - left, bottom - top];
+    if (!(width > 0 && height > 0)) return;
+    context.save();
+    context.resetTransform();
+    context.clearRect(left, top, width, height);
+    for (const sheet of this.grows ? [this.still, this.passed] : [this.still])
+      context.drawImage(sheet, left, top, width, height, left, top, width, height);
+    context.restore();
+  }
+
+  private get grows(): boolean {
+    return !this.content.overTime && !this.content.moves;
+  }
+
+  /** The present: the time, and the row that is next to it. Only what it covered and covers is drawn. */
   present(time: number, row: number): void {
     this.lastPresent = [time, row];
     if (this.width === 0 || !this.seen) return;
-    const context = this.begin(this.canvas),
-      colour = this.colours();
-    context.drawImage(this.still, 0, 0, this.width, this.height);
-    if (!this.content.overTime && !this.content.moves) {
-      this.grow(row, colour);
-      context.drawImage(this.passed, 0, 0, this.width, this.height);
-    }
+    const context = this.covered === null ? this.begin(this.canvas) : this.canvas.getContext('2d')!,
+      colour = this.colours(),
+      grown = this.grows ? this.grow(row, colour) : [];
+    const outdated = this.covered === null || grown === null ? [[0, 0, this.width, this.height] as Box] : this.covered;
+    for (const box of [...outdated, ...(grown ?? [])]) this.putBack(context, box);
+    this.covered = [];
     if (this.content.overTime) {
+      const x = this.across(time);
       context.strokeStyle = colour('--ink');
       context.globalAlpha = 0.6;
       context.lineWidth = 1;
-      line(context, this.across(time), room.top, this.across(time), this.height - room.bottom);
+      line(context, x, room.top, x, this.height - room.bottom);
       context.globalAlpha = 1;
+      this.covered.push([x - 2, room.top - 2, x + 2, this.height - room.bottom + 2]);
     }
     if (this.content.moves) return;
     for (const curve of this.content.curves) {
       if (curve.faint) continue;
-      const ink = colour(`--series-${curve.series + 1}`);
       const x = this.content.overTime ? time : curve.x[row],
         y = curve.y[row];
       if (x === null || y === null || x === undefined || y === undefined || !Number.isFinite(y)) continue;
-      context.fillStyle = ink;
+      const [px, py] = [this.across(x), this.down(y)];
+      context.fillStyle = colour(`--series-${curve.series + 1}`);
       context.beginPath();
-      context.arc(this.across(x), this.down(y), 4, 0, 2 * Math.PI);
+      context.arc(px, py, 4, 0, 2 * Math.PI);
       context.fill();
+      this.covered.push([px - 6, py - 6, px + 6, py + 6]);
     }
   }
+}
+
+function include(box: Box, x: number, y: number, around: number): void {
+  box[0] = Math.min(box[0], x - around);
+  box[1] = Math.min(box[1], y - around);
+  box[2] = Math.max(box[2], x + around);
+  box[3] = Math.max(box[3], y + around);
 }
 
 function line(context: CanvasRenderingContext2D, x1: number, y1: number, x2: number, y2: number): void {

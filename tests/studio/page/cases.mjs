@@ -214,6 +214,33 @@ export const cases = {
     await page.context().close();
   },
 
+  async 'plots that grow'({open}) {
+    const page = await open({still: false});
+    const until = time =>
+      page.waitForFunction(least => parseFloat(document.querySelector('#time').textContent) > least, time);
+    const play = page.locator('#play');
+    await until(1);
+    await page.locator('#to-start').click(); // what was passed begins anew
+    if ((await play.getAttribute('aria-label')) === 'Play') await play.click();
+    await until(0.5);
+    await play.click();
+    const drawn = () =>
+      page
+        .locator('#plots .chart canvas')
+        .evaluateAll(all =>
+          all.filter(one => one.getBoundingClientRect().top < innerHeight).map(one => one.toDataURL()),
+        );
+    const grown = await drawn();
+    await page.setViewportSize({width: 1602, height: 900});
+    await page.waitForTimeout(200);
+    await page.setViewportSize({width: 1600, height: 900});
+    await page.waitForTimeout(300);
+    const atOnce = await drawn();
+    const differ = grown.map((picture, i) => picture !== atOnce[i]);
+    check('a plot that grew is that which is drawn at once', grown.length > 1 && !differ.includes(true), differ);
+    await page.context().close();
+  },
+
   async 'frames while sliders move'({open}) {
     const page = await open({still: false});
     await page.locator('.cm-content').click();
