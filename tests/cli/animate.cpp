@@ -43,6 +43,13 @@ nlohmann::json document(const Outcome& outcome) { return nlohmann::json::parse(o
 
 }  // namespace
 
+TEST_CASE("the film of a model without a name has one") {
+  const Folder folder;
+  folder.write("model.lag", "coord x : length\npoint P mass 1 kg at (x, 0)\nstart x' = 1 m/s\nrun 1 s\n");
+  CHECK(shell("cd '" + folder.path("") + "' && \"$MAUP\" animate model.lag").code == 0);
+  CHECK(std::filesystem::exists(folder.path("animation.html")));
+}
+
 TEST_CASE("a film in MP4 and in GIF has the frames and the size that were asked for") {
   if (!has_program("ffmpeg")) {
     MESSAGE("ffmpeg is not installed");

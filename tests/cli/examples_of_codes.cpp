@@ -61,14 +61,14 @@ struct Example {
   }
   Outcome run() const {
     const Folder folder;
-    if (is_command_line()) {
-      std::filesystem::create_directory(folder.path("models"));
-      for (const auto& [name, content] : files()) folder.write(name, content);
-      return cli_test::shell("cd '" + folder.path("") + "' && maup() { \"$MAUP\" \"$@\"; } && " + text);
-    }
-    std::vector<std::string> arguments = command;
-    arguments.insert(arguments.begin() + 1, folder.write("example.lag", text));
-    return cli_test::maup(arguments);
+    std::filesystem::create_directory(folder.path("models"));
+    for (const auto& [name, content] : files()) folder.write(name, content);
+    const std::string there = "cd '" + folder.path("") + "' && maup() { \"$MAUP\" \"$@\"; } && ";
+    if (is_command_line()) return cli_test::shell(there + text);
+    folder.write("example.lag", text);
+    std::string line = "maup " + command.front() + " example.lag";
+    for (std::size_t i = 1; i < command.size(); ++i) line += " '" + command[i] + "'";
+    return cli_test::shell(there + line);
   }
 
   std::string text;

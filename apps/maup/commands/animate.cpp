@@ -68,6 +68,11 @@ void read_size(const AnimateOptions& o, Film& film, Diagnostics& diagnostics) {
   film.height_given = count == 2;
 }
 
+/// The name of the system; a model may have none.
+std::string default_output(const AnimateOptions& o, const std::string& name) {
+  return (name.empty() ? "animation" : name) + (o.still.empty() ? ".html" : ".svg");
+}
+
 void read_view(const AnimateOptions& o, Film& film, Diagnostics& diagnostics) {
   if (o.view.empty()) return;
   double azimuth = 0, elevation = 0;
@@ -274,7 +279,7 @@ ExitCode animate_fields(AnimateOptions o, Study& study, Console& console) {
   if (study.wrong()) return finish_usage(console, study, "animate");
   const FieldEquations* equations = study.field_equations();
   if (!equations) return finish(console, study, document);
-  if (o.output.empty()) o.output = study.model()->system.name + (o.still.empty() ? ".html" : ".svg");
+  if (o.output.empty()) o.output = default_output(o, study.model()->system.name);
   std::vector<double> asked;
   if (const auto t = o.still.empty() ? std::nullopt : parse_exact_time(o.still)) asked.push_back(t->to_double());
   const auto run = run_of_fields(study, settings, {true, true, asked});
@@ -345,7 +350,7 @@ ExitCode animate(AnimateOptions o, Console& console) {
   std::optional<SimulationResult> result;
   const std::optional<Drawing> drawing = drawing_of(study, settings, console, result);
   if (!drawing) return finish(console, study, document);
-  if (o.output.empty()) o.output = study.model()->system.name + (o.still.empty() ? ".html" : ".svg");
+  if (o.output.empty()) o.output = default_output(o, study.model()->system.name);
 
   Film film = read_options(o, diagnostics);
   std::string bytes;
