@@ -2,6 +2,7 @@
 import {existsSync, readFileSync, readdirSync} from 'node:fs';
 import {join} from 'node:path';
 import {escape} from './highlight.mjs';
+import {consoleHtml} from './markdown.mjs';
 
 const ranges = {
   '01': 'Text and grammar',
@@ -98,10 +99,16 @@ says the same in a terminal.</p>
 <input id="filter" type="search" autocomplete="off" spellcheck="false">
 <output id="filter-count" for="filter"></output></p>\n${index}`,
   });
-  return {pages, codes: codes.length, examples: [...shown.keys()].length};
+  return {pages, codes: codes.length, examples: codes.filter(({code, wrong}) => wrong || shown.has(code)).length};
 }
 
 const capital = text => text.replace(/^./u, first => first.toUpperCase());
+
+/** A model, or command lines. */
+const exampleHtml = (text, documents) =>
+  /^(maup|iconv|MAUPERTUIS_\w+=\S+) /.test(text)
+    ? `<pre class="console"><code>${consoleHtml(text.replace(/^/gm, '$ '))}</code></pre>\n`
+    : documents.lag(text, false);
 
 function codePage({code, title, explanation, wrong, right}, example, documents) {
   const kind = severities[code[0]];
@@ -110,7 +117,7 @@ function codePage({code, title, explanation, wrong, right}, example, documents) 
     .map(text => `<p>${escape(text).replace(/`([^`]+)`/g, '<code>$1</code>')}</p>`)
     .join('\n');
   const listing = (heading, text) =>
-    text ? `<h2 id="${heading.toLowerCase()}">${heading}</h2>\n${documents.lag(text.trimEnd(), false)}` : '';
+    text ? `<h2 id="${heading.toLowerCase()}">${heading}</h2>\n${exampleHtml(text.trimEnd(), documents)}` : '';
   const message = example
     ? `<h2 id="example">A model, and what is said of it</h2>
 ${documents.lag(example.text.trimEnd(), true)}

@@ -136,7 +136,7 @@ const remarked = html => html.replace(/(^|\s)(#.*)$/gm, '$1<span class="comment"
 
 const align = token => (token.attrGet('style') ? ` style="${token.attrGet('style')}"` : '');
 
-const consoleHtml = text =>
+export const consoleHtml = text =>
   text
     .split('\n')
     .map(line =>

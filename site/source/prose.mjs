@@ -15,7 +15,8 @@ const raised = html =>
     .replace(
       /((?<![\p{L}\p{N}])[∂δ]?\p{L}[\u0300-\u036f]*|(?<=\p{L}\([\p{L}\d,\s]{1,8})\))('+)(?![\p{L}'])/gu,
       (all, base, primes) => base + '′'.repeat(primes.length),
-    );
+    )
+    .replace(/(?<=<\/sub>)'+/gu, primes => '′'.repeat(primes.length));
 
 /** 2.9e-03 as 2.9 · 10⁻³, 1e-12 as 10⁻¹², 0.0e+00 as 0 */
 const powersOfTen = html =>
@@ -34,7 +35,7 @@ const quoted = html =>
 
 export const prose = html => quoted(powersOfTen(raised(html)));
 
-// What is no variable: units, initials of a person, the article, the label of a list, d/dt.
+// What is no variable: units, initials of a person, the article, the label of a list.
 const operator = /^(\s*([=+−·×/≤≥≠≈∈]|&[lg]t;)|<su[bp]>|[′₀-₉²³ᵀ(,;.)])/u;
 const isUnit = (before, letter, after) =>
   ('smNJKVAWgh'.includes(letter) && /(\d|[(/][mNJ])[\s\u00a0]$|(rad|m|N|J)\/$/.test(before) && !/^<|^′/.test(after)) ||
@@ -45,23 +46,22 @@ const isInitial = (before, letter, after) =>
   /^\.[\s-]\p{Lu}/u.test(after) &&
   /(^|[,;(]\s?|(?<![\p{L}\p{N}])\p{Lu}\.[\s-]|\b(and|by)\s)$/u.test(before);
 const isArticle = (before, letter, after) =>
-  letter === 'a'
+  letter === 'a' && (before || after)
     ? !(operator.test(after) || /(\p{L}\(|[=+−·×/]\s?)$/u.test(before))
     : letter === 'A' && /(^|[.:;!?(“])\s*$/u.test(before) && /^(\s\p{L}{2}|\s*$)/u.test(after);
 const isLabel = (before, letter, after) => /[a-g]/.test(letter) && /(^|\s)\($/.test(before) && /^\)\s/.test(after);
 const isNoVariable = (before, letter, after) =>
   [isUnit, isInitial, isArticle, isLabel].some(is => is(before, letter, after)) ||
   /^\.\d/.test(after) ||
-  (letter === 'd' && after.startsWith('/d')) ||
   /[ℒℋ𝒟ℝℂℤΣΠΔΓΛΩΦΨΘΞ]/u.test(letter) ||
   /<[^>]*$/.test(before);
 
-/** Variables, a letter by itself and indices of one or two: in italics, as formulas have them. */
+/** Variables, a letter by itself (δφ, dt, λψ) and indices of one or two: in italics, as formulas have them. */
 export const italic = html =>
   html
     .replace(/<su([bp])>(\p{L}{1,2})<\/su\1>/gu, '<su$1>\uE000$2\uE001</su$1>')
     .replace(
-      /(?<![\p{Lu}\p{Ll}\p{Nd}_’'&;\uE000])(δ?)([\p{Lu}\p{Ll}][\u0300-\u036f]*)(?![\p{Lu}\p{Ll}\p{Nd}_'’\uE001]|-\p{L}|\+\+)/gu,
+      /(?<![\p{Lu}\p{Ll}\p{Nd}_’'&;\uE000])(δ|d(?=[\p{Script=Greek}txyzqpsvwhA-Z])|\p{Script=Greek}(?=\p{Script=Greek}))?([\p{Lu}\p{Ll}][\u0300-\u036f]*)(?![\p{Lu}\p{Ll}\p{Nd}_'’\uE001]|-\p{L}|\+\+)/gu,
       (all, variation, letter, at, whole) =>
         isNoVariable(whole.slice(0, at), letter, whole.slice(at + all.length)) ? all : `\uE000${all}\uE001`,
     )
