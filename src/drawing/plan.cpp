@@ -42,6 +42,7 @@ class Planner {
   Plan plan() {
     for (const DrawElement& element : model_.experiment.drawing) add(element);
     if (model_.experiment.drawing.empty()) add_what_is_there();
+    add_bobs_of_trails();
     add_links();
     return std::move(plan_);
   }
@@ -49,6 +50,7 @@ class Planner {
  private:
   void add(const DrawElement& e);
   void add_what_is_there();
+  void add_bobs_of_trails();
   void add_links();
 
   Outline& path(const std::vector<ExprVector>& places, const std::vector<std::string>& names, Kind kind) {
@@ -323,6 +325,22 @@ void Planner::add(const DrawElement& e) {
   if (!plan_.outlines.empty() && plan_.outlines.back().element.kind == Kind::Solid &&
       plan_.outlines.back().element.names.empty() && e.names.size() == 1)
     plan_.outlines.back().element.names = e.names;
+}
+
+/// `draw trail P` shows P too, where it has mass and nothing else shows it.
+void Planner::add_bobs_of_trails() {
+  const std::vector<DrawElement>& drawing = model_.experiment.drawing;
+  const auto shows = [](const DrawElement& e, const ExprVector& place) {
+    const bool beside = e.kind == Item::Trail || e.kind == Item::Label || e.kind == Item::Follow;
+    return !beside && std::find(e.path.begin(), e.path.end(), place) != e.path.end();
+  };
+  for (const DrawElement& e : drawing) {
+    if (e.kind != Item::Trail || e.names.empty()) continue;
+    const Point* point = system_.find_point(e.names[0]);
+    const bool shown =
+        std::any_of(drawing.begin(), drawing.end(), [&](const DrawElement& other) { return shows(other, e.path[0]); });
+    if (point && point->mass && !shown) path(e.path, e.names, Kind::Path);
+  }
 }
 
 /// Whether a draw statement shows the link already, as what it is or as a line.

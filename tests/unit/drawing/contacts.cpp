@@ -110,7 +110,7 @@ TEST_CASE("an incline in its own coordinates, and a curve that is no straight li
   const auto line = world(*grounds(incline)[0], grounds(incline)[0]->shape.lines[0]);
   CHECK(std::abs(std::atan2(line[3] - line[1], line[2] - line[0])) == doctest::Approx(0.4).epsilon(1e-9));
 
-  const ModelText valley(std::string(ball) + "contact z >= 0.5 [1/m] x^2 name valley\nrun 1 s\ndraw trail P\n");
+  const ModelText valley(std::string(ball) + "contact z >= 0.5 [1/m] x^2 name valley\nrun 1 s\ndraw circle P 1e-9 m\n");
   const auto rolling = [](std::size_t i, double t) { return i == 0 ? t - 0.5 : 0.5 * (t - 0.5) * (t - 0.5); };
   const Drawing parabola = evaluate_drawing(valley.model, contact_run(*valley.system, 1, rolling)).value();
   REQUIRE(grounds(parabola).size() == 1);
@@ -260,7 +260,7 @@ TEST_CASE("two walls of one contact, the corners of a box, a hoop that moves") {
   }
 
   const ModelText hoop(std::string(ball) +
-                       "contact sqrt((x - 1 [m/s] t)^2 + z^2) <= 1 [m] name hoop\nrun 1 s\ndraw trail P\n");
+                       "contact sqrt((x - 1 [m/s] t)^2 + z^2) <= 1 [m] name hoop\nrun 1 s\ndraw circle P 1e-9 m\n");
   const auto carried = [](std::size_t i, double t) { return i == 0 ? t + std::sin(t) : -std::cos(t); };
   const Drawing moving = evaluate_drawing(hoop.model, contact_run(*hoop.system, 1, carried)).value();
   REQUIRE(grounds(moving).size() == 1);

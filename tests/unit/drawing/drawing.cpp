@@ -119,6 +119,28 @@ TEST_CASE("without a draw statement masses are marked and rods found; without po
   CHECK_FALSE(evaluate_drawing(p.model, p.run));
 }
 
+TEST_CASE("a trail shows its point where that has mass and nothing else does") {
+  using Item = syntax::DrawItem::Kind;
+  using Kind = Drawing::Kind;
+  const auto kinds = [](const std::string& point, std::vector<Item> items) {
+    Pendulum p(0.1, 63);
+    const ExprVector place = p.model.system.points[0].position;
+    p.model.system.points.push_back({"light", {}, place, {}});
+    for (const Item item : items)
+      p.draw(item, {point}, {place},
+             item == Item::Circle ? std::vector{place[0].context().number(1)} : std::vector<Expr>{});
+    std::vector<Kind> out;
+    const auto drawing = evaluate_drawing(p.model, p.run);
+    REQUIRE(drawing);
+    for (const auto& e : drawing->elements) out.push_back(e.kind);
+    return out;
+  };
+  CHECK(kinds("bob", {Item::Trail}) == std::vector{Kind::Trail, Kind::Path});
+  CHECK(kinds("bob", {Item::Trail, Item::Label}) == std::vector{Kind::Trail, Kind::Path, Kind::Label});
+  CHECK(kinds("bob", {Item::Trail, Item::Circle}) == std::vector{Kind::Trail, Kind::Solid});
+  CHECK(kinds("light", {Item::Trail}) == std::vector{Kind::Trail});
+}
+
 TEST_CASE("no rows, one row") {
   Pendulum none(0.1, 0);
   CHECK_FALSE(evaluate_drawing(none.model, none.run));
