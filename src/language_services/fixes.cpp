@@ -384,18 +384,25 @@ std::size_t count(const Diagnostics& diagnostics, const std::string& code) {
       std::count_if(items.begin(), items.end(), [&](const Diagnostic& d) { return d.code == code; }));
 }
 
+/// Whether all errors that are new are of what is read after `code`: a unit where a name was wrong.
+bool are_read_later(const Diagnostics& before, const Diagnostics& after, const std::string& code) {
+  return std::all_of(after.items().begin(), after.items().end(), [&](const Diagnostic& d) {
+    return d.severity != Severity::Error || d.code > code || count(after, d.code) <= count(before, d.code);
+  });
+}
+
 /// Whether the text with the edits has this mistake no longer, and no new one.
 bool mends(Document& document, const Diagnostic& diagnostic, const std::vector<TextEdit>& edits) {
   Document mended(SourceText(document.source().name(), edited(document.source().text(), edits)), document.interrupt());
   const Diagnostics& before = document.diagnostics();
   const Diagnostics& after = mended.diagnostics();
   if (count(after, diagnostic.code) >= count(before, diagnostic.code)) return false;
-  const std::size_t errors = count(before, Severity::Error);
-  // What follows the word of a statement is read for the first time when the word is right, and may have its own
-  // mistake.
+  const std::size_t errors = count(before, Severity::Error), left = count(after, Severity::Error);
+  if (diagnostic.severity != Severity::Error)
+    return left <= errors && count(after, Severity::Warning) <= count(before, Severity::Warning);
+  // What stands behind a mistake is read for the first time when that is mended, and may have one of its own.
   const bool word = diagnostic.code == "E0110" && diagnostic.help.rfind("Did you mean", 0) == 0;
-  if (diagnostic.severity == Severity::Error) return count(after, Severity::Error) < errors + (word ? 1 : 0);
-  return count(after, Severity::Error) <= errors && count(after, Severity::Warning) <= count(before, Severity::Warning);
+  return left < errors || (left == errors && (word || are_read_later(before, after, diagnostic.code)));
 }
 
 }  // namespace

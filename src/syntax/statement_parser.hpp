@@ -51,6 +51,7 @@ class StatementParser : private ExpressionParser {
   StatementBody point_statement();
   StatementBody body_statement();
   StatementBody gravity_statement();
+  void refuse_coordinate(const char* what, const char* part_of, const char* instead);
   StatementBody spring_statement();
   StatementBody damper_statement();
   StatementBody torsion_statement();

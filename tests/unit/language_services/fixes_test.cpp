@@ -167,6 +167,18 @@ TEST_CASE("words of a help are no text of a model") {
       CHECK_MESSAGE(edited(text, fix.edits).find("one statement") == std::string::npos, fix.title);
 }
 
+TEST_CASE("a fix is offered where the next mistake stands behind it") {
+  // The velocity with its right name shows that the mass has no unit.
+  const std::string text = "param m = 1, l = 1 m\ncoord θ : angle\nT = 1/2 m l^2 θdot^2\n";
+  Document asked = document(text);
+  REQUIRE(asked.diagnostics().items().size() == 1);
+  const auto fixes = fixes_of(asked, asked.diagnostics().items()[0]);
+  REQUIRE(fixes.size() == 1);
+  Document mended = document(edited(text, fixes[0].edits));
+  REQUIRE(mended.diagnostics().items().size() == 1);
+  CHECK(mended.diagnostics().items()[0].code == "E0304");
+}
+
 TEST_CASE("a proposal that does not mend is not offered") {
   // "Write s" for the hour that is no unit of length: the dimension stays wrong, whatever is written.
   Document asked = document("system a\nparam m = 1 kg\ncoord x : length\nT = 1/2 m x'\n");
