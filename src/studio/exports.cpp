@@ -3,10 +3,9 @@
 #include <maupertuis/degenerate.hpp>
 #include <maupertuis/field_report.hpp>
 #include <maupertuis/formula_document.hpp>
-#include <maupertuis/invariants.hpp>
-#include <maupertuis/modes.hpp>
 #include <maupertuis/motion_pictures.hpp>
 #include <maupertuis/orbits.hpp>
+#include <maupertuis/page_findings.hpp>
 #include <maupertuis/picture.hpp>
 
 #include <algorithm>
@@ -117,27 +116,20 @@ std::string report_of(Desk& desk, Study& study, const Work& work) {
   const Verification verification = verify(model, equations, study.source(), options, unheard);
   parts.verification = &verification;
   std::optional<Invariants> invariants;
-  std::optional<ModalStudy> modes;
+  PageModes found;
   if (model.system.has_modes()) {
     said.note(
         "N0506", std::nullopt, "this page has the equations without contact and without dry friction",
         "Conserved quantities and modes of vibration belong to one mode of contacts and frictions, and are left out.",
         "Choose a mode, and make its page.");
   } else {
-    InvariantsOptions search;
-    search.largest_basis = 600;
-    search.drift = false;
-    invariants = find_invariants(model, equations, search, unheard);
-    const auto start = moves_in_time(model.system) ? consistent_start(model, equations, unheard) : std::nullopt;
-    if (start && !has_free_functions(equations)) {
-      PointEquations at_points(solvable_equations(equations));
-      modes = modal_study(at_points, start->state, unheard);
-      if (modes) settle_driven(*modes, at_points, model, equations, work.interrupt);
-    }
+    invariants = page_invariants(model, equations);
+    if (moves_in_time(model.system)) found = page_modes(model, equations, work.interrupt);
   }
   work.interrupt.throw_if_asked();
   if (invariants) parts.invariants = &*invariants;
-  if (modes) parts.modes = &*modes;
+  if (found.modes) parts.modes = &*found.modes;
+  if (found.locus) parts.locus = &*found.locus;
   ReportContent content =
       compose_report(model, study.source(), equations, *study.derivation(true), *study.certificate(), parts);
   add_messages(content, said, study.source());

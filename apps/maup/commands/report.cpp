@@ -12,7 +12,7 @@
 #include <fmt/ranges.h>
 
 #include <maupertuis/degenerate.hpp>
-#include <maupertuis/invariants.hpp>
+#include <maupertuis/page_findings.hpp>
 #include <maupertuis/report.hpp>
 #include <maupertuis/verification.hpp>
 
@@ -112,7 +112,8 @@ class Page {
           "`maup report --mode \"floor\"` makes the page of a mode.");
     budget_.carry_out("expectations", context_, [&](const Interrupt& interrupt) { verify_model(interrupt); });
     if (has_modes) return true;
-    budget_.carry_out("conserved", context_, [&](const Interrupt&) { find_conserved(); });
+    budget_.carry_out("conserved", context_,
+                      [&](const Interrupt&) { found_.invariants = page_invariants(model(), equations()); });
     if (moves_in_time(model().system))
       budget_.carry_out("modes", context_, [&](const Interrupt& interrupt) { find_modes(interrupt); });
     return true;
@@ -207,31 +208,10 @@ class Page {
     found_.verification = std::move(verification);
   }
 
-  void find_conserved() {
-    InvariantsOptions search;
-    search.largest_basis = 600;  // a page is not worth a long search
-    search.drift = false;
-    Diagnostics unheard;
-    found_.invariants = find_invariants(model(), equations(), search, unheard);
-  }
-
-  /// A model without equilibria has no such part, and that is no mistake of a report.
   void find_modes(const Interrupt& interrupt) {
-    Diagnostics unheard;
-    const auto start = consistent_start(model(), equations(), unheard);
-    if (!start || has_free_functions(equations())) return;
-    PointEquations at_points(solvable_equations(equations()));
-    auto found = modal_study(at_points, start->state, unheard);
-    if (found) settle_driven(*found, at_points, model(), equations(), interrupt);
-    interrupt.throw_if_asked();
-    if (const auto& sweep = model().experiment.sweep) {
-      const auto value = [&](Expr e) {
-        return evaluate(in_terms_of_motion(model().system, {&e, 1}).front(), parameter_bindings(model().system));
-      };
-      found_.locus = parameter_locus(at_points, start->state, sweep->parameter, value(sweep->from), value(sweep->to),
-                                     sweep->steps);
-    }
-    found_.modes = std::move(found);
+    PageModes found = page_modes(model(), equations(), interrupt);
+    found_.modes = std::move(found.modes);
+    found_.locus = std::move(found.locus);
   }
 
   const ReportOptions& options_;
