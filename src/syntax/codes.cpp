@@ -161,8 +161,8 @@ constexpr CodeEntry kEntries[] = {
     {"W0107", "a name mixes alphabets",
      "A letter of another alphabet that looks Latin stands among Latin letters. The name cannot be found by typing "
      "what is seen.",
-     "coord x : length\nparam m\u0430ss = 1 kg  # the second letter is Cyrillic\nT = 1/2 m\u0430ss x'^2\n",
-     "coord x : length\nparam mass = 1 kg\nT = 1/2 mass x'^2\n"},
+     "coord x : length\nparam lo\u0430d = 1 kg  # the third letter is Cyrillic\nT = 1/2 lo\u0430d x'^2\n",
+     "coord x : length\nparam load = 1 kg\nT = 1/2 load x'^2\n"},
     {"W0108", "a character that is not shown",
      "Unicode has characters that turn the direction of writing and are not shown themselves. In a comment or a title "
      "they make an editor show other text than is read.",

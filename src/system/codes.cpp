@@ -94,8 +94,7 @@ constexpr CodeEntry kEntries[] = {
     {"E0224", "a value given beside the model does not fit it",
      "--set takes a parameter and a quantity of its dimension, --set m=2kg; --start takes a coordinate or its "
      "velocity, --start θ=30deg.",
-     "# maup check --set m=2m\ncoord x : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\n",
-     "# maup check --set m=2kg\ncoord x : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"},
+     "maup check pendulum.lag --set m=2m", "maup check pendulum.lag --set m=2kg"},
     {"E0225", "a force of constraint where it cannot stand",
      "Multipliers and reactions follow from the equations of motion. They may be expected and claimed; energies, "
      "forces "

@@ -389,7 +389,7 @@ function checks(list: Check[]): HTMLElement {
         {},
         h('span', {class: mark[0], role: 'img', 'aria-label': mark[2]}, mark[1]),
         h('span', {}, check.statement),
-        h('span', {class: 'muted'}, check.verdict),
+        h('span', {class: 'muted'}, check.applies ? check.verdict : ''),
       );
     }),
   );

@@ -26,7 +26,7 @@ std::string read(const std::filesystem::path& path) {
 TEST_CASE("the examples of every code: the wrong one gives it and nothing else, the right one gives nothing") {
   for (const CodeEntry& entry : syntax_codes()) {
     CAPTURE(entry.code);
-    if (entry.wrong.empty()) continue;
+    if (entry.wrong.empty() || entry.wrong.rfind("maup ", 0) == 0) continue;  // tests/cli tries command lines
     Parsed wrong{std::string(entry.wrong)};
     CHECK_MESSAGE(wrong.codes() == entry.code, wrong.messages());
     Parsed right{std::string(entry.right)};

@@ -85,6 +85,7 @@ claim θ'' = 0
 TEST_CASE("the examples of every code: the wrong one gives it and nothing else, the right one gives nothing") {
   for (const CodeEntry& entry : system_codes()) {
     CAPTURE(entry.code);
+    if (entry.wrong.rfind("maup ", 0) == 0) continue;  // tests/cli tries command lines
     if (!entry.wrong.empty()) {
       const Elaborated wrong{std::string(entry.wrong)};
       CHECK_MESSAGE(wrong.codes() == entry.code, wrong.messages());
