@@ -348,12 +348,21 @@ class Proposals {
     return true;
   }
 
-  /// "the duration of a run is a time (s), this is a bare number": the number with that unit.
-  void bare_number() {
-    const std::string& message = diagnostic_.message;
+  /// The unit that a bare number lacks: "the duration of a run is a time (s), this is a bare number", "Give `m` its unit
+  /// where it is declared, such as kg; …".
+  std::string missing_unit() const {
+    const std::string &message = diagnostic_.message, &help = diagnostic_.help;
     const std::size_t close = message.find("), this is a bare number"), open = message.rfind('(', close);
-    if (close == std::string::npos || open == std::string::npos) return;
-    const std::string unit = " " + message.substr(open + 1, close - open - 1), text(written());
+    if (close != std::string::npos && open != std::string::npos) return message.substr(open + 1, close - open - 1);
+    const std::string before = "its unit where it is declared, such as ";
+    const std::size_t at = help.find(before), begin = at + before.size();
+    return at == std::string::npos ? "" : help.substr(begin, help.find(';', begin) - begin);
+  }
+
+  /// The number with its unit, where it stands or where its name is declared.
+  void bare_number() {
+    if (missing_unit().empty()) return;
+    const std::string unit = " " + missing_unit(), text(written());
     if (!text.empty() && text.find_first_not_of("0123456789.e+-") == std::string::npos) return insert(unit);
     // Or the parameter that the help names, where it is declared: `name = number`.
     const std::vector<std::string_view> named = after_word(diagnostic_.help, "Give ");

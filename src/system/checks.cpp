@@ -22,12 +22,17 @@ std::string bare_name(Elaboration& e, const Expression& x) {
   return {};
 }
 
-/// A bare number in a place for a quantity is most often a parameter whose unit was left out.
+/// A bare number in a place for a quantity, or a mass or length that is missing, is most often a parameter whose unit
+/// was left out.
 std::string advice_on(Elaboration& e, const Value& v, const Dimension& expected, const Expression& x) {
   if (x.kind == Expression::Kind::Quantity || x.kind == Expression::Kind::Number) return "";
-  if (v.dimension.same_as(Dimension{}))
-    if (const std::string name = bare_name(e, x); !name.empty())
-      return fmt::format("Give `{}` its unit where it is declared, if it has one.", name);
+  const bool bare = v.dimension.same_as(Dimension{}), mass = (v.dimension * dimensions::mass()).same_as(expected),
+             length = (v.dimension * dimensions::length()).same_as(expected);
+  const std::string name = bare || mass || length ? bare_name(e, x) : std::string();
+  if (!name.empty() && bare) return fmt::format("Give `{}` its unit where it is declared, if it has one.", name);
+  if (!name.empty())
+    return fmt::format("Give `{}` its unit where it is declared, such as {}; or a {} is missing as a factor.", name,
+                       mass ? "kg" : "m", mass ? "mass" : "length");
   return dimension_advice(v.dimension, expected);
 }
 

@@ -24,16 +24,13 @@ export function h<K extends keyof HTMLElementTagNameMap>(
 
 export const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
 
-/** Text with `code` in backquotes, and symbols with an index, h_E and j^t, and with primes, X'', as a book sets them. */
+/** Text with `code` in backquotes, and symbols with an index, h_E and j^t, as a book sets them. */
 export function prose(text: string): Node[] {
   return text.split('`').flatMap((part, i) => (i % 2 ? [h('code', {}, part)] : symbols(numbers(part))));
 }
 
 function symbols(text: string): Node[] {
   return text
-    .replace(/(?<![\p{L}\p{N}])(\p{L}\d*)('{1,2})(?![\p{L}'])/gu, (_, name: string, primes: string) =>
-      primes === "'" ? `${name}′` : `${name}″`,
-    )
     .split(/(?<![\p{L}\p{N}_^])(\p{L}[_^][\p{L}\p{N}])(?![\p{L}\p{N}_^])/u)
     .flatMap((part, i): Node[] => {
       if (i % 2) return [h('i', {}, part[0]), h(part[1] === '_' ? 'sub' : 'sup', {}, part[2])];

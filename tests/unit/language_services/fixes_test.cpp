@@ -44,6 +44,8 @@ const std::vector<Case> cases = {
      "param m = 1 kg\ncoord x : length\nT = 1/2 m (x')^2\n"},
     {"E0210", head + "point P mass m at l (sin θ, -cos θ)\ngravity g\n",
      head + "point P mass m at l (sin θ, -cos θ)\ngravity (0, -g)\n"},
+    {"E0304", "param m = 1, l = 1 m\ncoord θ : angle\nT = 1/2 m l^2 θ'^2\n",
+     "param m = 1 kg, l = 1 m\ncoord θ : angle\nT = 1/2 m l^2 θ'^2\n"},
     {"E0304", "param m = 1, g = 9.81 m/s^2\ncoord x : length\npoint P mass m at (x, 0)\ngravity (0, -g)\n",
      "param m = 1 kg, g = 9.81 m/s^2\ncoord x : length\npoint P mass m at (x, 0)\ngravity (0, -g)\n"},
     {"E0304", model("V = -m g l cos θ\nrun 10\n"), model("V = -m g l cos θ\nrun 10 s\n")},
