@@ -1,4 +1,3 @@
-import {raised} from '../panels/words';
 import {corners} from './straighten';
 
 /** A curve of a chart; `upTo`: it is drawn to this row only, as it grows with the motion. */
@@ -54,10 +53,10 @@ function tickText(value: number, step: number): string {
   return value.toFixed(Math.max(0, Math.min(9, -Math.floor(Math.log10(step) + 1e-9)))).replace('-', '−');
 }
 
-/** `x (m)` in thousandths is `x (10⁻³ m)`. */
+/** `x (m)` in thousandths is `x (10^{−3} m)`, to be written by `writeTitle`. */
 function titleText(title: string, power: number): string {
   if (power === 0) return title;
-  const factor = `10${raised(String(power))}`;
+  const factor = `10^{${String(power).replace('-', '−')}}`;
   return title.endsWith(')') ? title.replace(/\(([^()]*)\)$/, `(${factor} $1)`) : `${title} (${factor})`;
 }
 
@@ -257,11 +256,11 @@ export class Chart {
     context.fillStyle = colour('--ink');
     context.textAlign = 'center';
     context.font = `italic 14px ${faces}`;
-    context.fillText(titleText(this.content.x, powers.x), (room.left + right) / 2, height - 6);
+    writeTitle(context, titleText(this.content.x, powers.x), (room.left + right) / 2, height - 6);
     context.save();
     context.translate(14, (room.top + bottom) / 2);
     context.rotate(-Math.PI / 2);
-    context.fillText(titleText(this.content.y, powers.y), 0, 0);
+    writeTitle(context, titleText(this.content.y, powers.y), 0, 0);
     context.restore();
   }
 
@@ -349,6 +348,25 @@ function include(box: Box, x: number, y: number, around: number): void {
   box[1] = Math.min(box[1], y - around);
   box[2] = Math.max(box[2], x + around);
   box[3] = Math.max(box[3], y + around);
+}
+
+/** Centred at x. An exponent is a smaller number above the line: signs for raised digits come from several faces. */
+function writeTitle(context: CanvasRenderingContext2D, title: string, x: number, y: number): void {
+  const large = context.font,
+    faceOf = (i: number): string => (i % 2 ? large.replace(/\d+px/, '10px') : large);
+  const parts = title.split(/\^\{([^}]*)\}/).map((text, i) => {
+    context.font = faceOf(i);
+    return {text, font: faceOf(i), up: i % 2 ? 5 : 0, width: context.measureText(text).width};
+  });
+  let at = x - parts.reduce((sum, part) => sum + part.width, 0) / 2;
+  context.textAlign = 'left';
+  for (const part of parts) {
+    context.font = part.font;
+    context.fillText(part.text, at, y - part.up);
+    at += part.width;
+  }
+  context.font = large;
+  context.textAlign = 'center';
 }
 
 function line(context: CanvasRenderingContext2D, x1: number, y1: number, x2: number, y2: number): void {
