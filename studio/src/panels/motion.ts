@@ -105,7 +105,8 @@ export class MotionPanel {
       : run
         ? run.figures.length
           ? ''
-          : 'There is nothing to draw: the model has neither points nor bodies. A line such as point P at (x, 0) shows one.'
+          : 'There is nothing to draw: the model has neither points nor bodies. ' +
+            'A line such as point P at (x, 0) shows one.'
         : runTrouble
           ? ''
           : 'No motion yet.';
