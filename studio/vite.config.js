@@ -133,6 +133,7 @@ export default defineConfig({
     modulePreload: false,
     chunkSizeWarningLimit: 2000,
     rollupOptions: {
+      checks: {bundlerTimings: false}, // on a busy machine it would say what took its time
       output: {format: 'iife', entryFileNames: 'studio-[hash].js', assetFileNames: 'studio-[hash][extname]'},
     },
   },
