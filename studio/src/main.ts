@@ -22,6 +22,7 @@ import {exportDialog} from './tools/exports';
 import {example, FileTools} from './tools/files';
 import {helpDialog, pageKeys} from './tools/keys';
 import {lecture} from './tools/lecture';
+import {signButtons} from './tools/signs';
 import {decodeShared, encodeShared} from './tools/share';
 import {Storage_, type Draft} from './tools/storage';
 import {themes} from './tools/theme';
@@ -125,11 +126,7 @@ function bar(): void {
   byId('search-button').addEventListener('click', () => editor.find());
   byId('undo-button').addEventListener('click', () => editor.undo());
   byId('redo-button').addEventListener('click', () => editor.redo());
-  // The keyboard of a phone stays open where the text keeps the focus.
-  byId('signs').addEventListener('pointerdown', event => event.preventDefault());
-  byId('signs').append(
-    ...[..."θφωψαΩ'^=()[]#"].map(sign => h('button', {type: 'button', onclick: () => editor.type(sign)}, sign)),
-  );
+  byId('editor').after(signButtons("θφωψαΩ'^=()[]#", sign => editor.type(sign)));
   byId('reset-values').addEventListener('click', () => study.resetValues());
   byId('apply-values').addEventListener('click', applyValues);
   byId('duration').addEventListener('change', event =>

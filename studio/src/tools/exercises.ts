@@ -4,6 +4,7 @@ import type {Store} from '../store';
 import type {Study} from '../study';
 import {dialog} from './dialog';
 import {exercises, type FileTools} from './files';
+import {signButtons, signsOf} from './signs';
 import type {Storage_} from './storage';
 
 /** Notes before the model ask; those behind it comment on the answer. */
@@ -13,6 +14,9 @@ function notesIn(text: string): {question: string[]; comments: string[]} {
   const of = (before: boolean): string[] => notes.filter(note => note.index < begin === before).map(note => note[1]);
   return {question: of(true), comments: of(false)};
 }
+
+const asSentence = (text: string): string =>
+  text.replace(/^./u, first => first.toUpperCase()) + (/[.!?]$/.test(text) ? '' : '.');
 
 /** Models that ask: the student types an equation of motion and hears whether it is right, and which pitfall if not. */
 export class Exercises {
@@ -102,6 +106,9 @@ export class Exercises {
       },
       h('label', {for: 'claim'}, 'Your equation of motion'),
       h('p', {class: 'row'}, field, h('button', {type: 'submit', class: 'primary'}, 'Check')),
+      signButtons(signsOf(text), sign =>
+        field.setRangeText(sign, field.selectionStart ?? 0, field.selectionEnd ?? 0, 'end'),
+      ),
     );
     const leave = h('button', {type: 'button', class: 'quiet', onclick: () => this.end()}, 'Show the equations');
     const panel = h(
@@ -176,7 +183,7 @@ export class Exercises {
           {class: 'message error'},
           h('p', {class: 'what'}, 'Not yet.'),
           answer.pitfall
-            ? h('p', {}, ...prose(answer.pitfall))
+            ? h('p', {}, ...prose(asSentence(answer.pitfall)))
             : h(
                 'p',
                 {},

@@ -507,7 +507,7 @@ export const cases = {
       const told = await claim(wrong[0][0]);
       check(
         `${name}: a wrong claim is told with its pitfall`,
-        /Not yet/.test(told) && told.includes(wrong[0][1]),
+        /Not yet/.test(told) && told.toLowerCase().includes(wrong[0][1].toLowerCase()),
         told,
       );
       check(`${name}: the answer is not given`, !told.includes(right[0].split('=')[1].trim()), told);

@@ -51,6 +51,26 @@ export const texts = {
     await page.context().close();
   },
 
+  async 'an exercise on a phone'({open}, variant, picture) {
+    const page = await open({width: 400, height: 800, touch: true});
+    await page.locator('#exercises-button').tap();
+    await page.locator('dialog ol li button', {hasText: 'sliding wedge'}).tap();
+    await page.waitForSelector('#claim');
+    await settled(page);
+    await page.locator('#claim').fill("s'' = g sin ");
+    const signs = page.locator('#exercise .signs');
+    check('the letters of the model can be typed', /α/.test(await signs.innerText()), await signs.innerText());
+    await signs.locator('button', {hasText: 'α'}).tap();
+    check('a sign stands where it is typed', (await page.locator('#claim').inputValue()) === "s'' = g sin α");
+    check('the field keeps the focus', (await page.evaluate(() => document.activeElement.id)) === 'claim');
+    await page.locator('#exercise button[type=submit]').tap();
+    await page.waitForSelector('#claim-verdict .error');
+    const told = await page.locator('#claim-verdict').innerText();
+    check('a verdict is a sentence', /The coupling with X is missing.*\.$/.test(told), told);
+    await picture(page, 'phone-exercise');
+    await page.context().close();
+  },
+
   async 'a mistake on a phone'({open}, variant, picture) {
     const page = await open({width: 400, height: 800, touch: true, hash: '#example=pendulum'}),
       tab = name => page.locator(`#tabs [data-pane=${name}]`),
@@ -60,7 +80,7 @@ export const texts = {
     check('undo has nothing to do', await page.locator('#undo-button').isDisabled());
     await tab('model').tap();
     await typeAtEnd(page, 'let W = m g l missin');
-    await page.locator('#signs button', {hasText: 'θ'}).tap();
+    await page.locator('#model .signs button', {hasText: 'θ'}).tap();
     check('a sign is typed where the text ends', (await text(page)).endsWith('missinθ'), await text(page));
     check('the text keeps the focus', await page.evaluate(() => document.activeElement.closest('#editor') !== null));
     await page.waitForFunction(() => document.getElementById('mistakes').textContent === '1');
