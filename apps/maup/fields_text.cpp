@@ -1,6 +1,7 @@
 #include "fields_text.hpp"
 
 #include "derivation_text.hpp"
+#include "happenings_text.hpp"
 
 #include <fmt/format.h>
 
@@ -321,6 +322,10 @@ std::string fields_summary(Study& study) {
     boundary += fmt::format("{}{} at the {}", boundary.empty() ? "" : ", ",
                             s.jet_name(b.jet) + " = " + plain_of(equations, b.value), sides[static_cast<int>(b.side)]);
   line("boundary", boundary.empty() ? "natural" : boundary);
+  std::string contacts, frictions;
+  for (std::size_t i = 0; i < system.contacts.size(); ++i) contacts += (i ? ", " : "") + system.contact_label(i);
+  for (const Friction& f : system.frictions) frictions += (frictions.empty() ? "" : ", ") + f.name;
+  line("contacts", contacts), line("dry friction along", frictions);
   std::string parameters;
   for (const Parameter& p : system.parameters)
     if (p.symbol.role() == Role::Parameter)
@@ -392,13 +397,12 @@ std::string dispersion_text(Study& study, std::string& trouble) {
 
 namespace {
 
-std::string coupled_run_text(const FieldRunResult& run) {
+std::string coupled_run_text(const FieldRunResult& run, const MechanicalSystem& system) {
   std::string out = fmt::format("{} elements of order {} ({} unknowns), {} {} to {:.10g} s\n", run.cells, run.order,
                                 run.nodes, run.steps, run.method, run.end);
   for (const FieldRunResult::Coordinate& c : run.final_coordinates)
     out += fmt::format("  {:<30} {:.10g}, {}' {:.10g}\n", c.name, c.q, c.name, c.v);
-  for (const FieldRunResult::Happening& h : run.happenings)
-    out += fmt::format("  {:<30} at {:.12g} s\n", h.name, h.time);
+  out += happenings_text(chronicle_of(run), system);
   out += fmt::format("  energy                         {:.16g}\n", run.energy);
   out += run.energy_drift < 0 ? std::string("  energy drift                   forces act: it is not conserved\n")
                               : fmt::format("  energy drift                   {:.3g} of its terms\n", run.energy_drift);
@@ -472,8 +476,8 @@ Json shapes_json(const FieldEquations& equations, const FieldModes& modes) {
   return out;
 }
 
-std::string field_run_text(const FieldRunResult& run) {
-  if (run.coupled) return coupled_run_text(run);
+std::string field_run_text(const FieldRunResult& run, const MechanicalSystem& system) {
+  if (run.coupled) return coupled_run_text(run, system);
   const std::string upwards = run.cells_upwards ? fmt::format(" × {}", run.cells_upwards) : std::string();
   std::string out = fmt::format("{}{} cells of order {} ({} nodes), {} {} to {:.10g} s\n", run.cells, upwards,
                                 run.order, run.nodes, run.steps, run.method, run.end);
@@ -490,7 +494,7 @@ std::string field_run_text(const FieldRunResult& run) {
   return out + fmt::format("  computed in                    {:.3g} s\n", run.seconds);
 }
 
-Json field_run_json(const FieldRunResult& run) {
+Json field_run_json(const FieldRunResult& run, const MechanicalSystem& system) {
   Json document = json_document("simulate");
   document["statistics"] = {{"cells", run.cells},         {"element_order", run.order}, {"nodes", run.nodes},
                             {"steps", run.steps},         {"method", run.method},       {"step", run.step},
@@ -503,9 +507,7 @@ Json field_run_json(const FieldRunResult& run) {
     document["final"] = Json::object();
     for (const FieldRunResult::Coordinate& c : run.final_coordinates)
       document["final"][c.name] = c.q, document["final"][c.name + "'"] = c.v;
-    document["events"] = Json::array();
-    for (const FieldRunResult::Happening& h : run.happenings)
-      document["events"].push_back({{"name", h.name}, {"time", h.time}});
+    put_happenings(document, chronicle_of(run), system);
     if (!run.trouble.empty()) document["trouble"] = run.trouble;
   }
   if (!run.charges.empty()) document["charges"] = charges_json(run);

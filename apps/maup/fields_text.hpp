@@ -31,7 +31,7 @@ std::string dispersion_text(Study& study, std::string& trouble);
 std::string shape_of_bodies(const FieldEquations& equations, const FieldModes& modes, std::size_t index);
 /// [{field: [values at places], coordinate: value}], with the places.
 Json shapes_json(const FieldEquations& equations, const FieldModes& modes);
-std::string field_run_text(const FieldRunResult& run);
-Json field_run_json(const FieldRunResult& run);
+std::string field_run_text(const FieldRunResult& run, const MechanicalSystem& system);
+Json field_run_json(const FieldRunResult& run, const MechanicalSystem& system);
 
 }  // namespace maupertuis::app

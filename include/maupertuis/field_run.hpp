@@ -4,6 +4,7 @@
 #include <maupertuis/simulation.hpp>
 #include <maupertuis/trajectory.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,11 +58,10 @@ struct FieldRunResult {
     double q = 0, v = 0;  // SI
   };
   std::vector<Coordinate> final_coordinates;  // values of fields at places among them
-  struct Happening {
-    std::string name;  // of the event
-    double time = 0;   // s
-  };
-  std::vector<Happening> happenings;
+  std::vector<Happening> happenings;  // events, contacts, friction; q and v are those of the coordinates of the model
+  std::string first_mode;             // of contacts and friction, as in SimulationResult
+  std::optional<EnergyBooks> books;   // where the model has contacts or friction
+  std::vector<std::string> remarks;   // a sentence each
 };
 
 /// What is asked of a run: an expression of jets at a place, or of place values; or integrated over space.

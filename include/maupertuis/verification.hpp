@@ -46,6 +46,13 @@ ValueVerdict value_verdict(double actual, double expected, double tolerance, dou
 Verification verify(const Model& model, const EquationsOfMotion& equations, const SourceText& source,
                     const SimulationOptions& options, Diagnostics& diagnostics, const std::string& with = {});
 
+/// What happened of one name along a run, in order, as `expect event NAME CHANGE` counts it: without a word for the
+/// change a contact's impacts and changes, where one that is hit and stays closed counts once.
+std::vector<const Happening*> happenings_named(const std::vector<Happening>& all, const std::string& name,
+                                               const std::string& change);
+/// The name and the change, as they are written.
+std::string happening_called(const std::string& name, const std::string& change);
+
 /// For a model whose text expects an error (`expect error E0412`): compares with what was found.
 /// Returns nothing if the text has no such line.
 std::optional<Verification> verify_errors(const syntax::SyntaxTree& tree, const SourceText& source,

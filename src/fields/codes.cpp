@@ -106,6 +106,24 @@ constexpr CodeEntry kEntries[] = {
      "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nT = 1/2 m u(1 m)'^2\nrun 1 s\n",
      "# maup simulate\nfield u(x) : length on x = 0 m .. 1 m cells 10\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\n"
      "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nT = 1/2 m u(1 m)'^2\nrun 1 s\n"},
+    {"E0657", "an impact on a field without a mass",
+     "The impulse of an impact changes the velocity of what is hit by Λ/m. A point of a string or a beam has no mass, "
+     "and the node of a mesh that stands for a piece of it has another one on each mesh.",
+     "# maup simulate\nfield u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N\n"
+     "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\ncontact u(1 m) <= 10 cm restitution 1/2\nstart u' = 1 m/s\nrun 1/2 s\n",
+     "# maup simulate\nfield u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\n"
+     "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nT = 1/2 m u(1 m)'^2\ncontact u(1 m) <= 10 cm restitution 1/2\n"
+     "start u' = 1 m/s\nrun 1/2 s\n"},
+    {"W0658", "modes of a field without contacts and dry friction",
+     "Modes are small motions of one linear system. A contact that is closed holds the system on one side alone, and "
+     "dry "
+     "friction holds it altogether up to a limit; the modes that are shown have the contacts open and no friction.",
+     "# maup modes\nfield u(x) : length on x = 0 m .. 1 m\nboundary left : u = 0\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 "
+     "kg\n"
+     "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nT = 1/2 m u(1 m)'^2\ncontact u(1 m) <= 10 cm\n",
+     "# maup modes\nfield u(x) : length on x = 0 m .. 1 m\nboundary left : u = 0\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 "
+     "kg\n"
+     "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nT = 1/2 m u(1 m)'^2\n"},
     {"E0649", "a mesh that does not fit into the memory",
      "The Taylor coefficients of all nodes stand in the memory at once: some hundred bytes a node and operation of the "
      "density; of beams and fields of first order the matrices of a step. What a mesh takes is known before it is "

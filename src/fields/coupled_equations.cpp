@@ -187,6 +187,46 @@ std::vector<DensityBorder> density_borders_along(const FieldEquations& equations
   return out;
 }
 
+namespace {
+
+/// Whether an impulse changes the velocity of a coordinate by what the bodies have of mass, there or where a
+/// constraint leads it.
+bool has_inertia(const EquationsOfMotion& bodies, std::size_t coordinate) {
+  const MechanicalSystem& system = *bodies.system;
+  const ExprMatrix mass = mass_matrix(bodies);
+  const std::size_t n = system.coordinates.size();
+  for (std::size_t j = 0; j < n; ++j)
+    if (!mass.entries[coordinate * n + j].is_zero()) return true;
+  const Coordinate& c = system.coordinates[coordinate];
+  return std::any_of(system.constraints.begin(), system.constraints.end(), [&](const Constraint& one) {
+    const Expr value = expand_time_derivatives(one.value);
+    return !differentiate(value, c.q).is_zero() || !differentiate(value, c.velocity).is_zero();
+  });
+}
+
+/// E0657 where an impact would act on a field alone.
+void refuse_impacts_without_mass(const FieldEquations& equations, Diagnostics& diagnostics) {
+  const EquationsOfMotion& bodies = *equations.bodies;
+  for (const Contact& contact : bodies.system->contacts)
+    for (const PlaceCoordinate& p : equations.model->attached) {
+      const Coordinate& c = bodies.system->coordinates[p.coordinate];
+      bool acts = !differentiate(expand_time_derivatives(contact.gap), c.q).is_zero();
+      for (const Expr& slip : contact.friction.slip) acts = acts || !differentiate(slip, c.velocity).is_zero();
+      if (!acts || has_inertia(bodies, p.coordinate)) continue;
+      const bool slope = p.jet.order() == 1;
+      diagnostics.error(
+          "E0657", contact.span,
+          fmt::format("an impact acts on {}, where no {} is", c.name, slope ? "inertia" : "mass"),
+          "An impulse on a field alone has no mass to act upon: what it changes would be that of a piece of the mesh, "
+          "and another one on every mesh.",
+          slope ? fmt::format("Attach an inertia, T = 1/2 J {}'^2, or let a stiff spring take the blow.", c.name)
+                : fmt::format("Attach a mass, T = 1/2 m {}'^2, or let a stiff spring take the blow.", c.name));
+      break;
+    }
+}
+
+}  // namespace
+
 void attach_bodies(FieldEquations& equations, std::shared_ptr<const Model> model, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
   if (equations.model->coupled) {
@@ -194,6 +234,7 @@ void attach_bodies(FieldEquations& equations, std::shared_ptr<const Model> model
     auto bodies = euler_lagrange(std::shared_ptr<const MechanicalSystem>(model, &model->system), diagnostics);
     if (!bodies) return;
     equations.bodies = std::make_shared<const EquationsOfMotion>(std::move(*bodies));
+    refuse_impacts_without_mass(equations, diagnostics);
   }
   if (s.space.size() != 1) return;
   const Bindings values = parameter_values(equations);

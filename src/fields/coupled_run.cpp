@@ -16,6 +16,7 @@
 #include <cmath>
 #include <limits>
 #include <unordered_map>
+#include <utility>
 
 /// The run of fields with coordinates and bodies, and of coarser meshes that tell how far off it is.
 namespace maupertuis {
@@ -184,6 +185,41 @@ std::vector<double> errors_of(const CoupledRun& fine, const std::optional<Couple
   return out;
 }
 
+/// How many happenings of a run another mesh has too: the same ones, in the same order, and after about the same time
+/// since the one before. Where a mesh rattles at a contact these times are those of its elements.
+std::size_t alike(const std::vector<Happening>& a, const std::vector<Happening>& b, double begin) {
+  constexpr double about = 0.25;
+  double before_a = begin, before_b = begin;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (i == b.size() || a[i].name != b[i].name || a[i].kind != b[i].kind) return i;
+    const double since = a[i].t - std::exchange(before_a, a[i].t), other = b[i].t - std::exchange(before_b, b[i].t);
+    if (std::abs(since - other) > about * std::abs(since) + 1e-12 * std::abs(a[i].t)) return i;
+  }
+  return a.size();
+}
+
+/// How far off moments are: twice the difference to half the cells, since an impact leaves a jump of the velocity to
+/// the field. Infinite where half the cells do not have them.
+void estimate_moments(std::vector<Happening>& fine, const std::optional<CoupledRun>& half,
+                      const std::optional<CoupledRun>& quarter, double begin) {
+  const std::size_t known = half ? alike(fine, half->result.happenings, begin) : 0;
+  const std::size_t twice = quarter ? alike(fine, quarter->result.happenings, begin) : 0;
+  for (std::size_t i = 0; i < fine.size(); ++i) {
+    Happening& h = fine[i];
+    h.error = std::numeric_limits<double>::infinity();
+    if (i >= known) continue;
+    const double first = half->result.happenings[i].t;
+    const double second = i < twice ? quarter->result.happenings[i].t : first;
+    h.error = 2 * std::max(std::abs(first - h.t), std::abs(second - first) / 4) + 2.2e-16 * std::abs(h.t);
+  }
+}
+
+/// Whether contacts or friction made forces or velocities jump.
+bool jumps(const CoupledRun& run) {
+  return std::any_of(run.result.happenings.begin(), run.result.happenings.end(),
+                     [](const Happening& h) { return h.kind != Happening::Kind::Event; });
+}
+
 /// What halving the elements gains at least beside a break; 0 where there is none. A plucked string and one under a
 /// moving load have kinks, a beam under a load a jump of its third derivative; of waves without bodies at their ends a
 /// higher derivative may jump where the start does not fit them.
@@ -233,6 +269,19 @@ std::vector<FieldRunResult::Coordinate> final_coordinates(const SemiDiscrete& me
   return out;
 }
 
+/// With the state of the coordinates of the model.
+Happening in_coordinates_of(Happening h, const SemiDiscrete& mesh, const MechanicalSystem& system) {
+  State state;
+  state.t = h.t, state.q = std::move(h.q), state.v = std::move(h.v);
+  h.q.clear(), h.v.clear();
+  if (state.q.empty()) return h;
+  for (const FieldRunResult::Coordinate& c : final_coordinates(mesh, system, state)) {
+    h.q.push_back(c.q);
+    h.v.push_back(c.v);
+  }
+  return h;
+}
+
 }  // namespace
 
 bool runs_as_one_system(const FieldEquations& equations) {
@@ -273,16 +322,19 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
   for (const Happening& h : fine->result.happenings) {
     const std::vector<std::string>& departures = mesh->departures();
     if (std::find(departures.begin(), departures.end(), h.name) == departures.end())
-      out.happenings.push_back({h.name, h.t});
+      out.happenings.push_back(in_coordinates_of(h, *mesh, model.system));
     else
       out.trouble = h.name;
   }
+  out.first_mode = fine->result.first_mode;
+  out.books = fine->result.books;
+  out.remarks = fine->result.remarks;
   if (options.trajectory) {
     out.places = shown_places(*mesh);
     out.trajectory = Rows(*mesh, model, equations, out.places).of(fine->result);
   }
   std::optional<CoupledRun> half, quarter;
-  if (options.errors && !questions.empty() && out.trouble.empty()) {
+  if (options.errors && (!questions.empty() || !out.happenings.empty()) && out.trouble.empty()) {
     // Where a place asks for more elements than half of them, the order is lowered instead.
     FieldRunOptions quiet = options;
     quiet.trajectory = false;
@@ -295,7 +347,8 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
     };
     half = coarser(2), quarter = coarser(4);
   }
-  const double gain = gain_at_breaks(equations, *mesh, breaks, options.begin);
+  if (options.errors) estimate_moments(out.happenings, half, quarter, options.begin);
+  const double gain = gain_at_breaks(equations, *mesh, breaks || jumps(*fine), options.begin);
   std::vector<double> errors = errors_of(*fine, half, quarter, gain);
   if (gain > 0 && !breaks)
     for (double& e : errors) e *= 2;

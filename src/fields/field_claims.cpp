@@ -24,6 +24,12 @@ void say(ExpectationResult& result, const ZeroTest& test, const char* proved, co
                                                       : "It could not be decided: " + test.reason;
 }
 
+/// By impacts, friction and contacts that move.
+double energy_exchanged(const FieldRunResult& run) {
+  if (!run.books) return 0;
+  return std::abs(run.books->impacts) + std::abs(run.books->friction) + std::abs(run.books->moving);
+}
+
 class FieldVerifier {
  public:
   FieldVerifier(const Model& model, const FieldEquations& equations, const SimulationOptions& options,
@@ -139,6 +145,8 @@ class FieldVerifier {
   void decide(const expectation::ValueAt& e, ExpectationResult&) { ask(e.subject, false, e.time, e.expected); }
   void decide(const fe::Total& e, ExpectationResult&) { ask(e.density, true, e.time, e.expected); }
   void decide(const expectation::EnergyConserved& e, ExpectationResult&) { energy_.push_back({line_, e.tolerance}); }
+  void decide(const expectation::Event& e, ExpectationResult&) { moments_.push_back({line_, &e}); }
+  void decide(const expectation::EventCount& e, ExpectationResult&) { counts_.push_back({line_, &e}); }
 
   void decide(const fe::Frequencies& e, ExpectationResult& r) {
     const FieldModes modes = field_modes(equations_, e.values.size(), diagnostics_);
@@ -168,7 +176,7 @@ class FieldVerifier {
     return number_of(t.size) * (t.relative ? std::abs(size) : 1);
   }
   void carry_out_run(Verification& out) {
-    if (questions_.empty() && energy_.empty()) return;
+    if (questions_.empty() && energy_.empty() && moments_.empty() && counts_.empty()) return;
     FieldRunOptions options;
     options.interrupt = options_.interrupt;
     if (model_.experiment.start_time) options.begin = number_of(model_.experiment.start_time);
@@ -182,8 +190,12 @@ class FieldVerifier {
           run ? fmt::format("The run ended early: {}.", run->trouble) : "The run did not come to it.";
       for (const auto& [line, expected] : asked_) out.results[line].message = early;
       for (const auto& [line, tolerance] : energy_) out.results[line].message = early;
+      for (const auto& [line, moment] : moments_) out.results[line].message = early;
+      for (const auto& [line, count] : counts_) out.results[line].message = early;
       return;
     }
+    for (const auto& [line, moment] : moments_) judge_moment(out.results[line], *moment, run->happenings);
+    for (const auto& [line, count] : counts_) judge_count(out.results[line], *count, run->happenings);
     for (std::size_t i = 0; i < asked_.size(); ++i) {
       ExpectationResult& r = out.results[asked_[i].line];
       judge(r, asked_[i].expected, run->answers[i]);
@@ -198,6 +210,10 @@ class FieldVerifier {
           run->energy_drift < 0 ? "forces act: the energy is not conserved" : fmt::format("{:.3g}", run->energy_drift);
       r.expected = fmt::format("at most {:.3g} of its terms", limit);
       r.passed = run->energy_drift >= 0 && run->energy_drift <= limit;
+      const double exchanged = energy_exchanged(*run);
+      if (!r.passed || exchanged <= limit * std::max(std::abs(run->energy), exchanged)) continue;
+      r.passed = false;
+      r.message = fmt::format("Impacts, friction and contacts that move exchange {:.3g} J along the run.", exchanged);
     }
   }
   void judge(ExpectationResult& r, const expectation::Number& e, const FieldRunResult::Value& value) const {
@@ -217,6 +233,24 @@ class FieldVerifier {
     if (!r.passed)
       r.message = fmt::format("It is off by {:.3g}{}; the error of mesh and steps is estimated as {:.2g}{}.",
                               (value.value - expected) / e.unit.factor, unit, value.error / e.unit.factor, unit);
+  }
+
+  void judge_moment(ExpectationResult& r, const expectation::Event& e, const std::vector<Happening>& all) const {
+    const auto found = happenings_named(all, e.name, e.change);
+    if (found.size() >= static_cast<std::size_t>(e.occurrence)) {
+      const Happening& h = *found[static_cast<std::size_t>(e.occurrence) - 1];
+      return judge(r, e.time, {h.t, h.error});
+    }
+    r.actual = fmt::format("{} times", found.size());
+    r.expected = fmt::format("at least {}", e.occurrence);
+    r.message = fmt::format("`{}` happens {} times along the run.", happening_called(e.name, e.change), found.size());
+  }
+  void judge_count(ExpectationResult& r, const expectation::EventCount& e, const std::vector<Happening>& all) const {
+    const double found = static_cast<double>(happenings_named(all, e.name, e.change).size());
+    const double expected = number_of(e.number);
+    r.actual = fmt::format("{:g}", found), r.expected = fmt::format("{:g}", expected);
+    r.passed = found == expected;
+    r.message = fmt::format("`{}` happens {:g} times along the run.", happening_called(e.name, e.change), found);
   }
 
   // ---------------------------------------------------------------------------------------------------- solutions
@@ -342,6 +376,8 @@ class FieldVerifier {
   std::vector<FieldQuestion> questions_;
   std::vector<Asked> asked_;
   std::vector<AskedEnergy> energy_;
+  std::vector<std::pair<std::size_t, const expectation::Event*>> moments_;  // line of each
+  std::vector<std::pair<std::size_t, const expectation::EventCount*>> counts_;
 };
 
 }  // namespace

@@ -413,6 +413,10 @@ FieldModes field_modes(const FieldEquations& equations, std::size_t count, Diagn
         "W0653", s.density_span, "these are the modes without the dissipation of the field",
         "Dissipation damps the motions, and shifts frequencies and shapes.",
         "`maup modes --dispersion` has it in the relation of waves, and `maup simulate` shows the decay.");
+  if (equations.bodies && equations.bodies->system->has_modes())
+    diagnostics.warning("W0658", s.density_span, "these are the modes with open contacts and without dry friction",
+                        "A closed contact holds the system on one side alone, and dry friction up to a limit.",
+                        "`maup simulate` has them; a contact that stays closed is a `constraint`.");
   if (refuse_too_many_conditions(equations, diagnostics)) return out;
   if (s.space.size() == 2) return plane_modes(equations, count, diagnostics);
   if (s.space.size() != 1 || !s.space.front().from) {

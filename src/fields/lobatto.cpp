@@ -69,4 +69,22 @@ void Lobatto::at(double xi, std::vector<double>& value, std::vector<double>& slo
   }
 }
 
+/// The other points are zeros of P_{n−1} + P_n.
+Radau::Radau(int points) : x(static_cast<std::size_t>(points), -1), w(x.size()) {
+  const double n = points;
+  w.front() = 2 / (n * n);
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    double at = -std::cos(2 * std::numbers::pi * static_cast<double>(i) / (2 * n - 1));
+    for (int k = 0; k < 100; ++k) {
+      const auto [below, slope_below] = legendre(points - 1, at);
+      const auto [value, slope] = legendre(points, at);
+      const double change = -(below + value) / (slope_below + slope);
+      at += change;
+      if (std::abs(change) < 1e-17) break;
+    }
+    const double below = legendre(points - 1, at).first;
+    x[i] = at, w[i] = (1 - at) / (n * n * below * below);
+  }
+}
+
 }  // namespace maupertuis

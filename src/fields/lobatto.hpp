@@ -14,4 +14,10 @@ struct Lobatto {
   void at(double xi, std::vector<double>& value, std::vector<double>& slope) const;
 };
 
+/// Gauss-Radau's rule: as many points, −1 among them and 1 not, exact up to the degree 2 · points − 2.
+struct Radau {
+  explicit Radau(int points);
+  std::vector<double> x, w;  // ascending
+};
+
 }  // namespace maupertuis

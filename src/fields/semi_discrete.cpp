@@ -5,6 +5,7 @@
 #include <maupertuis/repeated_evaluation.hpp>
 
 #include "fields/given_fields.hpp"
+#include "fields/lobatto.hpp"
 #include "linear_algebra/dense.hpp"
 
 #include <fmt/format.h>
@@ -91,6 +92,7 @@ std::optional<SemiDiscrete> SemiDiscrete::make(const Model& model, const FieldEq
     if (!s.fields[f].formula) return refuse_run(diagnostics, s.fields[f].span, "an input without a formula");
   }
   if (!out.set_mesh(cells, order, diagnostics)) return std::nullopt;
+  out.set_quadrature();
   out.set_degrees_of_freedom();
   out.hold_ends();
   if (!out.add_lagrangian(diagnostics) || !out.add_given_slopes(diagnostics)) return std::nullopt;
@@ -138,6 +140,47 @@ bool SemiDiscrete::set_mesh(int cells, int order, Diagnostics& diagnostics) {
                   bodies ? "Fields with bodies" : "Fields whose density changes at a place", most_degrees_of_freedom),
       "Write fewer cells; elements of a higher order need fewer of them.");
   return false;
+}
+
+/// Borders whose value stands in the gap of a contact that throws back.
+std::set<std::size_t> SemiDiscrete::struck_borders() const {
+  const MechanicalSystem& system = equations_->bodies ? *equations_->bodies->system : model_.system;
+  const double near = 1e-12 * (mesh_.borders.back() - mesh_.borders.front());
+  std::set<std::size_t> out;
+  for (const PlaceCoordinate& p : equations_->model->attached) {
+    if (p.moves || p.jet.order() != 0) continue;
+    const Expr q = system.coordinates[p.coordinate].q;
+    const bool struck = std::any_of(system.contacts.begin(), system.contacts.end(), [&](const Contact& c) {
+      return number(c.restitution) > 0 && !differentiate(expand_time_derivatives(c.gap), q).is_zero();
+    });
+    for (std::size_t i = 0; struck && i < mesh_.borders.size(); ++i)
+      if (std::abs(mesh_.borders[i] - number(p.place)) <= near) out.insert(i);
+  }
+  return out;
+}
+
+/// The rule of the elements; beside a body that is hit Radau's, which leaves the body's place out and is exact for
+/// products of slopes all the same. So the impulse acts on the body alone, as it does on a body that a string holds,
+/// and not on the piece of string that the node at its place stands for. A body that stays where it hits needs no such
+/// rule, and its force is less rough without.
+void SemiDiscrete::set_quadrature() {
+  const bool nodal =
+      std::all_of(spaces_.begin(), spaces_.end(), [](const ElementSpace& s) { return s.kind() == EKind::Nodal; });
+  const std::set<std::size_t> struck = nodal ? struck_borders() : std::set<std::size_t>{};
+  const Lobatto all(mesh_.points);
+  const Radau left(mesh_.degree);
+  for (std::size_t e = 0; e < elements(); ++e) {
+    const bool leaves_left = struck.count(e), leaves_right = struck.count(e + 1);
+    const bool one_side = leaves_left != leaves_right;
+    const std::vector<double>&x = one_side ? left.x : all.x, &w = one_side ? left.w : all.w;
+    const double begin = mesh_.borders[e], half = (mesh_.borders[e + 1] - begin) / 2;
+    for (std::size_t q = 0; q < x.size(); ++q) {
+      const double xi = one_side && leaves_left ? -x[q] : x[q];
+      Point point{e, begin + half * (1 + xi), half * w[q], {}};
+      for (const ElementSpace& space : spaces_) point.parts.push_back(space.in(e, xi));
+      points_.push_back(std::move(point));
+    }
+  }
 }
 
 void SemiDiscrete::set_degrees_of_freedom() {
@@ -243,18 +286,17 @@ Expr SemiDiscrete::combination(std::size_t a, const std::vector<ElementSpace::Pa
   return context.sum(terms);
 }
 
-Expr SemiDiscrete::at_point(Expr f, const std::vector<Expr>& jets, std::size_t point) const {
+Expr SemiDiscrete::at_point(Expr f, const std::vector<Expr>& jets, const Point& point) const {
   const FieldSystem& s = equations_->system();
-  const std::vector<ElementSpace::Point>& points = spaces_.front().points();
-  const std::size_t element = point / (points.size() / elements());
   // A border belongs to the element that is summed: the formulas of its own side hold there.
-  const double left = mesh_.borders[element], right = mesh_.borders[element + 1], near = 1e-13 * (right - left);
-  ExprMap map{{s.space.front().symbol, constant(std::clamp(points[point].x, left + near, right - near))}};
+  const double left = mesh_.borders[point.element], right = mesh_.borders[point.element + 1];
+  const double near = 1e-13 * (right - left);
+  ExprMap map{{s.space.front().symbol, constant(std::clamp(point.x, left + near, right - near))}};
   for (const Expr& symbol : jets) {
     const FieldJet jet = *s.jet_of(symbol);
     std::size_t a = 0;
     while (a < spaces_.size() && equations_->varied[a] != jet.field) ++a;
-    if (a < spaces_.size()) map[symbol] = combination(a, spaces_[a].points()[point].parts, jet.space[0], jet.time);
+    if (a < spaces_.size()) map[symbol] = combination(a, point.parts[a], jet.space[0], jet.time);
   }
   return substitute(f, map);
 }
@@ -263,9 +305,8 @@ Expr SemiDiscrete::integral(Expr density) const {
   const FieldSystem& s = equations_->system();
   const Expr e = with_given_fields(s, density);
   const std::vector<Expr> jets = s.jets_in(e);
-  const std::vector<ElementSpace::Point>& points = spaces_.front().points();
   std::vector<Expr> terms;
-  for (std::size_t q = 0; q < points.size(); ++q) terms.push_back(constant(points[q].weight) * at_point(e, jets, q));
+  for (const Point& q : points_) terms.push_back(constant(q.weight) * at_point(e, jets, q));
   return s.context->sum(terms);
 }
 
@@ -299,16 +340,15 @@ void SemiDiscrete::generalized_force(std::size_t a, std::size_t dof, Expr force,
 
 void SemiDiscrete::add_force_densities() {
   const FieldSystem& s = equations_->system();
-  const std::vector<ElementSpace::Point>& points = spaces_.front().points();
   for (std::size_t a = 0; a < spaces_.size(); ++a) {
     if (!s.forces[equations_->varied[a]]) continue;
     const Expr f = with_given_fields(s, s.forces[equations_->varied[a]]);
     const std::vector<Expr> jets = s.jets_in(f);
     std::vector<std::vector<Expr>> sums(spaces_[a].size());
-    for (std::size_t q = 0; q < points.size(); ++q) {
+    for (const Point& q : points_) {
       const Expr here = at_point(f, jets, q);
-      for (const ElementSpace::Part& part : spaces_[a].points()[q].parts)
-        if (part.of[0] != 0) sums[part.dof].push_back(constant(points[q].weight * part.of[0]) * here);
+      for (const ElementSpace::Part& part : q.parts[a])
+        if (part.of[0] != 0) sums[part.dof].push_back(constant(q.weight * part.of[0]) * here);
     }
     for (std::size_t j = 0; j < sums.size(); ++j) generalized_force(a, j, s.context->sum(sums[j]), s.density_span);
   }

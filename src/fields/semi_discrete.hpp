@@ -49,8 +49,17 @@ class SemiDiscrete {
   const ExprMap& moving() const { return moving_; }
 
  private:
+  /// A point of quadrature and the functions of each field there.
+  struct Point {
+    std::size_t element = 0;
+    double x = 0, weight = 0;
+    std::vector<std::vector<ElementSpace::Part>> parts;  // [varied]
+  };
+
   SemiDiscrete(const Model& model, const FieldEquations& equations);
   bool set_mesh(int cells, int order, Diagnostics& diagnostics);
+  std::set<std::size_t> struck_borders() const;
+  void set_quadrature();
   void set_degrees_of_freedom();
   void hold_ends();
   bool add_lagrangian(Diagnostics& diagnostics);
@@ -71,7 +80,7 @@ class SemiDiscrete {
   Expr constant(double value) const;
   Expr combination(std::size_t a, const std::vector<ElementSpace::Part>& parts, int by_space, int by_time) const;
   /// A function of places and jets at a point of the quadrature.
-  Expr at_point(Expr f, const std::vector<Expr>& jets, std::size_t point) const;
+  Expr at_point(Expr f, const std::vector<Expr>& jets, const Point& point) const;
   Expr integral(Expr density) const;
   void generalized_force(std::size_t a, std::size_t dof, Expr force, Span span);
   double number(Expr e) const;
@@ -81,6 +90,7 @@ class SemiDiscrete {
   const FieldEquations* equations_;
   ElementMesh mesh_;
   std::vector<ElementSpace> spaces_;       // [varied]
+  std::vector<Point> points_;              // of all integrals, element by element
   std::vector<std::vector<Expr>> values_;  // [varied][dof] u of it: a coordinate, or what is given
   std::vector<std::vector<std::optional<std::size_t>>> coordinates_;  // [varied][dof]
   Bindings numbers_;                                                  // of parameters

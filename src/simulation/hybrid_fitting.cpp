@@ -196,10 +196,16 @@ bool HybridMotion::Trial::keeps_force(std::size_t k) {
   const std::size_t i = watch(k).index;
   // What does not press needs not be closed.
   if (!lenient() && in.vanishes(watch(k), outlook.reach[k], values)) return false;
-  if (std::abs(outlook.values[k]) <= located * in.hardest_[i]) {
+  // A body that hits a wall with an unstrained string behind it is pressed by nothing yet: beside what λ comes to,
+  // rounding of the string is 0 too.
+  const double comes_to = std::abs(outlook.slopes[k]) * outlook.length;
+  if (std::abs(outlook.values[k]) <= located * std::max(in.hardest_[i], comes_to)) {
     // λ was located to rounding of the time alone: what it does next counts, and where it falls the contact opens
     // whatever rounding makes of its gap.
-    if (outlook.slopes[k] >= 0) return true;
+    if (outlook.slopes[k] >= 0) {
+      if (outlook.values[k] < 0) motion.stepper->put_at_zero({&k, 1});
+      return true;
+    }
     in.released_[i] = true;
     return false;
   }

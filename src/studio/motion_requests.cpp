@@ -142,8 +142,9 @@ Json run_of_fields(Desk& desk, Study& study, const SimulationOptions& options, s
   out["statistics"] = pairs_json(content.statistics);
   out["happenings"] = Json::array();
   for (const auto& h : result->happenings)
-    out["happenings"].push_back({{"t", h.time}, {"what", "event"}, {"name", h.name}, {"mode", ""}, {"remark", ""}});
-  out["first_mode"] = "";
+    out["happenings"].push_back(
+        {{"t", h.t}, {"what", word_of(h.kind)}, {"name", h.name}, {"mode", h.mode}, {"remark", h.remark}});
+  out["first_mode"] = result->first_mode;
   out["ending"] = {{"ok", result->trouble.empty()},
                    {"kind", result->trouble.empty() ? "finished" : "ended early"},
                    {"reason", result->trouble},

@@ -1,4 +1,5 @@
 #include "system/elaboration.hpp"
+#include "system/field_places.hpp"
 
 #include <fmt/format.h>
 
@@ -229,11 +230,19 @@ bool refuse_force_of_contact(Elaboration& e, Expr normal, const syntax::Expressi
   return false;
 }
 
+/// The coordinate along which friction acts, the value of a field at a place among them.
+std::optional<std::size_t> rubbed_coordinate(Elaboration& e, const syntax::Expression& x) {
+  if (e.fields && x.kind == syntax::Expression::Kind::Call && e.fields->system.jet_of_name(x.text))
+    return coordinate_of_place(e, x);
+  const auto of = start_variable(e, x);
+  return of ? std::optional(of->coordinate) : std::nullopt;
+}
+
 /// friction x coefficient μ static μs normal m g,   friction θ limit M static Ms
 void friction(Elaboration& e, const FrictionStatement& s, Span span) {
-  const auto of = start_variable(e, *s.coordinate);
-  if (!of) return;
-  const Coordinate& c = e.system().coordinates[of->coordinate];
+  const auto along = rubbed_coordinate(e, *s.coordinate);
+  if (!along) return;
+  const Coordinate& c = e.system().coordinates[*along];
   const Dimension force = e.dimension(dimensions::energy()) / c.dimension;
   Friction f;
   f.name = c.name;

@@ -28,7 +28,9 @@ bool is_mechanics(const syntax::Statement& s) {
          std::get_if<syntax::GravityStatement>(&s.body) || std::get_if<syntax::SpringStatement>(&s.body) ||
          std::get_if<syntax::TorsionSpringStatement>(&s.body) || std::get_if<syntax::DamperStatement>(&s.body) ||
          std::get_if<syntax::EnergyStatement>(&s.body) || std::get_if<syntax::ForceStatement>(&s.body) ||
-         std::get_if<syntax::ConstraintStatement>(&s.body) || std::get_if<syntax::EventStatement>(&s.body);
+         std::get_if<syntax::ConstraintStatement>(&s.body) || std::get_if<syntax::EventStatement>(&s.body) ||
+         std::get_if<syntax::ContactStatement>(&s.body) || std::get_if<syntax::FrictionStatement>(&s.body) ||
+         std::get_if<syntax::ImpactStatement>(&s.body);
 }
 
 bool goes_with_fields(const syntax::Statement& s) {
@@ -107,8 +109,9 @@ void refuse_beside_fields(Elaboration& e) {
   for (const syntax::Statement& s : e.tree.statements) {
     if (goes_with_fields(s)) continue;
     e.diagnostics.error("E0505", s.span, "not supported yet: this statement in a model with fields",
-                        "Beside fields stand coordinates, points and bodies, energies, constraints, forces and events; "
-                        "contacts, friction, rates, gauges and paths belong to models of coordinates alone.",
+                        "Beside fields stand coordinates, points and bodies, energies, constraints, forces, contacts, "
+                        "friction and events; rates, gauges, paths, drawings and methods belong to models of "
+                        "coordinates alone.",
                         "Leave this statement out.");
     return;
   }
@@ -145,9 +148,20 @@ std::optional<Expr> attached_symbol(Elaboration& e, const FieldJet& jet, Expr pl
   return e.context.symbol(e.system().coordinates[known->coordinate].name, Role::Coordinate, jet.time);
 }
 
+std::optional<std::size_t> coordinate_of_place(Elaboration& e, const syntax::Expression& x) {
+  const Value q = value_at_place(e, x);
+  if (q.poisoned) return std::nullopt;
+  for (std::size_t i = 0; i < e.system().coordinates.size(); ++i)
+    if (e.system().coordinates[i].q == q.scalar()) return i;
+  e.diagnostics.error("E0288", x.span, fmt::format("`{}` is no coordinate", e.texts.slice(x.span)),
+                      "Friction and forces act along the value of a field at a place, or its slope.",
+                      "Leave the primes out.");
+  return std::nullopt;
+}
+
 void force_on_place(Elaboration& e, const syntax::FieldForce& s, const FieldJet& jet, Span span) {
-  const Value q = value_at_place(e, *s.on);
-  if (q.poisoned) return;
+  const auto on = coordinate_of_place(e, *s.on);
+  if (!on) return;
   const std::string what = fmt::format("the force on {}", e.texts.slice(s.on->span));
   const Value v = scalar_of(e, *s.value, e.dimension(dimensions::energy()) / fields_of(e).dimension_of(jet), what);
   if (v.poisoned || refuse_acceleration(e, v, *s.value, what)) return;
@@ -155,8 +169,7 @@ void force_on_place(Elaboration& e, const syntax::FieldForce& s, const FieldJet&
   f.kind = AppliedForce::Kind::Generalized;
   f.target = std::string(e.texts.slice(s.on->span));
   f.components = {v.scalar()};
-  for (std::size_t i = 0; i < e.system().coordinates.size(); ++i)
-    if (e.system().coordinates[i].q == q.scalar()) f.coordinate = i;
+  f.coordinate = *on;
   f.span = span;
   e.system().forces.push_back(std::move(f));
 }
@@ -276,6 +289,12 @@ void check_places(Elaboration& e) {
   for (const AppliedForce& f : system.forces)
     for (const Expr& c : f.components) refuse_loose_fields(e, c, f.span, "a force");
   for (const Constraint& c : system.constraints) refuse_loose_fields(e, c.value, c.span, "a constraint");
+  for (const Contact& c : system.contacts) {
+    refuse_loose_fields(e, c.gap, c.span, "a contact");
+    for (const Expr& slip : c.friction.slip) refuse_loose_fields(e, slip, c.friction.span, "a slip velocity");
+  }
+  for (const Friction& f : system.frictions)
+    for (const Expr& part : {f.kinetic, f.static_, f.normal}) refuse_loose_fields(e, part, f.span, "a friction");
   refuse_coordinates_in(e, s.density, s.density_span), refuse_coordinates_in(e, s.dissipation, s.density_span);
   for (const Expr& f : s.forces) refuse_coordinates_in(e, f, s.density_span);
 }

@@ -21,6 +21,9 @@ Value coordinate_at_place(Elaboration& e, const syntax::Expression& x, const Fie
 std::string name_of_place_value(Elaboration& e, const syntax::Expression& x, const FieldJet& jet);
 /// Its symbol where it is known; nothing where no body takes hold of the field there.
 std::optional<Expr> attached_symbol(Elaboration& e, const FieldJet& jet, Expr place);
+/// The place in MechanicalSystem::coordinates of u(l) or u_x(l), which becomes one where it is new. Nothing after a
+/// mistake, or where it is no value but a velocity.
+std::optional<std::size_t> coordinate_of_place(Elaboration& e, const syntax::Expression& x);
 /// force u(l) = F, of anything
 void force_on_place(Elaboration& e, const syntax::FieldForce& s, const FieldJet& jet, Span span);
 /// Clashes of places with boundary conditions; fields without a place, coordinates in densities. After all else.

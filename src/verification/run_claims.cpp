@@ -31,20 +31,6 @@ void report_drift(ExpectationResult& result, double drift, double tolerance) {
   if (!result.passed) result.message = "It changes more than the tolerance along the run.";
 }
 
-/// Whether a happening is one of those that are asked for: without a word for the change a contact's impacts and
-/// changes, where one that is hit and stays closed counts once.
-std::vector<const Happening*> happenings_of(const SimulationResult& run, const std::string& name,
-                                            const std::string& change) {
-  std::vector<const Happening*> out;
-  for (const Happening& h : run.happenings) {
-    if (h.name != name || (!change.empty() && word_of(h.kind) != change)) continue;
-    const bool same_as_last = change.empty() && !out.empty() && h.kind == Happening::Kind::Made &&
-                              out.back()->kind == Happening::Kind::Impact && out.back()->t == h.t;
-    if (!same_as_last) out.push_back(&h);
-  }
-  return out;
-}
-
 /// What impacts, friction and moving contacts do to the energy, in units of the largest that it has.
 double energy_exchanged(const SimulationResult& run) {
   if (!run.books) return 0;
@@ -56,11 +42,23 @@ double energy_exchanged(const SimulationResult& run) {
   return exchanged == 0 ? 0 : exchanged / std::max(largest, exchanged);
 }
 
-std::string called(const std::string& name, const std::string& change) {
-  return change.empty() ? name : name + " " + change;
+}  // namespace
+
+std::vector<const Happening*> happenings_named(const std::vector<Happening>& all, const std::string& name,
+                                               const std::string& change) {
+  std::vector<const Happening*> out;
+  for (const Happening& h : all) {
+    if (h.name != name || (!change.empty() && word_of(h.kind) != change)) continue;
+    const bool same_as_last = change.empty() && !out.empty() && h.kind == Happening::Kind::Made &&
+                              out.back()->kind == Happening::Kind::Impact && out.back()->t == h.t;
+    if (!same_as_last) out.push_back(&h);
+  }
+  return out;
 }
 
-}  // namespace
+std::string happening_called(const std::string& name, const std::string& change) {
+  return change.empty() ? name : name + " " + change;
+}
 
 bool RunClaims::watches_whole_run() const {
   return !(energies_.empty() && drifts_.empty() && events_.empty() && counts_.empty());
@@ -215,7 +213,7 @@ void RunClaims::judge_event(const Event& event, const std::optional<SimulationRe
     result.message = kNoStart;
     return;
   }
-  const auto found = happenings_of(*run, e.name, e.change);
+  const auto found = happenings_named(run->happenings, e.name, e.change);
   if (found.size() >= static_cast<std::size_t>(e.occurrence)) {
     const Happening& h = *found[static_cast<std::size_t>(e.occurrence) - 1];
     judge_value(e.time, h.t, h.error, result);
@@ -223,7 +221,8 @@ void RunClaims::judge_event(const Event& event, const std::optional<SimulationRe
   }
   result.actual = fmt::format("{} times", found.size());
   result.expected = fmt::format("at least {}", e.occurrence);
-  result.message = fmt::format("`{}` happens {} times along the run.", called(e.name, e.change), found.size());
+  result.message =
+      fmt::format("`{}` happens {} times along the run.", happening_called(e.name, e.change), found.size());
   if (!run->ok()) result.message += " " + ended_before(run->reason);
 }
 
@@ -234,12 +233,14 @@ void RunClaims::judge_count(const EventCount& count, const std::optional<Simulat
     result.message = kNoStart;
     return;
   }
-  const double found = static_cast<double>(happenings_of(*run, e.name, e.change).size()), expected = number(e.number);
+  const double found = static_cast<double>(happenings_named(run->happenings, e.name, e.change).size()),
+               expected = number(e.number);
   result.actual = fmt::format("{:g}", found);
   result.expected = fmt::format("{:g}", expected);
   result.passed = found == expected && run->ok();
-  result.message = run->ok() ? fmt::format("`{}` happens {:g} times along the run", called(e.name, e.change), found)
-                             : ended_before(run->reason);
+  result.message = run->ok()
+                       ? fmt::format("`{}` happens {:g} times along the run", happening_called(e.name, e.change), found)
+                       : ended_before(run->reason);
 }
 
 void RunClaims::judge_energy(const Energy& energy, const std::optional<SimulationResult>& run,

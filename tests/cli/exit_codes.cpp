@@ -34,7 +34,7 @@ TEST_CASE("1: a wrong model, with the place and one message") {
 TEST_CASE("1: statements and commands of later versions say so") {
   const Outcome statement = maup({"check", "-"},
                                  "dimensionless\nfield u(x) : number on x = 0 .. 1\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
-                                 "coord y : number\nT = 1/2 y'^2\ncontact y >= 0\n");
+                                 "coord y : number\nT = 1/2 y'^2\nrates w = y'\n");
   CHECK(statement.code == 1);
   CHECK(contains(statement.err, "not supported yet"));
   for (const char* command : {"sweep", "export"}) {

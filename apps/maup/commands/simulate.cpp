@@ -2,6 +2,7 @@
 #include "extended_text.hpp"
 #include "field_views.hpp"
 #include "fields_text.hpp"
+#include "happenings_text.hpp"
 #include "numbers.hpp"
 #include "outcome.hpp"
 #include "output_files.hpp"
@@ -95,23 +96,6 @@ Json uncertain_json(const SimulationResult& result) {
   return {{"from", result.uncertain.from}, {"what", std::move(names)}, {"everything", result.uncertain.everything}};
 }
 
-Json happening_json(const Happening& h, const MechanicalSystem& system) {
-  Json state = Json::object();
-  for (std::size_t i = 0; i < h.q.size(); ++i) {
-    state[system.coordinates[i].name] = number_or_null(h.q[i]);
-    state[system.coordinates[i].name + "'"] = number_or_null(h.v[i]);
-  }
-  Json out = {{"t", h.t},
-              {"error", number_or_null(h.error)},
-              {"what", word_of(h.kind)},
-              {"name", h.name},
-              {"state", std::move(state)}};
-  if (h.kind == Happening::Kind::Impact) out["impulse"] = h.impulse, out["speed"] = h.speed;
-  if (system.has_modes()) out["mode"] = h.mode;
-  if (!h.remark.empty()) out["remark"] = h.remark;
-  return out;
-}
-
 Json document_of(const SimulationResult& result, const MechanicalSystem& system) {
   Json document = json_document("simulate");
   document["system"] = system.name;
@@ -133,15 +117,7 @@ Json document_of(const SimulationResult& result, const MechanicalSystem& system)
                             {"companions", s.companions},
                             {"companion_seconds", s.companion_seconds}};
   document["uncertain"] = uncertain_json(result);
-  document["events"] = Json::array();
-  for (const Happening& h : result.happenings) document["events"].push_back(happening_json(h, system));
-  if (system.has_modes()) document["first_mode"] = result.first_mode;
-  if (result.books)
-    document["energy_books"] = {{"impacts", result.books->impacts},
-                                {"moving_contacts", result.books->moving},
-                                {"friction", result.books->friction},
-                                {"dampers", result.books->dampers}};
-  document["remarks"] = result.remarks;
+  put_happenings(document, chronicle_of(result), system);
   document["ended"] = {{"reason", result.reason.empty() ? std::string(word_of(result.ending)) : result.reason},
                        {"kind", word_of(result.ending)},
                        {"ok", result.ok()}};
@@ -197,46 +173,8 @@ std::string uncertain_text(const SimulationResult& result, const MechanicalSyste
                               : fmt::format("From {} on no digit is certain of {}.\n", from, names);
 }
 
-/// The first and the last of them, a line each.
-std::string happenings_text(const SimulationResult& result, const MechanicalSystem& system) {
-  constexpr std::size_t most = 24, first = 16;
-  std::string out;
-  if (system.has_modes())
-    out +=
-        fmt::format("begins {}\n", result.first_mode.empty() ? "without contact" : "in the mode " + result.first_mode);
-  const std::size_t count = result.happenings.size();
-  for (std::size_t k = 0; k < count; ++k) {
-    if (count > most && k == first) {
-      k = count - (most - first);
-      out += fmt::format("  … {} more, all with --json …\n", k - first);
-    }
-    const Happening& h = result.happenings[k];
-    const std::string time = h.error == 0          ? exact(h.t)
-                             : std::isinf(h.error) ? exact(h.t) + " (no digit is certain)"
-                                                   : with_uncertainty(h.t, h.error);
-    out += fmt::format("  {}  {} {}", system.moment(time), h.name, word_of(h.kind));
-    if (h.kind == Happening::Kind::Impact)
-      out += ", impulse " + impulse_text(fmt::format("{:.6g}", h.impulse), h.name, system);
-    if (!h.remark.empty()) out += ": " + h.remark;
-    if (system.has_modes() && !(h.kind == Happening::Kind::Event || h.kind == Happening::Kind::Impact))
-      out += h.mode.empty() ? " → free" : " → " + h.mode;
-    out += "\n";
-  }
-  for (const std::string& remark : result.remarks) out += "  " + remark + "\n";
-  if (result.books) {
-    const std::string unit = system.dimensionless ? "" : " J";
-    out += fmt::format("energy lost: impacts {}{}, friction {}{}, dampers {}{}", brief(result.books->impacts), unit,
-                       brief(result.books->friction), unit, brief(result.books->dampers), unit);
-    if (const double moving = result.books->moving; moving != 0)
-      out += fmt::format("; {} moving contacts {}{}", moving > 0 ? "gained from" : "given to", brief(std::abs(moving)),
-                         unit);
-    out += "\n";
-  }
-  return out;
-}
-
 std::string text_of(const SimulationResult& result, const MechanicalSystem& system) {
-  std::string out = happenings_text(result, system);
+  std::string out = happenings_text(chronicle_of(result), system);
   for (const State& state : result.at) out += state_text(state, result, system);
   if (result.at.empty() || result.at.back().t != result.final.t) out += state_text(result.final, result, system);
   const SimulationStatistics& s = result.statistics;
@@ -369,8 +307,8 @@ ExitCode simulate_fields(const SimulateOptions& options, Study& study, Console& 
   if (!options.output.empty()) write_rows(options.output, run->trajectory, study.diagnostics());
   if (!options.plot.empty())
     write_picture(options.plot, pictures_of_fields(study, *equations, *run, {}), study.diagnostics());
-  if (!console.json()) console.print(field_run_text(*run));
-  const ExitCode told = finish(console, study, field_run_json(*run));
+  if (!console.json()) console.print(field_run_text(*run, study.model()->system));
+  const ExitCode told = finish(console, study, field_run_json(*run, study.model()->system));
   return run->trouble.empty() || told != ExitCode::Fine ? told : ExitCode::RunFailed;
 }
 

@@ -268,7 +268,7 @@ TEST_CASE("a run of a field and bodies ends where a place says so, and events ar
   REQUIRE(run);
   REQUIRE(run->happenings.size() == 1);
   CHECK(run->happenings[0].name == "through");
-  CHECK(std::abs(run->happenings[0].time - std::acos(-1.0) / 2 / (2 * k)) < 1e-5);
+  CHECK(std::abs(run->happenings[0].t - std::acos(-1.0) / 2 / (2 * k)) < 1e-5);
 }
 
 TEST_CASE("what a start, a density, friction or a load has between the nodes of a field with bodies is refused") {
