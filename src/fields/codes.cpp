@@ -12,9 +12,10 @@ constexpr CodeEntry kEntries[] = {
      "# maup simulate\nfield u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\n"
      "density = 1/2 ρ u'^2 - 1/2 T u_x^2\nboundary left : u_x = 1\nrun 1 s\n"},
     {"E0508", "a run or an expectation of fields that is not supported yet",
-     "Runs are those of fields of one space variable on a domain, or of two where the density holds u, u' squared, u_x "
-     "and u_y. All fields have derivations, conservation laws and waves. Expectations of fields hold at the values of "
-     "the model.",
+     "Runs are those of fields of one space variable on a domain or of two on a rectangle: waves, beams and plates, "
+     "and "
+     "fields of first order in time, with coordinates and bodies on those of one variable. Fields of three space "
+     "variables, without a domain, or with an input that has no formula have derivations, conservation laws and waves.",
      "# maup simulate\nfield u(x) : length\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nrun 1 s\n",
      "# maup simulate\nfield u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\n"
      "density = 1/2 ρ u'^2 - 1/2 T u_x^2\nrun 1 s\n"},
@@ -101,7 +102,7 @@ constexpr CodeEntry kEntries[] = {
      "start w = exp(-x^2)\nrun 1/10\n"},
     {"E0656", "a mesh too large for a run with bodies",
      "Fields that bodies take hold of, and those whose density changes at a place, run as one system of at most 200 "
-     "unknowns of elements. Elements of high order need few of them.",
+     "unknowns of elements. Elements of high order need few of them: 10 elements of order 16 have 161.",
      "# maup simulate\nfield u(x) : length on x = 0 m .. 1 m cells 400\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\n"
      "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nT = 1/2 m u(1 m)'^2\nrun 1 s\n",
      "# maup simulate\nfield u(x) : length on x = 0 m .. 1 m cells 10\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\n"
@@ -114,6 +115,14 @@ constexpr CodeEntry kEntries[] = {
      "# maup simulate\nfield u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\n"
      "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nT = 1/2 m u(1 m)'^2\ncontact u(1 m) <= 10 cm restitution 1/2\n"
      "start u' = 1 m/s\nrun 1/2 s\n"},
+    {"E0659", "static friction on a field without a mass",
+     "Where friction gives way with μ_s > μ its force jumps, and with it the velocity of a string at that place: by "
+     "ΔF/(2 Z) with the impedance Z. A mesh follows such a jump with oscillations, on which friction catches hold "
+     "again.",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N\n"
+     "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nfriction u(1 m) limit 0.1 N static 0.2 N\nstart u' = 1 m/s\n",
+     "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N\n"
+     "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nfriction u(1 m) limit 0.1 N\nstart u' = 1 m/s\n"},
     {"W0658", "modes of a field without contacts and dry friction",
      "Modes are small motions of one linear system. A contact that is closed holds the system on one side alone, and "
      "dry "
@@ -133,9 +142,9 @@ constexpr CodeEntry kEntries[] = {
      "# maup simulate\ndimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 20, 20 order 6\n"
      "density = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2) - (1 - cos u)\nrun 1\n"},
     {"E0644", "no modes of a field",
-     "Frequencies are those of small motions about φ = 0 of a field of one or two space variables with a domain, with "
-     "constant "
-     "coefficients in time and a positive energy.",
+     "Frequencies are those of small motions about a rest, the start where it is one, else φ = 0, of a field of one or "
+     "two space variables with a domain, coefficients that are constant in time and a positive energy; dispersion "
+     "relations those of waves through coefficients that are constant in space too.",
      "# maup modes\nfield u(x) : length on x = 0 m .. 1 m cells 20 boundary u = 0\n"
      "param ρ = 1 kg/m, T0 = 1 N, τ = 2 s\ndensity = 1/2 ρ u'^2 - 1/2 T0 (1 + t/τ) u_x^2\n",
      "# maup modes\nfield u(x) : length on x = 0 m .. 1 m cells 20 boundary u = 0\nparam ρ = 1 kg/m, T0 = 1 N\n"

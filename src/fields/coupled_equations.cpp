@@ -225,6 +225,22 @@ void refuse_impacts_without_mass(const FieldEquations& equations, Diagnostics& d
     }
 }
 
+/// E0659 where a field without a mass would be let go by friction with a jump of its force.
+void refuse_static_friction_without_mass(const FieldEquations& equations, Diagnostics& diagnostics) {
+  const EquationsOfMotion& bodies = *equations.bodies;
+  for (const Friction& friction : bodies.system->frictions)
+    for (const PlaceCoordinate& p : equations.model->attached) {
+      const Coordinate& c = bodies.system->coordinates[p.coordinate];
+      if (differentiate(friction.slip.front(), c.velocity).is_zero() || has_inertia(bodies, p.coordinate)) continue;
+      if (zero_test(friction.static_ - friction.kinetic).verdict == Verdict::Zero) continue;
+      diagnostics.error(
+          "E0659", friction.span, fmt::format("friction that holds {} more than it brakes, where no mass is", c.name),
+          "Where it gives way its force falls at once, and a field without a mass there has another velocity at once: "
+          "on a mesh that jump rings, and friction catches the field again and again.",
+          fmt::format("Attach a mass, T = 1/2 m {}'^2, or leave `static` out.", c.name));
+    }
+}
+
 }  // namespace
 
 void attach_bodies(FieldEquations& equations, std::shared_ptr<const Model> model, Diagnostics& diagnostics) {
@@ -235,6 +251,7 @@ void attach_bodies(FieldEquations& equations, std::shared_ptr<const Model> model
     if (!bodies) return;
     equations.bodies = std::make_shared<const EquationsOfMotion>(std::move(*bodies));
     refuse_impacts_without_mass(equations, diagnostics);
+    refuse_static_friction_without_mass(equations, diagnostics);
   }
   if (s.space.size() != 1) return;
   const Bindings values = parameter_values(equations);

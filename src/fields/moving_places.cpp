@@ -88,7 +88,7 @@ bool SemiDiscrete::set_moving_places(Diagnostics& diagnostics) {
   std::set<std::size_t> gone;
   for (const PlaceCoordinate& p : equations_->model->attached) {
     if (!p.moves) continue;
-    if (refuse_turning(p, diagnostics) || !follow(p, diagnostics)) return false;
+    if (refuse_turning(p, diagnostics) || refuse_contact(p, diagnostics) || !follow(p, diagnostics)) return false;
     std::size_t a = 0;
     while (equations_->varied[a] != p.jet.field) ++a;
     const Coordinate& c = model_.system.coordinates[p.coordinate];
@@ -120,6 +120,25 @@ bool SemiDiscrete::refuse_turning(const PlaceCoordinate& p, Diagnostics& diagnos
       "The curvatures of the elements jump at their borders, and with them the angular velocity of what rolls there.",
       "Leave the rotary inertia and the constraint on the slope out, or put them at a constant place.");
   return true;
+}
+
+/// E0508: a gap between the elements of one field, whose polynomials meet to rounding alone.
+bool SemiDiscrete::refuse_contact(const PlaceCoordinate& p, Diagnostics& diagnostics) const {
+  const MechanicalSystem& system = model_.system;
+  const Coordinate& c = system.coordinates[p.coordinate];
+  for (const Contact& contact : system.contacts) {
+    bool acts = !differentiate(expand_time_derivatives(contact.gap), c.q).is_zero();
+    for (const Expr& slip : contact.friction.slip) acts = acts || !differentiate(slip, c.velocity).is_zero();
+    if (!acts) continue;
+    diagnostics.error("E0508", contact.span,
+                      fmt::format("not supported yet: a run with a contact of {}, at a place that moves", c.name),
+                      "Contacts act at constant places of a field, and on coordinates; the surface that a field makes "
+                      "along a path is "
+                      "one of each element for itself.",
+                      "Write the contact of the coordinate that moves along the field, or at a constant place.");
+    return true;
+  }
+  return false;
 }
 
 /// The run ends where a place leaves the domain, by more than rounding; it begins inside.

@@ -72,6 +72,7 @@ class SemiDiscrete {
   bool has_slopes(std::size_t field) const;
   bool set_moving_places(Diagnostics& diagnostics);
   bool refuse_turning(const PlaceCoordinate& place, Diagnostics& diagnostics) const;
+  bool refuse_contact(const PlaceCoordinate& place, Diagnostics& diagnostics) const;
   bool follow(const PlaceCoordinate& place, Diagnostics& diagnostics);
   void share_forces(const std::set<std::size_t>& gone);
   void remove_coordinates(const std::set<std::size_t>& gone);

@@ -324,9 +324,10 @@ ExitCode derive_fields(const DeriveOptions& options, Study& study, Console& cons
   if (!study.field_equations()) return finish(console, study, json_document("derive"));
   const InterruptScope scope = study.interruptible();
   if (study.model()->system.has_modes())
-    study.diagnostics().note("N0505", std::nullopt, "these are the equations without contact and without dry friction",
-                             "While a contact is closed, or friction sticks or slides, their forces are added.",
-                             "`maup simulate` tells which modes a run goes through.");
+    study.diagnostics().note(
+        "N0505", std::nullopt, "these are the equations without contact and without dry friction",
+        "While a contact is closed, or friction sticks or slides, their forces are added.",
+        "--mode \"floor\" shows those of one mode; `maup simulate` tells which ones a run goes through.");
   if (console.json()) return finish(console, study, fields_json(study));
   const bool one_notation = options.latex || options.mathml || options.plain;
   if (one_notation)

@@ -68,8 +68,7 @@ double flight(double mass, double e) {
 
 TEST_CASE("a bar with a mass at its end bounces off a wall as its waves say") {
   constexpr double m = 0.5, e = 0.5, gap = 0.1;
-  const FieldRunResult run =
-      run_of(bar(m, fmt::format("contact u(1) <= {} restitution {} name wall", gap, e)), 0.6);
+  const FieldRunResult run = run_of(bar(m, fmt::format("contact u(1) <= {} restitution {} name wall", gap, e)), 0.6);
   REQUIRE(run.happenings.size() == 2);
   const Happening &first = run.happenings[0], &second = run.happenings[1];
   CHECK(std::abs(first.t - gap) < 1e-14);
@@ -99,8 +98,8 @@ TEST_CASE("a bar with a mass stays at the wall until the wave from its free end 
 
 TEST_CASE("a wall that gives everything back leaves the energy of bar and mass") {
   check_passes(bar(0.2, "contact u(1) <= 0.05 restitution 1 name wall") + "run 1\nexpect energy conserved rel 1e-12\n");
-  Study study(SourceText("contact.lag", bar(0.2, "contact u(1) <= 0.05 restitution 1/2") +
-                                            "run 1\nexpect energy conserved rel 1e-12\n"));
+  Study study(SourceText(
+      "contact.lag", bar(0.2, "contact u(1) <= 0.05 restitution 1/2") + "run 1\nexpect energy conserved rel 1e-12\n"));
   CHECK(!study.verification()->passed());  // impacts take some, whatever the books say of the rest
 }
 
@@ -151,8 +150,17 @@ TEST_CASE("impacts on a field without a mass are refused, modes say what they le
   Study elsewhere(SourceText("contact.lag", bar(1, "contact u(1/2) <= 0.1 restitution 1/2")));
   elsewhere.field_equations();
   CHECK(codes_of(elsewhere) == "E0657 ");
-  Study tied(SourceText("contact.lag", bar(0, "coord y : number\nT = 1/2 y'^2\nconstraint y = u(1)\n"
-                                              "contact u(1) <= 0.1 restitution 1/2")));
+  Study let_go(SourceText("contact.lag", bar(0, "friction u(1) limit 0.2 static 0.3")));
+  let_go.field_equations();
+  CHECK(codes_of(let_go) == "E0659 ");
+  Study rides(SourceText("contact.lag", bar(0,
+                                            "coord s : number\nT = 1/2 (s'^2 + u(s)'^2)\ncontact u(s) <= 0.1\n"
+                                            "run 1\nexpect s at 1 = 0 ± 1")));
+  rides.verification();
+  CHECK(codes_of(rides) == "E0508 ");
+  Study tied(SourceText("contact.lag", bar(0,
+                                           "coord y : number\nT = 1/2 y'^2\nconstraint y = u(1)\n"
+                                           "contact u(1) <= 0.1 restitution 1/2")));
   tied.field_equations();
   CHECK(codes_of(tied).empty());
   Study modes(SourceText("contact.lag", bar(1, "contact u(1) <= 0.1 restitution 1/2")));
