@@ -28,7 +28,7 @@ std::string plain_of(const FieldEquations& equations, Expr e) { return to_plain(
 /// Whether the condition is no natural one at this end: the field is given there, or bodies take hold of it.
 bool is_essential(const FieldEquations& equations, const NaturalCondition& n, bool right) {
   const FieldSystem& s = equations.system();
-  if (s.periodic) return true;
+  if (s.periodic(n.along)) return true;
   for (const InterfaceCondition& c : equations.interfaces)
     if (c.field == n.field && c.moment == n.moment && c.end && (*c.end == BoundaryCondition::Side::Right) == right)
       return true;
@@ -45,7 +45,9 @@ std::string where_natural(const FieldEquations& equations, const NaturalConditio
   const FieldSystem& s = equations.system();
   const std::string& x = s.space[n.along].name;
   const std::string name = s.fields[n.field].name + (n.moment ? "_" + x : "");
-  if (s.periodic) return fmt::format("where δ{} is free; the domain is periodic and has no end", name);
+  if (s.periodic(n.along))
+    return fmt::format("where δ{} is free; the domain is periodic{} and has no end{}", name,
+                       s.periodic() ? "" : " along " + x, s.periodic() ? "" : " there");
   const bool left = !is_essential(equations, n, false), right = !is_essential(equations, n, true);
   if (!s.space[n.along].from) return fmt::format("at an end of {} where {} is free", x, name);
   if (left && right) return fmt::format("at both ends of {}, where {} is free", x, name);
@@ -282,6 +284,19 @@ Json fields_json(Study& study) {
   return document;
 }
 
+namespace {
+
+/// "periodic", "periodic along x"; empty where the domain has all its sides.
+std::string periodic_text(const FieldSystem& s) {
+  if (s.periodic()) return "periodic";
+  std::string out;
+  for (std::size_t i = 0; i < s.space.size(); ++i)
+    if (s.periodic(i)) out += (out.empty() ? "periodic along " : ", ") + s.space[i].name;
+  return out;
+}
+
+}  // namespace
+
 std::string fields_summary(Study& study) {
   const FieldEquations& equations = equations_of(study);
   const FieldSystem& s = equations.system();
@@ -316,7 +331,7 @@ std::string fields_summary(Study& study) {
                     system.dimensionless ? "" : to_string(x.dimension), cells);
   }
   line("domain", domain.empty() ? "all space" : domain);
-  std::string boundary = s.periodic ? "periodic" : "";
+  std::string boundary = periodic_text(s);
   constexpr const char* sides[] = {"left", "right", "bottom", "top"};
   for (const BoundaryCondition& b : s.boundary)
     boundary += fmt::format("{}{} at the {}", boundary.empty() ? "" : ", ",

@@ -26,6 +26,7 @@ struct FieldDeclaration {
   std::vector<ExpressionPtr> cells;  // one a variable, or none
   ExpressionPtr order;               // of the elements; null: not written
   bool periodic = false;
+  std::vector<Name> around;        // periodic x: along these space variables; empty: along all
   std::vector<Equation> boundary;  // at both ends
   Span boundary_span;
 };

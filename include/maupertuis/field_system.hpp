@@ -86,7 +86,7 @@ struct FieldSystem {
   std::vector<Expr> forces;   // [fields] per volume; an empty handle: none
   std::vector<EndForce> end_forces;
   std::vector<BoundaryCondition> boundary;
-  bool periodic = false;
+  std::vector<bool> around;     // [space variables] where the field goes on from one end to the other; empty: nowhere
   int element_order = 0;        // 0: not written
   Dimension density_dimension;  // energy/length^d
   Span density_span;
@@ -103,6 +103,9 @@ struct FieldSystem {
   Expr total_derivative(Expr e, std::size_t variable) const;
   /// With the values of definitions in the place of their symbols.
   Expr expanded(Expr e) const;
+  bool periodic(std::size_t direction) const { return direction < around.size() && around[direction]; }
+  /// Along every direction: the domain has no side.
+  bool periodic() const;
   /// The name of a jet as the language has it: u, u', u_xx, u_tx.
   std::string jet_name(const FieldJet& jet) const;
 };

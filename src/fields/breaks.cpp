@@ -118,7 +118,7 @@ class Search {
         const double least = small * size / std::pow(ranges_[i].cell(), k);
         std::optional<FieldBreak> found;
         if (inside) found = find_jump(g, ranges_[i], least);
-        if (!found && s.periodic && std::abs(g.at(ranges_[i].from) - g.at(ranges_[i].to)) > least)
+        if (!found && s.periodic(i) && std::abs(g.at(ranges_[i].from) - g.at(ranges_[i].to)) > least)
           found = seam(g, ranges_[i]);
         if (!found) continue;
         found->start = line, found->direction = i, found->derivative = k;

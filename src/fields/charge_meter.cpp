@@ -102,7 +102,7 @@ ChargeMeter::ChargeMeter(const FieldMotion& motion, const FieldEquations& equati
       const Expr flux = with_given_fields(s, c.fluxes[x]);
       const std::vector<Expr> symbols = symbols_of({&flux, 1});
       // Around a ring as much comes in as goes out, where the flux is the same function on both sides.
-      flows_.back().push_back(!flux.is_zero() && !(s.periodic && !holds(symbols, s.space[x].symbol)));
+      flows_.back().push_back(!flux.is_zero() && !(s.periodic(x) && !holds(symbols, s.space[x].symbol)));
       any_flow_ = any_flow_ || flows_.back().back();
       fluxes.push_back(flux);
       for (const Expr& jet : s.jets_in(flux))

@@ -17,11 +17,9 @@ namespace {
 using Side = BoundaryCondition::Side;
 
 void unsupported(Diagnostics& diagnostics, Span span, const std::string& what) {
-  diagnostics.error(
-      "E0508", span, fmt::format("not supported yet: a run of {}", what),
-      "Runs are those of fields of one or two space variables on a bounded domain whose density holds u, u' and u_x, "
-      "with u' in it squared.",
-      "`maup derive`, `maup invariants` and expectations about formulas work for all fields.");
+  diagnostics.error("E0508", span, fmt::format("not supported yet: a run of {}", what),
+                    "Runs are those of fields of one or two space variables on a bounded domain.",
+                    "`maup derive`, `maup invariants` and expectations about formulas work for all fields.");
 }
 
 /// φ or φ' where `along` is beyond the space variables, else its derivative along one.
@@ -95,6 +93,33 @@ std::optional<PointForm> point_form(const FieldEquations& equations, Diagnostics
   return out;
 }
 
+namespace {
+
+std::vector<Expr> roots_of_line(const PointForm& form) {
+  std::vector<Expr> out;
+  for (const auto* part : {&form.a, &form.g, &form.s}) out.insert(out.end(), part->begin(), part->end());
+  return out;
+}
+
+/// x, t, and φ and φ' of each field: inputs whose past is read.
+std::vector<std::size_t> inputs_that_last(std::size_t fields) {
+  std::vector<std::size_t> out{4 * fields, 4 * fields + 1};
+  for (std::size_t f = 0; f < fields; ++f) out.push_back(4 * f), out.push_back(4 * f + 1);
+  return out;
+}
+
+}  // namespace
+
+double FieldMesh::bytes(const FieldEquations& equations, const PointForm& form, double cells, int order) {
+  std::unordered_map<Expr, double, ExprHash> constants;
+  for (const Parameter& p : equations.model->parameters) constants[p.symbol] = p.si_value;
+  std::string trouble;
+  auto series = LaneSeries::make(roots_of_line(form), form.inputs, constants, trouble);
+  if (!series) return 0;
+  series->keep(inputs_that_last(form.fields), form.a.size());
+  return series->bytes(cells * (order + 1), kOrder + 2);
+}
+
 FieldMesh::FieldMesh(const FieldEquations& equations, const PointForm& form, int cells, int order)
     : WaveMesh(equations),
       form_(form),
@@ -107,8 +132,7 @@ FieldMesh::FieldMesh(const FieldEquations& equations, const PointForm& form, int
   for (const Parameter& p : equations.model->parameters) constants[p.symbol] = values_[p.symbol] = p.si_value;
   left_ = value_of(s_.space.front().from, {});
   width_ = (value_of(s_.space.front().to, {}) - left_) / cells;
-  std::vector<Expr> roots;
-  for (const auto* part : {&form.a, &form.g, &form.s}) roots.insert(roots.end(), part->begin(), part->end());
+  const std::vector<Expr> roots = roots_of_line(form);
   const std::vector<Expr> sizes{form.energy};
   auto series = LaneSeries::make(roots, form.inputs, constants, trouble_);
   auto energies = LaneSeries::make(sizes, form.inputs, constants, trouble_);
@@ -122,9 +146,7 @@ FieldMesh::FieldMesh(const FieldEquations& equations, const PointForm& form, int
       const std::vector<Expr> below = symbols_of(one);
       needs_rate_ = needs_rate_ || std::find(below.begin(), below.end(), form.inputs[4 * f + 3]) != below.end();
     }
-  std::vector<std::size_t> read{4 * fields_, 4 * fields_ + 1};
-  for (std::size_t f = 0; f < fields_; ++f) read.push_back(4 * f), read.push_back(4 * f + 1);
-  series_.keep(read, form.a.size());
+  series_.keep(inputs_that_last(fields_), form.a.size());
   series_.resize(lanes_, kOrder + 2);
   constant_mass_ = form.constant_mass;
   double* x = series_.input(4 * fields_, 0);
@@ -279,7 +301,7 @@ void FieldMesh::share(std::vector<double>& lanes) const {
   double* first = lanes.data();
   double* last = lanes.data() + local(p_, 0);
   for (int e = 0; e + 1 < cells_; ++e) first[e + 1] = last[e] = last[e] + first[e + 1];
-  if (s_.periodic) first[0] = last[cells_ - 1] = last[cells_ - 1] + first[0];
+  if (s_.periodic(0)) first[0] = last[cells_ - 1] = last[cells_ - 1] + first[0];
 }
 
 /// M⁻¹ at each node.
@@ -425,7 +447,7 @@ double FieldMesh::omega_max(const Interrupt& interrupt) {
   fill_randomly(w);
   for (auto& row : w) {
     for (int e = 0; e + 1 < cells_; ++e) row[local(0, e + 1)] = row[local(p_, e)];
-    if (s_.periodic) row[local(0, 0)] = row[local(p_, cells_ - 1)];
+    if (s_.periodic(0)) row[local(0, 0)] = row[local(p_, cells_ - 1)];
   }
   for (const Held& held : held_)
     if (!held.force) w[held.field][held.right ? local(p_, cells_ - 1) : local(0, 0)] = 0;
@@ -512,7 +534,7 @@ std::vector<std::vector<double>> FieldMesh::element_inputs(std::size_t cell) con
 std::vector<double> FieldMesh::inputs_at_end(bool right) {
   const auto inputs = element_inputs(right ? static_cast<std::size_t>(cells_) - 1 : 0);
   std::vector<double> out = right ? inputs.back() : inputs.front();
-  if (s_.periodic) return out;
+  if (s_.periodic(0)) return out;
   std::vector<double> s(fields_, 0), accelerations(fields_, 0);
   std::vector<bool> is_held(fields_, false);
   for (const Held& held : held_) {

@@ -48,6 +48,8 @@ class FieldMesh final : public WaveMesh {
   double field_at(std::size_t field, const FieldJet& jet, const std::vector<double>& place) const override;
   /// Steps that the series bounds are so many times as long: of a mesh whose difference to another is to tell of steps.
   void lengthen_steps(double times) { longer_ = times; }
+  /// Bytes that a mesh takes.
+  static double bytes(const FieldEquations& equations, const PointForm& form, double cells, int order);
   std::size_t nodes() const { return static_cast<std::size_t>(cells_) * static_cast<std::size_t>(p_); }
 
  private:

@@ -107,7 +107,7 @@ class ModeProblem {
     constexpr int least = 8, step = 2;
     mesh_.degree = std::max(std::clamp(size.unknowns / elements, least, size.degree), before + step);
     mesh_.points = 2 * mesh_.degree;
-    mesh_.periodic = s_.periodic;
+    mesh_.periodic = s_.periodic(0);
     for (std::size_t a = 0; a < equations_.varied.size(); ++a) {
       spaces_.emplace_back(mesh_, smooth[a] ? SpaceKind::Smooth : SpaceKind::Continuous);
       first_.push_back(size_);
@@ -416,7 +416,7 @@ FieldModes field_modes(const FieldEquations& equations, std::size_t count, Diagn
   if (equations.bodies && equations.bodies->system->has_modes())
     diagnostics.warning("W0658", s.density_span, "these are the modes with open contacts and without dry friction",
                         "A closed contact holds the system on one side alone, and dry friction up to a limit.",
-                        "`maup simulate` has them; a contact that stays closed is a `constraint`.");
+                        "--mode \"floor\" has those of one mode; `maup simulate` goes through all.");
   if (refuse_too_many_conditions(equations, diagnostics)) return out;
   if (s.space.size() == 2) return plane_modes(equations, count, diagnostics);
   if (s.space.size() != 1 || !s.space.front().from) {

@@ -19,11 +19,14 @@ Expr at_rest(const FieldEquations& equations, const FieldRest& rest, Expr e) {
   return substitute(e, rest.values(equations, e));
 }
 
+/// Along the directions that go around.
 bool closes(const FieldSystem& s, const FieldRest& rest) {
   for (const Expr& field : rest.fields)
-    for (const SpaceVariable& x : s.space)
-      for (const Expr& e : {field, differentiate(field, x.symbol)})
-        if (!vanishes_identically(s.expanded(substitute(e, {{x.symbol, x.from}}) - substitute(e, {{x.symbol, x.to}}))))
+    for (std::size_t i = 0; i < s.space.size(); ++i)
+      for (const Expr& e : {field, differentiate(field, s.space[i].symbol)})
+        if (const SpaceVariable& x = s.space[i];
+            s.periodic(i) &&
+            !vanishes_identically(s.expanded(substitute(e, {{x.symbol, x.from}}) - substitute(e, {{x.symbol, x.to}}))))
           return false;
   return true;
 }
@@ -39,14 +42,15 @@ bool stays_at_ends(const FieldEquations& equations, const FieldRest& rest) {
   const FieldSystem& s = equations.system();
   if (!s.end_forces.empty()) return false;
   if (!s.space.front().from || equations.bodies) return true;
-  if (s.periodic) return closes(s, rest);
+  if (!closes(s, rest)) return false;
   for (const BoundaryCondition& b : s.boundary) {
     const Expr jet = s.jet_symbol(b.jet);
     if (!vanishes_identically(on_side(s, at_rest(equations, rest, jet), b.side) - s.expanded(b.value))) return false;
   }
   for (const NaturalCondition& n : equations.natural)
     for (const Side side : sides_across(n.along))
-      if (!is_given(s, n, side) && !vanishes_identically(on_side(s, at_rest(equations, rest, n.value), side)))
+      if (!s.periodic(n.along) && !is_given(s, n, side) &&
+          !vanishes_identically(on_side(s, at_rest(equations, rest, n.value), side)))
         return false;
   return true;
 }

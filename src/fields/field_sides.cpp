@@ -83,9 +83,9 @@ bool is_given(const FieldSystem& s, const NaturalCondition& n, Side side) {
 
 bool refuse_too_many_conditions(const FieldEquations& equations, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
-  if (s.periodic || !s.space.front().from) return false;
+  if (s.periodic() || !s.space.front().from) return false;
   for (const NaturalCondition& n : equations.natural) {
-    if (!n.moment || order_of(equations, n.field, n.along) > 2) continue;
+    if (s.periodic(n.along) || !n.moment || order_of(equations, n.field, n.along) > 2) continue;
     for (const Side side : sides_across(n.along)) {
       const std::vector<Expr> asked = conditions_at(equations, n.field, side);
       if (asked.size() < 2) continue;

@@ -15,7 +15,7 @@ GalerkinMesh::GalerkinMesh(const FieldEquations& equations, const DensityForm& f
     : s_(equations.system()), form_(form), fields_(form.smooth.size()), values_(values) {
   for (std::size_t i = 0; i < s_.space.size(); ++i)
     axes_[i] = MeshAxis(evaluate(s_.expanded(s_.space[i].from), values), evaluate(s_.expanded(s_.space[i].to), values),
-                        cells[i], degree, s_.periodic, s_.space.size() > 1);
+                        cells[i], degree, s_.periodic(i), s_.space.size() > 1);
   for (std::size_t f = 0; f < fields_; ++f) local_ = std::max(local_, functions(f));
   number_coefficients();
   add_products();

@@ -303,7 +303,7 @@ void PlaneMesh::share_columns(double* lanes) const {
     double* first = lanes + j * line_;
     double* last = first + line_ - n;
     set_means(first + 1, last, n - 1);
-    if (s_.periodic) set_means(first, last + n - 1, 1);
+    if (s_.periodic(0)) set_means(first, last + n - 1, 1);
   }
 }
 
@@ -316,8 +316,8 @@ void PlaneMesh::masses(std::size_t row) {
     share_columns(a);
     if (row > 0) set_means(a, a_pending_.data() + i * line_, line_);
     if (row == 0) std::copy_n(a, line_, a_first_.data() + i * line_);
-    if (s_.periodic && row + 1 == rows()) set_means(a + last, a_first_.data() + i * line_, line_);
-    if (row + 1 < rows() || !s_.periodic) std::copy_n(a + last, line_, a_pending_.data() + i * line_);
+    if (s_.periodic(1) && row + 1 == rows()) set_means(a + last, a_first_.data() + i * line_, line_);
+    if (row + 1 < rows() || !s_.periodic(1)) std::copy_n(a + last, line_, a_pending_.data() + i * line_);
   }
   std::vector<double> a(pairs), inverse;
   const auto put = [&](std::size_t of_row, std::size_t lane, const std::vector<double>& from, std::size_t at,
@@ -330,7 +330,7 @@ void PlaneMesh::masses(std::size_t row) {
   for (std::size_t i = 0; i < pairs; ++i) std::copy_n(a_.data() + i * lanes_, line_, before.data() + i * line_);
   for (std::size_t n = 0; n < lanes_; ++n) put(row, n, a_, n, lanes_);
   for (std::size_t n = 0; n < line_ && row > 0; ++n) put(row - 1, last + n, before, n, line_);
-  for (std::size_t n = 0; n < line_ && s_.periodic && row + 1 == rows(); ++n) put(0, n, a_first_, n, line_);
+  for (std::size_t n = 0; n < line_ && s_.periodic(1) && row + 1 == rows(); ++n) put(0, n, a_first_, n, line_);
   if (row + 1 == rows()) mass_known_ = true;
 }
 
@@ -413,7 +413,7 @@ void PlaneMesh::process(std::size_t row, std::size_t k) {
   series_.advance(k);
   if (k == 0 && !inverse_.empty() && !(form_.constant_mass && mass_known_)) masses(row);
   const std::size_t last = points() - 1;
-  const bool wraps = s_.periodic, top = row + 1 == rows();
+  const bool wraps = s_.periodic(1), top = row + 1 == rows();
   for (std::size_t f = 0; f < fields_; ++f) {
     force(f, row, k);
     double* lanes = force_.data() + f * lanes_;
@@ -430,7 +430,7 @@ void PlaneMesh::process(std::size_t row, std::size_t k) {
 
 /// All coefficients below `orders` + 2 of all rows; `behind` is called where a row is done.
 void PlaneMesh::sweep(std::size_t orders, const std::function<void(std::size_t row)>& behind) {
-  if (s_.periodic) {  // each row waits for both of its neighbours, the first for the last
+  if (s_.periodic(1)) {  // each row waits for both of its neighbours, the first for the last
     for (std::size_t k = 0; k < orders; ++k)
       for (std::size_t row = 0; row < rows(); ++row) process(row, k);
     for (std::size_t row = 0; row < rows(); ++row) behind(row);

@@ -95,7 +95,7 @@ class PlaneModes {
       const int elements = static_cast<int>(borders_[i].size()) - 1,
                 wanted = ((i == 0) == across ? small : std::min(large, most_degree_)) / elements;
       degrees_[i] = std::max({wanted, least_of_element, degrees_[i] + 2});
-      axes_.emplace_back(borders_[i], degrees_[i], s_.periodic, kind_);
+      axes_.emplace_back(borders_[i], degrees_[i], s_.periodic(i), kind_);
     }
     size_ = axes_[0].size() * axes_[1].size();
   }

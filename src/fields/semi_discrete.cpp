@@ -126,7 +126,7 @@ bool SemiDiscrete::set_mesh(int cells, int order, Diagnostics& diagnostics) {
   mesh_.degree = bends ? std::max(order, 5) : order;
   // Lobatto's rule of the nodes where masses are to be diagonal; else one that is exact for products.
   mesh_.points = bends ? mesh_.degree + 2 : mesh_.degree;
-  mesh_.periodic = s.periodic;
+  mesh_.periodic = s.periodic(0);
   for (const std::size_t f : equations_->varied)
     spaces_.emplace_back(mesh_, has_slopes(f) ? EKind::Smooth : bends ? EKind::Continuous : EKind::Nodal);
   for (const ElementSpace& space : spaces_) dofs_ += space.size();

@@ -34,7 +34,7 @@ std::vector<SideCondition> conditions_of(const FieldEquations& equations) {
     out.push_back({b.side, s.jet_symbol(b.jet), s.expanded(b.value), b.jet.order()});
   for (const NaturalCondition& n : equations.natural)
     for (const Side side : sides_across(n.along)) {
-      if (n.moment || is_given(s, n, side)) continue;
+      if (n.moment || s.periodic(n.along) || is_given(s, n, side)) continue;
       Expr force = s.context->number(0);  // p + F = 0 on the right, −p + F = 0 on the left
       for (const EndForce& f : s.end_forces)
         if (f.side == side && f.jet.field == n.field && f.jet.order() == 0)
@@ -126,7 +126,7 @@ class Start {
 
 std::optional<int> jump_from_sides(const FieldEquations& equations, double begin, double spacing) {
   const FieldSystem& s = equations.system();
-  if (s.periodic || !s.space.front().from) return std::nullopt;
+  if (s.periodic() || !s.space.front().from) return std::nullopt;
   const Start start(equations, begin);
   const OnShell shell(equations);
   const double from_node_to_node = std::min(1.0, spacing * start.wave_number());

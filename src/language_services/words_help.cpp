@@ -147,7 +147,7 @@ constexpr WordHelp kWords[] = {
     {"complex", "field", "complex", "A complex field: conj, re, im are functions then."},
     {"cells", "field", "cells 40", "Into how many elements the interval is cut."},
     {"boundary", "field", "boundary u = 0", "What holds at the ends of the interval."},
-    {"periodic", "field", "boundary periodic", "The two ends are one."},
+    {"periodic", "field", "boundary periodic", "The two ends are one; `periodic x`: along x alone."},
     {"left", "boundary", "left : u = 0", "The left end."},
     {"right", "boundary", "right : u = 0", "The right end."},
     {"bottom", "boundary", "bottom : u = 0", "The lower end."},

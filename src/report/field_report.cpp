@@ -253,9 +253,11 @@ class FieldComposer {
   Layout shown(Expr e) const { return field_layout(s_, lay_out(readable(e, e_.order), e_.order)); }
   static Layout current(const std::string& along) { return layouts::power(layouts::name("j"), layouts::name(along)); }
   std::string boundary() const {
-    if (s_.periodic) return "periodic";
+    if (s_.periodic()) return "periodic";
     constexpr const char* sides[] = {"left", "right", "bottom", "top"};
     std::string out;
+    for (std::size_t i = 0; i < s_.space.size(); ++i)
+      if (s_.periodic(i)) out += (out.empty() ? "periodic along " : ", ") + s_.space[i].name;
     for (const BoundaryCondition& b : s_.boundary)
       out += fmt::format("{}{}: {} = {}", out.empty() ? "" : ", ", sides[static_cast<int>(b.side)], s_.jet_name(b.jet),
                          to_plain(shown(b.value)));

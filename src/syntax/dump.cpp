@@ -269,6 +269,7 @@ class Dumper {
       word("on", range.variable.text), child("from", range.from), child("to", range.to);
     children("cells", s.cells), child("order", s.order);
     if (s.periodic) word("boundary", "periodic");
+    for (const Name& x : s.around) word("around", x.text);
     equations(s.boundary);
   }
   void field(const DensityText& s) { child(s.adds ? "adds" : "value", s.value); }

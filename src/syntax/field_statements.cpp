@@ -71,7 +71,10 @@ StatementBody StatementParser::field_statement() {
           fmt::format("Write the conditions of one side on a line of their own, `boundary {} : u = 0`.", side));
   const std::size_t first = index_ - 1;
   field.periodic = accept("periodic");
-  if (!field.periodic) list([&] { field.boundary.push_back(boundary_condition()); });
+  if (!field.periodic)
+    list([&] { field.boundary.push_back(boundary_condition()); });
+  else if (!at_end())
+    list([&] { field.around.push_back(used_name("a space variable, as in `boundary periodic x`")); });
   field.boundary_span = cover(context_.list.tokens[first].span, previous().span);
   return field_clause("field", {std::move(field)});
 }

@@ -666,7 +666,8 @@ constexpr CodeEntry kEntries[] = {
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 "
      "u_x^2\nT = 1/2 m u(1 m)'^2\n"},
     {"E0505", "a statement that does not go with fields",
-     "Beside fields stand coordinates, points and bodies, energies, constraints, forces, contacts, friction and events. "
+     "Beside fields stand coordinates, points and bodies, energies, constraints, forces, contacts, friction and "
+     "events. "
      "Rates, gauges, paths, drawings and methods belong to models of coordinates alone.",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N, m = 1 kg\ndensity = 1/2 ρ u'^2 - 1/2 T0 "
      "u_x^2\ncoord y : length\nT = 1/2 m y'^2\nrates w = y'\n",

@@ -95,13 +95,14 @@ void boundaries(Elaboration& e) {
   each_clause<syntax::BoundaryText>(e, [&](const syntax::BoundaryText& s, Span span) {
     std::vector<Side> sides;
     if (s.side.text.empty())
-      for (std::size_t i = 0; i < 2 * std::min<std::size_t>(system.space.size(), 2); ++i)
-        sides.push_back(static_cast<Side>(i));
+      for (std::size_t i = 0; i < 2 * std::min<std::size_t>(system.space.size(), 2); ++i) {
+        if (system.periodic() || !system.periodic(i / 2)) sides.push_back(static_cast<Side>(i));
+      }
     else if (const auto side = side_named(e, s.side))
       sides.push_back(*side);
     if (sides.empty()) return;
     if (!bounded) return refuse_without_domain(e, span);
-    if (system.periodic) {
+    if (system.periodic(static_cast<std::size_t>(sides.front()) / 2)) {
       e.diagnostics.error("E0285", span, "a boundary of a periodic domain",
                           "Its ends are one place: the field goes on from one to the other.",
                           "Leave out `boundary periodic`, or this statement.");

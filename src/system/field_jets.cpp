@@ -41,6 +41,10 @@ bool read_letters(const FieldSystem& s, std::string_view text, FieldJet& jet) {
 
 }  // namespace
 
+bool FieldSystem::periodic() const {
+  return !around.empty() && std::find(around.begin(), around.end(), false) == around.end();
+}
+
 Expr FieldSystem::jet_symbol(const FieldJet& jet) const {
   const Field& f = fields[jet.field];
   const std::string suffix = letters(*this, jet);

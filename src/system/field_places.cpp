@@ -48,7 +48,7 @@ bool goes_with_fields(const syntax::Statement& s) {
 /// Where in the domain `at` lies: an end of it, or nothing for the inside.
 std::optional<Side> end_at(Elaboration& e, double at) {
   const SpaceVariable& x = fields_of(e).space.front();
-  if (!x.from || fields_of(e).periodic) return std::nullopt;
+  if (!x.from || fields_of(e).periodic(0)) return std::nullopt;
   const double a = *constant_value(e, x.from), b = *constant_value(e, x.to), near = 1e-12 * (b - a);
   if (std::abs(at - a) <= near) return Side::Left;
   if (std::abs(at - b) <= near) return Side::Right;

@@ -72,6 +72,22 @@ int whole_number(Elaboration& e, const Expression& x, const char* what, double l
   return 0;
 }
 
+/// boundary periodic, boundary periodic x
+void declare_around(Elaboration& e, const FieldDeclaration& s) {
+  FieldSystem& system = system_of(e);
+  system.around.assign(system.space.size(), s.periodic && s.around.empty());
+  for (const syntax::Name& name : s.around) {
+    std::size_t i = 0;
+    while (i < system.space.size() && system.space[i].name != name.text) ++i;
+    if (i < system.space.size())
+      system.around[i] = true;
+    else
+      e.diagnostics.error("E0286", name.span, fmt::format("`{}` is no space variable of this field", name.text),
+                          "A domain is closed along its space variables.",
+                          fmt::format("Write one of them, such as `boundary periodic {}`.", system.space.front().name));
+  }
+}
+
 void declare_space(Elaboration& e, const FieldDeclaration& s) {
   FieldSystem& system = system_of(e);
   for (const syntax::Name& x : s.items.front().variables) {
@@ -105,7 +121,7 @@ void declare_space(Elaboration& e, const FieldDeclaration& s) {
                         fmt::format("A mesh may have {:.0g} cells: a finer one would not fit into memory.", most_cells),
                         "Write fewer cells, or a higher order of the elements.");
   if (s.order) system.element_order = whole_number(e, *s.order, "the order of the elements", 1, 20);
-  system.periodic = s.periodic;
+  declare_around(e, s);
 }
 
 bool same_variables(const FieldSystem& system, const std::vector<syntax::Name>& variables) {

@@ -122,6 +122,20 @@ TEST_CASE("sides of a rectangle: momentum and angular momentum flow out of a mem
   CHECK(named(charges, "angular momentum").left_over() < 1e-4);
 }
 
+TEST_CASE("around a strip momentum stays, across it flows out of the sides") {
+  const auto charges = charges_of(
+      "dimensionless\nfield u(x, y) : number on x = 0 .. 2 pi, y = 0 .. 1 cells 8, 6 order 6 boundary periodic x\n"
+      "boundary u = 0\ndensity = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2)\n"
+      "start u = sin(pi y) cos(x) + sin(2*pi*y) cos(x), u' = 3 sin(pi y) sin(x)\n",
+      0.4);
+  const FieldCharge around = named(charges, "momentum along x"), across = named(charges, "momentum along y");
+  CHECK(std::abs(around.start - 3 * std::acos(-1.0) / 2) < 1e-9);
+  CHECK(std::abs(around.end - around.start) < 1e-11 * around.size);
+  CHECK(around.outflow == 0);
+  CHECK(std::abs(across.end - across.start) > 0.1);
+  CHECK(across.left_over() < 1e-4);
+}
+
 TEST_CASE("friction is no part of a current: nothing is booked") {
   CHECK(charges_of("dimensionless\nfield u(x) : number on x = 0 .. 1 cells 10 order 4 boundary u = 0\n"
                    "density = 1/2 u'^2 - 1/2 u_x^2\ndissipation density = 1/2 u'^2\nstart u = sin(pi x)\n",

@@ -205,6 +205,22 @@ TEST_CASE("a tension that is not along the sides: ω² = k² + l² + 2 β k l on
       }
 }
 
+TEST_CASE("a strip that is closed along one direction has a standing wave along the other, waves both ways around") {
+  const double pi = std::acos(-1.0);
+  for (const bool along_x : {true, false}) {
+    const FieldModes found =
+        plane_modes_of(std::string("dimensionless\nfield u(x, y) : number on ") +
+                           (along_x ? "x = 0 .. 2 pi, y = 0 .. 1 boundary periodic x\nboundary bottom : u = 0\n"
+                                    : "x = 0 .. 1, y = 0 .. 2 pi boundary periodic y\nboundary left : u = 0\n") +
+                           "density = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2)\n",
+                       5);
+    for (std::size_t i = 0; i < 5; ++i) {
+      const double k = std::ceil(static_cast<double>(i) / 2);
+      CHECK(std::abs(found.frequencies[i] - std::hypot(k, pi / 2)) < 1e-9);
+    }
+  }
+}
+
 TEST_CASE("a membrane that runs over two rollers: ω² = (1 − v²)² k² + (1 − v²) l²") {
   // exp(iωt + i v ω x/(1 − v²)) sin kx sin ly, with k and l multiples of π
   const FieldModes found = plane_modes_of(

@@ -89,6 +89,49 @@ TEST_CASE("a wave runs around a periodic plane") {
   CHECK(found.drift < 1e-12);
 }
 
+TEST_CASE("a wave runs around a strip that is closed along one direction") {
+  const std::string text =
+      "dimensionless\nlet w = sqrt(1 + pi^2)\nfield u(x, y) : number on x = 0 .. 2 pi, y = 0 .. 1 cells 8, 5 order 6 "
+      "boundary periodic x\nboundary u = 0\ndensity = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2)\n"
+      "start u = sin(pi y) cos(x), u' = w sin(pi y) sin(x)\nrun 1\nexpect u(1/2, 3/10) at 1 = 0 ± 1\n"
+      "expect u(0, 1/2) at 1 = 0 ± 1\nexpect u(2 pi, 1/2) at 1 = 0 ± 1\n";
+  std::string turned = replaced(text, "x = 0 .. 2 pi, y = 0 .. 1 cells 8, 5", "x = 0 .. 1, y = 0 .. 2 pi cells 5, 8");
+  turned = replaced(replaced(turned, "periodic x", "periodic y"), "sin(pi y)", "sin(pi X)");
+  turned = replaced(replaced(turned, "cos(x)", "cos(y)"), "sin(x)", "sin(y)");
+  turned = replaced(replaced(turned, "sin(pi X)", "sin(pi x)"), "u(1/2, 3/10)", "u(3/10, 1/2)");
+  turned = replaced(replaced(turned, "u(0, 1/2)", "u(1/2, 0)"), "u(2 pi, 1/2)", "u(1/2, 2 pi)");
+  for (const std::string& one : {text, turned}) {
+    const Answers found = answers_of(one, 1, true);
+    const double w = std::sqrt(1 + pi * pi);
+    const double expected[] = {std::sin(0.3 * pi) * std::cos(0.5 - w), std::cos(w), std::cos(w)};
+    for (std::size_t i = 0; i < 3; ++i) {
+      CHECK(std::abs(found.values[i] - expected[i]) < 1e-6);
+      CHECK(std::abs(found.values[i] - expected[i]) < 5 * found.errors[i]);
+    }
+    CHECK(found.drift < 1e-13);
+  }
+}
+
+TEST_CASE("a plate and a field of first order on a cylinder") {
+  // ω = k² + l² of a hinged plate, (k² + l²)/2 of a free particle in a waveguide
+  const std::string strip = " on x = 0 .. 2 pi, y = 0 .. 1 cells 4, 2 order 7 boundary periodic x\n";
+  const double w = 1 + pi * pi;
+  const Answers plate = answers_of("dimensionless\nlet w0 = 1 + pi^2\nfield w(x, y) : number" + strip +
+                                       "boundary w = 0\ndensity = 1/2 w'^2 - 1/2 (w_xx + w_yy)^2\n"
+                                       "start w = sin(pi y) cos(x), w' = w0 sin(pi y) sin(x)\nrun 0.2\n"
+                                       "expect w(1, 1/2) at 0.2 = 0 ± 1\n",
+                                   0.2);
+  CHECK(std::abs(plate.values[0] - std::cos(1 - 0.2 * w)) < 1e-5);
+  const Answers wave = answers_of("dimensionless\nfield a(x, y), b(x, y) : number" + strip +
+                                      "boundary a = 0, b = 0\n"
+                                      "density = a' b - b' a - 1/2 (a_x^2 + a_y^2 + b_x^2 + b_y^2)\n"
+                                      "start a = sin(pi y) cos(x), b = sin(pi y) sin(x)\nrun 0.3\n"
+                                      "expect a(1, 1/2) at 0.3 = 0 ± 1\n",
+                                  0.3);
+  const double turn = 0.3 * w / 2;
+  CHECK(std::min(std::abs(wave.values[0] - std::cos(1 - turn)), std::abs(wave.values[0] - std::cos(1 + turn))) < 1e-5);
+}
+
 TEST_CASE("a mass that changes with the field: e^u is a free wave") {
   const Answers found = answers_of(
       "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 6, 5 order 6 boundary u = log(2)\n"
