@@ -1,5 +1,7 @@
 #include "run_options.hpp"
 
+#include "fields_text.hpp"
+
 #include "interrupt.hpp"
 #include "quantity.hpp"
 
@@ -224,6 +226,15 @@ std::optional<SimulationResult> run_model(Study& study, const SimulationOptions&
   SimulationOptions with_progress = options;
   if (console.interactive()) with_progress.progress = [&progress](double fraction) { progress(fraction); };
   return study.motion(with_progress);
+}
+
+std::optional<FieldRunResult> run_model(Study& study, const SimulationOptions& options, FieldMotionOptions kept,
+                                        const Console& console) {
+  Progress progress(console);
+  SimulationOptions with_progress = options;
+  if (console.interactive()) with_progress.progress = [&progress](double fraction) { progress(fraction); };
+  kept.announce = [&console](const std::string& sentence) { console.say(sentence + "\n"); };
+  return run_of_fields(study, with_progress, kept);
 }
 
 std::optional<ExtendedResult> run_model(Study& study, const ExtendedSimulationOptions& options,

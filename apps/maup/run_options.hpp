@@ -50,6 +50,9 @@ void put_in_run(const RunOptions& options, Study& study);
 std::optional<SimulationResult> run_model(Study& study, const SimulationOptions& options, const Console& console);
 
 /// The same in many digits.
+/// Of fields: beside progress, what a long run takes is said as it begins.
+std::optional<FieldRunResult> run_model(Study& study, const SimulationOptions& options, FieldMotionOptions kept,
+                                        const Console& console);
 std::optional<ExtendedResult> run_model(Study& study, const ExtendedSimulationOptions& options, const Console& console);
 
 /// 0, 3 or 130 by how a run ended.

@@ -4,6 +4,7 @@
 #include <maupertuis/simulation.hpp>
 #include <maupertuis/trajectory.hpp>
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -82,6 +83,9 @@ struct FieldRunOptions {
   /// Whose charges are followed, without coordinates and bodies, dissipation and forces inside; null: none.
   const FieldCurrents* currents = nullptr;
   Interrupt interrupt;
+  std::function<void(double)> progress = {};  // told the fraction of the first run that is done, at each step
+  /// Told once, in a sentence, as the run begins: what it takes, where that is more than a minute or a gigabyte.
+  std::function<void(const std::string&)> announce = {};
 };
 
 /// Errors (in `diagnostics`): E0508 where such fields cannot be run yet, E0292 where a boundary condition contradicts

@@ -11,6 +11,7 @@
 #include <maupertuis/simulation.hpp>
 #include <maupertuis/verification.hpp>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,10 +20,11 @@ namespace maupertuis {
 
 /// What a run of fields keeps.
 struct FieldMotionOptions {
-  bool rows = false;                        // its trajectory
-  bool pictured = false;                    // as many rows and places as a picture wants
-  std::vector<double> moments = {};         // s; rows at these times beside the others
-  const FieldCurrents* currents = nullptr;  // whose charges are followed; null: none
+  bool rows = false;                                      // its trajectory
+  bool pictured = false;                                  // as many rows and places as a picture wants
+  std::vector<double> moments = {};                       // s; rows at these times beside the others
+  const FieldCurrents* currents = nullptr;                // whose charges are followed; null: none
+  std::function<void(const std::string&)> announce = {};  // as in FieldRunOptions
 };
 
 /// A model text on its way through the stages: tree → model → equations → derivation, certificate; and what they are
@@ -149,7 +151,8 @@ class Study {
 struct StartFindings {
   std::optional<ConsistentStart> start;  // on the constraints; none where they clash
   ConstraintAnalysis constraints;        // there, or in general where there is no such state
-  std::optional<ContactStart> contacts;  // of a model with contacts or friction that asks for a motion, by a start or a run
+  std::optional<ContactStart>
+      contacts;  // of a model with contacts or friction that asks for a motion, by a start or a run
 };
 
 /// What the state at the start adds to the mistakes of the equations: clashing constraints, what they are, contacts

@@ -67,6 +67,7 @@ std::optional<CoupledRun> run_once(const SemiDiscrete& mesh, const std::vector<F
   if (options.every > 0) settings.output_every = options.every;
   settings.errors = ErrorEstimates::None;
   settings.interrupt = options.interrupt;
+  settings.progress = options.progress;
   Probe probe;
   for (const FieldQuestion& q : questions) {
     probe.expressions.push_back(mesh.discretised(q, diagnostics));
@@ -337,7 +338,7 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
   if (options.errors && (!questions.empty() || !out.happenings.empty()) && out.trouble.empty()) {
     // Where a place asks for more elements than half of them, the order is lowered instead.
     FieldRunOptions quiet = options;
-    quiet.trajectory = false;
+    quiet.trajectory = false, quiet.progress = {};
     const auto coarser = [&](int by) {
       Diagnostics unheard;
       auto other = SemiDiscrete::make(model, equations, std::max(cells / by, 1), order, unheard);

@@ -47,7 +47,8 @@ std::unique_ptr<FieldMotion> FieldMethod::mesh(const FieldEquations& equations, 
 
 double FieldMethod::bytes(const FieldEquations& equations, const Cells& cells) const {
   if (stiff_) return CollocationMotion::bytes(*stiff_, cells, order_, stages);
-  return cells.size() == 2 ? PlaneMesh::bytes(equations, *waves_, cells[0], cells[1], order_) : 0;
+  return cells.size() == 2 ? PlaneMesh::bytes(equations, *waves_, cells[0], cells[1], order_)
+                           : FieldMesh::bytes(equations, *waves_, cells[0], order_);
 }
 
 double FieldMethod::longest_step(FieldMotion& mesh, double duration, double every, const Interrupt& interrupt,

@@ -23,7 +23,7 @@ class FieldMethod {
   std::string name() const;  // of the steps, in words
   /// `first`: else one of those that tell the error, of which steps are twice as long where a series bounds them.
   std::unique_ptr<FieldMotion> mesh(const FieldEquations& equations, const Cells& cells, bool first) const;
-  /// Bytes that a mesh takes; 0: it is small.
+  /// Bytes that a mesh takes.
   double bytes(const FieldEquations& equations, const Cells& cells) const;
   /// By collocation as much longer on the other meshes as their cells are wider, so that their difference tells the
   /// error of steps as well. `omega` is set where steps depend on it.

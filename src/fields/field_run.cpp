@@ -232,6 +232,44 @@ std::vector<FieldRunResult::Range> ranges_of(const FieldMotion& mesh, const Fiel
   return out;
 }
 
+/// What a mesh of more than a gigabyte takes is said before it is made.
+void announce_memory(const FieldRunOptions& options, double bytes) {
+  constexpr double gigabyte = 1e9;
+  if (options.announce && bytes >= gigabyte)
+    options.announce(fmt::format("The mesh of this run takes {:.2g} GB of memory.", bytes / gigabyte));
+}
+
+/// Says how long a run takes as soon as its first steps tell, where that is more than a minute.
+class Outlook {
+ public:
+  Outlook(const FieldRunOptions& options, double steps) : options_(options), steps_(steps) {}
+
+  void after_step(std::size_t done) {
+    constexpr double minute = 60, soon = 5;
+    if (told_ || !options_.announce) return;
+    const double passed = std::chrono::duration<double>(Clock::now() - begin_).count();
+    if (done < 3 && passed < soon) return;
+    told_ = true;
+    const double seconds = passed / static_cast<double>(done) * std::max(steps_, static_cast<double>(done));
+    if (seconds >= minute)
+      options_.announce(fmt::format("This run takes some {}, {:.0f} steps.", in_words(seconds), steps_));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static std::string in_words(double seconds) {
+    return seconds < 120     ? fmt::format("{:.0f} s", seconds)
+           : seconds < 7200  ? fmt::format("{:.0f} min", seconds / 60)
+           : seconds < 172e3 ? fmt::format("{:.0f} h", seconds / 3600)
+                             : fmt::format("{:.0f} days", seconds / 86400);
+  }
+
+  const FieldRunOptions& options_;
+  double steps_;
+  bool told_ = false;
+  Clock::time_point begin_ = Clock::now();
+};
+
 /// On one mesh: with rows and warnings the first, without the others, which are there for the error.
 std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& method, const Cells& cells,
                              const std::vector<FieldQuestion>& questions, const FieldRunOptions& options,
@@ -272,6 +310,8 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
   constexpr int measurements = 20;
   const double apart_in_run = options.duration / measurements * (1 - 1e-9);
   double measured = options.begin;
+  std::optional<Outlook> outlook;
+  if (first) outlook.emplace(options, options.duration / longest);
   for (const double stop : stops) {
     const double way = stop - mesh.time();
     const auto steps = static_cast<std::uint64_t>(std::ceil(way / longest - 1e-9));
@@ -280,6 +320,8 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
       if (!mesh.step(way / static_cast<double>(std::max<std::uint64_t>(steps, 1))))
         return refuse(mesh, equations, diagnostics), std::nullopt;
       ++out.steps;
+      if (outlook) outlook->after_step(out.steps);
+      if (first && options.progress) options.progress((mesh.time() - options.begin) / options.duration);
       if (meter) meter->note_flux(mesh);
     }
     if (meter && way > 0 && (stop - measured >= apart_in_run || stop == end)) meter->measure(mesh), measured = stop;
@@ -398,6 +440,7 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
     cells.push_back(x.cells ? x.cells : s.space.front().cells ? s.space.front().cells : usual);
   }
   if (refuse_large_mesh(equations, *method, cells, diagnostics)) return std::nullopt;
+  announce_memory(options, method->bytes(equations, cells));
   if (refuse_unresolved(equations, even_borders(equations, cells), method->order(), diagnostics)) return std::nullopt;
   const Rough start = roughness_of_start(equations, *method, cells, options.begin, diagnostics);
   if (start.jump) {

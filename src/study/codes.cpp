@@ -42,9 +42,8 @@ constexpr CodeEntry entries[] = {
      "# maup report -o - --no-run --mode free\ncoord z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m z'^2\n"
      "V = m g z\ncontact z >= 0 restitution 0.8 name floor\nstart z = 1 m\nrun 2 s\n"},
     {"E0507", "a question about coordinates for a model with fields",
-     "Of fields there are derivations, certified conservation laws, waves and tests; Hamiltonians, paths, "
-     "linearizations "
-     "and pictures are those of coordinates.",
+     "Of fields there are derivations, certified conservation laws, runs, modes, dispersion relations, plots, films, "
+     "reports and tests; Hamiltonians, paths, orbits, sweeps and comparisons are those of coordinates.",
      "# maup hamiltonian\nfield u(x) : length on x = 0 m .. 1 m boundary u = 0\nparam ρ = 1 kg/m, T0 = 1 N\n"
      "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\n",
      "# maup derive\nfield u(x) : length on x = 0 m .. 1 m boundary u = 0\nparam ρ = 1 kg/m, T0 = 1 N\n"

@@ -22,6 +22,8 @@ std::optional<FieldRunResult> Study::field_motion(const SimulationOptions& setti
   const auto number = [&](Expr e) { return e ? evaluate(s.expanded(e), values) : 0.0; };
   FieldRunOptions options;
   options.interrupt = settings.interrupt;
+  options.progress = settings.progress;
+  options.announce = kept.announce;
   options.begin = number(model.experiment.start_time);
   options.duration = settings.duration ? *settings.duration : number(model.experiment.duration);
   options.every = settings.output_every ? *settings.output_every : number(model.experiment.output_every);

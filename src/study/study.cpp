@@ -148,8 +148,9 @@ const EquationsOfMotion* Study::equations() {
     if (!derived_)
       diagnostics_.error(
           "E0507", model_->fields->system.density_span, "this question is about coordinates, and the model has fields",
-          "Of fields there are derivations, conservation laws, waves and runs.",
-          "`maup derive`, `maup check`, `maup invariants`, `maup simulate` and `maup test` work for fields.");
+          "Of fields there are derivations, conservation laws, runs, modes, dispersion relations and pictures.",
+          "`maup check`, `derive`, `invariants`, `simulate`, `test`, `modes`, `plot`, `animate` and `report` work for "
+          "fields.");
     derived_ = true;
     return nullptr;
   }

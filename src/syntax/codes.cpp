@@ -104,7 +104,8 @@ constexpr CodeEntry kEntries[] = {
      "system s\nparam V = 12 V\ncoord x : number\nV = x^2\n",
      "system s\nparam V = 12 V\ncoord x : number\npotential = x^2\n"},
     {"E0121", "a coordinate written as a function of time",
-     "A coordinate depends on time by itself: θ, not θ(t). In this language θ(t) would be the product of θ and t.",
+     "A coordinate depends on time by itself: θ, not θ(t). In this language θ(t) would be the product of θ and t. A "
+     "field at a place that moves with the time has a speed in it, `w(v t)`; without units `w(1 t)`.",
      "system s\ncoord x : number\nV = x(t)^2\n", "system s\ncoord x : number\nV = x^2\n"},
     {"E0122", "an unknown word before a bracket",
      "Before a bracket stands a function of the language or a name of the model, which then is a factor. Functions "

@@ -283,7 +283,10 @@ void ExpressionParser::check_application(const Token& name) {
     fail("E0121", cover(name.span, peek(2).span),
          fmt::format("`{0}({1})` would be {0} times {2}", name.text, independent, time ? "the time" : independent),
          fmt::format("{} depends on {} by itself.", name.text, time ? "time" : independent),
-         fmt::format("Write {}.", name.text));
+         kind == Declared::Field && time
+             ? fmt::format("Write {0}; at a place that moves with the time {0}(v t), or {0}(1 t) where it has no unit.",
+                           name.text)
+             : fmt::format("Write {}.", name.text));
   }
   if (name.is("dt") && previous().is("dt") && context_.list.tokens[index_ - 2].is("/"))
     return;  // d/dt (…): `system` tells it

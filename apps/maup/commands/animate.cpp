@@ -282,7 +282,7 @@ ExitCode animate_fields(AnimateOptions o, Study& study, Console& console) {
   if (o.output.empty()) o.output = default_output(o, study.model()->system.name);
   std::vector<double> asked;
   if (const auto t = o.still.empty() ? std::nullopt : parse_exact_time(o.still)) asked.push_back(t->to_double());
-  const auto run = run_of_fields(study, settings, {true, true, asked});
+  const auto run = run_model(study, settings, FieldMotionOptions{true, true, asked}, console);
   if (!run) return finish(console, study, document);
 
   Drawing times;  // of the run

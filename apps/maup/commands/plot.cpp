@@ -57,7 +57,7 @@ ExitCode plot_fields(const PlotCommandOptions& options, Study& study, Console& c
   like.degrees = options.picture.degrees, like.theme = options.picture.theme, like.title = options.picture.title;
   const auto pictures = field_pictures_of(study, *equations, options.y, like);
   if (study.wrong()) return finish_usage(console, study, "plot");
-  const auto run = run_of_fields(study, settings, {true, true});
+  const auto run = run_model(study, settings, FieldMotionOptions{true, true}, console);
   if (!run) return finish(console, study, document);
   const ExitCode written =
       write_svg(options, pictures_of_fields(study, *equations, *run, pictures), study, document, console);

@@ -300,9 +300,9 @@ ExitCode simulate_fields(const SimulateOptions& options, Study& study, Console& 
   const FieldEquations* equations = study.field_equations();
   if (!equations) return finish(console, study, std::move(document));
   const std::optional<FieldCurrents> currents = currents_of_run(study);
-  const auto run = run_of_fields(
-      study, settings,
-      {!options.output.empty() || !options.plot.empty(), options.output.empty(), {}, currents ? &*currents : nullptr});
+  const FieldMotionOptions kept{
+      !options.output.empty() || !options.plot.empty(), options.output.empty(), {}, currents ? &*currents : nullptr};
+  const auto run = run_model(study, settings, kept, console);
   if (!run) return finish(console, study, std::move(document));
   if (!options.output.empty()) write_rows(options.output, run->trajectory, study.diagnostics());
   if (!options.plot.empty())
