@@ -160,7 +160,7 @@ void force_at_place(Elaboration& e, const syntax::FieldForce& s, const FieldJet&
   const double at = constant_value(e, place.scalar()).value_or(0);
   const double a = x.from ? *constant_value(e, x.from) : 0, b = x.from ? *constant_value(e, x.to) : 0;
   const double near = 1e-12 * (b - a);
-  const bool at_end = x.from && !system.periodic && (std::abs(at - a) <= near || std::abs(at - b) <= near);
+  const bool at_end = x.from && !system.periodic(0) && (std::abs(at - a) <= near || std::abs(at - b) <= near);
   if (!at_end) {
     e.fields->coupled = true;
     return force_on_place(e, s, jet, span);
