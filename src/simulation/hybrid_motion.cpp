@@ -211,6 +211,9 @@ void HybridMotion::finish() {
     const double end = time();
     std::erase_if(record_.happenings, [&](const Happening& h) { return forwards_ ? h.t > end : h.t < end; });
   }
+  if (record_.stopped_by && pending_)
+    for (const ModelEvent* event : pending_->sets)
+      remark(fmt::format("The event {} sets the state as the run ends: the last state is the one before.", event->name));
   if (system_.contacts.empty() || !started_) return;
   take_state();
   const ContactValues& values = functions_.at(t_, q_, v_);

@@ -63,7 +63,8 @@ class AtRest {
     for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
       const Contact& c = system_.contacts[i];
       const double x = mode_.closed[i] ? value(c.multiplier, b) : value(c.gap, b),
-                   rounding = mode_.closed[i] ? touches * largest : gap_digits * size(c.gap, b);
+                   rounding =
+                       mode_.closed[i] ? touches * std::max(largest, balanced(c, b)) : gap_digits * size(c.gap, b);
       good = good && x > rounding;
       if (touching) *touching = *touching && x >= -rounding;
     }
@@ -116,6 +117,17 @@ class AtRest {
   }
 
  private:
+  /// The forces that balance where the contact pushes, in units of its λ.
+  double balanced(const Contact& c, const Bindings& b) const {
+    double out = 0;
+    for (std::size_t k = 0; k < system_.coordinates.size(); ++k) {
+      const double slope = std::abs(value(differentiate(c.gap, system_.coordinates[k].q), b));
+      const Expr force = differentiate(equations_->lagrangian_expanded, system_.coordinates[k].q);
+      if (slope > 0) out = std::max(out, size(force + equations_->generalized_forces[k], b) / slope);
+    }
+    return out;
+  }
+
   double size(Expr e, const Bindings& b) const {
     double sum = 0;
     for (std::size_t i = 0; i < (e.is(Kind::Sum) ? e.size() : 1); ++i)
@@ -189,6 +201,12 @@ ModalStudy resting(const AtRest& mode, const Question& ask, bool& touched, const
     touched = touched || (e.equilibrium.at_rest && !rests && touching);
     return !rests || !keep(e.linearization.point);
   });
+  for (ModalEntry& e : study->entries) {
+    const bool moves = !e.linearization.independent.empty() || !e.linearization.independent_velocities.empty();
+    if (moves || std::none_of(mode.mode().closed.begin(), mode.mode().closed.end(), [](bool b) { return b; })) continue;
+    e.analysis.stability.verdict = Stability::Energetic;
+    e.analysis.stability.reason = "the contacts press and leave nothing that could move";
+  }
   study->failing.clear();
   study->kinks.clear();
   return std::move(*study);

@@ -121,3 +121,22 @@ TEST_CASE("on a belt friction slides also at rest") {
   CHECK(found[0].text == "belt sliding −");
   CHECK(found[0].study.entries.at(0).equilibrium.point.q[0] == doctest::Approx(0.075).epsilon(1e-12));
 }
+
+TEST_CASE("a contact that balanced forces leave without pressing does not count as closed; one that presses holds") {
+  // The spring from above carries the ball, 9.81 = k 0.2, to rounding; with a weaker one the floor carries the rest.
+  const auto ball = [](const std::string& k) {
+    return ModelText("param m = 1 kg, k = " + k +
+                     " N/m, g = 9.81 m/s^2\ncoord y : length\npoint C mass m at (0, y)\ngravity (0, -g)\n"
+                     "point W at (0, 1 m)\nspring W - C stiffness k length 0.8 m\ncontact y >= 0 m name floor\n");
+  };
+  for (const RestingMode& mode : rests(ball("49.05"))) CHECK(mode.text != "floor");
+  bool holds = false;
+  for (const RestingMode& mode : rests(ball("24.525"))) {
+    if (mode.text != "floor") continue;
+    holds = true;
+    REQUIRE(mode.study.entries.size() == 1);
+    CHECK(mode.study.entries[0].equilibrium.point.multipliers[0] == doctest::Approx(4.905).epsilon(1e-12));
+    CHECK(mode.study.entries[0].analysis.stability.verdict == Stability::Energetic);
+  }
+  CHECK(holds);
+}

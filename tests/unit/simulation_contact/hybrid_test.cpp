@@ -366,3 +366,13 @@ TEST_CASE("a motion that is thrown back from the zero of an event meets it once,
       CHECK(count(r, Happening::Kind::Event, "up") == 0);
     }
 }
+
+TEST_CASE("a set beside a stop at one time is told, and that the last state is the one before it") {
+  const auto r = run_text(
+      "dimensionless\ncoord x : length\nT = 1/2 x'^2\nevent a when x = 1 : set x' = 4\nevent b when x = 1 : stop\n"
+      "start x' = 2\n",
+      3);
+  CHECK(r.final.v[0] == 2);
+  REQUIRE(r.remarks.size() == 1);
+  CHECK(r.remarks[0].find("The event a sets the state") != std::string::npos);
+}
