@@ -160,12 +160,18 @@ class ExtendedRun {
     return root.index < contacts ? system_.contact_label(root.index) : system_.frictions[root.index - contacts].name;
   }
 
+  std::string reason_of(const ExtendedMotion& motion) const {
+    if (!motion.trouble) return motion.reason;
+    return fmt::format("Contact {}: {}", system_.contact_label(*motion.trouble), motion.reason);
+  }
+  static double end_of(const ExtendedMotion& motion) {
+    return motion.final.t.empty() ? 0 : Rational::parse(motion.final.t)->to_double();
+  }
+
   void tell_ending(const ExtendedMotion& motion) {
     out_.ending = ending_of(motion.ending);
-    out_.reason = motion.reason;
-    if (motion.trouble)
-      out_.reason = fmt::format("Contact {}: {}", system_.contact_label(*motion.trouble), motion.reason);
-    if (!motion.final.t.empty()) out_.reached = Rational::parse(motion.final.t)->to_double();
+    out_.reason = reason_of(motion);
+    out_.reached = end_of(motion);
     if (motion.ending != StepEnding::None) return;
     const auto stop =
         std::find_if(motion.roots.begin(), motion.roots.end(), [&](const ExtendedRoot& r) { return is_stop(r); });
@@ -183,16 +189,44 @@ class ExtendedRun {
   void compare(const ExtendedMotion& rough, const ExtendedMotion& companion, const ExtendedMotion& fine) {
     for (std::size_t i = 0; i < rough.at.size(); ++i)
       out_.at[plan_.order_of_times[i]] = agreed({rough.at[i], companion.at[i], fine.at[i]});
-    for (const ExtendedMotion* motion : {&companion, &fine})
-      if (motion->ending == StepEnding::Interrupted) {
-        out_.ending = Ending::Interrupted;
-        out_.reason = motion->reason;
-        return;
-      }
-    out_.final = agreed({rough.final, companion.final, fine.final});
+    tell_other_ending(rough, companion, "the companion of another order that tells the digits");
+    tell_other_ending(rough, fine, fmt::format("the check in {} bits that tells the digits", level_.check_bits));
+    if (out_.ending == Ending::Interrupted) return;
+    const ExtendedState final = agreed({rough.final, companion.final, fine.final});
+    const bool together = out_.ok() || final.t.digits >= digits_of_one_end;
+    if (together) out_.final = final;
     add_happenings(rough, companion, fine);
-    for (std::size_t i = 0; i < std::min({rough.rows.size(), companion.rows.size(), fine.rows.size()}); ++i)
+    const std::size_t count =
+        std::min({rows_of(rough, together), rows_of(companion, together), rows_of(fine, together)});
+    for (std::size_t i = 0; i < count; ++i)
       out_.rows.push_back(agreed({rough.rows[i], companion.rows[i], fine.rows[i]}));
+  }
+
+  /// Where runs that could not go on came to the same end: in a collision each stops a few roundings before it.
+  static constexpr int digits_of_one_end = 6;
+
+  /// The last row is the end of a run, which has no counterpart where the others end elsewhere.
+  static std::size_t rows_of(const ExtendedMotion& motion, bool together) {
+    const std::size_t count = motion.rows.size();
+    return together || motion.ending == StepEnding::None || count <= 1 ? count : count - 1;
+  }
+
+  /// Digits are those on which all runs agree: one that ends elsewhere ends them all, with its reason.
+  void tell_other_ending(const ExtendedMotion& rough, const ExtendedMotion& other, const std::string& name) {
+    if (std::abs(end_of(other) - plan_.begin) < std::abs(out_.reached - plan_.begin)) out_.reached = end_of(other);
+    const bool is_told = !out_.ok() && out_.ending != Ending::UntilNotReached;
+    if (other.ending == StepEnding::Interrupted) {
+      out_.ending = Ending::Interrupted, out_.reason = other.reason;
+    } else if (is_told) {
+      return;
+    } else if (other.ending != StepEnding::None) {
+      out_.ending = ending_of(other.ending);
+      out_.reason = fmt::format("{} ended: {}", name, reason_of(other));
+    } else if (rough.met != other.met) {
+      out_.ending = Ending::NoConvergence;
+      out_.reason = fmt::format("what ends it was met by {}: it is too near to being missed to be told",
+                                rough.met ? "the run, and not by " + name : name + ", and not by the run");
+    }
   }
 
   using Roots = std::array<const ExtendedRoot*, 3>;  // of the run, its companion, its check
@@ -259,11 +293,10 @@ class ExtendedRun {
     const ExtendedSample &rough, &companion, &fine;
   };
 
-  /// The digits of `fine` that neither of the others contradicts. A companion that did not come so far contradicts them
-  /// all.
+  /// The digits of `fine` that neither of the others contradicts.
   AgreedNumber agreed(const std::string& rough, const std::string& companion, const std::string& fine) const {
     if (rough.empty() || fine.empty()) return {};
-    if (companion.empty()) return {"0", 0, "more than can be told: one of them did not come so far"};
+    if (companion.empty()) return {"0", 0, "more than can be told: one of them has no value here"};
     const AgreedNumber first = agreed_number(rough, fine, level_.digits),
                        second = agreed_number(companion, fine, level_.digits);
     return first.digits <= second.digits ? first : second;
@@ -273,17 +306,16 @@ class ExtendedRun {
                                    std::size_t first, std::size_t count) const {
     std::vector<AgreedNumber> out;
     for (std::size_t i = first; i < first + count; ++i)
-      out.push_back(agreed((s.rough.*values)[i], s.companion.reached ? (s.companion.*values)[i] : std::string(),
-                           (s.fine.*values)[i]));
+      out.push_back(agreed((s.rough.*values)[i], (s.companion.*values)[i], (s.fine.*values)[i]));
     return out;
   }
 
   ExtendedState agreed(const Samples& s) const {
     ExtendedState out;
-    if (!s.rough.reached || !s.fine.reached) return out;
+    if (!s.rough.reached || !s.companion.reached || !s.fine.reached) return out;
     const std::size_t n = s.rough.q.size();
     out.reached = true;
-    out.t = agreed(s.rough.t, s.companion.reached ? s.companion.t : s.rough.t, s.fine.t);
+    out.t = agreed(s.rough.t, s.companion.t, s.fine.t);
     out.q = agreed(s, &ExtendedSample::q, 0, n);
     out.v = agreed(s, &ExtendedSample::v, 0, n);
     out.energy = agreed(s, &ExtendedSample::observables, 0, 1).front();

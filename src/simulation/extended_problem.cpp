@@ -226,6 +226,7 @@ class ExactPlanner {
       const double count = std::abs(plan_.end - plan_.begin) / evaluate(every, {});
       out_.problem.rows = 1 + (count > 0 ? static_cast<std::size_t>(std::ceil(count * (1 - 1e-12))) - 1 : 0);
     }
+    out_.begin = plan_.begin;
     out_.numbers.push_back(begin);
     out_.end_index = out_.numbers.size();
     out_.numbers.push_back(end);

@@ -13,6 +13,7 @@ struct ExtendedPlan {
   std::size_t end_index = 0;                // of the end among them
   std::vector<std::size_t> order_of_times;  // problem time → index in options.at
   std::size_t points = 0, reactions = 0;    // observables: energy, points, reactions
+  double begin = 0;
 };
 
 ExtendedPlan plan_extended(const Model& model, const EquationsOfMotion& equations,

@@ -115,6 +115,29 @@ TEST_CASE("a collision ends the run with its reason, and the check run stops the
   CHECK(r.reached == doctest::Approx(1.1107207345395915).epsilon(1e-12));  // π / √8
 }
 
+TEST_CASE("where the check alone comes to an end, the run ends with its reason and without a state") {
+  // 1 − 10⁻³⁶ is 1 in 113 bits: the check alone meets a force, which takes more steps than a run of one step may have.
+  const ModelText m(
+      "dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n"
+      "force y = -1e50 step(x - 1 + 1e-36) sign(y - 1e-30)\nstart x' = 1\n");
+  ExtendedSimulationOptions options;
+  options.duration = 1;
+  const ExtendedResult r = run(m, options);
+  CHECK(r.ending == Ending::TooManySteps);
+  CHECK(r.reason == "the check in 192 bits that tells the digits ended: The run used up its steps.");
+  CHECK_FALSE(r.ok());
+  for (const AgreedNumber& number : {r.final.q[1], r.final.v[1]}) CHECK(number.digits == 0);
+
+  const ModelText until(
+      "dimensionless\ncoord x : number\nT = 1/2 x'^2\nstart x' = 1\n"
+      "event far when x = 1 + 1e-36 : stop\nrun 1 + 1e-35\n");
+  const ExtendedResult missed = run(until, {});
+  CHECK(missed.ending == Ending::NoConvergence);
+  CHECK(missed.reason ==
+        "what ends it was met by the check in 192 bits that tells the digits, and not by the run: it is too near to "
+        "being missed to be told");
+}
+
 TEST_CASE("interrupted, out of steps, and what is not possible") {
   std::atomic<bool> stop = true;
   ExtendedSimulationOptions options;
