@@ -70,6 +70,7 @@ class Modes {
   void note_point();
   void note_accelerations(const std::vector<T>& a);
   T size_along(const std::vector<T>& row, const std::vector<T>& sizes) const;
+  std::vector<T> of_coordinates(const std::vector<T>& sizes) const;
   T size_of_gap(std::size_t contact) const;
   T size_of_force(std::size_t contact) const;
   T rest_rate(std::size_t contact) const;

@@ -8,6 +8,7 @@ namespace maupertuis::extended {
 namespace through_modes {
 
 constexpr int roundings = 64;               // a value of so many rounding units of its terms is 0
+constexpr int roundings_of_slips = 1024;    // the same of slips: impacts leave rates up to `roundings` unchanged
 constexpr std::size_t most_at_once = 1000;  // changes at the same time
 constexpr std::size_t most_choices = 1024;  // modes that are tried
 constexpr std::size_t most_kept = 64;       // modes whose steppers are kept
@@ -137,6 +138,14 @@ T Modes<T>::size_along(const std::vector<T>& row, const std::vector<T>& sizes) c
   return sum;
 }
 
+/// [n] The sizes of kinds, for each coordinate.
+template <class T>
+std::vector<T> Modes<T>::of_coordinates(const std::vector<T>& sizes) const {
+  std::vector<T> out;
+  for (const std::size_t kind : problem_.contacts.kind) out.push_back(sizes[kind]);
+  return out;
+}
+
 /// Of the terms of g so far, and of what rounding of its coordinates may make of it.
 template <class T>
 T Modes<T>::size_of_gap(std::size_t c) const {
@@ -196,7 +205,7 @@ T Modes<T>::rest_rate(std::size_t c) const {
 
 template <class T>
 T Modes<T>::rest_slip(std::size_t f) const {
-  return through_modes::roundings * epsilon<T>() *
+  return through_modes::roundings_of_slips * epsilon<T>() *
          (fastest_slip_[f] + abs(t_) * size_along(point_->tangent[f], acceleration_));
 }
 
@@ -432,6 +441,7 @@ bool Modes<T>::fits(InMode& candidate, const std::vector<std::size_t>& touching,
                     std::vector<T>* accelerations) {
   candidate.stepper->start(t_, q_, v_);
   put_at_zero(candidate, touching, met);
+  candidate.stepper->set_usual_sizes(of_coordinates(place_), of_coordinates(speed_), of_coordinates(acceleration_));
   typename Stepper<T>::Outlook outlook = candidate.stepper->outlook(bound_);
   if (outlook.ending != StepEnding::None) return false;
   if (begins_slowly(candidate, outlook)) outlook = candidate.stepper->outlook(bound_);
@@ -597,17 +607,18 @@ bool Modes<T>::choose(const std::vector<std::size_t>& touching, const Met& met) 
     }
     if (found) break;
   }
-  if (!found)
-    return stop(StepEnding::Paradox, std::nullopt,
-                "No mode of the contacts and frictions was found that keeps its conditions here.");
-  if (holds_undetermined(found->mode))
-    return stop(StepEnding::Paradox, std::nullopt,
-                "friction at several contacts holds more than the rest needs, and its forces are not determined: with "
-                "more digits none are sought within its limits.");
-  if (InMode* const held = hold_what_holds(list, found, touching, met, &first); held != found)
+  if (InMode* const held = found ? hold_what_holds(list, found, touching, met, &first) : nullptr; held != found)
     found = held, last = nullptr, by_leniency = false;
   else if (std::any_of(list.begin(), list.end(), [&](const Choice& c) { return may_hold(c); }))
     last = nullptr;  // others were begun after it
+  // Of a rest that is not determined one distribution of forces was tried, be it within the limits or not.
+  if (holds_undetermined(found ? found->mode : mode_of(list, std::vector<std::size_t>(list.size(), 0))))
+    return stop(StepEnding::Paradox, std::nullopt,
+                "Friction at several contacts holds more than the rest needs, and its forces are not determined: with "
+                "more digits none are sought within its limits.");
+  if (!found)
+    return stop(StepEnding::Paradox, std::nullopt,
+                "No mode of the contacts and frictions was found that keeps its conditions here.");
   note_accelerations(first);
   if (last != found) static_cast<void>(fits(*found, touching, met, by_leniency, &first));
   const ExtendedMode before = now_->mode;

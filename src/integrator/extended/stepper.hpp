@@ -1,4 +1,5 @@
 #pragma once
+#include "integrator/extended/constraint_error.hpp"
 #include "integrator/extended/step_size.hpp"
 #include "integrator/taylor/end_check.hpp"
 #include "integrator/taylor/roots.hpp"
@@ -21,6 +22,8 @@ class Stepper {
 
   int order() const { return control_.order; }
   void start(const T& t, std::vector<T> q, std::vector<T> v);
+  /// [n] each: what rounding of q, q̇ and q̈ is measured by beside what they are here.
+  void set_usual_sizes(std::vector<T> q, std::vector<T> v, std::vector<T> a);
   /// An event at the end of the step: 1 rising, −1 falling, 0 where it comes to zero and goes back.
   struct Root {
     std::size_t event;
@@ -70,7 +73,6 @@ class Stepper {
   std::optional<Outcome> expand(const T& bound);
   std::optional<Outcome> project();
   T constraint_error() const;
-  T speed(std::size_t i) const;
   Outcome failure(KernelStatus status);
   void set_sides(Workspace<T>& work) const;
   void choose_first_sides();
@@ -102,6 +104,7 @@ class Stepper {
   std::size_t n_;
   T t_, begin_;
   std::vector<T> q_, v_, q_begin_, v_begin_;
+  UsualSizes<T> usual_;
   std::vector<T> polynomial_;                                 // [order + 2][n] of the last step
   double length_ = std::numeric_limits<double>::quiet_NaN();  // log₂ of the last length that the control chose
   double restraint_ = 0;                                      // log₂ of what the lengths are multiplied by

@@ -49,6 +49,13 @@ void Stepper<T>::start(const T& t, std::vector<T> q, std::vector<T> v) {
 }
 
 template <class T>
+void Stepper<T>::set_usual_sizes(std::vector<T> q, std::vector<T> v, std::vector<T> a) {
+  work_.set_usual_accelerations(a);
+  probe_.set_usual_accelerations(a);
+  usual_ = {std::move(q), std::move(v), std::move(a)};
+}
+
+template <class T>
 typename Stepper<T>::Outcome Stepper<T>::failure(KernelStatus status) {
   const StepEnding ending = status == KernelStatus::SingularMass    ? StepEnding::SingularMass
                             : status == KernelStatus::Contradiction ? StepEnding::SingularConstraints
@@ -57,36 +64,9 @@ typename Stepper<T>::Outcome Stepper<T>::failure(KernelStatus status) {
   return {ending, taylor::reason_of(status, kernel_, work_, is_finite)};
 }
 
-/// |q̇| + h |q̈| of a coordinate: its speed in the course of a step.
-template <class T>
-T Stepper<T>::speed(std::size_t i) const {
-  T out = abs(work_.coordinate(1)[i]);
-  if (std::isfinite(length_)) out += exp2_of<T>(length_) * abs(work_.acceleration(i));
-  return out;
-}
-
-/// The largest of φ and of dφ/dt or ψ, each by the sizes of its terms and by how far they change in a step.
 template <class T>
 T Stepper<T>::constraint_error() const {
-  T largest = T(0);
-  const auto relative = [&](const T& value, const T& scale) {
-    if (value != 0) largest = std::max(largest, T(abs(value) / scale));
-  };
-  const T h = std::isfinite(length_) ? exp2_of<T>(length_) : T(0);
-  for (std::size_t j = 0; j < kernel_.constraints(); ++j) {
-    T rate = T(0), place = work_.constraint_scale(j);
-    for (std::size_t i = 0; i < n_; ++i) {
-      const T row = abs(work_.constraint_matrix(j, i));
-      rate += row * speed(i);
-      place += row * abs(work_.coordinate(0)[i]);
-    }
-    relative(work_.constraint_value(j), place + h * rate);
-    // A rate that moves φ by less than its rounding within the step does not count.
-    const T unseen = h > 0 ? T(64 * epsilon<T>() * place / h) : T(0);
-    if (abs(work_.constraint_rate(j)) > unseen)
-      relative(work_.constraint_rate(j), work_.constraint_rate_scale(j) + rate);
-  }
-  return largest;
+  return ConstraintError<T>(work_, std::isfinite(length_) ? exp2_of<T>(length_) : T(0), usual_).largest();
 }
 
 /// Brings q and q̇ back to the constraints, by the factors of the expansion; the motion is expanded anew while that

@@ -25,6 +25,8 @@ class Workspace {
   int order() const { return order_; }
   void set_parameters(std::span<const T> values);
   void set_branches(std::span<const std::int8_t> sides);
+  /// [n] The sizes of q̈ in the motion so far: where forces balance, what rounding leaves of them contradicts nothing.
+  void set_usual_accelerations(std::span<const T> a) { usual_accelerations_.assign(a.begin(), a.end()); }
 
   KernelStatus expand(const T& t, std::span<const T> q, std::span<const T> v) { return run(t, q, v, order_); }
   KernelStatus evaluate(const T& t, std::span<const T> q, std::span<const T> v) { return run(t, q, v, 1); }
@@ -84,6 +86,7 @@ class Workspace {
   std::vector<T> direction_;  // [slots] tangents
   LinearSolver<T> solver_;
   std::vector<bool> determined_;               // [m]
+  std::vector<T> usual_accelerations_;         // [n] or empty
   std::vector<sparse::Edge> edges_, of_mass_;  // that tangents go through: for corrections, for M₀
   std::vector<const Instruction*> producer_;   // [slots]
   std::size_t singular_ = 0, contradicting_ = 0;

@@ -102,13 +102,14 @@ bool Workspace<T>::constraints_agree() {
   if (solver_.rank() == unknowns_) return true;
   for (std::size_t j = 0; program_.freedoms + j < unknowns_; ++j) {
     const Slot slot = program_.residual[program_.freedoms + j];
-    T rest = memory_.row(0)[slot], size = size_of(slot);
+    T rest = memory_.row(0)[slot], size = size_of(slot), left = T(0);
     for (std::size_t i = 0; i < program_.freedoms; ++i) {
       const T term = constraint_matrix(j, i) * unknown_[i];
       rest -= term;
       size += abs(term);
+      if (!usual_accelerations_.empty()) left += abs(constraint_matrix(j, i)) * usual_accelerations_[i];
     }
-    if (abs(rest) <= epsilon_to<T>(share_power) * size) continue;
+    if (abs(rest) <= epsilon_to<T>(share_power) * size + epsilon_to<T>(0.77) * left) continue;
     contradicting_ = j;
     return false;
   }

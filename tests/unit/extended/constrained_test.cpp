@@ -29,6 +29,25 @@ TEST_CASE("the pendulum in x and y is the one in θ, to 100 digits; Newton finds
   check_digits(r.final.reactions[0], -(Decimal("1.3") * rate * rate + Decimal("9.81") * cos(angle)), 98);
 }
 
+TEST_CASE("y = 0 is measured by the motion beside it: a cart with a pendulum is the one that has no y") {
+  const ExtendedResult without =
+      run(ModelText("dimensionless\ncoord x, a : number\nT = x'^2 + 1/2 ((x' + a' cos a)^2 + (a' sin a)^2)\n"
+                    "V = -10 cos a\nstart a = 1\nrun 2\n"),
+          digits100());
+  for (const std::string law : {"constraint y = 0", "contact y >= 0"}) {
+    CAPTURE(law);
+    const ExtendedResult r =
+        run(ModelText("dimensionless\ncoord x, y, a : number\n"
+                      "T = x'^2 + y'^2 + 1/2 ((x' + a' cos a)^2 + (y' + a' sin a)^2)\nV = 30 y - 10 cos a\n" +
+                      law + "\nstart a = 1\nrun 2\n"),
+            digits100());
+    REQUIRE(r.ok());
+    check_digits(r.final.q[0], Decimal(without.final.q[0].text), 98);
+    check_digits(r.final.q[2], Decimal(without.final.q[1].text), 98);
+    check_zero(r.final.q[1], 1e-100);
+  }
+}
+
 TEST_CASE("a redundant constraint is left out, and its share of the force is not made up") {
   const ExtendedResult by_angle = run(ModelText(reduced), digits100());
   const ExtendedResult r = run(

@@ -84,6 +84,25 @@ TEST_CASE("an impact with friction takes μ (1 + e) of the speed of approach fro
   check_digits(r.final.v[1], speed / 2 - Decimal("9.81") * (Decimal("0.5") - speed / Decimal("9.81")), 90);
 }
 
+TEST_CASE("what falls onto an incline sticks to it: all that moves is what rounding left") {
+  const std::string text =
+      "dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = 10 y\n"
+      "contact 0.8 y - 0.6 x >= 0 friction 0.9 slip 0.8 x' + 0.6 y' name plane\nstart y = 1\n";
+  ExtendedSimulationOptions options;
+  options.duration = 1;
+  for (const Precision precision : {Precision::Quad, Precision::Digits100}) {
+    options.precision = precision;
+    const ExtendedResult r = run(ModelText(text), options);
+    INFO(r.reason);
+    REQUIRE(r.ok());
+    check_digits(r.final.t, 1, 33);
+    check_zero(r.final.q[0], 1e-30);
+    check_zero(r.final.q[1], 1e-30);
+    check_digits(r.final.reactions[0], 8, 30);
+    check_digits(r.final.reactions[1], 6, 30);
+  }
+}
+
 TEST_CASE("three balls in a row that are hit at once share the impact by complementarity") {
   const ExtendedResult r = run_for(
       "dimensionless\ncoord a, b, c : number\nT = 1/2 (a'^2 + b'^2 + c'^2)\n"
