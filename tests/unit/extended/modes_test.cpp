@@ -207,7 +207,7 @@ TEST_CASE(
   }
   const std::string upper = "contact Y - y >= 1 friction 0.44 static 0.58 slip X' - x' name between\n",
                     lower = "contact y >= 0 friction 0.2 static 0.35 slip x' name floor\n";
-  for (const std::string& contacts : {lower + upper}) {
+  for (const std::string& contacts : {lower + upper, upper + lower}) {
     const ExtendedResult r = run_for(
         "dimensionless\ncoord x, y, X, Y : length\npoint A mass 0.54 at (x, y)\npoint B mass 1.3 at (X, Y)\n"
         "gravity (0, -10)\n" +
