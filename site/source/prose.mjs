@@ -40,7 +40,8 @@ const operator = /^(\s*([=+−·×/≤≥≠≈∈]|&[lg]t;)|<su[bp]>|[′₀-�
 const isUnit = (before, letter, after) =>
   ('smNJKVAWgh'.includes(letter) && /(\d|[(/][mNJ])[\s\u00a0]$|(rad|m|N|J)\/$/.test(before) && !/^<|^′/.test(after)) ||
   (letter === 'N' && /^(\)| m\))/.test(after) && before.endsWith('(')) ||
-  /^\/(s|kg|m)(?![\p{L}<])/u.test(after + ' ') && /(\d|^)\s?$/.test(before);
+  (/[NJW]/.test(letter) && /^\/(m|rad|s|kg)(?![\p{L}\p{N}])/u.test(after)) ||
+  (/^\/(s|kg|m)(?![\p{L}<])/u.test(after + ' ') && /(\d|^)\s?$/.test(before));
 const isInitial = (before, letter, after) =>
   /\p{Lu}/u.test(letter) &&
   /^\.[\s-]\p{Lu}/u.test(after) &&
@@ -48,7 +49,7 @@ const isInitial = (before, letter, after) =>
 const isArticle = (before, letter, after) =>
   letter === 'a' && (before || after)
     ? !(operator.test(after) || /(\p{L}\(|[=+−·×/]\s?)$/u.test(before))
-    : letter === 'A' && /(^|[.:;!?(“])\s*$/u.test(before) && /^(\s\p{L}{2}|\s*$)/u.test(after);
+    : letter === 'A' && /(^|[.:;!?(“])\s*$/u.test(before) && /^(\s\p{L}{2}|\s*$)/u.test(after) && !/^\s(is|has|and|or)\s/.test(after);
 const isLabel = (before, letter, after) => /[a-g]/.test(letter) && /(^|\s)\($/.test(before) && /^\)\s/.test(after);
 const isNoVariable = (before, letter, after) =>
   [isUnit, isInitial, isArticle, isLabel].some(is => is(before, letter, after)) ||

@@ -92,6 +92,7 @@ export async function checkParts(check, root) {
     ['A value u(a) of a string, 2 m long', 'A value <i>u</i>(<i>a</i>) of a string, 2 m long'],
     ['the rows A q = b (D. E. Knuth) at 3 rad/s', 'the rows <i>A</i> <i>q</i> = <i>b</i> (D. E. Knuth) at 3 rad/s'],
     ['Lagrange\'s "to reach", 2.9e-03 and 1e-12', 'Lagrange’s “to reach”, 2.9 · 10<sup>−3</sup> and 10<sup>−12</sup>'],
+    ['A is singular: N/m for λ', '<i>A</i> is singular: N/m for <i>λ</i>'],
     ['d/dt of M⁻¹ and Aᵀλ', '<i>d</i>/<i>dt</i> of <i>M</i>⁻¹ and <i>A</i>ᵀ<i>λ</i>'],
   ])
     check(`a sentence is set as in a book: ${text}`, theory(text) === html, theory(text));
