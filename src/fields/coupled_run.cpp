@@ -234,7 +234,7 @@ double gain_at_breaks(const FieldEquations& equations, const SemiDiscrete& mesh,
   double spacing = 0;
   for (std::size_t i = 1; i < mesh.borders().size(); ++i)
     spacing = std::max(spacing, (mesh.borders()[i] - mesh.borders()[i - 1]) / mesh.order());
-  const std::optional<int> jump = jump_from_sides(equations, begin, spacing);
+  const std::optional<int> jump = fit_of_sides(equations, begin, spacing).jump;
   if (jump && *jump <= 1) return of_kinks;
   return jump ? std::pow(2.0, *jump + 1) : 0;
 }

@@ -80,11 +80,13 @@ int FieldMethod::power(const FieldEquations& equations, const FieldQuestion& que
   return std::min(std::max(degree + 1 - lost, 1), 2 * stages);
 }
 
-/// 2p (up to that of the steps) where elements meet and in integrals, p + 1 between, p of a slope.
+/// p + 2 (up to that of the steps) where elements meet, 2p in integrals, p + 1 between, p of a slope. The power 2p of
+/// the elements where they meet is not that of a start: what its nodes leave out of it moves at once.
 int FieldMethod::power_of_waves(const FieldEquations& equations, const FieldQuestion& question,
                                 const Cells& half) const {
   int power = std::min(2 * order_, static_cast<int>(kOrder));
   if (question.total) return power;
+  power = std::min(power, order_ + 2);
   const FieldSystem& s = equations.system();
   Bindings values;
   for (const Parameter& p : equations.model->parameters) values[p.symbol] = p.si_value;

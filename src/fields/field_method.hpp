@@ -28,10 +28,11 @@ class FieldMethod {
   /// By collocation as much longer on the other meshes as their cells are wider, so that their difference tells the
   /// error of steps as well. `omega` is set where steps depend on it.
   double longest_step(FieldMotion& mesh, double duration, double every, const Interrupt& interrupt, double& omega);
-  /// Of a cell of the first mesh where values are looked at beside their places: by collocation, and where `width` was
-  /// given; else 0.
+  /// Of a cell of the first mesh, where values are looked at beside their places; 0: nowhere.
   double width() const { return width_; }
-  void look_beside(double width) { width_ = width; }
+  /// Waves: `alike`, at places that lie in elements as the place itself does.
+  void look_beside(double width, bool alike) { width_ = width, alike_ = alike; }
+  bool looks_alike() const { return alike_; }
   /// The power of the width of a cell by which an answer is off on two meshes with their steps; `half`: the coarser.
   int power(const FieldEquations& equations, const FieldQuestion& question, const Cells& half) const;
 
@@ -42,6 +43,7 @@ class FieldMethod {
   std::optional<DensityForm> stiff_;
   int order_ = 0;
   double step_ = 0, width_ = 0;  // of the first mesh by collocation
+  bool alike_ = false;
 };
 
 }  // namespace maupertuis

@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #if __has_include(<unistd.h>)
 #include <unistd.h>
@@ -87,10 +88,13 @@ void refuse_infinite_density(const FieldEquations& equations, Diagnostics& diagn
 /// Where a value of smooth elements, or of a wave with a jump in it, is looked at beside its place, in widths of the
 /// first mesh's cells: the error inside an element goes through zero several times, and two meshes agree by chance.
 constexpr double beside[] = {-1, -0.7, -0.4, 0.4, 0.7, 1};
+/// And a value of other waves: at the same place of elements of both meshes.
+constexpr double beside_alike[] = {-4, -2, 2, 4};
 
 struct OneRun {
   std::vector<double> answers;
   std::vector<std::vector<double>> near;  // [questions]: the same beside their places
+  std::vector<double> sizes;              // [questions]: the largest anywhere along x, on the first mesh
   std::size_t steps = 0;
   double h = 0, omega = 0, energy = 0, drift = 0;
   Trajectory trajectory;
@@ -270,6 +274,15 @@ class Outlook {
   Clock::time_point begin_ = Clock::now();
 };
 
+/// The largest that an answer is at places along x, now.
+double size_along(FieldMotion& mesh, const FieldQuestion& question, double width) {
+  constexpr int places = 16;  // on either side
+  double out = std::abs(mesh.answer(question));
+  for (int k = -places; k <= places && !question.total; ++k)
+    out = std::max(out, std::abs(mesh.answer_beside(question, k * width / places)));
+  return out;
+}
+
 /// On one mesh: with rows and warnings the first, without the others, which are there for the error.
 std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& method, const Cells& cells,
                              const std::vector<FieldQuestion>& questions, const FieldRunOptions& options,
@@ -303,6 +316,7 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
   out.energy = start;
   out.answers.assign(questions.size(), std::nan(""));
   out.near.resize(questions.size());
+  out.sizes.assign(questions.size(), 0);
   std::optional<ChargeMeter> meter;
   if (first && options.currents) meter.emplace(mesh, equations, *options.currents);
   if (meter && meter->idle()) meter.reset();
@@ -332,7 +346,8 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
       if (questions[i].time == stop) {
         out.answers[i] = mesh.answer(questions[i]);
         out.near[i].clear();
-        for (const double shift : beside)
+        if (first && method.is_wave()) out.sizes[i] = size_along(mesh, questions[i], method.width() * cells[0]);
+        for (const double shift : method.looks_alike() ? std::span<const double>(beside_alike) : beside)
           if (method.width() > 0 && !questions[i].total)
             out.near[i].push_back(mesh.answer_beside(questions[i], shift * method.width()));
       }
@@ -366,13 +381,17 @@ Cells divided(const Cells& cells, int parts) {
 struct Rough {
   enum { No, Coarse, Breaks } how = No;
   std::optional<int> jump;
+  double tail = 0;  // as in SideFit
 };
 
 Rough roughness_of_start(const FieldEquations& equations, const FieldMethod& method, const Cells& cells, double begin,
                          Diagnostics& diagnostics) {
   Rough out;
   const std::vector<double> borders = even_borders(equations, cells).front();
-  if (method.is_wave()) out.jump = jump_from_sides(equations, begin, (borders[1] - borders[0]) / method.order());
+  if (method.is_wave()) {
+    const SideFit fit = fit_of_sides(equations, begin, (borders[1] - borders[0]) / method.order());
+    out.jump = fit.jump, out.tail = fit.tail;
+  }
   if (warn_of_breaks(equations, cells, diagnostics) || (out.jump && *out.jump <= 1))
     out.how = Rough::Breaks;
   else if (is_coarse_for_start(equations, method, cells, diagnostics))
@@ -385,7 +404,8 @@ Rough roughness_of_start(const FieldEquations& equations, const FieldMethod& met
 /// Meshes and their steps are off by a power of the width of a cell, but never by less than rounding. Where a third
 /// mesh shows that the difference falls more slowly, by that; where the start breaks, by the first power; where it does
 /// not fit a side, by that of the derivative that jumps, and twice the difference counts. Where the mesh follows the
-/// start in part alone, a mesh of twice the cells tells what both others miss.
+/// start in part alone, a mesh of twice the cells tells what both others miss. Tails of pulses that do not fit a side
+/// are jumps too, as far as they reach.
 std::vector<double> errors_of(const OneRun& fine, const FieldEquations& equations, FieldMethod& method,
                               const Cells& cells, const std::vector<FieldQuestion>& questions,
                               const FieldRunOptions& options, Rough start, Diagnostics& diagnostics) {
@@ -418,7 +438,8 @@ std::vector<double> errors_of(const OneRun& fine, const FieldEquations& equation
       gain = std::isfinite(seen) ? std::min(gain, std::max(seen, 2.0)) : gain;
     }
     if (finer) out[i] = 2 * difference(*finer, fine, i);
-    out[i] = std::max(finer ? out[i] : 0, difference(*coarse, fine, i) / (gain - 1)) +
+    const double between = difference(*coarse, fine, i), tail = std::min(2 * between, start.tail * fine.sizes[i]);
+    out[i] = std::max({finer ? out[i] : 0, between / (gain - 1), tail}) +
              rounding * std::max(std::abs(fine.answers[i]), 1e-300);
   }
   return out;
@@ -443,9 +464,9 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   announce_memory(options, method->bytes(equations, cells));
   if (refuse_unresolved(equations, even_borders(equations, cells), method->order(), diagnostics)) return std::nullopt;
   const Rough start = roughness_of_start(equations, *method, cells, options.begin, diagnostics);
-  if (start.jump) {
+  if (method->is_wave()) {
     const std::vector<double> borders = even_borders(equations, cells).front();
-    method->look_beside(borders[1] - borders[0]);
+    method->look_beside(borders[1] - borders[0], !start.jump);
   }
   std::vector<std::vector<double>> rows;
   if (options.trajectory) rows = places_of_rows(equations, cells, options.least_values);

@@ -124,23 +124,25 @@ class Start {
 
 }  // namespace
 
-std::optional<int> jump_from_sides(const FieldEquations& equations, double begin, double spacing) {
+SideFit fit_of_sides(const FieldEquations& equations, double begin, double spacing) {
   const FieldSystem& s = equations.system();
-  if (s.periodic() || !s.space.front().from) return std::nullopt;
+  if (s.periodic() || !s.space.front().from) return {};
   const Start start(equations, begin);
   const OnShell shell(equations);
   const double from_node_to_node = std::min(1.0, spacing * start.wave_number());
-  std::optional<int> out;
+  SideFit out;
   for (SideCondition c : conditions_of(equations))
-    for (int k = 0; k <= most_times && (!out || c.order < *out); ++k, ++c.order) {
+    for (int k = 0; k <= most_times && (!out.jump || c.order < *out.jump); ++k, ++c.order) {
       const auto reduced = shell.reduced(c.jets);
       const auto jets = reduced ? start.inserted(*reduced) : std::nullopt;
       if (!jets) break;
       const double misfit = start.misfit(c, *jets);
-      if (misfit > of_tails || misfit * std::pow(from_node_to_node, c.order) > small) {
-        out = c.order;
+      const double seen = misfit * std::pow(from_node_to_node, c.order);
+      if (misfit > of_tails || seen > small) {
+        out.jump = c.order;
         break;
       }
+      out.tail = std::max(out.tail, seen);
       c.jets = s.total_derivative(*reduced, s.space.size());
       c.given = total_time_derivative(c.given);
     }

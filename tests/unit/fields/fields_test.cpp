@@ -354,6 +354,63 @@ TEST_CASE("a value that the elements do not have is told as such") {
   CHECK(study.verification()->results[0].actual == "no value");
 }
 
+TEST_CASE("the estimate of a smooth start tells the error on meshes of every order") {
+  // A pulse that goes both ways around a ring; on one mesh two values may agree by chance.
+  const auto pulse = [](double x) {
+    double sum = 0;
+    for (const int turn : {-2, -1, 0, 1, 2}) sum += std::exp(-std::pow((x - 0.5 + turn) / 0.1, 2));
+    return sum;
+  };
+  for (const int order : {3, 4, 6})
+    for (const int cells : {20, 40, 80})
+      for (const double t : {0.1, 0.3, 1.0}) {
+        CAPTURE(order);
+        CAPTURE(cells);
+        CAPTURE(t);
+        Study study = study_of(
+            fmt::format("dimensionless\nfield u(x) : number on x = 0 .. 1 cells {} order {} boundary periodic\n"
+                        "density = 1/2 u'^2 - 1/2 u_x^2\nstart u = exp(-((x - 0.5)/0.1)^2)\nrun {}\n"
+                        "expect u(1/2) at {} = 0 ± 1\nexpect u(1/5) at {} = 0 ± 1\n",
+                        cells, order, t, t, t));
+        REQUIRE(study.field_equations());
+        FieldRunOptions options;
+        options.duration = t;
+        Diagnostics diagnostics;
+        std::vector<FieldQuestion> questions;
+        for (const auto& place : study.model()->fields->places) questions.push_back({place.symbol, false, t});
+        const auto run = run_fields(*study.field_equations(), questions, options, diagnostics);
+        REQUIRE(run);
+        const double places[] = {0.5, 0.2};
+        for (std::size_t i = 0; i < 2; ++i) {
+          const double exact = (pulse(std::fmod(places[i] - t + 1, 1)) + pulse(std::fmod(places[i] + t, 1))) / 2;
+          CHECK(std::abs(run->answers[i].value - exact) < 10 * run->answers[i].error);
+        }
+      }
+}
+
+TEST_CASE("tails of pulses at the ends count in estimates as far as they reach") {
+  for (const double width : {0.1, 0.105, 0.11, 0.115})
+    for (const double x : {0.01, 0.03, 0.07}) {
+      CAPTURE(width);
+      CAPTURE(x);
+      Study study = study_of(fmt::format(
+          "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 40 order 8 boundary u = 0\n"
+          "density = 1/2 u'^2 - 1/2 u_x^2\nstart u = exp(-((x - 0.5)/{})^2)\nrun 0.1\nexpect u({}) at 0.1 = 0 ± 1\n",
+          width, x));
+      REQUIRE(study.field_equations());
+      FieldRunOptions options;
+      options.duration = 0.1;
+      Diagnostics diagnostics;
+      const auto run = run_fields(*study.field_equations(), {{study.model()->fields->places[0].symbol, false, 0.1}},
+                                  options, diagnostics);
+      REQUIRE(run);
+      const auto pulse = [&](double at) { return std::exp(-std::pow((at - 0.5) / width, 2)); };
+      const double left = x - 0.1, exact = (pulse(x + 0.1) + (left < 0 ? -pulse(-left) : pulse(left))) / 2;
+      CHECK(std::abs(run->answers[0].value - exact) < 2 * run->answers[0].error);
+      CHECK(run->answers[0].error < 1e-8);
+    }
+}
+
 TEST_CASE("starts that do not fit the sides in a derivative: the estimate holds d'Alembert's solution") {
   struct Case {
     const char *start, *right;
