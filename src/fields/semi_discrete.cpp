@@ -465,12 +465,15 @@ bool SemiDiscrete::set_start(Diagnostics& diagnostics) {
                             "Look for a logarithm or a root of a negative number in it, or a division by zero.");
           return false;
         }
+      // sin π is rounding, which must not violate a contact that the field touches.
+      constexpr double rounding = 4e-16;
+      double size = 0;
+      for (const double v : function) size = std::max(size, std::abs(v));
+      for (double& v : function) v = std::abs(v) <= rounding * size ? 0 : v;
       std::vector<std::optional<double>> given(spaces_[a].size());
       for (std::size_t j = 0; j < given.size(); ++j)
         if (!coordinates_[a][j])
           given[j] = evaluate(order ? total_time_derivative(values_[a][j]) : values_[a][j], at_start);
-      double size = 0;
-      for (const double v : function) size = std::max(size, std::abs(v));
       for (const bool right : {false, true}) {
         const auto& g = given[spaces_[a].value_at_border(right ? mesh_.borders.size() - 1 : 0)];
         if (g && std::abs(*g - (right ? function.back() : function.front())) > 1e-9 * std::max(size, std::abs(*g)))
