@@ -132,12 +132,12 @@ struct SolvedAcceleration {
 /// more than 400 characters; longer or singular blocks are left to the numerical solve. With constraints in terms of λ.
 std::vector<SolvedAcceleration> solved_accelerations(const EquationsOfMotion& equations);
 
-/// λ = (A M⁻¹ Aᵀ)⁻¹ (b + A M⁻¹ h) [m] for at most two constraints on coordinates as in solved_accelerations; else
-/// empty.
+/// λ = (A M⁻¹ F)⁻¹ (b + A M⁻¹ h) [m] with F = Aᵀ − ∂h/∂λ (friction may be made of λ; h is without it), for at most two
+/// constraints on coordinates as in solved_accelerations; else empty.
 std::vector<ReadableForm> solved_multipliers(const EquationsOfMotion& equations);
 
-/// The equations with the multipliers eliminated: Zᵀ(M q̈ + h) = 0 with A Z = 0, a row for each independent
-/// acceleration.
+/// The equations with the multipliers eliminated: Zᵀ(M q̈ + h) = 0 with Zᵀ F = 0, a row for each independent
+/// acceleration; F and h as for solved_multipliers, so that Zᵀ F = 0 is A Z = 0 without friction.
 struct EliminatedEquations {
   std::vector<std::size_t> dependent, independent;  // coordinates; the row's own one is independent
   std::vector<ReadableForm> rows;                   // row = 0

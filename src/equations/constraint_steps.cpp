@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "equations/constraint_forms.hpp"
+#include "equations/multiplier_forces.hpp"
 #include "equations/simplified.hpp"
 
 namespace maupertuis {
@@ -34,10 +35,17 @@ bool depends_on_velocities(Expr e) {
                      [](Expr s) { return s.role() == Role::Coordinate && s.order() == 1; });
 }
 
+bool has_friction_of_multipliers(const EquationsOfMotion& equations) {
+  const auto forces = multiplier_forces(equations);
+  return forces && forces->of_friction;
+}
+
 void write_eliminated(StepWriter& out) {
   const auto eliminated = eliminate_multipliers(out.equations());
   if (!eliminated) return;
-  std::string rule = "multipliers eliminated: Zᵀ(M q'' + h) = 0 with A Z = 0";
+  std::string rule = has_friction_of_multipliers(out.equations())
+                         ? "multipliers eliminated: Zᵀ(M q'' + h₀) = 0 with Zᵀ(Aᵀ − ∂h/∂λ) = 0, h = h₀ + (∂h/∂λ) λ"
+                         : "multipliers eliminated: Zᵀ(M q'' + h) = 0 with A Z = 0";
   if (eliminated->dependent_replaced) {
     rule += ", and from A q'' = b ";
     for (std::size_t i = 0; i < eliminated->dependent.size(); ++i)
@@ -115,7 +123,9 @@ void write_solved_multipliers(StepWriter& out, bool any_left) {
                                                         [&](const ReadableForm& f) { return is_short(f, order); });
   for (std::size_t k = 0; all_short && k < solved.size(); ++k) {
     const Expr symbol = out.equations().multipliers[k];
-    out.as_is(out.symbol(symbol), std::move(solved[k]), "A M⁻¹ Aᵀ λ = b + A M⁻¹ h");
+    out.as_is(out.symbol(symbol), std::move(solved[k]),
+              has_friction_of_multipliers(out.equations()) ? "A M⁻¹ (Aᵀ − ∂h/∂λ) λ = b + A M⁻¹ h₀, h = h₀ + (∂h/∂λ) λ"
+                                                           : "A M⁻¹ Aᵀ λ = b + A M⁻¹ h");
   }
   if (any_left || !all_short)
     out.sentence(

@@ -2,6 +2,7 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/print.hpp>
 
+#include "equations/multiplier_forces.hpp"
 #include "equations/simplified.hpp"
 
 #include <algorithm>
@@ -19,19 +20,21 @@ int pivot_class(Expr e) {
   return 1;
 }
 
-/// A brought to a form in which every row has a pivot column of its own, without fractions.
+/// A, or the forces of the multipliers, brought to a form in which every row has a pivot column of its own, without
+/// fractions.
 class RowReduction {
  public:
-  RowReduction(const EquationsOfMotion& equations)
-      : order_(equations.order), a_(constraint_matrix(equations)), b_(constraint_bias(equations)) {
+  RowReduction(ExprMatrix a, ExprVector b, const ReadingOrder& order)
+      : order_(order), a_(std::move(a)), b_(std::move(b)) {
     for (std::size_t row = 0; row < a_.rows; ++row) tidy(row);
   }
 
-  /// False: the rank is less than the number of rows, as far as can be seen.
-  bool reduce() {
+  /// In these pivot columns, or else in the best. False: the rank is less than the number of rows, as far as can be
+  /// seen.
+  bool reduce(const std::vector<std::size_t>& columns = {}) {
     for (std::size_t row = 0; row < a_.rows; ++row) {
-      const auto column = best_pivot(row);
-      if (!column) return false;
+      const auto column = columns.empty() ? best_pivot(row) : std::optional(columns[row]);
+      if (!column || a_.at(row, *column).is_zero()) return false;
       pivots_.push_back(*column);
       for (std::size_t other = 0; other < a_.rows; ++other)
         if (other != row && !a_.at(other, *column).is_zero()) clear(other, row, *column);
@@ -124,24 +127,34 @@ class RowReduction {
   std::vector<std::size_t> pivots_;
 };
 
-/// A denominator in it changes with the motion.
-bool has_moving_denominator(Expr e) {
+/// A denominator in it changes with the motion, or is a sum, as friction makes it of sines and cosines.
+bool has_awkward_denominator(Expr e, bool of_friction) {
   for (const Expr& node : topological_order({&e, 1}))
-    if (node.is(Kind::Power) && node[1].is_number() && node[1].number().sign() < 0 && pivot_class(node[0]) == 2)
+    if (node.is(Kind::Power) && node[1].is_number() && node[1].number().sign() < 0 &&
+        (pivot_class(node[0]) == 2 || (of_friction && node[0].is(Kind::Sum))))
       return true;
   return false;
 }
 
-/// A vector of ker A with the component `column` of the independent coordinates alone, its denominators multiplied
-/// away.
-ExprVector kernel_vector(const RowReduction& reduction, std::size_t column, const EquationsOfMotion& equations) {
+/// (a − b)/(b − a) is −1.
+Expr ratio_of(Expr a, Expr b, const ReadingOrder& order) {
+  const bool are_sums = a.is(Kind::Sum) && b.is(Kind::Sum);
+  if (are_sums && zero_test(a + b).verdict == Verdict::Zero) return a.context().number(-1);
+  if (are_sums && zero_test(a - b).verdict == Verdict::Zero) return a.context().number(1);
+  return simplified(a / b, order);
+}
+
+/// A vector that the rows do not see, with the component `column` of the independent coordinates alone, its
+/// denominators multiplied away.
+ExprVector kernel_vector(const RowReduction& reduction, std::size_t column, const EquationsOfMotion& equations,
+                         bool of_friction) {
   const ExprMatrix& a = reduction.matrix();
   Context& context = *equations.system->context;
   Expr scale = context.number(1);
   ExprVector ratios;  // empty: as a fraction of the pivot, which is a factor of the scale
   for (std::size_t row = 0; row < a.rows; ++row) {
-    const Expr ratio = simplified(a.at(row, column) / reduction.pivot(row), equations.order);
-    ratios.push_back(has_moving_denominator(ratio) ? Expr() : ratio);
+    const Expr ratio = ratio_of(a.at(row, column), reduction.pivot(row), equations.order);
+    ratios.push_back(has_awkward_denominator(ratio, of_friction) ? Expr() : ratio);
     if (!ratios[row]) scale = scale * reduction.pivot(row);
   }
   ExprVector z(a.columns, context.number(0));
@@ -171,27 +184,29 @@ ExprMap dependent_accelerations(const RowReduction& reduction, const MechanicalS
 std::optional<EliminatedEquations> eliminate_multipliers(const EquationsOfMotion& equations) {
   const MechanicalSystem& system = *equations.system;
   Context& context = *system.context;
-  RowReduction reduction(equations);
-  if (!reduction.reduce()) return std::nullopt;
+  RowReduction reduction(constraint_matrix(equations), constraint_bias(equations), equations.order);
+  const auto of_multipliers = multiplier_forces(equations);
+  if (!of_multipliers || !reduction.reduce()) return std::nullopt;
+  RowReduction forces(of_multipliers->rows, ExprVector(system.constraints.size(), context.number(0)), equations.order);
+  if (!forces.reduce(reduction.pivots())) return std::nullopt;
   EliminatedEquations result;
   result.dependent = reduction.pivots();
   result.dependent_replaced = reduction.constant_pivots();
-  const ExprVector residual = expand_time_derivatives(equations.residual);
   const ExprVector balance = expand_time_derivatives(equations.balance());
   const ExprMap replaced = result.dependent_replaced ? dependent_accelerations(reduction, system) : ExprMap{};
   for (std::size_t j = 0; j < system.coordinates.size(); ++j) {
     if (reduction.is_dependent(j)) continue;
-    const ExprVector z = kernel_vector(reduction, j, equations);
+    const ExprVector z = kernel_vector(forces, j, equations, of_multipliers->of_friction);
     ExprVector of_residual, of_balance;
     for (std::size_t i = 0; i < z.size(); ++i) {
-      of_residual.push_back(z[i] * residual[i]);
+      of_residual.push_back(z[i] * of_multipliers->residual[i]);
       of_balance.push_back(z[i] * balance[i]);
     }
     const ExprVector row{substitute(context.sum(of_residual), replaced)};
     ReadableForm form = readable_equations(row, equations.order).front();
     form.own = system.coordinates[j].q;
     if (!form.intermediates.empty() || to_plain(form, equations.order).size() > longest_row) return std::nullopt;
-    // The multipliers cancel: the row is a combination of the equations with Aᵀλ.
+    // The multipliers cancel: the row is a combination of the equations with all that is made of λ.
     if (zero_test(form.value - substitute(context.sum(of_balance), replaced)).verdict != Verdict::Zero)
       return std::nullopt;
     result.independent.push_back(j);

@@ -4,6 +4,7 @@
 #include <maupertuis/print.hpp>
 #include <maupertuis/seen_nonzero.hpp>
 
+#include "equations/multiplier_forces.hpp"
 #include "equations/simplified.hpp"
 
 #include <functional>
@@ -124,6 +125,13 @@ std::vector<SolvedAcceleration> solved_for(const EquationsOfMotion& equations, c
   return solved;
 }
 
+ExprVector at_rest(const EquationsOfMotion& equations, const ExprVector& residual) {
+  ExprMap still;
+  for (const Coordinate& c : equations.system->coordinates)
+    still.emplace(c.acceleration, equations.system->context->number(0));
+  return substitute(residual, still);
+}
+
 Expr row_times(const ExprMatrix& a, std::size_t row, const ExprVector& x) {
   ExprVector terms;
   for (std::size_t i = 0; i < x.size(); ++i) terms.push_back(a.at(row, i) * x[i]);
@@ -167,17 +175,18 @@ std::vector<SolvedAcceleration> solved_accelerations(const EquationsOfMotion& eq
 std::vector<ReadableForm> solved_multipliers(const EquationsOfMotion& equations) {
   const ExprMatrix a = constraint_matrix(equations);
   if (a.rows == 0 || a.rows > 2) return {};
-  // λ = (A M⁻¹ Aᵀ)⁻¹ (b + A M⁻¹ h)
-  const ExprVector drift = apply_inverse_mass(equations, bias(equations)), b = constraint_bias(equations);
+  const auto forces = multiplier_forces(equations);
+  if (!forces) return {};
+  // λ = (A M⁻¹ F)⁻¹ (b + A M⁻¹ h₀), F = Aᵀ where no friction is made of λ
+  const ExprVector drift = apply_inverse_mass(equations, at_rest(equations, forces->residual));
+  const ExprVector b = constraint_bias(equations);
   if (drift.empty()) return {};
-  ExprMatrix g{a.rows, a.rows, {}};
+  ExprMatrix g{a.rows, a.rows, ExprVector(a.rows * a.rows, drift.front().context().number(0))};
   ExprVector c;
   for (std::size_t k = 0; k < a.rows; ++k) {
-    const ExprVector column(a.entries.begin() + static_cast<std::ptrdiff_t>(k * a.columns),
-                            a.entries.begin() + static_cast<std::ptrdiff_t>((k + 1) * a.columns));
-    const ExprVector response = apply_inverse_mass(equations, column);
-    for (std::size_t l = 0; l < a.rows; ++l)
-      g.entries.push_back(simplified(row_times(a, l, response), equations.order));
+    const auto row = forces->rows.entries.begin() + static_cast<std::ptrdiff_t>(k * a.columns);
+    const ExprVector response = apply_inverse_mass(equations, {row, row + static_cast<std::ptrdiff_t>(a.columns)});
+    for (std::size_t l = 0; l < a.rows; ++l) g.at(l, k) = simplified(row_times(a, l, response), equations.order);
     c.push_back(b[k] + row_times(a, k, drift));
   }
   if (a.rows == 1)

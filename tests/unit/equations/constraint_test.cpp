@@ -1,6 +1,7 @@
 #include "../model_text.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/contact_mode.hpp>
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/print.hpp>
 
@@ -183,6 +184,72 @@ constraint (x2 - x1)^2 + (y2 - y1)^2 = b^2 name lower
   REQUIRE(solved.size() == 2);
   REQUIRE(motion);
   for (std::size_t k = 0; k < 2; ++k) CHECK(equal(solved[k].value, motion->multipliers[k]));
+}
+
+namespace {
+
+EquationsOfMotion in_mode(const ModelText& m, const std::string& name) {
+  std::string trouble;
+  const auto mode = read_mode(m.model.system, name, trouble);
+  INFO(trouble);
+  REQUIRE(mode);
+  Diagnostics diagnostics;
+  auto equations =
+      euler_lagrange(std::make_shared<const MechanicalSystem>(system_in_mode(m.model.system, *mode)), diagnostics);
+  REQUIRE(equations);
+  return std::move(*equations);
+}
+
+/// q̈ and λ as they are written out: put into the equations and the constraints they leave nothing.
+ExprMap written_out(const EquationsOfMotion& equations) {
+  ExprMap multipliers, motion;
+  const auto solved = solved_multipliers(equations);
+  REQUIRE(solved.size() == equations.multipliers.size());
+  for (std::size_t k = 0; k < solved.size(); ++k) multipliers.emplace(equations.multipliers[k], solved[k].value);
+  for (const SolvedAcceleration& a : solved_accelerations(equations))
+    motion.emplace(equations.system->coordinates[a.coordinate].acceleration, substitute(a.right.value, multipliers));
+  for (const auto& entry : multipliers) motion.insert(entry);
+  return motion;
+}
+
+}  // namespace
+
+TEST_CASE("friction of a contact that slides goes with its multiplier, written out and eliminated") {
+  const ModelText block(
+      "dimensionless\nparam m = 1, g = 10, μ = 0.3\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = m g y\n"
+      "contact y >= 0 friction μ slip x' name floor\nstart x' = 1\n");
+  const EquationsOfMotion slides = in_mode(block, "floor sliding +");
+  CHECK(to_plain(solved_multipliers(slides).at(0), slides.order) == "m g");
+  const auto rows = eliminate_multipliers(slides);
+  REQUIRE(rows);
+  CHECK(printed(rows->rows, slides.order) == Lines{"m x'' + m g μ"});
+
+  const ModelText wedge(
+      "dimensionless\nparam m = 1, M = 2, g = 10, μ = 0.3, c = 0.6, s = 0.8\ncoord X, x, y : length\n"
+      "T = 1/2 m (x'^2 + y'^2) + 1/2 M X'^2\nV = m g y\n"
+      "contact c y - s (x - X) >= 0 friction μ slip c (x' - X') + s y' name face\nstart X = 0\n");
+  const ModelText corner(
+      "dimensionless\nparam m = 1, g = 10, μ = 0.3, u = 0.2, I = 3\ncoord x, y, a : length\n"
+      "T = 1/2 m (x'^2 + y'^2) + 1/2 I a'^2\nV = m g (y + x)\n"
+      "contact y >= 0 friction μ slip x' + a' name floor\ncontact x >= 0 friction u slip y' - a' name wall\n"
+      "start x = 0\n");
+  for (const auto& [model, mode] : {std::pair(&wedge, "face sliding -"), std::pair(&wedge, "face sliding +"),
+                                    std::pair(&corner, "floor sliding +, wall sliding -")}) {
+    CAPTURE(std::string(mode));
+    const EquationsOfMotion equations = in_mode(*model, mode);
+    const ExprMap motion = written_out(equations);
+    ExprVector left = equations.balance();
+    left.insert(left.end(), equations.constraint_accelerations.begin(), equations.constraint_accelerations.end());
+    const auto eliminated = eliminate_multipliers(equations);
+    REQUIRE(eliminated);
+    CHECK(eliminated->rows.size() + equations.multipliers.size() == equations.system->coordinates.size());
+    for (const ReadableForm& row : eliminated->rows) {
+      for (const Expr& symbol : symbols_of({&row.value, 1})) CHECK(symbol.role() != Role::Multiplier);
+      left.push_back(row.value);
+    }
+    for (const Expr& e : left)
+      CHECK(zero_test(substitute(expand_time_derivatives(e), motion)).verdict == Verdict::Zero);
+  }
 }
 
 TEST_CASE("the textbook path with multipliers") {
