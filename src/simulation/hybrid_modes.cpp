@@ -285,9 +285,14 @@ bool HybridMotion::may_hold(const Choice& c) {
 void HybridMotion::hold_what_holds(const std::vector<Choice>& list, Found& found,
                                    const std::vector<std::size_t>& touching, double bound) {
   bool changed = false;
+  const auto is_at_limit = [&](std::size_t i) {
+    return std::any_of(pending_->left.begin(), pending_->left.end(),
+                       [&](const Watch& w) { return w.what == Watch::What::Hold && w.index == i; });
+  };
   for (const Choice& c : list) {
     const FrictionState state = found.mode.friction[c.contact];
-    if (!may_hold(c) || (state != FrictionState::Forward && state != FrictionState::Backward)) continue;
+    if (!may_hold(c) || is_at_limit(c.contact) || (state != FrictionState::Forward && state != FrictionState::Backward))
+      continue;
     Found next = found;
     next.mode.friction[c.contact] = FrictionState::Stick;
     const std::optional<Given> given = given_in(next.mode, bound);

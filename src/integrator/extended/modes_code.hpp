@@ -546,7 +546,9 @@ typename Modes<T>::InMode* Modes<T>::hold_what_holds(const std::vector<Choice>& 
                                                      std::vector<T>* accelerations) {
   for (const Choice& c : list) {
     const Slides state = found->mode.friction[c.index];
-    if (!may_hold(c) || (state != Slides::Forward && state != Slides::Backward)) continue;
+    if (!may_hold(c) || through_modes::holds(met.left, What::Hold, c.index) ||
+        (state != Slides::Forward && state != Slides::Backward))
+      continue;
     ExtendedMode mode = found->mode;
     mode.friction[c.index] = Slides::Stick;
     InMode& next = in_mode(mode);
