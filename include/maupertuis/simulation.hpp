@@ -115,7 +115,7 @@ std::string_view word_of(Happening::Kind kind);
 /// Where the energy of a run with contacts and friction went, J. What the terms of h_E lost is their sum to rounding.
 struct EnergyBooks {
   double impacts = 0;   // lost at impacts, ½ Λ (1 − e) |ġ⁻| each
-  double moving = 0;    // gained from contacts that move at impacts, −Λ ∂g/∂t
+  double moving = 0;    // gained from surfaces that move: −Λ ∂g/∂t at impacts, −λ ∂g/∂t and what friction gives between
   double friction = 0;  // lost by friction while sliding
   double dampers = 0;   // lost by D
 };

@@ -148,6 +148,7 @@ class Member {
     out.books = record.books;
     out.books->friction = last.integrals[1];
     out.books->dampers = last.integrals[2];
+    out.books->moving += last.integrals[3];
   }
 
   Members& members_;

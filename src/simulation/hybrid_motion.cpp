@@ -36,7 +36,7 @@ bool HybridMotion::will_jump() const { return pending_ && (!pending_->hit.empty(
 void HybridMotion::leave_mode() {
   if (!now_) return;
   const TaylorStepper& s = *now_->stepper;
-  for (std::size_t k = 0; k < 3; ++k) carried_[k] += s.integral(k);
+  for (std::size_t k = 0; k < std::size(carried_); ++k) carried_[k] += s.integral(k);
   steps_before_ += s.steps(), rejected_before_ += s.rejected(), switches_before_ += s.switches();
   residual_before_ = std::max(residual_before_, s.constraint_residual());
 }

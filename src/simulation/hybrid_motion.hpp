@@ -36,7 +36,8 @@ struct HybridRecord {
 ///
 ///     mode "floor" ──── λ = 0 ──── mode "" ──── g = 0, ġ < 0: impact ──── mode "" or "floor" ────
 ///
-/// Integrals of its samples: the work on h_E, that of impacts included; what friction took; what D took.
+/// Integrals of its samples: the work on h_E, that of impacts included; what friction took; what D took; what surfaces
+/// that move gave, without impacts.
 class HybridMotion final : public Method {
  public:
   /// `parameters` [p].
@@ -243,7 +244,7 @@ class HybridMotion final : public Method {
   bool forwards_ = true, started_ = false;
   bool meets_late_ = false;
   double late_by_ = 0;             // until the pending instant is settled
-  double carried_[3] = {0, 0, 0};  // integrals of the modes before
+  double carried_[4] = {0, 0, 0, 0};  // integrals of the modes before
   mutable Sample step_start_;
   std::size_t steps_before_ = 0, rejected_before_ = 0, switches_before_ = 0, same_time_ = 0;
   double residual_before_ = 0;

@@ -72,6 +72,25 @@ void watch_frictions(const MechanicalSystem& system, const ContactMode& mode, co
   }
 }
 
+/// What surfaces that move give per time: closed contacts −λ ∂g/∂t, friction −λ_t·w, where w is what the slip is
+/// without velocities of the system.
+Expr given_by_surfaces(const MechanicalSystem& system, const ContactMode& mode) {
+  Context& context = *system.context;
+  ExprMap at_rest;
+  for (const Coordinate& c : system.coordinates) at_rest[c.velocity] = context.number(0);
+  ExprVector out{context.number(0)};
+  for (std::size_t i = 0; i < mode.friction.size(); ++i) {
+    const bool is_contact = i < mode.closed.size();
+    if (is_contact && !mode.closed[i]) continue;
+    if (is_contact)
+      out.push_back(-(system.contacts[i].multiplier * differentiate(system.contacts[i].gap, context.time())));
+    const Friction& f = friction_of(system, i);
+    for (std::size_t k = 0; f.present() && k < f.slip.size(); ++k)
+      out.push_back(-(f.multipliers[k] * substitute(expand_time_derivatives(f.slip[k]), at_rest)));
+  }
+  return context.sum(out);
+}
+
 /// Forces that do not act in a mode, and friction that slides; `rubbed`: what it takes.
 ExprMap forces_in(const MechanicalSystem& system, const ContactMode& mode, ExprVector& rubbed) {
   Context& context = *system.context;
@@ -216,7 +235,7 @@ ModeProgram ModeLibrary::derived(const ContactMode& mode, const ModeDetails& det
   watch_frictions(own, plain, details.stops, watches, wanted.events);
   for (std::size_t i = 0; i < own.coordinates.size(); ++i)
     damped.push_back(equations.dissipative_terms[i] * own.coordinates[i].velocity);
-  wanted.integrands = {own.context->sum(rubbed), own.context->sum(damped)};
+  wanted.integrands = {own.context->sum(rubbed), own.context->sum(damped), given_by_surfaces(own, plain)};
   for (auto* list : {&wanted.observables, &wanted.events, &wanted.integrands})
     if (!forces.empty() && !list->empty()) *list = substitute(*list, forces);
   // The power is of the system that moves: given forces are in it already, beside the multipliers.

@@ -276,6 +276,7 @@ class Run {
     result_.books = record.books;
     result_.books->friction = last.integrals[1];
     result_.books->dampers = last.integrals[2];
+    result_.books->moving += last.integrals[3];
   }
 
   const Model& model_;

@@ -443,3 +443,25 @@ TEST_CASE("a disc that rolls into a corner comes to rest there, after impacts wi
     CHECK(r.statistics.energy_drift < 1e-13);
   }
 }
+
+TEST_CASE("what surfaces that move give is in the books: a belt that is faster, a table that lifts") {
+  const auto belt = run_text(
+      "dimensionless\nparam g = 9.81, μ = 0.2\ncoord x, y : length\npoint P mass 1 at (x, y)\ngravity (0, -g)\n"
+      "contact y >= 0 friction μ static 0.25 slip x' - 3 t name floor\n",
+      2);
+  const double force = 0.2 * 9.81;
+  CHECK(belt.books->moving == doctest::Approx(force * 6).epsilon(1e-13));                  // the belt goes 6
+  CHECK(belt.books->friction == doctest::Approx(force * (6 - 2 * force)).epsilon(1e-13));  // the block 2 F
+  // Sticking it gives what the block gains.
+  const auto carried = run_text(
+      "dimensionless\ncoord x, y : length\npoint P mass 1 at (x, y)\ngravity (0, -9.81)\n"
+      "contact y >= 0 friction 0.5 slip x' - 3 t name floor\n",
+      2);
+  CHECK(carried.books->moving == doctest::Approx(18).epsilon(1e-13));
+  CHECK(carried.books->friction == 0);
+  const auto lift = run_text(
+      "dimensionless\ncoord y : length\npoint P mass 2 at (0, y)\ngravity (0, -10)\ncontact y >= 0.5 t name table\n"
+      "start y' = 0.5\n",
+      3);
+  CHECK(lift.books->moving == doctest::Approx(2 * 10 * 1.5).epsilon(1e-13));
+}
