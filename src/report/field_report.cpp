@@ -219,6 +219,17 @@ class FieldComposer {
     }
   }
 
+  /// The first of them: "wall impact at 0.1 s, …".
+  static std::string happenings_line(const FieldRunResult& run, bool bare) {
+    constexpr std::size_t most = 8;
+    std::string out;
+    for (std::size_t i = 0; i < std::min(run.happenings.size(), most); ++i) {
+      const Happening& h = run.happenings[i];
+      out += fmt::format("{}{} {} at {}", i ? ", " : "", h.name, word_of(h.kind), quantity(h.t, bare ? "" : "s", 8));
+    }
+    return run.happenings.size() > most ? fmt::format("{}, … {} in all", out, run.happenings.size()) : out;
+  }
+
   void add_run(ReportContent& out, const FieldRunResult& run) const {
     const bool bare = model_.system.dimensionless;
     const auto add = [&](const char* name, std::string value) { out.statistics.emplace_back(name, std::move(value)); };
@@ -232,6 +243,13 @@ class FieldComposer {
     add("energy", quantity(run.energy, bare ? "" : "J", 12));
     add("energy drift", run.energy_drift < 0 ? std::string("forces act: it is not conserved")
                                              : fmt::format("{:.3g} of its terms", run.energy_drift));
+    if (!run.happenings.empty()) add("contacts, friction and events", happenings_line(run, bare));
+    if (run.books)
+      add("energy lost",
+          fmt::format("impacts {}, friction {}, dampers {}", quantity(run.books->impacts, bare ? "" : "J", 6),
+                      quantity(run.books->friction, bare ? "" : "J", 6),
+                      quantity(run.books->dampers, bare ? "" : "J", 6)));
+    if (!run.trouble.empty()) add("it ended early", run.trouble);
     for (std::size_t a = 0; a < e_.varied.size(); ++a) {
       FieldPictureOptions options;
       options.field = a, options.theme = PlotTheme::Page, options.dimensionless = bare;
