@@ -148,6 +148,13 @@ void unknown_time(Elaboration& e, Span span) {
       fmt::format("Write {}, or declare t.", x));
 }
 
+/// Runs print it and write it as a column.
+void unknown_energy(Elaboration& e, Span span) {
+  e.diagnostics.error("E0201", span, "`energy` is not declared",
+                      "It is a column of runs; a formula names what the energy is made of.",
+                      "Write T + V, or T or V alone.");
+}
+
 /// A declared name that looks as this one does, in letters of another alphabet; empty if there is none.
 std::string twin_of(const std::string& text, const std::vector<std::string>& names) {
   const std::string look = latin_look(text);
@@ -162,6 +169,7 @@ void unknown_name(Elaboration& e, const std::string& text, Span span) {
   if (is_silent(e, text)) return;
   if (!e.unknown_names.insert(text).second) return;  // told at its first use
   if (text == "t") return unknown_time(e, span);
+  if (text == "energy") return unknown_energy(e, span);
   std::vector<std::string> names = e.table.names();
   if (names.size() > 2000) names.resize(2000);
   if (const std::string twin = twin_of(text, names); !twin.empty()) {

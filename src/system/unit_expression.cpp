@@ -14,7 +14,7 @@ constexpr std::pair<std::string_view, std::string_view> kUnitWords[] = {
     {"joule", "J"},  {"Joule", "J"},     {"watt", "W"},      {"Watt", "W"},      {"volt", "V"},    {"Volt", "V"},
     {"ampere", "A"}, {"radian", "rad"},  {"radians", "rad"}, {"degrees", "deg"}, {"hz", "Hz"},     {"Kg", "kg"},
     {"KG", "kg"},    {"Rad", "rad"},     {"hours", "h"},     {"minutes", "min"}, {"ms2", "m/s^2"}, {"msec", "ms"},
-    {"Ohm", "ohm"},  {"mps", "m/s"},     {"rads", "rad"},
+    {"Ohm", "ohm"},  {"mps", "m/s"},     {"rads", "rad"},    {"degK", "K"},
 };
 
 /// `N m` for Nm: two or three units without a blank between them; empty if it is not made of them.
@@ -40,6 +40,10 @@ std::string unit_meant(const std::string& word, std::span<const std::string> can
   return near.empty() ? "" : fmt::format("Did you mean `{}`?", near);
 }
 
+/// Scales of temperature whose zero is not that of temperature, as people spell them.
+constexpr std::string_view kShiftedScales[] = {"degC", "deg_C", "Celsius",    "celsius",   "centigrade",
+                                               "degF", "deg_F", "Fahrenheit", "fahrenheit"};
+
 void unknown_unit(Elaboration& e, const syntax::UnitExpression::Factor& word) {
   std::vector<std::string> candidates = {"kg", "mm", "cm", "km", "ms", "kN", "mN", "kW", "mH", "mA", "kHz"};
   for (std::string& unit : unit_words()) candidates.push_back(std::move(unit));
@@ -49,6 +53,12 @@ void unknown_unit(Elaboration& e, const syntax::UnitExpression::Factor& word) {
                         fmt::format("`{}` is a {} of this model, not a unit", word.word, word_of(named->kind)),
                         "Here stands a quantity: a number followed by its unit.",
                         "Write a formula with `*`, in a `let` if it defines something.");
+    return;
+  }
+  if (std::find(std::begin(kShiftedScales), std::end(kShiftedScales), word.word) != std::end(kShiftedScales)) {
+    e.diagnostics.error("E0301", word.span, fmt::format("`{}` is no unit", word.word),
+                        "Its zero is not the zero of temperature, so that it cannot stand in products.",
+                        "Write temperatures in K: 20 °C are 293.15 K, and a difference of 1 °C is 1 K.");
     return;
   }
   e.diagnostics.error(

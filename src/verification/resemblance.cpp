@@ -208,7 +208,10 @@ class Resembler {
         const Expr shown = *ratio * t.value;
         if (!vanishes(shown - written) || ratio->is_zero() || terms_in(shown) > terms_in(t.value)) continue;
         out.difference = fmt::format("{} stands in the place of {}", text(shown, of.row), text(t.value, of.row));
-        out.sentence = fmt::format("a factor of {} is wrong", name_of(t));
+        out.sentence = is_value_of_symbols(*ratio)
+                           ? "numbers stand in the place of symbols: equations hold for all values of the parameters, "
+                             "so that a claim names them"
+                           : fmt::format("a factor of {} is wrong", name_of(t));
         return out;
       }
       for (const TermVariant& variant : term_variants(t.value, equations_)) {
@@ -223,6 +226,12 @@ class Resembler {
       }
     }
     return std::nullopt;
+  }
+
+  /// 200/k with k = 200: right with the values that the model gives its parameters.
+  bool is_value_of_symbols(Expr ratio) const {
+    constexpr double digits = 1e-12;
+    return !ratio.is_number() && std::abs(number_of(system_, ratio) - 1) <= digits;
   }
 
   /// A factor leaves the number of terms as it is; F + k in the place of F has a term more.

@@ -137,6 +137,8 @@ const Wrong kWrong[] = {
     {"pendulum", "m l^2 θ'' + 2 m g l sin θ = 0", "2 m g l sin θ stands in the place of m g l sin θ",
      "V has a factor 2 too many"},
     {"pendulum", "m l^2 θ'' + m g sin θ * (3 [m]) = 0", "stands in the place of m g l sin θ", "factor of"},
+    {"pendulum", "m l^2 θ'' + m g sin θ * (2 [m]) = 0", "stands in the place of m g l sin θ",
+     "numbers stand in the place of symbols"},
     {"kepler", "m r^2 φ'' + m r r' φ' = 0", "m r r' φ' stands in the place of 2 m r r' φ'",
      "velocities has a factor 1/2 too many"},
     {"elastic", "m r'' - m r θ'^2 + 2 k (r - l0) - m g cos θ = 0", "stands in the place of", "factor 2 too many"},
