@@ -234,6 +234,12 @@ bool refuse_force_of_contact(Elaboration& e, Expr normal, const syntax::Expressi
 std::optional<std::size_t> rubbed_coordinate(Elaboration& e, const syntax::Expression& x) {
   if (e.fields && x.kind == syntax::Expression::Kind::Call && e.fields->system.jet_of_name(x.text))
     return coordinate_of_place(e, x);
+  if (e.fields && x.kind == syntax::Expression::Kind::Name && e.fields->system.jet_of_name(x.text)) {
+    e.diagnostics.error("E0299", x.span, fmt::format("friction along `{}` without a place", e.texts.slice(x.span)),
+                        "Dry friction acts at places; along all of a field it would hold every piece by itself.",
+                        fmt::format("Write the value at a place, such as `friction {}(l) limit F`.", x.text));
+    return std::nullopt;
+  }
   const auto of = start_variable(e, x);
   return of ? std::optional(of->coordinate) : std::nullopt;
 }

@@ -217,6 +217,9 @@ TEST_CASE("impacts on a field without a mass are refused, modes say what they le
   REQUIRE(modes.field_equations());
   CHECK(field_frequencies(*modes.field_equations(), 3, modes.diagnostics()).size() == 3);
   CHECK(codes_of(modes) == "W0658 ");
+  Study along(SourceText("contact.lag", bar(1, "friction u limit 0.1")));
+  CHECK(!along.field_equations());
+  CHECK(codes_of(along) == "E0299 ");
   Study loose(SourceText("contact.lag", bar(1, "contact u <= 0.1 restitution 1/2")));
   CHECK(!loose.field_equations());
   CHECK(codes_of(loose) == "E0299 ");
