@@ -42,8 +42,15 @@ class Start {
     if (equations_.degenerate) return refuse_conditions() ? std::nullopt : find_on_degenerate();
     if (!system_.constrained() && model_.experiment.start_conditions.empty()) return ConsistentStart{state_, {}, false};
     const ConstraintManifold manifold(equations_, rates());
-    if (!(placed_ ? place(ConstraintManifold(*placed_)) : place(manifold)) || !set_going(manifold)) return std::nullopt;
-    ConsistentStart out{state_, {}, searched_};
+    if (placed_) {
+      const ConstraintManifold places(*placed_);
+      if (!place(places)) return std::nullopt;
+      look_around(places);
+    } else if (!place(manifold)) {
+      return std::nullopt;
+    }
+    if (!set_going(manifold)) return std::nullopt;
+    ConsistentStart out{state_, {}, searched_ || others_};
     list(out.adjustments, state_.q, written_state_.q, written_q_, 0);
     list(out.adjustments, state_.v, written_state_.v, written_v_, 1);
     warn(out);
@@ -237,6 +244,46 @@ class Start {
     return false;
   }
 
+  /// A point may be reached in several ways: (r, φ) and (−r, φ + π), the elbow of an arm on either side. Lengths that
+  /// are sought are to be positive where they can be; that there are others is told.
+  void look_around(const ConstraintManifold& manifold) {
+    constexpr int looks = 24;
+    constexpr std::size_t most = 100;  // coordinates
+    if (n_ > most) return;
+    std::mt19937_64 random(1788);
+    std::vector<bool> held = written_q_;
+    const std::vector<Group> all = groups(manifold, written_q_);
+    for (std::size_t i = 0; i < n_; ++i)
+      held[i] = held[i] || std::none_of(all.begin(), all.end(), [&](const Group& g) { return g.coordinates[i]; });
+    const std::vector<double> found = state_.q;
+    for (int look = 0; look < looks; ++look) {
+      MotionState trial{state_.t, found, std::vector<double>(n_, 0)};
+      for (std::size_t i = 0; i < n_; ++i) {
+        if (held[i]) continue;
+        const double part = std::generate_canonical<double, 53>(random) * 2 - 1;
+        trial.q[i] = is_length(i) ? std::abs(found[i]) : found[i] + 3.2 * part;
+      }
+      if (!manifold.move_positions(trial, held) || is_same(trial.q, found)) continue;
+      others_ = true;
+      if (negative_lengths(trial.q, held) < negative_lengths(state_.q, held)) state_.q = trial.q;
+    }
+  }
+  bool is_length(std::size_t i) const { return system_.coordinates[i].kind == "length"; }
+  std::size_t negative_lengths(const std::vector<double>& q, const std::vector<bool>& held) const {
+    std::size_t out = 0;
+    for (std::size_t i = 0; i < n_; ++i) out += !held[i] && is_length(i) && q[i] < 0 ? 1 : 0;
+    return out;
+  }
+  /// But for turns of angles.
+  bool is_same(const std::vector<double>& a, const std::vector<double>& b) const {
+    constexpr double turn = 2 * 3.14159265358979323846, near = 1e-6;
+    for (std::size_t i = 0; i < n_; ++i) {
+      const double off = system_.coordinates[i].kind == "angle" ? std::remainder(a[i] - b[i], turn) : a[i] - b[i];
+      if (std::abs(off) > near * (1 + std::abs(b[i]))) return false;
+    }
+    return true;
+  }
+
   bool possible_elsewhere(const ConstraintManifold& manifold) {
     const MotionState keep = state_;
     const bool possible = try_from(manifold, written_state_, nothing()) || search(manifold, nothing());
@@ -332,8 +379,11 @@ class Start {
                            "Correct the values, or give fewer of them.");
     else if (out.searched)
       diagnostics_.note(
-          "N0701", span(), "the start was found by a search",
-          "There is no solution near zero for the coordinates that the start does not give; others may exist.",
+          "N0701", span(),
+          others_ ? "the start is one of several that give the points their places" : "the start was found by a search",
+          others_
+              ? "Points are reached in more ways than one, as by an elbow on either side."
+              : "There is no solution near zero for the coordinates that the start does not give; others may exist.",
           "Give more start values to choose how the system is assembled.");
   }
 
@@ -347,6 +397,7 @@ class Start {
   MotionState state_, written_state_;
   std::vector<bool> written_q_, written_v_;
   bool searched_ = false;
+  bool others_ = false;  // configurations that give the points of the start their places
 };
 
 }  // namespace

@@ -249,12 +249,13 @@ bool HybridMotion::fits(Found& found, const std::vector<std::size_t>& touching, 
   return true;
 }
 
-/// Frictions that the mode holds beyond their limits.
-std::vector<std::size_t> HybridMotion::beyond_limits(Found& found, const std::vector<std::size_t>& touching,
-                                                     double bound) {
-  Trial trial{*this, found, touching, Leniency::Forces, motion_in(found.mode, found.given), functions_.at(t_, q_, v_)};
+/// Frictions that the mode holds beyond their limits; nothing where it has no motion.
+std::optional<std::vector<std::size_t>> HybridMotion::beyond_limits(Found& found,
+                                                                    const std::vector<std::size_t>& touching,
+                                                                    double bound) {
+  Trial trial{*this, found, touching, Leniency::None, motion_in(found.mode, found.given), functions_.at(t_, q_, v_)};
   std::vector<std::size_t> out;
-  if (!trial.look(bound)) return out;
+  if (!trial.look(bound)) return std::nullopt;
   for (std::size_t k = 0; k < trial.motion.watches().size(); ++k)
     if (trial.watch(k).what == Watch::What::Hold && !trial.keeps(k)) out.push_back(trial.watch(k).index);
   return out;

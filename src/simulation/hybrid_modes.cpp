@@ -208,7 +208,7 @@ std::optional<HybridMotion::Found> HybridMotion::search_mode(const std::vector<C
   std::vector<std::size_t> counts;
   for (const Choice& c : list) counts.push_back(c.options.size());
   Combinations tries(std::move(counts), most_choices);
-  std::optional<Found> found;
+  std::optional<Found> found, unforced;
   for (const auto& [leniency, most] : attempts_with(list.size())) {
     for (std::size_t turn = 0; turn < (found ? most_choices : most); ++turn) {
       const std::vector<std::size_t>* taken = tries.number(turn);
@@ -223,6 +223,10 @@ std::optional<HybridMotion::Found> HybridMotion::search_mode(const std::vector<C
       if (!is_right) {
         if (turn == 0 && met_ && list.size() > 1) return std::nullopt;
         if (turn >= most_kept) forget(next.mode);
+        continue;
+      }
+      if (gives_way_unforced(list, next, touching, bound)) {
+        if (!unforced) unforced = std::move(next);
         continue;
       }
       if (!found) {
@@ -241,6 +245,10 @@ std::optional<HybridMotion::Found> HybridMotion::search_mode(const std::vector<C
     if (may_be_several(found->mode, values))  // others were begun after it
       static_cast<void>(fits(*found, touching, bound, Leniency::Gaps));
     return found;
+  }
+  if (unforced) {
+    static_cast<void>(fits(*unforced, touching, bound, Leniency::Gaps));  // others were begun after it
+    return unforced;
   }
   const bool rubs = std::any_of(list.begin(), list.end(), [](const Choice& c) { return c.options.size() > 2; }) ||
                     std::any_of(touching.begin(), touching.end(),
@@ -265,7 +273,7 @@ void HybridMotion::order_by_limits(std::vector<Choice>& list, const std::vector<
   const bool overcome = at_limit.empty();
   if (overcome && std::any_of(list.begin(), list.end(), [&](const Choice& c) { return may_hold(c); })) {
     Found rest{mode_of(list, std::vector<std::size_t>(list.size(), 0)), {}, {}};
-    at_limit = beyond_limits(rest, touching, bound);
+    at_limit = beyond_limits(rest, touching, bound).value_or(at_limit);
   }
   const auto first = std::stable_partition(list.begin(), list.end(), [&](const Choice& c) {
     return std::find(at_limit.begin(), at_limit.end(), c.contact) != at_limit.end();
@@ -280,36 +288,53 @@ bool HybridMotion::may_hold(const Choice& c) {
   return c.options.size() > 2 && values.fixed[c.contact] > values.kinetic[c.contact];
 }
 
-/// Friction that begins to slide in the mode that was found, and would hold beside all else as it is there, holds: a
-/// friction gives way only where it comes to its own limit.
-void HybridMotion::hold_what_holds(const std::vector<Choice>& list, Found& found,
-                                   const std::vector<std::size_t>& touching, double bound) {
-  bool changed = false;
+/// Friction gives way where it comes to its own limit. Whether one begins to slide in this mode that would hold below
+/// it beside all else as it is there: the one that has to give way is another.
+bool HybridMotion::gives_way_unforced(const std::vector<Choice>& list, const Found& found,
+                                      const std::vector<std::size_t>& touching, double bound) {
   const auto is_at_limit = [&](std::size_t i) {
     return std::any_of(pending_->left.begin(), pending_->left.end(),
                        [&](const Watch& w) { return w.what == Watch::What::Hold && w.index == i; });
   };
+  bool unforced = false, asked = false;
   for (const Choice& c : list) {
     const FrictionState state = found.mode.friction[c.contact];
-    if (!may_hold(c) || is_at_limit(c.contact) || (state != FrictionState::Forward && state != FrictionState::Backward))
-      continue;
-    Found next = found;
-    next.mode.friction[c.contact] = FrictionState::Stick;
-    const std::optional<Given> given = given_in(next.mode, bound);
+    const bool begins = state == FrictionState::Forward || state == FrictionState::Backward;
+    if (!begins || !may_hold(c) || is_at_limit(c.contact)) continue;
+    Found held{found.mode, {}, {}};
+    held.mode.friction[c.contact] = FrictionState::Stick;
+    const std::optional<Given> given = given_in(held.mode, bound);
     if (!given) continue;
-    next.given = *given;
-    if (!fits(next, touching, bound, Leniency::None)) {
-      changed = true;
-      continue;
-    }
-    found = std::move(next);
-    changed = false;
+    held.given = *given;
+    asked = true;
+    const auto beyond = beyond_limits(held, touching, bound);
+    unforced = beyond && std::find(beyond->begin(), beyond->end(), c.contact) == beyond->end();
+    if (unforced) break;
   }
-  if (changed) static_cast<void>(fits(found, touching, bound, Leniency::Gaps));  // others were begun after it
+  if (asked && !unforced) {  // another mode was begun after it
+    Found again = found;
+    static_cast<void>(fits(again, touching, bound, Leniency::Gaps));
+  }
+  return unforced;
+}
+
+/// What acts without contacts and friction is a measure of forces, where all is at rest the only one: what rounding of
+/// forces that balance makes of slips is to be told from motion.
+void HybridMotion::measure_forces(const std::vector<std::size_t>& touching, const ContactValues& values, double bound) {
+  constexpr std::size_t looks = 16;
+  const bool gives_way = std::any_of(pending_->left.begin(), pending_->left.end(),
+                                     [](const Watch& w) { return w.what == Watch::What::Hold; });
+  if (started_ && !(gives_way && looks_at_forces_++ < looks)) return;
+  released_.assign(system_.contacts.size(), false);
+  Found free{open_mode(system_), {}, {}};
+  if (started_) std::fill(free.mode.friction.begin(), free.mode.friction.end(), FrictionState::None);
+  static_cast<void>(fits(free, touching, bound, Leniency::Forces));
+  if (!free.accelerations.empty()) note_accelerations(free.accelerations, values), note_slip_rates(values);
 }
 
 bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason) {
   const ContactValues& values = functions_.at(t_, q_, v_);  // of one point throughout
+  measure_forces(touching, values, bound);
   if (!touching.empty() && !knows_compliance_) note_compliance(touching, values);
   std::vector<Choice> list = choices(touching, values);
   if (list.size() > 1) order_by_forces(list, values, bound);
@@ -317,15 +342,9 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
   released_.assign(system_.contacts.size(), false);
   for (const Watch& w : pending_->left)
     if (w.what == Watch::What::Force) released_[w.index] = true;
-  if (Found free{open_mode(system_), {}, {}}; !started_) {  // what acts without contact is a first measure of forces
-    static_cast<void>(fits(free, touching, bound, Leniency::Forces));
-    if (!free.accelerations.empty()) note_accelerations(free.accelerations, values), note_slip_rates(values);
-    std::fill(released_.begin(), released_.end(), false);
-  }
   std::optional<Found> found = undetermined_rest(list, touching, bound);
   if (!found) found = search_mode(list, touching, bound, reason);
   if (!found) return false;
-  if (!interrupted()) hold_what_holds(list, *found, touching, bound);
   if (interrupted()) return true;
   note_accelerations(found->accelerations, values);  // those of modes that do not fit are no measure
   for (std::size_t i = 0; i < released_.size(); ++i)

@@ -81,6 +81,7 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   begins_towards_.assign(system_.contacts.size(), 0);
   slip_scale_.assign(system_.contacts.size(), 0);
   slip_rate_ = slip_scale_;
+  looks_at_forces_ = 0;
   cone_residual_ = -1;
   gap_begin_ = std::numeric_limits<double>::quiet_NaN();
   settled_.reset();

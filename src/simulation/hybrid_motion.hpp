@@ -134,11 +134,12 @@ class HybridMotion final : public Method {
   // The mode after it.
   static std::vector<std::pair<Leniency, std::size_t>> attempts_with(std::size_t contacts);
   bool choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason);
+  void measure_forces(const std::vector<std::size_t>& touching, const ContactValues& values, double bound);
   void order_by_limits(std::vector<Choice>& list, const std::vector<std::size_t>& touching, double bound);
   bool may_hold(const Choice& choice);
-  void hold_what_holds(const std::vector<Choice>& list, Found& found, const std::vector<std::size_t>& touching,
-                       double bound);
-  std::vector<std::size_t> beyond_limits(Found& found, const std::vector<std::size_t>& touching, double bound);
+  bool gives_way_unforced(const std::vector<Choice>& list, const Found& found, const std::vector<std::size_t>& touching,
+                          double bound);
+  std::optional<std::vector<std::size_t>> beyond_limits(Found& found, const std::vector<std::size_t>& touching, double bound);
   std::optional<Found> search_mode(const std::vector<Choice>& list, const std::vector<std::size_t>& touching,
                                    double bound, std::string& reason);
   std::optional<Found> undetermined_rest(const std::vector<Choice>& list, const std::vector<std::size_t>& touching,
@@ -273,6 +274,7 @@ class HybridMotion final : public Method {
   std::vector<bool> begins_to_slide_;   // [contacts] in space, at this instant
   std::vector<double> begins_towards_;  // [contacts] in which direction, an angle in the plane of contact
   std::vector<double> slip_scale_;      // [contacts] of friction in space, the largest slips so far
+  std::size_t looks_at_forces_ = 0;     // where friction gave way
   std::vector<double> slip_rate_;       // [contacts] … and how fast they change
   double cone_residual_ = 0;            // the largest so far
   double gap_begin_ = std::numeric_limits<double>::quiet_NaN();  // of a moment in which a slip began

@@ -122,8 +122,11 @@ class AtRest {
     double out = 0;
     for (std::size_t k = 0; k < system_.coordinates.size(); ++k) {
       const double slope = std::abs(value(differentiate(c.gap, system_.coordinates[k].q), b));
-      const Expr force = differentiate(equations_->lagrangian_expanded, system_.coordinates[k].q);
-      if (slope > 0) out = std::max(out, size(force + equations_->generalized_forces[k], b) / slope);
+      if (!(slope > 0)) continue;
+      double forces = size(equations_->generalized_forces[k], b);
+      for (const EnergyTerm& term : system_.potential)
+        forces += std::abs(value(differentiate(term.value, system_.coordinates[k].q), b));
+      out = std::max(out, forces / slope);
     }
     return out;
   }

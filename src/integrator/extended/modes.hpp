@@ -92,8 +92,11 @@ class Modes {
   bool may_be_several(const ExtendedMode& mode) const;
   bool may_hold(const Choice& choice) const;
   void order_by_limits(std::vector<Choice>& list, const std::vector<std::size_t>& touching, const Met& met);
-  InMode* hold_what_holds(const std::vector<Choice>& list, InMode* found, const std::vector<std::size_t>& touching,
-                          const Met& met, std::vector<T>* accelerations);
+  std::optional<std::vector<std::size_t>> beyond_limits(InMode& candidate, const std::vector<std::size_t>& touching,
+                                                        const Met& met);
+  bool gives_way_unforced(const std::vector<Choice>& list, const ExtendedMode& mode,
+                          const std::vector<std::size_t>& touching, const Met& met);
+  void measure_forces(const Met& met);
   bool choose(const std::vector<std::size_t>& touching, const Met& met);
   void record(ExtendedRoot::Kind kind, std::size_t index, const std::optional<T>& time = std::nullopt);
   void record_changes(const ExtendedMode& before, const ExtendedMode& after, bool begins);
@@ -117,6 +120,7 @@ class Modes {
   std::size_t steps_before_ = 0, switches_before_ = 0;
   // The largest so far, of coordinates of one dimension together: what is much smaller is rounding.
   std::vector<T> place_, speed_, acceleration_;     // [kinds]
+  std::size_t looks_at_forces_ = 0;                 // where friction gave way
   std::vector<T> widest_, fastest_, fastest_slip_;  // [contacts], [contacts], [contacts + frictions]
   std::vector<bool> released_;                      // [contacts] λ has fallen to 0 here
   struct Bounce {

@@ -516,6 +516,22 @@ bool Modes<T>::may_hold(const Choice& c) const {
   return c.options.size() > 2 && point_->fixed[c.index] > point_->friction[c.index];
 }
 
+/// Frictions that a mode holds beyond their limits; nothing where it has no motion.
+template <class T>
+std::optional<std::vector<std::size_t>> Modes<T>::beyond_limits(InMode& candidate,
+                                                                const std::vector<std::size_t>& touching,
+                                                                const Met& met) {
+  candidate.stepper->start(t_, q_, v_);
+  put_at_zero(candidate, touching, met);
+  const auto outlook = candidate.stepper->outlook(bound_);
+  if (outlook.ending != StepEnding::None) return std::nullopt;
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < outlook.sides.size(); ++k)
+    if (candidate.program.watches[k].what == What::Hold && outlook.sides[k] < 0)
+      out.push_back(candidate.program.watches[k].index);
+  return out;
+}
+
 /// Of frictions at rest those give way first that are at their limit, or beyond it where all rest; of the latter the
 /// one that is written last, so that the first one is held where one can be (HybridMotion::order_by_limits).
 template <class T>
@@ -526,12 +542,7 @@ void Modes<T>::order_by_limits(std::vector<Choice>& list, const std::vector<std:
   const bool overcome = at_limit.empty();
   if (overcome && std::any_of(list.begin(), list.end(), [&](const Choice& c) { return may_hold(c); })) {
     InMode& rest = in_mode(mode_of(list, std::vector<std::size_t>(list.size(), 0)));
-    rest.stepper->start(t_, q_, v_);
-    put_at_zero(rest, touching, met);
-    const auto outlook = rest.stepper->outlook(bound_);
-    for (std::size_t k = 0; outlook.ending == StepEnding::None && k < outlook.sides.size(); ++k)
-      if (rest.program.watches[k].what == What::Hold && outlook.sides[k] < 0)
-        at_limit.push_back(rest.program.watches[k].index);
+    at_limit = beyond_limits(rest, touching, met).value_or(at_limit);
   }
   const auto first = std::stable_partition(list.begin(), list.end(), [&](const Choice& c) {
     return std::find(at_limit.begin(), at_limit.end(), c.index) != at_limit.end();
@@ -539,28 +550,40 @@ void Modes<T>::order_by_limits(std::vector<Choice>& list, const std::vector<std:
   if (overcome) std::reverse(list.begin(), first);
 }
 
-/// Friction that begins to slide in the mode that was found, and would hold beside all else as it is there, holds.
+/// Whether friction begins to slide in this mode that would hold below its own limit beside all else as it is there:
+/// the one that has to give way is another (HybridMotion::gives_way_unforced).
 template <class T>
-typename Modes<T>::InMode* Modes<T>::hold_what_holds(const std::vector<Choice>& list, InMode* found,
-                                                     const std::vector<std::size_t>& touching, const Met& met,
-                                                     std::vector<T>* accelerations) {
+bool Modes<T>::gives_way_unforced(const std::vector<Choice>& list, const ExtendedMode& mode,
+                                  const std::vector<std::size_t>& touching, const Met& met) {
   for (const Choice& c : list) {
-    const Slides state = found->mode.friction[c.index];
-    if (!may_hold(c) || through_modes::holds(met.left, What::Hold, c.index) ||
-        (state != Slides::Forward && state != Slides::Backward))
-      continue;
-    ExtendedMode mode = found->mode;
-    mode.friction[c.index] = Slides::Stick;
-    InMode& next = in_mode(mode);
-    std::vector<T> held;
-    if (!fits(next, touching, met, false, &held)) continue;
-    found = &next, *accelerations = std::move(held);
+    const bool begins = mode.friction[c.index] == Slides::Forward || mode.friction[c.index] == Slides::Backward;
+    if (!begins || !may_hold(c) || through_modes::holds(met.left, What::Hold, c.index)) continue;
+    ExtendedMode held = mode;
+    held.friction[c.index] = Slides::Stick;
+    const auto beyond = beyond_limits(in_mode(held), touching, met);
+    if (beyond && std::find(beyond->begin(), beyond->end(), c.index) == beyond->end()) return true;
   }
-  return found;
+  return false;
+}
+
+/// What acts without contacts and friction is a measure of forces, where all is at rest the only one.
+template <class T>
+void Modes<T>::measure_forces(const Met& met) {
+  constexpr std::size_t looks = 16;
+  const bool gives_way =
+      std::any_of(met.left.begin(), met.left.end(), [](const ExtendedWatch& w) { return w.what == What::Hold; });
+  if (!gives_way || looks_at_forces_++ >= looks) return;
+  ExtendedMode mode = open_mode();
+  std::fill(mode.friction.begin(), mode.friction.end(), Slides::None);
+  InMode& free = in_mode(mode);
+  free.stepper->start(t_, q_, v_);
+  const auto outlook = free.stepper->outlook(bound_);
+  if (outlook.ending == StepEnding::None) note_accelerations(outlook.accelerations);
 }
 
 template <class T>
 bool Modes<T>::choose(const std::vector<std::size_t>& touching, const Met& met) {
+  measure_forces(met);
   std::vector<Choice> list = choices(touching, met);
   if (list.size() > 1) order_by_limits(list, touching, met);
   std::vector<std::size_t> counts;
@@ -583,7 +606,9 @@ bool Modes<T>::choose(const std::vector<std::size_t>& touching, const Met& met) 
     note_accelerations(free.stepper->outlook(bound_).accelerations);
   }
   InMode* found = nullptr;
-  InMode* last = nullptr;
+  InMode *last = nullptr, *unforced = nullptr;
+  std::vector<T> unforced_accelerations;
+  bool unforced_lenient = false;
   bool by_leniency = false;
   for (const bool lenient : {false, true}) {
     for (std::size_t turn = 0; const std::vector<std::size_t>* taken = tries.number(turn); ++turn) {
@@ -593,6 +618,11 @@ bool Modes<T>::choose(const std::vector<std::size_t>& touching, const Met& met) 
       std::vector<T> accelerations;
       last = &candidate;
       if (!fits(candidate, touching, met, lenient, &accelerations)) continue;
+      if (gives_way_unforced(list, candidate.mode, touching, met)) {
+        last = nullptr;  // others were begun after it
+        if (!unforced) unforced = &candidate, unforced_accelerations = accelerations, unforced_lenient = lenient;
+        continue;
+      }
       if (!found) {
         found = &candidate, first = std::move(accelerations), by_leniency = lenient;
         if (!may_be_several(candidate.mode)) break;
@@ -609,10 +639,9 @@ bool Modes<T>::choose(const std::vector<std::size_t>& touching, const Met& met) 
     }
     if (found) break;
   }
-  if (InMode* const held = found ? hold_what_holds(list, found, touching, met, &first) : nullptr; held != found)
-    found = held, last = nullptr, by_leniency = false;
-  else if (std::any_of(list.begin(), list.end(), [&](const Choice& c) { return may_hold(c); }))
-    last = nullptr;  // others were begun after it
+  if (!found && unforced)
+    found = unforced, first = std::move(unforced_accelerations), by_leniency = unforced_lenient, last = nullptr;
+  if (std::any_of(list.begin(), list.end(), [&](const Choice& c) { return may_hold(c); })) last = nullptr;
   // Of a rest that is not determined one distribution of forces was tried, be it within the limits or not.
   if (holds_undetermined(found ? found->mode : mode_of(list, std::vector<std::size_t>(list.size(), 0))))
     return stop(StepEnding::Paradox, std::nullopt,

@@ -27,7 +27,7 @@ bool TaylorStepper::Impl::project(Step& result, bool known) {
   const double allowed = std::max(1e-7, 1e3 * options.tolerance);
   for (int turn = 0; turn < 20; ++turn) {
     if (!std::exchange(known, false)) work.corrections(constraints.dq, constraints.dv);
-    if (!first && !(error <= allowed && taylor::correction_size(work, constraints.dq, constraints.dv, length,
+    if (!first && !(error <= allowed && taylor::correction_size(work, m, constraints.dq, constraints.dv, length,
                                                                 constraints.usual) <= allowed)) {
       end(result, StepEnding::SingularConstraints,
           "The constraints are singular near here: they do not determine where the motion goes.");
@@ -63,7 +63,7 @@ void TaylorStepper::Impl::land(Step& result, double tau) {
       const bool regular =
           in_force >= constraints.most_in_force && work.pivot_ratio() > 1e-6 * constraints.best_pivot_ratio;
       if (regular && error <= allowed &&
-          taylor::correction_size(work, constraints.dq, constraints.dv, length, constraints.usual) <= sound) {
+          taylor::correction_size(work, m, constraints.dq, constraints.dv, length, constraints.usual) <= sound) {
         if (in_force > constraints.most_in_force) constraints.best_pivot_ratio = 0;
         constraints.most_in_force = in_force;
         constraints.best_pivot_ratio = std::max(constraints.best_pivot_ratio, work.pivot_ratio());

@@ -36,9 +36,25 @@ double rounding_of_position(const KernelWorkspace& work, std::size_t row, std::s
   return 64 * std::numeric_limits<double>::epsilon() * size;
 }
 
+/// (Aᵀλ)_i/M_ii by the first two terms of λ over a step: what the forces of constraints would do alone.
+double held_acceleration(const KernelWorkspace& work, std::size_t i, std::size_t freedoms, std::size_t constraints,
+                         double h) {
+  if (!(work.mass(i, i) > 0)) return 0;
+  double sum = 0;
+  for (std::size_t j = 0; j < constraints; ++j) {
+    double size = 0, power = 1;
+    for (int k = 0; k < 2; ++k, power *= h)
+      size = std::max(size, (k + 1) * (k + 2) * std::abs(work.coordinate(k + 2)[freedoms + j]) * power);
+    sum += std::abs(work.constraint_matrix(j, i)) * size;
+  }
+  return sum / work.mass(i, i);
+}
+
 /// What rounding makes of the speed of a coordinate in a step in which forces balance.
-double rounding_of_speed(const UsualSizes& usual, std::size_t i, double h) {
-  return usual.a.empty() ? 0 : 64 * std::numeric_limits<double>::epsilon() * h * usual.a[i];
+double rounding_of_speed(const KernelWorkspace& work, const UsualSizes& usual, std::size_t i, std::size_t freedoms,
+                         std::size_t constraints, double h) {
+  const double held = held_acceleration(work, i, freedoms, constraints, h);
+  return 64 * std::numeric_limits<double>::epsilon() * h * std::max(held, usual.a.empty() ? 0 : usual.a[i]);
 }
 
 constexpr double small = 1e-13;  // of a correction: it is looked at no further
@@ -65,7 +81,7 @@ double constraint_error(const KernelWorkspace& work, std::size_t freedoms, std::
     if (off > rounding_of_constraints) {  // seldom: what a rest leaves of forces that balance
       double speed = 0;
       for (std::size_t i = 0; i < freedoms; ++i)
-        speed += std::abs(work.constraint_matrix(j, i)) * rounding_of_speed(usual, i, h);
+        speed += std::abs(work.constraint_matrix(j, i)) * rounding_of_speed(work, usual, i, freedoms, constraints, h);
       unseen = std::max(unseen, speed);
       off = std::max(ratio(beyond(work.constraint_value(j), h * speed), place),
                      ratio(beyond(work.constraint_rate(j), unseen), motion));
@@ -75,8 +91,8 @@ double constraint_error(const KernelWorkspace& work, std::size_t freedoms, std::
   return largest;
 }
 
-double correction_size(const KernelWorkspace& work, std::span<const double> dq, std::span<const double> dv, double h,
-                       const UsualSizes& usual) {
+double correction_size(const KernelWorkspace& work, std::size_t constraints, std::span<const double> dq,
+                       std::span<const double> dv, double h, const UsualSizes& usual) {
   double positions = 0, velocities = 0, motion = 0, place = 0;
   for (std::size_t i = 0; i < dq.size(); ++i) {
     const double mass = work.mass(i, i) > 0 ? work.mass(i, i) : 0, moving = speed(work, i, h);
@@ -97,7 +113,8 @@ double correction_size(const KernelWorkspace& work, std::span<const double> dq, 
   if (const double size = off(); size <= small) return size;
   double speeds = 0;  // nor is what it makes of forces that balance
   for (std::size_t i = 0; i < dq.size(); ++i)
-    if (work.mass(i, i) > 0) speeds += work.mass(i, i) * std::pow(rounding_of_speed(usual, i, h), 2);
+    if (work.mass(i, i) > 0)
+      speeds += work.mass(i, i) * std::pow(rounding_of_speed(work, usual, i, dq.size(), constraints, h), 2);
   rounding += h * std::sqrt(speeds);
   return off();
 }

@@ -23,8 +23,8 @@ double constraint_error(const KernelWorkspace& work, std::size_t freedoms, std::
 
 /// How far corrections of q and q̇ go, relative to q̇ and to what it moves in a step of length h, in the metric of the
 /// diagonal of M.
-double correction_size(const KernelWorkspace& work, std::span<const double> dq, std::span<const double> dv, double h,
-                       const UsualSizes& usual = {});
+double correction_size(const KernelWorkspace& work, std::size_t constraints, std::span<const double> dq,
+                       std::span<const double> dv, double h, const UsualSizes& usual = {});
 
 /// What the steps so far have shown of the constraints.
 struct ConstraintRecord {

@@ -79,3 +79,18 @@ TEST_CASE("what no configuration and no velocity gives is named") {
   CHECK(code("start a = 0, b = 0, hand.x' = 1 m/s\n") == "E0709 named");  // stretched along x
   CHECK(code("start exactly a = 0, b = 0, hand.x = 1 m\n") == "E0707 named");
 }
+
+TEST_CASE("lengths that a point asks for are positive where they can be, and other ways to it are told") {
+  for (const auto& [x, y] : {std::pair(-3, -4), std::pair(-3, 4), std::pair(3, -4), std::pair(-5, 0)}) {
+    ModelText m("dimensionless\ncoord r : length, φ : angle\npoint P mass 1 at (r cos φ, r sin φ)\nstart P = (" +
+                std::to_string(x) + ", " + std::to_string(y) + ")\n");
+    const MotionState s = state_of(m);
+    CHECK(s.q[0] == doctest::Approx(5).epsilon(1e-14));
+    CHECK(std::cos(s.q[1]) == doctest::Approx(x / 5.0).epsilon(1e-13));
+    CHECK(std::sin(s.q[1]) == doctest::Approx(y / 5.0).scale(1).epsilon(1e-13));
+    CHECK(m.diagnostics.items().back().code == "N0701");
+  }
+  ModelText one("dimensionless\ncoord x, y : length\npoint P mass 1 at (x, y)\nstart P = (-3, -4)\n");
+  CHECK(state_of(one).q[0] == -3);
+  CHECK(one.diagnostics.items().empty());
+}

@@ -465,3 +465,38 @@ TEST_CASE("what surfaces that move give is in the books: a belt that is faster, 
       3);
   CHECK(lift.books->moving == doctest::Approx(2 * 10 * 1.5).epsilon(1e-13));
 }
+
+TEST_CASE(
+    "the friction that comes to its limit gives way where nothing has moved before, and where a slip only touches 0") {
+  // w is at its 7.1199 first, u carries 10.4 of its 12; numbers of four digits, for what rounding makes of them.
+  const auto first = run_text(
+      "dimensionless\ncoord u, w : length\npoint A mass 0.71 at (u, 0)\npoint B mass 1.11 at (u + w, 0)\n"
+      "force on A = (8.84*sin(2.41*t), 0)\nforce on B = (22*t - 30.88*(u + w - 0.12), 0)\n"
+      "friction u limit 5.7 static 12\nfriction w limit 2.8 static 7.1199\n",
+      0.3);
+  REQUIRE(first.happenings.size() == 1);
+  CHECK(first.happenings[0].name == "w");
+  CHECK(first.happenings[0].t == doctest::Approx((7.1199 - 30.88 * 0.12) / 22).epsilon(1e-13));
+  CHECK(std::abs(first.final.q[0]) < 1e-15);
+  // w'' = −(9 t + 20 w − 4) from t = 4/9 on: its slip comes back to 0 and goes on; u carries 4 of its 50.
+  for (const bool swapped : {false, true}) {
+    const std::string u = "friction u limit 1 static 50\n", w = "friction w limit 4\n";
+    const auto r = run_text(
+        "dimensionless\ncoord u, w : length\npoint A mass 2 at (u, 0)\npoint C mass 1 at (u + w, 0)\n"
+        "force on C = (-9*t - 20*(u + w), 0)\n" +
+            (swapped ? w + u : u + w),
+        3);
+    const double late = 3 - 4 / 9.0, k = std::sqrt(20.0);
+    CHECK(std::abs(r.final.q[0]) < 1e-14);
+    CHECK(r.final.q[1] == doctest::Approx(-9 / 20.0 * (late - std::sin(k * late) / k)).epsilon(1e-10));
+  }
+}
+
+TEST_CASE("what rests on friction rests for as long as a force oscillates that balances") {
+  const auto r = run_text(
+      "dimensionless\ncoord u, w : length\npoint P mass 1 at (u, 0)\npoint Q mass 2 at (u + w, 0)\n"
+      "force on Q = (sin(4*t), 0)\nfriction u limit 20\nfriction w limit 20\n",
+      20);
+  CHECK(r.happenings.empty());
+  for (const double q : r.final.q) CHECK(std::abs(q) < 1e-15);
+}
