@@ -35,7 +35,7 @@ class ConstraintError {
     // A rate that moves φ by less than its rounding within the step does not count, and what rounding leaves of forces
     // that balance is no motion.
     const T unseen = h_ > 0 ? T(rounding() * (position + along_coordinates(j)) / h_) : T(0);
-    const T left = rounding() * h_ * along(j, usual_.a);
+    const T left = rounding() * h_ * std::max(along(j, usual_.a), held(j));
     return std::max(ratio(beyond(work_.constraint_value(j), h_ * left), place),
                     ratio(beyond(work_.constraint_rate(j), std::max(unseen, left)), motion));
   }
@@ -47,6 +47,19 @@ class ConstraintError {
   T along(std::size_t j, const std::vector<T>& sizes) const {
     T sum = T(0);
     for (std::size_t i = 0; i < sizes.size(); ++i) sum += abs(work_.constraint_matrix(j, i)) * sizes[i];
+    return sum;
+  }
+  /// A q̈ for the accelerations that the forces of constraints would give alone, by the first two terms of λ.
+  T held(std::size_t j) const {
+    T sum = T(0);
+    for (std::size_t i = 0; i < n_; ++i) {
+      if (!(work_.mass(i, i) > 0) || work_.constraint_matrix(j, i) == 0) continue;
+      T force = T(0);
+      for (std::size_t l = 0; n_ + l < work_.program().unknowns; ++l)
+        force += abs(work_.constraint_matrix(l, i)) *
+                 std::max(T(2 * abs(work_.coordinate(2)[n_ + l])), T(6 * h_ * abs(work_.coordinate(3)[n_ + l])));
+      sum += abs(work_.constraint_matrix(j, i)) * force / work_.mass(i, i);
+    }
     return sum;
   }
   T along_coordinates(std::size_t j) const {

@@ -219,3 +219,11 @@ TEST_CASE(
     check_digits(r.final.q[2], 1 / (2 * a) - b * rest * rest / 2, 94);
   }
 }
+
+TEST_CASE("what rests on friction rests in many digits too, while a force that balances begins at 0") {
+  const ExtendedResult r = run_for(
+      "dimensionless\ncoord u, w : length\npoint P mass 1 at (u, 0)\npoint Q mass 2 at (u + w, 0)\n"
+      "force on Q = (sin(4*t), 0)\nfriction u limit 20\nfriction w limit 20\n",
+      2);
+  CHECK(r.happenings.empty());
+}
