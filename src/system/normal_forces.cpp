@@ -128,10 +128,36 @@ class Masses {
     for (const auto& [i, value] : row) {
       ExprVector rest{-value};
       for (std::size_t k = 0; k < r.size(); ++k) rest.push_back(direction[k] * slope(k, i));
-      if (!vanishes(context.sum(rest))) return std::nullopt;
+      if (!vanishes(context.sum(rest))) return push_in_plane(mass, row);
     }
     for (const Expr& component : direction) squares.push_back(component * component);
     return Push{*mass.name, context.sum(squares)};
+  }
+
+  /// Of a point that two coordinates move in a plane, whatever directions they have, such as polar ones: |d|² of the
+  /// direction d with d·∂r/∂q_i = ∂f/∂q_i, by the matrix of the products of the ∂r/∂q_i.
+  std::optional<Push> push_in_plane(const Mass& mass, const std::map<std::size_t, Expr>& row) const {
+    if (mass.moved_by.size() != 2 || dimensions_of(mass) != 2) return std::nullopt;
+    Context& context = *system_.context;
+    Expr g[2][2], f[2];
+    std::size_t a = 0;
+    for (const std::size_t i : mass.moved_by) {
+      if (turning_.count(i) > 0) return std::nullopt;
+      std::size_t b = 0;
+      for (const std::size_t k : mass.moved_by) {
+        ExprVector products;
+        for (const Expr& component : *mass.position)
+          products.push_back(differentiate(component, system_.coordinates[i].q) *
+                             differentiate(component, system_.coordinates[k].q));
+        g[a][b++] = context.sum(products);
+      }
+      const auto found = row.find(i);
+      f[a++] = found == row.end() ? context.number(0) : found->second;
+    }
+    const Expr det = g[0][0] * g[1][1] - g[0][1] * g[0][1];
+    if (vanishes(det)) return std::nullopt;
+    const Expr two = context.number(2);
+    return Push{*mass.name, (g[1][1] * f[0] * f[0] - two * g[0][1] * f[0] * f[1] + g[0][0] * f[1] * f[1]) / det};
   }
 
   static bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }

@@ -304,6 +304,15 @@ TEST_CASE("a block on a wedge that slides, by a gap that is no distance") {
     CHECK(r.final.q[0] == doctest::Approx(-N * -share / M * 0.08).epsilon(1e-12));
     CHECK(r.final.reactions[0] == doctest::Approx(N).epsilon(1e-12));
   }
+  // The block in polar coordinates, on the wedge and on a slope that is at rest.
+  ModelText polar(
+      "param m = 1 kg, M = 3 kg, g = 9.81 m/s^2, α = 50 deg, μ = 0.3\ncoord X, r : length, φ : angle\n"
+      "point W mass M at (X, 0)\npoint P mass m at (r cos φ, r sin φ)\ngravity (0, -g)\n"
+      "contact P.y >= (P.x - X) tan α friction μ slip (P.x' - X') cos α + P.y' sin α name face\n"
+      "start r = 2 m, φ = α\n");
+  const auto turned = run(polar, 0.4);
+  CHECK(turned.final.q[0] == doctest::Approx(N * share / M * 0.08).epsilon(1e-12));
+  CHECK(turned.final.reactions[0] == doctest::Approx(N).epsilon(1e-12));
   const auto code = [](const std::string& text) {
     ModelText model(text);
     return model.diagnostics.items().empty() ? std::string() : model.diagnostics.items()[0].code;

@@ -66,9 +66,9 @@ TEST_CASE("a rate that moves the constraint by less than the rounding of far coo
 TEST_CASE("corrections are measured by what moves, in the metric of M") {
   const Tied tied([](Expr, Expr y) { return y; }, 2, 1, {0, 0}, {3, 0});
   const std::vector<double> none{0, 0};
-  CHECK(taylor::correction_size(tied.work, none, std::vector<double>{0, 0.03}, 1) ==
+  CHECK(taylor::correction_size(tied.work, 1, none, std::vector<double>{0, 0.03}, 1) ==
         doctest::Approx(0.03 / (3 * std::sqrt(2.0))));
-  CHECK(taylor::correction_size(tied.work, std::vector<double>{0, 0.03}, none, 0.5) ==
+  CHECK(taylor::correction_size(tied.work, 1, std::vector<double>{0, 0.03}, none, 0.5) ==
         doctest::Approx(0.03 / (0.5 * 3 * std::sqrt(2.0))));
-  CHECK(taylor::correction_size(tied.work, none, none, 1) == 0);
+  CHECK(taylor::correction_size(tied.work, 1, none, none, 1) == 0);
 }
