@@ -334,8 +334,8 @@ void HybridMotion::measure_forces(const std::vector<std::size_t>& touching, cons
 
 bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason) {
   const ContactValues& values = functions_.at(t_, q_, v_);  // of one point throughout
-  measure_forces(touching, values, bound);
   if (!touching.empty() && !knows_compliance_) note_compliance(touching, values);
+  measure_forces(touching, values, bound);
   std::vector<Choice> list = choices(touching, values);
   if (list.size() > 1) order_by_forces(list, values, bound);
   if (list.size() > 1) order_by_limits(list, touching, bound);
