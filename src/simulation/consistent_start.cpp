@@ -143,10 +143,16 @@ class Start {
     return out;
   }
 
+  /// Each once: both components of a point that is given have its name.
   std::string labels(const std::vector<std::size_t>& of) const {
+    std::vector<std::string> names;
+    for (const std::size_t k : of)
+      if (const std::string name = placed().constraint_label(k);
+          std::find(names.begin(), names.end(), name) == names.end())
+        names.push_back(name);
     std::string out;
-    for (std::size_t k = 0; k < of.size(); ++k)
-      out += (k == 0 ? "" : k + 1 == of.size() ? " and " : ", ") + placed().constraint_label(of[k]);
+    for (std::size_t k = 0; k < names.size(); ++k)
+      out += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + names[k];
     return out;
   }
 
@@ -304,6 +310,9 @@ class Start {
   bool refuse_clash(const ConstraintManifold& manifold) {
     MotionState trial = written_state_;
     trial.v.assign(n_, 0);
+    std::mt19937_64 random(1788);  // zero is a singular place of many constraints: none of them is met from there
+    for (std::size_t i = 0; placed_ && i < n_; ++i)
+      if (!written_q_[i]) trial.q[i] += 0.1 + std::generate_canonical<double, 53>(random);
     const std::vector<std::size_t> clash = manifold.smallest_clash(trial);
     const std::string names = labels(clash);
     const std::optional<Span> place =

@@ -1,5 +1,5 @@
 #pragma once
-#include "integrator/extended/modes_code.hpp"
+#include "integrator/extended/mode_choice_code.hpp"
 #include "integrator/extended/motion.hpp"
 #include "integrator/extended/start.hpp"
 

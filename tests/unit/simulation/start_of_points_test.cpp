@@ -94,3 +94,13 @@ TEST_CASE("lengths that a point asks for are positive where they can be, and oth
   CHECK(state_of(one).q[0] == -3);
   CHECK(one.diagnostics.items().empty());
 }
+
+TEST_CASE("a place beyond a rod is told with the rod, each name once") {
+  ModelText m(
+      "system p\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\n"
+      "gravity (0, -g)\nconstraint x^2 + y^2 = l^2 name rod\nstart P = (3, 4) m\n");
+  CHECK(!start_of(m));
+  const std::string text = render(m.diagnostics, m.source);
+  CHECK(m.diagnostics.items().back().code == "E0708");
+  CHECK(text.find("no configuration satisfies rod and the start of `P`\n") != std::string::npos);
+}
