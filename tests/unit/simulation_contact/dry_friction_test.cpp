@@ -509,3 +509,30 @@ TEST_CASE("what rests on friction rests for as long as a force oscillates that b
   CHECK(r.happenings.empty());
   for (const double q : r.final.q) CHECK(std::abs(q) < 1e-15);
 }
+
+TEST_CASE("a stack that comes to rest is held entirely where it can be, in whatever order its contacts are written") {
+  // At 0.12433 all four can hold; motions in which the second one slides keep their own conditions as well.
+  const std::string contacts[] = {"contact y0 >= 0 friction 0.19 static 0.75 slip x0' name c0\n",
+                                  "contact y1 - y0 >= 0 friction 0.11 static 0.46 slip x1' - x0' name c1\n",
+                                  "contact y2 - y1 >= 0 friction 0.13 static 0.62 slip x2' - x1' name c2\n",
+                                  "contact y3 - y2 >= 0 friction 0.38 slip x3' - x2' name c3\n"};
+  const auto stack = [&](std::initializer_list<int> order) {
+    std::string text =
+        "dimensionless\ncoord x0, y0, x1, y1, x2, y2, x3, y3 : length\npoint P0 mass 1.63 at (x0, y0)\n"
+        "point P1 mass 0.73 at (x1, y1)\npoint P2 mass 0.38 at (x2, y2)\npoint P3 mass 1.24 at (x3, y3)\n"
+        "gravity (0, -9.81)\nV += 7.62*(x1 + 0.41)^2 + 8.4*(x2 + 0.21)^2 + 14.045*(x2 - x3)^2\n"
+        "force on P1 = (1.92*sin(4.41*t), 0)\nforce on P2 = (14.64*sin(4.71*t), 0)\n";
+    for (const int k : order) text += contacts[k];
+    return run_text(text + "start x2' = -0.94\n", 1.01);
+  };
+  const auto up = stack({0, 1, 2, 3}), down = stack({3, 2, 1, 0});
+  const auto rests = [](const SimulationResult& r) {
+    return std::any_of(r.happenings.begin(), r.happenings.end(), [](const Happening& h) {
+      return std::abs(h.t - 0.12432803139851512) < 1e-12 && h.mode.find("sliding") == std::string::npos;
+    });
+  };
+  CHECK(rests(up));
+  CHECK(rests(down));
+  for (std::size_t i = 0; i < up.final.q.size(); ++i)
+    CHECK(up.final.q[i] == doctest::Approx(down.final.q[i]).scale(1).epsilon(1e-12));
+}

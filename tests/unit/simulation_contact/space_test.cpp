@@ -263,6 +263,16 @@ TEST_CASE("a slip that turns until it stops: a block on an incline, a ball on it
   CHECK(ball.statistics.energy_drift < 1e-14);
 }
 
+TEST_CASE("what the end of a slip on a surface that moves does to the energy is in the books") {
+  const auto r = run_text(
+      "dimensionless\ncoord x, y, z : length\npoint P mass 1 at (x, y, z)\ngravity (0, 0, -10)\n"
+      "contact z >= 0 friction 0.5 slip (x' - 1.3 sin(4 t), y') name table\nstart x' = -0.5, y' = -0.4\n",
+      2);
+  CHECK(std::count_if(r.happenings.begin(), r.happenings.end(),
+                      [](const Happening& h) { return h.kind == Happening::Kind::Stick; }) == 3);
+  CHECK(r.statistics.energy_drift < 1e-12);
+}
+
 TEST_CASE("a slip that stops while it goes straight is seen at any order, and beside any speed") {
   // Between two steps it would turn round: friction that jumps beside a closed contact was taken for a place that no
   // series has, and passed.
