@@ -313,6 +313,12 @@ TEST_CASE("a block on a wedge that slides, by a gap that is no distance") {
   const auto turned = run(polar, 0.4);
   CHECK(turned.final.q[0] == doctest::Approx(N * share / M * 0.08).epsilon(1e-12));
   CHECK(turned.final.reactions[0] == doctest::Approx(N).epsilon(1e-12));
+  // At rest on a slope, in coordinates along directions that are not at right angles: N = m g cos atan 0.2.
+  ModelText oblique(
+      "dimensionless\ncoord a, b : length\npoint P mass 2 at (a + b cos(0.7), b sin(0.7))\ngravity (0, -10)\n"
+      "contact 2 P.y - 0.4 P.x >= 0 friction 0.5 slip (P.x' + 0.2 P.y')/sqrt(1.04) name slope\n");
+  CHECK(run(oblique, 0.1).final.reactions[0] == doctest::Approx(20 / std::sqrt(1.04)).epsilon(1e-12));
+  CHECK(oblique.diagnostics.items().empty());
   const auto code = [](const std::string& text) {
     ModelText model(text);
     return model.diagnostics.items().empty() ? std::string() : model.diagnostics.items()[0].code;
