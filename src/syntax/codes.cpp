@@ -149,11 +149,18 @@ constexpr CodeEntry kEntries[] = {
     {"W0103", "an angle after a function without brackets",
      "cos θ1 - θ2 subtracts an angle from a cosine; the cosine of the difference is cos(θ1 - θ2).",
      "system s\ncoord x, y : angle\nV = cos x - y\n", "system s\ncoord x, y : angle\nV = cos(x - y)\n"},
-    {"W0104", "the time after a function without brackets",
+    {"W0104", "the time or an angle after a function without brackets",
      "cos ω t is t times the cosine of ω. With units the argument would be seen to be no angle; in a dimensionless "
-     "model nothing tells.",
+     "model nothing tells. So is cos n θ the cosine of n, times θ.",
      "system s\ndimensionless\nparam w = 2\ncoord x : number\nV = x cos w t\n",
      "system s\ndimensionless\nparam w = 2\ncoord x : number\nV = x cos(w t)\n"},
+    {"W0109", "a unit after a division of numbers",
+     "A unit in brackets belongs to the number right before it: 1/2 [deg] is 1/(2 deg), not half a degree.",
+     "system s\ncoord x : angle\nparam k = 1 J\nV = k cos(x + 1/2 [deg])\n",
+     "system s\ncoord x : angle\nparam k = 1 J\nV = k cos(x + 1 [deg]/2)\n"},
+    {"W0110", "a root without brackets around its exponent",
+     "A power binds before a division: x^1/2 is x/2. The root is x^(1/2) or sqrt(x).",
+     "system s\ncoord x : number\nV = x^1/2\n", "system s\ncoord x : number\nV = x^(1/2)\n"},
     {"W0106", "two names look alike",
      "Letters of the Latin, Greek and Cyrillic alphabets can look exactly the same: `a` and Cyrillic `а` are two names "
      "that no reader can tell apart. Such a pair "

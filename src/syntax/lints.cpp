@@ -39,7 +39,12 @@ void ExpressionParser::lint_product(const Expression& left, Operator op, const E
   const bool denominator_is_name = is_binary(left, Operator::Divide) && !before.bracketed &&
                                    (before.kind == Kind::Name || before.kind == Kind::Member);
   const bool derivative = before.text == "dt" && !context_.declarations.contains("dt");  // d/dt θ: `system` tells it
-  if (op == Operator::Juxtapose && denominator_is_name && is_plain_factor(right) && !derivative) {
+  // x^2/2a, without a blank: 2a looks like one thing. In 1/2m it is the half that does.
+  const bool denominator_is_joined = is_binary(left, Operator::Divide) && before.kind == Kind::Number &&
+                                     before.span.end == right.span.begin &&
+                                     last_factor(*left.arguments[0]).kind != Kind::Number;
+  if (op == Operator::Juxtapose && (denominator_is_name || denominator_is_joined) && is_plain_factor(right) &&
+      !derivative) {
     const Expression& numerator = last_factor(*left.arguments[0]);
     const Span span = cover(numerator.span, right.span);
     warn("W0101", span, fmt::format("`{}` multiplies by {}", text_of(span), text_of(right)),
@@ -56,19 +61,45 @@ void ExpressionParser::lint_product(const Expression& left, Operator op, const E
          fmt::format("Write {0}({1}/{2}) for the {0} of {1}/{2}, or 1/{2} {3}.", function->text, argument,
                      text_of(right), text_of(before)));
   }
-  if (op == Operator::Juxtapose && function && context_.declarations.dimensionless() && right.kind == Kind::Name &&
-      right.text == context_.declarations.independent()) {
+  if (op == Operator::Juxtapose && function && is_meant_in_argument(*function->arguments[0], right)) {
     const Span span = cover(before.span, right.span);
     warn("W0104", span,
          fmt::format("`{}` multiplies by {}", text_of(span), right.text == "t" ? "the time" : right.text),
          fmt::format("Without brackets {} takes {} alone.", function->text, text_of(*function->arguments[0])),
          fmt::format("Write {}({} {}).", function->text, text_of(*function->arguments[0]), right.text));
   }
+  if (op == Operator::Divide && right.kind == Kind::Number && is_binary(before, Operator::Power) &&
+      before.arguments[1]->kind == Kind::Number && before.arguments[1]->text == "1") {
+    const Span span = cover(before.span, right.span);
+    const std::string base = text_of(*before.arguments[0]);
+    warn("W0110", span, fmt::format("`{}` divides {} by {}", text_of(span), base, right.text),
+         "A power binds before a division.", fmt::format("Write {}^(1/{}) for the root.", base, right.text));
+  }
+  if (op == Operator::Divide && right.kind == Kind::Quantity && right.unit_bracketed && !right.bracketed &&
+      before.kind == Kind::Number) {
+    const Span span = cover(before.span, right.span);
+    const std::string number = text_of(*right.arguments[0]),
+                      unit = text_of({right.arguments[0]->span.end, right.span.end, right.span.source});
+    warn("W0109", span, fmt::format("`{}` divides by {}", text_of(span), text_of(right)),
+         "A unit in brackets belongs to the number right before it.",
+         fmt::format("Write {0}{1}/{2} for that part of the unit, {0}/({2}{1}) for the quotient.", text_of(before),
+                     unit, number));
+  }
   if (op == Operator::Juxtapose && right.kind == Kind::Number && left.kind != Kind::Number) {
     const Span span = cover(before.span, right.span);
     warn("W0105", span, fmt::format("`{}` is a product", text_of(span)), "A number after a factor multiplies it.",
          fmt::format("Write {0}^{1} for the power, or {1} {0} for the product.", text_of(before), right.text));
   }
+}
+
+/// cos ω t without units, where no dimension tells; cos n θ with a number or a parameter n.
+bool ExpressionParser::is_meant_in_argument(const Expression& argument, const Expression& right) const {
+  const Declarations& declared = context_.declarations;
+  if (right.kind != Kind::Name || right.primes != 0 || right.bracketed) return false;
+  if (declared.dimensionless() && right.text == declared.independent()) return true;
+  const bool factor = argument.kind == Kind::Number || (argument.kind == Kind::Name && argument.primes == 0 &&
+                                                        declared.kind(argument.text) == Declarations::Kind::Parameter);
+  return factor && declared.kind(right.text) == Declarations::Kind::Angle;
 }
 
 void ExpressionParser::lint_sum(const Expression& left, const Expression& right) {

@@ -1,5 +1,7 @@
 #include "system/elaboration.hpp"
 
+#include <maupertuis/evaluate.hpp>
+
 #include <fmt/format.h>
 
 /// T, V, U, L and D: what masses, gravity, springs and dampers give, and what the text gives.
@@ -144,16 +146,27 @@ void torsion_spring(Elaboration& e, const syntax::TorsionSpringStatement& s, Spa
       {Rational(1, 2) * (k.scalar() * pow(turn, Rational(2))), "torsion spring " + d->name, span});
 }
 
-/// D = ½ c (d|r|/dt)².
+/// Whether both ends stay on one line through space: r × ṙ = 0 wherever they are.
+bool keeps_direction(const ExprVector& r, const ExprVector& rate) {
+  for (std::size_t i = 0; i < r.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (zero_test(r[i] * rate[j] - r[j] * rate[i]).verdict != Verdict::Zero) return false;
+  return true;
+}
+
+/// D = ½ c (d|r|/dt)². On a line that is ½ c ṙ·ṙ, at |r| = 0 too, where the rate of a length has no value.
 void damper(Elaboration& e, const syntax::DamperStatement& s, Span span) {
   const std::optional<ExprVector> r = between(e, Link::Kind::Damper, *s.from, *s.to);
   const Value c = scalar_of(e, *s.coefficient, dimensions::force() / dimensions::velocity(), "a damping coefficient");
   check_positive(e, c, *s.coefficient, "this damping coefficient",
                  "Such a damper feeds energy in instead of taking it out.");
   if (!r || refuse_velocity_in_coefficient(e, c, *s.coefficient)) return;
-  const Expr rate = e.context.time_derivative(sqrt(dot_of(*r, *r)));
+  ExprVector rates;
+  for (const Expr& component : *r) rates.push_back(e.context.time_derivative(component));
+  const Expr square = keeps_direction(*r, rates) ? dot_of(rates, rates)
+                                                 : pow(e.context.time_derivative(sqrt(dot_of(*r, *r))), Rational(2));
   e.system().dissipation.push_back(
-      {Rational(1, 2) * (c.scalar() * pow(rate, Rational(2))), "damper " + pair_name(e, s.from, s.to), span});
+      {Rational(1, 2) * (c.scalar() * square), "damper " + pair_name(e, s.from, s.to), span});
 }
 
 void from_parts(Elaboration& e, Which which) {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <optional>
 #include <string_view>
@@ -63,6 +64,21 @@ std::string help_for_bare(Elaboration& e, const Expression& x) {
                 : "Divide it by a quantity of the same dimension.";
 }
 
+/// param α = 30 and sin α: no unit says that α is an angle, and 30 radians are nearly five turns.
+void warn_of_degrees_in_parameter(Elaboration& e, const Value& a, const Expression& x) {
+  const Expression& argument = *x.arguments[0];
+  const bool alone = argument.kind == Expression::Kind::Name && argument.primes == 0 && !a.is_vector &&
+                     a.scalar().is_symbol() && a.scalar().role() == Role::Parameter;
+  if (e.dimensionless || !alone || a.dimension == dimensions::angle()) return;
+  const std::optional<double> size = constant_value(e, a.scalar());
+  if (!size || std::abs(*size) <= 6.5) return;
+  e.diagnostics.warning(
+      "W0310", argument.span, fmt::format("`{}` is {:g} radians here", argument.text, *size),
+      fmt::format("It has no unit, and {} takes radians: that is {:.1f} turns.", x.text,
+                  std::abs(*size) / 6.283185307179586),
+      fmt::format("Write param {} = {:g} deg if degrees are meant, {:g} rad if not.", argument.text, *size, *size));
+}
+
 Value elementary(Elaboration& e, const Function& f, const Expression& x, const Value& a) {
   if (!a.fits_any && !a.dimension.is_one()) {
     e.diagnostics.error(
@@ -75,7 +91,10 @@ Value elementary(Elaboration& e, const Function& f, const Expression& x, const V
     e.diagnostics.warning(
         "W0309", x.arguments[0]->span, fmt::format("a frequency in Hz stands in the argument of {} without 2π", x.text),
         "A frequency of 1 Hz turns the phase by 2π in a second.", fmt::format("Write {}(2 pi …).", x.text));
-  if (f.angles == Angles::Argument) warn_of_degrees(e, a, dimensions::angle(), *x.arguments[0]);
+  if (f.angles == Angles::Argument) {
+    warn_of_degrees(e, a, dimensions::angle(), *x.arguments[0]);
+    warn_of_degrees_in_parameter(e, a, x);
+  }
   Expr value = apply(f.kind, a.scalar());
   if (f.reciprocal) value = pow(value, Rational(-1));
   Value v = Value::of(value, f.angles == Angles::Value ? e.dimension(dimensions::angle()) : Dimension{}, a.order);

@@ -124,6 +124,12 @@ bool is_written_unit(Elaboration& e, const Expression& x, int& free) {
   return true;
 }
 
+/// 9.81 [m/s^2]; the unit belongs to the number right before it, so that half a degree is 1 [deg]/2.
+std::string with_bracketed_unit(const std::string& number, const std::string& unit) {
+  const std::size_t slash = std::min(number.find('/'), number.size());
+  return fmt::format("Write {} [{}]{}.", number.substr(0, slash), unit, number.substr(slash));
+}
+
 /// 9.81 m/s^2 in a formula.
 bool number_with_unit(Elaboration& e, const Expression& x) {
   if (e.dimensionless) return false;
@@ -145,7 +151,7 @@ bool number_with_unit(Elaboration& e, const Expression& x) {
   e.diagnostics.error("E0312", whole,
                       fmt::format("`{}` stands in a formula without brackets around its unit", e.texts.slice(whole)),
                       "In a formula a unit stands in square brackets, so that it cannot be taken for a name.",
-                      fmt::format("Write {} [{}].", number, unit));
+                      with_bracketed_unit(number, unit));
   return true;
 }
 

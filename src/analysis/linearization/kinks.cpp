@@ -174,7 +174,13 @@ std::vector<OneSide> sides_at(const PointEquations& equations, const Equilibrium
     if (!first) first = l;
     out.push_back(std::move(side));
   }
-  if (!differ) out.clear();
+  if (differ || out.empty()) return out;
+  // All sides agree. On the switches themselves a formula may still say another thing, as sign(x)² x' at x = 0 does:
+  // then the equations are those of the sides.
+  const Linearization there = linearize(equations, x.point).linearization;
+  const bool as_beside = equal(there.a, first->a) && equal(there.b, first->b);
+  while (out.size() > (as_beside ? 0 : 1)) out.pop_back();
+  for (OneSide& side : out) side.where.clear();
   return out;
 }
 

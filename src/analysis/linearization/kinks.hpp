@@ -14,7 +14,8 @@ struct OneSide {
 };
 
 /// The sides of a point at which the equations, or their first derivatives, are not those of its other side: a kink of
-/// the potential, dry friction at rest. Empty where all sides agree, or no switch passes through the point.
+/// the potential, dry friction at rest. Empty where all sides agree, or no switch passes through the point; one side
+/// without a name where all sides agree with each other and the formula on the switch itself does not.
 std::vector<OneSide> sides_at(const PointEquations& equations, const Equilibrium& x,
                               const std::vector<Translation>& translations);
 

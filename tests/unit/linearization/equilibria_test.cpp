@@ -225,6 +225,17 @@ TEST_CASE("An equilibrium on a kink has the stiffness of each side, never one th
   }
 }
 
+TEST_CASE("Where all sides agree and the formula on the switch does not, the equations are those of the sides") {
+  for (const char* damped : {"force x = -1/5 abs(x') sign(x')", "D = 1/10 sign(x)^2 x'^2"}) {
+    Linearized m(std::string("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 2 x^2\n") + damped + "\n");
+    const ModalStudy study = m.study();
+    REQUIRE(study.entries.size() == 1);
+    CHECK(study.entries[0].side.empty());
+    CHECK(study.entries[0].analysis.stability.verdict == Stability::Asymptotic);
+    CHECK(study.entries[0].analysis.eigenvalues[0].real() == doctest::Approx(-0.1));
+  }
+}
+
 TEST_CASE("Rest where a force jumps has no linearization") {
   for (const char* text :
        {"V = abs(x)", "V = 1/2 x^2 + abs(x)", "V = 1/2 x^2\nD = abs(x')", "V = 1/2 x^2\nforce x = -sign(x')"}) {

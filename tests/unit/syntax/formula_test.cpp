@@ -21,7 +21,7 @@ TEST_CASE("powers bind tightest and to the right") {
   CHECK(shape_of("x^y^z") == "(^ x (^ y z))");
   CHECK(shape_of("-x^2") == "(neg (^ x 2))");
   CHECK(shape_of("x^-2 y") == "(_ (^ x (neg 2)) y)");
-  CHECK(shape_of("2^1/2") == "(/ (^ 2 1) 2)");
+  CHECK(shape_of("2^3/2") == "(/ (^ 2 3) 2)");
   CHECK(shape_of("x'^2") == "(^ x' 2)");
 }
 
@@ -223,5 +223,20 @@ TEST_CASE("formulas that read otherwise than they look give warnings") {
   CHECK(shape_of("cos θ1 - θ2'", model) == "(- (cos θ1) θ2')");
   CHECK(shape_of("cos ω t") == "(_ (cos ω) t)");
   CHECK(shape_of("cos ω t", "dimensionless\n") == "W0104");
+  CHECK(shape_of("cos n θ1", "param n = 3\n" + model) == "W0104");
+  CHECK(shape_of("cos(n) θ1", "param n = 3\n" + model) == "(_ (cos n) θ1)");
+  CHECK(shape_of("cos n x", "param n = 3\n" + model) == "(_ (cos n) x)");
+  CHECK(shape_of("cos n θ1'", "param n = 3\n" + model) == "(_ (cos n) θ1')");
+  CHECK(shape_of("sin θ1 θ2", model) == "(_ (sin θ1) θ2)");  // two angles: a small one may multiply
   CHECK(shape_of("x 2") == "W0105");
+  CHECK(shape_of("a^2/2b") == "W0101");
+  CHECK(shape_of("a^2/2 b") == "(_ (/ (^ a 2) 2) b)");
+  CHECK(shape_of("1/2b") == "(_ (/ 1 2) b)");
+  CHECK(shape_of("a^1/2") == "W0110");
+  CHECK(shape_of("a^(1/2)") == "(^ a (/ 1 2))");
+  CHECK(shape_of("a^2/2") == "(/ (^ a 2) 2)");
+  CHECK(shape_of("1/2 [deg]") == "W0109");
+  CHECK(shape_of("2 [s] + 1/2 [s]") == "W0109");
+  CHECK(shape_of("1/(2 [deg])").find("W") == std::string::npos);
+  CHECK(shape_of("a/2 [s]").find("W") == std::string::npos);
 }

@@ -133,6 +133,11 @@ TEST_CASE("degrees that were written without a unit are asked for, in starts and
   CHECK(Elaborated(model + "V = m g l cos θ\nrun 1 s\nexpect θ at 0 s = 60 ± 1e-9\n").codes() == "W0310");
   CHECK(Elaborated(model + "V = m g l cos(θ + 30 [deg]) + m g l sin(1)\n").fine());
   CHECK(Elaborated(model + "V = m g l cos θ\nstart θ = 3.2\n").fine());
+  const auto inclined = [&](const char* angle) {
+    return Elaborated(model + "param α = " + angle + "\nV = m g l cos θ sin α\n").codes();
+  };
+  CHECK(inclined("30") == "W0310");
+  for (const char* angle : {"30 deg", "30 rad", "0.5"}) CHECK(inclined(angle).empty());
 }
 
 TEST_CASE("values that no run could begin with") {

@@ -48,6 +48,17 @@ TEST_CASE("springs with and without a rest length, torsion springs, dampers, gra
   CHECK(value(e.system().dissipation_function(), at) == Approx(0.5 * 0.6 * stretch_rate * stretch_rate));
 }
 
+TEST_CASE("a damper between ends on one line is 1/2 c u'^2 wherever they are, where they meet too") {
+  const std::string model = "param m = 2 kg, c = 0.6 N s/m, α = 30 deg\ncoord x : length\n";
+  for (const char* place : {"(x, 0)", "(x cos α, -x sin α)", "(-x, 0)"}) {
+    const Elaborated e(model + "point P mass m at " + place + "\ndamper O - P coefficient c\n");
+    for (const double x : {-1.0, 0.0, 1.0})
+      CHECK(value(e.system().dissipation_function(), e.at({x}, {0.5})) == Approx(0.5 * 0.6 * 0.25));
+  }
+  const Elaborated away(model + "point P mass m at (x - 3 [m], 0)\ndamper (1 [m], 0) - P coefficient c\n");
+  CHECK(value(away.system().dissipation_function(), away.at({4.0}, {0.5})) == Approx(0.5 * 0.6 * 0.25));
+}
+
 TEST_CASE("a torsion spring on a name that is not there, or on one without a value, is told once") {
   const std::string model = "param m = 1 kg, κ = 4 N m/rad\ncoord x : length\nT = 1/2 m x'^2\n";
   CHECK(Elaborated(model + "torsion spring z stiffness κ\n").codes() == "E0201");
