@@ -37,6 +37,8 @@ struct ZeroTestOptions {
 
 /// Decides e = 0 as a function of all its symbols (decision 4 of ARCHITECTURE.md). TimeDerivative nodes are expanded.
 ZeroTest zero_test(Expr e, const ZeroTestOptions& options = {});
+/// Whether e is 0 as a function of its symbols: proved, not only undecided.
+bool vanishes_identically(Expr e);
 /// All of them at once, with shared evaluation: the first that is not zero decides.
 ZeroTest zero_test(std::span<const Expr> differences, const ZeroTestOptions& options = {});
 

@@ -6,8 +6,6 @@
 namespace maupertuis::comparison {
 namespace {
 
-bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
-
 Expr with_zeros(Expr e, std::span<const Expr> symbols) {
   ExprMap zeros;
   for (const Expr& s : symbols) zeros.emplace(s, e.context().number(0));
@@ -56,7 +54,7 @@ std::optional<Ellipsoid> ellipsoid_in(Expr relation, const ExprVector& chosen, c
   for (std::size_t i = 0; i < chosen.size(); ++i)
     for (std::size_t k = i; k < chosen.size(); ++k) {
       const Expr second = differentiate(slopes[i], chosen[k]);
-      if (k != i && !vanishes(second)) return std::nullopt;
+      if (k != i && !vanishes_identically(second)) return std::nullopt;
       if (k == i) curvatures.push_back(second);
     }
   Expr size = -with_zeros(relation, chosen);
@@ -67,7 +65,7 @@ std::optional<Ellipsoid> ellipsoid_in(Expr relation, const ExprVector& chosen, c
     size = size + context.number(Rational(1, 2)) * curvatures[i] * pow(out.centre[i], 2);
   }
   for (const Expr& other : coordinates_in(size))
-    if (!vanishes(differentiate(size, other))) return std::nullopt;
+    if (!vanishes_identically(differentiate(size, other))) return std::nullopt;
   size = with_zeros(size, coordinates_in(size));
   out.round = true;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -120,7 +118,7 @@ std::optional<Line> find_line(Expr relation, std::span<const Expr> candidates, c
       if (holds_coordinates(normal[0]) || holds_coordinates(normal[1])) continue;
       const Expr square = normal[0] * normal[0] + normal[1] * normal[1];
       if (!(at_start(square) > 0)) continue;
-      const bool unit = vanishes(square - Rational(1));
+      const bool unit = vanishes_identically(square - Rational(1));
       const Expr one = relation.context().number(1), size = unit ? one : sqrt(square);
       const Expr offset = with_zeros(relation, xy) / (unit ? one : square);
       return Line{xy, {-offset * normal[0], -offset * normal[1]}, {normal[1] / size, -normal[0] / size}};

@@ -7,8 +7,6 @@
 namespace maupertuis {
 namespace {
 
-bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
-
 /// h_E against T + V when L = T − V − U was built from parts.
 std::string compare_with_energy(const EquationsOfMotion& equations, bool& equal) {
   const MechanicalSystem& system = *equations.system;
@@ -29,7 +27,7 @@ std::string compare_with_energy(const EquationsOfMotion& equations, bool& equal)
 
 /// No constraint acts on coordinate i, whatever the multipliers are.
 bool free_of_constraints(const EquationsOfMotion& equations, std::size_t i) {
-  return equations.constraint_forces.empty() || vanishes(equations.constraint_forces[i]);
+  return equations.constraint_forces.empty() || vanishes_identically(equations.constraint_forces[i]);
 }
 
 /// λ·A q̇ holds q̇·∂ψ/∂q̇ − ψ, and ψ vanishes along the motion: where ψ is homogeneous in the velocities, of any degree,
@@ -45,7 +43,8 @@ Expr power_on_constraints(const EquationsOfMotion& equations) {
     for (const auto& [i, slope] : by_velocities(c.value)) terms.push_back(velocities[i] * slope);
     const Expr work = c.value.context().sum(terms);
     for (const int degree : {2, 3, 4})
-      if (vanishes(work - Rational(degree) * c.value)) power = power - Rational(degree - 1) * (c.multiplier * c.value);
+      if (vanishes_identically(work - Rational(degree) * c.value))
+        power = power - Rational(degree - 1) * (c.multiplier * c.value);
   }
   return power;
 }
@@ -61,14 +60,15 @@ ConservedQuantities conserved_quantities(const EquationsOfMotion& equations) {
   ConservedQuantities result;
   const std::vector<bool> varies = seen_nonzero(forces);  // most do, and forces along a chain share their parts
   for (std::size_t i = 0; i < q.size(); ++i) {
-    if (varies[i] || !vanishes(forces[i])) continue;
+    if (varies[i] || !vanishes_identically(forces[i])) continue;
     result.cyclic.push_back(i);
-    if (vanishes(equations.generalized_forces[i] - equations.dissipative_terms[i]) &&
+    if (vanishes_identically(equations.generalized_forces[i] - equations.dissipative_terms[i]) &&
         free_of_constraints(equations, i) && !across_switches(system, equations.momenta[i], equations.order).jump)
       result.conserved_momenta.push_back(i);
   }
   const AcrossSwitches energy = across_switches(system, equations.energy_function, equations.order);
-  result.energy_conserved = !energy.jump && (vanishes(equations.power) || vanishes(power_on_constraints(equations)));
+  result.energy_conserved =
+      !energy.jump && (vanishes_identically(equations.power) || vanishes_identically(power_on_constraints(equations)));
   if (system.lagrangian_given && system.independent != "t") {
     result.energy_case =
         "h_E = q'·∂L/∂q' − L, which is constant where L does not depend on " + system.independent + " (Beltrami).";

@@ -23,8 +23,6 @@ constexpr double rounding = 1e-14;  // a row at the start against its length els
 /// Beyond this number of entries ranks are taken by elimination, not by singular values.
 constexpr std::size_t largest_dense = 64 * 128;
 
-bool zero(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
-
 class Analysis {
  public:
   Analysis(const EquationsOfMotion& equations, const MotionState* start)
@@ -72,16 +70,17 @@ class Analysis {
       if (is_holonomic(i)) {
         const std::vector<SparseGradient::Entry> entries = by_variables(value);
         if (needed) forms_[i].components = in_full(entries, n_ + 1);
-        report.scleronomic = entries.empty() || entries.back().column != n_ || zero(entries.back().value);
+        report.scleronomic =
+            entries.empty() || entries.back().column != n_ || vanishes_identically(entries.back().value);
         continue;
       }
       if (affine_form(value, by_velocities, at_rest, forms_[i])) {
         report.constraint_class = ConstraintClass::Nonholonomic;
-        report.scleronomic = zero(forms_[i].components[n_]) && free_of_time(forms_[i].components);
+        report.scleronomic = vanishes_identically(forms_[i].components[n_]) && free_of_time(forms_[i].components);
       } else {
         forms_[i].components.clear();
         report.constraint_class = ConstraintClass::Nonlinear;
-        report.scleronomic = zero(differentiate(value, variables_[n_]));
+        report.scleronomic = vanishes_identically(differentiate(value, variables_[n_]));
       }
     }
   }
@@ -99,7 +98,7 @@ class Analysis {
     const std::vector<SparseGradient::Entry> entries = by_velocities(value);
     for (const SparseGradient::Entry& a : entries)
       for (const SparseGradient::Entry& second : by_velocities(a.value))
-        if (!zero(second.value)) return false;
+        if (!vanishes_identically(second.value)) return false;
     form.components = substitute(in_full(entries, n_), at_rest);
     form.components.push_back(substitute(value, at_rest));
     return true;
@@ -107,7 +106,7 @@ class Analysis {
 
   bool free_of_time(const ExprVector& form) const {
     return std::all_of(form.begin(), form.end(),
-                       [&](Expr a) { return a.is_number() || zero(differentiate(a, variables_[n_])); });
+                       [&](Expr a) { return a.is_number() || vanishes_identically(differentiate(a, variables_[n_])); });
   }
 
   bool has_velocity_forms() const {

@@ -16,8 +16,8 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 using Index = Eigen::Index;
 
-constexpr double rounding = 1e-16;  // below it there is nothing to gain
-constexpr double reached = 1e-11;   // good enough where rounding does not let it come closer
+constexpr double settled = 1e-16;  // below it there is nothing to gain
+constexpr double reached = 1e-11;  // good enough where rounding does not let it come closer
 constexpr int most_turns = 60;
 constexpr int turns_to_halve = 5;  // the error, of a large system
 
@@ -55,7 +55,7 @@ struct Entries {
 };
 
 /// Beyond this number of entries the matrices of a step are kept sparse.
-constexpr std::size_t largest_dense = 64 * 128;
+constexpr std::size_t largest_dense_rates = 64 * 128;
 /// Of M, that a metric is worth.
 constexpr std::size_t most_of_metric = 200000;
 
@@ -78,7 +78,7 @@ struct ConstraintManifold::Impl {
   Matrix metric(const MotionState& state) const;
   Vector least_step(const std::vector<MatrixEntry>& a, const Sizes& f, const std::vector<std::size_t>& chosen,
                     const MotionState& state, const std::vector<Index>& free, Vector& weight) const;
-  bool is_sparse() const { return (rates.count() + m) * n > largest_dense; }
+  bool is_sparse() const { return (rates.count() + m) * n > largest_dense_rates; }
   bool move(MotionState& state, bool positions, const std::vector<bool>& fixed, const std::vector<bool>& active) const;
 
   std::size_t n, m;
@@ -252,7 +252,7 @@ bool below_rounding(const Sizes& f, const std::vector<std::size_t>& chosen, cons
       rows[static_cast<Index>(e.row)] += std::pow(e.value / lengths[static_cast<Index>(e.column)], 2);
   for (const std::size_t i : chosen) {
     const auto k = static_cast<Index>(i);
-    if (!(std::abs(f.value[k]) <= std::max(reached * f.scale[k], rounding * std::sqrt(rows[k]) * size))) return false;
+    if (!(std::abs(f.value[k]) <= std::max(reached * f.scale[k], settled * std::sqrt(rows[k]) * size))) return false;
   }
   return true;
 }
@@ -310,7 +310,7 @@ bool ConstraintManifold::Impl::move(MotionState& state, bool positions, const st
   Sizes f = sizes(positions, state, all);
   double error = largest_relative(f, chosen);
   double checkpoint = HUGE_VAL;
-  for (int turn = 0; turn < most_turns && error > rounding && !free.empty(); ++turn) {
+  for (int turn = 0; turn < most_turns && error > settled && !free.empty(); ++turn) {
     if (!all_finite(all) || !f.value.allFinite()) return false;
     Vector weight;
     const Vector step = least_step(all, f, chosen, state, free, weight);

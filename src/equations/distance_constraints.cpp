@@ -11,8 +11,6 @@
 namespace maupertuis {
 namespace {
 
-bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
-
 bool moves(const ExprVector& position) {
   for (const Expr& s : symbols_of(position))
     if (s.role() == Role::Coordinate || s.role() == Role::Time || s.role() == Role::Input) return true;
@@ -79,13 +77,14 @@ std::optional<RodConstraint> between(const MechanicalSystem& system, const Const
   if (q.size() == 1 && !turns(arm, q[0])) return std::nullopt;
   const Expr squared = system.context->sum(squares);
   for (const Expr& slope : gradient(squared, others))  // the angle of polar coordinates drops out
-    if (!vanishes(slope)) return std::nullopt;
+    if (!vanishes_identically(slope)) return std::nullopt;
   const ExprVector of_phi = gradient(c.value, q), of_squared = gradient(squared, q);
   std::size_t pivot = 0;
-  while (pivot < q.size() && vanishes(of_squared[pivot])) ++pivot;
+  while (pivot < q.size() && vanishes_identically(of_squared[pivot])) ++pivot;
   if (pivot == q.size()) return std::nullopt;
   for (std::size_t i = 0; i < q.size(); ++i)
-    if (i != pivot && !vanishes(of_phi[i] * of_squared[pivot] - of_phi[pivot] * of_squared[i])) return std::nullopt;
+    if (i != pivot && !vanishes_identically(of_phi[i] * of_squared[pivot] - of_phi[pivot] * of_squared[i]))
+      return std::nullopt;
   const Expr slope = simplified(simplified(of_phi[pivot]) / simplified(of_squared[pivot]));
   return RodConstraint{from, to, constant_distance(system, squared, c.value, slope), slope};
 }

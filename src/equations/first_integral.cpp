@@ -12,12 +12,11 @@ namespace {
 
 constexpr std::size_t most_nodes = 400;  // of a form: what is larger has no integral that anyone would read
 
-bool zero(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
-
 bool closed(const ExprVector& form, const ExprVector& variables) {
   for (std::size_t i = 0; i < form.size(); ++i)
     for (std::size_t j = i + 1; j < form.size(); ++j)
-      if (!zero(differentiate(form[i], variables[j]) - differentiate(form[j], variables[i]))) return false;
+      if (!vanishes_identically(differentiate(form[i], variables[j]) - differentiate(form[j], variables[i])))
+        return false;
   return true;
 }
 
@@ -27,14 +26,14 @@ Expr potential(const ExprVector& form, const ExprVector& variables, const Readin
   Expr out = context.number(Rational(0));
   for (std::size_t i = 0; i < form.size(); ++i) {
     const Expr missing = form[i] - differentiate(out, variables[i]);
-    if (zero(missing)) continue;
+    if (vanishes_identically(missing)) continue;
     Expr part = antiderivative(missing, variables[i]);
     if (!part) part = antiderivative(simplified(missing, order), variables[i]);
     if (!part) return {};
     out = out + part;
   }
   for (std::size_t i = 0; i < form.size(); ++i)
-    if (!zero(differentiate(out, variables[i]) - form[i])) return {};
+    if (!vanishes_identically(differentiate(out, variables[i]) - form[i])) return {};
   return out;
 }
 
@@ -140,7 +139,7 @@ FirstIntegral first_integral(const OneForm& form, const ExprVector& all, const R
     const Expr a = form.components[i];
     if (a.is_zero() && std::find(read.begin(), read.end(), all[i]) == read.end()) continue;
     variables.push_back(all[i]);
-    plain.push_back(zero(a) ? a.context().number(Rational(0)) : simplified(a, order));
+    plain.push_back(vanishes_identically(a) ? a.context().number(Rational(0)) : simplified(a, order));
   }
   if (variables.empty()) return {};
   for (const Expr& factor : candidate_factors(plain, variables)) {

@@ -224,7 +224,7 @@ class Closure {
   bool vanishes_on_brackets(const OneForm& form) const {
     for (const ExprVector& field : brackets_) {
       const Expr value = value_on(form, field);
-      if (value.is_zero() || zero_test(value).verdict == Verdict::Zero) continue;
+      if (vanishes_identically(value)) continue;
       for (const Bindings& point : points_)
         if (without_rounding(value, point) != 0) return false;
     }

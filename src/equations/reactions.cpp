@@ -13,8 +13,6 @@
 namespace maupertuis {
 namespace {
 
-bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
-
 /// A constraint, its row of A, and the coordinates that it ties.
 struct Tie {
   const MechanicalSystem& system;
@@ -114,12 +112,12 @@ bool as_contact(const Tie& tie, Reaction& r) {
     ExprVector work{-tie.row[i]};
     for (std::size_t k = 0; k < position.size(); ++k)
       work.push_back(direction[k] * differentiate(position[k], tie.system.coordinates[i].q));
-    if (!vanishes(tie.context().sum(work))) return false;
+    if (!vanishes_identically(tie.context().sum(work))) return false;
   }
   for (const Body& b : tie.system.bodies)  // a coordinate that also turns a body takes part of the force as a torque
     for (const std::size_t i : tie.coordinates)
       for (const Expr& entry : b.rotation.entries)
-        if (!vanishes(differentiate(entry, tie.system.coordinates[i].q))) return false;
+        if (!vanishes_identically(differentiate(entry, tie.system.coordinates[i].q))) return false;
   ExprVector squares;
   for (const Expr& component : direction) squares.push_back(pow(component, Rational(2)));
   r.kind = Reaction::Kind::Contact;

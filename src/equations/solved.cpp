@@ -23,7 +23,7 @@ ReadableForm quotient(Expr numerator, Expr denominator, const ReadingOrder& orde
   return result;
 }
 
-bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict != Verdict::Nonzero; }
+bool may_vanish(Expr e) { return e.is_zero() || zero_test(e).verdict != Verdict::Nonzero; }
 
 /// Cramer's rule for a block of three to six coupled rows, as long as what it writes stays short:
 ///
@@ -42,7 +42,7 @@ class LargeBlock {
     const std::size_t n = block_.size();
     const unsigned all = (1u << n) - 1;
     const Expr determinant = minor(all, all);
-    if (!determinant || vanishes(determinant)) return {};
+    if (!determinant || may_vanish(determinant)) return {};
     std::vector<ReadableForm> out;
     for (std::size_t j = 0; j < n; ++j) {
       ExprVector terms;
@@ -110,11 +110,11 @@ std::vector<SolvedAcceleration> solved_for(const EquationsOfMotion& equations, c
         if (seen[i * n + j]) make_canonical(m.at(i, j));
     if (block.size() == 1) {
       const std::size_t i = block[0];
-      if (!vanishes(m.at(i, i))) solved[i].right = quotient(-h[i], m.at(i, i), equations.order);
+      if (!may_vanish(m.at(i, i))) solved[i].right = quotient(-h[i], m.at(i, i), equations.order);
     } else if (block.size() == 2) {
       const std::size_t i = block[0], j = block[1];
       const Expr determinant = m.at(i, i) * m.at(j, j) - m.at(i, j) * m.at(j, i);
-      if (vanishes(determinant)) continue;
+      if (may_vanish(determinant)) continue;
       solved[i].right = quotient(m.at(i, j) * h[j] - m.at(j, j) * h[i], determinant, equations.order);
       solved[j].right = quotient(m.at(j, i) * h[i] - m.at(i, i) * h[j], determinant, equations.order);
     } else {
@@ -190,10 +190,10 @@ std::vector<ReadableForm> solved_multipliers(const EquationsOfMotion& equations)
     c.push_back(b[k] + row_times(a, k, drift));
   }
   if (a.rows == 1)
-    return vanishes(g.entries[0]) ? std::vector<ReadableForm>{}
-                                  : std::vector{quotient(c[0], g.entries[0], equations.order)};
+    return may_vanish(g.entries[0]) ? std::vector<ReadableForm>{}
+                                    : std::vector{quotient(c[0], g.entries[0], equations.order)};
   const Expr determinant = g.at(0, 0) * g.at(1, 1) - g.at(0, 1) * g.at(1, 0);
-  if (vanishes(determinant)) return {};
+  if (may_vanish(determinant)) return {};
   return {quotient(g.at(1, 1) * c[0] - g.at(0, 1) * c[1], determinant, equations.order),
           quotient(g.at(0, 0) * c[1] - g.at(1, 0) * c[0], determinant, equations.order)};
 }

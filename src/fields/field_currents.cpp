@@ -234,8 +234,6 @@ ExprMap integer_point(const FieldSystem& s, const std::vector<Expr>& expressions
   return out;
 }
 
-bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
-
 /// The coefficients of a symmetry, that of its first generator 1; empty where they were not found. Those that are
 /// numbers are taken as such, and the currents are certified afterwards.
 std::vector<Expr> coefficients(const FieldEquations& equations, const std::vector<std::vector<Expr>>& table,
@@ -265,7 +263,7 @@ std::vector<Expr> coefficients(const FieldEquations& equations, const std::vecto
       }
       const std::size_t pivot = rows.size();
       std::size_t column = pivot;
-      while (column < unknowns && vanishes(row[column])) ++column;
+      while (column < unknowns && vanishes_identically(row[column])) ++column;
       if (column == unknowns) continue;
       if (column != pivot) return {};  // columns are not exchanged: such a symmetry is told with numbers alone
       const Expr divisor = row[pivot];
@@ -343,14 +341,14 @@ std::optional<std::vector<Expr>> linear_gauge(const FieldEquations& equations, E
   const FieldSystem& s = equations.system();
   std::vector<Expr> out(s.space.size() + 1, s.context->number(0));
   for (int round = 0; round < 8; ++round) {
-    if (vanishes(f)) return out;
+    if (vanishes_identically(f)) return out;
     const std::vector<Expr> jets = s.jets_in(f);
     const std::vector<Expr> slopes = gradient(f, jets);
     bool moved = false;
     for (std::size_t i = 0; i < jets.size() && !moved; ++i) {
       FieldJet jet = *s.jet_of(jets[i]);
       const Expr slope = expand(slopes[i]);
-      if (!slope || jet.order() == 0 || vanishes(slope)) continue;
+      if (!slope || jet.order() == 0 || vanishes_identically(slope)) continue;
       for (std::size_t mu = 0; mu <= s.space.size() && !moved; ++mu) {
         int& count = mu == s.space.size() ? jet.time : jet.space[mu];
         if (count == 0) continue;
@@ -359,7 +357,7 @@ std::optional<std::vector<Expr>> linear_gauge(const FieldEquations& equations, E
         ++count;
         // slope·D_μ lower: where the slope holds only `lower` itself, the integral over it
         const Expr in_slope = differentiate(slope, lower);
-        const Expr part = vanishes(in_slope) ? slope * lower : Rational(1, 2) * (slope * lower);
+        const Expr part = vanishes_identically(in_slope) ? slope * lower : Rational(1, 2) * (slope * lower);
         out[mu] = out[mu] + part;
         f = f - s.total_derivative(part, mu);
         const Expr flat = expand(f);
@@ -465,7 +463,7 @@ std::optional<FieldCurrent> current_of(const FieldEquations& equations, const st
   out.meaning = named.meaning;
   Expr difference = -power_of(equations, q);
   for (std::size_t mu = 0; mu <= n; ++mu) difference = difference + s.total_derivative(j[mu], mu);
-  out.certified = vanishes(difference);
+  out.certified = vanishes_identically(difference);
   if (!out.certified) return std::nullopt;
   out.characteristic = q;
   out.density = j[n];

@@ -64,8 +64,6 @@ std::vector<Expr> conditions_at(const FieldEquations& equations, std::size_t fie
 
 }  // namespace
 
-bool vanishes_identically(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
-
 std::vector<Side> sides_across(std::size_t variable) {
   return variable == 0 ? std::vector{Side::Left, Side::Right} : std::vector{Side::Bottom, Side::Top};
 }

@@ -11,8 +11,6 @@
 namespace maupertuis {
 namespace {
 
-bool is_null(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
-
 /// ξ and η of a characteristic Q_a = η_a − ξ^μ ∂_μ φ_a with η linear in the fields.
 struct Motion {
   std::vector<Expr> xi;                // [space variables + 1], t last
@@ -73,7 +71,7 @@ class BelinfanteTensor {
     for (std::size_t mu = 0; mu <= n_; ++mu) out.xi.push_back(-differentiate(c.characteristic.front(), slope(0, mu)));
     for (const Expr& q : c.characteristic) {
       const Expr eta = substitute(q, no_slopes);
-      if (!is_null(substitute(eta, nothing))) return std::nullopt;
+      if (!vanishes_identically(substitute(eta, nothing))) return std::nullopt;
       out.mix.emplace_back();
       for (std::size_t b = 0; b < c.characteristic.size(); ++b) out.mix.back().push_back(differentiate(eta, field(b)));
     }
@@ -84,11 +82,11 @@ class BelinfanteTensor {
   const Motion* find(std::size_t mu, std::size_t nu, Expr& p, Expr& r) const {
     for (const Motion& m : motions_) {
       p = differentiate(m.xi[mu], variable(nu)), r = differentiate(m.xi[nu], variable(mu));
-      if (is_null(p) || is_null(r)) continue;
+      if (vanishes_identically(p) || vanishes_identically(r)) continue;
       bool pure = true;
       for (std::size_t k = 0; k <= n_; ++k) {
         const Expr expected = k == mu ? p * variable(nu) : k == nu ? r * variable(mu) : context_.number(0);
-        pure = pure && is_null(m.xi[k] - expected);
+        pure = pure && vanishes_identically(m.xi[k] - expected);
       }
       if (pure) return &m;
     }
@@ -107,7 +105,7 @@ class BelinfanteTensor {
     const Motion* m = find(n_, i, alpha, beta);
     if (!m) return false;
     const Expr c2 = readable(beta / alpha, equations_.order).value;
-    if (c_squared_ && !is_null(c2 - c_squared_)) return false;
+    if (c_squared_ && !vanishes_identically(c2 - c_squared_)) return false;
     c_squared_ = c2;
     Bindings values;
     for (const Parameter& p : equations_.model->parameters) values[p.symbol] = p.si_value;
@@ -120,7 +118,7 @@ class BelinfanteTensor {
   bool take_rotation(std::size_t i, std::size_t j) {
     Expr kappa = context_.number(0), back = kappa;
     const Motion* m = find(i, j, kappa, back);
-    if (!m || !is_null(kappa + back)) return false;
+    if (!m || !vanishes_identically(kappa + back)) return false;
     take(*m, i, j, -kappa);
     return true;
   }
@@ -172,7 +170,7 @@ class BelinfanteTensor {
       bool found = false;
       for (std::size_t a = 0; a < euler_.size(); ++a) {
         const Expr slope = differentiate(out.value, shell_.leading(a));
-        if (is_null(slope)) continue;
+        if (vanishes_identically(slope)) continue;
         found = true;
         const Expr factor = -slope / differentiate(euler_[a], shell_.leading(a));
         out.factors[a] = out.factors[a] + factor;
@@ -211,13 +209,15 @@ class BelinfanteTensor {
         const Expr theta = out.symmetric[at(m, n)];
         divergence = divergence + s_.total_derivative(theta - of_equations, m);
         const auto difference = reduced(theta - out.symmetric[at(n, m)]);
-        out.is_symmetric = out.is_symmetric && difference && is_null(difference->value);
-        out.differs_by_divergence = out.differs_by_divergence && is_null(theta - out.canonical[at(m, n)] -
-                                                                         divergence_of_spin(out, m, n) - of_equations);
+        out.is_symmetric = out.is_symmetric && difference && vanishes_identically(difference->value);
+        out.differs_by_divergence =
+            out.differs_by_divergence &&
+            vanishes_identically(theta - out.canonical[at(m, n)] - divergence_of_spin(out, m, n) - of_equations);
         for (std::size_t l = 0; l <= n_; ++l)
-          out.differs_by_divergence = out.differs_by_divergence && is_null(out.spin(l, m, n) + out.spin(m, l, n));
+          out.differs_by_divergence =
+              out.differs_by_divergence && vanishes_identically(out.spin(l, m, n) + out.spin(m, l, n));
       }
-      out.is_conserved = out.is_conserved && is_null(divergence);
+      out.is_conserved = out.is_conserved && vanishes_identically(divergence);
     }
   }
 
@@ -236,7 +236,7 @@ class BelinfanteTensor {
 }  // namespace
 
 bool StressEnergy::has_spin() const {
-  return std::any_of(spin_part.begin(), spin_part.end(), [](Expr e) { return !is_null(e); });
+  return std::any_of(spin_part.begin(), spin_part.end(), [](Expr e) { return !vanishes_identically(e); });
 }
 Expr StressEnergy::energy_density() const { return c_squared * stress(dimensions, dimensions); }
 Expr StressEnergy::energy_flux(std::size_t i) const { return c_squared * stress(i, dimensions); }

@@ -15,8 +15,6 @@
 namespace maupertuis {
 namespace {
 
-constexpr double radian_in_degrees = 57.295779513082323;
-
 class Picture {
  public:
   explicit Picture(const Diagram& diagram) : d_(diagram), across_(make_across(400)), up_(make_up(300)) {

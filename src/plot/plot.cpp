@@ -15,7 +15,6 @@ namespace maupertuis {
 namespace {
 
 constexpr double gap = 14;  // px between panels
-constexpr double radian_in_degrees = 57.295779513082323;
 
 Series series_of(const Trajectory& trajectory, const std::string& name, bool degrees) {
   const std::size_t column = *trajectory.column(name);

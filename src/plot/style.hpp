@@ -5,6 +5,8 @@
 
 namespace maupertuis {
 
+inline constexpr double radian_in_degrees = 57.295779513082323;
+
 /// The content of a picture's own <style> element.
 std::string own_style(PlotTheme theme);
 

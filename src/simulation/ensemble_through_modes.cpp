@@ -19,7 +19,7 @@
 namespace maupertuis {
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_reached = std::numeric_limits<double>::quiet_NaN();
 
 /// What the threads share. Each trajectory is written by the thread that took it.
 struct Members {
@@ -53,8 +53,8 @@ ThroughModesResult empty_result(std::size_t count, std::size_t freedoms, std::si
   out.times = times;
   out.endings.resize(count);
   out.through.resize(count);
-  for (auto* values : {&out.q, &out.v}) values->assign(count * freedoms, nothing);
-  for (auto* values : {&out.sampled_q, &out.sampled_v}) values->assign(count * times * freedoms, nothing);
+  for (auto* values : {&out.q, &out.v}) values->assign(count * freedoms, not_reached);
+  for (auto* values : {&out.sampled_q, &out.sampled_v}) values->assign(count * times * freedoms, not_reached);
   return out;
 }
 

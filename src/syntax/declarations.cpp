@@ -5,17 +5,17 @@
 namespace maupertuis::syntax {
 namespace {
 
-using Kind = Declarations::Kind;
+using NameKind = Declarations::Kind;
 
 struct Declared {
   Name name;
-  Kind kind;
+  NameKind kind;
 };
 
 Name name_of(const Token& token) { return {std::string(token.text), token.span}; }
 
 // param, coord, let, rates: the names at depth 0 that stand before `=`, `:` or `,` and after the first word or a comma.
-void scan_list(const TokenList& list, const StatementTokens& statement, Kind kind, std::vector<Declared>& found) {
+void scan_list(const TokenList& list, const StatementTokens& statement, NameKind kind, std::vector<Declared>& found) {
   int depth = 0;
   std::size_t unnamed = found.size();  // coord x, y : length — the kind comes after the names
   for (std::size_t i = statement.begin + 1; i < statement.end; ++i) {
@@ -24,34 +24,34 @@ void scan_list(const TokenList& list, const StatementTokens& statement, Kind kin
     if (token.is(")") || token.is("]")) --depth;
     const bool first = i == statement.begin + 1 || list.tokens[i - 1].is(",");
     if (depth == 0 && first && token.kind == Token::Kind::Name) found.push_back({name_of(token), kind});
-    if (kind == Kind::Coordinate && token.is(":")) {
+    if (kind == NameKind::Coordinate && token.is(":")) {
       const bool angle = i + 1 < statement.end && list.tokens[i + 1].is("angle");
-      for (; unnamed < found.size(); ++unnamed) found[unnamed].kind = angle ? Kind::Angle : Kind::Coordinate;
+      for (; unnamed < found.size(); ++unnamed) found[unnamed].kind = angle ? NameKind::Angle : NameKind::Coordinate;
     }
   }
 }
 
 void scan(const TokenList& list, const StatementTokens& statement, std::vector<Declared>& found) {
   const Token& first = list.tokens[statement.begin];
-  if (first.is("param")) return scan_list(list, statement, Kind::Parameter, found);
-  if (first.is("coord")) return scan_list(list, statement, Kind::Coordinate, found);
-  if (first.is("let") || first.is("rates")) return scan_list(list, statement, Kind::Definition, found);
-  const Kind kind = first.is("input")                                            ? Kind::Input
-                    : first.is("frame") || first.is("point") || first.is("body") ? Kind::Place
-                    : first.is("field")                                          ? Kind::Field
-                    : first.is("independent")                                    ? Kind::Parameter
-                                                                                 : Kind::None;
-  if (kind == Kind::None || statement.begin + 1 >= statement.end) return;
+  if (first.is("param")) return scan_list(list, statement, NameKind::Parameter, found);
+  if (first.is("coord")) return scan_list(list, statement, NameKind::Coordinate, found);
+  if (first.is("let") || first.is("rates")) return scan_list(list, statement, NameKind::Definition, found);
+  const NameKind kind = first.is("input")                                            ? NameKind::Input
+                        : first.is("frame") || first.is("point") || first.is("body") ? NameKind::Place
+                        : first.is("field")                                          ? NameKind::Field
+                        : first.is("independent")                                    ? NameKind::Parameter
+                                                                                     : NameKind::None;
+  if (kind == NameKind::None || statement.begin + 1 >= statement.end) return;
   const auto add = [&](std::size_t i) {
     if (i < statement.end && list.tokens[i].kind == Token::Kind::Name) found.push_back({name_of(list.tokens[i]), kind});
   };
   add(statement.begin + 1);
-  if (kind != Kind::Field) return;
+  if (kind != NameKind::Field) return;
   bool variables = false;  // field a(x), b(x, y) : …
   for (std::size_t i = statement.begin + 2; i < statement.end && !list.tokens[i].is(":"); ++i) {
     if (list.tokens[i].is("(") || list.tokens[i].is(")")) variables = list.tokens[i].is("(");
     if (list.tokens[i].kind != Token::Kind::Name) continue;
-    found.push_back({name_of(list.tokens[i]), variables ? Kind::Space : Kind::Field});
+    found.push_back({name_of(list.tokens[i]), variables ? NameKind::Space : NameKind::Field});
   }
 }
 
@@ -76,9 +76,9 @@ Declarations::Kind Declarations::kind(std::string_view name) const {
   if (found != names_.end()) return found->second;
   // u_x, u_xx of a field u
   const std::size_t underscore = name.find('_');
-  if (underscore == std::string_view::npos || underscore == 0) return Kind::None;
+  if (underscore == std::string_view::npos || underscore == 0) return NameKind::None;
   const auto field = names_.find(std::string(name.substr(0, underscore)));
-  return field != names_.end() && field->second == Kind::Field ? Kind::Field : Kind::None;
+  return field != names_.end() && field->second == NameKind::Field ? NameKind::Field : NameKind::None;
 }
 
 std::vector<std::string> Declarations::names() const {
@@ -97,7 +97,7 @@ std::vector<Name> Declarations::of(const TokenList& list, const StatementTokens&
     std::size_t at = statement.begin + 1;
     while (!reaction && at < statement.end && !list.tokens[at - 1].is("name")) ++at;
     if (at < statement.end && list.tokens[at].kind == Token::Kind::Name)
-      found.push_back({name_of(list.tokens[at]), Kind::None});
+      found.push_back({name_of(list.tokens[at]), NameKind::None});
   }
   std::vector<Name> names;
   for (Declared& declared : found) names.push_back(std::move(declared.name));

@@ -8,13 +8,13 @@ namespace {
 
 using syntax::Expression;
 using syntax::Operator;
-using Kind = Expression::Kind;
+using Form = Expression::Kind;
 
 /// Long sums become one sum, so that no tower of two-term sums arises: a + b − c.
 Value sum_chain(Elaboration& e, const Expression& x, const Place& place) {
   std::vector<const Expression*> operations;
   const Expression* left = &x;
-  while (left->kind == Kind::Binary && (left->op == Operator::Add || left->op == Operator::Subtract) &&
+  while (left->kind == Form::Binary && (left->op == Operator::Add || left->op == Operator::Subtract) &&
          (left == &x || !left->bracketed)) {
     operations.push_back(left);
     left = left->arguments[0].get();
@@ -73,7 +73,7 @@ Value binary(Elaboration& e, const Expression& x, const Place& place) {
 }
 
 Value condition(Elaboration& e, const Expression& x, const Place& place) {
-  if (x.kind != Kind::Binary) {
+  if (x.kind != Form::Binary) {
     e.diagnostics.error("E0221", x.span, "this is no condition",
                         "A condition compares two quantities with <, <=, > or >=.", "");
     return Value::poison();
@@ -197,25 +197,25 @@ Value vector(Elaboration& e, const Expression& x, const Place& place) {
 
 Value evaluate_formula(Elaboration& e, const Expression& x, const Place& place) {
   switch (x.kind) {
-    case Kind::Number:
+    case Form::Number:
       return value_of_number(e, x);
-    case Kind::Quantity:
+    case Form::Quantity:
       return value_of_quantity(e, x, place);
-    case Kind::Name:
+    case Form::Name:
       return value_of_name(e, x, place);
-    case Kind::Member:
+    case Form::Member:
       return value_of_member(e, x, place);
-    case Kind::Call:
+    case Form::Call:
       return value_of_call(e, x, place);
-    case Kind::Vector:
+    case Form::Vector:
       return vector(e, x, place);
-    case Kind::Binary:
+    case Form::Binary:
       return binary(e, x, place);
-    case Kind::Unary:
+    case Form::Unary:
       return negative(evaluate_formula(e, *x.arguments[0], place));
-    case Kind::Piecewise:
+    case Form::Piecewise:
       return piecewise(e, x, place);
-    case Kind::TimeDerivative:
+    case Form::TimeDerivative:
       return time_derivative(e, evaluate_formula(e, *x.arguments[0], place), x.primes, x);
   }
   return Value::poison();

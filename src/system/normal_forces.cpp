@@ -53,7 +53,7 @@ class Masses {
     std::optional<Push> out;
     for (const Mass* m : is_velocity ? std::vector<const Mass*>() : free) {
       auto push = push_on(*m, row, is_velocity);
-      if (!push || (out && !vanishes(out->square - push->square))) return std::nullopt;
+      if (!push || (out && !vanishes_identically(out->square - push->square))) return std::nullopt;
       if (!out) out = std::move(push);
     }
     return out;
@@ -66,7 +66,7 @@ class Masses {
     for (const auto& [i, slope] : slopes(gap, false)) {
       if (system_.coordinates[i].kind != "length") continue;
       const Expr square_less_one = slope * slope - system_.context->number(1);
-      const bool is_one = vanishes(square_less_one);
+      const bool is_one = vanishes_identically(square_less_one);
       has_one = has_one || is_one;
       has_part = has_part || !is_one;
       if (!is_one && square_less_one.is_number() && square_less_one.number().sign() > 0) return true;
@@ -77,7 +77,8 @@ class Masses {
   /// Whether |∂f/∂r| is 1 on the surface g = 0.
   bool is_unit(const Push& push, Expr gap) const {
     const Expr off = push.square - system_.context->number(1);
-    return vanishes(off) || zero_test_where({&off, 1}, {&gap, 1}, coordinates(), center()).verdict == Verdict::Zero;
+    return vanishes_identically(off) ||
+           zero_test_where({&off, 1}, {&gap, 1}, coordinates(), center()).verdict == Verdict::Zero;
   }
 
  private:
@@ -128,7 +129,7 @@ class Masses {
     for (const auto& [i, value] : row) {
       ExprVector rest{-value};
       for (std::size_t k = 0; k < r.size(); ++k) rest.push_back(direction[k] * slope(k, i));
-      if (!vanishes(context.sum(rest))) return push_in_plane(mass, row);
+      if (!vanishes_identically(context.sum(rest))) return push_in_plane(mass, row);
     }
     for (const Expr& component : direction) squares.push_back(component * component);
     return Push{*mass.name, context.sum(squares)};
@@ -155,12 +156,10 @@ class Masses {
       f[a++] = found == row.end() ? context.number(0) : found->second;
     }
     const Expr det = g[0][0] * g[1][1] - g[0][1] * g[0][1];
-    if (vanishes(det)) return std::nullopt;
+    if (vanishes_identically(det)) return std::nullopt;
     const Expr two = context.number(2);
     return Push{*mass.name, (g[1][1] * f[0] * f[0] - two * g[0][1] * f[0] * f[1] + g[0][0] * f[1] * f[1]) / det};
   }
-
-  static bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
 
   ExprVector coordinates() const {
     ExprVector out;

@@ -24,7 +24,7 @@ std::string quoted(std::string_view text) {
   return result + '"';
 }
 
-void append_number(std::string& out, double value) {
+void append_json_number(std::string& out, double value) {
   if (!std::isfinite(value))
     out += "null";
   else if (value == 0)
@@ -50,10 +50,10 @@ std::string to_json(const Trajectory& trajectory) {
   out += "],\n\"rows\": [";
   for (std::size_t row = 0; row < trajectory.rows(); ++row) {
     out += row == 0 ? "\n[" : ",\n[";
-    append_number(out, trajectory.times[row]);
+    append_json_number(out, trajectory.times[row]);
     for (std::size_t column = 0; column < trajectory.columns.size(); ++column) {
       out += ", ";
-      append_number(out, trajectory.at(row, column));
+      append_json_number(out, trajectory.at(row, column));
     }
     out += ']';
   }

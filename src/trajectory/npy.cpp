@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t longest_header = 10'000;
 
 // A Python string literal.
-std::string quoted(std::string_view text) {
+std::string python_string(std::string_view text) {
   std::string result = "'";
   for (const char c : text) {
     if (c == '\'' || c == '\\') result += '\\';
@@ -22,8 +22,8 @@ std::string quoted(std::string_view text) {
 }
 
 std::string field(const std::string& name, const std::string& unit, bool with_units) {
-  if (!with_units || unit.empty()) return fmt::format("({},'<f8'),", quoted(name));
-  return fmt::format("(({},{}),'<f8'),", quoted(fmt::format("{} [{}]", name, unit)), quoted(name));
+  if (!with_units || unit.empty()) return fmt::format("({},'<f8'),", python_string(name));
+  return fmt::format("(({},{}),'<f8'),", python_string(fmt::format("{} [{}]", name, unit)), python_string(name));
 }
 
 std::string description(const Trajectory& trajectory, bool with_units) {

@@ -16,8 +16,6 @@
 namespace maupertuis {
 namespace {
 
-double number(const Model& model, Expr e) { return number_of(model.system, e); }
-
 /// One for each mode of oscillation, and 0 for each pair of vanishing eigenvalues; ascending. Squared: ω², negative for
 /// modes that grow and decay instead.
 std::vector<double> frequencies(const ModalAnalysis& analysis, bool squared) {

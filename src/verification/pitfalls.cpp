@@ -59,8 +59,6 @@ class MistakenDerivations {
     return false;
   }
 
-  static bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
-
   void add(std::string sentence, ExprVector residual, std::vector<TermOrigin> about = {}) {
     pitfalls_.push_back({std::move(sentence), std::move(residual), std::move(about)});
   }
@@ -111,11 +109,11 @@ class MistakenDerivations {
   /// L with the velocity of a cyclic coordinate replaced by its value from p = const before the derivatives are taken.
   /// (The Routhian is the right way; Goldstein §8.3.)
   void add_momentum_put_into_lagrangian(const Coordinate& cyclic) {
-    if (q_.size() < 2 || !vanishes(differentiate(equations_.lagrangian_expanded, cyclic.q))) return;
+    if (q_.size() < 2 || !vanishes_identically(differentiate(equations_.lagrangian_expanded, cyclic.q))) return;
     const std::size_t index = static_cast<std::size_t>(&cyclic - system_.coordinates.data());
     const Expr momentum = equations_.momenta[index];
     const Expr inertia = differentiate(momentum, cyclic.velocity);
-    if (vanishes(inertia) || !vanishes(differentiate(inertia, cyclic.velocity))) return;
+    if (vanishes_identically(inertia) || !vanishes_identically(differentiate(inertia, cyclic.velocity))) return;
     const Expr p = context_.symbol("p_" + cyclic.name, Role::Auxiliary);
     const Expr rest = substitute(momentum, {{cyclic.velocity, context_.number(0)}});
     const Expr reduced = substitute(equations_.lagrangian_expanded, {{cyclic.velocity, (p - rest) / inertia}});

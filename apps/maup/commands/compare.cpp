@@ -111,7 +111,7 @@ std::string text_of(const Comparison& c, const Model& a, const CoordinateMap& ma
   return out;
 }
 
-Json to_json(const Comparison& c, const Model& a, const CoordinateMap& map) {
+Json comparison_json(const Comparison& c, const Model& a, const CoordinateMap& map) {
   const MechanicalSystem& b = map.b->system;
   Json document = json_document("compare");
   document["systems"] = {a.system.name, b.name};
@@ -203,9 +203,10 @@ ExitCode compare_models(const CompareOptions& options, Console& console) {
   const Comparison result = compare(*a.model(), *a_equations, *map, *b_equations, how, of_map);
   if (of_map.has_errors()) return end(json_document("compare"), ExitCode::ModelWrong);
   if (!console.json()) console.print(text_of(result, *a.model(), *map));
-  return end(to_json(result, *a.model(), *map), result.proved()                    ? ExitCode::Fine
-                                                : result.verdict == Sameness::Same ? ExitCode::NotProved
-                                                                                   : ExitCode::ExpectationFailed);
+  return end(comparison_json(result, *a.model(), *map), result.proved() ? ExitCode::Fine
+                                                        : result.verdict == Sameness::Same
+                                                            ? ExitCode::NotProved
+                                                            : ExitCode::ExpectationFailed);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ struct ReportOptions {
 };
 
 /// What the sections of a page show, as far as each has come.
-struct Findings {
+struct PageFindings {
   std::optional<SimulationResult> run;
   std::optional<Verification> verification;
   std::optional<Invariants> invariants;
@@ -47,7 +47,7 @@ struct Findings {
   ReportParts parts() const;
 };
 
-ReportParts Findings::parts() const {
+ReportParts PageFindings::parts() const {
   const auto pointer = [](const auto& found) { return found ? &*found : nullptr; };
   return {pointer(run),     pointer(verification), pointer(invariants), pointer(modes),    pointer(locus),
           pointer(floquet), pointer(section),      section_what,        pointer(lyapunov), pointer(paths)};
@@ -220,7 +220,7 @@ class Page {
   const SimulationOptions& settings_;
   const Console& console_;
   Context& context_;
-  Findings found_;
+  PageFindings found_;
   bool derived_ = false;
 };
 

@@ -33,7 +33,7 @@ std::string text_of(const ExpectationResult& r, const std::string& file) {
   return out;
 }
 
-Json to_json(const ExpectationResult& r, const std::string& file) {
+Json expectation_json(const ExpectationResult& r, const std::string& file) {
   return {{"file", file},
           {"line", r.line},
           {"text", r.text},
@@ -70,7 +70,7 @@ FileOutcome test_file(const std::string& path, const SimulationOptions& settings
     outcome.code = unreadable(study.diagnostics()) ? ExitCode::Usage : ExitCode::ModelWrong;
 
   for (const ExpectationResult& r : outcome.results) {
-    document["expectations"].push_back(to_json(r, file));
+    document["expectations"].push_back(expectation_json(r, file));
     if (!console.json()) console.print(text_of(r, file));
   }
   if (!expected_errors) {

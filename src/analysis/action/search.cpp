@@ -16,8 +16,8 @@ namespace {
 
 using namespace action;
 
-constexpr double same_path = 1e-6;  // of the size of the coordinates
-constexpr int looks = 33;           // places at which paths are compared
+constexpr double same_path = 1e-6;   // of the size of the coordinates
+constexpr int compared_places = 33;  // places at which paths are compared
 /// What a search may cost: iterations of Newton's method times their work, about the number of operations.
 constexpr double budget = 2e9;
 constexpr std::size_t starts_at_infinity =
@@ -26,8 +26,8 @@ constexpr std::size_t starts_at_infinity =
 bool same(const Trial& a, const Trial& b, const Vector& least) {
   const ActionPath p = to_path(a), q = to_path(b);
   const double begin = p.start, whole = p.end - p.start;
-  for (int k = 0; k < looks; ++k) {
-    const double t = begin + whole * (k + 0.5) / looks;
+  for (int k = 0; k < compared_places; ++k) {
+    const double t = begin + whole * (k + 0.5) / compared_places;
     const MotionState s = p.at(t), r = q.at(t);
     for (Index i = 0; i < least.size(); ++i) {
       const auto at = static_cast<std::size_t>(i);

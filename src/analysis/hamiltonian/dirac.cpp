@@ -121,7 +121,7 @@ class Classes {
       for (std::size_t b = 0; weights && b < weights->size(); ++b) {
         const PhaseConstraint& other = out_.constraints[out_.second_class_set[b]];
         terms.push_back(-((*weights)[b] * other.value));
-        primary = primary && (other.generation == 0 || vanishes((*weights)[b]));
+        primary = primary && (other.generation == 0 || may_vanish((*weights)[b]));
       }
     }
     const Expr combination = tidy(own.context().sum(terms), algebra_.order);
@@ -145,7 +145,7 @@ class Generators {
     ExprVector chain{primary};
     for (std::size_t k = 0; k <= longest; ++k) {
       const Expr next = -algebra_.bracket(chain.back(), algebra_.energy);
-      if (next.is_zero() || zero_test(next).verdict == Verdict::Zero) return proved(chain);
+      if (vanishes_identically(next)) return proved(chain);
       chain.push_back(tidy(next, algebra_.order));
       if (const auto found = proved(chain)) return found;
     }

@@ -149,8 +149,7 @@ Expr phase_space::bracket_of(Expr a, Expr b, const ExprVector& positions, const 
 }
 
 ReadableForm phase_space::shown_bracket(Expr bracket, const ReadingOrder& order) {
-  if (bracket.is_zero() || zero_test(bracket).verdict == Verdict::Zero)
-    return ReadableForm{bracket.context().number(0), {}, {}};
+  if (vanishes_identically(bracket)) return ReadableForm{bracket.context().number(0), {}, {}};
   ReadableForm form = readable(bracket, order);
   if (form.intermediates.empty()) form.value = tidy(bracket, order);
   return form;

@@ -26,7 +26,7 @@ Expr LegendreTransform::velocity(std::size_t coordinate) const {
 
 namespace maupertuis::phase_space {
 
-bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict != Verdict::Nonzero; }
+bool may_vanish(Expr e) { return e.is_zero() || zero_test(e).verdict != Verdict::Nonzero; }
 
 ExprVector reduced_momenta(const LegendreBlock& block, const LegendreProblem& problem) {
   ExprVector reduced;

@@ -34,7 +34,7 @@ std::optional<RootLagrangian> root_lagrangian(const LegendreProblem& problem,
 void transform_root(LegendreBlock& block, const RootLagrangian& root, const LegendreProblem& problem);
 
 /// Whether e vanishes identically: proved, or not found to be anything else.
-bool vanishes(Expr e);
+bool may_vanish(Expr e);
 /// p_i − b_i of a group.
 ExprVector reduced_momenta(const LegendreBlock& block, const LegendreProblem& problem);
 /// {a, b} = Σ ∂a/∂q ∂b/∂p − ∂a/∂p ∂b/∂q of functions of q, p and t; a shared DAG.

@@ -34,7 +34,7 @@ Expr completed_squares(ExprMatrix m, ExprVector pi, const std::vector<std::size_
   };
   for (std::size_t step = 0; step < sequence.size(); ++step) {
     const std::size_t k = sequence[step];
-    if (vanishes(m.at(k, k))) return {};
+    if (may_vanish(m.at(k, k))) return {};
     terms.push_back(square_over(pi[k], m.at(k, k), order));
     for (std::size_t rest = step + 1; rest < sequence.size(); ++rest) {
       const std::size_t i = sequence[rest];
@@ -133,7 +133,7 @@ std::vector<std::size_t> independent_rows(const ExprMatrix& m) {
       for (std::size_t j = 0; j < row.size(); ++j)
         row[j] = j == column ? m.entries[0].context().number(0) : row[j] - factor * pivot[j];
     }
-    const auto entry = std::find_if(row.begin(), row.end(), [](Expr e) { return !vanishes(e); });
+    const auto entry = std::find_if(row.begin(), row.end(), [](Expr e) { return !may_vanish(e); });
     if (entry == row.end()) continue;
     kept.push_back(i);
     echelon.emplace_back(static_cast<std::size_t>(entry - row.begin()), std::move(row));
@@ -153,12 +153,12 @@ Expr null_vector_constraint(const LegendreBlock& block, const ExprVector& pi, co
   for (std::size_t i = 0; i < n.size(); ++i) {
     ExprVector terms;
     for (std::size_t j = 0; j < n.size(); ++j) terms.push_back(block.mass.at(i, j) * n[j]);
-    if (!vanishes(context.sum(terms))) return {};
+    if (!may_vanish(context.sum(terms))) return {};
   }
   ExprVector terms;
   for (std::size_t i = 0; i < n.size(); ++i) terms.push_back(n[i] * pi[i]);
   const Expr value = context.sum(terms);
-  return vanishes(value) ? Expr() : tidy(value, problem.order);
+  return may_vanish(value) ? Expr() : tidy(value, problem.order);
 }
 
 ExprMatrix submatrix(const ExprMatrix& m, const std::vector<std::size_t>& rows) {

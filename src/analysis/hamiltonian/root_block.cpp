@@ -82,7 +82,7 @@ std::optional<RootLagrangian> root_lagrangian(const LegendreProblem& problem,
   out.at_rest = substitute(w, rest);
   out.metric = {velocities.size(), velocities.size(), {}};
   for (const Expr& slope : gradient(w, velocities)) {
-    if (!vanishes(substitute(slope, rest))) return std::nullopt;
+    if (!may_vanish(substitute(slope, rest))) return std::nullopt;
     for (const Expr& entry : gradient(slope, velocities)) {
       if (holds_any(entry, velocities)) return std::nullopt;
       out.metric.entries.push_back(entry);
@@ -104,7 +104,7 @@ void transform_root(LegendreBlock& block, const RootLagrangian& root, const Lege
   ExprVector terms;
   for (std::size_t i = 0; i < pi.size(); ++i) terms.push_back(pi[i] * (*raised)[i]);
   const Expr square = tidy(context.sum(terms), order), c = tidy(root.coefficient, order);
-  if (vanishes(root.at_rest)) {
+  if (may_vanish(root.at_rest)) {
     block.kind = LegendreKind::Singular;
     block.energy = context.number(0);
     block.energy_is_readable = true;

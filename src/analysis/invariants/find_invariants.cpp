@@ -347,7 +347,7 @@ std::optional<int> velocity_degree(Expr e, const MechanicalSystem& system) {
   constexpr int most = 6;
   for (int degree = 0; degree <= most; ++degree) {
     slope = differentiate(slope, s);
-    if (slope.is_zero() || zero_test(slope).verdict == Verdict::Zero) return degree;
+    if (vanishes_identically(slope)) return degree;
   }
   return std::nullopt;
 }

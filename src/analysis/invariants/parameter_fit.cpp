@@ -5,7 +5,7 @@
 namespace maupertuis::invariants {
 namespace {
 
-constexpr std::size_t most_unknowns = 140;  // of one fraction
+constexpr std::size_t most_of_a_fraction = 140;  // of one fraction
 constexpr int most_degree = 5;
 constexpr std::size_t checks = 2;  // random points at which a fit has to agree
 
@@ -148,7 +148,7 @@ std::optional<Coefficient> ParameterFit::fit_fraction(const std::vector<int>& ex
   const PrimeField& field = sampler_.field();
   const auto powers = powers_up_to(others.size(), degree);
   const std::size_t count = powers.size();
-  if (2 * count > most_unknowns) return std::nullopt;
+  if (2 * count > most_of_a_fraction) return std::nullopt;
   FieldMatrix rows(2 * count + checks + 2, 2 * count);
   for (std::size_t r = 0; r < rows.rows; ++r) {
     const Point* point = random_point(r);

@@ -6,20 +6,21 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 /// Where to begin, what to keep, and which of the points found are the same.
 namespace maupertuis {
 namespace {
 
-constexpr double turn = 6.283185307179586, pi = 3.141592653589793;
+constexpr double turn = 2 * std::numbers::pi;
 constexpr double same = 1e-6;           // of typical sizes: closer points are one
 constexpr double box = 10;              // of typical sizes: equilibria further from the start are not meant
 constexpr double straight_snap = 1e-7;  // a coordinate so near to a plain value is tried there
 
 double wrapped(double angle) {
   const double x = std::remainder(angle, turn);
-  return x <= -pi + 1e-12 ? x + turn : x;
+  return x <= -std::numbers::pi + 1e-12 ? x + turn : x;
 }
 
 class Search {
@@ -127,7 +128,7 @@ class Search {
     for (const bool lengths_of_start : {false, true})
       for (std::size_t corner = lengths_of_start ? 0 : 1; corner < (std::size_t{1} << angles.size()); ++corner) {
         OperatingPoint point = lengths_of_start ? model_start() : zero;
-        for (std::size_t k = 0; k < angles.size(); ++k) point.q[angles[k]] = corner >> k & 1 ? pi : 0;
+        for (std::size_t k = 0; k < angles.size(); ++k) point.q[angles[k]] = corner >> k & 1 ? std::numbers::pi : 0;
         out.push_back(point);
       }
   }
@@ -143,7 +144,7 @@ class Search {
       OperatingPoint point = first;
       for (std::size_t i = 0; i < e_.n; ++i) {
         const bool angle = e_.system->coordinates[i].kind == "angle";
-        const double x = angle ? uniform(-pi, pi) : sizes_[i] * uniform(-1.5, 2.5);
+        const double x = angle ? uniform(-std::numbers::pi, std::numbers::pi) : sizes_[i] * uniform(-1.5, 2.5);
         if (!held(i)) point.q[i] = x;
       }
       out.push_back(point);
@@ -208,7 +209,7 @@ class Search {
     OperatingPoint plain = solution.point;
     for (std::size_t i = 0; i < e_.n; ++i) {
       if (held(i)) continue;
-      const double step = e_.system->coordinates[i].kind == "angle" ? pi / 12 : HUGE_VAL;
+      const double step = e_.system->coordinates[i].kind == "angle" ? std::numbers::pi / 12 : HUGE_VAL;
       const double nearest = std::isfinite(step) ? step * std::round(plain.q[i] / step) : 0;
       if (std::abs(plain.q[i] - nearest) < straight_snap * sizes_[i]) plain.q[i] = nearest;
     }

@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 namespace maupertuis {
 namespace {
 
-constexpr double turn = 6.283185307179586;
 constexpr double longest_step = 1.0 / 3;  // of typical sizes
 
 class Tracer {
@@ -78,7 +78,7 @@ class Tracer {
     double out = 0;
     for (std::size_t i = 0; i < x.point.q.size(); ++i) {
       double dq = x.point.q[i] - y.point.q[i];
-      if (equations_.periodic()[i]) dq = std::remainder(dq, turn);
+      if (equations_.periodic()[i]) dq = std::remainder(dq, 2 * std::numbers::pi);
       out = std::max(out, std::abs(dq) / sizes_[i]);
     }
     return out;

@@ -7,13 +7,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 /// From a question to its answer, with what can be wrong with either.
 namespace maupertuis {
 namespace {
 
 constexpr double meant = 1e-4;  // of typical sizes: a given value is rounded by no more
-constexpr double pi = 3.141592653589793;
 
 void refuse_singular(const MechanicalSystem& system, std::size_t coordinate, const std::string& where,
                      Diagnostics& diagnostics) {
@@ -317,7 +317,7 @@ std::string_view stability_word(Stability verdict) {
 std::string value_text(const MechanicalSystem& system, double value, const Dimension& dimension, bool angle) {
   if (angle)
     for (const int part : {1, 2, 3, 4, 6, 12}) {
-      const double count = value * part / pi;
+      const double count = value * part / std::numbers::pi;
       if (std::abs(count - std::round(count)) > 1e-12 * std::max(1.0, std::abs(count)) || std::abs(count) > 24)
         continue;
       const int k = static_cast<int>(std::round(count));

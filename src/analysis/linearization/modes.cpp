@@ -14,7 +14,6 @@ namespace maupertuis {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 double largest(const Matrix& m) { return m.size() == 0 ? 0 : m.lpNorm<Eigen::Infinity>(); }
 bool negligible(const Matrix& part, const Matrix& whole) { return largest(part) <= 1e-13 * largest(whole); }
@@ -54,7 +53,8 @@ class Analysis {
   void symmetric_modes() {
     out_.symmetric = true;
     const auto [squares, vectors] = symmetric_eigen((form_.k + form_.k.transpose()) / 2);
-    const double error = 8 * static_cast<double>(squares.size()) * epsilon * form_.k.norm();
+    const double error =
+        8 * static_cast<double>(squares.size()) * std::numeric_limits<double>::epsilon() * form_.k.norm();
     std::vector<Index> zeros;
     for (Index i = 0; i < squares.size(); ++i) {
       const ComplexVector shape = to_coordinates(vectors.col(i).cast<Complex>());

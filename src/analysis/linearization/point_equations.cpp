@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 /// Inputs of every program here, in this order: q, v, a, λ, t, u, u', u''.
@@ -293,15 +294,14 @@ std::vector<double> typical_sizes(const MechanicalSystem& system, const MotionSt
 
 namespace {
 
-constexpr double turn = 6.283185307179586;
 constexpr std::uint64_t states_of_friction = 32;  // at which its power is looked at
-constexpr int samples = 3;
+constexpr int compared_states = 3;
 
 /// Whether R and the constraints are the same 2π further.
 bool repeats(PointEquations::Impl& e, std::size_t i) {
-  for (int s = 0; s < samples; ++s) {
+  for (int s = 0; s < compared_states; ++s) {
     OperatingPoint here = random_point(e, 1744 + static_cast<std::uint64_t>(s)), there = here;
-    there.q[i] += turn;
+    there.q[i] += 2 * std::numbers::pi;
     for (auto* rows : {&e.balance, &e.positions, &e.velocities}) {
       const Vector a = e.value(*rows, here), b = e.value(*rows, there);
       if (!a.allFinite() || (a - b).size() == 0) continue;

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace maupertuis {
 namespace {
@@ -17,7 +18,6 @@ constexpr std::size_t most_sets = 64;  // of closed contacts
 constexpr double touches = 1e-9;       // of the sizes of the terms of a gap, and of the largest force
 constexpr double no_force = 1e-14;     // of a limit of friction
 constexpr double first_step = 1e-3, growth = 1.3, farthest = 1e6;
-constexpr double pi = 3.141592653589793;
 
 /// A mode at rest as equations and numbers.
 class AtRest {
@@ -261,7 +261,7 @@ class RangeSearch {
     while (holds_at(from, k, place + direction * (inside + step))) {
       inside += step;
       step *= growth;
-      if (angle && inside > 2 * pi) return direction * HUGE_VAL;
+      if (angle && inside > 2 * std::numbers::pi) return direction * HUGE_VAL;
       if (inside > farthest * size) return direction * HUGE_VAL;
     }
     double outside = inside + step;

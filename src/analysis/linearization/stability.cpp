@@ -13,8 +13,6 @@
 namespace maupertuis {
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
 /// The Hessian of the effective potential, in y: along translations that are symmetries nothing is at stake, and where
 /// their momenta are kept, δp = ẏ_s + Ĉ_sr y_r = 0 turns the rates ẏ_s into positions:
 ///     K_eff = K̂_rr − Ĉ_rs Ĉ_sr
@@ -53,7 +51,8 @@ struct Verdicts {
   }
 
   double hessian_tolerance() const {
-    return 16 * static_cast<double>(form.k.rows()) * epsilon * (form.k.norm() + form.c.squaredNorm());
+    return 16 * static_cast<double>(form.k.rows()) * std::numeric_limits<double>::epsilon() *
+           (form.k.norm() + form.c.squaredNorm());
   }
 
   /// 1: h_E, which a Lagrangian of the first order keeps, has a strict minimum here; −1: a strict maximum; 0: neither
@@ -63,7 +62,8 @@ struct Verdicts {
     const RowsAtPoint slopes = e.at(e.energy_slopes, equilibrium.point);
     if (slopes.value.size() == 0 || !slopes.by_q.allFinite()) return 0;
     const Vector values = symmetric_eigen(symmetric_part(slopes.by_q)).values;
-    const double rounding = 16 * static_cast<double>(values.size()) * epsilon * slopes.by_q.norm();
+    const double rounding =
+        16 * static_cast<double>(values.size()) * std::numeric_limits<double>::epsilon() * slopes.by_q.norm();
     return values.minCoeff() > rounding ? 1 : values.maxCoeff() < -rounding ? -1 : 0;
   }
 

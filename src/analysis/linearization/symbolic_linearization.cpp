@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 /// From what is known of the coordinates to what follows: plain values, then linear equations, then cos θ beside a
 /// factor sin θ.
@@ -11,7 +12,7 @@ namespace maupertuis {
 namespace {
 
 constexpr std::size_t most_coordinates = 4, most_nodes = 2000;
-constexpr double pi = 3.141592653589793, digits = 1e-9;
+constexpr double digits = 1e-9;
 
 class Formulas {
  public:
@@ -105,7 +106,7 @@ class Formulas {
     done_.assign(system_.coordinates.size(), false);
     for (std::size_t i = 0; i < done_.size(); ++i) {
       const Coordinate& c = system_.coordinates[i];
-      const double value = numbers_.point.q[i], part = 12 * value / pi;
+      const double value = numbers_.point.q[i], part = 12 * value / std::numbers::pi;
       const bool moved =
           std::any_of(translations_.begin(), translations_.end(), [&](const Translation& t) { return t.pivot == i; });
       if (moved || value == 0)

@@ -11,8 +11,8 @@
 namespace maupertuis {
 namespace {
 
-constexpr int samples = 3, attempts = 40;
-constexpr double small = 1e-9;
+constexpr int points_sampled = 3, points_tried = 40;
+constexpr double no_change = 1e-9;
 
 /// Rows at one random point, each divided by its length, columns by typical sizes; no rows where one has no value
 /// there.
@@ -38,7 +38,7 @@ Matrix common_null_space(PointEquations::Impl& e, const Vector& sizes) {
   const Index n = sizes.size();
   Matrix all(0, n);
   int good = 0;
-  for (int attempt = 0; attempt < attempts && good < samples; ++attempt) {
+  for (int attempt = 0; attempt < points_tried && good < points_sampled; ++attempt) {
     const Matrix more = sampled_rows(e, sizes, 271 + static_cast<std::uint64_t>(attempt));
     if (more.rows() == 0) continue;
     ++good;
@@ -48,8 +48,8 @@ Matrix common_null_space(PointEquations::Impl& e, const Vector& sizes) {
     // The triangular factor has the same null space.
     all = both.rows() <= n ? both : triangular_factor(both);
   }
-  if (good < samples) return Matrix(n, 0);
-  const KernelFirst split = kernel_first(all, small);
+  if (good < points_sampled) return Matrix(n, 0);
+  const KernelFirst split = kernel_first(all, no_change);
   return split.basis.leftCols(split.kernel);
 }
 
@@ -94,14 +94,14 @@ void clean(Matrix& basis) {
 /// do there counts as a force, and so does an input that changes with time. `held`: [k] the values of those that do
 /// not.
 bool is_conserved(PointEquations::Impl& e, const Vector& direction, const std::vector<std::optional<double>>& held) {
-  for (int s = 0; s < samples; ++s) {
+  for (int s = 0; s < points_sampled; ++s) {
     OperatingPoint point = random_point(e, 577 + static_cast<std::uint64_t>(s));
     std::fill(point.a.begin(), point.a.end(), 0);
     for (std::size_t i = 0; i < held.size(); ++i) point.inputs[i] = held[i].value_or(point.inputs[i]);
     const Vector r = e.value(e.balance, point);
     const Vector p = e.at(e.momenta, point).by_q * to_eigen(point.v);  // d/dt p at a = 0, without explicit time
     const double rate = direction.dot(r - p), size = direction.cwiseAbs().dot(r.cwiseAbs() + p.cwiseAbs());
-    if (!std::isfinite(rate) || std::abs(rate) > small * size) return false;
+    if (!std::isfinite(rate) || std::abs(rate) > no_change * size) return false;
   }
   return true;
 }

@@ -158,7 +158,7 @@ class Algorithm {
   /// more than 60 digits, with the formulas of both sides of each of its switches. max(x − 3, 0)² is 0 at x = 1, and an
   /// inertia beyond 3. Else the outcome is Varies.
   bool vanishes_everywhere(Expr e) {
-    if (e.is_zero() || zero_test(e).verdict == Verdict::Zero) return true;
+    if (vanishes_identically(e)) return true;
     bool everywhere = points_->vanishes(e) == Verdict::Zero;
     for (const Expr& g : switches_of({&e, 1}))
       for (const bool above : {true, false}) everywhere = everywhere && vanishes_on_side(e, g, above);

@@ -13,7 +13,7 @@
 namespace maupertuis::stiff {
 namespace {
 
-Failure failure_of(int flag) {
+Failure failure_of_ida(int flag) {
   switch (flag) {
     case IDA_RES_FAIL:
     case IDA_REP_RES_ERR:
@@ -164,7 +164,7 @@ Advance IdaFormula::advance(double bound, std::span<double> y) {
   }
   const int flag = IDASolve(memory_, bound, &out.reached, state_, rate_, IDA_ONE_STEP);
   if (flag < 0) {
-    out.failure = failure_of(flag);
+    out.failure = failure_of_ida(flag);
     return out;
   }
   return settle(out, y);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// Below it a velocity is that of rest, whatever its unit.
-constexpr double rest = 1e-40;
+constexpr double least_velocity = 1e-40;
 
 }  // namespace
 
@@ -31,15 +31,15 @@ bool EndCheck::agrees(std::span<const double> by_polynomial, const double* half_
   bool good = true;
   for (std::size_t i = 0; i < rates_.size(); ++i) {
     const double a = 2 * half_by_equations[i * step];
-    good =
-        good && std::abs(h) * std::abs(by_polynomial[i] - a) <= allowed_ * std::max({rates_[i], std::abs(h * a), rest});
+    good = good && std::abs(h) * std::abs(by_polynomial[i] - a) <=
+                       allowed_ * std::max({rates_[i], std::abs(h * a), least_velocity});
   }
   return good;
 }
 
 bool EndCheck::agrees_on_the_whole(std::span<const double> by_polynomial, const double* half_by_equations,
                                    double h) const {
-  double largest = rest;
+  double largest = least_velocity;
   for (std::size_t i = 0; i < rates_.size(); ++i)
     largest = std::max({largest, rates_[i], std::abs(2 * h * half_by_equations[i])});
   for (std::size_t i = 0; i < rates_.size(); ++i)
@@ -53,7 +53,7 @@ bool EndCheck::agrees_but_for_rounding(std::span<const double> by_polynomial, st
   for (std::size_t i = 0; i < rates_.size(); ++i) {
     const double rounding = roundings * (rounding_of[i] + epsilon * std::abs(by_equations[i]));
     if (!(std::abs(by_polynomial[i] - by_equations[i]) <=
-          allowed_ * std::max({rates_[i] / std::abs(h), std::abs(by_equations[i]), rest}) + rounding))
+          allowed_ * std::max({rates_[i] / std::abs(h), std::abs(by_equations[i]), least_velocity}) + rounding))
       return false;
   }
   return true;

@@ -59,14 +59,13 @@ constexpr double cut = 0.8;
 constexpr int most_cuts = 200;
 /// Of the largest λ: one that stays below it over the whole step is zero but for rounding, whose terms do not converge.
 constexpr double silent = 1e-13;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double velocity(const KernelWorkspace& work, std::size_t i, int k) {
   return (k + 1) * std::abs(work.coordinate(k + 1)[i]);
 }
 
 /// Velocities below it are those of rest, whatever their unit; what underflows on the way has no ratio to go by.
-constexpr double rest = 1e-200;
+constexpr double no_motion = 1e-200;
 
 /// The size of a coordinate's velocity over a step of length h.
 double size_of(const KernelWorkspace& work, std::size_t i, int order, double h) {
@@ -75,14 +74,14 @@ double size_of(const KernelWorkspace& work, std::size_t i, int order, double h) 
   // A coordinate that others set in motion late begins with a higher power of time.
   for (int k = 4; size == 0 && k <= order; ++k) size = velocity(work, i, k) * std::pow(h, k);
   // A velocity that moves q by less than its rounding within the step does not count.
-  return std::max({size, rounding_tolerance() * std::abs(work.coordinate(0)[i]) / h, rest});
+  return std::max({size, rounding_tolerance() * std::abs(work.coordinate(0)[i]) / h, no_motion});
 }
 
 /// KernelWorkspace::radius where a coordinate begins to move late: min of (size / |v_k|)^(1/k) over the coordinates and
 /// the last two k; earlier k speak up only where these are silent, since a motion with a symmetry (a pendulum let go at
 /// 90°) has coefficients 4 or more orders apart, so that the last two may vanish.
 double radius_of_late(const KernelWorkspace& work, std::size_t freedoms, int order, double h) {
-  double least = infinity;
+  double least = HUGE_VAL;
   for (std::size_t i = 0; i < freedoms; ++i) {
     const double size = std::log2(size_of(work, i, order, h));
     for (int k = order; k >= std::max(std::min(2, order - 1), order - 5); --k)
@@ -104,7 +103,7 @@ double first_guess(const KernelWorkspace& work, std::size_t freedoms, int order)
     for (int j = std::min({3, order - 2, k - 1}); j >= 0; --j) {
       double largest = 0;
       for (std::size_t i = 0; i < freedoms; ++i)
-        if (const double early = velocity(work, i, j); early > rest)
+        if (const double early = velocity(work, i, j); early > no_motion)
           largest = std::max(largest, velocity(work, i, k) / early);
       growth = std::max(growth, std::pow(largest, 1.0 / (k - j)));
     }
@@ -151,7 +150,7 @@ double step_size(const KernelWorkspace& work, std::size_t freedoms, const StepCo
   }
   for (int turn = 0; turn < turns; ++turn) {
     const double reached = control.factor * radius(work, freedoms, p, h);
-    if (!(reached < infinity)) return infinity;
+    if (!(reached < HUGE_VAL)) return HUGE_VAL;
     h = reached;
   }
   return with_few_bits(h);

@@ -10,7 +10,7 @@ using packed::PackedProgram;
 namespace {
 
 /// Of unrolled code.
-constexpr std::size_t most_unknowns = 16, most_operations = 40'000;
+constexpr std::size_t most_solved = 16, most_operations = 40'000;
 /// Of rolled code, whose compilation takes about 1 ms a pack.
 constexpr std::size_t most_packs = 3000;
 
@@ -30,7 +30,7 @@ bool can_be_unrolled(const PackedProgram& program, int order) {
   const Program& p = program.program;
   const bool has_select = std::any_of(p.instructions.begin(), p.instructions.end(),
                                       [](const Instruction& i) { return i.op == Op::Select; });
-  return p.unknowns == p.freedoms && p.unknowns <= most_unknowns && !has_select &&
+  return p.unknowns == p.freedoms && p.unknowns <= most_solved && !has_select &&
          operations(program, order) <= most_operations;
 }
 

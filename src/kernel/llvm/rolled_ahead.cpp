@@ -15,9 +15,6 @@ using llvm::Value;
 using packed::lanes;
 using packed::rolled_group;
 
-static constexpr std::int64_t vector_bytes = 8 * std::int64_t{lanes};
-static constexpr std::int64_t sums_bytes = rolled_group * vector_bytes;
-
 /// After stage s: s + 1 begins a group, or is one that is added up alone, or is given what s has made final.
 void RolledEmitter::ahead() {
   auto& b = out_.b;

@@ -27,6 +27,10 @@
 /// are solved by −M₀⁻¹ all stages from 1 on are one loop (`later`).
 namespace maupertuis::llvm_backend {
 
+/// Bytes of one vector of values, and of the sums that a group of stages has taken ahead.
+inline constexpr std::int64_t vector_bytes = 8 * std::int64_t{packed::lanes};
+inline constexpr std::int64_t sums_bytes = packed::rolled_group * vector_bytes;
+
 class RolledEmitter {
  public:
   RolledEmitter(Emission& out, const packed::PackedProgram& program, std::size_t stride);

@@ -15,9 +15,6 @@ namespace maupertuis::llvm_backend {
 using llvm::Value;
 using packed::rolled_group;
 
-static constexpr std::int64_t vector_bytes = 8 * std::int64_t{packed::lanes};
-static constexpr std::int64_t sums_bytes = rolled_group * vector_bytes;
-
 /// Convolutions in the order of their packs, a few to a slot between the packs.
 void RolledEmitter::choose_slots() {
   constexpr std::size_t most_slots = 8, in_slot = 2;

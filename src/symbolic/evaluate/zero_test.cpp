@@ -118,4 +118,6 @@ ZeroTest zero_test(std::span<const Expr> differences, const ZeroTestOptions& opt
 
 ZeroTest zero_test(Expr e, const ZeroTestOptions& options) { return zero_test({&e, 1}, options); }
 
+bool vanishes_identically(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
+
 }  // namespace maupertuis
