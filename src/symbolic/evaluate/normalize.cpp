@@ -28,10 +28,27 @@ bool is_flat(Expr e, bool inside_sum = false) {
   return true;
 }
 
+bool is_sine(Expr e) { return e.is(Kind::Sin) || e.is(Kind::Cos); }
+
+/// A product of sines and cosines, or a power of one: sin x cos x, cos² x.
+bool multiplies_sines(Expr e) {
+  if (e.is(Kind::Power)) return is_sine(e[0]);
+  std::size_t sines = 0;
+  for (std::size_t i = 0; i < e.size(); ++i) {
+    if (multiplies_sines(e[i])) return true;
+    sines += is_sine(e[i]);
+  }
+  return e.is(Kind::Product) && sines > 1;
+}
+
+/// A sum of numbers times basis elements. Of products of sines and cosines sums are made, so that sin x cos x and
+/// ½ sin 2x are one: as two basis elements each would have an image of its own.
 Expr flat(Expr e) {
-  if (is_flat(e)) return e;
-  const Expr expanded = expand(e, argument_budget);
-  return expanded ? expanded : e;
+  Expr expanded = is_flat(e) ? e : expand(e, argument_budget);
+  if (!expanded) return e;
+  if (multiplies_sines(expanded))
+    if (const Expr sums = fourier_form(expanded, argument_budget)) return sums;
+  return expanded;
 }
 
 /// The factors of the argument of a logarithm stay apart, since log takes products apart; but each sum among them is

@@ -46,6 +46,17 @@ void is_nonzero(Expr e, bool visible_in_double = true) {
 
 }  // namespace
 
+TEST_CASE_FIXTURE(Names, "products of sines inside an argument are the sums they make") {
+  is_zero(exp(sin(x) * cos(x)) - exp(sin(2 * x) / Rational(2)));
+  is_zero(cos(sq(sin(x))) - cos((number(1) - cos(2 * x)) / Rational(2)));
+  is_zero(cos(2 * sin(x) * cos(y)) - cos(sin(x + y) + sin(x - y)));
+  is_zero(sin(x - 2 * sin(t) * cos(3 * t)) - sin(x - sin(4 * t) + sin(2 * t)));
+  is_zero(exp((number(1) + sin(x)) * sin(x)) - exp(sin(x) + (number(1) - cos(2 * x)) / Rational(2)));
+  is_zero(exp(sin(cos(x) * sin(x)) * 2 * cos(sin(2 * x) / Rational(2))) - exp(sin(sin(2 * x))));
+  is_nonzero(exp(sin(x) * cos(x)) - exp(sin(2 * x)));
+  is_nonzero(cos(sin(x) * cos(y)) - cos(cos(x) * sin(y)));
+}
+
 TEST_CASE_FIXTURE(Names, "polynomials and rational functions") {
   is_zero(sq(x + y) - sq(x) - 2 * x * y - sq(y));
   is_zero(x / (x + y) + y / (x + y) - Rational(1));
