@@ -76,6 +76,8 @@ class StateRelations {
   bool hold(const MotionState& state) const;
   /// The relation that is violated most, "x' - y = 0".
   std::string worst_at(const MotionState& state) const;
+  /// What vanishes at each state, in q, q̇, t and the parameters.
+  const ExprVector& values() const;
 
  private:
   struct Impl;

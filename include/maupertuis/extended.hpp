@@ -75,6 +75,8 @@ struct ExtendedProblem {
   std::size_t first_condition = 0;      // observables of `kernel` that q, or q̇, must bring to zero at the start, each
                                         // followed by its derivatives by q, or q̇: [conditions × (1 + n)]
   std::vector<bool> conditions;         // whether q is to do it
+  std::size_t first_relation = 0;       // observables that q and q̇ together must bring to zero, each followed by its
+  std::size_t relations = 0;            // derivatives by q and by q̇: [relations × (1 + 2n)]
   std::size_t rows = 0;                 // states wanted at begin, begin ± every, …, this many; then one at the end
   std::size_t times = 0;                // states wanted at the times asked for, in the order of the run
   bool until = false;                   // the first event of the kernel ends the run

@@ -6,6 +6,7 @@
 #include "simulation/motion_kernel.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/motion_through_modes.hpp>
 #include <maupertuis/transform.hpp>
 
@@ -68,12 +69,26 @@ class ExactPlanner {
         wanted.observables.push_back(slope);
       out_.problem.conditions.push_back(c.is_of_positions());
     }
+    if (equations_.degenerate) add_relations(wanted, positions, velocities);
     if (plan_.until) wanted.events.push_back(plan_.condition);
     out_.problem.until = plan_.until;
     watch_events(wanted);
     add_contacts(wanted);
     without_forces(wanted);
     out_.problem.kernel = motion_kernel(equations_, wanted);
+  }
+
+  /// What a degenerate Lagrangian asks of every state: only a part of it are constraints of the determined equations,
+  /// the rest is kept by motions that begin with it.
+  void add_relations(WantedFunctions& wanted, const ExprVector& positions, const ExprVector& velocities) {
+    const StateRelations relations(equations_, *equations_.degenerate);
+    out_.problem.first_relation = wanted.observables.size();
+    out_.problem.relations = relations.values().size();
+    for (const Expr& value : expand_time_derivatives(in_terms_of_motion(system_, relations.values()))) {
+      wanted.observables.push_back(value);
+      for (const ExprVector* states : {&positions, &velocities})
+        for (const Expr& slope : gradient(value, *states)) wanted.observables.push_back(slope);
+    }
   }
 
   void watch_events(WantedFunctions& wanted) {
@@ -236,7 +251,10 @@ class ExactPlanner {
   void add_start() {
     const std::size_t n = system_.coordinates.size();
     std::vector<Expr> q, v;
-    for (std::size_t i = 0; i < n; ++i) q.push_back(number(Rational::from_double(plan_.q[i]))), v.push_back(number(0));
+    for (std::size_t i = 0; i < n; ++i) {
+      q.push_back(number(Rational::from_double(plan_.q[i])));
+      v.push_back(equations_.degenerate ? number(Rational::from_double(plan_.v[i])) : number(0));
+    }
     std::vector<bool> fixed_q(n, false), fixed_v(n, false);
     const auto [contradicted_q, contradicted_v] = contradictions();
     for (const StartValue& start : model_.experiment.start) {

@@ -139,6 +139,8 @@ StateRelations::StateRelations(const EquationsOfMotion& equations, const Degener
 }
 StateRelations::~StateRelations() = default;
 
+const ExprVector& StateRelations::values() const { return impl_->relations; }
+
 Settled StateRelations::settle(MotionState& state, const std::vector<bool>& fixed_q,
                                const std::vector<bool>& fixed_v) const {
   const std::size_t n = state.q.size();

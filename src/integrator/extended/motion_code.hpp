@@ -63,7 +63,7 @@ class Motion {
 
  private:
   void begin() {
-    if (problem_.kernel.constraints() > 0 || !problem_.conditions.empty()) {
+    if (problem_.kernel.constraints() > 0 || !problem_.conditions.empty() || problem_.relations > 0) {
       Workspace<T> work(problem_.kernel, 1);
       work.set_parameters(numbers_.parameters);
       Start<T>(work, problem_).improve(numbers_.begin, numbers_.q, numbers_.v);
