@@ -91,6 +91,7 @@ class Planner {
   bool plan_output() {
     const double length = std::abs(plan_.end - plan_.begin);
     double every = options_.output_every ? *options_.output_every : value_of(model_.experiment.output_every, 0);
+    plan_.even_rows = every != 0 || !options_.rows_of_steps;
     if (every == 0) every = length / default_rows;
     if (!(every > 0) && length > 0) {
       diagnostics_.error("E0704", std::nullopt, "the output interval is not a positive time",

@@ -1,6 +1,7 @@
 #pragma once
 #include <maupertuis/simulation.hpp>
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -12,6 +13,8 @@ struct RunPlan {
   bool until = false;                // stop at the event; not meeting it by `end` is a failure
   Expr condition;                    // the event: a function along the motion, forces of constraints written out
   std::vector<double> q, v;          // [n]
+  bool even_rows = true;             // nothing between the output times
+  double row_interval() const { return output_times.size() > 1 ? std::abs(output_times[1] - output_times[0]) : 0; }
   std::vector<double> output_times;  // in the order of the run, begin and end included
 };
 

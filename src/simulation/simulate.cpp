@@ -120,7 +120,7 @@ class Run {
     const double compiled_before = method_->backend().compile_seconds;
     const auto begin = Clock::now();
     record_covered();
-    while (method_->time() != plan_.end && advance()) record_covered();
+    while (method_->time() != plan_.end && advance()) record_step();
     result_.statistics.seconds = seconds_since(begin);
     note_backend(method_->backend(), compiled_before);
     finish();
@@ -216,6 +216,30 @@ class Run {
     }
   }
 
+  /// The rows that the last step covers, with those between the output times where they are asked for: a step of order
+  /// p turns its polynomials p/5 times at most. An interval of output times takes a hundred of them, some periods of
+  /// what is fastest: the picture of a longer run shows how far it swings.
+  ///
+  ///     output times   |                   |                   |
+  ///     steps          |----|----|----|----|----|----|----|----|
+  ///     rows           |....|....|..       |....|....|..       |
+  void record_step() {
+    constexpr std::size_t most_between = 100;
+    const double begin = method_->step_start().t, end = method_->time();
+    const int parts = std::max(1, 2 * method_->order() / 5);
+    const bool is_fine = plan_.even_rows || std::abs(end - begin) >= parts * plan_.row_interval();
+    for (int k = 1; k <= parts && !is_fine; ++k) {
+      const double t = k == parts ? end : begin + (end - begin) * k / parts;
+      const std::size_t before = next_output_;
+      while (next_output_ < plan_.output_times.size() &&
+             std::abs(plan_.output_times[next_output_] - begin) <= std::abs(t - begin))
+        add_row(sample(plan_.output_times[next_output_++]));
+      if (next_output_ != before) between_ = 0;
+      if (between_++ < most_between && result_.trajectory.times.back() != t) add_row(sample(t));
+    }
+    record_covered();
+  }
+
   Sample sample(double t) const { return shown(method_->sample(t)); }
   Sample shown(Sample out) const {
     leave_out_undetermined(out, observables_);
@@ -297,6 +321,7 @@ class Run {
   std::vector<std::size_t> requests_;
   std::vector<State> answers_;
   std::size_t next_output_ = 0, next_request_ = 0;
+  std::size_t between_ = 0;                          // rows since the last output time
   static constexpr std::size_t most_jumps = 10'000;  // that have rows of their own
   std::size_t jumps_ = 0;
 };

@@ -78,6 +78,7 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
   const AskedColumns y("--y", options.y, study), x("--x", options.x, study);
   SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
   if (settings.errors != ErrorEstimates::None) settings.errors = ErrorEstimates::Rows;
+  settings.rows_of_steps = true;
   if (options.output != "-")
     check_output_files({{"-o", options.output, FileKind::Picture}}, options.model.path, study.diagnostics());
   if (readable_model && study.wrong()) {

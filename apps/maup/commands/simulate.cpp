@@ -216,6 +216,7 @@ ExitCode simulate_model(const SimulateOptions& options, Study& study, Console& c
   SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
   const bool rows_wanted = options.errors || !options.plot.empty();
   if (rows_wanted && settings.errors != ErrorEstimates::None) settings.errors = ErrorEstimates::Rows;
+  settings.rows_of_steps = !options.plot.empty() && options.output.empty();  // a file keeps its even rows
   if (readable_model && study.wrong()) {
     finish(console, study, json_document("simulate"));
     return ExitCode::Usage;

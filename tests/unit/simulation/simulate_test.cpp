@@ -31,6 +31,41 @@ run 10 s
 
 }  // namespace
 
+TEST_CASE("rows of steps show oscillations that are faster than a thousandth of the run") {
+  const auto fork = [](const char* frequency) {
+    return ModelText(
+        std::string("param m = 1 kg, f = ") + frequency +
+        " 1/s\nlet w = 2 pi f\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 m w^2 x^2\nstart x = 1 m\nrun 10 s\n");
+  };
+  SimulationOptions close;
+  close.rows_of_steps = true;
+  const auto swings = [](const Trajectory& rows) {
+    std::size_t out = 0;
+    for (std::size_t row = 1; row < rows.rows(); ++row) out += (rows.at(row, 0) < 0) != (rows.at(row - 1, 0) < 0);
+    return out;
+  };
+  const ModelText hundred = fork("100");
+  CHECK(swings(run(hundred).trajectory) < 10);  // a row a period
+  const Trajectory rows = run(hundred, close).trajectory;
+  CHECK(swings(rows) == 2000);
+  for (std::size_t row = 1; row < rows.rows(); ++row) REQUIRE(rows.times[row] > rows.times[row - 1]);
+  for (const double t : run(hundred).trajectory.times)  // the output times are among them
+    CHECK(std::binary_search(rows.times.begin(), rows.times.end(), t));
+  // Ten thousand periods: bounded, and the rows between show how far it swings.
+  const Trajectory many = run(fork("1001"), close).trajectory;
+  CHECK(many.rows() <= 1001 + 1000 * 100);
+  CHECK(swings(many) > 3000);
+  // Slow motion, and rows that were asked for, stay as they are.
+  CHECK(run(ModelText(oscillator), close).trajectory.rows() == 1001);
+  close.output_every = 0.5;
+  CHECK(run(hundred, close).trajectory.rows() == 21);
+  // Backwards.
+  close.output_every.reset(), close.duration = -10;
+  const Trajectory back = run(hundred, close).trajectory;
+  CHECK(swings(back) == 2000);
+  for (std::size_t row = 1; row < back.rows(); ++row) REQUIRE(back.times[row] < back.times[row - 1]);
+}
+
 TEST_CASE("the harmonic oscillator follows its closed form, forwards and backwards") {
   const ModelText m(oscillator);
   SimulationOptions options;
