@@ -68,16 +68,6 @@ FormulaLine line_of(Layout left, Layout right, std::string section, std::string 
 
 Layout zero() { return layouts::number("0"); }
 
-/// u_tx with subscripts, below a fraction bar.
-Layout with_subscripts(const FieldSystem& s, const FieldJet& jet) {
-  const Layout field = layouts::symbol(s.jet_symbol({jet.field, std::vector<int>(s.space.size(), 0), 0}));
-  std::vector<Layout> below;
-  for (int k = 0; k < jet.time; ++k) below.push_back(layouts::name("t"));
-  for (std::size_t x = 0; x < s.space.size(); ++x)
-    for (int k = 0; k < jet.space[x]; ++k) below.push_back(layouts::symbol(s.space[x].symbol));
-  return below.empty() ? field : layouts::indexed(field, {layouts::product(std::move(below))});
-}
-
 /// δℒ/δφ step by step: the partial derivatives of ℒ, their total derivatives, the equation.
 void add_steps(const FieldEquations& equations, std::vector<FormulaLine>& out) {
   const FieldSystem& s = equations.system();
@@ -88,7 +78,7 @@ void add_steps(const FieldEquations& equations, std::vector<FormulaLine>& out) {
     const Expr slope = differentiate(s.density, symbol);
     const FieldJet jet = *s.jet_of(symbol);
     out.push_back(line_of(layouts::labelled(fmt::format("∂ℒ/∂{}", s.jet_name(jet)),
-                                            layouts::partial(layouts::name("ℒ"), with_subscripts(s, jet))),
+                                            layouts::partial(layouts::name("ℒ"), jet_with_subscripts(s, jet))),
                           shown(equations, slope), section, "all other derivatives held fixed"));
   }
 }

@@ -103,6 +103,8 @@ std::vector<ComplexEquation> complex_equations(const FieldEquations& equations);
 
 /// e with derivatives of fields typeset with ∂, and named u_tx in plain text.
 Layout field_layout(const FieldSystem& system, Layout layout);
+/// u_tx with subscripts: what stands below a fraction bar, ∂ℒ/∂u_tx.
+Layout jet_with_subscripts(const FieldSystem& system, const FieldJet& jet);
 ReadableForm readable_residual(const FieldEquations& equations, std::size_t varied_index);
 
 }  // namespace maupertuis

@@ -204,6 +204,15 @@ Layout jet_layout(const FieldSystem& s, const FieldJet& jet) {
 
 }  // namespace
 
+Layout jet_with_subscripts(const FieldSystem& s, const FieldJet& jet) {
+  const Layout field = layouts::symbol(s.jet_symbol({jet.field, std::vector<int>(s.space.size(), 0), 0}));
+  std::vector<Layout> below;
+  for (int k = 0; k < jet.time; ++k) below.push_back(layouts::name("t"));
+  for (std::size_t x = 0; x < s.space.size(); ++x)
+    for (int k = 0; k < jet.space[x]; ++k) below.push_back(layouts::symbol(s.space[x].symbol));
+  return below.empty() ? field : layouts::indexed(field, {layouts::product(std::move(below))});
+}
+
 Layout field_layout(const FieldSystem& system, Layout layout) {
   if (layout.shape == Shape::Symbol)
     if (const auto jet = system.jet_of(layout.symbol); jet && jet->order() > 0) return jet_layout(system, *jet);

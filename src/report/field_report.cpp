@@ -111,7 +111,7 @@ class FieldComposer {
     for (const Expr& symbol : s_.jets_in(s_.density)) {
       if (s_.fields[s_.jet_of(symbol)->field].given) continue;
       const FieldJet jet = *s_.jet_of(symbol);
-      slopes.lines.push_back({layouts::partial(layouts::name("ℒ"), layouts::name(s_.jet_name(jet))),
+      slopes.lines.push_back({layouts::partial(layouts::name("ℒ"), jet_with_subscripts(s_, jet)),
                               shown(differentiate(s_.density, symbol)), "all other derivatives held fixed", ""});
     }
     for (const NaturalCondition& n : e_.natural)

@@ -216,7 +216,12 @@ std::string write_bold(const Layout& l) {
 std::string write_indexed(const Layout& l) {
   const std::vector<Layout> below(l.parts.begin() + 1, l.parts.end());
   const bool simple = is_simple_base(l.parts[0]);
-  return (simple ? write(l.parts[0]) : bracketed(l.parts[0])) + "_" + braces(joined(below, ","));
+  const std::string base = simple ? write(l.parts[0]) : bracketed(l.parts[0]);
+  const std::size_t cut = simple ? base.find('_') : std::string::npos;  // ψ_r has an index already: ψ_{r,t}
+  if (cut == std::string::npos || (cut > 0 && base[cut - 1] == '\\')) return base + "_" + braces(joined(below, ","));
+  std::string first = base.substr(cut + 1);
+  if (first.size() > 1 && first.front() == '{' && first.back() == '}') first = first.substr(1, first.size() - 2);
+  return base.substr(0, cut) + "_" + braces(first + "," + joined(below, ","));
 }
 
 /// ∂a/∂b; of several variables, those that follow each other alike: ∂³u/∂t∂x².
