@@ -29,6 +29,7 @@ struct Outline {
     Anchor,
     Pivot
   } fitting = Fitting::None;  // what the motion decides of its shape
+  double aside = 0;           // Spring, Cup, Plate: to the left of the way between the places, in thicknesses
 };
 
 /// What a drawing is made of, before anything is known of the motion but where it began.

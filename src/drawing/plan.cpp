@@ -94,6 +94,7 @@ class Planner {
   }
   bool keeps_distance(const ExprVector& a, const ExprVector& b) const;
   bool drawn_between(const Link& link) const;
+  double side_of(const ExprVector& from, const ExprVector& to, bool spring) const;
 
   const Model& model_;
   const MechanicalSystem& system_;
@@ -180,8 +181,20 @@ void Planner::solid_of_inertia(const Body& body) {
   solid(shapes::ball(true), body.position, &body.rotation, axes);
 }
 
+/// A spring and a damper between the same places stand side by side: the spring to the left of its own way. 0 where
+/// there is no other.
+double Planner::side_of(const ExprVector& from, const ExprVector& to, bool spring) const {
+  for (const Link& l : system_.links) {
+    if ((l.kind == Link::Kind::Spring) == spring) continue;
+    if (l.from == from && l.to == to) return spring ? 1 : -1;
+    if (l.from == to && l.to == from) return 1;  // the damper goes the other way, and its left is the spring's right
+  }
+  return 0;
+}
+
 void Planner::link(const ExprVector& from, const ExprVector& to, const std::string& from_name,
                    const std::string& to_name, bool spring) {
+  const double side = side_of(from, to, spring);
   const auto between = [&](const ExprVector& a, const ExprVector& b, Outline::Fitting fitting) {
     Outline outline;
     outline.element.kind = Kind::Solid;
@@ -190,6 +203,7 @@ void Planner::link(const ExprVector& from, const ExprVector& to, const std::stri
     outline.fitting = fitting;
     outline.values = a;
     outline.values.insert(outline.values.end(), b.begin(), b.end());
+    outline.aside = fitting == Outline::Fitting::Plate ? -side : side;  // a plate looks the other way
     plan_.outlines.push_back(std::move(outline));
   };
   between(from, to, spring ? Outline::Fitting::Spring : Outline::Fitting::Cup);

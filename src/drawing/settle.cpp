@@ -248,7 +248,12 @@ void Settler::place_link(Outline& o) {
   const std::size_t seed = d_ == 3 ? seed_of(along) : 0;
   std::vector<double> poses;
   for (std::size_t f = 0; f < frames; ++f) {
-    const double *a = &positions[2 * f * d_], *e = &along[f * d_];
+    double* a = &positions[2 * f * d_];
+    const double* e = &along[f * d_];
+    if (o.aside != 0) {  // its neighbour is as thick
+      const auto sides = d_ == 2 ? std::array<double, 6>{-e[1], e[0]} : across(e, seed);
+      for (std::size_t k = 0; k < d_; ++k) a[k] += o.aside * thick * sides[k];
+    }
     poses.insert(poses.end(), a, a + d_);
     if (o.fitting == Fitting::Anchor) {  // along the wall, then away from it
       const auto [x, y] = away_from_wall(mean_direction);

@@ -29,8 +29,11 @@ RichText axis_text(const std::vector<std::string>& names, const std::string& uni
 
 std::string text_element(double x, double y, std::string_view anchor, double size, const RichText& text,
                          std::string_view more) {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" font-size=\"{}\"{}>{}</text>\n", x, y, anchor,
-                     size, more, to_svg(text, size));
+  const std::string content = to_svg(text, size);
+  // A blank at the beginning of a <tspan> is one of the text; librsvg drops it unless it is told.
+  const char* blanks = content.find("> ") != std::string::npos ? " xml:space=\"preserve\"" : "";
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" font-size=\"{}\"{}{}>{}</text>\n", x, y, anchor,
+                     size, blanks, more, content);
 }
 
 namespace {
