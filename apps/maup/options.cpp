@@ -1,7 +1,11 @@
 #include "options.hpp"
 
+#include <maupertuis/diagnostic.hpp>
+
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -140,8 +144,26 @@ OptionTable CommandParser::table() const {
   return table;
 }
 
+/// What to say of a first word that is no command; empty where it is one, or an option.
+std::string CommandParser::unknown_command(const std::string& word) const {
+  std::vector<std::string> names;
+  for (const CLI::App* command : implementation_->app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  if (word.empty() || word[0] == '-' || std::find(names.begin(), names.end(), word) != names.end()) return {};
+  const std::string near = did_you_mean(word, names);
+  const bool is_model = word.size() > 4 && word.substr(word.size() - 4) == ".lag";
+  return fmt::format("`{}` is no command of maup.{}\nRun maup --help for the commands.\n", word,
+                     is_model       ? fmt::format(" Write what to do with it: maup check {}", word)
+                     : near.empty() ? ""
+                                    : fmt::format(" Did you mean `{}`?", near));
+}
+
 CommandParser::Outcome CommandParser::parse(int argc, char** argv, std::ostream& out, std::ostream& err) {
   CLI::App& app = implementation_->app;
+  if (const std::string unknown = argc > 1 ? unknown_command(argv[1]) : ""; !unknown.empty()) {
+    err << unknown;
+    return Outcome::Mistake;
+  }
   try {
     app.parse(argc, argv);
     return Outcome::Command;

@@ -94,6 +94,8 @@ class CommandParser {
   OptionTable table() const;
 
  private:
+  std::string unknown_command(const std::string& word) const;
+
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };

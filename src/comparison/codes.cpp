@@ -72,6 +72,10 @@ constexpr CodeEntry entries[] = {
      "m\n"},
     {"E0833", "a reduction that is not proved",
      "A reduced model is shown only when its motion is proved to be that of the model it comes from.", "", ""},
+    {"E0834", "a degenerate Lagrangian in a comparison",
+     "A comparison proves that each motion of one model is one of the other, from every state on the constraints. A "
+     "degenerate Lagrangian asks more of states, or leaves functions of time free.",
+     "", ""},
 };
 
 }  // namespace

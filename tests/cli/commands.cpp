@@ -61,6 +61,9 @@ TEST_CASE("new never overwrites") {
   CHECK(maup({"new", "pendulum", "-o", path, "--force"}).code == 0);
   CHECK(contains(read(path), "system pendulum"));
   CHECK(contains(maup({"new", "pendulm"}).err, "Did you mean pendulum?"));
+  CHECK(contains(maup({"simulat", "x.lag"}).err, "`simulat` is no command of maup. Did you mean `simulate`?"));
+  CHECK(contains(maup({"x.lag"}).err, "Write what to do with it: maup check x.lag"));
+  CHECK(maup({"linearize", "x.lag"}).code == 2);
 }
 
 TEST_CASE("explain") {

@@ -57,6 +57,34 @@ TEST_CASE(
   CHECK(verdict(first + "- x^2 - y^2 - u^2 - v^4\n", "x=0, y=0, u=0, v=0")["verdict"] == "undecided");
 }
 
+TEST_CASE("many digits of a degenerate system begin on all that it asks of a state") {
+  // A multiplier as a coordinate; the same circle as a constraint is the second way. y' is not written.
+  const std::string plane = "dimensionless\ncoord x, y", start = "start x = 0.6, y = 0.8, x' = 1\nrun 1\n";
+  const std::string as_coordinate = plane + ", z : number\nL = 1/2 x'^2 + 1/2 y'^2 - x + z (x^2 + y^2 - 1)\n" + start;
+  const std::string as_constraint =
+      plane + " : number\nT = 1/2 x'^2 + 1/2 y'^2\nV = x\nconstraint x^2 + y^2 = 1\n" + start;
+  const auto digits = [](const Outcome& run, const std::string& name) {
+    const std::size_t at = run.out.find("\n  " + name + " = ");
+    REQUIRE_MESSAGE(at != std::string::npos, run.err);
+    return run.out.substr(at + 6 + name.size(), 28);
+  };
+  const auto quad = [](const std::string& model) { return maup({"simulate", "-", "--precision", "quad"}, model); };
+  const Outcome one = quad(as_coordinate), other = quad(as_constraint);
+  for (const char* name : {"x", "x'", "y", "y'"}) CHECK(digits(one, name) == digits(other, name));
+  CHECK(contains(one.out, "  x = 0.99802985944634"));
+}
+
+TEST_CASE("models with degenerate Lagrangians are not compared") {
+  const Folder folder;
+  folder.write("first.lag", "dimensionless\ncoord x, y : number\nL = x y' - 1/2 x^2 - 1/2 y^2\nstart x = 1\nrun 1\n");
+  folder.write("second.lag", "dimensionless\ncoord x, y : number\nL = 1/2 x'^2 + 1/2 y'^2 - 1/2 x^2 - 1/2 y^2\n");
+  for (const auto& [a, b] : {std::pair{"first.lag", "second.lag"}, {"second.lag", "first.lag"}}) {
+    const Outcome refused = maup({"compare", folder.path(a), folder.path(b)});
+    CHECK(refused.code == 1);
+    CHECK(contains(refused.err, "E0834"));
+  }
+}
+
 TEST_CASE("what depends on free functions is left out, and said") {
   const Outcome run = maup({"simulate", "-"}, cawley);
   CHECK(contains(run.err, "W0622"));

@@ -176,6 +176,17 @@ ExitCode finish_all(Console& console, Study& a, Study& b, const Diagnostics& of_
   return code;
 }
 
+/// E0834: what is proved rests on motions that exist from every state of the constraints, one from each.
+bool refuse_degenerate(Study& study) {
+  if (!study.equations()->degenerate) return false;
+  study.diagnostics().error(
+      "E0834", {}, "models with degenerate Lagrangians are not compared",
+      "It asks more of a state than constraints do, or leaves functions of time free: that every motion of "
+      "the one is one of the other cannot be read off the equations as it is elsewhere.",
+      "`maup derive` shows its constraints; `maup simulate` of both from one start compares motions.");
+  return true;
+}
+
 ExitCode compare_models(const CompareOptions& options, Console& console) {
   Study a = open_study(options.a), b = open_study(options.b);
   Diagnostics of_map;
@@ -190,6 +201,7 @@ ExitCode compare_models(const CompareOptions& options, Console& console) {
   if (!b.equations() || !a_equations || a.refuse_held_integrals() || a.refuse_modes() || b.refuse_modes() ||
       b.refuse_held_integrals() || !a.certificate() || !b.certificate())
     return end(json_document("compare"), readable ? ExitCode::ModelWrong : ExitCode::Usage);
+  if (refuse_degenerate(a) || refuse_degenerate(b)) return end(json_document("compare"), ExitCode::ModelWrong);
 
   const InterruptScope of_a = a.interruptible(), of_b = b.interruptible();
   const auto map = read_map(*a.model(), b.source(), map_text, of_map);
