@@ -203,7 +203,8 @@ void Planner::link(const ExprVector& from, const ExprVector& to, const std::stri
     outline.fitting = fitting;
     outline.values = a;
     outline.values.insert(outline.values.end(), b.begin(), b.end());
-    outline.aside = fitting == Outline::Fitting::Plate ? -side : side;  // a plate looks the other way
+    constexpr double apart = 1.3;  // thicknesses
+    outline.aside = apart * (fitting == Outline::Fitting::Plate ? -side : side);  // a plate looks the other way
     plan_.outlines.push_back(std::move(outline));
   };
   between(from, to, spring ? Outline::Fitting::Spring : Outline::Fitting::Cup);

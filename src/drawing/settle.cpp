@@ -243,6 +243,7 @@ void Settler::place_link(Outline& o) {
               ? shapes::plate(drawing_.dimension, rod)
               : shapes::cup(drawing_.dimension, std::max(0.1 * shortest, shortest - rod - 0.08 * shortest), end);
   }
+  if (o.aside != 0) shapes::add_bars_to_middle(o.element.shape, d_, o.aside, o.fitting == Fitting::Spring);
   std::vector<double> mean_direction(d_, 0);
   for (std::size_t i = 0; i < along.size(); ++i) mean_direction[i % d_] += along[i];
   const std::size_t seed = d_ == 3 ? seed_of(along) : 0;

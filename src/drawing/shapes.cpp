@@ -121,6 +121,11 @@ SolidShape plate(int dimension, double rod) {
   return shape;
 }
 
+void add_bars_to_middle(SolidShape& shape, int dimension, double aside, bool both_ends) {
+  for (const double end : {0.0, 1.0})
+    if (end == 0 || both_ends) shape.lines.push_back(outline(dimension, {{end, 0, 0}, {end, -aside, 0}}, false));
+}
+
 SolidShape pivot() {
   SolidShape shape;
   shape.role = SolidShape::Role::Ground;

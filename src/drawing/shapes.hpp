@@ -18,6 +18,8 @@ SolidShape spring(int dimension, int windings, double slant);
 /// A dashpot: the cup stands on the first end, the plate on the second. Along the first axis in metres.
 SolidShape cup(int dimension, double from, double to);
 SolidShape plate(int dimension, double rod);
+/// Bars across, from the ends of a spring or dashpot that stands `aside` to the places that it joins.
+void add_bars_to_middle(SolidShape& shape, int dimension, double aside, bool both_ends);
 
 /// A triangle on hatched ground below the origin, for a pivot; hatched ground behind the origin, for the end of a
 /// spring.

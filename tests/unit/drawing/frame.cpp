@@ -237,6 +237,25 @@ TEST_CASE("springs and dampers are drawn by themselves, once, and stand on somet
         4);  // the line stands for the spring: its pivot, and the dashpot with its anchor
 }
 
+TEST_CASE("a spring and a damper between the same ends stand to either side of their line, whichever way each goes") {
+  for (const char* damper : {"damper O - P coefficient c", "damper P - O coefficient c"}) {
+    const ModelText m(
+        std::string("system s\nparam m = 1 kg, k = 10 N/m, c = 1 N s/m\ncoord x : length\npoint P mass m at (x, "
+                    "0)\nspring O - P stiffness k length 1 m\n") +
+        damper + "\nrun 1 s\n");
+    const auto drawing = evaluate_drawing(
+        m.model, prescribed(*m.system, 1, [](std::size_t, double t) { return 1 + 0.3 * std::sin(6 * t); }));
+    REQUIRE(drawing);
+    std::vector<double> heights;  // of the first end of the coil, of the cup, of the plate
+    for (const auto& e : drawing->elements)
+      if (e.kind == Drawing::Kind::Solid && e.positions[1] != 0) heights.push_back(e.positions[1]);
+    REQUIRE(heights.size() == 3);
+    CHECK(heights[0] > 0.01);
+    CHECK(heights[1] < -0.01);
+    CHECK(heights[2] == doctest::Approx(heights[1]));
+  }
+}
+
 TEST_CASE("rods are found where a distance is kept, and nowhere else") {
   const auto rods = [](const std::string& text, auto q) {
     const ModelText m(text);
