@@ -1,5 +1,7 @@
 #include "simulation/contact_checks.hpp"
 
+#include "simulation/contact/contact_functions.hpp"
+
 #include <maupertuis/across_switches.hpp>
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/motion_through_modes.hpp>
@@ -104,11 +106,8 @@ bool start_keeps_contacts(const Model& model, double t, std::span<const double> 
   constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
   for (std::size_t i = 0; i < system.contacts.size(); ++i) {
     const Expr gap = in_terms_of_motion(system, {&system.contacts[i].gap, 1}).front();
-    double size = 0;
-    if (gap.is(Kind::Sum))
-      for (std::size_t k = 0; k < gap.size(); ++k) size += std::abs(evaluate(gap[k], at));
     const double value = evaluate(gap, at);
-    if (value >= -rounding * size) continue;
+    if (value >= -rounding * evaluate(size_of_nested_terms(gap), at)) continue;
     kept = false;
     diagnostics.error(
         "E0728", system.contacts[i].span, fmt::format("the start violates the contact {}", system.contact_label(i)),

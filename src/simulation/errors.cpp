@@ -223,9 +223,27 @@ class Teller {
         return sample && i < sample->multipliers.size() ? sample->multipliers[i] : infinity;
       }));
     const std::size_t first = plan_.observables.energy_terms + plan_.observables.points;
+    const std::vector<double> balanced = rounding_of_balance(state.reactions);
     for (std::size_t i = 0; i < state.reactions.size(); ++i)
-      out.reactions.push_back(observable_error(state.reactions[i], first + i, state.t, sample_of));
+      out.reactions.push_back(
+          std::max(observable_error(state.reactions[i], first + i, state.t, sample_of), balanced[i]));
     state.errors = std::move(out);
+  }
+
+  /// [reactions] A force of contacts that is nothing but rounding of others beside it is not known to be another one
+  /// than 0, though all runs agree on it, since their numbers do: what it is beside the largest of its unit then; else
+  /// 0.
+  std::vector<double> rounding_of_balance(std::span<const double> forces) const {
+    constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+    std::vector<double> out(forces.size(), 0);
+    for (std::size_t i = 0; plan_.modes && i < forces.size(); ++i) {
+      double largest = 0;
+      for (std::size_t k = 0; k < forces.size(); ++k)
+        if (plan_.observables.reactions[k].dimension == plan_.observables.reactions[i].dimension)
+          largest = std::max(largest, std::abs(forces[k]));
+      if (forces[i] != 0 && std::abs(forces[i]) <= rounding * largest) out[i] = rounding * largest;
+    }
+    return out;
   }
 
   /// Where the state is lost, a function of it is too, unless it is known all the same (an energy).
@@ -251,6 +269,7 @@ class Teller {
   /// stands beside a jump, whose instant is not quite that of the companions: then the errors of the rows around tell.
   void tell_rows() {
     Trajectory& rows = result_.trajectory;
+    const std::size_t forces = 2 * n_ + plan_.observables.points, count = plan_.observables.reactions.size();
     std::size_t g = 0;
     const auto of_ends = [&](double value, std::size_t column) {
       return difference(value, [&](const CompanionRun& run) {
@@ -261,11 +280,14 @@ class Teller {
     };
     for (std::size_t row = 0; row < rows.rows(); ++row) {
       const bool in_grid = g < plan_.grid.size() && plan_.grid[g] == row;
+      const std::vector<double> balanced =
+          rounding_of_balance(std::span(rows.values).subspan(row * columns_ + forces, count));
       for (std::size_t c = 0; c < columns_; ++c) {
         const double value = rows.at(row, c);
         double e = in_grid ? errors_[g * columns_ + c] : row + 1 == rows.rows() ? of_ends(value, c) : around(g, c);
         const bool exact = row == 0 && e == 0 && is_given(c);
         if (!exact) e = with_rounding(e, value);
+        if (c >= forces && c - forces < count) e = std::max(e, balanced[c - forces]);
         if (c < 2 * n_ && is_lost_at(c, rows.times[row])) e = infinity;
         rows.errors.push_back(std::isfinite(value) ? e : std::numeric_limits<double>::quiet_NaN());
       }

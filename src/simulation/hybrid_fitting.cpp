@@ -146,13 +146,7 @@ bool HybridMotion::Trial::look(double bound) {
   TaylorStepper& s = *motion.stepper;
   s.start(in.t_, in.q_, in.v_, in.t_rest_);
   put_at_zero();
-  std::vector<double> places, speeds, accelerations;
-  for (const std::size_t k : in.kind_) {
-    places.push_back(in.place_[k]);
-    speeds.push_back(in.speed_[k]);
-    accelerations.push_back(in.acceleration_[k]);
-  }
-  s.set_usual_sizes(places, speeds, accelerations);
+  in.tell_usual_sizes(s);
   outlook = s.outlook(bound);
   in.no_motion_ = outlook.reason;
   if (outlook.ending != StepEnding::None) return false;
@@ -247,6 +241,29 @@ bool HybridMotion::fits(Found& found, const std::vector<std::size_t>& touching, 
   for (std::size_t k = 0; k < trial.motion.watches().size(); ++k)
     if (!trial.keeps(k)) return false;
   return true;
+}
+
+/// What acts without contacts and friction is a measure of forces, where all is at rest the only one: what rounding of
+/// forces that balance makes of slips is to be told from motion.
+void HybridMotion::measure_forces(const std::vector<std::size_t>& touching, const ContactValues& values, double bound) {
+  constexpr std::size_t looks = 16;
+  const bool gives_way = std::any_of(pending_->left.begin(), pending_->left.end(),
+                                     [](const Watch& w) { return w.what == Watch::What::Hold; });
+  if (started_ && !(gives_way && looks_at_forces_++ < looks)) return;
+  Found free{open_mode(system_), {}, {}};
+  std::fill(free.mode.friction.begin(), free.mode.friction.end(), FrictionState::None);
+  Trial trial{*this, free, touching, Leniency::Forces, motion_in(free.mode), values};
+  if (!trial.look(bound)) return;
+  note_accelerations(free.accelerations, values);
+  // At a start they may be 0, and what rests is to be measured by what they come to.
+  TaylorStepper& stepper = *trial.motion.stepper;
+  for (const double share : {0.5, 1.0}) {
+    if (started_) break;
+    stepper.start(t_ + std::copysign(share * trial.outlook.length, bound - t_), q_, v_);
+    const TaylorStepper::Outlook later = stepper.outlook(bound + (bound - t_));
+    if (later.ending == StepEnding::None) note_accelerations(later.accelerations, values);
+  }
+  note_slip_rates(values);
 }
 
 /// Frictions that the mode holds beyond their limits; nothing where it has no motion.

@@ -318,20 +318,6 @@ bool HybridMotion::gives_way_unforced(const std::vector<Choice>& list, const Fou
   return unforced;
 }
 
-/// What acts without contacts and friction is a measure of forces, where all is at rest the only one: what rounding of
-/// forces that balance makes of slips is to be told from motion.
-void HybridMotion::measure_forces(const std::vector<std::size_t>& touching, const ContactValues& values, double bound) {
-  constexpr std::size_t looks = 16;
-  const bool gives_way = std::any_of(pending_->left.begin(), pending_->left.end(),
-                                     [](const Watch& w) { return w.what == Watch::What::Hold; });
-  if (started_ && !(gives_way && looks_at_forces_++ < looks)) return;
-  released_.assign(system_.contacts.size(), false);
-  Found free{open_mode(system_), {}, {}};
-  if (started_) std::fill(free.mode.friction.begin(), free.mode.friction.end(), FrictionState::None);
-  static_cast<void>(fits(free, touching, bound, Leniency::Forces));
-  if (!free.accelerations.empty()) note_accelerations(free.accelerations, values), note_slip_rates(values);
-}
-
 bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason) {
   const ContactValues& values = functions_.at(t_, q_, v_);  // of one point throughout
   if (!touching.empty() && !knows_compliance_) note_compliance(touching, values);

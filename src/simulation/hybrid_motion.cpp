@@ -88,6 +88,7 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   instant_.reset();
   started_ = false;
   late_by_ = longest_step_ = 0;
+  holding_.clear();
   now_ = &motion_in(open_mode(system_));
   now_->stepper->start(t_, q_, v_, t_rest_);
   pending_ = std::make_unique<Pending>();
@@ -214,7 +215,8 @@ void HybridMotion::finish() {
   }
   if (record_.stopped_by && pending_)
     for (const ModelEvent* event : pending_->sets)
-      remark(fmt::format("The event {} sets the state as the run ends: the last state is the one before.", event->name));
+      remark(
+          fmt::format("The event {} sets the state as the run ends: the last state is the one before.", event->name));
   if (system_.contacts.empty() || !started_) return;
   take_state();
   const ContactValues& values = functions_.at(t_, q_, v_);

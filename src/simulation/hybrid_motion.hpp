@@ -139,7 +139,8 @@ class HybridMotion final : public Method {
   bool may_hold(const Choice& choice);
   bool gives_way_unforced(const std::vector<Choice>& list, const Found& found, const std::vector<std::size_t>& touching,
                           double bound);
-  std::optional<std::vector<std::size_t>> beyond_limits(Found& found, const std::vector<std::size_t>& touching, double bound);
+  std::optional<std::vector<std::size_t>> beyond_limits(Found& found, const std::vector<std::size_t>& touching,
+                                                        double bound);
   std::optional<Found> search_mode(const std::vector<Choice>& list, const std::vector<std::size_t>& touching,
                                    double bound, std::string& reason);
   std::optional<Found> undetermined_rest(const std::vector<Choice>& list, const std::vector<std::size_t>& touching,
@@ -187,6 +188,8 @@ class HybridMotion final : public Method {
   void note_sizes(const ContactValues& values);
   void note_slip_rates(const ContactValues& values);
   void note_limits(const ContactValues& values);
+  void note_holding_forces(const Sample& sample);
+  void tell_usual_sizes(TaylorStepper& stepper) const;
   void note_gaps(const ContactValues& values);
   void note_usual_gaps(const ContactValues& values);
   void note_accelerations(std::span<const double> a, const ContactValues& values);
@@ -244,7 +247,7 @@ class HybridMotion final : public Method {
   std::vector<double> q_, v_;
   bool forwards_ = true, started_ = false;
   bool meets_late_ = false;
-  double late_by_ = 0;             // until the pending instant is settled
+  double late_by_ = 0;                // until the pending instant is settled
   double carried_[4] = {0, 0, 0, 0};  // integrals of the modes before
   mutable Sample step_start_;
   std::size_t steps_before_ = 0, rejected_before_ = 0, switches_before_ = 0, same_time_ = 0;
@@ -252,6 +255,7 @@ class HybridMotion final : public Method {
   // The largest so far: what is much smaller is rounding.
   std::vector<double> fastest_, fastest_slip_;  // [contacts], [contacts + frictions] sizes of the terms of ġ and of v_t
   std::vector<double> widest_, hardest_;        // [contacts] sizes of the terms of g; of λ
+  std::vector<double> holding_;                 // [contacts + frictions] static forces that were measured
   std::vector<std::size_t> kind_;               // [n] coordinates of one dimension share a number
   std::vector<std::size_t> gap_kind_;           // [contacts] so do gaps
   std::vector<double> place_, speed_, acceleration_;  // [kinds] |q|, |q'|, |q''|

@@ -42,6 +42,32 @@ void HybridMotion::note_step() {
   note_limits(values);
   const std::vector<double>& a = s.step_start().a;
   if (std::all_of(a.begin(), a.end(), [](double x) { return std::isfinite(x); })) note_accelerations(a, values);
+  note_holding_forces(s.step_start());
+}
+
+/// Static friction that grows while all rests: what it balances is a measure of forces too. Its forces come behind
+/// those of constraints and closed contacts.
+void HybridMotion::note_holding_forces(const Sample& sample) {
+  constexpr double grown = 2;
+  const ContactMode& mode = now_->mode;
+  const ContactValues& values = functions_.at(t_, q_, v_);
+  std::size_t k = equations_.system->constraints.size() +
+                  static_cast<std::size_t>(std::count(mode.closed.begin(), mode.closed.end(), true));
+  holding_.resize(mode.friction.size(), 0);
+  bool more = false;
+  for (std::size_t i = 0; i < mode.friction.size(); ++i) {
+    if (mode.friction[i] != FrictionState::Stick) continue;
+    const std::size_t components = friction_of(system_, i).slip.size();
+    double force = 0;
+    for (std::size_t c = 0; c < components; ++c) force = std::max(force, std::abs(sample.multipliers.at(k++)));
+    if (!(force > grown * holding_[i]) || !std::isfinite(force)) continue;
+    holding_[i] = force;
+    const Eigen::VectorXd alone = functions_.response(t_, q_, v_, {&values.tangent[i], 1}).col(0);
+    for (std::size_t n = 0; n < kind_.size(); ++n)
+      acceleration_[kind_[n]] = std::max(acceleration_[kind_[n]], force * std::abs(alone(at(n))));
+    more = true;
+  }
+  if (more) tell_usual_sizes(*now_->stepper);
 }
 
 /// A limit of friction below zero is none: the force would drive what it is to brake.
@@ -106,6 +132,16 @@ void HybridMotion::set_usual_sizes(std::span<const double> q, std::span<const do
   usual_v_.assign(v.begin(), v.end());
 }
 
+void HybridMotion::tell_usual_sizes(TaylorStepper& stepper) const {
+  std::vector<double> places, speeds, accelerations;
+  for (const std::size_t k : kind_) {
+    places.push_back(place_[k]);
+    speeds.push_back(speed_[k]);
+    accelerations.push_back(acceleration_[k]);
+  }
+  stepper.set_usual_sizes(places, speeds, accelerations);
+}
+
 /// Of a start whose coordinates have had other sizes elsewhere: what gaps are made of then.
 void HybridMotion::note_usual_gaps(const ContactValues& values) {
   if (usual_q_.empty() || !pending_->begins) return;
@@ -134,17 +170,19 @@ std::vector<double> HybridMotion::largest_accelerations() const {
   return out;
 }
 
+/// Rounding of an acceleration a moves what rests by ε a h² in a step of length h. What that does to potentials, and
+/// the work of the forces that balance over it: twice the kinetic energy of a speed of √ε a h.
 double HybridMotion::rounding_of_energy() {
   if (library_->sets().outputs() == 0) return 0;
   const std::vector<double> still(v_.size(), 0);
   const double here = energy_and_sets_at(t_, q_, still)[0];
   double out = 0;
   for (std::size_t i = 0; i < q_.size(); ++i) {
-    const double speed = rest_unit * acceleration_[kind_[i]] * longest_step_;
+    const double speed = acceleration_[kind_[i]] * longest_step_;
     std::vector<double> q = q_, v = still;
-    q[i] += speed * longest_step_;
-    v[i] = speed;
-    out += std::abs(energy_and_sets_at(t_, q, still)[0] - here) + std::abs(energy_and_sets_at(t_, q_, v)[0] - here);
+    q[i] += rest_unit * speed * longest_step_;
+    v[i] = std::sqrt(rest_unit) * speed;
+    out += std::abs(energy_and_sets_at(t_, q, still)[0] - here) + 2 * std::abs(energy_and_sets_at(t_, q_, v)[0] - here);
   }
   return std::isfinite(out) ? out : 0;
 }

@@ -37,6 +37,12 @@ void DenseOutput::copy(const double* first, std::size_t stride) {
   refer_to(coefficients_.data(), padded(freedoms_));
 }
 
+void DenseOutput::put_at_rest(std::size_t i) {
+  keep();
+  for (int k = 1; k <= degree_; ++k) coefficients_[static_cast<std::size_t>(k) * stride_ + i] = 0;
+  v[i] = {};
+}
+
 /// The increments are small against q and q̇, and summed with compensation.
 void DenseOutput::advance(double tau, std::span<Compensated> q_out, std::span<Compensated> v_out,
                           std::span<Compensated> integrals_out) const {

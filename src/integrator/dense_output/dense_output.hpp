@@ -36,6 +36,8 @@ class DenseOutput {
   void keep() {
     if (first_ != coefficients_.data()) copy(first_, stride_);
   }
+  /// Coordinate i stays where it is.
+  void put_at_rest(std::size_t i);
   /// Of the integrands; their integrals start from `integrals`.
   double* integrand(int k) { return integrands_.data() + static_cast<std::size_t>(k) * integrals.size(); }
 

@@ -168,6 +168,8 @@ Step TaylorStepper::Impl::step(double bound) {
 /// False: the equations do not hold at its end.
 bool TaylorStepper::Impl::make_step(double bound, double h, Step& result) {
   last.keep(work, state);
+  at_rest = taylor::resting(work, n, m, std::abs(h), constraints.usual.a);
+  for (const taylor::AtRest& x : at_rest) last.dense.put_at_rest(x.coordinate);
   watched.set_sides(probe);
   last.record_start(work);
   has_start_sample = true;

@@ -3,6 +3,7 @@
 #include "integrator/taylor/constraint_error.hpp"
 #include "integrator/taylor/end_check.hpp"
 #include "integrator/taylor/last_step.hpp"
+#include "integrator/taylor/rest.hpp"
 #include "integrator/taylor/safe_length.hpp"
 #include "integrator/taylor/shrinking_steps.hpp"
 #include "integrator/taylor/step_size.hpp"
@@ -50,6 +51,7 @@ struct TaylorStepper::Impl {
   // Its end (step_end.cpp).
   bool settles(double bound, const taylor::Crossing& crossing, Step& result);
   bool equations_hold(const KernelWorkspace& at_end);
+  std::vector<double> accelerations_at_end(const KernelWorkspace& at_end, double tau) const;
   bool take_back(Step& result);
 
   // Constraints (constrained_step.cpp).
@@ -92,6 +94,7 @@ struct TaylorStepper::Impl {
   bool expanded = false;                       // the workspace holds the motion through the present state already
   bool noisy = false;                          // halving did not mend the last steps, see equations_hold()
   int attempts = 0;                            // at the present step that were taken back
+  std::vector<taylor::AtRest> at_rest;         // in the last step
   int stuck = 0;                               // crossings in a row that did not move time
   KernelStatus end_status = KernelStatus::Ok;  // of the last look at an end
   std::size_t steps = 0, switches = 0, rejected = 0;

@@ -13,14 +13,6 @@ namespace {
 
 using Eigen::Index;
 
-/// Σ |terms|, those of sums that are factors too: 2 (b − x) is known no better than 2 b − 2 x.
-Expr size_of_terms(Expr e) {
-  if (!e.is(Kind::Sum) && !e.is(Kind::Product)) return apply(Kind::Abs, e);
-  ExprVector sizes;
-  for (std::size_t i = 0; i < e.size(); ++i) sizes.push_back(size_of_terms(e[i]));
-  return e.is(Kind::Sum) ? e.context().sum(sizes) : e.context().product(sizes);
-}
-
 ExprVector gaps_of(const MechanicalSystem& s) {
   ExprVector out;
   for (const Contact& c : s.contacts) out.push_back(c.gap);
@@ -41,7 +33,7 @@ ExprVector slips_of(const MechanicalSystem& s) {
 ExprVector rates_of(const MechanicalSystem& s) {
   ExprVector out;
   for (const Contact& c : s.contacts) {
-    out.push_back(size_of_terms(c.gap));
+    out.push_back(size_of_nested_terms(c.gap));
     out.push_back(differentiate(c.gap, s.context->time()));
     out.push_back(c.restitution);
   }
@@ -82,6 +74,13 @@ void set_rows(const DifferentiableKernel& kernel, const std::vector<double>& out
 }
 
 }  // namespace
+
+Expr size_of_nested_terms(Expr e) {
+  if (!e.is(Kind::Sum) && !e.is(Kind::Product)) return apply(Kind::Abs, e);
+  ExprVector sizes;
+  for (std::size_t i = 0; i < e.size(); ++i) sizes.push_back(size_of_nested_terms(e[i]));
+  return e.is(Kind::Sum) ? e.context().sum(sizes) : e.context().product(sizes);
+}
 
 FunctionSource function_of_motion(const MechanicalSystem& system, const ExprVector& outputs) {
   FunctionSource source;

@@ -30,6 +30,9 @@ struct ContactValues {
   std::vector<double> restitution;        // [contacts]
 };
 
+/// Σ |terms|, those of sums that are factors too: 2 (b − x) is known no better than 2 b − 2 x.
+Expr size_of_nested_terms(Expr e);
+
 /// Functions of q, q̇, t and the parameters of a system, with its lets and inputs put in and derivatives carried out.
 FunctionSource function_of_motion(const MechanicalSystem& system, const ExprVector& outputs);
 

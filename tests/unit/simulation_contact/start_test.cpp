@@ -159,3 +159,19 @@ TEST_CASE("two components of slip that are not at right angles are refused, turn
   CHECK(code_of("(x' cos ψ + y' sin ψ, y' cos ψ - x' sin ψ)").empty());
   CHECK(code_of("(x' - R sin ψ ψ', y' + R cos ψ ψ')").empty());
 }
+
+TEST_CASE("a start on a contact is kept though rounding puts it behind, however the inequality is written") {
+  const std::string ladder =
+      "dimensionless\ncoord x, y : length, th : angle\nT = 1/2*1.3*(x'^2 + y'^2) + 1/24*1.3*0.981^2*th'^2\n"
+      "V = 9.81*1.3*y\nstart th = 1.2, y = 0.981/2*sin(1.2), x = 1 - 0.981/2*cos(1.2)\n"
+      "contact y - 0.981/2*sin(th) >= 0 friction 0.9 slip x' + 0.981/2*sin(th)*th' name floor\n";
+  const std::string slip = " friction 0.9 slip y' + 0.981/2*cos(th)*th' name wall\n";
+  for (const char* wall : {"contact x + 0.981/2*cos(th) - 1 <= 0", "contact x + 0.981/2*cos(th) <= 1",
+                           "contact 3*(1 - x - 0.981/2*cos(th)) >= 0"}) {
+    CAPTURE(wall);
+    ModelText m(ladder + wall + slip);
+    SimulationOptions options;
+    options.duration = 0.1;
+    CHECK(simulate(m.model, m.equations, options, m.diagnostics));
+  }
+}
