@@ -164,7 +164,7 @@ Step HybridMotion::step(double bound) {
     if (auto failed = settle(bound)) return std::move(*failed);
   }
   const double end = now_->given.end;
-  Step out = now_->stepper->step(forwards_ ? std::min(bound, end) : bound);
+  Step out = now_->stepper->step(forwards_ ? std::min({bound, end, end_of_slips()}) : bound);
   if (out.end != out.begin) same_time_ = 0;
   longest_step_ = std::max(longest_step_, std::abs(out.end - out.begin));
   if (!just_moved_on_) gap_begin_ = std::numeric_limits<double>::quiet_NaN();

@@ -159,6 +159,7 @@ class HybridMotion final : public Method {
   bool slides_in_space(std::size_t contact, const ContactValues& values) const;
   double stop_slip(std::size_t contact);
   bool outgrows_stops();
+  double end_of_slips();
   SparseRow sliding_force(std::size_t contact, const ContactValues& values) const;
   struct Pressed {
     std::size_t contact;

@@ -70,6 +70,26 @@ bool HybridMotion::outgrows_stops() {
   return false;
 }
 
+/// Friction that barely stops a slip takes many steps, which shrink with it: they are to be seen to end, so that it is
+/// not looked beyond twice the time at which the slips that fall would have stopped. Infinite where few steps were
+/// made.
+double HybridMotion::end_of_slips() {
+  constexpr std::size_t many = 4000;
+  double out = std::numeric_limits<double>::infinity();
+  if (!in_space_ || now_->stepper->steps() < many) return out;
+  const ContactValues& values = functions_.at(t_, q_, v_);
+  const std::vector<double> a = now_->stepper->sample(t_).a;
+  const std::span<const double> drifts = functions_.drifts(t_, q_, v_);
+  const std::size_t contacts = values.gap.size(), seconds = drifts.size() - contacts;
+  for (std::size_t i = 0; i < contacts; ++i) {
+    if (now_->mode.friction[i] != FrictionState::Slide) continue;
+    const double falls = -(values.slip[i] * (drifts[contacts + i] + product(values.tangent[i], a)) +
+                           values.second_slip[i] * (drifts[seconds + i] + product(values.second_tangent[i], a)));
+    if (falls > 0) out = std::min(out, t_ + 2 * std::pow(slip_speed_at(i, values), 2) / falls);
+  }
+  return out;
+}
+
 /// ∂g/∂q − μ Σ_k v_tk/|v_t| ∂v_tk/∂q̇: what a unit of the normal force does while it slides.
 SparseRow HybridMotion::sliding_force(std::size_t i, const ContactValues& values) const {
   const double speed = slip_speed_at(i, values), mu = values.kinetic[i];

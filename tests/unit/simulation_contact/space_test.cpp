@@ -485,3 +485,18 @@ TEST_CASE("what sticks under a force that swings is known to be at rest, though 
   CHECK(std::abs(r->final.q[1]) < 1e-14);
   CHECK(r->statistics.energy_drift < 1e-10);  // of an energy that is nothing but rounding
 }
+
+TEST_CASE("a block whose friction barely stops it stops at v (k + cos θ)/(g sin α (k² − 1))") {
+  // μ = k tan α, θ between the slip and downhill at the beginning; 9000 steps, which shrink with the slip.
+  const double alpha = 0.3, k = 1.0003, vx = 0.5, vy = 0.3, downhill = 0.4;
+  ModelText m(
+      "dimensionless\ncoord x, y, z : length\npoint P mass 1.3 at (x, y, z)\n"
+      "gravity 9.81 (sin(0.3)*cos(0.4), sin(0.3)*sin(0.4), -cos(0.3))\n"
+      "contact z >= 0 friction 1.0003*tan(0.3) slip (x', y') name plane\nstart x' = 0.5, y' = 0.3\n");
+  const auto r = run(m, 1e4);
+  INFO(r.reason);
+  REQUIRE(r.ok());
+  REQUIRE(r.happenings.size() == 1);
+  const double v = std::hypot(vx, vy), cosine = (vx * std::cos(downhill) + vy * std::sin(downhill)) / v;
+  CHECK(r.happenings[0].t == doctest::Approx(v * (k + cosine) / (9.81 * std::sin(alpha) * (k * k - 1))).epsilon(1e-11));
+}
