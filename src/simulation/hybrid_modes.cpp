@@ -75,7 +75,10 @@ HybridMotion::ModeMotion& HybridMotion::motion_in(const ContactMode& mode, const
   made->program = library_->program(mode, details);
   std::vector<double> parameters = parameters_;
   parameters.insert(parameters.end(), given.values.begin(), given.values.end());
-  made->stepper = std::make_unique<TaylorStepper>(made->program->kernel, parameters, options_);
+  TaylorOptions options = options_;
+  if (std::find(mode.friction.begin(), mode.friction.end(), FrictionState::Slide) != mode.friction.end())
+    options.order = order_beside_stops();
+  made->stepper = std::make_unique<TaylorStepper>(made->program->kernel, parameters, options);
   treat_events(*made);
   slot = std::move(made);
   ModeMotion& out = *slot;

@@ -157,6 +157,7 @@ class HybridMotion final : public Method {
   // Friction in space.
   double slip_speed_at(std::size_t contact, const ContactValues& values) const;
   bool slides_in_space(std::size_t contact, const ContactValues& values) const;
+  int order_beside_stops() const;
   double stop_slip(std::size_t contact);
   bool outgrows_stops();
   double end_of_slips();
@@ -175,6 +176,8 @@ class HybridMotion final : public Method {
   void book_rubbing(double gained);
   std::optional<TaylorStepper::Outlook> outlook_without_contacts(const ContactValues& values, double bound);
   void take_out_slips(const std::vector<std::size_t>& stopping, const std::vector<std::size_t>& touching);
+  bool all_stop(const std::vector<std::size_t>& slow, const std::vector<std::size_t>& touching,
+                const ContactValues& values, std::span<const double> accelerations, double within);
   void come_to_rest(const std::vector<std::size_t>& touching, double bound);
   bool choose_slips(const std::vector<std::size_t>& touching, double bound, bool gives_way, std::string& reason);
   std::optional<Given> given_in(const ContactMode& mode, double bound);

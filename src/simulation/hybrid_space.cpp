@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 /// Friction in the plane of a contact in space: which contacts stick, and which way others begin to slide.
 namespace maupertuis {
@@ -47,13 +48,21 @@ bool HybridMotion::slides_in_space(std::size_t i, const ContactValues& values) c
   return begins_to_slide_[i] || slip_speed_at(i, values) > rest_slip(i, values);
 }
 
+/// The order of steps while something slides in space: with larger ones coefficients of its direction leave the range
+/// of numbers long before it stops. Orders that differ by less than 4 stay apart, as those of companions have to.
+int HybridMotion::order_beside_stops() const {
+  constexpr int most = 24;
+  const int order = options_.order > 0 ? options_.order : taylor_order(options_.tolerance);
+  return order <= most ? order : most - 3 + order % 4;
+}
+
 /// The speed at which a slip counts as stopped, well above what is rounding of it; in steps of ten so that the motion
 /// of a mode serves many of them. Companions stop it earlier, so that their difference tells what the moment to the end
 /// of the slip leaves open.
 double HybridMotion::stop_slip(std::size_t i) {
   constexpr double above_rounding = 100, earlier = 10;
   const ContactValues& values = functions_.at(t_, q_, v_);
-  const int steps_order = options_.order > 0 ? options_.order : taylor_order(options_.tolerance);
+  const int steps_order = order_beside_stops();
   const double speed =
       std::max({slow_slip * slip_scale_[i], above_rounding * rest_slip(i, values), std::numeric_limits<double>::min()});
   const double coefficients_end = slip_rate_[i] * std::pow(10, -largest_exponent / (steps_order + 2));
@@ -261,6 +270,34 @@ void HybridMotion::take_out_slips(const std::vector<std::size_t>& stopping, cons
   if (in_space_) book_rubbing(energy_and_sets_at(t_, q_, v_)[0] - before);  // else it is below rounding
 }
 
+/// Whether these slips, which are slow, have all stopped after so long: by one implicit step in which friction takes
+/// what it can. The end of a slip is shorter than all else, and its direction may turn until then, in feet of one body
+/// each in its own way.
+bool HybridMotion::all_stop(const std::vector<std::size_t>& slow, const std::vector<std::size_t>& touching,
+                            const ContactValues& values, std::span<const double> accelerations, double within) {
+  const auto is_slow = [&](std::size_t i) { return std::find(slow.begin(), slow.end(), i) != slow.end(); };
+  std::vector<Pressed> pressed = pressed_of(touching, values);
+  for (Pressed& p : pressed)
+    if (is_slow(p.contact)) p.sliding.reset();
+  Cones cones = cones_of(pressed, values, accelerations);
+  for (std::size_t c = 0; c < cones.contacts.size(); ++c) {
+    const std::size_t i = cones.contacts[c];
+    if (!is_slow(i)) continue;
+    cones.problem.contacts[c].friction = values.kinetic[i];
+    cones.problem.free(at(cones.first[c] + 1)) += values.slip[i] / within;
+    cones.problem.free(at(cones.first[c] + 2)) += values.second_slip[i] / within;
+  }
+  const auto found = cone_forces(cones.problem);
+  if (!found) return false;
+  const VectorXd sizes = cones.problem.free.cwiseAbs() + cones.problem.response.cwiseAbs() * found->forces.cwiseAbs();
+  for (std::size_t c = 0; c < cones.contacts.size(); ++c) {
+    const Index k = at(cones.first[c] + 1);
+    if (is_slow(cones.contacts[c]) && found->accelerations.segment(k, 2).norm() > small * sizes.segment(k, 2).norm())
+      return false;
+  }
+  return true;
+}
+
 /// A slip that is slow and falls comes to rest after v_t²/(−v_t·v̇_t): the motion moves on to there, where both
 /// components are 0. One that grows has just begun.
 void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double bound) {
@@ -299,18 +336,22 @@ void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double
       slow.push_back(i);
   }
   if (!(by > 0)) return;
-  std::vector<std::size_t> stopping;  // feet of one body stop together, though their slips are not equal
-  constexpr double together = 0.05, near = 1e3;
+  std::vector<std::size_t> near, stopping;  // feet of one body stop together, though their slips are not equal
+  constexpr double together = 0.05, as_slow = 1e3, longer = 4;
+  double longest = by;
   for (const std::size_t i : touching)
-    if (system_.contacts[i].friction.in_space() && slip_speed_at(i, values) <= near * stop_slip(i) &&
-        std::abs(time_to_stop(i) - by) <= together * by)
-      stopping.push_back(i);
+    if (system_.contacts[i].friction.in_space() && slip_speed_at(i, values) > rest_slip(i, values) &&
+        slip_speed_at(i, values) <= as_slow * stop_slip(i))
+      near.push_back(i), longest = std::max(longest, time_to_stop(i));
+  const bool all = near.size() > 1 && all_stop(near, touching, values, outlook->accelerations, longer * longest);
+  std::copy_if(near.begin(), near.end(), std::back_inserter(stopping),
+               [&](std::size_t i) { return all || std::abs(time_to_stop(i) - by) <= together * by; });
   move_on(forwards_ ? by : -by, a);
   constexpr double part = 0.1;  // of the speed at which others count as stopped
   const ContactValues after = functions_.at(t_, q_, v_);
   std::erase_if(stopping, [&](std::size_t i) {
     const bool ends = std::find(slow.begin(), slow.end(), i) != slow.end();
-    return !ends && slip_speed_at(i, after) > part * stop_slip(i);
+    return !all && !ends && slip_speed_at(i, after) > part * stop_slip(i);
   });
   take_out_slips(stopping, touching);
   for (std::size_t i = 0; i < v_.size(); ++i)  // what rounding leaves of all that stops is no motion

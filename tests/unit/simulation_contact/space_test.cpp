@@ -500,3 +500,48 @@ TEST_CASE("a block whose friction barely stops it stops at v (k + cos θ)/(g sin
   const double v = std::hypot(vx, vy), cosine = (vx * std::cos(downhill) + vy * std::sin(downhill)) / v;
   CHECK(r.happenings[0].t == doctest::Approx(v * (k + cosine) / (9.81 * std::sin(alpha) * (k * k - 1))).epsilon(1e-11));
 }
+
+TEST_CASE("bodies on three feet slide, turn and stop at any order: all feet at once, or one before the others") {
+  struct Body {
+    const char *inertia, *tilt, *depth, *feet[3], *friction, *start;
+  };
+  const Body bodies[] = {{"0.109",
+                          "0.011",
+                          "0.124",
+                          {"0.412, 0.031", "-0.130, 0.552", "-0.277, -0.351"},
+                          "0.381",
+                          "x' = 0.991, y' = -0.059, w' = 2.692"},
+                         {"0.163",
+                          "0",
+                          "0.162",
+                          {"0.501, -0.010", "-0.238, 0.366", "-0.260, -0.457"},
+                          "0.477",
+                          "x' = 0.586, y' = -0.812, w' = -1.573"}};
+  for (const Body& b : bodies) {
+    std::string text = fmt::format(
+        "dimensionless\ncoord x, y, z : length, u, v, w : angle\nbody B mass 1 inertia diag({0}, {0}, {0}) at (x, y, "
+        "z) "
+        "rotation rpy (u, v, w)\ngravity 9.81 (sin({1}), 0, -cos({1}))\nstart z = {2}, {3}\n",
+        b.inertia, b.tilt, b.depth, b.start);
+    for (int i = 0; i < 3; ++i)
+      text += fmt::format("point P{0} at ({1}, -{2}) in B\ncontact P{0}.z >= 0 friction {3} slip (P{0}.x', P{0}.y')\n",
+                          i, b.feet[i], b.depth, b.friction);
+    ModelText m(text);
+    const auto with_order = [&](int order) {
+      SimulationOptions options;
+      options.order = order;
+      return run(m, 2, options);
+    };
+    const auto usual = with_order(20);
+    REQUIRE(usual.ok());
+    for (const int order : {24, 28, 34}) {
+      const auto r = with_order(order);
+      CAPTURE(order);
+      INFO(r.reason);
+      REQUIRE(r.ok());
+      CHECK(r.happenings.size() == 3);
+      for (std::size_t i = 0; i < 6; ++i) CHECK(std::abs(r.final.q[i] - usual.final.q[i]) < 1e-13);
+      for (const double v : r.final.v) CHECK(v == 0);
+    }
+  }
+}
