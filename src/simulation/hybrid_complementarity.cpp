@@ -128,10 +128,12 @@ void HybridMotion::order_by_forces(std::vector<Choice>& list, const ContactValue
   std::vector<std::size_t> left;
   const auto forces = problem ? forces_that_hold(*problem, kinetic, left) : std::nullopt;
   if (!forces) return;
-  if (!left.empty())
+  if (!left.empty()) {
+    told_choice_ = true;
     remark(
         "Static friction leaves a choice: where several contacts begin to slide at once, one of some can be held, and "
         "the one that is written first is.");
+  }
   double largest = 0, fastest = 0;
   for (std::size_t k = 0; k < problem->contacts.size(); ++k) {
     largest = std::max(largest, forces->normal[k]);

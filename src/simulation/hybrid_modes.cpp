@@ -321,6 +321,47 @@ bool HybridMotion::gives_way_unforced(const std::vector<Choice>& list, const Fou
   return unforced;
 }
 
+/// Where one friction begins to slide and another is held, that the other way round would have done as well is told.
+/// Not of friction that came to its own limit.
+void HybridMotion::note_choice(const std::vector<Choice>& list, Found& found, const std::vector<std::size_t>& touching,
+                               double bound) {
+  constexpr std::size_t most = 16;  // other modes that are looked at
+  const auto gives_way = [&](std::size_t i) {
+    return std::any_of(pending_->left.begin(), pending_->left.end(),
+                       [&](const Watch& w) { return w.what == Watch::What::Hold && w.index == i; });
+  };
+  const auto label = [&](std::size_t i) {
+    return i < found.mode.closed.size() ? system_.contact_label(i)
+                                        : system_.frictions[i - found.mode.closed.size()].name;
+  };
+  if (told_choice_ || found.given.is_preload) return;
+  std::size_t looked = 0;
+  const std::vector<bool> released = released_;
+  for (const Choice& slides : list) {
+    const FrictionState state = found.mode.friction[slides.contact];
+    const bool begins = state == FrictionState::Forward || state == FrictionState::Backward;
+    if (!begins || slides.options.size() <= 2 || gives_way(slides.contact)) continue;
+    for (const Choice& held : list) {
+      const bool holds = found.mode.friction[held.contact] == FrictionState::Stick && held.options.size() > 2;
+      if (!holds || !(may_hold(held) || may_hold(slides))) continue;
+      for (const FrictionState way : {FrictionState::Forward, FrictionState::Backward}) {
+        if (told_choice_ || ++looked > most) break;
+        Found other{found.mode, {}, {}};
+        other.mode.friction[slides.contact] = FrictionState::Stick;
+        other.mode.friction[held.contact] = way;
+        if (!fits(other, touching, bound, Leniency::None) || gives_way_unforced(list, other, touching, bound)) continue;
+        told_choice_ = true;
+        remark(fmt::format(
+            "Static friction leaves a choice at t = {:.9g}: {} is held and {} begins to slide; the motion in "
+            "which the latter is held and the former slides keeps all conditions too.",
+            t_, label(held.contact), label(slides.contact)));
+      }
+    }
+  }
+  released_ = released;
+  if (looked > 0) static_cast<void>(fits(found, touching, bound, Leniency::Gaps));  // others were begun after it
+}
+
 bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason) {
   const ContactValues& values = functions_.at(t_, q_, v_);  // of one point throughout
   if (!touching.empty() && !knows_compliance_) note_compliance(touching, values);
@@ -335,6 +376,7 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
   if (!found) found = search_mode(list, touching, bound, reason);
   if (!found) return false;
   if (interrupted()) return true;
+  note_choice(list, *found, touching, bound);
   note_accelerations(found->accelerations, values);  // those of modes that do not fit are no measure
   for (std::size_t i = 0; i < released_.size(); ++i)
     if (released_[i] && !found->mode.closed[i]) released_at_[i] = t_;

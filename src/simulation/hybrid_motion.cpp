@@ -89,6 +89,7 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   started_ = false;
   late_by_ = longest_step_ = 0;
   holding_.clear();
+  told_choice_ = false;
   now_ = &motion_in(open_mode(system_));
   now_->stepper->start(t_, q_, v_, t_rest_);
   pending_ = std::make_unique<Pending>();

@@ -139,6 +139,8 @@ class HybridMotion final : public Method {
   bool may_hold(const Choice& choice);
   bool gives_way_unforced(const std::vector<Choice>& list, const Found& found, const std::vector<std::size_t>& touching,
                           double bound);
+  void note_choice(const std::vector<Choice>& list, Found& found, const std::vector<std::size_t>& touching,
+                   double bound);
   std::optional<std::vector<std::size_t>> beyond_limits(Found& found, const std::vector<std::size_t>& touching,
                                                         double bound);
   std::optional<Found> search_mode(const std::vector<Choice>& list, const std::vector<std::size_t>& touching,
@@ -265,6 +267,7 @@ class HybridMotion final : public Method {
   std::vector<double> place_, speed_, acceleration_;  // [kinds] |q|, |q'|, |q''|
   std::vector<double> usual_q_, usual_v_;             // [n] or empty
   std::vector<double> compliance_;                    // [contacts] what a force λ = 1 does to g̈, where it was needed
+  bool told_choice_ = false;                          // that static friction leaves one
   bool knows_compliance_ = false;                     // of all that touch at this instant
   struct Bounces {
     std::vector<std::pair<double, double>> last;  // (t, speed) of the last impacts

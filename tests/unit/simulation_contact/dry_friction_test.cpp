@@ -612,3 +612,25 @@ TEST_CASE("friction that is nothing but rounding is told as 0, with what is know
   }
   CHECK(rounding > 0);
 }
+
+TEST_CASE("where static friction leaves a choice as a slip stops, it is told with both, and nowhere else") {
+  const std::string row =
+      "dimensionless\ncoord u, v, w : length\npoint P mass 1.96 at (u, 0)\npoint Q mass 1.02 at (u + v, 0)\n"
+      "point R mass 0.8 at (u + v + w, 0)\nforce on P = (2.79*t, 0)\nV += 15.825*(u + v + w - 0.42)^2\n";
+  const std::string first = "friction u limit 12.98 static 25.22\n", second = "friction v limit 3.57 static 3.57\n",
+                    third = "friction w limit 2.04 static 5.02\n";
+  const auto tells = [](const SimulationResult& r, const std::string& part) {
+    return std::any_of(r.remarks.begin(), r.remarks.end(), [&](const std::string& s) {
+      return s.find("Static friction leaves a choice at t = 0.99") == 0 && s.find(part) != std::string::npos;
+    });
+  };
+  const auto forwards = run_text(row + first + second + third, 3),
+             backwards = run_text(row + third + second + first, 3);
+  CHECK(tells(forwards, "v is held and w begins to slide"));
+  CHECK(tells(backwards, "w is held and v begins to slide"));
+  // Without static friction above the kinetic one only one motion is right, in whatever order they are written.
+  const std::string plain = "friction w limit 5.02\n";
+  const auto one = run_text(row + first + second + plain, 3), other = run_text(row + plain + second + first, 3);
+  for (const auto* r : {&one, &other}) CHECK(r->remarks.empty());
+  for (std::size_t i = 0; i < 3; ++i) CHECK(one.final.q[i] == doctest::Approx(other.final.q[i]).epsilon(1e-13));
+}
