@@ -1,5 +1,6 @@
 #include "simulation/rounded_numbers.hpp"
 
+#include "simulation/literals.hpp"
 #include "simulation/motion_kernel.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
@@ -8,30 +9,9 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <set>
 
 namespace maupertuis {
 namespace {
-
-/// `exact` is a number, or something that is none: π, a root. Infinite values have nothing to be moved.
-bool is_rounded(Expr exact, double value) {
-  if (!std::isfinite(value)) return false;
-  const Rational* const number = exact.number_or_null();
-  return !number || *number != Rational::from_double(value);
-}
-
-/// Numbers in exponents choose which power is taken, and stay.
-std::vector<Expr> rounded_literals(const std::vector<Expr>& roots) {
-  const std::vector<Expr> nodes = topological_order(roots);
-  std::set<NodeId> exponents;
-  for (const Expr& e : nodes)
-    if (e.is(Kind::Power)) exponents.insert(e[1].id());
-  std::vector<Expr> out;
-  for (const Expr& e : nodes)
-    if ((e.is(Kind::Pi) || (e.is_number() && is_rounded(e, e.number().to_double()))) && !exponents.count(e.id()))
-      out.push_back(e);
-  return out;
-}
 
 /// Up or down by one unit in the last place.
 class Nudge {

@@ -15,7 +15,8 @@ namespace maupertuis {
 /// are exact and stay.
 class RoundedNumbers {
  public:
-  /// The kernel has neither integrands nor, unless the run ends at one, events. Cost: that of build_kernel.
+  /// Of a model with modes its literals are parameters already (literals.hpp), or stay. The kernel has neither
+  /// integrands nor, unless the run ends at one, events. Cost: that of build_kernel.
   RoundedNumbers(const Model& model, const EquationsOfMotion& equations, const RunPlan& plan,
                  const WantedFunctions& wanted);
 

@@ -14,6 +14,7 @@
 #include "simulation/energy_terms.hpp"
 #include "simulation/errors.hpp"
 #include "simulation/hybrid_motion.hpp"
+#include "simulation/literals.hpp"
 #include "simulation/methods.hpp"
 #include "simulation/motion_kernel.hpp"
 #include "simulation/observables.hpp"
@@ -361,17 +362,22 @@ void add_errors(SimulationResult& result, Probe* probe, const Model& model, cons
                 const SimulationOptions& options, const RunPlan& plan, const Observables& observables,
                 const WantedFunctions& wanted, const HybridMotion* hybrid) {
   const auto begin = Clock::now();
-  const RoundedNumbers numbers(model, equations, plan, wanted);
-  const CompanionPlan companion_plan{model,
-                                     equations,
-                                     options,
-                                     plan,
-                                     observables,
-                                     result,
-                                     comparison_grid(result.trajectory, plan, options.errors),
-                                     options.errors == ErrorEstimates::Rows,
-                                     hybrid ? hybrid->library() : nullptr,
-                                     hybrid ? hybrid->largest_accelerations() : std::vector<double>()};
+  const auto of_literals = hybrid ? with_literals_as_parameters(model, wanted) : nullptr;
+  const RoundedNumbers numbers(of_literals ? of_literals->model : model,
+                               of_literals ? of_literals->equations : equations, plan, wanted);
+  const CompanionPlan companion_plan{
+      model,
+      equations,
+      options,
+      plan,
+      observables,
+      result,
+      comparison_grid(result.trajectory, plan, options.errors),
+      options.errors == ErrorEstimates::Rows,
+      of_literals ? std::make_shared<ModeLibrary>(of_literals->model, of_literals->equations, of_literals->wanted)
+      : hybrid    ? hybrid->library()
+                  : nullptr,
+      hybrid ? hybrid->largest_accelerations() : std::vector<double>()};
   const Companions companions = run_companions(companion_plan, wanted, numbers);
   if (companions.interrupted) {
     result.ending = Ending::Interrupted;

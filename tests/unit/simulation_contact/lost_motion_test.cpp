@@ -1,10 +1,13 @@
 // Errors of motions that forget their start: what is left of it, and what companions that end early tell.
+#include <maupertuis/extended_simulation.hpp>
 #include <maupertuis/simulation.hpp>
 
 #include "../model_text.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <utility>
 
 using namespace maupertuis;
 
@@ -74,4 +77,34 @@ TEST_CASE("a coordinate that never moves is known although the others are lost")
   const SimulationResult r = run(text, ErrorEstimates::States);
   CHECK(r.final.errors->q[2] == 0);
   CHECK(std::isinf(r.final.errors->q[0]));
+}
+
+TEST_CASE("the errors of places after bounces on curved walls contain the true ones: literals are rounded too") {
+  const std::string body = "dimensionless\ncoord x, y : length\npoint P mass 1 at (x, y)\ngravity (0, -9.81)\n",
+                    circle = "contact x^2 + y^2 <= 1 restitution 1 name wall\n";
+  const std::pair<std::string, double> motions[] = {
+      {"contact y - 0.239*sin(1.305*x) >= 0 restitution 1 name floor\nstart x = -0.267, y = 0.878, x' = -0.913\n",
+       1.93},
+      {circle + "start x = -0.229, y = 0.397, x' = 0.273, y' = -0.915\n", 2.42},
+      {circle + "start x = 0.077, y = -0.107, x' = 0.447, y' = -0.011\n", 0.91},
+      {circle + "start x = -0.28, y = 0.291, x' = 0.682, y' = 0.494\n", 1.31},
+      {"contact sqrt(x^2 + (y + 1)^2) >= 1 restitution 0.9 name floor\nstart x = 0.11, y = 0.4, x' = 0.13\n", 1.7}};
+  for (const auto& [text, end] : motions) {
+    CAPTURE(text);
+    ModelText m(body + text);
+    SimulationOptions options;
+    options.duration = end;
+    const auto r = simulate(m.model, m.equations, options, m.diagnostics);
+    REQUIRE(r);
+    REQUIRE(r->final.errors);
+    ExtendedSimulationOptions quad;
+    quad.duration = Rational::from_double(end);
+    const auto exact = simulate_extended(m.model, m.equations, quad, m.diagnostics);
+    REQUIRE(exact);
+    for (std::size_t i = 0; i < 2; ++i) {
+      CHECK(std::abs(std::strtold(exact->final.q[i].text.c_str(), nullptr) - r->final.q[i]) <= r->final.errors->q[i]);
+      CHECK(std::abs(std::strtold(exact->final.v[i].text.c_str(), nullptr) - r->final.v[i]) <= r->final.errors->v[i]);
+      CHECK(r->final.errors->q[i] < 1e-12);
+    }
+  }
 }
