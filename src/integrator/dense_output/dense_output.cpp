@@ -37,10 +37,10 @@ void DenseOutput::copy(const double* first, std::size_t stride) {
   refer_to(coefficients_.data(), padded(freedoms_));
 }
 
-void DenseOutput::put_at_rest(std::size_t i) {
+void DenseOutput::leave_out_acceleration(std::size_t i, bool rests) {
   keep();
-  for (int k = 1; k <= degree_; ++k) coefficients_[static_cast<std::size_t>(k) * stride_ + i] = 0;
-  v[i] = {};
+  for (int k = rests ? 1 : 2; k <= degree_; ++k) coefficients_[static_cast<std::size_t>(k) * stride_ + i] = 0;
+  if (rests) v[i] = {};
 }
 
 /// The increments are small against q and q̇, and summed with compensation.

@@ -36,8 +36,8 @@ class DenseOutput {
   void keep() {
     if (first_ != coefficients_.data()) copy(first_, stride_);
   }
-  /// Coordinate i stays where it is.
-  void put_at_rest(std::size_t i);
+  /// Coordinate i goes on with its velocity, or stays where it is.
+  void leave_out_acceleration(std::size_t i, bool rests);
   /// Of the integrands; their integrals start from `integrals`.
   double* integrand(int k) { return integrands_.data() + static_cast<std::size_t>(k) * integrals.size(); }
 

@@ -1,27 +1,29 @@
 #pragma once
-#include <maupertuis/kernel.hpp>
+#include "integrator/taylor/constraint_error.hpp"
 
 #include <cstddef>
-#include <span>
 #include <vector>
 
 namespace maupertuis::taylor {
 
-/// A coordinate that rests, and what rounding of forces that balance makes of its acceleration.
-struct AtRest {
+/// A coordinate whose forces balance over a step, what rounding of these makes of its acceleration, and whether its
+/// velocity is rounding too.
+struct Balanced {
   std::size_t coordinate;
   double rounding;
+  bool rests;
 };
 
-/// Coordinates that constraints tie together and that all rest over a step of length h, but for what rounding leaves of
-/// forces that balance: with q̈ off by some ε of what the forces would do alone a long step would carry them away by its
+/// Coordinates that constraints tie together, and whose accelerations all are nothing but what rounding leaves of
+/// forces that balance: off by some ε of what the forces would do alone, one long step would carry them away by its
 /// square.
 ///
-///     Σ_k |coefficient k of q̇_i| h^k  ≤  16 ε usual_i h
+///     Σ_{k≥1} |coefficient k of q̇_i| h^k  ≤  16 ε a_i h
+///     |q̇_i|  ≤  16 ε max(v_i, a_i h')                      at rest: h' is the step before
 ///
-/// `usual`: [n] the largest accelerations that forces make in the run, or would make if they did not balance; empty
-/// where they are not known: then nothing rests. Of what a constraint ties together all rests, or nothing.
-std::vector<AtRest> resting(const KernelWorkspace& work, std::size_t freedoms, std::size_t constraints, double h,
-                            std::span<const double> usual);
+/// `usual`: the largest velocities v and accelerations a in the run, the latter of forces that balance too; empty where
+/// they are not known: then nothing is left out. What a constraint ties together is treated alike.
+std::vector<Balanced> balanced(const KernelWorkspace& work, std::size_t freedoms, std::size_t constraints, double h,
+                               double step_before, const UsualSizes& usual);
 
 }  // namespace maupertuis::taylor

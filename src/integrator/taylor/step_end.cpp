@@ -34,20 +34,20 @@ bool TaylorStepper::Impl::settles(double bound, const taylor::Crossing& crossing
   return end_status == KernelStatus::Ok && equations_hold(probe);
 }
 
-/// By the polynomial; of what rests those of the equations, where they are rounding.
+/// By the polynomial; where forces balance those of the equations, if they are rounding.
 std::vector<double> TaylorStepper::Impl::accelerations_at_end(const KernelWorkspace& at_end, double tau) const {
   const std::span<const double> by_polynomial = last.dense.accelerations(tau);
   std::vector<double> out(by_polynomial.begin(), by_polynomial.end());
-  for (const auto& [i, rounding] : at_rest)
-    if (const double a = 2 * at_end.coordinate(2)[i]; std::abs(a) <= rounding) out[i] = a;
+  for (const taylor::Balanced& x : balanced)
+    if (const double a = 2 * at_end.coordinate(2)[x.coordinate]; std::abs(a) <= x.rounding) out[x.coordinate] = a;
   return out;
 }
 
 bool TaylorStepper::Impl::equations_hold(const KernelWorkspace& at_end) {
   const double tau = last.tau_of(state.t);
-  std::vector<double> with_rests;
-  if (!at_rest.empty()) with_rests = accelerations_at_end(at_end, tau);
-  const std::span<const double> by_polynomial = at_rest.empty() ? last.dense.accelerations(tau) : with_rests;
+  std::vector<double> where_balanced;
+  if (!balanced.empty()) where_balanced = accelerations_at_end(at_end, tau);
+  const std::span<const double> by_polynomial = balanced.empty() ? last.dense.accelerations(tau) : where_balanced;
   if (tau == 0 || end_check.agrees(by_polynomial, at_end.coordinate(2), 1, tau)) return true;
   const bool rounds = taylor::agrees_but_for_rounding(end_check, by_polynomial, at_end.coordinate(2), 1, probe,
                                                       state.t.hi, state.q_now, state.v_now, tau, safe.disks());

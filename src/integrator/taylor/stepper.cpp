@@ -167,9 +167,9 @@ Step TaylorStepper::Impl::step(double bound) {
 
 /// False: the equations do not hold at its end.
 bool TaylorStepper::Impl::make_step(double bound, double h, Step& result) {
+  balanced = taylor::balanced(work, n, m, std::abs(h), std::abs(state.t.hi - last.begin.hi), constraints.usual);
   last.keep(work, state);
-  at_rest = taylor::resting(work, n, m, std::abs(h), constraints.usual.a);
-  for (const taylor::AtRest& x : at_rest) last.dense.put_at_rest(x.coordinate);
+  for (const taylor::Balanced& x : balanced) last.dense.leave_out_acceleration(x.coordinate, x.rests);
   watched.set_sides(probe);
   last.record_start(work);
   has_start_sample = true;

@@ -94,7 +94,7 @@ struct TaylorStepper::Impl {
   bool expanded = false;                       // the workspace holds the motion through the present state already
   bool noisy = false;                          // halving did not mend the last steps, see equations_hold()
   int attempts = 0;                            // at the present step that were taken back
-  std::vector<taylor::AtRest> at_rest;         // in the last step
+  std::vector<taylor::Balanced> balanced;      // in the last step
   int stuck = 0;                               // crossings in a row that did not move time
   KernelStatus end_status = KernelStatus::Ok;  // of the last look at an end
   std::size_t steps = 0, switches = 0, rejected = 0;

@@ -594,6 +594,12 @@ TEST_CASE("what is carried along slowly is not at rest") {
       20);
   CHECK(r.first_mode == "table sticking");
   CHECK(r.final.q[0] / (1e-11 * std::sin(20.0)) == doctest::Approx(1).epsilon(1e-4));
+  const auto steady = run_text(
+      "dimensionless\ncoord x, y : length\npoint P mass 1 at (x, y)\ngravity (0, -9.81)\n"
+      "contact y - 0.2*x >= 0 friction 0.5 slip (x' + 0.2*y')/sqrt(1 + 0.2^2) - 1e-12 name table\n"
+      "start x' = 1e-12/sqrt(1 + 0.2^2), y' = 0.2e-12/sqrt(1 + 0.2^2)\n",
+      1e4);
+  CHECK(steady.final.q[0] / (1e-8 / std::sqrt(1.04)) == doctest::Approx(1).epsilon(1e-13));
 }
 
 TEST_CASE("friction that is nothing but rounding is told as 0, with what is known of it") {
