@@ -259,10 +259,14 @@ bool TaylorStepper::Impl::passes_shrinking(double chosen, double bound, Step& re
   const bool by_multipliers =
       m > 0 && taylor::step_within_multipliers(work, n, m, control, 3.6 * chosen) < 3.6 * chosen;
   if (!by_multipliers && !(chosen < endless * longest)) return false;
+  // Steps that shrink slowly, as beside a slip that friction barely stops, are not on their way to such a place.
+  constexpr double slowly = 0.95;
+  if (chosen > slowly * tried && chosen < 2 * tried) return false;
   // A force that jumps beside constraints, friction that turns round, is no such place.
   const Place place = by_multipliers ? Place::OfConstraints : Place::OfFormulas;
   for (const double times : {by_multipliers ? 3.6 : 5, by_multipliers ? 4.4 : 15, 8.0})
     if (seems_smooth(times * chosen) && passes(times * chosen, bound, place, result)) return true;
+  tried = chosen;
   return false;
 }
 

@@ -209,7 +209,7 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   s.shrinking.start(t);
   s.safe.forget();
   s.end_check.forget();
-  s.length = s.longest = 0;
+  s.length = s.longest = s.tried = 0;
   s.first = true;
   s.expanded = s.noisy = false;
   s.stuck = 0;

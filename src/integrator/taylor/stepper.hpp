@@ -87,6 +87,7 @@ struct TaylorStepper::Impl {
   taylor::ShrinkingSteps shrinking;
   double length = 0;   // the last one that the control chose
   double longest = 0;  // so far
+  double tried = 0;    // the last one at which no place was passed
 
   // How the run goes.
   bool has_start_sample = false;               // before the first step it is made when it is asked for
