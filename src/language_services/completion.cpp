@@ -80,13 +80,39 @@ class Collector {
  public:
   Collector(Document& document, Place place) : document_(document), place_(std::move(place)) {}
 
-  Completions run() {
+  Completions run(std::uint32_t offset) {
     out_.replaced = place_.word;
-    if (place_.in_text) return std::move(out_);
-    if (place_.before == nowhere) {
+    if (place_.in_text || ends_without_word(offset)) return std::move(out_);
+    if (place_.before == nowhere)
       add_statements();
-      return std::move(out_);
-    }
+    else
+      add_within_statement();
+    if (is_finished(offset)) out_.items.clear();
+    return std::move(out_);
+  }
+
+ private:
+  /// Behind a number, a derivative, a bracket or a text that is closed a blank comes before anything else.
+  bool ends_without_word(std::uint32_t offset) const {
+    const std::string_view text = document_.source().text();
+    return place_.word.begin == place_.word.end && offset > 0 &&
+           (is_word_byte(text[offset - 1]) ||
+            std::string_view("')]\"").find(text[offset - 1]) != std::string_view::npos);
+  }
+
+  /// The word is one of those offered, in any spelling, and the cursor is at its end: it may be all that was meant, and
+  /// whoever then types Enter wants a new line. What is longer is offered with its next letter.
+  bool is_finished(std::uint32_t offset) const {
+    if (place_.word.begin == place_.word.end || offset != place_.word.end) return false;
+    const std::string_view word = document_.source().slice(place_.word);
+    const std::size_t at = roles().token_at(offset);
+    const std::string_view read =
+        at != nowhere && token(at).span == place_.word ? std::string_view(token(at).text) : word;
+    return std::any_of(out_.items.begin(), out_.items.end(),
+                       [&](const Completion& c) { return c.label == word || c.label == read; });
+  }
+
+  void add_within_statement() {
     const TextToken& before = token(place_.before);
     if (before.is(".")) {
       add_members();
@@ -98,12 +124,10 @@ class Collector {
     } else if (!declares_name_here()) {
       add_inside();
     }
-    return std::move(out_);
   }
 
- private:
   const TextToken& token(std::size_t i) const { return document_.reading().tokens[i]; }
-  const Roles& roles() { return document_.roles(); }
+  const Roles& roles() const { return document_.roles(); }
 
   void add(std::string label, CompletionKind kind, std::string detail, std::string help, int rank) {
     if (!seen_.insert(label).second) return;
@@ -172,14 +196,56 @@ class Collector {
   }
 
   void add_inside() {
-    const TextToken& before = token(place_.before);
     const bool operand = after_operand();
-    const bool number = before.kind == TextToken::Kind::Number || roles().of(place_.before) == WordRole::Unit ||
-                        (operand && before.is(")"));
-    if (number || before.is("/")) add_units(number ? 0 : 40);
+    if (is_place_of_unit()) add_units(operand || within_unit() ? 0 : 40);
     add_words(operand ? 5 : 20);
     add_names(operand ? 20 : 5);
     add_functions(operand ? 30 : 10);
+  }
+
+  bool within_unit() const {
+    return place_.before > 0 && (token(place_.before).is("/") || token(place_.before).is("*")) &&
+           token(place_.before - 1).unit;
+  }
+
+  /// Whether the grammar takes a unit here: behind the number of a quantity, and not behind an exponent, in a formula
+  /// or behind `rel`.
+  bool is_place_of_unit() const {
+    if (place_.before > 0 && token(place_.before - 1).is("rel")) return false;
+    const std::string probe = edited(document_.source().text(), {{place_.word, "kg"}});
+    const syntax::TextReading read = syntax::read_text(SourceText("", probe));
+    return std::any_of(read.tokens.begin(), read.tokens.end(),
+                       [&](const TextToken& t) { return t.unit && t.span.begin == place_.word.begin; });
+  }
+
+  /// What is measured by the number before the cursor, where the words before it say so: a time behind `run`, an angle
+  /// behind `start θ =`.
+  std::optional<Dimension> expected_dimension() const {
+    const std::size_t first = document_.reading().statements[place_.statement].begin;
+    std::size_t i = place_.before;
+    if (token(i).kind != TextToken::Kind::Number || i == first) return std::nullopt;
+    for (--i; i > first && (token(i).is("-") || token(i).is("+"));) --i;
+    for (const std::string_view word : {std::string_view("run"), std::string_view("within"), std::string_view("at"),
+                                        std::string_view("output"), std::string_view("every")})
+      if (token(i).is(word)) return dimensions::time();
+    if (place_.statement_word != "start" || !token(i).is("=")) return std::nullopt;
+    std::int64_t derivatives = 0;
+    for (--i; i > first && token(i).is("'"); --i) ++derivatives;
+    const Declared* name = roles().declared(i);
+    const auto quantity = name && name->kind == NameKind::Coordinate ? dimension_of_kind(*name) : std::nullopt;
+    return quantity ? std::optional(*quantity / pow(dimensions::time(), derivatives)) : std::nullopt;
+  }
+
+  /// `length` of `coord x, y : length`.
+  std::optional<Dimension> dimension_of_kind(const Declared& coordinate) const {
+    for (std::size_t i = coordinate.token; i + 1 < document_.reading().statements[coordinate.statement].end; ++i) {
+      if (!token(i).is(":")) continue;
+      if (token(i + 1).is("angle")) return dimensions::angle();
+      if (token(i + 1).is("length")) return dimensions::length();
+      if (token(i + 1).is("charge")) return dimensions::charge();
+      return std::nullopt;
+    }
+    return std::nullopt;
   }
 
   void add_words(int rank) {
@@ -211,20 +277,24 @@ class Collector {
 
   void add_units(int rank) {
     if (roles().dimensionless()) return;
+    const std::optional<Dimension> expected = expected_dimension();
     const auto add_unit = [&](const std::string& word, int more) {
       const auto unit = find_unit(word);
-      if (unit) add(word, CompletionKind::Unit, "unit" + of_quantity(*unit), "", rank + more);
+      if (!unit) return;
+      const bool fits = !expected || unit->dimension == *expected;
+      add(word, CompletionKind::Unit, "unit" + of_quantity(unit->dimension), "", rank + more + (fits ? 0 : 2));
     };
-    for (const char* word : {"kg", "g", "m",   "cm",  "mm", "km",  "s",     "ms", "N",      "kN",
-                             "J",  "W", "rad", "deg", "Hz", "rpm", "rad/s", "mH", "kg m^2", "m/s^2"})
+    if (expected) add(to_string(*expected), CompletionKind::Unit, "unit" + of_quantity(*expected), "", rank);
+    for (const char* word :
+         {"kg", "g", "m", "cm", "mm", "km", "s", "ms", "N", "kN", "J", "W", "rad", "deg", "Hz", "rpm"})
       add_unit(word, 0);
     for (const std::string& word : unit_words()) add_unit(word, 1);
     const std::string typed(document_.source().slice(place_.word));
     if (!typed.empty()) add_unit(typed, 1);
   }
 
-  static std::string of_quantity(const Unit& unit) {
-    const std::string name = physical_name(unit.dimension);
+  static std::string of_quantity(const Dimension& dimension) {
+    const std::string name = physical_name(dimension);
     return name.empty() ? "" : " of " + name;
   }
 
@@ -255,7 +325,7 @@ class Collector {
 
 Completions complete(Document& document, std::uint32_t offset) {
   offset = std::min(offset, document.source().whole().end);
-  return Collector(document, place_of(document, offset)).run();
+  return Collector(document, place_of(document, offset)).run(offset);
 }
 
 // The function whose bracket is open at the place, and how many commas stand in it.

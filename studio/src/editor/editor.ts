@@ -3,7 +3,9 @@ import {
   autocompletion,
   closeBrackets,
   closeBracketsKeymap,
-  completionKeymap,
+  completionStatus,
+  moveCompletionSelection,
+  selectedCompletionIndex,
   snippetCompletion,
   type Completion,
   type CompletionContext,
@@ -150,7 +152,13 @@ export class Editor {
       search({top: true}),
       EditorState.tabSize.of(4),
       EditorView.lineWrapping,
-      autocompletion({override: [context => this.complete(context)], activateOnTypingDelay: 60, icons: false}),
+      // What is offered is not chosen yet: Enter is a new line until an arrow key, or a click, chooses an entry.
+      autocompletion({
+        override: [context => this.complete(context)],
+        activateOnTypingDelay: 60,
+        icons: false,
+        selectOnOpen: false,
+      }),
       hoverTooltip((_, at) => this.hover(at), {hoverTime: 350}),
       keymap.of([
         {
@@ -182,13 +190,12 @@ export class Editor {
           },
         },
         {key: 'Mod-.', run: () => this.fixHere()},
-        {key: 'Tab', run: acceptCompletion},
+        {key: 'Tab', run: acceptFirst},
         ...closeBracketsKeymap,
         ...defaultKeymap,
         ...searchKeymap,
         ...historyKeymap,
         ...foldKeymap,
-        ...completionKeymap,
         ...lintKeymap,
         indentWithTab,
       ]),
@@ -286,7 +293,8 @@ export class Editor {
       at: context.pos,
       budget: 3,
     });
-    if (!answer.ok || context.aborted || answer.items.length === 0) return null;
+    // No result, in the place of an empty one, would end what was typed meanwhile without another question.
+    if (!answer.ok) return {from: context.pos, options: []};
     const typed = context.state.sliceDoc(answer.from, context.pos).toLowerCase();
     const items = answer.items.filter(item => matches(item, typed)).sort((a, b) => a.rank - b.rank);
     return {from: answer.from, options: items.map((item, i) => option(item, items.length - i)), filter: false};
@@ -366,6 +374,13 @@ export class Editor {
       );
     this.apply(answer.edits);
   }
+}
+
+/** Tab takes the entry that is chosen, or the first. */
+function acceptFirst(view: EditorView): boolean {
+  if (completionStatus(view.state) !== 'active') return false;
+  if (selectedCompletionIndex(view.state) === null) moveCompletionSelection(true)(view);
+  return acceptCompletion(view);
 }
 
 const fixesFor = (m: Diagnostic, fixes: Fix[]): Fix[] => fixes.filter(fix => fix.code === m.code && fix.from === m.from);

@@ -19,6 +19,43 @@ const openFile = async (page, name) => {
 };
 
 export const texts = {
+  async 'a model is typed'({open}, variant, picture) {
+    const page = await open({hash: '#example=pendulum'}),
+      lines = [
+        'param m = 1 kg, l = 1 m, g = 9.81 m/s^2',
+        'coord theta : angle',
+        'point bob mass m at l (sin theta, -cos theta)',
+        'start theta = 60 deg',
+        'run 10 s',
+        'draw O - bob, trail bob',
+        'expect energy conserved rel 1e-12',
+        "let v = x'^2",
+        'let U = m g l the', // θ is offered, and was not chosen
+      ];
+    await page.locator('.cm-content').click();
+    await page.keyboard.press('Control+a');
+    await page.keyboard.press('Delete');
+    for (const line of lines) {
+      await page.keyboard.type(line, {delay: 80});
+      await page.waitForTimeout(250);
+      await page.keyboard.press('Enter');
+    }
+    check('Enter is a new line', (await text(page)) === lines.join('\n') + '\n', await text(page));
+    await page.keyboard.type('let w = the', {delay: 30});
+    await page.waitForFunction(() => /θ/.test(document.querySelector('.cm-tooltip-autocomplete')?.textContent ?? ''));
+    await page.waitForTimeout(150);
+    await picture(page, 'offered');
+    await page.keyboard.press('Tab');
+    check('Tab takes the first', (await text(page)).endsWith('\nlet w = θ'), await text(page));
+    await page.keyboard.type(' + the', {delay: 30});
+    await page.waitForFunction(() => /θ/.test(document.querySelector('.cm-tooltip-autocomplete')?.textContent ?? ''));
+    await page.waitForTimeout(150);
+    await page.keyboard.press('ArrowDown');
+    await page.keyboard.press('Enter');
+    check('Enter takes what an arrow chose', (await text(page)).endsWith('\nlet w = θ + θ'), await text(page));
+    await page.context().close();
+  },
+
   async 'undo stays in its model'({open}) {
     const page = await open({hash: '#example=pendulum'});
     await typeAtEnd(page, '\n# mine');

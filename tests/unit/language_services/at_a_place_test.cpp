@@ -82,6 +82,52 @@ TEST_CASE("names in scope and functions in formulas; none where a new name is du
   CHECK(offered("system a \"t|\"\n").empty());
 }
 
+TEST_CASE("nothing is offered behind what is finished: a key for a new line is one") {
+  const std::string lines[] = {"system pendulum \"Simple pendulum\"",
+                               "param m = 1 kg, l = 1 m, g = 9.81 m/s^2",
+                               "coord theta : angle",
+                               "point bob mass m at l (sin theta, -cos theta)",
+                               "gravity (0, -g)",
+                               "start theta = 60 deg",
+                               "run 10 s",
+                               "draw O - bob, trail bob",
+                               "expect energy conserved rel 1e-12",
+                               "let v2 = theta'^2",
+                               "let w = theta'"};
+  std::string typed;
+  for (const std::string& line : lines) {
+    typed += line;
+    CAPTURE(line);
+    CHECK(offered(typed + "|").empty());
+    typed += "\n";
+  }
+  CHECK(offered(typed + "expect the|").count("θ") == 1);
+}
+
+TEST_CASE("units stand where the grammar takes one, those that fit first") {
+  for (const std::string none :
+       {"let a = 2 |", "V = 1/2 |", "V = m^2 |", "expect energy conserved rel 1e-12 |", "let b = m^|"}) {
+    CAPTURE(none);
+    CHECK(offered(std::string(pendulum) + none).count("kg") == 0);
+  }
+  CHECK(offered(std::string(pendulum) + "body B mass 1 |").count("kg") == 1);
+  CHECK(offered(std::string(pendulum) + "param a = 9.81 m/|").count("s") == 1);
+  CHECK(offered(std::string(pendulum) + "param c = 9.81 m^2 |").count("kg") == 1);
+  const auto first = [](const std::string& line) {
+    const Marked at("coord q : angle, x : length\n" + line);
+    Document asked = document(at.text);
+    const Completions found = complete(asked, at.offset);
+    const auto best = std::min_element(found.items.begin(), found.items.end(),
+                                       [](const Completion& a, const Completion& b) { return a.rank < b.rank; });
+    return best == found.items.end() ? std::string() : best->label;
+  };
+  CHECK(first("run 10 |") == "s");
+  CHECK(first("start q = 60 |") == "rad");
+  CHECK(first("start q' = -60 |") == "rad/s");
+  CHECK(first("start q = 60 deg, x' = 2 |") == "m/s");
+  CHECK(first("param a = 2 |") == "kg");
+}
+
 TEST_CASE("members after a point") {
   const std::string body = "coord x : length\nbody B mass 1 kg inertia 1 kg m^2 at (x, 0) rotation angle 0\n";
   CHECK(offered(body + "V = B.|") == std::set<std::string>{"x", "y", "z", "ω", "ω_world", "qw", "qx", "qy", "qz"});
