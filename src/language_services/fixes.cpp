@@ -65,7 +65,7 @@ std::vector<std::string> readings(std::string_view proposed) {
   const auto add = [&](std::string_view text) {
     const std::string reading = without_ticks(before_explanation(text));
     const bool form = reading.empty() || reading.find("…") != std::string::npos ||  // with places to fill in
-                      is_sentence(text);
+                      reading.find('`') != std::string::npos || is_sentence(text);  // words with `code` among them
     if (!form && std::find(out.begin(), out.end(), reading) == out.end()) out.push_back(reading);
   };
   const std::size_t either = proposed.find(" or ");
@@ -129,7 +129,14 @@ class Proposals {
     out_.push_back({std::move(title), {{span, std::move(text)}}});
   }
 
-  void propose(const std::string& text) { add(fmt::format("Write {}", text), place_of(text), text); }
+  void propose(const std::string& text) {
+    const Span place = place_of(text);
+    const std::string_view replaced = document_.source().slice(place);
+    const bool number = text[0] >= '0' && text[0] <= '9';
+    // The 3 of `3 [m]` in the place of m is the help's own: a number is the author's to choose.
+    if (number && replaced.find_first_of("0123456789") == std::string_view::npos) return;
+    add(fmt::format("Write {}", text), place, text);
+  }
 
   /// The words at fault; with the number before them where the proposal begins with it: 2 [m] for 2 m; with their
   /// arguments where the proposal has these in brackets too: cos(θ) for cosine(θ).
@@ -288,7 +295,10 @@ class Proposals {
                                                                               {"}", ")"},  {"&", "and"}, {"&&", "and"}};
     for (const auto& [theirs, ours] : signs)
       if (text == theirs) propose(std::string(ours));
-    if (text == ";" && !ends_line()) add("Write the statements on lines of their own", span_, "\n");
+    if (text != ";" || ends_line()) return;
+    const Span with_blanks{span_.begin, skip_blanks(span_.end), span_.source};
+    add("Write the statements on lines of their own", with_blanks, "\n");
+    add("Write ,", span_, ",");
   }
 
   /// x(0) = 1 m, or an equation that could be several things.
@@ -342,14 +352,17 @@ class Proposals {
   bool quotient_of_leibniz() {
     const std::string text(written());
     if (diagnostic_.code != "E0201" || text.size() < 2 || text[0] != 'd') return false;
-    if (after().substr(text.size()).rfind("/dt", 0) != 0) return false;
+    const std::string_view quotient = after().substr(text.size());
+    if (quotient.rfind("/dt", 0) != 0) return false;
+    // dr/dt^2: the square of the velocity, or an acceleration with a d²r above it that was forgotten.
+    if (quotient.size() > 3 && (quotient[3] == '^' || quotient[3] == '\xc2')) return true;
     const std::string derivative = text.substr(1) + "'";
     add(fmt::format("Write {}", derivative), {span_.begin, span_.end + 3, span_.source}, derivative);
     return true;
   }
 
-  /// The unit that a bare number lacks: "the duration of a run is a time (s), this is a bare number", "Give `m` its unit
-  /// where it is declared, such as kg; …".
+  /// The unit that a bare number lacks: "the duration of a run is a time (s), this is a bare number", "Give `m` its
+  /// unit where it is declared, such as kg; …".
   std::string missing_unit() const {
     const std::string &message = diagnostic_.message, &help = diagnostic_.help;
     const std::size_t close = message.find("), this is a bare number"), open = message.rfind('(', close);
@@ -393,10 +406,31 @@ std::size_t count(const Diagnostics& diagnostics, const std::string& code) {
       std::count_if(items.begin(), items.end(), [&](const Diagnostic& d) { return d.code == code; }));
 }
 
-/// Whether all errors that are new are of what is read after `code`: a unit where a name was wrong.
-bool are_read_later(const Diagnostics& before, const Diagnostics& after, const std::string& code) {
+/// What is read one after the other: the grammar (01), names (02), units (03), …
+std::string_view stage_of(const std::string& code) { return std::string_view(code).substr(1, 2); }
+
+/// Where the texts of the edits stand once they are carried out.
+std::vector<Span> inserted(std::vector<TextEdit> edits) {
+  std::sort(edits.begin(), edits.end(), [](const auto& a, const auto& b) { return a.span.begin < b.span.begin; });
+  std::vector<Span> out;
+  std::int64_t shift = 0;
+  for (const TextEdit& edit : edits) {
+    const auto begin = static_cast<std::uint32_t>(edit.span.begin + shift);
+    out.push_back({begin, begin + static_cast<std::uint32_t>(edit.text.size()), edit.span.source});
+    shift += static_cast<std::int64_t>(edit.text.size()) - (edit.span.end - edit.span.begin);
+  }
+  return out;
+}
+
+/// Whether all errors that are new are of what is read after `code`, and none is of what was put in: a unit elsewhere
+/// where a name was wrong.
+bool are_read_later(const Diagnostics& before, const Diagnostics& after, const std::string& code,
+                    const std::vector<Span>& written) {
   return std::all_of(after.items().begin(), after.items().end(), [&](const Diagnostic& d) {
-    return d.severity != Severity::Error || d.code > code || count(after, d.code) <= count(before, d.code);
+    if (d.severity != Severity::Error || count(after, d.code) <= count(before, d.code)) return true;
+    const bool of_fix = d.span && std::any_of(written.begin(), written.end(),
+                                              [&](Span s) { return s.begin <= d.span->begin && d.span->end <= s.end; });
+    return !of_fix && stage_of(d.code) > stage_of(code);
   });
 }
 
@@ -411,7 +445,7 @@ bool mends(Document& document, const Diagnostic& diagnostic, const std::vector<T
     return left <= errors && count(after, Severity::Warning) <= count(before, Severity::Warning);
   // What stands behind a mistake is read for the first time when that is mended, and may have one of its own.
   const bool word = diagnostic.code == "E0110" && diagnostic.help.rfind("Did you mean", 0) == 0;
-  return left < errors || (left == errors && (word || are_read_later(before, after, diagnostic.code)));
+  return left <= errors && (word || are_read_later(before, after, diagnostic.code, inserted(edits)));
 }
 
 }  // namespace

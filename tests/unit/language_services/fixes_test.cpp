@@ -188,6 +188,36 @@ TEST_CASE("a proposal that does not mend is not offered") {
   CHECK(asked.diagnostics().has_errors());
 }
 
+TEST_CASE("what is offered is a text of the model, with nothing of the help's own in it") {
+  const auto offered = [](const std::string& text) {
+    Document asked = document(text);
+    std::vector<std::string> out;
+    for (const Fix& fix : fixes(asked, asked.source().whole())) {
+      CHECK(fix.title.find('`') == std::string::npos);
+      out.push_back(edited(text, fix.edits));
+    }
+    return out;
+  };
+  const auto none_has = [&](const std::string& text, const std::string& part) {
+    CAPTURE(text);
+    CAPTURE(part);
+    for (const std::string& mended : offered(text)) CHECK(mended.find(part) == std::string::npos);
+  };
+  none_has("param m = 1 kg\ncoord x\nT = 1/2 m x'^2\n", "[unit]");
+  none_has("system a\nparam l = 1 m, g = 9.81 m/s^2\ncoord θ : angle\nT = 1/2 (1 [kg]) l^2 θ'^2\nV = -m g l cos θ\n",
+           "3 [m]");
+  none_has(model("V = m g l cos s\n"), "declare");
+  none_has("param r = 7000 km\nparam ω = 7.67 km/s / r\ncoord φ : angle\nT = 1/2 (1 [kg m^2]) φ'^2\n", "/ m");
+  none_has("param m = 1 kg\ncoord r : length\nT = 1/2 m dr/dt^2\n", "r'");
+  none_has(head + "point P mass m at (l sin θ; -l cos θ)\n", "\n-l");
+  const auto vector = offered(head + "point P mass m at (l sin θ; -l cos θ)\n");
+  CHECK(vector == std::vector<std::string>{head + "point P mass m at (l sin θ, -l cos θ)\n"});
+  const std::string end = "coord x : length\nT = 1/2 m (l/l) x'^2\n";
+  CHECK(offered("param m = 1 kg; l = 1 m\n" + end) == std::vector<std::string>{"param m = 1 kg, l = 1 m\n" + end});
+  CHECK(offered("param m = 1 kg; param l = 1 m\n" + end) ==
+        std::vector<std::string>{"param m = 1 kg\nparam l = 1 m\n" + end});
+}
+
 TEST_CASE("fixes of a range are those of the mistakes in it") {
   const std::string text = "system a\nparam m = 1 kgg, n = 2 mm\ncoord x : lenght\nT = 1/2 m x'^2\n";
   Document asked = document(text);
