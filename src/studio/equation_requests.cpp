@@ -1,4 +1,5 @@
 #include "studio/requests.hpp"
+#include "studio/verified.hpp"
 
 #include <maupertuis/contact_mode.hpp>
 #include <maupertuis/field_report.hpp>
@@ -104,12 +105,28 @@ Json equations_of_fields(Desk& desk, Study& study, bool steps) {
 Json modes_json(const MechanicalSystem& system) {
   constexpr std::size_t most = 16;
   Json list = Json::array();
-  if (!system.has_modes()) return list;
   for (const ContactMode& mode : modes_to_show(system, open_mode(system), most)) {
     const std::string text = mode_text(system, mode);
     list.push_back(text.empty() ? "free" : text);
   }
   return list;
+}
+
+/// When the equations of a model with contacts or dry friction hold.
+std::string when_they_hold(const std::string& mode) {
+  if (mode.empty())
+    return "These are the equations without contact and without dry friction. While a contact is closed, or friction "
+           "sticks or slides, others hold: those of its mode.";
+  if (mode == "free") return "These are the equations without contact and without dry friction.";
+  return "These are the equations of the mode `" + mode + "`.";
+}
+
+/// Of the text as it stands: a system that is in one mode has no other.
+void add_modes(Json& out, Desk& desk, const Work& work) {
+  const Model* whole = desk.document().model();
+  if (!whole || !whole->system.has_modes()) return;
+  out["modes"] = modes_json(whole->system);
+  out["holds"] = when_they_hold(text_of(work.request, "mode"));
 }
 
 /// In the order of the text; `notes` of the sections of a derivation say where they are read out.
@@ -149,8 +166,8 @@ Json equations(Desk& desk, const Work& work) {
     out["contacts"] = Json::array();
     for (std::size_t k = 0; k < model.system.contacts.size(); ++k)
       out["contacts"].push_back({{"name", model.system.contact_label(k)}});
-    out["modes"] = modes_json(model.system);
   }
+  add_modes(out, desk, work);
   out["notes"] = notes_json(study, *study.model());
   out["diagnostics"] = desk.diagnostics(study, found);
   return out;
@@ -190,24 +207,12 @@ Json conserved(Desk& desk, const Work& work) {
           {"diagnostics", diagnostics_json(said, study.texts(), desk.units())}};
 }
 
-namespace {
-
 Json result_json(const ExpectationResult& r) {
   return {{"line", r.line},       {"text", r.text},         {"claim", r.claim},         {"passed", r.passed},
           {"actual", r.actual},   {"expected", r.expected}, {"tolerance", r.tolerance}, {"uncertainty", r.uncertainty},
           {"message", r.message}, {"pitfall", r.pitfall}};
 }
 
-/// For exercises: whether it is right, and which known mistake it is, but not by what it differs.
-Json without_answer(const ExpectationResult& r) {
-  const std::string message =
-      r.passed            ? "It follows from Lagrange's equations of this system."
-      : r.pitfall.empty() ? "It does not follow from Lagrange's equations of this system, and it is no known mistake."
-                          : "It does not follow from Lagrange's equations of this system.";
-  return {{"passed", r.passed}, {"message", message}, {"pitfall", r.pitfall}, {"text", r.text}};
-}
-
-/// The lines are carried out with a study of their own: a model that expects errors is judged by its diagnostics.
 std::optional<Verification> verification_of(Study& study, const Interrupt& interrupt) {
   SimulationOptions options;
   options.interrupt = interrupt;
@@ -216,8 +221,6 @@ std::optional<Verification> verification_of(Study& study, const Interrupt& inter
   return out;
 }
 
-}  // namespace
-
 Json expectations(Desk& desk, const Work& work) {
   Study& study = desk.study(work.request);
   const auto found = verification_of(study, work.interrupt);
@@ -225,58 +228,6 @@ Json expectations(Desk& desk, const Work& work) {
   Json results = Json::array();
   for (const ExpectationResult& r : found->results) results.push_back(result_json(r));
   return {{"results", std::move(results)}, {"diagnostics", desk.diagnostics(study)}};
-}
-
-/// The claim becomes the last line of the text: its mistakes have places in it.
-Json claim(Desk& desk, const Work& work) {
-  const std::string typed = text_of(work.request, "text");
-  if (typed.find_first_of("\r\n") != std::string::npos)
-    throw Trouble{"refused", "A claim is one line.", "", "Write one equation, such as θ'' = -g/l sin θ.", "", nullptr};
-  if (typed.find_first_not_of(" \t") == std::string::npos)
-    throw Trouble{"refused", "Nothing is claimed yet.", "", "Write an equation, such as θ'' = -g/l sin θ.", "",
-                  nullptr};
-  std::string text(desk.source().text());
-  const std::string_view before = "claim ";
-  if (!text.empty() && text.back() != '\n') text += '\n';
-  const auto begin = static_cast<std::uint32_t>(text.size() + before.size());
-  text += before;
-  text += typed + "\n";
-  Study study(SourceText(desk.source().name(), text), work.interrupt);
-  study.model();
-  const auto collect = [&] {
-    const Units units{std::string_view(typed)};
-    Json list = Json::array();
-    for (const Diagnostic& d : study.diagnostics().items()) {
-      if (d.severity != Severity::Error) continue;
-      const bool in_claim = d.span && d.span->source == 0 && d.span->begin + before.size() >= begin;
-      const auto offset = [&](std::uint32_t at) { return units.of_byte(at > begin ? at - begin : 0); };
-      list.push_back({{"code", d.code},
-                      {"severity", "error"},
-                      {"in_claim", in_claim},
-                      {"from", in_claim ? Json(offset(d.span->begin)) : Json()},
-                      {"to", in_claim ? Json(offset(d.span->end)) : Json()},
-                      {"message", d.message},
-                      {"reason", d.reason},
-                      {"help", d.help}});
-    }
-    return list;
-  };
-  if (study.wrong()) {
-    Json list = collect();
-    const std::string first = list.empty() ? "The claim cannot be read." : list.front()["message"].get<std::string>();
-    throw Trouble{"model", first, "", "", list.empty() ? "" : list.front()["code"].get<std::string>(), list};
-  }
-  const auto found = verification_of(study, work.interrupt);
-  if (!found || found->results.empty()) {
-    Json list = collect();
-    throw Trouble{"model", list.empty() ? "The claim cannot be judged." : list.front()["message"].get<std::string>(),
-                  "",      "",
-                  "",      list};
-  }
-  // Its line is the last one of the text.
-  const auto last = std::max_element(found->results.begin(), found->results.end(),
-                                     [](const auto& a, const auto& b) { return a.line < b.line; });
-  return is_true(work.request, "exercise") ? without_answer(*last) : result_json(*last);
 }
 
 }  // namespace maupertuis::studio

@@ -23,6 +23,8 @@ Json equations(Desk& desk, const Work& work);
 Json phase_space(Desk& desk, const Work& work);
 Json conserved(Desk& desk, const Work& work);
 Json expectations(Desk& desk, const Work& work);
+
+// claim_request.cpp
 Json claim(Desk& desk, const Work& work);
 
 // motion_requests.cpp

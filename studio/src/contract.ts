@@ -168,7 +168,8 @@ export interface EquationsAnswer {
   first_notes?: string[];
   last_notes?: string[];
   contacts: {name: string}[];
-  modes?: string[];
+  modes?: string[]; // of contacts and dry friction
+  holds?: string; // when the equations hold, where there are modes
 }
 export interface Note {
   line: number;

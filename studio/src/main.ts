@@ -3,13 +3,14 @@ import type {Carrier} from './carriers/carrier';
 import {HttpCarrier} from './carriers/http';
 import {embeddedCore, WorkerCarrier} from './carriers/worker';
 import {Clock} from './clock';
-import {byId, copyText, h} from './dom';
+import {byId, copyText} from './dom';
 import {linesOf} from './lines';
 import {Stage} from './drawing/stage';
 import {Editor} from './editor/editor';
 import {EquationsPanel} from './panels/equations';
 import {expectationsPanel} from './panels/expectations';
 import {showMessages} from './panels/messages';
+import {modeOptions} from './panels/words';
 import {MotionPanel} from './panels/motion';
 import {ValuesPanel} from './panels/values';
 import {PlotsPanel} from './plots/panel';
@@ -139,10 +140,7 @@ function bar(): void {
   store.watch(['equations', 'mode'], ({equations, mode}) => {
     const modes = equations?.modes ?? [];
     byId('mode-row').hidden = modes.length === 0 && !mode;
-    byId('mode').replaceChildren(
-      h('option', {value: ''}, 'as the motion is'),
-      ...modes.map(one => h('option', {value: one, selected: one === mode}, one)),
-    );
+    byId('mode').replaceChildren(...modeOptions(modes, mode));
   });
   store.watch(['busy', 'progress'], ({busy, progress}) => {
     const sign = byId('busy');

@@ -204,6 +204,7 @@ export class Study {
     this.store.update(this.nothingFound());
     await this.askEquations();
     if (changes === this.changes) await this.askRun(full);
+    if (changes === this.changes) await this.askCertainty();
   }
 
   async askEquations(): Promise<void> {
@@ -326,6 +327,18 @@ export class Study {
     const {changes} = this;
     await this.askRun(full);
     if (changes === this.changes) await this.askEquations();
+    if (changes === this.changes) await this.askCertainty();
+  }
+
+  /** Until when digits of the motion are certain: a second run beside it finds that, and is not waited for. */
+  private async askCertainty(): Promise<void> {
+    const {changes} = this,
+      {run} = this.store.state;
+    if (!run || this.runOf !== changes || run.fields || unfinished(run)) return;
+    const answer = await this.asker.ask<RunAnswer>({do: 'run', frames: 2, budget: 20, errors: true, ...this.values});
+    const {run: shown} = this.store.state;
+    if (changes === this.changes && shown && answer.ok && !unfinished(answer) && answer.uncertain)
+      this.store.update({run: {...shown, uncertain: answer.uncertain}});
   }
 
   setValue(name: string, value: string | null, resting: boolean): void {
@@ -337,8 +350,12 @@ export class Study {
     this.changeValues({start: withValue(this.store.state.start, name, value)}, resting);
   }
 
-  setDuration(duration: string): void {
-    this.changeValues({duration}, true);
+  /** A number alone is in the unit of the variable that the motion runs in, as in the options of the program. */
+  setDuration(text: string): void {
+    const {run, equations} = this.store.state,
+      unit = run?.independent.unit ?? (equations && inTime(this.store.state) ? 's' : ''),
+      bare = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(text);
+    this.changeValues({duration: bare && unit ? `${text} ${unit}` : text}, true);
   }
 
   setMode(mode: string): void {
@@ -347,6 +364,7 @@ export class Study {
   }
 
   resetValues(): void {
+    if (this.store.state.mode) this.change({mode: ''}, {ofText: true});
     this.changeValues({set: {}, start: {}, duration: ''}, true);
   }
 
@@ -360,7 +378,7 @@ export class Study {
       .map(([name, value]) => `${name} = ${short(value)}`)
       .join(', ');
     const id = 1 + Math.max(0, ...pins.map(pin => pin.id));
-    const series = [5, 3, 4, 2, 6].find(k => !pins.some(pin => pin.series === k)) ?? 6;
+    const series = [3, 4, 2, 1, 6].find(k => !pins.some(pin => pin.series === k)) ?? 6;
     this.store.update({pins: [...pins, {id, label: said || 'as in the text', series, run, shown: true}]});
   }
 
@@ -487,8 +505,8 @@ export class Study {
   }
 
   /** A claim of an exercise: a wrong one is not told what would be right. */
-  claim(text: string): Promise<Answer<ClaimAnswer>> {
-    return this.asker.ask<ClaimAnswer>({do: 'claim', text, exercise: true});
+  claim(text: string, about: string): Promise<Answer<ClaimAnswer>> {
+    return this.asker.ask<ClaimAnswer>({do: 'claim', text, about, exercise: true});
   }
 }
 

@@ -3,8 +3,8 @@ import {byId, h, prose} from '../dom';
 import {loopDrawing} from '../drawing/loop';
 import type {State} from '../state';
 import type {Store} from '../store';
-import {betweenEnds, inTime, noDuration, unfinished, type Study} from '../study';
-import {numbers, pretty} from './words';
+import {betweenEnds, inTime, noDuration, unfinished, withUnit, type Study} from '../study';
+import {modeOptions, numbers, pretty} from './words';
 import {copyButton, lineElement, sectionsElements} from './formulas';
 
 /** The words of the page for what went wrong: what, why, what helps. */
@@ -103,6 +103,7 @@ export class EquationsPanel {
     const where = equations.definitions.length + equations.energies.length > 0;
     body.replaceChildren(
       equationsTrouble ? troubleElement(equationsTrouble) : '',
+      equations.holds ? this.modeOfEquations(equations.holds, equations.modes ?? []) : '',
       h('div', {class: 'numbered'}, ...equations.equations.map(lineElement)),
       equations.intermediates.length > 0
         ? h('div', {class: 'where'}, h('p', {class: 'muted'}, 'with'), ...equations.intermediates.map(lineElement))
@@ -120,6 +121,23 @@ export class EquationsPanel {
         'div',
         {class: 'tools'},
         copyButton(() => all, this.say),
+      ),
+    );
+  }
+
+  /** Equations of contacts and friction belong to one mode, which is told and can be chosen. */
+  private modeOfEquations(holds: string, modes: string[]): HTMLElement {
+    const {mode} = this.store.state,
+      choose = (event: Event): void => this.study.setMode((event.target as HTMLSelectElement).value);
+    return h(
+      'div',
+      {class: 'message holds'},
+      h('p', {}, ...prose(holds), mode ? ' The motion stays in it, whatever the forces are.' : ''),
+      h(
+        'p',
+        {},
+        h('label', {for: 'mode-of-equations'}, 'Equations and motion: '),
+        h('select', {id: 'mode-of-equations', onchange: choose}, ...modeOptions(modes, mode)),
       ),
     );
   }
@@ -240,7 +258,7 @@ export class EquationsPanel {
           h(
             'p',
             {class: 'what'},
-            `From t = ${Number(run.uncertain.from.toPrecision(3))} on no digit of ` +
+            `From ${run.independent.name} = ${withUnit(Number(run.uncertain.from.toPrecision(3)), run.independent.unit)} on no digit of ` +
               `${run.uncertain.everything ? 'the motion' : run.uncertain.columns.map(pretty).join(', ')} is certain.`,
           ),
         )
@@ -260,7 +278,9 @@ export class EquationsPanel {
           ? this.withoutMotion(state) ?? troubleElement(runTrouble)
           : ending
             ? ending.cloneNode(true)
-            : '',
+            : lost
+              ? lost.cloneNode(true)
+              : '',
     );
   }
 

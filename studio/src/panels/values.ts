@@ -104,7 +104,7 @@ export class ValuesPanel {
     private readonly store: Store<State>,
     private readonly study: Study,
   ) {
-    store.watch(['equations', 'run', 'runTrouble', 'answered', 'set', 'start'], () => this.refresh());
+    store.watch(['equations', 'run', 'runTrouble', 'answered', 'set', 'start', 'mode', 'duration'], () => this.refresh());
   }
 
   private refresh(): void {
@@ -129,8 +129,10 @@ export class ValuesPanel {
     const still = betweenEnds(this.store.state);
     byId('start-group').hidden = equations.coordinates.length === 0 || still;
     byId('run-group').hidden = still && !inTime(this.store.state);
-    const changed = Object.keys(this.store.state.set).length + Object.keys(this.store.state.start).length;
-    for (const id of ['reset-values', 'apply-values']) byId<HTMLButtonElement>(id).disabled = changed === 0;
+    const {set, start, mode, duration} = this.store.state,
+      changed = Object.keys(set).length + Object.keys(start).length > 0;
+    byId<HTMLButtonElement>('apply-values').disabled = !changed;
+    byId<HTMLButtonElement>('reset-values').disabled = !(changed || mode || duration);
   }
 
   private build(parameters: Parameter[], coordinates: Coordinate[], shape: string): void {

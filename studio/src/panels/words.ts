@@ -19,6 +19,14 @@ export function unitText(unit: string): string {
     : unit.replace(/\^\(?(-?\d+)\)?/g, (_, exponent: string) => raised(exponent)).replace(/ /g, '\u2009');
 }
 
+/** The modes to choose from; one that is chosen is among them, whatever is known of the model. */
+export const modeOptions = (modes: string[], chosen: string): HTMLOptionElement[] => [
+  new Option('as the motion is', '', false, !chosen),
+  ...(chosen && !modes.includes(chosen) ? [...modes, chosen] : modes).map(
+    one => new Option(one, one, false, one === chosen),
+  ),
+];
+
 /** The name as formulas write it: θ1' is θ₁′. Marks of differentiation stay primes, which any face has. */
 export function pretty(name: string): string {
   return name

@@ -14,6 +14,7 @@ export interface ChartContent {
   y: string;
   overTime: boolean; // x is the time: a line shows the present
   marks?: number[]; // times of events
+  uncertain?: number | null; // the time from which no digit of a curve is certain
   up?: [number, number]; // the range of y where the curves do not say it
   moves?: boolean; // the curves are those of the moment, and are drawn whole
 }
@@ -162,6 +163,7 @@ export class Chart {
     const context = this.begin(this.still),
       colour = this.colours();
     this.paintAxes(context, colour);
+    this.paintUncertain(context, colour);
     let last = -Infinity;
     for (const time of this.content.marks ?? []) {
       if (this.across(time) - last < 3) continue; // impacts that come to rest are one mark
@@ -181,6 +183,23 @@ export class Chart {
     this.passedTo = 0;
     this.covered = null;
     this.present(...this.lastPresent);
+  }
+
+  /** Where no digit is certain: beneath the curves, from that time to the end. */
+  private paintUncertain(context: CanvasRenderingContext2D, colour: (name: string) => string): void {
+    const {uncertain, overTime} = this.content;
+    if (!overTime || uncertain === null || uncertain === undefined) return;
+    const bottom = this.height - room.bottom,
+      end = this.across(this.range.x[1]),
+      from = Math.min(end, Math.max(room.left, this.across(uncertain)));
+    context.fillStyle = colour('--warn');
+    context.globalAlpha = 0.12;
+    context.fillRect(from, room.top, end - from, bottom - room.top);
+    context.globalAlpha = 1;
+    context.font = `italic 13px ${faces}`;
+    context.textAlign = 'left';
+    context.fillStyle = colour('--warn');
+    if (end - from > 90) context.fillText('not certain', from + 6, room.top + 13);
   }
 
   private begin(canvas: HTMLCanvasElement): CanvasRenderingContext2D {

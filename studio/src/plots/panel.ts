@@ -39,6 +39,9 @@ export function chartsOf(run: RunAnswer, state: State): ChartSpec[] {
   return specs.slice(0, most);
 }
 
+const uncertainIn = ({everything, columns}: NonNullable<RunAnswer['uncertain']>, shown: string[]): boolean =>
+  everything || shown.some(name => columns.includes(name));
+
 interface Shown {
   spec: ChartSpec;
   chart: Chart;
@@ -190,6 +193,7 @@ export class PlotsPanel {
       x: across,
       y: up,
       overTime: !spec.against,
+      uncertain: run.uncertain && uncertainIn(run.uncertain, spec.columns) ? run.uncertain.from : null,
       marks: run.happenings.length <= 60 ? run.happenings.map(one => one.t) : [],
     });
     if (pinned.length > 0 || caption.childElementCount !== spec.columns.length) this.name(spec, pinned, caption);

@@ -15,8 +15,11 @@ function notesIn(text: string): {question: string[]; comments: string[]} {
   return {question: of(true), comments: of(false)};
 }
 
-const asSentence = (text: string): string =>
-  text.replace(/^./u, first => first.toUpperCase()) + (/[.!?]$/.test(text) ? '' : '.');
+/** With a capital and a full stop; a formula that it begins with keeps its letters. */
+export function asSentence(text: string): string {
+  const words = /^(the|an?|one|numbers|it|its|this|both|there|without|with|only|in|of|terms?|signs?|units?|on)\s+(?!(sin|cos|tan|exp|log|sqrt)\b)[a-z]{3,}/;
+  return (words.test(text) ? text[0].toUpperCase() + text.slice(1) : text) + (/[.!?]$/.test(text) ? '' : '.');
+}
 
 /** Models that ask: the student types an equation of motion and hears whether it is right, and which pitfall if not. */
 export class Exercises {
@@ -83,7 +86,8 @@ export class Exercises {
     this.current = name;
     this.study.load({text, name});
     const {question, comments: said} = notesIn(text),
-      coordinate = / motion of ([^.,;]* )?(\S+?)[.,;]/.exec(question.join(' '))?.[2] ?? 'q';
+      asked = / motion of ([^.,;]* )?(\S+?)[.,;]/.exec(question.join(' '))?.[2] ?? '',
+      coordinate = asked || 'q';
     const field = h('input', {
       type: 'text',
       id: 'claim',
@@ -99,7 +103,7 @@ export class Exercises {
       {
         onsubmit: (event: Event) => {
           event.preventDefault();
-          void this.judge(name, field.value, verdict, () =>
+          void this.judge(name, field.value, asked, verdict, () =>
             comments.replaceChildren(...said.map(hint => h('p', {class: 'note'}, ...prose(hint))), this.next(name)),
           );
         },
@@ -142,9 +146,15 @@ export class Exercises {
     byId('exercise')?.remove();
   }
 
-  private async judge(name: string, text: string, verdict: HTMLElement, right: () => void): Promise<void> {
+  private async judge(
+    name: string,
+    text: string,
+    asked: string,
+    verdict: HTMLElement,
+    right: () => void,
+  ): Promise<void> {
     verdict.replaceChildren(h('p', {class: 'muted'}, 'It is checked …'));
-    const answer = await this.study.claim(text);
+    const answer = await this.study.claim(text, asked);
     if (!answer.ok) {
       const inside = (
           answer.diagnostics as

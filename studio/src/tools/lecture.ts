@@ -24,7 +24,8 @@ function stepsOf(state: State): Step[] {
   const steps = sections.flatMap(section =>
     section.lines.map((line, i): Step => ({title: section.title, line, notes: i === 0 ? (section.notes ?? []) : []})),
   );
-  steps.push(...equations.equations.map((line): Step => ({title: 'Equations of motion', line, notes: []})));
+  const holds = equations.holds ? [equations.holds] : [];
+  steps.push(...equations.equations.map((line): Step => ({title: 'Equations of motion', line, notes: holds})));
   steps[0]?.notes.unshift(...(equations.first_notes ?? []));
   if (equations.last_notes?.length) steps.at(-1)!.notes = [...steps.at(-1)!.notes, ...equations.last_notes];
   return steps;

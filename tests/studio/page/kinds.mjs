@@ -1,6 +1,6 @@
 // Models of other kinds than a system that moves from its start: each a case as in cases.mjs.
 import {inflateSync} from 'node:zlib';
-import {check} from './harness.mjs';
+import {check, settled} from './harness.mjs';
 import {toExample} from './steps.mjs';
 
 /** The colour that is shown in an element, this part of its height below its top: a picture of one dot, as PNG. */
@@ -38,6 +38,60 @@ const hueOf = async page => {
 };
 
 export const kinds = {
+  async 'modes of contacts and friction'({open}, variant, picture) {
+    const page = await open({hash: '#example=stick_slip'}),
+      modes = id => page.locator(`${id} option`).allTextContents(),
+      choose = async (id, mode) => {
+        await page.locator(id).selectOption(mode);
+        await page.waitForFunction(() => document.body.dataset.settled === 'true');
+        await settled(page);
+      };
+    const holds = page.locator('#equations-body .holds');
+    check('it is told when the equations hold', /without dry friction/.test(await holds.innerText()));
+    await picture(page, 'modes');
+    const all = await modes('#mode');
+    check('there are modes to choose from', all.length > 2, all);
+    await page.locator('#run-group > summary').click();
+    await choose('#mode', 'free');
+    await page.waitForFunction(() => /stays in it/.test(document.querySelector('#equations-body .holds').innerText));
+    for (const id of ['#mode', '#mode-of-equations'])
+      check(`in a mode the others stay to be chosen: ${id}`, (await modes(id)).join() === all.join(), await modes(id));
+    check('the mode is shown', (await page.locator('#mode').inputValue()) === 'free');
+    await page.locator('#reset-values').click();
+    await page.waitForFunction(() => !/stays in it/.test(document.querySelector('#equations-body .holds').innerText));
+    await settled(page);
+    check('and reset leads back', (await page.locator('#mode').inputValue()) === '');
+    await choose('#mode-of-equations', all[2]);
+    await page.waitForFunction(
+      mode => document.querySelector('#equations-body .holds').innerText.includes(mode),
+      all[2],
+    );
+    await page.locator('#lecture-button').click();
+    await page.waitForSelector('#lecture .line.now');
+    await page.keyboard.press('End');
+    check(
+      'a lecture tells whose equations they are',
+      (await page.locator('#lecture .note').innerText()).includes(all[2]),
+      await page.locator('#lecture .note').innerText(),
+    );
+    await picture(page, 'lecture-mode');
+    await page.context().close();
+  },
+
+  async 'chaos is told'({open}, variant, picture) {
+    const page = await open();
+    await page.locator('#run-group > summary').click();
+    await page.locator('#duration').fill('200');
+    await page.keyboard.press('Enter');
+    await page.waitForFunction(() => /no digit of the motion is certain/.test(document.querySelector('#stage-trouble').innerText), null, {timeout: 60_000});
+    const told = await page.locator('#stage-trouble').innerText(),
+      from = Number(/t = ([\d.]+) s/.exec(told)[1]);
+    check('from a time that is well within the run', from > 15 && from < 120, told);
+    check('the run says so too', (await page.locator('#motion-body').textContent()).includes('no digit'));
+    await picture(page, 'chaos');
+    await page.context().close();
+  },
+
   async 'maps of fields follow the theme'({open}, variant, picture) {
     const page = await open({hash: '#example=membrane', dark: true, allow: ['willReadFrequently']});
     await page.waitForSelector('#plots .given svg');

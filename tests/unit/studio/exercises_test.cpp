@@ -7,6 +7,28 @@
 namespace maupertuis::studio {
 namespace {
 
+TEST_CASE("what is true of every system, or is the equation of another coordinate, is not what is asked") {
+  const auto judged = [](const char* name, const char* about, const char* text) {
+    Asked page(file_text(std::string("studio/exercises/") + name + ".lag"));
+    return page.ask({{"do", "claim"}, {"text", text}, {"about", about}, {"exercise", true}});
+  };
+  for (const char* nothing : {"0 = 0", "s'' = s''", "s'' + X'' = X'' + s''", "(s' + X')^2 = s'^2 + 2 s' X' + X'^2"}) {
+    CAPTURE(nothing);
+    Json answer = judged("20_wedge", "s", nothing);
+    CHECK(answer["passed"] == false);
+    CHECK(answer["pitfall"].get<std::string>().find("same formula") != std::string::npos);
+  }
+  for (const char* other : {"(M + m) X'' + m cos α s'' = 0", "2 (M + m) X'' + 2 m cos α s'' = 0"}) {
+    CHECK(judged("20_wedge", "X", other)["passed"] == true);
+    CHECK(judged("20_wedge", "s", other)["passed"] == false);
+    CHECK(judged("20_wedge", "s", other)["pitfall"].get<std::string>().find("equation of X") != std::string::npos);
+  }
+  for (const char* right :
+       {"s'' + cos α X'' = g sin α", "s'' = (M + m) g sin α / (M + m sin^2 α)", "m s'' + m cos α X'' - m g sin α = 0"})
+    CHECK(judged("20_wedge", "s", right)["passed"] == true);
+  CHECK(judged("20_wedge", "s", "X'' = -m g sin α cos α / (M + m sin^2 α)")["passed"] == false);
+}
+
 TEST_CASE("exercises take the right equations, and name known mistakes without the answer") {
   Json exercises = Json::parse(file_text("tests/studio/exercises.json"));
   std::size_t files = 0;

@@ -103,6 +103,22 @@ TEST_CASE("the equations come with their certificate, notes and values") {
   CHECK(page.ask("equations").contains("derivation") == false);
 }
 
+TEST_CASE("a model with contacts says when its equations hold, and has its modes in each of them") {
+  Asked page(file_text("models/stick_slip.lag"));
+  Json e = page.ask("equations");
+  REQUIRE(e["ok"] == true);
+  CHECK(e["modes"].size() > 1);
+  CHECK(e["holds"].get<std::string>().find("without contact") != std::string::npos);
+  for (const Json& mode : e["modes"]) {
+    CAPTURE(mode);
+    Json in_mode = page.ask({{"do", "equations"}, {"mode", mode}});
+    REQUIRE(in_mode["ok"] == true);
+    CHECK(in_mode["modes"] == e["modes"]);
+    CHECK((mode == "free" || in_mode["holds"].get<std::string>().find(mode.get<std::string>()) != std::string::npos));
+  }
+  CHECK(Asked(pendulum).ask("equations").contains("holds") == false);
+}
+
 TEST_CASE("a run is the closed form, with the values beside the text") {
   Asked page(oscillator);
   Json r = page.ask({{"do", "run"}, {"set", {{"k", "9 N/m"}}}, {"start", {{"x'", "0 m/s"}}}, {"run", "2 s"}});
