@@ -31,7 +31,8 @@ export function prose(text: string): Node[] {
 
 function symbols(text: string): Node[] {
   return text
-    .split(/(?<![\p{L}\p{N}_^])(\p{L}[_^][\p{L}\p{N}])(?![\p{L}\p{N}_^])/u)
+    .replace(/(?<=(?<!\p{L})\p{L}\d*|\p{Script=Greek}\p{L}*)('{1,2})(?![\p{L}'])/gu, marks => '′″'[marks.length - 1])
+    .split(/(?<![\p{L}\p{N}_^])([\p{L}∂][_^][\p{L}\p{N}])(?![\p{L}\p{N}_^])/u)
     .flatMap((part, i): Node[] => {
       if (i % 2) return [h('i', {}, part[0]), h(part[1] === '_' ? 'sub' : 'sup', {}, part[2])];
       return part ? [document.createTextNode(part)] : [];

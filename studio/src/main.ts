@@ -3,7 +3,7 @@ import type {Carrier} from './carriers/carrier';
 import {HttpCarrier} from './carriers/http';
 import {embeddedCore, WorkerCarrier} from './carriers/worker';
 import {Clock} from './clock';
-import {byId, copyText} from './dom';
+import {byId, copyText, prose} from './dom';
 import {linesOf} from './lines';
 import {Stage} from './drawing/stage';
 import {Editor} from './editor/editor';
@@ -100,11 +100,13 @@ async function share(): Promise<void> {
     link = `${location.href.split('#')[0]}#m=${await encodeShared({text, set, start, name})}`;
   history.replaceState(null, '', link);
   linked = asLinked();
-  const copied = await copyText(link);
+  const copied = await copyText(link),
+    own = location.protocol === 'file:' || /^(localhost|127\.|\[::1\])/.test(location.hostname),
+    here = own ? ' It opens on this machine alone: for another one take the file, `Export`, `Model text`.' : '';
   study.say(
     copied
-      ? 'The link is copied. It holds the whole model; no server sees it.'
-      : 'The address of this page is the link now: it holds the whole model.',
+      ? `The link is copied. It holds the whole model; no server sees it.${here}`
+      : `The address of this page is the link now: it holds the whole model.${here}`,
   );
 }
 
@@ -169,7 +171,7 @@ function words(): void {
     const place = byId('word');
     window.clearTimeout(timer);
     place.className = word ? (word.trouble ? 'shown trouble' : 'shown') : '';
-    place.textContent = word?.text ?? '';
+    place.replaceChildren(...prose(word?.text ?? ''));
     if (word)
       timer = window.setTimeout(
         () => store.update({word: null}),

@@ -52,7 +52,9 @@ export interface State {
   readable: boolean;
   equations: EquationsAnswer | null;
   equationsTrouble: Trouble | null;
+  equationsText: string; // the text that `equations` are of
   run: RunAnswer | null;
+  runText: string; // the text that `run` is of
   runTrouble: Trouble | null;
   quick: boolean; // the run has few frames, a full one comes
   answered: boolean; // the full run, or why there is none, is that of the text and the values
@@ -79,6 +81,9 @@ export interface State {
   storage: boolean;
 }
 
+/** What stands in the page is of an older text, as this one has a mistake, and not as nobody answers. */
+export const hasMistake = ({opened, readable}: State): boolean => opened !== null && !readable && !opened.readable;
+
 export const initialState: State = {
   text: '',
   ends: '\n',
@@ -97,6 +102,8 @@ export const initialState: State = {
   readable: false,
   equations: null,
   equationsTrouble: null,
+  equationsText: '',
+  runText: '',
   run: null,
   runTrouble: null,
   quick: false,

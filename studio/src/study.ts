@@ -55,6 +55,7 @@ export class Study {
   private changes = 0;
   private equationsOf = 0; // of `texts`: what the equations that are shown were asked for
   private runOf = 0; // of `changes`
+  private troubleOf = 0; // of `changes`: what the trouble of the run was asked for
   private resting = 0; // a timer, while a slider moves
   private late = 0; // a timer, while something that is shown is of former values
   private pending = new Map<string, number>(); // searches on their way, of `changes`
@@ -102,6 +103,7 @@ export class Study {
       this.store.update({
         runLate: run !== null && this.runOf !== this.changes,
         equationsLate: equations !== null && this.equationsOf !== this.texts,
+        ...(this.troubleOf === this.changes ? {} : {runTrouble: null}),
       });
     }, lateAfter);
   }
@@ -184,7 +186,13 @@ export class Study {
       });
     const opened = await this.asker.ask<OpenAnswer>({do: 'open', text, name: `${name}.lag`});
     if (!opened.ok) {
-      if (opened.kind !== 'cancelled') this.store.update({equationsTrouble: opened.trouble, readable: false});
+      if (opened.kind !== 'cancelled')
+        this.store.update({
+          equationsTrouble: opened.trouble,
+          readable: false,
+          equationsLate: this.store.state.equations !== null,
+          runLate: this.store.state.run !== null,
+        });
       return;
     }
     if (text !== this.store.state.text) return;
@@ -214,7 +222,7 @@ export class Study {
     if (texts !== this.texts) return;
     if (answer.ok) {
       this.equationsOf = texts;
-      this.store.update({equations: answer, equationsTrouble: null, equationsLate: false, deep: answer.diagnostics});
+      this.store.update({equations: answer, equationsText: this.store.state.text, equationsTrouble: null, equationsLate: false, deep: answer.diagnostics});
       if (!this.shown) document.title = `${answer.title || answer.name} – Maupertuis`;
       this.arrived();
     } else if (answer.kind !== 'cancelled' && changes === this.changes) {
@@ -284,6 +292,7 @@ export class Study {
     this.clock.take(run, first);
     this.store.update({
       run,
+      runText: this.store.state.text,
       runTrouble: null,
       runLate: false,
       slow: false,
@@ -298,6 +307,7 @@ export class Study {
 
   private showRunTrouble(failure: Failure, how: typeof full): void {
     if (this.dropForeignValues(failure)) return;
+    this.troubleOf = this.changes;
     const {trouble, diagnostics} = failure,
       noMotion = trouble.code === noDuration || trouble.code === heldIntegral,
       run = noMotion ? null : this.store.state.run;

@@ -263,7 +263,7 @@ export class Editor {
           h(
             'div',
             {class: 'lint'},
-            h('p', {class: 'what'}, m.message),
+            h('p', {class: 'what'}, ...prose(m.message)),
             m.reason && h('p', {}, ...prose(m.reason)),
             m.help && h('p', {class: 'help'}, ...prose(m.help)),
           ),

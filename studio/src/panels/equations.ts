@@ -1,7 +1,7 @@
 import type {Check, Conserved, Happening, ModesAnswer, Section, Trouble} from '../contract';
 import {byId, h, prose} from '../dom';
 import {loopDrawing} from '../drawing/loop';
-import type {State} from '../state';
+import {hasMistake, type State} from '../state';
 import type {Store} from '../store';
 import {betweenEnds, inTime, noDuration, unfinished, withUnit, type Study} from '../study';
 import {modeOptions, numbers, pretty} from './words';
@@ -12,7 +12,7 @@ export function troubleElement(trouble: Trouble, severity = 'error'): HTMLElemen
   return h(
     'div',
     {class: `message ${severity}`},
-    h('p', {class: 'what'}, trouble.message),
+    h('p', {class: 'what'}, ...prose(trouble.message)),
     trouble.reason && h('p', {}, ...prose(trouble.reason)),
     trouble.help && h('p', {class: 'help'}, ...prose(trouble.help)),
   );
@@ -72,8 +72,9 @@ export class EquationsPanel {
   }
 
   /** What is of a former text or of former values looks so, and is told where it is the text. */
-  private stale({readable, opened, equations, equationsLate, runLate}: State): void {
-    const mistake = opened !== null && !readable && equations !== null,
+  private stale(state: State): void {
+    const {equations, equationsLate, runLate} = state,
+      mistake = hasMistake(state) && equations !== null,
       place = byId('stale');
     byId('equations').classList.toggle('stale', mistake || equationsLate);
     for (const part of ['conserved', 'run-facts']) byId(part).classList.toggle('stale', runLate);
@@ -192,13 +193,14 @@ export class EquationsPanel {
   }
 
   private conserved(state: State): void {
-    const {equations, run, found} = state;
+    const {equations, run, found, runText, equationsText} = state,
+      ofRun = runText === equationsText ? run : null; // a run of the text before has its own
     const list: Conserved[] = Array.isArray(found)
       ? found
-      : run?.conserved.length
-        ? run.conserved
+      : ofRun?.conserved.length
+        ? ofRun.conserved
         : (equations?.conserved ?? []);
-    const measured = new Map(run?.conserved.map(c => [c.sentence, c])),
+    const measured = new Map(ofRun?.conserved.map(c => [c.sentence, c])),
       numbersOf = (c: Conserved): string[] => {
         const {value, drift} = measured.get(c.sentence) ?? c;
         return [value, drift];

@@ -85,7 +85,7 @@ export function sectionsElements(sections: Section[], say: (text: string) => voi
       h(
         'summary',
         {},
-        pretty(section.title),
+        h('span', {}, ...prose(pretty(section.title))),
         h('span', {class: 'muted'}, `${steps} ${steps === 1 ? 'line' : 'lines'}`),
       ),
       h(

@@ -2,7 +2,7 @@ import type {Clock} from '../clock';
 import {byId, h, icon} from '../dom';
 import {numbers, raised} from './words';
 import type {Stage} from '../drawing/stage';
-import type {State} from '../state';
+import {hasMistake, type State} from '../state';
 import type {Store} from '../store';
 import {betweenEnds, inTime, type Study} from '../study';
 import {troubleElement} from './equations';
@@ -96,10 +96,12 @@ export class MotionPanel {
     );
   }
 
-  private shown({run, runTrouble, opened, readable, runLate}: State): void {
+  private shown(state: State): void {
+    const {run, runTrouble, runLate} = state;
     const drawing = run?.drawing,
       none = byId('no-drawing');
     byId('drawing').hidden = !drawing;
+    document.body.dataset.drawing = String(Boolean(drawing));
     none.textContent = drawing
       ? ''
       : run
@@ -111,7 +113,7 @@ export class MotionPanel {
           ? ''
           : 'No motion yet.';
     none.hidden = none.textContent === '';
-    const mistake = opened !== null && !readable;
+    const mistake = hasMistake(state);
     byId('motion').classList.toggle('stale', runLate || mistake);
     byId('stage-stale').hidden = !(mistake && run);
     byId('transport').hidden = !run;

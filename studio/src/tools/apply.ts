@@ -55,13 +55,13 @@ export function applied(
     starts = assignments(text, 'start');
   for (const [name, value] of Object.entries(set)) {
     const place = parameters.filter(one => one.name === name).pop();
-    if (place) edits.push({from: place.from, to: place.to, insert: value});
+    if (place) edits.push({from: place.from, to: place.to, insert: inUnitOf(text.slice(place.from, place.to), value)});
     else missing.push(name);
   }
   const added: string[] = [];
   for (const [name, value] of Object.entries(start)) {
     const place = starts.filter(one => one.name === name).pop();
-    if (place) edits.push({from: place.from, to: place.to, insert: value});
+    if (place) edits.push({from: place.from, to: place.to, insert: inUnitOf(text.slice(place.from, place.to), value)});
     else added.push(`${name} = ${value}`);
   }
   if (added.length > 0) {
@@ -80,6 +80,24 @@ function addTo(edits: Edit[], at: number, insert: string): void {
   const before = edits.find(edit => edit.to === at);
   if (before) before.insert += insert;
   else edits.push({from: at, to: at, insert});
+}
+
+const inSi: Record<string, [string, number]> = {
+  deg: ['rad', Math.PI / 180],
+  'deg/s': ['rad/s', Math.PI / 180],
+  cm: ['m', 0.01],
+  mm: ['m', 0.001],
+  km: ['m', 1000],
+  'cm/s': ['m/s', 0.01],
+  'km/h': ['m/s', 1 / 3.6],
+};
+
+/** The value in the unit that the text has there: 1.8 rad, where 120 deg stood, is 103.13… deg. */
+function inUnitOf(written: string, value: string): string {
+  const unit = /^[-+\d.e]+\s*(\S.*)$/.exec(written)?.[1] ?? '',
+    [si, factor] = inSi[unit] ?? [],
+    [, number, own] = /^(\S+) (.+)$/.exec(value) ?? [];
+  return factor && own === si ? `${Number((Number(number) / factor).toPrecision(10))} ${unit}` : value;
 }
 
 /** Before the line of `run`, else before what is drawn or expected, else at the end. */

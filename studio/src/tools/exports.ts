@@ -18,6 +18,8 @@ const kinds: [string, string, string][] = [
   ['drawing.png', 'Drawing', 'PNG'],
 ];
 
+const ofFields = ['report', 'latex', 'csv', 'json'];
+
 /** A picture at twice its size on the screen; null where the browser cannot read it. */
 function pixels(svg: string): Promise<Blob | null> {
   return new Promise(resolve => {
@@ -55,8 +57,9 @@ export function exportDialog(store: Store<State>, study: Study): void {
     download(answer.name, answer.type, content as BlobPart);
     study.say(`${answer.name} is in your downloads.`);
   };
-  const still = betweenEnds(store.state);
-  const entries = kinds.filter(([what]) => !still || what === 'latex').map(([what, title, detail]) =>
+  const still = betweenEnds(store.state),
+    made = store.state.opened?.fields ? ofFields : kinds.map(([what]) => what);
+  const entries = kinds.filter(([what]) => (still ? what === 'latex' : made.includes(what))).map(([what, title, detail]) =>
     h('li', {}, h('button', {type: 'button', onclick: () => void make(what)}, title, h('small', {}, detail))),
   );
   const own = h(

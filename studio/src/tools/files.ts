@@ -98,7 +98,7 @@ export class FileTools {
             },
           },
           title,
-          h('small', {}, name),
+          title === name ? '' : h('small', {}, name),
         ),
       );
     const groups: HTMLElement[] = [];

@@ -44,6 +44,8 @@ export async function lecture(store: Store<State>, study: Study, clock: Clock, s
   await study.wantSteps();
   if (!store.state.equations?.derivation) return study.say('There are no equations to go through yet.', true);
   const steps = stepsOf(store.state);
+  const {run, opened} = store.state,
+    drawn = run ? run.drawing !== null : !opened?.fields;
   let at = 0;
   const lines = h('div', {class: 'lines', 'aria-live': 'polite'}),
     title = h('h2', {}),
@@ -58,16 +60,16 @@ export async function lecture(store: Store<State>, study: Study, clock: Clock, s
     h('button', {type: 'button', 'aria-label': label, title: label, onclick: act}, text);
   const box = h(
     'dialog',
-    {id: 'lecture', 'aria-label': 'Lecture'},
+    {id: 'lecture', class: drawn ? '' : 'undrawn', 'aria-label': 'Lecture'},
     h('section', {class: 'board'}, title, lines),
-    h('section', {class: 'scene'}, h('h3', {}, store.state.equations.title), canvas, note),
+    h('section', {class: 'scene'}, h('h3', {}, store.state.equations.title), drawn ? canvas : '', note),
     h(
       'footer',
       {},
       button('←', 'The line before', () => go(at - 1)),
       count,
       button('→', 'The next line', () => go(at + 1)),
-      button('▶', 'Play and pause', () => clock.play(!clock.playing)),
+      drawn ? button('▶', 'Play and pause', () => clock.play(!clock.playing)) : '',
       button('×', 'End the lecture', () => box.close()),
     ),
   );
@@ -75,7 +77,7 @@ export async function lecture(store: Store<State>, study: Study, clock: Clock, s
   function show(): void {
     const step = steps[at],
       first = steps.findIndex(one => one.title === step.title);
-    title.textContent = pretty(step.title);
+    title.replaceChildren(...prose(pretty(step.title)));
     const shown = steps.slice(first, at + 1).map(one => lineElement(one.line));
     shown.at(-1)!.classList.add('now');
     lines.replaceChildren(...shown);
@@ -113,11 +115,11 @@ export async function lecture(store: Store<State>, study: Study, clock: Clock, s
     act[event.key]();
   });
   document.body.append(box);
-  const stage = new Stage(canvas, store, clock, study);
-  stages.add(stage);
+  const stage = drawn ? new Stage(canvas, store, clock, study) : null;
+  if (stage) stages.add(stage);
   box.addEventListener('close', () => {
-    stages.delete(stage);
-    stage.end();
+    if (stage) stages.delete(stage);
+    stage?.end();
     box.remove();
     if (document.fullscreenElement) void document.exitFullscreen();
   });

@@ -1,6 +1,6 @@
 // What brings questions to the core and answers back, with cores that a test makes up: each a case as in cases.mjs.
 import {check} from './harness.mjs';
-import {shows, text} from './steps.mjs';
+import {shows, text, typeAtEnd} from './steps.mjs';
 
 /** The page over a worker of this script, in pages that share memory with their worker. */
 const over = (open, core) =>
@@ -51,6 +51,20 @@ export const carriers = {
     await page.locator('#format-button').click();
     await textIs(page, '# ');
     check('the next one has the text', (await text(page)).startsWith('# it is open'), (await text(page)).slice(0, 30));
+    await page.context().close();
+  },
+
+  async 'a server that ended'({open}, variant, picture) {
+    if (variant.name !== 'server') return;
+    const page = await open({hash: '#example=pendulum', allow: ['ERR_']});
+    await page.route('**/api/**', route => route.abort());
+    await typeAtEnd(page, '\n# more');
+    await page.waitForSelector('#stale:not([hidden])');
+    await page.waitForTimeout(300);
+    const told = await page.locator('#equations').innerText();
+    check('the text has no mistake', !/mistake/.test(told) && (await page.locator('#stage-stale').isHidden()), told);
+    check('it is told that nobody answers', (await page.locator('#equations-body .message').count()) > 0, told);
+    await picture(page, 'no-server');
     await page.context().close();
   },
 

@@ -78,6 +78,22 @@ export const kinds = {
     await page.context().close();
   },
 
+  async 'fields have what can be made of them'({open}, variant, picture) {
+    const page = await open({hash: '#example=sine_gordon_kink', width: 400, height: 800, touch: true});
+    await page.locator('#tabs [data-pane=values]').tap();
+    const top = (await page.locator('#values').boundingBox()).y;
+    check('no room is kept for a drawing that is none', top < 160, top);
+    await page.locator('#export-button').tap();
+    const files = await page.locator('dialog[open] li').allInnerTexts();
+    check('report and motion, but no drawing', files.length === 5 && !/Drawing|Animation|Plot/.test(files.join()), files);
+    await page.keyboard.press('Escape');
+    await page.evaluate(() => document.getElementById('lecture-button').click());
+    await page.waitForSelector('#lecture .line.now');
+    check('no empty picture', (await page.locator('#lecture canvas').count()) === 0);
+    await picture(page, 'lecture-field');
+    await page.context().close();
+  },
+
   async 'chaos is told'({open}, variant, picture) {
     const page = await open();
     await page.locator('#run-group > summary').click();

@@ -1,7 +1,7 @@
 // Texts that come, go and are kept: each a case as in cases.mjs.
 import {readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
-import {check, root, settled} from './harness.mjs';
+import {check, gripNear, root, settled} from './harness.mjs';
 import {field, leave, setSlider, text, toExample, typeAtEnd} from './steps.mjs';
 
 const model = name => readFileSync(join(root, `models/${name}.lag`), 'utf8');
@@ -19,6 +19,38 @@ const openFile = async (page, name) => {
 };
 
 export const texts = {
+  async 'values in the units of the text'({open}, variant) {
+    const page = await open({hash: '#example=pendulum'}),
+      grip = await gripNear(page, '#drawing', [0.5, 0.9]);
+    await page.mouse.move(...grip);
+    await page.mouse.down();
+    for (let i = 1; i <= 6; ++i) await page.mouse.move(grip[0] - 6 * i, grip[1] + 3 * i);
+    await page.waitForTimeout(300);
+    await page.mouse.up();
+    await settled(page);
+    await page.locator('#apply-values').click();
+    await settled(page);
+    const angle = /start θ = ([-\d.]+) deg/.exec(await text(page));
+    check('degrees stay degrees', angle && Math.abs(angle[1] - (await field(page, 'θ'))) < 1e-3, [
+      angle?.[0],
+      (await text(page)).match(/^start.*$/m)?.[0],
+    ]);
+    await page.locator('#run-group > summary').click();
+    await page.locator('#duration').fill('5');
+    await page.keyboard.press('Enter');
+    await page.waitForFunction(() => document.querySelector('#duration').value === '5 s');
+    await settled(page);
+    check('a number alone is in seconds', (await page.locator('#stage-trouble .message').count()) === 0);
+    await page.locator('#duration').fill('5 J');
+    await page.keyboard.press('Enter');
+    await page.waitForSelector('#stage-trouble .message');
+    check('no ticks', !(await page.locator('#stage-trouble').innerText()).includes('`'));
+    await page.locator('#share-button').click();
+    await page.waitForFunction(() => /link/.test(document.querySelector('#word').textContent));
+    check('a link of this machine is said to be one', /this machine alone/.test(await page.locator('#word').innerText()));
+    await page.context().close();
+  },
+
   async 'a model is typed'({open}, variant, picture) {
     const page = await open({hash: '#example=pendulum'}),
       lines = [
