@@ -69,24 +69,6 @@ double width_of(const EquationForm& form, const ReadingOrder& order) {
   return all;
 }
 
-/// Bodies beyond which a comparison is not worth its time, and coordinates likewise.
-constexpr std::size_t most_bodies = 3, most_coordinates = 14;
-
-/// Whether the rates of the bodies may stand in the place of as many velocities. Constraints beside the norms of
-/// quaternions have forces that body rates do not shorten.
-bool may_be_shorter(const MechanicalSystem& system, const std::vector<Rate>& rates) {
-  const bool free = std::all_of(system.constraints.begin(), system.constraints.end(),
-                                [](const Constraint& c) { return !c.body.empty(); });
-  return free && !rates.empty() && rates.size() <= 3 * most_bodies && system.coordinates.size() <= most_coordinates &&
-         rates.size() + system.constraints.size() <= system.coordinates.size();
-}
-
-bool has_all(const EquationsInRates& found, const std::vector<Rate>& rates) {
-  for (const Rate& rate : rates)
-    if (std::find(found.rates.begin(), found.rates.end(), rate.symbol) == found.rates.end()) return false;
-  return true;
-}
-
 }  // namespace
 
 EquationForm rates_form(Study& study) {
@@ -112,14 +94,10 @@ EquationForm rates_form(Study& study) {
 
 EquationForm form_in_rates_if_shorter(Study& study, const EquationForm& standard) {
   const EquationsOfMotion& equations = *study.equations();
-  const MechanicalSystem& system = *equations.shown().system;
-  const std::vector<Rate> rates = rates_of(system);
-  const bool named = !system.rates.empty();
-  if (!named && !may_be_shorter(system, rates)) return standard;
-  RatesResult result = equations_in_rates(equations, rates);
-  if (!result.equations || result.equations->certificate.verdict != Verdict::Zero) return standard;
-  if (!named && !has_all(*result.equations, rates)) return standard;
-  EquationForm form = form_of(*std::move(result.equations), study);
+  std::optional<EquationsInRates> found = equations_in_own_rates(equations);
+  if (!found) return standard;
+  const bool named = !equations.shown().system->rates.empty();
+  EquationForm form = form_of(*std::move(found), study);
   return named || width_of(form, form.order(equations)) < width_of(standard, equations.order) ? form : standard;
 }
 

@@ -49,6 +49,11 @@ struct RatesResult {
 RatesResult equations_in_rates(const EquationsOfMotion& equations);
 RatesResult equations_in_rates(const EquationsOfMotion& equations, const std::vector<Rate>& rates);
 
+/// In the rates that the model names; without such in the angular velocities of its bodies, where they may be shorter
+/// to read: of few bodies that no constraint holds, each with three of its own. Nothing where there are none, or where
+/// the result could not be compared.
+std::optional<EquationsInRates> equations_in_own_rates(const EquationsOfMotion& equations);
+
 /// Formulas of a system in its rates, on the constraints.
 class RateNotation {
  public:

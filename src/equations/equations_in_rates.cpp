@@ -346,4 +346,37 @@ std::vector<Rate> body_rates(const MechanicalSystem& system) {
   return rates;
 }
 
+namespace {
+
+/// Bodies beyond which a comparison is not worth its time, and coordinates likewise.
+constexpr std::size_t most_bodies = 3, most_coordinates = 14;
+
+/// Whether the rates of the bodies may stand in the place of as many velocities. Constraints beside the norms of
+/// quaternions have forces that body rates do not shorten.
+bool may_be_shorter(const MechanicalSystem& system, const std::vector<Rate>& rates) {
+  const bool free = std::all_of(system.constraints.begin(), system.constraints.end(),
+                                [](const Constraint& c) { return !c.body.empty(); });
+  return free && !rates.empty() && rates.size() <= 3 * most_bodies && system.coordinates.size() <= most_coordinates &&
+         rates.size() + system.constraints.size() <= system.coordinates.size();
+}
+
+bool has_all(const EquationsInRates& found, const std::vector<Rate>& rates) {
+  return std::all_of(rates.begin(), rates.end(), [&](const Rate& rate) {
+    return std::find(found.rates.begin(), found.rates.end(), rate.symbol) != found.rates.end();
+  });
+}
+
+}  // namespace
+
+std::optional<EquationsInRates> equations_in_own_rates(const EquationsOfMotion& equations) {
+  const MechanicalSystem& system = *equations.shown().system;
+  const bool named = !system.rates.empty();
+  const std::vector<Rate> rates = named ? system.rates : body_rates(system);
+  if (!named && !may_be_shorter(system, rates)) return std::nullopt;
+  RatesResult result = equations_in_rates(equations, rates);
+  if (!result.equations || result.equations->certificate.verdict != Verdict::Zero) return std::nullopt;
+  if (!named && !has_all(*result.equations, rates)) return std::nullopt;
+  return std::move(result.equations);
+}
+
 }  // namespace maupertuis

@@ -1,3 +1,4 @@
+#include "studio/in_rates.hpp"
 #include "studio/requests.hpp"
 #include "studio/verified.hpp"
 
@@ -157,9 +158,14 @@ Json equations(Desk& desk, const Work& work) {
       if (shown) part();
       return shown;
     };
-    out = content_json(
-        compose_report(model, study.source(), equations, *study.derivation(true), *study.certificate(), {}, wanted),
-        steps);
+    const ReportContent content =
+        compose_report(model, study.source(), equations, *study.derivation(true), *study.certificate(), {}, wanted);
+    out = content_json(content, steps);
+    if (Json in_rates = equations_in_rates_json(study, content); !in_rates.is_null()) {
+      out["certificate"].push_back(in_rates["check"]);
+      in_rates.erase("check");
+      out["in_rates"] = std::move(in_rates);
+    }
     const auto start = look_into_start(model, equations, found).start;
     out["coordinates"] = coordinates_json(model, equations.order, start);
     out["parameters"] = parameters_json(model.system, equations.order, desk.units());

@@ -162,6 +162,7 @@ export interface EquationsAnswer {
   energies_title: string;
   equations: Line[];
   intermediates: Line[];
+  in_rates?: {equations: Line[]; definitions: Line[]}; // what is shown first, where the model has them
   derivation?: Section[];
   conserved: Conserved[];
   notes: Note[];

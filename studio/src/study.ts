@@ -525,6 +525,23 @@ const tooFar = 'The constraints could not be solved in time for this place. Move
 /** It ended with its budget, and holds what was computed until then. */
 export const unfinished = (run: RunAnswer): boolean => run.ending.kind === 'interrupted';
 
+/**
+ * The name of a curve that turns more often than it has points, so that what is drawn is a slower one: between many
+ * neighbouring points its velocity alone would take it through half of its range. Null where all are drawn finely.
+ */
+export function drawnTooCoarsely({columns, times, values}: RunAnswer): string | null {
+  const numbersOf = (k: number): number[] => values[k].map(value => value ?? NaN);
+  for (const [k, {name}] of columns.entries()) {
+    const rate = columns.findIndex(column => column.name === `${name}'`);
+    if (rate < 0 || times.length < 50) continue;
+    const x = numbersOf(k).filter(Number.isFinite),
+      range = x.reduce((a, b) => Math.max(a, b), -Infinity) - x.reduce((a, b) => Math.min(a, b), Infinity),
+      coarse = numbersOf(rate).filter((v, i) => i > 0 && Math.abs(v * (times[i] - times[i - 1])) > 0.5 * range);
+    if (coarse.length > 0.1 * times.length) return name;
+  }
+  return null;
+}
+
 const withValue = (values: Record<string, string>, name: string, value: string | null): Record<string, string> => {
   const next = {...values};
   if (value === null) delete next[name];

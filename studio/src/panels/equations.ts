@@ -3,7 +3,7 @@ import {byId, h, prose} from '../dom';
 import {loopDrawing} from '../drawing/loop';
 import {hasMistake, type State} from '../state';
 import type {Store} from '../store';
-import {betweenEnds, inTime, noDuration, unfinished, withUnit, type Study} from '../study';
+import {betweenEnds, drawnTooCoarsely, inTime, noDuration, unfinished, withUnit, type Study} from '../study';
 import {modeOptions, numbers, pretty} from './words';
 import {copyButton, lineElement, sectionsElements} from './formulas';
 
@@ -33,6 +33,13 @@ const slowly: Trouble = {
     help: 'A shorter run is finished: `Run` among the values says how long.',
   };
 
+const tooCoarse = (name: string, moments: number): Trouble => ({
+  code: '',
+  message: `\`${name}\` turns more often than its curve has points: what is drawn is not the motion.`,
+  reason: `The run is drawn by ${moments} moments, and between two of them this goes most of its way.`,
+  help: 'A shorter run shows it: `Run` among the values says how long.',
+});
+
 /** A panel whose content is asked for when it is opened. */
 function onOpening(id: string, ask: () => void): void {
   byId<HTMLDetailsElement>(id).addEventListener('toggle', () => {
@@ -58,7 +65,7 @@ export class EquationsPanel {
       this.facts(state);
     });
     store.watch(['equations', 'run', 'found'], state => this.conserved(state));
-    store.watch(['run', 'runTrouble', 'slow'], state => this.motion(state));
+    store.watch(['run', 'runTrouble', 'slow', 'quick'], state => this.motion(state));
     store.watch(['modes'], state => this.modes(state));
     store.watch(['phaseSpace'], state => this.phaseSpace(state));
     store.watch(['readable', 'opened', 'equations', 'equationsLate', 'runLate'], state => this.stale(state));
@@ -100,14 +107,29 @@ export class EquationsPanel {
       return body.replaceChildren(
         ...(equationsTrouble ? [troubleElement(equationsTrouble)] : [h('p', {class: 'muted'}, 'No equations yet.')]),
       );
-    const all = [...equations.equations, ...equations.intermediates];
+    const {in_rates: rates} = equations,
+      first = rates?.equations ?? equations.equations,
+      all = [...first, ...(rates?.definitions ?? []), ...(rates ? equations.equations : []), ...equations.intermediates];
+    const withThese =
+      equations.intermediates.length > 0
+        ? h('div', {class: 'where'}, h('p', {class: 'muted'}, 'with'), ...equations.intermediates.map(lineElement))
+        : '';
     const where = equations.definitions.length + equations.energies.length > 0;
     body.replaceChildren(
       equationsTrouble ? troubleElement(equationsTrouble) : '',
       equations.holds ? this.modeOfEquations(equations.holds, equations.modes ?? []) : '',
-      h('div', {class: 'numbered'}, ...equations.equations.map(lineElement)),
-      equations.intermediates.length > 0
-        ? h('div', {class: 'where'}, h('p', {class: 'muted'}, 'with'), ...equations.intermediates.map(lineElement))
+      h('div', {class: 'numbered'}, ...first.map(lineElement)),
+      rates
+        ? h('div', {class: 'where'}, h('p', {class: 'muted'}, 'with the rates'), ...rates.definitions.map(lineElement))
+        : withThese,
+      rates
+        ? h(
+            'details',
+            {class: 'inner'},
+            h('summary', {}, 'In the coordinates'),
+            ...equations.equations.map(lineElement),
+            withThese,
+          )
         : '',
       where
         ? h(
@@ -240,7 +262,8 @@ export class EquationsPanel {
   }
 
   private motion(state: State): void {
-    const {run, runTrouble, slow} = state;
+    const {run, runTrouble, slow, quick} = state,
+      coarse = run && !quick ? drawnTooCoarsely(run) : null;
     const facts = run
       ? h('dl', {}, ...run.statistics.flatMap(([name, value]) => [h('dt', {}, name), h('dd', {}, numbers(value))]))
       : '';
@@ -269,6 +292,7 @@ export class EquationsPanel {
     byId('motion-body').replaceChildren(
       runTrouble ? troubleElement(runTrouble) : '',
       ending,
+      run && coarse ? troubleElement(tooCoarse(coarse, run.times.length), 'warning') : '',
       lost,
       facts,
       run?.happenings.length ? happenings(run.happenings, run.first_mode) : '',
@@ -280,8 +304,10 @@ export class EquationsPanel {
           ? this.withoutMotion(state) ?? troubleElement(runTrouble)
           : ending
             ? ending.cloneNode(true)
-            : lost
-              ? lost.cloneNode(true)
+            : run && coarse
+              ? troubleElement(tooCoarse(coarse, run.times.length), 'warning')
+              : lost
+                ? lost.cloneNode(true)
               : '',
     );
   }

@@ -205,9 +205,23 @@ export class PlotsPanel {
   }
 
   private name(spec: ChartSpec, pinned: Pin[], caption: HTMLElement): void {
-    const names = spec.columns.map((name, i) => h('span', {class: `key s${(i % 7) + 1}`}, pretty(name)));
+    const names = spec.columns.map((name, i) => {
+      const symbol = this.symbolOf(name);
+      return symbol
+        ? h('span', {class: `key s${(i % 7) + 1}`, html: `<math><mrow>${symbol}</mrow></math>`})
+        : h('span', {class: `key s${(i % 7) + 1}`}, pretty(name));
+    });
     const ghosts = pinned.map(pin => h('span', {class: `key faint s${pin.series + 1}`}, pin.label));
     caption.replaceChildren(...names, ...ghosts);
+  }
+
+  /** A coordinate or its velocity as the equations have it. */
+  private symbolOf(name: string): string | undefined {
+    for (const c of this.store.state.equations?.coordinates ?? []) {
+      if (c.name === name) return c.symbol?.mathml;
+      if (`${c.name}'` === name) return c.velocity?.mathml;
+    }
+    return undefined;
   }
 
   private present(): void {

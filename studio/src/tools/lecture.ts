@@ -26,6 +26,10 @@ function stepsOf(state: State): Step[] {
   );
   const holds = equations.holds ? [equations.holds] : [];
   steps.push(...equations.equations.map((line): Step => ({title: 'Equations of motion', line, notes: holds})));
+  const rates = equations.in_rates;
+  if (rates)
+    for (const line of [...rates.definitions, ...rates.equations])
+      steps.push({title: 'Equations of motion in rates', line, notes: holds});
   steps[0]?.notes.unshift(...(equations.first_notes ?? []));
   if (equations.last_notes?.length) steps.at(-1)!.notes = [...steps.at(-1)!.notes, ...equations.last_notes];
   return steps;

@@ -94,6 +94,31 @@ export const kinds = {
     await page.context().close();
   },
 
+  async 'a curve with too few points'({open}, variant, picture) {
+    const page = await open({hash: '#example=pendulum'}),
+      told = () => page.locator('#stage-trouble').innerText();
+    const fork = turns => `param m = 1 kg, f = ${turns} 1/s\ncoord x : length\nlet w = 2 pi f\npoint P mass m at (x, 0)
+V = 1/2 m w^2 x^2\nstart x = 1 mm\nrun 10 s\n`;
+    for (const [turns, few] of [[99.7, true], [10, false], [49.9, true]]) {
+      await page.locator('.cm-content').click();
+      await page.keyboard.press('Control+a');
+      await page.keyboard.insertText(fork(turns));
+      await settled(page);
+      check(`${turns} turns a second in 10 s`, /more often/.test(await told()) === few, await told());
+      if (few) await picture(page, 'coarse');
+    }
+    await page.context().close();
+  },
+
+  async "a body has Euler's equations"({open}, variant, picture) {
+    const page = await open({hash: '#example=tumbling_satellite'});
+    const lines = await page.locator('#equations-body > .numbered .line').count();
+    check('three of ω, four of the quaternion and its norm', lines === 8, lines);
+    check('the others fold', (await page.locator('#equations-body details:not([open])').count()) === 1);
+    await picture(page, 'rates');
+    await page.context().close();
+  },
+
   async 'chaos is told'({open}, variant, picture) {
     const page = await open();
     await page.locator('#run-group > summary').click();

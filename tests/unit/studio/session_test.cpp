@@ -119,6 +119,17 @@ TEST_CASE("a model with contacts says when its equations hold, and has its modes
   CHECK(Asked(pendulum).ask("equations").contains("holds") == false);
 }
 
+TEST_CASE("a body that turns has Euler's equations beside those of its quaternion, as derive has them") {
+  Json e = Asked(file_text("models/tumbling_satellite.lag")).ask("equations");
+  REQUIRE(e["ok"] == true);
+  REQUIRE(e["in_rates"]["equations"].size() == 8);  // of ω, of the quaternion by ω, and its norm
+  const std::string first = e["in_rates"]["equations"][0]["left"]["plain"];
+  CHECK(first.find("ω1'") != std::string::npos);
+  CHECK(first.find("q") == std::string::npos);
+  CHECK(e["certificate"].back()["name"] == "rates_form");
+  CHECK(Asked(pendulum).ask("equations").contains("in_rates") == false);
+}
+
 TEST_CASE("a run is the closed form, with the values beside the text") {
   Asked page(oscillator);
   Json r = page.ask({{"do", "run"}, {"set", {{"k", "9 N/m"}}}, {"start", {{"x'", "0 m/s"}}}, {"run", "2 s"}});
