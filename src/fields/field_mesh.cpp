@@ -201,7 +201,7 @@ void FieldMesh::start() {
   }
   for (const Held& held : held_) {
     if (held.force) continue;
-    const std::size_t n = held.right ? local(p_, cells_ - 1) : local(0, 0);
+    const std::size_t n = node_of(held);
     for (int order = 0; order < 2; ++order) {
       std::vector<double>& values = (order == 0 ? u_ : v_)[held.field];
       const double condition = boundary_coefficient(held.derivatives, static_cast<std::size_t>(order));
@@ -291,8 +291,7 @@ void FieldMesh::forces(std::size_t f, std::size_t k) {
     weighted(out.data() + j * n, g + j * n, -rule_.w[j] * width_ / 2, s, c.data(), points, n, n);
   }
   for (const Held& held : held_)
-    if (held.force && held.field == f)
-      out[held.right ? local(p_, cells_ - 1) : local(0, 0)] += boundary_coefficient(held.derivatives, k);
+    if (held.force && held.field == f) out[node_of(held)] += boundary_coefficient(held.derivatives, k);
   share(out);
 }
 
@@ -304,7 +303,15 @@ void FieldMesh::share(std::vector<double>& lanes) const {
   if (s_.periodic(0)) first[0] = last[cells_ - 1] = last[cells_ - 1] + first[0];
 }
 
-/// M⁻¹ at each node.
+/// Which fields are held at a node.
+std::vector<bool> FieldMesh::held_at(std::size_t lane) const {
+  std::vector<bool> out(fields_, false);
+  for (const Held& held : held_)
+    if (!held.force && node_of(held) == lane) out[held.field] = true;
+  return out;
+}
+
+/// M⁻¹ at each node, of the fields that are free there.
 void FieldMesh::masses() {
   if (constant_mass_ && mass_known_) return;
   std::vector<std::vector<double>> m(fields_ * fields_, std::vector<double>(lanes_));
@@ -317,7 +324,7 @@ void FieldMesh::masses() {
   std::vector<double> a(fields_ * fields_), inverse;
   for (std::size_t n = 0; n < lanes_; ++n) {
     for (std::size_t i = 0; i < a.size(); ++i) a[i] = m[i][n];
-    if (!invert_mass(a, inverse, fields_)) {
+    if (!invert_mass(a, inverse, held_at(n))) {
       trouble_ = "mass";
       return;
     }
@@ -326,7 +333,7 @@ void FieldMesh::masses() {
   mass_known_ = true;
 }
 
-/// φ''_k = M₀⁻¹ (F_k − Σ_i M_i φ''_{k−i})
+/// φ''_k = M₀⁻¹ (F_k − Σ_i M_i φ''_{k−i}), where fields are held φ''_k itself in the place of their force.
 void FieldMesh::solve(std::size_t k) {
   if (!constant_mass_) {
     std::vector<double> part(lanes_);
@@ -341,6 +348,7 @@ void FieldMesh::solve(std::size_t k) {
           for (std::size_t n = 0; n < lanes_; ++n) force_[f][n] -= part[n] * before[n];
         }
   }
+  hold_ends(k);
   for (std::size_t f = 0; f < fields_; ++f) {
     std::vector<double>& out = past_[f * (kOrder + 2) + k];
     for (std::size_t o = 0; o < fields_; ++o) {
@@ -351,13 +359,11 @@ void FieldMesh::solve(std::size_t k) {
   }
 }
 
-void FieldMesh::hold_ends(std::size_t f, std::size_t k) {
-  for (const Held& held : held_) {
-    if (held.force || held.field != f) continue;
-    const std::size_t n = held.right ? local(p_, cells_ - 1) : local(0, 0);
-    past_[f * (kOrder + 2) + k][n] =
-        boundary_coefficient(held.derivatives, k + 2) * static_cast<double>((k + 1) * (k + 2));
-  }
+void FieldMesh::hold_ends(std::size_t k) {
+  for (const Held& held : held_)
+    if (!held.force)
+      force_[held.field][node_of(held)] =
+          boundary_coefficient(held.derivatives, k + 2) * static_cast<double>((k + 1) * (k + 2));
 }
 
 void FieldMesh::coefficient(std::size_t k) {
@@ -371,7 +377,6 @@ void FieldMesh::coefficient(std::size_t k) {
   for (std::size_t f = 0; f < fields_; ++f) forces(f, k);
   solve(k);
   for (std::size_t f = 0; f < fields_; ++f) {
-    hold_ends(f, k);
     const double* a = past_[f * (kOrder + 2) + k].data();
     const auto next = static_cast<double>(k + 1);
     double* v = velocity(f, k + 1);
@@ -450,7 +455,7 @@ double FieldMesh::omega_max(const Interrupt& interrupt) {
     if (s_.periodic(0)) row[local(0, 0)] = row[local(p_, cells_ - 1)];
   }
   for (const Held& held : held_)
-    if (!held.force) w[held.field][held.right ? local(p_, cells_ - 1) : local(0, 0)] = 0;
+    if (!held.force) w[held.field][node_of(held)] = 0;
   const auto accelerations = [&](const FieldValues& u) {
     load(u, v_);
     coefficient(0);

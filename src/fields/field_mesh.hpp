@@ -72,7 +72,8 @@ class FieldMesh final : public WaveMesh {
   bool advance(double h);  // by the series that is there
   void masses();
   void solve(std::size_t k);
-  void hold_ends(std::size_t f, std::size_t k);
+  void hold_ends(std::size_t k);
+  std::vector<bool> held_at(std::size_t lane) const;
   void load(const std::vector<std::vector<double>>& u, const std::vector<std::vector<double>>& v);
   double boundary_coefficient(const std::vector<Expr>& derivatives, std::size_t k) const;
 
@@ -87,7 +88,7 @@ class FieldMesh final : public WaveMesh {
   std::optional<double> allowed_;           // of the last term of the series beside the field, see reach()
   std::vector<std::vector<double>> u_, v_;  // [fields][lanes]
   std::vector<std::vector<double>> force_;  // [fields][lanes]
-  std::vector<double> mass_;                // [fields² × lanes], inverse
+  std::vector<double> mass_;                // [fields² × lanes], inverse, of the fields that are free
   std::vector<std::vector<double>> past_;   // accelerations by order [fields · orders][lanes]
   bool constant_mass_ = false, mass_known_ = false;
   struct Held {
@@ -96,6 +97,7 @@ class FieldMesh final : public WaveMesh {
     std::vector<Expr> derivatives;  // of the value at the end
     bool force = false;             // else the field itself
   };
+  std::size_t node_of(const Held& held) const { return held.right ? local(p_, cells_ - 1) : local(0, 0); }
   std::vector<Held> held_;
   std::shared_ptr<EndSlopes> end_slopes_;  // made when sides are first looked at
 };

@@ -33,8 +33,14 @@ std::optional<FieldJet> beyond(const FieldJet& high, const FieldJet& low) {
 }  // namespace
 
 OnShell::OnShell(const FieldEquations& equations) : s_(equations.system()) {
+  const auto all = [&] {
+    ExprMap out;
+    for (const Solved& known : solved_) out[s_.jet_symbol(known.jet)] = known.value;
+    return out;
+  };
   for (const Expr& written : equations.residuals) {
-    const Expr residual = s_.expanded(written);
+    // Equations with more than one such derivative, of fields with mass in common, are solved together.
+    const Expr residual = substitute(s_.expanded(written), all());
     const std::vector<Expr> jets = s_.jets_in(residual);
     const std::vector<Expr> slopes = gradient(residual, jets);
     std::optional<std::size_t> best;
@@ -53,7 +59,9 @@ OnShell::OnShell(const FieldEquations& equations) : s_(equations.system()) {
     const Expr rest = substitute(residual, {{jets[*best], s_.context->number(0)}});
     leading_.push_back(jets[*best]);
     coefficient_.push_back(slopes[*best]);
-    solved_.push_back({*s_.jet_of(jets[*best]), -rest / slopes[*best]});
+    const Expr value = -rest / slopes[*best];
+    for (Solved& known : solved_) known.value = substitute(known.value, {{jets[*best], value}});
+    solved_.push_back({*s_.jet_of(jets[*best]), value});
   }
 }
 

@@ -4,7 +4,8 @@
 namespace maupertuis {
 
 /// Replaces derivatives by what the field equations say of them. Each equation is solved for one derivative in which it
-/// is linear, the highest in time, then in space; derivatives of it follow.
+/// is linear, the highest in time, then in space, together where they hold those of each other; derivatives of it
+/// follow.
 class OnShell {
  public:
   explicit OnShell(const FieldEquations& equations);

@@ -138,18 +138,6 @@ PlaneMesh::PlaneMesh(const FieldEquations& equations, const PointForm& form, int
     for (std::size_t i = 0; i < 2; ++i)
       for (std::size_t n = 0; n < lanes_; ++n) series_.input(kInputs * fields_ + i, 0)[n] = place(i, row, n);
   }
-  std::vector<double> a(fields_ * fields_);
-  bool numbers = true;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    numbers = numbers && series_.number_root(i);
-    if (numbers) a[i] = *series_.number_root(i);
-  }
-  if (numbers && !invert_mass(a, scalar_inverse_, fields_)) trouble_ = "mass";
-  if (!numbers) {
-    inverse_.assign(fields_ * fields_ * lanes_ * rows(), 0);
-    a_.assign(fields_ * fields_ * lanes_, 0);
-    a_pending_.assign(fields_ * fields_ * line_, 0), a_first_ = a_pending_;
-  }
   for (const EndForce& f : s_.end_forces) hold(f.side, f.jet.field, f.value, true);
   for (const BoundaryCondition& b : s_.boundary) {
     if (b.jet.order() == 0) {
@@ -170,8 +158,29 @@ PlaneMesh::PlaneMesh(const FieldEquations& equations, const PointForm& form, int
     }
     hold(b.side, b.jet.field, far ? -p : p, true);
   }
+  prepare_masses();
   force_.assign(fields_ * lanes_, 0), other_.assign(lanes_, 0);
   pending_.assign(kOrder, std::vector<double>(fields_ * line_)), first_ = pending_;
+}
+
+/// One A⁻¹ for all nodes where A is a matrix of numbers, and no field is held that has mass in common with another one.
+void PlaneMesh::prepare_masses() {
+  std::vector<double> a(fields_ * fields_);
+  bool alike = true;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    alike = alike && series_.number_root(i);
+    if (!alike) break;
+    a[i] = *series_.number_root(i);
+    for (const Held& held : held_)
+      if (!held.force && i / fields_ == held.field && i % fields_ != held.field && a[i] != 0) alike = false;
+  }
+  if (alike) {
+    if (!invert_mass(a, scalar_inverse_, fields_)) trouble_ = "mass";
+    return;
+  }
+  inverse_.assign(fields_ * fields_ * lanes_ * rows(), 0);
+  a_.assign(fields_ * fields_ * lanes_, 0);
+  a_pending_.assign(fields_ * fields_ * line_, 0), a_first_ = a_pending_;
 }
 
 double PlaneMesh::bytes(const FieldEquations& equations, const PointForm& form, double cells_x, double cells_y,
@@ -208,6 +217,22 @@ double PlaneMesh::place(std::size_t direction, std::size_t row, std::size_t lane
 
 bool PlaneMesh::is_on(Side side, std::size_t row) const {
   return side == Side::Bottom ? row == 0 : side == Side::Top ? row + 1 == rows() : true;
+}
+
+bool PlaneMesh::is_on(Side side, std::size_t row, std::size_t lane) const {
+  const std::size_t in_line = lane % line_;
+  return side == Side::Left     ? in_line == 0
+         : side == Side::Right  ? in_line + 1 == line_
+         : side == Side::Bottom ? is_on(side, row) && lane < line_
+                                : is_on(side, row) && lane >= lanes_ - line_;
+}
+
+/// Which fields are held at a node.
+std::vector<bool> PlaneMesh::held_at(std::size_t row, std::size_t lane) const {
+  std::vector<bool> out(fields_, false);
+  for (const Held& held : held_)
+    if (!held.force && is_on(held.side, row, lane)) out[held.field] = true;
+  return out;
 }
 
 template <class F>
@@ -323,7 +348,7 @@ void PlaneMesh::masses(std::size_t row) {
   const auto put = [&](std::size_t of_row, std::size_t lane, const std::vector<double>& from, std::size_t at,
                        std::size_t stride) {
     for (std::size_t i = 0; i < pairs; ++i) a[i] = from[i * stride + at];
-    if (!invert_mass(a, inverse, fields_)) trouble_ = "mass";
+    if (!invert_mass(a, inverse, held_at(of_row, lane))) trouble_ = "mass";
     for (std::size_t i = 0; i < pairs; ++i) inverse_[(of_row * pairs + i) * lanes_ + lane] = inverse[i];
   };
   std::vector<double> before(pairs * line_);  // of the line in common with the row before
@@ -379,11 +404,16 @@ void PlaneMesh::force(std::size_t f, std::size_t row, std::size_t k) {
 }
 
 /// φ_{k+2} in lines of a row whose forces, `stride` apart for the fields, are known with all that their neighbours add.
-void PlaneMesh::finish(std::size_t row, std::size_t k, std::size_t from_line, std::size_t lines, const double* forces,
+/// Where a field is held that has mass in common with others, its acceleration stands in the place of its force.
+void PlaneMesh::finish(std::size_t row, std::size_t k, std::size_t from_line, std::size_t lines, double* forces,
                        std::size_t stride) {
   series_.select(row);
   const std::size_t n = lines * line_, at = from_line * line_;
   const double factor = -1 / static_cast<double>((k + 1) * (k + 2));
+  for (const Held& held : held_)
+    if (!held.force && !inverse_.empty())
+      each_held(held, row, k + 2, from_line, lines,
+                [&](std::size_t lane, double value) { forces[held.field * stride + lane - at] = value / factor; });
   for (std::size_t f = 0; f < fields_; ++f) {
     double* out = phi(f, k + 2) + at;
     if (inverse_.empty()) {

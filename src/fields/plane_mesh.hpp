@@ -52,17 +52,20 @@ class PlaneMesh final : public WaveMesh {
   double* phi(std::size_t f, std::size_t k) { return series_.input(6 * f, k); }
   void slopes(double* to_x, double* to_y, const double* from) const;
   void prepare(std::size_t k);
+  void prepare_masses();
   void masses(std::size_t row);
   void force(std::size_t f, std::size_t row, std::size_t k);
   void share_columns(double* lanes) const;
   void process(std::size_t row, std::size_t k);
-  void finish(std::size_t row, std::size_t k, std::size_t from_line, std::size_t lines, const double* forces,
+  void finish(std::size_t row, std::size_t k, std::size_t from_line, std::size_t lines, double* forces,
               std::size_t stride);
   void sweep(std::size_t orders, const std::function<void(std::size_t row)>& behind);
   void take_row(std::size_t row);
   void show_row(std::size_t row);
   std::vector<double> inputs_at(std::size_t row, std::size_t lane) const;
   bool is_on(BoundaryCondition::Side side, std::size_t row) const;
+  bool is_on(BoundaryCondition::Side side, std::size_t row, std::size_t lane) const;
+  std::vector<bool> held_at(std::size_t row, std::size_t lane) const;
 
   /// A condition or an end force, with its derivatives by t, at the nodes of a side.
   struct Held {
@@ -91,8 +94,8 @@ class PlaneMesh final : public WaveMesh {
   std::vector<double> force_, other_;          // of one row: [fields × lanes], [lanes]
   std::vector<std::vector<double>> pending_;   // [orders] the last line of the row before, [fields × line]
   std::vector<std::vector<double>> first_;     // the same of the first line, where the plane is periodic
-  std::vector<double> scalar_inverse_;         // of A where it is a matrix of numbers, [fields²]
-  std::vector<double> inverse_;                // else [rows][fields² × lanes]
+  std::vector<double> scalar_inverse_;         // of A where it is the same matrix of numbers at all nodes, [fields²]
+  std::vector<double> inverse_;                // else [rows][fields² × lanes], of the fields that are free
   std::vector<double> a_pending_, a_first_, a_;
   bool mass_known_ = false;
   std::vector<Held> held_;

@@ -66,4 +66,18 @@ bool invert_mass(std::vector<double> a, std::vector<double>& inverse, std::size_
   return true;
 }
 
+bool invert_mass(std::vector<double> a, std::vector<double>& inverse, const std::vector<bool>& held) {
+  const std::size_t n = held.size();
+  const std::vector<double> whole = a;
+  for (std::size_t h = 0; h < n; ++h)
+    for (std::size_t i = 0; held[h] && i < n; ++i) a[h * n + i] = a[i * n + h] = i == h ? 1 : 0;
+  if (!invert_mass(std::move(a), inverse, n)) return false;
+  const std::vector<double> of_free = inverse;
+  for (std::size_t h = 0; h < n; ++h)
+    for (std::size_t f = 0; held[h] && f < n; ++f)
+      for (std::size_t g = 0; !held[f] && g < n; ++g)
+        if (!held[g]) inverse[f * n + h] -= of_free[f * n + g] * whole[g * n + h];
+  return true;
+}
+
 }  // namespace maupertuis

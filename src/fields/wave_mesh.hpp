@@ -29,5 +29,8 @@ void fill_randomly(FieldValues& w);
 
 /// A⁻¹ of one point, [n²]; false where it is singular.
 bool invert_mass(std::vector<double> a, std::vector<double>& inverse, std::size_t n);
+/// The same where some fields are held: rows of these say that φ'' is what stands in their place among the forces, so
+/// that the other fields feel the mass that they have in common with them, A_ff φ_f'' = F_f − A_fh φ_h''.
+bool invert_mass(std::vector<double> a, std::vector<double>& inverse, const std::vector<bool>& held);
 
 }  // namespace maupertuis
