@@ -275,7 +275,10 @@ std::string draw_frame(const Figure& figure, const Panel& panel, const Axis& acr
 
 std::string draw_vertical_label(const Panel& panel, const Axis& up) {
   const double middle = panel.top + panel.height / 2;
-  return text_element(16, middle, "middle", label_size, axis_text(names_of(panel.series), panel.unit, up),
+  const RichText text = axis_text(names_of(panel.series), panel.unit, up);
+  // "energy (10⁻¹⁵ J from 0.1973920880217)" is longer than the panel is high.
+  const double size = label_size * std::min(1.0, panel.height / text_width(text, label_size));
+  return text_element(16, middle, "middle", std::round(10 * size) / 10, text,
                       fmt::format(" transform=\"rotate(-90 16 {:.1f})\"", middle));
 }
 

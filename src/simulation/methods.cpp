@@ -31,6 +31,12 @@ SimulationOptions with_method_of(const Model& model, SimulationOptions options) 
 std::unique_ptr<Method> variational_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
                                            const VariationalOptions& options, Diagnostics& diagnostics) {
   const bool has_step = options.step > 0 && std::isfinite(options.step);
+  if (equations.degenerate) {
+    diagnostics.error("E0731", std::nullopt, "the variational method does not take a degenerate Lagrangian",
+                      "Its steps follow from the momenta at their ends, which must determine the velocities.",
+                      "Use the default method; it keeps what the Lagrangian asks of the state to rounding.");
+    return nullptr;
+  }
   if (const Constraint* velocities = between_velocities(*equations.system)) {
     diagnostics.error(
         "E0720", velocities->span, "the variational method does not take this constraint between velocities",

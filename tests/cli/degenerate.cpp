@@ -74,6 +74,18 @@ TEST_CASE("many digits of a degenerate system begin on all that it asks of a sta
   CHECK(contains(one.out, "  x = 0.99802985944634"));
 }
 
+TEST_CASE("variational steps of degenerate Lagrangians are refused, with and without relations between velocities") {
+  for (const std::string& model :
+       {predators,
+        std::string(
+            "dimensionless\ncoord x, z : number\nL = 1/2 x'^2 - 1/2 x^2 + z x - 1/2 z^2\nstart x = 1\nrun 1\n")}) {
+    const Outcome refused = maup({"simulate", "-", "--method", "variational", "--step", "0.01"}, model);
+    CHECK(refused.code != 0);
+    CHECK(contains(refused.err, "E0731"));
+    CHECK_FALSE(contains(refused.err, "singular"));
+  }
+}
+
 TEST_CASE("models with degenerate Lagrangians are not compared") {
   const Folder folder;
   folder.write("first.lag", "dimensionless\ncoord x, y : number\nL = x y' - 1/2 x^2 - 1/2 y^2\nstart x = 1\nrun 1\n");
