@@ -295,15 +295,11 @@ bool HybridMotion::may_hold(const Choice& c) {
 /// it beside all else as it is there: the one that has to give way is another.
 bool HybridMotion::gives_way_unforced(const std::vector<Choice>& list, const Found& found,
                                       const std::vector<std::size_t>& touching, double bound) {
-  const auto is_at_limit = [&](std::size_t i) {
-    return std::any_of(pending_->left.begin(), pending_->left.end(),
-                       [&](const Watch& w) { return w.what == Watch::What::Hold && w.index == i; });
-  };
   bool unforced = false, asked = false;
   for (const Choice& c : list) {
     const FrictionState state = found.mode.friction[c.contact];
     const bool begins = state == FrictionState::Forward || state == FrictionState::Backward;
-    if (!begins || !may_hold(c) || is_at_limit(c.contact)) continue;
+    if (!begins || !may_hold(c) || comes_to_limit(c.contact)) continue;
     Found held{found.mode, {}, {}};
     held.mode.friction[c.contact] = FrictionState::Stick;
     const std::optional<Given> given = given_in(held.mode, bound);
@@ -321,45 +317,57 @@ bool HybridMotion::gives_way_unforced(const std::vector<Choice>& list, const Fou
   return unforced;
 }
 
-/// Where one friction begins to slide and another is held, that the other way round would have done as well is told.
-/// Not of friction that came to its own limit.
-void HybridMotion::note_choice(const std::vector<Choice>& list, Found& found, const std::vector<std::size_t>& touching,
-                               double bound) {
-  constexpr std::size_t most = 16;  // other modes that are looked at
-  const auto gives_way = [&](std::size_t i) {
-    return std::any_of(pending_->left.begin(), pending_->left.end(),
-                       [&](const Watch& w) { return w.what == Watch::What::Hold && w.index == i; });
-  };
-  const auto label = [&](std::size_t i) {
-    return i < found.mode.closed.size() ? system_.contact_label(i)
-                                        : system_.frictions[i - found.mode.closed.size()].name;
-  };
-  if (told_choice_ || found.given.is_preload) return;
-  std::size_t looked = 0;
-  const std::vector<bool> released = released_;
+/// Whether a friction that holds comes to its limit at this instant.
+bool HybridMotion::comes_to_limit(std::size_t friction) const {
+  return std::any_of(pending_->left.begin(), pending_->left.end(),
+                     [&](const Watch& w) { return w.what == Watch::What::Hold && w.index == friction; });
+}
+
+/// Pairs of frictions of which the first begins to slide, below its own limit, and the second is held, where one of the
+/// two has more static than kinetic friction.
+std::vector<std::pair<std::size_t, std::size_t>> HybridMotion::exchangeable(const std::vector<Choice>& list,
+                                                                            const ContactMode& mode) {
+  std::vector<std::pair<std::size_t, std::size_t>> out;
   for (const Choice& slides : list) {
-    const FrictionState state = found.mode.friction[slides.contact];
-    const bool begins = state == FrictionState::Forward || state == FrictionState::Backward;
-    if (!begins || slides.options.size() <= 2 || gives_way(slides.contact)) continue;
+    const FrictionState state = mode.friction[slides.contact];
+    const bool begins =
+        slides.options.size() > 2 && (state == FrictionState::Forward || state == FrictionState::Backward);
+    if (!begins || comes_to_limit(slides.contact)) continue;
     for (const Choice& held : list) {
-      const bool holds = found.mode.friction[held.contact] == FrictionState::Stick && held.options.size() > 2;
-      if (!holds || !(may_hold(held) || may_hold(slides))) continue;
-      for (const FrictionState way : {FrictionState::Forward, FrictionState::Backward}) {
-        if (told_choice_ || ++looked > most) break;
-        Found other{found.mode, {}, {}};
-        other.mode.friction[slides.contact] = FrictionState::Stick;
-        other.mode.friction[held.contact] = way;
-        if (!fits(other, touching, bound, Leniency::None) || gives_way_unforced(list, other, touching, bound)) continue;
-        told_choice_ = true;
-        remark(fmt::format(
-            "Static friction leaves a choice at t = {:.9g}: {} is held and {} begins to slide; the motion in "
-            "which the latter is held and the former slides keeps all conditions too.",
-            t_, label(held.contact), label(slides.contact)));
-      }
+      const bool holds = held.options.size() > 2 && mode.friction[held.contact] == FrictionState::Stick;
+      if (holds && (may_hold(held) || may_hold(slides))) out.emplace_back(slides.contact, held.contact);
     }
   }
+  return out;
+}
+
+/// Where one friction begins to slide and another is held, that the other way round would have done as well is told.
+void HybridMotion::note_choice(const std::vector<Choice>& list, Found& found, const std::vector<std::size_t>& touching,
+                               double bound) {
+  constexpr std::size_t most = 8;  // pairs that are looked at
+  if (told_choice_ || !found.given.values.empty()) return;
+  const auto label = [&](std::size_t i) {
+    const std::size_t contacts = found.mode.closed.size();
+    return i < contacts ? system_.contact_label(i) : system_.frictions[i - contacts].name;
+  };
+  auto pairs = exchangeable(list, found.mode);
+  pairs.resize(std::min(pairs.size(), most));
+  const std::vector<bool> released = released_;
+  for (const auto& [slides, held] : pairs)
+    for (const FrictionState way : {FrictionState::Forward, FrictionState::Backward}) {
+      Found other{found.mode, {}, {}};
+      other.mode.friction[slides] = FrictionState::Stick;
+      other.mode.friction[held] = way;
+      if (told_choice_ || !fits(other, touching, bound, Leniency::None)) continue;
+      if (gives_way_unforced(list, other, touching, bound)) continue;
+      told_choice_ = true;
+      remark(
+          fmt::format("Static friction leaves a choice at t = {:.9g}: {} is held and {} begins to slide; the motion in "
+                      "which the latter is held and the former slides keeps all conditions too.",
+                      t_, label(held), label(slides)));
+    }
   released_ = released;
-  if (looked > 0) static_cast<void>(fits(found, touching, bound, Leniency::Gaps));  // others were begun after it
+  if (!pairs.empty()) static_cast<void>(fits(found, touching, bound, Leniency::Gaps));  // others were begun after it
 }
 
 bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason) {

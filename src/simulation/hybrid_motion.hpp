@@ -16,6 +16,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace maupertuis {
@@ -139,6 +140,9 @@ class HybridMotion final : public Method {
   bool may_hold(const Choice& choice);
   bool gives_way_unforced(const std::vector<Choice>& list, const Found& found, const std::vector<std::size_t>& touching,
                           double bound);
+  bool comes_to_limit(std::size_t friction) const;
+  std::vector<std::pair<std::size_t, std::size_t>> exchangeable(const std::vector<Choice>& list,
+                                                                const ContactMode& mode);
   void note_choice(const std::vector<Choice>& list, Found& found, const std::vector<std::size_t>& touching,
                    double bound);
   std::optional<std::vector<std::size_t>> beyond_limits(Found& found, const std::vector<std::size_t>& touching,

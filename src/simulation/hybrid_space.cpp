@@ -372,12 +372,7 @@ bool HybridMotion::choose_slips(const std::vector<std::size_t>& touching, double
   const auto outlook = outlook_without_contacts(values, bound);
   if (!outlook) return true;
   Cones cones = cones_of(pressed_of(touching, values), values, outlook->accelerations);
-  const auto reaches_limit = [&](std::size_t i) {
-    return gives_way ||
-           (!now_->given.is_preload && std::any_of(pending_->left.begin(), pending_->left.end(), [&](const Watch& w) {
-             return w.what == Watch::What::Hold && w.index == i;
-           }));
-  };
+  const auto reaches_limit = [&](std::size_t i) { return gives_way || (!now_->given.is_preload && comes_to_limit(i)); };
   std::vector<bool> slides(cones.contacts.size(), false);
   for (int pass = 0; pass < 2; ++pass) {  // with static friction, then with the kinetic one of those that slide
     for (std::size_t c = 0; c < cones.contacts.size(); ++c)
