@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 /// What contacts that are hit do to the velocities, and where infinitely many bounces end.
 namespace maupertuis {
@@ -179,7 +180,9 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
     const ImpactResult more =
         rubs ? sequential_impact(all, result.v, ImpactOrder::FastestFirst) : simultaneous_impact(all, result.v, true);
     result.v = more.v;
-    result.impulses.insert(result.impulses.end(), more.impulses.begin(), more.impulses.end());
+    // What rounding leaves of the bounces that have ended is no impact.
+    std::copy_if(more.impulses.begin(), more.impulses.end(), std::back_inserter(result.impulses),
+                 [&](const Impulse& i) { return i.speed > rest_speed(i.contact, values); });
     result.loss += more.loss, result.moving += more.moving;
     result.unsolved = more.unsolved;
   }

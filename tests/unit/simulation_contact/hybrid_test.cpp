@@ -376,3 +376,13 @@ TEST_CASE("a set beside a stop at one time is told, and that the last state is t
   REQUIRE(r.remarks.size() == 1);
   CHECK(r.remarks[0].find("The event a sets the state") != std::string::npos);
 }
+
+TEST_CASE("the end of bounces on a slope is told by impacts, none of which is rounding") {
+  const auto r = run_text(
+      "dimensionless\ncoord x, y : length\npoint P mass 1 at (x, y)\ngravity (0, -9.81)\n"
+      "contact y - 0.286*sin(1.068*x) >= 0 restitution 0.68 name floor\nstart x = 0.694, y = 1.029, x' = 0.36\n",
+      2.46);
+  CHECK(count(r, Happening::Kind::Made, "floor") == 1);
+  for (const Happening& h : r.happenings)
+    if (h.kind == Happening::Kind::Impact) CHECK(h.impulse > 1e-7);
+}
