@@ -1,5 +1,6 @@
 #include "studio/requests.hpp"
 
+#include <maupertuis/action.hpp>
 #include <maupertuis/degenerate.hpp>
 #include <maupertuis/field_report.hpp>
 #include <maupertuis/formula_document.hpp>
@@ -102,15 +103,32 @@ std::string latex_of(Study& study) {
   return document(lines, Notation::Latex);
 }
 
+/// A model that says between what ends its paths run, and nothing of a run.
+bool is_about_paths_alone(const Model& model) {
+  const Experiment& e = model.experiment;
+  return e.path && !e.duration && !e.until;
+}
+
+std::optional<PathSearch> paths_of(const Model& model, const EquationsOfMotion& equations, const Work& work,
+                                   Diagnostics& said) {
+  if (!model.experiment.path) return std::nullopt;
+  ActionOptions options;
+  options.interrupt = work.interrupt;
+  return stationary_paths(model, equations, ends_of(model), options, said);
+}
+
 /// The page of `maup report`, without what takes long.
 std::string report_of(Desk& desk, Study& study, const Work& work) {
   const Model& model = *study.model();
   const EquationsOfMotion& equations = *study.equations();
   Diagnostics said = study.diagnostics();
   Diagnostics unheard;  // what the page cannot say of a system is no mistake of the model
-  const SimulationResult run = motion_of(desk, study, work);
+  std::optional<SimulationResult> run;
+  if (!is_about_paths_alone(model)) run = motion_of(desk, study, work);
+  const std::optional<PathSearch> paths = paths_of(model, equations, work, said);
   ReportParts parts;
-  parts.simulation = &run;
+  if (run) parts.simulation = &*run;
+  if (paths) parts.paths = &*paths;
   SimulationOptions options;
   options.interrupt = work.interrupt;
   const Verification verification = verify(model, equations, study.source(), options, unheard);
@@ -124,7 +142,7 @@ std::string report_of(Desk& desk, Study& study, const Work& work) {
         "Choose a mode, and make its page.");
   } else {
     invariants = page_invariants(model, equations);
-    if (moves_in_time(model.system)) found = page_modes(model, equations, work.interrupt);
+    if (run && moves_in_time(model.system)) found = page_modes(model, equations, work.interrupt);
   }
   work.interrupt.throw_if_asked();
   if (invariants) parts.invariants = &*invariants;

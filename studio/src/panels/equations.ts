@@ -436,7 +436,7 @@ function checks(list: Check[]): HTMLElement {
         'li',
         {},
         h('span', {class: mark[0], role: 'img', 'aria-label': mark[2]}, mark[1]),
-        h('span', {}, check.statement),
+        h('span', {}, ...prose(check.statement)),
         h('span', {class: 'muted'}, check.applies ? check.verdict : ''),
       );
     }),

@@ -46,7 +46,7 @@ export function lineElement(line: Line): HTMLElement {
     {class: line.rule ? 'line ruled' : 'line'},
     line.sentence && h('p', {class: 'sentence'}, ...prose(line.sentence)),
     mathematics,
-    line.rule && h('p', {class: 'rule'}, line.rule),
+    line.rule && h('p', {class: 'rule'}, ...prose(line.rule)),
   );
 }
 

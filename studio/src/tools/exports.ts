@@ -18,7 +18,8 @@ const kinds: [string, string, string][] = [
   ['drawing.png', 'Drawing', 'PNG'],
 ];
 
-const ofFields = ['report', 'latex', 'csv', 'json'];
+const ofPaths = ['report', 'latex'],
+  ofFields = ['report', 'latex', 'csv', 'json'];
 
 /** A picture at twice its size on the screen; null where the browser cannot read it. */
 function pixels(svg: string): Promise<Blob | null> {
@@ -59,7 +60,7 @@ export function exportDialog(store: Store<State>, study: Study): void {
   };
   const still = betweenEnds(store.state),
     made = store.state.opened?.fields ? ofFields : kinds.map(([what]) => what);
-  const entries = kinds.filter(([what]) => (still ? what === 'latex' : made.includes(what))).map(([what, title, detail]) =>
+  const entries = kinds.filter(([what]) => (still ? ofPaths : made).includes(what)).map(([what, title, detail]) =>
     h('li', {}, h('button', {type: 'button', onclick: () => void make(what)}, title, h('small', {}, detail))),
   );
   const own = h(

@@ -514,6 +514,9 @@ export const cases = {
       if (i === 0) await picture(page, 'exercise');
       check(`${name}: a right one is right`, /Right/.test(await claim(right[0])));
     }
+    for (const nothing of ['0 = 0', "s'' = s''"])
+      check(`${nothing} says nothing`, /Not yet.*same formula/s.test(await claim(nothing)), nothing);
+    check('nor is another one asked for', /equation of X/.test(await claim("(M + m) X'' + m cos α s'' = 0")));
     check('what is no equation is told', /\S/.test(await claim("x'' = = 2")));
     await picture(page, 'exercise-right');
     await page.locator('#exercise >> text=Show the equations').click();

@@ -370,6 +370,17 @@ TEST_CASE("files are those of the command line") {
     CHECK(page.ask({{"do", "export"}, {"what", what}})["ok"] == true);
 }
 
+TEST_CASE("a model of paths has a report, with its paths") {
+  for (const char* name : {"brachistochrone", "great_circle", "hanging_chain", "oscillator_path", "soap_film"}) {
+    CAPTURE(std::string(name));
+    Asked page(file_text(std::string("models/") + name + ".lag"));
+    Json report = page.ask({{"do", "export"}, {"what", "report"}, {"budget", 60}});
+    CAPTURE(report.dump().substr(0, 300));
+    REQUIRE(report["ok"] == true);
+    CHECK(report["text"].get<std::string>().find("<h2>Stationary paths") != std::string::npos);
+  }
+}
+
 TEST_CASE("fields have equations, runs and conserved quantities") {
   Asked page(file_text("models/fields/sine_gordon_kink.lag"));
   REQUIRE(page.opened["fields"] == true);
