@@ -123,6 +123,41 @@ export const answers = {
     await page.context().close();
   },
 
+  async 'of one text'({open}, variant) {
+    if (variant.name !== 'server') return;
+    const page = await open({hash: '#example=pendulum'}),
+      conserved = () => page.locator('#conserved-body').innerHTML();
+    check('the energy holds g', /<mi>g<\/mi>/.test(await conserved()), await conserved());
+    let held = await hold(page, full);
+    await page.locator('.cm-content').click();
+    await page.keyboard.press('Control+a');
+    await page.keyboard.insertText(
+      'param m = 1 kg, k = 4 N/m\ncoord x : length\npoint P mass m at (x, 0)\nV = 1/2 k x^2\nstart x = 1 m\nrun 5 s\n',
+    );
+    await page.waitForFunction(() => /<mi>k<\/mi>/.test(document.querySelector('#equations-body .numbered').innerHTML));
+    await page.waitForTimeout(100);
+    check('beside new equations stands no energy of the text before', !/<mi>g<\/mi>/.test(await conserved()));
+    held.go();
+    await page.unroute('**/api/request*');
+    await settled(page);
+
+    // What was wrong with a run is not told of the next one.
+    await page.locator('#run-group > summary').click();
+    const run = async duration => {
+      await page.locator('#duration').fill(duration);
+      await page.keyboard.press('Enter');
+    };
+    await run('5 J');
+    await page.waitForSelector('#stage-trouble .message');
+    held = await hold(page, full);
+    await run('5 s');
+    await page.waitForFunction(() => !document.querySelector('#stage-trouble .message'), null, {timeout: 3000});
+    held.go();
+    await page.unroute('**/api/request*');
+    await settled(page);
+    await page.context().close();
+  },
+
   async 'slow motions'({open}, variant, picture) {
     if (variant.name !== 'server') return;
     const page = await open();
