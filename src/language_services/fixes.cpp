@@ -1,6 +1,8 @@
 #include <maupertuis/language_services.hpp>
 #include <maupertuis/look_alikes.hpp>
 
+#include "language_services/roles.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -97,8 +99,9 @@ class Proposals {
   std::vector<Proposal> run() {
     const std::string_view help = diagnostic_.help;
     if (quotient_of_leibniz()) return std::move(out_);
-    for (const std::string_view text : after_word(help, "Did you mean "))
-      propose(without_ticks(text.substr(0, text.find('?'))));
+    if (!is_name_among_units())
+      for (const std::string_view text : after_word(help, "Did you mean "))
+        propose(without_ticks(text.substr(0, text.find('?'))));
     for (const std::string_view word :
          {std::string_view("Write "), std::string_view("Type "), std::string_view("Close it with ")}) {
       for (std::string_view text : after_word(help, word)) {
@@ -297,8 +300,15 @@ class Proposals {
       if (text == theirs) propose(std::string(ours));
     if (text != ";" || ends_line()) return;
     const Span with_blanks{span_.begin, skip_blanks(span_.end), span_.source};
-    add("Write the statements on lines of their own", with_blanks, "\n");
+    if (!is_in_brackets()) add("Write the statements on lines of their own", with_blanks, "\n");
     add("Write ,", span_, ",");
+  }
+
+  /// Whether a bracket is open that the line began before the words at fault.
+  bool is_in_brackets() const {
+    const std::string_view before = document_.source().text().substr(0, span_.begin);
+    const std::string_view line = before.substr(before.rfind('\n') + 1);  // all of it where there is none
+    return std::count(line.begin(), line.end(), '(') > std::count(line.begin(), line.end(), ')');
   }
 
   /// x(0) = 1 m, or an equation that could be several things.
@@ -359,6 +369,14 @@ class Proposals {
     const std::string derivative = text.substr(1) + "'";
     add(fmt::format("Write {}", derivative), {span_.begin, span_.end + 3, span_.source}, derivative);
     return true;
+  }
+
+  /// The r of `7.67 km/s / r`: a name of the model, or one letter, is not a unit that is misspelled.
+  bool is_name_among_units() {
+    const std::string text(written());
+    const std::size_t letters = static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+    return diagnostic_.code == "E0301" && (letters == 1 || document_.roles().find(text));
   }
 
   /// The unit that a bare number lacks: "the duration of a run is a time (s), this is a bare number", "Give `m` its

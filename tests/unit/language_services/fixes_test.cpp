@@ -204,10 +204,11 @@ TEST_CASE("what is offered is a text of the model, with nothing of the help's ow
     for (const std::string& mended : offered(text)) CHECK(mended.find(part) == std::string::npos);
   };
   none_has("param m = 1 kg\ncoord x\nT = 1/2 m x'^2\n", "[unit]");
-  none_has("system a\nparam l = 1 m, g = 9.81 m/s^2\ncoord θ : angle\nT = 1/2 (1 [kg]) l^2 θ'^2\nV = -m g l cos θ\n",
-           "3 [m]");
-  none_has(model("V = m g l cos s\n"), "declare");
-  none_has("param r = 7000 km\nparam ω = 7.67 km/s / r\ncoord φ : angle\nT = 1/2 (1 [kg m^2]) φ'^2\n", "/ m");
+  const std::string no_mass = "param l = 1 m, g = 9.81 m/s^2\ncoord θ : angle\nT = 1/2 m l^2 θ'^2\nV = -m g l cos θ\n";
+  const std::string no_s = "param m = 1 kg, k = 1 N/m\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2 cos s\n";
+  for (const std::string part : {"[m]", "declare", "3 "}) none_has(no_mass, part);
+  for (const std::string part : {"[s]", "declare", "3 "}) none_has(no_s, part);
+  none_has("param r = 7000 km\nparam ω = 7.67 km/s / r\ncoord φ : angle\nT = 1/2 (1 [kg m^2]) φ'^2\n", "sr");
   none_has("param m = 1 kg\ncoord r : length\nT = 1/2 m dr/dt^2\n", "r'");
   none_has(head + "point P mass m at (l sin θ; -l cos θ)\n", "\n-l");
   const auto vector = offered(head + "point P mass m at (l sin θ; -l cos θ)\n");
