@@ -81,6 +81,19 @@ constexpr CodeEntry kEntries[] = {
      "density = 1/2 u'^2 - 1/2 u_x^2\nstart u = exp(-((x - 0.4)/0.01)^2)\nrun 1\n",
      "# maup simulate\ndimensionless\nfield u(x) : number on x = 0 .. 1 cells 200 boundary u = 0\n"
      "density = 1/2 u'^2 - 1/2 u_x^2\nstart u = exp(-((x - 0.4)/0.01)^2)\nrun 1\n"},
+    {"W0660", "a field that becomes steeper than its mesh can follow",
+     "Where the speed of a wave depends on how steep it is, its parts overtake each other, and after a finite time the "
+     "slope jumps. From there on the equations have no smooth solution, and which of the others is meant they do not "
+     "say: a mesh goes on with short waves of its own. Values from that moment on have no estimate.",
+     "# maup simulate\ndimensionless\nfield u(x) : number on x = 0 .. 1 cells 40 order 4 boundary periodic\n"
+     "density = 1/2 u'^2 - 1/2 u_x^2 - u_x^4\nstart u = 0.1 sin(2 pi x)\nrun 2\n",
+     "# maup simulate\ndimensionless\nfield u(x) : number on x = 0 .. 1 cells 40 order 4 boundary periodic\n"
+     "density = 1/2 u'^2 - 1/2 u_x^2 - u_x^4\nstart u = 0.1 sin(2 pi x)\nrun 0.1\n"},
+    {"W0661", "a run that does not keep its energy",
+     "The discrete field has an energy of its own, which its motion conserves as the field conserves its energy; what "
+     "is lost is lost by the steps in time. Where that is more than a millionth of its terms, they do not follow the "
+     "motion of the mesh.",
+     "", ""},
     {"W0653", "modes of a field without its dissipation",
      "Modes of fields are those of the density of Lagrange's function alone: frequencies and shapes of motions that do "
      "not decay. With dissipation each motion has a rate of decay and another frequency, of a string with r u' in "

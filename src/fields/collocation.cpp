@@ -32,7 +32,7 @@ CollocationMotion::CollocationMotion(const FieldEquations& equations, const Dens
             return values_;
           }(),
           trouble_),
-      tableau_(stages) {
+      tableau_(stages, form.damps ? GaussTableau::Points::Radau : GaussTableau::Points::Gauss) {
   if (!trouble_.empty()) return;
   const std::size_t n = mesh_.size();
   is_held_.assign(n, false);
@@ -179,7 +179,7 @@ const CollocationMotion::Factors* CollocationMotion::factors_for(double h) {
                              : matrices_.m.values[k] + one * matrices_.g.values[k] + two * matrices_.k.values[k];
     });
     if (!matrix.factor()) {
-      trouble_ = "mass";
+      trouble_ = null_.empty() ? "mass" : "shapes";
       return nullptr;
     }
     out.of.back() = std::move(matrix);
@@ -314,7 +314,7 @@ bool CollocationMotion::step(double h) {
 
 bool CollocationMotion::step_or_halves(double h, int halvings) {
   if (one_step(h)) return true;
-  if (trouble_ != "step" || halvings == 0) return false;
+  if (trouble_ != "stuck" || halvings == 0) return false;
   trouble_.clear();
   have_stages_ = false;
   return step_or_halves(h / 2, halvings - 1) && step_or_halves(h / 2, halvings - 1);
@@ -348,7 +348,7 @@ bool CollocationMotion::one_step(double h) {
     solved = newton(h);
   }
   if (!solved) {
-    if (trouble_.empty()) trouble_ = "step";
+    if (trouble_.empty()) trouble_ = "stuck";
     return false;
   }
   const auto add = [](double& to, double& lost, double change) {  // with what the addition loses
@@ -412,7 +412,7 @@ double CollocationMotion::bytes(const DensityForm& form, const std::vector<int>&
 double CollocationMotion::choose_step(double longest, double duration, double goal, const Interrupt& interrupt) {
   const State begin = state_;
   const std::vector<double> rates = rates_;
-  const double gain = std::pow(2, 2 * static_cast<double>(tableau_.stages)) - 1;
+  const double gain = std::pow(2, tableau_.order) - 1;
   double h = longest, before = 0;
   int stays = 0, falls_slowly = 0;
   constexpr int most_halvings = 40;
@@ -423,7 +423,7 @@ double CollocationMotion::choose_step(double longest, double duration, double go
       rates_ = rates;
       bool good = true;
       for (int i = 0; i < steps && good; ++i) good = one_step(h / steps);
-      if (trouble_ != "mass") trouble_.clear();
+      if (trouble_ != "mass" && trouble_ != "shapes") trouble_.clear();
       return good ? state_.c : std::vector<double>{};
     };
     const std::vector<double> one = from_start(1), two = one.empty() ? one : from_start(2);
@@ -441,7 +441,7 @@ double CollocationMotion::choose_step(double longest, double duration, double go
     // From so many steps on less is asked for, by the power of the steps: a start that does not fit the conditions at
     // the ends moves frequencies of the mesh, and to follow them is worth nothing.
     constexpr double many = 2000;
-    const double asked = goal * std::pow(std::max(1.0, duration / h / many), 2 * static_cast<double>(tableau_.stages));
+    const double asked = goal * std::pow(std::max(1.0, duration / h / many), tableau_.order);
     if (expected <= asked || (null_.empty() && error <= 16 * rounding_)) break;
     // What the mesh adds to the start moves with its highest frequencies, which no step resolves: where the error does
     // not fall any more, shorter steps would follow the mesh, not the field. After a jump it falls slowly for ever.
@@ -519,7 +519,7 @@ void CollocationMotion::find_null_vectors() {
     matrices_.g.add_product(v.data(), product.data());
     for (std::size_t i = 0; i < n; ++i)
       if (!is_held_[i] && std::abs(product[i]) > small * size_g) return;
-    if (!mesh_.is_rough(v)) {
+    if (!mesh_.is_rough(v, fixed_)) {
       trouble_ = "ends";
       return;
     }

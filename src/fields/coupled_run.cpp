@@ -5,9 +5,11 @@
 #include "fields/breaks.hpp"
 #include "fields/density_form.hpp"
 #include "fields/field_sides.hpp"
+#include "fields/outlook.hpp"
 #include "fields/resolution.hpp"
 #include "fields/semi_discrete.hpp"
 #include "fields/start_fit.hpp"
+#include "fields/steepening.hpp"
 
 #include <fmt/format.h>
 
@@ -66,8 +68,13 @@ std::optional<CoupledRun> run_once(const SemiDiscrete& mesh, const std::vector<F
   if (options.duration > 0) settings.duration = options.duration;
   if (options.every > 0) settings.output_every = options.every;
   settings.errors = ErrorEstimates::None;
-  settings.interrupt = options.interrupt;
-  settings.progress = options.progress;
+  Outlook outlook(options);
+  std::size_t steps = 0;
+  settings.progress = [&](double share) {
+    constexpr std::size_t between = 1024;  // steps from one call to the next
+    outlook.after_steps(steps += between, share);
+    if (options.progress) options.progress(share);
+  };
   Probe probe;
   for (const FieldQuestion& q : questions) {
     probe.expressions.push_back(mesh.discretised(q, diagnostics));
@@ -165,10 +172,10 @@ std::vector<double> shown_places(const SemiDiscrete& mesh) {
 /// The error of each answer from runs on two coarser meshes: what halving the elements gains is measured, not believed,
 /// since a start or a load with a kink lets no high order come about. Beside a break, of the start or under a load that
 /// moves through elements, differences may be small by chance: that of the coarser meshes counts too, less what two
-/// halvings gain there at least (`gain_at_breaks` each; 0: no breaks).
+/// halvings gain there at least (`gain_at_breaks` each; 0: no breaks). `most`: that is believed of a gain.
 std::vector<double> errors_of(const CoupledRun& fine, const std::optional<CoupledRun>& half,
-                              const std::optional<CoupledRun>& quarter, double gain_at_breaks) {
-  constexpr double least = 1.5, most = 33;  // of a gain that two differences show
+                              const std::optional<CoupledRun>& quarter, double gain_at_breaks, double most) {
+  constexpr double least = 1.5;  // of a gain that two differences show
   std::vector<double> out;
   for (std::size_t i = 0; i < fine.answers.size(); ++i) {
     if (!half) {
@@ -182,6 +189,61 @@ std::vector<double> errors_of(const CoupledRun& fine, const std::optional<Couple
       out.push_back(std::max(first, second / (gain_at_breaks * gain_at_breaks)));
     else
       out.push_back(first / gain);
+  }
+  return out;
+}
+
+/// Whether an element of one mesh is one of the other as well: there both may agree about what is wrong.
+bool share_elements(const SemiDiscrete& fine, const SemiDiscrete& coarse) {
+  const std::vector<double>&a = fine.borders(), &b = coarse.borders();
+  const double near = 1e-9 * (a.back() - a.front());
+  const auto is_border_of_fine = [&](double x) {
+    const auto at = std::lower_bound(a.begin(), a.end(), x - near);
+    return at != a.end() && *at <= x + near ? at - a.begin() : -1;
+  };
+  for (std::size_t i = 1; i < b.size(); ++i) {
+    const auto left = is_border_of_fine(b[i - 1]), right = is_border_of_fine(b[i]);
+    if (left >= 0 && right == left + 1) return true;
+  }
+  return false;
+}
+
+/// A coarser mesh: of a `by`th of the cells, or, where places leave an element as it is then, of a lower order. Nothing
+/// where the order cannot be lowered.
+std::optional<SemiDiscrete> coarser_mesh(const SemiDiscrete& fine, const Model& model, const FieldEquations& equations,
+                                         int cells, int order, int by) {
+  constexpr int first_halving = 2, least_order = 2;
+  Diagnostics unheard;
+  const auto half = SemiDiscrete::make(model, equations, std::max(cells / first_halving, 1), order, unheard);
+  if (!half || !share_elements(fine, *half))
+    return by == first_halving ? half : SemiDiscrete::make(model, equations, std::max(cells / by, 1), order, unheard);
+  auto lower = SemiDiscrete::make(model, equations, cells, std::max(order - by, least_order), unheard);
+  return lower && lower->order() < fine.order() ? std::move(lower) : std::nullopt;
+}
+
+/// What an answer feels of rounding beside its own size, as felt_rounding of fields without bodies; by the values and
+/// velocities of the elements at the end of the run.
+double felt_rounding(const CoupledRun& run, const SemiDiscrete& mesh, const FieldEquations& equations,
+                     std::size_t answer, const FieldQuestion& question) {
+  double out = std::abs(run.answers[answer]);
+  if (question.total) return out;
+  const FieldSystem& s = equations.system();
+  const auto largest = [](const std::vector<double>& all) {
+    double most = 0;
+    for (const double x : all) most = std::max(most, std::abs(x));
+    return most;
+  };
+  double width = mesh.borders().back() - mesh.borders().front();
+  for (std::size_t i = 1; i < mesh.borders().size(); ++i)
+    width = std::min(width, mesh.borders()[i] - mesh.borders()[i - 1]);
+  const std::vector<Expr> asked = symbols_of({&question.value, 1});
+  for (const PlaceValue& place : equations.model->places) {
+    if (std::find(asked.begin(), asked.end(), place.symbol) == asked.end()) continue;
+    const Expr slope = differentiate(question.value, place.symbol);
+    const FieldJet jet = *s.jet_of(place.jet);
+    const double weight = slope.is_number() ? std::abs(slope.number().to_double()) : 1;
+    out += weight * largest(jet.time > 0 ? run.result.final.v : run.result.final.q) *
+           std::pow(mesh.order() * mesh.order() / width, jet.order() - jet.time);
   }
   return out;
 }
@@ -335,27 +397,30 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
     out.trajectory = Rows(*mesh, model, equations, out.places).of(fine->result);
   }
   std::optional<CoupledRun> half, quarter;
+  bool lower_orders = false;  // in the place of fewer cells
   if (options.errors && (!questions.empty() || !out.happenings.empty()) && out.trouble.empty()) {
-    // Where a place asks for more elements than half of them, the order is lowered instead.
     FieldRunOptions quiet = options;
-    quiet.trajectory = false, quiet.progress = {};
+    quiet.trajectory = false, quiet.progress = {}, quiet.announce = {};
     const auto coarser = [&](int by) {
       Diagnostics unheard;
-      auto other = SemiDiscrete::make(model, equations, std::max(cells / by, 1), order, unheard);
-      if (other && other->elements() == mesh->elements())
-        other = SemiDiscrete::make(model, equations, cells, std::max(order - by, 2), unheard);
+      const auto other = coarser_mesh(*mesh, model, equations, cells, order, by);
+      lower_orders = other && other->order() < mesh->order();
       return other ? run_once(*other, questions, quiet, unheard) : std::nullopt;
     };
     half = coarser(2), quarter = coarser(4);
   }
   if (options.errors) estimate_moments(out.happenings, half, quarter, options.begin);
   const double gain = gain_at_breaks(equations, *mesh, breaks || jumps(*fine), options.begin);
-  std::vector<double> errors = errors_of(*fine, half, quarter, gain);
+  constexpr double of_halvings = 33, of_orders = 5;
+  std::vector<double> errors = errors_of(*fine, half, quarter, gain, lower_orders ? of_orders : of_halvings);
   if (gain > 0 && !breaks)
     for (double& e : errors) e *= 2;
   const double rounding = 2.2e-16 * std::sqrt(static_cast<double>(out.steps) + 1);
-  for (std::size_t i = 0; i < questions.size(); ++i)
-    out.answers.push_back({fine->answers[i], errors[i] + rounding * std::max(std::abs(fine->answers[i]), 1e-300)});
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    const double felt = felt_rounding(*fine, *mesh, equations, i, questions[i]);
+    out.answers.push_back({fine->answers[i], errors[i] + rounding * std::max(felt, 1e-300)});
+  }
+  if (out.happenings.empty()) warn_of_drift(out, equations, diagnostics);
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;
 }

@@ -76,7 +76,11 @@ struct FormBuilder {
       if (slot.rate) {
         energy.push_back(slot.jet * e);
       } else {
-        if (slot.order() < 2) e = e - differentiate(dissipation, jet(slot.field, slot.space, true));
+        if (slot.order() < 2) {
+          const Expr friction = differentiate(dissipation, jet(slot.field, slot.space, true));
+          out.damps = out.damps || (slot.order() > 0 && !friction.is_zero());
+          e = e - friction;
+        }
         if (const Expr f = s.forces[equations.varied[slot.field]]; slot.order() == 0 && f) e = e + plain(f);
       }
       out.by_slot.push_back(e);
@@ -99,16 +103,25 @@ struct FormBuilder {
       }
   }
 
+  /// A force by a velocity of a field of first order: friction moves it, and not a part linear in the velocities.
+  bool in_its_friction(const DensityForm::Entry& e) const {
+    const DensityForm::Slot& column = out.slots[e.column];
+    return column.order() == 0 && out.first_order[column.field] && !differentiate(dissipation, column.jet).is_zero();
+  }
+
   bool well_formed() {
     std::vector<bool> moves(out.smooth.size(), false);
     for (const DensityForm::Entry& e : out.hessian) {
       const DensityForm::Slot &row = out.slots[e.row], &column = out.slots[e.column];
-      if (row.rate) moves[row.field] = true, moves[column.field] = true;
+      if (row.rate) moves[row.field] = true;
+      if (row.rate || column.rate) moves[column.field] = true;
       if (row.rate && out.first_order[row.field] && holds_jets_or_time(s, e.value))
         return run_unsupported(diagnostics, s.density_span,
                                "a density whose part linear in the velocities has coefficients that change"),
                false;
     }
+    for (const DensityForm::Entry& e : out.hessian)
+      out.damps = out.damps || (out.slots[e.column].rate && !out.slots[e.row].rate && in_its_friction(e));
     for (std::size_t a = 0; a < moves.size(); ++a)
       if (!moves[a]) {
         diagnostics.error("E0642", s.density_span,
@@ -140,6 +153,9 @@ bool needs_collocation(const FieldEquations& equations) {
   const std::vector<Expr> jets = s.jets_in(density);
   for (const Expr& symbol : jets)
     if (s.jet_of(symbol)->order() > 1) return true;
+  if (s.dissipation)
+    for (const Expr& symbol : s.jets_in(s.expanded(s.dissipation)))
+      if (const FieldJet jet = *s.jet_of(symbol); jet.time > 0 && jet.order() > jet.time) return true;
   for (const std::size_t f : equations.varied) {
     const Expr p = differentiate(density, s.jet_symbol({f, std::vector<int>(s.space.size(), 0), 1}));
     bool squared = false;
@@ -162,7 +178,12 @@ std::optional<DensityForm> density_form(const FieldEquations& equations, Diagnos
   bool forced =
       !b.dissipation.is_zero() || !differentiate(b.density, s.context->time()).is_zero() || !s.end_forces.empty();
   for (const Expr& f : s.forces) forced = forced || static_cast<bool>(f);
-  for (const BoundaryCondition& c : s.boundary) forced = forced || s.context->depends_on_time(c.value.id());
+  // A given slope is a force at the end, which does work, where slopes are not held themselves.
+  for (const BoundaryCondition& c : s.boundary) {
+    const auto field = std::find(equations.varied.begin(), equations.varied.end(), c.jet.field);
+    const bool held = c.jet.order() == 0 || b.out.smooth[static_cast<std::size_t>(field - equations.varied.begin())];
+    forced = forced || s.context->depends_on_time(c.value.id()) || (!held && !c.value.is_zero());
+  }
   b.out.conserves = !forced;
   return std::move(b.out);
 }

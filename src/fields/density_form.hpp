@@ -32,10 +32,11 @@ struct DensityForm {
   std::vector<bool> smooth;       // [varied]: a second derivative in space of it stands in ℒ
   std::vector<bool> first_order;  // [varied]: its momenta hold no velocity
   bool conserves = false;
+  bool damps = false;   // friction on slopes, or of fields that nothing else moves: heat
   bool linear = false;  // the Hessian is the same at all times
   bool steady = false;  // its part by velocities is
 };
-/// Whether a density holds second derivatives, or no square of a field's velocity.
+/// Whether a density holds second derivatives, or no square of a field's velocity, or friction acts on slopes.
 bool needs_collocation(const FieldEquations& equations);
 /// Of one or two space variables. Errors: E0508, E0642.
 std::optional<DensityForm> density_form(const FieldEquations& equations, Diagnostics& diagnostics);

@@ -230,8 +230,12 @@ class FieldVerifier {
     r.actual = fmt::format("{:.16g}{}", value.value / e.unit.factor, unit);
     r.expected = fmt::format("{:.16g}{}", expected / e.unit.factor, unit);
     r.tolerance = fmt::format("± {:.3g}{}", tolerance / e.unit.factor, unit);
-    r.uncertainty = fmt::format("± {:.2g}{}", value.error / e.unit.factor, unit);
-    if (!r.passed)
+    const bool estimated = std::isfinite(value.error);
+    r.uncertainty = estimated ? fmt::format("± {:.2g}{}", value.error / e.unit.factor, unit) : "no digit is certain";
+    if (!r.passed && !estimated)
+      r.message = fmt::format("It is off by {:.3g}{}, and there is no estimate of the error of mesh and steps.",
+                              (value.value - expected) / e.unit.factor, unit);
+    else if (!r.passed)
       r.message = fmt::format("It is off by {:.3g}{}; the error of mesh and steps is estimated as {:.2g}{}.",
                               (value.value - expected) / e.unit.factor, unit, value.error / e.unit.factor, unit);
   }

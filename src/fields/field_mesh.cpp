@@ -85,7 +85,9 @@ std::optional<PointForm> point_form(const FieldEquations& equations, Diagnostics
   out.energy = s.context->sum(energy);
   bool forced = !dissipation.is_zero() || !differentiate(density, t).is_zero() || !s.end_forces.empty();
   for (const Expr& f : s.forces) forced = forced || static_cast<bool>(f);
-  for (const BoundaryCondition& b : s.boundary) forced = forced || s.context->depends_on_time(b.value.id());
+  // A given slope is a force at the end, which does work.
+  for (const BoundaryCondition& b : s.boundary)
+    forced = forced || s.context->depends_on_time(b.value.id()) || (b.jet.order() > 0 && !b.value.is_zero());
   out.conserves = !forced;
   for (const Expr& a : out.a)
     for (const Expr& symbol : symbols_of({&a, 1}))
@@ -421,7 +423,7 @@ bool FieldMesh::step(double h) {
     for (std::size_t k = 0; k < kOrder && trouble_.empty(); ++k) coefficient(k);
     if (!trouble_.empty()) return false;
     const double reached = reach(h), tau = reached < left ? reached : left;
-    if (!(tau > shortest * h) && tau < left) trouble_ = "step";
+    if (!(tau > shortest * h) && tau < left) trouble_ = "stuck";
     if (!trouble_.empty() || !advance(tau)) return false;
     left = tau < left ? left - tau : 0;
     if (left > 0) ++further_steps_;

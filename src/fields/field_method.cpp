@@ -34,8 +34,11 @@ std::optional<FieldMethod> FieldMethod::of(const FieldEquations& equations, Diag
 
 std::string FieldMethod::name() const {
   return waves_ ? fmt::format("Taylor steps of order {}", kOrder)
-                : fmt::format("steps of Gauss's collocation of order {}", 2 * stages);
+                : fmt::format("steps of {}'s collocation of order {}", stiff_->damps ? "Radau" : "Gauss",
+                              order_of_collocation());
 }
+
+int FieldMethod::order_of_collocation() const { return stiff_->damps ? 2 * stages - 1 : 2 * stages; }
 
 std::unique_ptr<FieldMotion> FieldMethod::mesh(const FieldEquations& equations, const Cells& cells, bool first) const {
   if (stiff_) return std::make_unique<CollocationMotion>(equations, *stiff_, cells, order_, stages);
@@ -69,7 +72,7 @@ int FieldMethod::power(const FieldEquations& equations, const FieldQuestion& que
   const bool smooth = std::find(stiff_->smooth.begin(), stiff_->smooth.end(), true) != stiff_->smooth.end();
   const int degree = smooth ? std::max(order_, 3) : order_;
   int lost = smooth ? 2 : 0;  // of the whole, energies for example: twice what the derivatives in ℒ leave
-  if (question.total) return std::min(2 * degree - lost, 2 * stages);
+  if (question.total) return std::min(2 * degree - lost, order_of_collocation());
   lost = 0;
   for (const PlaceValue& place : equations.model->places) {
     const Expr value[] = {question.value};
@@ -77,7 +80,15 @@ int FieldMethod::power(const FieldEquations& equations, const FieldQuestion& que
     if (std::find(symbols.begin(), symbols.end(), place.symbol) != symbols.end())
       lost = std::max(lost, equations.system().jet_of(place.jet)->space[0]);
   }
-  return std::min(std::max(degree + 1 - lost, 1), 2 * stages);
+  return std::min(std::max(degree + 1 - lost, 1), order_of_collocation());
+}
+
+double FieldMethod::width_of_cell(const FieldEquations& equations, const Cells& cells) const {
+  const FieldSystem& s = equations.system();
+  Bindings values;
+  for (const Parameter& p : equations.model->parameters) values[p.symbol] = p.si_value;
+  const SpaceVariable& x = s.space.front();
+  return (evaluate(s.expanded(x.to), values) - evaluate(s.expanded(x.from), values)) / cells.front();
 }
 
 /// p + 2 (up to that of the steps) where elements meet, 2p in integrals, p + 1 between, p of a slope. The power 2p of

@@ -11,7 +11,8 @@ namespace maupertuis {
 using Cells = std::vector<int>;  // [space variables]
 
 /// How the fields of a density are put on a mesh and moved: waves by Taylor steps, where ω_max grows like 1/h;
-/// densities of second derivatives or linear in the velocities, where it grows like 1/h² to 1/h⁴, by collocation.
+/// densities of second derivatives or linear in the velocities, and with friction on slopes, where it grows like 1/h²
+/// to 1/h⁴, by collocation.
 class FieldMethod {
  public:
   /// Nothing, and the diagnostics, where there is none for this density.
@@ -30,6 +31,10 @@ class FieldMethod {
   double longest_step(FieldMotion& mesh, double duration, double every, const Interrupt& interrupt, double& omega);
   /// Of a cell of the first mesh, where values are looked at beside their places; 0: nowhere.
   double width() const { return width_; }
+  double width_of_cell(const FieldEquations& equations, const Cells& cells) const;  // along the first direction
+  /// Of a varied field: whether its slopes are continuous, and its rates follow from its values.
+  bool is_smooth(std::size_t field) const { return stiff_ && stiff_->smooth[field]; }
+  bool is_first_order(std::size_t field) const { return stiff_ && stiff_->first_order[field]; }
   /// Waves: `alike`, at places that lie in elements as the place itself does.
   void look_beside(double width, bool alike) { width_ = width, alike_ = alike; }
   bool looks_alike() const { return alike_; }
@@ -37,6 +42,7 @@ class FieldMethod {
   int power(const FieldEquations& equations, const FieldQuestion& question, const Cells& half) const;
 
  private:
+  int order_of_collocation() const;
   int power_of_waves(const FieldEquations& equations, const FieldQuestion& question, const Cells& half) const;
 
   std::optional<PointForm> waves_;

@@ -5,8 +5,10 @@
 #include "fields/charge_meter.hpp"
 #include "fields/field_method.hpp"
 #include "fields/field_sides.hpp"
+#include "fields/outlook.hpp"
 #include "fields/resolution.hpp"
 #include "fields/start_fit.hpp"
+#include "fields/steepening.hpp"
 
 #include <fmt/format.h>
 
@@ -14,6 +16,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <span>
 
 #if __has_include(<unistd.h>)
@@ -56,7 +59,13 @@ void refuse(const FieldMotion& mesh, const FieldEquations& equations, Diagnostic
                       "The part of the density that is linear in the velocities leaves a shape of the field without an "
                       "equation of motion of its own: a free end asks for more than the start can give.",
                       "Hold the field at both ends and take elements of an odd order, or make the domain periodic.");
-  } else if (what == "step") {
+  } else if (what == "shapes") {
+    diagnostics.error("E0508", s.density_span,
+                      "not supported yet: a run of a field of first order in time whose energy holds no curvature",
+                      "Shapes that the part linear in the velocities leaves out stand within each element, and nothing "
+                      "in the energy holds them.",
+                      "Add a term with the second derivative, as KdV's 1/2 w_xx^2, with a small factor.");
+  } else if (what == "stuck") {
     diagnostics.error(
         "E0643", s.density_span, "no step leads on from here",
         fmt::format("At t = {:.6g} s the equations of a step have no solution near, nor those of its 4096th part.",
@@ -93,8 +102,10 @@ constexpr double beside_alike[] = {-4, -2, 2, 4};
 
 struct OneRun {
   std::vector<double> answers;
-  std::vector<std::vector<double>> near;  // [questions]: the same beside their places
-  std::vector<double> sizes;              // [questions]: the largest anywhere along x, on the first mesh
+  std::vector<std::vector<double>> near;          // [questions]: the same beside their places
+  std::vector<double> sizes;                      // [questions]: the largest anywhere along x, on the first mesh
+  std::vector<double> felt;                       // [questions]: felt_rounding, on the first mesh
+  std::vector<SteepeningWatch::Follows> follows;  // [questions]: whether the first mesh did
   std::size_t steps = 0;
   double h = 0, omega = 0, energy = 0, drift = 0;
   Trajectory trajectory;
@@ -243,36 +254,24 @@ void announce_memory(const FieldRunOptions& options, double bytes) {
     options.announce(fmt::format("The mesh of this run takes {:.2g} GB of memory.", bytes / gigabyte));
 }
 
-/// Says how long a run takes as soon as its first steps tell, where that is more than a minute.
-class Outlook {
- public:
-  Outlook(const FieldRunOptions& options, double steps) : options_(options), steps_(steps) {}
-
-  void after_step(std::size_t done) {
-    constexpr double minute = 60, soon = 5;
-    if (told_ || !options_.announce) return;
-    const double passed = std::chrono::duration<double>(Clock::now() - begin_).count();
-    if (done < 3 && passed < soon) return;
-    told_ = true;
-    const double seconds = passed / static_cast<double>(done) * std::max(steps_, static_cast<double>(done));
-    if (seconds >= minute)
-      options_.announce(fmt::format("This run takes some {}, {:.0f} steps.", in_words(seconds), steps_));
+/// The largest |φ_J| on a line along x through a place, now.
+double largest_along(const FieldMotion& mesh, const FieldEquations& equations, std::size_t varied, const FieldJet& jet,
+                     const PlaceValue& place) {
+  constexpr int places = 40;
+  const FieldSystem& s = equations.system();
+  Bindings values;
+  for (const Parameter& p : equations.model->parameters) values[p.symbol] = p.si_value;
+  std::vector<double> at;
+  for (const Expr& x : place.place) at.push_back(evaluate(s.expanded(x), values));
+  const double from = evaluate(s.expanded(s.space.front().from), values),
+               to = evaluate(s.expanded(s.space.front().to), values);
+  double out = 0;
+  for (int k = 0; k <= places; ++k) {
+    at[0] = from + (to - from) * k / places;
+    out = std::max(out, std::abs(mesh.field_at(varied, jet, at)));
   }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  static std::string in_words(double seconds) {
-    return seconds < 120     ? fmt::format("{:.0f} s", seconds)
-           : seconds < 7200  ? fmt::format("{:.0f} min", seconds / 60)
-           : seconds < 172e3 ? fmt::format("{:.0f} h", seconds / 3600)
-                             : fmt::format("{:.0f} days", seconds / 86400);
-  }
-
-  const FieldRunOptions& options_;
-  double steps_;
-  bool told_ = false;
-  Clock::time_point begin_ = Clock::now();
-};
+  return out;
+}
 
 /// The largest that an answer is at places along x, now.
 double size_along(FieldMotion& mesh, const FieldQuestion& question, double width) {
@@ -280,6 +279,35 @@ double size_along(FieldMotion& mesh, const FieldQuestion& question, double width
   double out = std::abs(mesh.answer(question));
   for (int k = -places; k <= places && !question.total; ++k)
     out = std::max(out, std::abs(mesh.answer_beside(question, k * width / places)));
+  return out;
+}
+
+/// What an answer feels of rounding beside its own size: each derivative of a field is off by p²/h times what its
+/// values are off by on elements of order p, so are, by a little less, rates that are derivatives (of fields of first
+/// order in time); those of waves by a part of ω_max; and beams are as soft towards loads as they are long beside an
+/// element.
+double felt_rounding(FieldMotion& mesh, const FieldMethod& method, const FieldEquations& equations,
+                     const FieldQuestion& question, const Cells& cells, double omega) {
+  double out = std::abs(mesh.answer(question));
+  if (question.total) return out;
+  const FieldSystem& s = equations.system();
+  const double p = method.order(), all = cells[0] * std::pow(p, 1.5) / std::numbers::pi;
+  for (const PlaceValue& place : equations.model->places) {
+    const double weight = std::abs(mesh.answer({differentiate(question.value, place.symbol), false, question.time}));
+    const FieldJet jet = *s.jet_of(place.jet);
+    const auto varied = std::find(equations.varied.begin(), equations.varied.end(), jet.field);
+    if (!(weight > 0) || varied == equations.varied.end()) continue;
+    const auto a = static_cast<std::size_t>(varied - equations.varied.begin());
+    FieldJet value{jet.field, std::vector<int>(s.space.size(), 0), 0}, rate = value;
+    rate.time = 1;
+    double size = largest_along(mesh, equations, a, value, place);
+    if (jet.time > 0) {
+      const double rates = largest_along(mesh, equations, a, rate, place);
+      size = method.is_first_order(a) ? rates * all * all : rates + omega / 50 * size;
+    }
+    if (method.is_smooth(a)) size *= cells[0] * cells[0];
+    out += weight * size * std::pow(p * p / method.width_of_cell(equations, cells), jet.order() - jet.time);
+  }
   return out;
 }
 
@@ -316,7 +344,10 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
   out.energy = start;
   out.answers.assign(questions.size(), std::nan(""));
   out.near.resize(questions.size());
-  out.sizes.assign(questions.size(), 0);
+  out.sizes.assign(questions.size(), 0), out.felt = out.sizes;
+  out.follows.assign(questions.size(), SteepeningWatch::Follows::Well);
+  std::optional<SteepeningWatch> slopes;
+  if (first && SteepeningWatch::may_steepen(equations)) slopes.emplace(equations, cells, method.order());
   std::optional<ChargeMeter> meter;
   if (first && options.currents) meter.emplace(mesh, equations, *options.currents);
   if (meter && meter->idle()) meter.reset();
@@ -325,7 +356,7 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
   const double apart_in_run = options.duration / measurements * (1 - 1e-9);
   double measured = options.begin;
   std::optional<Outlook> outlook;
-  if (first) outlook.emplace(options, options.duration / longest);
+  if (first) outlook.emplace(options);
   for (const double stop : stops) {
     const double way = stop - mesh.time();
     const auto steps = static_cast<std::uint64_t>(std::ceil(way / longest - 1e-9));
@@ -334,11 +365,16 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
       if (!mesh.step(way / static_cast<double>(std::max<std::uint64_t>(steps, 1))))
         return refuse(mesh, equations, diagnostics), std::nullopt;
       ++out.steps;
-      if (outlook) outlook->after_step(out.steps);
+      if (outlook) outlook->after_steps(out.steps, (mesh.time() - options.begin) / options.duration);
       if (first && options.progress) options.progress((mesh.time() - options.begin) / options.duration);
       if (meter) meter->note_flux(mesh);
     }
-    if (meter && way > 0 && (stop - measured >= apart_in_run || stop == end)) meter->measure(mesh), measured = stop;
+    const bool asked = std::any_of(questions.begin(), questions.end(), [&](const auto& q) { return q.time == stop; });
+    const bool due = (way > 0 && stop - measured >= apart_in_run) || stop == end;
+    auto follows = SteepeningWatch::Follows::Well;
+    if (slopes && (due || asked || stop == options.begin)) follows = slopes->look(mesh);
+    if (due && way > 0 && meter) meter->measure(mesh);
+    if (due) measured = stop;
     double now = 0;
     if (way > 0 || stop == options.begin) out.energy = mesh.energy(now), size = std::max(size, now);
     out.drift = std::max(out.drift, std::abs(out.energy - start));
@@ -347,6 +383,8 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
         out.answers[i] = mesh.answer(questions[i]);
         out.near[i].clear();
         if (first && method.is_wave()) out.sizes[i] = size_along(mesh, questions[i], method.width() * cells[0]);
+        if (first) out.felt[i] = felt_rounding(mesh, method, equations, questions[i], cells, out.omega);
+        out.follows[i] = follows;
         for (const double shift : method.looks_alike() ? std::span<const double>(beside_alike) : beside)
           if (method.width() > 0 && !questions[i].total)
             out.near[i].push_back(mesh.answer_beside(questions[i], shift * method.width()));
@@ -354,6 +392,7 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
     if (!rows.empty() && (out.trajectory.times.empty() || mesh.time() > out.trajectory.times.back()))
       mesh.add_row(out.trajectory, rows);
   }
+  if (slopes) slopes->warn(diagnostics);
   if (meter) out.charges = meter->finish();
   out.h = longest, out.steps += mesh.further_steps();
   if (size > 0) out.drift /= size;
@@ -403,9 +442,10 @@ Rough roughness_of_start(const FieldEquations& equations, const FieldMethod& met
 ///
 /// Meshes and their steps are off by a power of the width of a cell, but never by less than rounding. Where a third
 /// mesh shows that the difference falls more slowly, by that; where the start breaks, by the first power; where it does
-/// not fit a side, by that of the derivative that jumps, and twice the difference counts. Where the mesh follows the
-/// start in part alone, a mesh of twice the cells tells what both others miss. Tails of pulses that do not fit a side
-/// are jumps too, as far as they reach.
+/// not fit a side, by that of the derivative that jumps, and twice the difference counts. Where slopes are about as
+/// steep as the mesh can follow the difference itself counts, and beyond there is no estimate. Where the mesh follows
+/// the start in part alone, a mesh of twice the cells tells what both others miss. Tails of pulses that do not fit a
+/// side are jumps too, as far as they reach.
 std::vector<double> errors_of(const OneRun& fine, const FieldEquations& equations, FieldMethod& method,
                               const Cells& cells, const std::vector<FieldQuestion>& questions,
                               const FieldRunOptions& options, Rough start, Diagnostics& diagnostics) {
@@ -431,7 +471,9 @@ std::vector<double> errors_of(const OneRun& fine, const FieldEquations& equation
   // Each step rounds a value several times: 2.5 of these units were seen on 1000 cells.
   const double rounding = 4 * 2.2e-16 * std::sqrt(static_cast<double>(fine.steps) + 1);
   for (std::size_t i = 0; i < questions.size(); ++i) {
+    if (fine.follows[i] == SteepeningWatch::Follows::Not && start.how == Rough::No) continue;
     double gain = start.how == Rough::Breaks ? 2 : std::pow(ratio, method.power(equations, questions[i], half));
+    if (fine.follows[i] == SteepeningWatch::Follows::Barely) gain = 2;
     if (start.jump && *start.jump > 1) gain = std::min(gain, (std::pow(ratio, *start.jump) + 1) / 2);
     if (!method.is_wave()) {
       const double seen = coarser ? difference(*coarser, *coarse, i) / difference(*coarse, fine, i) : 2;
@@ -439,8 +481,7 @@ std::vector<double> errors_of(const OneRun& fine, const FieldEquations& equation
     }
     if (finer) out[i] = 2 * difference(*finer, fine, i);
     const double between = difference(*coarse, fine, i), tail = std::min(2 * between, start.tail * fine.sizes[i]);
-    out[i] = std::max({finer ? out[i] : 0, between / (gain - 1), tail}) +
-             rounding * std::max(std::abs(fine.answers[i]), 1e-300);
+    out[i] = std::max({finer ? out[i] : 0, between / (gain - 1), tail}) + rounding * std::max(fine.felt[i], 1e-300);
   }
   return out;
 }
@@ -478,6 +519,7 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   for (const int n : cells) out.nodes *= static_cast<std::size_t>(n) * static_cast<std::size_t>(out.order) + 1;
   out.steps = fine->steps, out.step = fine->h, out.omega_max = fine->omega;
   out.energy = fine->energy, out.energy_drift = method->conserves() ? fine->drift : -1;
+  warn_of_drift(out, equations, diagnostics);
   out.end = options.begin + options.duration;
   out.trajectory = std::move(fine->trajectory);
   out.at_end = std::move(fine->at_end);

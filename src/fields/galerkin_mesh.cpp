@@ -389,11 +389,11 @@ std::vector<double> GalerkinMesh::squares(const std::vector<double>& c) const {
   return out;
 }
 
-bool GalerkinMesh::is_rough(const std::vector<double>& c) const {
+bool GalerkinMesh::is_rough(const std::vector<double>& c, const std::vector<std::size_t>& fixed) const {
   double all = 0, slow = 0;
   for (std::size_t f = 0; f < fields_; ++f) {
     const std::vector<double> values = table_of(f, {0, 0});
-    double whole = 0;
+    double whole = 0, sum = 0;  // of the means
     for (std::size_t q = 0; q < points(); ++q) whole += point_weight(q);
     for (std::size_t cell = 0; cell < cells(); ++cell) {
       double mean = 0;
@@ -402,8 +402,11 @@ bool GalerkinMesh::is_rough(const std::vector<double>& c) const {
         for (std::size_t i = 0; i < functions(f); ++i) u += values[q * functions(f) + i] * c[index(f, cell, i)];
         mean += point_weight(q) / whole * u, all += point_weight(q) / whole * u * u;
       }
-      slow += mean * mean;
+      slow += mean * mean, sum += mean;
     }
+    if (std::find(fixed.begin(), fixed.end(), f) == fixed.end()) continue;
+    const double constant = sum * sum / static_cast<double>(cells());
+    slow -= constant, all -= constant;
   }
   constexpr double little = 0.05;
   return slow < little * all;

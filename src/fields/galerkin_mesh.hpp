@@ -67,8 +67,8 @@ class GalerkinMesh {
   std::size_t cells() const { return axes_[0].cells() * axes_[1].cells(); }
   const std::vector<std::size_t>& fields_of_coefficients() const { return field_of_; }
   /// Whether a function has all but nothing in common with those that change slowly over an element: its mean over each
-  /// element, beside its size.
-  bool is_rough(const std::vector<double>& c) const;
+  /// element, beside its size. Of fields in `fixed` a constant does not count.
+  bool is_rough(const std::vector<double>& c, const std::vector<std::size_t>& fixed) const;
   /// Coefficients of u = 1.
   std::vector<double> constant(std::size_t field) const;
 

@@ -1,16 +1,21 @@
 #include "fields/gauss_tableau.hpp"
 
 #include "fields/element.hpp"
+#include "fields/lobatto.hpp"
 #include "linear_algebra/banded.hpp"
 #include "linear_algebra/dense.hpp"
 
 namespace maupertuis {
 
-GaussTableau::GaussTableau(int count) : stages(static_cast<std::size_t>(count)) {
+GaussTableau::GaussTableau(int count, Points points)
+    : stages(static_cast<std::size_t>(count)), order(points == Points::Gauss ? 2 * count : 2 * count - 1) {
   const GaussRule rule(count);
+  const Radau radau(count);  // with the left end
   const std::size_t s = stages;
   c.resize(s), b.resize(s), a.assign(s * s, 0), continuation.assign(s * s, 0), d.assign(s, 0);
-  for (std::size_t i = 0; i < s; ++i) c[i] = (1 + rule.x[i]) / 2, b[i] = rule.w[i] / 2;
+  for (std::size_t i = 0; i < s; ++i)
+    c[i] = points == Points::Gauss ? (1 + rule.x[i]) / 2 : (1 - radau.x[s - 1 - i]) / 2,
+    b[i] = (points == Points::Gauss ? rule.w[i] : radau.w[s - 1 - i]) / 2;
   const auto lagrange = [&](std::size_t j, double x) {
     double product = 1;
     for (std::size_t k = 0; k < s; ++k)
@@ -20,7 +25,8 @@ GaussTableau::GaussTableau(int count) : stages(static_cast<std::size_t>(count)) 
   Eigen::MatrixXd matrix(count, count);
   for (std::size_t i = 0; i < s; ++i)
     for (std::size_t j = 0; j < s; ++j) {
-      for (std::size_t m = 0; m < s; ++m) a[i * s + j] += c[i] * b[m] * lagrange(j, c[i] * c[m]);  // ∫_0^c_i ℓ_j
+      for (std::size_t m = 0; m < s; ++m)  // ∫_0^c_i ℓ_j
+        a[i * s + j] += c[i] * rule.w[m] / 2 * lagrange(j, c[i] * (1 + rule.x[m]) / 2);
       continuation[i * s + j] = lagrange(j, 1 + c[i]);
       matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = a[i * s + j];
     }

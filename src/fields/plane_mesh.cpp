@@ -505,7 +505,7 @@ bool PlaneMesh::step(double h) {
       if (tau > shortest * h)
         advance(tau);
       else
-        trouble_ = "step";
+        trouble_ = "stuck";
     }
     std::swap(u_, next_u_), std::swap(v_, next_v_);
     t_ += tau;

@@ -384,3 +384,70 @@ TEST_CASE("given slopes of a field of first order, by closed forms") {
   holds(line + "boundary left : b_x = 1\n" + density +
         "start b = -1/2 (1 - x)^2\nrun 0.2\nexpect a(0.8) at 0.2 = 0.1 ± 1e-11\n");
 }
+
+TEST_CASE("Radau's steps are of order 2s - 1, and leave nothing of what decays faster than they are") {
+  for (const int stages : {1, 2, 3, 4}) {
+    const GaussTableau t(stages, GaussTableau::Points::Radau);
+    CHECK(t.order == 2 * stages - 1);
+    double ends = 1;  // R(∞) = 1 − Σ d
+    for (const double d : t.d) ends -= d;
+    CHECK(std::abs(ends) < 1e-13);
+    for (int k = 1; k <= t.order; ++k) {  // ∫ x^(k−1) = 1/k
+      double sum = 0;
+      for (std::size_t i = 0; i < t.stages; ++i) sum += t.b[i] * std::pow(t.c[i], k - 1);
+      CHECK(sum == doctest::Approx(1.0 / k).epsilon(1e-13));
+    }
+  }
+}
+
+TEST_CASE("a string with internal friction runs by implicit steps, by its closed form") {
+  // u'' − s u_txx − u_xx = 0: sin πx decays with δ = s π²/2; s = 0.3 below the critical one, 2 above.
+  for (const double s : {0.3, 2.0}) {
+    CAPTURE(s);
+    Study study = study_of_text("dimensionless\nparam s = " + std::to_string(s) +
+                                "\nfield u(x) : number on x = 0 .. 1 cells 20 order 7 boundary u = 0\n"
+                                "density = 1/2 u'^2 - 1/2 u_x^2\ndissipation density = 1/2 s u_tx^2\n"
+                                "start u = sin(pi x)\nrun 1\nexpect u(0.5)' at 0.5 = 0 ± 9\n");
+    REQUIRE(study.field_equations());
+    FieldRunOptions options;
+    options.duration = 0.5;
+    Diagnostics diagnostics;
+    const auto run = run_fields(*study.field_equations(), {{study.model()->fields->places[0].symbol, false, 0.5}},
+                                options, diagnostics);
+    REQUIRE(run);
+    const double delta = s * fundamental / 2, omega = std::sqrt(std::abs(delta * delta - fundamental));
+    const double swing = delta * delta > fundamental ? std::sinh(omega / 2) : std::sin(omega / 2);
+    const double exact = -std::exp(-delta / 2) * fundamental / omega * swing;
+    CHECK(run->steps < 1000);
+    CHECK(std::abs(run->answers[0].value - exact) < 3 * run->answers[0].error);
+    CHECK(run->answers[0].error < 1e-10);
+  }
+}
+
+TEST_CASE("heat conduction: friction alone moves the field") {
+  holds(
+      "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 10 order 8 boundary u = 0\ndensity = -1/2 u_x^2\n"
+      "dissipation density = 1/2 u'^2\nstart u = sin(pi x)\nrun 0.1\n"
+      "expect u(0.5) at 0.1 = exp(-0.1*pi^2) ± 1e-12\nexpect u(0.5)' at 0.1 = -pi^2 exp(-0.1*pi^2) ± 1e-8\n");
+  // One that does not fit the ends: what is short there is gone soon. x (1 − x) = Σ 8/(nπ)³ sin nπx, n odd.
+  for (const double time : {0.001, 0.05}) {
+    const auto found = value_at_end(
+        "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 10 order 8 boundary u = 0\ndensity = -1/2 u_x^2\n"
+        "dissipation density = 1/2 u'^2\nstart u = x (1 - x)\nrun 1\nexpect u(0.3) at 0.05 = 0 ± 9\n",
+        time, true);
+    double exact = 0;
+    for (int n = 1; n < 400; n += 2)
+      exact += 8 / std::pow(n * std::numbers::pi, 3) * std::sin(0.3 * n * std::numbers::pi) *
+               std::exp(-n * n * fundamental * time);
+    CAPTURE(time);
+    CHECK(std::abs(found.value - exact) < 2 * found.error);
+    CHECK(found.error < 1e-6);
+  }
+}
+
+TEST_CASE("a ring of first order whose energy holds no curvature is told so") {
+  CHECK(codes_of_run("dimensionless\nfield w(x) : number on x = 0 .. 1 cells 20 boundary periodic\n"
+                     "density = -1/2 w' w_x - 1/6 w_x^3\nstart w = -0.3 cos(2 pi x)/(2 pi)\nrun 1\n"
+                     "expect w_x(0.2) at 0.3 = 0 ± 9\n")
+            .find("E0508") != std::string::npos);
+}

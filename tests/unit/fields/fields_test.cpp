@@ -467,3 +467,140 @@ TEST_CASE("starts that do not fit the sides in a derivative: the estimate holds 
   for (const Case& c : cases)
     for (const int cells : {20, 1000}) check_on(c, cells);
 }
+
+namespace {
+
+/// What the `expect` lines of a model name, at their times, with their estimates.
+std::vector<FieldRunResult::Value> answers_of(const std::string& text, Diagnostics& diagnostics) {
+  Study study = study_of(text);
+  REQUIRE_MESSAGE(study.field_equations(), text);
+  FieldRunOptions options;
+  std::vector<FieldQuestion> questions;
+  for (const Expectation& e : study.model()->experiment.expectations) {
+    const auto& at = std::get<expectation::ValueAt>(e.kind);
+    questions.push_back({at.subject, false, evaluate(at.time, {})});
+    options.duration = std::max(options.duration, questions.back().time);
+  }
+  const auto run = run_fields(*study.field_equations(), questions, options, diagnostics);
+  REQUIRE(run);
+  return run->answers;
+}
+
+}  // namespace
+
+TEST_CASE("fields with mass in common, one of them held at an end") {
+  // a = sin πx cos t + (1 − x) sin t, b = cos πx sin t, under the forces that they need: a' b' couples the mass of the
+  // end that is held and moves to the one that is free.
+  const std::string fields[] = {"(x) : number on x = 0 .. 1 cells 10 order 8",
+                                "(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 6, 2 order 8"};
+  for (const std::string& on : fields) {
+    CAPTURE(on);
+    const bool plane = on.find('y') != std::string::npos;
+    const std::string places[] = {plane ? "0, 0.4" : "0", plane ? "0.3, 0.7" : "0.3"};
+    Study study = study_of("dimensionless\nfield a" + on.substr(0, on.find(')') + 1) + ", b" + on +
+                           "\nboundary left : a = sin t\nboundary right : a = 0\n"
+                           "density = 1/2 a'^2 + 1/2 b'^2 + 1/2 a' b' - 1/2 a_x^2 - 1/2 b_x^2" +
+                           (plane ? " - 1/2 a_y^2 - 1/2 b_y^2" : "") +
+                           "\nforce density a = (pi^2 - 1) sin(pi x) cos t - 1/2 cos(pi x) sin t - (1 - x) sin t\n"
+                           "force density b = (pi^2 - 1) cos(pi x) sin t - 1/2 sin(pi x) cos t - 1/2 (1 - x) sin t\n"
+                           "start a = sin(pi x), a' = 1 - x, b' = cos(pi x)\nrun 1\nexpect b(" +
+                           places[0] + ") at 1 = sin(1) ± 1e-8\nexpect b(" + places[1] +
+                           ") at 1 = cos(0.3 pi) sin(1) ± 1e-8\nexpect a(" + places[1] +
+                           ") at 1 = sin(0.3 pi) cos(1) + 0.7 sin(1) ± 1e-8\n");
+    const auto verification = study.verification();
+    REQUIRE(verification);
+    for (const ExpectationResult& r : verification->results) CHECK_MESSAGE(r.passed, r.text << ": " << r.message);
+  }
+}
+
+TEST_CASE("a start of fields with mass in common that does not fit the ends: energy is kept, and the estimate knows") {
+  std::vector<FieldRunResult::Value> found[2];
+  for (const int fine : {0, 1}) {
+    Study study =
+        study_of(fmt::format("dimensionless\nfield a(x), b(x) : number on x = 0 .. 1 cells {} order 6\n"
+                             "boundary left : a = 0\nboundary right : a = 0\n"
+                             "density = 1/2 a'^2 + 1/2 b'^2 + 1/2 a' b' - 1/2 a_x^2 - 1/2 b_x^2\n"
+                             "start a' = sin(pi x), b = 0.1 cos(pi x)\nrun 1\nexpect b(0.3) at 1 = 0 ± 1\n",
+                             fine ? 80 : 20));
+    REQUIRE(study.field_equations());
+    FieldRunOptions options;
+    options.duration = 1;
+    Diagnostics diagnostics;
+    const auto run = run_fields(*study.field_equations(), {{study.model()->fields->places[0].symbol, false, 1}},
+                                options, diagnostics);
+    REQUIRE(run);
+    CHECK(run->energy_drift < 1e-8);
+    CHECK(diagnostics.items().empty());
+    found[fine] = run->answers;
+  }
+  CHECK(std::abs(found[0][0].value - found[1][0].value) < found[0][0].error);
+  CHECK(found[0][0].value == doctest::Approx(0.285812).epsilon(1e-5));
+}
+
+TEST_CASE("a wave that steepens: the estimate holds until its slope jumps, and none is given from there on") {
+  // A simple wave of c(s) = sqrt(1 + 3 s²), s = u_x: s(x) = A cos 2πξ where x = ξ + c(s) t, breaks at t = 1.25376.
+  const double A = 0.3;
+  const auto text = [](double time, const std::vector<double>& places) {
+    std::string out =
+        "dimensionless\nlet A = 0.3\nfield u(x) : number on x = 0 .. 1 cells 100 order 4 boundary periodic\n"
+        "density = 1/2 u'^2 - 1/2 u_x^2 - 1/4 u_x^4\nlet s = A cos(2 pi x)\nstart u = A sin(2 pi x)/(2 pi), "
+        "u' = -(s/2 sqrt(1 + 3 s^2) + log(sqrt(3) s + sqrt(1 + 3 s^2))/(2 sqrt(3)))\nrun 3\n";
+    for (const double x : places) out += fmt::format("expect u_x({}) at {} = 0 ± 1\n", x, time);
+    return out;
+  };
+  std::vector<double> places;
+  for (int k = 0; k < 16; ++k) places.push_back(0.0125 + 0.0613 * k);
+  for (const double time : {0.6, 1.2}) {
+    CAPTURE(time);
+    Diagnostics diagnostics;
+    const auto answers = answers_of(text(time, places), diagnostics);
+    CHECK(diagnostics.items().empty());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const auto place = [&](double xi) {
+        return xi + std::sqrt(1 + 3 * std::pow(A * std::cos(2 * M_PI * xi), 2)) * time - places[i];
+      };
+      double low = places[i] - 1.2 * time, high = places[i] - time;
+      for (int k = 0; k < 100; ++k) (place((low + high) / 2) < 0 ? low : high) = (low + high) / 2;
+      const double exact = A * std::cos(2 * M_PI * low);
+      CAPTURE(places[i]);
+      CHECK(std::abs(answers[i].value - exact) < 4 * answers[i].error);
+    }
+  }
+  Diagnostics diagnostics;
+  const auto answers = answers_of(text(3, {0.3}), diagnostics);
+  REQUIRE(diagnostics.items().size() == 1);
+  CHECK(diagnostics.items()[0].code == "W0660");
+  CHECK(std::isinf(answers[0].error));
+}
+
+TEST_CASE("slopes and velocities beside zero feel the rounding of what they are differences of") {
+  std::vector<double> places;
+  std::string text =
+      "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 8 order 12\nboundary left : u = 0\n"
+      "boundary right : u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\nstart u = sin(pi x)\nrun 1\n";
+  for (int k = 0; k < 12; ++k) {
+    places.push_back(0.013 + 0.0827 * k);
+    text += fmt::format("expect u_x({0}) at 0.8 = 0 ± 1\nexpect u({0})' at 0.8 = 0 ± 1\n", places.back());
+  }
+  Diagnostics diagnostics;
+  const auto answers = answers_of(text, diagnostics);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    CAPTURE(places[i]);
+    const double slope = M_PI * std::cos(M_PI * places[i]) * std::cos(0.8 * M_PI),
+                 rate = -M_PI * std::sin(M_PI * places[i]) * std::sin(0.8 * M_PI);
+    CHECK(std::abs(answers[2 * i].value - slope) < answers[2 * i].error);
+    CHECK(std::abs(answers[2 * i + 1].value - rate) < answers[2 * i + 1].error);
+    CHECK(answers[2 * i].error < 1e-10);
+    CHECK(answers[2 * i + 1].error < 1e-10);
+  }
+}
+
+TEST_CASE("a step in time in a force density is told by its name") {
+  Study study = study_of(
+      "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 10 boundary u = 0\ndensity = 1/2 u'^2 - 1/2 u_x^2\n"
+      "force density u = step(t - 0.37) sin(pi x)\nrun 1\nexpect u(0.5) at 1 = 0 ± 1\n");
+  study.verification();
+  REQUIRE(study.diagnostics().items().size() == 1);
+  CHECK(study.diagnostics().items()[0].code == "E0508");
+  CHECK(study.diagnostics().items()[0].message.find("`step`") != std::string::npos);
+}
