@@ -9,7 +9,7 @@ namespace maupertuis {
 namespace {
 
 // A JSON string; the bytes of UTF-8 pass as they are.
-std::string quoted(std::string_view text) {
+std::string json_string(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\')
@@ -39,11 +39,11 @@ std::string to_json(const Trajectory& trajectory) {
   std::string out = "{\"schema\": \"maupertuis-trajectory-1\",\n\"metadata\": {";
   const char* separator = "";
   for (const auto& [key, value] : trajectory.metadata) {
-    out += fmt::format("{}{}: {}", separator, quoted(key), quoted(value));
+    out += fmt::format("{}{}: {}", separator, json_string(key), json_string(value));
     separator = ", ";
   }
   const auto column_text = [](const Trajectory::Column& c) {
-    return fmt::format("{{\"name\": {}, \"unit\": {}}}", quoted(c.name), quoted(c.unit));
+    return fmt::format("{{\"name\": {}, \"unit\": {}}}", json_string(c.name), json_string(c.unit));
   };
   out += "},\n\"columns\": [" + column_text(trajectory.independent);
   for (const auto& column : trajectory.columns) out += ", " + column_text(column);
