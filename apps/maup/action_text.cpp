@@ -43,7 +43,7 @@ std::string value_of_action(double value, double error, const MechanicalSystem& 
   return with_unit(fmt::format("{:.16g} ± {}", value, error_text(error)), action_unit(system));
 }
 
-std::string kind_text(const SecondVariation& s) {
+std::string path_kind_text(const SecondVariation& s) {
   if (!s.index) return "stationary, of unknown index: " + s.reason;
   if (s.nullity > 0)
     return fmt::format("degenerate: index {}, and {} variation{} that leave{} S as it is to second order", *s.index,
@@ -92,7 +92,7 @@ std::string list(const std::vector<double>& values, const MechanicalSystem& syst
 
 std::string path_text(const StationaryPath& p, const MechanicalSystem& system) {
   std::string out = line("S", value_of_action(p.action, p.action_error, system));
-  out += line("kind", kind_text(p.second));
+  out += line("kind", path_kind_text(p.second));
   if (p.second.by_inertia) out += line("conjugate points", conjugate_text(p.second, system));
   if (const std::string counts = counts_text(p.second); !counts.empty()) out += line("counted", counts);
   out += line("starts with", list(p.start_velocity, system, "", "'"));

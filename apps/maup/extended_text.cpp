@@ -8,7 +8,7 @@
 namespace maupertuis::app {
 namespace {
 
-std::string number_text(const AgreedNumber& x) {
+std::string digits_text(const AgreedNumber& x) {
   if (x.text.empty()) return "not determined";
   if (x.digits > 0) return x.text;
   return fmt::format("0  (no digit is certain: the runs differ by {})", x.difference);
@@ -28,7 +28,7 @@ std::string state_text(const ExtendedState& state, const ExtendedResult& result)
   std::string out =
       fmt::format("{} = {}{}{}\n", result.independent.name, time_text(state.t), second.empty() ? "" : " ", second);
   const auto line = [&out](const std::string& name, const AgreedNumber& x, const std::string& unit) {
-    out += fmt::format("  {} = {}{}{}\n", name, number_text(x), unit == "1" || unit.empty() ? "" : " ",
+    out += fmt::format("  {} = {}{}{}\n", name, digits_text(x), unit == "1" || unit.empty() ? "" : " ",
                        unit == "1" ? "" : unit);
   };
   const std::size_t n = state.q.size();
@@ -44,10 +44,10 @@ std::string state_text(const ExtendedState& state, const ExtendedResult& result)
 
 std::string happening_text(const ExtendedHappening& h, const ExtendedResult& result, const MechanicalSystem& system) {
   const std::string& second = result.independent.unit;
-  std::string out = fmt::format("  {} = {}{}{}  {}", result.independent.name, number_text(h.t),
+  std::string out = fmt::format("  {} = {}{}{}  {}", result.independent.name, digits_text(h.t),
                                 second.empty() ? "" : " ", second, h.name);
   if (h.kind == Happening::Kind::Impact)
-    out += " impact, impulse " + impulse_text(number_text(h.impulse), h.name, system);
+    out += " impact, impulse " + impulse_text(digits_text(h.impulse), h.name, system);
   else if (h.kind != Happening::Kind::Event)
     out += " " + std::string(word_of(h.kind));
   return out + "\n";

@@ -13,7 +13,7 @@
 namespace maupertuis::app {
 namespace {
 
-const char* kind_name(Mode::Kind kind) {
+const char* mode_kind_name(Mode::Kind kind) {
   switch (kind) {
     case Mode::Kind::Zero:
       return "zero";
@@ -46,7 +46,7 @@ Json names_json(const MechanicalSystem& system, const std::vector<std::size_t>& 
 Json mode_json(const MechanicalSystem& system, const Mode& m) {
   Json shape = Json::object();
   for (std::size_t i = 0; i < m.shape.size(); ++i) shape[system.coordinates[i].name] = complex_json(m.shape[i]);
-  Json out = {{"kind", kind_name(m.kind)},
+  Json out = {{"kind", mode_kind_name(m.kind)},
               {"eigenvalue", complex_json(m.eigenvalue)},
               {"error", m.error},
               {"frequency", m.frequency()},

@@ -22,7 +22,7 @@ std::string unit_of(const MechanicalSystem& system, std::size_t i, int order) {
   return unit == "1" ? "" : unit;
 }
 
-std::string with_unit(double value, const std::string& unit) {
+std::string in_unit(double value, const std::string& unit) {
   return unit.empty() ? brief(value) : fmt::format("{} {}", brief(value), unit);
 }
 
@@ -35,11 +35,11 @@ std::string state_line(const MotionState& state, const MechanicalSystem& system)
   for (int order = 0; order <= 1; ++order)
     for (std::size_t i = 0; i < system.coordinates.size(); ++i)
       out += fmt::format("{}{}{} = {}", out.empty() ? "" : ", ", system.coordinates[i].name, order ? "'" : "",
-                         with_unit((order ? state.v : state.q)[i], unit_of(system, i, order)));
+                         in_unit((order ? state.v : state.q)[i], unit_of(system, i, order)));
   return out;
 }
 
-Json state_json(const MotionState& state, const MechanicalSystem& system) {
+Json orbit_state_json(const MotionState& state, const MechanicalSystem& system) {
   Json out = Json::object();
   for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
     out[system.coordinates[i].name] = state.q[i];
@@ -48,7 +48,7 @@ Json state_json(const MotionState& state, const MechanicalSystem& system) {
   return out;
 }
 
-std::string line(const char* head, const std::string& text) { return fmt::format("  {:<20}{}\n", head, text); }
+std::string orbit_line(const char* head, const std::string& text) { return fmt::format("  {:<20}{}\n", head, text); }
 
 const char* stability_word(OrbitalStability stability) {
   switch (stability) {
@@ -106,20 +106,21 @@ std::string stability_sentence(const FloquetResult& r) {
 std::string neighbours_text(const FloquetResult& r) {
   std::string out;
   for (std::size_t i = 0; i + r.trivial < r.multipliers.size(); ++i)
-    out += line(i == 0 ? "multipliers" : "", multiplier_line(r.multipliers[i], r.motion.period));
-  if (r.trivial == 1) out += line("trivial", "1, along the motion");
-  if (r.trivial == 2) out += line("trivial", "1 and 1, along the motion and from orbit to orbit as the energy changes");
-  out += line("stability", stability_sentence(r));
+    out += orbit_line(i == 0 ? "multipliers" : "", multiplier_line(r.multipliers[i], r.motion.period));
+  if (r.trivial == 1) out += orbit_line("trivial", "1, along the motion");
+  if (r.trivial == 2)
+    out += orbit_line("trivial", "1 and 1, along the motion and from orbit to orbit as the energy changes");
+  out += orbit_line("stability", stability_sentence(r));
   if (r.symplectic_residual)
-    out += line("check", fmt::format("the symplectic form is preserved to {:.2g}", *r.symplectic_residual));
+    out += orbit_line("check", fmt::format("the symplectic form is preserved to {:.2g}", *r.symplectic_residual));
   if (r.log_determinant && !r.symplectic_residual)
-    out += line("check", fmt::format("log |det dΦ| = {:.12g}, and ∫ divergence dt = {:.12g}", *r.log_determinant,
-                                     *r.integrated_divergence));
+    out += orbit_line("check", fmt::format("log |det dΦ| = {:.12g}, and ∫ divergence dt = {:.12g}", *r.log_determinant,
+                                           *r.integrated_divergence));
   return out;
 }
 
 std::string period_text(const FloquetResult& r, const MechanicalSystem& system) {
-  return line("period", seconds(r.motion.period, system) + (r.motion.driven ? ", of the drive" : ""));
+  return orbit_line("period", seconds(r.motion.period, system) + (r.motion.driven ? ", of the drive" : ""));
 }
 
 std::string floquet_text(const FloquetResult& r, const MechanicalSystem& system) {
@@ -127,17 +128,17 @@ std::string floquet_text(const FloquetResult& r, const MechanicalSystem& system)
   std::string out = fmt::format("{}: {}\n", spoken_name(system),
                                 m.rests ? "an equilibrium, whose neighbours are driven" : "a periodic motion");
   out += period_text(r, system);
-  out += line("start", state_line(m.start, system));
-  if (const std::string turns = turns_text(m, system); !turns.empty()) out += line("advances", turns);
-  out += line("closed to", fmt::format("{:.2g} of its size, after {} correction{} that moved the start by {:.2g}",
-                                       m.closure, m.iterations, m.iterations == 1 ? "" : "s", m.moved));
+  out += orbit_line("start", state_line(m.start, system));
+  if (const std::string turns = turns_text(m, system); !turns.empty()) out += orbit_line("advances", turns);
+  out += orbit_line("closed to", fmt::format("{:.2g} of its size, after {} correction{} that moved the start by {:.2g}",
+                                             m.closure, m.iterations, m.iterations == 1 ? "" : "s", m.moved));
   return out + neighbours_text(r);
 }
 
 Json floquet_json(const FloquetResult& r, const MechanicalSystem& system) {
   const PeriodicMotion& m = r.motion;
   Json out = {{"period", m.period},
-              {"start", state_json(m.start, system)},
+              {"start", orbit_state_json(m.start, system)},
               {"t", m.start.t},
               {"driven", m.driven},
               {"rests", m.rests}};
@@ -174,19 +175,21 @@ std::string section_text(const SectionResult& r, const std::string& what, const 
     early += !o.ended.empty();
   }
   if (r.energy_conserved)
-    out +=
-        line("energy", fmt::format("{}, drift at most {:.2g}", with_unit(low, system.dimensionless ? "" : "J"), drift));
+    out += orbit_line("energy",
+                      fmt::format("{}, drift at most {:.2g}", in_unit(low, system.dimensionless ? "" : "J"), drift));
   if (r.largest_miss > 0)
-    out += line("on the section to", fmt::format("{:.2g} of its largest value between crossings", r.largest_miss));
+    out +=
+        orbit_line("on the section to", fmt::format("{:.2g} of its largest value between crossings", r.largest_miss));
   if (early > 0)
-    out += line("ended early", fmt::format("{} of them, the first because: {}", early,
-                                           std::find_if(r.orbits.begin(), r.orbits.end(), [](const SectionOrbit& o) {
-                                             return !o.ended.empty();
-                                           })->ended));
+    out +=
+        orbit_line("ended early", fmt::format("{} of them, the first because: {}", early,
+                                              std::find_if(r.orbits.begin(), r.orbits.end(), [](const SectionOrbit& o) {
+                                                return !o.ended.empty();
+                                              })->ended));
   if (r.orbits.size() > 1) return out;
   for (std::size_t k = 0; k < std::min(most_rows, r.crossings.size()); ++k)
-    out += line(fmt::format("t = {}", seconds(r.crossings[k].state.t, system)).c_str(),
-                "  " + state_line(r.crossings[k].state, system));
+    out += orbit_line(fmt::format("t = {}", seconds(r.crossings[k].state.t, system)).c_str(),
+                      "  " + state_line(r.crossings[k].state, system));
   if (r.crossings.size() > most_rows)
     out += fmt::format("  … and {} more; -o FILE.csv has them all\n", r.crossings.size() - most_rows);
   return out;
@@ -196,7 +199,7 @@ Json section_json(const SectionResult& r, const std::string& what, const Mechani
   Json out = {{"section", what}, {"energy_conserved", r.energy_conserved}, {"largest_miss", r.largest_miss}};
   out["orbits"] = Json::array();
   for (const SectionOrbit& o : r.orbits)
-    out["orbits"].push_back({{"start", state_json(o.start, system)},
+    out["orbits"].push_back({{"start", orbit_state_json(o.start, system)},
                              {"energy", o.energy},
                              {"energy_drift", o.energy_drift},
                              {"crossings", o.crossings},
@@ -205,7 +208,7 @@ Json section_json(const SectionResult& r, const std::string& what, const Mechani
   out["crossings"] = Json::array();
   for (const Crossing& c : r.crossings)
     out["crossings"].push_back(
-        {{"orbit", c.orbit}, {"number", c.number}, {"t", c.state.t}, {"state", state_json(c.state, system)}});
+        {{"orbit", c.orbit}, {"number", c.number}, {"t", c.state.t}, {"state", orbit_state_json(c.state, system)}});
   return out;
 }
 
@@ -215,20 +218,21 @@ std::string lyapunov_text(const LyapunovResult& r) {
   std::string out = fmt::format("Lyapunov exponents, the mean over {} s ({} intervals)\n", brief(r.duration),
                                 static_cast<std::size_t>(std::round(r.duration / r.interval)));
   for (std::size_t j = 0; j < r.exponents.size(); ++j)
-    out += line(fmt::format("λ{}", j + 1).c_str(), fmt::format("{: .6g} ± {:.2g} 1/s", r.exponents[j], r.errors[j]));
-  if (r.exponents.size() == r.dimension)
     out +=
-        line("sum", fmt::format("{: .3g} 1/s{}", r.sum,
-                                r.expected_sum ? fmt::format(", the mean divergence {:.3g} 1/s (Liouville, to {:.2g})",
-                                                             *r.expected_sum, *r.sum_rule_residual)
-                                               : ""));
+        orbit_line(fmt::format("λ{}", j + 1).c_str(), fmt::format("{: .6g} ± {:.2g} 1/s", r.exponents[j], r.errors[j]));
+  if (r.exponents.size() == r.dimension)
+    out += orbit_line(
+        "sum", fmt::format("{: .3g} 1/s{}", r.sum,
+                           r.expected_sum ? fmt::format(", the mean divergence {:.3g} 1/s (Liouville, to {:.2g})",
+                                                        *r.expected_sum, *r.sum_rule_residual)
+                                          : ""));
   const double first = r.exponents.front();
   if (first > 3 * r.errors.front())
-    out += line("chaotic", fmt::format("neighbours part by a factor e in {} s", brief(1 / first)));
+    out += orbit_line("chaotic", fmt::format("neighbours part by a factor e in {} s", brief(1 / first)));
   else
-    out += line("not shown chaotic", "the largest exponent is not clearly above zero");
-  if (r.kaplan_yorke) out += line("dimension", fmt::format("{:.4g}, by Kaplan and Yorke", *r.kaplan_yorke));
-  if (!r.ended.empty()) out += line("ended early", r.ended);
+    out += orbit_line("not shown chaotic", "the largest exponent is not clearly above zero");
+  if (r.kaplan_yorke) out += orbit_line("dimension", fmt::format("{:.4g}, by Kaplan and Yorke", *r.kaplan_yorke));
+  if (!r.ended.empty()) out += orbit_line("ended early", r.ended);
   return out;
 }
 

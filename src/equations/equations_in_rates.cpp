@@ -205,7 +205,7 @@ ReadableForm readable_velocity(Expr e, const ReadingOrder& order) {
   return best;
 }
 
-bool moves(Expr e) {
+bool is_moving(Expr e) {
   for (const Expr& s : symbols_of({&e, 1}))
     if (s.role() == Role::Coordinate || s.role() == Role::Time || s.role() == Role::Input) return true;
   return false;
@@ -223,7 +223,7 @@ Expr divisor(Expr row, std::size_t a, const RateKinematics& k, const ReadingOrde
     if (coefficient.is_zero()) continue;
     const Expr best = spheres.shortest(coefficient, order);
     if (best.is_zero()) continue;
-    if (a != b || !moves(best)) return context.number(1);
+    if (a != b || !is_moving(best)) return context.number(1);
     factor = context.number(1) / best;
   }
   return factor;

@@ -20,7 +20,7 @@ namespace {
 
 using Formula = ReportContent::Formula;
 
-std::string unit_of(const MechanicalSystem& system, const Dimension& dimension) {
+std::string unit_symbol(const MechanicalSystem& system, const Dimension& dimension) {
   return system.dimensionless ? std::string() : to_string(dimension);
 }
 
@@ -37,7 +37,7 @@ ReportContent::Coordinate coordinate_row(const Model& model, const EquationsOfMo
                                          const SimulationResult* run) {
   const MechanicalSystem& system = *equations.system;
   const Coordinate& c = system.coordinates[i];
-  const std::string unit = unit_of(system, c.dimension);
+  const std::string unit = unit_symbol(system, c.dimension);
   ReportContent::Coordinate row{
       lay_out(c.q, equations.order), lay_out(c.velocity, equations.order), "", c.kind, "", ""};
   if (c.name.find('.') != std::string::npos) row.name = c.name;
@@ -45,13 +45,13 @@ ReportContent::Coordinate coordinate_row(const Model& model, const EquationsOfMo
   if (!run || run->start.q.size() <= i) return row;
   row.start = start_text(model, i, 0, run->start.q[i], unit);
   row.start_velocity =
-      start_text(model, i, 1, run->start.v[i], unit_of(system, c.dimension / system.independent_dimension));
+      start_text(model, i, 1, run->start.v[i], unit_symbol(system, c.dimension / system.independent_dimension));
   return row;
 }
 
 // The value as the text has it, 60 cm, with 0.6 m beside it.
 ReportContent::Parameter parameter_row(const EquationsOfMotion& equations, const Parameter& parameter) {
-  const std::string si_unit = unit_of(*equations.system, parameter.dimension);
+  const std::string si_unit = unit_symbol(*equations.system, parameter.dimension);
   const double factor = parameter.unit_factor;
   const Layout symbol = lay_out(parameter.symbol, equations.order);
   if (parameter.unit.empty()) return {symbol, short_number(parameter.si_value, 10), si_unit == "1" ? "" : si_unit, ""};

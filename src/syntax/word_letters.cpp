@@ -8,7 +8,7 @@
 namespace maupertuis::syntax {
 namespace {
 
-bool is_digit(char32_t c) { return c >= '0' && c <= '9'; }
+bool is_ascii_digit(char32_t c) { return c >= '0' && c <= '9'; }
 
 }  // namespace
 
@@ -20,7 +20,7 @@ bool WordLetters::add(char32_t c) {
     letters_.push_back({dotted->letter, dotted->dots, {}});
   } else if (const auto digit = subscript_digit(c)) {
     letters_.push_back({static_cast<char32_t>('0' + *digit), 0, {}});
-  } else if (is_letter(letter) || letter == '_' || is_digit(letter)) {
+  } else if (is_letter(letter) || letter == '_' || is_ascii_digit(letter)) {
     letters_.push_back({letter, 0, {}});
   } else {
     return false;
@@ -44,10 +44,10 @@ int WordLetters::take_dots() {
   const bool greek = first.base >= 0x370 && first.base < 0x400;
   const bool suffix =
       letters_.size() == 1 || letters_[1].base == '_' ||
-      std::all_of(letters_.begin() + 1, letters_.end(), [](const Letter& l) { return is_digit(l.base); });
+      std::all_of(letters_.begin() + 1, letters_.end(), [](const Letter& l) { return is_ascii_digit(l.base); });
   if (first.dots > 0 && (greek || suffix || first.dots != 2)) return std::exchange(first.dots, 0);
   Letter& last = letters_.back();
-  if (last.dots > 0 && is_digit(last.base)) return std::exchange(last.dots, 0);
+  if (last.dots > 0 && is_ascii_digit(last.base)) return std::exchange(last.dots, 0);
   return 0;
 }
 

@@ -7,7 +7,7 @@
 namespace maupertuis {
 namespace {
 
-Expr total(const std::vector<EnergyTerm>& terms, Context& context) {
+Expr sum_of_terms(const std::vector<EnergyTerm>& terms, Context& context) {
   ExprVector values;
   for (const EnergyTerm& t : terms) values.push_back(t.value);
   return sum_of(values, context);
@@ -40,13 +40,13 @@ bool StartCondition::is_of_positions() const {
                       [](const Expr& s) { return s.role() == Role::Coordinate && s.order() > 0; });
 }
 
-Expr MechanicalSystem::kinetic_energy() const { return total(kinetic, *context); }
-Expr MechanicalSystem::potential_energy() const { return total(potential, *context); }
-Expr MechanicalSystem::total_generalized_potential() const { return total(generalized_potential, *context); }
-Expr MechanicalSystem::dissipation_function() const { return total(dissipation, *context); }
+Expr MechanicalSystem::kinetic_energy() const { return sum_of_terms(kinetic, *context); }
+Expr MechanicalSystem::potential_energy() const { return sum_of_terms(potential, *context); }
+Expr MechanicalSystem::total_generalized_potential() const { return sum_of_terms(generalized_potential, *context); }
+Expr MechanicalSystem::dissipation_function() const { return sum_of_terms(dissipation, *context); }
 
 Expr MechanicalSystem::lagrangian() const {
-  const Expr extra = total(lagrangian_extra, *context);
+  const Expr extra = sum_of_terms(lagrangian_extra, *context);
   if (lagrangian_given) return lagrangian_given->value + extra;
   return sum_of({kinetic_energy(), -potential_energy(), -total_generalized_potential(), extra});
 }

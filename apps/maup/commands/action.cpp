@@ -64,7 +64,7 @@ void check_belonging(const ActionCommand& o, Diagnostics& diagnostics) {
                       "Give both ends of --path, or neither: then they are those of the model's path.");
 }
 
-void check_usage(const ActionCommand& o, Diagnostics& diagnostics) {
+void check_action_usage(const ActionCommand& o, Diagnostics& diagnostics) {
   if (o.period && !parse_time(*o.period))
     diagnostics.error("E0809", {}, fmt::format("--period \"{}\" is no time.", *o.period), {},
                       "Write a number with a unit of time, such as 3s; a bare number is in seconds.");
@@ -198,7 +198,7 @@ void write_files(const ActionCommand& o, const ActionFindings& found, Study& stu
 ExitCode study_action(const ActionCommand& o, Console& console) {
   Study study = open_study(o.model);
   const bool readable_model = !study.wrong();
-  check_usage(o, study.diagnostics());
+  check_action_usage(o, study.diagnostics());
   if (readable_model && study.wrong()) return finish_usage(console, study, "action");
   const bool good_text = study.tree() && !study.wrong();
   if (good_text) check_ends(o, study);

@@ -17,12 +17,12 @@
 namespace maupertuis::app {
 namespace {
 
-std::string with_unit(const std::string& number, const Dimension& dimension) {
+std::string in_unit_of(const std::string& number, const Dimension& dimension) {
   const std::string unit = to_string(dimension);
   return unit == "1" || unit.empty() ? number : number + " " + unit;
 }
 
-std::string joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
+std::string joined_names(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
 
 /// θ = 120 deg, x' = 2 m/s: as the text has it, in SI where it has a formula.
 std::string start_text(const StartValue& start, const MechanicalSystem& system) {
@@ -32,14 +32,14 @@ std::string start_text(const StartValue& start, const MechanicalSystem& system) 
   if (system.dimensionless) return fmt::format("{} = {}", name, brief(value));
   if (!start.unit.empty()) return fmt::format("{} = {} {}", name, brief(value / start.unit_factor), start.unit);
   return fmt::format("{} = {}", name,
-                     with_unit(brief(value), start.order ? c.dimension / system.independent_dimension : c.dimension));
+                     in_unit_of(brief(value), start.order ? c.dimension / system.independent_dimension : c.dimension));
 }
 
 /// A torque of 0.1 N m is no energy of 0.1 J: the unit of the text where the value is one number of it, else that of
 /// SI.
 std::string parameter_text(const Parameter& p, const MechanicalSystem& system) {
   const double factor = p.unit_factor;
-  return p.unit.empty() || system.dimensionless ? with_unit(brief(p.si_value), p.dimension)
+  return p.unit.empty() || system.dimensionless ? in_unit_of(brief(p.si_value), p.dimension)
                                                 : brief(p.si_value / factor) + " " + p.unit;
 }
 
@@ -54,8 +54,8 @@ std::string end_text(const std::vector<Expr>& configuration, Expr at, const Mech
     values.push_back(!configuration[i] ? "free"
                      : system.dimensionless
                          ? brief(value_of(configuration[i], system))
-                         : with_unit(brief(value_of(configuration[i], system)), system.coordinates[i].dimension));
-  return fmt::format("({}) at {}", joined(values), system.moment(brief(value_of(at, system))));
+                         : in_unit_of(brief(value_of(configuration[i], system)), system.coordinates[i].dimension));
+  return fmt::format("({}) at {}", joined_names(values), system.moment(brief(value_of(at, system))));
 }
 
 std::string path_text(const PathEnds& path, const MechanicalSystem& system) {
@@ -68,7 +68,7 @@ std::string held_text(const IntegralConstraint& held, const EquationsOfMotion& e
   const std::string value = brief(value_of(held.value, system));
   return fmt::format("{}∫ {} d{} = {}", held.name.empty() ? "" : held.name + ": ",
                      to_plain(held.integrand, equations.order), system.independent,
-                     system.dimensionless ? value : with_unit(value, held.dimension));
+                     system.dimensionless ? value : in_unit_of(value, held.dimension));
 }
 
 /// A coefficient of friction as it was written: of the normal force, not of the multiplier.
@@ -102,7 +102,7 @@ std::string contact_text(const MechanicalSystem& system, std::size_t index, cons
   if (!start->trouble.empty() && std::abs(gap) < 1e-14) return out + "; touches at the start";
   return out + (std::abs(gap) < 1e-14 ? "; touches at the start without force"
                                       : "; open at the start, by " +
-                                            (system.dimensionless ? brief(gap) : with_unit(brief(gap), c.dimension)));
+                                            (system.dimensionless ? brief(gap) : in_unit_of(brief(gap), c.dimension)));
 }
 
 /// "along x: coefficient 0.3 of m g"; "along θ: at most 0.2 N m"
@@ -135,14 +135,14 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
     for (const EnergyTerm& term : terms) origins.push_back(term.origin);
     if (origins.size() > 8)
       origins = {fmt::format("{} terms, from {} to {}", terms.size(), origins.front(), origins.back())};
-    line(head, joined(origins));
+    line(head, joined_names(origins));
   };
 
   std::vector<std::string> words;
   for (const Coordinate& c : system.coordinates) words.push_back(c.kind.empty() ? c.name : c.name + " : " + c.kind);
   if (words.size() > 8)
     words = {fmt::format("{} … {} ({} of them)", words.front(), words.back(), system.coordinates.size())};
-  line("coordinates", joined(words));
+  line("coordinates", joined_names(words));
   if (const std::string unit = system.independent_unit(); system.independent != "t")
     line("independent variable", unit.empty() ? system.independent : fmt::format("{} in {}", system.independent, unit));
   for (std::size_t i = 0; i < system.rates.size(); ++i)
@@ -156,10 +156,10 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
   for (const Parameter& p : system.parameters)
     if (p.symbol.role() == Role::Parameter) words.push_back(fmt::format("{} = {}", p.name, parameter_text(p, system)));
   if (words.size() > 12) words = {fmt::format("{} of them", words.size())};
-  line("parameters", joined(words));
+  line("parameters", joined_names(words));
   words.clear();
   for (const Input& u : system.inputs) words.push_back(u.name);
-  line("inputs", joined(words));
+  line("inputs", joined_names(words));
   if (system.lagrangian_given) {
     line("Lagrangian L", "given");
   } else {
@@ -171,7 +171,7 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
   energy("dissipation D", system.dissipation);
   words.clear();
   for (const AppliedForce& force : system.forces) words.push_back("on " + force.target);
-  line("forces Q", joined(words));
+  line("forces Q", joined_names(words));
   for (std::size_t i = 0; i < system.contacts.size() && i < 12; ++i)
     line(i == 0 ? "contacts" : "", contact_text(system, i, equations.order, findings.contacts));
   if (system.contacts.size() > 12) line("", fmt::format("… {} of them", system.contacts.size()));
@@ -182,15 +182,15 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
                                                       : "not: " + findings.contacts->trouble);
   words.clear();
   for (const ModelEvent& event : model.experiment.events) words.push_back(event.name);
-  line("events", joined(words));
+  line("events", joined_names(words));
   words.clear();
   for (const StartValue& start : model.experiment.start) words.push_back(start_text(start, system));
   if (words.size() > 8) words.resize(8), words.push_back("…");
-  line("start", joined(words));
+  line("start", joined_names(words));
   if (model.experiment.path) line("path", path_text(*model.experiment.path, system));
   words.clear();
   for (const IntegralConstraint& held : system.integral_constraints) words.push_back(held_text(held, equations));
-  line("integrals held", joined(words));
+  line("integrals held", joined_names(words));
   if (findings.start) line("consistent start", moved_start(system, *findings.start));
   if (!model.experiment.expectations.empty())
     line("expectations", fmt::format("{} (run them with `maup test`)", model.experiment.expectations.size()));

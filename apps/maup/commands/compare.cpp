@@ -19,7 +19,7 @@ struct CompareOptions {
   RunOptions run;
 };
 
-const char* verdict_word(Sameness verdict) {
+const char* sameness_word(Sameness verdict) {
   switch (verdict) {
     case Sameness::Same:
       return "same";
@@ -67,7 +67,7 @@ std::string freedoms_text(std::size_t freedoms, std::size_t instantaneous) {
 }
 
 /// Coordinates with their velocities, as many as fit some lines; --json has all.
-std::string state_text(const MotionState& state, const MechanicalSystem& system) {
+std::string witness_state_text(const MotionState& state, const MechanicalSystem& system) {
   constexpr std::size_t most = 8;
   std::string text;
   for (std::size_t i = 0; i < std::min(most, system.coordinates.size()); ++i)
@@ -96,7 +96,7 @@ std::string text_of(const Comparison& c, const Model& a, const CoordinateMap& ma
   if (c.disagreement) {
     const Disagreement& d = *c.disagreement;
     const std::string name = a.system.coordinates[d.coordinate].name;
-    line("witness", "at " + state_text(d.state, b));
+    line("witness", "at " + witness_state_text(d.state, b));
     line("", fmt::format("{}'' = {:.12g} by {}, {:.12g} by {}", name, d.of_a, c.name_a, d.of_b, c.name_b));
   }
   if (c.run.ran)
@@ -116,7 +116,7 @@ Json comparison_json(const Comparison& c, const Model& a, const CoordinateMap& m
   Json document = json_document("compare");
   document["systems"] = {a.system.name, b.name};
   for (std::size_t i = 0; i < map.written.size(); ++i) document["map"][a.system.coordinates[i].name] = map.written[i];
-  document["verdict"] = c.verdict == Sameness::Same && !c.proved() ? "evidence" : verdict_word(c.verdict);
+  document["verdict"] = c.verdict == Sameness::Same && !c.proved() ? "evidence" : sameness_word(c.verdict);
   document["reason"] = c.reason;
   document["points"] = c.ground.points;
   document["error_bound"] = c.ground.error_bound;

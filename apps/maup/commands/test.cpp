@@ -19,7 +19,7 @@ struct FileOutcome {
   std::vector<ExpectationResult> results;
 };
 
-std::string text_of(const ExpectationResult& r, const std::string& file) {
+std::string expectation_text(const ExpectationResult& r, const std::string& file) {
   if (r.passed && !r.beyond_digits) return {};
   std::string out = fmt::format("{}:{}: {} {}\n", file, r.line, r.text,
                                 r.passed ? "holds, but asks for more digits than are known" : "fails");
@@ -71,7 +71,7 @@ FileOutcome test_file(const std::string& path, const SimulationOptions& settings
 
   for (const ExpectationResult& r : outcome.results) {
     document["expectations"].push_back(expectation_json(r, file));
-    if (!console.json()) console.print(text_of(r, file));
+    if (!console.json()) console.print(expectation_text(r, file));
   }
   if (!expected_errors) {
     console.show(study.diagnostics(), study.source());
