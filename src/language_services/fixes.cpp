@@ -99,9 +99,9 @@ class Proposals {
   std::vector<Proposal> run() {
     const std::string_view help = diagnostic_.help;
     if (quotient_of_leibniz()) return std::move(out_);
-    if (!is_name_among_units())
-      for (const std::string_view text : after_word(help, "Did you mean "))
-        propose(without_ticks(text.substr(0, text.find('?'))));
+    for (const std::string_view text : after_word(help, "Did you mean "))
+      if (const std::string other = without_ticks(text.substr(0, text.find('?'))); may_be_misspelled(other))
+        propose(other);
     for (const std::string_view word :
          {std::string_view("Write "), std::string_view("Type "), std::string_view("Close it with ")}) {
       for (std::string_view text : after_word(help, word)) {
@@ -138,6 +138,10 @@ class Proposals {
     const bool number = text[0] >= '0' && text[0] <= '9';
     // The 3 of `3 [m]` in the place of m is the help's own: a number is the author's to choose.
     if (number && replaced.find_first_of("0123456789") == std::string_view::npos) return;
+    // The 1/2 of `1/2 m l^2` is a factor, and its m a mass that is not declared.
+    if (number && text.find(" [") != std::string::npos &&
+        text.substr(0, text.find(" [")).find('/') != std::string::npos)
+      return;
     add(fmt::format("Write {}", text), place, text);
   }
 
@@ -371,12 +375,19 @@ class Proposals {
     return true;
   }
 
-  /// The r of `7.67 km/s / r`: a name of the model, or one letter, is not a unit that is misspelled.
-  bool is_name_among_units() {
+  /// Whether the word may be the other one, misspelled. One letter is not another one: s is no m, but R may be r. The r
+  /// of `7.67 km/s / r` is a name of the model, and no unit.
+  bool may_be_misspelled(const std::string& other) {
     const std::string text(written());
-    const std::size_t letters = static_cast<std::size_t>(
-        std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
-    return diagnostic_.code == "E0301" && (letters == 1 || document_.roles().find(text));
+    if (diagnostic_.code == "E0301" && document_.roles().find(text)) return false;
+    const auto lower = [](std::string word) {
+      for (char& c : word)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+      return word;
+    };
+    const auto letters =
+        std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; });
+    return letters > 1 || lower(text) == lower(other);
   }
 
   /// The unit that a bare number lacks: "the duration of a run is a time (s), this is a bare number", "Give `m` its

@@ -209,6 +209,13 @@ TEST_CASE("what is offered is a text of the model, with nothing of the help's ow
   for (const std::string part : {"[m]", "declare", "3 "}) none_has(no_mass, part);
   for (const std::string part : {"[s]", "declare", "3 "}) none_has(no_s, part);
   none_has("param r = 7000 km\nparam ω = 7.67 km/s / r\ncoord φ : angle\nT = 1/2 (1 [kg m^2]) φ'^2\n", "sr");
+  const std::string orbit =
+      "param m = 1 kg, R = 6371 km, G = 6.674e-11 N m^2/kg^2, M = 5.972e24 kg\ncoord r : length, φ : angle\n"
+      "T = m/2 (dr/dt^2 + r^2 dφ/dt^2)\nV = -G M m / r\nstart r = R + 400 km, φ' = 7.67 km/s / r\nrun 90 min\n";
+  for (const std::string part : {"km/m", "3 [", "[s]", "declare", "m km"}) none_has(orbit, part);
+  const std::string no_statements =
+      "mass m = 1 kg\nlength l = 1 m\ncoordinate θ\nT = 1/2 m l^2 θ'^2\nV = -m g l cos θ\ninitial θ = 0.1\n";
+  for (const std::string part : {"3 [", "[m]", "declare"}) none_has(no_statements, part);
   none_has("param m = 1 kg\ncoord r : length\nT = 1/2 m dr/dt^2\n", "r'");
   none_has(head + "point P mass m at (l sin θ; -l cos θ)\n", "\n-l");
   const auto vector = offered(head + "point P mass m at (l sin θ; -l cos θ)\n");
