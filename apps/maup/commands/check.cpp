@@ -58,12 +58,12 @@ std::string end_text(const std::vector<Expr>& configuration, Expr at, const Mech
   return fmt::format("({}) at {}", joined_names(values), system.moment(brief(value_of(at, system))));
 }
 
-std::string path_text(const PathEnds& path, const MechanicalSystem& system) {
+std::string path_ends_text(const PathEnds& path, const MechanicalSystem& system) {
   return fmt::format("from {} to {}", end_text(path.from, path.start, system), end_text(path.to, path.end, system));
 }
 
 /// length: ∫ sqrt(y'^2 + 1) dx = 3 m
-std::string held_text(const IntegralConstraint& held, const EquationsOfMotion& equations) {
+std::string held_integral_text(const IntegralConstraint& held, const EquationsOfMotion& equations) {
   const MechanicalSystem& system = *equations.system;
   const std::string value = brief(value_of(held.value, system));
   return fmt::format("{}∫ {} d{} = {}", held.name.empty() ? "" : held.name + ": ",
@@ -187,9 +187,10 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
   for (const StartValue& start : model.experiment.start) words.push_back(start_text(start, system));
   if (words.size() > 8) words.resize(8), words.push_back("…");
   line("start", joined_names(words));
-  if (model.experiment.path) line("path", path_text(*model.experiment.path, system));
+  if (model.experiment.path) line("path", path_ends_text(*model.experiment.path, system));
   words.clear();
-  for (const IntegralConstraint& held : system.integral_constraints) words.push_back(held_text(held, equations));
+  for (const IntegralConstraint& held : system.integral_constraints)
+    words.push_back(held_integral_text(held, equations));
   line("integrals held", joined_names(words));
   if (findings.start) line("consistent start", moved_start(system, *findings.start));
   if (!model.experiment.expectations.empty())

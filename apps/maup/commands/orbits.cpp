@@ -25,7 +25,7 @@ struct Findings {
   PlotOptions picture;
 };
 
-void check_usage(const Options& o, Diagnostics& diagnostics) {
+void check_orbits_usage(const Options& o, Diagnostics& diagnostics) {
   check_orbits_options(o.orbits, diagnostics);
   if (o.duration && !parse_time(*o.duration))
     diagnostics.error("E0809", {}, fmt::format("--duration \"{}\" is no time.", *o.duration), {},
@@ -73,7 +73,7 @@ std::optional<Findings> find_lyapunov(const Options& o, Study& study) {
 ExitCode study_orbits(const Options& o, Console& console) {
   Study study = open_study(o.model);
   const bool readable_model = !study.wrong();
-  check_usage(o, study.diagnostics());
+  check_orbits_usage(o, study.diagnostics());
   if (readable_model && study.wrong()) return finish_usage(console, study, "orbits");
   put_in_section(o.orbits, study);
   if (study.refuse_held_integrals() || study.refuse_without_time() || !study.certificate())
