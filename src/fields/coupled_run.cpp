@@ -172,10 +172,12 @@ std::vector<double> shown_places(const SemiDiscrete& mesh) {
 /// The error of each answer from runs on two coarser meshes: what halving the elements gains is measured, not believed,
 /// since a start or a load with a kink lets no high order come about. Beside a break, of the start or under a load that
 /// moves through elements, differences may be small by chance: that of the coarser meshes counts too, less what two
-/// halvings gain there at least (`gain_at_breaks` each; 0: no breaks). `most`: that is believed of a gain.
+/// halvings gain there at least (`gain_at_breaks` each; 0: no breaks). Of meshes of lower orders less is believed of a
+/// gain, and the difference of the coarser two counts likewise.
 std::vector<double> errors_of(const CoupledRun& fine, const std::optional<CoupledRun>& half,
-                              const std::optional<CoupledRun>& quarter, double gain_at_breaks, double most) {
-  constexpr double least = 1.5;  // of a gain that two differences show
+                              const std::optional<CoupledRun>& quarter, double gain_at_breaks, bool lower_orders) {
+  constexpr double least = 1.5, of_halvings = 33, of_orders = 5;  // of a gain that two differences show
+  const double most = lower_orders ? of_orders : of_halvings;
   std::vector<double> out;
   for (std::size_t i = 0; i < fine.answers.size(); ++i) {
     if (!half) {
@@ -188,7 +190,7 @@ std::vector<double> errors_of(const CoupledRun& fine, const std::optional<Couple
     if (gain_at_breaks > 0)
       out.push_back(std::max(first, second / (gain_at_breaks * gain_at_breaks)));
     else
-      out.push_back(first / gain);
+      out.push_back(std::max(first / gain, lower_orders ? second / (most * most) : 0));
   }
   return out;
 }
@@ -411,8 +413,7 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
   }
   if (options.errors) estimate_moments(out.happenings, half, quarter, options.begin);
   const double gain = gain_at_breaks(equations, *mesh, breaks || jumps(*fine), options.begin);
-  constexpr double of_halvings = 33, of_orders = 5;
-  std::vector<double> errors = errors_of(*fine, half, quarter, gain, lower_orders ? of_orders : of_halvings);
+  std::vector<double> errors = errors_of(*fine, half, quarter, gain, lower_orders);
   if (gain > 0 && !breaks)
     for (double& e : errors) e *= 2;
   const double rounding = 2.2e-16 * std::sqrt(static_cast<double>(out.steps) + 1);
