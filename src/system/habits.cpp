@@ -124,12 +124,6 @@ bool is_written_unit(Elaboration& e, const Expression& x, int& free) {
   return true;
 }
 
-/// 9.81 [m/s^2]; the unit belongs to the number right before it, so that half a degree is 1 [deg]/2.
-std::string with_bracketed_unit(const std::string& number, const std::string& unit) {
-  const std::size_t slash = std::min(number.find('/'), number.size());
-  return fmt::format("Write {} [{}]{}.", number.substr(0, slash), unit, number.substr(slash));
-}
-
 /// 9.81 m/s^2 in a formula.
 bool number_with_unit(Elaboration& e, const Expression& x) {
   if (e.dimensionless) return false;
@@ -143,6 +137,8 @@ bool number_with_unit(Elaboration& e, const Expression& x) {
   }
   if (left == &x || free == 0 || !is_written_number(*left)) return false;
   const std::string number(e.texts.slice(left->span));
+  if (number.find('/') != std::string::npos)
+    return false;  // 1/2 m: a mass that is not declared, sooner than half a metre
   const Span whole = operands(x);
   std::string unit(e.texts.slice({left->span.end, whole.end, whole.source}));
   const std::string_view dot = "·";  // of two bytes, and ° begins with the first of them
@@ -151,7 +147,7 @@ bool number_with_unit(Elaboration& e, const Expression& x) {
   e.diagnostics.error("E0312", whole,
                       fmt::format("`{}` stands in a formula without brackets around its unit", e.texts.slice(whole)),
                       "In a formula a unit stands in square brackets, so that it cannot be taken for a name.",
-                      with_bracketed_unit(number, unit));
+                      fmt::format("Write {} [{}].", number, unit));
   return true;
 }
 

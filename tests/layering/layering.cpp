@@ -39,7 +39,7 @@ Table table_of_architecture() {
 std::map<std::string, Names> table_of_build() {
   std::map<std::string, Names> table;
   const std::regex call(
-      R"(maup_(?:module|plugin)\(([a-z_/]+)(?: LINKS ([a-z_/ ]+?))?(?: (?:PRIVATE_LINKS|ALONE|BATCH|COLD|CHECKED)[^)]*)?\).*)");
+      R"(maup_(?:module|plugin)\(([a-z_/]+)(?: LINKS ([a-z_/ ]+?))?(?: (?:PRIVATE_LINKS|ALONE|TOGETHER|BATCH|COLD|CHECKED)[^)]*)?\).*)");
   for (const std::string& line : source_tree::read(std::string(PROJECT_DIR) + "/src/CMakeLists.txt").lines)
     if (std::smatch m; std::regex_match(line, m, call)) table[m[1]] = words(m[2]);
   return table;
