@@ -74,6 +74,15 @@ TEST_CASE("many digits of a degenerate system begin on all that it asks of a sta
   CHECK(contains(one.out, "  x = 0.99802985944634"));
 }
 
+TEST_CASE("constraints that are lost in rounding are said to be, and no number is said to vanish") {
+  const Outcome told = maup({"check", "-"},
+                            "dimensionless\ncoord x, y, z : number\nL = 29*x'^2*y^2/200 + 17*x'^2/20 + 19*x'*y'/100 + "
+                            "99*y'^2/200 + z*(y - x)\nD = y'^2\nstart x = 3/20\nrun 3\n");
+  CHECK(contains(told.err, "E0633"));
+  CHECK(contains(told.err, "cannot be told from rounding"));
+  CHECK_FALSE(contains(told.err, "1 is 0"));
+}
+
 TEST_CASE("variational steps of degenerate Lagrangians are refused, with and without relations between velocities") {
   for (const std::string& model :
        {predators,

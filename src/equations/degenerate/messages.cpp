@@ -85,6 +85,7 @@ class Messages {
   }
 
   bool varies() {
+    if (analysis_.chain.varying.is_number()) return lost_in_rounding();
     const std::string text = to_plain(analysis_.chain.varying, equations_.order);
     diagnostics_.error(
         "E0633", place(), "this Lagrangian is degenerate in one region and of another class elsewhere",
@@ -92,6 +93,16 @@ class Messages {
                     "another acceleration, and the constraints of the one region are wrong in the other.",
                     text.size() <= longest_line ? text : std::string("A coefficient of an acceleration")),
         "Let an inertia act everywhere, or leave it out.");
+    return false;
+  }
+
+  /// A row with a number in it that is next to nothing beside the others.
+  bool lost_in_rounding() {
+    diagnostics_.error(
+        "E0633", place(), "the constraints of this degenerate Lagrangian cannot be told from rounding",
+        "Coefficients of its higher constraints differ by more than 10¹²: in numbers it is not seen which "
+        "of them vanish.",
+        "Where a coordinate is a multiplier, as z in z (y - x), write `constraint y = x` in its place.");
     return false;
   }
 
