@@ -23,7 +23,7 @@ std::vector<Rate> rates_of(const MechanicalSystem& system) {
 }
 
 /// Rows of one set of equations list the same names.
-void append_rows(EquationForm& form, const ReadableForm& line) {
+void append_line(EquationForm& form, const ReadableForm& line) {
   for (const Intermediate& i : line.intermediates) {
     const bool known = std::any_of(form.intermediates.begin(), form.intermediates.end(),
                                    [&](const Intermediate& other) { return other.symbol == i.symbol; });
@@ -37,12 +37,12 @@ EquationForm form_of(EquationsInRates found, Study& study) {
   form.intermediates = found.intermediates;
   for (const EquationsInRates::Row& row : found.rows) {
     form.lines.push_back({row.rate, {}, row.form, {}, {}, {}, false});
-    append_rows(form, row.form);
+    append_line(form, row.form);
   }
   for (const EquationsInRates::Velocity& v : found.kinematics) {
     const Coordinate& c = system.coordinates[v.coordinate];
     form.kinematics.push_back({c.name, lay_out(c.velocity, found.order), v.form, {}, {}, {}, false});
-    append_rows(form, v.form);
+    append_line(form, v.form);
   }
   const Derivation& derivation = *study.derivation(false);
   for (std::size_t k = 0; k < derivation.constraints.size(); ++k) {

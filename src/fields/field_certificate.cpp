@@ -27,7 +27,7 @@ struct FieldRoots {
   std::size_t euler = 1, boundary = 1;
 };
 
-FieldRoots row_roots(const FieldEquations& equations) {
+FieldRoots certificate_roots(const FieldEquations& equations) {
   FieldRoots out;
   const FieldSystem& s = equations.system();
   out.roots.push_back(s.expanded(s.density));
@@ -118,7 +118,7 @@ CertificateCheck boundary_identity(const FieldEquations& equations, std::uint64_
   CertificateCheck check;
   check.name = "divergence";
   check.statement = "δℒ(η) − E·η is the divergence ∂_μ B^μ along random fields.";
-  const FieldRoots roots = row_roots(equations);
+  const FieldRoots roots = certificate_roots(equations);
   const auto tape = evaluation::Tape::with_gaussians(evaluation::flatten_arguments(roots.roots));
   const evaluation::FieldHints hints = evaluation::field_hints(tape);
   evaluation::Complexity size = evaluation::complexity(tape);

@@ -5,10 +5,8 @@
 #include <numbers>
 
 namespace maupertuis {
-namespace {
 
-/// P_n and P_n' at x.
-std::pair<double, double> legendre_pair(int n, double x) {
+std::pair<double, double> legendre(int n, double x) {
   double before = 1, p = x;
   if (n == 0) return {1, 0};
   for (int k = 2; k <= n; ++k) {
@@ -19,15 +17,13 @@ std::pair<double, double> legendre_pair(int n, double x) {
   return {p, n * (before - x * p) / (1 - x * x)};
 }
 
-}  // namespace
-
 Lobatto::Lobatto(int p) : order(p), x(static_cast<std::size_t>(p) + 1), w(x.size()), derivative(x.size() * x.size()) {
   const std::size_t n = x.size();
   x.front() = -1, x.back() = 1;
   for (std::size_t i = 1; i + 1 < n; ++i) {  // zeros of P_p' by Newton's method on (1 − x²) P_p'
     double at = -std::cos(std::numbers::pi * static_cast<double>(i) / p);
     for (int k = 0; k < 100; ++k) {
-      const auto [value, slope] = legendre_pair(p, at);
+      const auto [value, slope] = legendre(p, at);
       const double change = (1 - at * at) * slope / (p * (p + 1) * value);
       at += change;
       if (std::abs(change) < 1e-17) break;
@@ -35,7 +31,7 @@ Lobatto::Lobatto(int p) : order(p), x(static_cast<std::size_t>(p) + 1), w(x.size
     x[i] = at;
   }
   for (std::size_t i = 0; i < n; ++i) {
-    const double value = i == 0 ? (p % 2 ? -1.0 : 1.0) : i + 1 == n ? 1.0 : legendre_pair(p, x[i]).first;
+    const double value = i == 0 ? (p % 2 ? -1.0 : 1.0) : i + 1 == n ? 1.0 : legendre(p, x[i]).first;
     w[i] = 2 / (p * (p + 1) * value * value);
   }
   for (std::size_t j = 0; j < n; ++j) {
@@ -76,13 +72,13 @@ Radau::Radau(int points) : x(static_cast<std::size_t>(points), -1), w(x.size()) 
   for (std::size_t i = 1; i < x.size(); ++i) {
     double at = -std::cos(2 * std::numbers::pi * static_cast<double>(i) / (2 * n - 1));
     for (int k = 0; k < 100; ++k) {
-      const auto [below, slope_below] = legendre_pair(points - 1, at);
-      const auto [value, slope] = legendre_pair(points, at);
+      const auto [below, slope_below] = legendre(points - 1, at);
+      const auto [value, slope] = legendre(points, at);
       const double change = -(below + value) / (slope_below + slope);
       at += change;
       if (std::abs(change) < 1e-17) break;
     }
-    const double below = legendre_pair(points - 1, at).first;
+    const double below = legendre(points - 1, at).first;
     x[i] = at, w[i] = (1 - at) / (n * n * below * below);
   }
 }

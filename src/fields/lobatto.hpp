@@ -1,7 +1,11 @@
 #pragma once
+#include <utility>
 #include <vector>
 
 namespace maupertuis {
+
+/// P_n and P_n' at x; P_n' where |x| < 1.
+std::pair<double, double> legendre(int n, double x);
 
 /// Gauss-Lobatto-Legendre points of [−1, 1] with their weights and the derivatives of Lagrange's polynomials there.
 struct Lobatto {

@@ -3,6 +3,7 @@
 #include <maupertuis/evaluate.hpp>
 
 #include "fields/element.hpp"
+#include "fields/lobatto.hpp"
 
 #include <fmt/format.h>
 
@@ -15,12 +16,6 @@ namespace {
 
 constexpr double places_across[] = {0.13, 0.31, 0.5, 0.67,
                                     0.89};  // of lines through the plane, where fields are looked at
-
-double legendre(int n, double x) {
-  double before = 1, p = x;
-  for (int k = 2; k <= n; ++k) before = std::exchange(p, ((2.0 * k - 1) * x * p - (k - 1.0) * before) / k);
-  return n == 0 ? 1 : p;
-}
 
 }  // namespace
 
@@ -58,7 +53,7 @@ double SteepeningWatch::part_of_highest(const FieldMotion& mesh, std::size_t fie
   itself.time = 0;
   std::vector<double> highest;  // w P_n (2n + 1)/2 at the points
   for (std::size_t q = 0; q < rule.x.size(); ++q)
-    highest.push_back(rule.w[q] * legendre(degree, rule.x[q]) * (degree + 0.5));
+    highest.push_back(rule.w[q] * legendre(degree, rule.x[q]).first * (degree + 0.5));
   const double cell = width_[along] / cells_[along];
   double largest = 0, size = 0, field_size = 0;
   for (const double share : places_across) {
@@ -106,8 +101,7 @@ void SteepeningWatch::warn(Diagnostics& diagnostics) const {
       "W0660", equations_.system().density_span,
       fmt::format("the mesh does not follow the field any more from t = {:.4g} s on", *lost_),
       "Slopes have become so steep that they change within an element. Where waves overtake themselves the slope "
-      "jumps, "
-      "and the equations alone do not say how it goes on from there: values after this moment are those of the mesh.",
+      "jumps, and the equations alone do not say how it goes on from there: values after this moment are those of the mesh.",
       "End the run before, or add what acts on steep slopes, as friction 𝒟(u_tx) or a term with u_xx; if the field is "
       "smooth there, take more `cells`.");
 }

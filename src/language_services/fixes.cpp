@@ -138,10 +138,6 @@ class Proposals {
     const bool number = text[0] >= '0' && text[0] <= '9';
     // The 3 of `3 [m]` in the place of m is the help's own: a number is the author's to choose.
     if (number && replaced.find_first_of("0123456789") == std::string_view::npos) return;
-    // The 1/2 of `1/2 m l^2` is a factor, and its m a mass that is not declared.
-    if (number && text.find(" [") != std::string::npos &&
-        text.substr(0, text.find(" [")).find('/') != std::string::npos)
-      return;
     add(fmt::format("Write {}", text), place, text);
   }
 

@@ -129,12 +129,13 @@ constexpr std::array entries{
               "# maup simulate\ncoord x, y : length, φ : angle\n"
               "param m = 1 kg, J = 0.02 kg m^2, g = 9.81 m/s^2, β = 20 deg\nT = 1/2 m (x'^2 + y'^2) + 1/2 J φ'^2\n"
               "V = -m g x sin β\nconstraint y' cos φ = x' sin φ name blade\nstart φ' = 1 rad/s\nrun 2 s\n"},
-    CodeEntry{"E0731", "the variational method does not take a degenerate Lagrangian",
-              "A variational step is found from the momenta at its ends. Where det ∂²L/∂q'∂q' = 0 they do not determine "
-              "the velocities. The default method takes such Lagrangians.",
-              "# maup simulate --method variational --step 10ms\ndimensionless\ncoord x, y : number\n"
-              "L = x y' - 1/2 x^2 - 1/2 y^2\nstart x = 1\nrun 1\n",
-              "# maup simulate\ndimensionless\ncoord x, y : number\nL = x y' - 1/2 x^2 - 1/2 y^2\nstart x = 1\nrun 1\n"},
+    CodeEntry{
+        "E0731", "the variational method does not take a degenerate Lagrangian",
+        "A variational step is found from the momenta at its ends. Where det ∂²L/∂q'∂q' = 0 they do not determine "
+        "the velocities. The default method takes such Lagrangians.",
+        "# maup simulate --method variational --step 10ms\ndimensionless\ncoord x, y : number\n"
+        "L = x y' - 1/2 x^2 - 1/2 y^2\nstart x = 1\nrun 1\n",
+        "# maup simulate\ndimensionless\ncoord x, y : number\nL = x y' - 1/2 x^2 - 1/2 y^2\nstart x = 1\nrun 1\n"},
     CodeEntry{"E0721", "the variational method needs the length of its step",
               "The steps of a variational integrator are all alike, which is why it keeps momenta and the symplectic "
               "form; its "

@@ -1,12 +1,12 @@
 #include <maupertuis/degenerate.hpp>
 #include "simulation/ending.hpp"
 #include "simulation/extended_problem.hpp"
+#include "simulation/stopwatch.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <random>
 
@@ -14,10 +14,6 @@
 /// wider mantissa, and what all agree on.
 namespace maupertuis {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_after(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 struct Level {
   Mantissa mantissa, check;
@@ -84,7 +80,7 @@ class ExtendedRun {
     if (options_.progress) settings_.progress = [this](double fraction) { options_.progress(0.28 * fraction); };
     const ExtendedMotion rough = run_extended(plan_.problem, level_.mantissa, settings_);
     out_.statistics = {
-        rough.steps, 0, rough.switches, rough.order, 0, level_.bits, level_.check_bits, seconds_after(begin), 0, 0,
+        rough.steps, 0, rough.switches, rough.order, 0, level_.bits, level_.check_bits, seconds_since(begin), 0, 0,
         0,           0};
     tell_ending(rough);
     out_.at.resize(options_.at.size());
@@ -94,12 +90,12 @@ class ExtendedRun {
     const ExtendedMotion companion = companion_run(rough);
     out_.statistics.companion_steps = companion.steps;
     out_.statistics.companion_order = companion.order;
-    out_.statistics.companion_seconds = seconds_after(begin);
+    out_.statistics.companion_seconds = seconds_since(begin);
     begin = Clock::now();
     const ExtendedMotion fine = check_run(rough);
     out_.statistics.check_steps = fine.steps;
     out_.statistics.check_order = fine.order;
-    out_.statistics.check_seconds = seconds_after(begin);
+    out_.statistics.check_seconds = seconds_since(begin);
     compare(rough, companion, fine);
     return std::move(out_);
   }

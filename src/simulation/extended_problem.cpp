@@ -257,7 +257,10 @@ class ExactPlanner {
     }
     std::vector<bool> fixed_q(n, false), fixed_v(n, false);
     const auto [contradicted_q, contradicted_v] = contradictions();
+    const bool moved_together =
+        equations_.degenerate && (contradicted_q || contradicted_v);  // q and q̇: those of the plan
     for (const StartValue& start : model_.experiment.start) {
+      if (moved_together) break;
       if (start.span == system_.coordinates[start.coordinate].span && system_.constrained())
         continue;  // a guess for a quaternion
       if (start.order == 0 && contradicted_q) continue;

@@ -28,7 +28,7 @@ std::vector<std::string> undetermined_names(const EquationsOfMotion& equations) 
   return out;
 }
 
-bool keeps_true(const std::vector<std::string>& names, const std::string& name) {
+bool contains_name(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
@@ -37,7 +37,7 @@ void leave_out_columns(SimulationResult& result, const std::vector<std::string>&
   const std::size_t width = t.columns.size();
   std::vector<std::size_t> kept;
   for (std::size_t j = 0; j < width; ++j)
-    if (!keeps_true(names, t.columns[j].name)) kept.push_back(j);
+    if (!contains_name(names, t.columns[j].name)) kept.push_back(j);
   const auto narrowed = [&](const std::vector<double>& rows) {
     std::vector<double> out;
     out.reserve(rows.size() / width * kept.size());

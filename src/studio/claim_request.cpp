@@ -29,13 +29,11 @@ bool says_nothing(const Study& study, std::uint32_t line) {
   });
 }
 
-bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
-
 /// Whether two rows are proportional: each minor a_i b_j − a_j b_i is 0.
 bool are_proportional(const std::vector<Expr>& a, const std::vector<Expr>& b) {
   for (std::size_t i = 0; i < a.size(); ++i)
     for (std::size_t j = i + 1; j < a.size(); ++j)
-      if (!vanishes(a[i] * b[j] - a[j] * b[i])) return false;
+      if (!vanishes_identically(a[i] * b[j] - a[j] * b[i])) return false;
   return true;
 }
 
@@ -50,7 +48,7 @@ std::string another_equation(const EquationsOfMotion& equations, Expr difference
   for (const Coordinate& c : coordinates) accelerations.push_back(c.acceleration);
   const std::vector<Expr> held = gradient(expand_time_derivatives(difference), accelerations);
   const auto at = static_cast<std::size_t>(wanted - coordinates.begin());
-  if (vanishes(held[at])) return fmt::format("It holds, but {}'' does not stand in it.", asked);
+  if (vanishes_identically(held[at])) return fmt::format("It holds, but {}'' does not stand in it.", asked);
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     if (i == at) continue;
     const std::vector<Expr> row = gradient(expand_time_derivatives(equations.residual[i]), accelerations);

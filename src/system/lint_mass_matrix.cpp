@@ -155,11 +155,11 @@ std::string nor_constraint(const Subject& s, const char* does) {
 }
 
 /// Where no time stands in L there is no kinetic energy either, and the condition is Legendre's.
-bool has_inertia_of_mechanics(const Subject& s) { return s.system.independent == "t"; }
+bool is_in_time(const Subject& s) { return s.system.independent == "t"; }
 
 void report_massless(Subject& s, std::size_t coordinate) {
   const Coordinate& c = s.system.coordinates[coordinate];
-  if (!has_inertia_of_mechanics(s)) {
+  if (!is_in_time(s)) {
     s.diagnostics.error(
         "E0407", c.span, fmt::format("the integrand is not curved in `{}'`", c.name),
         fmt::format("∂²L/∂{0}'² vanishes, so that the Euler-Lagrange equation does not give {0}''.", c.name),
@@ -209,7 +209,7 @@ void report_combination(Subject& s, const Row& v) {
         fmt::format("Remove `{}`, or give a mass to a point that it moves by itself.", c.name));
     return;
   }
-  if (!has_inertia_of_mechanics(s)) {
+  if (!is_in_time(s)) {
     s.diagnostics.error(
         "E0408", c.span, fmt::format("the integrand is not curved where {} change together", names(s, v)),
         fmt::format(
@@ -269,7 +269,7 @@ bool mass_matrix_rules(Subject& s, const std::vector<bool>& unused) {
   const Findings found = examine(s, matrix, manifold, {});
   if (!found.defined) return false;
   if (!found.singular) {
-    if (!found.positive && has_inertia_of_mechanics(s) && s.system.integral_constraints.empty())
+    if (!found.positive && is_in_time(s) && s.system.integral_constraints.empty())
       s.diagnostics.warning("W0410",
                             s.system.lagrangian_given  ? s.system.lagrangian_given->span
                             : s.system.kinetic.empty() ? s.system.coordinates.front().span

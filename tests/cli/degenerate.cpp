@@ -74,6 +74,21 @@ TEST_CASE("many digits of a degenerate system begin on all that it asks of a sta
   CHECK(contains(one.out, "  x = 0.99802985944634"));
 }
 
+TEST_CASE("many digits of a degenerate system begin where the run in double does, from a start that contradicts too") {
+  const std::string model =
+      "dimensionless\ncoord x, y, z : number\nL = 1/2 x'^2 + 1/2 y'^2 - x + z (x^2 + y^2 - 1)\n"
+      "start x = 0.6, y = 0.8, x' = 1, y' = 5\nrun 1\n";
+  const auto in_double = json_of(maup({"simulate", "-", "--json"}, model))["final"]["state"];
+  const Outcome quad = maup({"simulate", "-", "--precision", "quad"}, model);
+  CHECK(contains(quad.err, "W0701"));
+  for (const char* name : {"x", "y", "z"}) {
+    const std::size_t at = quad.out.find("\n  " + std::string(name) + " = ");
+    REQUIRE(at != std::string::npos);
+    CHECK(std::stod(quad.out.substr(at + 6 + std::string(name).size())) ==
+          doctest::Approx(in_double[name].get<double>()).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("constraints that are lost in rounding are said to be, and no number is said to vanish") {
   const Outcome told = maup({"check", "-"},
                             "dimensionless\ncoord x, y, z : number\nL = 29*x'^2*y^2/200 + 17*x'^2/20 + 19*x'*y'/100 + "

@@ -171,7 +171,7 @@ Json hover_json(OpenText& text, const Json& params, const Client& client) {
 
 namespace {
 
-int symbol_kind_of(CompletionKind kind) {
+int lsp_kind(CompletionKind kind) {
   switch (kind) {
     case CompletionKind::Statement:
     case CompletionKind::Word:
@@ -201,7 +201,7 @@ Json completion_json(OpenText& text, const Json& params, const Client& client) {
   for (const Completion& c : found.items) {
     if (c.snippet && !client.snippets) continue;
     Json item = {{"label", c.label},
-                 {"kind", symbol_kind_of(c.kind)},
+                 {"kind", lsp_kind(c.kind)},
                  {"detail", c.detail},
                  {"sortText", fmt::format("{:02}{}", c.rank, c.label)},
                  {"textEdit", {{"range", text.range(found.replaced)}, {"newText", c.insert}}}};
@@ -262,7 +262,7 @@ Json rename_json(OpenText& text, const Json& params, const Client& client) {
 
 namespace {
 
-int symbol_kind_of(SymbolKind kind) {
+int lsp_kind(SymbolKind kind) {
   switch (kind) {
     case SymbolKind::System:
       return 2;  // module
@@ -289,7 +289,7 @@ Json symbol_json(const Symbol& symbol, OpenText& text) {
   for (const Symbol& child : symbol.children) children.push_back(symbol_json(child, text));
   return {{"name", symbol.name},
           {"detail", symbol.detail},
-          {"kind", symbol_kind_of(symbol.kind)},
+          {"kind", lsp_kind(symbol.kind)},
           {"range", text.range(symbol.span)},
           {"selectionRange", text.range(symbol.name_span)},
           {"children", std::move(children)}};

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double on_switch = 1e-7;  // of the change of g over typical sizes
 constexpr double aside = 1e-5;  // of typical sizes: far enough to tell the sides, near enough to stay beside the point
-constexpr double same_point = 1e-9;  // relative
+constexpr double agreement = 1e-9;  // relative
 constexpr std::size_t most_switches = 3;
 constexpr int directions = 32;
 
@@ -110,7 +110,7 @@ bool equal(const RealMatrix& a, const RealMatrix& b) {
     size = std::max({size, std::abs(a.entries[i]), std::abs(b.entries[i])});
     off = std::max(off, std::abs(a.entries[i] - b.entries[i]));
   }
-  return off <= same_point * size;
+  return off <= agreement * size;
 }
 
 /// Whether the stiffness on the way from the point goes on changing, as much or more from each decade to the next.
@@ -170,7 +170,7 @@ std::vector<OneSide> sides_at(const PointEquations& equations, const Equilibrium
     OperatingPoint point = x.point;
     side.residual = SteadyState(side.equations.impl(), translations, held, none, sizes).residual_at(point);
     const Linearization l = linearize(side.equations, x.point).linearization;
-    differ |= !(side.residual <= same_point) || (first && !(equal(first->a, l.a) && equal(first->b, l.b)));
+    differ |= !(side.residual <= agreement) || (first && !(equal(first->a, l.a) && equal(first->b, l.b)));
     if (!first) first = l;
     out.push_back(std::move(side));
   }

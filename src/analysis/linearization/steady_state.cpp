@@ -12,7 +12,7 @@ namespace maupertuis {
 namespace {
 
 constexpr double arrived = 1e-9;  // of what is left, by the sizes of coordinates
-constexpr double rank_of_periods = 1e-11;
+constexpr double rank_of_balance = 1e-11;
 constexpr double rounding_of_work = 1e-14;
 
 }  // namespace
@@ -113,7 +113,7 @@ void SteadyState::fit_multipliers(OperatingPoint& point) const {
   std::fill(point.multipliers.begin(), point.multipliers.end(), 0);
   const RowsAtPoint balance = e_.at(balance_of(point), point);
   if (!balance.value.allFinite() || !balance.by_multipliers.allFinite()) return;
-  const Vector fit = least_squares(balance.by_multipliers, -balance.value, rank_of_periods).x;
+  const Vector fit = least_squares(balance.by_multipliers, -balance.value, rank_of_balance).x;
   if (fit.allFinite()) point.multipliers = to_list(fit);
 }
 
@@ -251,7 +251,7 @@ std::optional<SteadyState::Solution> SteadyState::solve(const OperatingPoint& fr
     if (!std::isfinite(error) && !(s.f.allFinite() && s.j.allFinite())) return std::nullopt;
     const Equilibration by(s.j);
     const Vector weighted = by.rows.cwiseProduct(s.f);
-    const LeastSquares solved = least_squares(by.of(s.j), -weighted, rank_of_periods);
+    const LeastSquares solved = least_squares(by.of(s.j), -weighted, rank_of_balance);
     const Vector step = by.columns.cwiseProduct(solved.x.col(0));
     if (s.f.isZero(0) || !step.allFinite()) break;
     bool closer = false;

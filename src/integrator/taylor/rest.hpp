@@ -21,6 +21,12 @@ struct Balanced {
 ///     Σ_{k≥1} |coefficient k of q̇_i| h^k  ≤  16 ε a_i h
 ///     |q̇_i|  ≤  16 ε max(v_i, a_i h')                      at rest: h' is the step before
 ///
+/// Where the constraints leave a freedom, a force along it may be as small and real: then what is left of the forces,
+///
+///     |(M q̈)_i|  ≤  16 ε Σ_j |A_ji λ_j|
+///
+/// has to be rounding of those that cancel too.
+///
 /// `usual`: the largest velocities v and accelerations a in the run, the latter of forces that balance too; empty where
 /// they are not known: then nothing is left out. What a constraint ties together is treated alike.
 std::vector<Balanced> balanced(const KernelWorkspace& work, std::size_t freedoms, std::size_t constraints, double h,

@@ -82,6 +82,25 @@ TEST_CASE("one panel for each unit, one legend entry for each of several curves"
   CHECK(count(svg, " (s)") == 1);
 }
 
+TEST_CASE("a title of an axis is no longer than its panel, and its blanks are kept") {
+  Trajectory rows = waves(200);
+  rows.columns.push_back({"energy", "J"});
+  std::vector<double> values;
+  for (std::size_t row = 0; row < 200; ++row) {
+    for (std::size_t c = 0; c < 5; ++c) values.push_back(rows.values[row * 5 + c]);
+    values.push_back(0.1973920880217 + 1e-15 * static_cast<double>(row % 7));
+  }
+  rows.values = values;
+  const std::string svg = plot(rows, columns({"θ1", "θ1'", "B.x", "energy"}));
+  const auto title = svg.rfind("<text", svg.find("energy ("));
+  const double size = std::strtod(svg.c_str() + svg.find("font-size=\"", title) + 11, nullptr);
+  CHECK(size > 4);
+  CHECK(size < 12);
+  const std::string two = plot(waves(500), columns({"B.x", "B.y"}));
+  const auto names = two.rfind("<text", two.find("> ("));
+  CHECK(two.substr(names, two.find('>', names) - names).find("xml:space=\"preserve\"") != std::string::npos);
+}
+
 TEST_CASE("each theme has its own ground; Page leaves it to the page") {
   CHECK(plot(waves(10)).find("fill:#ffffff") != std::string::npos);
   PlotOptions options;

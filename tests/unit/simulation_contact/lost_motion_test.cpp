@@ -79,6 +79,25 @@ TEST_CASE("a coordinate that never moves is known although the others are lost")
   CHECK(std::isinf(r.final.errors->q[0]));
 }
 
+TEST_CASE("a force as small as rounding of another one is real where none cancels it: a floor with a slope of 1e-15") {
+  const std::string body =
+      "param m = 1 kg, g = 9.81 m/s^2, s = 1e-15\ncoord x, y : length\npoint P mass m at (x, y)\ngravity (0, -g)\n";
+  const auto on = [&](const std::string& more) {
+    SimulationResult r = run(body + more + "start x = 0, y = 0\n", ErrorEstimates::States);
+    REQUIRE(r.ok());
+    return r.final;
+  };
+  const State slides = on("contact y >= s x name floor\n");
+  CHECK(slides.q[0] == doctest::Approx(-9.81e-15 / 2 * slides.t * slides.t).epsilon(1e-12).scale(0));
+  CHECK(slides.v[0] == doctest::Approx(-9.81e-15 * slides.t).epsilon(1e-12).scale(0));
+  // Pressed onto a floor that leaves it the way along, and pushed along by 1e-15 of that.
+  const std::string pressed = "force on P = (1e-9 [N], -1e6 [N])\ncontact y >= 0 ";
+  const State pushed = on(pressed + "name floor\n");
+  CHECK(pushed.q[0] == doctest::Approx(0.5e-9 * pushed.t * pushed.t).epsilon(1e-12).scale(0));
+  const State held = on(pressed + "friction 0.5 slip x' name floor\n");
+  CHECK(held.q[0] == 0);
+}
+
 TEST_CASE("the errors of places after bounces on curved walls contain the true ones: literals are rounded too") {
   const std::string body = "dimensionless\ncoord x, y : length\npoint P mass 1 at (x, y)\ngravity (0, -9.81)\n",
                     circle = "contact x^2 + y^2 <= 1 restitution 1 name wall\n";

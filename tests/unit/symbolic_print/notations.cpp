@@ -272,6 +272,8 @@ TEST_CASE("left sides of derivations") {
   const Layout speed = power(labelled("v_A", indexed(name("v"), {name("A")})), number("2"));
   CHECK(to_plain(speed) == "v_A^2");
   CHECK(to_latex(speed) == "v_{A}^{2}");
+  CHECK(to_latex(indexed(name("A_1"), {name("t")})) == "A_{1,t}");  // one below: LaTeX refuses two
+  CHECK(to_latex(indexed(name("u"), {name("t")})) == "u_{t}");
   CHECK(to_mathml(indexed(name("Q"), {lay_out(n.a, n.order)})) ==
         "<mrow><msub><mi>Q</mi><mrow><msub><mi>θ</mi><mn>1</mn></msub></mrow></msub></mrow>");
   CHECK(to_latex(name("y", 2, true)) == "y''");
