@@ -92,13 +92,13 @@ void ExpressionParser::lint_product(const Expression& left, Operator op, const E
   }
 }
 
-/// cos ω t without units, where no dimension tells; cos n θ with a number or a parameter n.
+/// cos ω t without units, where no dimension tells; cos n θ with a parameter n.
 bool ExpressionParser::is_meant_in_argument(const Expression& argument, const Expression& right) const {
   const Declarations& declared = context_.declarations;
   if (right.kind != Kind::Name || right.primes != 0 || right.bracketed) return false;
   if (declared.dimensionless() && right.text == declared.independent()) return true;
-  const bool factor = argument.kind == Kind::Number || (argument.kind == Kind::Name && argument.primes == 0 &&
-                                                        declared.kind(argument.text) == Declarations::Kind::Parameter);
+  const bool factor = argument.kind == Kind::Name && argument.primes == 0 &&
+                      declared.kind(argument.text) == Declarations::Kind::Parameter;
   return factor && declared.kind(right.text) == Declarations::Kind::Angle;
 }
 
