@@ -68,7 +68,7 @@ its motion, its conserved quantities at once; drag it, change its values,
 step through the derivation in a lecture. It is served at 127.0.0.1 alone.")
   endif()
   package(dev libmaupertuis-dev libdevel
-    DEPENDS "libfmt-dev, libsundials-dev, liblapack-dev, libblas-dev" RECOMMENDS "maupertuis-llvm (= ${package_version})"
+    DEPENDS "libfmt-dev, liblapack-dev, libblas-dev" RECOMMENDS "maupertuis-llvm (= ${package_version})"
     SUMMARY "Lagrangian mechanics from a text model - library"
     DESCRIPTION "The headers, the static library and the CMake package with which programs
 derive, certify and run the motion of mechanical systems as maup does.")

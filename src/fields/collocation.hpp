@@ -1,6 +1,6 @@
 #pragma once
 #include "fields/galerkin_mesh.hpp"
-#include "fields/gauss_tableau.hpp"
+#include "linear_algebra/collocation_tableau.hpp"
 
 #include <complex>
 #include <map>
@@ -87,7 +87,7 @@ class CollocationMotion final : public FieldMotion {
 
   const DensityForm& form_;
   mutable GalerkinMesh mesh_;
-  GaussTableau tableau_;
+  CollocationTableau tableau_;
   std::vector<Held> held_;
   std::vector<bool> is_held_;          // [size]: no unknown of Newton's method
   std::vector<bool> is_first_order_;   // [size]: of a field whose momenta hold no velocity

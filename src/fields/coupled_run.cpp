@@ -380,7 +380,7 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
   out.energy_drift = mesh->forced() || bodies_are_forced(equations) ? -1 : fine->result.statistics.energy_drift;
   out.coupled = true;
   out.method = fine->result.statistics.method == "stiff"
-                   ? "steps of backward differentiation formulas"
+                   ? "implicit steps (Radau)"
                    : fmt::format("Taylor steps of order {}", fine->result.statistics.order);
   if (!fine->result.ok()) out.trouble = fine->result.reason;
   out.final_coordinates = final_coordinates(*mesh, model.system, fine->result.final);

@@ -1,7 +1,6 @@
 #include "fields/element.hpp"
 
 #include <cmath>
-#include <numbers>
 
 namespace maupertuis {
 namespace {
@@ -23,22 +22,6 @@ std::vector<std::vector<double>> legendre_with_derivatives(int n, int order, dou
 }
 
 }  // namespace
-
-GaussRule::GaussRule(int points) {
-  const auto n = static_cast<std::size_t>(points);
-  x.resize(n), w.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    double at = -std::cos(std::numbers::pi * (static_cast<double>(i) + 0.75) / (points + 0.5));
-    for (int k = 0; k < 100; ++k) {
-      const auto p = legendre_with_derivatives(points, 1, at);
-      const double change = p[0][n] / p[1][n];
-      at -= change;
-      if (std::abs(change) < 1e-16) break;
-    }
-    const double slope = legendre_with_derivatives(points, 1, at)[1][n];
-    x[i] = at, w[i] = 2 / ((1 - at * at) * slope * slope);
-  }
-}
 
 Element::Element(bool smooth, int degree) : smooth_(smooth), degree_(degree) {}
 

@@ -1,14 +1,10 @@
 #pragma once
+#include "linear_algebra/quadrature.hpp"
+
 #include <cstddef>
 #include <vector>
 
 namespace maupertuis {
-
-/// Gauss's rule on [−1, 1]: exact for polynomials of degree 2n − 1.
-struct GaussRule {
-  explicit GaussRule(int points);
-  std::vector<double> x, w;  // ascending
-};
 
 /// The functions of one element of a field of one space variable, on ξ in [−1, 1], polynomials of a degree p.
 ///

@@ -1,6 +1,6 @@
 #include "fields/field_elements.hpp"
 
-#include "fields/lobatto.hpp"
+#include "linear_algebra/quadrature.hpp"
 
 #include <algorithm>
 #include <cmath>

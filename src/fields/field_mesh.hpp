@@ -1,6 +1,6 @@
 #pragma once
 #include "fields/lane_series.hpp"
-#include "fields/lobatto.hpp"
+#include "linear_algebra/quadrature.hpp"
 #include "fields/wave_mesh.hpp"
 
 #include <memory>

@@ -3,7 +3,7 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/system_expressions.hpp>
 
-#include "fields/lobatto.hpp"
+#include "linear_algebra/quadrature.hpp"
 
 #include <fmt/format.h>
 

@@ -21,6 +21,9 @@ namespace maupertuis {
 /// few rows stays in the cache whatever the size of the mesh.
 class PlaneMesh final : public WaveMesh {
  public:
+  static constexpr std::size_t kInputs = 6;  // of a field: φ, φ', φ_x, φ_y, φ_tx, φ_ty
+  enum Input : std::size_t { Phi, Velocity, SlopeX, SlopeY, RateX, RateY };
+
   PlaneMesh(const FieldEquations& equations, const PointForm& form, int cells_x, int cells_y, int order);
 
   void start() override;

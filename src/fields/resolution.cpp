@@ -1,7 +1,7 @@
 #include "fields/resolution.hpp"
 
 #include "fields/given_fields.hpp"
-#include "fields/lobatto.hpp"
+#include "linear_algebra/quadrature.hpp"
 
 #include <maupertuis/function_disks.hpp>
 

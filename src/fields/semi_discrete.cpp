@@ -5,7 +5,7 @@
 #include <maupertuis/repeated_evaluation.hpp>
 
 #include "fields/given_fields.hpp"
-#include "fields/lobatto.hpp"
+#include "linear_algebra/quadrature.hpp"
 #include "linear_algebra/dense.hpp"
 
 #include <fmt/format.h>

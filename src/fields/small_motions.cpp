@@ -3,7 +3,7 @@
 #include <maupertuis/evaluate.hpp>
 
 #include "fields/given_fields.hpp"
-#include "fields/lobatto.hpp"
+#include "linear_algebra/quadrature.hpp"
 #include "linear_algebra/products.hpp"
 
 #include <fmt/format.h>

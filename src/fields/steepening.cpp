@@ -3,7 +3,7 @@
 #include <maupertuis/evaluate.hpp>
 
 #include "fields/element.hpp"
-#include "fields/lobatto.hpp"
+#include "linear_algebra/quadrature.hpp"
 
 #include <fmt/format.h>
 

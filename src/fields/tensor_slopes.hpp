@@ -1,5 +1,5 @@
 #pragma once
-#include "fields/lobatto.hpp"
+#include "linear_algebra/quadrature.hpp"
 
 #include <vector>
 

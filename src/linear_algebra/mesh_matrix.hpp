@@ -17,6 +17,12 @@ struct SparsityPattern {
   std::size_t size() const { return first.size() - 1; }
   /// The number of an entry that is there. Cost: O(log of the column).
   std::size_t find(std::size_t row, std::size_t column) const;
+  /// f(row, column, number of the entry) of all of them.
+  template <class F>
+  void for_each(F&& f) const {
+    for (std::size_t j = 0; j < size(); ++j)
+      for (std::size_t k = first[j]; k < first[j + 1]; ++k) f(rows[k], j, k);
+  }
 };
 
 /// A matrix of a mesh, and its factors L U with pivoting: within its band where that is narrow, as along a line, else

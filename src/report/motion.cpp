@@ -49,7 +49,7 @@ void add_statistics(ReportContent& content, const SimulationResult& run, const M
   add("from", quantity(run.start.t, second) + " to " + quantity(run.final.t, second, 10));
   const std::string method = s.method == "variational" ? "variational steps" : "Taylor series";
   if (s.method == "stiff")
-    add("method", "stiff: backward differentiation formulas");
+    add("method", "stiff: Radau's implicit steps");
   else
     add("method", s.order > 0 ? fmt::format("{} of order {}, {}", method, s.order, s.backend) : s.backend);
   add("steps", fmt::format("{}", s.steps));

@@ -105,8 +105,7 @@ constexpr std::array entries{
         "N0702", "the stiff method took over",
         "Where a fast, strongly damped motion has died out, an explicit method still has to follow its time scale. "
         "The default method sees that its steps are far shorter than the times in which the velocities change and "
-        "goes on with backward differentiation formulas. They keep a tolerance (1e-10, or --tol), not rounding "
-        "level. --method taylor forbids the change, --method stiff uses it from the start.",
+        "goes on with implicit steps (Radau's). They keep a tolerance (1e-12, or --tol), not rounding level. --method taylor forbids the change, --method stiff uses it from the start.",
         "# maup simulate\ncoord x : length\nparam m = 1 g, k = 10 N/m, c = 1000 kg/s\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"
         "D = 1/2 c x'^2\nstart x = 1 cm\nrun 100 s\n",
         "# maup simulate\ncoord x : length\nparam m = 1 g, k = 10 N/m, c = 0.05 kg/s\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"
@@ -153,8 +152,6 @@ constexpr std::array entries{
         "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\nT = 1/2 m l^2 θ'^2\nV = -m g l cos θ\nstart θ = 60 deg\nrun 10 s\n",
         "# maup simulate --method variational --step 10ms --order 4\ncoord θ : angle\n"
         "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\nT = 1/2 m l^2 θ'^2\nV = -m g l cos θ\nstart θ = 60 deg\nrun 10 s\n"},
-    CodeEntry{"E0723", "this build has no stiff method",
-              "The stiff method is CVODE of the library SUNDIALS, which is optional when maup is built.", "", ""},
     CodeEntry{"E0724", "the tolerance of the stiff method is no number between 0 and 1",
               "It is relative: the error of a step is compared with the size of each coordinate and velocity times the "
               "tolerance.",

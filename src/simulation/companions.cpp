@@ -158,7 +158,7 @@ TaylorOptions taylor_options(const CompanionPlan& plan, int companion) {
 }
 
 std::unique_ptr<Method> finer_stiff(const CompanionPlan& plan, const WantedFunctions& wanted, int companion) {
-  constexpr double least = 1e-14;  // CVODE gives up at rounding level
+  constexpr double least = 1e-14;  // below, steps err by rounding
   StiffOptions out;
   if (plan.options.method == StepMethod::Stiff && plan.options.tolerance != 0) out.tolerance = plan.options.tolerance;
   out.tolerance = std::max(std::min(least, out.tolerance / 2), out.tolerance / (companion == 0 ? 5 : 25));

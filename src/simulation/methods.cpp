@@ -63,22 +63,13 @@ std::unique_ptr<Method> variational_method(const EquationsOfMotion& equations, c
 
 namespace {
 
-bool has_stiff_method(const StiffOptions& options, Diagnostics& diagnostics) {
-  if (!maupertuis::has_stiff_method()) {
-    diagnostics.error("E0723", std::nullopt, "this build of maup has no stiff method",
-                      "Its backward differentiation formulas are those of the library SUNDIALS, which was not there "
-                      "when maup was built.",
-                      "Install SUNDIALS 6 and build again, or use the default method with more patience.");
-    return false;
-  }
-  if (!(options.tolerance > 0 && options.tolerance < 1)) {
-    diagnostics.error(
-        "E0724", std::nullopt, fmt::format("{:g} is no relative tolerance", options.tolerance),
-        "The error of a step is compared with the size of each coordinate and velocity times the tolerance.",
-        "Choose a number between 0 and 1, such as 1e-10.");
-    return false;
-  }
-  return true;
+bool is_tolerance(double tolerance, Diagnostics& diagnostics) {
+  if (tolerance > 0 && tolerance < 1) return true;
+  diagnostics.error(
+      "E0724", std::nullopt, fmt::format("{:g} is no relative tolerance", tolerance),
+      "The error of a step is compared with the size of each coordinate and velocity times the tolerance.",
+      "Choose a number between 0 and 1, such as 1e-10.");
+  return false;
 }
 
 StiffStepper stiff_stepper(const EquationsOfMotion& equations, const WantedFunctions& wanted,
@@ -90,14 +81,14 @@ StiffStepper stiff_stepper(const EquationsOfMotion& equations, const WantedFunct
 
 std::unique_ptr<Method> stiff_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
                                      const StiffOptions& options, Diagnostics& diagnostics) {
-  if (!has_stiff_method(options, diagnostics)) return nullptr;
+  if (!is_tolerance(options.tolerance, diagnostics)) return nullptr;
   return method_of(stiff_stepper(equations, wanted, options));
 }
 
 std::unique_ptr<Method> stiff_method_from(const Sample& state, double length, const EquationsOfMotion& equations,
                                           const WantedFunctions& wanted, const StiffOptions& options,
                                           Diagnostics& diagnostics) {
-  if (!has_stiff_method(options, diagnostics)) return nullptr;
+  if (!is_tolerance(options.tolerance, diagnostics)) return nullptr;
   StiffStepper stepper = stiff_stepper(equations, wanted, options);
   if (!stepper.fast_parts_die_out(state.t, state.q, state.v, length)) return nullptr;
   return method_of(std::move(stepper));

@@ -35,8 +35,7 @@ TaylorOptions taylor_options(const Options& options) {
 std::unique_ptr<Method> variational_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
                                            const VariationalOptions& options, Diagnostics& diagnostics);
 
-/// Nothing, with a diagnostic, in a build without SUNDIALS (E0723) and for a tolerance that is no positive number
-/// (E0724).
+/// Nothing, with a diagnostic, for a tolerance that is no number between 0 and 1 (E0724).
 std::unique_ptr<Method> stiff_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
                                      const StiffOptions& options, Diagnostics& diagnostics);
 

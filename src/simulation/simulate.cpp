@@ -324,7 +324,7 @@ class Run {
 };
 
 std::string title_of(const std::string& method) {
-  return method == "taylor" ? "Taylor" : method == "stiff" ? "stiff (backward differentiation)" : "variational";
+  return method == "taylor" ? "Taylor" : method == "stiff" ? "stiff (Radau)" : "variational";
 }
 
 void note_stiffness(const SimulationResult& result, const MechanicalSystem& system, double tolerance,
@@ -332,7 +332,7 @@ void note_stiffness(const SimulationResult& result, const MechanicalSystem& syst
   diagnostics.note(
       "N0702", std::nullopt, "the stiff method took over",
       fmt::format("Fast, strongly damped parts of the motion had died out, and yet limited Taylor's steps; "
-                  "the backward differentiation formulas went on with a tolerance of {:g} to {}.",
+                  "Radau's implicit steps went on with a tolerance of {:g} to {}.",
                   tolerance, system.moment(fmt::format("{:g}", result.final.t))),
       "Use --method taylor to keep Taylor's steps, or --tol for another tolerance.");
 }
@@ -416,7 +416,7 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
                                              : first_method(equations, wanted, options, diagnostics);
   if (!method) return std::nullopt;
   Run::StiffFrom stiff;
-  if (!is_hybrid && options.method == StepMethod::Automatic && has_stiff_method())
+  if (!is_hybrid && options.method == StepMethod::Automatic)
     stiff = [&](const Sample& state, double length) {
       return stiff_method_from(state, length, equations, wanted, stiff_options(options), diagnostics);
     };

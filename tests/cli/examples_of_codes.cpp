@@ -80,12 +80,11 @@ std::string shown(const Example& example, const Outcome& outcome) {
   return example.text + "\n" + outcome.out + outcome.err + "\nexit code " + std::to_string(outcome.code);
 }
 
-/// A build without SUNDIALS or LAPACK has no stiff method, or no regulator (E1315), and other messages; a mesh that
-/// fits into no memory (E0649) may fit into that of a large machine.
+/// A build without LAPACK has no regulator (E1315), and other messages; a mesh that fits into no memory (E0649) may fit
+/// into that of a large machine.
 bool is_told_otherwise_here(const std::string& code) {
   if (code == "E0649") return true;
   static const std::string doctor = cli_test::maup({"doctor"}).out;
-  if (contains(doctor, "stiff needs SUNDIALS") && code == "N0702") return true;
   return contains(doctor, "needs LAPACK") && code >= "E1310" && code <= "E1314";
 }
 

@@ -9,7 +9,7 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr int most_pieces = 1500;
 constexpr double shortest = 0x1p-30;
-/// What interpolation at ten Chebyshev points adds to the best polynomial: 1 + Lebesgue's constant, and the rest of the
+/// What interpolation at Chebyshev points adds to the best polynomial: 1 + Lebesgue's constant, and the rest of the
 /// series.
 constexpr double of_interpolation = 4.0;
 
@@ -110,7 +110,7 @@ std::span<const double> StepSearch::values_at(double x) {
 bool StepSearch::is_resolved(const Piece& piece, const Small& small) {
   for (std::size_t i = 0; i < path_.size(); ++i) point_[i] = value(path_[i], piece.centre);
   disks_.set_centre(point_);
-  for (const double ratio : {16.0, 8.0, 5.0}) {
+  for (const double ratio : {8.0, 5.0, 3.5}) {
     for (std::size_t i = 0; i < path_.size(); ++i) reach_[i] = reach_of(path_[i], piece.centre, ratio * piece.half);
     disks_.evaluate(reach_);
     const double left_out = of_interpolation * std::pow(ratio, -static_cast<double>(piece_points)) / (1 - 1 / ratio);

@@ -11,12 +11,12 @@ namespace maupertuis {
 /// What a function does everywhere along a step, not only at the points that a method looks at.
 ///
 /// The inputs are polynomials in x ∈ [−1, 1], the step. It is cut into pieces until on each the function is a
-/// polynomial of degree 9, up to a bound that follows from a disk around the piece (FunctionDisks); the ten values on
-/// each piece are then all there is to know. A piece shorter than 2^-30 of the step is not cut again: a switch lies in
-/// it.
+/// polynomial of degree 15, up to a bound that follows from a disk around the piece (FunctionDisks); the sixteen values
+/// on each piece are then all there is to know. A piece shorter than 2^-30 of the step is not cut again: a switch lies
+/// in it.
 class StepSearch {
  public:
-  static constexpr std::size_t path_points = 7, piece_points = 10;
+  static constexpr std::size_t path_points = 8, piece_points = 16;
   enum class Outcome {
     Seen,       // all pieces were visited
     Stopped,    // by the visitor
@@ -35,7 +35,7 @@ class StepSearch {
   /// points: [path_points × inputs].
   void set_path(std::span<const double> points);
   std::span<const double> values_at(double x);
-  /// Cost: ten evaluations and one to three disks a piece; mostly there is one piece.
+  /// Cost: sixteen evaluations and one to three disks a piece; mostly there is one piece.
   Outcome visit(const Small& small, const Visitor& visitor);
 
  private:

@@ -1,4 +1,3 @@
-#ifdef MAUPERTUIS_SUNDIALS
 #include "integrator/stiff/force_check.hpp"
 
 #include <algorithm>
@@ -19,14 +18,17 @@ ForceCheck::ForceCheck(Motion& motion)
       inputs_(motion.functions.inputs()),
       path_(StepSearch::path_points * inputs_),
       state_(motion.states()),
+      allowed_(motion.freedoms()),
       fitted_(motion.freedoms()),
       rest_(motion.freedoms()) {}
 
-bool ForceCheck::sees_all(const Formula& formula, double begin, double end, std::span<const double> y) {
+bool ForceCheck::sees_all(const RadauMethod& method, double begin, double end, std::span<const double> y) {
   if (!motion_.solve(end, y)) return true;  // the next step tells
   find_effect(std::abs(end - begin));
-  follow(formula, begin, end);
-  fit(formula.order());
+  for (std::size_t i = 0; i < allowed_.size(); ++i)
+    allowed_[i] = std::max(motion_.velocity_error(i), method.rounding_of_velocity(i));
+  follow(method, begin, end);
+  fit(method.degree());
   const auto small = [&](std::span<const double> tails) { return is_small(tails, 0.1); };
   const auto visit = [&](double x, double, std::span<const double> forces, bool) {
     std::copy(forces.begin(), forces.end(), rest_.begin());
@@ -37,15 +39,15 @@ bool ForceCheck::sees_all(const Formula& formula, double begin, double end, std:
   return search_.visit(small, visit) == StepSearch::Outcome::Seen;
 }
 
-/// q and v of the formula's polynomials; a and λ of the last solve.
-void ForceCheck::follow(const Formula& formula, double begin, double end) {
+/// q and v of the step's polynomials; a and λ of the last solve.
+void ForceCheck::follow(const RadauMethod& method, double begin, double end) {
   const auto point = motion_.at_point.point();
   const auto& x = StepSearch::path_nodes();
   for (std::size_t j = 0; j < x.size(); ++j) {
     const double t = 0.5 * (begin + end) + 0.5 * x[j] * (end - begin);
     const std::span<double> out(&path_[j * inputs_], inputs_);
     std::copy(point.begin(), point.end(), out.begin());
-    formula.interpolate(t, state_);
+    method.interpolate(t, state_);
     std::copy_n(state_.begin(), 2 * motion_.freedoms(), out.begin());
     out.back() = t;
   }
@@ -61,7 +63,7 @@ void ForceCheck::find_effect(double h) {
   effect_ = (h * matrix.partialPivLu().solve(motion_.at_point.mobility())).cwiseAbs();
 }
 
-/// The polynomial of the formula's order through the forces at Chebyshev's points.
+/// The polynomial of the step's order through the forces at Chebyshev's points.
 void ForceCheck::fit(int order) {
   const auto count = static_cast<std::size_t>(std::max(1, order)) + 1;
   nodes_.resize(count);
@@ -91,10 +93,9 @@ bool ForceCheck::is_small(std::span<const double> forces, double share) const {
       const double effect = effect_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
       if (effect != 0) change += effect * forces[j];
     }
-    if (!(change <= share * unseen_errors * motion_.velocity_error(i))) return false;
+    if (!(change <= share * unseen_errors * allowed_[i])) return false;
   }
   return true;
 }
 
 }  // namespace maupertuis::stiff
-#endif

@@ -60,8 +60,8 @@ bool IndexTwoSystem::residual(double t, std::span<const double> y, std::span<con
   return std::all_of(out.begin(), out.end(), [](double x) { return std::isfinite(x); });
 }
 
-bool IndexTwoSystem::jacobian(double t, double c, std::span<const double> y, std::span<const double> rate,
-                              Eigen::Ref<Eigen::MatrixXd> out) {
+bool IndexTwoSystem::derivatives(double t, std::span<const double> y, std::span<const double> rate,
+                                 Eigen::MatrixXd& by_rate, Eigen::MatrixXd& by_state) {
   const Index n = index(n_), m = index(m_);
   set_point(t, y, rate);
   accelerations_.linearize(point_);
@@ -69,32 +69,32 @@ bool IndexTwoSystem::jacobian(double t, double c, std::span<const double> y, std
   balance_.linearize(point_);
   rates_.linearize(point_);
   positions_.linearize(point_);
-  out.setZero();
-  balance_.block(0, out.block(n, 0, n, 2 * n));
-  block_.resize(n, n);
-  balance_.block(functions_.a_at(0), block_);
-  out.block(n, n, n, n) += c * block_;
-  balance_.block(functions_.lambda_at(0), out.block(n, 2 * n, n, m));
-  rates_.block(0, out.block(2 * n, 0, m, 2 * n));
-  positions_.block(0, out.block(2 * n + m, 0, m, n));
+  by_rate.setZero(index(size()), index(size()));
+  by_state.setZero(index(size()), index(size()));
+  by_rate.topLeftCorner(n, n).setIdentity();
+  balance_.block(functions_.a_at(0), by_rate.block(n, n, n, n));
+  balance_.block(0, by_state.block(n, 0, n, 2 * n));
+  balance_.block(functions_.lambda_at(0), by_state.block(n, 2 * n, n, m));
+  rates_.block(0, by_state.block(2 * n, 0, m, 2 * n));
+  positions_.block(0, by_state.block(2 * n + m, 0, m, n));
   for (Index k = 0; k < m; ++k) {
     const auto set_to_zero = [&](Index row) {
-      out.row(row).setZero();
-      out(row, row) = 1;
+      by_state.row(row).setZero();
+      by_state(row, row) = 1;
     };
     if (!velocity_row_[static_cast<std::size_t>(k)]) set_to_zero(2 * n + k);
     if (!position_row_[static_cast<std::size_t>(k)]) set_to_zero(2 * n + m + k);
   }
   // −∂(Aᵀμ)/∂q is what μ added to λ changes in the derivatives of the balance.
-  moved_ = out.block(n, 0, n, n);
+  moved_ = by_state.block(n, 0, n, n);
   for (std::size_t k = 0; k < m_; ++k) point_[functions_.lambda_at(k)] += y[2 * n_ + m_ + k];
   balance_.linearize(point_);
+  block_.resize(n, n);
   balance_.block(0, block_);
-  out.block(0, 0, n, n) = block_ - moved_;
-  out.block(0, 0, n, n).diagonal().array() += c;
-  out.block(0, n, n, n).diagonal().setConstant(-1);
-  out.block(0, 2 * n + m, n, m) = -a_.transpose();
-  return out.allFinite();
+  by_state.block(0, 0, n, n) = block_ - moved_;
+  by_state.block(0, n, n, n).diagonal().setConstant(-1);
+  by_state.block(0, 2 * n + m, n, m) = -a_.transpose();
+  return by_rate.allFinite() && by_state.allFinite();
 }
 
 }  // namespace maupertuis::stiff

@@ -18,9 +18,9 @@ class IndexTwoSystem {
   void set_rows(std::span<const std::size_t> rows);
   /// False where a value is infinite or undefined.
   bool residual(double t, std::span<const double> y, std::span<const double> rate, std::span<double> out);
-  /// c ∂F/∂ẏ + ∂F/∂y
-  bool jacobian(double t, double c, std::span<const double> y, std::span<const double> rate,
-                Eigen::Ref<Eigen::MatrixXd> out);
+  /// ∂F/∂ẏ and ∂F/∂y, [size × size] each.
+  bool derivatives(double t, std::span<const double> y, std::span<const double> rate, Eigen::MatrixXd& by_rate,
+                   Eigen::MatrixXd& by_state);
 
  private:
   /// (q, v, a = v̇, λ, t)

@@ -22,13 +22,10 @@ bool Motion::solve(double t, std::span<const double> y) {
 }
 
 bool Motion::weigh(std::span<const double> y, std::span<double> weights) {
-  constexpr double memory = 0.9, none = 1e-30;
-  // SUNDIALS takes the mean square over all components; those that do not count shall not thin it.
-  const double share = std::sqrt(static_cast<double>(weights.size()) / static_cast<double>(sizes_.size()));
-  std::fill(weights.begin(), weights.end(), none);
+  constexpr double memory = 0.9;
   for (std::size_t i = 0; i < sizes_.size(); ++i) {
     sizes_[i] = std::max(memory * sizes_[i], std::abs(y[i]));
-    weights[i] = share / (options.tolerance * sizes_[i] + options.absolute);
+    weights[i] = 1 / (options.tolerance * sizes_[i] + options.absolute);
     if (!std::isfinite(weights[i])) return false;
   }
   return true;

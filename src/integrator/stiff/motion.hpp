@@ -8,7 +8,7 @@
 
 namespace maupertuis::stiff {
 
-/// What both formulas ask of the motion that they follow. A state is q [n], v [n], integrals [w].
+/// What the method asks of the motion that it follows. A state is q [n], v [n], integrals [w].
 class Motion {
  public:
   Motion(const MotionFunctions& functions, std::span<const double> parameters, const StiffOptions& options);
@@ -41,7 +41,7 @@ class Motion {
   StiffOptions options;
   const std::vector<double> parameters;
   PointSolver at_point;
-  PointStatus status = PointStatus::Ok;  // of the last point that a formula asked for
+  PointStatus status = PointStatus::Ok;  // of the last point that the method asked for
 
  private:
   FunctionWorkspace integrands_;

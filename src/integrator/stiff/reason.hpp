@@ -1,5 +1,5 @@
 #pragma once
-#include "integrator/stiff/formula.hpp"
+#include "integrator/stiff/radau_method.hpp"
 
 #include <maupertuis/step.hpp>
 

@@ -1,8 +1,7 @@
-#ifdef MAUPERTUIS_SUNDIALS
 #include "integrator/point/event_search.hpp"
 #include "integrator/point/sample.hpp"
 #include "integrator/stiff/force_check.hpp"
-#include "integrator/stiff/formula.hpp"
+#include "integrator/stiff/radau_method.hpp"
 #include "integrator/stiff/reason.hpp"
 
 #include <maupertuis/require.hpp>
@@ -17,15 +16,13 @@
 
 namespace maupertuis {
 
-bool has_stiff_method() { return true; }
-
 /// States are q [n], v [n], integrals [w].
 struct StiffStepper::Impl {
   Impl(const MotionFunctions& functions, std::span<const double> parameters, const StiffOptions& options)
       : n(functions.freedoms),
         motion(functions, parameters, options),
         observables(functions.observables),
-        formula(functions.constraints > 0 ? stiff::index_two(motion) : stiff::explicit_rates(motion)),
+        method(motion),
         check(motion),
         events(functions, parameters),
         now(motion.states()) {
@@ -54,13 +51,13 @@ struct StiffStepper::Impl {
   std::size_t n;
   mutable stiff::Motion motion;
   mutable FunctionWorkspace observables;
-  std::unique_ptr<stiff::Formula> formula;
+  stiff::RadauMethod method;
   stiff::ForceCheck check;
   EventSearch events;
 
   double t = 0, t_before = 0;
   std::vector<double> now, before;  // the states at the ends of the last step
-  bool history = false;             // the formula holds the polynomials of the last step
+  bool history = false;             // the method holds the polynomials of the last step
   bool history_ends = false;        // … but does not go on from its end
   double direction = 0;
   double t_window = 0;              // a thousand steps ago, at
@@ -88,7 +85,7 @@ void StiffStepper::Impl::start(double time, std::span<const double> q, std::span
 /// Begins a new history at the present state.
 void StiffStepper::Impl::restart() {
   motion.solve(t, now);
-  formula->restart(t, now);
+  method.restart(t, now);
   history = history_ends = false;
   direction = 0;
 }
@@ -136,18 +133,18 @@ Step StiffStepper::Impl::step(double bound) {
   return result;
 }
 
-/// One step of the formula in which no force acted unseen: others are taken back, and begun anew at a quarter of their
+/// One step of the method in which no force acted unseen: others are taken back, and begun anew at a quarter of their
 /// length. A step that was accepted allows the next one twice its limit.
 std::optional<Step> StiffStepper::Impl::advance(double bound, std::vector<double>& next, stiff::Advance& reached) {
   while (true) {
-    reached = formula->advance(bound, next);
+    reached = method.advance(bound, next);
     if (reached.failure && history) {  // other rows of the constraints, or less noise of an old history, may help
       motion.at_point.forget_rows();
       begin_anew(bound, next);
-      if (motion.status == PointStatus::Ok) reached = formula->advance(bound, next);
+      if (motion.status == PointStatus::Ok) reached = method.advance(bound, next);
     }
     if (reached.failure) return failed(*reached.failure);
-    if (check.sees_all(*formula, t, reached.reached, next)) break;
+    if (check.sees_all(method, t, reached.reached, next)) break;
     ++rejected;
     const double length = 0.25 * std::abs(reached.reached - t);
     begin_anew(bound, next);
@@ -169,7 +166,7 @@ std::optional<Step> StiffStepper::Impl::end_at_root(std::vector<double>& next, s
   const auto find_state = [&](double time) {
     y = time == end ? next : now;
     if (time == t || time == end) return;
-    formula->interpolate(time, y);
+    method.interpolate(time, y);
     motion.project(time, y);
   };
   const auto found = events.first(t, end, [&](double time) {
@@ -204,7 +201,7 @@ void StiffStepper::Impl::begin_anew(double bound, std::vector<double>& next) {
 
 void StiffStepper::Impl::bound_steps(double length) {
   longest = length;
-  formula->limit(length);
+  method.limit(length);
 }
 
 /// A thousand steps, those taken back counted, that make less than a billionth of the way: the rest would take longer
@@ -245,7 +242,7 @@ void StiffStepper::Impl::state_at(double time, std::span<double> out) const {
   } else if (time == t_before) {
     std::copy(before.begin(), before.end(), out.begin());
   } else {
-    formula->interpolate(time, out);
+    method.interpolate(time, out);
     motion.project(time, out);
   }
 }
@@ -275,6 +272,7 @@ bool StiffStepper::fast_parts_die_out(double t, std::span<const double> q, std::
   return impl_->motion.solve(t, y) && impl_->fast_parts_die_out(length);
 }
 Step StiffStepper::step(double bound) { return impl_->step(bound); }
+int StiffStepper::order() const { return impl_->method.order(); }
 double StiffStepper::time() const { return impl_->t; }
 std::span<const double> StiffStepper::q() const { return impl_->motion.q_of(impl_->now); }
 std::span<const double> StiffStepper::v() const { return impl_->motion.v_of(impl_->now); }
@@ -305,4 +303,3 @@ void StiffStepper::state(double t, std::span<double> q, std::span<double> v) con
 const Sample& StiffStepper::step_start() const { return impl_->start_sample = impl_->sample(impl_->t_before); }
 
 }  // namespace maupertuis
-#endif

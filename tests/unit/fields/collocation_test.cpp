@@ -136,7 +136,7 @@ TEST_CASE("banded factors with pivoting solve what a dense product made") {
 
 TEST_CASE("collocation is of order 2s in the step, and its coefficients are Gauss's") {
   for (const int stages : {1, 2, 3, 4}) {
-    const GaussTableau t(stages);
+    const CollocationTableau t(stages);
     const auto s = static_cast<std::size_t>(stages);
     double ends = 1;  // R(∞) = 1 − Σ d = (−1)^s
     for (std::size_t i = 0; i < s; ++i) {
@@ -387,7 +387,7 @@ TEST_CASE("given slopes of a field of first order, by closed forms") {
 
 TEST_CASE("Radau's steps are of order 2s - 1, and leave nothing of what decays faster than they are") {
   for (const int stages : {1, 2, 3, 4}) {
-    const GaussTableau t(stages, GaussTableau::Points::Radau);
+    const CollocationTableau t(stages, CollocationTableau::Points::Radau);
     CHECK(t.order == 2 * stages - 1);
     double ends = 1;  // R(∞) = 1 − Σ d
     for (const double d : t.d) ends -= d;

@@ -88,7 +88,7 @@ TEST_CASE(
     CHECK(std::abs(s.observables[0] - method->sample(0).observables[0] - s.integrals[0]) < tolerance);
   };
   check(variational_method(m.equations, wanted, fine, diagnostics), 1e-12);
-  check(stiff_method(m.equations, wanted, tight, diagnostics), 1e-9);
+  check(stiff_method(m.equations, wanted, tight, diagnostics), 1e-11);
 }
 
 TEST_CASE("what the stiff method refuses") {

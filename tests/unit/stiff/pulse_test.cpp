@@ -1,4 +1,4 @@
-// Backward differentiation does not jump over what acts between the ends of its steps.
+// Steps do not jump over what acts between the points at which they look at forces.
 #include "../model_text.hpp"
 #include "simulation/function_kernels.hpp"
 
@@ -37,13 +37,13 @@ End run(const std::string& text, double q, double v, double end, double toleranc
 TEST_CASE("a pulse on a particle at rest: error functions") {
   const End end = run("force x = 3 exp(-((t - 6)/0.05)^2)\n", 0, 0, 10);
   CHECK(end.ending == StepEnding::None);
-  CHECK(end.rejected > 0);
-  CHECK(end.x == doctest::Approx(1.06347231054330962).epsilon(1e-7));
-  CHECK(end.v == doctest::Approx(0.265868077635827404).epsilon(1e-7));
+  CHECK(end.x == doctest::Approx(1.06347231054330962).epsilon(1e-10));
+  CHECK(end.v == doctest::Approx(0.265868077635827404).epsilon(1e-10));
 }
 
 TEST_CASE("a window of 0.02, a wall and a gate of place") {
   const End window = run("force x = piecewise(t < 4 : 0, t < 4.02 : 30, else : 0)\n", 0, 0, 12);
+  CHECK(window.rejected > 0);
   CHECK(window.v == doctest::Approx(0.6).epsilon(1e-7));
   CHECK(window.x == doctest::Approx(0.6 * (0.01 + 12 - 4.02)).epsilon(1e-7));
   const End wall = run("V = exp(8 (x - 6))\n", 0, 1, 20);
@@ -64,7 +64,7 @@ TEST_CASE("smooth and stiff motions lose no step") {
   CHECK(oscillator.rejected == 0);
   const End stiff = run("param k = 1e8, c = 1e6\nV = 1/2 k x^2\nD = 1/2 c x'^2\nforce x = k cos t\n", 0, 0, 10, 1e-9);
   CHECK(stiff.rejected == 0);
-  CHECK(stiff.steps < 2000);
+  CHECK(stiff.steps < 120);
   const End van_der_pol = run("force x = 1e3 (1 - x^2) x' - x\n", 2, 0, 500, 1e-8);
   CHECK(van_der_pol.rejected <= 2);
 }

@@ -94,20 +94,20 @@ TEST_CASE("a driven oscillator whose modes decay in 10 ms and 1 µs, in closed f
                                                b * std::exp(fast * t))));
     }
   }
-  CHECK(worst < 5e-8);
-  CHECK(stepper.steps() < 10000);  // an explicit method would need millions
+  CHECK(worst < 1e-9);
+  CHECK(stepper.steps() < 100);  // an explicit method would need millions
 }
 
 TEST_CASE("the relaxation oscillation of van der Pol: reference values of the Test Set for IVP Solvers") {
   const Stiff m(
       "system vanderpol\ndimensionless\nparam ε = 1e-6\ncoord y : number\nL = 1/2 ε y'^2 - 1/2 y^2\nforce y = (1 - "
       "y^2) y'\n");
-  auto stepper = m.stepper(1e-11);
+  auto stepper = m.stepper(1e-12);
   stepper.start(0, State{2}, State{0});
   run(stepper, 2);
-  CHECK(std::abs(stepper.q()[0] - 1.706167732170483) < 1e-8);
-  CHECK(std::abs(stepper.v()[0] + 0.8928097010247975) < 1e-8);
-  CHECK(stepper.steps() < 20000);
+  CHECK(std::abs(stepper.q()[0] - 1.706167732170483) < 1e-12);
+  CHECK(std::abs(stepper.v()[0] + 0.8928097010247975) < 1e-11);
+  CHECK(stepper.steps() < 1000);
 }
 
 TEST_CASE("a stiff flyball governor: the reference states of 80-bit extrapolation") {
@@ -123,11 +123,11 @@ TEST_CASE("a stiff flyball governor: the reference states of 80-bit extrapolatio
   for (const State& row : reference) {
     run(stepper, row[0]);
     for (std::size_t i = 0; i < 4; ++i) {
-      CHECK(std::abs(stepper.q()[i] - row[1 + i]) < 1e-9);
-      CHECK(std::abs(stepper.v()[i] - row[5 + i]) < 1e-9);
+      CHECK(std::abs(stepper.q()[i] - row[1 + i]) < 2e-13);
+      CHECK(std::abs(stepper.v()[i] - row[5 + i]) < 2e-13);
     }
   }
-  CHECK(stepper.steps() < 3000);
+  CHECK(stepper.steps() < 120);
 }
 
 TEST_CASE("a Cartesian pendulum: the angle's own equation, constraints to rounding, the tension") {
@@ -149,24 +149,18 @@ TEST_CASE("a Cartesian pendulum: the angle's own equation, constraints to roundi
   }
   run(other, end);
   CHECK(worst < 2e-15);
-  CHECK(std::abs(stepper.q()[0] - std::sin(other.q()[0])) < 1e-7);
-  CHECK(std::abs(stepper.q()[1] + std::cos(other.q()[0])) < 1e-7);
+  CHECK(std::abs(stepper.q()[0] - std::sin(other.q()[0])) < 2e-11);
+  CHECK(std::abs(stepper.q()[1] + std::cos(other.q()[0])) < 2e-11);
 }
 
 TEST_CASE("the error follows the tolerance") {
   const Stiff m(kPendulum);
-  double last = 1;
-  auto fine = m.stepper(1e-13);
-  fine.start(0, State{1, 0}, State{0, 0});
-  run(fine, 2);
-  for (const double tolerance : {1e-5, 1e-7, 1e-9, 1e-11}) {
+  const double x = 0.79356619534332174699;  // by Taylor's steps in 40 digits
+  for (const double tolerance : {1e-3, 1e-5, 1e-8, 1e-10, 1e-12}) {
     auto stepper = m.stepper(tolerance);
     stepper.start(0, State{1, 0}, State{0, 0});
     run(stepper, 2);
-    const double error = std::abs(stepper.q()[0] - fine.q()[0]);
-    CHECK(error < 0.5 * last);
-    CHECK(error < 1e4 * tolerance);
-    last = error;
+    CHECK(std::abs(stepper.q()[0] - x) < 10 * tolerance);
   }
 }
 
@@ -192,8 +186,8 @@ TEST_CASE("a constraint between velocities: a skate on a slope comes back") {
   auto stepper = m.stepper(1e-11);
   stepper.start(0, State{0, 0, 0}, State{0, 0, 1.5});
   run(stepper, 4);
-  CHECK(stepper.q()[0] == doctest::Approx(2 / (2 * 1.5 * 1.5) * std::pow(std::sin(6.0), 2)).epsilon(1e-7));
-  CHECK(stepper.q()[1] == doctest::Approx(2 / (2 * 1.5 * 1.5) * (6 - 0.5 * std::sin(12.0))).epsilon(1e-7));
+  CHECK(stepper.q()[0] == doctest::Approx(2 / (2 * 1.5 * 1.5) * std::pow(std::sin(6.0), 2)).epsilon(1e-11));
+  CHECK(stepper.q()[1] == doctest::Approx(2 / (2 * 1.5 * 1.5) * (6 - 0.5 * std::sin(12.0))).epsilon(1e-11));
   CHECK(std::abs(stepper.v()[0] * std::sin(stepper.q()[2]) - stepper.v()[1] * std::cos(stepper.q()[2])) < 1e-15);
 }
 
@@ -239,7 +233,7 @@ TEST_CASE("energy and the integral of the power agree; backwards brings back the
   stepper.start(0, State{1}, State{0});
   run(stepper, 3);
   const Sample s = stepper.sample(3);
-  CHECK(s.v[0] * s.v[0] / 2 + 2 * s.q[0] * s.q[0] - 2 == doctest::Approx(s.integrals[0]).epsilon(1e-9));
+  CHECK(s.v[0] * s.v[0] / 2 + 2 * s.q[0] * s.q[0] - 2 == doctest::Approx(s.integrals[0]).epsilon(1e-13));
   CHECK(s.a[0] == doctest::Approx(-0.2 * s.v[0] - 4 * s.q[0]));
   run(stepper, 0);
   CHECK(stepper.q()[0] == doctest::Approx(1).epsilon(1e-9));

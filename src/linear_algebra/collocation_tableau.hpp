@@ -9,9 +9,9 @@ namespace maupertuis {
 /// among them: order 2s − 1, and what decays faster than a step is gone after it, where Gauss's steps keep its size. A
 /// is diagonal in a complex basis, so that the equations of all stages fall apart into s sparse systems, of which one
 /// of each conjugate pair is solved.
-struct GaussTableau {
+struct CollocationTableau {
   enum class Points { Gauss, Radau };
-  explicit GaussTableau(int stages, Points points = Points::Gauss);
+  explicit CollocationTableau(int stages, Points points = Points::Gauss);
   std::size_t stages;
   int order;
   std::vector<double> c, b, a;                               // [s], [s], [s × s]

@@ -1,13 +1,12 @@
-#include "fields/gauss_tableau.hpp"
+#include "linear_algebra/collocation_tableau.hpp"
 
-#include "fields/element.hpp"
-#include "fields/lobatto.hpp"
 #include "linear_algebra/banded.hpp"
 #include "linear_algebra/dense.hpp"
+#include "linear_algebra/quadrature.hpp"
 
 namespace maupertuis {
 
-GaussTableau::GaussTableau(int count, Points points)
+CollocationTableau::CollocationTableau(int count, Points points)
     : stages(static_cast<std::size_t>(count)), order(points == Points::Gauss ? 2 * count : 2 * count - 1) {
   const GaussRule rule(count);
   const Radau radau(count);  // with the left end

@@ -7,6 +7,12 @@ namespace maupertuis {
 /// P_n and P_n' at x; P_n' where |x| < 1.
 std::pair<double, double> legendre(int n, double x);
 
+/// Gauss's rule on [−1, 1]: exact for polynomials of degree 2n − 1.
+struct GaussRule {
+  explicit GaussRule(int points);
+  std::vector<double> x, w;  // ascending
+};
+
 /// Gauss-Lobatto-Legendre points of [−1, 1] with their weights and the derivatives of Lagrange's polynomials there.
 struct Lobatto {
   explicit Lobatto(int order);

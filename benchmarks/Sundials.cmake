@@ -1,4 +1,4 @@
-# sundials_libraries: what the stiff method links, or nothing where SUNDIALS 6 is not installed.
+# sundials_libraries: a peer of the benchmarks, or nothing where SUNDIALS 6 is not installed.
 set(sundials_libraries "")
 find_path(SUNDIALS_INCLUDE_DIR sundials/sundials_config.h)
 foreach(library cvode idas nvecserial sunlinsoldense sunmatrixdense)
@@ -12,5 +12,5 @@ if(SUNDIALS_INCLUDE_DIR)
 endif()
 if(NOT sundials_version OR sundials_libraries MATCHES "NOTFOUND")
   set(sundials_libraries "")
-  message(STATUS "SUNDIALS 6 is not here: maup is built without the stiff method")
+  message(STATUS "SUNDIALS 6 is not here: the benchmarks have no CVODE beside them")
 endif()

@@ -1,4 +1,4 @@
-#include "fields/lobatto.hpp"
+#include "linear_algebra/quadrature.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -15,6 +15,21 @@ std::pair<double, double> legendre(int n, double x) {
     p = next;
   }
   return {p, n * (before - x * p) / (1 - x * x)};
+}
+
+GaussRule::GaussRule(int points) {
+  const auto n = static_cast<std::size_t>(points);
+  x.resize(n), w.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    double at = -std::cos(std::numbers::pi * (static_cast<double>(i) + 0.75) / (points + 0.5));
+    for (int k = 0; k < 100; ++k) {
+      const auto [value, slope] = legendre(points, at);
+      at -= value / slope;
+      if (std::abs(value / slope) < 1e-16) break;
+    }
+    const double slope = legendre(points, at).second;
+    x[i] = at, w[i] = 2 / ((1 - at * at) * slope * slope);
+  }
 }
 
 Lobatto::Lobatto(int p) : order(p), x(static_cast<std::size_t>(p) + 1), w(x.size()), derivative(x.size() * x.size()) {
