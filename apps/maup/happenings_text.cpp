@@ -41,7 +41,8 @@ void put_happenings(Json& document, const Chronicle& run, const MechanicalSystem
     document["energy_books"] = {{"impacts", run.books->impacts},
                                 {"moving_contacts", run.books->moving},
                                 {"friction", run.books->friction},
-                                {"dampers", run.books->dampers}};
+                                {"dampers", run.books->dampers},
+                                {"events", run.books->events}};
   document["remarks"] = run.remarks;
 }
 
@@ -72,12 +73,19 @@ std::string happenings_text(const Chronicle& run, const MechanicalSystem& system
   for (const std::string& remark : run.remarks) out += "  " + remark + "\n";
   if (run.books) {
     const std::string unit = system.dimensionless ? "" : " J";
-    out += fmt::format("energy lost: impacts {}{}, friction {}{}, dampers {}{}", brief(run.books->impacts), unit,
-                       brief(run.books->friction), unit, brief(run.books->dampers), unit);
-    if (const double moving = run.books->moving; moving != 0)
-      out += fmt::format("; {} moving contacts {}{}", moving > 0 ? "gained from" : "given to", brief(std::abs(moving)),
-                         unit);
-    out += "\n";
+    std::vector<std::string> parts;
+    if (system.has_modes())
+      parts.push_back(fmt::format("energy lost: impacts {0}{3}, friction {1}{3}, dampers {2}{3}",
+                                  brief(run.books->impacts), brief(run.books->friction), brief(run.books->dampers),
+                                  unit));
+    const auto add = [&](double gained, const char* from) {
+      if (gained != 0)
+        parts.push_back(
+            fmt::format("{} {} {}{}", gained > 0 ? "gained from" : "given to", from, brief(std::abs(gained)), unit));
+    };
+    add(run.books->moving, "moving contacts");
+    add(run.books->events, "events that set the state");
+    out += fmt::format("{}\n", fmt::join(parts, "; "));
   }
   return out;
 }

@@ -238,9 +238,11 @@ std::string through_text(const IntegralThroughModes& through) {
     else if (!names.empty())
       lines.push_back(fmt::format("{} {}", before, fmt::join(names, ", ")));
   };
-  modes(Holds::Yes, "holds in");
-  modes(Holds::No, "not in");
-  modes(Holds::Undecided, "undecided in");
+  if (through.modes.size() > 1 || !through.impacts.empty()) {
+    modes(Holds::Yes, "holds in");
+    modes(Holds::No, "not in");
+    modes(Holds::Undecided, "undecided in");
+  }
   const auto impacts = [&](Holds kept, const char* before) {
     std::vector<std::string> names;
     for (const auto& i : through.impacts)
@@ -250,6 +252,15 @@ std::string through_text(const IntegralThroughModes& through) {
   impacts(Holds::Yes, "kept by impacts on");
   impacts(Holds::No, "changed by impacts on");
   impacts(Holds::Undecided, "undecided at impacts on");
+  const auto events = [&](Holds kept, const char* before) {
+    std::vector<std::string> names;
+    for (const auto& e : through.events)
+      if (e.kept == kept) names.push_back(e.event);
+    if (!names.empty()) lines.push_back(fmt::format("{} {}", before, fmt::join(names, ", ")));
+  };
+  events(Holds::Yes, "kept by the event");
+  events(Holds::No, "changed by the event");
+  events(Holds::Undecided, "undecided at the event");
   if (through.left_out > 0)
     lines.push_back(fmt::format("{} not looked at",
                                 through.left_out == 1 ? "1 mode was" : fmt::format("{} modes were", through.left_out)));
@@ -260,13 +271,19 @@ const char* word_of_holds(Holds holds) { return holds == Holds::Yes ? "yes" : ho
 
 }  // namespace
 
-std::string through_modes_text(const Invariants& found, const std::vector<IntegralThroughModes>& through, bool all) {
+std::string through_modes_text(const Invariants& found, const std::vector<IntegralThroughModes>& through,
+                               bool has_modes, bool all) {
   const std::size_t count = std::min(all ? found.integrals.size() : found.shown, through.size());
-  std::string text = "\nAll this is the motion while contacts are open. Through contacts, friction and impacts:\n";
-  if (count == 0) return "\nAll this is the motion while contacts are open; --mode asks of another one.\n";
+  if (count == 0)
+    return has_modes ? "\nAll this is the motion while contacts are open; --mode asks of another one.\n" : "";
+  std::string text = has_modes
+                         ? "\nAll this is the motion while contacts are open. Through contacts, friction and impacts:\n"
+                         : "\nAll this is the motion between events. At events that set the state:\n";
   for (std::size_t i = 0; i < count; ++i)
     text += fmt::format("  {:<4} {}\n", found.symbols[i].name(),
-                        through[i].everywhere() ? "holds in all modes, and impacts keep it" : through_text(through[i]));
+                        !through[i].everywhere() ? through_text(through[i])
+                        : has_modes              ? "holds in all modes, and impacts keep it"
+                                                 : "kept by all of them");
   return text;
 }
 
@@ -276,8 +293,13 @@ void add_through_modes_json(Json& document, const std::vector<IntegralThroughMod
     for (const auto& m : through[i].modes) modes.push_back({{"mode", m.mode}, {"holds", word_of_holds(m.holds)}});
     for (const auto& c : through[i].impacts)
       impacts.push_back({{"contact", c.contact}, {"kept", word_of_holds(c.kept)}, {"largest_change", c.change}});
-    document["integrals"][i]["through_modes"] = {
-        {"modes", std::move(modes)}, {"impacts", std::move(impacts)}, {"modes_left_out", through[i].left_out}};
+    Json events = Json::array();
+    for (const auto& e : through[i].events)
+      events.push_back({{"event", e.event}, {"kept", word_of_holds(e.kept)}, {"largest_change", e.change}});
+    document["integrals"][i]["through_modes"] = {{"modes", std::move(modes)},
+                                                 {"impacts", std::move(impacts)},
+                                                 {"events", std::move(events)},
+                                                 {"modes_left_out", through[i].left_out}};
   }
 }
 

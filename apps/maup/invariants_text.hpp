@@ -14,7 +14,8 @@ std::string invariants_text(const Invariants& found, const EquationsOfMotion& eq
 void add_invariants_json(Json& document, const Invariants& found, const EquationsOfMotion& equations);
 
 /// In which modes of contact and friction each integral holds, and which impacts keep it.
-std::string through_modes_text(const Invariants& found, const std::vector<IntegralThroughModes>& through, bool all);
+std::string through_modes_text(const Invariants& found, const std::vector<IntegralThroughModes>& through,
+                               bool has_modes, bool all);
 void add_through_modes_json(Json& document, const std::vector<IntegralThroughModes>& through);
 
 }  // namespace maupertuis::app

@@ -43,6 +43,7 @@ class AlongMotion {
   void set_start(const MotionState& start) { start_ = start; }
 
  private:
+  ZeroTest as_formula(Expr plain) const;
   bool constrained() const { return equations_.system->constrained() || equations_.degenerate; }
   /// What points along the motion fulfil, in which unknowns, and where to look for them.
   struct Where {

@@ -12,7 +12,10 @@ namespace maupertuis {
 /// derivatives.
 std::vector<Expr> in_terms_of_motion(const MechanicalSystem& system, std::span<const Expr> expressions);
 
-/// The same for many lists: what is put in is made once.
+/// Numbers with units that stand in formulas, as the SI numbers that they are: each is a symbol of its own otherwise.
+ExprVector with_constants_as_numbers(const MechanicalSystem& system, std::span<const Expr> expressions);
+
+/// The same as `in_terms_of_motion` for many lists: what is put in is made once.
 class MotionTerms {
  public:
   explicit MotionTerms(const MechanicalSystem& system);

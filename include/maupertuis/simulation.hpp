@@ -26,7 +26,7 @@ struct SimulationOptions {
   double tolerance = 0;            // relative, per step; 0: rounding level of double (Stiff: 1e-10)
   std::optional<double> duration;  // s, instead of the model's run; negative: backwards in time
   std::vector<double> at;          // s: times at which the state is wanted exactly; beyond the run: it goes on to them
-  std::optional<double> output_every;    // s
+  std::optional<double> output_every;  // s
   bool rows_of_steps = false;  // where nobody says how often: rows between those a thousandth of the run apart, as the
                                // steps ask for, so that a picture shows oscillations that are faster
   Backend backend = Backend::Automatic;  // of Taylor's steps
@@ -116,10 +116,11 @@ std::string_view word_of(Happening::Kind kind);
 
 /// Where the energy of a run with contacts and friction went, J. What the terms of h_E lost is their sum to rounding.
 struct EnergyBooks {
-  double impacts = 0;   // lost at impacts, ½ Λ (1 − e) |ġ⁻| each
-  double moving = 0;    // gained from surfaces that move: −Λ ∂g/∂t at impacts, −λ ∂g/∂t and what friction gives between
+  double impacts = 0;  // lost at impacts, ½ Λ (1 − e) |ġ⁻| each
+  double moving = 0;  // gained from surfaces that move: −Λ ∂g/∂t at impacts, −λ ∂g/∂t and what friction gives between
   double friction = 0;  // lost by friction while sliding
   double dampers = 0;   // lost by D
+  double events = 0;    // gained where events set the state
 };
 
 struct SimulationResult {

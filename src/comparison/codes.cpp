@@ -76,6 +76,10 @@ constexpr CodeEntry entries[] = {
      "A comparison proves that each motion of one model is one of the other, from every state on the constraints. A "
      "degenerate Lagrangian asks more of states, or leaves functions of time free.",
      "", ""},
+    {"E0835", "contacts, dry friction or set states in a comparison",
+     "A comparison proves that two equations of motion have the same motions. Where contacts open and close, friction "
+     "sticks and slides, or an event sets the state, an equation holds between such instants alone.",
+     "", ""},
 };
 
 }  // namespace

@@ -171,7 +171,7 @@ class Comparer {
 
   EnergyRelation compare_energies() const {
     const MechanicalSystem& b = b_.system;
-    const Expr own = comparison::with_constants_as_numbers(
+    const Expr own = with_constants_as_numbers(
                          b, expand_time_derivatives(in_terms_of_motion(b, {&b_equations_.energy_function, 1})))
                          .front();
     const Expr difference = pull_back_(a_equations_.energy_function) - own;

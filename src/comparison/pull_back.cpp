@@ -44,13 +44,6 @@ ExprVector carried_over(std::span<const Expr> roots, const ExprMap& replacements
   return out;
 }
 
-ExprVector with_constants_as_numbers(const MechanicalSystem& system, std::span<const Expr> expressions) {
-  ExprMap numbers;
-  for (const Parameter& p : system.parameters)
-    if (p.symbol.role() == Role::Constant) numbers.emplace(p.symbol, p.value);
-  return numbers.empty() ? ExprVector(expressions.begin(), expressions.end()) : substitute(expressions, numbers);
-}
-
 PullBack::PullBack(const MechanicalSystem& a, const CoordinateMap& map, Diagnostics& diagnostics)
     : a_(a), context_(*map.b->system.context) {
   const MechanicalSystem& b = map.b->system;

@@ -28,7 +28,4 @@ class PullBack {
   ExprMap replacements_;
 };
 
-/// The anonymous constants of a system as the numbers that they are.
-ExprVector with_constants_as_numbers(const MechanicalSystem& system, std::span<const Expr> expressions);
-
 }  // namespace maupertuis::comparison

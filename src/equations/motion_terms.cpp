@@ -23,6 +23,13 @@ std::vector<Expr> MotionTerms::operator()(std::span<const Expr> expressions) con
   return twice_ ? substitute(once, replacements_) : once;
 }
 
+ExprVector with_constants_as_numbers(const MechanicalSystem& system, std::span<const Expr> expressions) {
+  ExprMap numbers;
+  for (const Parameter& p : system.parameters)
+    if (p.symbol.role() == Role::Constant) numbers.emplace(p.symbol, p.value);
+  return numbers.empty() ? ExprVector(expressions.begin(), expressions.end()) : substitute(expressions, numbers);
+}
+
 std::vector<Expr> in_terms_of_motion(const MechanicalSystem& system, std::span<const Expr> expressions) {
   return MotionTerms(system)(expressions);
 }

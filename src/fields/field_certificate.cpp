@@ -129,7 +129,7 @@ CertificateCheck boundary_identity(const FieldEquations& equations, std::uint64_
     for (int attempt = 0; attempt < 200 && found < wanted; ++attempt) {
       interrupt_of(*equations.system().context).throw_if_asked();
       seed = evaluation::mix(seed);
-      const evaluation::PrimeTriple primes = evaluation::random_prime_triple(hints.m, seed);
+      const evaluation::PrimeTriple primes = evaluation::agreeing_primes(hints, seed);
       smallest_group = static_cast<double>(std::min(primes.q, primes.r));
       FieldNumbers numbers(primes, hints, seed);
       for (bool again = true; again;) {

@@ -27,7 +27,8 @@ void say(ExpectationResult& result, const ZeroTest& test, const char* proved, co
 /// By impacts, friction and contacts that move.
 double energy_exchanged(const FieldRunResult& run) {
   if (!run.books) return 0;
-  return std::abs(run.books->impacts) + std::abs(run.books->friction) + std::abs(run.books->moving);
+  return std::abs(run.books->impacts) + std::abs(run.books->friction) + std::abs(run.books->moving) +
+         std::abs(run.books->events);
 }
 
 class FieldVerifier {

@@ -109,7 +109,7 @@ class PrimeRows {
         fields_(table.front().size()),
         tape_(tape_of(table)),
         hints_(evaluation::field_hints(tape_)),
-        primes_(evaluation::random_prime_triple(hints_.m, 0x6e6f6574686572)) {}
+        primes_(evaluation::agreeing_primes(hints_, 0x6e6f6574686572)) {}
 
   /// The parameters keep their values from point to point: the seed draws symbols by name, so only jets and places are
   /// drawn anew, by `numbers` below.

@@ -43,6 +43,16 @@ Expr AlongMotion::put_in(Expr e) const {
 
 ZeroTest AlongMotion::vanishes(Expr e) const {
   const Expr plain = put_in(e);
+  const ZeroTest test = as_formula(plain);
+  if (test.verdict == Verdict::Zero) return test;
+  // Numbers with units are symbols of their own: 3 [m] + 2 [m] is 5 [m] by their values alone.
+  const Expr valued = with_constants_as_numbers(*equations_.system, {&plain, 1}).front();
+  if (valued == plain) return test;
+  const ZeroTest by_values = as_formula(valued);
+  return by_values.verdict == Verdict::Zero ? by_values : test;
+}
+
+ZeroTest AlongMotion::as_formula(Expr plain) const {
   if (!constrained() || plain.is_zero()) return zero_test(plain);
   const Where where = relations_for(plain);
   return zero_test_where({&plain, 1}, where.relations, where.unknowns, where.center);

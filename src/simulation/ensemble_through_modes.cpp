@@ -144,8 +144,9 @@ class Member {
       if (out.happenings.size() < members_.options.happenings) out.happenings.push_back(h);
     }
     out.remarks = record.remarks;
-    if (!model.system.has_modes()) return;
-    out.books = record.books;
+    const bool has_modes = model.system.has_modes();
+    if (has_modes || record.books.events != 0) out.books = record.books;
+    if (!has_modes) return;
     out.books->friction = last.integrals[1];
     out.books->dampers = last.integrals[2];
     out.books->moving += last.integrals[3];

@@ -451,7 +451,9 @@ bool HybridMotion::carry_out_sets(std::string& reason) {
           fmt::format("The event `{}` sets a state that violates the contact {}.", before, system_.contact_label(i));
       return false;
     }
-  carried_[0] += energy_and_sets_at(t_, q, v)[0] - found[0];  // what a set puts in is work
+  const double gained = energy_and_sets_at(t_, q, v)[0] - found[0];
+  carried_[0] += gained;  // what a set puts in is work
+  record_.books.events += gained;
   q_ = q, v_ = v;
   return true;
 }

@@ -293,8 +293,9 @@ class Run {
     result_.first_mode = record.first_mode;
     result_.happenings = record.happenings;
     result_.remarks = record.remarks;
-    if (!model_.system.has_modes()) return;
-    result_.books = record.books;
+    const bool has_modes = model_.system.has_modes();
+    if (has_modes || record.books.events != 0) result_.books = record.books;
+    if (!has_modes) return;
     result_.books->friction = last.integrals[1];
     result_.books->dampers = last.integrals[2];
     result_.books->moving += last.integrals[3];

@@ -161,6 +161,11 @@ constexpr CodeEntry kEntries[] = {
     {"W0110", "a root without brackets around its exponent",
      "A power binds before a division: x^1/2 is x/2. The root is x^(1/2) or sqrt(x).",
      "system s\ncoord x : number\nV = x^1/2\n", "system s\ncoord x : number\nV = x^(1/2)\n"},
+    {"W0111", "a power after a unit in brackets",
+     "A unit in brackets belongs to the number before it, and a power takes both: 5 [mm]^2 is (5 mm)^2, which is "
+     "25 mm^2. Five square millimetres are 5 [mm^2].",
+     "system s\ncoord x : length\nparam k = 1 N/m\nV = k (x^2 + 5 [mm]^2)\n",
+     "system s\ncoord x : length\nparam k = 1 N/m\nV = k (x^2 + 5 [mm^2])\n"},
     {"W0106", "two names look alike",
      "Letters of the Latin, Greek and Cyrillic alphabets can look exactly the same: `a` and Cyrillic `а` are two names "
      "that no reader can tell apart. Such a pair "

@@ -133,7 +133,9 @@ ExpressionParser::Node ExpressionParser::power() {
   Node base = postfix();
   if (!accept("^")) return base;
   const Nesting nesting(*this);
-  return binary(Operator::Power, std::move(base), exponent());
+  Node power = exponent();
+  lint_power(*base, *power);
+  return binary(Operator::Power, std::move(base), std::move(power));
 }
 
 ExpressionParser::Node ExpressionParser::exponent() {

@@ -115,6 +115,7 @@ class ExpressionParser {
   std::string text_to_closing_bracket() const;
   bool is_momentum(std::string_view name) const;
   void lint_product(const Expression& left, Operator op, const Expression& right);
+  void lint_power(const Expression& base, const Expression& exponent);
   bool is_meant_in_argument(const Expression& argument, const Expression& right) const;
   void lint_sum(const Expression& left, const Expression& right);
 

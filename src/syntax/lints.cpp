@@ -92,6 +92,17 @@ void ExpressionParser::lint_product(const Expression& left, Operator op, const E
   }
 }
 
+/// 5 [mm]^2 is 25 mm².
+void ExpressionParser::lint_power(const Expression& base, const Expression& exponent) {
+  if (base.kind != Kind::Quantity || !base.unit_bracketed || base.bracketed) return;
+  const Span span = cover(base.span, exponent.span);
+  const std::string quantity = text_of(base), power = text_of(exponent);
+  warn("W0111", span, fmt::format("`{}` is {} to the power {}", text_of(span), quantity, power),
+       "A unit in brackets belongs to the number before it, and the power takes both.",
+       fmt::format("Write ({})^{} for this, and put the power into the brackets where the unit alone is meant.",
+                   quantity, power));
+}
+
 /// cos ω t without units, where no dimension tells; cos n θ with a parameter n.
 bool ExpressionParser::is_meant_in_argument(const Expression& argument, const Expression& right) const {
   const Declarations& declared = context_.declarations;

@@ -2,6 +2,7 @@
 #include "system/unit_expression.hpp"
 
 #include <fmt/format.h>
+#include <maupertuis/print.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -74,9 +75,17 @@ std::optional<bool> words_are_names(Elaboration& e, const Expression& x, const P
   return names_fit;
 }
 
+/// The one for this quantity, however it was written: 500 g is 0.5 kg.
+std::optional<Expr> known_constant(Elaboration& e, Expr value, const Dimension& dimension) {
+  for (const Parameter& p : e.system().parameters)
+    if (p.symbol.role() == Role::Constant && p.value == value && p.dimension.same_as(dimension)) return p.symbol;
+  return std::nullopt;
+}
+
 /// An anonymous parameter for a number with a unit in a formula.
 Expr anonymous_constant(Elaboration& e, const std::string& name, Expr value, const Unit& unit,
                         const std::string& written, Span span) {
+  if (const auto known = known_constant(e, value, unit.dimension)) return *known;
   const Expr symbol = e.context.symbol(name, Role::Constant);
   if (!e.constants.insert(symbol).second) return symbol;
   Parameter p;
@@ -111,6 +120,12 @@ Value value_of_number(Elaboration& e, const Expression& x) {
 }
 
 namespace {
+
+/// 9.81, (1/3): a number as it is read back before a unit.
+std::string number_before_unit(Elaboration& e, const Rational& value) {
+  const std::string text = to_plain(e.number(value), ReadingOrder{});
+  return text.find('/') == std::string::npos ? text : "(" + text + ")";
+}
 
 /// "3", "(1/2)": what stands before the unit, to be read back with the unit in brackets behind it.
 std::string written_number(const Elaboration& e, const Expression& x) {
@@ -152,13 +167,17 @@ Value value_of_quantity(Elaboration& e, const Expression& x, const Place& place)
   const bool constant = !place.in_parameter && !place.inline_constants && !unit->dimension.is_one();
   const std::string written = written_unit(e.texts, *x.unit);
   for (Expr& part : v.parts) {
+    // A component of a vector is named by its own size: (3, -4) [N] is 3 N and −(4 N).
+    const bool negative = part.is_number() && part.number() < Rational(0);
+    if (negative) part = -part;
     const Expr si = part * factor;
-    // A component of a vector is named by its own value: (3, 4) [N] is 3 N and 4 N.
-    const bool named = constant && (v.is_vector ? part.is_number() && !part.is_zero() : is_positive_number(part));
-    const std::string number = !named        ? ""
-                               : v.is_vector ? part.number().to_string()
-                                             : written_number(e, *x.arguments[0]);
+    const bool named = constant && is_positive_number(part) && (!v.is_vector || part.is_number());
+    const bool as_written = !v.is_vector && !negative;
+    const std::string number = !named       ? ""
+                               : as_written ? written_number(e, *x.arguments[0])
+                                            : number_before_unit(e, part.number());
     part = named ? anonymous_constant(e, fmt::format("{} {}", number, written), si, *unit, written, x.span) : si;
+    if (negative) part = -part;
   }
   if (v.is_vector && place.frame) v.parts = rotate(place.frame->rotation, v.parts);
   return v;

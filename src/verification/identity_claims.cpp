@@ -2,6 +2,7 @@
 
 #include "verification/claims.hpp"
 #include "verification/phase_space_claims.hpp"
+#include "verification/row_terms.hpp"
 
 #include <maupertuis/print.hpp>
 
@@ -33,6 +34,11 @@ std::string where_it_changes(const IntegralThroughModes& through) {
   if (impact != through.impacts.end())
     text += fmt::format("{}Impacts on {} {}.", text.empty() ? "" : " ", impact->contact,
                         impact->kept == Holds::No ? "change it" : "could not be looked at");
+  const auto event =
+      std::find_if(through.events.begin(), through.events.end(), [](const auto& e) { return e.kept != Holds::Yes; });
+  if (event != through.events.end())
+    text += fmt::format("{}The event `{}` {}.", text.empty() ? "" : " ", event->event,
+                        event->kept == Holds::No ? "changes it" : "could not be looked at");
   return text.empty() ? fmt::format("{} modes are too many to look at.", through.left_out) : text;
 }
 
@@ -74,17 +80,22 @@ void IdentityClaims::decide(const expectation::Conserved& e, ExpectationResult& 
   judge_through_modes(e.subject, result);
 }
 
-/// What holds while contacts are open has to hold in all modes, and impacts have to keep it.
+/// What holds while contacts are open has to hold in all modes, and impacts and events have to keep it.
 void IdentityClaims::judge_through_modes(Expr subject, ExpectationResult& result) {
-  if (!result.passed || !model_.system.has_modes()) return;
+  if (!result.passed || !is_in_parts(model_)) return;
   const IntegralThroughModes through = through_modes(subject);
   result.passed = through.everywhere();
   if (!result.passed) {
-    result.actual = "conserved while all contacts are open, but not throughout";
+    result.actual = not_throughout();
     result.message = where_it_changes(through);
-  } else {
+  } else if (model_.system.has_modes()) {
     result.message += fmt::format("; so in {} modes, and impacts keep it", through.modes.size());
   }
+}
+
+std::string IdentityClaims::not_throughout() const {
+  return model_.system.has_modes() ? "conserved while all contacts are open, but not throughout"
+                                   : "conserved between events, but not throughout";
 }
 
 IntegralThroughModes IdentityClaims::through_modes(Expr subject) const {
@@ -148,7 +159,7 @@ void IdentityClaims::decide(const expectation::NotConserved& e, ExpectationResul
       result.message = jump_text(*sides.jump);
       return;
     }
-  if (test.verdict == Verdict::Zero && model_.system.has_modes()) {
+  if (test.verdict == Verdict::Zero && is_in_parts(model_)) {
     const IntegralThroughModes through = through_modes(e.subject);
     const auto differs = [](const auto& x) {
       if constexpr (requires { x.kept; })
@@ -157,9 +168,10 @@ void IdentityClaims::decide(const expectation::NotConserved& e, ExpectationResul
         return x.holds == IntegralThroughModes::Holds::No;
     };
     if (std::any_of(through.modes.begin(), through.modes.end(), differs) ||
-        std::any_of(through.impacts.begin(), through.impacts.end(), differs)) {
+        std::any_of(through.impacts.begin(), through.impacts.end(), differs) ||
+        std::any_of(through.events.begin(), through.events.end(), differs)) {
       result.passed = true;
-      result.actual = "conserved while all contacts are open, but not throughout";
+      result.actual = not_throughout();
       result.message = where_it_changes(through);
       return;
     }
@@ -208,6 +220,7 @@ void IdentityClaims::decide(const expectation::Integral& e, ExpectationResult& r
                         found->integrals.size(), degree)
           : fmt::format("It is no function of the {} integrals of degree up to {} in the velocities that were found.",
                         found->integrals.size(), degree);
+  judge_through_modes(e.subject, result);
 }
 
 void IdentityClaims::decide(const expectation::Equation& e, ExpectationResult& result) {
@@ -234,10 +247,13 @@ void IdentityClaims::decide(const expectation::Equation& e, ExpectationResult& r
 /// Names the difference where it is short enough to be read.
 std::string IdentityClaims::failure(const ZeroTest& test, const Identity& identity) const {
   if (test.verdict == Verdict::Undecided) return "Undecided: " + test.reason;
-  const ReadableForm form = readable(identity.value, equations_.order);
-  const std::string text = to_plain(form.value, equations_.order);
-  constexpr std::size_t longest = 300;
-  if (form.intermediates.empty() && text.size() <= longest) return fmt::format("{} is {}, not 0.", identity.name, text);
+  if (is_short_enough(identity.value)) {
+    const ReadableForm form = readable(identity.value, equations_.order);
+    const std::string text = to_plain(form.value, equations_.order);
+    constexpr std::size_t longest = 300;
+    if (form.intermediates.empty() && text.size() <= longest)
+      return fmt::format("{} is {}, not 0.", identity.name, text);
+  }
   return fmt::format("{} is not 0: at {} it is {:.6g}.", identity.name, state_text(test.witness), test.witness_value);
 }
 

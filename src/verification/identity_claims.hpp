@@ -34,6 +34,7 @@ class IdentityClaims {
   std::string state_text(const Bindings& sample) const;
   void judge_sides(const ZeroTest& test, const AcrossSwitches& sides, ExpectationResult& result) const;
   void judge_through_modes(Expr subject, ExpectationResult& result);
+  std::string not_throughout() const;
   IntegralThroughModes through_modes(Expr subject) const;
   void decide_on_level(const expectation::Conserved& expectation, ExpectationResult& result);
   const std::optional<Invariants>& invariants(int degree);

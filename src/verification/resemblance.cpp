@@ -112,9 +112,12 @@ class Resembler {
     return true;
   }
 
+  /// In its readable form, unless that is a search for minutes.
+  Expr tidied(Expr e) const { return is_short_enough(e) ? readable(e, equations_.order).value : e; }
+
   /// A ratio without its coordinates, where they cancel as functions.
   std::optional<Expr> constant_ratio(Expr a, Expr b) {
-    const Expr ratio = readable(a / b, equations_.order).value;
+    const Expr ratio = tidied(a / b);
     if (constant_in_motion(ratio)) return ratio;
     const Expr plain = states_.settled(a / b);
     for (const Expr& s : symbols_of({&plain, 1}))
@@ -125,7 +128,7 @@ class Resembler {
     for (const Expr& s : symbols_of({&plain, 1}))
       if (s.role() == Role::Coordinate || s.role() == Role::Time || s.role() == Role::Multiplier)
         somewhere.emplace(s, one());
-    return readable(substitute(plain, somewhere), equations_.order).value;
+    return tidied(substitute(plain, somewhere));
   }
 
   ExprVector factors(std::size_t row) {
@@ -137,8 +140,7 @@ class Resembler {
       out.push_back(factor);
     };
     for (std::size_t j = 0; j < slopes_.size(); ++j)
-      if (!slopes_[j].is_zero() && !mass_.at(row, j).is_zero())
-        add(readable(slopes_[j] / mass_.at(row, j), equations_.order).value);
+      if (!slopes_[j].is_zero() && !mass_.at(row, j).is_zero()) add(tidied(slopes_[j] / mass_.at(row, j)));
     Expr resting = zero();
     for (const RowTerm& t : terms_of(row))
       if (t.origin == TermOrigin::Potential) resting = resting + t.value;
@@ -277,6 +279,7 @@ class Resembler {
   // ---------------------------------------------------------------------------------------------------------- in words
 
   std::string text(Expr e, std::size_t row) const {
+    if (!is_short_enough(e)) return to_plain(e, equations_.order);
     ReadableForm form = readable(e, equations_.order);
     ExprMap written_out;
     for (const Intermediate& i : form.intermediates) written_out.emplace(i.symbol, substitute(i.value, written_out));

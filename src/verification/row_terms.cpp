@@ -1,5 +1,7 @@
 #include "verification/row_terms.hpp"
 
+#include <maupertuis/tree_size.hpp>
+
 #include <algorithm>
 
 namespace maupertuis {
@@ -59,6 +61,7 @@ class RowReader {
   }
 
   void add(TermOrigin origin, Expr part, std::size_t of = 0) {
+    too_long_ = too_long_ || !is_short_enough(part);
     if (too_long_ || part.is_zero()) return;
     const ReadableForm form = readable(part, equations_.order);
     ExprMap written_out;
@@ -82,6 +85,11 @@ class RowReader {
 };
 
 }  // namespace
+
+bool is_short_enough(Expr e) {
+  constexpr std::size_t most = 1000;
+  return tree_size(e, most) < most;
+}
 
 std::vector<RowTerm> row_terms(const EquationsOfMotion& equations, const ExprMatrix& mass, std::size_t row) {
   return RowReader(equations, mass, row).read();

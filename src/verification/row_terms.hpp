@@ -5,6 +5,9 @@
 
 namespace maupertuis {
 
+/// Whether the search for the form of a formula that reads best ends in a moment.
+bool is_short_enough(Expr e);
+
 /// What a term of a derived equation comes from.
 enum class TermOrigin {
   Inertia,           // M_ii q̈_i

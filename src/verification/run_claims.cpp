@@ -31,14 +31,15 @@ void report_drift(ExpectationResult& result, double drift, double tolerance) {
   if (!result.passed) result.message = "It changes more than the tolerance along the run.";
 }
 
-/// What impacts, friction and moving contacts do to the energy, in units of the largest that it has.
+/// What impacts, friction, moving contacts and events do to the energy, in units of the largest that it has.
 double energy_exchanged(const SimulationResult& run) {
   if (!run.books) return 0;
   double largest = 0;
   const std::size_t column = run.trajectory.columns.size() - 1;
   for (std::size_t row = 0; row < run.trajectory.rows(); ++row)
     largest = std::max(largest, std::abs(run.trajectory.at(row, column)));
-  const double exchanged = std::abs(run.books->impacts) + std::abs(run.books->friction) + std::abs(run.books->moving);
+  const double exchanged = std::abs(run.books->impacts) + std::abs(run.books->friction) + std::abs(run.books->moving) +
+                           std::abs(run.books->events);
   return exchanged == 0 ? 0 : exchanged / std::max(largest, exchanged);
 }
 
@@ -260,7 +261,7 @@ void RunClaims::judge_energy(const Energy& energy, const std::optional<Simulatio
   } else if (const double lost = energy_exchanged(*run);
              lost > number(energy.expectation->tolerance.size, usual_tolerance)) {
     report_drift(result, lost, number(energy.expectation->tolerance.size, usual_tolerance));
-    result.message = "Impacts, friction or moving contacts change the energy along the run.";
+    result.message = "Impacts, friction, moving contacts or events that set the state change the energy along the run.";
   } else {
     report_drift(result, run->statistics.energy_drift, number(energy.expectation->tolerance.size, usual_tolerance));
   }

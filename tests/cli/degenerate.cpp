@@ -121,6 +121,20 @@ TEST_CASE("models with degenerate Lagrangians are not compared") {
   }
 }
 
+TEST_CASE("models whose events set the state are not compared") {
+  const Folder folder;
+  const std::string plain = "dimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\nstart x = 1\nrun 10\n";
+  folder.write("plain.lag", plain);
+  folder.write("kicked.lag", plain + "event kick when x = 0 falling : set x' = 2 x'\n");
+  folder.write("told.lag", plain + "event e when x = 0 falling : record\n");
+  for (const auto& [a, b] : {std::pair{"plain.lag", "kicked.lag"}, {"kicked.lag", "plain.lag"}}) {
+    const Outcome refused = maup({"compare", folder.path(a), folder.path(b)});
+    CHECK(refused.code == 1);
+    CHECK(contains(refused.err, "E0835"));
+  }
+  CHECK(maup({"compare", folder.path("plain.lag"), folder.path("told.lag")}).code == 0);
+}
+
 TEST_CASE("what depends on free functions is left out, and said") {
   const Outcome run = maup({"simulate", "-"}, cawley);
   CHECK(contains(run.err, "W0622"));

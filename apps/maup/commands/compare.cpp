@@ -10,6 +10,7 @@
 #include <algorithm>
 
 #include <maupertuis/comparison.hpp>
+#include <maupertuis/integrals_through_modes.hpp>
 
 namespace maupertuis::app {
 namespace {
@@ -187,6 +188,22 @@ bool refuse_degenerate(Study& study) {
   return true;
 }
 
+/// E0835: equations of motion are compared, and these are the equations of parts of it.
+bool refuse_parts(Study& study) {
+  if (!study.model() || !is_in_parts(*study.model())) return false;
+  const Model& model = *study.model();
+  const auto& events = model.experiment.events;
+  const auto sets = std::find_if(events.begin(), events.end(), [](const ModelEvent& e) { return !e.sets.empty(); });
+  const Span span = !model.system.contacts.empty()    ? model.system.contacts.front().span
+                    : !model.system.frictions.empty() ? model.system.frictions.front().span
+                                                      : sets->span;
+  study.diagnostics().error(
+      "E0835", span, "models with contacts, dry friction or events that set the state are not compared",
+      "Two equations of motion are compared for all time, and here they hold between such instants alone.",
+      "Leave these statements out of both models to compare what moves between, or `maup simulate` both.");
+  return true;
+}
+
 ExitCode compare_models(const CompareOptions& options, Console& console) {
   Study a = open_study(options.a), b = open_study(options.b);
   Diagnostics of_map;
@@ -198,7 +215,7 @@ ExitCode compare_models(const CompareOptions& options, Console& console) {
   if (of_map.has_errors()) return end(json_document("compare"), ExitCode::Usage);
   const bool readable = !unreadable(a.diagnostics()) && !unreadable(b.diagnostics());
   const EquationsOfMotion* a_equations = a.equations();
-  if (!b.equations() || !a_equations || a.refuse_held_integrals() || a.refuse_modes() || b.refuse_modes() ||
+  if (!b.equations() || !a_equations || a.refuse_held_integrals() || refuse_parts(a) || refuse_parts(b) ||
       b.refuse_held_integrals() || !a.certificate() || !b.certificate())
     return end(json_document("compare"), readable ? ExitCode::ModelWrong : ExitCode::Usage);
   if (refuse_degenerate(a) || refuse_degenerate(b)) return end(json_document("compare"), ExitCode::ModelWrong);

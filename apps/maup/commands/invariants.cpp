@@ -32,8 +32,8 @@ ExitCode invariants_of_model(const CommandOptions& options, Console& console) {
   document["system"] = equations->system->name;
   add_invariants_json(document, *found, *equations);
   std::vector<IntegralThroughModes> through;
-  const bool has_modes = equations->system->has_modes();
-  if (has_modes) {
+  const bool has_modes = equations->system->has_modes(), in_parts = is_in_parts(*study.model());
+  if (in_parts) {
     std::vector<Expr> integrals;
     for (const ConservedFunction& i : found->integrals) integrals.push_back(i.value);
     through = integrals_through_modes(*study.model(), *equations, integrals);
@@ -41,7 +41,7 @@ ExitCode invariants_of_model(const CommandOptions& options, Console& console) {
   }
   if (!console.json())
     console.print(invariants_text(*found, *equations, options.all) +
-                  (has_modes ? through_modes_text(*found, through, options.all) : ""));
+                  (in_parts ? through_modes_text(*found, through, has_modes, options.all) : ""));
   return finish(console, study, document);
 }
 

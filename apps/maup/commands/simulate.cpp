@@ -178,6 +178,8 @@ std::string text_of(const SimulationResult& result, const MechanicalSystem& syst
   for (const State& state : result.at) out += state_text(state, result, system);
   if (result.at.empty() || result.at.back().t != result.final.t) out += state_text(result.final, result, system);
   const SimulationStatistics& s = result.statistics;
+  if (result.ending == Ending::Interrupted && s.companions == 0)
+    out += "How far off these numbers are is not known: the run was interrupted before its companions told it.\n";
   const std::string method = s.method == "taylor"  ? fmt::format("of order {}", s.order)
                              : s.method == "stiff" ? "of the stiff method"
                                                    : fmt::format("of the variational method, order {},", s.order);

@@ -93,7 +93,7 @@ class DeterminingEquations {
         tape_(evaluation::flatten_arguments(taylor_.roots())),
         hints_(evaluation::field_hints(tape_)),
         seed_(mix(seed)),
-        numbers_(evaluation::random_prime_triple(hints_.m, seed_), hints_, seed_) {
+        numbers_(evaluation::agreeing_primes(hints_, seed_), hints_, seed_) {
     orders_ = orders_up_to(n_ + 1, order);
     for (std::size_t function = 0; function < n_ + 2; ++function)
       for (const Order& a : orders_)

@@ -87,7 +87,7 @@ MotionSampler::MotionSampler(const MotionRows& rows, std::vector<Expr> functions
   find_orders();
   for (const Parameter& p : system_->parameters) parameters_.push_back(p.symbol);
   seed_ = mix(seed_);
-  numbers_ = std::make_unique<GivenNumbers>(evaluation::random_prime_triple(hints_.m, seed_), hints_, seed_);
+  numbers_ = std::make_unique<GivenNumbers>(evaluation::agreeing_primes(hints_, seed_), hints_, seed_);
 }
 
 void MotionSampler::find_orders() {

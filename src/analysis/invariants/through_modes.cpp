@@ -1,3 +1,5 @@
+#include "analysis/invariants/through_sets.hpp"
+
 #include <maupertuis/along_motion.hpp>
 #include <maupertuis/contact_mode.hpp>
 #include <maupertuis/integrals_through_modes.hpp>
@@ -102,7 +104,8 @@ class AtContacts {
       MotionState after = *before;
       after.v = impact_.after(contact, *before);
       ++seen;
-      for (std::size_t k = 0; k < plain.size(); ++k) out[k] = std::max(out[k], change(plain[k], *before, after));
+      for (std::size_t k = 0; k < plain.size(); ++k)
+        out[k] = std::max(out[k], invariants::relative_change(plain[k], bindings(*before), bindings(after)));
     }
     return seen > 0 ? std::optional(out) : std::nullopt;
   }
@@ -126,24 +129,14 @@ class AtContacts {
     return impact_.rate(contact, s) < 0 ? std::optional(s) : std::nullopt;
   }
 
-  double value(Expr e, const MotionState& s) const {
-    Bindings bindings = parameter_bindings(system_);
+  Bindings bindings(const MotionState& s) const {
+    Bindings out = parameter_bindings(system_);
     for (std::size_t i = 0; i < s.q.size(); ++i) {
-      bindings[system_.coordinates[i].q] = s.q[i];
-      bindings[system_.coordinates[i].velocity] = s.v[i];
+      out[system_.coordinates[i].q] = s.q[i];
+      out[system_.coordinates[i].velocity] = s.v[i];
     }
-    bindings[system_.context->time()] = s.t;
-    return evaluate(e, bindings);
-  }
-
-  /// Against the sizes of its terms.
-  double change(Expr e, const MotionState& before, const MotionState& after) const {
-    double size = 0;
-    const std::size_t terms = e.is(Kind::Sum) ? e.size() : 1;
-    for (std::size_t i = 0; i < terms; ++i)
-      size += std::abs(value(terms == 1 ? e : e[i], before)) + std::abs(value(terms == 1 ? e : e[i], after));
-    const double difference = std::abs(value(e, after) - value(e, before));
-    return difference == 0 ? 0 : difference / size;
+    out[system_.context->time()] = s.t;
+    return out;
   }
 
   const EquationsOfMotion& equations_;
@@ -155,10 +148,29 @@ class AtContacts {
 
 }  // namespace
 
+bool is_in_parts(const Model& model) {
+  const auto& events = model.experiment.events;
+  return model.system.has_modes() ||
+         std::any_of(events.begin(), events.end(), [](const ModelEvent& e) { return !e.sets.empty(); });
+}
+
+namespace {
+
+void look_at_events(const Model& model, const EquationsOfMotion& equations, const MotionState& start,
+                    const std::vector<Expr>& integrals, std::vector<IntegralThroughModes>& out) {
+  invariants::AtSets at(model, equations, start);
+  for (const ModelEvent& e : model.experiment.events)
+    for (std::size_t k = 0; !e.sets.empty() && k < integrals.size(); ++k)
+      out[k].events.push_back(at.at(e, integrals[k]));
+}
+
+}  // namespace
+
 bool IntegralThroughModes::everywhere() const {
   return left_out == 0 &&
          std::all_of(modes.begin(), modes.end(), [](const InMode& m) { return m.holds == Holds::Yes; }) &&
-         std::all_of(impacts.begin(), impacts.end(), [](const AtImpact& i) { return i.kept == Holds::Yes; });
+         std::all_of(impacts.begin(), impacts.end(), [](const AtImpact& i) { return i.kept == Holds::Yes; }) &&
+         std::all_of(events.begin(), events.end(), [](const AtEvent& e) { return e.kept == Holds::Yes; });
 }
 
 std::vector<IntegralThroughModes> integrals_through_modes(const Model& model, const EquationsOfMotion& equations,
@@ -178,6 +190,7 @@ std::vector<IntegralThroughModes> integrals_through_modes(const Model& model, co
       out[k].left_out = left_out;
     }
   }
+  look_at_events(model, equations, start, integrals, out);
   if (system.contacts.empty() || integrals.empty()) return out;
   AtContacts at(model, equations);
   for (std::size_t c = 0; c < std::min(system.contacts.size(), most_modes); ++c) {

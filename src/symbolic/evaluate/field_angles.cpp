@@ -51,6 +51,19 @@ void FieldNumbers::choose_generators() {
   choose_right_angles();
 }
 
+PrimeTriple agreeing_primes(const FieldHints& hints, std::uint64_t seed) {
+  constexpr int most = 400;
+  for (int attempt = 1;; ++attempt, seed = mix(seed)) {
+    const PrimeTriple primes = random_prime_triple(hints.m, seed);
+    try {
+      const FieldNumbers here(primes, hints, seed);
+      return primes;
+    } catch (const Redraw&) {
+      if (attempt >= most) throw;
+    }
+  }
+}
+
 /// The rotation by 2π/m, among the primitive ones that which agrees with the order of the reals: cosines of the first
 /// quadrant are positive. This ties cos(π/5) to √5, cos(π/12) to √2 and √6, and so on.
 void FieldNumbers::choose_right_angles() {

@@ -27,6 +27,10 @@ FieldHints field_hints(const Tape& tape);
 /// How many roots may be mended before a search for points is given up: bounded work for a hopeless one.
 int mends_allowed(const Tape& tape);
 
+/// Primes modulo which rotations by the angles of the hints agree with the order of the reals: only some do, the fewer
+/// the more angles there are. Throws Redraw where none was found.
+PrimeTriple agreeing_primes(const FieldHints& hints, std::uint64_t seed);
+
 /// The real numbers with their elementary functions, imitated over a prime field: a random homomorphic image in which
 /// every identity that the functions obey by algebra holds exactly.
 ///

@@ -24,6 +24,23 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
+/// kg m^2/s: factors apart, exponents raised.
+std::string write_unit(std::string_view unit) {
+  std::string result;
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    if (unit[i] == ' ' || unit[i] == '*') {
+      result += "\\,";
+    } else if (unit[i] == '^') {
+      const std::size_t end = std::min(unit.find_first_not_of("-0123456789", i + 1), unit.size());
+      result += "^" + braces(std::string(unit.substr(i + 1, end - i - 1)));
+      i = end - 1;
+    } else {
+      result += escaped(unit.substr(i, 1));
+    }
+  }
+  return "\\mathrm" + braces(result);
+}
+
 // ---------------------------------------------------------------------------------------------------------- names
 
 /// One letter, Greek or not, with a tilde above it if it has one.
@@ -101,7 +118,7 @@ std::string write_name(const std::string& text, int dots, bool primes = false) {
 std::string write_symbol(Expr symbol, const std::string& within_body) {
   if (symbol.role() == Role::Constant) {
     const QuantityName quantity = split_quantity(symbol.name());
-    return quantity.unit.empty() ? quantity.number : quantity.number + "\\,\\mathrm" + braces(escaped(quantity.unit));
+    return quantity.unit.empty() ? quantity.number : quantity.number + "\\," + write_unit(quantity.unit);
   }
   const ShownSymbol shown = shown_symbol(symbol, within_body);
   const std::size_t cut = shown.name.find('_');

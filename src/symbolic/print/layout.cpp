@@ -293,7 +293,8 @@ bool is_circular(Kind kind) { return kind_info(kind).bare; }
 
 bool starts_with_number(const Layout& layout) {
   if (layout.shape == Shape::Symbol) return layout.symbol.role() == Role::Constant;
-  if (layout.shape == Shape::Power) return starts_with_number(layout.parts.front());
+  if (layout.shape == Shape::Power)  // (2 [m])^2 has brackets of its own
+    return is_simple_base(layout.parts.front()) && starts_with_number(layout.parts.front());
   return layout.shape == Shape::Number;
 }
 

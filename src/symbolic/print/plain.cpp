@@ -26,9 +26,10 @@ Level level(const Layout& l) {
       return l.text.empty() ? AtomLevel : PowerLevel;
     case Shape::Row:
       return SumLevel;
+    case Shape::Symbol:  // 2 [m]
+      return l.symbol.role() == Role::Constant ? PowerLevel : AtomLevel;
     case Shape::Labelled:
     case Shape::Number:
-    case Shape::Symbol:
     case Shape::Pi:
     case Shape::Root:
     case Shape::Derivative:

@@ -321,3 +321,12 @@ TEST_CASE("no integral across a jump: what one side has is told apart") {
   CHECK(kink.count("energy") == 1);
   CHECK(conserved_quantities(kink.m.equations).energy_conserved);
 }
+
+TEST_CASE("angles of which few primes have the order: an incline of 20 degrees, and others") {
+  for (const char* angle : {"20 pi/180", "pi/7", "2 pi/7", "5 pi/18", "pi/23"}) {
+    INFO(angle);
+    const Found found(std::string("coord x : number\nparam k = 3\nT = 1/2 x'^2\nV = 1/2 k x^2 + x cos(") + angle +
+                      ") - x sin(" + angle + ")\n");
+    CHECK(found.count("energy") == 1);
+  }
+}

@@ -51,6 +51,54 @@ claim sin θ φ'' = -2 cos θ θ' φ'
   }
 }
 
+TEST_CASE("numbers with units are what they are, however they are written") {
+  const Verification v = verify_text(R"(system fall
+param m = 1 kg, k = 2 N/m
+coord x, y, z : length
+point P mass m at (x, y, z)
+gravity (0, -9.81, 0) m/s^2
+force on P = (3, -4, 0) N
+V += 1/2 (100 [N/m]) x^2 + 1/2 (0.1 [N/mm]) z^2
+run 1 s
+expect equation y'' = -9.81 [m/s^2] - 4 [N]/m
+expect equation y'' = -981 [cm/s^2] - (1 [N] + 3000 [mN])/m
+expect equation m x'' = 3 [N] - 0.1 [N/mm] x
+expect conserved 1/2 m y'^2 + 9.81 [m/s^2] m y + 4 [N] y
+expect conserved m y'^2 + (100 [N/m]) z^2 + m z'^2 + 2 (9.81 [m/s^2]) m y + 8 [N] y
+)");
+  CHECK(v.results.size() == 5);
+  for (const ExpectationResult& r : v.results) {
+    INFO(r.text, ": ", r.message, " ", r.actual);
+    CHECK(r.passed);
+  }
+  CHECK_FALSE(only("system fall\nparam m = 1 kg\ncoord y : length\npoint P mass m at (0, y)\n"
+                   "gravity (0, -9.81) m/s^2\nrun 1 s\nexpect equation y'' = 9.81 [m/s^2]\n")
+                  .passed);
+}
+
+TEST_CASE("what an event sets belongs to what is conserved") {
+  const auto judged = [](const std::string& set, const std::string& claim) {
+    return only(
+        "system s\ndimensionless\nparam k = 1\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) - 1/2 k (x^2 + "
+        "y^2)\nstart x = 1, y' = 0.3\nrun 10\nevent kick when " +
+        set + "\n" + claim + "\n");
+  };
+  const std::string energy = "expect conserved 1/2 (x'^2 + y'^2) + 1/2 k (x^2 + y^2)";
+  const std::string doubled = "x = 0 falling : set x' = 2 x'", turned = "x = 0 falling : set x' = -x'";
+  CHECK(judged(turned, energy).passed);
+  CHECK(judged(turned, "expect energy conserved").passed);
+  CHECK(judged("x = 1/2 : set x = 2 x - 1/2", energy).passed);  // where it happens x stays, elsewhere it would not
+  CHECK_FALSE(judged(turned, "expect conserved x y' - y x'").passed);
+  for (const std::string& claim :
+       {energy, std::string("expect energy conserved"), std::string("expect integral 1/2 x'^2 + 1/2 k x^2")}) {
+    const ExpectationResult r = judged(doubled, claim);
+    INFO(claim, ": ", r.message, " ", r.actual);
+    CHECK_FALSE(r.passed);
+    CHECK(r.message.find("event") != std::string::npos);
+  }
+  CHECK(judged(doubled, "expect x'^2 + k x^2 not conserved").passed);
+}
+
 TEST_CASE("false statements fail, each with what came out") {
   for (const char* line :
        {"expect freedoms = 3", "expect conserved θ'", "expect conserved θ' rel 1e-3", "expect θ at 1 s = 0 rad ± 1e-3",
