@@ -47,7 +47,7 @@ void ForceCheck::follow(const RadauMethod& method, double begin, double end) {
     const double t = 0.5 * (begin + end) + 0.5 * x[j] * (end - begin);
     const std::span<double> out(&path_[j * inputs_], inputs_);
     std::copy(point.begin(), point.end(), out.begin());
-    method.interpolate(t, state_);
+    method.interpolate_at(0.5 + 0.5 * x[j], state_);
     std::copy_n(state_.begin(), 2 * motion_.freedoms(), out.begin());
     out.back() = t;
   }

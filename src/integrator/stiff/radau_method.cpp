@@ -314,8 +314,8 @@ Advance RadauMethod::accept(double h, double end, std::span<double> y) {
   return out;
 }
 
-void RadauMethod::interpolate(double t, std::span<double> y) const {
-  const std::vector<double> part = lagrange(stages_.nodes, (t - t_before_) / h_before_);
+void RadauMethod::interpolate_at(double where, std::span<double> y) const {
+  const std::vector<double> part = lagrange(stages_.nodes, where);
   const std::size_t n2 = 2 * motion_.freedoms();
   for (std::size_t i = 0; i < n2; ++i) {
     double sum = 0;

@@ -61,7 +61,9 @@ class RadauMethod {
   /// One step towards `bound`, at most up to it; y: the state reached, on the constraints.
   Advance advance(double bound, std::span<double> y);
   /// The state at a time in the last step by its polynomial, off the constraints by what the tolerance allows.
-  void interpolate(double t, std::span<double> y) const;
+  void interpolate(double t, std::span<double> y) const { interpolate_at((t - t_before_) / h_before_, y); }
+  /// At a part of the last step, 0 … 1: t may be too coarse to tell it.
+  void interpolate_at(double part, std::span<double> y) const;
   /// Of that polynomial: s.
   int degree() const { return static_cast<int>(stages_.s); }
   int order() const { return stages_.tableau.order; }

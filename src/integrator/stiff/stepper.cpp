@@ -43,6 +43,7 @@ struct StiffStepper::Impl {
   void begin_anew(double bound, std::vector<double>& next);
   void bound_steps(double length);
   bool stands_still(double bound);
+  bool jumps_within(double h);
   bool fast_parts_die_out(double length);
   Step ended(StepEnding ending, std::string reason) const { return {t, t, ending, std::move(reason), {}, {}, 0}; }
   Sample sample(double time) const;
@@ -143,12 +144,17 @@ std::optional<Step> StiffStepper::Impl::advance(double bound, std::vector<double
       begin_anew(bound, next);
       if (motion.status == PointStatus::Ok) reached = method.advance(bound, next);
     }
+    const double resolution = 16 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t), std::abs(bound));
+    if (reached.failure == stiff::Failure::ErrorTest && jumps_within(resolution)) {
+      begin_anew(bound, next);
+      drift(std::copysign(std::min(2 * resolution, std::abs(bound - t)), bound - t), next, reached);
+      return std::nullopt;
+    }
     if (reached.failure) return failed(*reached.failure);
     if (check.sees_all(method, t, reached.reached, next)) break;
     ++rejected;
     const double length = 0.25 * std::abs(reached.reached - t);
     begin_anew(bound, next);
-    const double resolution = 16 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t), std::abs(bound));
     if (length <= resolution) {
       drift(std::copysign(std::min(resolution, std::abs(bound - t)), bound - t), next, reached);
       return std::nullopt;
@@ -204,15 +210,35 @@ void StiffStepper::Impl::bound_steps(double length) {
   method.limit(length);
 }
 
-/// A thousand steps, those taken back counted, that make less than a billionth of the way: the rest would take longer
-/// than anyone waits.
+/// Five thousand steps, those taken back counted, that make less than a billionth of the way: the rest would take
+/// longer than anyone waits. The jump of a relaxation oscillation, a trillionth of its period, takes some two thousand.
 bool StiffStepper::Impl::stands_still(double bound) {
-  constexpr std::size_t window = 1000;
+  constexpr std::size_t window = 5000;
   if (steps + rejected < attempts_window + window) return false;
   attempts_window = steps + rejected;
   const double advanced = std::abs(t - t_window);
   t_window = t;
   return advanced < 1e-9 * std::max(std::abs(t), std::abs(bound - t));
+}
+
+/// Whether forces jump within the resolution of time here: on either side they have settled, beside what they differ by
+/// across. Towards an infinite force they do not settle.
+bool StiffStepper::Impl::jumps_within(double h) {
+  constexpr double settled = 1e-3;
+  std::vector<std::vector<double>> a;  // at t − 2h, t − h, t + h, t + 2h
+  std::vector<double> there = now;
+  for (const double by : {-2 * h, -h, h, 2 * h}) {
+    for (std::size_t i = 0; i < n; ++i) there[i] = now[i] + by * now[n + i];
+    if (!motion.solve(t + by, there)) return false;
+    a.emplace_back(motion.at_point.a().begin(), motion.at_point.a().end());
+  }
+  const auto difference = [&](std::size_t i, std::size_t j) {
+    double out = 0;
+    for (std::size_t k = 0; k < n; ++k) out = std::max(out, std::abs(a[i][k] - a[j][k]));
+    return out;
+  };
+  const double across = difference(1, 2);
+  return across > 0 && std::max(difference(0, 1), difference(2, 3)) <= settled * across;
 }
 
 /// At the point of the last solve.

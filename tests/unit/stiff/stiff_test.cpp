@@ -110,6 +110,21 @@ TEST_CASE("the relaxation oscillation of van der Pol: reference values of the Te
   CHECK(stepper.steps() < 1000);
 }
 
+TEST_CASE("the same in its own time: jumps of 1e-6 s at t = 1e6 s, which time in double resolves to 1e-10 s") {
+  const Stiff slow(
+      "system v\ndimensionless\nparam μ = 1e6\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\nforce x = μ (1 "
+      "- x^2) x'\n");
+  const Stiff scaled(
+      "system v\ndimensionless\nparam ε = 1e-12\ncoord y : number\nL = 1/2 ε y'^2 - 1/2 y^2\nforce y = (1 - y^2) y'\n");
+  auto stepper = slow.stepper(1e-12), other = scaled.stepper(1e-12);
+  stepper.start(0, State{2}, State{0});
+  other.start(0, State{2}, State{0});
+  run(stepper, 3e6);
+  run(other, 3);
+  CHECK(std::abs(stepper.q()[0] - other.q()[0]) < 1e-11);
+  CHECK(stepper.steps() < 5000);
+}
+
 TEST_CASE("a stiff flyball governor: the reference states of 80-bit extrapolation") {
   const Stiff m(kGovernor);
   const State reference[] = {{0.1, 0.622106681402688, 0.4961738690759, 0.4961738690759, 0.523836475569576,
@@ -251,6 +266,15 @@ TEST_CASE("energy and the integral of the power agree; backwards brings back the
   CHECK(!step.event);
   CHECK(with_event.covers(step.begin + 0.5 * (step.end - step.begin)));
   CHECK(std::abs(with_event.sample(step.begin + 0.5 * (step.end - step.begin)).q[0]) < 1e-3);
+}
+
+TEST_CASE("forces that jump far from the start, where time is coarse, are crossed") {
+  const Stiff m("system s\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nforce x = step(t - 1000)\n");
+  auto stepper = m.stepper(1e-12);
+  stepper.start(0, State{0}, State{0});
+  run(stepper, 1001);
+  CHECK(std::abs(stepper.q()[0] - 0.5) < 1e-10);
+  CHECK(std::abs(stepper.v()[0] - 1) < 1e-10);
 }
 
 TEST_CASE("a run ends with its reason") {
