@@ -286,14 +286,16 @@ class Search {
     return largest;
   }
 
+  /// Rests before motions; of each the one nearest to the start, then by energy.
   void put_in_order(std::vector<Equilibrium>& found) const {
     std::stable_sort(found.begin(), found.end(), [&](const auto& x, const auto& y) { return before(x, y); });
-    std::size_t nearest = 0;
-    for (std::size_t i = 1; i < found.size() && found[i].at_rest == found[0].at_rest; ++i)
-      if (displacement(found[i]) < displacement(found[nearest]) - same) nearest = i;
-    if (nearest > 0)
-      std::rotate(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(nearest),
-                  found.begin() + static_cast<std::ptrdiff_t>(nearest) + 1);
+    const auto moves = std::find_if(found.begin(), found.end(), [](const Equilibrium& x) { return !x.at_rest; });
+    for (const auto& [begin, end] : {std::pair(found.begin(), moves), std::pair(moves, found.end())}) {
+      auto nearest = begin;
+      for (auto x = begin; x != end; ++x)
+        if (displacement(*x) < displacement(*nearest) - same) nearest = x;
+      if (nearest != end) std::rotate(begin, nearest, nearest + 1);
+    }
   }
 
   bool before(const Equilibrium& x, const Equilibrium& y) const {

@@ -330,3 +330,26 @@ start x = sin(2), y = -cos(2), u = sin(2)+sin(1), v = -cos(2)-cos(1)
   const double right[] = {-2, 0, 0, 2};
   for (std::size_t i = 0; i < 4; ++i) CHECK(std::abs(heights[i] - right[i]) < 1e-9);
 }
+
+TEST_CASE("Circular orbits in power potentials, of the momentum of the start: (k/φ')² = n + 2") {
+  // V = ±k r^n: r^(n+2) = p²/(|n| m k), the frequency of r about it φ' sqrt(n + 2) (Goldstein, 3.6).
+  for (const auto& [v, n] : {std::pair{"-k/sqrt(r)", -0.5},
+                             {"-k/r^(3/2)", -1.5},
+                             {"k r^(3/2)", 1.5},
+                             {"k r^3", 3.0},
+                             {"k r^4", 4.0},
+                             {"-k/r", -1.0}}) {
+    Linearized m(std::string("system k\ndimensionless\nparam m = 2, k = 3\ncoord r, φ : number\nT = 1/2 m (r'^2 + r^2 "
+                             "φ'^2)\nV = ") +
+                 v + "\nstart r = 1.1, φ' = 1\n");
+    INFO(v);
+    const ModalStudy study = m.study();
+    REQUIRE(!study.entries.empty());
+    const ModalEntry& first = study.entries.front();
+    const double p = 2 * 1.1 * 1.1, r = std::pow(p * p / (std::abs(n) * 2 * 3), 1 / (n + 2));
+    CHECK(near(first.equilibrium.point.q[0], r, 1e-9));
+    CHECK(near(first.equilibrium.point.v[1], p / (2 * r * r), 1e-9));
+    CHECK(first.analysis.stability.verdict == Stability::Energetic);
+    CHECK(near(first.analysis.modes.back().frequency(), p / (2 * r * r) * std::sqrt(n + 2), 1e-9));
+  }
+}
