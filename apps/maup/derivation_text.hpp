@@ -12,6 +12,7 @@ std::string lecture(Study& study, const EquationForm& form, const Certificate& c
 std::string equations_text(const EquationForm& form, const ReadingOrder& order);
 
 /// The checks of a certificate, a line each, under a head.
+std::string verdict_of(const Certificate& certificate);
 std::string certificate_text(const Certificate& certificate);
 
 /// The textbook path, a line a step, and what the names in it stand for.

@@ -169,9 +169,11 @@ std::unique_ptr<Method> finer_stiff(const CompanionPlan& plan, const WantedFunct
 }
 
 std::unique_ptr<Method> finer_variational(const CompanionPlan& plan, const WantedFunctions& wanted, int companion) {
+  constexpr int highest = 12;
   VariationalOptions out;
   out.step = plan.options.step / (companion == 0 ? 1.5 : 2);
-  out.order = plan.result.statistics.order;
+  // Before the first step of both is over all make the same shorter one: another order alone tells its error.
+  out.order = std::max(std::min(plan.result.statistics.order + 2, highest), plan.result.statistics.order);
   out.maximum_steps = most_steps(plan);
   out.interrupt = plan.options.interrupt;
   Diagnostics told_by_the_run;

@@ -6,7 +6,8 @@
 namespace maupertuis {
 namespace {
 
-/// Of the largest value among columns of one unit: what is smaller is rounding noise about zero, not a motion.
+/// Of the largest value among columns of one unit, those of points included: what is smaller is rounding noise about
+/// zero, not a motion.
 constexpr double noise_of_unit = 1e-6;
 
 /// Of what a coordinate would have done along the run if the forces on it had not balanced.
@@ -27,11 +28,13 @@ double largest_of(const Trajectory& trajectory, std::size_t column) {
 LostDigits::LostDigits(const CompanionPlan& plan) {
   const std::size_t n = plan.run.q.size();
   const auto& names = plan.result.trajectory.columns;
-  for (std::size_t c = 0; c < 2 * n; ++c) sizes_.push_back(largest_of(plan.result.trajectory, c));
+  std::vector<double> largest;  // of points, too: a shaft that is held lies still at 0, and its ends do not
+  for (std::size_t c = 0; c < names.size(); ++c) largest.push_back(largest_of(plan.result.trajectory, c));
+  sizes_.assign(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(2 * n));
   for (std::size_t c = 0; c < 2 * n; ++c) {
     double of_unit = names[c].unit == "rad" ? small_turn : 0;
-    for (std::size_t other = 0; other < 2 * n; ++other)
-      if (names[other].unit == names[c].unit) of_unit = std::max(of_unit, sizes_[other]);
+    for (std::size_t other = 0; other < names.size(); ++other)
+      if (names[other].unit == names[c].unit) of_unit = std::max(of_unit, largest[other]);
     // What moves a coordinate along the whole run by less than its noise is noise too.
     if (const double length = std::abs(plan.run.end - plan.run.begin); c >= n && length > 0)
       of_unit = std::max(of_unit, of_unit_[c - n] / length);

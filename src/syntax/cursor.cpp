@@ -50,6 +50,7 @@ void ExpressionParser::expect_end() {
   std::string help;
   if (token.is("[")) help = "A unit in square brackets stands directly after a number or a vector of numbers: 3 [J].";
   if (token.is("=")) help = "A statement has one `=`.";
+  if (token.is("in") && previous().kind == Token::Kind::Number) help = "The unit is written `inch`.";
   if (token.is("<") || token.is(">") || token.is("<=") || token.is(">="))
     help = "Comparisons stand in piecewise( ) and contact.";
   if (token.line_start) help = "A continued line goes on where the line before ended; a new statement is not indented.";

@@ -88,6 +88,7 @@ constexpr UnitEntry kUnits[] = {
     // time
     {"min", kTime, "60"},
     {"h", kTime, "3600"},
+    {"hr", kTime, "3600"},
     {"hour", kTime, "3600"},
     {"d", kTime, "86400"},
     {"day", kTime, "86400"},
@@ -147,6 +148,7 @@ constexpr UnitEntry kUnits[] = {
     {"Torr", kPressure, "101325/760"},
     {"mmHg", kPressure, "133.322387415"},
     {"psi", kPressure, "4.4482216152605/0.00064516"},
+    {"ψ", kPressure, "4.4482216152605/0.00064516"},  // as a text spells psi
     {"ksi", kPressure, "4448.2216152605/0.00064516"},
     // energy, power, viscosity
     {"eV", kEnergy, "1.602176634e-19"},

@@ -275,7 +275,7 @@ void add_mode(const DeriveOptions& options, Study& whole, const ContactMode& mod
   text += equations_text(form, study.equations()->order);
   const auto passed = std::count_if(certificate->checks.begin(), certificate->checks.end(),
                                     [](const CertificateCheck& c) { return c.applies && c.verdict == Verdict::Zero; });
-  text += fmt::format("Certificate: {}, {} checks\n", certificate->passed() ? "passed" : "NOT PASSED", passed);
+  text += fmt::format("Certificate: {}, {} checks\n", verdict_of(*certificate), passed);
   Json entry = document_of(options, study, form, certificate);
   entry["mode"] = shown;
   entry["first"] = first;

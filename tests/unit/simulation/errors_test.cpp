@@ -197,6 +197,22 @@ TEST_CASE("constraints, switches, stiff and variational runs are compared with c
   CHECK(coarse.final.errors->q[0] <= 100 * std::abs(coarse.final.q[0] - right));
 }
 
+TEST_CASE("before the first variational step is over its error is known, too") {
+  for (const double t : {0.05, 0.2, 0.4}) {
+    SimulationOptions options = at({t});
+    options.method = StepMethod::Variational;
+    options.step = 0.5;
+    options.order = 2;
+    const SimulationResult r = run(oscillator, options);
+    const double right = static_cast<double>(std::cos(t * std::sqrt(1.1L / 0.3L))),
+                 off = std::abs(r.at[0].q[0] - right);
+    INFO(t);
+    CHECK(off > 1e-7);
+    CHECK(off <= r.at[0].errors->q[0]);
+    CHECK(r.at[0].errors->q[0] < 0.1);
+  }
+}
+
 TEST_CASE("where shorter variational steps do not come to one motion no digit is certain") {
   // Steps of eight periods of x, which pushes y: with 1/3 and 1/4 of them y comes elsewhere again.
   SimulationOptions options;
@@ -208,6 +224,18 @@ TEST_CASE("where shorter variational steps do not come to one motion no digit is
           options);
   CHECK(std::abs(coarse.final.q[1] - 0.05277) > 0.5);
   CHECK(coarse.final.errors->q[1] == infinity);
+}
+
+TEST_CASE("what is held at zero is known to be there") {
+  const SimulationResult r =
+      run("system rotor\nparam m = 10 kg, e = 0.5 mm, Ip = 0.05 kg m^2, It = 0.03 kg m^2, δ = 1 deg, n = 3000 rpm, la "
+          "= 200 mm, "
+          "lb = 300 mm\ncoord x, y, z : length, φ, θ, ψ : angle\nframe S at (x, y, z) rotation rpy (φ, θ, ψ)\n"
+          "frame G at (e, 0, 0) rotation axis (0, 1, 0) angle δ in S\nbody rotor mass m inertia diag(It, It, Ip) in G\n"
+          "point A at (0, 0, -la) in S\npoint B at (0, 0, lb) in S\nconstraint A.x = 0\nconstraint A.y = 0\n"
+          "constraint A.z = -la\nconstraint B.x = 0\nconstraint B.y = 0\nconstraint ψ = n t\nrun 20 ms\n");
+  CHECK(r.uncertain.columns.empty());
+  for (std::size_t i = 0; i < 3; ++i) CHECK(r.final.errors->q[i] < 1e-15);
 }
 
 TEST_CASE("probes have errors of their own") {
