@@ -26,15 +26,29 @@ Series series_of(const Trajectory& trajectory, const std::string& name, bool deg
   return series;
 }
 
+/// What bare numbers are: "" of coordinates and points, "'" of velocities, "energy", "(" of reactions and formulas.
+/// Units tell these apart where there are some.
+std::string kind_of(const Series& series) {
+  const std::string& name = series.name;
+  if (!series.unit.empty() || name.empty()) return "";
+  if (name == "energy") return name;
+  if (name.find('(') != std::string::npos) return "(";
+  return name.substr(name.find_last_not_of('\'') + 1);
+}
+
+/// A panel a unit; columns that nobody named are apart by what they are as well.
 std::vector<Panel> group_by_unit(const Trajectory& trajectory, const PlotOptions& options) {
   std::vector<std::string> names = options.columns;
-  if (names.empty())
+  const bool all = names.empty();
+  if (all)
     for (const auto& column : trajectory.columns)
       if (column.name != options.against && column.name != options.dots_by) names.push_back(column.name);
   std::vector<Panel> panels;
   for (const auto& name : names) {
     const Series series = series_of(trajectory, name, options.degrees);
-    auto panel = std::find_if(panels.begin(), panels.end(), [&](const Panel& p) { return p.unit == series.unit; });
+    auto panel = std::find_if(panels.begin(), panels.end(), [&](const Panel& p) {
+      return p.unit == series.unit && (!all || kind_of(p.series.front()) == kind_of(series));
+    });
     if (panel == panels.end()) panel = panels.insert(panel, Panel{series.unit, {}, 0, 0, 0});
     panel->series.push_back(series);
   }
