@@ -164,6 +164,8 @@ TEST_CASE("what cannot be had is said, and nothing is written") {
   refused({"-o", folder.path("a.svg"), "--size", "400x300x200"}, "E0809", "--size");
   refused({"-o", folder.path("a.svg"), "--fps", "1e9"}, "E0809", "--fps");
   refused({"-o", folder.path("a.svg"), "--fps=-5"}, "E0809", "--fps");
+  refused({"-o", folder.path("a.svg"), "--fps", "0"}, "E0809", "--fps");
+  refused({"-o", folder.path("a.svg"), "--speed", "0"}, "E0809", "--speed");
   refused({"-o", folder.path("a.svg"), "--speed", "1e-9"}, "E0842", "frames");
   refused({"-o", folder.path("a.svg"), "--from", "9s"}, "E0809", "--from");
   refused({"-o", folder.path("a.svg"), "--from", "2s", "--to", "1s"}, "E0809", "--to");

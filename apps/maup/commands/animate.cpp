@@ -28,7 +28,7 @@ struct AnimateOptions {
   ModelOptions model;
   RunOptions run;
   std::string output, size, from, to, still, view, trail = "fading";
-  double fps = 0, speed = 0;
+  std::optional<double> fps, speed;
   bool once = false, dark = false, plain = false;
 };
 
@@ -95,13 +95,12 @@ Film read_options(const AnimateOptions& o, Diagnostics& diagnostics) {
   film.picture.trail = o.trail == "none"    ? TrailLength::None
                        : o.trail == "whole" ? TrailLength::Whole
                                             : TrailLength::Fading;
-  film.fps = o.fps;
-  if (o.fps == 0) film.fps = ending_of(o) == ".mp4" ? 30 : ending_of(o) == ".gif" ? 20 : 12;
+  film.fps = o.fps.value_or(ending_of(o) == ".mp4" ? 30 : ending_of(o) == ".gif" ? 20 : 12);
   if (!(film.fps > 0) || film.fps > most_fps)
-    wrong_option(diagnostics, fmt::format("--fps {:g} is no rate of frames.", o.fps),
+    wrong_option(diagnostics, fmt::format("--fps {:g} is no rate of frames.", film.fps),
                  fmt::format("Write a number up to {:g}.", most_fps));
-  if (o.speed < 0 || !std::isfinite(o.speed))
-    wrong_option(diagnostics, fmt::format("--speed {:g} is no speed.", o.speed),
+  if (o.speed && !(*o.speed > 0 && std::isfinite(*o.speed)))
+    wrong_option(diagnostics, fmt::format("--speed {:g} is no speed.", *o.speed),
                  "Write how many seconds of motion a second of the film shows, such as 0.5.");
   if (!o.view.empty() && ending_of(o) == ".html")
     wrong_option(diagnostics, "--view is not for pages.", "On a page the reader turns the drawing.");
@@ -134,7 +133,7 @@ void choose_frames(const AnimateOptions& o, const Drawing& drawing, Film& film, 
                to = moment("--to", o.to, drawing, duration, diagnostics);
   if (!(from < to) && duration > 0 && !diagnostics.has_errors())
     wrong_option(diagnostics, "--from is not before --to.", "Give the earlier time to --from.");
-  film.speed = o.speed > 0 ? o.speed : pleasant_speed(to - from);
+  film.speed = o.speed.value_or(pleasant_speed(to - from));
   film.picture.trail_time = 3 * film.speed;
   const double count = std::floor((to - from) / film.speed * film.fps * (1 + 1e-12)) + 1;
   const double most = ending_of(o) == ".svg" ? most_frames_of_svg : most_frames;
@@ -289,7 +288,7 @@ ExitCode animate_fields(AnimateOptions o, Study& study, Console& console) {
   times.times = run->trajectory.times;
   film.height_given = true;
   constexpr double pleasant_seconds = 10;
-  if (!(o.speed > 0)) o.speed = run->end / pleasant_seconds;
+  if (!o.speed) o.speed = run->end / pleasant_seconds;
   if (o.still.empty())
     choose_frames(o, times, film, diagnostics);
   else
