@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace maupertuis::app {
@@ -26,8 +27,9 @@ void tell(const std::string& what, Diagnostics& diagnostics) {
                     "Change start, parameters or the length of the run so that it stays within 1e308.");
 }
 
-bool may_be_open(const std::string& column) {
-  return column.rfind("reaction(", 0) == 0 || column.rfind("error(", 0) == 0;
+bool may_be_open(const std::string& column, std::span<const std::string> open) {
+  return std::find(open.begin(), open.end(), column) != open.end() || column.rfind("reaction(", 0) == 0 ||
+         column.rfind("error(", 0) == 0;
 }
 
 }  // namespace
@@ -38,9 +40,9 @@ bool check_numbers(const Json& document, Diagnostics& diagnostics) {
   return place.empty();
 }
 
-bool check_numbers(const Trajectory& rows, Diagnostics& diagnostics) {
+bool check_numbers(const Trajectory& rows, Diagnostics& diagnostics, std::span<const std::string> open) {
   for (std::size_t column = 0; column < rows.columns.size(); ++column) {
-    if (may_be_open(rows.columns[column].name)) continue;
+    if (may_be_open(rows.columns[column].name, open)) continue;
     for (std::size_t row = 0; row < rows.rows(); ++row)
       if (!std::isfinite(rows.at(row, column))) {
         tell(fmt::format("{} at {} = {}", rows.columns[column].name, rows.independent.name, brief(rows.times[row])),

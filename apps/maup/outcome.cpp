@@ -62,11 +62,12 @@ ExitCode finish_usage(Console& console, Study& study, const char* command) {
   return ExitCode::Usage;
 }
 
-bool write_rows(const std::string& path, const Trajectory& rows, Diagnostics& diagnostics) {
+bool write_rows(const std::string& path, const Trajectory& rows, Diagnostics& diagnostics,
+                std::span<const std::string> open) {
   const Saving saving(path);
   const std::string failure = path.empty() ? std::string() : write_trajectory(rows, path);
   if (!failure.empty()) cannot_write(failure, diagnostics);
-  return check_numbers(rows, diagnostics) && failure.empty();
+  return check_numbers(rows, diagnostics, open) && failure.empty();
 }
 
 void cannot_write(const std::string& failure, Diagnostics& diagnostics) {

@@ -6,6 +6,8 @@
 
 #include <maupertuis/trajectory.hpp>
 
+#include <span>
+
 namespace maupertuis::app {
 
 /// How an answer calls the model at its head: by its name, or "the model" where it has none.
@@ -39,8 +41,10 @@ ExitCode finish_usage(Console& console, Study& study, const char* command);
 bool write_result(const std::string& path, const std::string& content, Diagnostics& diagnostics);
 /// The same for a picture, in the format of the ending: .svg, .png or .pdf.
 bool write_picture(const std::string& path, const std::string& svg, Diagnostics& diagnostics);
-/// The same for rows, in the format of the ending; an empty path asks for nothing.
-bool write_rows(const std::string& path, const Trajectory& rows, Diagnostics& diagnostics);
+/// The same for rows, in the format of the ending; an empty path asks for nothing. Columns of the names `open` may hold
+/// what is no finite number.
+bool write_rows(const std::string& path, const Trajectory& rows, Diagnostics& diagnostics,
+                std::span<const std::string> open = {});
 /// The diagnostic of it; `failure` is the sentence of the writer.
 void cannot_write(const std::string& failure, Diagnostics& diagnostics);
 

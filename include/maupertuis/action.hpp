@@ -156,7 +156,8 @@ struct MotionAction {
   Trajectory rows;      // t, q, S
 };
 
-/// Nothing, with a diagnostic: no run (E1207), or it ends early (E1208), and as for stationary_paths.
+/// Nothing, with a diagnostic: no run (E1207), or it ends early (E1208) or takes too many steps (E1211), functions of
+/// the motion are free (E0631), and as for stationary_paths.
 std::optional<MotionAction> action_of_motion(const Model& model, const EquationsOfMotion& equations,
                                              const ActionOptions& options, Diagnostics& diagnostics);
 

@@ -10,6 +10,7 @@
 #include <maupertuis/action_pictures.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace maupertuis::app {
@@ -178,9 +179,19 @@ std::optional<ActionFindings> find_paths(const ActionCommand& o, Study& study) {
                         found->paths};
 }
 
+/// The columns of rates that have no value at an end where L is infinite: the text says so as well.
+std::vector<std::string> infinite_rates(const std::vector<StationaryPath>& paths, const MechanicalSystem& system) {
+  std::vector<std::string> out;
+  for (const StationaryPath& p : paths)
+    for (const auto* momentum : {&p.start_momentum, &p.end_momentum})
+      for (std::size_t i = 0; i < momentum->size(); ++i)
+        if (!std::isfinite((*momentum)[i])) out.push_back(system.coordinates[i].name + "'");
+  return out;
+}
+
 void write_files(const ActionCommand& o, const ActionFindings& found, Study& study) {
   const MechanicalSystem& system = study.model()->system;
-  write_rows(o.output, found.rows, study.diagnostics());
+  write_rows(o.output, found.rows, study.diagnostics(), infinite_rates(found.paths, system));
   const std::string title = system.title.empty() ? system.name : system.title;
   if (!o.plot.empty()) {
     Diagram d = neighbours_diagram(system, found.variations);

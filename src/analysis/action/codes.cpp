@@ -71,6 +71,13 @@ constexpr CodeEntry entries[] = {
      "Ctrl-C, or another signal, ended the search. What was found until then is not shown: it would be taken for all "
      "there is.",
      "", ""},
+    {"E1211", "a motion of too many steps",
+     "`maup action --motion` lays elements of a path along the motion, two for each of its steps, so that the fastest "
+     "turn is resolved; its second variation is a matrix over all of them. A longer run has no path.",
+     "# maup action --motion\nparam m = 1 kg, k = 4 N/m\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"
+     "start x = 1 m\nrun 20000 s\n",
+     "# maup action --motion\nparam m = 1 kg, k = 4 N/m\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"
+     "start x = 1 m\nrun 20 s\n"},
     {"W1202", "paths through a kink of L may be missing",
      "At abs, min, max and piecewise the derivatives of L may jump. A path that passes such a place is stationary "
      "where each side is and its momentum "

@@ -58,8 +58,10 @@ void fill_second(Problem& problem, const Refined& refined, const FixedEnds& fixe
   const Trial& trial = refined.coarse;
   if (!convex_along(problem.functional, trial)) {
     out.second.reason =
-        "M = ∂²L/∂q'∂q' is not positive definite along the path: neighbours that oscillate fast lower the action "
-        "without end, and there is no Morse index.";
+        problem.equations.degenerate
+            ? "L is degenerate: M = ∂²L/∂q'∂q' is singular along the path, and there is no Morse index."
+            : "M = ∂²L/∂q'∂q' is not positive definite along the path: neighbours that oscillate fast lower the action "
+              "without end, and there is no Morse index.";
     return;
   }
   const Inertia inertia = inertia_of(problem.functional, trial, fixed, least);
@@ -107,9 +109,8 @@ StationaryPath describe(Problem& problem, const Refined& refined, const ActionEn
     return out;
   }
   fill_second(problem, refined, fixed, least, singular, options, out);
-  constexpr double usual_miss = 1e-3;  // beyond, Jacobi fields along the path are those of some other motion
   const bool disagree = out.second.by_inertia && out.second.by_fields && !out.second.index;
-  if (disagree && out.check.done && out.check.missed > usual_miss)
+  if (disagree && out.check.done && out.check.missed > largest_miss)
     out.second.reason += fmt::format(
         " The motion, carried from stretch to stretch, misses the path by {:.1g} of its size: it is too sensitive "
         "here for either count.",

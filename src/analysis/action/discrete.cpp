@@ -152,7 +152,6 @@ struct Assembler {
       out.finite = out.finite && density.finite;
       if (!out.finite) return;
       action.add(w * density.lagrangian);
-      out.action_size += std::abs(w * density.lagrangian);
       out.integrals += w * density.integrals;
       if (order > 0) add_gradient(e, phi, dphi, w);
       if (order == 2) add_hessian(hessian, kinetic, displacement, phi, dphi, w);
@@ -200,23 +199,43 @@ Assembly assemble(Functional& functional, const Trial& trial, int order) {
   return std::move(a.out);
 }
 
-double rounding_of_action(Functional& functional, const Trial& trial) {
-  const double latest = std::abs(trial.mesh.start) + std::abs(trial.mesh.whole);
+namespace {
+
+/// Σ of a function of the time, the values and slopes at the points of Gauss, their weight and the nodes they are made
+/// of.
+template <typename Term>
+double sum_over_points(const Trial& trial, const Term& term) {
   double sum = 0;
   for (Index e = 0; e < trial.mesh.elements(); ++e) {
     const Matrix nodes = trial.element(e);
     const Vector anchor = nodes.col(trial.mesh.rule_of(e).anchor);
     const Matrix apart = nodes.colwise() - anchor;
     for (Index g = 0; g < trial.mesh.rule->points.size(); ++g) {
-      const auto [t, w, phi, dphi] = place_of(trial.mesh, e, g);
-      const Vector q = anchor + apart * phi, v = apart * dphi;
-      const Vector q_terms = anchor.cwiseAbs() + apart.cwiseAbs() * phi.cwiseAbs(),
-                   v_terms = apart.cwiseAbs() * dphi.cwiseAbs();
-      const Sensitivity by = functional.sensitivity(t, q.data(), v.data(), trial.multipliers);
-      sum += std::abs(w) * (by.terms + by.by_q.dot(q_terms) + by.by_v.dot(v_terms) + by.by_time * latest);
+      const Place at = place_of(trial.mesh, e, g);
+      sum += std::abs(at.weight) * term(at, anchor, apart);
     }
   }
-  return rounding_unit * sum;
+  return sum;
+}
+
+}  // namespace
+
+double size_of_action(Functional& functional, const Trial& trial) {
+  return sum_over_points(trial, [&](const Place& at, const Vector& anchor, const Matrix& apart) {
+    const Vector q = anchor + apart * at.value, v = apart * at.slope;
+    return functional.sensitivity(at.t, q.data(), v.data(), trial.multipliers).terms;
+  });
+}
+
+double rounding_of_action(Functional& functional, const Trial& trial) {
+  const double latest = std::abs(trial.mesh.start) + std::abs(trial.mesh.whole);
+  return rounding_unit * sum_over_points(trial, [&](const Place& at, const Vector& anchor, const Matrix& apart) {
+           const Vector q = anchor + apart * at.value, v = apart * at.slope;
+           const Vector q_terms = anchor.cwiseAbs() + apart.cwiseAbs() * at.value.cwiseAbs(),
+                        v_terms = apart.cwiseAbs() * at.slope.cwiseAbs();
+           const Sensitivity by = functional.sensitivity(at.t, q.data(), v.data(), trial.multipliers);
+           return by.terms + by.by_q.dot(q_terms) + by.by_v.dot(v_terms) + by.by_time * latest;
+         });
 }
 
 }  // namespace maupertuis::action

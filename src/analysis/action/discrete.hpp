@@ -66,18 +66,21 @@ Place place_of(const Mesh& mesh, Index element, Index point);
 /// S and its derivatives by the nodes.
 struct Assembly {
   bool finite = true;
-  double action = 0, action_size = 0;  // Σ L, Σ |L|
-  Vector integrals;                    // [k]
-  Vector gradient;                     // [n nodes] of S + Σ λ ∫ G
-  Matrix integral_gradients;           // [n nodes × k]
-  std::vector<Matrix> hessians;        // [elements] each [n (degree + 1)]², node by node
-  std::vector<Matrix> kinetic;         // order 2: the same for ∫ ξ' |M| ξ' dt: by what eigenvalues are measured
+  double action = 0;
+  Vector integrals;                  // [k]
+  Vector gradient;                   // [n nodes] of S + Σ λ ∫ G
+  Matrix integral_gradients;         // [n nodes × k]
+  std::vector<Matrix> hessians;      // [elements] each [n (degree + 1)]², node by node
+  std::vector<Matrix> kinetic;       // order 2: the same for ∫ ξ' |M| ξ' dt: by what eigenvalues are measured
   std::vector<Matrix> displacement;  // order 2: the same for ∫ ξ |M| ξ dt/T², T the whole: what a translation, which
                                      // has no ξ', is measured by
 };
 
 /// order as of Functional::evaluate.
 Assembly assemble(Functional& functional, const Trial& trial, int order);
+
+/// ∫ Σ |terms of L + λ G| dt: what S is measured by, also where L cancels to nothing.
+double size_of_action(Functional& functional, const Trial& trial);
 
 /// A bound on the rounding in `action` of a stationary trial. The nodes' own rounding counts to second order, as S is
 /// stationary in them; what is left enters at each Gauss point anew: the values q and slopes q' formed there from the

@@ -1,5 +1,6 @@
 #include "analysis/action/problem.hpp"
 
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/integrator.hpp>
 #include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/orbits.hpp>
@@ -17,6 +18,10 @@ namespace {
 using namespace action;
 
 constexpr int rows_of_motion = 400;
+constexpr Index fewest_elements_of_motion = 6;
+constexpr int other_order = 24;  // of Taylor's polynomials, beside the usual 20: errors of a motion are not the same
+constexpr std::size_t most_steps_of_motion = 2000;
+constexpr double shortest_element = 1e-12;  // of the whole: a shorter step belongs to the next one
 
 std::optional<double> length_of_run(const Problem& problem, Diagnostics& diagnostics) {
   const Experiment& experiment = problem.model.experiment;
@@ -30,36 +35,111 @@ std::optional<double> length_of_run(const Problem& problem, Diagnostics& diagnos
   return std::nullopt;
 }
 
-/// The motion at the nodes of a mesh with an element for each of its steps.
-std::optional<Trial> follow(Problem& problem, const MotionState& start, double duration, const ActionOptions& options,
-                            Diagnostics& diagnostics) {
-  const MotionKernel motion = motion_kernel(problem.equations);
-  TaylorStepper stepper(motion.kernel, motion.parameters, {.interrupt = options.interrupt});
-  const double end = start.t + duration;
-  std::size_t steps = 0;
-  for (stepper.start(start.t, start.q, start.v); stepper.time() != end; ++steps)
-    if (const Step step = stepper.step(end); step.ending != StepEnding::None) {
-      if (interrupted(options, diagnostics)) return std::nullopt;
-      diagnostics.error("E1208", {}, fmt::format("the motion ends at {}", place(step.begin, problem.model.system)),
-                        step.reason, "Choose another start, or a shorter run.");
-      return std::nullopt;
+/// A motion on a mesh with two elements for each of its steps: these follow how fast it turns.
+struct Followed {
+  Trial trial;
+  MotionState end;
+  double unsure = 0;  // of S: by what elements twice as long, and another integration, differ
+};
+
+/// Carries a motion, and its values to any places on the way.
+class Follower {
+ public:
+  Follower(Problem& problem, const MotionState& start, double duration, const TaylorOptions& options)
+      : problem_(problem),
+        start_(start),
+        end_(start.t + duration),
+        motion_(motion_kernel(solvable_equations(problem.equations))),
+        stepper_(motion_.kernel, motion_.parameters, options) {}
+
+  /// Where steps end, first the start; nothing where the motion ends before, as `last` says then.
+  std::optional<std::vector<double>> steps(Step& last) {
+    std::vector<double> out{start_.t};
+    for (stepper_.start(start_.t, start_.q, start_.v); stepper_.time() != end_;) {
+      last = stepper_.step(end_);
+      if (last.ending != StepEnding::None) return std::nullopt;
+      if (stepper_.time() - out.back() > shortest_element * (end_ - start_.t)) out.push_back(stepper_.time());
     }
-  Trial out{even_mesh(problem.rule, start.t, end, std::clamp<Index>(static_cast<Index>(2 * steps), 6, 400)),
-            {},
-            Vector::Zero(problem.functional.integrals()),
-            Vector::Zero(problem.n())};
-  out.q.resize(problem.n(), out.mesh.nodes());
-  std::vector<double> q(start.q), v(start.v);
-  out.q.col(0) = Eigen::Map<const Vector>(q.data(), problem.n());
-  stepper.start(start.t, start.q, start.v);
-  for (Index k = 1; stepper.time() != end;) {
-    if (stepper.step(end).ending != StepEnding::None && interrupted(options, diagnostics)) return std::nullopt;
-    for (; k < out.q.cols() && stepper.covers(out.mesh.time(k)); ++k) {
-      stepper.state(out.mesh.time(k), q, v);
-      out.q.col(k) = Eigen::Map<const Vector>(q.data(), problem.n());
-    }
+    out.back() = end_;
+    return out;
   }
-  out.q.col(out.q.cols() - 1) = Eigen::Map<const Vector>(stepper.q().data(), problem.n());
+
+  /// The same motion on a mesh.
+  Followed on(const Mesh& mesh) {
+    const Index n = problem_.n();
+    Followed out{
+        {mesh, Matrix(n, mesh.nodes()), Vector::Zero(problem_.functional.integrals()), Vector::Zero(n)}, {}, 0};
+    std::vector<double> q(start_.q), v(start_.v);
+    out.trial.q.col(0) = Eigen::Map<const Vector>(q.data(), n);
+    Index k = 1;
+    for (stepper_.start(start_.t, start_.q, start_.v); stepper_.time() != end_;) {
+      if (stepper_.step(end_).ending != StepEnding::None) break;
+      for (; k < mesh.nodes() && stepper_.covers(mesh.time(k)); ++k) {
+        stepper_.state(mesh.time(k), q, v);
+        out.trial.q.col(k) = Eigen::Map<const Vector>(q.data(), n);
+      }
+    }
+    out.end = {end_, {stepper_.q().begin(), stepper_.q().end()}, {stepper_.v().begin(), stepper_.v().end()}};
+    out.trial.q.col(mesh.nodes() - 1) = Eigen::Map<const Vector>(out.end.q.data(), n);
+    return out;
+  }
+
+ private:
+  Problem& problem_;
+  const MotionState& start_;
+  double end_;
+  MotionKernel motion_;
+  TaylorStepper stepper_;
+};
+
+/// Elements between the steps, each cut into so many that a mesh has at least six, but at least `parts`.
+Mesh mesh_between(const Problem& problem, const std::vector<double>& steps, Index parts) {
+  const auto count = static_cast<Index>(steps.size()) - 1;
+  parts = std::max(parts, (fewest_elements_of_motion + count - 1) / count);
+  const double begin = steps.front(), whole = steps.back() - begin;
+  Mesh out{problem.rule, begin, whole, Pace::Even, false, {}, {}};
+  for (std::size_t e = 0; e + 1 < steps.size(); ++e)
+    for (Index part = 0; part < parts; ++part)
+      out.begins.push_back(
+          (steps[e] - begin + (steps[e + 1] - steps[e]) * static_cast<double>(part) / static_cast<double>(parts)) /
+          whole);
+  for (std::size_t e = 0; e < out.begins.size(); ++e)
+    out.lengths.push_back((e + 1 < out.begins.size() ? out.begins[e + 1] : 1.0) - out.begins[e]);
+  return out;
+}
+
+MotionState one_rounding_aside(MotionState state) {
+  for (double& x : state.q) x *= 1 + 2 * rounding_unit;
+  for (double& x : state.v) x *= 1 - 2 * rounding_unit;
+  return state;
+}
+
+std::optional<Followed> follow(Problem& problem, const MotionState& start, double duration,
+                               const ActionOptions& options, Diagnostics& diagnostics) {
+  Follower follower(problem, start, duration, {.interrupt = options.interrupt});
+  Step last;
+  const auto steps = follower.steps(last);
+  if (interrupted(options, diagnostics)) return std::nullopt;
+  if (!steps) {
+    diagnostics.error("E1208", {}, fmt::format("the motion ends at {}", place(last.begin, problem.model.system)),
+                      last.reason, "Choose another start, or a shorter run.");
+    return std::nullopt;
+  }
+  if (steps->size() > most_steps_of_motion) {
+    diagnostics.error(
+        "E1211", {},
+        fmt::format("the motion takes {} steps, more than the {} of a path", steps->size() - 1, most_steps_of_motion),
+        "A path has elements as short as the steps of the motion, so that they follow its fastest turns.",
+        "Take a shorter run: S of motions that follow one another adds up.");
+    return std::nullopt;
+  }
+  Followed out = follower.on(mesh_between(problem, *steps, 2));
+  const auto action = [&](const Trial& trial) { return assemble(problem.functional, trial, 0).action; };
+  const double here = action(out.trial), coarse = action(follower.on(mesh_between(problem, *steps, 1)).trial);
+  const MotionState aside = one_rounding_aside(start);
+  Follower other(problem, aside, duration, {.order = other_order, .interrupt = options.interrupt});
+  out.unsure = std::abs(here - coarse) + std::abs(here - action(other.on(out.trial.mesh).trial));
+  if (interrupted(options, diagnostics)) return std::nullopt;
   return out;
 }
 
@@ -74,20 +154,17 @@ ActionEnds ends_of_trial(const Trial& trial) {
   return out;
 }
 
-/// A motion is stationary as it is: the mesh is not moved, only compared with its halves.
-std::optional<Refined> as_refined(Problem& problem, const Trial& trial, Diagnostics& diagnostics) {
+/// A motion is stationary as it is: the mesh is not moved.
+std::optional<Refined> as_refined(Problem& problem, const Followed& motion, Diagnostics& diagnostics) {
   Refined out;
-  out.coarse = trial;
-  out.fine = trial;
-  const Assembly a = assemble(problem.functional, trial, 0);
-  const Trial halves = halved(trial, std::vector<bool>(static_cast<std::size_t>(trial.mesh.elements()), true));
-  const Assembly finer = assemble(problem.functional, halves, 0);
-  if (!a.finite || !finer.finite) {
+  out.coarse = out.fine = motion.trial;
+  const Assembly a = assemble(problem.functional, motion.trial, 0);
+  if (!a.finite) {
     diagnose_infinite_lagrangian("motion", diagnostics);
     return std::nullopt;
   }
-  out.action = finer.action;
-  out.action_error = std::abs(out.action - a.action) + rounding_of_action(problem.functional, halves);
+  out.action = a.action;
+  out.action_error = motion.unsure + rounding_of_action(problem.functional, motion.trial);
   return out;
 }
 
@@ -127,20 +204,22 @@ Trajectory rows_of(Problem& problem, const Trial& trial) {
 std::optional<MotionAction> action_of_motion(const Model& model, const EquationsOfMotion& equations,
                                              const ActionOptions& options, Diagnostics& diagnostics) {
   if (!has_action(equations, diagnostics)) return std::nullopt;
+  if (refuse_free_functions(equations, "actions along it", diagnostics)) return std::nullopt;
   Problem problem(model, equations);
   const auto length = length_of_run(problem, diagnostics);
   if (!length) return std::nullopt;
   const auto start = consistent_start(model, equations, diagnostics);
   if (!start) return std::nullopt;
-  const auto trial = follow(problem, start->state, *length, options, diagnostics);
-  if (!trial) return std::nullopt;
-  const auto refined = as_refined(problem, *trial, diagnostics);
+  const auto followed = follow(problem, start->state, *length, options, diagnostics);
+  if (!followed) return std::nullopt;
+  const auto refined = as_refined(problem, *followed, diagnostics);
   if (!refined) return std::nullopt;
   MotionAction out;
-  out.path = describe(problem, *refined, ends_of_trial(*trial), {}, options, diagnostics);
+  out.path = describe(problem, *refined, ends_of_trial(followed->trial), {}, options, diagnostics);
   if (interrupted(options, diagnostics)) return std::nullopt;
   out.path.found_from = "the model's start";
-  out.rows = rows_of(problem, *trial);
+  out.path.start_velocity = start->state.v;
+  out.rows = rows_of(problem, followed->trial);
   return out;
 }
 
@@ -157,27 +236,30 @@ std::optional<PeriodicAction> action_of_orbit(const Model& model, const Equation
   if (!found->motion.driven) {
     const auto on_the_way = follow(problem, start, aside * found->motion.period, options, diagnostics);
     if (!on_the_way) return std::nullopt;
-    const MotionState there = to_path(*on_the_way).at(on_the_way->mesh.t(1));
-    start = {start.t, there.q, there.v};
+    start = {start.t, on_the_way->end.q, on_the_way->end.v};
   }
-  auto trial = follow(problem, start, found->motion.period, options, diagnostics);
-  if (!trial) return std::nullopt;
-  trial->mesh.closed = true;
-  trial->advance = Vector::Zero(problem.n());
+  auto followed = follow(problem, start, found->motion.period, options, diagnostics);
+  if (!followed) return std::nullopt;
+  Trial& trial = followed->trial;
+  trial.mesh.closed = true;
+  trial.advance = Vector::Zero(problem.n());
   for (Index i = 0; i < problem.n(); ++i)
-    trial->advance[i] = found->motion.turns[static_cast<std::size_t>(i)] * 6.283185307179586476925;
-  trial->q.conservativeResize(Eigen::NoChange, trial->mesh.nodes());
-  ActionEnds ends = ends_of_trial(*trial);
+    trial.advance[i] = found->motion.turns[static_cast<std::size_t>(i)] * 6.283185307179586476925;
+  trial.q.conservativeResize(Eigen::NoChange, trial.mesh.nodes());
+  ActionEnds ends = ends_of_trial(trial);
   ends.closed = true;
-  const auto refined = as_refined(problem, *trial, diagnostics);
+  const auto refined = as_refined(problem, *followed, diagnostics);
   if (!refined) return std::nullopt;
   PeriodicAction out;
   out.path = describe(problem, *refined, ends, {}, options, diagnostics);
   if (interrupted(options, diagnostics)) return std::nullopt;
   out.path.found_from = "the periodic motion next to the model's start";
+  out.path.start_velocity = start.v;
   out.period = found->motion.period;
   const double energy = out.path.start_energy.value_or(0);
   out.abbreviated = out.path.action + energy * out.period;
+  // ∂S/∂T = −h_E: what the period is unsure by.
+  out.path.action_error += std::abs(energy) * out.period * (found->motion.closure + 4 * rounding_unit);
   return out;
 }
 

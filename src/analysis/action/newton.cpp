@@ -147,7 +147,8 @@ NewtonResult solve_stationarity(Functional& functional, Trial& trial, const Fixe
     };
     out.correction = length;
     if (length <= rounding_level && length >= 0.25 * before) return out.converged = true, out;
-    if (it.imbalance <= balanced && length > rounding_level) {  // stationary, and degenerate: the step is rounding
+    // Stationary, and degenerate: the step is rounding. Off the constraints the gradient along them tells nothing.
+    if (it.imbalance <= balanced && it.directions.off <= rounding_level && length > rounding_level) {
       out.correction = it.imbalance;
       return out.converged = true, out;
     }

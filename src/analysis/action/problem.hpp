@@ -52,6 +52,10 @@ std::string place(double t, const MechanicalSystem& system);
 /// Moves every node onto φ = 0; false where that does not work.
 bool move_onto_constraints(Functional& functional, Trial& trial, const FixedEnds& fixed, const Matrix& scale);
 
+/// Of the size of a path: where motions from its states miss it by more, Jacobi fields along it are those of some other
+/// motion, and a path that was searched is none.
+constexpr double largest_miss = 1e-3;
+
 /// All that is said of one stationary path. `refined.coarse` is what the second variation is taken on.
 StationaryPath describe(Problem& problem, const Refined& refined, const ActionEnds& ends, const SingularEnds& singular,
                         const ActionOptions& options, Diagnostics& diagnostics);

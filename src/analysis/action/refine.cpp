@@ -8,7 +8,7 @@ namespace maupertuis::action {
 namespace {
 
 constexpr double resolved = 1e-12;    // of the last coefficients, relative to the size of the coordinate
-constexpr double worst_error = 1e-6;  // of Σ |L|: a path that finer elements change by more is none
+constexpr double worst_error = 1e-6;  // of the terms of L: a path that finer elements change by more is none
 constexpr int most_rounds = 12;
 constexpr Index most_elements = 400;
 
@@ -41,7 +41,7 @@ class Refiner {
     out.action_error = std::abs(fine.action - coarse) + rounding_of_action(functional_, trial_);
     out.path_error = ((trial_.q - guess.q).cwiseQuotient(even_scale(trial_, least_))).lpNorm<Eigen::Infinity>();
     out.correction = correction_;
-    if (!(out.action_error <= worst_error * fine.action_size)) return std::nullopt;
+    if (!(out.action_error <= worst_error * size_of_action(functional_, trial_))) return std::nullopt;
     out.fine = std::move(trial_);
     return out;
   }

@@ -302,6 +302,7 @@ std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOf
   if (!check_ends(problem, ends, diagnostics)) return std::nullopt;
   PathSearch out;
   out.ends = ends;
+  std::size_t left_out = 0;
   for (const auto& [aim, turns] : with_turns(ends, model.system, options.turns)) {
     Search search(problem, aim, options);
     search.run();
@@ -321,10 +322,15 @@ std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOf
       search.found_.resize(options.paths);
     }
     for (const auto& [refined, name] : search.found_) {
-      out.paths.push_back(describe(problem, refined, aim, search.singular(), options, diagnostics));
+      StationaryPath path = describe(problem, refined, aim, search.singular(), options, diagnostics);
       if (interrupted(options, diagnostics)) return std::nullopt;
-      out.paths.back().found_from = name;
-      out.paths.back().turns = turns;
+      if (path.check.done && path.check.missed > largest_miss) {
+        ++left_out;
+        continue;
+      }
+      path.found_from = name;
+      path.turns = turns;
+      out.paths.push_back(std::move(path));
     }
   }
   if (const std::size_t members = members_of_families(out.paths); members > 0)
@@ -332,6 +338,10 @@ std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOf
         " {} of them have a variation that leaves S as it is, and the same S as another one: members of a family of "
         "stationary paths, whose number says nothing.",
         members);
+  if (left_out > 0)
+    out.bound +=
+        fmt::format(" {} more {} left out: the motion, carried from {} own states, does not follow {}.", left_out,
+                    left_out == 1 ? "was" : "were", left_out == 1 ? "its" : "their", left_out == 1 ? "it" : "them");
   if (out.paths.empty()) {
     refuse_no_path(Search(problem, ends, options), problem, ends, diagnostics);
     return std::nullopt;

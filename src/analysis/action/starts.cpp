@@ -71,13 +71,16 @@ std::vector<Start> starts_between(Problem& problem, const ActionEnds& ends) {
         bend(s.trial, i, k, by);
         out.push_back(std::move(s));
       }
-  std::mt19937_64 random(20240607);
-  for (int r = 0; r < random_starts; ++r) {
-    Start s{fmt::format("the line bent at random (number {})", r + 1), line};
-    for (Index i = 0; i < problem.n(); ++i)
-      for (int k = 1; k <= random_waves; ++k)
-        bend(s.trial, i, k, 3 * (2 * std::generate_canonical<double, 53>(random) - 1) / k);
-    out.push_back(std::move(s));
+  // Each also the other way round: the mirror image of a path is one where L is the same in a mirror.
+  for (const double side : {1.0, -1.0}) {
+    std::mt19937_64 random(20240607);
+    for (int r = 0; r < random_starts; ++r) {
+      Start s{fmt::format("the line bent at random (number {}{})", r + 1, side < 0 ? ", the other way" : ""), line};
+      for (Index i = 0; i < problem.n(); ++i)
+        for (int k = 1; k <= random_waves; ++k)
+          bend(s.trial, i, k, side * 3 * (2 * std::generate_canonical<double, 53>(random) - 1) / k);
+      out.push_back(std::move(s));
+    }
   }
   return out;
 }
