@@ -205,6 +205,28 @@ Json action_json(const PathSearch& search, const MechanicalSystem& system) {
   return out;
 }
 
+namespace {
+
+std::string corner_of(const PathCorner& corner, const MechanicalSystem& system) {
+  return corner.row < system.coordinates.size() ? "p_" + system.coordinates[corner.row].name : "h_E";
+}
+
+std::string corner_text(const PathCorner& corner, const MechanicalSystem& system) {
+  const std::string name = corner_of(corner, system), where = moment(corner.t, system);
+  if (!std::isfinite(corner.before) || !std::isfinite(corner.after))
+    return fmt::format("{} has no finite value at {}", name, where);
+  return fmt::format("a corner at {}, where {} jumps from {:.6g} to {:.6g}", where, name, corner.before, corner.after);
+}
+
+Json corner_json(const PathCorner& corner, const MechanicalSystem& system) {
+  return {{"t", corner.t},
+          {"of", corner_of(corner, system)},
+          {"before", finite(corner.before)},
+          {"after", finite(corner.after)}};
+}
+
+}  // namespace
+
 std::string action_text(const GivenPath& given, const MechanicalSystem& system) {
   std::string out = fmt::format("{}: the path given, from {} to {}\n", spoken_name(system), moment(given.start, system),
                                 moment(given.end, system));
@@ -214,7 +236,9 @@ std::string action_text(const GivenPath& given, const MechanicalSystem& system) 
     out +=
         line("integral", fmt::format("{} = {:.16g}", name.empty() ? std::to_string(i + 1) : name, given.integrals[i]));
   }
-  if (given.stationary)
+  if (given.corner)
+    out += line("stationary", "no: " + corner_text(*given.corner, system));
+  else if (given.stationary)
     out += line("stationary", fmt::format("yes: the equations hold to {:.1e} of their terms", given.residual));
   else
     out += line("stationary", fmt::format("no: the equation of {} is off by {:.2g} of its terms at {}",
@@ -235,6 +259,7 @@ Json action_json(const GivenPath& given, const MechanicalSystem& system) {
           {"residual", given.residual},
           {"residual_at", given.residual_at},
           {"residual_of", system.coordinates[given.residual_row].name},
+          {"corner", given.corner ? corner_json(*given.corner, system) : Json(nullptr)},
           {"variations", variations_json(given.variations)}};
 }
 

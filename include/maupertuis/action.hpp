@@ -130,21 +130,30 @@ std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOf
                                            const ActionEnds& ends, const ActionOptions& options,
                                            Diagnostics& diagnostics);
 
+/// Where p = ∂L/∂q', or h_E, does not go on: there a path is not stationary (Weierstrass, Erdmann).
+struct PathCorner {
+  double t = 0;
+  std::size_t row = 0;           // of which coordinate's momentum; n: of h_E
+  double before = 0, after = 0;  // NaN or infinite where it has no value
+};
+
 /// S along a path that is given as formulas of t.
 struct GivenPath {
   double action = 0, action_error = 0;
-  std::vector<double> integrals;  // ∫ G dt of each integral constraint
-  double residual = 0;            // the largest |d/dt ∂L/∂q' − ∂L/∂q|, relative to the sizes of its terms
-  double residual_at = 0;         // where
-  std::size_t residual_row = 0;   // of which coordinate
-  bool stationary = false;        // the residual vanishes to rounding
+  std::vector<double> integrals;     // ∫ G dt of each integral constraint
+  double residual = 0;               // the largest |d/dt ∂L/∂q' − ∂L/∂q|, relative to the sizes of its terms
+  double residual_at = 0;            // where
+  std::size_t residual_row = 0;      // of which coordinate
+  std::optional<PathCorner> corner;  // the first
+  bool stationary = false;           // the residual vanishes to rounding, and there is no corner
   std::vector<TestVariation> variations;
   ActionPath path;  // to be drawn
   double start = 0, end = 0;
 };
 
 /// `path`: q(t) [n] of numbers, parameters and the independent variable. Nothing, with a diagnostic: it misses the ends
-/// of the model (E1205) or leaves the constraints (E1202), L has no value on it (E1206).
+/// of the model (E1205), leaves the constraints (E1202) or jumps (E1213), L has no value on it (E1206), or S is
+/// infinite or cannot be told (E1212).
 std::optional<GivenPath> action_of_path(const Model& model, const EquationsOfMotion& equations,
                                         std::span<const Expr> path, double start, double end,
                                         const std::optional<ActionEnds>& ends, const ActionOptions& options,

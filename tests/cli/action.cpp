@@ -294,3 +294,49 @@ TEST_CASE("the paths of a model in its report, which needs no run") {
   CHECK(unreachable.code != 0);
   CHECK(contains(unreachable.err, "E1204"));
 }
+
+TEST_CASE("S along the motion of a degenerate Lagrangian; where functions stay free there is none") {
+  const std::string first = "system d\ndimensionless\ncoord x, y : number\n";
+  const Outcome told = maup({"action", "-", "--motion", "--json"},
+                            first + "L = 1/2 (x' + y')^2 - 1/2 x^2 - 1/2 y^2\nstart x = 1\nrun 3\n");
+  CHECK_MESSAGE(told.code == 0, told.err);
+  const Json motion = json_of(told)["motion"];
+  // x = y = cos(t/√2): S = −∫ cos(√2 t) dt
+  CHECK(std::abs(motion["action"].get<double>() + std::sin(3 * std::sqrt(2.0)) / std::sqrt(2.0)) < 1e-13);
+  CHECK(motion["index"].is_null());
+  CHECK(contains(motion["reason"].get<std::string>(), "degenerate"));
+  const Outcome free_function = maup({"action", "-", "--motion"}, first + "L = 1/2 (x' - y)^2\nstart x = 1\nrun 3\n");
+  CHECK(free_function.code == 3);
+  CHECK(contains(free_function.err, "E0631"));
+}
+
+TEST_CASE("a brachistochrone: y' has no value at the start, and nothing is wrong with that") {
+  const std::string model =
+      "system b\nparam R = 1 m, g = 9.81 m/s^2\nindependent x : length\ncoord y : length\n"
+      "L = sqrt((1 + y'^2)/(2 g y))\npath from 0 at 0 to R (1 - cos(3)) at R (3 - sin(3))\n";
+  const Outcome told = maup({"action", "-", "--json"}, model);
+  CHECK_MESSAGE(told.code == 0, told.err);
+  CHECK(json_of(told)["ok"] == true);
+  const Json path = json_of(told)["stationary"]["paths"][0];
+  // The cycloid through its angle 3 takes 3 √(R/g).
+  CHECK(std::abs(path["action"].get<double>() - 3 / std::sqrt(9.81)) < 1e-13);
+  CHECK(path["start_velocity"]["y"].is_null());
+}
+
+TEST_CASE("a corner of a given path is told, with what jumps there") {
+  const std::string model = "system s\ndimensionless\ncoord x : number\nL = 1/2 x'^2\n";
+  const Outcome told = maup({"action", "-", "--path", "x = abs(t - 0.5)", "--from", "0", "--to", "1"}, model);
+  CHECK_MESSAGE(told.code == 0, told.err);
+  CHECK(contains(told.out, "no: a corner at t = 0.5 s, where p_x jumps from -1 to 1"));
+  const Outcome as_json =
+      maup({"action", "-", "--json", "--path", "x = abs(t - 0.5)", "--from", "0", "--to", "1"}, model);
+  const Json given = json_of(as_json)["given"];
+  CHECK(given["stationary"] == false);
+  CHECK(given["corner"]["of"] == "p_x");
+  CHECK(given["corner"]["before"] == -1.0);
+  CHECK(given["corner"]["after"] == 1.0);
+  const Json straight =
+      json_of(maup({"action", "-", "--json", "--path", "x = 2 t", "--from", "0", "--to", "1"}, model))["given"];
+  CHECK(straight["corner"].is_null());
+  CHECK(straight["stationary"] == true);
+}

@@ -78,6 +78,20 @@ constexpr CodeEntry entries[] = {
      "start x = 1 m\nrun 20000 s\n",
      "# maup action --motion\nparam m = 1 kg, k = 4 N/m\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"
      "start x = 1 m\nrun 20 s\n"},
+    {"E1212", "S of a path that is not known",
+     "The integral of L along the path is infinite or converges too slowly to be told, as that of 1/(8 t) from 0 along "
+     "x = sqrt(t) for a free particle; or so much happens on the path that not every piece of it can be looked at.",
+     "# maup action --path x=s\nparam m = 1 kg, a = 1 m, τ = 1 s\ncoord x : length\nT = 1/2 m x'^2\n"
+     "let s = a sqrt(t/τ)\npath from 0 at 0 to 1 m at 1 s\n",
+     "# maup action --path x=s\nparam m = 1 kg, a = 1 m, τ = 1 s\ncoord x : length\nT = 1/2 m x'^2\n"
+     "let s = a t/τ\npath from 0 at 0 to 1 m at 1 s\n"},
+    {"E1213", "a path that jumps",
+     "A path is a continuous curve. Where its formulas jump, the velocity is infinite, which the integral of L over "
+     "both sides does not see: S of it would be no action.",
+     "# maup action --path x=s\nparam m = 1 kg, a = 1 m, τ = 1 s\ncoord x : length\nT = 1/2 m x'^2\n"
+     "let s = a step(t - τ/2)\npath from 0 at 0 to 1 m at 1 s\n",
+     "# maup action --path x=s\nparam m = 1 kg, a = 1 m, τ = 1 s\ncoord x : length\nT = 1/2 m x'^2\n"
+     "let s = a max(0, 2 t/τ - 1)\npath from 0 at 0 to 1 m at 1 s\n"},
     {"W1202", "paths through a kink of L may be missing",
      "At abs, min, max and piecewise the derivatives of L may jump. A path that passes such a place is stationary "
      "where each side is and its momentum "

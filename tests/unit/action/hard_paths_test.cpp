@@ -1,0 +1,87 @@
+#include "support.hpp"
+
+using namespace maupertuis;
+
+namespace {
+
+const char* const pendulum_by_constraint = R"(
+system cp
+param m = 1 kg, l = 1 m, g = 9.81 m/s^2
+coord x, y : length
+point P mass m at (x, y)
+gravity (0, -g)
+constraint x^2 + y^2 = l^2 name rod
+)";
+
+std::string of_kepler(const std::string& run) {
+  return "system kepler\ndimensionless\nparam μ = 1\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n"
+         "V = -μ/sqrt(x^2 + y^2)\nstart x = 0.1, y' = 4.358898943540674\nrun " +
+         run + "\n";
+}
+
+}  // namespace
+
+TEST_CASE("paths on a constraint keep it between the nodes too, and come in their pairs") {
+  const ModelText by_angle("system p\ndimensionless\ncoord θ : angle\nL = 1/2 θ'^2 + 9.81 cos θ\n");
+  const ModelText by_constraint(pendulum_by_constraint);
+  for (const double duration : {0.5, 2.0}) {
+    const PathSearch angle = paths_of(by_angle, fixed_ends({0}, 0, {pi}, duration));
+    const PathSearch found = paths_of(by_constraint, fixed_ends({0, -1}, 0, {0, 1}, duration));
+    REQUIRE(angle.paths.size() >= 1);
+    REQUIRE(found.paths.size() == 2);
+    for (const StationaryPath& p : found.paths) {
+      CHECK(p.action == doctest::Approx(angle.paths[0].action).epsilon(1e-12));
+      CHECK(p.check.missed < 1e-9);
+      for (int k = 0; k <= 100; ++k) {
+        const MotionState s = p.path.at(duration * k / 100);
+        CHECK(std::hypot(s.q[0], s.q[1]) == doctest::Approx(1).epsilon(1e-10));
+      }
+    }
+    CHECK(found.paths[0].start_velocity[0] == doctest::Approx(-found.paths[1].start_velocity[0]));
+  }
+}
+
+TEST_CASE("an eccentric orbit: the model's own start, conjugate to it after each turn, S by Kepler's equation") {
+  const ModelText m(of_kepler("20"));
+  Diagnostics diagnostics;
+  const auto found = action_of_motion(m.model, m.equations, {}, diagnostics);
+  REQUIRE(found);
+  CHECK(found->path.start_velocity[0] == 0);
+  CHECK(found->path.start_velocity[1] == 4.358898943540674);
+  REQUIRE(found->path.second.conjugate.size() == 5);
+  for (const int turn : {1, 2, 3})
+    CHECK(std::abs(found->path.second.conjugate[static_cast<std::size_t>(2 * turn - 2)].t - 2 * pi * turn) < 1e-10);
+  // E − 0.9 sin E = 20, S = ∫ (h + 2/r) dt = −½ 20 + 2 E
+  double anomaly = 20;
+  for (int k = 0; k < 50; ++k) anomaly -= (anomaly - 0.9 * std::sin(anomaly) - 20) / (1 - 0.9 * std::cos(anomaly));
+  CHECK(std::abs(found->path.action - (2 * anomaly - 10)) < 2 * found->path.action_error);
+  CHECK(found->path.action_error < 1e-11);
+}
+
+TEST_CASE("an eccentric orbit as a closed path: 3π, within its error, and no warning") {
+  const ModelText m(of_kepler("20"));
+  Diagnostics diagnostics;
+  const auto found = action_of_orbit(m.model, m.equations, std::nullopt, {}, diagnostics);
+  REQUIRE(found);
+  CHECK(diagnostics.items().empty());
+  CHECK(std::abs(found->path.action - 3 * pi) <= found->path.action_error);
+  CHECK(found->path.action_error < 1e-11);
+  CHECK(found->abbreviated == doctest::Approx(2 * pi).epsilon(1e-12));
+}
+
+TEST_CASE("a motion of more steps than a path has elements for is refused") {
+  const ModelText m("system o\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\nstart x = 1\nrun 20000\n");
+  Diagnostics diagnostics;
+  CHECK_FALSE(action_of_motion(m.model, m.equations, {}, diagnostics));
+  REQUIRE(diagnostics.items().size() == 1);
+  CHECK(diagnostics.items().front().code == "E1211");
+}
+
+TEST_CASE("a path along which L vanishes is one as others are") {
+  const ModelText m("system s\ndimensionless\ncoord x, y : number\nL = 1/2 x'^2 - 1/2 y'^2 - 1/2 x^2 + 1/2 y^2\n");
+  const PathSearch found = paths_of(m, fixed_ends({0, 0}, 0, {1, 1}, 2));
+  REQUIRE(found.paths.size() == 1);
+  CHECK(std::abs(found.paths[0].action) <= found.paths[0].action_error);
+  for (const std::size_t i : {0, 1})
+    CHECK(found.paths[0].start_velocity[i] == doctest::Approx(1 / std::sin(2.0)).epsilon(1e-11));
+}
