@@ -51,8 +51,8 @@ class PathIntegrals {
       diagnose_infinite_lagrangian("path", diagnostics);
     else if (found.told == Integral::Told::Diverges)
       diagnostics.error("E1212", {},
-                        fmt::format("S of this path has no finite value that could be told: near {}", where),
-                        fmt::format("There {} grows so fast that its integral does not converge, or too slowly.", what),
+                        fmt::format("S of this path is infinite, or converges too slowly to be told, near {}", where),
+                        fmt::format("There {} grows so fast that its integral diverges, or nearly so.", what),
                         "Give a path that is less steep there, or ends that leave the place out.");
     else
       diagnostics.error("E1212", {}, fmt::format("S of this path is not known: near {} too much happens", where),

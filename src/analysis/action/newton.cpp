@@ -13,6 +13,8 @@ constexpr double rounding_level = 1e-9;  // a correction that does not shrink an
 constexpr double balanced = 2e-14;       // of the gradient against its terms: nothing is left but rounding
 constexpr double shift =
     1e-12;  // of the kinetic norm: a direction in which S does not change gets no step from rounding alone
+constexpr double short_step = 1e-3;   // of the scale: a correction that short is judged by the gradient as well
+constexpr double much_better = 1e-2;  // of the gradient that was left
 constexpr double least_damping = 1e-4;
 constexpr double longest_step = 3;  // in units of the scale
 
@@ -138,7 +140,7 @@ NewtonResult solve_stationarity(Functional& functional, Trial& trial, const Fixe
     if (options.interrupt && options.interrupt->load()) return out;
     if (!it.factor_and_solve()) return out;
     const Vector step = it.step, multipliers = it.multipliers;
-    const double length = it.length(), norm = it.norm();
+    const double length = it.length(), norm = it.norm(), imbalance = it.imbalance;
     const Matrix q = trial.q;
     const Vector lambda = trial.multipliers;
     const auto move = [&](double by) {
@@ -162,6 +164,9 @@ NewtonResult solve_stationarity(Functional& functional, Trial& trial, const Fixe
       move(damping);
       if (!it.simplified()) continue;
       if (it.norm() <= (1 - damping / 4) * norm || (damping == 1 && length < rounding_level)) break;
+      // Where S is nearly flat along a direction, as along shifts of a kink, rounding of the gradient is a correction
+      // that does not shrink.
+      if (damping == 1 && length < short_step && it.imbalance <= much_better * imbalance) break;
     }
     before = damping == 1 ? length : HUGE_VAL;
   }

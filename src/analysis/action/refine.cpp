@@ -9,6 +9,7 @@ namespace {
 
 constexpr double resolved = 1e-12;    // of the last coefficients, relative to the size of the coordinate
 constexpr double worst_error = 1e-6;  // of the terms of L: a path that finer elements change by more is none
+constexpr double nearly = 1e-3;       // of the size: a correction on the way, with which finer elements may begin
 constexpr int most_rounds = 12;
 constexpr Index most_elements = 400;
 
@@ -67,7 +68,8 @@ class Refiner {
       if (worst <= resolved || worst > 0.7 * before || trial_.mesh.elements() > most_elements) return true;
       before = worst;
       trial_ = halved(trial_, which);
-      if (!solve()) return false;
+      // A path that S barely holds in its place, as a kink far from both ends, may come to rest on finer elements only.
+      if (!solve() && !(correction_ <= nearly)) return false;
     }
     return true;
   }

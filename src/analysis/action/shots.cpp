@@ -17,11 +17,13 @@ constexpr double coarse =
 constexpr double far =
     4;  // of their distance: neighbours that arrive on one side and further off have none between them
 constexpr int most_halvings = 12;
+constexpr double escaped =
+    1e4;  // of the way between the ends: a motion that far away does not come back before it ends
 constexpr double near_zero_of_root = 1e-10;
 
 struct Shot {
   double speed = 0;
-  std::optional<double> arrival;  // q(end) − wanted; nothing: the motion ends before
+  std::optional<double> arrival;  // q(end) − wanted, ±∞ where it escapes; nothing: the motion ends before
 };
 
 class Shooter {
@@ -60,9 +62,13 @@ class Shooter {
   Shot shoot(double speed) {
     ++out_.count;
     stepper_.start(ends_.start, {&from_, 1}, {&speed, 1});
-    while (stepper_.time() != ends_.end)
-      if (stepper_.step(ends_.end).ending != StepEnding::None) return {speed, std::nullopt};
+    bool arrived = true;
+    while (arrived && stepper_.time() != ends_.end) arrived = stepper_.step(ends_.end).ending == StepEnding::None;
     const double arrival = stepper_.q()[0] - to_;
+    // A motion that ends on the way and is far off by then has escaped to that side.
+    if (!arrived && std::abs(arrival) > escaped * problem_.least(&ends_)[0])
+      return {speed, std::copysign(HUGE_VAL, arrival)};
+    if (!arrived) return {speed, std::nullopt};
     return {speed, std::isfinite(arrival) ? std::optional(arrival) : std::nullopt};
   }
 

@@ -77,6 +77,20 @@ TEST_CASE("a motion of more steps than a path has elements for is refused") {
   CHECK(diagnostics.items().front().code == "E1211");
 }
 
+TEST_CASE("kinks of a double well, which S barely holds in their places: quadratures in 40 digits") {
+  const ModelText m("system k\ndimensionless\ncoord x : number\nL = 1/2 x'^2 + 1/2 (x^2 - 1)^2\n");
+  // T = ∫ dx/√((1 − x²)² + 2 E), S = ∫ √((1 − x²)² + 2 E) dx − E T from −1 to 1
+  const std::pair<double, double> cases[] = {
+      {8, 1.3333351306652311741}, {12, 1.333333333937335065}, {20, 1.3333333333333334013}};
+  for (const auto& [duration, action] : cases) {
+    CAPTURE(duration);
+    const PathSearch found = paths_of(m, fixed_ends({-1}, 0, {1}, duration));
+    REQUIRE(found.paths.size() == 1);
+    CHECK(std::abs(found.paths[0].action - action) <= found.paths[0].action_error);
+    CHECK(found.paths[0].check.missed < 1e-9);
+  }
+}
+
 TEST_CASE("a path along which L vanishes is one as others are") {
   const ModelText m("system s\ndimensionless\ncoord x, y : number\nL = 1/2 x'^2 - 1/2 y'^2 - 1/2 x^2 + 1/2 y^2\n");
   const PathSearch found = paths_of(m, fixed_ends({0, 0}, 0, {1, 1}, 2));
