@@ -137,7 +137,7 @@ Json variations_json(const std::vector<TestVariation>& variations) {
   for (const TestVariation& v : variations)
     out.push_back({{"name", v.name},
                    {"slope", v.slope},
-                   {"curvature", v.curvature},
+                   {"curvature", finite(v.curvature)},
                    {"epsilon", v.epsilon},
                    {"change", v.change}});
   return out;

@@ -305,6 +305,12 @@ TEST_CASE("S along the motion of a degenerate Lagrangian; where functions stay f
   CHECK(std::abs(motion["action"].get<double>() + std::sin(3 * std::sqrt(2.0)) / std::sqrt(2.0)) < 1e-13);
   CHECK(motion["index"].is_null());
   CHECK(contains(motion["reason"].get<std::string>(), "degenerate"));
+  // Of the first order in velocities: x = cos t, y = −sin t, and nothing measures curvature.
+  const Outcome first_order =
+      maup({"action", "-", "--motion", "--json"}, first + "L = y x' - 1/2 x^2 - 1/2 y^2\nstart x = 1\nrun 3\n");
+  CHECK_MESSAGE(first_order.code == 0, first_order.err);
+  CHECK(std::abs(json_of(first_order)["motion"]["action"].get<double>() + std::sin(6.0) / 4) < 1e-13);
+  CHECK(json_of(first_order)["motion"]["check"]["missed"].get<double>() < 1e-12);
   const Outcome free_function = maup({"action", "-", "--motion"}, first + "L = 1/2 (x' - y)^2\nstart x = 1\nrun 3\n");
   CHECK(free_function.code == 3);
   CHECK(contains(free_function.err, "E0631"));
@@ -339,4 +345,19 @@ TEST_CASE("a corner of a given path is told, with what jumps there") {
       json_of(maup({"action", "-", "--json", "--path", "x = 2 t", "--from", "0", "--to", "1"}, model))["given"];
   CHECK(straight["corner"].is_null());
   CHECK(straight["stationary"] == true);
+}
+
+TEST_CASE("ends that a degenerate Lagrangian does not join: no path, whatever Newton's method converges to") {
+  const std::string model = "system d\ndimensionless\ncoord x, y : number\nL = 1/2 (x' + y')^2 - 1/2 x^2 - 1/2 y^2\n";
+  const Outcome none = maup({"action", "-"}, model + "path from (1, 1) at 0 to (0.5, 0.7) at 3\n");
+  CHECK(none.code == 3);
+  CHECK(contains(none.err, "E1204"));
+  CHECK(contains(none.err, "L is degenerate"));
+  const Outcome one = maup({"action", "-", "--json"}, model + "path from (1, 1) at 0 to (0.5, 0.5) at 3\n");
+  CHECK_MESSAGE(one.code == 0, one.err);
+  const Json path = json_of(one)["stationary"]["paths"][0];
+  // x = y = q, L = 2 q'² − q², ω = 1/√2: S = 2 ω ((1 + ¼) cos ωT − 1)/sin ωT
+  const double w = std::sqrt(0.5);
+  CHECK(std::abs(path["action"].get<double>() - 2 * w / std::sin(3 * w) * (1.25 * std::cos(3 * w) - 1)) < 1e-12);
+  CHECK(path["check"]["missed"].get<double>() < 1e-9);
 }

@@ -72,7 +72,7 @@ constexpr CodeEntry entries[] = {
      "there is.",
      "", ""},
     {"E1211", "a motion of too many steps",
-     "`maup action --motion` lays elements of a path along the motion, two for each of its steps, so that the fastest "
+     "`maup action --motion` lays elements of a path along the motion, one for each of its steps, so that the fastest "
      "turn is resolved; its second variation is a matrix over all of them. A longer run has no path.",
      "# maup action --motion\nparam m = 1 kg, k = 4 N/m\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"
      "start x = 1 m\nrun 20000 s\n",

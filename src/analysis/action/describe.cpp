@@ -3,6 +3,7 @@
 #include "analysis/action/kinks.hpp"
 #include "analysis/action/problem.hpp"
 
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/switch_text.hpp>
 
 #include <fmt/format.h>
@@ -62,6 +63,9 @@ void fill_second(Problem& problem, const Refined& refined, const FixedEnds& fixe
             ? "L is degenerate: M = ∂²L/∂q'∂q' is singular along the path, and there is no Morse index."
             : "M = ∂²L/∂q'∂q' is not positive definite along the path: neighbours that oscillate fast lower the action "
               "without end, and there is no Morse index.";
+    if (problem.functional.integrals() == 0 && !singular.any() && !has_free_functions(problem.equations))
+      out.check =
+          carried_along(problem.equations, problem.equations.lagrangian_expanded, trial, least, options.interrupt);
     return;
   }
   const Inertia inertia = inertia_of(problem.functional, trial, fixed, least);

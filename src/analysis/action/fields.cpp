@@ -4,6 +4,7 @@
 #include "linear_algebra/dense.hpp"
 #include "linear_algebra/products.hpp"
 
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/integrator.hpp>
 #include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/tangent.hpp>
@@ -152,9 +153,11 @@ class Neighbours {
 /// ∫ L dt along the motions themselves.
 class ActionAlong {
  public:
-  ActionAlong(const EquationsOfMotion& weighted, Expr lagrangian)
-      : kernel_(kernel_of(weighted, lagrangian)), stepper_(kernel_, parameter_values(*weighted.system), {}) {}
+  ActionAlong(const EquationsOfMotion& weighted, Expr lagrangian, const StopFlag* interrupt = nullptr)
+      : kernel_(kernel_of(weighted, lagrangian)),
+        stepper_(kernel_, parameter_values(*weighted.system), {.maximum_steps = 100'000, .interrupt = interrupt}) {}
 
+  std::span<const double> q() const { return stepper_.q(); }  // where the motion is
   std::optional<double> over(const MotionState& from, double to) {
     stepper_.start(from.t, from.q, from.v);
     while (stepper_.time() != to)
@@ -409,6 +412,30 @@ std::vector<double> breaks_of(const Trial& trial, bool singular_start, bool sing
 }
 
 }  // namespace
+
+MotionCheck carried_along(const EquationsOfMotion& weighted, Expr lagrangian, const Trial& trial, const Vector& least,
+                          const StopFlag* interrupt) {
+  MotionCheck out;
+  const ActionPath path = to_path(trial);
+  const Vector size = even_scale(trial, least).col(0);
+  const std::vector<double> breaks = breaks_of(trial, false, false);
+  ActionAlong motion(solvable_equations(weighted), lagrangian, interrupt);
+  for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
+    const auto part = motion.over(path.at(breaks[k]), breaks[k + 1]);
+    if (!part) return out.reason = "The motion ends on the way.", out;
+    const MotionState there = path.at(breaks[k + 1]);
+    for (Index i = 0; i < size.size(); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      out.missed = std::max(out.missed, std::abs(motion.q()[at] - there.q[at]) / size[i]);
+    }
+    out.action += *part;
+    ++out.stretches;
+  }
+  out.done = true;
+  out.from = breaks.front();
+  out.to = breaks.back();
+  return out;
+}
 
 std::size_t FieldStudy::count() const {
   return std::accumulate(inside.begin(), inside.end(), std::size_t{0},

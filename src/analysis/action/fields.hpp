@@ -32,4 +32,8 @@ FieldStudy jacobi_fields(Functional& functional, const EquationsOfMotion& weight
                          const FixedEnds& fixed, bool singular_start, bool singular_end, const Vector& least,
                          const StopFlag* interrupt);
 
+/// The check alone, where M is not positive definite. No integral constraints, L finite at both ends.
+MotionCheck carried_along(const EquationsOfMotion& weighted, Expr lagrangian, const Trial& trial, const Vector& least,
+                          const StopFlag* interrupt);
+
 }  // namespace maupertuis::action

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace maupertuis::action {
 namespace {
@@ -43,16 +44,20 @@ Matrix in_own_units(const Matrix& all) {
 Index negatives_of(const Matrix& given, Index border) {
   constexpr Index whole = 600, piece = 96;
   Matrix all = in_own_units(given);
-  Index out = 0;
-  while (all.rows() > whole + border) {
-    const Index rest = all.rows() - piece;
-    const Pivot pivot = eliminate(all.topLeftCorner(piece, piece), all.topRightCorner(piece, rest));
+  Index out = 0, first = 0;
+  for (; all.rows() - first > whole + border; first += piece) {
+    std::vector<Index> coupled;
+    for (Index c = first + piece; c < all.cols(); ++c)
+      if (!all.col(c).segment(first, piece).isZero(0)) coupled.push_back(c);
+    const Matrix right = all(Eigen::seqN(first, piece), coupled);
+    const Pivot pivot = eliminate(all.block(first, first, piece, piece), right);
     out += pivot.negative;
-    const Matrix less = all.bottomRightCorner(rest, rest) - product(all.bottomLeftCorner(rest, piece), pivot.solved);
-    all = less;
+    const Matrix less = transposed_product(right, pivot.solved);
+    all(coupled, coupled) -= less;
   }
-  if (all.rows() == 0) return out;
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(all, Eigen::EigenvaluesOnly);
+  const Matrix rest = all.bottomRightCorner(all.rows() - first, all.cols() - first);
+  if (rest.rows() == 0) return out;
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(rest, Eigen::EigenvaluesOnly);
   return out + (eigen.eigenvalues().array() < 0).count();
 }
 

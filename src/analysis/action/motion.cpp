@@ -20,8 +20,8 @@ using namespace action;
 constexpr int rows_of_motion = 400;
 constexpr Index fewest_elements_of_motion = 6;
 constexpr int other_order = 24;  // of Taylor's polynomials, beside the usual 20: errors of a motion are not the same
-constexpr std::size_t most_steps_of_motion = 2000;
-constexpr double shortest_element = 1e-12;  // of the whole: a shorter step belongs to the next one
+constexpr std::size_t most_unknowns_of_motion = 4000;  // of the second variation: steps times coordinates
+constexpr double shortest_element = 1e-12;             // of the whole: a shorter step belongs to the next one
 
 std::optional<double> length_of_run(const Problem& problem, Diagnostics& diagnostics) {
   const Experiment& experiment = problem.model.experiment;
@@ -35,11 +35,11 @@ std::optional<double> length_of_run(const Problem& problem, Diagnostics& diagnos
   return std::nullopt;
 }
 
-/// A motion on a mesh with two elements for each of its steps: these follow how fast it turns.
+/// A motion on a mesh with an element for each of its steps: these follow how fast it turns.
 struct Followed {
   Trial trial;
   MotionState end;
-  double unsure = 0;  // of S: by what elements twice as long, and another integration, differ
+  double unsure = 0;  // of S: by what elements half as long, and another integration, differ
 };
 
 /// Carries a motion, and its values to any places on the way.
@@ -125,20 +125,20 @@ std::optional<Followed> follow(Problem& problem, const MotionState& start, doubl
                       last.reason, "Choose another start, or a shorter run.");
     return std::nullopt;
   }
-  if (steps->size() > most_steps_of_motion) {
-    diagnostics.error(
-        "E1211", {},
-        fmt::format("the motion takes {} steps, more than the {} of a path", steps->size() - 1, most_steps_of_motion),
-        "A path has elements as short as the steps of the motion, so that they follow its fastest turns.",
-        "Take a shorter run: S of motions that follow one another adds up.");
+  const std::size_t most = most_unknowns_of_motion / static_cast<std::size_t>(problem.n());
+  if (steps->size() > most) {
+    diagnostics.error("E1211", {},
+                      fmt::format("the motion takes {} steps, more than the {} of a path", steps->size() - 1, most),
+                      "A path has elements as short as the steps of the motion, so that they follow its fastest turns.",
+                      "Take a shorter run: S of motions that follow one another adds up.");
     return std::nullopt;
   }
-  Followed out = follower.on(mesh_between(problem, *steps, 2));
+  Followed out = follower.on(mesh_between(problem, *steps, 1));
   const auto action = [&](const Trial& trial) { return assemble(problem.functional, trial, 0).action; };
-  const double here = action(out.trial), coarse = action(follower.on(mesh_between(problem, *steps, 1)).trial);
+  const double here = action(out.trial), finer = action(follower.on(mesh_between(problem, *steps, 2)).trial);
   const MotionState aside = one_rounding_aside(start);
   Follower other(problem, aside, duration, {.order = other_order, .interrupt = options.interrupt});
-  out.unsure = std::abs(here - coarse) + std::abs(here - action(other.on(out.trial.mesh).trial));
+  out.unsure = std::abs(here - finer) + std::abs(here - action(other.on(out.trial.mesh).trial));
   if (interrupted(options, diagnostics)) return std::nullopt;
   return out;
 }

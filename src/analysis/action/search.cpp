@@ -233,17 +233,29 @@ void refuse_beyond_numbers(double speed, const Problem& problem, const ActionEnd
                         ", or nearer in the coordinates, or choose units in which the numbers are moderate.");
 }
 
-void refuse_no_path(const Search& search, Problem& problem, const ActionEnds& ends, Diagnostics& diagnostics) {
+/// What was tried in vain.
+struct Vain {
+  std::size_t starts = 0, left_out = 0;
+  double reached = 1;  // of the duration, by continuation
+  SingularEnds singular;
+};
+
+void refuse_no_path(const Vain& search, Problem& problem, const ActionEnds& ends, Diagnostics& diagnostics) {
   if (const auto speed = speed_beyond_numbers(problem, ends))
     return refuse_beyond_numbers(*speed, problem, ends, diagnostics);
   const auto span = problem.model.experiment.path ? std::optional(problem.model.experiment.path->span) : std::nullopt;
   std::string reason =
       fmt::format("Newton's method on the stationarity of S began from {} line{} between the ends and found no path.",
-                  search.starts_, search.starts_ == 1 ? "" : "s");
-  if (search.reached_ > 0 && search.reached_ < 1)
+                  search.starts, search.starts == 1 ? "" : "s");
+  if (search.left_out > 0)
+    reason += fmt::format(" {} that it led to no motion follows from its own states.",
+                          search.left_out == 1 ? "One" : std::to_string(search.left_out));
+  if (problem.equations.degenerate)
+    reason += " L is degenerate: only ends that fulfil its constraints between states can be joined.";
+  if (search.reached > 0 && search.reached < 1)
     reason +=
-        fmt::format(" From the path of a short duration it could be followed to {:.3g} of this one.", search.reached_);
-  if (search.singular().any()) reason += " L is infinite at an end: an end just beside it may be reached.";
+        fmt::format(" From the path of a short duration it could be followed to {:.3g} of this one.", search.reached);
+  if (search.singular.any()) reason += " L is infinite at an end: an end just beside it may be reached.";
   diagnostics.error("E1204", span,
                     fmt::format("no stationary path from {} to {} was found", place(ends.start, problem.model.system),
                                 place(ends.end, problem.model.system)),
@@ -311,7 +323,7 @@ std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOf
     out.failed += search.failed_;
     out.bound = search.bound_;
     if (search.found_.empty() && options.turns == 0) {
-      refuse_no_path(search, problem, ends, diagnostics);
+      refuse_no_path({search.starts_, 0, search.reached_, search.singular()}, problem, ends, diagnostics);
       return std::nullopt;
     }
     std::sort(search.found_.begin(), search.found_.end(),
@@ -343,7 +355,7 @@ std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOf
         fmt::format(" {} more {} left out: the motion, carried from {} own states, does not follow {}.", left_out,
                     left_out == 1 ? "was" : "were", left_out == 1 ? "its" : "their", left_out == 1 ? "it" : "them");
   if (out.paths.empty()) {
-    refuse_no_path(Search(problem, ends, options), problem, ends, diagnostics);
+    refuse_no_path({out.starts, left_out, 1, problem.singular_ends(ends)}, problem, ends, diagnostics);
     return std::nullopt;
   }
   std::stable_sort(out.paths.begin(), out.paths.end(),

@@ -17,6 +17,7 @@ constexpr int waves = 6;  // of each coordinate, among which the lowest shape is
 constexpr std::size_t most_shown = 5;
 constexpr int half_count = 20;  // values of ε on each side
 constexpr double largest_epsilon = 0.2;
+constexpr double least_terms = 1e-3;  // of those of S: where the equations cancel within each term, slopes are rounding
 
 struct Shape {
   std::string name;
@@ -91,6 +92,7 @@ class Neighbourhood {
     if (x.cols() == 0) return std::nullopt;
     Matrix h = transposed_product(x, times(a_.hessians, x, true)),
            k = transposed_product(x, times(a_.kinetic, x, false));
+    if (!(k.trace() > 0)) return std::nullopt;  // L is of the first order in velocities: nothing measures curvature
     k += 1e-12 * k.trace() * Matrix::Identity(k.rows(), k.cols());  // shapes that constraints make alike
     const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> eigen(symmetric_part(h), symmetric_part(k));
     if (eigen.info() != Eigen::Success) return std::nullopt;
@@ -106,7 +108,7 @@ class Neighbourhood {
     out.name = shape.name;
     const Eigen::Map<const Vector> xi(shape.xi.data(), shape.xi.size());
     out.curvature = xi.dot(times(a_.hessians, xi, true).col(0)) / xi.dot(times(a_.kinetic, xi, false).col(0));
-    const double terms = gradient_terms(shape.xi);
+    const double terms = std::max(gradient_terms(shape.xi), least_terms * size_of_action(problem_.functional, trial_));
     out.slope = terms > 0 ? gradient_.dot(xi) / terms : 0;
     const double own = value(trial_);
     for (int k = -half_count; k <= half_count; ++k) {
