@@ -72,8 +72,8 @@ void fill_second(Problem& problem, const Refined& refined, const FixedEnds& fixe
   const auto weighted = weighted_equations(problem.equations, trial.multipliers);
   FieldStudy fields;
   if (weighted)
-    fields = jacobi_fields(problem.functional, *weighted, problem.equations.lagrangian_expanded, trial, fixed,
-                           singular.start, singular.end, least, options.interrupt);
+    fields = jacobi_fields(problem.functional, *weighted, problem.equations.lagrangian_expanded, trial, refined.states,
+                           fixed, singular.start, singular.end, least, options.interrupt);
   else
     fields.reason = fields.check.reason = "The equations of L + λ G could not be made.";
   const auto all = [](const std::vector<bool>& b) { return std::find(b.begin(), b.end(), false) == b.end(); };

@@ -36,11 +36,12 @@ Matrix inverse_times(const Matrix& a, const Matrix& b) { return a.partialPivLu()
 /// The path as states, and neighbours in coordinates in which the symplectic form is the standard one.
 class Neighbours {
  public:
-  Neighbours(Functional& functional, const EquationsOfMotion& weighted, const Trial& trial, bool backward,
-             double stretch, const StopFlag* interrupt)
+  Neighbours(Functional& functional, const EquationsOfMotion& weighted, const Trial& trial,
+             std::span<const MotionState> states, bool backward, double stretch, const StopFlag* interrupt)
       : functional_(functional),
         trial_(trial),
         path_(to_path(trial)),
+        states_(states),
         n_(functional.freedoms()),
         k_(functional.integrals()),
         sign_(backward ? -1 : 1),
@@ -49,7 +50,9 @@ class Neighbours {
   }
 
   MotionState state(double t) {
-    MotionState out = path_.at(t);
+    const auto known =
+        std::lower_bound(states_.begin(), states_.end(), t, [](const MotionState& s, double at) { return s.t < at; });
+    MotionState out = known != states_.end() && known->t == t ? *known : path_.at(t);
     functional_.evaluate(t, out.q.data(), out.v.data(), trial_.multipliers, 1, density_);
     for (Index i = 0; i < k_; ++i) {
       out.q.push_back(trial_.multipliers[i]);
@@ -143,6 +146,7 @@ class Neighbours {
   Functional& functional_;
   const Trial& trial_;
   ActionPath path_;
+  std::span<const MotionState> states_;  // by time
   Index n_, k_;
   double sign_;
   TangentFlow flow_;
@@ -178,14 +182,15 @@ class ActionAlong {
 class Study {
  public:
   Study(Functional& functional, const EquationsOfMotion& weighted, Expr lagrangian, const Trial& trial,
-        const FixedEnds& fixed, const Vector& least, std::vector<double> breaks, const StopFlag* interrupt)
+        std::span<const MotionState> states, const FixedEnds& fixed, const Vector& least, std::vector<double> breaks,
+        const StopFlag* interrupt)
       : functional_(functional),
         trial_(trial),
         fixed_(fixed),
         breaks_(std::move(breaks)),
         backward_(breaks_.back() < breaks_.front()),
         whole_(std::abs(breaks_.back() - breaks_.front())),
-        neighbours_(functional, weighted, trial, backward_, whole_ / static_cast<double>(breaks_.size() - 1),
+        neighbours_(functional, weighted, trial, states, backward_, whole_ / static_cast<double>(breaks_.size() - 1),
                     interrupt),
         action_(weighted, lagrangian),
         size_(even_scale(trial, least).col(0)) {}
@@ -443,15 +448,15 @@ std::size_t FieldStudy::count() const {
 }
 
 FieldStudy jacobi_fields(Functional& functional, const EquationsOfMotion& weighted, Expr lagrangian, const Trial& trial,
-                         const FixedEnds& fixed, bool singular_start, bool singular_end, const Vector& least,
-                         const StopFlag* interrupt) {
+                         std::span<const MotionState> states, const FixedEnds& fixed, bool singular_start,
+                         bool singular_end, const Vector& least, const StopFlag* interrupt) {
   std::vector<double> breaks = breaks_of(trial, singular_start, singular_end);
   if (breaks.size() < 2) {
     FieldStudy out;
     out.reason = out.check.reason = "L is infinite at both ends, and nothing of the path lies between.";
     return out;
   }
-  return Study(functional, weighted, lagrangian, trial, fixed, least, std::move(breaks), interrupt).run();
+  return Study(functional, weighted, lagrangian, trial, states, fixed, least, std::move(breaks), interrupt).run();
 }
 
 }  // namespace maupertuis::action

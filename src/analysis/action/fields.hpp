@@ -4,6 +4,7 @@
 #include <maupertuis/stop_flag.hpp>
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,9 +29,10 @@ struct FieldStudy {
 
 /// Jacobi fields along a stationary path by the tangent equations, stretch by stretch from the states of the path, so
 /// that an unstable motion does no harm. Precondition: M is positive definite on the directions allowed.
+/// `states`: where they are known better than by the path, by time.
 FieldStudy jacobi_fields(Functional& functional, const EquationsOfMotion& weighted, Expr lagrangian, const Trial& trial,
-                         const FixedEnds& fixed, bool singular_start, bool singular_end, const Vector& least,
-                         const StopFlag* interrupt);
+                         std::span<const MotionState> states, const FixedEnds& fixed, bool singular_start,
+                         bool singular_end, const Vector& least, const StopFlag* interrupt);
 
 /// The check alone, where M is not positive definite. No integral constraints, L finite at both ends.
 MotionCheck carried_along(const EquationsOfMotion& weighted, Expr lagrangian, const Trial& trial, const Vector& least,

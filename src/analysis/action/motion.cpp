@@ -38,8 +38,8 @@ std::optional<double> length_of_run(const Problem& problem, Diagnostics& diagnos
 /// A motion on a mesh with an element for each of its steps: these follow how fast it turns.
 struct Followed {
   Trial trial;
-  MotionState end;
-  double unsure = 0;  // of S: by what elements half as long, and another integration, differ
+  std::vector<MotionState> states;  // at the breaks of the mesh
+  double unsure = 0;                // of S: by what elements half as long, and another integration, differ
 };
 
 /// Carries a motion, and its values to any places on the way.
@@ -70,17 +70,22 @@ class Follower {
     Followed out{
         {mesh, Matrix(n, mesh.nodes()), Vector::Zero(problem_.functional.integrals()), Vector::Zero(n)}, {}, 0};
     std::vector<double> q(start_.q), v(start_.v);
-    out.trial.q.col(0) = Eigen::Map<const Vector>(q.data(), n);
+    const auto put = [&](Index node) {
+      out.trial.q.col(node) = Eigen::Map<const Vector>(q.data(), n);
+      if (node % mesh.rule->degree == 0) out.states.push_back({mesh.time(node), q, v});
+    };
+    put(0);
     Index k = 1;
     for (stepper_.start(start_.t, start_.q, start_.v); stepper_.time() != end_;) {
       if (stepper_.step(end_).ending != StepEnding::None) break;
-      for (; k < mesh.nodes() && stepper_.covers(mesh.time(k)); ++k) {
+      for (; k + 1 < mesh.nodes() && stepper_.covers(mesh.time(k)); ++k) {
         stepper_.state(mesh.time(k), q, v);
-        out.trial.q.col(k) = Eigen::Map<const Vector>(q.data(), n);
+        put(k);
       }
     }
-    out.end = {end_, {stepper_.q().begin(), stepper_.q().end()}, {stepper_.v().begin(), stepper_.v().end()}};
-    out.trial.q.col(mesh.nodes() - 1) = Eigen::Map<const Vector>(out.end.q.data(), n);
+    q.assign(stepper_.q().begin(), stepper_.q().end());
+    v.assign(stepper_.v().begin(), stepper_.v().end());
+    put(mesh.nodes() - 1);
     return out;
   }
 
@@ -158,6 +163,7 @@ ActionEnds ends_of_trial(const Trial& trial) {
 std::optional<Refined> as_refined(Problem& problem, const Followed& motion, Diagnostics& diagnostics) {
   Refined out;
   out.coarse = out.fine = motion.trial;
+  out.states = motion.states;
   const Assembly a = assemble(problem.functional, motion.trial, 0);
   if (!a.finite) {
     diagnose_infinite_lagrangian("motion", diagnostics);
@@ -236,7 +242,7 @@ std::optional<PeriodicAction> action_of_orbit(const Model& model, const Equation
   if (!found->motion.driven) {
     const auto on_the_way = follow(problem, start, aside * found->motion.period, options, diagnostics);
     if (!on_the_way) return std::nullopt;
-    start = {start.t, on_the_way->end.q, on_the_way->end.v};
+    start = {start.t, on_the_way->states.back().q, on_the_way->states.back().v};
   }
   auto followed = follow(problem, start, found->motion.period, options, diagnostics);
   if (!followed) return std::nullopt;

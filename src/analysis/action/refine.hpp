@@ -9,6 +9,8 @@ namespace maupertuis::action {
 struct Refined {
   Trial coarse, fine;
   double action = 0, action_error = 0, path_error = 0, correction = 0;
+  /// Of a motion: its states at the breaks, which are known better than the slopes of polynomials.
+  std::vector<MotionState> states;
 };
 
 /// Ends at which L has no finite value.
