@@ -52,7 +52,8 @@ Vector best_multipliers(const std::vector<Matrix>& rows, Index k) {
     left.middleRows(static_cast<Index>(i) * n, n) = rows[i].rightCols(k);
     right.segment(static_cast<Index>(i) * n, n) = -rows[i].col(0);
   }
-  return left.colPivHouseholderQr().solve(right);
+  // The smallest ones: along straight pieces the length of a curve leaves λ open.
+  return Eigen::CompleteOrthogonalDecomposition<Matrix>(left).solve(right);
 }
 
 }  // namespace
@@ -283,7 +284,8 @@ void GivenEquations::look_for_corners(const Vector& lambda, GivenPath& out) {
       const double before = sides.before[i], after = sides.after[i];
       const bool finite = std::isfinite(before) && std::isfinite(after);
       if (finite && !jumps(sides, i, sizes[i])) continue;
-      out.corner = PathCorner{gap.middle(), i, before, after};
+      const double t = gap.middle();  // next to 0 a gap is as short as it is near
+      out.corner = PathCorner{std::abs(t) < rounding_unit * whole_.width() ? 0 : t, i, before, after};
       return;
     }
   }

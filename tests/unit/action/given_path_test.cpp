@@ -69,6 +69,18 @@ TEST_CASE("corners of p that constraints take up are none") {
   CHECK(round.path->stationary);
 }
 
+TEST_CASE("a polygon of a given length: its straight pieces leave λ open, and it is not stationary") {
+  const Along polygon = along(
+      "system c\ndimensionless\nindependent x : number\ncoord y : number\nL = y sqrt(1 + y'^2)\n"
+      "constraint integral sqrt(1 + y'^2) = 2 name rope\n",
+      "2 abs(x - 1/2)");
+  REQUIRE(polygon.path);
+  CHECK(polygon.path->action == doctest::Approx(std::sqrt(5.0) / 2).epsilon(1e-14));
+  CHECK(polygon.path->integrals.at(0) == doctest::Approx(std::sqrt(5.0)).epsilon(1e-14));
+  CHECK(std::isfinite(polygon.path->residual));
+  CHECK_FALSE(polygon.path->stationary);
+}
+
 TEST_CASE("S along formulas with narrow features, kinks and steep ends: closed forms") {
   check_action(free_particle, "max(0, 0.01 - abs(t - 0.123))", 0.01);
   // ½ ∫ k² sech⁴ k t dt = ⅔ k
