@@ -214,6 +214,39 @@ Json section_json(const SectionResult& r, const std::string& what, const Mechani
 
 // --------------------------------------------------------------------------------------------------------- Lyapunov
 
+namespace {
+
+const char* chaos_word(Chaos chaos) {
+  switch (chaos) {
+    case Chaos::Shown:
+      return "shown";
+    case Chaos::NotShown:
+      return "not shown";
+    case Chaos::Excluded:
+      return "excluded";
+    case Chaos::RunsAway:
+      return "runs away";
+  }
+  return "";
+}
+
+std::string chaos_line(const LyapunovResult& r) {
+  switch (r.chaos) {
+    case Chaos::Shown:
+      return orbit_line("chaotic",
+                        fmt::format("neighbours part by a factor e in {} s", brief(1 / r.exponents.front())));
+    case Chaos::NotShown:
+      return orbit_line("not shown chaotic", "the growth is not told from that of regular motion, a power of t");
+    case Chaos::Excluded:
+      return orbit_line("not chaotic", "its states lie in a plane, which has no room for chaos (Poincaré, Bendixson)");
+    case Chaos::RunsAway:
+      return orbit_line("not shown chaotic", "the motion itself grows about as fast as neighbours part");
+  }
+  return {};
+}
+
+}  // namespace
+
 std::string lyapunov_text(const LyapunovResult& r) {
   std::string out = fmt::format("Lyapunov exponents, the mean over {} s ({} intervals)\n", brief(r.duration),
                                 static_cast<std::size_t>(std::round(r.duration / r.interval)));
@@ -226,11 +259,7 @@ std::string lyapunov_text(const LyapunovResult& r) {
                            r.expected_sum ? fmt::format(", the mean divergence {:.3g} 1/s (Liouville, to {:.2g})",
                                                         *r.expected_sum, *r.sum_rule_residual)
                                           : ""));
-  const double first = r.exponents.front();
-  if (first > 3 * r.errors.front())
-    out += orbit_line("chaotic", fmt::format("neighbours part by a factor e in {} s", brief(1 / first)));
-  else
-    out += orbit_line("not shown chaotic", "the largest exponent is not clearly above zero");
+  out += chaos_line(r);
   if (r.kaplan_yorke) out += orbit_line("dimension", fmt::format("{:.4g}, by Kaplan and Yorke", *r.kaplan_yorke));
   if (!r.ended.empty()) out += orbit_line("ended early", r.ended);
   return out;
@@ -244,6 +273,7 @@ Json lyapunov_json(const LyapunovResult& r) {
           {"sum", r.sum},
           {"expected_sum", or_null(r.expected_sum)},
           {"sum_rule_residual", or_null(r.sum_rule_residual)},
+          {"chaos", chaos_word(r.chaos)},
           {"kaplan_yorke", or_null(r.kaplan_yorke)},
           {"duration", r.duration},
           {"interval", r.interval},

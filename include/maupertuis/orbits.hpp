@@ -143,21 +143,34 @@ struct LyapunovOptions {
   std::function<void(double)> progress;
 };
 
+/// What the exponents say of the motion itself.
+enum class Chaos {
+  Shown,     // neighbours part exponentially for certain, and the motion neither runs away nor lies in a plane
+  NotShown,  // the growth is not told from that of regular motion, which is like a power of t
+  Excluded,  // the states of the motion fill two dimensions at most, t counted where it stands in the equations
+  RunsAway,  // neighbours part no faster than the motion itself grows
+};
+
 struct LyapunovResult {
   std::size_t dimension = 0;      // d: directions that the constraints allow
-  std::vector<double> exponents;  // [k] 1/s, in the order of the orthogonalization
-  std::vector<double> errors;   // [k] the standard error from the scatter of blocks, or the change over the second half
-                                // of the run where that is larger (exponents that are zero converge as log t / t)
-  std::vector<double> times;    // s since the average began
-  std::vector<double> running;  // [times × k] the averages so far
+  std::vector<double> exponents;  // [k] 1/s, the largest first
+  /// [k] The standard error from the scatter of blocks, the change over the second half of the run, or what powers of t
+  /// and a breathing by a factor e leave of an exponent, (1 + log of the growth of t) / duration: the largest of these.
+  std::vector<double> errors;
+  std::vector<double> times;          // s since the average began
+  std::vector<double> running;        // [times × k] the averages so far
   double duration = 0, interval = 0;  // s
   std::size_t blocks = 0;
+  Chaos chaos = Chaos::NotShown;
   double sum = 0;                      // of the exponents
   std::optional<double> expected_sum;  // the mean divergence of the flow; all exponents asked for
   // |sum − mean divergence| with the volumes of the directions at both ends taken into account, 1/s: rounding alone.
+  // There where expected_sum is.
   std::optional<double> sum_rule_residual;
-  std::optional<double> kaplan_yorke;  // dimension of the attractor; where the sum is negative and all are there
-  std::string ended;                   // why before the end; empty: it did not
+  /// Dimension of the attractor, an exponent that is 0 within its error taken as 0; where all exponents are there and
+  /// their sum is negative for certain.
+  std::optional<double> kaplan_yorke;
+  std::string ended;  // why before the end; empty: it did not
 };
 
 /// Mean growth rates of neighbours by the tangent equations, orthogonalized at intervals (Benettin; Shimada and

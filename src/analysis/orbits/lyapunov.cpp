@@ -1,4 +1,6 @@
+#include "analysis/orbits/chaos.hpp"
 #include "analysis/orbits/divergence.hpp"
+#include "analysis/orbits/drive.hpp"
 #include "analysis/orbits/messages.hpp"
 #include "analysis/orbits/survey.hpp"
 #include "linear_algebra/dense.hpp"
@@ -198,6 +200,8 @@ class LyapunovRun {
     averaging_ = true;
     before_ = point_.state;
     frame_before_ = directions_;
+    visited_.emplace(*equations_.system, sizes_);
+    visited_->add(before_);
     return true;
   }
 
@@ -206,6 +210,7 @@ class LyapunovRun {
     const auto logs = carry(begin_ + out_.interval * static_cast<double>(logs_.size() + 1));
     if (logs) {
       logs_.push_back(*logs);
+      visited_->add(point_.state);
       frame_after_ = directions_;
       add_divergence(before);
       return true;
@@ -233,8 +238,9 @@ class LyapunovRun {
   }
 
   void average() {
-    const auto k = static_cast<std::size_t>(directions_.cols());
     out_.duration = out_.interval * static_cast<double>(logs_.size());
+    largest_first();
+    const auto k = static_cast<std::size_t>(directions_.cols());
     const std::size_t stride = std::max<std::size_t>(1, logs_.size() / rows_of_convergence);
     std::vector<double> sum(k, 0.0), half(k, 0.0);
     for (std::size_t i = 0; i < logs_.size(); ++i) {
@@ -245,12 +251,36 @@ class LyapunovRun {
       for (const double s : sum) out_.running.push_back(s / out_.times.back());
     }
     const double first_half = out_.interval * static_cast<double>((logs_.size() + 1) / 2);
+    const double of_powers = (1 + log_growth_of_time()) / out_.duration;
     for (std::size_t j = 0; j < k; ++j) {
       out_.exponents.push_back(sum[j] / out_.duration);
-      out_.errors.push_back(std::max(scatter(j), std::abs(out_.exponents[j] - half[j] / first_half)));
+      out_.errors.push_back(std::max({scatter(j), std::abs(out_.exponents[j] - half[j] / first_half), of_powers}));
     }
     out_.sum = std::accumulate(out_.exponents.begin(), out_.exponents.end(), 0.0);
     if (takes_all()) compare_sum();
+    judge_chaos(sum[0], sum[0] - half[0]);
+  }
+
+  /// Directions that change places slowly, as those of equal exponents do, need not come out in order.
+  void largest_first() {
+    Vector sum = Vector::Zero(directions_.cols());
+    for (const Vector& logs : logs_) sum += logs;
+    std::vector<Index> order(static_cast<std::size_t>(sum.size()));
+    std::iota(order.begin(), order.end(), Index{0});
+    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return sum[a] > sum[b]; });
+    for (Vector& logs : logs_) logs = Vector(logs(order));
+  }
+
+  /// Neighbours of a regular motion part like t: log t / t is left of an exponent. They begin with the transient.
+  double log_growth_of_time() const {
+    return std::log((transient_ + out_.duration) / std::max(transient_, out_.interval));
+  }
+
+  void judge_chaos(double whole, double second_half) {
+    constexpr double clearly = 3;  // errors
+    out_.chaos = orbits::chaos_of(
+        {whole, second_half, log_growth_of_time(), clearly * out_.errors.front() * out_.duration}, *visited_,
+        out_.duration, out_.dimension, orbits::depends_on_time(equations_), !flow_.through_modes());
   }
 
   /// The standard error of the mean of the blocks.
@@ -275,25 +305,31 @@ class LyapunovRun {
       out_.expected_sum = *volume_ / out_.duration;
       check_sum();
     }
-    const double largest = std::abs(*std::max_element(out_.exponents.begin(), out_.exponents.end()));
-    if (flow_.through_modes() && !out_.expected_sum) return;                // other directions may have vanished before
-    if (!(out_.expected_sum.value_or(out_.sum) < -1e-9 * largest)) return;  // no attractor where volumes stay
-    std::vector<double> sorted = out_.exponents;
-    std::sort(sorted.rbegin(), sorted.rend());
+    if (flow_.through_modes() && !out_.expected_sum) return;  // other directions may have vanished before
+    const double errors = std::accumulate(out_.errors.begin(), out_.errors.end(), 0.0);
+    const double largest = std::abs(out_.exponents.front());
+    const bool shrinks = out_.expected_sum ? *out_.expected_sum < -1e-9 * largest : out_.sum < -errors;
+    if (shrinks) out_.kaplan_yorke = kaplan_yorke();  // no attractor where volumes stay
+  }
+
+  std::optional<double> kaplan_yorke() const {
     double partial = 0;
-    for (std::size_t j = 0; j < sorted.size(); ++j) {
-      if (partial + sorted[j] < 0) {
-        out_.kaplan_yorke = static_cast<double>(j) + partial / std::abs(sorted[j]);
-        break;
-      }
-      partial += sorted[j];
+    for (std::size_t j = 0; j < out_.exponents.size(); ++j) {
+      const double exponent = std::abs(out_.exponents[j]) <= out_.errors[j] ? 0 : out_.exponents[j];
+      if (partial + exponent < 0) return static_cast<double>(j) + partial / std::abs(exponent);
+      partial += exponent;
     }
+    return std::nullopt;
   }
 
   /// Liouville's theorem speaks of the volume in q and p. That of the directions, orthonormal in (q, q̇), is √|det ω| of
   /// them: with its change from the first end to the last the rule holds for the run as it is, not only in the mean.
   void check_sum() {
     const double ends = (log_volume(frame_after_, point_.state) - log_volume(frame_before_, before_)) / out_.duration;
+    if (!std::isfinite(ends)) {  // states next to the largest numbers: the form itself has no value
+      out_.expected_sum.reset();
+      return;
+    }
     double largest = std::abs(*out_.expected_sum);
     for (const double x : out_.exponents) largest = std::max(largest, std::abs(x));
     out_.sum_rule_residual = std::abs(out_.sum + ends - *out_.expected_sum);
@@ -331,6 +367,7 @@ class LyapunovRun {
   std::vector<Vector> logs_;                              // of each interval
   std::optional<orbits::DivergenceIntegral> divergence_;  // of all exponents
   std::optional<double> volume_ = 0;  // its integral over the intervals; nothing where there is none
+  std::optional<orbits::VisitedStates> visited_;
   bool averaging_ = false;
   TangentStop stop_;
   std::optional<std::size_t> vanishing_;  // directions that a mode on the way leaves: fewer than are carried
