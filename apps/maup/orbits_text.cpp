@@ -107,6 +107,10 @@ std::string neighbours_text(const FloquetResult& r) {
   std::string out;
   for (std::size_t i = 0; i + r.trivial < r.multipliers.size(); ++i)
     out += orbit_line(i == 0 ? "multipliers" : "", multiplier_line(r.multipliers[i], r.motion.period));
+  if (r.vanished > 0)
+    out += orbit_line(
+        r.multipliers.size() == r.trivial ? "multipliers" : "",
+        fmt::format("0, of {} direction{} that contacts and friction hold", r.vanished, r.vanished == 1 ? "" : "s"));
   if (r.trivial == 1) out += orbit_line("trivial", "1, along the motion");
   if (r.trivial == 2)
     out += orbit_line("trivial", "1 and 1, along the motion and from orbit to orbit as the energy changes");
@@ -128,7 +132,8 @@ std::string floquet_text(const FloquetResult& r, const MechanicalSystem& system)
   std::string out = fmt::format("{}: {}\n", spoken_name(system),
                                 m.rests ? "an equilibrium, whose neighbours are driven" : "a periodic motion");
   out += period_text(r, system);
-  out += orbit_line("start", state_line(m.start, system));
+  const std::string at = m.start.t == 0 ? "" : fmt::format("t = {}, ", seconds(m.start.t, system));
+  out += orbit_line("start", at + state_line(m.start, system));
   if (const std::string turns = turns_text(m, system); !turns.empty()) out += orbit_line("advances", turns);
   out += orbit_line("closed to", fmt::format("{:.2g} of its size, after {} correction{} that moved the start by {:.2g}",
                                              m.closure, m.iterations, m.iterations == 1 ? "" : "s", m.moved));
@@ -151,6 +156,7 @@ Json floquet_json(const FloquetResult& r, const MechanicalSystem& system) {
   for (const std::complex<double>& mu : r.multipliers)
     out["multipliers"].push_back({{"real", mu.real()}, {"imaginary", mu.imag()}});
   out["trivial"] = r.trivial;
+  out["vanished"] = r.vanished;
   out["trace"] = r.trace;
   out["largest"] = r.largest;
   out["stability"] = stability_word(r.stability);

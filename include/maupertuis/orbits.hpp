@@ -51,6 +51,9 @@ struct FloquetResult {
   /// is conserved. The others are those of dΦ_T on the quotient, so that the defective pair at 1 does not spoil them.
   std::vector<std::complex<double>> multipliers;
   std::size_t trivial = 0;
+  /// Directions that contacts and friction hold all the time: neighbours there come into the motion within a period,
+  /// and have the multiplier 0. 0 where a contact bounces for ever, e = 1.
+  std::size_t vanished = 0;
   double trace = 0;    // of dΦ_T
   double largest = 0;  // |μ| of the largest that is not trivial; 0 if there is none
   OrbitalStability stability = OrbitalStability::Neutral;

@@ -1,5 +1,7 @@
 #include "analysis/linearization/point_equations.hpp"
 
+#include "analysis/linearization/free_of_time.hpp"
+
 #include <maupertuis/degenerate.hpp>
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/kinds.hpp>
@@ -105,16 +107,6 @@ bool switches_within(Expr e) {
   return std::any_of(nodes.begin(), nodes.end(), [](const Expr& node) { return has_switch(node.kind()); });
 }
 
-/// Whether ∂/∂t of all of them vanishes identically.
-bool free_of_time(std::span<const Expr> expressions, Expr time) {
-  ExprVector rates;
-  for (const Expr& e : expressions) {
-    const Expr rate = differentiate(e, time);
-    if (!rate.is_zero()) rates.push_back(rate);
-  }
-  return rates.empty() || zero_test(rates).verdict == Verdict::Zero;
-}
-
 /// Q(q, u) = −∂W/∂q for some W while u is held: no velocity, no time, ∂Q_i/∂q_j symmetric.
 bool has_potential(const ExprVector& forces, const MechanicalSystem& system) {
   ExprVector must_vanish;
@@ -183,7 +175,7 @@ PointEquations::Impl::Impl(const EquationsOfMotion& equations, std::span<const E
   const Lowering lowering(equations);
   ExprVector all = lowering.plain(equations.balance());
   for (const Constraint& c : system->constraints) all.push_back(lowering.plain({&c.value, 1}).front());
-  is_autonomous = free_of_time(all, system->context->time());
+  is_autonomous = free_of_time(all, *system);
   has_energy = is_autonomous && holonomic == m && has_potential(lowering.plain(equations.generalized_forces), *system);
   is_periodic.assign(n, false);
 }

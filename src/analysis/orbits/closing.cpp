@@ -32,6 +32,8 @@ constexpr double least_singular = 1e-9;
 constexpr double longest_step = 0.2;                     // of the size of the orbit, and of the period
 constexpr double near_impact = 0.01;                     // of the stretch that is seen, and of the size of the orbit
 constexpr double near_return = 0.02, any_return = 0.25;  // distances from the start, of the largest
+constexpr std::size_t most_returns = 8;
+constexpr int most_parts = 100;  // of a period that may be the true one
 
 Vector state_vector(const MotionState& s) {
   Vector out(static_cast<Index>(2 * s.q.size()));
@@ -50,7 +52,7 @@ class Closer {
         system_(*equations.system),
         equations_(equations),
         options_(options),
-        diagnostics_(diagnostics),
+        diagnostics_(&diagnostics),
         n_(system_.coordinates.size()),
         motion_(motion_kernel(equations)),
         flow_(model, equations, {0, 100'000'000, options.interrupt}) {}
@@ -63,24 +65,23 @@ class Closer {
     out_.through_modes = flow_.through_modes();
     out_.keeps_energy = keeps_energy(model_, equations_);
     if (!first_period() || !follow() || !leave_impacts() || !find_angles() || !guess()) return std::nullopt;
-    first_ = at_;
     if (!out_.motion.driven && out_.keeps_energy) {
       energy_.emplace(system_, std::span(&equations_.energy_function, 1));
       energy_of_start_ = energy_->values(at_)[0];
     }
-    if (!iterate()) return std::nullopt;
+    if (!iterate_from_returns() || !shorten()) return std::nullopt;
     return std::move(out_);
   }
 
  private:
   bool refuse_rest() {
-    diagnostics_.error("E1402", place_of_start(), "the motion from this start rests",
-                       "At an equilibrium every time is a period, and there is no orbit.",
-                       "Start away from the equilibrium, or use `maup modes` for the motion near it.");
+    diagnostics_->error("E1402", place_of_start(), "the motion from this start rests",
+                        "At an equilibrium every time is a period, and there is no orbit.",
+                        "Start away from the equilibrium, or use `maup modes` for the motion near it.");
     return false;
   }
   std::optional<MotionState> start_of_model() {
-    const auto start = consistent_start(model_, equations_, diagnostics_);
+    const auto start = consistent_start(model_, equations_, *diagnostics_);
     return start ? std::optional(start->state) : std::nullopt;
   }
   std::optional<Span> place_of_start() const {
@@ -90,15 +91,15 @@ class Closer {
   /// Of a drive, or as the user gave it; else it is looked for.
   bool first_period() {
     if (options_.period && !(*options_.period > 0 && std::isfinite(*options_.period))) {
-      refuse_no_time("a period", diagnostics_);
+      refuse_no_time("a period", *diagnostics_);
       return false;
     }
     period_ = options_.period;
     if (out_.motion.driven && !period_) period_ = period_of_drive(equations_);
     if (!out_.motion.driven || period_) return true;
-    diagnostics_.error("E1404", {}, "the equations depend on the time, and with what period is not to be seen",
-                       "A driven motion can only repeat with the period of its drive, or a multiple of it.",
-                       "Give it with --period.");
+    diagnostics_->error("E1404", {}, "the equations depend on the time, and with what period is not to be seen",
+                        "A driven motion can only repeat with the period of its drive, or a multiple of it.",
+                        "Give it with --period.");
     return false;
   }
 
@@ -106,7 +107,7 @@ class Closer {
   bool follow() {
     double length = period_.value_or(0);
     if (!period_) {
-      const auto run = length_of_run(model_, {}, diagnostics_);
+      const auto run = length_of_run(model_, {}, *diagnostics_);
       if (!run) return false;
       length = *run;
     }
@@ -114,16 +115,16 @@ class Closer {
     out_.sizes = seen_.sizes;
     flow_.set_usual_sizes(seen_.sizes);
     if (!seen_.ended.empty() && (period_ || seen_.states.size() < 64))
-      return refuse_end(seen_.states.back().t, seen_.ended, diagnostics_);
+      return refuse_end(seen_.states.back().t, seen_.ended, *diagnostics_);
     const Vector f = flow_at(at_);
-    if (f.size() == 0) return refuse_end(at_.t, "An acceleration has no value here.", diagnostics_);
+    if (f.size() == 0) return refuse_end(at_.t, "An acceleration has no value here.", *diagnostics_);
     if (!out_.motion.driven && f.cwiseAbs().maxCoeff() == 0) return refuse_rest();
     if (out_.motion.driven && !repeats_in_time(system_, motion_, seen_, *period_)) {
-      diagnostics_.error("E1404", {},
-                         fmt::format("the equations do not repeat after {:.9g} s{}", *period_,
-                                     options_.period ? "" : ", the period of the sines and cosines of t in them"),
-                         "A driven motion can only repeat with the period of its drive, or a multiple of it.",
-                         "If there is one, give it with --period.");
+      diagnostics_->error("E1404", {},
+                          fmt::format("the equations do not repeat after {:.9g} s{}", *period_,
+                                      options_.period ? "" : ", the period of the sines and cosines of t in them"),
+                          "A driven motion can only repeat with the period of its drive, or a multiple of it.",
+                          "If there is one, give it with --period.");
       return false;
     }
     return true;
@@ -153,7 +154,7 @@ class Closer {
     const std::vector<double> sizes = seen_.sizes;
     seen_ = survey(model_, equations_, motion_, at_, length, options_.interrupt, sizes);
     return seen_.ended.empty() || seen_.states.size() >= 64 ||
-           refuse_end(seen_.states.back().t, seen_.ended, diagnostics_);
+           refuse_end(seen_.states.back().t, seen_.ended, *diagnostics_);
   }
 
   bool touches_contact() const {
@@ -226,22 +227,26 @@ class Closer {
     return {t(k) - back, std::sqrt(std::max(0.0, square(k) - bend * back * back))};
   }
 
-  /// The first return: the state was far from the start and comes back. The nearest one, if none comes really near.
+  /// Returns: the state was far from the start and comes back. The first ones that come really near, else the nearest.
   bool guess() {
-    if (period_) return true;
+    if (period_) {
+      returns_ = {*period_};
+      return true;
+    }
     std::vector<double> distance;
     for (const MotionState& s : seen_.states) distance.push_back(gap(at_, s).norm());
     const double largest = *std::max_element(distance.begin(), distance.end());
     std::optional<Return> best;
     bool away = false;
-    for (std::size_t k = 1; k + 1 < distance.size() && !(best && best->distance < near_return * largest); ++k) {
+    for (std::size_t k = 1; k + 1 < distance.size() && returns_.size() < most_returns; ++k) {
       away = away || distance[k] > 0.5 * largest;
       if (!away || distance[k] > distance[k - 1] || distance[k] > distance[k + 1]) continue;
       const Return here = return_near(k, distance);
+      if (here.distance < near_return * largest) returns_.push_back(here.t), away = false;
       if (here.distance < any_return * largest && (!best || here.distance < best->distance)) best = here;
     }
     if (!best) {
-      diagnostics_.error(
+      diagnostics_->error(
           "E1401", place_of_start(), "the motion does not come back to its start within the run",
           fmt::format(
               "Of a periodic motion the state returns; in {:.6g} s this one never comes nearer than a quarter of "
@@ -250,7 +255,48 @@ class Closer {
           "Give a period to start from with --period, a start that is nearer to a periodic motion, or a longer run.");
       return false;
     }
-    period_ = best->t;
+    if (returns_.empty()) returns_ = {best->t};
+    return true;
+  }
+
+  /// A return may be that of another motion: of a pendulum near the top the angle is the same on both sides of it. What
+  /// is told is why Newton's method fails with the first.
+  bool iterate_from_returns() {
+    first_ = at_;
+    Diagnostics of_first;
+    for (const double period : returns_) {
+      Diagnostics told;
+      at_ = first_;
+      period_ = period;
+      Diagnostics* const outer = std::exchange(diagnostics_, &told);
+      const bool closes = iterate();
+      diagnostics_ = outer;
+      if (closes) return true;
+      if (of_first.empty()) of_first = told;
+    }
+    diagnostics_->append(of_first);
+    return false;
+  }
+
+  /// The period of a motion is the shortest after which it repeats, together with the drive; a return at a multiple of
+  /// it closes as well.
+  bool shorten() {
+    if (options_.period) return true;
+    std::vector<double> times;
+    for (int parts = most_parts; parts >= 2; --parts) times.push_back(out_.motion.start.t + *period_ / parts);
+    std::vector<TangentPoint> points;
+    if (flow_.along(out_.begin, times, points)) return true;
+    for (const TangentPoint& point : points) {
+      const double part = point.state.t - out_.motion.start.t;
+      if (gap(out_.motion.start, point.state).norm() > converged) continue;
+      if (out_.motion.driven && !repeats_in_time(system_, motion_, seen_, part)) continue;
+      at_ = out_.motion.start;
+      period_ = part;
+      const int before = out_.motion.iterations;
+      const bool closes = iterate();
+      out_.motion.iterations += before;
+      return closes;
+    }
     return true;
   }
 
@@ -288,9 +334,9 @@ class Closer {
     }
     out_.log_volume = flow_.log_volume_of_jumps();
     if (!stop) return true;
-    if (stop->ending == StepEnding::None) return refuse_jump(*stop, diagnostics_);
+    if (stop->ending == StepEnding::None) return refuse_jump(*stop, *diagnostics_);
     if (out_.motion.iterations > 0 && stop->ending != StepEnding::Interrupted) return refuse_corrected(*stop);
-    return refuse_end(stop->t, stop->reason, diagnostics_);
+    return refuse_end(stop->t, stop->reason, *diagnostics_);
   }
 
   /// The linear equations of a correction ξ, δT/T: the return; the phase, f ξ = 0, so that the start does not slide
@@ -320,7 +366,7 @@ class Closer {
   bool correct(const Vector& rest) {
     const Vector f_begin = turning(out_.begin.state), f_end = turning(out_.end.state);
     if (f_begin.size() == 0 || f_end.size() == 0)
-      return refuse_end(out_.end.state.t, "An acceleration has no value here.", diagnostics_);
+      return refuse_end(out_.end.state.t, "An acceleration has no value here.", *diagnostics_);
     const ReturnMap map = return_map(out_.begin, out_.end, out_.sizes);
     const auto [left, right] = newton_equations(map, rest, f_begin, f_end);
     Eigen::JacobiSVD<Matrix> svd(left, Eigen::ComputeThinU | Eigen::ComputeThinV);
@@ -356,27 +402,34 @@ class Closer {
     out_.motion.closure = closure;
     out_.motion.moved = gap(first_, out_.motion.start).norm();
     out_.flow = flow_at(out_.motion.start);
-    if (out_.motion.driven)
-      out_.motion.rests = survey(model_, equations_, motion_, out_.motion.start, *period_, options_.interrupt).rests;
+    out_.motion.rests = out_.motion.driven && rests_at(out_.motion.start);
     return out_.motion.driven || turning(out_.motion.start).cwiseAbs().maxCoeff() > 1e-6 || refuse_rest();
   }
 
+  /// To rounding of the place, or of the motion that Newton's method began with.
+  bool rests_at(const MotionState& start) const {
+    const Survey seen = survey(model_, equations_, motion_, start, *period_, options_.interrupt, seen_.sizes);
+    constexpr double rounding = 1e-12;
+    const auto stays = [&](const MotionState& s) { return gap(start, s).norm() <= rounding; };
+    return seen.ended.empty() && (seen.rests || std::all_of(seen.states.begin(), seen.states.end(), stays));
+  }
+
   bool refuse_newton(double error) {
-    diagnostics_.error("E1401", place_of_start(), "no periodic motion was found near this start",
-                       fmt::format("Newton's method on the return map did not converge: after {:.9g} s the state is "
-                                   "still {:.2g} of the orbit's size away.",
-                                   *period_, error),
-                       "Give a better period with --period, or a start that is nearer to a periodic motion.");
+    diagnostics_->error("E1401", place_of_start(), "no periodic motion was found near this start",
+                        fmt::format("Newton's method on the return map did not converge: after {:.9g} s the state is "
+                                    "still {:.2g} of the orbit's size away.",
+                                    *period_, error),
+                        "Give a better period with --period, or a start that is nearer to a periodic motion.");
     return false;
   }
 
   /// The motion from the start that was given goes on; the one from a corrected start does not.
   bool refuse_corrected(const TangentStop& stop) {
-    diagnostics_.error("E1401", place_of_start(), "no periodic motion was found near this start",
-                       fmt::format("Newton's method on the return map led to a start from which the motion ends at "
-                                   "t = {:.9g} s: {}",
-                                   stop.t, stop.reason),
-                       "Give a better period with --period, or a start that is nearer to a periodic motion.");
+    diagnostics_->error("E1401", place_of_start(), "no periodic motion was found near this start",
+                        fmt::format("Newton's method on the return map led to a start from which the motion ends at "
+                                    "t = {:.9g} s: {}",
+                                    stop.t, stop.reason),
+                        "Give a better period with --period, or a start that is nearer to a periodic motion.");
     return false;
   }
 
@@ -388,12 +441,13 @@ class Closer {
   const MechanicalSystem& system_;
   const EquationsOfMotion& equations_;
   const FloquetOptions& options_;
-  Diagnostics& diagnostics_;
+  Diagnostics* diagnostics_;
   std::size_t n_;
   MotionKernel motion_;
   TangentFlow flow_;
   MotionState at_, first_;
   std::optional<double> period_;
+  std::vector<double> returns_;  // s after the start: periods to begin with
   Survey seen_;
   std::vector<bool> is_angle_;
   std::optional<ConstraintManifold> manifold_;

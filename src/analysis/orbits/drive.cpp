@@ -1,5 +1,6 @@
 #include "analysis/orbits/drive.hpp"
 
+#include "analysis/linearization/free_of_time.hpp"
 #include "analysis/tangent/point_functions.hpp"
 
 #include <maupertuis/transform.hpp>
@@ -126,8 +127,7 @@ bool repeats(const MechanicalSystem& system, const MotionKernel& motion, const S
 }  // namespace
 
 bool depends_on_time(const EquationsOfMotion& equations) {
-  const auto symbols = symbols_of(of_motion(equations));
-  return std::any_of(symbols.begin(), symbols.end(), [](const Expr& e) { return e.role() == Role::Time; });
+  return !free_of_time(of_motion(equations), *equations.system);
 }
 
 bool keeps_energy(const Model& model, const EquationsOfMotion& equations) {
@@ -143,6 +143,13 @@ bool keeps_energy(const Model& model, const EquationsOfMotion& equations) {
     const Expr restitution = in_terms_of_motion(system, {&c.restitution, 1}).front();
     return !c.friction.present() && differentiate(gap, system.context->time()).is_zero() &&
            evaluate(restitution, values) == 1;
+  });
+}
+
+bool bounces_end(const MechanicalSystem& system) {
+  const Bindings values = parameter_bindings(system);
+  return std::all_of(system.contacts.begin(), system.contacts.end(), [&](const Contact& c) {
+    return evaluate(in_terms_of_motion(system, {&c.restitution, 1}).front(), values) < 1;
   });
 }
 

@@ -10,12 +10,15 @@
 
 namespace maupertuis::orbits {
 
-/// Whether t stands in the equations of motion, the constraints, the contacts or the friction.
+/// Whether the equations of motion, the constraints, the contacts or the friction are others at another time.
 bool depends_on_time(const EquationsOfMotion& equations);
 
 /// Whether the motion keeps h_E: its equations do, and there are neither friction, nor restitution below 1, nor
 /// contacts that move, nor events that set the state.
 bool keeps_energy(const Model& model, const EquationsOfMotion& equations);
+
+/// Whether a bounce on any of its contacts loses velocity, so that bouncing ends.
+bool bounces_end(const MechanicalSystem& system);
 
 /// The common period of the sines and cosines of t in the equations, if t stands in their arguments linearly and they
 /// have one. s

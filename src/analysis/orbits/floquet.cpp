@@ -1,5 +1,6 @@
 #include "analysis/orbits/closing.hpp"
 #include "analysis/orbits/divergence.hpp"
+#include "analysis/orbits/drive.hpp"
 #include "analysis/orbits/verdict.hpp"
 #include "analysis/tangent/point_functions.hpp"
 #include "linear_algebra/dense.hpp"
@@ -144,6 +145,8 @@ std::optional<FloquetResult> floquet(const Model& model, const EquationsOfMotion
   out.motion = closed->motion;
   const Multipliers multipliers(equations, *closed);
   multipliers.fill(out);
+  if (closed->through_modes && orbits::bounces_end(model.system))
+    out.vanished = TangentFlow(equations).all_directions(out.motion.start).columns() - closed->begin.columns();
   check(equations, *closed, multipliers, out);
   out.stability = orbits::stability_of(out);
   orbits::warn_of_error(out, diagnostics);

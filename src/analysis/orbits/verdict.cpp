@@ -39,7 +39,8 @@ double width_of_circle(const FloquetResult& result) {
 }
 
 OrbitalStability stability_of(const FloquetResult& result) {
-  if (result.multipliers.size() == result.trivial) return OrbitalStability::Neutral;
+  if (result.multipliers.size() == result.trivial)
+    return result.vanished > 0 ? OrbitalStability::Attracting : OrbitalStability::Neutral;
   const double width = width_of_circle(result);
   if (result.largest > 1 + width) return OrbitalStability::Unstable;
   if (misses_geometry(result)) return OrbitalStability::Undecided;
