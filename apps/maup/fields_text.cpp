@@ -2,6 +2,7 @@
 
 #include "derivation_text.hpp"
 #include "happenings_text.hpp"
+#include "outcome.hpp"
 
 #include <fmt/format.h>
 
@@ -291,7 +292,8 @@ std::string fields_summary(Study& study) {
   const FieldEquations& equations = equations_of(study);
   const FieldSystem& s = equations.system();
   const MechanicalSystem& system = study.model()->system;
-  std::string out = fmt::format("{}{}\n", system.name, system.title.empty() ? "" : fmt::format(" — {}", system.title));
+  std::string out =
+      fmt::format("{}{}\n", spoken_name(system), system.title.empty() ? "" : fmt::format(" — {}", system.title));
   const auto line = [&](const std::string& head, const std::string& text) {
     if (!text.empty()) out += fmt::format("  {:<22} {}\n", head, text);
   };

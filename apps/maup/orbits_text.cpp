@@ -73,6 +73,12 @@ std::string turns_text(const PeriodicMotion& m, const MechanicalSystem& system) 
   return out;
 }
 
+/// Of the multiplier that the divergence tells: with more than rounding leaves of the others.
+std::string smallest_line(const FloquetResult& r, std::complex<double> mu) {
+  const std::string value = mu == 0.0 ? fmt::format("e^{:.9g}", *r.log_smallest) : fmt::format("{:.9g}", mu.real());
+  return fmt::format("{:<32}log|μ|/T = {:.6g}, by the divergence", value, *r.log_smallest / r.motion.period);
+}
+
 std::string multiplier_line(std::complex<double> mu, double period) {
   const double modulus = std::abs(mu), argument = std::arg(mu);
   const std::string value =
@@ -105,8 +111,14 @@ std::string stability_sentence(const FloquetResult& r) {
 
 std::string neighbours_text(const FloquetResult& r) {
   std::string out;
-  for (std::size_t i = 0; i + r.trivial < r.multipliers.size(); ++i)
-    out += orbit_line(i == 0 ? "multipliers" : "", multiplier_line(r.multipliers[i], r.motion.period));
+  const std::size_t count = r.multipliers.size() - r.trivial;
+  for (std::size_t i = 0; i + r.lost < count; ++i)
+    out += orbit_line(i == 0 ? "multipliers" : "", i + 1 == count && r.log_smallest
+                                                       ? smallest_line(r, r.multipliers[i])
+                                                       : multiplier_line(r.multipliers[i], r.motion.period));
+  if (r.lost > 0)
+    out += orbit_line(r.lost == count ? "multipliers" : "",
+                      fmt::format("{}, lost in the rounding of dΦ: nearer to 0 than 1e-12 of its largest", r.lost));
   if (r.vanished > 0)
     out += orbit_line(
         r.multipliers.size() == r.trivial ? "multipliers" : "",
@@ -157,6 +169,7 @@ Json floquet_json(const FloquetResult& r, const MechanicalSystem& system) {
     out["multipliers"].push_back({{"real", mu.real()}, {"imaginary", mu.imag()}});
   out["trivial"] = r.trivial;
   out["vanished"] = r.vanished;
+  out["lost"] = r.lost;
   out["trace"] = r.trace;
   out["largest"] = r.largest;
   out["stability"] = stability_word(r.stability);
@@ -165,6 +178,7 @@ Json floquet_json(const FloquetResult& r, const MechanicalSystem& system) {
                    {"log_determinant", or_null(r.log_determinant)},
                    {"integrated_divergence", or_null(r.integrated_divergence)},
                    {"error", or_null(r.error)}};
+  out["log_smallest"] = or_null(r.log_smallest);
   return out;
 }
 

@@ -38,6 +38,6 @@ std::optional<double> parse_time(const std::string& text) {
 }
 
 std::string brief(double value) { return fmt::format("{:.6g}", value); }
-std::string exact(double value) { return fmt::format("{:.17g}", value); }
+std::string exact(double value) { return fmt::format("{}", value); }
 
 }  // namespace maupertuis::app

@@ -13,7 +13,7 @@ std::optional<Rational> parse_exact_time(const std::string& text);
 
 /// Six significant digits, as messages show numbers.
 std::string brief(double value);
-/// All 17 digits.
+/// The shortest number that reads back as the same.
 std::string exact(double value);
 
 }  // namespace maupertuis::app

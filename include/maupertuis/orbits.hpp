@@ -54,6 +54,11 @@ struct FloquetResult {
   /// Directions that contacts and friction hold all the time: neighbours there come into the motion within a period,
   /// and have the multiplier 0. 0 where a contact bounces for ever, e = 1.
   std::size_t vanished = 0;
+  /// log |μ| of the smallest that is not trivial, where rounding of dΦ_T hides its digits and the determinant, known
+  /// from the divergence, tells them; μ itself may lie below the range of numbers and be 0.
+  std::optional<double> log_smallest;
+  /// Multipliers of which no more is known than that they lie below the rounding of dΦ_T: they stand as 0.
+  std::size_t lost = 0;
   double trace = 0;    // of dΦ_T
   double largest = 0;  // |μ| of the largest that is not trivial; 0 if there is none
   OrbitalStability stability = OrbitalStability::Neutral;

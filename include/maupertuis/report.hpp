@@ -156,6 +156,9 @@ struct ReportParts {
   const PathSearch* paths = nullptr;  // between the ends of the model's `path`
 };
 
+/// "Title: what", of a model without title and name `what` alone.
+std::string picture_title(const MechanicalSystem& system, const std::string& what);
+
 /// How a section is drawn: q' against q of the coordinate that it leaves free, a colour a motion, with the border of
 /// what the energy allows.
 PlotOptions section_picture(const SectionResult& section, const std::string& what, const MechanicalSystem& system);

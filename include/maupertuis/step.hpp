@@ -35,7 +35,7 @@ struct Step {
   std::string reason;                // one sentence for every ending but None
   std::optional<std::size_t> event;  // the step ended at a root of this event function
   std::vector<EventRoot> events;     // all roots there, within rounding, after those that the step passed, by time
-  int switches = 0;                  // switch functions whose root the step ended at
+  std::vector<std::size_t> switches;  // switch functions whose root the step ended at
 };
 
 /// The motion at one time.

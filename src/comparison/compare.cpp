@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <tuple>
 
 /// The proof in its order: constraints of A, equations of A, freedoms; then energies and runs.
 namespace maupertuis {
@@ -14,11 +15,6 @@ namespace {
 using comparison::Differences;
 using comparison::Motions;
 using comparison::PullBack;
-
-/// What messages call a model; `mark` tells two of one name apart.
-std::string called(const std::string& name, const char* unnamed, const char* mark) {
-  return name.empty() ? unnamed : name + mark;
-}
 
 class Comparer {
  public:
@@ -32,9 +28,7 @@ class Comparer {
         pull_back_(pull_back),
         motions_(b_, b_equations),
         runs_(a, a_equations, b_, b_equations, pull_back, motions_, options.simulation) {
-    const bool same_name = a.system.name == b_.system.name;
-    out_.name_a = called(a.system.name, "the first model", same_name ? " (first)" : "");
-    out_.name_b = called(b_.system.name, "the second model", same_name ? " (second)" : "");
+    std::tie(out_.name_a, out_.name_b) = comparison::names_of(a.system, b_.system);
   }
 
   Comparison carry_out() {

@@ -58,6 +58,7 @@ PullBack::PullBack(const MechanicalSystem& a, const CoordinateMap& map, Diagnost
   }
   replacements_.emplace(a.context->time(), context_.time());
   const Bindings values = parameter_bindings(b);
+  const auto names = names_of(a, b);
   for (std::size_t i = 0; i < a.parameters.size(); ++i) {
     const Parameter& p = a.parameters[i];
     Expr counterpart = map.parameters[i];
@@ -74,18 +75,27 @@ PullBack::PullBack(const MechanicalSystem& a, const CoordinateMap& map, Diagnost
         diagnostics.error(
             "E0825", {},
             fmt::format("the parameter `{}` differs: {:.12g} in {}, {:.12g} in {} (SI units)", p.name, p.si_value,
-                        a.name, other, b.name),
+                        names.first, other, names.second),
             "Two models with different values move differently, whatever their equations.",
             fmt::format("Give both the same value, or say in the map what `{}` is in the second model.", p.name));
     } else {
       counterpart = carried_over({&p.value, 1}, {}, context_).front();
       if (p.symbol.role() == Role::Parameter && p.used)
-        diagnostics.note("N0826", {}, fmt::format("`{}` is no name of {}: its value is put in", p.name, b.name),
+        diagnostics.note("N0826", {}, fmt::format("`{}` is no name of {}: its value is put in", p.name, names.second),
                          fmt::format("What is shown then holds for {} = {:.12g} (SI units) alone.", p.name, p.si_value),
                          fmt::format("A map may say what it is: `{} = …`.", p.name));
     }
     replacements_.emplace(p.symbol, counterpart);
   }
+}
+
+std::pair<std::string, std::string> names_of(const MechanicalSystem& a, const MechanicalSystem& b) {
+  const bool same = a.name == b.name;
+  const auto called = [](const std::string& name, const char* unnamed, const char* mark) {
+    return name.empty() ? unnamed : name + mark;
+  };
+  return {called(a.name, "the first model", same ? " (first)" : ""),
+          called(b.name, "the second model", same ? " (second)" : "")};
 }
 
 ExprVector PullBack::operator()(std::span<const Expr> of_a) const {

@@ -1,6 +1,9 @@
 #pragma once
 #include <maupertuis/comparison.hpp>
 
+#include <string>
+#include <utility>
+
 namespace maupertuis::comparison {
 
 /// Rebuilds expressions of one context in another, symbols replaced. Precondition: no TimeDerivative nodes, every
@@ -27,5 +30,8 @@ class PullBack {
   ExprVector positions_, velocities_, accelerations_;
   ExprMap replacements_;
 };
+
+/// What messages call two models: one without a name is the first or the second, and so are two of one name.
+std::pair<std::string, std::string> names_of(const MechanicalSystem& a, const MechanicalSystem& b);
 
 }  // namespace maupertuis::comparison

@@ -115,7 +115,8 @@ class MapReader {
       if (p.symbol.role() == Role::Parameter) known.push_back(p.name);
     for (std::size_t i = 0; i < read_.size(); ++i) {
       const Assignment& one = read_[i];
-      const std::string first = fmt::format("the first model ({})", a_.system.name);
+      const std::string first =
+          a_.system.name.empty() ? "the first model" : fmt::format("the first model ({})", a_.system.name);
       if (std::find(known.begin(), known.end(), one.name) == known.end()) {
         const std::string near = did_you_mean(one.name, known);
         diagnostics_.error(

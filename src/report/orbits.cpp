@@ -44,7 +44,9 @@ Finding periodic_motion(const FloquetResult& r, const MechanicalSystem& system) 
   add("closes to", short_number(r.motion.closure, 2) + " of its size");
   std::string multipliers;
   for (std::size_t i = 0; i + r.trivial < r.multipliers.size(); ++i)
-    multipliers += (i ? ", " : "") + complex_text(r.multipliers[i]);
+    multipliers +=
+        (i ? ", " : "") + (r.log_smallest && r.multipliers[i] == 0.0 ? "exp(" + short_number(*r.log_smallest) + ")"
+                                                                     : complex_text(r.multipliers[i]));
   if (r.trivial > 0)
     multipliers += fmt::format("{}1{}", multipliers.empty() ? "" : ", ", r.trivial == 2 ? " twice" : "");
   add("Floquet multipliers", multipliers);
@@ -86,6 +88,11 @@ Finding exponents(const LyapunovResult& r, const MechanicalSystem& system) {
 
 }  // namespace
 
+std::string picture_title(const MechanicalSystem& system, const std::string& what) {
+  const std::string& name = system.title.empty() ? system.name : system.title;
+  return name.empty() ? what : name + ": " + what;
+}
+
 PlotOptions section_picture(const SectionResult& section, const std::string& what, const MechanicalSystem& system) {
   PlotOptions out;
   const std::string& name = system.coordinates[section.across].name;
@@ -93,7 +100,7 @@ PlotOptions section_picture(const SectionResult& section, const std::string& wha
   out.columns = {name + "'"};
   out.dots_by = "orbit";
   out.outline = section.outline;
-  out.title = fmt::format("{}: {}", system.title.empty() ? system.name : system.title, what);
+  out.title = picture_title(system, what);
   if (section.energy_conserved)
     out.title += fmt::format(", E = {:.6g}{}", section.orbits.front().energy, system.dimensionless ? "" : " J");
   return out;

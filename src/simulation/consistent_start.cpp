@@ -23,7 +23,7 @@ std::string change_text(double from, double to) {
     const double shown = std::strtod(after.c_str(), nullptr) - std::strtod(before.c_str(), nullptr);
     if (std::abs(shown - (to - from)) <= 0.05 * std::abs(to - from)) return fmt::format("from {} to {}", before, after);
   }
-  return fmt::format("from {:.17g} to {:.17g}", from, to);
+  return fmt::format("from {} to {}", from, to);
 }
 
 class Start {

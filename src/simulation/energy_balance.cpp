@@ -21,7 +21,7 @@ void EnergyBalance::after_step(const Method& method, const Step& step) {
     const double work = energy_of(method.step_start()) - energy_of(*on_switch_);
     if (std::isfinite(work)) work_before_ += work;
   }
-  at_switch_ = jumps_ && step.switches > 0;
+  at_switch_ = jumps_ && !step.switches.empty();
   if (moved) add(method.step_start());
 }
 

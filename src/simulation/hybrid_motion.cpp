@@ -186,7 +186,7 @@ Step HybridMotion::step(double bound) {
   if (meets_late_ && pending_) late_by_ = hidden_by_rounding(bound);
   if (!pending_ && (out.end >= end || outgrows_stops())) pending_ = std::make_unique<Pending>();
   // A force that jumps may let a contact or a friction go, though none of their conditions has a root.
-  if (!pending_ && ((out.switches > 0 && !goes_on(bound)) || pulls())) {
+  if (!pending_ && ((!out.switches.empty() && !goes_on(bound)) || pulls())) {
     take_state();
     pending_ = std::make_unique<Pending>();
   }

@@ -165,14 +165,14 @@ class Run {
     if (step.event && hybrid_ && hybrid_->record().stopped_by) {
       result_.ending = Ending::Stopped;
       result_.reason = fmt::format("the event `{}` stopped the run at {}", *hybrid_->record().stopped_by,
-                                   model_.system.moment(fmt::format("{:.17g}", method_->time())));
+                                   model_.system.moment(fmt::format("{}", method_->time())));
       record_covered();
       return false;
     }
     if (step.event && plan_.until) {
       result_.ending = Ending::UntilReached;
       result_.reason =
-          "the condition of `run until` was met at " + model_.system.moment(fmt::format("{:.17g}", method_->time()));
+          "the condition of `run until` was met at " + model_.system.moment(fmt::format("{}", method_->time()));
       record_covered();
       return false;
     }

@@ -46,7 +46,7 @@ double StiffnessWatch::time_scale(double now) const {
 }
 
 bool StiffnessWatch::sees_stiffness(const Sample& start, const Step& step, double end) {
-  if (step.switches > 0) {
+  if (!step.switches.empty()) {
     forget();  // around switches steps are short for another reason
     return false;
   }

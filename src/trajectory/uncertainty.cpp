@@ -50,7 +50,7 @@ double read(const std::string& digits, int exponent) {
 }  // namespace
 
 std::string with_uncertainty(double value, double error) {
-  if (std::isnan(error) || !std::isfinite(value)) return fmt::format("{:.17g}", value);
+  if (std::isnan(error) || !std::isfinite(value)) return fmt::format("{}", value);
   if (error == 0) return fmt::format("{}", value == 0 ? 0.0 : value);
   if (std::isinf(error)) return "?";
   for (int place = leading_exponent(error);; ++place) {

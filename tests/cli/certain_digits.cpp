@@ -25,6 +25,7 @@ TEST_CASE("simulate prints each number with its certain digits; equal runs print
   const Outcome text = maup({"simulate", model, "--at", "0s"});
   CHECK(text.code == 0);
   CHECK(contains(text.out, "t = 0 s\n  x = 0.1 m\n  x' = 0 m/s\n  y = 0 m\n"));  // given: exact
+  CHECK(contains(maup({"simulate", model, "--at", "0.3s"}).out, "t = 0.3 s\n"));
   const std::string last = text.out.substr(text.out.find("t = 7 s"));
   CHECK(contains(last, "  x = 0.0669"));
   CHECK(last[last.find(')') - 2] == '(');

@@ -81,6 +81,46 @@ TEST_CASE("orbits --lyapunov: the sum rule in text and document, the averages as
             .size() == 1);
 }
 
+TEST_CASE("orbits: a system without a drive, without chaos, and without a name") {
+  const std::string hoop =
+      "param m = 1 kg, R = 0.5 m, g = 9.81 m/s^2, Ω = 3 rad/s\ncoord θ : angle\n"
+      "point P mass m at R (sin θ cos(Ω t), sin θ sin(Ω t), -cos θ)\ngravity (0, 0, -g)\nstart θ = 0.1 rad\nrun 5 s\n";
+  const Outcome floquet = maup({"orbits", "-", "--floquet"}, hoop);
+  CHECK(contains(floquet.out, "the model: a periodic motion"));
+  CHECK_FALSE(contains(floquet.out, "of the drive"));
+  CHECK(contains(maup({"orbits", "-", "--lyapunov", "--duration", "100s"}, hoop).out, "  not chaotic  "));
+  const Json l = json_of(maup({"orbits", "-", "--lyapunov", "--json"}, hoop)).at("lyapunov");
+  CHECK(l.at("chaos") == "excluded");
+  const Json conserves = json_of(maup({"orbits", "-", "--lyapunov", "--json"},
+                                      "dimensionless\ncoord x, y : number\nL = y x' - (exp(x) - x + exp(y) - y)\n"
+                                      "start x = 0.5\nrun 50\n"));
+  CHECK(conserves.at("lyapunov").at("kaplan_yorke").is_null());
+  const Folder folder;
+  const std::string model = folder.write("h.lag", hoop), svg = folder.path("s.svg");
+  CHECK(maup({"orbits", model, "--section", "θ = 0 rising", "--crossings", "5", "--plot", svg}).code == 0);
+  CHECK(contains(read(svg), ">section "));
+  CHECK(contains(read(svg), "<svg"));
+}
+
+TEST_CASE("orbits --floquet: multipliers that rounding hides") {
+  const std::string text =
+      "dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = 1/2 (x^2 + y^2)\nD = 20 x'^2 + c y'^2\n"
+      "force x = cos(t)\nrun 10\n";
+  const Outcome one = maup({"orbits", "-", "--floquet"}, "param c = 0.1\n" + text),
+                two = maup({"orbits", "-", "--floquet"}, "param c = 20\n" + text);
+  CHECK(contains(one.out, "log|μ|/T = -39.975, by the divergence"));  // −20 − √399
+  CHECK(contains(two.out, "2, lost in the rounding of dΦ"));
+}
+
+TEST_CASE("orbits --floquet: the time of a start that is not the model's") {
+  const Outcome riding =
+      maup({"orbits", "-", "--floquet"},
+           "dimensionless\ncoord y : number\nL = 1/2 y'^2 - y\ncontact y >= 0.4 sin(t) restitution 0.5 name table\n"
+           "start y = 0, y' = 0.4\nrun 60\n");
+  CHECK(contains(riding.out, "start               t = "));
+  CHECK(contains(riding.out, "0, of 2 directions that contacts and friction hold"));
+}
+
 TEST_CASE("orbits: what cannot be had, and wrong usage") {
   const Folder folder;
   const std::string model = folder.write("hh.lag", henon_heiles);

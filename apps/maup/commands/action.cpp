@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <maupertuis/action_pictures.hpp>
+#include <maupertuis/report.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -195,7 +196,7 @@ void write_files(const ActionCommand& o, const ActionFindings& found, Study& stu
   const std::string title = system.title.empty() ? system.name : system.title;
   if (!o.plot.empty()) {
     Diagram d = neighbours_diagram(system, found.variations);
-    d.title = title + ": S of neighbours";
+    d.title = picture_title(system, "S of neighbours");
     write_picture(o.plot, diagram_svg(d), study.diagnostics());
   }
   if (o.plot_paths.empty()) return;

@@ -126,7 +126,7 @@ std::string mode_name(const std::string& mode) { return mode.empty() ? "free" : 
 /// The coordinates with their kinds, the parts of each energy, … : one line each, in the order of a lecture.
 std::string summary(const Model& model, const EquationsOfMotion& equations, const StartFindings& findings) {
   const MechanicalSystem& system = model.system;
-  std::string out = system.name + (system.title.empty() ? "" : fmt::format(" — {}", system.title)) + "\n";
+  std::string out = spoken_name(system) + (system.title.empty() ? "" : fmt::format(" — {}", system.title)) + "\n";
   const auto line = [&out](const char* head, const std::string& text) {
     if (!text.empty()) out += fmt::format("  {:<22}{}\n", head, text);
   };

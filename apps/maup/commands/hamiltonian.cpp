@@ -35,7 +35,7 @@ std::vector<std::size_t> coordinates_named(const std::vector<std::string>& names
     if (place == known.end()) {
       const std::string near = did_you_mean(name, known);
       study.diagnostics().error("E1105", {},
-                                fmt::format("`{}` is no coordinate of {}", name, study.model()->system.name),
+                                fmt::format("`{}` is no coordinate of {}", name, spoken_name(study.model()->system)),
                                 "A Routhian replaces velocities of coordinates by their momenta.",
                                 near.empty() ? "" : fmt::format("Did you mean `{}`?", near));
     } else if (const auto i = static_cast<std::size_t>(place - known.begin());

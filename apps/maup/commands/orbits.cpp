@@ -65,8 +65,7 @@ std::optional<Findings> find_lyapunov(const Options& o, Study& study) {
   if (!result) return {};
   const MechanicalSystem& system = study.model()->system;
   Findings out{{"lyapunov", lyapunov_text(*result), lyapunov_json(*result)}, lyapunov_rows(*result, system), {}};
-  out.picture.title =
-      fmt::format("{}: Lyapunov exponents, averages up to t", system.title.empty() ? system.name : system.title);
+  out.picture.title = picture_title(system, "Lyapunov exponents, averages up to t");
   return out;
 }
 

@@ -25,7 +25,8 @@ constexpr CodeEntry entries[] = {
      "neighbours of a motion "
      "meet the jump at other times, and the tangent equations do not say what it does to them. A force that is "
      "continuous at "
-     "its switch, such as min(x, 0), is no obstacle. Impacts, contacts and friction of the model are none either: "
+     "its switch, such as min(x, 0), is no obstacle, and a switch of t alone, as in sign(sin(t)), is none either: all "
+     "neighbours cross it together. Impacts, contacts and friction of the model are none either: "
      "neighbours "
      "are carried through them. But some of them part there: where a contact is only touched, where several are hit at "
      "once and the order matters, where the motion starts in an impact.",

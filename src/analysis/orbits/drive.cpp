@@ -95,23 +95,45 @@ bool contacts_repeat(const MechanicalSystem& system, const Survey& seen,
   return true;
 }
 
+/// Accelerations on the side of each switch on which a state is. None: an acceleration has no value. `undecided`: a
+/// switch is so near that rounding, or a little time, decides.
+struct AccelerationsAt {
+  std::vector<double> values;
+  bool undecided = false;
+};
+AccelerationsAt accelerations_at(KernelWorkspace& work, const Kernel& kernel, const MotionState& s, double duration) {
+  const std::size_t count = kernel.switches().size();
+  std::vector<std::int8_t> sides(count, 1), before;
+  KernelStatus status = KernelStatus::NonFinite;
+  for (std::size_t pass = 0; pass <= count && (pass == 0 || sides != before); ++pass) {  // those within others first
+    before = sides;
+    work.set_branches(sides);
+    status = work.evaluate(s.t, s.q, s.v);
+    for (std::size_t i = 0; i < count; ++i) sides[i] = work.switch_function(i, 0) < 0 ? -1 : 1;
+  }
+  AccelerationsAt out;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double reach = work.switch_scale(i) + std::abs(work.switch_function(i, 1) * duration);
+    out.undecided = out.undecided || !(std::abs(work.switch_function(i, 0)) > same_acceleration * reach);
+  }
+  for (std::size_t i = 0; status == KernelStatus::Ok && i < s.q.size(); ++i) out.values.push_back(work.acceleration(i));
+  return out;
+}
+
 bool repeats(const MechanicalSystem& system, const MotionKernel& motion, const Survey& seen,
              const std::function<void(MotionState&)>& move) {
   KernelWorkspace work(motion.kernel, 1);
   work.set_parameters(motion.parameters);
-  const auto accelerations = [&](const MotionState& s) {
-    std::vector<double> a;
-    if (work.evaluate(s.t, s.q, s.v) != KernelStatus::Ok) return a;
-    for (std::size_t i = 0; i < s.q.size(); ++i) a.push_back(work.acceleration(i));
-    return a;
-  };
+  const double duration = seen.states.back().t - seen.states.front().t;
   const std::size_t n = motion.kernel.freedoms(), stride = std::max<std::size_t>(1, seen.states.size() / 32);
   std::vector<double> largest(n, 0.0), difference(n, 0.0);
   for (std::size_t k = 0; k < seen.states.size(); k += stride)
     for (const MotionState& here : places_at(seen.states[k], seen.sizes)) {
       MotionState moved = here;
       move(moved);
-      const auto a = accelerations(here), b = accelerations(moved);
+      const auto [a, undecided] = accelerations_at(work, motion.kernel, here, duration);
+      const auto [b, then_undecided] = accelerations_at(work, motion.kernel, moved, duration);
+      if (undecided || then_undecided) continue;
       if (a.empty() != b.empty()) return false;
       if (a.empty()) continue;
       for (std::size_t i = 0; i < n; ++i) {
@@ -169,7 +191,11 @@ std::optional<double> period_of_drive(const EquationsOfMotion& equations) {
 }
 
 bool repeats_in_time(const MechanicalSystem& system, const MotionKernel& motion, const Survey& seen, double period) {
-  return repeats(system, motion, seen, [period](MotionState& s) { s.t += period; });
+  // A switch of t may stand still for longer than the period that is asked for.
+  constexpr int multiples = 64;
+  for (int k = 1; k <= multiples; ++k)
+    if (!repeats(system, motion, seen, [period, k](MotionState& s) { s.t += k * period; })) return false;
+  return true;
 }
 
 bool repeats_in_angle(const MechanicalSystem& system, const MotionKernel& motion, const Survey& seen,

@@ -19,6 +19,10 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 using Index = Eigen::Index;
 
+/// Parts of the largest of dΦ_T, whose rounding is some 1e-13 of that: below them an eigenvalue has fewer digits than
+/// nine, and none.
+constexpr double few_digits = 1e-4, no_digits = 1e-12;
+
 /// The part of the return map that is not trivial. f is an eigenvector with the multiplier 1, and ∂E an eigenvector of
 /// the transpose: on the directions that are normal to both, dΦ_T is that of the quotient, in orthonormal directions.
 Matrix quotient(const ReturnMap& map, std::vector<Vector> trivial) {
@@ -54,6 +58,30 @@ class Multipliers {
     out.multipliers.insert(out.multipliers.end(), out.trivial, 1.0);
   }
 
+  /// Rounding of dΦ_T is that of its largest: of what is much smaller the eigenvalues tell little or nothing. A
+  /// symplectic map has it as the reciprocal of a large one; where it is one alone, the divergence has it (Liouville).
+  void settle_small(FloquetResult& out) const {
+    const double size = largest_singular_value();
+    const std::size_t count = out.multipliers.size() - out.trivial;
+    const auto below = [&](double part) {
+      return static_cast<std::size_t>(
+          std::count_if(out.multipliers.begin(), out.multipliers.begin() + static_cast<std::ptrdiff_t>(count),
+                        [&](const std::complex<double>& mu) { return std::abs(mu) < part * size; }));
+    };
+    const std::size_t small = below(few_digits);
+    if (small == 0) return;
+    if (out.symplectic_residual && count % 2 == 0) {
+      for (std::size_t j = count - std::min(small, count / 2); j < count; ++j)
+        out.multipliers[j] = 1.0 / out.multipliers[count - 1 - j];
+    } else if (small == 1 && out.integrated_divergence) {
+      take_from_divergence(out, out.multipliers[count - 1], count - 1);
+    } else {
+      out.lost = below(no_digits);
+      std::fill_n(out.multipliers.begin() + static_cast<std::ptrdiff_t>(count - out.lost), out.lost, 0.0);
+    }
+    out.largest = std::abs(out.multipliers.front());
+  }
+
   double log_determinant() const {
     const Eigen::PartialPivLU<Matrix> lu(map_.monodromy);
     return lu.matrixLU().diagonal().cwiseAbs().array().log().sum();
@@ -67,6 +95,23 @@ class Multipliers {
   }
 
  private:
+  double largest_singular_value() const {
+    const Vector values = Eigen::JacobiSVD<Matrix>(map_.monodromy).singularValues();
+    return values.size() == 0 ? 0 : values.maxCoeff();
+  }
+
+  /// dΦ_T of a flow keeps the orientation: the product of all multipliers is positive.
+  static void take_from_divergence(FloquetResult& out, std::complex<double>& smallest, std::size_t others) {
+    double log_others = 0;
+    std::complex<double> sign = 1;
+    for (std::size_t i = 0; i < others; ++i) {
+      log_others += std::log(std::abs(out.multipliers[i]));
+      sign *= out.multipliers[i] / std::abs(out.multipliers[i]);
+    }
+    out.log_smallest = *out.integrated_divergence - log_others;
+    smallest = std::copysign(std::exp(*out.log_smallest), sign.real());
+  }
+
   /// In the coordinates of the return map.
   std::vector<Vector> trivial_directions(bool driven) const {
     std::vector<Vector> out;
@@ -148,6 +193,7 @@ std::optional<FloquetResult> floquet(const Model& model, const EquationsOfMotion
   if (closed->through_modes && orbits::bounces_end(model.system))
     out.vanished = TangentFlow(equations).all_directions(out.motion.start).columns() - closed->begin.columns();
   check(equations, *closed, multipliers, out);
+  if (!closed->through_modes) multipliers.settle_small(out);
   out.stability = orbits::stability_of(out);
   orbits::warn_of_error(out, diagnostics);
   return out;

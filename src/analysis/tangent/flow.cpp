@@ -56,6 +56,19 @@ class JumpWatch {
   std::vector<double> largest_, before_;
 };
 
+/// [switches] Whether it depends on the time alone: all neighbours cross it together, and a jump of the accelerations
+/// there changes none of what they differ by.
+std::vector<bool> switches_of_time(const Kernel& kernel) {
+  std::vector<bool> out;
+  for (const SwitchFunction& s : kernel.switches()) {
+    const auto symbols = symbols_of(s.right ? ExprVector{s.left, s.right} : ExprVector{s.left});
+    out.push_back(std::none_of(symbols.begin(), symbols.end(), [](const Expr& e) {
+      return e.role() != Role::Time && e.context().depends_on_time(e.id());
+    }));
+  }
+  return out;
+}
+
 TangentStop jump_at(double t) {
   return {StepEnding::None, t,
           fmt::format(
@@ -71,7 +84,7 @@ class Group {
         std::size_t columns)
       : n_(n),
         columns_(columns),
-        smooth_(kernel.switches().empty()),
+        of_time_(switches_of_time(kernel)),
         scales_(columns, 0.0),
         q_(n * (1 + columns)),
         v_(q_.size()),
@@ -150,14 +163,16 @@ class Group {
   std::optional<TangentStop> step(double t) {
     const Step step = stepper_.step(t);
     if (step.ending != StepEnding::None) return TangentStop{step.ending, step.begin, step.reason};
-    if (smooth_) return std::nullopt;
+    if (of_time_.empty()) return std::nullopt;
     if (const auto jump = jumps_.at_beginning(stepper_.step_start())) return jump_at(*jump);
-    if (step.switches > 0) jumps_.switched(stepper_.sample(stepper_.time()));
+    const bool parts_neighbours =
+        std::any_of(step.switches.begin(), step.switches.end(), [&](std::size_t i) { return !of_time_[i]; });
+    if (parts_neighbours) jumps_.switched(stepper_.sample(stepper_.time()));
     return std::nullopt;
   }
 
   std::size_t n_, columns_;
-  bool smooth_;
+  std::vector<bool> of_time_;   // [switches]
   std::vector<double> scales_;  // [columns]
   std::vector<double> q_, v_;   // [n (1 + columns)]
   TaylorStepper stepper_;
@@ -247,8 +262,10 @@ std::optional<TangentStop> TangentFlow::Impl::jump_at_start(const MotionState& s
   const std::vector<std::int8_t> sides = sides_at(start);
   work.set_branches(sides);
   if (count == 0 || work.evaluate(start.t, start.q, start.v) != KernelStatus::Ok) return std::nullopt;
+  const std::vector<bool> of_time = switches_of_time(*motion);
   std::vector<std::size_t> open;
   for (std::size_t i = 0; i < count; ++i) {
+    if (of_time[i]) continue;
     const double s = work.switch_function(i, 0), rate = work.switch_function(i, 1);
     if (rate != 0 && std::abs(s) <= 1e-12 * (work.switch_scale(i) + std::abs(rate * duration))) open.push_back(i);
   }

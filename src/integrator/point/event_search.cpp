@@ -142,7 +142,7 @@ std::span<const double> EventSearch::values(double t, const PointAt& point) {
 }
 
 std::string reason_of(EventSearch::Outcome outcome, double begin, double end) {
-  return fmt::format("the condition {} on the step from t = {:.17g} s to {:.17g} s; Taylor's steps follow it there",
+  return fmt::format("the condition {} on the step from t = {} s to {} s; Taylor's steps follow it there",
                      outcome == EventSearch::Outcome::NoValue ? "has no value" : "changes too often to be followed",
                      begin, end);
 }

@@ -7,7 +7,7 @@
 namespace maupertuis::stiff {
 
 std::pair<StepEnding, std::string> reason_of(Failure failure, PointStatus status, double t) {
-  const auto at = [t](const char* text) { return fmt::format("{} at t = {:.17g} s", text, t); };
+  const auto at = [t](const char* text) { return fmt::format("{} at t = {} s", text, t); };
   if (status == PointStatus::Singular)
     return {StepEnding::SingularMass,
             at("the accelerations have no unique value: the mass matrix is singular on the motions that the "

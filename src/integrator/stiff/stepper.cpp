@@ -45,7 +45,7 @@ struct StiffStepper::Impl {
   bool stands_still(double bound);
   bool jumps_within(double h);
   bool fast_parts_die_out(double length);
-  Step ended(StepEnding ending, std::string reason) const { return {t, t, ending, std::move(reason), {}, {}, 0}; }
+  Step ended(StepEnding ending, std::string reason) const { return {t, t, ending, std::move(reason), {}, {}, {}}; }
   Sample sample(double time) const;
   void state_at(double time, std::span<double> out) const;
 
@@ -127,7 +127,7 @@ Step StiffStepper::Impl::step(double bound) {
   if (stands_still(bound)) {
     result.ending = StepEnding::StepUnderflow;
     result.reason = fmt::format(
-        "time stands still at t = {:.17g} s, so short have the steps become: a collision, an infinite force, or a "
+        "time stands still at t = {} s, so short have the steps become: a collision, an infinite force, or a "
         "switch with forces that push back to it from both sides, as dry friction at rest does",
         t);
   }

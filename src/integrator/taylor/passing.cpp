@@ -204,7 +204,7 @@ void TaylorStepper::Impl::pass(const Collocation& c, double bound, Step& result)
   state.move(last.dense, last.begin, c.h);
   if (reaches_bound) state.arrive(bound);
   for (std::size_t i = 0; i < watched.switches.size(); ++i) {
-    if (watched.switches[i].side != c.sides[i]) ++switches, ++result.switches;
+    if (watched.switches[i].side != c.sides[i]) ++switches, result.switches.push_back(i);
     watched.switches[i] = {c.sides[i], false};
   }
   result.end = state.t.hi;

@@ -184,7 +184,7 @@ bool TaylorStepper::Impl::make_step(double bound, double h, Step& result) {
   if (result.ending != StepEnding::None) return true;
   stuck = crossing.found && state.t.hi == last.begin.hi ? stuck + 1 : 0;
   watched.leave(crossing, h, result);
-  switches += static_cast<std::size_t>(result.switches);
+  switches += result.switches.size();
   first = false;
   ++steps;
   return true;

@@ -176,7 +176,7 @@ void WatchedFunctions::leave(const Crossing& crossing, double length, Step& resu
   for (std::size_t k = 0; k < crossing.roots.size(); ++k) {
     const std::size_t i = crossing.roots[k];
     if (i < count) {
-      ++result.switches;
+      result.switches.push_back(i);
       continue;
     }
     if (!result.event) result.event = i - count;

@@ -53,7 +53,7 @@ struct VariationalStepper::Impl {
   Sample sample(double t) const;
   Sample sample_at(const Phase& phase, const std::vector<Compensated>& sums) const;
   Step ended(StepEnding ending, std::string reason) const {
-    return {now.t, now.t, ending, std::move(reason), {}, {}, 0};
+    return {now.t, now.t, ending, std::move(reason), {}, {}, {}};
   }
 
   MotionFunctions functions;
@@ -89,15 +89,15 @@ std::string reason_of(StageStatus status, double t, double h) {
   switch (status) {
     case StageStatus::Singular:
       return fmt::format(
-          "the discrete equations of motion have no unique solution after t = {:.17g} s: the mass matrix is "
+          "the discrete equations of motion have no unique solution after t = {} s: the mass matrix is "
           "singular there on the motions that the constraints allow",
           t);
     case StageStatus::NonFinite:
-      return fmt::format("a value is infinite or undefined on the step from t = {:.17g} s to {:.17g} s", t, t + h);
+      return fmt::format("a value is infinite or undefined on the step from t = {} s to {} s", t, t + h);
     case StageStatus::NoConvergence:
       return fmt::format(
-          "Newton's iteration does not solve the discrete equations of motion on the step from t = {:.17g} s to "
-          "{:.17g} s: the step is too long there, a switch lies in it, or no motion obeys the constraints",
+          "Newton's iteration does not solve the discrete equations of motion on the step from t = {} s to "
+          "{} s: the step is too long there, a switch lies in it, or no motion obeys the constraints",
           t, t + h);
     case StageStatus::Ok:
       break;
@@ -172,8 +172,8 @@ Step VariationalStepper::Impl::step(double bound) {
   if (sight == variational::Sight::NonFinite)
     return ended(StepEnding::Overflow, reason_of(StageStatus::NonFinite, now.t, this_h));
   if (sight == variational::Sight::NotAll)
-    return ended(StepEnding::NoConvergence, fmt::format("a force acts between the nodes of the step from t = {:.17g} s "
-                                                        "to {:.17g} s that they do not see: the step is too "
+    return ended(StepEnding::NoConvergence, fmt::format("a force acts between the nodes of the step from t = {} s "
+                                                        "to {} s that they do not see: the step is too "
                                                         "long there",
                                                         now.t, now.t + this_h));
 

@@ -259,7 +259,12 @@ TEST_CASE("parameters: by name, by the map, by value, or different") {
   check_same(mapped);
   const Compared different = compare_texts(angle_pendulum, replaced(angle_pendulum, "l = 2 m", "l = 1 m"));
   CHECK(different.text.find("E0825") != std::string::npos);
-  CHECK(different.text.find("`l` differs: 2 in polar, 1 in polar") != std::string::npos);
+  CHECK(different.text.find("`l` differs: 2 in polar (first), 1 in polar (second)") != std::string::npos);
+  const auto unnamed = [](const std::string& text) { return replaced(text, "system polar\n", ""); };
+  CHECK(compare_texts(unnamed(angle_pendulum), unnamed(heavy)).text.find("`m` is no name of the second model") !=
+        std::string::npos);
+  CHECK(compare_texts(unnamed(angle_pendulum), unnamed(replaced(angle_pendulum, "l = 2 m", "l = 1 m")))
+            .text.find("2 in the first model, 1 in the second model") != std::string::npos);
 }
 
 TEST_CASE("maps that cannot be read") {

@@ -106,6 +106,22 @@ TEST_CASE("a ball on a vibrating table: multipliers in closed form") {
   CHECK(product(r.multipliers).real() == doctest::Approx(e * e).epsilon(1e-12));
 }
 
+TEST_CASE("a ball that rides on a table moves with it, and thrown balls join it where bounces lose") {
+  const auto riding = [](const std::string& rest) {
+    return floquet_of(
+        ModelText("dimensionless\nparam g = 1, A = 0.4, w = 1\ncoord y : number\nL = 1/2 y'^2 - g y\n" + rest));
+  };
+  const FloquetResult joined = riding("contact y >= A sin(w t) restitution 0.5 name table\nstart y = 3\nrun 60\n");
+  CHECK_FALSE(joined.motion.rests);
+  CHECK(joined.motion.start.v[0] == doctest::Approx(0.4 * std::cos(joined.motion.start.t)).epsilon(1e-12));
+  CHECK(joined.vanished == 2);
+  CHECK(joined.stability == OrbitalStability::Attracting);
+  const FloquetResult elastic =
+      riding("contact y >= A sin(w t) restitution 1 name table\nstart y = 0, y' = 0.4\nrun 60\n");
+  CHECK(elastic.vanished == 0);
+  CHECK(elastic.stability == OrbitalStability::Neutral);
+}
+
 TEST_CASE("two bounces between the walls of an elliptic billiard") {
   const auto multiplier = [](const char* start) {
     ModelText m(

@@ -38,6 +38,7 @@ TEST_CASE("Hénon-Heiles at E = 1/6: pairs ±λ, two zeros, sum zero") {
   CHECK(std::abs(r.exponents[1]) < 0.02);
   CHECK(std::abs(r.sum) < 1e-10);
   CHECK(r.exponents[0] > 0.03);
+  CHECK(r.chaos == Chaos::Shown);
 }
 
 TEST_CASE("a driven damped pendulum: the sum is −c, the largest alone agrees with the whole spectrum") {
@@ -49,6 +50,7 @@ TEST_CASE("a driven damped pendulum: the sum is −c, the largest alone agrees w
   CHECK(all.sum == doctest::Approx(-0.5).epsilon(1e-9));
   CHECK(all.exponents[0] > 0.05);
   CHECK(all.exponents[0] < 0.25);
+  CHECK(all.chaos == Chaos::Shown);
   CHECK(*all.kaplan_yorke == doctest::Approx(1 + all.exponents[0] / -all.exponents[1]).epsilon(1e-12));
   LyapunovOptions first;
   first.exponents = 1;
@@ -87,6 +89,51 @@ TEST_CASE("constraints: the spherical pendulum by its constraint has four expone
   for (const double x : r.exponents) CHECK(std::abs(x) < 0.05);  // log t / t
   CHECK(std::abs(r.sum) < 1e-2);  // the volume of the directions at the two ends, over 180 s
   CHECK(*r.sum_rule_residual < 1e-9);
+}
+
+TEST_CASE("regular motions: no chaos, and errors that cover the log t / t of neighbours that part like t") {
+  const std::string hoop =
+      "param m = 1 kg, R = 0.5 m, g = 9.81 m/s^2, Ω = 3 rad/s\ncoord θ : angle\n"
+      "point P mass m at R (sin θ cos(Ω t), sin θ sin(Ω t), -cos θ)\ngravity (0, 0, -g)\nstart θ = 0.1 rad\nrun ";
+  const std::string toda =
+      "dimensionless\ncoord x, y, z : number\nL = 1/2 (x'^2 + y'^2 + z'^2) - exp(x - y) - exp(y - z) - exp(z - x)\n"
+      "start x = 0.1, y' = 0.3, z' = -0.2\nrun ";
+  const std::string pendulums =  // next to their separatrices, where neighbours part exponentially for a while
+      "dimensionless\ncoord a, b : angle\nT = 1/2 (a'^2 + b'^2)\nV = -cos a - 2 cos b\n"
+      "start a = 3.1415, b = 3.141\nrun ";
+  const auto regular = [](const std::string& text, Chaos chaos) {
+    const LyapunovResult r = lyapunov_of(ModelText(text));
+    CAPTURE(text);
+    CHECK(r.chaos == chaos);
+    for (std::size_t j = 0; j < r.exponents.size(); ++j) {
+      if (chaos == Chaos::Excluded || r.duration > 90) CHECK(std::abs(r.exponents[j]) < r.errors[j]);
+      if (j > 0) CHECK(r.exponents[j] <= r.exponents[j - 1]);
+    }
+  };
+  for (const char* run : {"20 s", "100 s", "1000 s"}) regular(hoop + run + "\n", Chaos::Excluded);
+  for (const char* run : {"100", "300"}) regular(toda + run + "\n", Chaos::NotShown);
+  for (const char* run : {"8", "500"}) regular(pendulums + run + "\n", Chaos::NotShown);
+}
+
+TEST_CASE("linear motions part exponentially and are not chaotic") {
+  CHECK(lyapunov_of(ModelText(one + "V = -1/2 x^2\nstart x = 1\nrun 50\n")).chaos == Chaos::Excluded);
+  const LyapunovResult overflows = lyapunov_of(ModelText(one + "V = -1/2 x^2\nstart x = 1\nrun 5000\n"));
+  CHECK_FALSE(overflows.ended.empty());
+  CHECK_FALSE(overflows.sum_rule_residual);
+  CHECK(overflows.exponents[0] == doctest::Approx(1).epsilon(1e-10));
+  // A fast oscillation, and a slow fall from a hill that it is on.
+  const LyapunovResult falls =
+      lyapunov_of(ModelText("dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = -0.02205 x^2 + 50 y^2\n"
+                            "start x = 1, y = 1\nrun 53\n"));
+  CHECK(falls.exponents[0] == doctest::Approx(0.21).epsilon(0.02));
+  CHECK(falls.chaos == Chaos::RunsAway);
+}
+
+TEST_CASE("the dimension of a limit cycle is 1") {
+  const LyapunovResult cycle =
+      lyapunov_of(ModelText(one + "V = 1/2 x^2\nforce x = (1 - x^2) x'\nstart x = 2\nrun 500\n"));
+  CHECK(cycle.kaplan_yorke.value() == 1);
+  CHECK(cycle.chaos == Chaos::Excluded);
 }
 
 TEST_CASE("exponents that cannot be had are told") {
