@@ -256,9 +256,10 @@ std::string chaos_line(const LyapunovResult& r) {
       return orbit_line("chaotic",
                         fmt::format("neighbours part by a factor e in {} s", brief(1 / r.exponents.front())));
     case Chaos::NotShown:
-      return orbit_line("not shown chaotic", "the growth is not told from that of regular motion, a power of t");
+      return orbit_line("not shown chaotic", "within this time the growth may be that of regular motion, a power of t");
     case Chaos::Excluded:
-      return orbit_line("not chaotic", "its states lie in a plane, which has no room for chaos (Poincaré, Bendixson)");
+      return orbit_line("not chaotic",
+                        "its states fill two dimensions at most, no room for chaos (Poincaré, Bendixson)");
     case Chaos::RunsAway:
       return orbit_line("not shown chaotic", "the motion itself grows about as fast as neighbours part");
   }

@@ -24,9 +24,12 @@ void VisitedStates::add(const MotionState& state) {
   if (largest_.empty()) {
     first_ = x;
     ways_ = Eigen::VectorXd::Zero(n);
+    lowest_ = highest_ = x.head(n);
     moments_ = Eigen::MatrixXd::Zero(2 * n, 2 * n);
   }
   ways_ += x.tail(n).cwiseAbs();
+  lowest_ = lowest_.cwiseMin(x.head(n));
+  highest_ = highest_.cwiseMax(x.head(n));
   const Eigen::VectorXd from_first = (x - first_).cwiseQuotient(sizes_);
   moments_ += from_first * from_first.transpose();
   double largest = 0;
@@ -50,8 +53,14 @@ double VisitedStates::growth_of_second_half() const {
 }
 
 double VisitedStates::oscillations(double duration) const {
-  const Eigen::VectorXd ways = ways_ * (duration / static_cast<double>(largest_.size()));
-  return ways.cwiseQuotient(sizes_.head(ways.size())).maxCoeff() / 4;
+  double most = 0;
+  for (Eigen::Index i = 0; i < ways_.size(); ++i) {
+    const double way = ways_[i] * duration / static_cast<double>(largest_.size());
+    double range = highest_[i] - lowest_[i];
+    if (system_.coordinates[static_cast<std::size_t>(i)].kind == "angle") range = std::min(range, 2 * std::numbers::pi);
+    if (range > 0) most = std::max(most, way / (2 * range));
+  }
+  return most;
 }
 
 Chaos chaos_of(const GrowthOfNeighbours& growth, const VisitedStates& states, double duration, std::size_t d,

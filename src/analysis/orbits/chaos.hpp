@@ -20,12 +20,13 @@ class VisitedStates {
   /// The logarithm of the factor by which the largest state of the second half exceeds that of the first; angles
   /// without bound are no large states.
   double growth_of_second_half() const;
-  /// The most oscillations of a coordinate in this time: its way over four times its size.
+  /// The most oscillations of a coordinate in this time: its way over twice the range that was seen, of angles a turn
+  /// at most.
   double oscillations(double duration) const;
 
  private:
   const MechanicalSystem& system_;
-  Eigen::VectorXd sizes_, first_, ways_;
+  Eigen::VectorXd sizes_, first_, ways_, lowest_, highest_;
   Eigen::MatrixXd moments_;      // Σ x xᵀ of the states seen from the first, in units of the sizes
   std::vector<double> largest_;  // [states] component of each
 };
