@@ -21,7 +21,7 @@ struct Watched {
     Step step;
     step.begin = t;
     step.end = t += length;
-    step.switches = switches;
+    step.switches.assign(static_cast<std::size_t>(switches), 0);
     return watch.sees_stiffness(start, step, end);
   }
   /// The number of steps after which it is seen; 0: never within `most`.
