@@ -21,6 +21,12 @@ std::string complex_text(std::complex<double> z) {
   return fmt::format("{} {} {} i", short_number(z.real()), z.imag() < 0 ? "−" : "+", short_number(std::abs(z.imag())));
 }
 
+std::string multiplier_text(const FloquetResult& r, std::size_t i) {
+  if (i + r.lost + r.trivial >= r.multipliers.size()) return "0 to rounding";
+  const bool below_numbers = r.log_smallest && r.multipliers[i] == 0.0;
+  return below_numbers ? "exp(" + short_number(*r.log_smallest) + ")" : complex_text(r.multipliers[i]);
+}
+
 std::string stability_text(const FloquetResult& r) {
   const std::string factor = short_number(r.largest);
   if (r.stability == OrbitalStability::Unstable)
@@ -44,9 +50,7 @@ Finding periodic_motion(const FloquetResult& r, const MechanicalSystem& system) 
   add("closes to", short_number(r.motion.closure, 2) + " of its size");
   std::string multipliers;
   for (std::size_t i = 0; i + r.trivial < r.multipliers.size(); ++i)
-    multipliers +=
-        (i ? ", " : "") + (r.log_smallest && r.multipliers[i] == 0.0 ? "exp(" + short_number(*r.log_smallest) + ")"
-                                                                     : complex_text(r.multipliers[i]));
+    multipliers += (i ? ", " : "") + multiplier_text(r, i);
   if (r.trivial > 0)
     multipliers += fmt::format("{}1{}", multipliers.empty() ? "" : ", ", r.trivial == 2 ? " twice" : "");
   add("Floquet multipliers", multipliers);
