@@ -175,8 +175,8 @@ struct LyapunovResult {
   // |sum − mean divergence| with the volumes of the directions at both ends taken into account, 1/s: rounding alone.
   // There where expected_sum is.
   std::optional<double> sum_rule_residual;
-  /// Dimension of the attractor, an exponent that is 0 within its error taken as 0; where all exponents are there and
-  /// their sum is negative for certain.
+  /// Dimension of the attractor, where all exponents are there, their sum is negative for certain, and none that it
+  /// rests on may be 0 within its error but the one that is 0 along a motion without a drive, and is taken as that.
   std::optional<double> kaplan_yorke;
   std::string ended;  // why before the end; empty: it did not
 };

@@ -28,6 +28,7 @@ void VisitedStates::add(const MotionState& state) {
     moments_ = Eigen::MatrixXd::Zero(2 * n, 2 * n);
   }
   ways_ += x.tail(n).cwiseAbs();
+  speeds_.push_back(x.tail(n).cwiseQuotient(sizes_.tail(n)).lpNorm<Eigen::Infinity>());
   lowest_ = lowest_.cwiseMin(x.head(n));
   highest_ = highest_.cwiseMax(x.head(n));
   const Eigen::VectorXd from_first = (x - first_).cwiseQuotient(sizes_);
@@ -61,6 +62,12 @@ double VisitedStates::oscillations(double duration) const {
     if (range > 0) most = std::max(most, way / (2 * range));
   }
   return most;
+}
+
+bool VisitedStates::keeps_moving(double duration) const {
+  const auto middle = speeds_.begin() + static_cast<std::ptrdiff_t>(speeds_.size() / 2);
+  const double before = *std::max_element(speeds_.begin(), middle), after = *std::max_element(middle, speeds_.end());
+  return after > 0.5 * before && oscillations(duration) > 1;
 }
 
 Chaos chaos_of(const GrowthOfNeighbours& growth, const VisitedStates& states, double duration, std::size_t d,

@@ -23,12 +23,15 @@ class VisitedStates {
   /// The most oscillations of a coordinate in this time: its way over twice the range that was seen, of angles a turn
   /// at most.
   double oscillations(double duration) const;
+  /// Whether it goes to and fro, and on as fast as it began: it neither comes to rest nor creeps.
+  bool keeps_moving(double duration) const;
 
  private:
   const MechanicalSystem& system_;
   Eigen::VectorXd sizes_, first_, ways_, lowest_, highest_;
   Eigen::MatrixXd moments_;      // Σ x xᵀ of the states seen from the first, in units of the sizes
   std::vector<double> largest_;  // [states] component of each
+  std::vector<double> speeds_;   // [states] the largest velocity of each, in units of the sizes
 };
 
 /// Of the growth of the fastest neighbours, as logarithms.

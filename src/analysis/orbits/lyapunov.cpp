@@ -312,10 +312,15 @@ class LyapunovRun {
     if (shrinks) out_.kaplan_yorke = kaplan_yorke();  // no attractor where volumes stay
   }
 
+  /// Along a motion that neither rests nor is driven neighbours stay behind by the same time: one exponent is 0. Of
+  /// another that may be 0 within its error the sign, on which the dimension depends, is not known.
   std::optional<double> kaplan_yorke() const {
+    int zeros = visited_->keeps_moving(out_.duration) && !orbits::depends_on_time(equations_) ? 1 : 0;
     double partial = 0;
     for (std::size_t j = 0; j < out_.exponents.size(); ++j) {
-      const double exponent = std::abs(out_.exponents[j]) <= out_.errors[j] ? 0 : out_.exponents[j];
+      const bool may_be_zero = std::abs(out_.exponents[j]) <= out_.errors[j];
+      if (may_be_zero && zeros-- == 0) return std::nullopt;
+      const double exponent = may_be_zero ? 0 : out_.exponents[j];
       if (partial + exponent < 0) return static_cast<double>(j) + partial / std::abs(exponent);
       partial += exponent;
     }
