@@ -123,8 +123,8 @@ void report_cycle(SymbolTable& table, const syntax::SyntaxTree& tree, const Ids&
   diagnostics.error("E0203", first ? std::optional<Span>(first->span) : span_of_energy(tree, again),
                     fmt::format("`{}` is defined by itself", first ? first->name : table[again].name),
                     fmt::format("The definitions go round in a circle: {}{}.", chain, table[again].name),
-                    members.size() == 1 && find_unit(table[again].name)
-                        ? fmt::format("For the unit write it in brackets: 12 [{}].", table[again].name)
+                    first && members.size() == 1 && find_unit(first->name)
+                        ? fmt::format("For the unit write it in brackets: 12 [{}].", first->name)
                         : "Define one of them from names that do not lead back to it.");
 }
 
