@@ -36,9 +36,11 @@ struct RootOf {
 ///                        rounding
 ///
 /// In a piece the function is a polynomial with a remainder; all its roots are found by Bernstein coefficients, never
-/// by sampling, and each is refined on the function itself. Functions that a disk about the beginning of the step keeps
-/// clear of zero are not expanded at all. Where a function has no value (√ of what is negative), the gap reaches to the
-/// border of its domain.
+/// by sampling, and each is refined on the function itself. Where the polynomial comes so near to zero that its
+/// rounding hides what it does there, the search goes on from the place where it is still clear of zero: (x − 300)²
+/// about x = 0 has terms of 9·10⁴, about x = 299.999 of 10⁻⁶. Functions that a disk about the beginning of the step
+/// keeps clear of zero are not expanded at all. Where a function has no value (√ of what is negative), the gap reaches
+/// to the border of its domain.
 template <class T>
 class RootSearchOf {
  public:
@@ -148,6 +150,12 @@ class RootSearchOf {
   double tail(std::size_t disk, std::size_t near);
   Piece piece(std::size_t index, const T& x, const T& most);
   static Piece up_to(Piece piece, const T& width);
+  struct Nearer {
+    T begin;  // in the step
+    T most;   // how long a piece from there is: some distances to the zero
+  };
+  std::optional<Nearer> nearer(const Piece& piece, const T& x, const Watched& watched,
+                               const std::optional<T>& root) const;
   T value(std::size_t index, const T& x);
   T at_a_time(const T& x) const;
   T refined(std::size_t index, const Piece& piece, const T& begin, const T& root);

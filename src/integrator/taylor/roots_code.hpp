@@ -16,15 +16,14 @@ class Search {
   Search(const ScaledPolynomialOf<T>& polynomial, std::int8_t side) : polynomial_(polynomial), side_(side) {}
 
   std::optional<T> in(const T& low, const T& high, std::vector<T> b) {
-    const T error = watching::unit<T>() * polynomial_.reach;
+    const T error = polynomial_.error_up_to(high);
     const auto [least, most] = std::minmax_element(b.begin(), b.end());
     if (*least > error) return clear_ = true, std::nullopt;
     const T middle = T(0.5) * (low + high);
     if (*most <= 8 * error || high - low < T(1e-14)) {
       const T lowest = bottom(middle);
-      return clear_ && side_ * crossings::value(std::span<const T>(polynomial_.p), lowest) <= error
-                 ? std::optional<T>(lowest)
-                 : std::nullopt;
+      const T there = side_ * crossings::value(std::span<const T>(polynomial_.p), lowest);
+      return clear_ && there <= polynomial_.error_up_to(lowest) ? std::optional<T>(lowest) : std::nullopt;
     }
     std::vector<T> right = crossings::split(b);
     if (const auto left = in(low, middle, std::move(b))) return left;
@@ -74,6 +73,12 @@ std::optional<T> touching(const ScaledPolynomialOf<T>& polynomial, std::int8_t s
 }
 
 namespace touches {
+
+/// Where it begins at a zero of this order, what it has of lower powers is rounding, and is no touch.
+template <class T>
+void take_out_zero(ScaledPolynomialOf<T>& polynomial, std::size_t order) {
+  std::fill_n(polynomial.p.begin(), std::min(order, polynomial.p.size()), T(0));
+}
 
 /// The same polynomial over [0, end] alone.
 template <class T>
@@ -260,6 +265,28 @@ typename RootSearchOf<T>::Piece RootSearchOf<T>::up_to(Piece piece, const T& wid
   return piece;
 }
 
+/// Where to go on with smaller terms; nothing where nothing is hidden, or no place is nearer.
+template <class T>
+std::optional<typename RootSearchOf<T>::Nearer> RootSearchOf<T>::nearer(const Piece& piece, const T& x,
+                                                                        const Watched& watched,
+                                                                        const std::optional<T>& root) const {
+  using std::abs, std::pow;
+  constexpr double alone =
+      1e-9;  // of its place: so near to a root the polynomial is clear of zero if it is a simple one
+  if (watched.side == 0) return std::nullopt;
+  const auto place = first_unclear(piece.polynomial, watched, root ? T(*root * T(1 - alone)) : T(1));
+  if (!place || !(*place * piece.width > resolution_)) return std::nullopt;
+  std::vector<T> p = piece.polynomial.p;  // about the place
+  for (std::size_t done = 0; done < p.size(); ++done)
+    for (std::size_t k = p.size() - 1; k-- > done;) p[k] += *place * p[k + 1];
+  T distance = T(1);
+  for (std::size_t k = 1; k < p.size(); ++k)
+    if (p[k] != 0) distance = std::min(distance, T(pow(T(abs(p[0] / p[k])), T(1) / T(k))));
+  const T most = T(4 * distance) * piece.width;
+  if (!(most > 16 * resolution_)) return std::nullopt;
+  return Nearer{x + piece.width * *place, most};
+}
+
 /// Times are rounded, the parts of a step are not: a function of t is looked at where t + h x is a number of the type,
 /// so that its root is known better than t is. Steps of a few roundings of t have no such places.
 template <class T>
@@ -386,9 +413,11 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watc
     return wrong ? std::optional<RootOf<T>>({from, RootKind::Jump, clear_[index]}) : std::nullopt;
   }
   last_radius_ = std::numeric_limits<double>::infinity();
-  T x = from;
+  constexpr int most_nearer = 32;
+  T x = from, most = window_;  // most: of the piece to come
+  int turns = 0;               // nearer to one place
   while (x < until) {
-    const Piece now = x == T(0) ? up_to(piece(index, x, window_), until) : piece(index, x, T(until - x));
+    Piece now = x == T(0) ? up_to(piece(index, x, window_), until) : piece(index, x, std::min(most, T(until - x)));
     if (now.width == 0) {
       const Gap beyond = gap(index, x, until, watched.side);
       watched.at_zero = false;
@@ -400,7 +429,15 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watc
     if (watched.side == 0)
       watched.side = watched.at_zero ? now.polynomial.direction(watched.order) : watching::sign(now.polynomial.p[0]);
     const auto root = crossing(now.polynomial, watched);
+    const auto closer = turns < most_nearer ? nearer(now, x, watched, root) : std::nullopt;
+    if (watched.at_zero) touches::take_out_zero(now.polynomial, watched.order);
     watched.at_zero = false;  // the step goes on from it, wherever it ends
+    if (closer) {
+      x = closer->begin, most = closer->most;
+      ++turns;
+      continue;
+    }
+    turns = 0, most = window_;
     if (wants_touching) {
       const auto touch = touching(touches::up_to(now.polynomial, root), watched.side, root.has_value());
       const T end = root ? *root : T(1);

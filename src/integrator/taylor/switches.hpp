@@ -33,6 +33,8 @@ struct ScaledPolynomialOf {
   T scale = T(0);  // sizes of the terms of p_0
   T reach = T(0);  // scale + Σ_{k≥1} |p_k|
 
+  /// What rounding may make of it in [0, x].
+  T error_up_to(const T& x) const;
   /// Index of the first coefficient after p_0 that is told from zero; 0 if there is none.
   std::size_t leading(std::size_t from = 1) const;
   bool begins_at_zero() const;
@@ -55,6 +57,13 @@ ScaledPolynomialOf<T> event_polynomial(const Work& work, std::size_t index, cons
 /// The first x in (0, 1] where the function leaves its side. A zero at x = 0 is divided out.
 template <class T>
 std::optional<T> crossing(const ScaledPolynomialOf<T>& polynomial, const Watched& watched);
+
+/// The first x in [0, until] where the function is no longer told from zero, though it may be clear of it: a polynomial
+/// about a place far from a zero has large terms, and their rounding there. Nothing where it stays on its side for
+/// certain.
+template <class T>
+std::optional<T> first_unclear(const ScaledPolynomialOf<T>& polynomial, const Watched& watched,
+                               const std::type_identity_t<T>& until);
 
 /// Decides the sides of the switch functions at the beginning of a step, and with them the formulas in force.
 ///

@@ -44,6 +44,14 @@ ScaledPolynomialOf<T> scaled(int degree, const T& h, const T& scale, Coefficient
 }  // namespace watching
 
 template <class T>
+T ScaledPolynomialOf<T>::error_up_to(const T& x) const {
+  using std::abs;
+  T sum = T(0);
+  for (std::size_t k = p.size(); k-- > 1;) sum = (sum + abs(p[k])) * x;
+  return watching::unit<T>() * (scale + sum);
+}
+
+template <class T>
 std::size_t ScaledPolynomialOf<T>::leading(std::size_t from) const {
   using std::abs;
   for (std::size_t k = from; k < p.size(); ++k)
@@ -121,6 +129,39 @@ std::optional<T> crossing(const ScaledPolynomialOf<T>& polynomial, const Watched
   if (k == 0) return std::nullopt;
   const auto x = first_crossing(p.subspan(k), watched.side, unit, T(0));
   return x ? std::optional<T>(std::min(T(1), watching::polished(p, *x))) : x;
+}
+
+namespace watching {
+
+/// Over [low, high], from left to right through halves.
+template <class T>
+std::optional<T> first_unclear(const ScaledPolynomialOf<T>& polynomial, const T& low, const T& high, std::vector<T> b) {
+  constexpr double clear = 4, close = 1e-9;  // in rounding errors; of the place itself
+  if (*std::min_element(b.begin(), b.end()) > T(clear) * polynomial.error_up_to(high)) return std::nullopt;
+  if (high - low <= T(close) * high) return low;
+  const T middle = T(0.5) * (low + high);
+  std::vector<T> right = crossings::split(b);
+  if (const auto left = first_unclear(polynomial, low, middle, std::move(b))) return left;
+  return first_unclear(polynomial, middle, high, std::move(right));
+}
+
+}  // namespace watching
+
+template <class T>
+std::optional<T> first_unclear(const ScaledPolynomialOf<T>& polynomial, const Watched& watched,
+                               const std::type_identity_t<T>& until) {
+  ScaledPolynomialOf<T> over = polynomial;
+  if (watched.at_zero || polynomial.begins_at_zero()) {  // a zero that is known is divided out
+    const std::size_t k = polynomial.leading(watched.order);
+    if (k == 0) return std::nullopt;
+    over.p.erase(over.p.begin(), over.p.begin() + static_cast<std::ptrdiff_t>(k));
+    over.scale = T(0);
+  }
+  std::vector<T> p = over.p;
+  T power = T(1);
+  for (T& c : p) c *= power, power *= until;
+  const std::vector<T> b = crossings::to_bernstein(std::span<const T>(p), watched.side);
+  return watching::first_unclear<T>(over, T(0), until, b);
 }
 
 template <class Work>

@@ -386,3 +386,40 @@ TEST_CASE("the end of bounces on a slope is told by impacts, none of which is ro
   for (const Happening& h : r.happenings)
     if (h.kind == Happening::Kind::Impact) CHECK(h.impulse > 1e-7);
 }
+
+// (x − 300)² − 10⁻¹⁰ about x = 0 has terms of 9·10⁴, whose rounding is larger than what it is between its roots.
+TEST_CASE("walls whose gaps are small against their terms far away are met") {
+  const std::string free = "dimensionless\ncoord x : number\nT = 1/2 x'^2\nstart x' = 1\n";
+  const auto end_of = [&](const std::string& line) { return run_text(free + line, 400); };
+  for (const std::string line : {"contact (x - 300)^2 >= 1e-10 restitution 1 name wall\n",
+                                 "event hit when (x - 300)^2 = 1e-10 : set x' = -x'\n"}) {
+    CAPTURE(line);
+    const SimulationResult r = end_of(line);
+    REQUIRE(r.happenings.size() == 1);
+    CHECK(r.happenings[0].t == doctest::Approx(299.99999).epsilon(1e-15));
+    CHECK(r.final.q[0] == doctest::Approx(199.99998).epsilon(1e-15));
+    CHECK(r.final.v[0] == -1);
+  }
+  // Two roots 2·10⁻⁷ apart, and one that is touched.
+  const SimulationResult apart = end_of("event hit when (x - 300)^2 = 1e-14 : record\n");
+  REQUIRE(apart.happenings.size() == 2);
+  CHECK(std::abs(apart.happenings[0].t - (300 - 1e-7)) < 1e-13);
+  CHECK(std::abs(apart.happenings[1].t - (300 + 1e-7)) < 1e-13);
+  const SimulationResult touch = end_of("event hit when (x - 300)^2 = 0 : record\n");
+  REQUIRE(touch.happenings.size() == 1);
+  CHECK(std::abs(touch.happenings[0].t - 300) < 1e-12);
+  // No polynomial: 200 − 2πk ± √2·10⁻⁴.
+  const SimulationResult waves = end_of("event hit when 1 - cos(x - 200) = 1e-8 : record\n");
+  CHECK(waves.happenings.size() == 2 * 63);
+}
+
+TEST_CASE("a small round wall far away is hit where it stands") {
+  // A disk of radius 10⁻⁵, hit at the height 5·10⁻⁶: turned by π − 2·30°.
+  const SimulationResult r = run_text(
+      "dimensionless\ncoord x : number\ncoord y : number\nT = 1/2 (x'^2 + y'^2)\n"
+      "contact x^2 + y^2 >= 1e-10 restitution 1 name disk\nstart x = -1000, x' = 1, y = 5e-6\n",
+      2000);
+  CHECK(count(r, Happening::Kind::Impact) == 1);
+  CHECK(r.final.q[0] == doctest::Approx(-500).epsilon(1e-6));
+  CHECK(r.final.q[1] == doctest::Approx(500 * std::sqrt(3.0)).epsilon(1e-6));
+}
