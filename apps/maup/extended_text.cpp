@@ -108,6 +108,7 @@ std::string impulse_text(const std::string& number, const std::string& contact, 
 std::string extended_text(const ExtendedResult& result, const MechanicalSystem& system) {
   std::string out;
   out += happenings_text(result, system);
+  for (const std::string& remark : result.remarks) out += "  " + remark + "\n";
   for (const ExtendedState& state : result.at)
     out += state.reached ? state_text(state, result) : "a time asked for was not reached\n";
   const bool told = !result.at.empty() && result.at.back().reached && result.at.back().t.text == result.final.t.text;
@@ -135,6 +136,7 @@ Json extended_document(const ExtendedResult& result, const std::string& precisio
       entry["impulse"] = number_json(h.impulse), entry["speed"] = number_json(h.speed);
     document["happenings"].push_back(std::move(entry));
   }
+  document["remarks"] = result.remarks;
   const ExtendedStatistics& s = result.statistics;
   document["statistics"] = {{"steps", s.steps},
                             {"order", s.order},

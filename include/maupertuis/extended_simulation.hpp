@@ -58,6 +58,7 @@ struct ExtendedResult {
   std::vector<ExtendedState> at;              // in the order asked
   ExtendedState final;                        // not reached: it was not checked
   std::vector<ExtendedHappening> happenings;  // as far as all runs meet the same
+  std::vector<std::string> remarks{};         // a sentence each
   double reached = 0;                         // s: how far the run came
   ExtendedStatistics statistics;
   Ending ending = Ending::Finished;

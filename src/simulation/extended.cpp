@@ -1,6 +1,7 @@
 #include <maupertuis/degenerate.hpp>
 #include "simulation/ending.hpp"
 #include "simulation/extended_problem.hpp"
+#include "simulation/sets_together.hpp"
 #include "simulation/stopwatch.hpp"
 
 #include <fmt/format.h>
@@ -192,6 +193,7 @@ class ExtendedRun {
     const bool together = out_.ok() || final.t.digits >= digits_of_one_end;
     if (together) out_.final = final;
     add_happenings(rough, companion, fine);
+    add_remarks(rough);
     const std::size_t count =
         std::min({rows_of(rough, together), rows_of(companion, together), rows_of(fine, together)});
     for (std::size_t i = 0; i < count; ++i)
@@ -239,10 +241,9 @@ class ExtendedRun {
     };
     for (;;) {
       Roots roots{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (next[k] >= lists[k]->size()) return;
-        roots[k] = &(*lists[k])[next[k]];
-      }
+      for (std::size_t k = 0; k < 3; ++k)
+        if (next[k] < lists[k]->size()) roots[k] = &(*lists[k])[next[k]];
+      if (std::find(roots.begin(), roots.end(), nullptr) != roots.end()) return note_left_out(roots);
       bool ends = false;
       for (std::size_t k = 0; k < 3; ++k) ends = ends || ends_bounces(*lists[k], next[k]);
       if (ends) {
@@ -250,9 +251,33 @@ class ExtendedRun {
           while (next[k] < lists[k]->size() && is_impact_on((*lists[k])[next[k]], roots[0]->index)) ++next[k];
         continue;
       }
-      if (!same(roots)) return;
+      if (!same(roots)) return note_left_out(roots);
       add_happening(roots);
       for (std::size_t& k : next) ++k;
+    }
+  }
+
+  /// What one of the runs meets next, and not all; where all have come to their ends there is nothing.
+  void note_left_out(const Roots& next) {
+    const auto first = std::find_if(next.begin(), next.end(), [](const ExtendedRoot* r) { return r != nullptr; });
+    if (first == next.end()) return;
+    out_.remarks.push_back(fmt::format(
+        "From t = {:.9g} on what happens is not told: the runs that tell the digits do not all meet {} ({}) "
+        "next.",
+        Rational::parse((*first)->state.t)->to_double(), name_of(**first), word_of(kind_of((*first)->kind))));
+  }
+
+  /// Events at one instant that set the same.
+  void add_remarks(const ExtendedMotion& rough) {
+    std::vector<const ModelEvent*> at_once;
+    for (std::size_t i = 0; i < rough.roots.size(); ++i) {
+      const ExtendedRoot& root = rough.roots[i];
+      if (root.kind != ExtendedRoot::Kind::Event) continue;
+      if (i > 0 && rough.roots[i - 1].state.t != root.state.t) at_once.clear();
+      at_once.push_back(&model_.experiment.events[root.index]);
+      const double t = Rational::parse(root.state.t)->to_double();
+      const std::string told = t == plan_.begin ? std::string() : set_more_than_once(system_, at_once, t);
+      if (!told.empty()) return out_.remarks.push_back(told);  // once is enough
     }
   }
 

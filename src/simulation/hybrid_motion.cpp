@@ -1,4 +1,5 @@
 #include "simulation/hybrid_parts.hpp"
+#include "simulation/sets_together.hpp"
 
 #include <fmt/format.h>
 
@@ -341,7 +342,8 @@ void HybridMotion::classify(Step& step) {
         record_.stopped_by = event.name;
         step.event = 0;
       }
-      if (event.action == ModelEvent::Action::Set) pending->sets.push_back(&event);
+      if (event.action == ModelEvent::Action::Set)
+        pending->sets.push_back(&event), pending->ways.push_back(root.direction);
     } else if (root.direction <= 0) {
       if (watch.what == Watch::What::Gap) {
         if (!is_just_released(watch.index)) pending->hit.push_back(watch.index);
@@ -432,6 +434,7 @@ std::vector<double> HybridMotion::energy_and_sets_at(double t, std::span<const d
 bool HybridMotion::carry_out_sets(std::string& reason) {
   const std::vector<double> found = energy_and_sets_at(t_, q_, v_);
   const std::string before = pending_->sets.front()->name;
+  if (const std::string told = set_more_than_once(system_, pending_->sets, t_); !told.empty()) remark(told);
   std::vector<double> q = q_, v = v_;
   std::vector<const double*> first;  // of each event in `found`
   const double* next = found.data() + 1;
@@ -456,6 +459,26 @@ bool HybridMotion::carry_out_sets(std::string& reason) {
   record_.books.events += gained;
   q_ = q, v_ = v;
   return true;
+}
+
+/// An event whose function turns round by what it sets, so slowly that the motion comes back to it before rounding
+/// tells that it has left: it would be passed, and the bounces before it, shorter and shorter, accumulate here.
+const ModelEvent* HybridMotion::turned_unseen(double bound) {
+  if (pending_->sets.empty() || pending_->at_zero.empty()) return nullptr;
+  const TaylorStepper::Outlook outlook = now_->stepper->outlook(bound);
+  if (outlook.ending != StepEnding::None) return nullptr;  // the next step says why it cannot be made
+  for (std::size_t k = 0; k < now_->watches().size(); ++k) {
+    const Watch& watch = now_->watches()[k];
+    const auto& zeros = pending_->at_zero;
+    if (watch.what != Watch::What::Event || std::find(zeros.begin(), zeros.end(), watch.index) == zeros.end()) continue;
+    const ModelEvent* const event = &model_.experiment.events[watch.index];
+    const auto at = std::find(pending_->sets.begin(), pending_->sets.end(), event);
+    if (at == pending_->sets.end()) continue;
+    const int way = pending_->ways[static_cast<std::size_t>(at - pending_->sets.begin())];
+    const bool turns = outlook.slopes[k] * (forwards_ ? way : -way) < 0;
+    if (turns && outlook.sides[k] != -way) return event;
+  }
+  return nullptr;
 }
 
 /// False, and why, where a contact that never slides has a slip: the constraint that it is would take it away, with the
@@ -533,6 +556,11 @@ std::optional<Step> HybridMotion::settle(double bound) {
     touch.push_back(*met_);
     if (!hit(touch, reason)) return stopped(StepEnding::Paradox, reason);
   }
+  if (const ModelEvent* const event = turned_unseen(bound))
+    return stopped(StepEnding::Unending,
+                   fmt::format("The event `{}` follows itself faster and faster: its returns accumulate here, and have "
+                               "become too short to be told apart.",
+                               event->name));
   if (pending_->begins) tell_events_at_start(bound);
   if (settled_) note_after(bound);
   pending_.reset();

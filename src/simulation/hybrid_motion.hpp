@@ -118,6 +118,7 @@ class HybridMotion final : public Method {
                      double digits);
   std::optional<Step> settle(double bound);
   bool carry_out_sets(std::string& reason);
+  const ModelEvent* turned_unseen(double bound);
   std::vector<std::size_t> touching(const ContactValues& values) const;
   bool keeps_sticking(const std::vector<std::size_t>& touching, std::string& reason);
   bool is_lost_in_rounding(const std::vector<std::size_t>& touching, const ContactValues& values) const;

@@ -44,6 +44,7 @@ struct HybridMotion::Pending {
   std::vector<std::size_t> hit;  // contacts whose gap came to 0
   std::vector<Watch> left;       // conditions of the mode that end here
   std::vector<const ModelEvent*> sets;
+  std::vector<int> ways;             // [sets] in which their functions come to 0 along the run: 1 rising, −1 falling
   std::vector<std::size_t> at_zero;  // events on positions that are met here: their functions go on from 0
   bool begins = false;
 };

@@ -22,6 +22,7 @@ class Modes {
     std::vector<std::size_t> hit;     // contacts whose gap came to 0
     std::vector<ExtendedWatch> left;  // conditions of the mode that end here
     std::vector<std::size_t> sets;    // events
+    std::vector<int> ways;            // [sets] in which their functions come to 0: 1 rising with time, −1 falling
     std::vector<std::size_t> zeros;   // events on positions that are met here: their functions go on from 0
     bool begins = false, forces_jump = false;
     bool nothing() const { return hit.empty() && left.empty() && sets.empty() && !begins && !forces_jump; }
@@ -77,6 +78,8 @@ class Modes {
   T rest_slip(std::size_t friction) const;
   std::vector<std::size_t> touching(const Met& met) const;
   bool carry_out_sets(const Met& met);
+  bool returns_are_seen(const Met& met);
+  void tell_events_at_start();
   bool hit(const std::vector<std::size_t>& touching, Met& met);
   bool keeps_sticking(const std::vector<std::size_t>& touching, const Met& met);
   std::optional<T> end_of_bounces(std::size_t contact, const T& speed);

@@ -96,10 +96,12 @@ void Modes<T>::start(const T& t, std::vector<T> q, std::vector<T> v, const T& bo
   bounces_.assign(contacts, {});
   ended_.assign(contacts, std::nullopt);
   stepper().start(t_, q_, v_);
-  if (!any()) return;
-  Met met;
-  met.begins = true;
-  settle(met);
+  if (any()) {
+    Met met;
+    met.begins = true;
+    settle(met);
+  }
+  if (!problem_.events.empty() && out_.ending == StepEnding::None) tell_events_at_start();
 }
 
 template <class T>
@@ -252,6 +254,41 @@ bool Modes<T>::carry_out_sets(const Met& met) {
   return true;
 }
 
+/// See HybridMotion::turned_unseen.
+template <class T>
+bool Modes<T>::returns_are_seen(const Met& met) {
+  if (met.sets.empty() || met.zeros.empty() || sets_positions(met)) return true;
+  const auto outlook = stepper().outlook(bound_);
+  if (outlook.ending != StepEnding::None) return true;  // the next step says why it cannot be made
+  const int forwards = t_ <= bound_ ? 1 : -1;
+  for (std::size_t k = 0; k < watches().size(); ++k) {
+    const ExtendedWatch& w = watches()[k];
+    const auto at = std::find(met.sets.begin(), met.sets.end(), w.index);
+    if (w.what != What::Event || at == met.sets.end() || !through_modes::holds(met.zeros, w.index)) continue;
+    const int way = met.ways[static_cast<std::size_t>(at - met.sets.begin())];
+    if (outlook.slopes[k] * way < 0 && outlook.sides[k] != -way * forwards)
+      return stop(StepEnding::Unending, std::nullopt,
+                  "An event follows itself faster and faster: its returns accumulate here, and have become too short "
+                  "to be told apart in so many digits.");
+  }
+  return true;
+}
+
+/// Events that hold as the motion begins are told, but do not act: it leaves them.
+template <class T>
+void Modes<T>::tell_events_at_start() {
+  const auto outlook = stepper().outlook(bound_);
+  if (outlook.ending != StepEnding::None) return;
+  const int forwards = t_ <= bound_ ? 1 : -1;
+  for (std::size_t k = 0; k < watches().size(); ++k) {
+    const ExtendedWatch& w = watches()[k];
+    if (w.what != What::Event || outlook.sides[k] == 0) continue;
+    if (abs(outlook.values[k]) > through_modes::roundings * epsilon<T>() * outlook.reach[k]) continue;
+    const int wanted = problem_.events[w.index].direction;
+    if (wanted == 0 || wanted * forwards == outlook.sides[k]) record(ExtendedRoot::Kind::Event, w.index);
+  }
+}
+
 /// When infinitely many bounces come to their end, from the last of them, once the heights of the flights are rounding:
 /// the flights shorten as the speeds do.
 template <class T>
@@ -382,10 +419,13 @@ void Modes<T>::settle(const Met& given) {
   if (!carry_out_sets(met)) return;
   if (!any()) {
     stepper().start(t_, q_, v_);
+    put_at_zero(*now_, {}, met);
+    returns_are_seen(met);
     return;
   }
   const std::vector<std::size_t> touches = touching(met);
-  if (!hit(touches, met) || !keeps_sticking(touches, met) || !choose(touches, met)) stepper().start(t_, q_, v_);
+  if (!hit(touches, met) || !keeps_sticking(touches, met) || !choose(touches, met) || !returns_are_seen(met))
+    stepper().start(t_, q_, v_);
 }
 
 }  // namespace maupertuis::extended

@@ -121,7 +121,7 @@ class Motion {
     if (event.direction != 0 && direction != event.direction) return;
     modes_.add({ExtendedRoot::Kind::Event, index, stepper().sample(stepper().time()), {}, {}}, stepper().time());
     out_.met = out_.met || event.action == ExtendedEvent::Action::Stop;
-    if (event.action == ExtendedEvent::Action::Set) met.sets.push_back(index);
+    if (event.action == ExtendedEvent::Action::Set) met.sets.push_back(index), met.ways.push_back(direction);
   }
 
   Stepper<T>& stepper() { return modes_.stepper(); }

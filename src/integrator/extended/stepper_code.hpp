@@ -225,7 +225,10 @@ typename Stepper<T>::Crossing Stepper<T>::first_crossing(const T& h) {
     if (is_switch && watched.side == 0 && has_value(i)) continue;  // it vanishes
     if (!is_switch && !roots_->is_clear(i) && begins_past_root(i - count, h, watched))
       note(first, T(0), i, together, watched.side);
-    const T until = std::min(roots_->window(), T(first.x * (1 + together) + together));
+    // Events at one instant are all told: the search goes on beyond the first root by what a polynomial does not
+    // resolve.
+    const T beyond = is_switch ? together : std::max(together, epsilon_to<T>(0.77));
+    const T until = std::min(roots_->window(), T(first.x * (1 + together) + beyond));
     const auto root = roots_->first(i, watched, T(0), until, !is_switch, is_switch);
     if (!root) continue;
     const bool jump = root->kind == taylor::RootKind::Jump;
