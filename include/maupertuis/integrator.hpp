@@ -31,7 +31,13 @@ struct TaylorOptions {
   const StopFlag* interrupt = nullptr;   // looked at once a step
   Backend backend = Backend::Automatic;  // what carries out the expansions
   bool cache = true;                     // of compiled code
+  /// Not 0: where a step ends at a switch or an event, the instant is moved by up to the rounding of its time, one way
+  /// or the other, as this number says: what the motion is off by then is what located instants are known to.
+  std::uint64_t moved_instants = 0;
 };
+
+/// In [−1, 1], the same for the same arguments: how a companion moves what rounding leaves open.
+double share_of_rounding(std::uint64_t number, double at);
 
 /// What carried out the expansions.
 struct BackendUse {

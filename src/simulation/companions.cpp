@@ -154,6 +154,7 @@ TaylorOptions taylor_options(const CompanionPlan& plan, int companion) {
   out.interrupt = plan.options.interrupt;
   out.backend = plan.options.backend;
   out.cache = plan.options.cache;
+  out.moved_instants = seed + static_cast<std::uint64_t>(companion);
   return out;
 }
 

@@ -229,10 +229,30 @@ class ExtendedRun {
 
   using Roots = std::array<const ExtendedRoot*, 3>;  // of the run, its companion, its check
 
+  /// A slip that comes to 0 and goes on at once stops in one run and not in the others: it is no change of the motion.
+  static std::vector<ExtendedRoot> without_stops_of_no_time(const std::vector<ExtendedRoot>& roots) {
+    constexpr double one_instant = 1e-12;
+    const auto time = [](const ExtendedRoot& root) { return Rational::parse(root.state.t)->to_double(); };
+    std::vector<ExtendedRoot> out;
+    for (const ExtendedRoot& root : roots) {
+      const bool goes_on = !out.empty() && root.kind == ExtendedRoot::Kind::Slip && root.index == out.back().index &&
+                           out.back().kind == ExtendedRoot::Kind::Stick &&
+                           std::abs(time(root) - time(out.back())) <= one_instant * std::abs(time(root));
+      if (goes_on)
+        out.pop_back();
+      else
+        out.push_back(root);
+    }
+    return out;
+  }
+
   /// As far as all meet the same in the same order. Bounces without end are cut off at heights that depend on the
   /// digits: from the first that one of them leaves out to the end of the bounces, whose time all extrapolate.
   void add_happenings(const ExtendedMotion& rough, const ExtendedMotion& companion, const ExtendedMotion& fine) {
-    const std::array<const std::vector<ExtendedRoot>*, 3> lists{&rough.roots, &companion.roots, &fine.roots};
+    const std::array<std::vector<ExtendedRoot>, 3> kept{without_stops_of_no_time(rough.roots),
+                                                        without_stops_of_no_time(companion.roots),
+                                                        without_stops_of_no_time(fine.roots)};
+    const std::array<const std::vector<ExtendedRoot>*, 3> lists{&kept[0], &kept[1], &kept[2]};
     std::array<std::size_t, 3> next{0, 0, 0};
     const auto same = [&](const Roots& roots) {
       return std::all_of(roots.begin(), roots.end(), [&](const ExtendedRoot* r) {

@@ -264,6 +264,11 @@ void HybridMotion::take_state() {
   t_rest_ = s.time_rest();
   q_.assign(s.q().begin(), s.q().end());
   v_.assign(s.v().begin(), s.v().end());
+  if (options_.moved_instants == 0) return;
+  // The next mode begins with the state to its last digit: a companion has another one.
+  constexpr double rounding = std::numeric_limits<double>::epsilon();
+  for (std::vector<double>* const part : {&q_, &v_})
+    for (double& x : *part) x *= 1 + rounding * share_of_rounding(options_.moved_instants, x);
 }
 
 /// Where a contact opens since λ falls through 0 its gap begins as the third power of time: what rounding makes of its

@@ -129,6 +129,7 @@ class HybridMotion final : public Method {
   void note_order(const ImpactProblem& problem, const ImpactResult& first, const Eigen::VectorXd& v);
   void record_impulses(const ImpactResult& result);
   std::optional<double> accumulation(std::size_t contact, double speed);
+  bool slips_may_stop_before(double end, const std::vector<std::size_t>& touching, const ContactValues& values) const;
   double speed_left_by_time(const SparseRow& row) const;
   double rest_speed(std::size_t contact, const ContactValues& values) const;
   double rest_slip(std::size_t friction, const ContactValues& values) const;

@@ -91,12 +91,14 @@ void Modes<T>::put_at_zero(InMode& candidate, const std::vector<std::size_t>& to
 /// A slip whose rate is rounding, as where friction gives way with μ_s = μ, begins with the second power of time: then
 /// it is put there.
 template <class T>
-bool Modes<T>::begins_slowly(InMode& candidate, const typename Stepper<T>::Outlook& outlook) {
+bool Modes<T>::begins_slowly(InMode& candidate, const typename Stepper<T>::Outlook& outlook, const Met& met) {
   bool any = false;
   for (std::size_t k = 0; k < candidate.program.watches.size(); ++k) {
     const ExtendedWatch& w = candidate.program.watches[k];
     if (w.what != What::Slip || abs(point_->slip[w.index]) > rest_slip(w.index)) continue;
-    if (abs(outlook.slopes[k]) > epsilon_to<T>(0.85) * size_along(point_->tangent[w.index], acceleration_)) continue;
+    // Of a force that has come to its limit the rounding of time is left.
+    const T digits = epsilon_to<T>(through_modes::holds(met.left, What::Hold, w.index) ? 0.6 : 0.85);
+    if (abs(outlook.slopes[k]) > digits * size_along(point_->tangent[w.index], acceleration_)) continue;
     candidate.stepper->put_at_zero(k, 2);
     any = true;
   }
@@ -112,7 +114,7 @@ bool Modes<T>::fits(InMode& candidate, const std::vector<std::size_t>& touching,
   candidate.stepper->set_usual_sizes(of_coordinates(place_), of_coordinates(speed_), of_coordinates(acceleration_));
   typename Stepper<T>::Outlook outlook = candidate.stepper->outlook(bound_);
   if (outlook.ending != StepEnding::None) return false;
-  if (begins_slowly(candidate, outlook)) outlook = candidate.stepper->outlook(bound_);
+  if (begins_slowly(candidate, outlook, met)) outlook = candidate.stepper->outlook(bound_);
   const auto is_force = [](const ExtendedWatch& w) { return w.what == What::Force || w.what == What::Hold; };
   T largest = T(0);
   const auto& watches = candidate.program.watches;
@@ -132,6 +134,11 @@ bool Modes<T>::fits(InMode& candidate, const std::vector<std::size_t>& touching,
     if (w.what == What::Force && abs(outlook.values[k]) <= epsilon_to<T>(0.7) * size_of_force(w.index)) {
       if (outlook.slopes[k] >= 0) continue;
       released_[w.index] = true;
+      return false;
+    }
+    const bool is_met = w.what == What::Hold && through_modes::holds(met.left, What::Hold, w.index);
+    if (is_met && abs(outlook.values[k]) <= epsilon_to<T>(0.6) * largest) {
+      if (outlook.slopes[k] >= 0) continue;
       return false;
     }
     const bool must_move = w.what == What::Slip && !(abs(point_->slip[w.index]) > rest_slip(w.index));

@@ -87,7 +87,7 @@ class Modes {
   std::vector<Choice> choices(const std::vector<std::size_t>& touching, const Met& met) const;
   Choice choice_of_contact(std::size_t contact, const Met& met) const;
   ExtendedMode mode_of(const std::vector<Choice>& list, const std::vector<std::size_t>& taken) const;
-  bool begins_slowly(InMode& candidate, const typename Stepper<T>::Outlook& outlook);
+  bool begins_slowly(InMode& candidate, const typename Stepper<T>::Outlook& outlook, const Met& met);
   bool fits(InMode& candidate, const std::vector<std::size_t>& touching, const Met& met, bool lenient,
             std::vector<T>* accelerations);
   bool sets_positions(const Met& met) const;

@@ -13,7 +13,8 @@ namespace touches {
 template <class T>
 class Search {
  public:
-  Search(const ScaledPolynomialOf<T>& polynomial, std::int8_t side) : polynomial_(polynomial), side_(side) {}
+  Search(const ScaledPolynomialOf<T>& polynomial, std::int8_t side)
+      : polynomial_(polynomial), side_(side), clear_(side * polynomial.p[0] > polynomial.error_up_to(T(0))) {}
 
   std::optional<T> in(const T& low, const T& high, std::vector<T> b) {
     const T error = polynomial_.error_up_to(high);
@@ -50,7 +51,7 @@ class Search {
  private:
   const ScaledPolynomialOf<T>& polynomial_;
   std::int8_t side_;
-  bool clear_ = false;  // of zero, so far
+  bool clear_;  // of zero, so far
 };
 
 }  // namespace touches

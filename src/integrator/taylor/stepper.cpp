@@ -6,10 +6,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
 namespace maupertuis {
+
+/// The mixing of G. Steele, D. Lea and C. Flood, Fast splittable pseudorandom number generators (2014).
+double share_of_rounding(std::uint64_t number, double at) {
+  std::uint64_t x = 0;
+  std::memcpy(&x, &at, sizeof x);
+  x += number * 0x9e3779b97f4a7c15U;
+  x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9U;
+  x = (x ^ (x >> 27U)) * 0x94d049bb133111ebU;
+  x ^= x >> 31U;
+  return std::ldexp(static_cast<double>(x >> 11U), -52) - 1;
+}
 
 void TaylorStepper::Impl::end(Step& result, StepEnding ending, std::string reason) const {
   result.end = result.begin;
@@ -87,10 +99,27 @@ bool TaylorStepper::Impl::switches_have_values(double bound, Step& result) {
   return true;
 }
 
+/// Within the step; one that is not longer than the rounding stays as it is. Where nothing asks for the time, roots are
+/// known to the rounding of coordinates.
+double TaylorStepper::Impl::moved(double tau, double h) const {
+  double age = std::abs(state.t.hi + tau);
+  if (work.program().time == no_slot) {
+    double slowest = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      if (state.v_now[i] != 0) slowest = std::max(slowest, std::abs(state.q_now[i] / state.v_now[i]));
+    age = std::min(age, slowest + std::abs(tau));
+  }
+  const double rounding = 0.5 * std::numeric_limits<double>::epsilon() * age;
+  const double to = tau + rounding * share_of_rounding(options.moved_instants, state.t.hi + tau);
+  return std::abs(tau) > 2 * rounding && std::abs(to) <= std::abs(h) ? to : tau;
+}
+
 /// Up to the first crossing, or to the end of the step.
 void TaylorStepper::Impl::advance(double bound, double h, const taylor::Crossing& crossing, Step& result) {
   const bool reaches_bound = !crossing.found && crossing.x == 1 && h == remaining(bound);
-  state.move(last.dense, last.begin, h * crossing.x);
+  double tau = h * crossing.x;
+  if (crossing.found && options.moved_instants != 0) tau = moved(tau, h);
+  state.move(last.dense, last.begin, tau);
   if (reaches_bound) state.arrive(bound);
   result.end = state.t.hi;
 }

@@ -138,7 +138,7 @@ template <class T>
 std::optional<T> first_unclear(const ScaledPolynomialOf<T>& polynomial, const T& low, const T& high, std::vector<T> b) {
   constexpr double clear = 4, close = 1e-9;  // in rounding errors; of the place itself
   if (*std::min_element(b.begin(), b.end()) > T(clear) * polynomial.error_up_to(high)) return std::nullopt;
-  if (high - low <= T(close) * high) return low;
+  if (high - low <= T(close) * high || high <= 64 * std::numeric_limits<T>::epsilon()) return low;
   const T middle = T(0.5) * (low + high);
   std::vector<T> right = crossings::split(b);
   if (const auto left = first_unclear(polynomial, low, middle, std::move(b))) return left;

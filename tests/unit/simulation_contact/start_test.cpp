@@ -5,6 +5,7 @@
 #include "../model_text.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 using namespace maupertuis;
