@@ -148,6 +148,17 @@ double TaylorStepper::Impl::choose_length(double bound) {
   return safe.within({work.coordinate(0), work.row_stride(), control.order, 1}, state.t.hi, chosen, left);
 }
 
+/// Whether the velocities of now would be made, or taken away, in a small part of the longest step so far.
+bool TaylorStepper::Impl::accelerations_grow() const {
+  constexpr double small = 1e-3;
+  double speed = 0, acceleration = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    speed = std::max(speed, std::abs(state.v_now[i]));
+    acceleration = std::max(acceleration, std::abs(work.acceleration(i)));
+  }
+  return !(acceleration * small * longest <= speed);
+}
+
 /// Whether a step is to be made at all.
 bool TaylorStepper::Impl::may_go_on(double bound, Step& result) {
   if (options.interrupt && options.interrupt->load(std::memory_order_relaxed))
@@ -183,7 +194,10 @@ Step TaylorStepper::Impl::step(double bound) {
     if (!(chosen > 2 * std::numeric_limits<double>::epsilon() * std::abs(state.t.hi)) || chosen < 1e-290) {
       if (end_status != KernelStatus::Ok) return fail(result, end_status), result;
       end(result, StepEnding::StepUnderflow,
-          "The steps shrink below the resolution of time: a force grows without bound, as in a collision.");
+          accelerations_grow()
+              ? "The steps shrink below the resolution of time: a force grows without bound, as in a collision."
+              : "The steps shrink below the resolution of time: no force grows, but a formula ends here or has no "
+                "derivatives, as x^(3/2) where x comes to 0.");
       return result;
     }
     const double left = remaining(bound);

@@ -45,6 +45,7 @@ struct TaylorStepper::Impl {
   bool make_step(double bound, double h, Step& result);
   void advance(double bound, double h, const taylor::Crossing& crossing, Step& result);
   double moved(double tau, double h) const;
+  bool accelerations_grow() const;
   void end(Step& result, StepEnding ending, std::string reason) const;
   bool fail(Step& result, KernelStatus status);
   double remaining(double bound) const { return (bound - state.t.hi) - state.t.lo; }

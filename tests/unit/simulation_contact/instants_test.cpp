@@ -113,6 +113,12 @@ TEST_CASE("friction that lets go again and again does so in many digits") {
   CHECK(number(blocks.happenings[1].t) == doctest::Approx(1 + tau).epsilon(1e-13));
 }
 
+TEST_CASE("where a root ends no force is said to grow") {
+  const std::string start = "dimensionless\ncoord x : number\nT = 1/2 x'^2\nstart x = 1\nrun 5\n";
+  CHECK(with_errors(start + "V = x^(3/2)\n").reason.find("no force grows") != std::string::npos);
+  CHECK(with_errors(start + "V = -1/x\n").reason.find("a force grows without bound") != std::string::npos);
+}
+
 TEST_CASE("errors take in what rounding does to instants and to large states") {
   struct Model {
     std::string text;
