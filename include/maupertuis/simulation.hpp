@@ -90,6 +90,7 @@ struct SimulationStatistics {
 struct Uncertainty {
   std::vector<std::size_t> columns;  // of the state, q and q'; empty: something is certain of each all along the run
   double from = 0;                   // s: from here on, for all of these
+  double first = 0;                  // s: the same for one of them
   bool everything = false;           // these are all that move
 };
 

@@ -179,6 +179,8 @@ class Teller {
 
   void note_loss(std::size_t column) {
     Uncertainty& uncertain = result_.uncertain;
+    if (uncertain.columns.empty() || is_later(uncertain.first, lost_from_[column]))
+      uncertain.first = lost_from_[column];
     if (uncertain.columns.empty() || is_later(lost_from_[column], uncertain.from)) uncertain.from = lost_from_[column];
     uncertain.columns.push_back(column);
   }

@@ -169,6 +169,10 @@ std::string uncertain_text(const SimulationResult& result, const MechanicalSyste
   for (const std::size_t column : uncertain.columns)
     names += (names.empty() ? "" : ", ") + result.trajectory.columns[column].name;
   const std::string from = system.moment(brief(uncertain.from));
+  constexpr double much_earlier = 0.5;
+  if (uncertain.everything && std::abs(uncertain.first) < much_earlier * std::abs(uncertain.from))
+    return fmt::format("From {} on not all is certain, and from {} on nothing is certain of this motion.\n",
+                       system.moment(brief(uncertain.first)), from);
   return uncertain.everything ? fmt::format("From {} on nothing is certain of this motion.\n", from)
                               : fmt::format("From {} on no digit is certain of {}.\n", from, names);
 }

@@ -105,6 +105,19 @@ TEST_CASE("a chaotic run says from when on nothing is certain") {
   CHECK(r.final.errors->v[1] == infinity);
 }
 
+// π is no double: it stays on top for log(10¹⁶)/√9.81 s, falls, and comes near the top again at an unknown time and
+// turn.
+TEST_CASE("where one coordinate is lost before the others both times are known") {
+  const SimulationResult r =
+      run("param m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord a : angle\npoint P mass m at (l sin a, -l cos a)\ngravity "
+          "(0, -g)\n"
+          "start a = 180 deg\nrun 100 s\n");
+  REQUIRE(r.uncertain.everything);
+  CHECK(r.uncertain.first > 8);
+  CHECK(r.uncertain.first < 16);
+  CHECK(r.uncertain.from >= r.uncertain.first);
+}
+
 TEST_CASE("companions of a motion that is lost end early, but not where damping brings motions together again") {
   // Hénon and Heiles' potential just below its escape, and the same with a little friction, which ends at rest.
   const auto motion = [](const std::string& friction) {
