@@ -7,9 +7,12 @@
 #include <maupertuis/ensemble.hpp>
 #include <maupertuis/integrator.hpp>
 #include <maupertuis/motion_kernel.hpp>
+#include <maupertuis/switches.hpp>
+#include <maupertuis/transform.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <numeric>
@@ -144,6 +147,39 @@ std::size_t most_steps(const CompanionPlan& plan) {
   return steps < most / 8 ? 8 * steps + 1000 : most;
 }
 
+/// Whether a function of t alone is known to the last digit at any t: t stands in it as t − c alone, with one number c,
+/// of which nothing but the difference counts. In t − c − w numbers are added first, and w t is rounded as t is.
+bool resolves_time(Expr f, Expr time) {
+  const std::vector<Expr> symbols = symbols_of({&f, 1});
+  if (std::any_of(symbols.begin(), symbols.end(), [](const Expr& s) { return s.role() == Role::Coordinate; }))
+    return false;
+  bool exact = true;
+  const std::function<void(Expr)> look = [&](Expr e) {
+    if (e == time) {
+      exact = false;
+      return;
+    }
+    bool is_difference = false;
+    for (std::size_t i = 0; i < e.size(); ++i) is_difference = is_difference || (e.is(Kind::Sum) && e[i] == time);
+    if (is_difference && e.size() != 2) exact = false;
+    for (std::size_t i = 0; i < e.size(); ++i)
+      if (!(is_difference && e[i] == time)) look(e[i]);
+  };
+  look(f);
+  return exact;
+}
+
+/// Whether the instants of a run are known to the rounding of its time alone, or better.
+bool rounds_instants(const CompanionPlan& plan) {
+  if (goes_through_modes(plan.model)) return true;
+  const MechanicalSystem& system = *plan.equations.system;
+  const auto balance = expand_time_derivatives(in_terms_of_motion(system, plan.equations.balance()));
+  const std::vector<Expr> switches = switches_of(with_constants_as_numbers(system, balance));
+  const Expr time = system.context->time();
+  return plan.run.until ||
+         !std::all_of(switches.begin(), switches.end(), [&](const Expr& f) { return resolves_time(f, time); });
+}
+
 /// Of tolerances that the user chose a smaller one: its own error must not hide that of the run. At rounding level
 /// nothing is smaller; there the order alone makes other steps.
 TaylorOptions taylor_options(const CompanionPlan& plan, int companion) {
@@ -154,7 +190,7 @@ TaylorOptions taylor_options(const CompanionPlan& plan, int companion) {
   out.interrupt = plan.options.interrupt;
   out.backend = plan.options.backend;
   out.cache = plan.options.cache;
-  out.moved_instants = seed + static_cast<std::uint64_t>(companion);
+  if (rounds_instants(plan)) out.moved_instants = seed + static_cast<std::uint64_t>(companion);
   return out;
 }
 

@@ -40,7 +40,7 @@ TEST_CASE("simulate with x in the place of t: the values, their units, and the f
   const std::string model = folder.write("b.lag", brachistochrone);
   const Outcome told = maup({"simulate", model, "--at", "0.1", "-o", folder.path("b.csv")});
   CHECK_MESSAGE(told.code == 0, told.err);
-  CHECK(contains(told.out, "x = 0.10000000000000001 m\n"));
+  CHECK(contains(told.out, "x = 0.1 m\n"));
   CHECK(!contains(told.out, "t ="));
   CHECK(read(folder.path("b.csv")).rfind("x [m],y1 [m],y1' [1],energy [s/m]\r\n", 0) == 0);
   // Beltrami: y (1 + y'^2) is constant along the cycloid.

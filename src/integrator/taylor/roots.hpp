@@ -154,8 +154,9 @@ class RootSearchOf {
     T begin;  // in the step
     T most;   // how long a piece from there is: some distances to the zero
   };
-  std::optional<Nearer> nearer(const Piece& piece, const T& x, const Watched& watched,
-                               const std::optional<T>& root) const;
+  std::optional<Nearer> nearer(std::size_t index, const Piece& piece, const T& x, const Watched& watched,
+                               const std::optional<T>& root);
+  T rounding_at(std::size_t index, const T& x);
   T value(std::size_t index, const T& x);
   T at_a_time(const T& x) const;
   T refined(std::size_t index, const Piece& piece, const T& begin, const T& root);

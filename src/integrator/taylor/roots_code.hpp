@@ -266,11 +266,25 @@ typename RootSearchOf<T>::Piece RootSearchOf<T>::up_to(Piece piece, const T& wid
   return piece;
 }
 
-/// Where to go on with smaller terms; nothing where nothing is hidden, or no place is nearer.
+/// What rounding of the motion makes of the function there: no expansion knows it better.
 template <class T>
-std::optional<typename RootSearchOf<T>::Nearer> RootSearchOf<T>::nearer(const Piece& piece, const T& x,
-                                                                        const Watched& watched,
-                                                                        const std::optional<T>& root) const {
+T RootSearchOf<T>::rounding_at(std::size_t index, const T& x) {
+  using std::abs;
+  const T here = value(index, x);
+  T out = T(0);
+  for (const bool by_turns : {false, true}) {
+    retrace_.evaluate_beside(T(h_ * x), watching::unit<T>(), by_turns);
+    out = std::max(out, T(abs(retrace_.row(0)[slots_[index]] - here)));
+  }
+  return out;
+}
+
+/// Where to go on with smaller terms; nothing where nothing is hidden, no place is nearer, or what is hidden is the
+/// rounding of the motion itself, as of (t − 1)² in the place of x.
+template <class T>
+std::optional<typename RootSearchOf<T>::Nearer> RootSearchOf<T>::nearer(std::size_t index, const Piece& piece,
+                                                                        const T& x, const Watched& watched,
+                                                                        const std::optional<T>& root) {
   using std::abs, std::pow;
   constexpr double alone =
       1e-9;  // of its place: so near to a root the polynomial is clear of zero if it is a simple one
@@ -285,7 +299,10 @@ std::optional<typename RootSearchOf<T>::Nearer> RootSearchOf<T>::nearer(const Pi
     if (p[k] != 0) distance = std::min(distance, T(pow(T(abs(p[0] / p[k])), T(1) / T(k))));
   const T most = T(4 * distance) * piece.width;
   if (!(most > 16 * resolution_)) return std::nullopt;
-  return Nearer{x + piece.width * *place, most};
+  constexpr double better = 1000;  // what is worth it: a touch is not told from a miss by a few roundings
+  const T begin = x + piece.width * *place;
+  if (!(piece.polynomial.error_up_to(*place) > T(better) * rounding_at(index, begin))) return std::nullopt;
+  return Nearer{begin, most};
 }
 
 /// Times are rounded, the parts of a step are not: a function of t is looked at where t + h x is a number of the type,
@@ -430,7 +447,7 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watc
     if (watched.side == 0)
       watched.side = watched.at_zero ? now.polynomial.direction(watched.order) : watching::sign(now.polynomial.p[0]);
     const auto root = crossing(now.polynomial, watched);
-    const auto closer = turns < most_nearer ? nearer(now, x, watched, root) : std::nullopt;
+    const auto closer = turns < most_nearer ? nearer(index, now, x, watched, root) : std::nullopt;
     if (watched.at_zero) touches::take_out_zero(now.polynomial, watched.order);
     watched.at_zero = false;  // the step goes on from it, wherever it ends
     if (closer) {

@@ -60,6 +60,13 @@ class Retrace {
   void expand_about(const T& s) { run(needed_, s, order_, order_ + 1); }
   /// Values at s alone; without rates where nothing but coordinates is differentiated.
   void evaluate(const T& s, bool with_rates = true) { run(needed_, s, 1, 2, with_rates ? never : 0); }
+  /// Values at s where coordinates are moved by a share of the sizes of their polynomials' terms there, all one way or
+  /// by turns: what rounding of the motion makes of a value.
+  void evaluate_beside(const T& s, const T& share, bool by_turns) {
+    share_ = share, by_turns_ = by_turns;
+    run(needed_, s, 1, 2, never);
+    share_ = T(0);
+  }
   /// Of all slots of the constructor, wanted now or not: orders up to `most`, those of the coordinates all.
   void values_about(const T& s, int most) { run(every_, s, std::min(most + 1, order_), order_ + 1, most); }
 
@@ -105,6 +112,7 @@ class Retrace {
     if (s == T(0)) {
       for (int k = 0; k <= std::min(last, degree); ++k)
         std::copy_n(polynomials_.data() + static_cast<std::size_t>(k) * n, n, memory_.row(k));
+      move_beside(s);
       return;
     }
     std::vector<T> c(static_cast<std::size_t>(degree) + 1);
@@ -115,9 +123,23 @@ class Retrace {
         for (int k = degree; k-- > done;) c[static_cast<std::size_t>(k)] += s * c[static_cast<std::size_t>(k) + 1];
       for (int k = 0; k <= std::min(last, degree); ++k) memory_.row(k)[i] = c[static_cast<std::size_t>(k)];
     }
+    move_beside(s);
+  }
+
+  void move_beside(const T& s) {
+    using std::abs;
+    if (share_ == T(0)) return;
+    for (std::size_t i = 0; i < program_.unknowns; ++i) {
+      T size = T(0);
+      for (int k = order_ + 2; k-- > 0;)
+        size = size * abs(s) + abs(polynomials_[static_cast<std::size_t>(k) * program_.unknowns + i]);
+      memory_.row(0)[i] += (by_turns_ && i % 2 != 0 ? -share_ : share_) * size;
+    }
   }
 
   const Program& program_;
+  T share_ = T(0);  // of evaluate_beside
+  bool by_turns_ = false;
   int order_;
   reference::MemoryOf<T> memory_;
   std::vector<T> polynomials_;  // [order + 2][unknowns]
