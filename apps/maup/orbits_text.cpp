@@ -86,7 +86,7 @@ std::string multiplier_line(std::complex<double> mu, double period) {
                      : fmt::format("{:.9g} {} {:.9g} i", mu.real(), mu.imag() < 0 ? "-" : "+", std::abs(mu.imag()));
   if (modulus < vanishing_multiplier)
     return "0                               by rounding: the direction vanishes in a period";
-  return fmt::format("{:<32}|μ| = {:<16.9g}arg μ = {:<14.6g}log|μ|/T = {:.6g}", value, modulus, argument,
+  return fmt::format("{:<31} |μ| = {:<15.9g} arg μ = {:<13.6g} log|μ|/T = {:.6g}", value, modulus, argument,
                      std::log(modulus) / period);
 }
 
