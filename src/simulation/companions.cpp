@@ -169,15 +169,16 @@ bool resolves_time(Expr f, Expr time) {
   return exact;
 }
 
-/// Whether the instants of a run are known to the rounding of its time alone, or better.
+/// Whether instants at which steps of the run end are rounded as its time is; those of switches at t − c are known
+/// better.
 bool rounds_instants(const CompanionPlan& plan) {
-  if (goes_through_modes(plan.model)) return true;
+  if (goes_through_modes(plan.model) || plan.run.until) return true;
+  if (plan.result.statistics.switches == 0) return false;
   const MechanicalSystem& system = *plan.equations.system;
   const auto balance = expand_time_derivatives(in_terms_of_motion(system, plan.equations.balance()));
   const std::vector<Expr> switches = switches_of(with_constants_as_numbers(system, balance));
   const Expr time = system.context->time();
-  return plan.run.until ||
-         !std::all_of(switches.begin(), switches.end(), [&](const Expr& f) { return resolves_time(f, time); });
+  return !std::all_of(switches.begin(), switches.end(), [&](const Expr& f) { return resolves_time(f, time); });
 }
 
 /// Of tolerances that the user chose a smaller one: its own error must not hide that of the run. At rounding level

@@ -28,12 +28,15 @@ double largest_of(const Trajectory& trajectory, std::size_t column) {
 LostDigits::LostDigits(const CompanionPlan& plan) {
   const std::size_t n = plan.run.q.size();
   const auto& names = plan.result.trajectory.columns;
-  std::vector<double> largest;  // of points, too: a shaft that is held lies still at 0, and its ends do not
-  for (std::size_t c = 0; c < names.size(); ++c) largest.push_back(largest_of(plan.result.trajectory, c));
+  // Of points, too: a shaft that is held lies still at 0, and its ends do not. Energies and forces are no sizes of
+  // places, though numbers without units look alike.
+  std::vector<double> largest;
+  for (std::size_t c = 0; c < 2 * n + plan.observables.points; ++c)
+    largest.push_back(largest_of(plan.result.trajectory, c));
   sizes_.assign(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(2 * n));
   for (std::size_t c = 0; c < 2 * n; ++c) {
     double of_unit = names[c].unit == "rad" ? small_turn : 0;
-    for (std::size_t other = 0; other < names.size(); ++other)
+    for (std::size_t other = 0; other < largest.size(); ++other)
       if (names[other].unit == names[c].unit) of_unit = std::max(of_unit, largest[other]);
     // What moves a coordinate along the whole run by less than its noise is noise too.
     if (const double length = std::abs(plan.run.end - plan.run.begin); c >= n && length > 0)

@@ -251,6 +251,16 @@ TEST_CASE("what is held at zero is known to be there") {
   for (std::size_t i = 0; i < 3; ++i) CHECK(r.final.errors->q[i] < 1e-15);
 }
 
+TEST_CASE("a large energy is no size of a chaotic motion without units") {
+  const std::string chaos =
+      "system s\ndimensionless\nparam c = 0\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n"
+      "V = c + 1/2 (x^2 + y^2) + x^2 y - 1/3 y^3\nstart y = -0.1, x' = 0.52, y' = 0.1\nrun 2000\n";
+  std::string high = chaos;
+  high.replace(high.find("c = 0"), 5, "c = 1e9");
+  CHECK_FALSE(run(chaos).uncertain.columns.empty());
+  CHECK_FALSE(run(high).uncertain.columns.empty());
+}
+
 TEST_CASE("probes have errors of their own") {
   const ModelText m(oscillator);
   Probe probe;
