@@ -119,12 +119,18 @@ void RadauMethod::factor(double h) {
   find_rounding(by_rate, by_state);
 }
 
-/// What rounding of the terms of F may do to a state through Newton's matrix, with signs by turns: below it neither an
-/// error nor a change of Newton's iteration says anything.
+/// What rounding of the terms of F, and of the time in it, may do to a state through Newton's matrix, with signs by
+/// turns: below it neither an error nor a change of Newton's iteration says anything.
 void RadauMethod::find_rounding(const MatrixXd& by_rate, const MatrixXd& by_state) {
   constexpr double roundings = 8;
-  VectorXd terms = by_rate.cwiseAbs() * rate_.cwiseAbs() + by_state.cwiseAbs() * y_.cwiseAbs();
-  for (Index i = 0; i < terms.size(); ++i) terms[i] *= (i % 2 == 0 ? roundings : -roundings) * eps;
+  VectorXd terms = roundings * eps * (by_rate.cwiseAbs() * rate_.cwiseAbs() + by_state.cwiseAbs() * y_.cwiseAbs());
+  const std::size_t size = system_.size();
+  VectorXd here(y_.size()), beside(y_.size());
+  const double later = t_ + roundings * eps * std::abs(t_);
+  if (system_.residual(t_, {y_.data(), size}, {rate_.data(), size}, {here.data(), size}) &&
+      system_.residual(later, {y_.data(), size}, {rate_.data(), size}, {beside.data(), size}))
+    terms += factors_.rows.cwiseProduct((beside - here).cwiseAbs());
+  for (Index i = 1; i < terms.size(); i += 2) terms[i] = -terms[i];
   rounding_ = factors_.real.solve(terms).cwiseAbs();
 }
 

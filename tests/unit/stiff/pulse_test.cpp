@@ -41,6 +41,21 @@ TEST_CASE("a pulse on a particle at rest: error functions") {
   CHECK(end.v == doctest::Approx(0.265868077635827404).epsilon(1e-10));
 }
 
+TEST_CASE("a pulse of 1e-4 where time in double is known to 1e-13 costs no thousands of steps") {
+  const End end = run("force x = 1000 exp(-((t - 1000.3)/0.0001)^2)\n", 0, 0.1, 2000, 1e-12);
+  CHECK(end.ending == StepEnding::None);
+  CHECK(end.v == doctest::Approx(0.1 + 0.1772453850905516).epsilon(1e-8));  // 0.1 sqrt(pi)
+  CHECK(end.x == doctest::Approx(200 + 0.1772453850905516 * 999.7).epsilon(1e-8));
+  CHECK(end.steps < 1000);
+}
+
+TEST_CASE("a wall of 1e-4, far away") {
+  // Turned back at x = 300 - 1e-4 sqrt(log 10); Taylor's steps tell where it is then.
+  const End end = run("V = 5 exp(-((x - 300)/0.0001)^2)\n", 0, 1, 400, 1e-12);
+  CHECK(end.x == doctest::Approx(199.99978098).epsilon(1e-9));
+  CHECK(end.v == doctest::Approx(-1).epsilon(1e-8));
+}
+
 TEST_CASE("a window of 0.02, a wall and a gate of place") {
   const End window = run("force x = piecewise(t < 4 : 0, t < 4.02 : 30, else : 0)\n", 0, 0, 12);
   CHECK(window.rejected > 0);
