@@ -243,24 +243,18 @@ std::string through_text(const IntegralThroughModes& through) {
     modes(Holds::No, "not in");
     modes(Holds::Undecided, "undecided in");
   }
-  const auto impacts = [&](Holds kept, const char* before) {
-    std::vector<std::string> names;
-    for (const auto& i : through.impacts)
-      if (i.kept == kept) names.push_back(i.contact);
-    if (!names.empty()) lines.push_back(fmt::format("{} {}", before, fmt::join(names, ", ")));
+  const auto kept_at = [&](const auto& list, auto name, const char* yes, const char* no, const char* undecided) {
+    for (const auto& [kept, before] : {std::pair(Holds::Yes, yes), {Holds::No, no}, {Holds::Undecided, undecided}}) {
+      std::vector<std::string> names;
+      for (const auto& x : list)
+        if (x.kept == kept) names.push_back(x.*name);
+      if (!names.empty()) lines.push_back(fmt::format("{} {}", before, fmt::join(names, ", ")));
+    }
   };
-  impacts(Holds::Yes, "kept by impacts on");
-  impacts(Holds::No, "changed by impacts on");
-  impacts(Holds::Undecided, "undecided at impacts on");
-  const auto events = [&](Holds kept, const char* before) {
-    std::vector<std::string> names;
-    for (const auto& e : through.events)
-      if (e.kept == kept) names.push_back(e.event);
-    if (!names.empty()) lines.push_back(fmt::format("{} {}", before, fmt::join(names, ", ")));
-  };
-  events(Holds::Yes, "kept by the event");
-  events(Holds::No, "changed by the event");
-  events(Holds::Undecided, "undecided at the event");
+  kept_at(through.impacts, &IntegralThroughModes::AtImpact::contact, "kept by impacts on", "changed by impacts on",
+          "undecided at impacts on");
+  kept_at(through.events, &IntegralThroughModes::AtEvent::event, "kept by the event", "changed by the event",
+          "undecided at the event");
   if (through.left_out > 0)
     lines.push_back(fmt::format("{} not looked at",
                                 through.left_out == 1 ? "1 mode was" : fmt::format("{} modes were", through.left_out)));

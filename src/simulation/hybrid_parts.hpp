@@ -8,6 +8,9 @@
 /// What the parts of HybridMotion share.
 namespace maupertuis {
 
+/// To which what an event sets keeps constraints and contacts.
+inline constexpr double digits_of_sets = 1e-9;
+
 /// A coefficient of friction for contacts that never slide, where their forces are sought.
 inline constexpr double held_fast = 1e3;
 
