@@ -1,4 +1,5 @@
 #pragma once
+#include <maupertuis/error_function.hpp>
 #include <maupertuis/kinds.hpp>
 #include <maupertuis/lambert_w.hpp>
 
@@ -93,7 +94,7 @@ inline constexpr std::tuple rows{
         [](const auto& x) { using std::log; return log(x); }),
     row(Kind::Erf, "erf", "\\operatorname{erf}", "erf", false, Parity::Odd, Angles::Neither, 0, 0, "erf",
         [](Expr x, Expr) { return Rational(2) * inverse_root(x.context().pi()) * apply(Kind::Exp, -square(x)); },
-        [](const auto& x) { using std::erf; return erf(x); }),
+        [](const auto& x) { return error_function(x); }),
     row(Kind::LambertW, "lambert_w", "W_0", "W\u2080", false, Parity::None, Angles::Neither, 0, 0, "",
         [](Expr x, Expr f) { return inverse(x + apply(Kind::Exp, f)); },
         [](const auto& x) { return lambert_w(x); }),

@@ -1,7 +1,6 @@
 #pragma once
 #include "kernel/reference/elementary.hpp"
 
-#include <boost/math/special_functions/zeta.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/version.hpp>
 
@@ -51,14 +50,13 @@ bool is_finite(const T& x) {
 
 }  // namespace maupertuis::extended
 
-// Values of ζ, Bernoulli numbers, factorials and constants, which stand in erf behind the gamma functions, are computed
-// by whoever asks first for one, in his thread. Boost computes them for every number type when a program starts as well, in the
-// main thread: 38 ms of the 42 that `maup --version` took. Newer versions of Boost are left as they are.
+// Constants are computed by whoever asks first for one, in his thread. Boost computes them for every number type when a
+// program starts as well, in the main thread. Newer versions of Boost are left as they are.
 #if BOOST_VERSION <= 108100
-namespace maupertuis::extended {
+namespace boost::math::constants::detail {
 
-/// In the place of what Boost computes at the start.
-struct NothingAtStart {
+template <unsigned Bits, int N, const maupertuis::extended::Real<Bits>& (*F)()>
+struct constant_initializer2<maupertuis::extended::Real<Bits>, N, F> {
   struct Nothing {
     void force_instantiate() const {}
   };
@@ -66,33 +64,7 @@ struct NothingAtStart {
   static void force_instantiate() {}
 };
 
-}  // namespace maupertuis::extended
-
-namespace boost::math {
-
-template <unsigned Bits>
-struct unchecked_factorial_initializer<maupertuis::extended::Real<Bits>> : maupertuis::extended::NothingAtStart {};
-
-namespace detail {
-
-template <unsigned Bits, class Policy, class Tag>
-struct zeta_initializer<maupertuis::extended::Real<Bits>, Policy, Tag> : maupertuis::extended::NothingAtStart {};
-template <unsigned Bits, class Policy>
-struct bernoulli_initializer<maupertuis::extended::Real<Bits>, Policy> : maupertuis::extended::NothingAtStart {};
-template <unsigned Bits, class Policy>
-struct polygamma_initializer<maupertuis::extended::Real<Bits>, Policy> : maupertuis::extended::NothingAtStart {};
-template <unsigned Bits, class Policy>
-struct lgamma_initializer<maupertuis::extended::Real<Bits>, Policy> : maupertuis::extended::NothingAtStart {};
-
-}  // namespace detail
-
-namespace constants::detail {
-
-template <unsigned Bits, int N, const maupertuis::extended::Real<Bits>& (*F)()>
-struct constant_initializer2<maupertuis::extended::Real<Bits>, N, F> : maupertuis::extended::NothingAtStart {};
-
-}  // namespace constants::detail
-}  // namespace boost::math
+}  // namespace boost::math::constants::detail
 #endif
 
 namespace maupertuis::reference {

@@ -1,4 +1,5 @@
 #pragma once
+#include <maupertuis/error_function.hpp>
 #include <maupertuis/lambert_w.hpp>
 #include <maupertuis/rational.hpp>
 
@@ -239,9 +240,8 @@ Interval<R> atanh(const Interval<R>& x) {
   return within(x, -1, 1) ? rising(x, [](const R& v) { return R(atanh(v)); }) : Interval<R>::nothing();
 }
 template <class R>
-Interval<R> erf(const Interval<R>& x) {
-  using std::erf;
-  return rising(x, [](const R& v) { return R(erf(v)); });
+Interval<R> error_function(const Interval<R>& x) {
+  return rising(x, [](const R& v) { return R(maupertuis::error_function(v)); });
 }
 /// Within 1e-12 of its end −1/e the root of w eʷ = x is known by its sign alone, as where the interval begins below.
 template <class R>

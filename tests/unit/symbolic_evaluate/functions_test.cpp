@@ -166,6 +166,35 @@ TEST_CASE("identities of erf and of Lambert's W") {
     CHECK(zero_test(e).verdict == Verdict::Nonzero);
 }
 
+namespace {
+
+// erf(x) by its alternating series, whose terms are up to exp(x²) times as large as their sum.
+Real100 alternating_erf(double at) {
+  using Long = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<400>, boost::multiprecision::et_off>;
+  const Long x = at;
+  Long power = x, sum = x;
+  for (int n = 1; n < 2000; ++n) {
+    power *= -x * x / n;
+    sum += power / (2 * n + 1);
+  }
+  return Real100(2 * sum / sqrt(boost::math::constants::pi<Long>()));
+}
+
+}  // namespace
+
+TEST_CASE("the error function up to where it is 1, against another series in 400 digits") {
+  for (const double x : {1e-300, 1e-60, 1e-3, 0.4, 0.5, 0.9999, 1.7, 3.1415, 7.3, 11.0, 15.2, 15.3}) {
+    CAPTURE(x);
+    const Real100 exact = alternating_erf(x);
+    CHECK(abs(error_function(Real100(x)) - exact) <= Real100("1e-98") * exact);
+    CHECK(error_function(Real100(-x)) == -error_function(Real100(x)));
+  }
+  CHECK(error_function(Real100(0)) == 0);
+  CHECK(error_function(Real100(1e300)) == 1);
+  CHECK(error_function(std::numeric_limits<Real100>::infinity()) == 1);
+  CHECK(isnan(error_function(std::numeric_limits<Real100>::quiet_NaN())));
+}
+
 TEST_CASE("Lambert's W on its whole domain, against Boost with 100 digits") {
   using Quiet = boost::math::policies::policy<boost::math::policies::domain_error<boost::math::policies::ignore_error>>;
   for (const double x : {-0.36787944117144228, -0.3678794411714, -0.367877, -0.3678767, -0.36787, -0.36, -0.2, -1e-3,
