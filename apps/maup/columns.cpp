@@ -136,6 +136,12 @@ AskedColumns::AskedColumns(const std::string& option, const std::vector<std::str
     }
 }
 
+std::vector<std::string> AskedColumns::formulas() const {
+  std::vector<std::string> out;
+  for (const Formula& f : formulas_) out.push_back(f.text);
+  return out;
+}
+
 std::optional<Trajectory> AskedColumns::added_to(Trajectory rows, Study& study) const {
   const Model& model = *study.model();
   for (const auto& [formula, index] : formulas_) {

@@ -23,6 +23,8 @@ class AskedColumns {
   bool empty() const { return names_.empty(); }
   /// As they were written.
   const std::vector<std::string>& names() const { return names_; }
+  /// Those of them that are formulas, not columns of the trajectory.
+  std::vector<std::string> formulas() const;
   /// The trajectory with the formulas as further columns, their errors to first order where it has errors. Nothing, and
   /// E0811, where one of them has no value that the rows determine. Precondition: `study` has equations.
   std::optional<Trajectory> added_to(Trajectory rows, Study& study) const;

@@ -50,8 +50,9 @@ ExitCode outcome_of(const Action& action, Console& console) {
     if (!interrupt_flag().load()) throw;  // a deadline that no one waited for
   }
   if (!interrupt_flag().load()) return code;
-  console.say(console.has_data() ? "Interrupted: what stands here is not the whole of it.\n"
-                                 : "Interrupted: there was nothing to show yet.\n");
+  console.say(fmt::format("Interrupted: {}\n", !console.left().empty() ? console.left()
+                                               : console.has_data()    ? "what stands here is not the whole of it."
+                                                                       : "there was nothing to show yet."));
   return ExitCode::Interrupted;
 }
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace maupertuis::app {
 
@@ -31,6 +32,9 @@ class Console {
 
   /// Whether something was printed that flush() will write.
   bool has_data() const { return !data_.empty(); }
+  /// What an interrupted command leaves, where that is not what it printed: "run.svg shows the motion up to t = 3 s."
+  void leaves(std::string sentence) { left_ = std::move(sentence); }
+  const std::string& left() const { return left_; }
   /// Writes what was printed; the reason when it could not be written, else empty.
   std::string flush();
 
@@ -41,7 +45,7 @@ class Console {
  private:
   Color color_ = Color::Auto;
   bool json_ = false;
-  std::string data_;
+  std::string data_, left_;
 };
 
 }  // namespace maupertuis::app

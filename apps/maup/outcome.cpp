@@ -81,6 +81,12 @@ bool write_result(const std::string& path, const std::string& content, Diagnosti
   return failure.empty();
 }
 
+void note_moments_only(Diagnostics& diagnostics) {
+  diagnostics.note("N0844", {}, "the motion swings faster than the frames of its drawing follow",
+                   "Each frame is a true moment; from one to the next it may seem to go slowly, or backwards.",
+                   "Show less of it, such as `--duration 1s`; a film also goes more slowly, `--speed 0.01`.");
+}
+
 bool write_picture(const std::string& path, const std::string& svg, Diagnostics& diagnostics) {
   if (!path.ends_with(".png") && !path.ends_with(".pdf")) return write_result(path, svg, diagnostics);
   const PictureBytes picture = path.ends_with(".png") ? png_of(svg) : pdf_of(svg);

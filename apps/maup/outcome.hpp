@@ -45,6 +45,8 @@ bool write_picture(const std::string& path, const std::string& svg, Diagnostics&
 /// what is no finite number.
 bool write_rows(const std::string& path, const Trajectory& rows, Diagnostics& diagnostics,
                 std::span<const std::string> open = {});
+/// N0844: a drawing whose frames do not follow the motion.
+void note_moments_only(Diagnostics& diagnostics);
 /// The diagnostic of it; `failure` is the sentence of the writer.
 void cannot_write(const std::string& failure, Diagnostics& diagnostics);
 

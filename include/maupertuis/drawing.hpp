@@ -48,7 +48,8 @@ struct Drawing {
   std::vector<Element> elements;  // the first is drawn first, in the plane
   std::vector<double> gravity;    // [dimension] its direction; empty without gravity
   bool dimensionless = false;     // no metres, no seconds
-  std::vector<double> follow;     // [frames × dimension] what the camera goes along with; empty: it rests
+  bool moments_only = false;   // the motion swings faster than the frames follow: between two, the nearer one is shown
+  std::vector<double> follow;  // [frames × dimension] what the camera goes along with; empty: it rests
   std::vector<double> low, high;  // [dimension] all that ever appears, seen from what is followed
   double radius = 1;              // of the ball about the middle that holds it
 

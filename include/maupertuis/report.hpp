@@ -138,10 +138,6 @@ std::string report_html(const ReportContent& content);
 /// The drawing of a report alone, in motion, with its controls; a page that needs nothing else.
 std::string animation_html(const Drawing& drawing, const std::string& title);
 
-/// `options` with output as fine as an animation wants it (50 rows a second, 1000 to 10,000 in all), where neither they
-/// nor the model say how often.
-SimulationOptions report_run(const Model& model, SimulationOptions options);
-
 /// What else a report may show.
 struct ReportParts {
   const SimulationResult* simulation = nullptr;  // null: no run, no drawing, no plots

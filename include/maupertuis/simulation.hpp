@@ -27,8 +27,9 @@ struct SimulationOptions {
   std::optional<double> duration;  // s, instead of the model's run; negative: backwards in time
   std::vector<double> at;          // s: times at which the state is wanted exactly; beyond the run: it goes on to them
   std::optional<double> output_every;  // s
-  bool rows_of_steps = false;  // where nobody says how often: rows between those a thousandth of the run apart, as the
-                               // steps ask for, so that a picture shows oscillations that are faster
+  bool rows_of_steps = false;   // where nobody says how often: rows between those a thousandth of the run apart, as the
+                                // steps ask for, so that a picture shows oscillations that are faster
+  std::vector<double> rows_at;  // s: further rows, exactly at these times of the run
   Backend backend = Backend::Automatic;  // of Taylor's steps
   bool cache = true;                     // of compiled code, on disk
   ErrorEstimates errors = ErrorEstimates::States;

@@ -16,9 +16,11 @@ struct Trajectory {
   };
   Column independent{"t", "s"};  // what `times` are
   std::vector<Column> columns;
-  std::vector<double> times;   // [rows] in the order of the run (descending when backwards)
-  std::vector<double> values;  // [rows × columns]
-  std::vector<double> errors;  // [rows × columns] by how much each may be off (uncertainty.hpp); empty: not known
+  std::vector<double> times;      // [rows] in the order of the run (descending when backwards)
+  std::vector<double> values;     // [rows × columns]
+  std::vector<double> errors;     // [rows × columns] by how much each may be off (uncertainty.hpp); empty: not known
+  std::vector<std::size_t> gaps;  // rows before which others were left out, ascending: no line goes there (pictures of
+                                  // oscillations that are much faster than the run is long)
   std::map<std::string, std::string> metadata;  // system, version, method, tolerance, …
 
   std::size_t rows() const { return times.size(); }

@@ -41,6 +41,26 @@ class Motion {
     return bindings_;
   }
 
+  // Whether cubics through those rows follow the motion: the way of a coordinate between two rows is that of its
+  // velocities there, but for a tenth of its range. A sine has five rows in a period then.
+  bool is_followed_by(const std::vector<std::size_t>& rows) const {
+    return std::all_of(columns_.begin(), columns_.end(), [&](const auto& c) {
+      double low = INFINITY, high = -INFINITY;
+      for (const std::size_t row : rows) {
+        low = std::fmin(low, run_.at(row, *c.first));
+        high = std::fmax(high, run_.at(row, *c.first));
+      }
+      std::size_t lost = 0;
+      for (std::size_t i = 0; i + 1 < rows.size(); ++i) {
+        const double h = run_.times[rows[i + 1]] - run_.times[rows[i]];
+        const double way = run_.at(rows[i + 1], *c.first) - run_.at(rows[i], *c.first);
+        const double by_velocities = h * (run_.at(rows[i], *c.second) + run_.at(rows[i + 1], *c.second)) / 2;
+        lost += std::abs(way - by_velocities) > 0.1 * (high - low);
+      }
+      return lost <= rows.size() / 50;  // more than what impacts and sudden forces leave
+    });
+  }
+
   double column(std::size_t index, std::size_t row, double u) const {
     const std::size_t next = std::min(row + 1, run_.rows() - 1);
     return (1 - u) * run_.at(row, index) + u * run_.at(next, index);
@@ -114,9 +134,13 @@ std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& ru
   drawing.gravity = gravity_of(system, parameters);
   const std::size_t rows = run.rows(), stride = (rows + frames - 1) / frames;
   const std::size_t parts = rows > 1 ? std::max<std::size_t>(1, (fewest_frames + rows - 2) / (rows - 1)) : 1;
-  // The last row is a frame whatever the stride: a motion is shown to its end.
-  for (std::size_t row = 0; row < rows; row = row + 1 == rows ? rows : std::min(row + stride, rows - 1))
-    for (std::size_t k = 0; k < (row + 1 == rows ? 1 : stride == 1 ? parts : 1); ++k) {
+  std::vector<std::size_t> shown;
+  for (std::size_t row = 0; row + 1 < rows; row += stride) shown.push_back(row);
+  shown.push_back(rows - 1);  // whatever the stride: a motion is shown to its end
+  drawing.moments_only = !motion.is_followed_by(shown);
+  const std::size_t between = stride == 1 && !drawing.moments_only ? parts : 1;
+  for (const std::size_t row : shown)
+    for (std::size_t k = 0; k < (row + 1 == rows ? 1 : between); ++k) {
       const double u = static_cast<double>(k) / static_cast<double>(parts);
       const Bindings& state = motion.state(row, u);
       add_frame(drawing, plan.outlines, evaluate(wanted, state), motion, row, u);

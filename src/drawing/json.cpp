@@ -86,9 +86,9 @@ void append_element(std::string& out, const Drawing::Element& e) {
 }  // namespace
 
 std::string drawing_json(const Drawing& drawing) {
-  std::string out =
-      fmt::format("{{\"dimension\":{},\"dimensionless\":{},\"radius\":{:.6g},\"gravity\":", drawing.dimension,
-                  drawing.dimensionless, drawing.radius);
+  std::string out = fmt::format(
+      "{{\"dimension\":{},\"dimensionless\":{},\"momentsOnly\":{},\"radius\":{:.6g},\"gravity\":", drawing.dimension,
+      drawing.dimensionless, drawing.moments_only, drawing.radius);
   append_numbers(out, drawing.gravity, 6);
   for (const auto& [name, list, digits] : {std::tuple{"low", &drawing.low, 6},
                                            {"high", &drawing.high, 6},

@@ -32,8 +32,8 @@ std::vector<double> track_at(const Drawing& drawing, const std::vector<double>& 
   const std::size_t i = frame_before(times, direction, elapsed), last = times.size() - 1;
   const double h = direction * (times[i + 1] - times[i]);
   const double u = h > 0 ? std::clamp((elapsed - direction * (times[i] - times[0])) / h, 0.0, 1.0) : 0;
-  if (u == 0) return {frame(i), frame(i + 1)};
-  if (u == 1) return {frame(i + 1), frame(i + 2)};
+  if (u == 0 || (drawing.moments_only && u < 0.5)) return {frame(i), frame(i + 1)};
+  if (u == 1 || drawing.moments_only) return {frame(i + 1), frame(i + 2)};
   std::vector<double> out(width);
   const double w = 1 - u;
   for (std::size_t k = 0; k < width; ++k) {

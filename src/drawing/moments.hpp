@@ -7,7 +7,7 @@ namespace maupertuis::drawing {
 double duration_of(const Drawing& drawing);
 
 /// `width` numbers a frame at an elapsed time: cubics through the frames (Catmull and Rom's, on uneven times), exact at
-/// each.
+/// each; the nearer frame in a drawing of moments only.
 std::vector<double> track_at(const Drawing& drawing, const std::vector<double>& track, std::size_t width,
                              double elapsed);
 

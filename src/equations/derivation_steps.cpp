@@ -219,7 +219,7 @@ void write_solved(StepWriter& out) {
                 solved.coupled_with.size() == 1 ? "divided by the coefficient of " + c.name + "''" : "Cramer's rule");
   }
   if (out.system().constrained()) return write_solved_multipliers(out, any_left);
-  if (any_left)
+  if (any_left && !out.equations().degenerate)
     out.sentence(
         "M q'' + h = 0",
         "The coupled accelerations are long when written out; a run solves M q'' = −h numerically at every step.");

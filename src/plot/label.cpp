@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 namespace maupertuis {
 namespace {
@@ -63,7 +64,53 @@ void append(RichText& text, const RichText& more) {
 
 void append(RichText& text, std::string_view upright) { append(text, RichText{{std::string(upright), false, 0}}); }
 
-RichText name_text(std::string_view name) {
+namespace {
+
+bool is_letter(char c) { return (c & 0x80) != 0 || std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
+
+// The end of the name or the number that begins at `at`: θ1', bob.x, 0.5, 1e-3.
+std::size_t end_of_word(std::string_view text, std::size_t at) {
+  std::size_t end = at;
+  const auto next_is = [&](auto&& kind) { return end + 1 < text.size() && kind(text[end + 1]); };
+  if (is_letter(text[at])) {
+    while (end < text.size() &&
+           (is_letter(text[end]) || is_digit(text[end]) || (text[end] == '.' && next_is(is_letter))))
+      ++end;
+    while (end < text.size() && text[end] == '\'') ++end;
+  } else {
+    const auto is_sign = [](char c) { return c == '-' || c == '+' || is_digit(c); };
+    while (end < text.size() && (is_digit(text[end]) || text[end] == '.')) ++end;
+    if (end < text.size() && (text[end] == 'e' || text[end] == 'E') && next_is(is_sign))
+      for (end += 2; end < text.size() && is_digit(text[end]);) ++end;
+  }
+  return end;
+}
+
+// What is raised after a caret at `at`: a number, or all between brackets.
+std::string_view exponent_after(std::string_view text, std::size_t& at) {
+  std::size_t end = ++at;
+  if (at < text.size() && text[at] == '(') {
+    int depth = 0;
+    do depth += text[end] == '(' ? 1 : text[end] == ')' ? -1 : 0;
+    while (++end < text.size() && depth > 0);
+    const std::string_view inside = text.substr(at + 1, end - at - (depth == 0 ? 2 : 1));
+    at = end;
+    return inside;
+  }
+  if (end < text.size() && text[end] == '-') ++end;
+  if (end < text.size() && (is_letter(text[end]) || is_digit(text[end]))) end = end_of_word(text, end);
+  const std::string_view word = text.substr(at, end - at);
+  at = end;
+  return word;
+}
+
+std::string with_minus_signs(std::string_view text) {
+  std::string out;
+  for (const char c : text) c == '-' ? out += "−" : out += c;
+  return out;
+}
+
+RichText single_name(std::string_view name) {
   const NameParts parts = name_parts(name);
   const bool dotted = !parts.upright && parts.dots <= 3;  // a word, or a fourth derivative, has primes
   RichText text{{parts.base, !parts.upright, 0, dotted ? parts.dots : 0}};
@@ -71,6 +118,27 @@ RichText name_text(std::string_view name) {
     for (int i = 0; i < parts.dots; ++i) text.back().text += "′";
   if (!parts.index.empty()) text.push_back({parts.index, false, -1});
   return text;
+}
+
+}  // namespace
+
+RichText name_text(std::string_view text) {
+  RichText out;
+  for (std::size_t at = 0; at < text.size();) {
+    if (text[at] == '^') {
+      out.push_back({with_minus_signs(exponent_after(text, at)), false, 1});
+      continue;
+    }
+    const bool is_name = is_letter(text[at]), is_word = is_name || is_digit(text[at]);
+    const std::size_t end = is_word ? end_of_word(text, at) : at + 1;
+    const std::string_view word = text.substr(at, end - at);
+    if (is_name)
+      append(out, single_name(word));
+    else
+      append(out, word == "*" ? "·" : with_minus_signs(word));
+    at = end;
+  }
+  return out;
 }
 
 RichText unit_text(std::string_view unit) {

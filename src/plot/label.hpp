@@ -17,7 +17,7 @@ using RichText = std::vector<TextRun>;
 void append(RichText& text, const RichText& more);
 void append(RichText& text, std::string_view upright);
 
-RichText name_text(std::string_view name);  // θ1' as in print
+RichText name_text(std::string_view text);  // θ1' as in print, and formulas of such names: 0.5 m θ1'^2
 RichText unit_text(std::string_view unit);  // m^2 with an exponent
 RichText power_of_ten(int exponent);
 /// "θ₁, θ₂", or "θ₁ … θ₈" for many.

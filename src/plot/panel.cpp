@@ -32,8 +32,8 @@ std::string text_element(double x, double y, std::string_view anchor, double siz
   const std::string content = to_svg(text, size);
   // A blank at the beginning of a <tspan> is one of the text; librsvg drops it unless it is told.
   const char* blanks = content.find("> ") != std::string::npos ? " xml:space=\"preserve\"" : "";
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" font-size=\"{}\"{}{}>{}</text>\n", x, y, anchor,
-                     size, blanks, more, content);
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" font-size=\"{}\"{}{}>{}</text>\n", x, y,
+                     anchor, size, blanks, more, content);
 }
 
 namespace {
@@ -193,14 +193,17 @@ std::string draw_curve(const Figure& figure, const Panel& panel, std::size_t ind
   const std::string attributes = series_attributes(index, panel.series.size());
   const auto [certain, lost] =
       split_by_certainty(figure, panel.series[index], pixels_of(figure, panel, panel.series[index], across, up));
-  const auto lines = split_at_gaps(certain);
   const bool over_time = figure.horizontal.is_time;
+  // Over time what was left out is hidden in a band of oscillations; across it, a chord would be a way that is not
+  // gone.
+  const auto breaks = over_time ? std::vector<std::size_t>() : figure.trajectory.gaps;
+  const auto lines = split_at_gaps(certain, breaks);
   const auto drawn = thinned(lines, over_time, figure.options.width, figure.height);
   std::size_t points = 0;
   for (const Polyline& line : drawn) points += line.size();
   std::string svg =
       fmt::format("<path class=\"curve {}{} d=\"{}\"/>\n", points > 1500 ? "dense " : "", attributes, path_data(drawn));
-  if (const auto faint = split_at_gaps(lost); !faint.empty())
+  if (const auto faint = split_at_gaps(lost, breaks); !faint.empty())
     svg += fmt::format("<path class=\"curve lost {} d=\"{}\"/>\n", attributes,
                        path_data(thinned(faint, false, figure.options.width, figure.height)));
   const auto dot = [&](Pixel p, double radius) {

@@ -8,13 +8,14 @@
 
 namespace maupertuis {
 
-std::vector<Polyline> split_at_gaps(const Polyline& points) {
+std::vector<Polyline> split_at_gaps(const Polyline& points, const std::vector<std::size_t>& breaks) {
   std::vector<Polyline> lines(1);
-  for (const Pixel& p : points) {
-    if (std::isfinite(p.x) && std::isfinite(p.y))
-      lines.back().push_back(p);
-    else if (!lines.back().empty())
-      lines.emplace_back();
+  auto next = breaks.begin();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool is_break = next != breaks.end() && *next == i, is_finite = std::isfinite(points[i].x + points[i].y);
+    if (is_break) ++next;
+    if ((is_break || !is_finite) && !lines.back().empty()) lines.emplace_back();
+    if (is_finite) lines.back().push_back(points[i]);
   }
   if (lines.back().empty()) lines.pop_back();
   return lines;

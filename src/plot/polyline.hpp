@@ -10,8 +10,9 @@ struct Pixel {
 };
 using Polyline = std::vector<Pixel>;
 
-/// Cuts a series where it is not finite. A stretch of one point is a polyline of one point.
-std::vector<Polyline> split_at_gaps(const Polyline& points);
+/// Cuts a series where it is not finite, and before the points of `breaks` (ascending). A stretch of one point is a
+/// polyline of one point.
+std::vector<Polyline> split_at_gaps(const Polyline& points, const std::vector<std::size_t>& breaks = {});
 
 /// For lines that run one way in x: of each column of `width` px the first, lowest, highest and last point, in their
 /// order. The drawn line covers the same pixels (the M4 aggregation of Jugel et al., VLDB 2014).

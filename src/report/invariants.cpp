@@ -53,7 +53,9 @@ std::string summary_of(const Invariants& found) {
                         fmt::join(found.involution, ", "), found.involution.size() == 1 ? "is" : "are");
   if (found.symmetry_bound)
     text += *found.symmetry_bound == found.noether_symmetries
-                ? fmt::format(" There are no further point symmetries than these {}.", found.noether_symmetries)
+                ? fmt::format(
+                      " There are no further point symmetries than {}.",
+                      found.noether_symmetries == 1 ? "this one" : fmt::format("these {}", found.noether_symmetries))
                 : fmt::format(" At most {} point symmetries exist; {} were found.", *found.symmetry_bound,
                               found.noether_symmetries);
   return text;

@@ -88,6 +88,13 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_greek_lead(char c) { return c == '\xce' || c == '\xcf'; }
 bool is_word(char c) { return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c & 0x80); }
 
+/// Whether the word that ends at `end` is one letter: names of files and of options keep their underscores.
+bool is_one_letter_before(std::string_view text, std::size_t end) {
+  std::size_t begin = end - 1;
+  while (begin > 0 && (text[begin] & 0xc0) == 0x80) --begin;
+  return is_word(text[begin]) && (begin == 0 || !(is_word(text[begin - 1]) || text[begin - 1] == '_'));
+}
+
 // θ1 with its index below the line, p_θ1 and h_E likewise; a minus sign between spaces as one.
 std::string prose_html(std::string_view text) {
   std::string html;
@@ -96,7 +103,8 @@ std::string prose_html(std::string_view text) {
       const std::size_t end = std::min(text.find_first_not_of("0123456789", i + 2), text.size());
       html += fmt::format("{}<sub>{}</sub>", text.substr(i, 2), text.substr(i + 2, end - i - 2));
       i = end;
-    } else if (text[i] == '_' && i > 0 && is_word(text[i - 1]) && i + 1 < text.size() && is_word(text[i + 1])) {
+    } else if (text[i] == '_' && i > 0 && is_one_letter_before(text, i) && i + 1 < text.size() &&
+               is_word(text[i + 1])) {
       std::size_t end = i + 1;
       while (end < text.size() && is_word(text[end])) ++end;
       html += fmt::format("<sub>{}</sub>", prose_html(text.substr(i + 1, end - i - 1)));
@@ -157,8 +165,7 @@ std::string line_html(std::string_view line) {
   std::string html = known ? fmt::format("<span class=\"word\">{}</span>", statement.substr(0, word))
                            : escape_xml(statement.substr(0, word));
   html += escape_xml(statement.substr(word));
-  if (comment < line.size())
-    html += fmt::format("<span class=\"comment\">{}</span>", escape_xml(line.substr(comment)));
+  if (comment < line.size()) html += fmt::format("<span class=\"comment\">{}</span>", escape_xml(line.substr(comment)));
   return html;
 }
 

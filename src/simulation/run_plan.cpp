@@ -114,7 +114,18 @@ class Planner {
       last = plan_.end;
     else
       plan_.output_times.push_back(plan_.end);
+    plan_.row_interval = every;
+    add_rows_asked_for();
     return true;
+  }
+
+  void add_rows_asked_for() {
+    const auto before = [&](double a, double b) { return plan_.end < plan_.begin ? a > b : a < b; };
+    std::vector<double>& times = plan_.output_times;
+    for (const double t : options_.rows_at)
+      if (!before(t, plan_.begin) && !before(plan_.end, t)) times.push_back(t);
+    std::sort(times.begin(), times.end(), before);
+    times.erase(std::unique(times.begin(), times.end()), times.end());
   }
 
   const Model& model_;

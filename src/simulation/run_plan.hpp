@@ -1,7 +1,6 @@
 #pragma once
 #include <maupertuis/simulation.hpp>
 
-#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -14,7 +13,7 @@ struct RunPlan {
   Expr condition;                    // the event: a function along the motion, forces of constraints written out
   std::vector<double> q, v;          // [n]
   bool even_rows = true;             // nothing between the output times
-  double row_interval() const { return output_times.size() > 1 ? std::abs(output_times[1] - output_times[0]) : 0; }
+  double row_interval = 0;           // s, between even rows
   std::vector<double> output_times;  // in the order of the run, begin and end included
 };
 

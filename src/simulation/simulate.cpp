@@ -29,6 +29,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 /// One run, in named stages: plan (numbers), kernel (program), steps, measures, companions (errors). The observables of
 /// the kernel are, in this order: the terms of h_E, the positions of the points, the reactions, formulas that were
@@ -224,7 +225,7 @@ class Run {
     constexpr std::size_t most_between = 100;
     const double begin = method_->step_start().t, end = method_->time();
     const int parts = std::max(1, 2 * method_->order() / 5);
-    const bool is_fine = plan_.even_rows || std::abs(end - begin) >= parts * plan_.row_interval();
+    const bool is_fine = plan_.even_rows || std::abs(end - begin) >= parts * plan_.row_interval;
     for (int k = 1; k <= parts && !is_fine; ++k) {
       const double t = k == parts ? end : begin + (end - begin) * k / parts;
       const std::size_t before = next_output_;
@@ -232,7 +233,10 @@ class Run {
              std::abs(plan_.output_times[next_output_] - begin) <= std::abs(t - begin))
         add_row(sample(plan_.output_times[next_output_++]));
       if (next_output_ != before) between_ = 0;
-      if (between_++ < most_between && result_.trajectory.times.back() != t) add_row(sample(t));
+      if (between_++ >= most_between)
+        left_out_ = true;
+      else if (result_.trajectory.times.back() != t)
+        add_row(sample(t));
     }
     record_covered();
   }
@@ -252,6 +256,7 @@ class Run {
 
   void add_row(const Sample& sample) {
     Trajectory& trajectory = result_.trajectory;
+    if (std::exchange(left_out_, false)) trajectory.gaps.push_back(trajectory.rows());
     trajectory.times.push_back(sample.t);
     append_row(trajectory.values, sample, observables_);
   }
@@ -320,6 +325,7 @@ class Run {
   std::vector<State> answers_;
   std::size_t next_output_ = 0, next_request_ = 0;
   std::size_t between_ = 0;                          // rows since the last output time
+  bool left_out_ = false;                            // a row, since the last one
   static constexpr std::size_t most_jumps = 10'000;  // that have rows of their own
   std::size_t jumps_ = 0;
 };

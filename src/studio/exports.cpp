@@ -46,8 +46,9 @@ SimulationResult motion_of(Desk& desk, Study& study, const Work& work) {
   SimulationOptions options;
   options.interrupt = work.interrupt;
   options.errors = ErrorEstimates::None;
+  options.rows_of_steps = true;
   options.progress = [&work](double fraction) { work.send({{"progress", fraction}}); };
-  auto result = study.motion(report_run(*study.model(), options));
+  auto result = study.motion(options);
   if (!result) desk.refuse(study);
   return *std::move(result);
 }

@@ -1,7 +1,9 @@
 #include "studio/requests.hpp"
 
+#include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/degenerate.hpp>
 #include <maupertuis/diagram.hpp>
+#include <maupertuis/evaluate.hpp>
 #include <maupertuis/field_report.hpp>
 #include <maupertuis/modes.hpp>
 #include <maupertuis/motion_pictures.hpp>
@@ -157,6 +159,19 @@ Json run_of_fields(Desk& desk, Study& study, const SimulationOptions& options, s
   return out;
 }
 
+/// As fine as an animation wants it, 50 rows a second and 1000 to 10,000 in all, where the model does not say how
+/// often: while a slider moves, rows of every step would cost more than the steps.
+SimulationOptions with_even_rows(const Model& model, SimulationOptions options) {
+  if (options.output_every || model.experiment.output_every) return options;
+  Expr length = model.experiment.until ? model.experiment.within : model.experiment.duration;
+  double duration = options.duration.value_or(0);
+  if (!options.duration && length)
+    duration = evaluate(in_terms_of_motion(model.system, {&length, 1}).front(), parameter_bindings(model.system));
+  if (std::isfinite(duration) && duration != 0)
+    options.output_every = std::abs(duration) / std::clamp(std::round(50 * std::abs(duration)), 1000.0, 10'000.0);
+  return options;
+}
+
 }  // namespace
 
 Json run(Desk& desk, const Work& work) {
@@ -173,7 +188,7 @@ Json run(Desk& desk, const Work& work) {
   } else {
     const Model& model = *study.model();
     if (study.refuse_held_integrals()) desk.refuse(study);
-    const auto result = simulate(model, *study.equations(), report_run(model, options), found);
+    const auto result = simulate(model, *study.equations(), with_even_rows(model, options), found);
     if (!result) desk.refuse(study, found);
     if (result->ending == Ending::Interrupted && result->trajectory.rows() < 2) throw Interrupted();
     out = run_json(study, model, *study.equations(), *result, frames);

@@ -108,6 +108,11 @@ constexpr std::array kAdvice = {
            "Derivatives of fields are written u_x, u_xx; those of L the tool takes itself."},
 };
 
+/// CR alone, VT, FF, NEL and the separators of lines and paragraphs of Unicode.
+bool ends_lines_elsewhere(char32_t c) {
+  return c == '\r' || c == 0x0B || c == 0x0C || c == 0x85 || c == 0x2028 || c == 0x2029;
+}
+
 class Lexer {
  public:
   Lexer(const SourceText& source, Diagnostics& diagnostics)
@@ -142,8 +147,15 @@ class Lexer {
     return false;
   }
 
+  // A line ends in LF or CR LF. What else editors show as its end is no sign of the language, in comments neither: a
+  // statement after it would be lost.
   void read_comment() {
-    std::size_t end = std::min(text_.find('\n', position_), text_.size());
+    std::size_t end = position_;
+    while (end < text_.size() && text_[end] != '\n') {
+      const CodePoint c = *decode(text_, end);
+      if (ends_lines_elsewhere(c.value) && text_.substr(end, 2) != "\r\n") break;
+      end += c.length;
+    }
     const std::size_t next = end;
     while (text_[end - 1] == ' ' || text_[end - 1] == '\t' || text_[end - 1] == '\r') --end;
     list_.comments.push_back({std::string(text_.substr(position_, end - position_)), span_from(position_, end)});
@@ -409,6 +421,10 @@ class Lexer {
       return;
     }
     const char32_t c = decode(text_, begin)->value;
+    if (ends_lines_elsewhere(c))
+      return complain("E0104", begin, fmt::format("a line ends here with U+{:04X}", static_cast<std::uint32_t>(c)),
+                      "Lines of a model end in LF or CR LF; others would join the next line to this one.",
+                      "Save the file with such ends of lines.");
     const bool visible = c > 0x20 && c != 0x7F && !(c >= 0x80 && c < 0xA0) && !(c >= 0x200B && c <= 0x200F) &&
                          !(c >= 0x2028 && c <= 0x202E) && c != 0xFEFF && !is_combining_mark(c);
     const std::string code = fmt::format("U+{:04X}", static_cast<std::uint32_t>(c));

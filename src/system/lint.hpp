@@ -47,6 +47,9 @@ void gravity_twice(Subject& s);
 /// W0421: T without a velocity; W0422: D without a velocity.
 void energies_without_velocity(Subject& s);
 
+/// W0438: two names, or a name and a momentum or the energy function, that formulas print as one symbol.
+void names_printed_alike(Subject& s);
+
 /// E0430, E0431, E0432: an energy, a position or a momentum that jumps at a switch.
 void jumps(Subject& s);
 

@@ -116,6 +116,30 @@ TEST_CASE("one moment as SVG, PNG and PDF") {
   CHECK(read(pdf).substr(0, 5) == "%PDF-");
 }
 
+TEST_CASE("a moment of a fast motion is that moment, not one between two frames") {
+  const Folder folder;
+  const std::string model =
+                        folder.write("fast.lag",
+                                     "system fast\nparam m = 1 kg, w = 6283 rad/s\ncoord x : length\npoint P mass m at "
+                                     "(x, 0)\nV = 1/2 m w^2 x^2\nstart x = 1 m\nrun 10 s\n"),
+                    svg = folder.path("m.svg");
+  // From −1 to 1 in the middle of the picture: x = cos(6283 t).
+  const auto place = [&](const std::string& time) {
+    REQUIRE(maup({"animate", model, "--still", time, "--plain", "-o", svg}).code == 0);
+    const std::string text = read(svg);
+    const std::size_t at = text.find("cx=\"");
+    REQUIRE(at != std::string::npos);
+    return std::stod(text.substr(at + 4));
+  };
+  const double right = place("0s"), left = place("0.0005s"), middle = (left + right) / 2;
+  CHECK(left < right - 300);
+  CHECK((place("5.00025s") - middle) / (right - middle) == doctest::Approx(std::cos(6283 * 5.00025)).epsilon(1e-3));
+  CHECK((place("9.9999s") - middle) / (right - middle) == doctest::Approx(std::cos(6283 * 9.9999)).epsilon(1e-3));
+  const Outcome page = maup({"animate", model, "-o", folder.path("m.html")});
+  CHECK(contains(page.err, "N0844"));
+  CHECK_FALSE(contains(maup({"animate", model, "--duration", "1s", "-o", folder.path("m.html")}).err, "W08"));
+}
+
 TEST_CASE("plots as PNG and PDF: sizes, letters, and the same bytes again") {
   const Folder folder;
   const std::string model = folder.write("pendulum.lag", pendulum), png = folder.path("p.png"),

@@ -90,6 +90,12 @@ TEST_CASE("what was found until then is printed and called partial") {
   CHECK(contains(test.out, "fine.lag: 1 of 1 expectations hold"));
   CHECK(contains(test.err, "1 of 3 models were tested."));
 
+  const std::string picture = folder.path("motion.svg");
+  const Outcome plot = interrupted({"plot", fine, "--duration", "100000000s", "-o", picture}, SIGINT, moment);
+  check_end(plot);
+  CHECK(contains(plot.err, "motion.svg shows the motion up to t = "));
+  CHECK(contains(read(picture), "interrupted at t = "));
+
   const std::string rows = folder.path("motion.csv");
   const Outcome run =
       interrupted({"simulate", fine, "--duration", "100000000s", "--every", "1000s", "-o", rows}, SIGINT, moment);

@@ -169,3 +169,12 @@ TEST_CASE("--sweep with one unit and without its number of values") {
   const Outcome outcome = maup({"modes", "-", "--sweep", "l2 = 1 .. 2 m", "--json"}, kDouble);
   CHECK(outcome.code == 0);
 }
+
+TEST_CASE("a plot of a formula has a gap where it has no value; --x takes one") {
+  const Folder folder;
+  const std::string model = folder.write("pendulum.lag", pendulum), svg = folder.path("p.svg");
+  CHECK(maup({"plot", model, "--y", "1/(t - 1 [s])", "-o", svg}).code == 0);
+  const Outcome two = maup({"plot", model, "--x", "θ, θ'", "--y", "θ", "-o", svg});
+  CHECK(two.code == 2);
+  CHECK(contains(two.err, "--x names 2 columns."));
+}

@@ -162,13 +162,13 @@ std::string caption(const Drawing& drawing, double elapsed, double step, const F
                      drawing.dimensionless ? "" : units[unit]);
 }
 
-std::string still_svg(const AnimateOptions& o, const Drawing& drawing, Film& film, Diagnostics& diagnostics) {
+std::string still_svg(const Drawing& drawing, Film& film) {
   if (!film.height_given) film.picture.height = fitting_height(drawing, film.picture.width);
-  const double duration = std::abs(drawing.times.back() - drawing.times.front());
-  const double elapsed = moment("--still", o.still, drawing, 0, diagnostics);
+  const double duration = std::abs(drawing.times.back() - drawing.times.front()), elapsed = film.elapsed.front();
   film.picture.trail_time = 3 * pleasant_speed(duration);
-  film.picture.caption = caption(drawing, elapsed, duration / 1000, film.picture);
-  film.elapsed = {elapsed};
+  double step = duration / 1000;  // or as fine as the moment was asked for
+  while (step > 1e-9 * duration && std::abs(std::remainder(elapsed, step)) > 1e-6 * step) step /= 10;
+  film.picture.caption = caption(drawing, elapsed, step, film.picture);
   return frame_svg(drawing, elapsed, film.picture);
 }
 
@@ -213,14 +213,15 @@ void check_tools(const AnimateOptions& o, Diagnostics& diagnostics) {
                       "Take .html or .svg, which need nothing else.");
 }
 
-std::optional<Drawing> drawing_of(Study& study, const SimulationOptions& settings, Console& console,
+std::optional<Drawing> drawing_of(Study& study, SimulationOptions run, Console& console,
                                   std::optional<SimulationResult>& result) {
   if (study.wrong() || !study.model() || !study.equations()) return {};
-  SimulationOptions run = report_run(*study.model(), settings);
+  run.rows_of_steps = run.rows_at.empty();
   run.errors = ErrorEstimates::None;
   result = run_model(study, run, console);
   if (!result) return {};
-  std::optional<Drawing> drawing = evaluate_drawing(*study.model(), result->trajectory, 12'000, study.equations(),
+  const std::size_t frames = 12'000 + 2 * run.rows_at.size();
+  std::optional<Drawing> drawing = evaluate_drawing(*study.model(), result->trajectory, frames, study.equations(),
                                                     impulses_of(*result, study.model()->system));
   if (!drawing)
     study.diagnostics().error("E0843", {}, "The model has nothing to draw.",
@@ -333,6 +334,24 @@ ExitCode animate_fields(AnimateOptions o, Study& study, Console& console) {
   return written ? ExitCode::Fine : ExitCode::RunFailed;
 }
 
+/// A motion that swings faster than the drawing's frames follow is run once more, with rows at the moments that are
+/// shown. What swings between two frames of a film cannot be seen in it: said.
+void hit_moments(const Film& film, Study& study, SimulationOptions run, Console& console,
+                 std::optional<SimulationResult>& result, std::optional<Drawing>& drawing) {
+  if (!drawing->moments_only) return;
+  if (film.elapsed.size() != 1) note_moments_only(study.diagnostics());
+  if (film.elapsed.empty()) return;
+  const Diagnostics said = study.diagnostics();
+  const double first = drawing->times.front(), way = drawing->times.back() < first ? -1 : 1;
+  for (const double elapsed : film.elapsed) run.rows_at.push_back(first + way * elapsed);
+  if (auto again = drawing_of(study, run, console, result)) {
+    again->moments_only = true;
+    again->low = drawing->low, again->high = drawing->high, again->radius = drawing->radius;  // of the whole motion
+    drawing = std::move(again);
+    study.diagnostics() = said;  // the second run has nothing to add
+  }
+}
+
 ExitCode animate(AnimateOptions o, Console& console) {
   Study study = open_study(o.model);
   if (declares_fields(study.tree())) return animate_fields(std::move(o), study, console);
@@ -347,7 +366,7 @@ ExitCode animate(AnimateOptions o, Console& console) {
   if (readable_model && study.wrong()) return finish_usage(console, study, "animate");
   put_in_run(o.run, study);
   std::optional<SimulationResult> result;
-  const std::optional<Drawing> drawing = drawing_of(study, settings, console, result);
+  std::optional<Drawing> drawing = drawing_of(study, settings, console, result);
   if (!drawing) return finish(console, study, document);
   if (o.output.empty()) o.output = default_output(o, study.model()->system.name);
 
@@ -357,11 +376,15 @@ ExitCode animate(AnimateOptions o, Console& console) {
   const std::string ending = ending_of(o), title = study.model()->system.title.empty() ? study.model()->system.name
                                                                                        : study.model()->system.title;
   if (!o.still.empty())
-    bytes = still_svg(o, *drawing, film, diagnostics);
+    film.elapsed = {moment("--still", o.still, *drawing, 0, diagnostics)};
   else if (!page)
     choose_frames(o, *drawing, film, diagnostics);
   if (study.wrong()) return finish_usage(console, study, "animate");
-  if (o.still.empty()) {
+  hit_moments(film, study, settings, console, result, drawing);
+  if (!drawing) return finish(console, study, document);
+  if (!o.still.empty())
+    bytes = still_svg(*drawing, film);
+  else {
     if (page)
       bytes = animation_html(*drawing, title);
     else if (ending == ".mp4" || ending == ".gif")

@@ -4,6 +4,7 @@
 #include "numbers.hpp"
 #include "outcome.hpp"
 #include "output_files.hpp"
+#include "quantity.hpp"
 #include "run_options.hpp"
 
 #include <fmt/format.h>
@@ -76,6 +77,9 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
       study.diagnostics().error("E0809", {}, fmt::format("{} is for fields, and the model has none.", name),
                                 "It chooses between u(x) at moments and the space-time map.", "Leave it out.");
   const AskedColumns y("--y", options.y, study), x("--x", options.x, study);
+  if (x.names().size() > 1)
+    study.diagnostics().error("E0809", {}, fmt::format("--x names {} columns.", x.names().size()),
+                              "All curves of a picture share what goes across.", "Give one column or formula.");
   SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
   if (settings.errors != ErrorEstimates::None) settings.errors = ErrorEstimates::Rows;
   settings.rows_of_steps = true;
@@ -104,7 +108,15 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
     finish(console, study, document);
     return ExitCode::Usage;
   }
-  check_numbers(result->trajectory, study.diagnostics());
+  if (result->ending == Ending::Interrupted) {
+    const std::string moment = study.model()->system.moment(brief(result->final.t));
+    picture.title += (picture.title.empty() ? "" : ", ") + fmt::format("interrupted at {}", moment);
+    console.leaves(
+        fmt::format("{} shows the motion up to {}.", options.output == "-" ? "the picture" : options.output, moment));
+  }
+  std::vector<std::string> open = y.formulas();  // where one has no value, its curve has a gap
+  for (const std::string& formula : x.formulas()) open.push_back(formula);
+  check_numbers(result->trajectory, study.diagnostics(), open);
   show_happenings(picture, *result, study.model()->system);
   const std::string svg = plot_svg(result->trajectory, picture);
   const bool written = write_svg(options, svg, study, document, console) == ExitCode::Fine;

@@ -89,7 +89,8 @@ class Page {
   /// A run that the budget ends is shown up to there.
   void run() {
     if (options_.without_run || is_about_paths_alone(model())) return;
-    SimulationOptions of_run = report_run(model(), settings_);
+    SimulationOptions of_run = settings_;
+    of_run.rows_of_steps = true;
     if (of_run.errors != ErrorEstimates::None) of_run.errors = ErrorEstimates::Rows;
     budget_.carry_out_in_part("motion", [&](const Interrupt& interrupt) {
       of_run.interrupt = interrupt;
@@ -127,6 +128,7 @@ class Page {
         compose_report(model(), study_.source(), equations(), *derivation, *study_.certificate(), found_.parts(),
                        [&](std::string_view name, const std::function<void()>& work) { return compose(name, work); });
     study_.diagnostics().append(budget_.warnings());
+    if (content.drawing && content.drawing->moments_only) note_moments_only(study_.diagnostics());
     add_messages(content, study_.diagnostics(), study_.source());
     return report_html(content);
   }

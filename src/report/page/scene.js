@@ -21,12 +21,14 @@ const maupScene = (() => {
     return low;
   }
 
-  // Cubic interpolation through the neighbouring frames (Catmull-Rom on uneven times), exact at each.
+  // Cubic interpolation through the neighbouring frames (Catmull-Rom on uneven times), exact at each; the nearer one where
+  // the motion swings faster than frames follow.
   function trackAt(scene, track, width, s) {
     const times = scene.times, way = direction(scene), last = times.length - 1;
     if (last === 0) return track.slice(0, width);
     const i = frameBefore(times, way, s), h = way * (times[i + 1] - times[i]);
-    const u = h > 0 ? Math.min(1, Math.max(0, (s - way * (times[i] - times[0])) / h)) : 0, w = 1 - u;
+    const part = h > 0 ? Math.min(1, Math.max(0, (s - way * (times[i] - times[0])) / h)) : 0;
+    const u = scene.momentsOnly ? (part < 0.5 ? 0 : 1) : part, w = 1 - u;
     if (u === 0 || u === 1) return track.slice((i + u) * width, (i + u + 1) * width);
     const result = new Array(width);
     for (let k = 0; k < width; ++k) {

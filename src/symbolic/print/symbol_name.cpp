@@ -18,17 +18,19 @@ bool is_mark(std::string_view letter) {
          (letter[0] == '\xcc' || (letter[0] == '\xcd' && static_cast<unsigned char>(letter[1]) <= 0xaf));
 }
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 49> greek{
-    {{"α", "\\alpha"},   {"β", "\\beta"},   {"γ", "\\gamma"}, {"δ", "\\delta"},    {"ε", "\\varepsilon"},
-     {"ζ", "\\zeta"},    {"η", "\\eta"},    {"θ", "\\theta"}, {"ι", "\\iota"},     {"κ", "\\kappa"},
-     {"λ", "\\lambda"},  {"μ", "\\mu"},     {"ν", "\\nu"},    {"ξ", "\\xi"},       {"ο", "o"},
-     {"π", "\\pi"},      {"ρ", "\\rho"},    {"σ", "\\sigma"}, {"ς", "\\varsigma"}, {"τ", "\\tau"},
-     {"υ", "\\upsilon"}, {"φ", "\\varphi"}, {"χ", "\\chi"},   {"ψ", "\\psi"},      {"ω", "\\omega"},
-     {"Α", "A"},         {"Β", "B"},        {"Γ", "\\Gamma"}, {"Δ", "\\Delta"},    {"Ε", "E"},
-     {"Ζ", "Z"},         {"Η", "H"},        {"Θ", "\\Theta"}, {"Ι", "I"},          {"Κ", "K"},
-     {"Λ", "\\Lambda"},  {"Μ", "M"},        {"Ν", "N"},       {"Ξ", "\\Xi"},       {"Ο", "O"},
-     {"Π", "\\Pi"},      {"Ρ", "P"},        {"Σ", "\\Sigma"}, {"Τ", "T"},          {"Υ", "\\Upsilon"},
-     {"Φ", "\\Phi"},     {"Χ", "X"},        {"Ψ", "\\Psi"},   {"Ω", "\\Omega"}}};
+constexpr std::array<std::pair<std::string_view, std::string_view>, 56> greek{
+    {{"α", "\\alpha"},   {"β", "\\beta"},   {"γ", "\\gamma"},  {"δ", "\\delta"},    {"ε", "\\varepsilon"},
+     {"ζ", "\\zeta"},    {"η", "\\eta"},    {"θ", "\\theta"},  {"ι", "\\iota"},     {"κ", "\\kappa"},
+     {"λ", "\\lambda"},  {"μ", "\\mu"},     {"ν", "\\nu"},     {"ξ", "\\xi"},       {"ο", "o"},
+     {"π", "\\pi"},      {"ρ", "\\rho"},    {"σ", "\\sigma"},  {"ς", "\\varsigma"}, {"τ", "\\tau"},
+     {"υ", "\\upsilon"}, {"φ", "\\varphi"}, {"χ", "\\chi"},    {"ψ", "\\psi"},      {"ω", "\\omega"},
+     {"Α", "A"},         {"Β", "B"},        {"Γ", "\\Gamma"},  {"Δ", "\\Delta"},    {"Ε", "E"},
+     {"Ζ", "Z"},         {"Η", "H"},        {"Θ", "\\Theta"},  {"Ι", "I"},          {"Κ", "K"},
+     {"Λ", "\\Lambda"},  {"Μ", "M"},        {"Ν", "N"},        {"Ξ", "\\Xi"},       {"Ο", "O"},
+     {"Π", "\\Pi"},      {"Ρ", "P"},        {"Σ", "\\Sigma"},  {"Τ", "T"},          {"Υ", "\\Upsilon"},
+     {"Φ", "\\Phi"},     {"Χ", "X"},        {"Ψ", "\\Psi"},    {"Ω", "\\Omega"},    {"ϑ", "\\vartheta"},
+     {"ϕ", "\\phi"},     {"ϖ", "\\varpi"},  {"ϱ", "\\varrho"}, {"ϵ", "\\epsilon"},  {"ħ", "\\hbar"},
+     {"ℓ", "\\ell"}}};
 
 }  // namespace
 

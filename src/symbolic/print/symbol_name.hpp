@@ -27,8 +27,8 @@ std::vector<std::string_view> letters_of(std::string_view text);
 /// "ball.qw" without the name of the body: "qw"; "p_ball.qw": "p_qw". Empty where the name is not of this body.
 std::string name_within_body(std::string_view name, std::string_view body);
 
-/// "\theta" for "θ"; empty if the letter is not Greek. Letters that LaTeX lacks because they look Latin (ο, Α) are
-/// given as Latin ones.
+/// "\theta" for "θ", and so for ħ and ℓ; empty if the letter is neither Greek nor one of these. Letters that LaTeX
+/// lacks because they look Latin (ο, Α) are given as Latin ones.
 std::string_view latex_greek(std::string_view letter);
 
 /// A quantity as it stood in the model, "3 J" or "3 [J]": its number and its unit. The unit is empty for other names.

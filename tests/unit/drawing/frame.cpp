@@ -365,3 +365,19 @@ TEST_CASE("positions without a value leave their element out, and the rest stays
   CHECK(frame_items(*drawing, view, 0.9, options).size() == 1);
   CHECK(std::isfinite(view.scale()));
 }
+
+TEST_CASE("a motion that swings faster than its frames is shown at them, and nothing is made up between") {
+  const ModelText m("param m = 1 kg\ncoord x : length\npoint P mass m at (x, 0)\nrun 1 s\n");
+  const auto swings = [&](double periods, std::size_t frames) {
+    const auto drawing = evaluate_drawing(
+        m.model, prescribed(*m.system, 1, [&](std::size_t, double t) { return std::cos(2 * pi * periods * t); }),
+        frames);
+    REQUIRE(drawing);
+    return drawing->moments_only;
+  };
+  CHECK_FALSE(swings(100, 801));  // eight rows in a period
+  CHECK(swings(100, 400));
+  CHECK(swings(300, 801));
+  CHECK_FALSE(swings(30, 200));
+  CHECK_FALSE(swings(0, 10));
+}

@@ -36,3 +36,19 @@ TEST_CASE("labels carry italics, an index, dots and exponents, and escape the re
   CHECK(to_svg({{"a<b & \"c\""}}, 10) == "a&lt;b &amp; &quot;c&quot;");
   CHECK(plain(names_text({"a", "b", "c", "d", "e"})) == "a … e");
 }
+
+TEST_CASE("labels of formulas keep their numbers, and each name its own index") {
+  for (const auto& [written, printed] : {std::pair{"0.5 θ", "0.5 θ"},
+                                         {"1.25 θ^2", "1.25 θ^2"},
+                                         {"exp(-0.1 θ)", "exp(−0.1 θ)"},
+                                         {"m x'^2", "m x'^2"},
+                                         {"θ1 - 0.5 θ2", "θ1 − 0.5 θ2"},
+                                         {"bob.x^2/bob.y", "xbob^2/ybob"},
+                                         {"1e-3 x^-2", "1e−3 x^−2"},
+                                         {"2*x^(1/2)", "2·x^1/2"},
+                                         {"reaction(rod)", "reaction(rod)"},
+                                         {"energy drift", "energy drift"},
+                                         {"x^", "x^"},
+                                         {"x^(2", "x^2"}})
+    CHECK(plain(name_text(written)) == printed);
+}

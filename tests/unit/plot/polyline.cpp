@@ -45,6 +45,11 @@ TEST_CASE("gaps cut a line; a lone point is a line of one point") {
   CHECK(lines[1].size() == 1);
   CHECK(lines[1][0].x == 4);
   CHECK(split_at_gaps({}).empty());
+  const auto apart = split_at_gaps({{0, 0}, {1, 1}, {2, 2}, {3, 3}, {4, nan}, {5, 5}}, {2, 4});
+  REQUIRE(apart.size() == 3);
+  CHECK(apart[0].back().x == 1);
+  CHECK(apart[1].front().x == 2);
+  CHECK(apart[2].front().x == 5);
 }
 
 TEST_CASE("columns keep first, lowest, highest, last, in their order") {

@@ -12,6 +12,10 @@ std::size_t count(const std::string& text, const std::string& part) {
 }
 }  // namespace
 
+TEST_CASE("names of files keep their underscores in prose") {
+  CHECK(sentence_html("libmaup_kernel_llvm.so of x_longname") == "libmaup_kernel_llvm.so of x<sub>longname</sub>");
+}
+
 TEST_CASE("text is never markup") {
   CHECK(sentence_html("write `a < b`, not <b>") == "write <code>a &lt; b</code>, not &lt;b&gt;");
   CHECK(sentence_html("p_θ1 of θ12, h_E = T - V; `a_b - θ1`") ==

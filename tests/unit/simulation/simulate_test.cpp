@@ -55,6 +55,13 @@ TEST_CASE("rows of steps show oscillations that are faster than a thousandth of 
   const Trajectory many = run(fork("1001"), close).trajectory;
   CHECK(many.rows() <= 1001 + 1000 * 100);
   CHECK(swings(many) > 3000);
+  CHECK(rows.gaps.empty());
+  REQUIRE(many.gaps.size() == 1000);
+  for (std::size_t row = 1, gap = 0; row < many.rows(); ++row) {
+    const bool is_gap = gap < many.gaps.size() && many.gaps[gap] == row;
+    gap += is_gap;
+    REQUIRE(is_gap == (many.times[row] - many.times[row - 1] > 1.0 / 1001));  // a period
+  }
   // Slow motion, and rows that were asked for, stay as they are.
   CHECK(run(ModelText(oscillator), close).trajectory.rows() == 1001);
   close.output_every = 0.5;
@@ -64,6 +71,14 @@ TEST_CASE("rows of steps show oscillations that are faster than a thousandth of 
   const Trajectory back = run(hundred, close).trajectory;
   CHECK(swings(back) == 2000);
   for (std::size_t row = 1; row < back.rows(); ++row) REQUIRE(back.times[row] < back.times[row - 1]);
+}
+
+TEST_CASE("rows at times that are asked for stand among the others, in the order of the run") {
+  SimulationOptions options;
+  options.output_every = 4, options.rows_at = {9.25, 0.3, 4, 12, -1};
+  CHECK(run(ModelText(oscillator), options).trajectory.times == std::vector<double>{0, 0.3, 4, 8, 9.25, 10});
+  options.duration = -10, options.rows_at = {-0.3, -9.25, 2};
+  CHECK(run(ModelText(oscillator), options).trajectory.times == std::vector<double>{0, -0.3, -4, -8, -9.25, -10});
 }
 
 TEST_CASE("the harmonic oscillator follows its closed form, forwards and backwards") {
