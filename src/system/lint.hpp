@@ -26,7 +26,7 @@ struct Subject {
 /// E0406: nothing depends on the coordinate. The coordinates that it named.
 std::vector<bool> unused_coordinates(Subject& s);
 /// E0407, E0408, E0409, E0417: M is singular wherever it is sampled, also on the directions that the constraints leave;
-/// N0428: they make it regular; W0410: M is not positive definite. True after an error.
+/// N0428: they make it regular; W0410: M is not positive definite; W0439: M is singular at the start alone. True after an error.
 bool mass_matrix_rules(Subject& s, const std::vector<bool>& unused);
 /// A frame or body whose quaternion nothing holds at norm 1.
 struct Stretched {

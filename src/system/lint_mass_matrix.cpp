@@ -259,6 +259,41 @@ void note_of_tied_coordinates(Subject& s, const Row& massless) {
       "The mass matrix is singular; the constraints determine the accelerations all the same.", "");
 }
 
+/// Coordinates, velocities at rest and the time of the start as it is written.
+Bindings written_start(const Subject& s) {
+  Bindings point = sample(s, 0);
+  for (std::size_t i = 0; i < s.freedoms(); ++i) point[s.system.coordinates[i].q] = point[s.velocities[i]] = 0;
+  const Experiment& experiment = s.model.experiment;
+  point[s.system.context->time()] = experiment.start_time ? evaluate(experiment.start_time, point) : 0;
+  for (const StartValue& v : experiment.start)
+    if (v.order == 0) point[s.system.coordinates[v.coordinate].q] = evaluate(v.value, point);
+  return point;
+}
+
+/// W0439: M is regular, but not at the start. Under constraints, and where a start is searched for, it is not known
+/// here.
+void warn_of_singular_start(Subject& s, const MassMatrix& matrix) {
+  const Experiment& experiment = s.model.experiment;
+  const bool runs = experiment.duration || experiment.until;
+  const bool is_searched = std::any_of(experiment.start_conditions.begin(), experiment.start_conditions.end(),
+                                       [](const StartCondition& c) { return c.is_of_positions(); });
+  if (!runs || s.system.constrained() || is_searched || !is_in_time(s)) return;
+  const Matrix m = matrix.at(written_start(s));
+  const std::vector<Row> null = m.empty() ? std::vector<Row>() : reduce(m, {}).null;
+  if (null.empty()) return;
+  const Row& v = null.front();
+  const bool is_one = std::count_if(v.begin(), v.end(), [](double x) { return x != 0; }) == 1;
+  const auto last = v.rend() - std::find_if(v.rbegin(), v.rend(), [](double x) { return x != 0; }) - 1;
+  s.diagnostics.warning(
+      "W0439", s.system.coordinates[static_cast<std::size_t>(last)].span,
+      is_one ? fmt::format("at the start nothing moves with {}", names(s, v))
+             : fmt::format("at the start T cannot tell {} apart", names(s, v)),
+      fmt::format("Changing {} leaves T as it is there: the mass matrix is singular, and a run ends before it begins.",
+                  combination(s, v, v[static_cast<std::size_t>(last)])),
+      "Two of the three angles of a rotation do the same where two of its axes coincide (gimbal lock), a polar angle "
+      "nothing in the centre. Start beside it, or take other coordinates: `rotation quaternion`; x and y.");
+}
+
 }  // namespace
 
 bool mass_matrix_rules(Subject& s, const std::vector<bool>& unused) {
@@ -279,6 +314,7 @@ bool mass_matrix_rules(Subject& s, const std::vector<bool>& unused) {
                             "of motion can still be solved.",
                             "Check the signs in T, unless this is meant (as in Bateman's Lagrangian).");
     note_of_tied_coordinates(s, found.massless);
+    warn_of_singular_start(s, matrix);
     return false;
   }
   if (std::any_of(unused.begin(), unused.end(), [](bool x) { return x; })) return true;  // told

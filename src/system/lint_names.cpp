@@ -33,8 +33,7 @@ void names_printed_alike(Subject& s) {
         other.of_the_program ? fmt::format("`{}` is printed as {} is, {}", name, other.name,
                                            other.name == "h_E" ? "the energy function" : "a momentum")
                              : fmt::format("`{}` and `{}` are printed alike", name, other.name),
-        "In formulas a digit at the end, a second letter and what follows an underscore stand below the line: θ1 and "
-        "θ_1, mS and m_S are one symbol there.",
+        "In formulas a second letter and what follows an underscore stand below the line: mS and m_S are one symbol.",
         "Rename one of them.");
   };
   for (const Coordinate& c : s.system.coordinates) look_at(c.q, c.name, c.span);

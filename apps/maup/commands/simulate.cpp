@@ -206,7 +206,8 @@ void write_files(const SimulateOptions& options, const AskedColumns& columns, co
   if (!rows) return;
   if (!options.output.empty())
     write_rows(options.output, options.errors ? with_error_columns(*rows) : *rows, diagnostics);
-  if (options.output.empty()) check_numbers(result.trajectory, diagnostics);
+  const bool began = result.ok() || result.trajectory.rows() > 1;  // else the reason of the end says it all
+  if (options.output.empty() && began) check_numbers(result.trajectory, diagnostics);
   if (!options.plot.empty()) {
     PlotOptions picture;
     picture.title = study.model()->system.title;
