@@ -1,5 +1,6 @@
 #include <maupertuis/degenerate.hpp>
 #include <maupertuis/simulation.hpp>
+#include <maupertuis/transform.hpp>
 
 #include <fmt/format.h>
 
@@ -326,6 +327,7 @@ class Start {
   // ----------------------------------------------------------------------------------------------- velocities
 
   bool set_going(const ConstraintManifold& manifold) {
+    if (!rates().empty() && move(manifold, what_no_rate_names())) return true;
     if (move(manifold, written_v_)) return true;
     const auto off = manifold.relative_rates(written_state_at(state_.q));
     const auto worst = static_cast<std::size_t>(std::max_element(off.begin(), off.end()) - off.begin());
@@ -346,6 +348,18 @@ class Start {
                        "At this configuration the constraints on the velocities exclude each other.",
                        "Start from another configuration, or check the constraints.");
     return false;
+  }
+
+  /// Velocities that are written, and those in no rate that the start gives: B.ω turns a body, and nothing else has to
+  /// go.
+  std::vector<bool> what_no_rate_names() const {
+    std::vector<bool> out = written_v_;
+    const std::vector<Expr> given = rates();
+    for (std::size_t i = 0; i < n_; ++i)
+      out[i] = out[i] || std::none_of(given.begin(), given.end(), [&](const Expr& rate) {
+                 return !differentiate(rate, system_.coordinates[i].velocity).is_zero();
+               });
+    return out;
   }
 
   /// Of those that velocities give.

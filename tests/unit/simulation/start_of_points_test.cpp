@@ -104,3 +104,21 @@ TEST_CASE("a place beyond a rod is told with the rod, each name once") {
   CHECK(m.diagnostics.items().back().code == "E0708");
   CHECK(text.find("no configuration satisfies rod and the start of `P`\n") != std::string::npos);
 }
+
+TEST_CASE("an angular velocity turns a body whose frame is away from its centre of mass, and nothing else") {
+  const std::string body =
+      "body B mass 1 kg inertia diag(1, 1, 1) kg m^2 at (1 m, 0, 0) in S\nstart S.ω = (0, 0, 3) rad/s\n";
+  ModelText angles("coord x, y, z : length, a, b, c : angle\nframe S at (x, y, z) rotation rpy (a, b, c)\n" + body);
+  CHECK(state_of(angles).v == std::vector<double>{0, 0, 0, 0, 0, 3});
+  ModelText quaternion("coord x, y, z : length\nframe S at (x, y, z) rotation quaternion\n" + body);
+  const MotionState s = state_of(quaternion);
+  CHECK(std::vector<double>(s.v.begin(), s.v.begin() + 3) == std::vector<double>{0, 0, 0});
+  ModelText plane(
+      "coord x, y : length, θ : angle\nframe S at (x, y) rotation angle θ\nbody B mass 1 kg inertia 2 kg m^2 at (1 m, "
+      "0) in "
+      "S\nstart B.ω = 3 rad/s\n");
+  const MotionState turning = state_of(plane);
+  CHECK(turning.v[0] == 0);
+  CHECK(turning.v[1] == 0);
+  CHECK(turning.v[2] == doctest::Approx(3).epsilon(1e-15));
+}
