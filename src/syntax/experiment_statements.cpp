@@ -177,7 +177,7 @@ DrawItem StatementParser::draw_item() {
     case Shape::Wall:
       if (!accept("at"))
         fail_expected("`at` and a place on it", "Write for example ground at (0, -R) or wall at (0, 0) normal (1, 0).");
-      item.path = {operand("a place after `at`")};
+      item.path = {quantity()};  // a place
       if (accept("normal")) item.direction = operand("the normal, a vector");
       break;
     case Shape::Label:

@@ -127,6 +127,8 @@ class Page {
     ReportContent content =
         compose_report(model(), study_.source(), equations(), *derivation, *study_.certificate(), found_.parts(),
                        [&](std::string_view name, const std::function<void()>& work) { return compose(name, work); });
+    if (const std::string changes = changed_values(); !changes.empty())
+      content.summary.emplace_back("other than in the text", changes);
     study_.diagnostics().append(budget_.warnings());
     if (content.drawing && content.drawing->moments_only) note_moments_only(study_.diagnostics());
     add_messages(content, study_.diagnostics(), study_.source());
@@ -138,6 +140,21 @@ class Page {
  private:
   const Model& model() const { return *study_.model(); }
   const EquationsOfMotion& equations() const { return *study_.equations(); }
+
+  /// What the command line has in the place of the text, so that the page can be made again.
+  std::string changed_values() const {
+    std::vector<std::string> out;
+    const auto add = [&](std::string_view option, const std::string& value) {
+      if (!value.empty()) out.push_back(fmt::format("{} \"{}\"", option, value));
+    };
+    for (const std::string& value : options_.model.set) add("--set", value);
+    for (const std::string& value : options_.model.start) add("--start", value);
+    add("--mode", options_.model.mode.value_or(""));
+    add("--duration", options_.run.duration.value_or(""));
+    add("--until", options_.run.until);
+    add("--method", options_.run.method.value_or(""));
+    return fmt::format("{}", fmt::join(out, " "));
+  }
 
   bool compose(std::string_view name, const std::function<void()>& work) {
     const auto under_interrupt = [&](const Interrupt&) { work(); };
