@@ -9,7 +9,8 @@ namespace maupertuis {
 namespace {
 
 constexpr int turns_from_nearby = 8;  // Newton's method begins a tenth of a typical size away, or is not on the family
-constexpr int most_tried = 3;         // members of one family that a new one is linked with, the nearest first
+constexpr int most_steps_along = 600;  // of all walks together: each asks for the directions of the family anew
+constexpr int most_tried = 3;           // members of one family that a new one is linked with, the nearest first
 
 double along(const PointEquations::Impl& e, std::size_t i, double from, double to) {
   return e.is_periodic[i] ? std::remainder(to - from, 2 * std::acos(-1.0)) : to - from;
@@ -42,18 +43,42 @@ double distance(const PointEquations::Impl& e, const std::vector<double>& sizes,
   return largest;
 }
 
-bool Families::linked(const Equilibrium& x, const Equilibrium& y, const SteadyState& system) const {
+/// The root of the sum of squares, in typical sizes: on a ring it falls all the way, where the largest part may rise.
+double Families::chord(const OperatingPoint& x, const OperatingPoint& y) const {
+  double squares = 0;
+  for (std::size_t i = 0; i < e_.n; ++i) {
+    const double speed = std::max({sizes_[i], std::abs(x.v[i]), std::abs(y.v[i])});
+    squares += std::pow(along(e_, i, x.q[i], y.q[i]) / sizes_[i], 2) + std::pow((x.v[i] - y.v[i]) / speed, 2);
+  }
+  return std::sqrt(squares);
+}
+
+bool Families::linked(const Equilibrium& x, const Equilibrium& y, const SteadyState& system) {
+  const auto along_family = [&](const OperatingPoint& at, double step, double) -> std::optional<OperatingPoint> {
+    if (steps_along_ == most_steps_along) return std::nullopt;
+    ++steps_along_;
+    return system.step_towards(at, between(e_, at, y.point, 1), step);
+  };
+  const auto straight = [&](const OperatingPoint& at, double step, double left) {
+    return std::optional(between(e_, at, y.point, step / left));
+  };
+  // Straight ahead gets there where the derivatives are nearly singular, and the family's directions not known well.
+  return walks(x, y, system, straight) || walks(x, y, system, along_family);
+}
+
+bool Families::walks(const Equilibrium& x, const Equilibrium& y, const SteadyState& system, const Step& beside) const {
   constexpr double same = 1e-6, longest = 0.1;  // of typical sizes
   constexpr double most_steps = 200;            // since where V falls off for ever some lie as far out as one likes
+  constexpr double least = 0.05;                // of a step, nearer: else no direction leads there
   OperatingPoint at = x.point;
-  double left = distance(e_, sizes_, at, y.point);
+  double left = chord(at, y.point);
   const double step = std::max(std::min(left / 4, longest), left / most_steps);
   for (int turns = static_cast<int>(4 * left / std::max(step, same)); left > std::max(step, same); --turns) {
-    const auto next =
-        turns > 0 ? system.solve(between(e_, at, y.point, step / left), false, turns_from_nearby) : std::nullopt;
-    if (!next || distance(e_, sizes_, at, next->point) > 2 * step) return false;
-    const double now = distance(e_, sizes_, next->point, y.point);
-    if (!(now < left)) return false;
+    const auto from = turns > 0 ? beside(at, step, left) : std::nullopt;
+    const auto next = from ? system.solve(*from, false, turns_from_nearby) : std::nullopt;
+    if (!next || chord(at, next->point) > 2 * step) return false;
+    const double now = chord(next->point, y.point);
+    if (!(now < left - least * step)) return false;
     at = next->point;
     left = now;
   }

@@ -1,6 +1,8 @@
 #pragma once
 #include "analysis/linearization/steady_state.hpp"
 
+#include <functional>
+#include <optional>
 #include <vector>
 
 namespace maupertuis {
@@ -11,14 +13,14 @@ double distance(const PointEquations::Impl& equations, const std::vector<double>
                 const OperatingPoint& y);
 
 /// Gathers equilibria that lie on one curve or surface of equilibria (a trough, a ring). Two members belong together
-/// where one walks to the other by short steps, each towards it and then back to the nearest equilibrium by Newton's
-/// method:
+/// where one walks to the other by short steps, each along the directions of the family that lead towards it, and then
+/// back to the nearest equilibrium by Newton's method:
 ///
 ///          · ·            ·: a step towards y    o: the equilibrium next to it
 ///     x ──o──o──o── y
 ///
-/// Beside another family the walk comes back to its own and gets no further. A walk across a ring gets stuck as well:
-/// rings are closed by their members in between. What the search met too sparsely to link stays apart: a family is then
+/// Beside another family no direction leads there. Nor does one from the opposite place of a ring, or of the sphere of
+/// a quaternion: members in between link these. What the search met too sparsely to link stays apart: a family is then
 /// listed twice, never is one hidden.
 class Families {
  public:
@@ -31,12 +33,18 @@ class Families {
   std::vector<Equilibrium> representatives(const OperatingPoint& start) const;
 
  private:
-  bool linked(const Equilibrium& x, const Equilibrium& y, const SteadyState& system) const;
+  /// Beside a member, a step of that length towards another one; `left`: how far that is.
+  using Step = std::function<std::optional<OperatingPoint>(const OperatingPoint& at, double step, double left)>;
+
+  double chord(const OperatingPoint& x, const OperatingPoint& y) const;
+  bool linked(const Equilibrium& x, const Equilibrium& y, const SteadyState& system);
+  bool walks(const Equilibrium& x, const Equilibrium& y, const SteadyState& system, const Step& beside) const;
   std::size_t leader(std::size_t member) const;
 
   const PointEquations::Impl& e_;
   std::vector<double> sizes_;
   std::vector<Equilibrium> members_;
+  int steps_along_ = 0;
   std::vector<std::size_t> above_;  // [members] towards the leader of the family, itself for the leader
 };
 

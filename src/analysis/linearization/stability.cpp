@@ -55,6 +55,18 @@ struct Verdicts {
            (form.k.norm() + form.c.squaredNorm());
   }
 
+  /// At rest on a family of equilibria the Hessian vanishes along it, and V is the same on all of it: where it is
+  /// positive across, motions of little energy stay near the family (as near a minimum, with the family in the place of
+  /// a point).
+  bool is_minimum_across_family(const std::vector<double>& hessian) const {
+    constexpr double none = 1e-9;  // of the largest, along the family: the equilibrium is known to rounding
+    const std::size_t along = equilibrium.family;
+    if (!equilibrium.at_rest || along == 0 || hessian.size() <= along) return false;
+    const double size = form.k.norm();
+    return std::abs(hessian.front()) <= none * size && std::abs(hessian[along - 1]) <= none * size &&
+           hessian[along] > 1e3 * none * size;
+  }
+
   /// 1: h_E, which a Lagrangian of the first order keeps, has a strict minimum here; −1: a strict maximum; 0: neither
   /// is known. Motions near it stay on levels of h_E that close around it (Dirichlet).
   int extremum_of_kept_energy() const {
@@ -132,6 +144,10 @@ StabilityReport judge_stability(const PointEquations& equations, const Lineariza
     out.verdict = Stability::Energetic;
     out.reason = has_hessian ? fmt::format("the Hessian of the {} is positive definite", potential)
                              : "only translations are left";
+  } else if (has_hessian && v.is_minimum_across_family(out.hessian)) {
+    out.verdict = Stability::Energetic;
+    out.reason =
+        fmt::format("the Hessian of the {} is positive definite across the family; along it nothing holds", potential);
   } else if (const int extremum = v.extremum_of_kept_energy(); extremum != 0) {
     out.verdict = Stability::Energetic;
     out.reason = fmt::format("h_E is conserved and has a strict {} here", extremum > 0 ? "minimum" : "maximum");

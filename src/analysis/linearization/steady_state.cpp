@@ -203,6 +203,24 @@ Matrix SteadyState::soft_ways(const Matrix& derivatives, const Equilibration& by
   return out;
 }
 
+std::optional<OperatingPoint> SteadyState::step_towards(const OperatingPoint& solution, const OperatingPoint& target,
+                                                        double step) const {
+  const Vector z = unknowns(solution);
+  const Matrix derivatives = without_rounding(system_at(solution), z);
+  if (!derivatives.allFinite()) return std::nullopt;
+  const Equilibration by(derivatives);
+  const Matrix ways = soft_ways(derivatives, by);
+  const auto moving = static_cast<Index>(free_q_.size() + free_rates_.size());
+  const Vector there = (unknowns(target) - z).head(moving).cwiseQuotient(by.columns.head(moving));
+  const Vector parts = ways.topRows(moving).transpose() * there;
+  const Vector way = by.columns.cwiseProduct(ways * parts);
+  const double far = length(way, z);
+  if (!(far > 0) || !std::isfinite(far)) return std::nullopt;
+  OperatingPoint out = solution;
+  place(z + std::min(1.0, step / far) * way, out);
+  return out;
+}
+
 /// A kernel alone is no family: where two equilibria meet it has a dimension too, and leads nowhere. So a short way is
 /// gone along each of its directions, and Newton's method asked where the next solution is. It projects on the family,
 /// and its projections have as many dimensions as the family.

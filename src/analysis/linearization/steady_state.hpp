@@ -27,6 +27,10 @@ class SteadyState {
   };
   /// From the positions and velocities of `from`; nothing where the iteration does not arrive within so many turns.
   std::optional<Solution> solve(const OperatingPoint& from, bool with_family = true, int turns = 80) const;
+  /// A step of that length (in typical sizes, at most) from a solution along its family, as far towards `target` as the
+  /// directions of the family there lead. Nothing where none does.
+  std::optional<OperatingPoint> step_towards(const OperatingPoint& solution, const OperatingPoint& target,
+                                             double step) const;
   /// The residual there, all unknowns as they are, with the multipliers that fit best.
   double residual_at(OperatingPoint& point) const;
 

@@ -353,3 +353,17 @@ TEST_CASE("Circular orbits in power potentials, of the momentum of the start: (k
     CHECK(near(first.analysis.modes.back().frequency(), p / (2 * r * r) * std::sqrt(n + 2), 1e-9));
   }
 }
+
+TEST_CASE("a body that hangs by a quaternion has two families, below and above, and is stable below") {
+  Linearized hanging(
+      "param m = 1 kg, h = 100 mm, g = 9.81 m/s^2\nframe S rotation quaternion\n"
+      "body B mass m inertia diag(0.02, 0.025, 0.01) kg m^2 at (0, 0, -h) in S\ngravity (0, 0, -g)\nstart S.qx = "
+      "0.1\n");
+  const ModalStudy study = hanging.study();
+  REQUIRE(study.entries.size() == 2);
+  for (const ModalEntry& e : study.entries) {
+    CHECK(e.equilibrium.family == 1);  // the turn about the vertical
+    const bool is_below = std::abs(e.equilibrium.point.q[1]) + std::abs(e.equilibrium.point.q[2]) < 1e-6;
+    CHECK(e.analysis.stability.verdict == (is_below ? Stability::Energetic : Stability::Unstable));
+  }
+}
