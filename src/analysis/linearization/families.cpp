@@ -9,7 +9,7 @@ namespace maupertuis {
 namespace {
 
 constexpr int turns_from_nearby = 8;  // Newton's method begins a tenth of a typical size away, or is not on the family
-constexpr int most_steps_along = 600;  // of all walks together: each asks for the directions of the family anew
+constexpr int most_steps_along = 2000;  // of all walks together: each asks for the directions of the family anew
 constexpr int most_tried = 3;           // members of one family that a new one is linked with, the nearest first
 
 double along(const PointEquations::Impl& e, std::size_t i, double from, double to) {
@@ -54,31 +54,32 @@ double Families::chord(const OperatingPoint& x, const OperatingPoint& y) const {
 }
 
 bool Families::linked(const Equilibrium& x, const Equilibrium& y, const SteadyState& system) {
-  const auto along_family = [&](const OperatingPoint& at, double step, double) -> std::optional<OperatingPoint> {
-    if (steps_along_ == most_steps_along) return std::nullopt;
-    ++steps_along_;
-    return system.step_towards(at, between(e_, at, y.point, 1), step);
-  };
-  const auto straight = [&](const OperatingPoint& at, double step, double left) {
-    return std::optional(between(e_, at, y.point, step / left));
-  };
+  const Walk straight{
+      [&](const OperatingPoint& at, double part) { return std::optional(between(e_, at, y.point, part)); },
+      [&](const OperatingPoint& a, const OperatingPoint& b) { return distance(e_, sizes_, a, b); }, 0};
+  const Walk along_family{[&](const OperatingPoint& at, double part) -> std::optional<OperatingPoint> {
+                            if (steps_along_ == most_steps_along) return std::nullopt;
+                            ++steps_along_;
+                            const OperatingPoint there = between(e_, at, y.point, 1);
+                            return system.step_towards(at, there, part * chord(at, there));
+                          },
+                          [&](const OperatingPoint& a, const OperatingPoint& b) { return chord(a, b); }, 0.05};
   // Straight ahead gets there where the derivatives are nearly singular, and the family's directions not known well.
   return walks(x, y, system, straight) || walks(x, y, system, along_family);
 }
 
-bool Families::walks(const Equilibrium& x, const Equilibrium& y, const SteadyState& system, const Step& beside) const {
+bool Families::walks(const Equilibrium& x, const Equilibrium& y, const SteadyState& system, const Walk& walk) const {
   constexpr double same = 1e-6, longest = 0.1;  // of typical sizes
   constexpr double most_steps = 200;            // since where V falls off for ever some lie as far out as one likes
-  constexpr double least = 0.05;                // of a step, nearer: else no direction leads there
   OperatingPoint at = x.point;
-  double left = chord(at, y.point);
+  double left = walk.distance(at, y.point);
   const double step = std::max(std::min(left / 4, longest), left / most_steps);
   for (int turns = static_cast<int>(4 * left / std::max(step, same)); left > std::max(step, same); --turns) {
-    const auto from = turns > 0 ? beside(at, step, left) : std::nullopt;
+    const auto from = turns > 0 ? walk.beside(at, step / left) : std::nullopt;
     const auto next = from ? system.solve(*from, false, turns_from_nearby) : std::nullopt;
-    if (!next || chord(at, next->point) > 2 * step) return false;
-    const double now = chord(next->point, y.point);
-    if (!(now < left - least * step)) return false;
+    if (!next || walk.distance(at, next->point) > 2 * step) return false;
+    const double now = walk.distance(next->point, y.point);
+    if (!(now < left - walk.least * step)) return false;
     at = next->point;
     left = now;
   }

@@ -33,12 +33,16 @@ class Families {
   std::vector<Equilibrium> representatives(const OperatingPoint& start) const;
 
  private:
-  /// Beside a member, a step of that length towards another one; `left`: how far that is.
-  using Step = std::function<std::optional<OperatingPoint>(const OperatingPoint& at, double step, double left)>;
+  struct Walk {
+    std::function<std::optional<OperatingPoint>(const OperatingPoint& at, double part)>
+        beside;  // of the way that is left
+    std::function<double(const OperatingPoint&, const OperatingPoint&)> distance;
+    double least = 0;  // part of a step by which each has to come nearer
+  };
 
   double chord(const OperatingPoint& x, const OperatingPoint& y) const;
   bool linked(const Equilibrium& x, const Equilibrium& y, const SteadyState& system);
-  bool walks(const Equilibrium& x, const Equilibrium& y, const SteadyState& system, const Step& beside) const;
+  bool walks(const Equilibrium& x, const Equilibrium& y, const SteadyState& system, const Walk& walk) const;
   std::size_t leader(std::size_t member) const;
 
   const PointEquations::Impl& e_;
