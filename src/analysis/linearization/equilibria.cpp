@@ -71,11 +71,18 @@ class Search {
   /// A translation can go on: with given rates, with the momentum of the start, or driven.
   bool may_move() const {
     if (search_.fixed.any() && !translations_.empty()) return true;
+    const Vector p = translations_.empty() ? Vector() : e_.value(e_.momenta, model_start());
     for (std::size_t k = 0; k < translations_.size(); ++k)
       if (!translations_[k].conserved || rate_is_held(k) || std::abs(search_.start.v[translations_[k].pivot]) > 0 ||
-          moves_along(k))
+          moves_along(k) || has_momentum(k, p))
         return true;
     return false;
+  }
+  /// A wheel that does not turn in a body that does has some.
+  bool has_momentum(std::size_t k, const Vector& p) const {
+    const Vector direction = to_eigen(translations_[k].direction);
+    constexpr double rounding = 1e-12;
+    return std::abs(direction.dot(p)) > rounding * direction.cwiseAbs().dot(p.cwiseAbs());
   }
   bool moves_along(std::size_t k) const {
     for (std::size_t i = 0; i < e_.n; ++i)

@@ -100,8 +100,11 @@ bool is_conserved(PointEquations::Impl& e, const Vector& direction, const std::v
     std::fill(point.a.begin(), point.a.end(), 0);
     for (std::size_t i = 0; i < held.size(); ++i) point.inputs[i] = held[i].value_or(point.inputs[i]);
     const Vector r = e.value(e.balance, point);
-    const Vector p = e.at(e.momenta, point).by_q * to_eigen(point.v);  // d/dt p at a = 0, without explicit time
-    const double rate = direction.dot(r - p), size = direction.cwiseAbs().dot(r.cwiseAbs() + p.cwiseAbs());
+    const Matrix by_q = e.at(e.momenta, point).by_q;
+    const Vector v = to_eigen(point.v), p = by_q * v;  // d/dt p at a = 0, without explicit time
+    const double rate = direction.dot(r - p);
+    const Vector terms = by_q.cwiseAbs() * v.cwiseAbs();  // which may cancel
+    const double size = direction.cwiseAbs().dot(r.cwiseAbs() + terms);
     if (!std::isfinite(rate)) continue;
     if (std::abs(rate) > no_change * size) return false;
     ++good;
