@@ -60,8 +60,11 @@ bool check_dimension(Elaboration& e, const Value& v, const Dimension& expected, 
                      const Expression& x) {
   if (v.poisoned || v.fits_any || e.dimensionless) return !v.poisoned;
   if (!v.dimension.same_as(expected)) {
+    const std::string right = describe(expected), found = describe(v.dimension);
+    const bool names_itself = right.rfind(what + " (", 0) == 0;  // "a mass (kg)" where a mass is asked for
     e.diagnostics.error("E0304", x.span,
-                        fmt::format("{} is {}, this is {}", what, describe(expected), describe(v.dimension)),
+                        names_itself ? fmt::format("{} is asked for, this is {}", right, found)
+                                     : fmt::format("{} is {}, this is {}", what, right, found),
                         "Both sides of an equation have one dimension.", advice_on(e, v, expected, x));
     return false;
   }
