@@ -42,8 +42,9 @@ class Motion {
   }
 
   // Whether cubics through those rows follow the motion: the way of a coordinate between two rows is that of its
-  // velocities there, but for a tenth of its range. A sine has five rows in a period then.
-  bool is_followed_by(const std::vector<std::size_t>& rows) const {
+  // velocities there, but for a part of its range: a tenth where a sine has five rows in a period, 0.005 where it has
+  // thirteen.
+  bool is_followed_by(const std::vector<std::size_t>& rows, double part) const {
     return std::all_of(columns_.begin(), columns_.end(), [&](const auto& c) {
       double low = INFINITY, high = -INFINITY;
       for (const std::size_t row : rows) {
@@ -55,7 +56,7 @@ class Motion {
         const double h = run_.times[rows[i + 1]] - run_.times[rows[i]];
         const double way = run_.at(rows[i + 1], *c.first) - run_.at(rows[i], *c.first);
         const double by_velocities = h * (run_.at(rows[i], *c.second) + run_.at(rows[i + 1], *c.second)) / 2;
-        lost += std::abs(way - by_velocities) > 0.1 * (high - low);
+        lost += std::abs(way - by_velocities) > part * (high - low);
       }
       return lost <= rows.size() / 50;  // more than what impacts and sudden forces leave
     });
@@ -82,6 +83,22 @@ class Motion {
   Bindings bindings_;
   std::vector<std::pair<std::optional<std::size_t>, std::optional<std::size_t>>> columns_;
 };
+
+/// Rows that are frames: about 1500, and more of them, up to `most`, where the motion swings faster than cubics through
+/// fewer follow. The last one is among them whatever the stride: a motion is shown to its end.
+std::vector<std::size_t> rows_shown(const Motion& motion, std::size_t rows, std::size_t most) {
+  constexpr std::size_t enough = 1500;
+  const auto every = [&](std::size_t stride) {
+    std::vector<std::size_t> out;
+    for (std::size_t row = 0; row + 1 < rows; row += stride) out.push_back(row);
+    out.push_back(rows - 1);
+    return out;
+  };
+  const std::size_t least_stride = (rows + most - 1) / most;
+  for (std::size_t stride = std::max(least_stride, rows / enough); stride > least_stride; stride /= 2)
+    if (auto out = every(stride); motion.is_followed_by(out, 0.005)) return out;
+  return every(least_stride);
+}
 
 /// What stands still has one frame, of the first moment. The force of an arrow is in newtons; metres come at the end.
 void add_frame(Drawing& drawing, std::vector<Outline>& outlines, const std::vector<double>& values,
@@ -132,13 +149,11 @@ std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& ru
   drawing.dimension = system.space_dimension;
   drawing.dimensionless = system.dimensionless;
   drawing.gravity = gravity_of(system, parameters);
-  const std::size_t rows = run.rows(), stride = (rows + frames - 1) / frames;
+  const std::size_t rows = run.rows();
   const std::size_t parts = rows > 1 ? std::max<std::size_t>(1, (fewest_frames + rows - 2) / (rows - 1)) : 1;
-  std::vector<std::size_t> shown;
-  for (std::size_t row = 0; row + 1 < rows; row += stride) shown.push_back(row);
-  shown.push_back(rows - 1);  // whatever the stride: a motion is shown to its end
-  drawing.moments_only = !motion.is_followed_by(shown);
-  const std::size_t between = stride == 1 && !drawing.moments_only ? parts : 1;
+  const std::vector<std::size_t> shown = rows_shown(motion, rows, frames);
+  drawing.moments_only = !motion.is_followed_by(shown, 0.1);
+  const std::size_t between = shown.size() == rows && !drawing.moments_only ? parts : 1;
   for (const std::size_t row : shown)
     for (std::size_t k = 0; k < (row + 1 == rows ? 1 : between); ++k) {
       const double u = static_cast<double>(k) / static_cast<double>(parts);
