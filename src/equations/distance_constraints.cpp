@@ -89,6 +89,16 @@ std::optional<RodConstraint> between(const MechanicalSystem& system, const Const
   return RodConstraint{from, to, constant_distance(system, squared, c.value, slope), slope};
 }
 
+/// Whether φ is d itself or d² but for a sign and a constant, as a person writes it. A point marked halfway has a
+/// distance of which φ is a function too, and there is no rod to it.
+bool is_as_written(const RodConstraint& rod) {
+  Context& context = rod.slope.context();
+  if (vanishes_identically(rod.slope * rod.slope - context.number(1))) return true;
+  ExprVector squares;
+  for (const Expr& component : difference(rod.to.position, rod.from.position)) squares.push_back(component * component);
+  return vanishes_identically(Rational(4) * rod.slope * rod.slope * context.sum(squares) - context.number(1));
+}
+
 }  // namespace
 
 std::optional<RodConstraint> find_rod(const MechanicalSystem& system, const Constraint& constraint) {
@@ -110,13 +120,17 @@ std::optional<RodConstraint> find_rod(const MechanicalSystem& system, const Cons
     }
   // Those that depend on no other coordinates first: nearly always it is one of them.
   std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.reach < b.reach; });
+  std::optional<RodConstraint> other;
+  std::size_t others = 0;
   for (const Pair& pair : pairs) {
     const RodEnd &a = places[pair.first], &b = places[pair.second];
     auto rod = b.fixed ? between(system, constraint, b, a, support)
                        : between(system, constraint, a, b, support);  // from the fixed end
-    if (rod) return rod;
+    if (rod && is_as_written(*rod)) return rod;
+    others += rod ? 1 : 0;
+    if (rod && !other) other = std::move(rod);
   }
-  return std::nullopt;
+  return others == 1 ? other : std::nullopt;
 }
 
 }  // namespace maupertuis

@@ -20,7 +20,8 @@ struct RodConstraint {
   Expr slope;     // dφ/d(d²)
 };
 
-/// Nothing if no pair of places has ∇φ parallel to ∇d², proved by the zero test.
+/// The pair of places of which φ is the distance or its square, but for sign and constant; else the only one with ∇φ
+/// parallel to ∇d², proved by the zero test. Nothing where there is none, or several that are neither.
 std::optional<RodConstraint> find_rod(const MechanicalSystem& system, const Constraint& constraint);
 
 }  // namespace maupertuis

@@ -1,4 +1,5 @@
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/normal_force.hpp>
 #include <maupertuis/reactions.hpp>
 
 #include "equations/distance_constraints.hpp"
@@ -171,11 +172,10 @@ void as_generalized(const Tie& tie, Reaction& r) {
                            force ? "force" : "torque", fmt::join(names, ", "));
 }
 
-/// Of a contact: it presses, or a string pulls, whatever the sense of its gap: never negative. `per_multiplier`: what
-/// friction takes for the normal force where two masses are pushed apart; empty: λ.
-Reaction reaction_of_contact(const Tie& tie, std::string label, Expr per_multiplier) {
+/// It presses, or a string pulls, whatever the sense of its gap: never negative.
+Reaction reaction_of_contact(const Tie& tie, const Contact& contact) {
   Reaction r;
-  r.name = std::move(label);
+  r.name = tie.constraint.name;
   r.symbol = tie.constraint.reaction;
   r.dimension = dimension_of_reaction(tie);
   const bool force = dimensions::force().same_as(r.dimension) || tie.system.dimensionless;
@@ -184,7 +184,9 @@ Reaction reaction_of_contact(const Tie& tie, std::string label, Expr per_multipl
       as_multiplier(tie, r);
     else
       as_generalized(tie, r);
-    if (per_multiplier) r.value = tie.constraint.multiplier * per_multiplier;
+    Expr per_multiplier = contact.friction.per_multiplier;
+    if (!per_multiplier && force) per_multiplier = normal_force_per_multiplier(tie.system, contact);
+    if (per_multiplier) r.value = tie.constraint.multiplier * simplified(per_multiplier);
   }
   r.sentence = "the force of the contact, which is 0 while it is open and positive while it presses";
   return r;
@@ -259,7 +261,7 @@ std::vector<Reaction> reactions(const EquationsOfMotion& equations) {
       tie.row.push_back(is_named ? differentiate(closed.value, q) : system.context->number(0));
       if (!tie.row[i].is_zero()) tie.coordinates.push_back(i);
     }
-    all.push_back(reaction_of_contact(tie, closed.name, system.contacts[k].friction.per_multiplier));
+    all.push_back(reaction_of_contact(tie, system.contacts[k]));
   }
   for (const Release& release : system.releases) all.push_back(reaction_of(equations, release));
   return all;

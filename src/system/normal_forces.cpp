@@ -1,3 +1,4 @@
+#include <maupertuis/normal_force.hpp>
 #include <maupertuis/transform.hpp>
 
 #include "system/elaboration.hpp"
@@ -17,7 +18,8 @@ namespace {
 /// ∂f/∂r of the one particle or body that it pushes.
 struct Push {
   std::string name;
-  Expr square;  // |∂f/∂r|²
+  ExprVector along;  // ∂f/∂r [dimension]
+  Expr square;       // |∂f/∂r|²
 };
 
 class Masses {
@@ -35,24 +37,22 @@ class Masses {
     }
   }
 
-  /// f: a gap, or a slip velocity, whose derivatives by the velocities count. Nothing where the place of what is moved
-  /// is not known, or the coordinates are not along directions at right angles. Coordinates that turn a body take
-  /// torques. Of two masses that a contact pushes apart each takes the same force, and one that moves along a rail says
-  /// nothing of what acts across it.
+  /// f: a gap, or a slip velocity, whose derivatives by the velocities count. One mass that it moves is pushed, of two
+  /// each by the same force, of more those with coordinates of their own, where they agree. Nothing where these
+  /// coordinates do not tell the force. Coordinates that turn a body take torques, and say nothing of it.
   std::optional<Push> pushed(Expr f, bool is_velocity) const {
     const std::map<std::size_t, Expr> row = slopes(f, is_velocity);
-    std::vector<const Mass*> moved, free;
-    for (const Mass& m : masses_) {
-      const auto count =
-          std::count_if(row.begin(), row.end(), [&](const auto& e) { return m.moved_by.count(e.first); });
-      if (count == 0) continue;
-      moved.push_back(&m);
-      if (m.moved_by.size() >= dimensions_of(m)) free.push_back(&m);
-    }
-    if (moved.size() == 1) return push_on(*moved.front(), row, is_velocity);
+    std::vector<const Mass*> moved;
+    for (const Mass& m : masses_)
+      if (std::any_of(row.begin(), row.end(), [&](const auto& e) { return m.moved_by.count(e.first) > 0; }))
+        moved.push_back(&m);
+    if (moved.size() == 1) return push_on_one(*moved[0], row);
+    if (moved.size() == 2) return push_apart(*moved[0], *moved[1], row);
     std::optional<Push> out;
-    for (const Mass* m : is_velocity ? std::vector<const Mass*>() : free) {
-      auto push = push_on(*m, row, is_velocity);
+    for (const Mass* m : is_velocity ? std::vector<const Mass*>() : moved) {
+      const std::set<std::size_t> own = moved_alone(*m);
+      if (own.size() < dimensions_of(*m)) continue;
+      auto push = push_on(*m, nullptr, own, row);
       if (!push || (out && !vanishes_identically(out->square - push->square))) return std::nullopt;
       if (!out) out = std::move(push);
     }
@@ -115,50 +115,116 @@ class Masses {
     return std::max<std::size_t>(out, 2);
   }
 
-  std::optional<Push> push_on(const Mass& mass, const std::map<std::size_t, Expr>& all, bool is_velocity) const {
-    std::map<std::size_t, Expr> row;
-    for (const auto& entry : all)
-      if (mass.moved_by.count(entry.first) > 0) row.insert(entry);
-    if (is_velocity && row.size() != all.size()) return std::nullopt;
-    Context& context = *system_.context;
-    const ExprVector& r = *mass.position;
-    const auto slope = [&](std::size_t k, std::size_t i) { return differentiate(r[k], system_.coordinates[i].q); };
-    ExprVector direction(r.size(), context.number(0)), squares;
-    for (const auto& [i, value] : row)
-      for (std::size_t k = 0; k < r.size(); ++k) direction[k] = direction[k] + value * slope(k, i);
-    for (const auto& [i, value] : row) {
-      ExprVector rest{-value};
-      for (std::size_t k = 0; k < r.size(); ++k) rest.push_back(direction[k] * slope(k, i));
-      if (!vanishes_identically(context.sum(rest))) return push_in_plane(mass, row);
+  /// Where coordinates carry it along with another mass, that one may take the opposite force: a block whose height
+  /// above a wedge is a coordinate.
+  std::optional<Push> push_on_one(const Mass& mass, const std::map<std::size_t, Expr>& row) const {
+    if (auto alone = push_on(mass, nullptr, mass.moved_by, row)) return alone;
+    std::optional<Push> out;
+    for (const Mass& other : masses_) {
+      const bool is_carried = std::any_of(other.moved_by.begin(), other.moved_by.end(),
+                                          [&](std::size_t i) { return mass.moved_by.count(i) > 0; });
+      auto push = &other != &mass && is_carried ? push_apart(mass, other, row) : std::nullopt;
+      if (push && out && !vanishes_identically(out->square - push->square)) return std::nullopt;
+      if (push && !out) out = std::move(push);
     }
-    for (const Expr& component : direction) squares.push_back(component * component);
-    return Push{*mass.name, context.sum(squares)};
+    return out;
+  }
+  /// On the one that is declared first, so that gap and slip speak of the same.
+  std::optional<Push> push_apart(const Mass& mass, const Mass& other, const std::map<std::size_t, Expr>& row) const {
+    if (&other < &mass) return push_apart(other, mass, row);
+    std::set<std::size_t> both = mass.moved_by;
+    both.insert(other.moved_by.begin(), other.moved_by.end());
+    return push_on(mass, &other, both, row);
   }
 
-  /// Of a point that two coordinates move in a plane, whatever directions they have, such as polar ones: |d|² of the
-  /// direction d with d·∂r/∂q_i = ∂f/∂q_i, by the matrix of the products of the ∂r/∂q_i.
-  std::optional<Push> push_in_plane(const Mass& mass, const std::map<std::size_t, Expr>& row) const {
-    if (mass.moved_by.size() != 2 || dimensions_of(mass) != 2) return std::nullopt;
-    Context& context = *system_.context;
-    Expr g[2][2], f[2];
-    std::size_t a = 0;
-    for (const std::size_t i : mass.moved_by) {
-      if (turning_.count(i) > 0) return std::nullopt;
-      std::size_t b = 0;
-      for (const std::size_t k : mass.moved_by) {
-        ExprVector products;
-        for (const Expr& component : *mass.position)
-          products.push_back(differentiate(component, system_.coordinates[i].q) *
-                             differentiate(component, system_.coordinates[k].q));
-        g[a][b++] = context.sum(products);
-      }
-      const auto found = row.find(i);
-      f[a++] = found == row.end() ? context.number(0) : found->second;
+  /// Coordinates that move no other mass.
+  std::set<std::size_t> moved_alone(const Mass& mass) const {
+    std::set<std::size_t> out = mass.moved_by;
+    for (const Mass& other : masses_)
+      if (&other != &mass)
+        for (const std::size_t i : other.moved_by) out.erase(i);
+    return out;
+  }
+
+  /// What a coordinate does to the place of one mass, beside that of another.
+  struct Column {
+    ExprVector r;  // ∂(r − r')/∂q [dimension]
+    Expr slope;    // ∂f/∂q
+  };
+
+  /// d with d·∂(r − r')/∂q = ∂f/∂q for each of the coordinates: the force on the mass per λ; −d is that on the other.
+  /// As many of them as r − r' has directions give d, the others have to agree.
+  std::optional<Push> push_on(const Mass& mass, const Mass* other, const std::set<std::size_t>& by,
+                              const std::map<std::size_t, Expr>& row) const {
+    const std::vector<Column> columns = columns_of(mass, other, by, row);
+    std::vector<std::size_t> directions;  // components that change
+    for (std::size_t k = 0; k < mass.position->size(); ++k)
+      if (std::any_of(columns.begin(), columns.end(), [&](const Column& c) { return !c.r[k].is_zero(); }))
+        directions.push_back(k);
+    const std::optional<ExprVector> d = solved(columns, directions);
+    if (!d) return std::nullopt;
+    Push out{*mass.name, ExprVector(mass.position->size(), system_.context->number(0)), {}};
+    ExprVector squares;
+    for (std::size_t k = 0; k < directions.size(); ++k) {
+      out.along[directions[k]] = (*d)[k];
+      squares.push_back((*d)[k] * (*d)[k]);
     }
-    const Expr det = g[0][0] * g[1][1] - g[0][1] * g[0][1];
-    if (vanishes_identically(det)) return std::nullopt;
-    const Expr two = context.number(2);
-    return Push{*mass.name, (g[1][1] * f[0] * f[0] - two * g[0][1] * f[0] * f[1] + g[0][0] * f[1] * f[1]) / det};
+    out.square = system_.context->sum(squares);
+    return out;
+  }
+
+  /// Those of numbers first, as of x and y: they give the shortest formulas.
+  std::vector<Column> columns_of(const Mass& mass, const Mass* other, const std::set<std::size_t>& by,
+                                 const std::map<std::size_t, Expr>& row) const {
+    std::vector<Column> out;
+    for (const std::size_t i : by) {
+      if (turning_.count(i) > 0) continue;
+      const Expr q = system_.coordinates[i].q;
+      const auto slope = row.find(i);
+      Column c{{}, slope == row.end() ? system_.context->number(0) : slope->second};
+      for (std::size_t k = 0; k < mass.position->size(); ++k) {
+        const Expr own = differentiate((*mass.position)[k], q);
+        c.r.push_back(other ? own - differentiate((*other->position)[k], q) : own);
+      }
+      out.push_back(std::move(c));
+    }
+    std::stable_partition(out.begin(), out.end(), [](const Column& c) {
+      return std::all_of(c.r.begin(), c.r.end(), [](const Expr& e) { return e.is_number(); });
+    });
+    return out;
+  }
+
+  /// Gauss and Jordan over the chosen components, row by row as far as a pivot is left; nothing where some component of
+  /// d stays open, or a row asks for another d.
+  std::optional<ExprVector> solved(std::vector<Column> rows, const std::vector<std::size_t>& directions) const {
+    std::vector<Column> reduced;  // of each direction the row with its pivot, 1
+    std::vector<std::size_t> pivots;
+    for (Column& c : rows) {
+      for (std::size_t p = 0; p < pivots.size(); ++p) subtract(c, reduced[p], c.r[pivots[p]]);
+      const auto pivot = std::find_if(directions.begin(), directions.end(), [&](std::size_t k) {
+        return !c.r[k].is_zero() && !vanishes_identically(c.r[k]);
+      });
+      if (pivot == directions.end()) {
+        if (!vanishes_identically(c.slope)) return std::nullopt;
+        continue;
+      }
+      const Expr by = c.r[*pivot];
+      for (Expr& component : c.r) component = component / by;
+      c.slope = c.slope / by;
+      for (Column& other : reduced) subtract(other, c, other.r[*pivot]);
+      reduced.push_back(c);
+      pivots.push_back(*pivot);
+    }
+    if (pivots.size() < directions.size() || pivots.empty()) return std::nullopt;
+    ExprVector d;
+    for (const std::size_t k : directions)
+      d.push_back(reduced[static_cast<std::size_t>(std::find(pivots.begin(), pivots.end(), k) - pivots.begin())].slope);
+    return d;
+  }
+  static void subtract(Column& from, const Column& row, const Expr factor) {
+    if (factor.is_zero()) return;
+    for (std::size_t k = 0; k < from.r.size(); ++k) from.r[k] = from.r[k] - factor * row.r[k];
+    from.slope = from.slope - factor * row.slope;
   }
 
   ExprVector coordinates() const {
@@ -187,6 +253,35 @@ class Masses {
   std::set<std::size_t> turning_;  // coordinates that turn a body
 };
 
+/// What a slip velocity has to be less ġ times so that its direction is along the surface: on the surface ġ is 0, and
+/// the slip what is written. Friction would have a part across it else, as by s' of a place (s cos α, n + s sin α).
+/// Empty: nothing, or not known.
+Expr share_of_gap_rate(const Masses& masses, const Contact& contact, const Push& gap, Expr slip) {
+  const auto push = masses.pushed(slip, true);
+  if (!push || push->name != gap.name) return {};
+  ExprVector products;
+  for (std::size_t k = 0; k < gap.along.size(); ++k) products.push_back(gap.along[k] * push->along[k]);
+  const Expr share = contact.gap.context().sum(products) / gap.square;
+  return vanishes_identically(share) ? Expr() : share;
+}
+
+/// Of the contact and of its written twin.
+void lay_slip_along_surface(const Masses& masses, MechanicalSystem& system, std::size_t k, const Push& gap) {
+  const Contact contact = system.contacts[k];
+  for (std::size_t i = 0; i < contact.friction.slip.size(); ++i) {
+    const Expr share = share_of_gap_rate(masses, contact, gap, contact.friction.slip[i]);
+    if (!share) continue;
+    const auto lay = [&](Contact& c) {
+      c.friction.slip[i] = c.friction.slip[i] - share * total_time_derivative(c.gap);
+    };
+    lay(system.contacts[k]);
+    if (!system.written) continue;
+    MechanicalSystem written = *system.written;
+    lay(written.contacts[k]);
+    system.written = std::make_shared<const MechanicalSystem>(std::move(written));
+  }
+}
+
 /// W0435 where a component of the slip is not the velocity of what it moves along some direction.
 void look_at_slip(const Masses& masses, const Contact& contact, Diagnostics& diagnostics) {
   for (const Expr& slip : contact.friction.slip) {
@@ -211,8 +306,9 @@ void set_normal_forces(MechanicalSystem& system, Diagnostics& diagnostics) {
     Contact& contact = system.contacts[k];
     if (!contact.friction.present() || contact.friction.sticking) continue;
     if (!masses) masses.emplace(system);
-    look_at_slip(*masses, contact, diagnostics);
     const auto push = masses->pushed(contact.gap, false);
+    if (push) lay_slip_along_surface(*masses, system, k, *push);
+    look_at_slip(*masses, contact, diagnostics);
     const bool is_length = system.dimensionless || contact.dimension == dimensions::length();
     if (!push && is_length && masses->is_no_distance(contact.gap))
       diagnostics.warning(
@@ -236,3 +332,12 @@ void set_normal_forces(MechanicalSystem& system, Diagnostics& diagnostics) {
 }
 
 }  // namespace maupertuis::elaboration
+
+namespace maupertuis {
+
+Expr normal_force_per_multiplier(const MechanicalSystem& system, const Contact& contact) {
+  const auto push = elaboration::Masses(system).pushed(contact.gap, false);
+  return push ? sqrt(push->square) : Expr();
+}
+
+}  // namespace maupertuis

@@ -61,6 +61,31 @@ TEST_CASE("the tension of a pendulum in x and y: m l θ'² + m g cos θ") {
   }
 }
 
+TEST_CASE("a rod goes to the place of which its constraint is the distance, not to one that is marked beside it") {
+  for (const char* rod : {"constraint norm(P) = l name rod\n", "constraint x^2 + y^2 = l^2 name rod\n",
+                          "constraint l = norm(P) name rod\n"}) {
+    const ModelText m(std::string("param m = 2 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\n"
+                                  "point Q at (x/2, y/2)\npoint P mass m at (x, y)\ngravity (0, -g)\n") +
+                      rod);
+    CHECK(value_at(m, only_reaction(m).value, {0, -1}, {0, 0}) == doctest::Approx(19.62).epsilon(1e-14));
+  }
+  // An arch of two bars with a tie between its feet: the distance of one foot from the centre of the other bar is a
+  // function of the same angles. Statics: m g/(2 tan α).
+  const ModelText arch(R"(param m = 20 kg, l = 2 m, g = 9.81 m/s^2
+coord θ, φ : angle
+body L mass m inertia m l^2/12 at l/2 (cos θ, sin θ) rotation angle θ
+point C at l (cos θ, sin θ)
+body R mass m inertia m l^2/12 at C + l/2 (cos φ, -sin φ) rotation angle -φ
+point E at C + l (cos φ, -sin φ)
+gravity (0, -g)
+constraint E.y = 0 name floor
+constraint norm(E) = l name tie
+)");
+  const Reaction tie = reactions(arch.equations)[1];
+  const double at = std::acos(-1.0) / 3;
+  CHECK(value_at(arch, tie.value, {at, at}, {0, 0}) == doctest::Approx(20 * 9.81 / (2 * std::tan(at))).epsilon(1e-13));
+}
+
 TEST_CASE("the arrow of a pulled rod points from the mass to the pivot, with the size of the tension") {
   const ModelText m(cartesian_pendulum);
   const Reaction rod = only_reaction(m);

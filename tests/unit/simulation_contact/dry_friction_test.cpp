@@ -332,6 +332,49 @@ TEST_CASE("a block on a wedge that slides, by a gap that is no distance") {
   CHECK(code(formulas + "contact x cos(0.3) + y sin(0.3) >= 0 friction 0.3 slip x' sin(0.3) - y' cos(0.3)\n") == "");
 }
 
+TEST_CASE("the normal force on an oblique surface, in any coordinates and for any spelling of the slip") {
+  // N = m g cos α on a slope; s'' = −g (sin α + μ cos α) upwards.
+  const double a = 30 * 3.14159265358979323846 / 180, mu = 0.3, g = 9.81;
+  const auto slope = run_text(
+      "param m = 2 kg, g = 9.81 m/s^2, α = 30 deg\ncoord s, n : length\npoint P mass m at (s cos α, n + s sin α)\n"
+      "gravity (0, -g)\ncontact n >= 0 friction 0.3 slip s' name plane\nstart s' = 1 m/s\n",
+      0.1);
+  CHECK(slope.final.reactions[0] == doctest::Approx(2 * g * std::cos(a)).epsilon(1e-14));
+  CHECK(slope.final.v[0] == doctest::Approx(1 - 0.1 * g * (std::sin(a) + mu * std::cos(a))).epsilon(1e-14));
+  // The same in space, the third coordinate along the slope too.
+  const auto space = run_text(
+      "param m = 2 kg, g = 9.81 m/s^2, α = 30 deg\ncoord s, z, n : length\n"
+      "point P mass m at (s cos α + 0.2 z, z, n + s sin α)\ngravity (0, 0, -g)\ncontact n >= 0 name plane\n",
+      0.1);
+  // Its plane holds (cos α, 0, sin α) and (0.2, 1, 0).
+  const double normal = std::cos(a) / std::sqrt(1 + 0.04 * std::sin(a) * std::sin(a));
+  CHECK(space.final.reactions[0] == doctest::Approx(2 * g * normal).epsilon(1e-14));
+
+  // A block that slides down a wedge of 5 kg, which recoils; without friction N = M m g cos α/(M + m sin² α).
+  const std::string both = "param m = 2 kg, M = 5 kg, g = 9.81 m/s^2, α = 30 deg\n",
+                    wedge = "point W mass M at (X, 0)\ngravity (0, -g)\n",
+                    cartesian = both + "coord X, x, y : length\npoint P mass m at (x, y)\n" + wedge,
+                    height = both + "coord X, x, h : length\npoint P mass m at (x, h - (x - X) tan α)\n" + wedge,
+                    gap = "contact y + (x - X) tan α >= 0";
+  const double smooth = 5 * 2 * g * std::cos(a) / (5 + 2 * std::sin(a) * std::sin(a));
+  CHECK(run_text(cartesian + gap + " name face\n", 0.3).final.reactions[0] == doctest::Approx(smooth).epsilon(1e-13));
+  CHECK(run_text(height + "contact h >= 0 name face\n", 0.3).final.reactions[0] ==
+        doctest::Approx(smooth).epsilon(1e-13));
+  // With friction N (cos α + μ sin α + tan α (sin α − μ cos α) (1 + m/M)) = m g.
+  const double rough =
+      2 * g / (std::cos(a) + mu * std::sin(a) + std::tan(a) * (std::sin(a) - mu * std::cos(a)) * (1 + 2.0 / 5));
+  for (const std::string& text :
+       {cartesian + gap + " friction 0.3 slip (x' - X')/cos α name face\nstart x' = 1 cm/s, y' = -0.57735026918962573 cm/s\n",
+        cartesian + gap +
+            " friction 0.3 slip (x' - X') cos α - y' sin α name face\nstart x' = 1 cm/s, y' = -0.57735026918962573 cm/s\n",
+        height + "contact h >= 0 friction 0.3 slip (x' - X')/cos α name face\nstart x' = 1 cm/s\n"}) {
+    ModelText model(text);
+    const auto r = run(model, 0.3);
+    CHECK(model.diagnostics.items().empty());
+    CHECK(r.final.reactions[0] == doctest::Approx(rough).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("Stribeck friction by |x'|, however written, goes on while a slip has one direction") {
   // 0.57613206 m after 27 changes by Runge-Kutta steps of 2e-5 s between events.
   const std::string laws[] = {"exp(-abs(x')/v0)", "exp(-abs(x'/v0))", "exp(-max(x', -x')/v0)",
