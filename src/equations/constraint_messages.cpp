@@ -81,7 +81,8 @@ class Messages {
     all.push_back(i);
     diagnostics_.warning(
         "W0602", span(i), fmt::format("{} is redundant: it follows from {}", label(i), labels(report.depends_on)),
-        fmt::format("The motion stays the same, but how {} share the forces is not determined.", labels(all)),
+        fmt::format("The motion stays the same, but how {} share the forces is not determined{}.", labels(all),
+                    system_.frictions.empty() && system_.contacts.empty() ? "" : ", nor friction that depends on them"),
         "Leave one of them out where their forces matter.");
   }
 

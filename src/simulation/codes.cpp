@@ -183,6 +183,16 @@ constexpr std::array entries{
         "contact z >= 0 restitution e name floor\nstart z = 1 m\nrun 2 s\n",
         "# maup simulate\ncoord z : length\nparam m = 1 kg, g = 9.81 m/s^2, e = 0.8\nT = 1/2 m z'^2\nV = m g z\n"
         "contact z >= 0 restitution e name floor\nstart z = 1 m\nrun 2 s\n"},
+    CodeEntry{"E0732", "friction by a force that the model does not determine",
+     "Redundant constraints, a beam on three supports, share their forces in a way that rigid bodies do not tell: that is a "
+     "question of elasticity. Friction that takes one of them for its normal force is not determined either, and so is the "
+     "motion.",
+     "# maup simulate\nparam m = 2 kg, g = 10 m/s^2, μ = 0.1\ncoord y, s : length\npoint P mass m at (0, y)\npoint W "
+     "mass m at (s, 1 m)\ngravity (0, -g)\nconstraint y = 0 name f1\nconstraint 2 y = 0 name f2\nfriction s coefficient "
+     "μ normal reaction(f1)\nstart s' = 1 m/s\nrun 1 s\n",
+     "# maup simulate\nparam m = 2 kg, g = 10 m/s^2, μ = 0.1\ncoord y, s : length\npoint P mass m at (0, y)\npoint W "
+     "mass m at (s, 1 m)\ngravity (0, -g)\nconstraint y = 0 name f1\nfriction s coefficient μ normal reaction(f1)\nstart "
+     "s' = 1 m/s\nrun 1 s\n"},
     CodeEntry{
         "E0730", "a contact with a kink",
         "A gap made of abs, min, max, step or piecewise may switch where it and its slope go on, as on the border of a "

@@ -3,8 +3,10 @@
 #include "simulation/contact/contact_functions.hpp"
 
 #include <maupertuis/across_switches.hpp>
+#include <maupertuis/constraint_analysis.hpp>
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/motion_through_modes.hpp>
+#include <maupertuis/simulation.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <fmt/format.h>
@@ -83,6 +85,41 @@ bool slips_are_at_right_angles(const EquationsOfMotion& equations, Diagnostics& 
   return good;
 }
 
+/// What friction multiplies, without reactions: what stands for them.
+std::vector<Expr> forces_of(const EquationsOfMotion& equations, const Friction& friction) {
+  std::vector<Expr> out;
+  for (const Expr& e : {friction.kinetic, friction.static_, friction.normal})
+    if (e) out.push_back(e);
+  return with_reactions(equations, out);
+}
+
+/// E0732 for friction by forces of redundant constraints, which these share in a way that the motion does not
+/// determine.
+bool frictions_are_determined(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
+  const MechanicalSystem& system = *equations.system;
+  if (system.constraints.size() < 2 || system.frictions.empty()) return true;
+  std::optional<ConstraintAnalysis> analysis;
+  bool good = true;
+  for (const Friction& f : system.frictions) {
+    const std::vector<Expr> symbols = symbols_of(forces_of(equations, f));
+    for (std::size_t k = 0; k < equations.multipliers.size() && good; ++k) {
+      if (std::find(symbols.begin(), symbols.end(), equations.multipliers[k]) == symbols.end()) continue;
+      if (!analysis) analysis = analyse_constraints(equations);
+      const auto& open = analysis->undetermined;
+      if (std::find(open.begin(), open.end(), k) == open.end()) continue;
+      diagnostics.error(
+          "E0732", f.span,
+          fmt::format("the model does not determine the force of {}, on which this friction depends",
+                      system.constraint_label(k)),
+          "It is one of several constraints that say the same of the motion: how they share the force is a "
+          "question of elasticity.",
+          "Leave one of them out, or give the normal force by a formula.");
+      good = false;
+    }
+  }
+  return good;
+}
+
 }  // namespace
 
 bool can_go_through_modes(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
@@ -94,7 +131,8 @@ bool can_go_through_modes(const EquationsOfMotion& equations, Diagnostics& diagn
                       "Leave the contacts out, or use a Lagrangian that is quadratic in the velocities.");
     return false;
   }
-  return contacts_are_smooth(equations, diagnostics) && slips_are_at_right_angles(equations, diagnostics);
+  return contacts_are_smooth(equations, diagnostics) && frictions_are_determined(equations, diagnostics) &&
+         slips_are_at_right_angles(equations, diagnostics);
 }
 
 bool start_keeps_contacts(const Model& model, double t, std::span<const double> q, Diagnostics& diagnostics) {

@@ -67,6 +67,7 @@ class Workspace {
   bool border();
   KernelStatus factor();
   bool solve(int stage);
+  T acceleration_of_terms(std::size_t i) const;
   bool constraints_agree();
   void correct(int stage);
   T coefficient(Slot slot, int k) const;

@@ -96,6 +96,18 @@ bool Workspace<T>::solve(int stage) {
   return std::all_of(unknown_.begin(), unknown_.end(), [](const T& x) { return is_finite(x); });
 }
 
+/// As StageSolver::acceleration_of_terms.
+template <class T>
+T Workspace<T>::acceleration_of_terms(std::size_t i) const {
+  const T own = abs(mass(i, i));
+  T force = size_of(program_.residual[i]);
+  for (std::size_t k = 0; program_.freedoms + k < unknowns_; ++k)
+    force += abs(constraint_matrix(k, i) * unknown_[program_.freedoms + k]);
+  const T usual = usual_accelerations_.empty() ? T(0) : usual_accelerations_[i];
+  if (!(own > 0)) return usual;
+  return force / own > usual ? T(force / own) : usual;
+}
+
 /// Whether the rows that were left out as dependent hold for the solution of the others.
 template <class T>
 bool Workspace<T>::constraints_agree() {
@@ -107,7 +119,7 @@ bool Workspace<T>::constraints_agree() {
       const T term = constraint_matrix(j, i) * unknown_[i];
       rest -= term;
       size += abs(term);
-      if (!usual_accelerations_.empty()) left += abs(constraint_matrix(j, i)) * usual_accelerations_[i];
+      if (constraint_matrix(j, i) != 0) left += abs(constraint_matrix(j, i)) * acceleration_of_terms(i);
     }
     if (abs(rest) <= epsilon_to<T>(share_power) * size + epsilon_to<T>(0.77) * left) continue;
     contradicting_ = j;

@@ -99,8 +99,20 @@ bool StageSolver::inverts_bordered() {
          solver_->negative_inverse(inverse_.data(), x_.padded_unknowns());
 }
 
+/// How large the acceleration is that the terms of one equation would give alone. Where they balance, what is left of
+/// it is their rounding.
+double StageSolver::acceleration_of_terms(std::size_t i) const {
+  const std::size_t n = x_.program.freedoms;
+  const Slot slot = x_.program.residual[i];
+  const double mass = std::abs(bordered_[i * x_.unknowns + i]);
+  double force = reference::term_size(x_.memory, x_.producer[slot], slot);
+  for (std::size_t k = n; k < x_.unknowns; ++k) force += std::abs(bordered_[k * x_.unknowns + i] * unknown_[k]);
+  const double usual = usual_accelerations_.empty() ? 0 : usual_accelerations_[i];
+  return mass > 0 ? std::max(usual, force / mass) : usual;
+}
+
 /// Whether the rows of A that were dropped as dependent hold for the accelerations of the others. Where forces balance
-/// (a ladder at rest between rough walls) accelerations are what rounding leaves of the usual ones, and ask nothing.
+/// (a ladder at rest between rough walls, a beam on three supports) accelerations are rounding, and ask nothing.
 bool StageSolver::constraints_agree() {
   constexpr double rounding = 1e-12;
   const std::size_t n = x_.program.freedoms;
@@ -112,7 +124,7 @@ bool StageSolver::constraints_agree() {
       const double a = bordered_[(n + j) * x_.unknowns + i];
       rest += a * unknown_[i];
       size += std::abs(a * unknown_[i]);
-      if (!usual_accelerations_.empty()) left += std::abs(a) * usual_accelerations_[i];
+      if (a != 0) left += std::abs(a) * acceleration_of_terms(i);
     }
     if (std::abs(rest) <= 1e-6 * size + rounding * left) continue;
     contradicting_ = j;

@@ -78,6 +78,7 @@ class StageSolver {
   KernelStatus factor_full();
   bool has_symmetric_pattern();
   bool inverts_bordered();
+  double acceleration_of_terms(std::size_t i) const;
   bool constraints_agree();
 
   // Inverse (inverse_solution.cpp).
