@@ -12,15 +12,24 @@ Expr GivenForces::parameter() {
   return p.symbol;
 }
 
+Expr GivenForces::polynomial(int degree, Expr since) {
+  ExprVector coefficients;
+  for (int power = 0; power <= degree; ++power) coefficients.push_back(parameter());
+  Expr out = coefficients.back();
+  for (int power = degree; power-- > 0;) out = out * since + coefficients[static_cast<std::size_t>(power)];
+  return out;
+}
+
 template <class Lever>
 void GivenForces::add(Expr force, Lever&& lever) {
   for (std::size_t i = 0; i < work_.size(); ++i) work_[i] = work_[i] + force * lever(own_.coordinates[i]);
 }
 
 void GivenForces::preload(const ContactMode& mode) {
+  const Expr since = own_.context->time() - parameter();
   for (std::size_t i = 0; i < mode.closed.size(); ++i)
     if (mode.closed[i]) {
-      const Expr gap = own_.contacts[i].gap, force = parameter();
+      const Expr gap = own_.contacts[i].gap, force = polynomial(preload_degree, since);
       add(force, [&](const Coordinate& c) { return differentiate(gap, c.q); });
       all_[own_.contacts[i].multiplier] = own_.contacts[i].multiplier + force;
     }
@@ -28,7 +37,7 @@ void GivenForces::preload(const ContactMode& mode) {
     if (mode.friction[i] != FrictionState::Stick) continue;
     const Friction& f = own_.contacts[i].friction;
     for (std::size_t k = 0; k < f.slip.size(); ++k) {
-      const Expr force = parameter();
+      const Expr force = polynomial(preload_degree, since);
       add(force, [&](const Coordinate& c) { return differentiate(f.slip[k], c.velocity); });
       all_[f.multipliers[k]] = f.multipliers[k] + force;
     }
@@ -39,11 +48,7 @@ void GivenForces::direct(std::size_t i, ExprVector& rubbed) {
   const Friction& f = own_.contacts[i].friction;
   const Expr since = own_.context->time() - parameter(), most = f.kinetic * own_.contacts[i].multiplier;
   for (std::size_t k = 0; k < f.slip.size(); ++k) {
-    ExprVector coefficients;
-    for (int power = 0; power <= direction_degree; ++power) coefficients.push_back(parameter());
-    Expr direction = coefficients.back();
-    for (int power = direction_degree; power-- > 0;)
-      direction = direction * since + coefficients[static_cast<std::size_t>(power)];
+    const Expr direction = polynomial(direction_degree, since);
     add(-(most * direction), [&](const Coordinate& c) { return differentiate(f.slip[k], c.velocity); });
     all_[f.multipliers[k]] = -(most * direction);
     rubbed.push_back(most * direction * f.slip[k]);

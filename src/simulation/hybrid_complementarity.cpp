@@ -62,7 +62,7 @@ std::optional<ContactForceProblem> HybridMotion::force_problem(const std::vector
     const Friction& friction = system_.contacts[i].friction;
     const auto slides = [&](FrictionState s) { return choice.options[0].state == s; };
     contact.sliding = slides(FrictionState::Forward) ? 1 : slides(FrictionState::Backward) ? -1 : 0;
-    if (friction.present()) contact.tangent = values.tangent[i];
+    if (rubs(i, values)) contact.tangent = values.tangent[i];
     contact.friction = friction.sticking ? held_fast : contact.sliding != 0 ? values.kinetic[i] : values.fixed[i];
     normals.push_back(values.normal[i]);
     tangents.push_back(contact.tangent);

@@ -66,6 +66,8 @@ struct HybridMotion::Trial {
   bool begins_at_zero(const Watch& w) const;
   void put_at_zero();
   bool has_slow_slips();
+  bool has_given_limits();
+  bool has_slow_gaps();
   bool look(double bound);
 
   bool is_squared(const Watch& w) const {
@@ -141,6 +143,34 @@ bool HybridMotion::Trial::has_slow_slips() {
   return has_some;
 }
 
+/// Forces that are given, and are at a limit to rounding, come from there: the first of their derivatives that is not
+/// 0 tells which way. They are so where a contact presses by nothing yet.
+bool HybridMotion::Trial::has_given_limits() {
+  if (!found.given.is_preload) return false;
+  std::vector<std::size_t> limits;
+  for (std::size_t k = 0; k < motion.watches().size(); ++k)
+    if ((watch(k).what == Watch::What::Force || watch(k).what == Watch::What::Hold) && is_rounding_of_forces(k))
+      limits.push_back(k);
+  motion.stepper->put_at_zero(limits);
+  at_zero.insert(at_zero.end(), limits.begin(), limits.end());
+  return !limits.empty();
+}
+
+/// Lenient: a gap whose acceleration is rounding begins with the third power of time. A wheel in a corner that a torque
+/// begins to turn goes through the wall by that, where the wall is open.
+bool HybridMotion::Trial::has_slow_gaps() {
+  if (leniency != Leniency::Gaps) return false;
+  bool has_some = false;
+  for (const std::size_t k : at_zero) {
+    const Watch& w = watch(k);
+    if (w.what != Watch::What::Gap || std::abs(values.rate[w.index]) > in.rest_speed(w.index, values)) continue;
+    if (in.presses_again(w.index, outlook.accelerations, values, rounding_of_forces)) continue;
+    motion.stepper->put_at_zero({&k, 1}, 3);
+    has_some = true;
+  }
+  return has_some;
+}
+
 /// False where there is no motion.
 bool HybridMotion::Trial::look(double bound) {
   TaylorStepper& s = *motion.stepper;
@@ -150,13 +180,14 @@ bool HybridMotion::Trial::look(double bound) {
   outlook = s.outlook(bound);
   in.no_motion_ = outlook.reason;
   if (outlook.ending != StepEnding::None) return false;
-  if (has_slow_slips()) outlook = s.outlook(bound);
-  found.accelerations = outlook.accelerations;
   for (std::size_t k = 0; k < motion.watches().size(); ++k) {
     const double force = std::abs(outlook.values[k]);
     if (watch(k).what == Watch::What::Force || watch(k).what == Watch::What::Hold)
       largest_force = std::max(largest_force, is_squared(watch(k)) ? std::sqrt(force) : force);
   }
+  const bool slips = has_slow_slips(), forces = has_given_limits(), gaps = has_slow_gaps();
+  if (slips || forces || gaps) outlook = s.outlook(bound);
+  found.accelerations = outlook.accelerations;
   return true;
 }
 
@@ -170,7 +201,8 @@ bool HybridMotion::Trial::keeps_gap(std::size_t k) {
   constexpr double met = 1e-9;  // heights at which bounces have ended
   const std::size_t i = watch(k).index;
   if (in.vanishes(watch(k), outlook.reach[k], values)) return true;
-  if (in.released_[i]) return !in.presses_again(i, outlook.accelerations, values, located_force);
+  if (in.released_[i])
+    return outlook.sides[k] >= 0 && !in.presses_again(i, outlook.accelerations, values, located_force);
   if (outlook.sides[k] >= 0) return true;
   // Meeting the constraints of others may move a gap that opens through zero, by what they are known to.
   const double rest = in.rest_speed(i, values), reached = met * in.widest_[i];
@@ -181,8 +213,7 @@ bool HybridMotion::Trial::keeps_gap(std::size_t k) {
   }
   // One that closes is hit now: it is as near as constraints are known, but not among those that touch.
   if (is_moved && !holds(touching, i) && values.rate[i] < -rest && values.gap[i] <= reached) in.met_ = i;
-  return leniency == Leniency::Gaps && holds(at_zero, k) && std::abs(values.rate[i]) <= rest &&
-         !in.presses_again(i, outlook.accelerations, values, rounding_of_forces);
+  return false;
 }
 
 bool HybridMotion::Trial::keeps_force(std::size_t k) {
@@ -190,6 +221,7 @@ bool HybridMotion::Trial::keeps_force(std::size_t k) {
   const std::size_t i = watch(k).index;
   // What does not press needs not be closed.
   if (!lenient() && in.vanishes(watch(k), outlook.reach[k], values)) return false;
+  if (found.given.is_preload && holds(at_zero, k)) return outlook.sides[k] >= 0;
   // A body that hits a wall with an unstrained string behind it is pressed by nothing yet: beside what λ comes to,
   // rounding of the string is 0 too.
   const double comes_to = std::abs(outlook.slopes[k]) * outlook.length;

@@ -94,12 +94,19 @@ FrictionState sliding_state(double slip, double rest) {
 
 }  // namespace
 
+/// Whether a contact has friction: with a coefficient that is 0 throughout it is smooth, and holds no rest.
+bool HybridMotion::rubs(std::size_t i, const ContactValues& values) const {
+  const Friction& f = system_.contacts[i].friction;
+  return f.present() && (f.sticking || !keeps_friction_[i] || values.fixed[i] != 0 || values.kinetic[i] != 0);
+}
+
 /// What a contact that touches and does not open may do.
 HybridMotion::Choice HybridMotion::choice_of_contact(std::size_t i, const ContactValues& values) const {
   Choice choice{i, {}};
   const Friction& f = system_.contacts[i].friction;
-  const FrictionState sliding = f.present() ? sliding_state(values.slip[i], rest_slip(i, values)) : FrictionState::None;
-  if (!f.present())
+  const bool rubs = this->rubs(i, values);
+  const FrictionState sliding = rubs ? sliding_state(values.slip[i], rest_slip(i, values)) : FrictionState::None;
+  if (!rubs)
     choice.options = {{true, FrictionState::None, 1}};
   else if (f.in_space() && !f.sticking)
     choice.options = {{true, slides_in_space(i, values) ? FrictionState::Slide : FrictionState::Stick, 1}};

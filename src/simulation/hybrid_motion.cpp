@@ -11,6 +11,9 @@ namespace {
 
 constexpr std::size_t most_at_once = 1000;  // changes at the same time
 constexpr std::size_t most_happenings = 10'000'000;
+constexpr const char* met_backwards =
+    "Backwards in time the motion meets a change of contact here: what was before an impact or a stop does not follow "
+    "from what is after it.";
 constexpr std::size_t most_numbers = 2'000'000;  // of states that are kept with what happens
 
 }  // namespace
@@ -25,7 +28,11 @@ HybridMotion::HybridMotion(std::shared_ptr<ModeLibrary> library, std::vector<dou
       options_(options),
       functions_(library_->contacts(), parameters_) {
   parameters_.resize(system_.parameters.size());
-  for (const Contact& c : system_.contacts) in_space_ = in_space_ || c.friction.in_space();
+  for (const Contact& c : system_.contacts) {
+    in_space_ = in_space_ || c.friction.in_space();
+    keeps_friction_.push_back(c.friction.present() && is_of_parameters(c.friction.kinetic) &&
+                              is_of_parameters(c.friction.static_));
+  }
 }
 
 HybridMotion::~HybridMotion() = default;
@@ -159,6 +166,8 @@ Step HybridMotion::step(double bound) {
     return ended(StepEnding::Paradox,
                  "Backwards in time there is no motion from a start at which a contact is hit: what was before the "
                  "impact does not follow from what is after it.");
+  // Its mode was chosen for what follows: a contact that opens at the start was hit there.
+  if (!forwards_ && steps() == 0 && !goes_on(bound)) return ended(StepEnding::Paradox, met_backwards);
   if (pending_ && late_by_ > 0) return wait(bound);
   if (pending_) {
     if (auto failed = settle(bound)) return std::move(*failed);
@@ -177,9 +186,8 @@ Step HybridMotion::step(double bound) {
       return ended(StepEnding::Overflow, fmt::format("The gap of the contact {} has no value here.", label));
     return ended(
         StepEnding::Paradox,
-        fmt::format("The motion went through the contact {} without a sign of it: bounces have become too small "
-                    "to be told apart.",
-                    label));
+        fmt::format("The motion went through the contact {} without a sign of it{}.", label,
+                    bounces_[*contact].last.empty() ? "" : ": bounces have become too small to be told apart"));
   }
   if (!out.events.empty()) classify(out);
   if (meets_late_ && pending_) late_by_ = hidden_by_rounding(bound);
@@ -297,7 +305,7 @@ bool HybridMotion::pulls() const {
   const std::size_t first = equations_.system->constraints.size();
   for (std::size_t i = 0, k = 0; i < now_->mode.closed.size(); ++i) {
     if (!now_->mode.closed[i]) continue;
-    const double force = multipliers[first + k] + (now_->given.is_preload ? now_->given.values[k] : 0);
+    const double force = multipliers[first + k] + now_->given.preload(k, now_->stepper->step_start().t);
     if (force < -digits * std::max(hardest_[i], 1e-280)) return true;
     ++k;
   }
@@ -466,10 +474,7 @@ Step HybridMotion::stopped(StepEnding ending, std::string reason) {
 std::optional<Step> HybridMotion::settle(double bound) {
   std::string reason;
   if (!forwards_ && (!pending_->hit.empty() || !pending_->left.empty()))
-    return ended(
-        StepEnding::Paradox,
-        "Backwards in time the motion meets a change of contact here: what was before an impact or a stop does "
-        "not follow from what is after it.");
+    return ended(StepEnding::Paradox, met_backwards);
   if (++same_time_ > most_at_once || record_.happenings.size() > most_happenings)
     return ended(StepEnding::Unending,
                  same_time_ > most_at_once

@@ -155,10 +155,14 @@ class HybridMotion final : public Method {
                                          double bound);
   bool fits_by_given_forces(Found& found, const std::vector<std::size_t>& touching, double bound);
   std::optional<std::vector<double>> forces_at_rest(const ContactMode& mode, const ContactValues& values, double bound);
+  std::optional<std::vector<double>> forces_later(const ContactMode& mode, double later, double bound);
+  double rest_ahead(const ContactMode& mode, double length, double bound);
+  std::optional<Given> preload_through(const ContactMode& mode, double ahead, int power, double bound);
   bool is_held(std::size_t contact, const ContactMode& mode, const ContactValues& values);
   bool has_dependent_rows(const ContactMode& mode, const ContactValues& values) const;
   std::vector<Choice> choices(const std::vector<std::size_t>& touching, const ContactValues& values) const;
   ContactMode mode_without_contacts(const std::vector<Choice>& list) const;
+  bool rubs(std::size_t contact, const ContactValues& values) const;
   Choice choice_of_contact(std::size_t contact, const ContactValues& values) const;
   std::optional<ContactForceProblem> force_problem(const std::vector<Choice>& list, const ContactValues& values,
                                                    double bound);
@@ -288,6 +292,7 @@ class HybridMotion final : public Method {
   HybridRecord record_;
   std::size_t left_out_remarks_ = 0;
   bool in_space_ = false;               // a contact has friction in space
+  std::vector<bool> keeps_friction_;    // [contacts] its coefficients stay what they are, whatever moves
   std::vector<bool> begins_to_slide_;   // [contacts] in space, at this instant
   std::vector<double> begins_towards_;  // [contacts] in which direction, an angle in the plane of contact
   std::vector<double> slip_scale_;      // [contacts] of friction in space, the largest slips so far

@@ -26,9 +26,10 @@ inline constexpr double located_force = 1e-9;
 /// What the motion in a mode is given besides the parameters of the model (ModeDetails).
 struct HybridMotion::Given {
   bool is_preload = false;
-  std::vector<bool> begins;                              // [contacts] or empty
-  std::vector<double> values;                            // of its parameters
-  double end = std::numeric_limits<double>::infinity();  // until when directions of slips that begin hold
+  std::vector<bool> begins;                                // [contacts] or empty
+  std::vector<double> values;                              // of its parameters
+  double end = std::numeric_limits<double>::infinity();    // until when directions of slips that begin hold
+  double preload(std::size_t constraint, double t) const;  // 0 where none is given
   friend bool operator==(const Given&, const Given&) = default;
 };
 

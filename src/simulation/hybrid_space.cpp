@@ -125,7 +125,7 @@ std::vector<HybridMotion::Pressed> HybridMotion::pressed_of(const std::vector<st
   for (const std::size_t i : touching) {
     if (values.rate[i] > rest_speed(i, values)) continue;
     const Friction& f = system_.contacts[i].friction;
-    const bool slides = f.present() && !f.sticking &&
+    const bool slides = rubs(i, values) && !f.sticking &&
                         (f.in_space() ? slides_in_space(i, values) : std::abs(values.slip[i]) > rest_slip(i, values));
     out.push_back({i, slides ? std::optional(sliding_force(i, values)) : std::nullopt});
   }
@@ -166,7 +166,7 @@ HybridMotion::Cones HybridMotion::cones_of(const std::vector<Pressed>& pressed, 
     out.first.push_back(out.rows.size());
     add(values.normal[i], sliding ? *sliding : values.normal[i], drifts[i]);
     ConeProblem::Contact contact{0, 0};
-    if (f.present() && !sliding) {
+    if (rubs(i, values) && !sliding) {
       contact = {f.in_space() ? 2 : 1, f.sticking ? held_fast : values.fixed[i]};
       add(values.tangent[i], values.tangent[i], drifts[contacts + i]);
       if (f.in_space()) add(values.second_tangent[i], values.second_tangent[i], drifts[seconds + i]);
@@ -305,7 +305,7 @@ void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double
   const ContactValues values = functions_.at(t_, q_, v_);
   const auto is_slow = [&](std::size_t i) {
     const double speed = slip_speed_at(i, values);
-    return system_.contacts[i].friction.in_space() && !system_.contacts[i].friction.sticking &&
+    return system_.contacts[i].friction.in_space() && !system_.contacts[i].friction.sticking && rubs(i, values) &&
            !(values.rate[i] > rest_speed(i, values)) && speed > rest_slip(i, values) &&
            speed <= stop_slip(i) + rest_slip(i, values);
   };
@@ -340,7 +340,7 @@ void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double
   constexpr double together = 0.05, as_slow = 1e3, longer = 4;
   double longest = by;
   for (const std::size_t i : touching)
-    if (system_.contacts[i].friction.in_space() && slip_speed_at(i, values) > rest_slip(i, values) &&
+    if (system_.contacts[i].friction.in_space() && rubs(i, values) && slip_speed_at(i, values) > rest_slip(i, values) &&
         slip_speed_at(i, values) <= as_slow * stop_slip(i))
       near.push_back(i), longest = std::max(longest, time_to_stop(i));
   const bool all = near.size() > 1 && all_stop(near, touching, values, outlook->accelerations, longer * longest);
@@ -366,7 +366,8 @@ bool HybridMotion::choose_slips(const std::vector<std::size_t>& touching, double
   const ContactValues values = functions_.at(t_, q_, v_);
   const auto may_begin = [&](std::size_t i) {
     const Friction& f = system_.contacts[i].friction;
-    return f.in_space() && !f.sticking && !(values.rate[i] > rest_speed(i, values)) && !slides_in_space(i, values);
+    return f.in_space() && !f.sticking && rubs(i, values) && !(values.rate[i] > rest_speed(i, values)) &&
+           !slides_in_space(i, values);
   };
   if (std::none_of(touching.begin(), touching.end(), may_begin)) return true;
   const auto outlook = outlook_without_contacts(values, bound);

@@ -39,6 +39,57 @@ bool HybridMotion::is_held(std::size_t contact, const ContactMode& mode, const C
   return std::abs(dot(own, functions_.response(t_, q_, v_, {&own, 1}, held).col(0))) <= digits * std::abs(alone);
 }
 
+double HybridMotion::Given::preload(std::size_t constraint, double t) const {
+  if (!is_preload) return 0;
+  constexpr auto powers = static_cast<std::size_t>(preload_degree) + 1;
+  double out = 0;
+  for (std::size_t power = powers; power-- > 0;) out = out * (t - values[0]) + values[1 + constraint * powers + power];
+  return out;
+}
+
+/// Forces that hold the rest later, if it lasts until then.
+std::optional<std::vector<double>> HybridMotion::forces_later(const ContactMode& mode, double later, double bound) {
+  const double t = t_, t_rest = t_rest_;
+  const std::vector<double> q = q_;
+  t_ += later;
+  for (std::size_t i = 0; i < q_.size(); ++i) q_[i] += later * v_[i];
+  auto out = forces_at_rest(mode, functions_.at(t_, q_, v_), bound + (bound - t));
+  t_ = t, t_rest_ = t_rest, q_ = q;
+  static_cast<void>(functions_.at(t_, q_, v_));  // whoever holds its values means those of now
+  return out;
+}
+
+/// The time over which forces are found that hold the rest, `length` at most: its end to rounding where it comes
+/// earlier.
+double HybridMotion::rest_ahead(const ContactMode& mode, double length, double bound) {
+  if (forces_later(mode, length, bound)) return length;
+  constexpr int halvings = 45;
+  double least = 0, most = length;
+  for (int halving = 0; halving < halvings; ++halving) {
+    const double middle = 0.5 * (least + most);
+    (forces_later(mode, middle, bound) ? least : most) = middle;
+  }
+  return least;
+}
+
+/// Forces that hold the rest now, and such as hold it `ahead`, with that power of time between them. Limits of friction
+/// are convex: where the forces of the system go with it too, their limits are kept all the way.
+std::optional<HybridMotion::Given> HybridMotion::preload_through(const ContactMode& mode, double ahead, int power,
+                                                                 double bound) {
+  const auto here = forces_later(mode, 0, bound), there = forces_later(mode, ahead, bound);
+  if (!here || !there) return std::nullopt;
+  Given out;
+  out.is_preload = true;
+  out.values = {t_};
+  for (std::size_t k = 0; k < here->size(); ++k) {
+    std::vector<double> coefficients(preload_degree + 1, 0);
+    coefficients[0] = (*here)[k];
+    if (ahead != 0) coefficients[static_cast<std::size_t>(power)] = ((*there)[k] - (*here)[k]) / std::pow(ahead, power);
+    out.values.insert(out.values.end(), coefficients.begin(), coefficients.end());
+  }
+  return out;
+}
+
 /// Contacts that hold each other where they rest (a ladder between rough walls, three rough feet) have forces that the
 /// equations do not determine: some that keep the limits of friction are given. False where the forces are determined,
 /// where none hold the rest, or where another condition of the mode is broken.
@@ -48,11 +99,18 @@ bool HybridMotion::fits_by_given_forces(Found& found, const std::vector<std::siz
   const auto closed = static_cast<std::size_t>(std::count(mode.closed.begin(), mode.closed.end(), true));
   if (closed < 2 || closed > most_that_hold || !found.given.begins.empty() || !has_dependent_rows(mode, values))
     return false;
-  const auto forces = forces_at_rest(mode, values, bound);
-  if (!forces) return false;
-  found.given.is_preload = true;
-  found.given.values = *forces;
-  return fits(found, touching, bound, Leniency::None);
+  const auto outlook = outlook_without_contacts(values, bound);
+  if (!outlook || !forces_at_rest(mode, values, bound)) return false;
+  const double ahead = rest_ahead(mode, std::copysign(outlook->length, bound - t_), bound);
+  // A contact that presses by nothing yet has forces that begin with the power of time with which those of the system
+  // do.
+  for (int power = 1; power <= preload_degree; ++power) {
+    auto given = preload_through(mode, ahead, power, bound);
+    if (!given) return false;
+    found.given = std::move(*given);
+    if (fits(found, touching, bound, Leniency::None)) return true;
+  }
+  return false;
 }
 
 /// The mode in which all that may rest does, with forces that are given: before the least forces are tried, which may
@@ -103,6 +161,7 @@ void HybridMotion::note_indeterminate(const std::vector<Choice>& list, const Con
   if (contacts.size() < 2) return;
   const bool are_normals = are_dependent(normals, q_.size());
   if (!are_normals && !(holds && has_dependent_rows(mode, values))) return;
+  std::sort(contacts.begin(), contacts.end());
   std::string names;
   constexpr std::size_t shown = 6;
   for (std::size_t k = 0; k < std::min(shown, contacts.size()); ++k)

@@ -3,7 +3,7 @@
 namespace maupertuis::taylor {
 
 template struct ScaledPolynomialOf<double>;
-template ScaledPolynomial judged(ScaledPolynomial);
+template ScaledPolynomial judged(const ScaledPolynomial&);
 template ScaledPolynomial switch_polynomial(const KernelWorkspace&, std::size_t, const double&);
 template ScaledPolynomial event_polynomial(const KernelWorkspace&, std::size_t, const double&);
 template std::optional<double> crossing(const ScaledPolynomial&, const Watched&);

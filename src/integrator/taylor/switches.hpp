@@ -45,9 +45,9 @@ struct ScaledPolynomialOf {
 using ScaledPolynomial = ScaledPolynomialOf<double>;
 
 /// The same over a part of the step so short that its first terms outweigh the others: else those that come first in
-/// time are lost among the sizes of those that grow fastest.
+/// time are lost among the sizes of those that grow fastest. Over the whole step where its first terms are rounding.
 template <class T>
-ScaledPolynomialOf<T> judged(ScaledPolynomialOf<T> polynomial);
+ScaledPolynomialOf<T> judged(const ScaledPolynomialOf<T>& whole);
 
 template <class Work, class T = typename ScalarOf<Work>::Type>
 ScaledPolynomialOf<T> switch_polynomial(const Work& work, std::size_t index, const std::type_identity_t<T>& h);

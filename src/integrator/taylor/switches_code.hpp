@@ -71,7 +71,8 @@ std::int8_t ScaledPolynomialOf<T>::direction(std::size_t from) const {
 }
 
 template <class T>
-ScaledPolynomialOf<T> judged(ScaledPolynomialOf<T> polynomial) {
+ScaledPolynomialOf<T> judged(const ScaledPolynomialOf<T>& whole) {
+  ScaledPolynomialOf<T> polynomial = whole;
   using std::abs;
   constexpr std::size_t early = 4;
   constexpr int most_halvings = 200;
@@ -83,7 +84,7 @@ ScaledPolynomialOf<T> judged(ScaledPolynomialOf<T> polynomial) {
     polynomial.reach = polynomial.scale;
     for (std::size_t k = 1; k < polynomial.p.size(); ++k) polynomial.reach += abs(polynomial.p[k]);
   }
-  return polynomial;
+  return polynomial.direction() == 0 ? whole : polynomial;  // its first terms are rounding
 }
 
 template <class Work, class T>

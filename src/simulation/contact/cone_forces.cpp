@@ -175,6 +175,7 @@ class UndeterminedRest {
 
   std::optional<VectorXd> with_margin(double margin) {
     constexpr int most_turns = 30;
+    constexpr double rounding = 1e-13;
     for (int turn = 0; turn < most_turns; ++turn) {
       const auto x = between_planes(1 - margin);
       if (!x) return std::nullopt;
@@ -182,8 +183,8 @@ class UndeterminedRest {
       for (std::size_t c = 0; c < first_.size(); ++c) {
         const VectorXd t = x->segment(first_[c] + 1, p_.contacts[c].tangents);
         const double most = (1 - 0.9 * margin) * p_.contacts[c].friction * (*x)(first_[c]);
-        if (!(t.norm() > most)) continue;
-        if (p_.contacts[c].tangents == 1) return std::nullopt;  // its planes are there: rounding
+        if (!(t.norm() > most + rounding * x->cwiseAbs().maxCoeff())) continue;  // all may be at the tip of a cone
+        if (p_.contacts[c].tangents == 1) return std::nullopt;                   // its planes are there: rounding
         is_inside = false;
         touch(c, t.normalized());
       }

@@ -99,6 +99,12 @@ bool is_of_positions(Expr function) {
   });
 }
 
+bool is_of_parameters(Expr value) {
+  const ExprVector symbols = symbols_of({&value, 1});
+  return std::all_of(symbols.begin(), symbols.end(),
+                     [](const Expr& s) { return s.role() == Role::Parameter || s.role() == Role::Constant; });
+}
+
 double dot(const SparseRow& row, const Eigen::VectorXd& x) {
   double sum = 0;
   for (const auto& [i, value] : row) sum += value * x(static_cast<Index>(i));

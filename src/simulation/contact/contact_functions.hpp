@@ -90,6 +90,9 @@ class ContactFunctions {
 /// Whether impacts do not change it: no velocities, accelerations or forces stand in it.
 bool is_of_positions(Expr function);
 
+/// Whether it stays what it is, whatever moves.
+bool is_of_parameters(Expr value);
+
 inline Eigen::Index at(std::size_t i) { return static_cast<Eigen::Index>(i); }
 double dot(const SparseRow& row, const Eigen::VectorXd& x);
 

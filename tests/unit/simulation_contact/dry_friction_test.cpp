@@ -683,3 +683,83 @@ TEST_CASE("where static friction leaves a choice as a slip stops, it is told wit
   for (const auto* r : {&one, &other}) CHECK(r->remarks.empty());
   for (std::size_t i = 0; i < 3; ++i) CHECK(one.final.q[i] == doctest::Approx(other.final.q[i]).epsilon(1e-13));
 }
+
+namespace {
+
+/// A wheel in a corner that a torque turns towards the wall.
+std::string wheel_in_a_corner(const std::string& torque, const std::string& floor, const std::string& wall) {
+  return "param m = 10 kg, R = 0.3 m, g = 9.81 m/s^2, c = 10 N m/s, a = 1 s\ncoord x, y : length, θ : angle\n"
+         "body W mass m inertia m R^2/2 at (x, y) rotation angle θ\ntorque on W = " +
+         torque +
+         "\ngravity (0, -g)\n"
+         "contact y >= R friction " +
+         floor + " slip x' + R θ' name floor\ncontact x >= R friction " + wall +
+         " slip y' - R θ' name wall\nstart x = R, y = R\n";
+}
+
+}  // namespace
+
+TEST_CASE("a wheel in a corner rests under a torque that begins, until floor and wall both slide") {
+  const double most = 0.3 * 9.81 * 10 / (1 + 0.4 * 0.3) * (0.4 + 0.4 * 0.3);  // torque that friction can hold
+  const double ratio = most / 10;                                             // of c × 1 s
+  struct Beginning {
+    std::string torque;
+    double t;
+  };
+  for (const Beginning& begins :
+       {Beginning{"c t", ratio}, Beginning{"c t^2/a", std::sqrt(ratio)}, Beginning{"c t^3/a^2", std::cbrt(ratio)},
+        Beginning{"c t^4/a^3", std::pow(ratio, 0.25)}, Beginning{"2 c a sin(t/a)", std::asin(ratio / 2)}}) {
+    const auto r = run_text(wheel_in_a_corner(begins.torque, "0.4", "0.3"), 3);
+    CHECK(r.first_mode == "floor sticking, wall sticking");
+    REQUIRE(r.happenings.size() >= 2);
+    CHECK(r.happenings[0].t == doctest::Approx(begins.t).epsilon(1e-11));
+    CHECK(r.happenings[1].mode == "floor sliding +, wall sliding −");
+    CHECK(r.final.q[0] == doctest::Approx(0.3).epsilon(1e-15));
+    CHECK(r.final.q[1] == doctest::Approx(0.3).epsilon(1e-15));
+  }
+  const auto r = run_text(wheel_in_a_corner("c t", "0.4", "0.3"), 3);
+  // I θ'' = c t − most from then on
+  CHECK(r.final.v[2] == doctest::Approx((5 * (9 - ratio * ratio) - most * (3 - ratio)) / 0.45).epsilon(1e-12));
+  const auto away = run_text(wheel_in_a_corner("-c t", "0.4", "0.3"), 1);
+  CHECK(away.first_mode == "floor sticking");
+  CHECK(away.final.q[0] == doctest::Approx(0.3 + 10 / (6 * 1.5 * 10 * 0.3)).epsilon(1e-14));
+}
+
+TEST_CASE("a contact whose coefficient of friction is 0 is smooth") {
+  // The wall holds x, and the floor what it can: c t = μ m g R.
+  for (const bool in_space : {false, true}) {
+    std::string text = wheel_in_a_corner("c t", "0.4", "0");
+    if (in_space)
+      text =
+          "param m = 10 kg, R = 0.3 m, g = 9.81 m/s^2, c = 10 N m/s, μ = 0\n"
+          "coord x, y, z : length, α, β, θ : angle\n"
+          "body W mass m inertia diag(m R^2/2, m R^2/2, m R^2/2) at (x, y, z) rotation rpy (α, β, θ)\n"
+          "torque on W = (0, 0, c t)\ngravity (0, -g, 0)\n"
+          "contact y >= R friction 0.4 slip (x' + R θ', z') name floor\n"
+          "contact x >= R friction μ slip (y' - R θ', z') name wall\nstart x = R, y = R\n";
+    const auto r = run_text(text, 3);
+    CHECK(r.first_mode == "floor sticking, wall");
+    REQUIRE(r.happenings.size() == 1);
+    CHECK(r.happenings[0].t == doctest::Approx(0.4 * 9.81 * 0.3).epsilon(1e-12));
+    CHECK(r.final.reactions[0] == doctest::Approx(98.1).epsilon(1e-13));
+    CHECK(r.final.reactions[1] == doctest::Approx(39.24).epsilon(1e-13));
+  }
+}
+
+TEST_CASE("a block that would tip and slide at the same force rests until then") {
+  const std::string block =
+      "param m = 10 kg, b = 0.5 m, h = 1 m, g = 9.81 m/s^2, c = 10 N/s\ncoord x, y : length, θ : angle\n"
+      "body K mass m inertia m (b^2 + h^2)/12 at (x, y) rotation angle θ\n"
+      "point pl at (-b/2, -h/2) in K\npoint pr at (b/2, -h/2) in K\n"
+      "gravity (0, -g)\nforce on K = (c t, 0)\n"
+      "contact pl.y >= 0 friction 0.5 slip pl.x' name left\ncontact pr.y >= 0 friction 0.5 slip pr.x' name right\n"
+      "start y = h/2\n";
+  const auto r = run_text(block, 6);
+  const double begins = 0.5 * 98.1 / 10;
+  CHECK(r.statistics.steps < 50);
+  REQUIRE(!r.happenings.empty());
+  CHECK(r.happenings.back().t == doctest::Approx(begins).epsilon(1e-10));
+  // It slides: m x'' = c t − μ m g, and does not tip.
+  CHECK(r.final.v[0] == doctest::Approx(5 * std::pow(6 - begins, 2) / 10).epsilon(1e-9));
+  CHECK(std::abs(r.final.q[2]) < 1e-12);
+}

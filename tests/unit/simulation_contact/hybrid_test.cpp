@@ -211,6 +211,23 @@ TEST_CASE("backwards through an impact is refused") {
   CHECK(r.reason.find("Backwards") != std::string::npos);
 }
 
+TEST_CASE("backwards from a contact that opens at the start there is no motion") {
+  const std::string ball =
+      "param m = 1 kg, g = 9.81 m/s^2\ncoord z : length\nT = 1/2 m z'^2\nV = m g z\n"
+      "contact z >= 0 restitution 0.8 name floor\nstart z = 0 m, z' = ";
+  ModelText opens(ball + "3 m/s\n");
+  const auto r = run(opens, -0.5);
+  CHECK(r.ending == Ending::Paradox);
+  CHECK(r.reason.find("Backwards in time the motion meets a change of contact here") == 0);
+  CHECK(r.final.t == 0);
+  CHECK(r.final.q[0] == 0);
+  // One that is lifted off without speed was open before too.
+  ModelText touches("dimensionless\ncoord z : number\nT = 1/2 z'^2\nV = -z\ncontact z >= 0 name floor\nstart z = 0\n");
+  const auto parabola = run(touches, -2);
+  CHECK(parabola.ok());
+  CHECK(parabola.final.q[0] == doctest::Approx(2).epsilon(1e-14));
+}
+
 TEST_CASE("a table on four legs: λ is not determined, the motion is") {
   ModelText m(
       "param m = 1 kg, g = 9.81 m/s^2, J = 1 kg m^2\ncoord z : length, a, b : angle\n"
