@@ -103,8 +103,8 @@ class TaylorStepper {
   /// Whether t lies in the last step, its ends included.
   bool covers(double t) const;
   /// The motion at a time in the last step, from the step's own polynomial; accelerations and observables by the
-  /// kernel at that point. Also at the start, before any step. Where the forces have no value a and observables are
-  /// NaN. Precondition: covers(t).
+  /// kernel at that point. Also at the start, before any step. Where the forces have no value a is NaN, and so are
+  /// multipliers and observables that depend on them. Precondition: covers(t).
   Sample sample(double t) const;
   /// The state alone, from the polynomial: no evaluation of the kernel. q, v: [n].
   void state(double t, std::span<double> q, std::span<double> v) const;

@@ -144,6 +144,8 @@ class KernelWorkspace {
   KernelStatus expand(double t, std::span<const double> q, std::span<const double> v);
   /// The same up to q̈ and the observables alone.
   KernelStatus evaluate(double t, std::span<const double> q, std::span<const double> v);
+  /// After `evaluate` without a solution: observables that need no q̈ and no λ have their values, the others are NaN.
+  void observe_without_solution();
 
   /// The k-th coefficients of q [n], 0 ≤ k ≤ order + 1 (after `evaluate` k ≤ 2).
   const double* coordinate(int k) const;

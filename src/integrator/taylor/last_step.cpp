@@ -74,8 +74,11 @@ Sample LastStep::sample(double time, KernelWorkspace& point) const {
   const bool ok = point.evaluate(time, result.q, result.v) == KernelStatus::Ok;
   for (std::size_t i = 0; i < n; ++i) result.a.push_back(ok ? point.acceleration(i) : nothing);
   result.multipliers.assign(multipliers_, nothing);
-  if (ok) multipliers_of(point, result.multipliers);
-  for (std::size_t i = 0; i < observables_; ++i) result.observables.push_back(ok ? point.observable(i) : nothing);
+  if (ok)
+    multipliers_of(point, result.multipliers);
+  else
+    point.observe_without_solution();  // a place has its value where a force along it has none
+  for (std::size_t i = 0; i < observables_; ++i) result.observables.push_back(point.observable(i));
   turns.add_to(result.observables);
   for (std::size_t i = 0; i < n; ++i) result.q[i] = turns.unwound(i, position[i]);
   return result;

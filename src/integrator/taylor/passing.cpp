@@ -207,6 +207,7 @@ void TaylorStepper::Impl::pass(const Collocation& c, double bound, Step& result)
     if (watched.switches[i].side != c.sides[i]) ++switches, result.switches.push_back(i);
     watched.switches[i] = {c.sides[i], false};
   }
+  watched.set_sides(probe);  // what is asked of its end lies beyond the place
   result.end = state.t.hi;
   result.ending = StepEnding::None;
   result.reason.clear();

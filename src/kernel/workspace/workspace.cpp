@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 /// The structured Taylor step (docs/design/kernel_program.md). Stage k finds q_{k+2}: with it set to 0 the residual is
 /// evaluated at order k, M₀ q̈_k = −R_k gives the acceleration, and every coefficient that later orders read is
@@ -46,7 +47,7 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   double *const position = x.memory.row(0), *const velocity = x.memory.row(1);
   for (std::size_t i = 0; i < q.size(); ++i) position[i] = q[i], velocity[i] = v[i];
   if (run_unrolled(q, v, stages)) return KernelStatus::Ok;
-  run_first_stages();
+  run_first_stages(0);
   if (const auto status = solver.factor(stages); status != KernelStatus::Ok) return without_solution(status);
   for (int stage = 0; stage < stages; ++stage) {
     if (stage > 0 && runs_on()) return run_later_stages(stages) ? KernelStatus::Ok : KernelStatus::NonFinite;
@@ -76,10 +77,10 @@ bool KernelWorkspace::Impl::run_unrolled(std::span<const double> q, std::span<co
   return true;
 }
 
-/// Up to 0, but for its solution.
-void KernelWorkspace::Impl::run_first_stages() {
+/// Up to 0, with these unknowns in the place of its solution.
+void KernelWorkspace::Impl::run_first_stages(double unknowns) {
   workspace::Expansion& x = expansion;
-  std::fill_n(x.memory.row(2), x.padded_unknowns(), 0.0);
+  std::fill_n(x.memory.row(2), x.padded_unknowns(), unknowns);
   const auto first = in_code.code.first;
   if (first) first(&in_code.arguments);
   for (int stage = x.program.first_stage; stage <= 0; ++stage) {
@@ -198,6 +199,11 @@ KernelStatus KernelWorkspace::expand(double t, std::span<const double> q, std::s
 
 KernelStatus KernelWorkspace::evaluate(double t, std::span<const double> q, std::span<const double> v) {
   return impl_->run(t, q, v, 1);
+}
+
+void KernelWorkspace::observe_without_solution() {
+  impl_->run_first_stages(std::numeric_limits<double>::quiet_NaN());
+  impl_->at_point.run(impl_->expansion.memory, 0);
 }
 
 }  // namespace maupertuis

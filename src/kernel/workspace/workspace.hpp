@@ -14,7 +14,7 @@ struct KernelWorkspace::Impl {
   bool outputs_follow_accelerations() const;
   KernelStatus run(double t, std::span<const double> q, std::span<const double> v, int stages);
   bool run_unrolled(std::span<const double> q, std::span<const double> v, int stages);
-  void run_first_stages();
+  void run_first_stages(double unknowns);
   KernelStatus without_solution(KernelStatus status);
   KernelStatus run_step_by_step(int stage);
   bool runs_on() const;

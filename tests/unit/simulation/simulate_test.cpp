@@ -31,6 +31,18 @@ run 10 s
 
 }  // namespace
 
+TEST_CASE("a place has its value where a force along it has none") {
+  // The direction of the damper is undefined as P starts at O; x' = e^(−2 t) from there on.
+  ModelText m(
+      "param m = 1 kg\ncoord x, y, z : length\npoint P mass m at (x, y, z)\ndamper P - O coefficient 2 N s/m\n"
+      "start x' = 1 m/s\nrun 1 s\n");
+  const SimulationResult r = run(m);
+  CHECK(r.final.v[0] == doctest::Approx(std::exp(-2)).epsilon(1e-14));
+  for (const char* const place : {"P.x", "P.y", "P.z"}) CHECK(r.trajectory.at(0, *r.trajectory.column(place)) == 0);
+  CHECK(r.trajectory.at(0, *r.trajectory.column("energy")) == 0.5);
+  CHECK(r.statistics.energy_drift < 1e-14);
+}
+
 TEST_CASE("rows of steps show oscillations that are faster than a thousandth of the run") {
   const auto fork = [](const char* frequency) {
     return ModelText(
