@@ -108,6 +108,9 @@ class TaylorStepper {
   Sample sample(double t) const;
   /// The state alone, from the polynomial: no evaluation of the kernel. q, v: [n].
   void state(double t, std::span<double> q, std::span<double> v) const;
+  /// q̈ of the step's own polynomial, until the next call: at its ends too where the forces have no value, as
+  /// max(x, 0)^(3/2) that rounding takes beyond 0. [n] Precondition: covers(t), and a step was made.
+  std::span<const double> accelerations_of_step(double t) const;
   /// The motion at the beginning of the last step, at no cost: accelerations and observables come with the step.
   const Sample& step_start() const;
   /// The largest of φ and of dφ/dt or ψ so far, each in units of the sizes of its terms, as the steps began.

@@ -32,22 +32,23 @@ double scale_of(std::span<const double> direction) {
   return largest > 0 && std::isfinite(largest) ? std::ldexp(1.0, exponent_of_directions - std::ilogb(largest)) : 0.0;
 }
 
-/// Whether the accelerations of the motion jump where a step ended at a switch.
+/// Whether the accelerations of the motion jump where a step ended at a switch. They are those of the steps'
+/// polynomials: a formula may have no value there to rounding.
 class JumpWatch {
  public:
   explicit JumpWatch(std::size_t n) : n_(n), largest_(n, 0.0) {}
 
-  /// The beginning of a step that was made; the time of a jump that lies there.
-  std::optional<double> at_beginning(const Sample& begin) {
-    for (std::size_t i = 0; i < n_; ++i) largest_[i] = std::max(largest_[i], std::abs(begin.a[i]));
-    const bool jumps = !before_.empty() && differs(begin.a);
+  /// The accelerations with which a step begins that was made; whether they have jumped.
+  bool at_beginning(std::span<const double> a) {
+    for (std::size_t i = 0; i < n_; ++i) largest_[i] = std::max(largest_[i], std::abs(a[i]));
+    const bool jumps = !before_.empty() && differs(a);
     before_.clear();
-    return jumps ? std::optional(begin.t) : std::nullopt;
+    return jumps;
   }
-  void switched(Sample end) { before_ = std::move(end.a); }
+  void switched(std::span<const double> a) { before_.assign(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(n_)); }
 
  private:
-  bool differs(const std::vector<double>& after) const {
+  bool differs(std::span<const double> after) const {
     for (std::size_t i = 0; i < n_; ++i)
       if (!(std::abs(after[i] - before_[i]) <= least_jump * largest_[i])) return true;
     return false;
@@ -164,10 +165,10 @@ class Group {
     const Step step = stepper_.step(t);
     if (step.ending != StepEnding::None) return TangentStop{step.ending, step.begin, step.reason};
     if (of_time_.empty()) return std::nullopt;
-    if (const auto jump = jumps_.at_beginning(stepper_.step_start())) return jump_at(*jump);
+    if (jumps_.at_beginning(stepper_.accelerations_of_step(step.begin))) return jump_at(step.begin);
     const bool parts_neighbours =
         std::any_of(step.switches.begin(), step.switches.end(), [&](std::size_t i) { return !of_time_[i]; });
-    if (parts_neighbours) jumps_.switched(stepper_.sample(stepper_.time()));
+    if (parts_neighbours) jumps_.switched(stepper_.accelerations_of_step(step.end));
     return std::nullopt;
   }
 

@@ -84,6 +84,8 @@ Sample LastStep::sample(double time, KernelWorkspace& point) const {
   return result;
 }
 
+std::span<const double> LastStep::accelerations(double time) const { return dense.accelerations(tau_of(time)); }
+
 void LastStep::state(double time, std::span<double> q, std::span<double> v) const {
   std::vector<Compensated> position(dense.q.size()), velocity(dense.q.size()), integral(dense.integrals.size());
   dense.advance(tau_of(time), position, velocity, integral);

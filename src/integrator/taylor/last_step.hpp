@@ -21,6 +21,7 @@ class LastStep {
   /// `point` has the parameters and sides of the step.
   Sample sample(double time, KernelWorkspace& point) const;
   void state(double time, std::span<double> q, std::span<double> v) const;
+  std::span<const double> accelerations(double time) const;  // of the polynomial
   double tau_of(double time) const { return (time - begin.hi) - begin.lo; }
   /// How far it went to this time: the rounding of t counts in short steps.
   double tau_of(const Compensated& time) const { return (time.hi - begin.hi) + (time.lo - begin.lo); }

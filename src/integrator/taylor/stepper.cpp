@@ -340,6 +340,11 @@ void TaylorStepper::state(double t, std::span<double> q, std::span<double> v) co
   impl_->last.state(t, q, v);
 }
 
+std::span<const double> TaylorStepper::accelerations_of_step(double t) const {
+  MAUP_REQUIRE(covers(t));
+  return impl_->last.accelerations(t);
+}
+
 double TaylorStepper::constraint_residual() const { return impl_->constraints.residual; }
 const Sample& TaylorStepper::step_start() const {
   Impl& s = *impl_;

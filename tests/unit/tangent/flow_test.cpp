@@ -194,6 +194,38 @@ TEST_CASE("switches: a spring that only pushes is differentiable, a constant for
   CHECK(flow.advance(q, 3)->t == stop->t);
 }
 
+TEST_CASE("switches: through forces that begin with a root the derivative keeps H and areas") {
+  struct Force {
+    const char* text;
+    double factor, power, from;
+  };
+  for (const Force& f : {Force{"-10 max(x, 0)^(3/2)", 10, 1.5, 0}, Force{"-10 max(x, 0)^(6/5)", 10, 1.2, 0},
+                         Force{"-10 max(x - 0.1, 0)^(5/2)", 10, 2.5, 0.1}}) {
+    const ModelText m(std::string("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\nforce x = ") + f.text +
+                      "\nstart x = 0.9, x' = 0.2\n");
+    const auto slope = [&](double x) { return x + f.factor * std::pow(std::max(x - f.from, 0.0), f.power); };
+    TangentFlow flow(m.equations);
+    TangentPoint p = flow.all_directions(start_of(m));
+    const TangentPoint begin = p;
+    REQUIRE_FALSE(flow.advance(p, 7));  // some turns
+    const auto& d = p.directions;
+    CHECK(determinant(d) == doctest::Approx(determinant(begin.directions)).epsilon(1e-11));
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto after = column(p, k), before = column(begin, k);
+      CHECK(slope(p.state.q[0]) * after[0] + p.state.v[0] * after[1] ==
+            doctest::Approx(slope(0.9) * before[0] + 0.2 * before[1]).epsilon(1e-10));
+    }
+    // Along H it is the time that it gains.
+    const auto end = [&](double x) {
+      TangentPoint q = begin;
+      q.state.q[0] = x;
+      REQUIRE_FALSE(flow.advance(q, 7));
+      return q.state.q[0];
+    };
+    CHECK(column(p, 0)[0] == doctest::Approx((end(0.9 + 1e-5) - end(0.9 - 1e-5)) / 2e-5).epsilon(1e-5));
+  }
+}
+
 TEST_CASE("many coordinates go in groups whose motions agree") {
   const ModelText m(chain(9));
   TangentFlow flow(m.equations);
