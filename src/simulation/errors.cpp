@@ -61,11 +61,12 @@ class Teller {
     for (Happening& h : result_.happenings) {
       const Like like{h.kind, h.name};
       const std::size_t count = counts[like]++;
-      h.error = error_of(h.t, [&](const CompanionRun& run) {
+      const double by_companions = error_of(h.t, [&](const CompanionRun& run) {
         const auto& of_run = times[static_cast<std::size_t>(&run - companions_.runs.data())];
         const auto found = of_run.find(like);
         return found != of_run.end() && count < found->second.size() ? found->second[count] : infinity;
       });
+      h.error = std::max(h.error, by_companions);
     }
   }
 

@@ -101,12 +101,20 @@ class Directions {
   }
 
   bool find() {
-    constexpr int most_turns = 8;
+    // The cones give φ_0 to their own rounding only: at a limit, where all is turned little, to its root. Slips that
+    // are bound to each other take the differences of φ_0 from the next order, which moves what was found before.
+    constexpr int most_sweeps = 60;
+    constexpr double settled = 1e-15, falls = 0.9;
     if (!find_sizes()) return false;
-    for (int turn = 0; turn < most_turns; ++turn)  // the cones give φ_0 to their own rounding only
-      if (!improve(0)) return false;
-    for (std::size_t k = 1; k <= degree; ++k)
-      if (!improve(k)) return false;
+    double before = std::numeric_limits<double>::infinity();
+    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+      const std::vector<Series> last = angles_;
+      if (!improve_all()) return false;
+      double moved = 0;
+      for (std::size_t c = 0; c < angles_.size(); ++c) moved = std::max(moved, std::abs(angles_[c][0] - last[c][0]));
+      if (moved <= settled || !(moved < falls * before)) break;
+      before = moved;
+    }
     return slips_.follow(angles_);
   }
 
@@ -140,6 +148,15 @@ class Directions {
   }
 
  private:
+  bool improve_all() {
+    constexpr int most_turns = 8;
+    for (int turn = 0; turn < most_turns; ++turn)
+      if (!improve(0)) return false;
+    for (std::size_t k = 1; k <= degree; ++k)
+      if (!improve(k)) return false;
+    return true;
+  }
+
   /// What friction does to v̇_t: half of what changes where it is turned round.
   bool find_sizes() {
     sizes_.assign(angles_.size(), 0);
@@ -215,14 +232,14 @@ class Directions {
     return true;
   }
 
-  /// Until the later powers of a slip add up to half of what its first one is.
+  /// Until the later powers of a slip may have taken half of what its first one is: those that add to it do not.
   double growth(std::size_t c) const {
     const int first = std::abs(slips_.along(c, 1)) > negligible_ * sizes_[c] ? 1 : 2;
     const double leads = first * slips_.along(c, first);
     if (!(leads > 0)) return 0;
     double most = std::numeric_limits<double>::infinity();
     for (int k = first + 1; k <= degree + 1; ++k)
-      if (const double x = std::abs(k * slips_.along(c, k)); x > 0)
+      if (const double x = -k * slips_.along(c, k); x > 0)
         most = std::min(most, std::pow(0.5 * leads / x, 1.0 / (k - first)));
     return 0.5 * most;
   }

@@ -396,15 +396,25 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
   for (std::size_t i = 0; i < released_.size(); ++i)
     if (released_[i] && !found->mode.closed[i]) released_at_[i] = t_;
   note_indeterminate(list, found->mode, values);
-  if (now_->given.is_preload && !found->given.is_preload && pending_->hit.empty() && pending_->sets.empty())
-    remark(
-        "A rest whose contact forces are not determined ends where none within their limits are found any more: that "
-        "time "
-        "is known to some 1e-8 of itself.");
+  const bool rest_ends =
+      now_->given.is_preload && !found->given.is_preload && pending_->hit.empty() && pending_->sets.empty();
+  const std::size_t first = record_.happenings.size();
   const ContactMode before = now_->mode;
   now_ = &motion_in(found->mode, found->given);
   record_changes(before, found->mode);
+  if (rest_ends) note_end_of_rest(first);
   return true;
+}
+
+/// Of a rest whose forces were not determined, in what was recorded from `first` on: companions look for forces as the
+/// run itself does, so that their difference does not tell to what these were sought.
+void HybridMotion::note_end_of_rest(std::size_t first) {
+  constexpr double known = 1e-10;
+  for (std::size_t k = first; k < record_.happenings.size(); ++k) record_.happenings[k].error = known * std::abs(t_);
+  remark(
+      "A rest whose contact forces are not determined ends where none within their limits are found any more: that "
+      "time "
+      "is known to some 1e-10 of itself.");
 }
 
 void HybridMotion::record_changes(const ContactMode& before, const ContactMode& after) {

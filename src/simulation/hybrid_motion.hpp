@@ -215,6 +215,7 @@ class HybridMotion final : public Method {
   bool may_be_several(const ContactMode& mode, const ContactValues& values);
   bool may_be_painleve(const std::vector<Choice>& list, const ContactValues& values);
   void note_indeterminate(const std::vector<Choice>& list, const ContactMode& mode, const ContactValues& values);
+  void note_end_of_rest(std::size_t first);
   void record_changes(const ContactMode& before, const ContactMode& after);
   void add(Happening::Kind kind, const std::string& name, double impulse = 0, double speed = 0,
            const std::string& remark = {});

@@ -99,13 +99,16 @@ double HybridMotion::end_of_slips() {
   return out;
 }
 
-/// ∂g/∂q − μ Σ_k v_tk/|v_t| ∂v_tk/∂q̇: what a unit of the normal force does while it slides.
+/// ∂g/∂q − μ Σ_k d_k ∂v_tk/∂q̇: what a unit of the normal force does while it slides along d = v_t/|v_t|, or begins to
+/// slide along d.
 SparseRow HybridMotion::sliding_force(std::size_t i, const ContactValues& values) const {
   const double speed = slip_speed_at(i, values), mu = values.kinetic[i];
-  SparseRow out = sum_of(values.normal[i], values.tangent[i], -mu * values.slip[i] / speed);
-  if (!values.second_tangent[i].empty())
-    out = sum_of(out, values.second_tangent[i], -mu * values.second_slip[i] / speed);
-  return out;
+  const bool begins = begins_to_slide_[i] && !(speed > rest_slip(i, values));
+  const double along = begins ? std::cos(begins_towards_[i]) : values.slip[i] / speed;
+  SparseRow out = sum_of(values.normal[i], values.tangent[i], -mu * along);
+  if (values.second_tangent[i].empty()) return out;
+  const double across = begins ? std::sin(begins_towards_[i]) : values.second_slip[i] / speed;
+  return sum_of(out, values.second_tangent[i], -mu * across);
 }
 
 /// Contacts that touch and do not open, as one problem over their cones.

@@ -545,3 +545,35 @@ TEST_CASE("bodies on three feet slide, turn and stop at any order: all feet at o
     }
   }
 }
+
+TEST_CASE("a table on four legs rests on a plane that tilts until tan w t = μ, and slides straight on") {
+  const std::string table =
+      "param m = 10 kg, g = 9.81 m/s^2, w = 0.2 rad/s\ncoord x, y, z : length, α, β, γ : angle\n"
+      "body K mass m inertia diag(1, 1, 1.5) kg m^2 at (x, y, z) rotation rpy (α, β, γ)\n"
+      "point p1 at (0.5 m, 0.4 m, -0.2 m) in K\npoint p2 at (-0.5 m, 0.4 m, -0.2 m) in K\n"
+      "point p3 at (-0.5 m, -0.4 m, -0.2 m) in K\npoint p4 at (0.5 m, -0.4 m, -0.2 m) in K\n"
+      "gravity (g sin(w t), 0, -g cos(w t))\n"
+      "contact p1.z >= 0 friction 0.3 slip (p1.x', p1.y') name c1\n"
+      "contact p2.z >= 0 friction 0.3 slip (p2.x', p2.y') name c2\n"
+      "contact p3.z >= 0 friction 0.3 slip (p3.x', p3.y') name c3\n"
+      "contact p4.z >= 0 friction 0.3 slip (p4.x', p4.y') name c4\nstart z = 0.2 m\n";
+  const double begins = std::atan(0.3) / 0.2;
+  const auto rests = run_text(table, 1.4);
+  CHECK(rests.happenings.empty());
+  CHECK(rests.final.q[0] == 0);
+  for (const double end : {1.47, 2.0}) {
+    const auto r = run_text(table, end);
+    REQUIRE(!r.happenings.empty());
+    for (const Happening& h : r.happenings) {
+      CHECK(std::abs(h.t - begins) <= h.error);
+      CHECK(h.error < 1e-9);
+    }
+    CHECK(r.statistics.steps < 5000);
+    // x'' = g (sin w t − μ cos w t)
+    const double a = 0.2 * begins, b = 0.2 * end;
+    CHECK(r.final.v[0] ==
+          doctest::Approx(9.81 / 0.2 * (std::cos(a) - std::cos(b) - 0.3 * (std::sin(b) - std::sin(a)))).epsilon(1e-9));
+    CHECK(std::abs(r.final.v[1]) < 1e-12);
+    CHECK(std::abs(r.final.q[5]) < 1e-12);
+  }
+}
