@@ -96,6 +96,9 @@ Saving::Saving(const std::string& path) {
   is_file_ = stat(path.c_str(), &status) != 0 || S_ISREG(status.st_mode);
   if (is_file_ && interrupted) set_timer(patience, most);
 }
+Saving::Saving() : is_file_(true) {
+  if (interrupted) set_timer(patience, most);
+}
 Saving::~Saving() {
   if (is_file_ && interrupted) set_timer(patience, grace);
 }

@@ -25,6 +25,8 @@ class Deadline {
 class Saving {
  public:
   explicit Saving(const std::string& path);
+  /// While a document is made of it, which waits for nobody.
+  Saving();
   ~Saving();
   Saving(const Saving&) = delete;
   Saving& operator=(const Saving&) = delete;

@@ -26,16 +26,26 @@ ExitCode worse(ExitCode a, ExitCode b) {
   return ExitCode::Fine;
 }
 
-ExitCode finish(Console& console, Study& study, Json document) {
+namespace {
+
+/// False where a number in it is none.
+bool print_checked(Console& console, Study& study, Json& document) {
+  const Saving saving;
   const bool numbers = check_numbers(document, study.diagnostics());
   if (console.json()) {
     document["ok"] = !study.wrong() && !interrupt_flag();
     if (interrupt_flag()) document["interrupted"] = true;
     document["diagnostics"] = to_json(study.diagnostics(), study.texts());
     console.print_document(document);
-  } else {
-    console.show(study.diagnostics(), study.texts());
   }
+  return numbers;
+}
+
+}  // namespace
+
+ExitCode finish(Console& console, Study& study, Json document) {
+  const bool numbers = print_checked(console, study, document);
+  if (!console.json()) console.show(study.diagnostics(), study.texts());
   if (unreadable(study.diagnostics()) || only_options_are_wrong(study)) return ExitCode::Usage;
   if (!numbers) return ExitCode::RunFailed;
   return study.wrong() ? ExitCode::ModelWrong : ExitCode::Fine;

@@ -106,6 +106,23 @@ TEST_CASE("what was found until then is printed and called partial") {
   CHECK(text.substr(text.size() - 2) == "\r\n");
 }
 
+TEST_CASE("a hundred thousand events do not outlast the time that an interrupt leaves") {
+  // Impacts between walls that come together accumulate at 10 s.
+  const Folder folder;
+  const std::string model = folder.write(
+      "walls.lag",
+      "param m = 1 kg, v = 1 m/s, L = 10 m\ncoord x : length\nT = 1/2 m x'^2\ncontact x >= 0 restitution 1 name left\n"
+      "contact x <= L - v t restitution 1 name right\nstart x = 1 m, x' = 3 m/s\nrun 11 s\n");
+  const Outcome text = interrupted({"simulate", model, "--no-errors"}, SIGINT, 5);
+  check_end(text);
+  CHECK(contains(text.out, "x' = "));
+  const Outcome json = interrupted({"simulate", model, "--no-errors", "--json"}, SIGTERM, 5);
+  check_end(json);
+  const auto document = nlohmann::json::parse(json.out, nullptr, false);
+  REQUIRE_FALSE(document.is_discarded());
+  CHECK(document["events"].size() > 100);
+}
+
 TEST_CASE("pipes that nobody reads or writes hold no command up") {
   const Folder folder;
   const std::string model = folder.write("pendulum.lag", pendulum), in = folder.path("model.lag"),

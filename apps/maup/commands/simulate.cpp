@@ -3,6 +3,7 @@
 #include "field_views.hpp"
 #include "fields_text.hpp"
 #include "happenings_text.hpp"
+#include "interrupt.hpp"
 #include "numbers.hpp"
 #include "outcome.hpp"
 #include "output_files.hpp"
@@ -96,7 +97,10 @@ Json uncertain_json(const SimulationResult& result) {
   return {{"from", result.uncertain.from}, {"what", std::move(names)}, {"everything", result.uncertain.everything}};
 }
 
-Json document_of(const SimulationResult& result, const MechanicalSystem& system) {
+/// `shown`: as JSON. Else it is there for its numbers to be looked at, and events, of which there may be a hundred
+/// thousand as impacts accumulate, would take the time that Ctrl-C leaves.
+Json document_of(const SimulationResult& result, const MechanicalSystem& system, bool shown) {
+  const Saving saving;
   Json document = json_document("simulate");
   document["system"] = system.name;
   document["final"] = state_json(result.final, result, system);
@@ -117,7 +121,7 @@ Json document_of(const SimulationResult& result, const MechanicalSystem& system)
                             {"companions", s.companions},
                             {"companion_seconds", s.companion_seconds}};
   document["uncertain"] = uncertain_json(result);
-  put_happenings(document, chronicle_of(result), system);
+  if (shown) put_happenings(document, chronicle_of(result), system);
   document["ended"] = {{"reason", result.reason.empty() ? std::string(word_of(result.ending)) : result.reason},
                        {"kind", word_of(result.ending)},
                        {"ok", result.ok()}};
@@ -240,7 +244,7 @@ ExitCode simulate_model(const SimulateOptions& options, Study& study, Console& c
       console.say(fmt::format("The run ended at {}: {}\n", system.moment(exact(result->final.t)), result->reason));
   }
   const bool files_written = !study.wrong();
-  const ExitCode told = finish(console, study, document_of(*result, system));
+  const ExitCode told = finish(console, study, document_of(*result, system, console.json()));
   return files_written && told != ExitCode::RunFailed ? exit_code(result->ending) : ExitCode::RunFailed;
 }
 
