@@ -409,12 +409,13 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
 /// Of a rest whose forces were not determined, in what was recorded from `first` on: companions look for forces as the
 /// run itself does, so that their difference does not tell to what these were sought.
 void HybridMotion::note_end_of_rest(std::size_t first) {
-  constexpr double known = 1e-10;
+  constexpr double in_plane = 4e-12, in_space = 1e-10;  // planes that touch a circular cone leave more of it open
+  const double known = in_space_ ? in_space : in_plane;
   for (std::size_t k = first; k < record_.happenings.size(); ++k) record_.happenings[k].error = known * std::abs(t_);
   remark(
-      "A rest whose contact forces are not determined ends where none within their limits are found any more: that "
-      "time "
-      "is known to some 1e-10 of itself.");
+      fmt::format("A rest whose contact forces are not determined ends where none within their limits are found any "
+                  "more: that time is known to some {:.0e} of itself.",
+                  known));
 }
 
 void HybridMotion::record_changes(const ContactMode& before, const ContactMode& after) {
