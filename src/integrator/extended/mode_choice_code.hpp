@@ -323,7 +323,8 @@ bool Modes<T>::choose(const std::vector<std::size_t>& touching, const Met& met) 
                 "more digits none are sought within its limits.");
   if (!found)
     return stop(StepEnding::Paradox, std::nullopt,
-                "No mode of the contacts and frictions was found that keeps its conditions here.");
+                bound_ < t_ ? through_modes::met_backwards
+                            : "No mode of the contacts and frictions was found that keeps its conditions here.");
   note_accelerations(first);
   if (last != found) static_cast<void>(fits(*found, touching, met, by_leniency, &first));
   const ExtendedMode before = now_->mode;

@@ -12,6 +12,10 @@ constexpr std::size_t most_at_once = 1000;  // changes at the same time
 constexpr std::size_t most_choices = 1024;  // modes that are tried
 constexpr std::size_t most_kept = 64;       // modes whose steppers are kept
 
+constexpr const char* met_backwards =
+    "Backwards in time the motion meets a change of contact here: what was before an impact or a stop does not follow "
+    "from what is after it.";
+
 inline std::string key_of(const ExtendedMode& mode) {
   std::string key;
   for (const bool closed : mode.closed) key += closed ? '1' : '0';

@@ -110,9 +110,7 @@ class Motion {
     if (met.nothing() || out_.met || out_.ending != StepEnding::None) return;
     if (forwards || (met.hit.empty() && met.left.empty())) return modes_.settle(met);
     out_.ending = StepEnding::Paradox;
-    out_.reason =
-        "Backwards in time the motion meets a change of contact here: what was before an impact or a stop does not "
-        "follow from what is after it.";
+    out_.reason = through_modes::met_backwards;
   }
 
   void meet_event(std::size_t index, int direction, typename Modes<T>::Met& met) {

@@ -113,3 +113,11 @@ TEST_CASE("friction in space is refused in many digits") {
   REQUIRE_FALSE(diagnostics.items().empty());
   CHECK(diagnostics.items().front().code == "E0725");
 }
+
+TEST_CASE("backwards from a contact that opens at the start there is no motion in many digits either") {
+  ExtendedSimulationOptions options;
+  options.duration = -1;
+  const ExtendedResult r = run(ModelText(ball.substr(0, ball.find("start")) + "start z = 0, z' = 3\n"), options);
+  CHECK(r.ending == Ending::Paradox);
+  CHECK(r.reason.find("Backwards in time the motion meets a change of contact here") != std::string::npos);
+}
