@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace maupertuis {
@@ -52,5 +53,9 @@ std::vector<ContactMode> modes_to_show(const MechanicalSystem& system, const Con
 /// Its equations are those of any system, and are certified as such. Reactions in normal forces have been replaced (see
 /// contact_normals).
 MechanicalSystem system_in_mode(const MechanicalSystem& system, const ContactMode& mode);
+
+/// Throws std::invalid_argument where the system has contacts or friction, which are no part of its equations: the
+/// caller of `who` would get the motion without them.
+void check_one_mode(const MechanicalSystem& system, std::string_view who);
 
 }  // namespace maupertuis

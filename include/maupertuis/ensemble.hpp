@@ -92,6 +92,9 @@ struct EnsembleResult {
   }
 };
 
+/// The sizes of the lists, and the order of the times; see below.
+void check_ensemble_start(const EnsembleStart& start, std::size_t coordinates, std::size_t parameters);
+
 /// Advances every trajectory from its begin to its end. Each has steps of its own length, as TaylorStepper chooses
 /// them; a trajectory that is done makes room for the next. Events end a trajectory.
 ///
@@ -103,7 +106,10 @@ struct EnsembleResult {
 /// on the number of threads, to the bit. (It may differ from TaylorStepper's by rounding errors, since sums are fused
 /// and taken in another order.) Backend::Automatic looks at the first trajectory and at the durations of all.
 ///
-/// Preconditions: sizes as the comments of EnsembleStart say; times ascending; every number finite; width as above.
+/// A trajectory with a number that is infinite or undefined, or with a start off the constraints (trouble_of_start),
+/// ends where it starts, with StepEnding::Refused and the reason.
+/// Throws std::invalid_argument, which names the list, where sizes are not those of the comments of EnsembleStart,
+/// times do not ascend, or the width is none of those above.
 EnsembleResult advance_ensemble(const Kernel& kernel, const EnsembleStart& start, const EnsembleOptions& options = {});
 
 }  // namespace maupertuis

@@ -34,12 +34,15 @@ struct ThroughModesOptions : EnsembleOptions {  // width, energy_terms and expan
 /// impacts and books, to the bit, whatever the other trajectories and the number of threads. Programs of modes are made
 /// once for all. An event that stops the run ends a motion; TrajectoryEnding::event is its number in
 /// model.experiment.events. `run until` is not looked at. A start that violates a contact, and an instant that no mode
-/// fits, end their own motion alone, with StepEnding::Paradox and the reason.
+/// fits, end their own motion alone, with StepEnding::Paradox and the reason. Values that a model text may not have (a
+/// restitution beyond 0 … 1, a negative coefficient of friction or mass) and starts off the constraints end it where it
+/// starts, with StepEnding::Refused.
 ///
 /// Nothing, with E0729 or E0730, where the program does not carry out impacts of this model.
 /// Memory: the arrays of the result, and one run a thread.
-/// Preconditions: goes_through_modes(model); sizes as EnsembleStart says, parameters in the order of the system; starts
-/// keep the constraints; no step_factors; nobody else works on the expressions of the model meanwhile.
+/// Parameters are in the order of the system. Throws std::invalid_argument, which names the argument, where sizes are
+/// not those that EnsembleStart says, times do not ascend, step_factors are given, or the model has no contacts,
+/// friction or events. Precondition: nobody else works on the expressions of the model meanwhile (library.md: threads).
 std::optional<ThroughModesResult> advance_ensemble(const Model& model, const EquationsOfMotion& equations,
                                                    const EnsembleStart& start, const ThroughModesOptions& options,
                                                    Diagnostics& diagnostics);

@@ -24,7 +24,9 @@ struct ForwardDynamicsOptions {
 };
 
 /// R(q,q̇,q̈,u,t) = M(q,t) q̈ + h(q,q̇,u,t) of a kernel. One thread at a time; as many objects as wanted for one kernel.
-/// Units are those of the kernel: row i of R has the unit of energy per unit of q_i.
+/// Units are those of the kernel: row i of R has the unit of energy per unit of q_i. Contacts and friction of a model
+/// are no part of a kernel: dynamics_source refuses such models. Lists of another length than the comments say:
+/// std::invalid_argument, which names them.
 class ForwardDynamics {
  public:
   /// `inputs`: parameters of the kernel whose values each call is given.
@@ -35,9 +37,11 @@ class ForwardDynamics {
 
   /// All parameters of the kernel, the inputs among them (typical values: they do not stay). Constant sub-expressions
   /// and the order of elimination are found here, and what is to be compiled is (10 ms and 20 µs a term; from the cache
-  /// 1 ms; not again where only numbers change): never in a call. Precondition: values.size() == kernel.parameters().
+  /// 1 ms; not again where only numbers change): never in a call. [parameters of the kernel]
   void set_parameters(std::span<const double> values);
-  /// As KernelWorkspace::set_branches. [switches]; initially +1
+  /// From then on values are those of these sides of the switch functions [switches], as
+  /// KernelWorkspace::set_branches. Without it, and after an empty list, each call is answered on the sides that hold
+  /// at its point: of a sign at its zero with 0. A point at which a switch function has no value is NonFinite.
   void set_branches(std::span<const std::int8_t> sides);
 
   /// q̈ [n] with R = 0, given q [n], q̇ [n], u [inputs]. Without constraints nothing is allocated, unless M is so close
@@ -46,13 +50,14 @@ class ForwardDynamics {
   KernelStatus accelerations(double t, std::span<const double> q, std::span<const double> v, std::span<const double> u,
                              std::span<double> a);
   /// Inverse dynamics: R(q,q̇,q̈,u,t) [n], the generalized forces that are missing for the motion to have the
-  /// accelerations a.
+  /// accelerations a; NaN where one of them has no value, as of `bias`.
   void forces(double t, std::span<const double> q, std::span<const double> v, std::span<const double> a,
               std::span<const double> u, std::span<double> out);
   /// h = R(q,q̇,0,u,t) [n]
   void bias(double t, std::span<const double> q, std::span<const double> v, std::span<const double> u,
             std::span<double> out);
-  /// M [n × n], row by row. Where it depends on an input, on that of the last call or set_parameters.
+  /// M [n × n], row by row, on the sides that hold. Where it depends on an input, on that of the last call or
+  /// set_parameters.
   void mass(double t, std::span<const double> q, std::span<const double> v, std::span<double> out);
   /// After SingularMass.
   std::size_t singular_coordinate() const;

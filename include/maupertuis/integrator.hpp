@@ -47,17 +47,24 @@ struct BackendUse {
   std::string cache_trouble;  // it could not be kept for the next run
 };
 
+/// One sentence where a start is none that a motion begins with, else empty: a number is infinite or undefined, or the
+/// start is off the constraints, so that q or q̇ would have to be moved by more than 10⁻⁹ of their sizes. Cost: that of
+/// some steps.
+std::string trouble_of_start(const Kernel& kernel, std::span<const double> parameters, double t,
+                             std::span<const double> q, std::span<const double> v);
+
 /// Advances a motion by steps whose order and length follow from the tolerance (Jorba and Zou). The state is summed
 /// with compensation. Every zero of a switch function ends a step at its located root, and so do events.
 class TaylorStepper {
  public:
-  /// Precondition: parameters.size() == kernel.parameters().
+  /// Parameters in the order of the kernel. Lists of another length, here and below: std::invalid_argument.
   TaylorStepper(const Kernel& kernel, std::span<const double> parameters, const TaylorOptions& options);
   ~TaylorStepper();
   TaylorStepper(TaylorStepper&&) noexcept;
 
   int order() const;
   /// Begins a run; integrals and statistics start at zero. `rest`: what t leaves of the time, where it is known better.
+  /// A start off the constraints is brought to them by the first step, without a word: trouble_of_start tells.
   void start(double t, std::span<const double> q, std::span<const double> v, double rest = 0);
   /// What a root of an event does. Those that do not end the step are told with it, at their own times, and cost it
   /// nothing: the motion is the one without them, to the bit.
@@ -113,7 +120,8 @@ class TaylorStepper {
   std::span<const double> accelerations_of_step(double t) const;
   /// The motion at the beginning of the last step, at no cost: accelerations and observables come with the step.
   const Sample& step_start() const;
-  /// The largest of φ and of dφ/dt or ψ so far, each in units of the sizes of its terms, as the steps began.
+  /// The largest of φ and of dφ/dt or ψ so far, each in units of the sizes of its terms, as the steps after the
+  /// first began.
   double constraint_residual() const;
 
  private:

@@ -75,8 +75,8 @@ class Kernel {
 };
 
 /// Lowers expressions to a program. Cost about linear in the number of nodes.
-/// Throws std::logic_error for a symbol that the source does not list, for a residual that is not linear in q̈, and for
-/// a third derivative of a coordinate.
+/// Throws std::invalid_argument for a symbol that the source does not list, for a residual that is not linear in q̈, and
+/// for a third derivative of a coordinate.
 Kernel build_kernel(const KernelSource& source);
 
 /// How a compilation went.
@@ -132,8 +132,13 @@ class KernelWorkspace {
   /// dependent rows of A is rounding of these.
   void set_usual_accelerations(std::span<const double> accelerations);
   /// Which side of its zero each switch function is taken to be on: +1, −1, or 0 (it vanishes identically).
-  /// [switches]; initially +1.
+  /// [switches]; initially +1. Values are those of these sides wherever the point lies: choose_branches for others.
   void set_branches(std::span<const std::int8_t> sides);
+  /// Sets the branches that hold at a point: the side of its zero on which each switch function is there, 0 where it
+  /// vanishes. False: one of them has no value. Cost: some evaluations, one more than functions stand within each
+  /// other.
+  bool choose_branches(double t, std::span<const double> q, std::span<const double> v);
+  std::span<const std::int8_t> branches() const;
 
   /// The Taylor coefficients of the motion through (t, q, q̇) under the branches set, and of the switch functions,
   /// events and integrands along it; observables at (t, q, q̇) itself.

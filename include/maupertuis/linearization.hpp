@@ -44,6 +44,8 @@ class PointEquations {
  public:
   /// `outputs`: what is measured, functions y of q, q̇, q̈, λ, reactions, u and t, which `linearize` takes along.
   /// Cost: n + m reverse sweeps over the residual and the constraints, and one an output.
+  /// Throws std::invalid_argument where the model has contacts or friction, which are no part of its equations: take
+  /// those of one mode (system_in_mode, Study::fix_mode). Threads: study.hpp.
   explicit PointEquations(const EquationsOfMotion& equations, std::span<const Expr> outputs = {});
   ~PointEquations();
   PointEquations(PointEquations&&) noexcept;
@@ -159,8 +161,9 @@ struct Linearization {
   bool second_order() const { return mass.rows > 0 || independent.empty(); }
 };
 
-/// Exact derivatives at the point. Nothing, and `singular` true, where M and the constraints do not determine the
-/// accelerations. Cost O((n + m)³).
+/// Exact derivatives at the point; std::invalid_argument, which names the list, where one of the point has another
+/// length than its comment says (`operating_point` fills all of them). Nothing, and `singular` true, where M and the
+/// constraints do not determine the accelerations. Cost O((n + m)³).
 struct LinearizationResult {
   Linearization linearization;
   bool singular = false;

@@ -171,12 +171,14 @@ std::optional<ConsistentStart> consistent_start(const Model& model, const Equati
 
 /// What a ForwardDynamics (forward_dynamics.hpp) of a model is made from. The model's inputs are parameters here, whose
 /// values each call gives instead of their formulas; of an input that L depends on its rates u' and u'' are inputs too,
-/// after it. The expressions live as long as the system's context.
+/// after it, and of any other the rates that stand in a force. The expressions live as long as the system's context.
 struct DynamicsSource {
   KernelSource kernel;
   std::vector<double> parameters;   // values in SI units, in the order of kernel.parameters; 0 for inputs
   std::vector<std::size_t> inputs;  // which of them are inputs, in the order of the model
 };
+/// Of a degenerate Lagrangian that determines a motion: the source of `equations.determined`. Throws
+/// std::invalid_argument where the model has contacts or friction, which no kernel knows, or an input in a constraint.
 DynamicsSource dynamics_source(const EquationsOfMotion& equations);
 
 /// Extra functions of q, q', q'', t whose values are wanted at the times `at`.

@@ -19,6 +19,7 @@ enum class StepEnding {
   NoConvergence,  // the equations of an implicit step were not solved, or no step meets the tolerance
   Paradox,        // no mode of contacts and friction fits here
   Unending,       // events without end
+  Refused,        // no step was made: the start or the parameters are none that the model takes
 };
 
 /// A root of an event function: 1 rising, −1 falling, 0 where it comes to zero and goes back.
@@ -32,9 +33,9 @@ struct EventRoot {
 struct Step {
   double begin = 0, end = 0;  // s
   StepEnding ending = StepEnding::None;
-  std::string reason;                // one sentence for every ending but None
-  std::optional<std::size_t> event;  // the step ended at a root of this event function
-  std::vector<EventRoot> events;     // all roots there, within rounding, after those that the step passed, by time
+  std::string reason;                 // one sentence for every ending but None
+  std::optional<std::size_t> event;   // the step ended at a root of this event function
+  std::vector<EventRoot> events;      // all roots there, within rounding, after those that the step passed, by time
   std::vector<std::size_t> switches;  // switch functions whose root the step ended at
 };
 

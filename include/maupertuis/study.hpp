@@ -35,8 +35,11 @@ struct FieldMotionOptions {
 /// beside it, before the model is asked for. After an edit there is a new Study of the new text; two share nothing.
 ///
 /// Ownership: a study owns its texts and what its stages made. Pointers that it returns live as long as it does.
-/// Threads: one at a time uses a study. Several studies may be used at the same time; the flag of an interrupt may be
-/// set from anywhere.
+/// Threads: one at a time uses a study, its copies and whatever is made of its model, since all share the context of
+/// its expressions (ExpressionLock says what waits by itself). Several studies of their own texts may be used at the
+/// same time; kernels may be shared, each with a workspace a thread; the flag of an interrupt may be set from anywhere.
+///
+/// override_with, ask, fix_mode and admit_singular_mass_matrix after model(): std::invalid_argument.
 class Study {
  public:
   /// Takes a text without reading it. `interrupt`: see set_interrupt.
@@ -47,6 +50,8 @@ class Study {
   SourceTexts texts() const { return {source_, overrides_.texts()}; }
   Diagnostics& diagnostics() { return diagnostics_; }
   const Diagnostics& diagnostics() const { return diagnostics_; }
+  /// Whether any stage or any question has told an error. What a question was refused for does not stand in the way of
+  /// the next one.
   bool wrong() const { return diagnostics_.has_errors(); }
 
   /// Stages end by Interrupted when this asks them to; the next use of the stage does its work again.
@@ -124,12 +129,16 @@ class Study {
   void verify_with_other_values(const SimulationOptions& options, Verification& out);
   std::optional<Verification> field_verification(const SimulationOptions& options);
   void report(const CertificateCheck& check);
+  void refuse_coordinates();
+  void tell(const Diagnostics& found);
+  bool broken() const;
   void enter_mode(Model& model, Diagnostics& found) const;
 
   SourceText source_;
   Interrupt interrupt_;
   ExperimentOverrides overrides_;
   Diagnostics diagnostics_;
+  std::size_t told_ = 0;  // errors of questions: they do not break the stages
   std::size_t asked_ = 0;
   std::optional<syntax::SyntaxTree> tree_;
   std::shared_ptr<const Model> model_;

@@ -59,11 +59,14 @@ struct TangentOptions {
 /// The flow of a system together with its derivative. One thread at a time.
 class TangentFlow {
  public:
-  /// Kernels are made at first use, for as many directions at once as 96 unknowns have room for.
+  /// Kernels are made at first use, for as many directions at once as 96 unknowns have room for. Of a degenerate
+  /// Lagrangian that determines a motion: the flow of `equations.determined`. Lists of another length than the comments
+  /// say, here and below: std::invalid_argument. So are models with contacts or friction, whose flow is the one below.
+  /// Other threads that use the expressions of the same model: study.hpp.
   explicit TangentFlow(const EquationsOfMotion& equations, const TangentOptions& options = {});
   /// Through the contacts, the friction and the events of a model, if there are any (docs/theory/contacts.md): its
   /// directions jump at instants, and have in each mode those that it allows. It stops where neighbours have no
-  /// derivative. Model and equations outlive it.
+  /// derivative, also where the start itself is such a place: at rest under friction. Model and equations outlive it.
   TangentFlow(const Model& model, const EquationsOfMotion& equations, const TangentOptions& options);
   ~TangentFlow();
   TangentFlow(TangentFlow&&) noexcept;

@@ -1,4 +1,5 @@
 #include <maupertuis/certificate.hpp>
+#include <maupertuis/expression_lock.hpp>
 
 #include "certificate/forms_agree.hpp"
 #include "certificate/route_results.hpp"
@@ -88,6 +89,7 @@ bool Certificate::passed() const {
 }
 
 Certificate certify(const EquationsOfMotion& equations, const Derivation* readable, const CertifyOptions& options) {
+  const ExpressionLock lock(*equations.system->context);
   Certificate certificate;
   if (readable) certificate.checks.push_back(forms_agree(equations, *readable, options.seed));
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace maupertuis {
 namespace {
@@ -252,6 +253,19 @@ MechanicalSystem system_in_mode(const MechanicalSystem& system, const ContactMod
   }
   if (system.written) out.written = std::make_shared<const MechanicalSystem>(system_in_mode(*system.written, mode));
   return out;
+}
+
+void check_one_mode(const MechanicalSystem& system, std::string_view who) {
+  if (!system.has_modes()) return;
+  const std::string what = system.contacts.empty() ? fmt::format("friction ({})", system.frictions.front().name)
+                           : system.contacts[0].name.empty()
+                               ? std::string("contacts")
+                               : fmt::format("contacts ({})", system.contacts.front().name);
+  throw std::invalid_argument(fmt::format(
+      "{}: the model has {}, and these equations are those of its motion without; take simulate, "
+      "advance_ensemble(model, equations, …), MotionThroughModes or TangentFlow(model, equations, …), or the "
+      "equations of one mode (system_in_mode, Study::fix_mode)",
+      who, what));
 }
 
 }  // namespace maupertuis

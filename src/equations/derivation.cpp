@@ -1,4 +1,5 @@
 #include <maupertuis/couplings.hpp>
+#include <maupertuis/expression_lock.hpp>
 #include <maupertuis/jacobian.hpp>
 #include <maupertuis/print.hpp>
 #include <maupertuis/shared_form.hpp>
@@ -77,6 +78,7 @@ bool couples_too_much_to_read(const EquationsOfMotion& equations) {
 }
 
 Derivation readable_derivation(const EquationsOfMotion& derived, bool with_steps) {
+  const ExpressionLock lock(*derived.system->context);
   const EquationsOfMotion& equations = derived.shown();
   Derivation derivation;
   derivation.equations = couples_too_much_to_read(derived) ? rows_by_shared_parts(equations)

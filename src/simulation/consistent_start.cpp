@@ -1,4 +1,5 @@
 #include <maupertuis/degenerate.hpp>
+#include <maupertuis/expression_lock.hpp>
 #include <maupertuis/simulation.hpp>
 #include <maupertuis/transform.hpp>
 
@@ -427,6 +428,7 @@ class Start {
 
 std::optional<ConsistentStart> consistent_start(const Model& model, const EquationsOfMotion& equations,
                                                 Diagnostics& diagnostics) {
+  const ExpressionLock lock(*equations.system->context);
   return Start(model, equations, diagnostics).find();
 }
 

@@ -1,3 +1,7 @@
+#include <maupertuis/arguments.hpp>
+#include <maupertuis/contact_mode.hpp>
+#include <maupertuis/degenerate.hpp>
+#include <maupertuis/expression_lock.hpp>
 #include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/simulation.hpp>
 #include <maupertuis/transform.hpp>
@@ -24,27 +28,53 @@ std::vector<Expr> without_definitions(const MechanicalSystem& system, std::span<
   return substitute(expressions, replacements);
 }
 
+/// How many rates of an input the forces take: both where L depends on it, since d/dt meets it there.
+int rates_of(const Input& input, const ExprVector& inside_lagrangian, const ExprVector& inside_residual) {
+  const auto highest = [&](const ExprVector& symbols) {
+    int order = -1;
+    for (const Expr& s : symbols)
+      if (s.role() == Role::Input && s.name() == input.symbol.name()) order = std::max(order, s.order());
+    return order;
+  };
+  return highest(inside_lagrangian) >= 0 ? 2 : std::max(0, highest(inside_residual));
+}
+
+/// The rates of a constraint would miss those of the input, which is a parameter here.
+void check_constraints(const MechanicalSystem& system) {
+  for (const Constraint& c : system.constraints)
+    check_argument(!holds_inputs(without_definitions(system, {&c.value, 1}).front()),
+                   "dynamics_source: an input stands in a constraint, whose rates it would change; write the motion of "
+                   "that input into the model as a formula of t");
+}
+
 }  // namespace
 
-DynamicsSource dynamics_source(const EquationsOfMotion& equations) {
+DynamicsSource dynamics_source(const EquationsOfMotion& given) {
+  check_one_mode(*given.system, "dynamics_source");
+  const ExpressionLock lock(*given.system->context);
+  const EquationsOfMotion& equations = solvable_equations(given);
   const MechanicalSystem& system = *equations.system;
+  check_constraints(system);
   DynamicsSource out;
   KernelSource& kernel = out.kernel;
   for (const Coordinate& c : system.coordinates) kernel.coordinates.push_back(c.q);
   for (const Parameter& p : system.parameters) kernel.parameters.push_back(p.symbol);
   out.parameters = parameter_values(system);
   // A parameter does not change with time, so that d/dt must be carried out where it meets an input.
-  const bool moves = holds_inputs(equations.lagrangian);
+  const ExprVector lagrangian = without_definitions(system, {&equations.lagrangian, 1});
+  const ExprVector balance = motion_balance(equations);
+  kernel.residual =
+      without_definitions(system, holds_inputs(lagrangian.front()) ? expand_time_derivatives(balance) : balance);
+  const ExprVector of_lagrangian = symbols_of(lagrangian), of_residual = symbols_of(kernel.residual);
   for (const Input& input : system.inputs) {
     Expr symbol = input.symbol;
-    for (int order = 0; order <= (moves ? 2 : 0); ++order, symbol = system.context->time_derivative(symbol)) {
+    for (int order = 0; order <= rates_of(input, of_lagrangian, of_residual);
+         ++order, symbol = system.context->time_derivative(symbol)) {
       out.inputs.push_back(kernel.parameters.size());
       kernel.parameters.push_back(symbol);
       out.parameters.push_back(0);
     }
   }
-  const ExprVector balance = motion_balance(equations);
-  kernel.residual = without_definitions(system, moves ? expand_time_derivatives(balance) : balance);
   kernel.multipliers = equations.multipliers;
   for (std::size_t i = 0; i < system.constraints.size(); ++i) {
     const Constraint& c = system.constraints[i];

@@ -21,6 +21,7 @@ Ending ending_of(StepEnding ending) {
     case StepEnding::Interrupted:
       return Ending::Interrupted;
     case StepEnding::Paradox:
+    case StepEnding::Refused:
       return Ending::Paradox;
     case StepEnding::Unending:
       return Ending::Unending;

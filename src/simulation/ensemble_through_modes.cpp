@@ -1,25 +1,62 @@
 #include <maupertuis/across_switches.hpp>
+#include <maupertuis/arguments.hpp>
+#include <maupertuis/contact_mode.hpp>
 #include <maupertuis/degenerate.hpp>
 #include <maupertuis/ensemble_through_modes.hpp>
 #include <maupertuis/interrupt_scope.hpp>
+#include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/motion_through_modes.hpp>
 #include <maupertuis/on_threads.hpp>
-#include <maupertuis/require.hpp>
 
 #include "simulation/energy_balance.hpp"
 #include "simulation/hybrid_motion.hpp"
 #include "simulation/methods.hpp"
 #include "simulation/observables.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 /// Runs through modes beside each other: each is the run that it would be alone, with the programs of modes shared.
 namespace maupertuis {
 namespace {
 
 constexpr double not_reached = std::numeric_limits<double>::quiet_NaN();
+
+/// A value that the model bounds: of a model text it is checked once, here with the values of each trajectory.
+struct BoundedValue {
+  Expr value;
+  double least, most;
+  std::string what, why;
+};
+
+/// What a mistake in the text would be: E0263, E0264, E0403.
+std::vector<BoundedValue> bounded_values(const MechanicalSystem& system) {
+  constexpr double unbounded = std::numeric_limits<double>::infinity();
+  std::vector<BoundedValue> out;
+  for (std::size_t i = 0; i < system.contacts.size(); ++i)
+    out.push_back({system.contacts[i].restitution, 0, 1, "The restitution of " + system.contact_label(i),
+                   "it is the part of the speed that an impact gives back, from 0 to 1"});
+  for (std::size_t i = 0; i < system.contacts.size() + system.frictions.size(); ++i) {
+    const Friction& friction = friction_of(system, i);
+    if (!friction.present()) continue;
+    const std::string name = " friction of " + friction.name;
+    out.push_back({friction.kinetic, 0, unbounded, "The" + name, "friction takes energy from the motion"});
+    out.push_back({friction.static_ - friction.kinetic, 0, unbounded, "Static minus kinetic" + name,
+                   "what holds a body that rests is at least what brakes one that slides"});
+  }
+  for (const Point& p : system.points)
+    if (p.mass) out.push_back({p.mass, 0, unbounded, "The mass of " + p.name, "masses are positive"});
+  for (const Body& b : system.bodies)
+    if (b.mass) out.push_back({b.mass, 0, unbounded, "The mass of " + b.name, "masses are positive"});
+  for (BoundedValue& bound : out) bound.value = in_terms_of_motion(system, {&bound.value, 1}).front();
+  std::erase_if(out, [](const BoundedValue& bound) { return has_multipliers(bound.value); });  // known in a mode alone
+  return out;
+}
 
 /// What the threads share. Each trajectory is written by the thread that took it.
 struct Members {
@@ -28,6 +65,8 @@ struct Members {
   std::shared_ptr<ModeLibrary> library;
   std::size_t energy_terms;
   bool energy_jumps;
+  Kernel kernel;  // of the motion without contacts: its constraints are those that starts keep
+  std::vector<BoundedValue> bounds;
   std::size_t count, freedoms;
   ThroughModesResult& result;
   std::atomic<std::size_t> next{0};
@@ -36,15 +75,11 @@ struct Members {
 };
 
 void check(const Model& model, const EnsembleStart& start) {
-  const std::size_t n = model.system.coordinates.size(), p = model.system.parameters.size();
-  MAUP_REQUIRE(goes_through_modes(model));
-  MAUP_REQUIRE(n > 0 && start.q.size() % n == 0 && start.v.size() == start.q.size());
-  const std::size_t count = start.q.size() / n;
-  MAUP_REQUIRE(start.parameters.size() == p || start.parameters.size() == count * p);
-  MAUP_REQUIRE(start.begin.empty() || start.begin.size() == 1 || start.begin.size() == count);
-  MAUP_REQUIRE(start.end.size() == 1 || start.end.size() == count);
-  MAUP_REQUIRE(start.step_factors.empty());
-  MAUP_REQUIRE(std::is_sorted(start.times.begin(), start.times.end()));
+  check_argument(goes_through_modes(model),
+                 "advance_ensemble: the model has no contacts, friction or events; take motion_kernel and "
+                 "advance_ensemble(kernel, …)");
+  check_ensemble_start(start, model.system.coordinates.size(), model.system.parameters.size());
+  check_argument(start.step_factors.empty(), "advance_ensemble: start.step_factors is for kernels alone");
 }
 
 ThroughModesResult empty_result(std::size_t count, std::size_t freedoms, std::size_t times) {
@@ -160,12 +195,12 @@ class Member {
   std::size_t sampled_ = 0;  // times that are done
 };
 
-/// A trajectory that nobody began, or that ended while a mode was derived, stays where it starts.
-void end_interrupted(Members& members, std::size_t number) {
+/// A trajectory that is not carried out stays where it starts.
+void end_at_start(Members& members, std::size_t number, StepEnding why, std::string reason) {
   TrajectoryEnding& ending = members.result.endings[number];
   ending = {};
-  ending.ending = StepEnding::Interrupted;
-  ending.reason = "The ensemble was interrupted before this motion was done.";
+  ending.ending = why;
+  ending.reason = std::move(reason);
   ending.t = members.start.begin_of(number);
   ending.alone = true;
   const std::size_t n = members.freedoms;
@@ -175,12 +210,37 @@ void end_interrupted(Members& members, std::size_t number) {
               members.result.v.begin() + static_cast<std::ptrdiff_t>(number * n));
 }
 
+/// One sentence where the model does not take the values or the start of a trajectory.
+std::string trouble_of(const Members& members, std::size_t number) {
+  const MechanicalSystem& system = members.library->system();
+  const EnsembleStart& start = members.start;
+  const auto values = start.parameters_of(number, system.parameters.size());
+  const auto q = start.q.subspan(number * members.freedoms, members.freedoms);
+  const auto v = start.v.subspan(number * members.freedoms, members.freedoms);
+  if (!std::isfinite(start.end_of(number))) return "The end is infinite or undefined.";
+  std::string trouble = trouble_of_start(members.kernel, values, start.begin_of(number), q, v);
+  if (!trouble.empty()) return trouble;
+  Bindings at = parameter_bindings(system);
+  for (std::size_t i = 0; i < values.size(); ++i) at[system.parameters[i].symbol] = values[i];
+  at[system.context->time()] = start.begin_of(number);
+  for (std::size_t i = 0; i < q.size(); ++i)
+    at[system.coordinates[i].q] = q[i], at[system.coordinates[i].velocity] = v[i];
+  for (const BoundedValue& bound : members.bounds) {
+    const double value = evaluate(bound.value, at);
+    if (value < bound.least || value > bound.most) return fmt::format("{} is {:g}: {}.", bound.what, value, bound.why);
+  }
+  return {};
+}
+
 void carry_out(Members& members, std::size_t number) {
-  if (members.interrupted()) return end_interrupted(members, number);
+  constexpr const char* interrupted = "The ensemble was interrupted before this motion was done.";
+  if (members.interrupted()) return end_at_start(members, number, StepEnding::Interrupted, interrupted);
+  if (std::string trouble = trouble_of(members, number); !trouble.empty())
+    return end_at_start(members, number, StepEnding::Refused, std::move(trouble));
   try {
     Member(members, number).carry_out();
   } catch (const Interrupted&) {
-    end_interrupted(members, number);
+    end_at_start(members, number, StepEnding::Interrupted, interrupted);
   }
 }
 
@@ -205,6 +265,8 @@ std::optional<ThroughModesResult> advance_ensemble(const Model& model, const Equ
       .library = std::make_shared<ModeLibrary>(model, equations, WantedFunctions{observables.expressions, {}, {}}),
       .energy_terms = observables.energy_terms,
       .energy_jumps = across_switches(*equations.system, equations.energy_function, equations.order).jump.has_value(),
+      .kernel = free_motion_kernel(equations).kernel,
+      .bounds = bounded_values(*equations.system),
       .count = count,
       .freedoms = n,
       .result = result};

@@ -1,4 +1,5 @@
 #include <maupertuis/degenerate.hpp>
+#include <maupertuis/expression_lock.hpp>
 #include "simulation/ending.hpp"
 #include "simulation/extended_problem.hpp"
 #include "simulation/sets_together.hpp"
@@ -397,6 +398,7 @@ SimulationOptions in_double(const ExtendedSimulationOptions& options) {
 
 std::optional<ExtendedResult> simulate_extended(const Model& model, const EquationsOfMotion& equations,
                                                 const ExtendedSimulationOptions& options, Diagnostics& diagnostics) {
+  const ExpressionLock lock(*equations.system->context);
   if (refuse_free_functions(equations, "many digits", diagnostics)) return std::nullopt;
   if (equations.determined)
     return simulate_extended(with_determined_system(model, equations), *equations.determined, options, diagnostics);

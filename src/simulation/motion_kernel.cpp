@@ -4,6 +4,9 @@
 #include "simulation/motion_balance.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/contact_mode.hpp>
+#include <maupertuis/degenerate.hpp>
+#include <maupertuis/expression_lock.hpp>
 #include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/transform.hpp>
 
@@ -39,6 +42,12 @@ Kernel motion_kernel(const EquationsOfMotion& equations, const WantedFunctions& 
 }
 
 MotionKernel motion_kernel(const EquationsOfMotion& equations, std::span<const Expr> events) {
+  check_one_mode(*equations.system, "motion_kernel");
+  return free_motion_kernel(solvable_equations(equations), events);
+}
+
+MotionKernel free_motion_kernel(const EquationsOfMotion& equations, std::span<const Expr> events) {
+  const ExpressionLock lock(*equations.system->context);
   WantedFunctions wanted;
   wanted.events.assign(events.begin(), events.end());
   wanted.observables = energy_terms(equations);

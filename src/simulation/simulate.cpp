@@ -1,6 +1,7 @@
 #include <maupertuis/across_switches.hpp>
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/degenerate.hpp>
+#include <maupertuis/expression_lock.hpp>
 #include <maupertuis/integrator.hpp>
 #include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/motion_through_modes.hpp>
@@ -396,6 +397,7 @@ void add_errors(SimulationResult& result, Probe* probe, const Model& model, cons
 
 std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMotion& equations,
                                          const SimulationOptions& asked, Diagnostics& diagnostics, Probe* probe) {
+  const ExpressionLock lock(*equations.system->context);
   if (equations.determined) {
     if (refuse_undetermined(model.experiment, probe, equations, diagnostics)) return std::nullopt;
     auto result = simulate(with_determined_system(model, equations), *equations.determined, asked, diagnostics, probe);

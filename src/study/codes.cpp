@@ -48,6 +48,10 @@ constexpr CodeEntry entries[] = {
      "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\n",
      "# maup derive\nfield u(x) : length on x = 0 m .. 1 m boundary u = 0\nparam ρ = 1 kg/m, T0 = 1 N\n"
      "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\n"},
+    {"E0512", "a question about fields for a model without any",
+     "A program that uses the library asked for the run of fields of a model that has coordinates alone. Its motion is "
+     "that of Study::motion, `maup simulate`.",
+     "", ""},
     {"E0690", "a derivation failed its certificate",
      "Every derivation is checked by routes that share nothing with it: jets of L along random paths, d'Alembert's "
      "principle over the particles, the power balance. One of them found a different value, so the derived equations "

@@ -14,6 +14,12 @@ void refine_for_pictures(FieldRunOptions& options, bool line) {
 
 std::optional<FieldRunResult> Study::field_motion(const SimulationOptions& settings, const FieldMotionOptions& kept) {
   const FieldEquations* equations = field_equations();
+  Diagnostics found;
+  if (model() && !has_fields()) {
+    found.error("E0512", std::nullopt, "this question is about fields, and the model has none",
+                "Its motion is that of coordinates.", "`simulate` and Study::motion run it.");
+    tell(found);
+  }
   if (!equations) return std::nullopt;
   const Model& model = *this->model();
   const FieldSystem& s = equations->system();
@@ -34,13 +40,16 @@ std::optional<FieldRunResult> Study::field_motion(const SimulationOptions& setti
   if (kept.pictured) refine_for_pictures(options, s.space.size() == 1);
   const bool until = model.experiment.until && runs_as_one_system(*equations) && !settings.duration;
   if (!(options.duration > 0) && !until) {
-    diagnostics_.error("E0701", std::nullopt, "the model does not say how long it runs",
-                       "A run of a field goes on for a time.", "Add `run 10 s`, or give --duration.");
+    found.error("E0701", std::nullopt, "the model does not say how long it runs",
+                "A run of a field goes on for a time.", "Add `run 10 s`, or give --duration.");
+    tell(found);
     return std::nullopt;
   }
   const InterruptScope scope = interruptible();
-  return runs_as_one_system(*equations) ? run_coupled(model, *equations, {}, options, diagnostics_)
-                                        : run_fields(*equations, {}, options, diagnostics_);
+  auto result = runs_as_one_system(*equations) ? run_coupled(model, *equations, {}, options, found)
+                                               : run_fields(*equations, {}, options, found);
+  tell(found);
+  return result;
 }
 
 }  // namespace maupertuis

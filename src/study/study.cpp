@@ -1,8 +1,8 @@
+#include <maupertuis/arguments.hpp>
 #include <maupertuis/contact_mode.hpp>
 #include <maupertuis/coupled_fields.hpp>
 #include <maupertuis/field_verification.hpp>
 #include <maupertuis/higher_order.hpp>
-#include <maupertuis/require.hpp>
 #include <maupertuis/study.hpp>
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ Study::Study(SourceText source, const Interrupt& interrupt) : source_(std::move(
 // text
 
 SourceId Study::override_with(OverrideKind kind, std::string label, std::string text) {
-  MAUP_REQUIRE(!elaborated_);
+  check_argument(!elaborated_, "Study::override_with, Study::ask: the model was asked for before");
   if (kind == OverrideKind::Formula) ++asked_;
   return overrides_.add(kind, std::move(label), std::move(text));
 }
@@ -28,7 +28,7 @@ std::size_t Study::ask(std::string label, std::string formula) {
 }
 
 void Study::fix_mode(std::string text) {
-  MAUP_REQUIRE(!elaborated_);
+  check_argument(!elaborated_, "Study::fix_mode: the model was asked for before");
   mode_ = std::move(text);
 }
 
@@ -58,7 +58,7 @@ bool is_singular_mass(const Diagnostic& d) { return d.code == "E0407" || d.code 
 }  // namespace
 
 void Study::admit_singular_mass_matrix() {
-  MAUP_REQUIRE(!elaborated_);
+  check_argument(!elaborated_, "Study::admit_singular_mass_matrix: the model was asked for before");
   admits_singular_ = true;
 }
 
@@ -133,24 +133,29 @@ const FieldEquations* Study::field_equations() {
     auto equations = maupertuis::field_equations(model_->fields, found);
     if (equations) attach_bodies(*equations, model_, found);
     std::optional<Certificate> certificate;
-    if (equations && !wrong() && !found.has_errors()) certificate = certify(*equations);
+    if (equations && !broken() && !found.has_errors()) certificate = certify(*equations);
     diagnostics_.append(found);
     field_equations_ = std::move(equations), field_certificate_ = std::move(certificate);
     fields_derived_ = true;
     if (field_certificate_)
       for (const CertificateCheck& check : field_certificate_->checks) report(check);
   }
-  return field_equations_ && !wrong() ? &*field_equations_ : nullptr;
+  return field_equations_ && !broken() ? &*field_equations_ : nullptr;
+}
+
+void Study::refuse_coordinates() {
+  Diagnostics found;
+  found.error(
+      "E0507", model_->fields->system.density_span, "this question is about coordinates, and the model has fields",
+      "Of fields there are derivations, conservation laws, runs, modes, dispersion relations and pictures.",
+      "`maup check`, `derive`, `invariants`, `simulate`, `test`, `modes`, `plot`, `animate` and `report` work for "
+      "fields.");
+  tell(found);
 }
 
 const EquationsOfMotion* Study::equations() {
   if (has_fields()) {
-    if (!derived_)
-      diagnostics_.error(
-          "E0507", model_->fields->system.density_span, "this question is about coordinates, and the model has fields",
-          "Of fields there are derivations, conservation laws, runs, modes, dispersion relations and pictures.",
-          "`maup check`, `derive`, `invariants`, `simulate`, `test`, `modes`, `plot`, `animate` and `report` work for "
-          "fields.");
+    if (!derived_) refuse_coordinates();
     derived_ = true;
     return nullptr;
   }
@@ -163,7 +168,7 @@ const EquationsOfMotion* Study::equations() {
         equations_->determined = std::make_shared<const EquationsOfMotion>(std::move(*determined));
     derived_ = true;
   }
-  return equations_ && !wrong() ? &*equations_ : nullptr;
+  return equations_ && !broken() ? &*equations_ : nullptr;
 }
 
 const DegenerateAnalysis* Study::degenerate() { return model() ? degenerate_.get() : nullptr; }
@@ -204,20 +209,38 @@ const Certificate* Study::certificate(const CertifyOptions& options) {
     }
   certificate_ = std::move(found);
   for (const CertificateCheck& check : certificate_->checks) report(check);
-  return wrong() ? nullptr : &*certificate_;
+  return broken() ? nullptr : &*certificate_;
 }
 
 // -------------------------------------------------------------------------------------------------------- what they
 // tell
 
+/// The errors of a question are told, and do not stand in the way of the next one.
+void Study::tell(const Diagnostics& found) {
+  diagnostics_.append(found);
+  for (const Diagnostic& d : found.items()) told_ += d.severity == Severity::Error;
+}
+
+bool Study::broken() const {
+  std::size_t errors = 0;
+  for (const Diagnostic& d : diagnostics_.items()) errors += d.severity == Severity::Error;
+  return errors > told_;
+}
+
 std::optional<SimulationResult> Study::motion(const SimulationOptions& options) {
-  if (wrong() || refuse_held_integrals() || !certificate()) return std::nullopt;
-  return simulate(*model_, *equations_, options, diagnostics_);
+  if (broken() || refuse_held_integrals() || !certificate()) return std::nullopt;
+  Diagnostics found;
+  auto result = simulate(*model_, *equations_, options, found);
+  tell(found);
+  return result;
 }
 
 std::optional<ExtendedResult> Study::motion(const ExtendedSimulationOptions& options) {
-  if (wrong() || refuse_held_integrals() || !certificate()) return std::nullopt;
-  return simulate_extended(*model_, *equations_, options, diagnostics_);
+  if (broken() || refuse_held_integrals() || !certificate()) return std::nullopt;
+  Diagnostics found;
+  auto result = simulate_extended(*model_, *equations_, options, found);
+  tell(found);
+  return result;
 }
 
 std::optional<Verification> Study::verification(const SimulationOptions& options) {
@@ -225,9 +248,11 @@ std::optional<Verification> Study::verification(const SimulationOptions& options
   if (has_fields()) return field_verification(options);
   equations();
   if (auto of_errors = verify_errors(*tree_, source_, diagnostics_)) return of_errors;
-  if (wrong() || !certificate()) return std::nullopt;
+  if (broken() || !certificate()) return std::nullopt;
   const InterruptScope scope = interruptible();
-  Verification out = verify(*model_, *equations_, source_, options, diagnostics_);
+  Diagnostics found;
+  Verification out = verify(*model_, *equations_, source_, options, found);
+  tell(found);
   verify_with_other_values(options, out);
   return out;
 }
@@ -257,16 +282,21 @@ std::optional<Verification> Study::field_verification(const SimulationOptions& o
   if (auto of_errors = verify_errors(*tree_, source_, diagnostics_)) return of_errors;
   if (!field_equations()) return std::nullopt;
   const InterruptScope scope = interruptible();
-  return verify_fields(*model_, *field_equations_, source_, options, diagnostics_);
+  Diagnostics found;
+  Verification out = verify_fields(*model_, *field_equations_, source_, options, found);
+  tell(found);
+  return out;
 }
 
 bool Study::refuse_held_integrals() {
   if (!model() || model_->system.integral_constraints.empty()) return false;
-  diagnostics_.error(
+  Diagnostics found;
+  found.error(
       "E0244", model_->system.integral_constraints.front().span, "the model holds an integral of its paths",
       "Its equations are those of L + λ G with one λ for a whole path, which only the two ends of the path determine: "
       "there is no motion from a start.",
       "`maup action` finds the paths between two ends, and λ.");
+  tell(found);
   return true;
 }
 
@@ -275,10 +305,12 @@ bool Study::refuse_modes() {
   const MechanicalSystem& system = model_->system;
   if (!system.has_modes()) return false;
   const Span span = system.contacts.empty() ? system.frictions.front().span : system.contacts.front().span;
-  diagnostics_.error(
+  Diagnostics found;
+  found.error(
       "E0270", span, "this question is about one set of equations, and the model has several modes",
       "Contacts that open and close and friction that sticks and slides change the equations on the way.",
       "Ask it of one mode: --mode free, --mode \"floor\", or --mode \"floor sticking\" where there is friction.");
+  tell(found);
   return true;
 }
 
@@ -288,10 +320,12 @@ bool moves_in_time(const MechanicalSystem& system) {
 
 bool Study::refuse_without_time() {
   if (!model() || moves_in_time(model_->system)) return false;
-  diagnostics_.error("E0245", std::nullopt,
-                     fmt::format("the independent variable of this model is {}, no time", model_->system.independent),
-                     "Equilibria, frequencies, periods and exponents belong to motions in time.",
-                     "`maup derive`, `maup simulate` and `maup action` work for such models.");
+  Diagnostics found;
+  found.error("E0245", std::nullopt,
+              fmt::format("the independent variable of this model is {}, no time", model_->system.independent),
+              "Equilibria, frequencies, periods and exponents belong to motions in time.",
+              "`maup derive`, `maup simulate` and `maup action` work for such models.");
+  tell(found);
   return true;
 }
 

@@ -1,6 +1,7 @@
 #include "analysis/linearization/families.hpp"
 #include "analysis/linearization/steady_state.hpp"
 
+#include <maupertuis/arguments.hpp>
 #include <maupertuis/require.hpp>
 
 #include <algorithm>
@@ -333,13 +334,28 @@ bool FixedValues::any() const {
   return std::find(q.begin(), q.end(), true) != q.end() || std::find(v.begin(), v.end(), true) != v.end();
 }
 
+namespace {
+
+void check_search(const PointEquations& equations, const EquilibriumSearch& search) {
+  const std::size_t n = equations.system().coordinates.size();
+  const auto none_or_n = [&](const std::vector<bool>& list) { return list.empty() || list.size() == n; };
+  check_argument(search.start.q.size() == n && search.start.v.size() == n,
+                 "EquilibriumSearch: q or v of the start has another length than the system has coordinates");
+  check_argument(none_or_n(search.fixed.q) && none_or_n(search.fixed.v),
+                 "EquilibriumSearch: `fixed` has another length than the system has coordinates");
+}
+
+}  // namespace
+
 EquilibriumSearchResult find_equilibria(const PointEquations& equations, const EquilibriumSearch& search) {
+  check_search(equations, search);
   EquilibriumSearchResult result = Search(equations, search).all();
   mark_failing_coordinates(equations, result.found);
   return result;
 }
 
 std::vector<Equilibrium> equilibrium_near(const PointEquations& equations, const EquilibriumSearch& search) {
+  check_search(equations, search);
   std::vector<Equilibrium> found = Search(equations, search).nearest();
   mark_failing_coordinates(equations, found);
   return found;

@@ -3,6 +3,8 @@
 #include "analysis/linearization/turning_frame.hpp"
 #include "linear_algebra/products.hpp"
 
+#include <maupertuis/arguments.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -171,8 +173,26 @@ void keep_to(const Matrix& relations, const Vector& sizes, Linearization& out) {
 
 }  // namespace
 
+namespace {
+
+void check_operating_point(const OperatingPoint& point, std::size_t n, std::size_t m, std::size_t k) {
+  check_argument(point.q.size() == n && point.v.size() == n && point.a.size() == n,
+                 "linearize: q, v or a of the point has another length than the system has coordinates");
+  check_argument(point.multipliers.size() == m,
+                 "linearize: `multipliers` of the point has another length than the system has constraints");
+  check_argument(point.inputs.size() == k,
+                 "linearize: `inputs` of the point has another length than the system has inputs");
+  check_argument(point.input_rates.empty() || point.input_rates.size() == 2 * k,
+                 "linearize: `input_rates` of the point holds neither nothing nor two rates an input");
+  check_argument(point.turning.rows == point.turning.columns && (point.turning.rows == 0 || point.turning.rows == n),
+                 "linearize: `turning` of the point is neither empty nor n by n");
+}
+
+}  // namespace
+
 LinearizationResult linearize(const PointEquations& equations, const OperatingPoint& point) {
   PointEquations::Impl& e = equations.impl();
+  check_operating_point(point, e.n, e.m, e.k);
   const Matrix turning = to_eigen(point.turning);
   const auto rows_at = [&](PointEquations::Impl::Rows& rows) { return in_frame(e.at(rows, point), turning); };
   Pieces p{rows_at(e.balance), rows_at(e.positions), rows_at(e.rates), rows_at(e.accelerations), {}};
@@ -243,6 +263,8 @@ LinearizationResult linearize(const PointEquations& equations, const OperatingPo
 
 std::optional<OperatingPoint> operating_point(const PointEquations& equations, const MotionState& state) {
   PointEquations::Impl& e = equations.impl();
+  check_argument(state.q.size() == e.n && state.v.size() == e.n,
+                 "operating_point: q or v of the state has another length than the system has coordinates");
   OperatingPoint point{
       state.t, state.q, state.v, std::vector<double>(e.n), std::vector<double>(e.m), equations.inputs_at(state.t)};
   const std::vector<double> inputs = e.inputs_and_rates_at(state.t);

@@ -2,8 +2,10 @@
 
 #include "analysis/linearization/free_of_time.hpp"
 
+#include <maupertuis/contact_mode.hpp>
 #include <maupertuis/degenerate.hpp>
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/expression_lock.hpp>
 #include <maupertuis/kinds.hpp>
 #include <maupertuis/reactions.hpp>
 #include <maupertuis/transform.hpp>
@@ -305,8 +307,10 @@ bool repeats(PointEquations::Impl& e, std::size_t i) {
 
 }  // namespace
 
-PointEquations::PointEquations(const EquationsOfMotion& equations, std::span<const Expr> outputs)
-    : impl_(std::make_unique<Impl>(equations, outputs)) {
+PointEquations::PointEquations(const EquationsOfMotion& equations, std::span<const Expr> outputs) {
+  check_one_mode(*equations.system, "PointEquations");
+  const ExpressionLock lock(*equations.system->context);
+  impl_ = std::make_unique<Impl>(equations, outputs);
   for (std::size_t i = 0; i < impl_->n; ++i)
     impl_->is_periodic[i] =
         impl_->system->coordinates[i].kind == "angle" || impl_->system->dimensionless ? repeats(*impl_, i) : false;

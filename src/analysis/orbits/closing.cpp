@@ -54,7 +54,7 @@ class Closer {
         options_(options),
         diagnostics_(&diagnostics),
         n_(system_.coordinates.size()),
-        motion_(motion_kernel(equations)),
+        motion_(free_motion_kernel(equations)),
         flow_(model, equations, {0, 100'000'000, options.interrupt}) {}
 
   std::optional<Closed> close() {

@@ -20,7 +20,7 @@ constexpr int most_halvings = 8;
 DivergenceIntegral::DivergenceIntegral(const EquationsOfMotion& equations, const TangentGeometry& geometry)
     : geometry_(geometry) {
   if (geometry.symplectic()) return;
-  const MotionKernel motion = motion_kernel(equations);
+  const MotionKernel motion = free_motion_kernel(equations);
   stepper_.emplace(motion.kernel, motion.parameters, TaylorOptions{});
 }
 

@@ -191,7 +191,8 @@ std::optional<FloquetResult> floquet(const Model& model, const EquationsOfMotion
   const Multipliers multipliers(equations, *closed);
   multipliers.fill(out);
   if (closed->through_modes && orbits::bounces_end(model.system))
-    out.vanished = TangentFlow(equations).all_directions(out.motion.start).columns() - closed->begin.columns();
+    out.vanished =
+        TangentGeometry(equations).basis(out.motion.start).size() / closed->begin.width() - closed->begin.columns();
   check(equations, *closed, multipliers, out);
   if (!closed->through_modes) multipliers.settle_small(out);
   out.stability = orbits::stability_of(out);

@@ -68,7 +68,7 @@ class LyapunovRun {
     if (!start || !duration) return false;
     transient_ = options_.transient.value_or(0.1 * *duration);
     if (!(transient_ >= 0 && std::isfinite(transient_))) return orbits::refuse_no_time("the transient", diagnostics_);
-    const MotionKernel motion = motion_kernel(equations_);
+    const MotionKernel motion = free_motion_kernel(equations_);
     const double look = std::min(*duration, std::max(0.02 * *duration, transient_));
     const orbits::Survey seen = orbits::survey(model_, equations_, motion, start->state, look, options_.interrupt);
     if (seen.steps == 0) return orbits::refuse_end(start->state.t, seen.ended, diagnostics_);

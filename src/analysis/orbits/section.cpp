@@ -29,7 +29,7 @@ class SectionRun {
         equations_(equations),
         options_(options),
         diagnostics_(diagnostics),
-        motion_(motion_kernel(equations, events())),
+        motion_(free_motion_kernel(equations, events())),
         stepper_(stepper()) {
     if (options_.section) section_.emplace(system_, std::span(&options_.section, 1));
   }

@@ -1,9 +1,13 @@
 #include "analysis/tangent/extended_source.hpp"
 #include "analysis/tangent/through_modes.hpp"
 
+#include <maupertuis/arguments.hpp>
+#include <maupertuis/contact_mode.hpp>
+#include <maupertuis/degenerate.hpp>
+#include <maupertuis/expression_lock.hpp>
 #include <maupertuis/integrator.hpp>
 #include <maupertuis/motion_kernel.hpp>
-#include <maupertuis/require.hpp>
+
 #include <maupertuis/tangent.hpp>
 
 #include <fmt/format.h>
@@ -216,6 +220,7 @@ struct TangentFlow::Impl {
 };
 
 Group& TangentFlow::Impl::group(std::size_t columns) {
+  const ExpressionLock lock(*equations.system->context);
   const auto found = groups.find(columns);
   if (found != groups.end()) return found->second;
   return groups
@@ -234,8 +239,24 @@ void TangentFlow::Impl::compare(const MotionState& a, const MotionState& b, cons
   }
 }
 
+namespace {
+
+void check_state(const MotionState& state, std::size_t n) {
+  check_argument(state.q.size() == n, "TangentFlow: state.q has another length than the system has coordinates");
+  check_argument(state.v.size() == n, "TangentFlow: state.v has another length than the system has coordinates");
+}
+
+void check_point(const TangentPoint& point, std::size_t n) {
+  check_state(point.state, n);
+  check_argument(n == 0 ? point.directions.empty() : point.directions.size() % (2 * n) == 0,
+                 "TangentFlow: the length of `directions` is no multiple of 2n");
+}
+
+}  // namespace
+
 KernelWorkspace& TangentFlow::Impl::point_kernel() {
   if (!at_point) {
+    const ExpressionLock lock(*equations.system->context);
     motion = build_kernel(motion_source(equations));
     at_point.emplace(*motion, 1);
     at_point->set_parameters(parameters);
@@ -291,13 +312,17 @@ std::optional<TangentStop> TangentFlow::Impl::jump_at_start(const MotionState& s
   return stop;
 }
 
-TangentFlow::TangentFlow(const EquationsOfMotion& equations, const TangentOptions& options)
-    : impl_(std::make_unique<Impl>(equations, options)) {}
+TangentFlow::TangentFlow(const EquationsOfMotion& equations, const TangentOptions& options) {
+  check_one_mode(*equations.system, "TangentFlow(equations)");
+  const ExpressionLock lock(*equations.system->context);
+  impl_ = std::make_unique<Impl>(solvable_equations(equations), options);
+}
 TangentFlow::TangentFlow(const Model& model, const EquationsOfMotion& equations, const TangentOptions& options) {
+  const ExpressionLock lock(*equations.system->context);
   if (jumps_on_its_way(model))
     modes_ = std::make_unique<ThroughModes>(model, equations, options);
   else
-    impl_ = std::make_unique<Impl>(equations, options);
+    impl_ = std::make_unique<Impl>(solvable_equations(equations), options);
 }
 TangentFlow::~TangentFlow() = default;
 TangentFlow::TangentFlow(TangentFlow&&) noexcept = default;
@@ -321,7 +346,9 @@ const EquationsOfMotion& TangentFlow::equations_at(const MotionState& state) {
 }
 
 TangentForces TangentFlow::forces(const TangentPoint& point) {
-  MAUP_REQUIRE(!modes_ && point.columns() > 0);
+  check_argument(!modes_, "TangentFlow::forces: the flow goes through modes");
+  check_argument(point.columns() > 0, "TangentFlow::forces: the point has no directions");
+  check_point(point, impl_->n);
   const auto [count, width] = impl_->groups_for(point.columns());
   Group& group = impl_->group(width);
   TangentForces out;
@@ -333,12 +360,14 @@ TangentForces TangentFlow::forces(const TangentPoint& point) {
 }
 
 TangentPoint TangentFlow::all_directions(const MotionState& state) const {
+  check_state(state, freedoms());
   if (modes_) return modes_->all_directions(state);
   return {state, impl_->geometry.basis(state)};
 }
 
 std::optional<TangentStop> TangentFlow::along(const TangentPoint& start, std::span<const double> times,
                                               std::vector<TangentPoint>& points) {
+  check_point(start, freedoms());
   if (modes_) {
     TangentPoint here = start;
     points.clear();
@@ -349,7 +378,6 @@ std::optional<TangentStop> TangentFlow::along(const TangentPoint& start, std::sp
     return std::nullopt;
   }
   Impl& s = *impl_;
-  MAUP_REQUIRE(start.state.q.size() == s.n && start.state.v.size() == s.n && start.directions.size() % (2 * s.n) == 0);
   s.spread = 0;
   points.assign(times.size(), start);
   const auto [count, width] = s.groups_for(start.columns());
@@ -377,6 +405,7 @@ std::optional<TangentStop> TangentFlow::along(const TangentPoint& start, std::sp
 }
 
 std::optional<TangentStop> TangentFlow::advance(TangentPoint& point, double t) {
+  check_point(point, freedoms());
   if (modes_) return modes_->advance(point, t);
   std::vector<TangentPoint> points;
   if (auto stop = along(point, {&t, 1}, points)) return stop;
@@ -385,14 +414,13 @@ std::optional<TangentStop> TangentFlow::advance(TangentPoint& point, double t) {
 }
 
 std::vector<double> TangentFlow::accelerations(const MotionState& state) {
+  check_state(state, freedoms());
   if (modes_) return modes_->accelerations(state);
   Impl& s = *impl_;
   KernelWorkspace& work = s.point_kernel();
-  const std::size_t count = s.motion->switches().size();
-  const auto evaluate = [&] { return work.evaluate(state.t, state.q, state.v) == KernelStatus::Ok; };
-  work.set_branches(s.sides_at(state));
-  const bool ok = evaluate();
-  work.set_branches(std::vector<std::int8_t>(count, 1));
+  const bool ok =
+      work.choose_branches(state.t, state.q, state.v) && work.evaluate(state.t, state.q, state.v) == KernelStatus::Ok;
+  work.set_branches(std::vector<std::int8_t>(s.motion->switches().size(), 1));
   if (!ok) return {};
   std::vector<double> out;
   for (std::size_t i = 0; i < s.n; ++i) out.push_back(work.acceleration(i));

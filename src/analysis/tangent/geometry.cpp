@@ -2,6 +2,7 @@
 #include "linear_algebra/dense.hpp"
 #include "linear_algebra/products.hpp"
 
+#include <maupertuis/expression_lock.hpp>
 #include <maupertuis/tangent.hpp>
 
 #include <algorithm>
@@ -69,7 +70,10 @@ struct TangentGeometry::Impl {
   std::optional<PointFunctions> momenta, force_slopes, position_rows, rate_rows;
 };
 
-TangentGeometry::TangentGeometry(const EquationsOfMotion& equations) : impl_(std::make_unique<Impl>(equations)) {}
+TangentGeometry::TangentGeometry(const EquationsOfMotion& equations) {
+  const ExpressionLock lock(*equations.system->context);
+  impl_ = std::make_unique<Impl>(equations);
+}
 TangentGeometry::~TangentGeometry() = default;
 TangentGeometry::TangentGeometry(TangentGeometry&&) noexcept = default;
 

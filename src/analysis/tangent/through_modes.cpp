@@ -2,6 +2,10 @@
 
 #include "linear_algebra/dense.hpp"
 
+#include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/contact_mode.hpp>
+#include <maupertuis/transform.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -49,10 +53,39 @@ TangentFlow::ThroughModes::ThroughModes(const Model& model, const EquationsOfMot
     : freedoms(equations.system->coordinates.size()),
       options_(options),
       rubs_(has_friction(model.system)),
-      motion_(
-          model, equations, {},
-          {.tolerance = options.tolerance, .maximum_steps = options.maximum_steps, .interrupt = options.interrupt}) {
+      motion_(model, equations, {},
+              {.tolerance = options.tolerance, .maximum_steps = options.maximum_steps, .interrupt = options.interrupt}),
+      system_(*equations.system) {
   motion_.keep_instants();
+  for (std::size_t i = 0; i < system_.contacts.size() + system_.frictions.size(); ++i) {
+    const Friction& friction = friction_of(system_, i);
+    if (friction.slip.size() != 1) continue;
+    const Expr speed = in_terms_of_motion(system_, friction.slip).front();
+    Expr terms = system_.context->number(0);
+    for (const Coordinate& c : system_.coordinates)
+      terms = terms + apply(Kind::Abs, differentiate(speed, c.velocity) * c.velocity);
+    slips_.push_back({i, friction.name, speed, terms});
+  }
+}
+
+/// A slip that begins at a start at rest: the force on neighbours that slip the other way is the opposite one.
+std::optional<TangentStop> TangentFlow::ThroughModes::parts_at_start(const MotionState& state) const {
+  Bindings at = parameter_bindings(system_);
+  at[system_.context->time()] = state.t;
+  for (std::size_t i = 0; i < freedoms; ++i)
+    at[system_.coordinates[i].q] = state.q[i], at[system_.coordinates[i].velocity] = state.v[i];
+  for (const Slip& slip : slips_) {
+    const FrictionState mode = motion_.mode().friction[slip.friction];
+    if (mode != FrictionState::Forward && mode != FrictionState::Backward) continue;
+    constexpr double rounding = 1e-12;
+    if (std::abs(evaluate(slip.speed, at)) > rounding * evaluate(slip.terms, at)) continue;
+    return TangentStop{StepEnding::None, state.t,
+                       fmt::format("The start is at rest under the friction of {}, and begins to slide: on neighbours "
+                                   "that slip the other way it acts the other way.",
+                                   slip.name),
+                       "Start with a slip, or where it sticks."};
+  }
+  return std::nullopt;
 }
 
 /// Where the last advance ended, the motion goes on in its mode; elsewhere it begins anew.
@@ -60,6 +93,7 @@ void TangentFlow::ThroughModes::stand_at(const MotionState& state) {
   if (at_ && same_state(*at_, state)) return;
   motion_.start(state.t, state.q, state.v);
   at_ = state;
+  has_moved_ = false;
 }
 
 TangentFlow::ThroughModes::InMode& TangentFlow::ThroughModes::in(const ContactMode& mode) {
@@ -97,6 +131,9 @@ std::optional<TangentStop> TangentFlow::ThroughModes::advance(TangentPoint& poin
     return TangentStop{StepEnding::None, point.state.t,
                        "The start is an impact, and neighbours have it at other times.",
                        "Start before it or after it."};
+  if (!has_moved_)
+    if (auto stop = parts_at_start(point.state)) return stop;
+  has_moved_ = true;
   TangentPoint here = point;
   while (motion_.time() != t) {
     const Step step = motion_.step(t);

@@ -7,6 +7,7 @@
 #include <eigen3/Eigen/Core>
 #include <memory>
 #include <optional>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -50,6 +51,7 @@ struct TangentFlow::ThroughModes {
   };
 
   void stand_at(const MotionState& state);
+  std::optional<TangentStop> parts_at_start(const MotionState& state) const;
   InMode& in(const ContactMode& mode);
   std::optional<TangentStop> carry(TangentPoint& point, const ContactMode& mode, double t);
   std::optional<TangentStop> pass(TangentPoint& point, const ModeInstant& instant);
@@ -62,7 +64,15 @@ struct TangentFlow::ThroughModes {
   MotionThroughModes motion_;
   std::vector<std::unique_ptr<InMode>> modes_;
   std::optional<MotionState> at_;  // where the motion stands
-  std::vector<double> sizes_;      // [2n] of the motion, where they were told
+  bool has_moved_ = false;         // since it was put there
+  struct Slip {
+    std::size_t friction;
+    std::string name;
+    Expr speed, terms;  // v_t, and the sum of the sizes of its terms
+  };
+  const MechanicalSystem& system_;
+  std::vector<Slip> slips_;    // of frictions along a line
+  std::vector<double> sizes_;  // [2n] of the motion, where they were told
 };
 
 }  // namespace maupertuis

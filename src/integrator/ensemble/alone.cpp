@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <utility>
 
 namespace maupertuis::ensemble {
 
@@ -33,7 +35,49 @@ void EnergyDrift::add(std::span<const double> terms) {
   error_ = std::max(error_, std::abs(energy - first_));
 }
 
+namespace {
+
+/// What a lane has written before it was given up does not count.
+void forget_samples(Job& job, std::size_t trajectory) {
+  const std::size_t samples = job.result.times * job.freedoms;
+  for (auto* values : {&job.result.sampled_q, &job.result.sampled_v})
+    std::fill_n(values->begin() + static_cast<std::ptrdiff_t>(trajectory * samples), samples,
+                std::numeric_limits<double>::quiet_NaN());
+}
+
+std::string trouble_of(const Job& job, std::size_t trajectory) {
+  if (!std::isfinite(job.end(trajectory))) return "The end is infinite or undefined.";
+  return trouble_of_start(job.kernel, job.parameters(trajectory), job.begin(trajectory), job.q(trajectory),
+                          job.v(trajectory));
+}
+
+/// It stays where it starts.
+void refuse(Job& job, std::size_t trajectory, std::string reason) {
+  TrajectoryEnding& ending = job.result.endings[trajectory];
+  ending = {};
+  ending.ending = StepEnding::Refused;
+  ending.reason = std::move(reason);
+  ending.t = job.begin(trajectory);
+  ending.alone = true;
+  forget_samples(job, trajectory);
+  const auto place = static_cast<std::ptrdiff_t>(trajectory * job.freedoms);
+  std::copy_n(job.q(trajectory).begin(), job.freedoms, job.result.q.begin() + place);
+  std::copy_n(job.v(trajectory).begin(), job.freedoms, job.result.v.begin() + place);
+}
+
+}  // namespace
+
+bool is_finite(const Job& job, std::size_t trajectory) {
+  const auto finite = [](std::span<const double> values) {
+    return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+  };
+  return std::isfinite(job.begin(trajectory)) && std::isfinite(job.end(trajectory)) && finite(job.q(trajectory)) &&
+         finite(job.v(trajectory)) && finite(job.parameters(trajectory));
+}
+
 void run_alone(Job& job, std::size_t trajectory) {
+  if (std::string trouble = trouble_of(job, trajectory); !trouble.empty())
+    return refuse(job, trajectory, std::move(trouble));
   TaylorOptions options;
   options.tolerance = job.options.tolerance;
   options.order = job.options.order;
@@ -46,11 +90,7 @@ void run_alone(Job& job, std::size_t trajectory) {
   TrajectoryEnding& ending = job.result.endings[trajectory];
   ending = {};
   ending.alone = true;
-  // What a lane has written before it was given up does not count.
-  const std::size_t samples = job.result.times * n;
-  for (auto* values : {&job.result.sampled_q, &job.result.sampled_v})
-    std::fill_n(values->begin() + static_cast<std::ptrdiff_t>(trajectory * samples), samples,
-                std::numeric_limits<double>::quiet_NaN());
+  forget_samples(job, trajectory);
   OutputTimes times(job.start.times, begin, end);
   EnergyDrift drift;
   const auto energy_at = [&](double t) {

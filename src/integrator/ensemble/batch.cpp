@@ -152,6 +152,8 @@ void Batch::refill(std::size_t lane) {
     const std::size_t trajectory = job_.take();
     if (trajectory == job_.trajectories)
       exhausted_ = true;
+    else if (!is_finite(job_, trajectory))
+      run_alone(job_, trajectory);
     else
       begin(lane, trajectory);
   }

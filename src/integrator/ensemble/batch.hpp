@@ -68,7 +68,10 @@ class EnergyDrift {
   double first_ = 0, error_ = 0, scale_ = 0;
 };
 
-/// One trajectory by TaylorStepper, from its begin.
+/// Whether the start, the parameters, the begin and the end of a trajectory are finite numbers.
+bool is_finite(const Job& job, std::size_t trajectory);
+
+/// One trajectory by TaylorStepper, from its begin; one that may not begin is told so.
 void run_alone(Job& job, std::size_t trajectory);
 
 /// Takes trajectories until none is left, and carries as many at once as there are lanes.

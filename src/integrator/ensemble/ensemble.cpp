@@ -1,7 +1,7 @@
 #include "integrator/ensemble/batch.hpp"
 
+#include <maupertuis/arguments.hpp>
 #include <maupertuis/on_threads.hpp>
-#include <maupertuis/require.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -13,16 +13,13 @@ namespace {
 using ensemble::Job;
 
 void check(const Kernel& kernel, const EnsembleStart& start, const EnsembleOptions& options) {
-  const std::size_t n = kernel.freedoms(), p = kernel.parameters();
-  MAUP_REQUIRE(n > 0 && start.q.size() % n == 0 && start.v.size() == start.q.size());
-  const std::size_t count = start.q.size() / n;
-  MAUP_REQUIRE(start.parameters.size() == p || start.parameters.size() == count * p);
-  MAUP_REQUIRE(start.begin.empty() || start.begin.size() == 1 || start.begin.size() == count);
-  MAUP_REQUIRE(start.end.size() == 1 || start.end.size() == count);
-  MAUP_REQUIRE(start.step_factors.empty() || start.step_factors.size() == count);
-  MAUP_REQUIRE(std::is_sorted(start.times.begin(), start.times.end()));
-  MAUP_REQUIRE(options.energy_terms <= kernel.observables());
-  MAUP_REQUIRE(options.width >= 0 && options.width <= 16 && (options.width & (options.width - 1)) == 0);
+  check_ensemble_start(start, kernel.freedoms(), kernel.parameters());
+  check_argument(start.step_factors.empty() || start.step_factors.size() == start.q.size() / kernel.freedoms(),
+                 "advance_ensemble: start.step_factors has another length than there are trajectories");
+  check_argument(options.energy_terms <= kernel.observables(),
+                 "advance_ensemble: options.energy_terms is more than the kernel has observables");
+  check_argument(options.width >= 0 && options.width <= 16 && (options.width & (options.width - 1)) == 0,
+                 "advance_ensemble: options.width is none of 0, 1, 2, 4, 8, 16");
 }
 
 /// Steps of all trajectories together, if all were as long as the first one of the first trajectory. Zero where it has
@@ -102,6 +99,22 @@ void run(Job& job) {
 }
 
 }  // namespace
+
+void check_ensemble_start(const EnsembleStart& start, std::size_t coordinates, std::size_t parameters) {
+  check_argument(coordinates > 0, "advance_ensemble: the system has no coordinates");
+  check_argument(start.q.size() % coordinates == 0,
+                 "advance_ensemble: the length of start.q is no multiple of the number of coordinates");
+  check_argument(start.v.size() == start.q.size(), "advance_ensemble: start.v has another length than start.q");
+  const std::size_t count = start.q.size() / coordinates;
+  const auto one_or_each = [&](std::size_t size) { return size == 1 || size == count; };
+  check_argument(start.parameters.size() == parameters || start.parameters.size() == count * parameters,
+                 "advance_ensemble: start.parameters has neither one value a parameter nor those of each trajectory");
+  check_argument(start.begin.empty() || one_or_each(start.begin.size()),
+                 "advance_ensemble: start.begin has neither one time nor one a trajectory");
+  check_argument(one_or_each(start.end.size()),
+                 "advance_ensemble: start.end has neither one time nor one a trajectory");
+  check_argument(std::is_sorted(start.times.begin(), start.times.end()), "advance_ensemble: start.times do not ascend");
+}
 
 EnsembleResult advance_ensemble(const Kernel& kernel, const EnsembleStart& start, const EnsembleOptions& options) {
   check(kernel, start, options);

@@ -19,7 +19,13 @@ bool TaylorStepper::Impl::forces_diverge() {
 /// solves; only where the corrections are above rounding is the motion expanded anew.
 /// `known`: the corrections are there.
 bool TaylorStepper::Impl::project(Step& result, bool known) {
-  double error = taylor::constraint_error(work, n, m, length, constraints.usual);
+  // Before the first step nothing is known of the motion: the start is off by rounding of its own coordinates, which
+  // the terms of |P| = l, a root, do not show.
+  taylor::UsualSizes of_start;
+  if (first && constraints.usual.q.empty())
+    for (const double x : state.q_now) of_start.q.push_back(std::abs(x));
+  const taylor::UsualSizes& usual = of_start.q.empty() ? constraints.usual : of_start;
+  double error = taylor::constraint_error(work, n, m, length, usual);
   if (!first) constraints.residual = std::max(constraints.residual, error);
   // In a rotation the radius of convergence is no bound: steps get so long that each order of λ multiplies the rounding
   // errors of those before it. What a step leaves in the constraints shows it.
@@ -37,7 +43,7 @@ bool TaylorStepper::Impl::project(Step& result, bool known) {
     if (error <= taylor::rounding_of_constraints) return true;
     if (const KernelStatus status = work.expand(state.t.hi, state.q_now, state.v_now); status != KernelStatus::Ok)
       return fail(result, status);
-    const double now = taylor::constraint_error(work, n, m, length, constraints.usual);
+    const double now = taylor::constraint_error(work, n, m, length, usual);
     if (turn > 2 && now > 0.5 * error) break;
     error = now;
   }

@@ -119,6 +119,20 @@ double correction_size(const KernelWorkspace& work, std::size_t constraints, std
   return off();
 }
 
+double start_shift(const KernelWorkspace& work, std::size_t constraints, std::span<const double> dq,
+                   std::span<const double> dv, double h) {
+  double positions = 0, velocities = 0, place = 0, motion = 0;
+  for (std::size_t i = 0; i < dq.size(); ++i) {
+    if (work.mass(i, i) > 0) continue;
+    const double moving = speed(work, i, h);
+    positions += dq[i] * dq[i], velocities += dv[i] * dv[i];
+    place += work.coordinate(0)[i] * work.coordinate(0)[i], motion += moving * moving;
+  }
+  const double without_inertia =
+      std::max(ratio(std::sqrt(positions), std::sqrt(place)), ratio(std::sqrt(velocities), std::sqrt(motion)));
+  return std::max(without_inertia, correction_size(work, constraints, dq, dv, h));
+}
+
 void ConstraintRecord::start() {
   residual = best_pivot_ratio = 0;
   restraint = 1;

@@ -26,6 +26,10 @@ double constraint_error(const KernelWorkspace& work, std::size_t freedoms, std::
 double correction_size(const KernelWorkspace& work, std::size_t constraints, std::span<const double> dq,
                        std::span<const double> dv, double h, const UsualSizes& usual = {});
 
+/// The same of a start, with coordinates that have no inertia beside those that have.
+double start_shift(const KernelWorkspace& work, std::size_t constraints, std::span<const double> dq,
+                   std::span<const double> dv, double h);
+
 /// What the steps so far have shown of the constraints.
 struct ConstraintRecord {
   ConstraintRecord(std::size_t freedoms, std::size_t constraints)

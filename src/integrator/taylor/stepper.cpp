@@ -2,7 +2,7 @@
 
 #include "integrator/taylor/reasons.hpp"
 
-#include <maupertuis/require.hpp>
+#include <maupertuis/arguments.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -244,7 +244,8 @@ int TaylorStepper::order() const { return impl_->control.order; }
 
 void TaylorStepper::start(double t, std::span<const double> q, std::span<const double> v, double rest) {
   Impl& s = *impl_;
-  MAUP_REQUIRE(q.size() == s.n && v.size() == s.n);
+  check_argument(q.size() == s.n, "TaylorStepper::start: q has another length than the kernel has coordinates");
+  check_argument(v.size() == s.n, "TaylorStepper::start: v has another length than the kernel has coordinates");
   s.state.start(t, q, v);
   s.state.t.lo = rest;
   s.watched.start();
@@ -271,7 +272,8 @@ void TaylorStepper::put_at_zero(std::span<const std::size_t> events, std::uint8_
 }
 
 void TaylorStepper::treat_events(std::span<const EventTreatment> treatments) {
-  MAUP_REQUIRE(treatments.size() == impl_->kernel.events());
+  check_argument(treatments.size() == impl_->kernel.events(),
+                 "TaylorStepper::treat_events: another number of treatments than the kernel has events");
   impl_->watched.treat(treatments);
 }
 
@@ -331,12 +333,12 @@ bool TaylorStepper::covers(double t) const {
 }
 
 Sample TaylorStepper::sample(double t) const {
-  MAUP_REQUIRE(covers(t));
+  check_argument(covers(t), "TaylorStepper: t is not within the last step");
   return impl_->last.sample(t, impl_->probe);
 }
 
 void TaylorStepper::state(double t, std::span<double> q, std::span<double> v) const {
-  MAUP_REQUIRE(covers(t));
+  check_argument(covers(t), "TaylorStepper: t is not within the last step");
   impl_->last.state(t, q, v);
 }
 

@@ -7,11 +7,13 @@
 #include "kernel/straight_line/compile.hpp"
 #include "kernel/straight_line/evaluator.hpp"
 
+#include <maupertuis/arguments.hpp>
 #include <maupertuis/require.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -77,12 +79,13 @@ struct ForwardDynamics::Impl {
   double constant(std::size_t i);
   double number(const dynamics::NumberSource& source) const;
   void compute_constants();
-  /// In most calls there is nothing to do.
-  void set_inputs(std::span<const double> u) {
-    MAUP_REQUIRE(u.size() == inputs.size());
-    if (stale || !u.empty()) renew_inputs(u);
+  /// In most calls there is nothing to do. False: a switch function has no value at the point.
+  bool prepare(double t, std::span<const double> q, std::span<const double> v, std::span<const double> u) {
+    if (!stale && u.empty() && (sides.empty() || sides_are_given)) return true;
+    return renew(t, q, v, u);
   }
-  void renew_inputs(std::span<const double> u);
+  bool renew(double t, std::span<const double> q, std::span<const double> v, std::span<const double> u);
+  bool choose_sides(double t, std::span<const double> q, std::span<const double> v);
   void plan();
   bool is_symmetric(const std::vector<std::vector<double>>& samples);
   void write_lines();
@@ -91,6 +94,10 @@ struct ForwardDynamics::Impl {
   bool run(std::size_t line, double t, std::span<const double> q, std::span<const double> v, const double* a,
            std::span<double> out);
   KernelStatus by_full_matrix(double t, std::span<const double> q, std::span<const double> v, std::span<double> a);
+  void residual(double t, std::span<const double> q, std::span<const double> v, const double* a,
+                std::span<const double> u, std::span<double> out);
+  void check_point(std::span<const double> q, std::span<const double> v) const;
+  void check_inputs(std::span<const double> u) const;
 
   Kernel kernel;
   ForwardDynamicsOptions options;
@@ -101,16 +108,17 @@ struct ForwardDynamics::Impl {
   KernelWorkspace full;
   std::vector<double> parameters;
   std::vector<std::int8_t> sides;
+  bool sides_are_given = false;  // else those of each point
   bool stale = true;
   std::vector<double> constants;
-  std::vector<bool> live;                       // [constants] that follow from inputs
+  std::vector<bool> live;                       // [constants] that follow from inputs, or from the sides of a point
   std::vector<std::uint32_t> live_order;        // their indices
   bool has_plan = false;                        // for M₀
   Pivots pivots;                                // of it; none: a full matrix
   dynamics::WrittenDynamics written;            // forces, then accelerations where there is a plan
   std::vector<straight::Evaluator> evaluators;  // [lines]
   std::vector<double> numbers;                  // [written.numbers]
-  std::vector<std::uint32_t> live_numbers;      // those that follow from inputs
+  std::vector<std::uint32_t> live_numbers;      // those that follow from live constants
   std::vector<bool> behind;                     // [lines] whose evaluator does not know the numbers yet
   straight::Code code;
   CompileReport report;
@@ -122,6 +130,7 @@ void ForwardDynamics::Impl::find_live() {
   for (std::uint32_t i = 0; i < program.constants.size(); ++i) {
     const Constant& c = program.constants[i];
     if (c.kind == Kind::Symbol) live[i] = std::find(inputs.begin(), inputs.end(), c.index) != inputs.end();
+    if (c.kind == Kind::Sign && c.arguments == 0) live[i] = true;
     for (std::uint32_t k = 0; k < c.arguments; ++k)
       live[i] = live[i] || live[program.constant_arguments[c.first_argument + k]];
     if (live[i]) live_order.push_back(i);
@@ -162,7 +171,8 @@ void ForwardDynamics::Impl::compute_constants() {
   if (system) plan();
   numbers.clear(), live_numbers.clear();
   for (const dynamics::NumberSource& source : written.numbers) {
-    if (source.what == dynamics::NumberSource::OfConstant && live[source.index])
+    const bool is_choice = source.what == dynamics::NumberSource::OfChoice && !live_order.empty();
+    if (is_choice || (source.what == dynamics::NumberSource::OfConstant && live[source.index]))
       live_numbers.push_back(static_cast<std::uint32_t>(numbers.size()));
     numbers.push_back(number(source));
   }
@@ -233,13 +243,25 @@ void ForwardDynamics::Impl::compile() {
 
 // --------------------------------------------------------------------------------------------------------------- calls
 
-void ForwardDynamics::Impl::renew_inputs(std::span<const double> u) {
+bool ForwardDynamics::Impl::renew(double t, std::span<const double> q, std::span<const double> v,
+                                  std::span<const double> u) {
   for (std::size_t i = 0; i < inputs.size(); ++i) parameters[inputs[i]] = u[i];
   compute_constants();
-  if (inputs.empty()) return;
+  const bool has_sides = choose_sides(t, q, v);
+  if (live_order.empty()) return has_sides;
   for (const std::uint32_t i : live_order) constants[i] = constant(i);
   for (const std::uint32_t i : live_numbers) numbers[i] = number(written.numbers[i]);
   behind.assign(evaluators.size(), true);
+  return has_sides;
+}
+
+/// A kernel in lines has no switch functions: those of the workspace tell.
+bool ForwardDynamics::Impl::choose_sides(double t, std::span<const double> q, std::span<const double> v) {
+  if (sides.empty() || sides_are_given) return true;
+  if (!inputs.empty()) full.set_parameters(parameters);
+  const bool all = full.choose_branches(t, q, v);
+  sides.assign(full.branches().begin(), full.branches().end());
+  return all;
 }
 
 /// False: a pivot is small, or a number infinite or undefined; `out` is as it was.
@@ -262,23 +284,38 @@ KernelStatus ForwardDynamics::Impl::by_full_matrix(double t, std::span<const dou
   return status;
 }
 
+void ForwardDynamics::Impl::check_point(std::span<const double> q, std::span<const double> v) const {
+  check_argument(q.size() == n, "ForwardDynamics: q has another length than the kernel has coordinates");
+  check_argument(v.size() == n, "ForwardDynamics: v has another length than the kernel has coordinates");
+}
+
+void ForwardDynamics::Impl::check_inputs(std::span<const double> u) const {
+  check_argument(u.size() == inputs.size(), "ForwardDynamics: u has another length than the list of inputs");
+}
+
 ForwardDynamics::ForwardDynamics(const Kernel& kernel, std::span<const std::size_t> inputs,
                                  const ForwardDynamicsOptions& options)
     : impl_(std::make_unique<Impl>(kernel, inputs, options)) {
-  for (const std::size_t input : inputs) MAUP_REQUIRE(input < kernel.parameters());
+  for (const std::size_t input : inputs)
+    check_argument(input < kernel.parameters(), "ForwardDynamics: `inputs` names a parameter that the kernel has not");
 }
 ForwardDynamics::~ForwardDynamics() = default;
 ForwardDynamics::ForwardDynamics(ForwardDynamics&&) noexcept = default;
 
 void ForwardDynamics::set_parameters(std::span<const double> values) {
-  MAUP_REQUIRE(values.size() == impl_->parameters.size());
+  check_argument(values.size() == impl_->parameters.size(),
+                 "ForwardDynamics::set_parameters: `values` has another length than the kernel has parameters");
   impl_->parameters.assign(values.begin(), values.end());
+  if (!impl_->sides_are_given) std::fill(impl_->sides.begin(), impl_->sides.end(), std::int8_t{1});
   impl_->stale = true;
   impl_->compute_constants();
 }
 
 void ForwardDynamics::set_branches(std::span<const std::int8_t> sides) {
-  MAUP_REQUIRE(sides.size() == impl_->sides.size());
+  check_argument(sides.empty() || sides.size() == impl_->sides.size(),
+                 "ForwardDynamics::set_branches: `sides` has another length than the kernel has switch functions");
+  impl_->sides_are_given = !sides.empty();
+  if (sides.empty()) return;
   impl_->sides.assign(sides.begin(), sides.end());
   impl_->stale = true;
   impl_->compute_constants();
@@ -287,32 +324,44 @@ void ForwardDynamics::set_branches(std::span<const std::int8_t> sides) {
 KernelStatus ForwardDynamics::accelerations(double t, std::span<const double> q, std::span<const double> v,
                                             std::span<const double> u, std::span<double> a) {
   Impl& s = *impl_;
-  MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && a.size() == s.n);
-  s.set_inputs(u);
+  s.check_point(q, v);
+  s.check_inputs(u);
+  check_argument(a.size() == s.n, "ForwardDynamics: a has another length than the kernel has coordinates");
+  if (!s.prepare(t, q, v, u)) return KernelStatus::NonFinite;
   return s.run(1, t, q, v, s.rest.data(), a) ? KernelStatus::Ok : s.by_full_matrix(t, q, v, a);
 }
 
 void ForwardDynamics::forces(double t, std::span<const double> q, std::span<const double> v, std::span<const double> a,
                              std::span<const double> u, std::span<double> out) {
   Impl& s = *impl_;
-  MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && a.size() == s.n && out.size() == s.n);
-  s.set_inputs(u);
-  s.run(0, t, q, v, a.data(), out);
+  s.check_point(q, v);
+  s.check_inputs(u);
+  check_argument(a.size() == s.n, "ForwardDynamics: a has another length than the kernel has coordinates");
+  s.residual(t, q, v, a.data(), u, out);
 }
 
 void ForwardDynamics::bias(double t, std::span<const double> q, std::span<const double> v, std::span<const double> u,
                            std::span<double> out) {
   Impl& s = *impl_;
-  MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && out.size() == s.n);
-  s.set_inputs(u);
-  s.run(0, t, q, v, s.rest.data(), out);
+  s.check_point(q, v);
+  s.check_inputs(u);
+  s.residual(t, q, v, s.rest.data(), u, out);
+}
+
+void ForwardDynamics::Impl::residual(double t, std::span<const double> q, std::span<const double> v, const double* a,
+                                     std::span<const double> u, std::span<double> out) {
+  check_argument(out.size() == n, "ForwardDynamics: `out` has another length than the kernel has coordinates");
+  if (!prepare(t, q, v, u) || !run(0, t, q, v, a, out))
+    std::fill(out.begin(), out.end(), std::numeric_limits<double>::quiet_NaN());
 }
 
 void ForwardDynamics::mass(double t, std::span<const double> q, std::span<const double> v, std::span<double> out) {
   Impl& s = *impl_;
-  MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && out.size() == s.n * s.n);
+  s.check_point(q, v);
+  check_argument(out.size() == s.n * s.n, "ForwardDynamics::mass: `out` has another length than M has entries");
   s.compute_constants();
   if (!s.inputs.empty()) s.full.set_parameters(s.parameters);
+  if (!s.sides_are_given) static_cast<void>(s.full.choose_branches(t, q, v));
   s.full.evaluate(t, q, v);
   for (std::size_t i = 0; i < s.n; ++i)
     for (std::size_t j = 0; j < s.n; ++j) out[i * s.n + j] = s.full.mass(i, j);

@@ -2,7 +2,7 @@
 #include "kernel/program/program.hpp"
 #include "kernel/program/winding.hpp"
 
-#include <maupertuis/require.hpp>
+#include <maupertuis/arguments.hpp>
 
 namespace maupertuis {
 namespace {
@@ -55,8 +55,10 @@ void fuse_sums(Lowering& lowering, const Outputs& outputs) {
 }  // namespace
 
 Kernel build_kernel(const KernelSource& source) {
-  MAUP_REQUIRE(source.residual.size() == source.coordinates.size());
-  MAUP_REQUIRE(source.multipliers.size() == source.constraints.size());
+  check_argument(source.residual.size() == source.coordinates.size(),
+                 "build_kernel: the source has another number of residuals than of coordinates");
+  check_argument(source.multipliers.size() == source.constraints.size(),
+                 "build_kernel: the source has another number of multipliers than of constraints");
   auto program = std::make_shared<Program>();
   Lowering lowering(source);
   const Outputs outputs = lower_outputs(lowering, source);

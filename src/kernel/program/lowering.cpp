@@ -99,7 +99,8 @@ Scaled Lowering::symbol(Expr e) {
   const Expr base = e.order() == 0 ? e : e.context().symbol(e.name(), e.role(), 0);
   const auto found = coordinates_.find(base.id());
   if (found == coordinates_.end())
-    throw std::logic_error("the kernel does not know the symbol " + e.name() + "; please report");
+    throw std::invalid_argument("build_kernel: " + e.name() +
+                                " is no coordinate, multiplier or parameter of the source");
   Scaled value = graph.scaled(graph.leaf(Op::Coordinate, found->second));
   for (int i = 0; i < e.order(); ++i) value = time_derivative(value);
   return value;

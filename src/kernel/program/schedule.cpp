@@ -86,7 +86,7 @@ class Scheduler {
     for (std::size_t i = 0; i < count; ++i) {
       lag_[i] = lag_of(i, -depth);
       if (section_[i] != dead && lag_[i] > 2)
-        throw std::logic_error("the kernel met a third time derivative of a coordinate; please report");
+        throw std::invalid_argument("build_kernel: a third time derivative of a coordinate stands in the source");
     }
     program_.first_stage = -2 - depth;
     delay();
@@ -175,7 +175,7 @@ class Scheduler {
         linear = !accelerates(node.b);
       else if (node.op != Op::Linear && node.op != Op::Derivative && node.op != Op::Select && node.op != Op::Companion)
         linear = !accelerates(node.a);
-      if (!linear) throw std::logic_error("the residual is not linear in the accelerations; please report");
+      if (!linear) throw std::invalid_argument("build_kernel: the residual is not linear in the accelerations");
     }
   }
 

@@ -193,6 +193,27 @@ void KernelWorkspace::set_branches(std::span<const std::int8_t> sides) {
   x.sides.assign(sides.begin(), sides.end());
 }
 
+/// Functions within others come to their sides first.
+bool KernelWorkspace::choose_branches(double t, std::span<const double> q, std::span<const double> v) {
+  std::vector<std::int8_t> sides = impl_->expansion.sides;
+  bool changed = !sides.empty(), defined = true;
+  for (std::size_t pass = 0; changed && pass <= sides.size(); ++pass) {
+    static_cast<void>(evaluate(t, q, v));
+    changed = false, defined = true;
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      const double value = switch_function(i, 0);
+      const auto side = static_cast<std::int8_t>((value > 0) - (value < 0));
+      changed = changed || side != sides[i];
+      defined = defined && !std::isnan(value);
+      sides[i] = side;
+    }
+    set_branches(sides);
+  }
+  return defined;
+}
+
+std::span<const std::int8_t> KernelWorkspace::branches() const { return impl_->expansion.sides; }
+
 KernelStatus KernelWorkspace::expand(double t, std::span<const double> q, std::span<const double> v) {
   return impl_->run(t, q, v, impl_->expansion.order);
 }

@@ -3,6 +3,7 @@
 #include <maupertuis/interrupt_scope.hpp>
 
 #include <deque>
+#include <mutex>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -37,8 +38,9 @@ struct Context::Storage {
   std::vector<std::unique_ptr<NodeId[]>> chunks;
   std::size_t chunk_used = 0, chunk_size = 0;
 
-  mutable Interrupt interrupt;   // not of the expressions, but of the work on them: see InterruptScope
-  std::uint32_t until_look = 1;  // nodes still to be asked for before it is looked at again
+  mutable std::recursive_mutex mutex;  // see ExpressionLock
+  mutable Interrupt interrupt;         // not of the expressions, but of the work on them: see InterruptScope
+  std::uint32_t until_look = 1;        // nodes still to be asked for before it is looked at again
 
   Storage();
   NodeId intern(Kind kind, std::span<const NodeId> arguments);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 using namespace maupertuis;
@@ -290,4 +291,54 @@ TEST_CASE("an ensemble that is interrupted says so of each motion that is not do
   REQUIRE(found);
   for (const TrajectoryEnding& e : found->endings) CHECK(e.ending == StepEnding::Interrupted);
   CHECK(same_bits(found->q, members.q));
+}
+
+TEST_CASE("values that a text may not have end their own trajectory, where it starts") {
+  const std::string ball =
+      "system b\nparam m = 1 kg, g = 9.81 m/s^2, e = 0.8, μ = 0.3\ncoord x, z : length\npoint P mass m at (x, z)\n"
+      "gravity (0, -g)\ncontact z >= 0 restitution e friction μ name floor\nstart z = 1 m\n";
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<std::vector<double>> values = {{1, 9.81, 0.8, 0.3},  {1, 9.81, 2, 0.3},    {1, 9.81, -0.5, 0.3},
+                                                   {1, 9.81, none, 0.3}, {-1, 9.81, 0.8, 0.3}, {1, 9.81, 0.8, -0.3}};
+  const char* const told[] = {"",
+                              "The restitution of floor is 2",
+                              "The restitution of floor is -0.5",
+                              "A parameter is",
+                              "The mass of P is -1",
+                              "friction of floor is -0.3"};
+  Members members;
+  for (const auto& row : values) {
+    members.q.insert(members.q.end(), {0, 1}), members.v.insert(members.v.end(), {1, 0});
+    members.parameters.insert(members.parameters.end(), row.begin(), row.end());
+    members.end.push_back(2);
+  }
+  const ThroughModesResult found = together(ball, members);
+  CHECK(found.endings[0].ok());
+  CHECK(found.through[0].count(Happening::Kind::Impact) > 0);
+  for (std::size_t k = 1; k < values.size(); ++k) {
+    CAPTURE(k);
+    CHECK(found.endings[k].ending == StepEnding::Refused);
+    CHECK(found.endings[k].reason.find(told[k]) != std::string::npos);
+    CHECK(found.endings[k].t == 0);
+    CHECK(found.q_of(k)[1] == 1);
+    CHECK(found.through[k].count(Happening::Kind::Impact) == 0);
+  }
+}
+
+TEST_CASE("starts off the constraints of a model with contacts are told") {
+  const std::string text =
+      "system p\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\npoint B mass m at (x, y)\n"
+      "gravity (0, -g)\nconstraint x^2 + y^2 = l^2 name rod\ncontact x + 2 m >= 0 restitution 0.5\n"
+      "start x = 0.6 m, y = -0.8 m\n";
+  Members members;
+  members.q = {0.6, -0.8, 1, 1}, members.v = {0, 0, 0, 0}, members.end = {1, 1};
+  const ModelText m(text);
+  members.parameters = parameter_values(*m.system);
+  ThroughModesOptions options;
+  Diagnostics diagnostics;
+  const auto found = advance_ensemble(m.model, m.equations, members.start(), options, diagnostics);
+  REQUIRE(found);
+  CHECK(found->endings[0].ok());
+  CHECK(found->endings[1].ending == StepEnding::Refused);
+  CHECK(found->endings[1].reason.find("constraint rod") != std::string::npos);
 }

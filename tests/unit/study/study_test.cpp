@@ -3,9 +3,13 @@
 #include <doctest/doctest.h>
 
 #include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/print.hpp>
 
 #include <atomic>
+#include <stdexcept>
+#include <thread>
+#include <vector>
 
 using namespace maupertuis;
 
@@ -179,4 +183,57 @@ TEST_CASE("lines about formulas hold at the values that they name") {
   std::vector<bool> passed;
   for (const ExpectationResult& r : verified->results) passed.push_back(r.passed);
   CHECK(passed == std::vector<bool>{true, true, true, false});
+}
+
+TEST_CASE("a question that was refused does not stand in the way of the next one") {
+  Study study = pendulum();
+  SimulationOptions wrong;
+  wrong.output_every = -1;
+  CHECK_FALSE(study.motion(wrong));
+  CHECK(study.wrong());
+  const auto motion = study.motion();
+  REQUIRE_MESSAGE(motion, told(study));
+  CHECK(motion->final.t == 1);
+  CHECK(study.equations());
+  CHECK(study.verification());
+  CHECK_FALSE(study.field_motion({}, {}));
+  CHECK(study.diagnostics().items().back().code == "E0512");
+  CHECK(study.motion());
+}
+
+TEST_CASE("a model with fields answers for its fields after a question about coordinates") {
+  Study study(SourceText("string.lag",
+                         "field u(x) : length on x = 0 m .. 1 m boundary u = 0\nparam ρ = 1 kg/m, T0 = 1 N\n"
+                         "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\nstart u = 0.01 [m] sin(π x/1 [m])\nrun 1 s\n"));
+  CHECK_FALSE(study.equations());
+  CHECK_FALSE(study.motion());
+  CHECK(study.diagnostics().items().front().code == "E0507");
+  const auto motion = study.field_motion({}, {});
+  REQUIRE_MESSAGE(motion, told(study));
+}
+
+TEST_CASE("what comes too late is told to the caller") {
+  Study study = pendulum();
+  REQUIRE(study.model());
+  CHECK_THROWS_WITH_AS(study.override_with(OverrideKind::Parameters, "--set", "l = 2 m"),
+                       doctest::Contains("override_with"), std::invalid_argument);
+  CHECK_THROWS_AS(study.fix_mode("free"), std::invalid_argument);
+}
+
+TEST_CASE("threads that make things of one model wait for each other") {
+  Study study = pendulum();
+  const EquationsOfMotion* equations = study.equations();
+  REQUIRE(equations);
+  const Model& model = *study.model();
+  std::vector<double> ends(4);
+  std::vector<std::thread> threads;
+  for (double& end : ends)
+    threads.emplace_back([&] {
+      for (int k = 0; k < 20; ++k) static_cast<void>(motion_kernel(*equations));
+      Diagnostics diagnostics;
+      end = simulate(model, *equations, {}, diagnostics)->final.q[0];
+    });
+  for (std::thread& thread : threads) thread.join();
+  const double alone = end_of(study).q[0];
+  for (const double end : ends) CHECK(end == alone);
 }

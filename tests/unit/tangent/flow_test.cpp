@@ -256,3 +256,46 @@ TEST_CASE("points on the way, and a flow that cannot go on") {
   REQUIRE_FALSE(flow.advance(direct, 1.0));
   CHECK(relative_difference(points[2].directions, direct.directions) < 1e-13);
 }
+
+TEST_CASE("a rod that is written by its length is kept from a start at rest") {
+  // |P| = l is a root: its terms do not show what rounding makes of it. Reference: the same in the angle, at rest at
+  // atan2(0.18, 0.24), by its elliptic function: x(1 s) = l sin θ(1 s), in 30 digits.
+  const ModelText m(
+      "system p\nparam m = 1 kg, l = 0.3 m, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\n"
+      "gravity (0, -g)\nconstraint norm(P) = l\nstart x = 0.18 m, y = -0.24 m\n");
+  TangentFlow flow(m.equations);
+  TangentPoint point = flow.all_directions(start_of(m));
+  for (int k = 1; k <= 10; ++k) {
+    const auto stop = flow.advance(point, 0.1 * k);
+    INFO((stop ? stop->reason : std::string()));
+    REQUIRE_FALSE(stop);
+  }
+  const double k = std::sin(0.5 * std::atan2(0.18, 0.24)), w = std::sqrt(9.81 / 0.3);
+  // θ = 2 asin(k cd(ω t, k)), cd by the arithmetic-geometric mean.
+  double a[12], c[12], b = std::sqrt(1 - k * k);
+  a[0] = 1, c[0] = k;
+  int steps = 0;
+  for (; std::abs(c[steps]) > 1e-16 && steps < 10; ++steps) {
+    a[steps + 1] = 0.5 * (a[steps] + b), c[steps + 1] = 0.5 * (a[steps] - b);
+    b = std::sqrt(a[steps] * b);
+  }
+  double amplitude = std::ldexp(a[steps], steps) * w * 1.0;
+  for (int j = steps; j > 0; --j) amplitude = 0.5 * (amplitude + std::asin(c[j] / a[j] * std::sin(amplitude)));
+  const double cn = std::cos(amplitude), sn = std::sin(amplitude), dn = std::sqrt(1 - k * k * sn * sn);
+  const double theta = 2 * std::asin(k * cn / dn);
+  CHECK(point.state.q[0] == doctest::Approx(0.3 * std::sin(theta)).epsilon(1e-12));
+}
+
+TEST_CASE("the flow of equations alone refuses contacts and friction, and lists that do not fit") {
+  const ModelText rubbed(
+      "system f\nparam m = 1 kg, g = 9.81 m/s^2\ncoord x : length\npoint P mass m at (x, 0)\n"
+      "gravity (0, -g)\nfriction x coefficient 0.3 normal m g\nstart x' = 2 m/s\n");
+  CHECK_THROWS_WITH_AS(TangentFlow(rubbed.equations), doctest::Contains("friction (x)"), std::invalid_argument);
+  const ModelText m("system f\ndimensionless\ncoord x : number\nL = 1/2 x'^2\n");
+  TangentFlow flow(m.equations);
+  CHECK_THROWS_WITH_AS(static_cast<void>(flow.all_directions({0, {1, 2}, {1, 2}})), doctest::Contains("state.q"),
+                       std::invalid_argument);
+  TangentPoint point{{0, {1}, {1}}, {1, 0, 0}};
+  CHECK_THROWS_WITH_AS(static_cast<void>(flow.advance(point, 1)), doctest::Contains("`directions`"),
+                       std::invalid_argument);
+}

@@ -231,3 +231,22 @@ TEST_CASE("a slip in space that begins or stops, and its impacts, are refused wi
   CHECK(stop_of(ModelText(text + "start x = 1, y = 0.5\n"), 3).reason.find("begins at the start") != std::string::npos);
   CHECK(stop_of(ModelText(text + "start z = 1, x' = 1\n"), 3).reason.find("Friction in space") != std::string::npos);
 }
+
+TEST_CASE("a slip that begins at a start at rest has neighbours on both sides") {
+  // m x'' = 5 N - 2 N for x' > 0, 5 N + 2 N for x' < 0: ∂x(1)/∂v₀ is 1 on one side and 3/7 on the other.
+  const ModelText m(
+      "system f\nparam m = 1 kg, g = 9.81 m/s^2\ncoord x : length\npoint P mass m at (x, 0)\n"
+      "gravity (0, -g)\nfriction x limit 2 N\nforce x = 5 N\nstart x = 0 m\n");
+  TangentFlow flow(m.model, m.equations, {});
+  TangentPoint at_rest{{0, {0}, {0}}, {0, 1}};
+  const auto stop = flow.advance(at_rest, 1);
+  REQUIRE(stop);
+  CHECK(stop->t == 0);
+  CHECK(stop->reason.find("begins to slide") != std::string::npos);
+  TangentPoint moving{{0, {0}, {0.1}}, {0, 1}};
+  REQUIRE_FALSE(flow.advance(moving, 1));
+  CHECK(moving.column(0)[0] == doctest::Approx(1));
+  TangentPoint back{{0, {0}, {-0.1}}, {0, 1}};  // slower by 7 m/s^2 to rest, then faster by 3 m/s^2
+  REQUIRE_FALSE(flow.advance(back, 1));
+  CHECK(back.column(0)[1] == doctest::Approx(3.0 / 7));
+}
