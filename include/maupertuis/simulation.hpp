@@ -178,7 +178,7 @@ struct DynamicsSource {
   std::vector<std::size_t> inputs;  // which of them are inputs, in the order of the model
 };
 /// Of a degenerate Lagrangian that determines a motion: the source of `equations.determined`. Throws
-/// std::invalid_argument where the model has contacts or friction, which no kernel knows, or an input in a constraint.
+/// std::invalid_argument where the model has contacts or friction. Inputs in constraints keep their formulas there.
 DynamicsSource dynamics_source(const EquationsOfMotion& equations);
 
 /// Extra functions of q, q', q'', t whose values are wanted at the times `at`.

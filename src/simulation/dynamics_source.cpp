@@ -1,4 +1,3 @@
-#include <maupertuis/arguments.hpp>
 #include <maupertuis/contact_mode.hpp>
 #include <maupertuis/degenerate.hpp>
 #include <maupertuis/expression_lock.hpp>
@@ -39,14 +38,6 @@ int rates_of(const Input& input, const ExprVector& inside_lagrangian, const Expr
   return highest(inside_lagrangian) >= 0 ? 2 : std::max(0, highest(inside_residual));
 }
 
-/// The rates of a constraint would miss those of the input, which is a parameter here.
-void check_constraints(const MechanicalSystem& system) {
-  for (const Constraint& c : system.constraints)
-    check_argument(!holds_inputs(without_definitions(system, {&c.value, 1}).front()),
-                   "dynamics_source: an input stands in a constraint, whose rates it would change; write the motion of "
-                   "that input into the model as a formula of t");
-}
-
 }  // namespace
 
 DynamicsSource dynamics_source(const EquationsOfMotion& given) {
@@ -54,7 +45,6 @@ DynamicsSource dynamics_source(const EquationsOfMotion& given) {
   const ExpressionLock lock(*given.system->context);
   const EquationsOfMotion& equations = solvable_equations(given);
   const MechanicalSystem& system = *equations.system;
-  check_constraints(system);
   DynamicsSource out;
   KernelSource& kernel = out.kernel;
   for (const Coordinate& c : system.coordinates) kernel.coordinates.push_back(c.q);

@@ -255,7 +255,6 @@ std::optional<ThroughModesResult> advance_ensemble(const Model& model, const Equ
     return advance_ensemble(with_determined_system(model, equations), *equations.determined, start, options,
                             diagnostics);
   if (!can_go_through_modes(equations, diagnostics)) return std::nullopt;
-  const InterruptScope scope(*model.system.context, options.interrupt);
   const Observables observables = collect_observables(equations, nullptr);
   const std::size_t n = model.system.coordinates.size(), count = start.q.size() / n;
   ThroughModesResult result = empty_result(count, n, start.times.size());
@@ -270,6 +269,7 @@ std::optional<ThroughModesResult> advance_ensemble(const Model& model, const Equ
       .count = count,
       .freedoms = n,
       .result = result};
+  const InterruptScope scope(*model.system.context, options.interrupt);  // from here on each trajectory tells of it
   const auto work = [&] {
     for (std::size_t number = members.next++; number < count; number = members.next++) carry_out(members, number);
   };

@@ -213,10 +213,6 @@ TEST_CASE("an input that moves a place has rates, one that is a force has none")
   Numbers q{0}, v{0}, u{0, 0, 5, 3}, a(1);
   REQUIRE(d.dynamics.accelerations(0, q, v, u, a) == KernelStatus::Ok);
   CHECK(a[0] == doctest::Approx(3.0 / 2 - 5));
-  const ModelText held(
-      "system f\nparam m = 2 kg\ncoord x, y : length\ninput s : [m] = 1 [m] sin(t/1 [s])\n"
-      "point P mass m at (x, y)\nconstraint x = s\n");
-  CHECK_THROWS_AS(dynamics_source(held.equations), std::invalid_argument);
 }
 
 TEST_CASE("lists of a wrong length are told by name") {

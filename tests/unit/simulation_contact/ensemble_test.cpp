@@ -296,7 +296,7 @@ TEST_CASE("an ensemble that is interrupted says so of each motion that is not do
 TEST_CASE("values that a text may not have end their own trajectory, where it starts") {
   const std::string ball =
       "system b\nparam m = 1 kg, g = 9.81 m/s^2, e = 0.8, μ = 0.3\ncoord x, z : length\npoint P mass m at (x, z)\n"
-      "gravity (0, -g)\ncontact z >= 0 restitution e friction μ name floor\nstart z = 1 m\n";
+      "gravity (0, -g)\ncontact z >= 0 restitution e friction μ slip x' name floor\nstart z = 1 m\n";
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const std::vector<std::vector<double>> values = {{1, 9.81, 0.8, 0.3},  {1, 9.81, 2, 0.3},    {1, 9.81, -0.5, 0.3},
                                                    {1, 9.81, none, 0.3}, {-1, 9.81, 0.8, 0.3}, {1, 9.81, 0.8, -0.3}};
@@ -328,7 +328,7 @@ TEST_CASE("values that a text may not have end their own trajectory, where it st
 TEST_CASE("starts off the constraints of a model with contacts are told") {
   const std::string text =
       "system p\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\npoint B mass m at (x, y)\n"
-      "gravity (0, -g)\nconstraint x^2 + y^2 = l^2 name rod\ncontact x + 2 m >= 0 restitution 0.5\n"
+      "gravity (0, -g)\nconstraint x^2 + y^2 = l^2 name rod\ncontact x + 2 [m] >= 0 restitution 0.5\n"
       "start x = 0.6 m, y = -0.8 m\n";
   Members members;
   members.q = {0.6, -0.8, 1, 1}, members.v = {0, 0, 0, 0}, members.end = {1, 1};
