@@ -3,10 +3,12 @@
 #include <doctest/doctest.h>
 
 #include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/ensemble.hpp>
 #include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/print.hpp>
 
 #include <atomic>
+#include <cmath>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -236,4 +238,24 @@ TEST_CASE("threads that make things of one model wait for each other") {
   for (std::thread& thread : threads) thread.join();
   const double alone = end_of(study).q[0];
   for (const double end : ends) CHECK(end == alone);
+}
+
+TEST_CASE("kernels and flows of a degenerate Lagrangian are those of the equations that determine its motion") {
+  // L = x y' - (x^2 + y^2)/2: y' = x, x' = -y.
+  Study study(SourceText("plane.lag",
+                         "system plane\ndimensionless\ncoord x, y : number\nL = x y' - (x^2 + y^2)/2\n"
+                         "start x = 1, y = 0\nrun 2\n"));
+  const EquationsOfMotion* equations = study.equations();
+  REQUIRE_MESSAGE(equations, told(study));
+  const MotionKernel motion = motion_kernel(*equations);
+  const std::vector<double> q{1, 0}, v{0, 1}, end{2};
+  EnsembleStart start;
+  start.q = q, start.v = v, start.end = end, start.parameters = motion.parameters;
+  const EnsembleResult result = advance_ensemble(motion.kernel, start);
+  REQUIRE_MESSAGE(result.endings[0].ok(), result.endings[0].reason);
+  CHECK(result.q[0] == doctest::Approx(std::cos(2.0)).epsilon(1e-13));
+  CHECK(result.q[1] == doctest::Approx(std::sin(2.0)).epsilon(1e-13));
+  const std::vector<double> still{0, 0};
+  start.v = still;  // y' = x is a constraint here
+  CHECK(advance_ensemble(motion.kernel, start).endings[0].ending == StepEnding::Refused);
 }
