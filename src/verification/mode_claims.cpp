@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace maupertuis {
 namespace {
@@ -41,8 +42,21 @@ std::string list_text(const std::vector<double>& values, const expectation::Freq
 
 }  // namespace
 
+namespace {
+
+/// Of the motion while all contacts are open and nothing rubs: rests in other modes have studies of their own.
+EquationsOfMotion without_contacts(EquationsOfMotion equations) {
+  auto system = std::make_shared<MechanicalSystem>(*equations.system);
+  system->contacts.clear();
+  system->frictions.clear();
+  equations.system = std::move(system);
+  return equations;
+}
+
+}  // namespace
+
 ModeClaims::ModeClaims(const Model& model, const EquationsOfMotion& equations)
-    : model_(model), derived_(equations), equations_(equations), plain_(model.system) {
+    : model_(model), derived_(equations), equations_(without_contacts(equations)), plain_(model.system) {
   for (Friction& f : plain_.frictions)
     if (f.normal) f.normal = with_reactions(equations, {&f.normal, 1}).front();
   Diagnostics unheard;  // why there is no start is for a run to say
