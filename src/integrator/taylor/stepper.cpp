@@ -3,6 +3,7 @@
 #include "integrator/taylor/reasons.hpp"
 
 #include <maupertuis/arguments.hpp>
+#include <maupertuis/require.hpp>
 
 #include <algorithm>
 #include <cmath>
