@@ -288,7 +288,8 @@ bool jumps(const CoupledRun& run) {
 /// What halving the elements gains at least beside a break; 0 where there is none. A plucked string and one under a
 /// moving load have kinks, a beam under a load a jump of its third derivative; of waves without bodies at their ends a
 /// higher derivative may jump where the start does not fit them.
-double gain_at_breaks(const FieldEquations& equations, const SemiDiscrete& mesh, bool start_breaks, double begin) {
+double gain_at_breaks(const FieldEquations& equations, const SemiDiscrete& mesh, bool start_breaks, double begin,
+                      double end) {
   constexpr double of_kinks = 2, of_loads_on_beams = 8;
   const std::vector<PlaceCoordinate>& places = equations.model->attached;
   if (start_breaks) return of_kinks;
@@ -298,7 +299,7 @@ double gain_at_breaks(const FieldEquations& equations, const SemiDiscrete& mesh,
   double spacing = 0;
   for (std::size_t i = 1; i < mesh.borders().size(); ++i)
     spacing = std::max(spacing, (mesh.borders()[i] - mesh.borders()[i - 1]) / mesh.order());
-  const std::optional<int> jump = fit_of_sides(equations, begin, spacing).jump;
+  const std::optional<int> jump = fit_of_sides(equations, begin, end, spacing).jump;
   if (jump && *jump <= 1) return of_kinks;
   return jump ? std::pow(2.0, *jump + 1) : 0;
 }
@@ -412,7 +413,7 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
     half = coarser(2), quarter = coarser(4);
   }
   if (options.errors) estimate_moments(out.happenings, half, quarter, options.begin);
-  const double gain = gain_at_breaks(equations, *mesh, breaks || jumps(*fine), options.begin);
+  const double gain = gain_at_breaks(equations, *mesh, breaks || jumps(*fine), options.begin, out.end);
   std::vector<double> errors = errors_of(*fine, half, quarter, gain, lower_orders);
   if (gain > 0 && !breaks)
     for (double& e : errors) e *= 2;

@@ -4,6 +4,7 @@
 #include <maupertuis/repeated_evaluation.hpp>
 
 #include "fields/end_slopes.hpp"
+#include "fields/switching.hpp"
 #include "fields/wide_lanes.hpp"
 
 #include <fmt/format.h>
@@ -156,11 +157,9 @@ FieldMesh::FieldMesh(const FieldEquations& equations, const PointForm& form, int
     for (int e = 0; e < cells_; ++e)
       x[local(j, e)] = left_ + width_ * (e + 0.5 * (1 + rule_.x[static_cast<std::size_t>(j)]));
   const auto hold = [&](Side side, std::size_t field, Expr value, bool force) {
-    Held held{side == Side::Right, 0, {}, force};
+    Held held{side == Side::Right, 0, s_.expanded(value), {}, force};
     while (equations_.varied[held.field] != field) ++held.field;
-    held.derivatives.push_back(s_.expanded(value));
-    for (std::size_t k = 1; k <= kOrder + 2; ++k)
-      held.derivatives.push_back(differentiate(held.derivatives.back(), s_.context->time()));
+    held.derivatives = time_derivatives(held.value);
     held_.push_back(std::move(held));
   };
   for (const EndForce& f : s_.end_forces) hold(f.side, f.jet.field, f.value, true);
@@ -214,6 +213,16 @@ void FieldMesh::start() {
         clashes_.push_back({held.field, 0, order, held.right ? Side::Right : Side::Left, values[n], condition});
       values[n] = condition;
     }
+  }
+}
+
+void FieldMesh::follow_branches(double from, double until) {
+  t_ = from;
+  for (Held& held : held_) {
+    held.derivatives = time_derivatives(branches_between(held.value, s_, values_, from, until));
+    if (held.force || u_.empty()) continue;
+    u_[held.field][node_of(held)] = boundary_coefficient(held.derivatives, 0);
+    v_[held.field][node_of(held)] = boundary_coefficient(held.derivatives, 1);
   }
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 #include "fields/lane_series.hpp"
-#include "linear_algebra/quadrature.hpp"
 #include "fields/wave_mesh.hpp"
+#include "linear_algebra/quadrature.hpp"
 
 #include <memory>
 #include <optional>
@@ -39,6 +39,7 @@ class FieldMesh final : public WaveMesh {
   FieldMesh(const FieldEquations& equations, const PointForm& form, int cells, int order);
 
   void start() override;
+  void follow_branches(double from, double until) override;
   double omega_max(const Interrupt& interrupt) override;
   bool step(double h) override;
   double energy(double& size) override;
@@ -94,7 +95,8 @@ class FieldMesh final : public WaveMesh {
   struct Held {
     bool right = false;
     std::size_t field = 0;
-    std::vector<Expr> derivatives;  // of the value at the end
+    Expr value;                     // at the end
+    std::vector<Expr> derivatives;  // of its branch in force
     bool force = false;             // else the field itself
   };
   std::size_t node_of(const Held& held) const { return held.right ? local(p_, cells_ - 1) : local(0, 0); }

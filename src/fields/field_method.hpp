@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace maupertuis {
@@ -38,6 +39,9 @@ class FieldMethod {
   /// Waves: `alike`, at places that lie in elements as the place itself does.
   void look_beside(double width, bool alike) { width_ = width, alike_ = alike; }
   bool looks_alike() const { return alike_; }
+  /// Moments at which steps end, since what is given at the sides has other branches from there on.
+  void end_steps_at(std::vector<double> moments) { switching_ = std::move(moments); }
+  const std::vector<double>& switching() const { return switching_; }
   /// The power of the width of a cell by which an answer is off on two meshes with their steps; `half`: the coarser.
   int power(const FieldEquations& equations, const FieldQuestion& question, const Cells& half) const;
 
@@ -50,6 +54,7 @@ class FieldMethod {
   int order_ = 0;
   double step_ = 0, width_ = 0;  // of the first mesh by collocation
   bool alike_ = false;
+  std::vector<double> switching_;
 };
 
 }  // namespace maupertuis

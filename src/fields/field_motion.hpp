@@ -34,6 +34,9 @@ class FieldMotion {
   /// The moment of the start, before it.
   void begin_at(double t) { t_ = t; }
   virtual void start() = 0;
+  /// At the moment `from`, until another one what is given at the sides has the branches that hold between the two:
+  /// series go on from there. Held sides take what they are given.
+  virtual void follow_branches(double from, double until) { t_ = from, static_cast<void>(until); }
   /// False, and `trouble`, where it left the numbers.
   virtual bool step(double h) = 0;
   /// h_E of the mesh, and the integral of the size of its density.

@@ -9,6 +9,7 @@
 #include "fields/resolution.hpp"
 #include "fields/start_fit.hpp"
 #include "fields/steepening.hpp"
+#include "fields/switching.hpp"
 
 #include <fmt/format.h>
 
@@ -107,6 +108,7 @@ struct OneRun {
   std::vector<double> felt;                       // [questions]: felt_rounding, on the first mesh
   std::vector<SteepeningWatch::Follows> follows;  // [questions]: whether the first mesh did
   std::size_t steps = 0;
+  bool passes_by = false;  // something that acts for less than a step
   double h = 0, omega = 0, energy = 0, drift = 0;
   Trajectory trajectory;
   std::vector<FieldRunResult::Range> at_end;
@@ -151,19 +153,32 @@ void warn_of_clashes(const FieldMotion& mesh, const FieldEquations& equations, D
         "Give a start that has the value of the condition there.");
 }
 
-/// W0650: what acts for less than a step.
-void warn_of_short_action(const FieldEquations& equations, double step, const FieldRunOptions& options,
-                          Diagnostics& diagnostics) {
-  const auto moment = unresolved_moment(equations, step, options.begin, options.duration);
-  if (!moment) return;
+/// W0650: what acts for less than a step; whether there is such.
+bool warn_of_short_action(const FieldEquations& equations, const std::vector<double>& switching, double step,
+                          const FieldRunOptions& options, Diagnostics& diagnostics) {
+  const auto moment = unresolved_moment(equations, switching, step, options.begin, options.duration);
+  if (!moment) return false;
   diagnostics.warning(
       "W0650", equations.system().density_span,
       fmt::format("what acts changes within less than a step at t = {:.6g} s", *moment),
       fmt::format(
           "Steps are {:.3g} s long: a pulse between their ends is passed by, a jump is taken for something else, "
-          "and the estimate of the error does not tell.",
+          "and no error can be estimated.",
           step),
       "Make steps shorter with `output every`, or the change slower.");
+  return true;
+}
+
+/// W0650: waves of every length run in from a side whose motion has a jump or a kink, or whose force jumps.
+void warn_of_switching(const SwitchingBreak& b, Diagnostics& diagnostics) {
+  diagnostics.warning(
+      "W0650", b.span,
+      fmt::format("what is given has a {} at t = {:.6g} s: {} goes from {:.6g} to {:.6g} (SI units)",
+                  b.derivative == 0 ? "jump" : "kink", b.moment, b.derivative == 0 ? "it" : "its rate", b.before,
+                  b.behind),
+      "Steps end there and the side is followed, but waves of every length run in from it, and a mesh follows the long "
+      "ones alone: values converge slowly.",
+      "Round it over the time that waves take through some cells where digits count.");
 }
 
 /// N0648: what no equation says of a potential.
@@ -321,6 +336,8 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
   double longest = options.duration;
   const double end = options.begin + options.duration;
   mesh.begin_at(options.begin);
+  const std::vector<double>& switching = method.switching();
+  if (mesh.trouble().empty()) mesh.follow_branches(options.begin, switching.empty() ? end : switching.front());
   if (mesh.trouble().empty()) mesh.start();
   const double every = options.every > 0 ? options.every : options.duration / 100;
   if (mesh.trouble().empty())
@@ -332,11 +349,14 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
   stops.push_back(end);
   for (const double t : options.moments)
     if (first && t >= options.begin && t <= end) stops.push_back(t);
-  if (first) warn_of_short_action(equations, std::min(longest, every), options, diagnostics);
+  if (first) out.passes_by = warn_of_short_action(equations, switching, std::min(longest, every), options, diagnostics);
   // Where rows bound the steps, those of the other meshes are twice as long, so that their difference tells of steps
   // too.
   const double apart = first ? every : 2 * every;
   for (double t = options.begin; (first || method.is_wave()) && t < end; t += apart) stops.push_back(t);
+  std::sort(stops.begin(), stops.end());
+  const std::vector<double> of_rows = stops;
+  stops.insert(stops.end(), switching.begin(), switching.end());
   std::sort(stops.begin(), stops.end());
   double size = 0;
   const double start = mesh.energy(size);
@@ -369,6 +389,9 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
       if (first && options.progress) options.progress((mesh.time() - options.begin) / options.duration);
       if (meter) meter->note_flux(mesh);
     }
+    if (const auto now = std::lower_bound(switching.begin(), switching.end(), stop);
+        now != switching.end() && *now == stop)
+      mesh.follow_branches(stop, now + 1 == switching.end() ? end : *(now + 1));
     const bool asked = std::any_of(questions.begin(), questions.end(), [&](const auto& q) { return q.time == stop; });
     const bool due = (way > 0 && stop - measured >= apart_in_run) || stop == end;
     auto follows = SteepeningWatch::Follows::Well;
@@ -389,7 +412,8 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
           if (method.width() > 0 && !questions[i].total)
             out.near[i].push_back(mesh.answer_beside(questions[i], shift * method.width()));
       }
-    if (!rows.empty() && (out.trajectory.times.empty() || mesh.time() > out.trajectory.times.back()))
+    if (!rows.empty() && std::binary_search(of_rows.begin(), of_rows.end(), stop) &&
+        (out.trajectory.times.empty() || mesh.time() > out.trajectory.times.back()))
       mesh.add_row(out.trajectory, rows);
   }
   if (slopes) slopes->warn(diagnostics);
@@ -416,20 +440,27 @@ Cells divided(const Cells& cells, int parts) {
 }
 
 /// Whether a mesh follows the start: not where it has jumps or kinks, in part where it is too coarse, and by a lower
-/// power of its cells where a derivative of the order `jump` runs in from a side that the start does not fit.
+/// power of its cells where a derivative of the order `jump` runs in from a side that the start does not fit, or whose
+/// motion switches.
 struct Rough {
   enum { No, Coarse, Breaks } how = No;
   std::optional<int> jump;
   double tail = 0;  // as in SideFit
 };
 
-Rough roughness_of_start(const FieldEquations& equations, const FieldMethod& method, const Cells& cells, double begin,
-                         Diagnostics& diagnostics) {
+Rough roughness_of(const FieldEquations& equations, const FieldMethod& method, const Cells& cells,
+                   const FieldRunOptions& options, Diagnostics& diagnostics) {
   Rough out;
   const std::vector<double> borders = even_borders(equations, cells).front();
   if (method.is_wave()) {
-    const SideFit fit = fit_of_sides(equations, begin, (borders[1] - borders[0]) / method.order());
+    const double end = options.begin + options.duration;
+    const SideFit fit = fit_of_sides(equations, options.begin, method.switching().empty() ? end : method.switching()[0],
+                                     (borders[1] - borders[0]) / method.order());
     out.jump = fit.jump, out.tail = fit.tail;
+    if (const auto b = lowest_break(equations, method.switching(), options.begin, end)) {
+      if (b->order <= 1) warn_of_switching(*b, diagnostics);
+      out.jump = out.jump ? std::min(*out.jump, b->order) : b->order;
+    }
   }
   if (warn_of_breaks(equations, cells, diagnostics) || (out.jump && *out.jump <= 1))
     out.how = Rough::Breaks;
@@ -451,7 +482,7 @@ std::vector<double> errors_of(const OneRun& fine, const FieldEquations& equation
                               const FieldRunOptions& options, Rough start, Diagnostics& diagnostics) {
   std::vector<double> out(questions.size(), std::numeric_limits<double>::infinity());
   const Cells half = divided(cells, 2), quarter = divided(cells, 4);
-  if (!options.errors || questions.empty() || half == cells) return out;
+  if (!options.errors || questions.empty() || half == cells || fine.passes_by) return out;
   const auto coarse = run_on(equations, method, half, questions, options, {}, false, diagnostics);
   if (!coarse) return out;
   std::optional<OneRun> coarser;
@@ -504,7 +535,9 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   if (refuse_large_mesh(equations, *method, cells, diagnostics)) return std::nullopt;
   announce_memory(options, method->bytes(equations, cells));
   if (refuse_unresolved(equations, even_borders(equations, cells), method->order(), diagnostics)) return std::nullopt;
-  const Rough start = roughness_of_start(equations, *method, cells, options.begin, diagnostics);
+  if (auto moments = switching_moments(equations, options.begin, options.begin + options.duration))
+    method->end_steps_at(std::move(*moments));
+  const Rough start = roughness_of(equations, *method, cells, options, diagnostics);
   if (method->is_wave()) {
     const std::vector<double> borders = even_borders(equations, cells).front();
     method->look_beside(borders[1] - borders[0], !start.jump);

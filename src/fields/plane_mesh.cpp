@@ -3,6 +3,7 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/repeated_evaluation.hpp>
 
+#include "fields/switching.hpp"
 #include "fields/wide_lanes.hpp"
 
 #include <fmt/format.h>
@@ -195,12 +196,24 @@ double PlaneMesh::bytes(const FieldEquations& equations, const PointForm& form, 
 }
 
 void PlaneMesh::hold(Side side, std::size_t field, Expr value, bool force) {
-  Held held{side, 0, force, false, {s_.expanded(value)}};
+  Held held{side, 0, force, false, s_.expanded(value), {}};
   while (equations_.varied[held.field] != field) ++held.field;
-  for (const SpaceVariable& x : s_.space) held.varies = held.varies || stands_in_any(held.derivatives, x.symbol);
-  for (std::size_t k = 1; k <= kOrder + 2; ++k)
-    held.derivatives.push_back(differentiate(held.derivatives.back(), s_.context->time()));
+  for (const SpaceVariable& x : s_.space) held.varies = held.varies || stands_in_any({held.value}, x.symbol);
+  held.derivatives = time_derivatives(held.value);
   held_.push_back(std::move(held));
+}
+
+void PlaneMesh::follow_branches(double from, double until) {
+  t_ = from;
+  for (Held& held : held_) {
+    held.derivatives = time_derivatives(branches_between(held.value, s_, values_, from, until));
+    if (held.force || u_.empty()) continue;
+    for (std::size_t order = 0; order < 2; ++order)
+      for (std::size_t row = 0; row < rows(); ++row)
+        each_held(held, row, order, 0, points(), [&](std::size_t lane, double value) {
+          (order == 0 ? u_ : v_)[held.field][row * lanes_ + lane] = value;
+        });
+  }
 }
 
 double PlaneMesh::weight(std::size_t lane) const {

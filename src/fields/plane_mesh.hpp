@@ -27,6 +27,7 @@ class PlaneMesh final : public WaveMesh {
   PlaneMesh(const FieldEquations& equations, const PointForm& form, int cells_x, int cells_y, int order);
 
   void start() override;
+  void follow_branches(double from, double until) override;
   double omega_max(const Interrupt& interrupt) override;
   bool step(double h) override;
   double energy(double& size) override;
@@ -76,7 +77,8 @@ class PlaneMesh final : public WaveMesh {
     std::size_t field = 0;
     bool force = false;   // else the field itself
     bool varies = false;  // along the side
-    std::vector<Expr> derivatives;
+    Expr value;
+    std::vector<Expr> derivatives;  // of its branch in force
   };
   void hold(BoundaryCondition::Side side, std::size_t field, Expr value, bool force);
   /// Calls f(lane, coefficient k of the condition) for the nodes of a side that lie in lines of a row.

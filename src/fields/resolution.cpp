@@ -271,7 +271,8 @@ Borders even_borders(const FieldEquations& equations, const std::vector<int>& ce
   return out;
 }
 
-std::optional<double> unresolved_moment(const FieldEquations& equations, double step, double begin, double duration) {
+std::optional<double> unresolved_moment(const FieldEquations& equations, const std::vector<double>& switching,
+                                        double step, double begin, double duration) {
   constexpr double most_steps = 200'000;
   if (!(step > 0) || duration / step > most_steps) return std::nullopt;
   const FieldSystem& s = equations.system();
@@ -279,8 +280,10 @@ std::optional<double> unresolved_moment(const FieldEquations& equations, double 
   const Expr time = context.time();
   const ParameterValues parameters(*equations.model);
   const Lobatto rule(2);
-  Elements steps{rule, {{}}};
+  Elements steps{rule, {switching}, 1e-9};
   for (double k = 0; k <= std::ceil(duration / step); ++k) steps.borders[0].push_back(begin + step * k);
+  std::sort(steps.borders[0].begin(), steps.borders[0].end());
+  steps.borders[0].erase(std::unique(steps.borders[0].begin(), steps.borders[0].end()), steps.borders[0].end());
   const auto look = [&](Expr f) -> std::optional<double> {
     if (!stands_in(time, f)) return std::nullopt;
     const auto found = Scan(f, {time}, parameters.symbols, parameters.values).with_poles().find(steps);

@@ -27,7 +27,9 @@ double left_out_of_start(const FieldEquations& equations, const std::vector<int>
 
 /// The same along t for what acts: boundary values, forces at ends, and the density at some places, beside the parabola
 /// through the beginning, the middle and the end of each step. A series from the beginning of a step follows it about
-/// as far; jumps are found too. The moment, or nothing. Cost: some evaluations a step, function and place.
-std::optional<double> unresolved_moment(const FieldEquations& equations, double step, double begin, double duration);
+/// as far; jumps are found too, but for those at moments where steps end (`switching`). The moment, or nothing. Cost:
+/// some evaluations a step, function and place.
+std::optional<double> unresolved_moment(const FieldEquations& equations, const std::vector<double>& switching,
+                                        double step, double begin, double duration);
 
 }  // namespace maupertuis

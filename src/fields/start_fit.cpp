@@ -5,6 +5,7 @@
 #include "fields/field_sides.hpp"
 #include "fields/given_fields.hpp"
 #include "fields/on_shell.hpp"
+#include "fields/switching.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -55,6 +56,12 @@ class Start {
       from_.push_back(evaluate(s_.expanded(x.from), values_));
       width_.push_back(evaluate(s_.expanded(x.to), values_) - from_.back());
     }
+  }
+
+  Bindings parameters() const {
+    Bindings out;
+    for (const Parameter& p : equations_.model->parameters) out[p.symbol] = p.si_value;
+    return out;
   }
 
   /// Jets of at most one derivative in time as functions of space; nothing where others stand in e.
@@ -124,14 +131,15 @@ class Start {
 
 }  // namespace
 
-SideFit fit_of_sides(const FieldEquations& equations, double begin, double spacing) {
+SideFit fit_of_sides(const FieldEquations& equations, double begin, double until, double spacing) {
   const FieldSystem& s = equations.system();
   if (s.periodic() || !s.space.front().from) return {};
   const Start start(equations, begin);
   const OnShell shell(equations);
   const double from_node_to_node = std::min(1.0, spacing * start.wave_number());
   SideFit out;
-  for (SideCondition c : conditions_of(equations))
+  for (SideCondition c : conditions_of(equations)) {
+    c.given = branches_between(c.given, s, start.parameters(), begin, until);
     for (int k = 0; k <= most_times && (!out.jump || c.order < *out.jump); ++k, ++c.order) {
       const auto reduced = shell.reduced(c.jets);
       const auto jets = reduced ? start.inserted(*reduced) : std::nullopt;
@@ -146,6 +154,7 @@ SideFit fit_of_sides(const FieldEquations& equations, double begin, double spaci
       c.jets = s.total_derivative(*reduced, s.space.size());
       c.given = total_time_derivative(c.given);
     }
+  }
   return out;
 }
 

@@ -5,6 +5,12 @@
 
 namespace maupertuis {
 
+std::vector<Expr> WaveMesh::time_derivatives(Expr value) const {
+  std::vector<Expr> out{value};
+  for (std::size_t k = 1; k <= kOrder + 2; ++k) out.push_back(differentiate(out.back(), s_.context->time()));
+  return out;
+}
+
 void fill_randomly(FieldValues& w) {
   std::uint64_t seed = 1;
   for (auto& row : w)

@@ -16,6 +16,10 @@ class WaveMesh : public FieldMotion {
   using FieldMotion::FieldMotion;
   /// Largest frequency of small motions about the present state, by power iteration.
   virtual double omega_max(const Interrupt& interrupt) = 0;
+
+ protected:
+  /// What is given at a side and its derivatives by t, as many as the series of a step takes.
+  std::vector<Expr> time_derivatives(Expr value) const;
 };
 
 /// The largest frequency of small motions about u by power iteration from the direction w.
