@@ -37,6 +37,10 @@ bool has_multipliers(Expr e);
 /// "floor, wall sliding, x sticking"; empty where all is open and nothing rubs.
 std::string mode_text(const MechanicalSystem& system, const ContactMode& mode);
 
+/// A mode with its first contact closed and not sliding, or its first friction sticking: for a help, as `--mode` takes
+/// it.
+std::string some_mode(const MechanicalSystem& system);
+
 /// Reads what mode_text writes: "floor, wall sliding +, x sticking"; "free" for none. Nothing, with one sentence why in
 /// `trouble`, where a name is no contact, or a friction is left open.
 std::optional<ContactMode> read_mode(const MechanicalSystem& system, const std::string& text, std::string& trouble);

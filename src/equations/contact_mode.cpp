@@ -108,6 +108,14 @@ std::string mode_text(const MechanicalSystem& system, const ContactMode& mode) {
   return out;
 }
 
+std::string some_mode(const MechanicalSystem& system) {
+  ContactMode mode = open_mode(system);
+  if (system.contacts.empty()) return mode_text(system, mode);
+  mode.closed[0] = true;
+  if (system.contacts[0].friction.present()) mode.friction[0] = FrictionState::Stick;
+  return mode_text(system, mode);
+}
+
 namespace {
 
 std::vector<std::string> parts_of(const std::string& text) {

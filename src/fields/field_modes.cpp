@@ -1,3 +1,4 @@
+#include <maupertuis/contact_mode.hpp>
 #include <maupertuis/coupled_fields.hpp>
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/field_run.hpp>
@@ -416,7 +417,8 @@ FieldModes field_modes(const FieldEquations& equations, std::size_t count, Diagn
   if (equations.bodies && equations.bodies->system->has_modes())
     diagnostics.warning("W0658", s.density_span, "these are the modes with open contacts and without dry friction",
                         "A closed contact holds the system on one side alone, and dry friction up to a limit.",
-                        "--mode \"floor\" has those of one mode; `maup simulate` goes through all.");
+                        fmt::format("--mode \"{}\" has those of one mode; `maup simulate` goes through all.",
+                                    some_mode(*equations.bodies->system)));
   if (refuse_too_many_conditions(equations, diagnostics)) return out;
   if (s.space.size() == 2) return plane_modes(equations, count, diagnostics);
   if (s.space.size() != 1 || !s.space.front().from) {

@@ -306,10 +306,9 @@ bool Study::refuse_modes() {
   if (!system.has_modes()) return false;
   const Span span = system.contacts.empty() ? system.frictions.front().span : system.contacts.front().span;
   Diagnostics found;
-  found.error(
-      "E0270", span, "this question is about one set of equations, and the model has several modes",
-      "Contacts that open and close and friction that sticks and slides change the equations on the way.",
-      "Ask it of one mode: --mode free, --mode \"floor\", or --mode \"floor sticking\" where there is friction.");
+  found.error("E0270", span, "this question is about one set of equations, and the model has several modes",
+              "Contacts that open and close and friction that sticks and slides change the equations on the way.",
+              fmt::format("Ask it of one mode: --mode free, or such as --mode \"{}\".", some_mode(system)));
   tell(found);
   return true;
 }

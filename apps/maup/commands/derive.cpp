@@ -327,7 +327,8 @@ ExitCode derive_fields(const DeriveOptions& options, Study& study, Console& cons
     study.diagnostics().note(
         "N0505", std::nullopt, "these are the equations without contact and without dry friction",
         "While a contact is closed, or friction sticks or slides, their forces are added.",
-        "--mode \"floor\" shows those of one mode; `maup simulate` tells which ones a run goes through.");
+        fmt::format("--mode \"{}\" shows those of one mode; `maup simulate` tells which ones a run goes through.",
+                    some_mode(study.model()->system)));
   if (console.json()) return finish(console, study, fields_json(study));
   const bool one_notation = options.latex || options.mathml || options.plain;
   if (one_notation)
@@ -354,9 +355,10 @@ ExitCode derive(const DeriveOptions& options, Console& console) {
   if (study.refuse_held_integrals()) return finish(console, study, document_of(options, study, {}, nullptr));
   study.derivation(options.steps);
   if (study.model() && study.model()->system.has_modes())
-    study.diagnostics().note("N0505", std::nullopt, "these are the equations without contact and without dry friction",
-                             "While a contact is closed, or friction sticks or slides, others hold.",
-                             "--modes shows those of its modes, --mode \"floor\" or \"floor sticking\" those of one.");
+    study.diagnostics().note(
+        "N0505", std::nullopt, "these are the equations without contact and without dry friction",
+        "While a contact is closed, or friction sticks or slides, others hold.",
+        fmt::format("--modes shows those of its modes, --mode \"{}\" those of one.", some_mode(study.model()->system)));
   const Certificate* certificate = study.certificate({.full = options.certify == "full"});
   EquationForm form;
   if (certificate) form = equation_form(options.chosen_form(), study);

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <maupertuis/contact_mode.hpp>
 #include <maupertuis/degenerate.hpp>
 #include <maupertuis/page_findings.hpp>
 #include <maupertuis/report.hpp>
@@ -110,7 +111,7 @@ class Page {
       study_.diagnostics().note(
           "N0506", std::nullopt, "this page has the equations without contact and without dry friction",
           "Conserved quantities and modes of vibration belong to one mode of contacts and frictions, and are left out.",
-          "`maup report --mode \"floor\"` makes the page of a mode.");
+          fmt::format("`maup report --mode \"{}\"` makes the page of a mode.", some_mode(model().system)));
     budget_.carry_out("expectations", context_, [&](const Interrupt& interrupt) { verify_model(interrupt); });
     if (has_modes) return true;
     budget_.carry_out("conserved", context_,
