@@ -10,6 +10,7 @@
 #include "fields/semi_discrete.hpp"
 #include "fields/start_fit.hpp"
 #include "fields/steepening.hpp"
+#include "fields/switching.hpp"
 
 #include <fmt/format.h>
 
@@ -30,8 +31,27 @@ constexpr int usual_places = 200;  // of rows and pictures, about
 struct CoupledRun {
   SimulationResult result;
   std::vector<double> answers;
+  std::vector<std::vector<double>> near;  // [questions]: the same beside their places
   double energy = 0;
 };
+
+/// Where values are looked at beside their places, in widths of the first mesh's cells: where waves have breaks, two
+/// meshes agree by chance at single places.
+constexpr double beside_places[] = {-0.9, -0.6, -0.3, 0.3, 0.6, 0.9};
+
+/// Adds what a question asks for, and the same beside its place where there is a width; false where it cannot be.
+bool add_probes(const SemiDiscrete& mesh, const FieldQuestion& question, double width, Probe& probe,
+                Diagnostics& diagnostics) {
+  const auto add = [&](double shift) {
+    const Expr value = mesh.discretised(question, diagnostics, shift);
+    if (value) probe.expressions.push_back(expand_time_derivatives(value));
+    return static_cast<bool>(value);
+  };
+  if (!add(0)) return false;
+  for (const double part : beside_places)
+    if (width > 0 && !question.total && !add(part * width)) return false;
+  return true;
+}
 
 std::vector<double> times_of(const std::vector<FieldQuestion>& questions) {
   std::vector<double> out;
@@ -57,7 +77,7 @@ double energy_at(const EquationsOfMotion& equations, const State& state) {
       .front();
 }
 
-std::optional<CoupledRun> run_once(const SemiDiscrete& mesh, const std::vector<FieldQuestion>& questions,
+std::optional<CoupledRun> run_once(const SemiDiscrete& mesh, const std::vector<FieldQuestion>& questions, double width,
                                    const FieldRunOptions& options, Diagnostics& diagnostics) {
   const auto system = std::make_shared<const MechanicalSystem>(mesh.model().system);
   const auto equations = euler_lagrange(system, diagnostics);
@@ -76,18 +96,23 @@ std::optional<CoupledRun> run_once(const SemiDiscrete& mesh, const std::vector<F
     if (options.progress) options.progress(share);
   };
   Probe probe;
+  std::vector<std::size_t> of_question{0};  // the first probe of each
   for (const FieldQuestion& q : questions) {
-    probe.expressions.push_back(mesh.discretised(q, diagnostics));
-    if (!probe.expressions.back()) return std::nullopt;
+    if (!add_probes(mesh, q, width, probe, diagnostics)) return std::nullopt;
+    of_question.push_back(probe.expressions.size());
   }
-  for (Expr& e : probe.expressions) e = expand_time_derivatives(e);
   auto result = simulate(mesh.model(), *equations, settings, diagnostics, &probe);
   if (!result) return std::nullopt;
-  CoupledRun out{std::move(*result), {}, 0};
-  out.answers.assign(questions.size(), std::nan(""));
+  CoupledRun out{std::move(*result), {}, {}, 0};
+  out.answers.assign(questions.size(), std::nan("")), out.near.resize(questions.size());
   for (std::size_t i = 0; i < questions.size(); ++i)
     for (std::size_t k = 0; k < settings.at.size() && k < probe.values.size(); ++k)
-      if (settings.at[k] == questions[i].time && i < probe.values[k].size()) out.answers[i] = probe.values[k][i];
+      if (settings.at[k] == questions[i].time && of_question[i + 1] <= probe.values[k].size()) {
+        const auto values = probe.values[k].begin();
+        out.answers[i] = values[static_cast<std::ptrdiff_t>(of_question[i])];
+        out.near[i].assign(values + static_cast<std::ptrdiff_t>(of_question[i] + 1),
+                           values + static_cast<std::ptrdiff_t>(of_question[i + 1]));
+      }
   out.energy = energy_at(*equations, out.result.final);
   return out;
 }
@@ -169,6 +194,14 @@ std::vector<double> shown_places(const SemiDiscrete& mesh) {
   return out;
 }
 
+/// At the place of a question and beside it.
+double largest_difference(const CoupledRun& one, const CoupledRun& other, std::size_t question) {
+  double out = std::abs(one.answers[question] - other.answers[question]);
+  const std::vector<double>&a = one.near[question], &b = other.near[question];
+  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) out = std::max(out, std::abs(a[k] - b[k]));
+  return out;
+}
+
 /// The error of each answer from runs on two coarser meshes: what halving the elements gains is measured, not believed,
 /// since a start or a load with a kink lets no high order come about. Beside a break, of the start or under a load that
 /// moves through elements, differences may be small by chance: that of the coarser meshes counts too, less what two
@@ -184,8 +217,8 @@ std::vector<double> errors_of(const CoupledRun& fine, const std::optional<Couple
       out.push_back(std::numeric_limits<double>::infinity());
       continue;
     }
-    const double first = std::abs(fine.answers[i] - half->answers[i]);
-    const double second = quarter ? std::abs(half->answers[i] - quarter->answers[i]) : 0;
+    const double first = largest_difference(fine, *half, i);
+    const double second = quarter ? largest_difference(*half, *quarter, i) : 0;
     const double gain = first > 0 ? std::clamp(second / first, least, most) - 1 : 1;
     if (gain_at_breaks > 0)
       out.push_back(std::max(first, second / (gain_at_breaks * gain_at_breaks)));
@@ -285,23 +318,24 @@ bool jumps(const CoupledRun& run) {
                      [](const Happening& h) { return h.kind != Happening::Kind::Event; });
 }
 
+constexpr double gain_of_kinks = 2;
+
 /// What halving the elements gains at least beside a break; 0 where there is none. A plucked string and one under a
 /// moving load have kinks, a beam under a load a jump of its third derivative; of waves without bodies at their ends a
 /// higher derivative may jump where the start does not fit them.
-double gain_at_breaks(const FieldEquations& equations, const SemiDiscrete& mesh, bool start_breaks, double begin,
-                      double end) {
-  constexpr double of_kinks = 2, of_loads_on_beams = 8;
-  const std::vector<PlaceCoordinate>& places = equations.model->attached;
-  if (start_breaks) return of_kinks;
-  if (!mesh.departures().empty()) return mesh.bends() ? of_loads_on_beams : of_kinks;
-  const bool held = std::any_of(places.begin(), places.end(), [](const PlaceCoordinate& p) { return p.end; });
-  if (held || needs_collocation(equations)) return 0;
+double gain_at_breaks(const FieldEquations& equations, const SemiDiscrete& mesh, bool start_breaks,
+                      const std::optional<SwitchingBreak>& switching, double begin, double end) {
+  constexpr double of_loads_on_beams = 8;
+  if (start_breaks) return gain_of_kinks;
+  if (!mesh.departures().empty()) return mesh.bends() ? of_loads_on_beams : gain_of_kinks;
   double spacing = 0;
   for (std::size_t i = 1; i < mesh.borders().size(); ++i)
     spacing = std::max(spacing, (mesh.borders()[i] - mesh.borders()[i - 1]) / mesh.order());
-  const std::optional<int> jump = fit_of_sides(equations, begin, end, spacing).jump;
-  if (jump && *jump <= 1) return of_kinks;
-  return jump ? std::pow(2.0, *jump + 1) : 0;
+  std::optional<int> jump = fit_of_sides(equations, begin, end, spacing).jump;
+  if (switching && !mesh.bends()) jump = std::min(jump.value_or(switching->order), switching->order);
+  if (!jump) return 0;
+  if (mesh.bends()) return std::pow(2.0, *jump);
+  return *jump <= 1 ? gain_of_kinks : std::pow(2.0, *jump + 1);
 }
 
 /// Whether forces or what changes in time feed the bodies, or friction takes from them.
@@ -370,7 +404,14 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
                         "The condition is followed, so that a jump runs into the field, which no mesh resolves.",
                         "Give a start that has the value of the condition there.");
   const bool breaks = warn_of_breaks(equations, {cells}, diagnostics);
-  const auto fine = run_once(*mesh, questions, options, diagnostics);
+  const double end = options.begin + options.duration;
+  std::optional<SwitchingBreak> switching;
+  if (const auto moments = switching_moments(equations, options.begin, end))
+    switching = lowest_break(equations, *moments, options.begin, end);
+  if (switching && switching->order <= 1 && !mesh->bends()) warn_of_switching(*switching, diagnostics);
+  const double gain_of_start = gain_at_breaks(equations, *mesh, breaks, switching, options.begin, end);
+  const double width = gain_of_start > 0 ? (mesh->borders().back() - mesh->borders().front()) / cells : 0;
+  const auto fine = run_once(*mesh, questions, width, options, diagnostics);
   if (!fine) return std::nullopt;
   FieldRunResult out;
   out.cells = static_cast<int>(mesh->elements()), out.order = mesh->order();
@@ -408,12 +449,12 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
       Diagnostics unheard;
       const auto other = coarser_mesh(*mesh, model, equations, cells, order, by);
       lower_orders = other && other->order() < mesh->order();
-      return other ? run_once(*other, questions, quiet, unheard) : std::nullopt;
+      return other ? run_once(*other, questions, width, quiet, unheard) : std::nullopt;
     };
     half = coarser(2), quarter = coarser(4);
   }
   if (options.errors) estimate_moments(out.happenings, half, quarter, options.begin);
-  const double gain = gain_at_breaks(equations, *mesh, breaks || jumps(*fine), options.begin, out.end);
+  const double gain = jumps(*fine) ? gain_of_kinks : gain_of_start;
   std::vector<double> errors = errors_of(*fine, half, quarter, gain, lower_orders);
   if (gain > 0 && !breaks)
     for (double& e : errors) e *= 2;

@@ -169,18 +169,6 @@ bool warn_of_short_action(const FieldEquations& equations, const std::vector<dou
   return true;
 }
 
-/// W0650: waves of every length run in from a side whose motion has a jump or a kink, or whose force jumps.
-void warn_of_switching(const SwitchingBreak& b, Diagnostics& diagnostics) {
-  diagnostics.warning(
-      "W0650", b.span,
-      fmt::format("what is given has a {} at t = {:.6g} s: {} goes from {:.6g} to {:.6g} (SI units)",
-                  b.derivative == 0 ? "jump" : "kink", b.moment, b.derivative == 0 ? "it" : "its rate", b.before,
-                  b.behind),
-      "Steps end there and the side is followed, but waves of every length run in from it, and a mesh follows the long "
-      "ones alone: values converge slowly.",
-      "Round it over the time that waves take through some cells where digits count.");
-}
-
 /// N0648: what no equation says of a potential.
 void tell_what_is_fixed(const FieldMotion& mesh, const FieldEquations& equations, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();

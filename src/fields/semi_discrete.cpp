@@ -5,8 +5,8 @@
 #include <maupertuis/repeated_evaluation.hpp>
 
 #include "fields/given_fields.hpp"
-#include "linear_algebra/quadrature.hpp"
 #include "linear_algebra/dense.hpp"
+#include "linear_algebra/quadrature.hpp"
 
 #include <fmt/format.h>
 
@@ -496,12 +496,28 @@ Expr SemiDiscrete::value_at(std::size_t a, int by_time, int by_space, double x) 
   return combination(a, spaces_[a].at(x, x >= mesh_.borders.back()), by_space, by_time);
 }
 
-Expr SemiDiscrete::discretised(const FieldQuestion& question, Diagnostics& diagnostics) const {
+double SemiDiscrete::inside(double x) const { return std::clamp(x, mesh_.borders.front(), mesh_.borders.back()); }
+
+/// What coordinates that are values of fields at places at rest are beside these.
+ExprMap SemiDiscrete::beside_attached(double shift) const {
+  ExprMap out;
+  for (const PlaceCoordinate& p : equations_->model->attached) {
+    if (p.moves) continue;
+    const Coordinate& c = equations_->bodies->system->coordinates[p.coordinate];
+    std::size_t a = 0;
+    while (equations_->varied[a] != p.jet.field) ++a;
+    const double x = inside(number(p.place) + shift);
+    out[c.q] = value_at(a, 0, p.jet.space[0], x), out[c.velocity] = value_at(a, 1, p.jet.space[0], x);
+  }
+  return out;
+}
+
+Expr SemiDiscrete::discretised(const FieldQuestion& question, Diagnostics& diagnostics, double shift) const {
   const FieldSystem& s = equations_->system();
   if (question.total) return integral(question.value);
   const Expr roots[] = {question.value};
   const std::vector<Expr> asked = symbols_of(roots);
-  ExprMap map;
+  ExprMap map = shift == 0 ? ExprMap{} : beside_attached(shift);
   for (const PlaceValue& place : equations_->model->places) {
     if (std::find(asked.begin(), asked.end(), place.symbol) == asked.end()) continue;
     const FieldJet jet = *s.jet_of(place.jet);
@@ -509,7 +525,7 @@ Expr SemiDiscrete::discretised(const FieldQuestion& question, Diagnostics& diagn
     while (a < spaces_.size() && equations_->varied[a] != jet.field) ++a;
     const int known = a < spaces_.size() && spaces_[a].kind() == EKind::Smooth ? 2 : 1;
     if (a < spaces_.size() && jet.space[0] <= known && jet.time <= 2) {
-      map[place.symbol] = value_at(a, jet.time, jet.space[0], number(place.place[0]));
+      map[place.symbol] = value_at(a, jet.time, jet.space[0], inside(number(place.place[0]) + shift));
       continue;
     }
     diagnostics.error(

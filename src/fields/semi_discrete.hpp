@@ -30,8 +30,8 @@ class SemiDiscrete {
 
   const Model& model() const { return model_; }
   /// An expression of the questions of a run, in the coordinates: places and jets replaced. An empty handle, and E0508,
-  /// where a derivative is asked for that the elements do not have.
-  Expr discretised(const FieldQuestion& question, Diagnostics& diagnostics) const;
+  /// where a derivative is asked for that the elements do not have. Places are shifted along x, within the domain.
+  Expr discretised(const FieldQuestion& question, Diagnostics& diagnostics, double shift = 0) const;
   /// u or u' of a field at x, in the coordinates.
   Expr value_at(std::size_t varied_index, int by_time, int by_space, double x) const;
   std::size_t degrees_of_freedom() const { return dofs_; }
@@ -49,6 +49,8 @@ class SemiDiscrete {
   const ExprMap& moving() const { return moving_; }
 
  private:
+  double inside(double x) const;
+  ExprMap beside_attached(double shift) const;
   /// A point of quadrature and the functions of each field there.
   struct Point {
     std::size_t element = 0;

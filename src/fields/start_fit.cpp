@@ -1,5 +1,6 @@
 #include "fields/start_fit.hpp"
 
+#include <maupertuis/coupled_fields.hpp>
 #include <maupertuis/evaluate.hpp>
 
 #include "fields/field_sides.hpp"
@@ -21,28 +22,85 @@ constexpr double rounding = 1e-12;
 constexpr double of_tails = 1e-5;  // what ends far from a pulse may be off by, beside the same inside
 constexpr double small = 1e-8;     // of the field: a change from node to node, which such tails may make
 
-/// jets = given at a side; `order` of the derivative that jumps if it does not hold.
-struct SideCondition {
-  Side side;
+/// jets = given at a side, or at a place where bodies are; `order` of the derivative that jumps if it does not hold.
+struct Condition {
+  std::size_t across = 0;
+  double at = 0;  // in widths of the domain
   Expr jets, given;
-  int order;
+  int order = 0;
+  int by_time = 1;  // derivatives in space that one in time is worth
+  bool of_bodies = false;
 };
 
-std::vector<SideCondition> conditions_of(const FieldEquations& equations) {
+/// Whether curvatures of a field are in the density: its conditions hold forces and moments then.
+bool bends(const FieldEquations& equations, std::size_t field) {
+  return std::any_of(equations.natural.begin(), equations.natural.end(),
+                     [&](const NaturalCondition& n) { return n.moment && n.field == field; });
+}
+
+Condition at_side(const FieldEquations& equations, Side side, std::size_t field, Expr jets, Expr given, int order) {
+  const std::size_t across = side == Side::Left || side == Side::Right ? 0 : 1;
+  return {across, side == Side::Right || side == Side::Top ? 1.0 : 0.0,
+          jets,   given,
+          order,  bends(equations, field) ? 2 : 1};
+}
+
+/// Order of the derivative in space that p or m holds.
+int order_of(const FieldEquations& equations, const NaturalCondition& n) {
+  return n.moment ? 2 : bends(equations, n.field) ? 3 : 1;
+}
+
+bool has_bodies(const FieldEquations& equations, const NaturalCondition& n, Side side) {
+  return std::any_of(equations.interfaces.begin(), equations.interfaces.end(), [&](const InterfaceCondition& i) {
+    return i.end == side && i.field == n.field && i.moment == n.moment;
+  });
+}
+
+void add_sides(const FieldEquations& equations, std::vector<Condition>& out) {
   const FieldSystem& s = equations.system();
-  std::vector<SideCondition> out;
   for (const BoundaryCondition& b : s.boundary)
-    out.push_back({b.side, s.jet_symbol(b.jet), s.expanded(b.value), b.jet.order()});
+    out.push_back(at_side(equations, b.side, b.jet.field, s.jet_symbol(b.jet), s.expanded(b.value), b.jet.order()));
   for (const NaturalCondition& n : equations.natural)
     for (const Side side : sides_across(n.along)) {
-      if (n.moment || s.periodic(n.along) || is_given(s, n, side)) continue;
+      if (s.periodic(n.along) || is_given(s, n, side) || has_bodies(equations, n, side)) continue;
       Expr force = s.context->number(0);  // p + F = 0 on the right, −p + F = 0 on the left
       for (const EndForce& f : s.end_forces)
-        if (f.side == side && f.jet.field == n.field && f.jet.order() == 0)
+        if (f.side == side && f.jet.field == n.field && (f.jet.order() == 1) == n.moment)
           force = side == Side::Left ? force + s.expanded(f.value) : force - s.expanded(f.value);
-      out.push_back({side, n.value, force, 1});
+      out.push_back(at_side(equations, side, n.field, n.value, force, order_of(equations, n)));
     }
+}
+
+/// Jets in the place of the values, rates and slopes at a place; from both sides, where a start is the same.
+ExprMap jets_at(const FieldEquations& equations, Expr place) {
+  constexpr int most = 3;
+  const FieldSystem& s = equations.system();
+  ExprMap out;
+  for (const std::size_t field : equations.varied)
+    for (int space = 0; space <= most; ++space)
+      for (int time = 0; time <= 2; ++time)
+        for (const int side : {-1, 0, 1})
+          out[jet_at_place(equations, {field, {space}, time}, place, side)] = s.jet_symbol({field, {space}, time});
   return out;
+}
+
+/// Where fields and bodies meet, or formulas of the density do.
+void add_places(const FieldEquations& equations, const Bindings& values, double from, double width,
+                std::vector<Condition>& out) {
+  const FieldSystem& s = equations.system();
+  for (const InterfaceCondition& i : equations.interfaces) {
+    if (s.context->depends_on_time(i.place.id())) continue;
+    Condition c;
+    c.at = (evaluate(s.expanded(i.place), values) - from) / width;
+    c.jets = substitute(s.expanded(expand_time_derivatives(i.value)), jets_at(equations, i.place));
+    c.given = s.context->number(0), c.of_bodies = true;
+    const FieldJet acceleration{i.field, {i.moment ? 1 : 0}, 2};
+    const bool mass = !differentiate(c.jets, s.jet_symbol(acceleration)).is_zero();
+    c.by_time = bends(equations, i.field) ? 2 : 1;
+    c.order = order_of(equations, {i.field, 0, i.moment, {}});
+    if (mass) c.order = std::max(c.order, 2 * c.by_time + acceleration.space[0]);
+    out.push_back(std::move(c));
+  }
 }
 
 constexpr double places_along[] = {0.23, 0.37, 0.71}, places_inside[] = {0.07, 0.19, 0.31, 0.47, 0.63, 0.78, 0.91};
@@ -64,7 +122,21 @@ class Start {
     return out;
   }
 
-  /// Jets of at most one derivative in time as functions of space; nothing where others stand in e.
+  std::vector<Condition> conditions() const {
+    std::vector<Condition> out;
+    add_sides(equations_, out);
+    add_places(equations_, values_, from_.front(), width_.front(), out);
+    return out;
+  }
+
+  /// What a condition holds of coordinates that are no values of fields.
+  bool holds_coordinates(Expr e) const {
+    const std::vector<Expr> symbols = symbols_of({&e, 1});
+    return std::any_of(symbols.begin(), symbols.end(), [&](Expr one) { return is_foreign(one); });
+  }
+
+  /// Jets of at most one derivative in time as functions of space, coordinates as they start; nothing where others
+  /// stand in e.
   std::optional<Expr> inserted(Expr e) const {
     e = with_given_fields(s_, e);
     ExprMap map;
@@ -78,13 +150,14 @@ class Start {
         for (int k = 0; k < jet.space[x]; ++k) value = differentiate(value, s_.space[x].symbol);
       map[symbol] = value;
     }
-    return s_.expanded(substitute(e, map));
+    const Expr out = s_.expanded(substitute(s_.expanded(substitute(e, map)), starts_of_coordinates()));
+    return holds_coordinates(out) ? std::nullopt : std::optional(out);
   }
 
   /// Of what a condition asks for at a side, beside what the same expression has there and inside: at most 1.
-  double misfit(const SideCondition& c, Expr jets) const {
-    const std::size_t across = c.side == Side::Left || c.side == Side::Right ? 0 : 1;
-    const double at = c.side == Side::Right || c.side == Side::Top ? 1 : 0;
+  double misfit(const Condition& c, Expr jets) const {
+    const std::size_t across = c.across;
+    const double at = c.at;
     double off = 0, size = 0;
     for (const double along : places_along) {
       const double given = value(c.given, across, at, along), found = value(jets, across, at, along);
@@ -115,6 +188,21 @@ class Start {
   }
 
  private:
+  bool is_foreign(Expr symbol) const {
+    const auto& space = s_.space;
+    return !s_.jet_of(symbol) && !values_.count(symbol) &&
+           std::none_of(space.begin(), space.end(), [&](const SpaceVariable& x) { return x.symbol == symbol; });
+  }
+  ExprMap starts_of_coordinates() const {
+    ExprMap out;
+    if (!equations_.bodies) return out;
+    const std::vector<Coordinate>& coordinates = equations_.bodies->system->coordinates;
+    for (const Coordinate& c : coordinates) out[c.q] = out[c.velocity] = s_.context->number(0);
+    for (const StartValue& v : equations_.body_start)
+      out[v.order == 0 ? coordinates[v.coordinate].q : coordinates[v.coordinate].velocity] = s_.expanded(v.value);
+    return out;
+  }
+
   /// At shares of the domain across the side and along it.
   double value(Expr e, std::size_t across, double at, double along) const {
     Bindings values = values_;
@@ -138,19 +226,23 @@ SideFit fit_of_sides(const FieldEquations& equations, double begin, double until
   const OnShell shell(equations);
   const double from_node_to_node = std::min(1.0, spacing * start.wave_number());
   SideFit out;
-  for (SideCondition c : conditions_of(equations)) {
+  for (Condition c : start.conditions()) {
     c.given = branches_between(c.given, s, start.parameters(), begin, until);
-    for (int k = 0; k <= most_times && (!out.jump || c.order < *out.jump); ++k, ++c.order) {
+    for (int k = 0; k <= most_times && (!out.jump || c.order < *out.jump); ++k, c.order += c.by_time) {
       const auto reduced = shell.reduced(c.jets);
       const auto jets = reduced ? start.inserted(*reduced) : std::nullopt;
-      if (!jets) break;
-      const double misfit = start.misfit(c, *jets);
+      if (!jets && !c.of_bodies) break;
+      const double misfit = jets ? start.misfit(c, *jets) : 1;  // what cannot be told does not fit
       const double seen = misfit * std::pow(from_node_to_node, c.order);
       if (misfit > of_tails || seen > small) {
         out.jump = c.order;
         break;
       }
       out.tail = std::max(out.tail, seen);
+      if (c.of_bodies && start.holds_coordinates(*reduced)) {  // their accelerations are not at hand
+        out.jump = c.order + c.by_time;
+        break;
+      }
       c.jets = s.total_derivative(*reduced, s.space.size());
       c.given = total_time_derivative(c.given);
     }

@@ -3,6 +3,8 @@
 #include <maupertuis/repeated_evaluation.hpp>
 #include <maupertuis/switches.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -144,6 +146,17 @@ std::optional<SwitchingBreak> lowest_break(const FieldEquations& equations, cons
       }
     }
   return out;
+}
+
+void warn_of_switching(const SwitchingBreak& found, Diagnostics& diagnostics) {
+  diagnostics.warning(
+      "W0650", found.span,
+      fmt::format("what is given has a {} at t = {:.6g} s: {} goes from {:.6g} to {:.6g} (SI units)",
+                  found.derivative == 0 ? "jump" : "kink", found.moment, found.derivative == 0 ? "it" : "its rate",
+                  found.before, found.behind),
+      "Steps end there and the side is followed, but waves of every length run in from it, and a mesh follows the long "
+      "ones alone: values converge slowly.",
+      "Round it over the time that waves take through some cells where digits count.");
 }
 
 }  // namespace maupertuis

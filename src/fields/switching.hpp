@@ -29,4 +29,7 @@ struct SwitchingBreak {
 std::optional<SwitchingBreak> lowest_break(const FieldEquations& equations, const std::vector<double>& moments,
                                            double begin, double end);
 
+/// W0650: waves of every length run in from a side whose motion has a jump or a kink, or whose force jumps.
+void warn_of_switching(const SwitchingBreak& found, Diagnostics& diagnostics);
+
 }  // namespace maupertuis
