@@ -184,10 +184,10 @@ Reaction reaction_of_contact(const Tie& tie, const Contact& contact) {
       as_multiplier(tie, r);
     else
       as_generalized(tie, r);
-    Expr per_multiplier = contact.friction.per_multiplier;
-    if (!per_multiplier && force) per_multiplier = normal_force_per_multiplier(tie.system, contact);
-    if (per_multiplier) r.value = tie.constraint.multiplier * simplified(per_multiplier);
   }
+  // As friction takes it.
+  if (const Expr factor = force ? normal_force_per_multiplier(tie.system, contact) : Expr())
+    r.value = tie.constraint.multiplier * simplified(factor);
   r.sentence = "the force of the contact, which is 0 while it is open and positive while it presses";
   return r;
 }

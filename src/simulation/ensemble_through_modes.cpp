@@ -227,6 +227,7 @@ std::string trouble_of(const Members& members, std::size_t number) {
     at[system.coordinates[i].q] = q[i], at[system.coordinates[i].velocity] = v[i];
   for (const BoundedValue& bound : members.bounds) {
     const double value = evaluate(bound.value, at);
+    if (std::isnan(value)) return fmt::format("{} has no value: {}.", bound.what, bound.why);
     if (value < bound.least || value > bound.most) return fmt::format("{} is {:g}: {}.", bound.what, value, bound.why);
   }
   return {};

@@ -22,6 +22,25 @@ struct Push {
   Expr square;       // |∂f/∂r|²
 };
 
+/// ∂f/∂q of the coordinates of which it is not 0.
+using Row = std::map<std::size_t, Expr>;
+
+/// Of several ways to the same force.
+class Agreed {
+ public:
+  void add(std::optional<Push> push) {
+    if (!push) return;
+    clash_ = clash_ || (first_ && !vanishes_identically(first_->square - push->square));
+    if (!first_) first_ = std::move(push);
+  }
+  bool any() const { return first_.has_value(); }
+  std::optional<Push> push() const { return clash_ ? std::nullopt : first_; }
+
+ private:
+  std::optional<Push> first_;
+  bool clash_ = false;
+};
+
 class Masses {
  public:
   explicit Masses(const MechanicalSystem& system) : system_(system) {
@@ -29,33 +48,22 @@ class Masses {
       numbers_.emplace(system.coordinates[i].q, i);
       numbers_.emplace(system.coordinates[i].velocity, i);
     }
-    for (const Point& p : system.points)
-      if (p.mass) add(p.name, p.position);
+    for (const Point& p : system.points) (p.mass ? masses_ : marks_).push_back(mass_at(p.name, p.position));
     for (const Body& b : system.bodies) {
-      add(b.name, b.position);
+      masses_.push_back(mass_at(b.name, b.position));
       turning_.merge(named(b.rotation.entries));
     }
   }
 
-  /// f: a gap, or a slip velocity, whose derivatives by the velocities count. One mass that it moves is pushed, of two
-  /// each by the same force, of more those with coordinates of their own, where they agree. Nothing where these
-  /// coordinates do not tell the force. Coordinates that turn a body take torques, and say nothing of it.
+  /// f: a gap, or a slip velocity, whose derivatives by the velocities count. Where it is the distance or the velocity
+  /// of a point without mass, such as the tip of a lever, that is meant. Coordinates that turn a body take torques, and
+  /// say nothing of it.
   std::optional<Push> pushed(Expr f, bool is_velocity) const {
-    const std::map<std::size_t, Expr> row = slopes(f, is_velocity);
-    std::vector<const Mass*> moved;
-    for (const Mass& m : masses_)
-      if (std::any_of(row.begin(), row.end(), [&](const auto& e) { return m.moved_by.count(e.first) > 0; }))
-        moved.push_back(&m);
-    if (moved.size() == 1) return push_on_one(*moved[0], row);
-    if (moved.size() == 2) return push_apart(*moved[0], *moved[1], row);
-    std::optional<Push> out;
-    for (const Mass* m : is_velocity ? std::vector<const Mass*>() : moved) {
-      const std::set<std::size_t> own = moved_alone(*m);
-      if (own.size() < dimensions_of(*m)) continue;
-      auto push = push_on(*m, nullptr, own, row);
-      if (!push || (out && !vanishes_identically(out->square - push->square))) return std::nullopt;
-      if (!out) out = std::move(push);
-    }
+    const Row row = slopes(f, is_velocity);
+    std::optional<Push> out = pushed_mass(row, is_velocity);
+    if (out && is_one(out->square)) return out;
+    for (const Mass& mark : marks_)
+      if (auto push = push_on(mark, nullptr, mark.moved_by, row); push && is_one(push->square)) return push;
     return out;
   }
 
@@ -88,8 +96,8 @@ class Masses {
     std::set<std::size_t> moved_by;
   };
 
-  void add(const std::string& name, const ExprVector& position) {
-    masses_.push_back({&name, &position, named(position)});
+  Mass mass_at(const std::string& name, const ExprVector& position) const {
+    return {&name, &position, named(position)};
   }
   /// The coordinates that stand in them, or their velocities.
   std::set<std::size_t> named(const ExprVector& formulas) const {
@@ -99,8 +107,8 @@ class Masses {
     return out;
   }
   /// [coordinates that do not turn a body] that are not 0
-  std::map<std::size_t, Expr> slopes(Expr f, bool is_velocity) const {
-    std::map<std::size_t, Expr> row;
+  Row slopes(Expr f, bool is_velocity) const {
+    Row row;
     for (const std::size_t i : named({f})) {
       const Coordinate& c = system_.coordinates[i];
       const Expr slope = differentiate(f, is_velocity ? c.velocity : c.q);
@@ -115,35 +123,46 @@ class Masses {
     return std::max<std::size_t>(out, 2);
   }
 
-  /// Where coordinates carry it along with another mass, that one may take the opposite force: a block whose height
-  /// above a wedge is a coordinate.
-  std::optional<Push> push_on_one(const Mass& mass, const std::map<std::size_t, Expr>& row) const {
-    if (auto alone = push_on(mass, nullptr, mass.moved_by, row)) return alone;
-    std::optional<Push> out;
-    for (const Mass& other : masses_) {
-      const bool is_carried = std::any_of(other.moved_by.begin(), other.moved_by.end(),
-                                          [&](std::size_t i) { return mass.moved_by.count(i) > 0; });
-      auto push = &other != &mass && is_carried ? push_apart(mass, other, row) : std::nullopt;
-      if (push && out && !vanishes_identically(out->square - push->square)) return std::nullopt;
-      if (push && !out) out = std::move(push);
-    }
-    return out;
+  /// It pushes one mass, or two apart, or pulls each of several by the same force as a rope does: the first of these
+  /// that fits. Nothing where none does, or where some do with different forces.
+  std::optional<Push> pushed_mass(const Row& row, bool is_velocity) const {
+    std::vector<const Mass*> moved;
+    for (const Mass& m : masses_)
+      if (std::any_of(row.begin(), row.end(), [&](const auto& e) { return m.moved_by.count(e.first) > 0; }))
+        moved.push_back(&m);
+    Agreed alone, apart, each;
+    for (const Mass* m : moved) alone.add(push_on(*m, nullptr, m->moved_by, row));
+    if (alone.any()) return alone.push();
+    for (const Mass* m : moved)
+      for (const Mass& other : masses_) apart.add(push_apart(*m, other, row));
+    if (apart.any() || is_velocity) return apart.push();
+    for (const Mass* m : moved) each.add(pull_on(*m, row));
+    return each.push();
   }
-  /// On the one that is declared first, so that gap and slip speak of the same.
-  std::optional<Push> push_apart(const Mass& mass, const Mass& other, const std::map<std::size_t, Expr>& row) const {
+
+  bool is_one(Expr square) const { return vanishes_identically(square - system_.context->number(1)); }
+
+  /// Where coordinates carry a mass along with another one, that one may take the opposite force: a block whose height
+  /// above a wedge is a coordinate. On the one that is declared first, so that gap and slip speak of the same.
+  std::optional<Push> push_apart(const Mass& mass, const Mass& other, const Row& row) const {
+    if (&other == &mass) return std::nullopt;
     if (&other < &mass) return push_apart(other, mass, row);
     std::set<std::size_t> both = mass.moved_by;
     both.insert(other.moved_by.begin(), other.moved_by.end());
     return push_on(mass, &other, both, row);
   }
 
-  /// Coordinates that move no other mass.
-  std::set<std::size_t> moved_alone(const Mass& mass) const {
-    std::set<std::size_t> out = mass.moved_by;
+  /// By the coordinates that move no other mass, where they are enough.
+  std::optional<Push> pull_on(const Mass& mass, const Row& row) const {
+    std::set<std::size_t> own = mass.moved_by;
     for (const Mass& other : masses_)
       if (&other != &mass)
-        for (const std::size_t i : other.moved_by) out.erase(i);
-    return out;
+        for (const std::size_t i : other.moved_by) own.erase(i);
+    if (own.size() < dimensions_of(mass)) return std::nullopt;
+    Row part;
+    for (const auto& entry : row)
+      if (own.count(entry.first) > 0) part.insert(entry);
+    return push_on(mass, nullptr, own, part);
   }
 
   /// What a coordinate does to the place of one mass, beside that of another.
@@ -155,7 +174,8 @@ class Masses {
   /// d with d·∂(r − r')/∂q = ∂f/∂q for each of the coordinates: the force on the mass per λ; −d is that on the other.
   /// As many of them as r − r' has directions give d, the others have to agree.
   std::optional<Push> push_on(const Mass& mass, const Mass* other, const std::set<std::size_t>& by,
-                              const std::map<std::size_t, Expr>& row) const {
+                              const Row& row) const {
+    if (std::any_of(row.begin(), row.end(), [&](const auto& e) { return by.count(e.first) == 0; })) return std::nullopt;
     const std::vector<Column> columns = columns_of(mass, other, by, row);
     std::vector<std::size_t> directions;  // components that change
     for (std::size_t k = 0; k < mass.position->size(); ++k)
@@ -175,7 +195,7 @@ class Masses {
 
   /// Those of numbers first, as of x and y: they give the shortest formulas.
   std::vector<Column> columns_of(const Mass& mass, const Mass* other, const std::set<std::size_t>& by,
-                                 const std::map<std::size_t, Expr>& row) const {
+                                 const Row& row) const {
     std::vector<Column> out;
     for (const std::size_t i : by) {
       if (turning_.count(i) > 0) continue;
@@ -249,8 +269,8 @@ class Masses {
 
   const MechanicalSystem& system_;
   std::unordered_map<Expr, std::size_t, ExprHash> numbers_;
-  std::vector<Mass> masses_;
-  std::set<std::size_t> turning_;  // coordinates that turn a body
+  std::vector<Mass> masses_, marks_;  // marks: points without mass
+  std::set<std::size_t> turning_;     // coordinates that turn a body
 };
 
 /// What a slip velocity has to be less ġ times so that its direction is along the surface: on the surface ġ is 0, and

@@ -1,3 +1,5 @@
+#include "questions.hpp"
+
 #include <maupertuis/coupled_fields.hpp>
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/field_run.hpp>
@@ -372,13 +374,9 @@ namespace {
 
 std::vector<FieldRunResult::Value> answers_of(Study& study) {
   REQUIRE(study.field_equations());
-  std::vector<FieldQuestion> questions;
+  const std::vector<FieldQuestion> questions = questions_of(study);
   double end = 0;
-  for (const Expectation& e : study.model()->experiment.expectations) {
-    const auto& at = std::get<expectation::ValueAt>(e.kind);
-    questions.push_back({at.subject, false, evaluate(at.time, {})});
-    end = std::max(end, questions.back().time);
-  }
+  for (const FieldQuestion& q : questions) end = std::max(end, q.time);
   FieldRunOptions options;
   options.duration = end;
   const auto run = run_coupled(*study.model(), *study.field_equations(), questions, options, study.diagnostics());

@@ -1,3 +1,5 @@
+#include "questions.hpp"
+
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/field_run.hpp>
 #include <maupertuis/study.hpp>
@@ -475,12 +477,8 @@ std::vector<FieldRunResult::Value> answers_of(const std::string& text, Diagnosti
   Study study = study_of(text);
   REQUIRE_MESSAGE(study.field_equations(), text);
   FieldRunOptions options;
-  std::vector<FieldQuestion> questions;
-  for (const Expectation& e : study.model()->experiment.expectations) {
-    const auto& at = std::get<expectation::ValueAt>(e.kind);
-    questions.push_back({at.subject, false, evaluate(at.time, {})});
-    options.duration = std::max(options.duration, questions.back().time);
-  }
+  const std::vector<FieldQuestion> questions = questions_of(study);
+  for (const FieldQuestion& q : questions) options.duration = std::max(options.duration, q.time);
   const auto run = run_fields(*study.field_equations(), questions, options, diagnostics);
   REQUIRE(run);
   return run->answers;

@@ -1,3 +1,5 @@
+#include "questions.hpp"
+
 #include <maupertuis/coupled_fields.hpp>
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/field_run.hpp>
@@ -36,11 +38,7 @@ void check_estimates(const std::string& mesh, double d, const std::string& text,
   for (const auto& [x, t] : asked) model += fmt::format("expect u({}) at {} = 0 ± 1\n", x, t);
   Study study(SourceText("ends.lag", model));
   REQUIRE(study.field_equations());
-  std::vector<FieldQuestion> questions;
-  for (const Expectation& e : study.model()->experiment.expectations) {
-    const auto& at = std::get<expectation::ValueAt>(e.kind);
-    questions.push_back({at.subject, false, evaluate(at.time, {})});
-  }
+  const std::vector<FieldQuestion> questions = questions_of(study);
   FieldRunOptions options;
   options.duration = 3;
   const auto run = run_coupled(*study.model(), *study.field_equations(), questions, options, study.diagnostics());

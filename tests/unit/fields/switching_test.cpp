@@ -1,3 +1,5 @@
+#include "questions.hpp"
+
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/field_run.hpp>
 #include <maupertuis/study.hpp>
@@ -25,11 +27,7 @@ std::string check_run(const std::string& model, const std::vector<Asked>& asked,
   for (const Asked& a : asked) text += fmt::format("expect u({}{}) at {} = 0 ± 1\n", a.x, y, a.t);
   Study study(SourceText("switching.lag", text));
   REQUIRE(study.field_equations());
-  std::vector<FieldQuestion> questions;
-  for (const Expectation& e : study.model()->experiment.expectations) {
-    const auto& at = std::get<expectation::ValueAt>(e.kind);
-    questions.push_back({at.subject, false, evaluate(at.time, {})});
-  }
+  const std::vector<FieldQuestion> questions = questions_of(study);
   FieldRunOptions options;
   options.duration = 1.5;
   const auto run = run_fields(*study.field_equations(), questions, options, study.diagnostics());

@@ -370,13 +370,12 @@ TEST_CASE("a body that hangs by a quaternion has two families, below and above, 
 
 TEST_CASE("a wheel keeps its momentum where the body that carries it stops") {
   // p_γ = I (γ' + ω) with I = 2, ω = 10: γ' = 11 beside a body at rest, by angles and by a quaternion.
-  for (const char* body :
-       {"coord γ, θ : angle\nbody P mass 1 kg inertia 5 kg m^2 at (0, 0) rotation angle θ\n"
-        "body R mass 1 kg inertia 2 kg m^2 at (0, 0) rotation angle θ + γ\nV = 1/2 (1 [N m]) θ^2\n"
-        "start θ' = 10 rad/s, γ' = 1 rad/s\n",
-        "coord γ : angle\nbody P mass 1 kg inertia diag(100, 80, 50) kg m^2 rotation quaternion\n"
-        "body R mass 1 kg inertia diag(1, 1, 2) kg m^2 rotation axis (0, 0, 1) angle γ in P\n"
-        "V = 1/2 (1 [N m]) (P.qx^2 + P.qy^2 + P.qz^2)\nstart P.qz' = 5 [1/s], γ' = 1 rad/s\n"}) {
+  for (const char* body : {"coord γ, θ : angle\nbody P mass 1 kg inertia 5 kg m^2 at (0, 0) rotation angle θ\n"
+                           "body R mass 1 kg inertia 2 kg m^2 at (0, 0) rotation angle θ + γ\nV = 1/2 (1 [N m]) θ^2\n"
+                           "start θ' = 10 rad/s, γ' = 1 rad/s\n",
+                           "coord γ : angle\nbody P mass 1 kg inertia diag(100, 80, 50) kg m^2 rotation quaternion\n"
+                           "body R mass 1 kg inertia diag(1, 1, 2) kg m^2 rotation axis (0, 0, 1) angle γ in P\n"
+                           "V = 1/2 (1 [N m]) (P.qx^2 + P.qy^2 + P.qz^2)\nstart P.qz' = 5 [1/s], γ' = 1 rad/s\n"}) {
     Linearized m(body);
     const ModalStudy study = m.study();
     CHECK(std::any_of(study.entries.begin(), study.entries.end(), [](const ModalEntry& e) {
@@ -387,4 +386,16 @@ TEST_CASE("a wheel keeps its momentum where the body that carries it stops") {
       "coord γ, θ : angle\nbody P mass 1 kg inertia 5 kg m^2 at (0, 0) rotation angle θ\n"
       "body R mass 1 kg inertia 2 kg m^2 at (0, 0) rotation angle θ + γ\nV = 1/2 (1 [N m]) θ^2\nstart θ' = 10 rad/s\n");
   CHECK(still.study().entries.size() == 2);  // at rest, and with γ' = 10
+}
+
+TEST_CASE("on a ring of rests a way across that only higher terms tell stays undecided") {
+  const auto verdict = [](const std::string& rest) {
+    Linearized ring("dimensionless\ncoord x, y, z : number\nT = 1/2 (x'^2 + y'^2 + z'^2)\nV = (x^2 + y^2 - 1)^2 + " +
+                    rest + "\nstart x = 1\n");
+    return ring.here().analysis.stability.verdict;
+  };
+  CHECK(verdict("z^2") == Stability::Energetic);
+  CHECK(verdict("-z^2") == Stability::Unstable);
+  CHECK(verdict("-z^4") == Stability::Undecided);
+  CHECK(verdict("z^4") == Stability::Undecided);
 }

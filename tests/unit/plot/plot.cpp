@@ -72,6 +72,21 @@ std::vector<double> attributes(const std::string& svg, const std::string& elemen
 
 }  // namespace
 
+TEST_CASE("no chord goes across rows that were left out of a phase portrait; over time they are joined") {
+  Trajectory run = waves(600);
+  run.gaps = {200, 400};
+  PlotOptions options;
+  options.columns = {"θ1'"};
+  const auto stretches = [&] {  // moves of the pen in the path of the curve
+    const std::string svg = plot_svg(run, options);
+    const std::size_t at = svg.find(" d=\"", svg.find("class=\"curve"));
+    return count(svg.substr(at, svg.find("\"/>", at) - at), "M");
+  };
+  CHECK(stretches() == 1);
+  options.against = "θ1";
+  CHECK(stretches() == 3);
+}
+
 TEST_CASE("one panel for each unit, one legend entry for each of several curves") {
   const std::string svg = plot(waves(500), columns({"θ1", "θ1'", "θ2"}));
   CHECK(count(svg, "class=\"axis\"") == 2);

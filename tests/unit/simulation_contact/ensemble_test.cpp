@@ -325,6 +325,19 @@ TEST_CASE("values that a text may not have end their own trajectory, where it st
   }
 }
 
+TEST_CASE("a restitution that has no value for a trajectory ends it where it starts") {
+  Members members;
+  members.q = {1, 1}, members.v = {0, 0}, members.end = {2, 2}, members.parameters = {1, 9.81, 0.64, 1, 9.81, -0.64};
+  const ThroughModesResult found = together(
+      "system b\nparam m = 1 kg, g = 9.81 m/s^2, e = 0.64\ncoord z : length\npoint P mass m at (0, z)\ngravity (0, "
+      "-g)\n"
+      "contact z >= 0 restitution sqrt(e) name floor\nstart z = 1 m\n",
+      members);
+  CHECK(found.endings[0].ok());
+  CHECK(found.endings[1].ending == StepEnding::Refused);
+  CHECK(found.endings[1].reason.find("The restitution of floor has no value") == 0);
+}
+
 TEST_CASE("starts off the constraints of a model with contacts are told") {
   const std::string text =
       "system p\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\npoint B mass m at (x, y)\n"
