@@ -129,6 +129,12 @@ RichText name_text(std::string_view text) {
       out.push_back({with_minus_signs(exponent_after(text, at)), false, 1});
       continue;
     }
+    if (text[at] == '[') {  // a unit
+      const std::size_t end = std::min(text.find(']', at), text.size() - 1) + 1;
+      append(out, unit_text(text.substr(at, end - at)));
+      at = end;
+      continue;
+    }
     const bool is_name = is_letter(text[at]), is_word = is_name || is_digit(text[at]);
     const std::size_t end = is_word ? end_of_word(text, at) : at + 1;
     const std::string_view word = text.substr(at, end - at);

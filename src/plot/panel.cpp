@@ -209,9 +209,9 @@ std::string draw_curve(const Figure& figure, const Panel& panel, std::size_t ind
   const auto dot = [&](Pixel p, double radius) {
     svg += fmt::format("<circle class=\"dot {} cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{}\"/>\n", attributes, p.x, p.y, radius);
   };
-  // Points without neighbours; the start of a phase portrait.
+  // Points without neighbours, unless these were left out; the start of a phase portrait.
   std::size_t alone = 0;
-  for (const Polyline& line : lines)
+  for (const Polyline& line : breaks.empty() ? lines : std::vector<Polyline>())
     if (line.size() == 1 && ++alone <= 500) dot(line[0], 2);
   if (!over_time && !lines.empty()) dot(lines[0][0], 3);
   return svg;

@@ -318,36 +318,48 @@ void look_at_slip(const Masses& masses, const Contact& contact, Diagnostics& dia
   }
 }
 
+/// W0437 where nothing tells what the contact pushes, and its gap is plainly no distance.
+void look_at_gap(const Masses& masses, const MechanicalSystem& system, std::size_t k, Diagnostics& diagnostics) {
+  const Contact& contact = system.contacts[k];
+  const bool is_length = system.dimensionless || contact.dimension == dimensions::length();
+  if (!is_length || !masses.is_no_distance(contact.gap)) return;
+  diagnostics.warning(
+      "W0437", contact.span, fmt::format("the gap of {} is no distance", system.contact_label(k)),
+      "What it pushes is not known from the energies, so that friction takes λ for the normal force. That is λ "
+      "times the length of ∂g/∂r, r the place of what the contact pushes.",
+      "Divide the gap by that length, as in (y - a x^2)/sqrt(1 + 4 a^2 x^2) >= 0, or give the masses as points.");
+}
+
+/// Coefficients of λ instead of N = λ `factor`, of the contact and of its written twin.
+void scale_friction(MechanicalSystem& system, std::size_t k, Expr factor) {
+  const auto scale = [&](Friction& friction) {
+    friction.kinetic = friction.kinetic * factor;
+    friction.static_ = friction.static_ * factor;
+    friction.per_multiplier = factor;
+  };
+  scale(system.contacts[k].friction);
+  if (!system.written) return;
+  MechanicalSystem written = *system.written;
+  scale(written.contacts[k].friction);
+  system.written = std::make_shared<const MechanicalSystem>(std::move(written));
+}
+
 }  // namespace
 
 void set_normal_forces(MechanicalSystem& system, Diagnostics& diagnostics) {
   std::optional<Masses> masses;
   for (std::size_t k = 0; k < system.contacts.size(); ++k) {
-    Contact& contact = system.contacts[k];
-    if (!contact.friction.present() || contact.friction.sticking) continue;
+    const Contact& contact = system.contacts[k];
+    if (!contact.friction.present()) continue;
     if (!masses) masses.emplace(system);
     const auto push = masses->pushed(contact.gap, false);
     if (push) lay_slip_along_surface(*masses, system, k, *push);
+    if (contact.friction.sticking) continue;  // held whatever the normal force
     look_at_slip(*masses, contact, diagnostics);
-    const bool is_length = system.dimensionless || contact.dimension == dimensions::length();
-    if (!push && is_length && masses->is_no_distance(contact.gap))
-      diagnostics.warning(
-          "W0437", contact.span, fmt::format("the gap of {} is no distance", system.contact_label(k)),
-          "What it pushes is not known from the energies, so that friction takes λ for the normal force. That is λ "
-          "times the length of ∂g/∂r, r the place of what the contact pushes.",
-          "Divide the gap by that length, as in (y - a x^2)/sqrt(1 + 4 a^2 x^2) >= 0, or give the masses as points.");
-    if (!push || masses->is_unit(*push, contact.gap)) continue;
-    const Expr factor = sqrt(push->square);
-    const auto scale = [&](Friction& friction) {
-      friction.kinetic = friction.kinetic * factor;
-      friction.static_ = friction.static_ * factor;
-      friction.per_multiplier = factor;
-    };
-    scale(contact.friction);
-    if (!system.written) continue;
-    MechanicalSystem written = *system.written;
-    scale(written.contacts[k].friction);
-    system.written = std::make_shared<const MechanicalSystem>(std::move(written));
+    if (!push)
+      look_at_gap(*masses, system, k, diagnostics);
+    else if (!masses->is_unit(*push, contact.gap))
+      scale_friction(system, k, sqrt(push->square));
   }
 }
 

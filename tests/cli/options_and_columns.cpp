@@ -174,6 +174,9 @@ TEST_CASE("a plot of a formula has a gap where it has no value; --x takes one") 
   const Folder folder;
   const std::string model = folder.write("pendulum.lag", pendulum), svg = folder.path("p.svg");
   CHECK(maup({"plot", model, "--y", "1/(t - 1 [s])", "-o", svg}).code == 0);
+  const Outcome none = maup({"plot", model, "--y", "sqrt(-1 - θ^2)", "-o", svg});
+  CHECK(none.code == 3);
+  CHECK(contains(none.err, "sqrt(-1 - θ^2) at t = 0 is no finite number"));
   const Outcome two = maup({"plot", model, "--x", "θ, θ'", "--y", "θ", "-o", svg});
   CHECK(two.code == 2);
   CHECK(contains(two.err, "--x names 2 columns."));

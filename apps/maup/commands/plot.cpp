@@ -12,6 +12,9 @@
 #include <maupertuis/motion_pictures.hpp>
 #include <maupertuis/plot.hpp>
 
+#include <cmath>
+#include <initializer_list>
+
 namespace maupertuis::app {
 namespace {
 
@@ -66,6 +69,20 @@ ExitCode plot_fields(const PlotCommandOptions& options, Study& study, Console& c
   return written;
 }
 
+/// Formulas that have a value in some row: where one has none, its curve has a gap. One that nowhere has any is a
+/// mistake.
+std::vector<std::string> with_some_values(std::initializer_list<const AskedColumns*> asked, const Trajectory& rows) {
+  std::vector<std::string> out;
+  for (const AskedColumns* columns : asked)
+    for (const std::string& formula : columns->formulas()) {
+      const std::size_t column = *rows.column(formula);
+      std::size_t row = 0;
+      while (row < rows.rows() && !std::isfinite(rows.at(row, column))) ++row;
+      if (row < rows.rows()) out.push_back(formula);
+    }
+  return out;
+}
+
 ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
   Study study = open_study(options.model);
   Json document = json_document("plot");
@@ -114,9 +131,7 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
     console.leaves(
         fmt::format("{} shows the motion up to {}.", options.output == "-" ? "the picture" : options.output, moment));
   }
-  std::vector<std::string> open = y.formulas();  // where one has no value, its curve has a gap
-  for (const std::string& formula : x.formulas()) open.push_back(formula);
-  check_numbers(result->trajectory, study.diagnostics(), open);
+  check_numbers(result->trajectory, study.diagnostics(), with_some_values({&y, &x}, result->trajectory));
   show_happenings(picture, *result, study.model()->system);
   const std::string svg = plot_svg(result->trajectory, picture);
   const bool written = write_svg(options, svg, study, document, console) == ExitCode::Fine;

@@ -154,7 +154,7 @@ class Page {
     add("--duration", options_.run.duration.value_or(""));
     add("--until", options_.run.until);
     add("--method", options_.run.method.value_or(""));
-    return fmt::format("{}", fmt::join(out, " "));
+    return out.empty() ? "" : fmt::format("by {}", fmt::join(out, " "));
   }
 
   bool compose(std::string_view name, const std::function<void()>& work) {

@@ -49,6 +49,9 @@ TEST_CASE("labels of formulas keep their numbers, and each name its own index") 
                                          {"reaction(rod)", "reaction(rod)"},
                                          {"energy drift", "energy drift"},
                                          {"x^", "x^"},
+                                         {"1/(t - 5 [s])", "1/(t − 5 [s])"},
+                                         {"x [m/s^2", "x [m/s^2"},
                                          {"x^(2", "x^2"}})
     CHECK(plain(name_text(written)) == printed);
+  CHECK(to_svg(name_text("5 [s]"), 10).find("italic") == std::string::npos);  // no variable
 }

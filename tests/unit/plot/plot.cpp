@@ -85,6 +85,8 @@ TEST_CASE("no chord goes across rows that were left out of a phase portrait; ove
   CHECK(stretches() == 1);
   options.against = "θ1";
   CHECK(stretches() == 3);
+  run.gaps = {200, 599};
+  CHECK(count(plot_svg(run, options), "class=\"dot") == 1);  // the start; the last row is no point of its own
 }
 
 TEST_CASE("one panel for each unit, one legend entry for each of several curves") {

@@ -82,6 +82,13 @@ TEST_CASE("the normal force on an oblique surface, in any coordinates and for an
       0.1);
   CHECK(slope.final.reactions[0] == doctest::Approx(2 * g * std::cos(a)).epsilon(1e-14));
   CHECK(slope.final.v[0] == doctest::Approx(1 - 0.1 * g * (std::sin(a) + mu * std::cos(a))).epsilon(1e-14));
+  // Held there, whatever the force.
+  const auto held = run_text(
+      "param m = 2 kg, g = 9.81 m/s^2, α = 30 deg\ncoord s, n : length\npoint P mass m at (s cos α, n + s sin α)\n"
+      "gravity (0, -g)\ncontact n >= 0 slip s' sticking name plane\n",
+      0.1);
+  CHECK(held.final.reactions[0] == doctest::Approx(2 * g * std::cos(a)).epsilon(1e-14));
+  CHECK(held.final.q[0] == 0);
   // The same in space, the third coordinate along the slope too.
   const auto space = run_text(
       "param m = 2 kg, g = 9.81 m/s^2, α = 30 deg\ncoord s, z, n : length\n"
