@@ -104,7 +104,7 @@ SymbolTable::SymbolTable(const syntax::SyntaxTree& tree, const SourceTexts& text
   for (const syntax::Name& n : tree.lost_names) lost_.emplace(n.text, true);
 }
 
-/// The variables of several fields are the same ones.
+/// The variables of several fields are the same ones. A clash with another name is told once.
 void SymbolTable::add_fields(const syntax::FieldStatement& field, const syntax::Statement& statement) {
   const auto* declared = std::get_if<syntax::FieldDeclaration>(&field.said->body);
   if (!declared) return;
@@ -113,7 +113,8 @@ void SymbolTable::add_fields(const syntax::FieldStatement& field, const syntax::
     for (const syntax::Name& x : declared->items[i].variables) {
       const auto found = by_name_.find(x.text);
       const bool again = found != by_name_.end() && declarations_[found->second].kind == Kind::Space;
-      if (!again) add(Kind::Space, x, statement, i);
+      const bool told = !again && !clashing_variables_.insert(x.text).second;
+      if (!again && !told) add(Kind::Space, x, statement, i);
     }
   }
 }

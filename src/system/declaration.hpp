@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 namespace maupertuis::elaboration {
@@ -74,6 +75,7 @@ class SymbolTable {
   std::vector<Declaration> declarations_;  // the energies T V U L D first
   std::unordered_map<std::string, DeclarationId> by_name_;
   std::unordered_map<std::string, bool> lost_;
+  std::unordered_set<std::string> clashing_variables_;  // of fields
 };
 
 /// "parameter", "coordinate", …

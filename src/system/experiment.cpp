@@ -46,6 +46,7 @@ std::optional<StartValue> start_variable(Elaboration& e, const Expression& x) {
     unknown_name(e, x.text, x.name_span);
     return std::nullopt;
   }
+  if (d && d->kind == Kind::Field && d->value.poisoned) return std::nullopt;
   if (!d || d->kind != Kind::Coordinate) {
     e.diagnostics.error("E0223", x.span,
                         d ? fmt::format("`{}` is a {}, not a coordinate", d->name, word_of(d->kind))

@@ -88,6 +88,7 @@ void declare_around(Elaboration& e, const FieldDeclaration& s) {
   }
 }
 
+/// No space is left where the name of a variable has another meaning.
 void declare_space(Elaboration& e, const FieldDeclaration& s) {
   FieldSystem& system = system_of(e);
   for (const syntax::Name& x : s.items.front().variables) {
@@ -100,6 +101,7 @@ void declare_space(Elaboration& e, const FieldDeclaration& s) {
     system.space.push_back(
         {x.text, e.context.symbol(x.text, Role::Auxiliary), e.dimension(dimensions::length()), {}, {}, 0, x.span});
   }
+  if (system.space.size() < s.items.front().variables.size()) return system.space.clear();  // told already
   if (system.space.size() > 3)
     e.diagnostics.error("E0284", s.items.front().variables[3].span, "a field of more than three space variables",
                         "Space has three dimensions.", "Leave the fourth variable out.");
@@ -243,6 +245,13 @@ void refuse_without_field(Elaboration& e) {
 
 }  // namespace
 
+/// Whatever stands for a field, its space or what is given on it has no value after a mistake in the first field.
+void without_value(Elaboration& e) {
+  for (Declaration& d : e.table.declarations())
+    if (d.kind == Kind::Field || d.kind == Kind::Space || d.kind == Kind::Input)
+      d.done = d.used = true, d.value = Value::poison();
+}
+
 bool declare_fields(Elaboration& e) {
   bool any = false;
   each_clause<FieldDeclaration>(e, [&](const FieldDeclaration& s, Span) {
@@ -256,9 +265,14 @@ bool declare_fields(Elaboration& e) {
                           "All fields of a model live on the domain of the first one.", "Leave the domain out here.");
     }
     any = true;
+    if (system_of(e).space.empty()) return;
     for (const FieldDeclaration::Item& item : s.items) declare_field(e, item);
   });
   if (!any) return false;
+  if (system_of(e).space.empty()) {
+    without_value(e);
+    return true;
+  }
   declare_given(e);
   for (const SpaceVariable& x : system_of(e).space)
     if (Declaration* d = e.table.find(x.name); d && d->kind == Kind::Space) {
@@ -277,6 +291,7 @@ bool declare_fields(Elaboration& e) {
 
 void elaborate_fields(Elaboration& e) {
   if (!e.fields) return refuse_without_field(e);
+  if (system_of(e).space.empty()) return;
   given_formulas(e);
   densities(e);
   boundaries(e);

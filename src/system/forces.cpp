@@ -15,6 +15,7 @@ Declaration* target(Elaboration& e, const syntax::Name& name, std::initializer_l
   if (!d) return nullptr;
   for (const Kind k : kinds)
     if (d->kind == k) return d->done && !d->value.poisoned ? d : nullptr;
+  if (d->kind == Kind::Field && d->value.poisoned) return nullptr;
   e.diagnostics.error("E0212", name.span, fmt::format("`{}` is a {}, not {}", name.text, word_of(d->kind), needed), "",
                       help);
   return nullptr;
