@@ -6,7 +6,9 @@
 #include "equations/simplified.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
+#include <tuple>
 
 namespace maupertuis {
 namespace {
@@ -101,31 +103,53 @@ bool is_as_written(const RodConstraint& rod) {
 
 }  // namespace
 
-std::optional<RodConstraint> find_rod(const MechanicalSystem& system, const Constraint& constraint) {
+Rods::Rods(const MechanicalSystem& system) : system_(system), places_(places_of(system)) {
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const std::set<NodeId> ids = coordinates_in(places_[i].position);
+    reach_.emplace_back(ids.begin(), ids.end());
+    for (const NodeId id : ids) depending_[id].push_back(i);
+  }
+}
+
+/// One of a pair depends on the first coordinate of φ; what the other ones of φ it leaves, its partner depends on.
+std::vector<Rods::Pair> Rods::pairs_on(const Ids& support) const {
+  std::vector<Pair> pairs;
+  const auto found = depending_.find(support.front());
+  if (found == depending_.end()) return pairs;
+  const auto add = [&](std::size_t i, std::size_t j, const Ids& missing) {
+    const Ids &a = reach_[i], &b = reach_[j];
+    const bool twice = j < i && std::binary_search(b.begin(), b.end(), support.front());  // comes from j's turn as well
+    if (i == j || twice || !std::includes(b.begin(), b.end(), missing.begin(), missing.end())) return;
+    std::size_t shared = 0;
+    for (const NodeId id : b) shared += std::binary_search(a.begin(), a.end(), id);
+    pairs.push_back({std::min(i, j), std::max(i, j), a.size() + b.size() - shared});
+  };
+  for (const std::size_t i : found->second) {
+    Ids missing;
+    std::set_difference(support.begin(), support.end(), reach_[i].begin(), reach_[i].end(),
+                        std::back_inserter(missing));
+    if (missing.empty())
+      for (std::size_t j = 0; j < places_.size(); ++j) add(i, j, missing);
+    else if (const auto others = depending_.find(missing.front()); others != depending_.end())
+      for (const std::size_t j : others->second) add(i, j, missing);
+  }
+  // Those that depend on no other coordinates first: nearly always it is one of them.
+  std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) {
+    return std::tie(a.reach, a.first, a.second) < std::tie(b.reach, b.first, b.second);
+  });
+  return pairs;
+}
+
+std::optional<RodConstraint> Rods::find(const Constraint& constraint) const {
   if (constraint.level != Constraint::Level::Position) return std::nullopt;
   const std::set<NodeId> support = coordinates_in({&constraint.value, 1});
   if (support.empty()) return std::nullopt;
-  const std::vector<RodEnd> places = places_of(system);
-  std::vector<std::set<NodeId>> reach;
-  for (const RodEnd& place : places) reach.push_back(coordinates_in(place.position));
-  struct Pair {
-    std::size_t first, second, reach;
-  };
-  std::vector<Pair> pairs;
-  for (std::size_t i = 0; i < places.size(); ++i)
-    for (std::size_t j = i + 1; j < places.size(); ++j) {
-      std::set<NodeId> both = reach[i];
-      both.insert(reach[j].begin(), reach[j].end());
-      if (std::includes(both.begin(), both.end(), support.begin(), support.end())) pairs.push_back({i, j, both.size()});
-    }
-  // Those that depend on no other coordinates first: nearly always it is one of them.
-  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.reach < b.reach; });
   std::optional<RodConstraint> other;
   std::size_t others = 0;
-  for (const Pair& pair : pairs) {
-    const RodEnd &a = places[pair.first], &b = places[pair.second];
-    auto rod = b.fixed ? between(system, constraint, b, a, support)
-                       : between(system, constraint, a, b, support);  // from the fixed end
+  for (const Pair& pair : pairs_on({support.begin(), support.end()})) {
+    const RodEnd &a = places_[pair.first], &b = places_[pair.second];
+    auto rod = b.fixed ? between(system_, constraint, b, a, support)
+                       : between(system_, constraint, a, b, support);  // from the fixed end
     if (rod && is_as_written(*rod)) return rod;
     others += rod ? 1 : 0;
     if (rod && !other) other = std::move(rod);

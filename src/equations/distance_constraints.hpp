@@ -1,8 +1,10 @@
 #pragma once
 #include <maupertuis/equations_of_motion.hpp>
 
+#include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace maupertuis {
 
@@ -20,8 +22,27 @@ struct RodConstraint {
   Expr slope;     // dφ/d(d²)
 };
 
-/// The pair of places of which φ is the distance or its square, but for sign and constant; else the only one with ∇φ
-/// parallel to ∇d², proved by the zero test. Nothing where there is none, or several that are neither.
-std::optional<RodConstraint> find_rod(const MechanicalSystem& system, const Constraint& constraint);
+/// The places of a system, to find what its constraints are the distances of.
+class Rods {
+ public:
+  explicit Rods(const MechanicalSystem& system);
+
+  /// The pair of places of which φ is the distance or its square, but for sign and constant; else the only one with ∇φ
+  /// parallel to ∇d², proved by the zero test. Nothing where there is none, or several that are neither.
+  /// Cost: about the number of places, for constraints of few coordinates.
+  std::optional<RodConstraint> find(const Constraint& constraint) const;
+
+ private:
+  using Ids = std::vector<NodeId>;  // of coordinates, in order
+  struct Pair {
+    std::size_t first, second, reach;  // on how many coordinates the two depend
+  };
+  std::vector<Pair> pairs_on(const Ids& support) const;
+
+  const MechanicalSystem& system_;
+  std::vector<RodEnd> places_;
+  std::vector<Ids> reach_;                                // [places]
+  std::map<NodeId, std::vector<std::size_t>> depending_;  // the places that depend on a coordinate
+};
 
 }  // namespace maupertuis

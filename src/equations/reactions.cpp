@@ -17,6 +17,7 @@ namespace {
 /// A constraint, its row of A, and the coordinates that it ties.
 struct Tie {
   const MechanicalSystem& system;
+  const Rods& rods;
   const Constraint& constraint;
   ExprVector row;  // [n]
   std::vector<std::size_t> coordinates;
@@ -62,7 +63,7 @@ ExprVector scaled(const ExprVector& v, Expr factor) {
 /// −λ dφ/dd = −2 λ d dφ/d(d²); the force on the far end is λ ∂φ/∂r = 2 λ dφ/d(d²) (r − r₀).
 bool as_tension(const Tie& tie, Reaction& r) {
   if (!tie.system.dimensionless && !dimensions::force().same_as(r.dimension)) return false;
-  const auto rod = find_rod(tie.system, tie.constraint);
+  const auto rod = tie.rods.find(tie.constraint);
   if (!rod) return false;
   const Expr push = Rational(2) * tie.constraint.multiplier * rod->slope;
   r.kind = Reaction::Kind::Tension;
@@ -242,8 +243,9 @@ std::vector<Reaction> reactions(const EquationsOfMotion& equations) {
   const MechanicalSystem& system = *equations.system;
   std::vector<Reaction> all;
   const ExprMatrix a = constraint_matrix(equations);
+  const Rods rods(system);
   for (std::size_t k = 0; k < system.constraints.size(); ++k) {
-    Tie tie{system, system.constraints[k], {}, {}};
+    Tie tie{system, rods, system.constraints[k], {}, {}};
     for (std::size_t i = 0; i < a.columns; ++i) {
       tie.row.push_back(a.at(k, i));
       if (!a.at(k, i).is_zero()) tie.coordinates.push_back(i);
@@ -253,7 +255,7 @@ std::vector<Reaction> reactions(const EquationsOfMotion& equations) {
   for (std::size_t k = 0; k < system.contacts.size(); ++k) {
     if (system.contacts[k].name.empty()) continue;
     const Constraint closed = as_constraint(system.contacts[k]);
-    Tie tie{system, closed, {}, {}};
+    Tie tie{system, rods, closed, {}, {}};
     const std::vector<Expr> named = symbols_of({&closed.value, 1});  // few of many bodies
     for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
       const Expr q = system.coordinates[i].q;

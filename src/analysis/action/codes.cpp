@@ -9,7 +9,8 @@ constexpr CodeEntry entries[] = {
      "between coordinates. Forces "
      "Q and dissipation D have no part in ∫ L dt; constraints between velocities follow d'Alembert's principle, and "
      "their motions are not the "
-     "stationary paths among those that obey them.",
+     "stationary paths among those that obey them. Where the constraints leave no freedom there is one path alone, "
+     "with nothing to compare.",
      "# maup action\nparam m = 1 kg, k = 4 N/m\ncoord x : length\nT = 1/2 m x'^2\nforce x = -k x\n"
      "path from 0 at 0 to 1 m at 1 s\n",
      "# maup action\nparam m = 1 kg, k = 4 N/m\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"

@@ -3,6 +3,7 @@
 #include "analysis/action/kinks.hpp"
 #include "linear_algebra/dense.hpp"
 
+#include <maupertuis/constraint_analysis.hpp>
 #include <maupertuis/evaluate.hpp>
 
 #include <fmt/format.h>
@@ -31,6 +32,13 @@ std::optional<Span> span_of_force(const MechanicalSystem& system) {
   return std::nullopt;
 }
 
+/// Whether as many independent constraints as coordinates fix the motion.
+bool leave_no_freedom(const EquationsOfMotion& equations) {
+  const MechanicalSystem& system = *equations.system;
+  if (system.constraints.size() < system.coordinates.size()) return false;
+  return analyse_constraints(equations).configuration_freedoms == 0;
+}
+
 }  // namespace
 
 bool has_action(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
@@ -44,6 +52,13 @@ bool has_action(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
         "∫ L dt among the paths that obey them.",
         "Write it between coordinates if it can be integrated (`maup check` says whether it is holonomic in "
         "disguise).");
+    return false;
+  }
+  if (leave_no_freedom(equations)) {
+    diagnostics.error("E1201", cover(system.constraints.front().span, system.constraints.back().span),
+                      "the constraints leave the system no freedom: its motion is given, and no path lies beside it",
+                      "S is stationary among the paths that obey the constraints; here there is a single one.",
+                      "Leave a constraint out, so that a coordinate is free to vary between the ends of the path.");
     return false;
   }
   if (vanish(equations.generalized_forces) && vanish(equations.dissipative_terms)) return true;
