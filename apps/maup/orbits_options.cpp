@@ -61,6 +61,9 @@ void check_orbits_options(const OrbitsOptions& o, Diagnostics& diagnostics) {
     if (*text && !parse_time(**text))
       diagnostics.error("E0809", {}, fmt::format("{} \"{}\" is no time.", option, **text), {},
                         "Write a number with a unit of time, such as 3s or 250ms.");
+  if (const auto interval = time_of(o.interval); interval && !(*interval > 0))
+    diagnostics.error("E0809", {}, fmt::format("--interval \"{}\" is no time that passes.", *o.interval),
+                      "Directions are orthogonalized each time that it has passed.", "Write one such as 0.5s.");
   if (!o.section.empty() && o.strobe)
     diagnostics.error("E0809", {}, "--section and --strobe exclude each other.",
                       "One looks at the motion where it is, the other when it is time.", "Give one of them.");

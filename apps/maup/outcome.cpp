@@ -61,7 +61,17 @@ ExitCode finish_with(Console& console, Study& study, const char* command, const 
   return written && told == ExitCode::Fine ? ExitCode::Fine : ExitCode::RunFailed;
 }
 
+/// An analysis that was told to stop did not find that the motion ends there, or that nothing converges: its errors
+/// (E10xx to E14xx) speak of the interrupt alone, which the console tells.
+static Diagnostics without_findings(const Diagnostics& all) {
+  Diagnostics out;
+  for (const Diagnostic& d : all.items())
+    if (!d.code.starts_with("E1")) out.append(d);
+  return out;
+}
+
 ExitCode finish_without(Console& console, Study& study, const char* command) {
+  if (interrupt_flag().load()) study.diagnostics() = without_findings(study.diagnostics());
   const ExitCode code = finish(console, study, json_document(command));
   if (interrupt_flag().load()) return ExitCode::Interrupted;
   return code == ExitCode::ModelWrong ? ExitCode::RunFailed : code;

@@ -129,25 +129,30 @@ bool number_with_unit(Elaboration& e, const Expression& x) {
   if (e.dimensionless) return false;
   int free = 0;
   const Expression* left = &x;
+  const Expression* quantity = &x;  // without factors behind it that are names of the model: the t of 2 rad/s t
   const bool outermost = joins(x, Operator::Juxtapose) || joins(x, Operator::Multiply) || joins(x, Operator::Divide);
   while ((left == &x && outermost) || is_plain_product(*left) || is_plain_binary(*left, Operator::Divide)) {
     if (is_written_number(*left)) break;
+    const int before = free;
     if (!is_written_unit(e, *left->arguments[1], free)) return false;
+    const bool is_factor = left == quantity && free == before && !joins(*left, Operator::Divide);
     left = left->arguments[0].get();
+    if (is_factor) quantity = left;
   }
   if (left == &x || free == 0 || !is_written_number(*left)) return false;
   const std::string number(e.texts.slice(left->span));
   if (number.find('/') != std::string::npos)
     return false;  // 1/2 m: a mass that is not declared, sooner than half a metre
   const Span whole = operands(x);
-  std::string unit(e.texts.slice({left->span.end, whole.end, whole.source}));
+  const std::uint32_t end = quantity == &x ? whole.end : quantity->span.end;
+  std::string unit(e.texts.slice({left->span.end, end, whole.source}));
   const std::string_view dot = "·";  // of two bytes, and ° begins with the first of them
   while (unit.starts_with(dot) || unit.starts_with(' ') || unit.starts_with('*'))
     unit.erase(0, unit.starts_with(dot) ? dot.size() : 1);
   e.diagnostics.error("E0312", whole,
                       fmt::format("`{}` stands in a formula without brackets around its unit", e.texts.slice(whole)),
                       "In a formula a unit stands in square brackets, so that it cannot be taken for a name.",
-                      fmt::format("Write {} [{}].", number, unit));
+                      fmt::format("Write {} [{}]{}.", number, unit, e.texts.slice({end, whole.end, whole.source})));
   return true;
 }
 

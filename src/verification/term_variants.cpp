@@ -13,8 +13,12 @@ class Slips {
       : term_(term), equations_(equations), context_(*equations.system->context) {}
 
   std::vector<TermVariant> all() {
+    ExprVector functions;
     for (const Expr& node : topological_order({&term_, 1}))
-      if (node.is(Kind::Sin) || node.is(Kind::Cos) || node.is(Kind::Tan)) of_function(node);
+      if (node.is(Kind::Sin) || node.is(Kind::Cos) || node.is(Kind::Tan)) functions.push_back(node);
+    // The plain slip first: sin θ for sin θ cos θ is a factor left out, not a tan θ cos θ.
+    for (const Expr& node : functions) add(term_ / node, fmt::format("a factor {} is missing", text(node)));
+    for (const Expr& node : functions) of_function(node);
     for (const Coordinate& c : equations_.system->coordinates) of_coordinate(c);
     return std::move(variants_);
   }
@@ -41,7 +45,6 @@ class Slips {
       replace(node, function(node.kind(), factor * argument));
     for (const Expr& s : symbols_of({&argument, 1}))  // θ1 + θ2 for θ1 − θ2
       if (s.role() == Role::Coordinate) replace(node, function(node.kind(), substitute(argument, {{s, -s}})));
-    add(term_ / node, fmt::format("a factor {} is missing", text(node)));
     add(term_ * node, fmt::format("{} stands with a power too many", text(node)));
   }
 

@@ -59,10 +59,11 @@ void measure_drift(Invariants& result, const Model& model, const EquationsOfMoti
   const auto run = simulate(model, equations, options, of_the_run, &probe);
   interrupt_of(*model.system.context).throw_if_asked();
   if (!run || !run->ok()) {
-    diagnostics.warning("W1004", {}, "the drift of the integrals was not measured",
-                        run ? "The run of the model ended before its time: " + run->reason + "."
-                            : "The run of the model could not start.",
-                        "`maup simulate` says more; --no-drift leaves the run out.");
+    diagnostics.warning(
+        "W1004", {}, "the drift of the integrals was not measured",
+        run ? "The run of the model ended before its time: " + run->reason + (run->reason.ends_with('.') ? "" : ".")
+            : "The run of the model could not start.",
+        "`maup simulate` says more; --no-drift leaves the run out.");
     return;
   }
   for (std::size_t i = 0; i < count; ++i) result.integrals[i].drift = drift_of_column(probe, i, count + i);
