@@ -295,8 +295,9 @@ bool RadauMethod::integrate(double h) {
   return true;
 }
 
-/// Goes on from the end of the step, put onto the constraints. Where that moves it by more than a step may err, or onto
-/// other rows of the constraints, the history ends.
+/// Goes on from the end of the step, put onto the constraints. Where that moves it by more than a step may err and more
+/// than rounding does, or onto other rows of the constraints, the history ends. A velocity that vanishes may err by
+/// nothing at all, and each step would begin anew.
 Advance RadauMethod::accept(double h, double end, std::span<double> y) {
   const Index last = stages_.s - 1;
   const std::size_t n = motion_.freedoms();
@@ -311,7 +312,7 @@ Advance RadauMethod::accept(double h, double end, std::span<double> y) {
   if (!motion_.project(t_, y)) return failed(Failure::Constraints);
   double move = 0;
   for (std::size_t i = 0; i < 2 * n; ++i) {
-    move = std::max(move, weight_[i] * std::abs(y[i] - y_[at(i)]));
+    move = std::max(move, weight_[i] * (std::abs(y[i] - y_[at(i)]) - rounding_[at(i)]));
     y_[at(i)] = y[i];
   }
   Advance out;
