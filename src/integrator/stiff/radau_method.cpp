@@ -119,8 +119,8 @@ void RadauMethod::factor(double h) {
   find_rounding(by_rate, by_state);
 }
 
-/// What rounding of the terms of F, and of the time in it, may do to a state through Newton's matrix, with signs by
-/// turns: below it neither an error nor a change of Newton's iteration says anything.
+/// What rounding of the terms of F, and of the time in it, may do to a state through Newton's matrix, with
+/// several patterns of signs: below it neither an error nor a change of Newton's iteration says anything.
 void RadauMethod::find_rounding(const MatrixXd& by_rate, const MatrixXd& by_state) {
   constexpr double roundings = 8;
   VectorXd terms = roundings * eps * (by_rate.cwiseAbs() * rate_.cwiseAbs() + by_state.cwiseAbs() * y_.cwiseAbs());
@@ -130,8 +130,16 @@ void RadauMethod::find_rounding(const MatrixXd& by_rate, const MatrixXd& by_stat
   if (system_.residual(t_, {y_.data(), size}, {rate_.data(), size}, {here.data(), size}) &&
       system_.residual(later, {y_.data(), size}, {rate_.data(), size}, {beside.data(), size}))
     terms += factors_.rows.cwiseProduct((beside - here).cwiseAbs());
-  for (Index i = 1; i < terms.size(); i += 2) terms[i] = -terms[i];
-  rounding_ = factors_.real.solve(terms).cwiseAbs();
+  // One pattern of signs may cancel in a system that is symmetric.
+  MatrixXd signed_terms = terms.replicate(1, 3);
+  for (Index i = 0; i < terms.size(); ++i) {
+    if (i % 2 == 1) signed_terms(i, 0) = -terms[i];
+    if (i / 2 % 2 == 1) signed_terms(i, 1) = -terms[i];
+    if (i * (i + 1) / 2 % 3 == 1) signed_terms(i, 2) = -terms[i];
+  }
+  rounding_ = VectorXd::Zero(terms.size());
+  for (Index k = 0; k < signed_terms.cols(); ++k)
+    rounding_ = rounding_.cwiseMax(factors_.real.solve(VectorXd(signed_terms.col(k))).cwiseAbs());
 }
 
 /// The largest of changes of q and v beside what a step may err, above rounding.

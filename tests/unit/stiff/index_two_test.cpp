@@ -179,13 +179,13 @@ TEST_CASE("a chain that stays symmetric: the rounding of a velocity that vanishe
       "constraint sqrt(x1^2 + y1^2) = l\nconstraint sqrt((x2 - x1)^2 + (y2 - y1)^2) = l\n"
       "constraint sqrt((x3 - x2)^2 + (y3 - y2)^2) = l\nconstraint sqrt((x4 - x3)^2 + (y4 - y3)^2) = l\n"
       "constraint sqrt((x5 - x4)^2 + (y5 - y4)^2) = l\nconstraint sqrt((1.2 - x5)^2 + y5^2) = l\n");
-  auto stepper = m.stepper(1e-12);
+  auto stepper = m.stepper(1e-13);
   const double drop = std::sqrt(0.3 * 0.3 - 0.2 * 0.2);
   stepper.start(0, State{0.2, -drop, 0.4, 0, 0.6, -drop, 0.8, 0, 1, -drop}, State(10, 0.0));
-  run(stepper, 0.3);
+  run(stepper, 1);
   CHECK(std::abs(stepper.q()[4] - 0.6) < 1e-12);
-  CHECK(stepper.q()[1] == doctest::Approx(stepper.q()[9]).epsilon(1e-12));
-  CHECK(stepper.steps() < 100);
+  CHECK(stepper.q()[1] == doctest::Approx(stepper.q()[9]).epsilon(1e-10));
+  CHECK(stepper.steps() < 400);
 }
 
 TEST_CASE("a disk that rolls upright on a slope, in closed form; its constraints between velocities in all samples") {

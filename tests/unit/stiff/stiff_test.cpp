@@ -108,7 +108,7 @@ TEST_CASE("forces that double knows to fewer digits than the tolerance asks: ste
     stepper.start(0, State{2}, State{0});
     run(stepper, 5);
     CHECK(std::abs(stepper.q()[0] - (k * (k - 1) * std::cos(5.0) + k * c * std::sin(5.0)) / d) < 1e-10);
-    CHECK(stepper.steps() < 300);
+    CHECK(stepper.steps() < 350);
   }
 }
 
