@@ -2,6 +2,7 @@
 
 #include "verification/claims.hpp"
 #include "verification/phase_space_claims.hpp"
+#include "verification/rate_resemblance.hpp"
 #include "verification/row_terms.hpp"
 
 #include <maupertuis/print.hpp>
@@ -238,7 +239,8 @@ void IdentityClaims::decide(const expectation::Equation& e, ExpectationResult& r
   result.message = failure(test, {"Along the motion, left side − right side", along().put_in(difference)});
   if (test.verdict != Verdict::Nonzero) return;
   if (!equations_.system->higher.empty()) return;  // its rows are not those that a reader writes
-  const auto resemblance = resembled_equation(difference, equations_);
+  auto resemblance = resembled_equation_in_rates(difference, equations_);
+  if (!resemblance) resemblance = resembled_equation(difference, equations_);
   if (resemblance) result.message = resemblance->text;
   result.pitfall = diagnose_claim(difference, equations_, resemblance ? &*resemblance : nullptr);
   if (resemblance && result.pitfall.empty()) result.message += " No known mistake has this signature.";

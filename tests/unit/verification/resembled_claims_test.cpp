@@ -14,6 +14,9 @@ using namespace maupertuis;
 namespace {
 
 const std::map<std::string, std::string> kModels = {
+    {"turning",
+     "param m = 1 kg, A = 1 kg m^2, B = 2 kg m^2, C = 3 kg m^2\ncoord x : length\n"
+     "body b mass m inertia diag(A, B, C) at (x, 0, 0) rotation quaternion\nrates ω1, ω2, ω3 = b.ω\n"},
     {"oscillator",
      "dimensionless\nparam m = 1.5, c = 0.3, k = 2, F = 0.7, w = 1.1\ncoord x : number\nT = 1/2 m x'^2\nV = 1/2 k "
      "x^2\nD = 1/2 c x'^2\nforce x = F cos(w t)\n"},
@@ -176,6 +179,20 @@ TEST_CASE("wrong claims are told against the equation that they resemble") {
       CHECK(r.pitfall == "");
   }
   CHECK(std::size(kWrong) >= 40);
+}
+
+TEST_CASE("wrong claims about rates are told against the equations in rates") {
+  for (const auto& [claim, message] : std::vector<std::pair<std::string, std::string>>{
+           {"A ω1' = (C - B) ω2 ω3", "the equation for ω1; wrong sign: -(B - C) ω2 ω3."},
+           {"A ω1' = 0", "the equation for ω1; missing: -(B - C) ω2 ω3."},
+           {"ω2' = 2 (C - A)/B ω1 ω3", "the equation for ω2, times 1/B; 2 times (A - C) ω1 ω3 stands in its place."},
+           {"C ω3' = (A + B) ω1 ω2", "the equation for ω3; wrong sign: B ω1 ω2."},
+       }) {
+    const ExpectationResult r = result_of("turning", claim);
+    INFO(claim, "\n  ", r.message);
+    CHECK_FALSE(r.passed);
+    CHECK(r.message.find(message) != std::string::npos);
+  }
 }
 
 TEST_CASE("right claims in disguise pass") {
