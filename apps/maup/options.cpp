@@ -12,7 +12,13 @@
 
 namespace maupertuis::app {
 
-Option* Option::type_name(const std::string& name) { return own_->type_name(name), this; }
+Option* Option::type_name(const std::string& name) {
+  own_->type_name(name);
+  if (name.starts_with("FILE"))  // nothing would be written, and nothing said
+    own_->check(
+        CLI::Validator([](std::string& file) { return std::string(file.empty() ? "no file is named" : ""); }, ""));
+  return this;
+}
 Option* Option::required() { return own_->required(), this; }
 Option* Option::needs(const Option* other) { return own_->needs(other->own_), this; }
 Option* Option::excludes(const Option* other) { return own_->excludes(other->own_), this; }

@@ -122,7 +122,7 @@ class MistakenDerivations {
     residual[index] = equations_.residual[index];
     add("the conserved momentum of " + cyclic.name +
             " was put into L before the derivatives were taken: that changes the sign of its effective potential (the "
-            "Routhian does it right)",
+            "Routhian does it right), or its sign is a slip",
         std::move(residual));
   }
 

@@ -71,6 +71,15 @@ TEST_CASE("every command ends soon after the signal") {
   for (const std::string& name : folder.names()) CHECK_MESSAGE(!contains(name, ".partial"), name);
 }
 
+TEST_CASE("an analysis that is interrupted says nothing about the motion") {
+  for (const char* what : {"--lyapunov --duration 1e6s", "--floquet --period 1e5s"}) {
+    CAPTURE(what);
+    const Outcome outcome = shell("timeout -s INT 0.5 \"$MAUP\" orbits " + std::string(what) + " " + driven);
+    CHECK(contains(outcome.err, "nterrupted"));
+    CHECK_FALSE(contains(outcome.err, "E14"));
+  }
+}
+
 TEST_CASE("what was found until then is printed and called partial") {
   const Folder folder;
   const Outcome section = interrupted(

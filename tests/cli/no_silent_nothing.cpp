@@ -20,12 +20,18 @@ Outcome lyapunov(std::vector<std::string> more) {
 }  // namespace
 
 TEST_CASE("averages over times out of proportion, and more exponents than there are") {
-  for (const char* interval : {"1e-300s", "1e-9s", "30s", "-1s"}) {
+  for (const char* interval : {"1e-300s", "1e-9s", "30s"}) {
     CAPTURE(interval);
     const Outcome outcome = lyapunov({std::string("--interval=") + interval});
     CHECK(outcome.code == 3);
     CHECK((contains(outcome.err, "E1411") || contains(outcome.err, "E1406")));
     CHECK(outcome.out.empty());
+  }
+  for (const char* interval : {"0s", "-1s"}) {
+    CAPTURE(interval);
+    const Outcome outcome = lyapunov({std::string("--interval=") + interval});
+    CHECK(outcome.code == 2);
+    CHECK(contains(outcome.err, "E0809"));
   }
   for (const char* transient : {"1e300s", "1e15s"}) {
     CAPTURE(transient);
@@ -40,6 +46,15 @@ TEST_CASE("averages over times out of proportion, and more exponents than there 
   const Outcome starts = maup({"orbits", henon, "--section", "x = 0 rising", "--starts", "1000000000"});
   CHECK(starts.code == 3);
   CHECK(contains(starts.err, "E1407"));
+}
+
+TEST_CASE("an output without a name") {
+  for (const char* command : {"simulate", "plot", "report", "animate"}) {
+    CAPTURE(command);
+    const Outcome outcome = maup({command, henon, "-o", ""});
+    CHECK(outcome.code == 2);
+    CHECK(contains(outcome.err, "no file is named"));
+  }
 }
 
 TEST_CASE("an unknown word in the environment") {

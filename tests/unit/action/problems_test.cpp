@@ -267,6 +267,10 @@ TEST_CASE("what has no action, ends off the constraints, ends in the wrong order
       "system k\ndimensionless\ncoord x, y, φ : number\nT = 1/2 (x'^2 + y'^2 + φ'^2)\nconstraint x' sin φ = y' cos "
       "φ\n");
   CHECK(code_of_search(knife, fixed_ends({0, 0, 0}, 0, {1, 0, 0}, 1)) == "E1201");
+  for (const char* held : {"constraint x = 1/2\nconstraint x + y = 1\n", "constraint x = t\nconstraint y = 2 t\n"}) {
+    const ModelText given("system g\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n" + std::string(held));
+    CHECK(code_of_search(given, fixed_ends({0.5, 0.5}, 0, {0.5, 0.5}, 1)) == "E1201");
+  }
   const ModelText circle(
       "system c\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nconstraint x^2 + y^2 = 1 name ring\n");
   CHECK(code_of_search(circle, fixed_ends({1, 0}, 0, {1, 1}, 1)) == "E1202");
