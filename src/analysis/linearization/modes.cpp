@@ -54,7 +54,7 @@ class Analysis {
     out_.symmetric = true;
     const auto [squares, vectors] = symmetric_eigen((form_.k + form_.k.transpose()) / 2);
     const double error =
-        8 * static_cast<double>(squares.size()) * std::numeric_limits<double>::epsilon() * form_.k.norm();
+        8 * static_cast<double>(squares.size()) * std::numeric_limits<double>::epsilon() * form_.k.stableNorm();
     std::vector<Index> zeros;
     for (Index i = 0; i < squares.size(); ++i) {
       const ComplexVector shape = to_coordinates(vectors.col(i).cast<Complex>());
@@ -64,7 +64,7 @@ class Analysis {
       }
       const double root = std::sqrt(std::abs(squares[i]));
       out_.residual =
-          std::max(out_.residual, (form_.k * vectors.col(i) - squares[i] * vectors.col(i)).norm() / form_.k.norm());
+          std::max(out_.residual, (form_.k * vectors.col(i) - squares[i] * vectors.col(i)).norm() / form_.k.stableNorm());
       if (squares[i] > 0)
         add(mode(Mode::Kind::Oscillation, {0, root}, error / (2 * root)), shape);
       else {
@@ -80,7 +80,7 @@ class Analysis {
   // (λ² + λ Ĉ + K̂) y = 0 as ẋ = A x with x = (y, ẏ/s), time in units of 1/s.
   void quadratic_modes() {
     const Index f = form_.k.rows();
-    const double s = std::max({std::sqrt(form_.k.norm()), form_.c.norm(), std::numeric_limits<double>::min()});
+    const double s = std::max({std::sqrt(form_.k.stableNorm()), form_.c.stableNorm(), std::numeric_limits<double>::min()});
     Matrix a = Matrix::Zero(2 * f, 2 * f);
     a.topRightCorner(f, f).setIdentity();
     a.bottomLeftCorner(f, f) = -form_.k / (s * s);
@@ -93,7 +93,7 @@ class Analysis {
           z * z * y + z * (form_.c / s).cast<Complex>() * y + (form_.k / (s * s)).cast<Complex>() * y;
       out_.residual =
           std::max(out_.residual, left.norm() / y.norm() /
-                                      (std::norm(z) + std::abs(z) * form_.c.norm() / s + form_.k.norm() / (s * s)));
+                                      (std::norm(z) + std::abs(z) * form_.c.stableNorm() / s + form_.k.stableNorm() / (s * s)));
       add_pair(s * z, s * system.errors[i], to_coordinates(y));
     }
     add_zeros(system.kernel.topRows(f), system.zeros, system.chained);
@@ -290,9 +290,9 @@ MassNormalForm mass_normal_form(const Linearization& l, const std::vector<Transl
                circulatory = to_eigen(l.circulatory);
   out.k = both_sides(to_eigen(l.stiffness) + circulatory);
   out.c = both_sides(damping + gyroscopic);
-  const double rate = std::sqrt(out.k.norm());
-  out.symmetric = out.c.norm() <= 1e-14 * rate && both_sides(circulatory).norm() <= 1e-14 * out.k.norm();
-  out.potential = both_sides(circulatory).norm() <= 1e-12 * out.k.norm();
+  const double rate = std::sqrt(out.k.stableNorm());
+  out.symmetric = out.c.stableNorm() <= 1e-14 * rate && both_sides(circulatory).norm() <= 1e-14 * out.k.stableNorm();
+  out.potential = both_sides(circulatory).norm() <= 1e-12 * out.k.stableNorm();
   out.to_independent = factor->inverse.transpose();
   Matrix directions(mass.rows(), static_cast<Index>(translations.size()));
   for (std::size_t t = 0; t < translations.size(); ++t)

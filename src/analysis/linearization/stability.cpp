@@ -24,7 +24,7 @@ Matrix effective_stiffness(const MassNormalForm& form, bool keeps_momenta) {
   const Matrix along = q.leftCols(s), rest = q.rightCols(f - s);
   Matrix k = quadratic_form(rest, form.k);
   constexpr double rounding = 1e-9;
-  if (keeps_momenta && quadratic_form(along, form.c).norm() <= rounding * form.c.norm())
+  if (keeps_momenta && quadratic_form(along, form.c).norm() <= rounding * form.c.stableNorm())
     k -= product(product(transposed_product(rest, form.c), along), product(transposed_product(along, form.c), rest));
   return k;
 }
@@ -52,7 +52,7 @@ struct Verdicts {
 
   double hessian_tolerance() const {
     return 16 * static_cast<double>(form.k.rows()) * std::numeric_limits<double>::epsilon() *
-           (form.k.norm() + form.c.squaredNorm());
+           (form.k.stableNorm() + form.c.squaredNorm());
   }
 
   /// At rest on a family of equilibria the Hessian vanishes along it, and V is the same on all of it: where it is
@@ -62,7 +62,7 @@ struct Verdicts {
     constexpr double none = 1e-9;  // of the largest, along the family: the equilibrium is known to rounding
     const std::size_t along = equilibrium.family;
     if (!equilibrium.at_rest || along == 0 || hessian.size() <= along) return false;
-    const double size = form.k.norm();
+    const double size = form.k.stableNorm();
     return std::abs(hessian.front()) <= none * size && std::abs(hessian[along - 1]) <= none * size &&
            hessian[along] > 1e3 * none * size;
   }

@@ -58,6 +58,14 @@ TEST_CASE("Degenerate modes are told") {
   CHECK(near(e.analysis.modes[1].frequency(), 2, 1e-15));
 }
 
+TEST_CASE("A stiffness whose square is no double is no zero") {
+  Linearized m("system stiff\ndimensionless\nparam k = 1e200\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 k x^2\n");
+  const ModalEntry e = m.here();
+  REQUIRE(e.analysis.modes.size() == 1);
+  CHECK(near(e.analysis.modes[0].frequency(), 1e100, 1e-15));
+  CHECK(e.analysis.stability.verdict == Stability::Energetic);
+}
+
 TEST_CASE("Damping ratios below and above the critical one") {
   const auto oscillator = [](double c) {
     return Linearized("system oscillator\nparam m = 2 kg, k = 8 N/m, c = " + std::to_string(c) +
