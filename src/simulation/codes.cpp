@@ -95,11 +95,12 @@ constexpr std::array entries{
         "that works; the interpreter carried the run out, with the same results to rounding.",
         "", ""},
     CodeEntry{
-        "W0705", "the compiled code could not be kept for the next run",
+        "W0705", "the kept code of earlier runs is not as it should be",
         "Machine code is kept in $XDG_CACHE_HOME/maupertuis or ~/.cache/maupertuis, so that the next run of the same "
         "model begins at once. The folder cannot be written; or it belongs to another user, or others can write to it, "
         "who could have put in code that "
-        "would run as you: then it is neither written nor read. The run itself is not affected.",
+        "would run as you: then it is neither written nor read. A file in it that is not yours alone is not run, and "
+        "replaced. The run itself is not affected.",
         "", ""},
     CodeEntry{
         "N0702", "the stiff method took over",

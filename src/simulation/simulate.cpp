@@ -355,7 +355,7 @@ void warn_of_backend(const BackendUse& use, Backend wanted, Diagnostics& diagnos
     diagnostics.note("N0704", std::nullopt, "compiled code would have paid for this run, and is not here", use.trouble,
                      help);
   if (!use.cache_trouble.empty())
-    diagnostics.warning("W0705", std::nullopt, "the compiled code could not be kept for the next run",
+    diagnostics.warning("W0705", std::nullopt, "the kept code of earlier runs is not as it should be",
                         use.cache_trouble,
                         "Make the folder yours and writable by you alone (chmod 700), name another by XDG_CACHE_HOME, "
                         "or give --no-cache.");

@@ -120,6 +120,14 @@ bool write_all(int file, const char* from, std::size_t size) {
   return true;
 }
 
+/// Why what stands in an object's place is not run; empty where there is nothing, or the user's own file.
+std::string why_refused(int folder, const std::string& name, const fs::path& path) {
+  struct stat status {};
+  if (fstatat(folder, name.c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0) return {};
+  if (!S_ISREG(status.st_mode)) return path.string() + " is no plain file";
+  return why_not_private(status, path.string());
+}
+
 }  // namespace
 
 /// A pipe or a device in an object's place is passed over: opened without waiting, it is no file.
@@ -161,13 +169,14 @@ std::string ObjectCache::write(const Digest& key, std::span<const char> object) 
                          S_IRUSR | S_IWUSR));
   const bool whole = file && write_all(file.number(), reinterpret_cast<const char*>(&header), sizeof header) &&
                      write_all(file.number(), object.data(), object.size());
+  const std::string refused = why_refused(folder.number(), name_of(key), folder_ / name_of(key));
   if (!file.close() || !whole ||
       renameat(folder.number(), temporary.c_str(), folder.number(), name_of(key).c_str()) != 0) {
     static_cast<void>(unlinkat(folder.number(), temporary.c_str(), 0));
-    return folder_.string() + " cannot be written";
+    return refused.empty() ? folder_.string() + " cannot be written" : refused + ", and cannot be replaced";
   }
   trim();
-  return {};
+  return refused.empty() ? "" : refused + "; it was not run, and has been replaced";
 }
 
 void ObjectCache::trim() const {

@@ -25,8 +25,8 @@ class ObjectCache {
   static std::filesystem::path usual_folder();
 
   std::optional<std::vector<char>> read(const Digest& key) const;
-  /// Then removes files that were not read for longest until the limit holds. Returns why it could not be written;
-  /// empty: it was.
+  /// Then removes files that were not read for longest until the limit holds. Returns why it could not be written, or
+  /// what stood in its place and is not run; empty: all is well.
   std::string write(const Digest& key, std::span<const char> object) const;
 
   struct Usage {
