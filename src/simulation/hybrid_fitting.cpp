@@ -24,28 +24,64 @@ bool HybridMotion::vanishes(const Watch& watch, double size, const ContactValues
   return false;
 }
 
-/// Whether these accelerations close the gap of a contact beyond so many digits of the terms of g̈.
-bool HybridMotion::presses_again(std::size_t contact, std::span<const double> accelerations,
-                                 const ContactValues& values, double digits) {
+/// g̈ of a contact with these accelerations, in units of the sizes of its terms.
+double HybridMotion::opening_rate(std::size_t contact, std::span<const double> accelerations,
+                                  const ContactValues& values) {
   double sum = functions_.drifts(t_, q_, v_)[contact], size = std::abs(sum);
   for (const auto& [k, g] : values.normal[contact]) {
     sum += g * accelerations[k];
     size += std::abs(g) * acceleration_[kind_[k]];
   }
-  return sum < -digits * size;
+  return sum / std::max(size, std::numeric_limits<double>::min());
 }
 
-/// A friction that gives way as its force comes to the limit, with μ_s = μ, lets go without a jump where nothing else
-/// happens: its slip, against that force, begins with the second power of time, whatever rounding makes of the first.
+/// Whether these accelerations close the gap of a contact beyond so many digits of the terms of g̈.
+bool HybridMotion::presses_again(std::size_t contact, std::span<const double> accelerations,
+                                 const ContactValues& values, double digits) {
+  return opening_rate(contact, accelerations, values) < -digits;
+}
+
+/// Whether a mode has the forces of the one before at this instant: frictions that have come to their limit, with
+/// μ_s = μ, give way against their force, contacts open whose force has come to 0, and all else stays.
 ///
 ///     λ_t = −μ_s N: it slides forwards        λ_t = μ_s N: it slides backwards
-bool HybridMotion::begins_slowly(const Watch& slip, FrictionState way, const ContactValues& values) const {
-  const bool forwards = way == FrictionState::Forward;
-  const bool gives_way = std::all_of(pending_->left.begin(), pending_->left.end(), [&](const Watch& x) {
-    return x.what == Watch::What::Hold && x.index == slip.index && x.lower == forwards;
-  });
-  return gives_way && !pending_->left.empty() && pending_->hit.empty() && pending_->sets.empty() &&
-         !friction_of(system_, slip.index).in_space() && values.fixed[slip.index] == values.kinetic[slip.index];
+bool HybridMotion::changes_no_force(const ContactMode& mode, const ContactValues& values) const {
+  const ContactMode& before = now_->mode;
+  if (pending_->left.empty() || !pending_->hit.empty() || !pending_->sets.empty()) return false;
+  const auto has_left = [&](Watch::What what, std::size_t i, bool lower) {
+    return std::any_of(pending_->left.begin(), pending_->left.end(),
+                       [&](const Watch& x) { return x.what == what && x.index == i && x.lower == lower; });
+  };
+  const auto opens = [&](std::size_t i) {
+    return i < mode.closed.size() && before.closed[i] && !mode.closed[i] && has_left(Watch::What::Force, i, false);
+  };
+  const auto gives_way = [&](std::size_t i) {
+    const bool forwards = mode.friction[i] == FrictionState::Forward;
+    return before.friction[i] == FrictionState::Stick && (forwards || mode.friction[i] == FrictionState::Backward) &&
+           has_left(Watch::What::Hold, i, forwards) && values.fixed[i] == values.kinetic[i];
+  };
+  for (std::size_t i = 0; i < mode.closed.size(); ++i)
+    if (mode.closed[i] != before.closed[i] && !opens(i)) return false;
+  for (std::size_t i = 0; i < mode.friction.size(); ++i)
+    if (mode.friction[i] != before.friction[i] && !gives_way(i) && !opens(i)) return false;
+  return mode.normal_sign == before.normal_sign;
+}
+
+/// Friction that gives way where forces go on: its slip begins with the second power of time, whatever rounding makes
+/// of the first.
+bool HybridMotion::begins_slowly(const Watch& slip, const ContactMode& mode, const ContactValues& values) const {
+  const FrictionState before = now_->mode.friction[slip.index];
+  return before == FrictionState::Stick && !friction_of(system_, slip.index).in_space() &&
+         changes_no_force(mode, values);
+}
+
+/// Whether these accelerations are those of the mode before, to what a located instant leaves of them.
+bool HybridMotion::accelerations_go_on(std::span<const double> accelerations) const {
+  if (pending_->begins || !pending_->hit.empty() || !pending_->sets.empty()) return false;
+  const std::vector<double> before = now_->stepper->sample(now_->stepper->time()).a;
+  for (std::size_t k = 0; k < before.size(); ++k)
+    if (!(std::abs(accelerations[k] - before[k]) <= located_force * acceleration_[kind_[k]])) return false;
+  return true;
 }
 
 /// A mode that is tried at an instant. A condition that is 0 there counts by the first of its derivatives that is not.
@@ -117,8 +153,7 @@ void HybridMotion::Trial::put_at_zero() {
     // A gap whose rate is rounding begins with the second power of time.
     if (w.what == Watch::What::Gap && std::abs(values.rate[w.index]) <= in.rest_speed(w.index, values))
       s.put_at_zero({&k, 1}, 2);
-    if (w.what == Watch::What::Slip && in.begins_slowly(w, found.mode.friction[w.index], values))
-      s.put_at_zero({&k, 1}, 2);
+    if (w.what == Watch::What::Slip && in.begins_slowly(w, found.mode, values)) s.put_at_zero({&k, 1}, 2);
   }
   // λ falls through 0, and so does g̈ rise from it: the gap begins with the third power of time.
   for (std::size_t k = 0; k < motion.watches().size(); ++k)
@@ -156,15 +191,18 @@ bool HybridMotion::Trial::has_given_limits() {
   return !limits.empty();
 }
 
-/// Lenient: a gap whose acceleration is rounding begins with the third power of time. A wheel in a corner that a torque
-/// begins to turn goes through the wall by that, where the wall is open.
+/// Where accelerations go on, a gap that was kept closed begins with the third power of time: where a plate on many
+/// legs begins to tip, those of legs that carried nothing too. Lenient: each gap whose acceleration is rounding does. A
+/// wheel in a corner that a torque begins to turn goes through the wall by that, where the wall is open.
 bool HybridMotion::Trial::has_slow_gaps() {
-  if (leniency != Leniency::Gaps) return false;
+  const bool goes_on = in.accelerations_go_on(outlook.accelerations);
+  if (leniency != Leniency::Gaps && !goes_on) return false;
   bool has_some = false;
   for (const std::size_t k : at_zero) {
     const Watch& w = watch(k);
     if (w.what != Watch::What::Gap || std::abs(values.rate[w.index]) > in.rest_speed(w.index, values)) continue;
-    if (in.presses_again(w.index, outlook.accelerations, values, rounding_of_forces)) continue;
+    const double opens = in.opening_rate(w.index, outlook.accelerations, values);
+    if (leniency == Leniency::Gaps ? opens < -rounding_of_forces : std::abs(opens) > located_force) continue;
     motion.stepper->put_at_zero({&k, 1}, 3);
     has_some = true;
   }
@@ -271,7 +309,16 @@ bool HybridMotion::fits(Found& found, const std::vector<std::size_t>& touching, 
   Trial trial{*this, found, touching, leniency, motion_in(found.mode, found.given), functions_.at(t_, q_, v_)};
   if (!trial.look(bound)) return false;
   for (std::size_t k = 0; k < trial.motion.watches().size(); ++k)
-    if (!trial.keeps(k)) return false;
+    if (!trial.keeps(k)) {
+      if (getenv("DBG"))
+        fprintf(
+            stderr, "t=%.12g %s len %d: fails what %d index %zu value %g slope %g side %d reach %g zero %d held %d\n",
+            t_, mode_text(system_, found.mode).c_str(), (int)leniency, (int)trial.watch(k).what, trial.watch(k).index,
+            trial.outlook.values[k], trial.outlook.slopes[k], trial.outlook.sides[k], trial.outlook.reach[k],
+            (int)holds(trial.at_zero, k),
+            (int)(trial.watch(k).what == Watch::What::Slip && is_held(trial.watch(k).index, found.mode, trial.values)));
+      return false;
+    }
   return true;
 }
 

@@ -180,7 +180,8 @@ Step HybridMotion::step(double bound) {
   just_moved_on_ = false;
   if (out.ending != StepEnding::None) return out;
   note_step();
-  if (const auto contact = violated()) {
+  if (const auto contact =
+          violated(std::abs(out.end - out.begin) + std::numeric_limits<double>::epsilon() * std::abs(out.end))) {
     const std::string label = system_.contact_label(*contact);
     if (!std::isfinite(functions_.at(t_, q_, v_).gap[*contact]))
       return ended(StepEnding::Overflow, fmt::format("The gap of the contact {} has no value here.", label));
@@ -190,6 +191,7 @@ Step HybridMotion::step(double bound) {
                     bounces_[*contact].last.empty() ? "" : ": bounces have become too small to be told apart"));
   }
   if (!out.events.empty()) classify(out);
+  if (pending_) meet_together(bound);
   if (meets_late_ && pending_) late_by_ = hidden_by_rounding(bound);
   if (!pending_ && (out.end >= end || outgrows_stops())) pending_ = std::make_unique<Pending>();
   // A force that jumps may let a contact or a friction go, though none of their conditions has a root.
@@ -367,15 +369,18 @@ void HybridMotion::classify(Step& step) {
   if (!pending->hit.empty() || !pending->left.empty() || !pending->sets.empty()) pending_ = std::move(pending);
 }
 
-/// An open contact whose gap has become negative though no step saw it close: then nothing of the motion holds.
-std::optional<std::size_t> HybridMotion::violated() {
+/// An open contact whose gap has become negative though no step saw it close: then nothing of the motion holds. Where
+/// all lies at zero still, gaps are measured by what accelerations make of them in the step.
+std::optional<std::size_t> HybridMotion::violated(double step) {
   constexpr double digits = 1e-10;
   const TaylorStepper& s = *now_->stepper;
   if (system_.contacts.empty()) return std::nullopt;
   const ContactValues& values = functions_.at(s.time(), s.q(), s.v());
   note_gaps(values);
   for (std::size_t i = 0; i < values.gap.size(); ++i) {
-    if (!now_->mode.closed[i] && !(values.gap[i] >= -digits * size_of_gap(i, values))) return i;
+    double way = 0;
+    for (const auto& [k, g] : values.normal[i]) way += std::abs(g) * acceleration_[kind_[k]] * step * step;
+    if (!now_->mode.closed[i] && !(values.gap[i] >= -digits * (size_of_gap(i, values) + way))) return i;
   }
   return std::nullopt;
 }

@@ -113,7 +113,9 @@ class HybridMotion final : public Method {
   void record_event(const std::string& name, double t);
   bool is_just_released(std::size_t contact);
   double hidden_by_rounding(double bound);
+  void meet_together(double bound);
   Step wait(double bound);
+  double opening_rate(std::size_t contact, std::span<const double> accelerations, const ContactValues& values);
   bool presses_again(std::size_t contact, std::span<const double> accelerations, const ContactValues& values,
                      double digits);
   std::optional<Step> settle(double bound);
@@ -198,7 +200,9 @@ class HybridMotion final : public Method {
   ContactMode mode_of(const std::vector<Choice>& list, const std::vector<std::size_t>& taken) const;
   bool interrupted() const;
   bool fits(Found& found, const std::vector<std::size_t>& touching, double bound, Leniency leniency);
-  bool begins_slowly(const Watch& slip, FrictionState way, const ContactValues& values) const;
+  bool changes_no_force(const ContactMode& mode, const ContactValues& values) const;
+  bool accelerations_go_on(std::span<const double> accelerations) const;
+  bool begins_slowly(const Watch& slip, const ContactMode& mode, const ContactValues& values) const;
   bool vanishes(const Watch& watch, double size, const ContactValues& values) const;
   double size_of_gap(std::size_t contact, const ContactValues& values) const;
   void note_sizes(const ContactValues& values);
@@ -211,7 +215,7 @@ class HybridMotion final : public Method {
   void note_accelerations(std::span<const double> a, const ContactValues& values);
   void note_compliance(const std::vector<std::size_t>& touching, const ContactValues& values);
   void note_compliance(const ImpactProblem& problem);
-  std::optional<std::size_t> violated();
+  std::optional<std::size_t> violated(double step);
   bool may_be_several(const ContactMode& mode, const ContactValues& values);
   bool may_be_painleve(const std::vector<Choice>& list, const ContactValues& values);
   void note_indeterminate(const std::vector<Choice>& list, const ContactMode& mode, const ContactValues& values);
