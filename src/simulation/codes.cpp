@@ -184,6 +184,18 @@ constexpr std::array entries{
         "contact z >= 0 restitution e name floor\nstart z = 1 m\nrun 2 s\n",
         "# maup simulate\ncoord z : length\nparam m = 1 kg, g = 9.81 m/s^2, e = 0.8\nT = 1/2 m z'^2\nV = m g z\n"
         "contact z >= 0 restitution e name floor\nstart z = 1 m\nrun 2 s\n"},
+    CodeEntry{"E0733", "friction by a force that is not linear in forces of constraint",
+     "Friction changes the forces that press, and these change friction. Where the normal force is a sum of forces of "
+     "constraint the accelerations follow from linear equations. With the resultant of two of them, the root of the sum of "
+     "their squares, they do not, and such a motion is not computed yet.",
+     "# maup simulate\ncoord r : length, θ, φ : angle\nparam m = 0.1 kg, R = 0.3 m, Ω = 8 rad/s, g = 9.81 m/s^2, μ = 0.2\n"
+     "point P mass m at r (sin θ cos φ, sin θ sin φ, -cos θ)\ngravity (0, 0, -g)\nconstraint r = R name hoop\n"
+     "constraint φ = Ω t name spin\nfriction θ coefficient μ normal R sqrt(reaction(hoop)^2 + reaction(spin)^2/(R "
+     "sin θ)^2)\nstart r = R, θ = 20 deg\nrun 1 s\n",
+     "# maup simulate\ncoord r : length, θ, φ : angle\nparam m = 0.1 kg, R = 0.3 m, Ω = 8 rad/s, g = 9.81 m/s^2, μ = 0.2\n"
+     "point P mass m at r (sin θ cos φ, sin θ sin φ, -cos θ)\ngravity (0, 0, -g)\nconstraint r = R name hoop\n"
+     "constraint φ = Ω t name spin\nfriction θ coefficient μ normal R reaction(hoop)\nstart r = R, θ = 20 deg\n"
+     "run 1 s\n"},
     CodeEntry{"E0732", "friction by a force that the model does not determine",
      "Redundant constraints, a beam on three supports, share their forces in a way that rigid bodies do not tell: that is a "
      "question of elasticity. Friction that takes one of them for its normal force is not determined either, and so is the "

@@ -120,6 +120,29 @@ bool frictions_are_determined(const EquationsOfMotion& equations, Diagnostics& d
   return good;
 }
 
+/// E0733 for friction by a normal force that is no linear function of multipliers, as the resultant of two: the
+/// accelerations follow from linear equations.
+bool frictions_are_linear(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
+  bool good = true;
+  for (const Friction& f : equations.system->frictions) {
+    if (!f.normal) continue;
+    const std::vector<Expr> normal = with_reactions(equations, {&f.normal, 1});
+    ExprVector bends;
+    for (const Expr& slope : gradient(normal.front(), equations.multipliers))
+      for (const Expr& bend : gradient(slope, equations.multipliers))
+        if (!bend.is_zero()) bends.push_back(bend);
+    if (bends.empty() || zero_test(bends).verdict == Verdict::Zero) continue;
+    diagnostics.error(
+        "E0733", f.span, "this normal force is no linear function of the forces of constraint",
+        "Friction acts back on the forces that press: with their resultant, a root of squares, the accelerations "
+        "follow from equations that are not linear, which are not solved yet.",
+        "Take the force of one constraint, a sum of them, or the normal force by a formula in the coordinates and "
+        "velocities.");
+    good = false;
+  }
+  return good;
+}
+
 }  // namespace
 
 bool can_go_through_modes(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
@@ -132,7 +155,7 @@ bool can_go_through_modes(const EquationsOfMotion& equations, Diagnostics& diagn
     return false;
   }
   return contacts_are_smooth(equations, diagnostics) && frictions_are_determined(equations, diagnostics) &&
-         slips_are_at_right_angles(equations, diagnostics);
+         frictions_are_linear(equations, diagnostics) && slips_are_at_right_angles(equations, diagnostics);
 }
 
 bool start_keeps_contacts(const Model& model, double t, std::span<const double> q, Diagnostics& diagnostics) {

@@ -94,13 +94,16 @@ struct HybridMotion::Trial {
   ModeMotion& motion;
   const ContactValues& values;
   std::vector<std::size_t> at_zero{};  // of the watches
+  std::vector<std::size_t> jumped{};   // came to 0 here, but forces jump, and they with them
   TaylorStepper::Outlook outlook{};
   double largest_force = 0;
 
   const Watch& watch(std::size_t k) const { return motion.watches()[k]; }
   bool lenient() const { return leniency != Leniency::None; }
   bool begins_at_zero(const Watch& w) const;
+  void begin();
   void put_at_zero();
+  bool has_jumps();
   bool has_slow_slips();
   bool has_given_limits();
   bool has_slow_gaps();
@@ -145,8 +148,9 @@ bool HybridMotion::Trial::begins_at_zero(const Watch& w) const {
 
 void HybridMotion::Trial::put_at_zero() {
   TaylorStepper& s = *motion.stepper;
+  at_zero.clear();
   for (std::size_t k = 0; k < motion.watches().size(); ++k)
-    if (begins_at_zero(watch(k))) at_zero.push_back(k);
+    if (begins_at_zero(watch(k)) && !holds(jumped, k)) at_zero.push_back(k);
   s.put_at_zero(at_zero);
   for (const std::size_t k : at_zero) {
     const Watch& w = watch(k);
@@ -158,6 +162,24 @@ void HybridMotion::Trial::put_at_zero() {
   // λ falls through 0, and so does g̈ rise from it: the gap begins with the third power of time.
   for (std::size_t k = 0; k < motion.watches().size(); ++k)
     if (watch(k).what == Watch::What::Gap && in.released_[watch(k).index]) s.put_at_zero({&k, 1}, 3);
+}
+
+/// A force that has come to its limit is elsewhere in a mode in which others jump, as where kinetic friction takes the
+/// place of more static friction.
+bool HybridMotion::Trial::has_jumps() {
+  double largest = 0;
+  const auto is_force = [&](std::size_t k) {
+    return watch(k).what == Watch::What::Force || watch(k).what == Watch::What::Hold;
+  };
+  for (std::size_t k = 0; k < motion.watches().size(); ++k) {
+    const double force = std::max(std::abs(outlook.values[k]), outlook.reach[k]);
+    if (is_force(k)) largest = std::max(largest, is_squared(watch(k)) ? std::sqrt(force) : force);
+  }
+  for (const std::size_t k : at_zero) {
+    const double size = is_squared(watch(k)) ? largest * largest : largest;
+    if (is_force(k) && std::abs(outlook.values[k]) > located_force * size) jumped.push_back(k);
+  }
+  return !jumped.empty();
 }
 
 /// A rest whose forces are not determined ends when none are left to 10⁻¹² of the limits: slips whose acceleration is
@@ -209,15 +231,24 @@ bool HybridMotion::Trial::has_slow_gaps() {
   return has_some;
 }
 
+void HybridMotion::Trial::begin() {
+  motion.stepper->start(in.t_, in.q_, in.v_, in.t_rest_);
+  put_at_zero();
+  in.tell_usual_sizes(*motion.stepper);
+}
+
 /// False where there is no motion.
 bool HybridMotion::Trial::look(double bound) {
   TaylorStepper& s = *motion.stepper;
-  s.start(in.t_, in.q_, in.v_, in.t_rest_);
-  put_at_zero();
-  in.tell_usual_sizes(s);
+  begin();
   outlook = s.outlook(bound);
   in.no_motion_ = outlook.reason;
   if (outlook.ending != StepEnding::None) return false;
+  if (has_jumps()) {
+    begin();
+    outlook = s.outlook(bound);
+    if (outlook.ending != StepEnding::None) return false;
+  }
   for (std::size_t k = 0; k < motion.watches().size(); ++k) {
     const double force = std::abs(outlook.values[k]);
     if (watch(k).what == Watch::What::Force || watch(k).what == Watch::What::Hold)

@@ -330,8 +330,8 @@ bool HybridMotion::comes_to_limit(std::size_t friction) const {
                      [&](const Watch& w) { return w.what == Watch::What::Hold && w.index == friction; });
 }
 
-/// Pairs of frictions of which the first begins to slide, below its own limit, and the second is held, where one of the
-/// two has more static than kinetic friction.
+/// Pairs of frictions of which the first begins to slide, below its own limit or where both have come to theirs, and
+/// the second is held, where one of the two has more static than kinetic friction.
 std::vector<std::pair<std::size_t, std::size_t>> HybridMotion::exchangeable(const std::vector<Choice>& list,
                                                                             const ContactMode& mode) {
   std::vector<std::pair<std::size_t, std::size_t>> out;
@@ -339,8 +339,9 @@ std::vector<std::pair<std::size_t, std::size_t>> HybridMotion::exchangeable(cons
     const FrictionState state = mode.friction[slides.contact];
     const bool begins =
         slides.options.size() > 2 && (state == FrictionState::Forward || state == FrictionState::Backward);
-    if (!begins || comes_to_limit(slides.contact)) continue;
+    if (!begins) continue;
     for (const Choice& held : list) {
+      if (comes_to_limit(slides.contact) && !comes_to_limit(held.contact)) continue;
       const bool holds = held.options.size() > 2 && mode.friction[held.contact] == FrictionState::Stick;
       if (holds && (may_hold(held) || may_hold(slides))) out.emplace_back(slides.contact, held.contact);
     }

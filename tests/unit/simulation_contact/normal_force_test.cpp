@@ -161,3 +161,19 @@ TEST_CASE("the force at the tip of an arm and on a rope, for gaps that are twice
   CHECK(r.final.reactions[0] == doctest::Approx(5).epsilon(1e-13));
   CHECK(r.final.v[0] == doctest::Approx(5 - 0.1 * 2 * 0.3 * 5).epsilon(1e-13));
 }
+
+TEST_CASE("friction by the resultant of forces of constraint is refused, by one of them it is computed") {
+  const auto bead = [](const std::string& normal) {
+    return "param m = 0.1 kg, R = 0.3 m, Ω = 8 rad/s, g = 9.81 m/s^2, μ = 0.2\ncoord r : length, θ, φ : angle\n"
+           "point P mass m at r (sin θ cos φ, sin θ sin φ, -cos θ)\ngravity (0, 0, -g)\nconstraint r = R name hoop\n"
+           "constraint φ = Ω t name spin\nfriction θ coefficient μ normal " +
+           normal + "\nstart r = R, θ = 20 deg\n";
+  };
+  ModelText m(bead("R sqrt(reaction(hoop)^2 + reaction(spin)^2/(R sin θ)^2)"));
+  SimulationOptions options;
+  options.duration = 1;
+  CHECK_FALSE(simulate(m.model, m.equations, options, m.diagnostics));
+  REQUIRE(!m.diagnostics.items().empty());
+  CHECK(m.diagnostics.items().back().code == "E0733");
+  run_text(bead("R abs(reaction(hoop))"), 1);
+}

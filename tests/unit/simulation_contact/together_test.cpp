@@ -117,3 +117,28 @@ TEST_CASE("a plate on any number of legs tips over the last one") {
     CHECK(r.final.v[2] == doctest::Approx(rate_of_tipping(n)).epsilon(1e-10));
   }
 }
+
+TEST_CASE("two blocks at their static limits at once: the one that is written first slides, and the choice is told") {
+  // Both slide from 1.635 s with 0.9 m/s² between floor and pull; the upper one leaves the lower one at its limit.
+  constexpr double g = 9.81, A = 3, begins = 0.5 * g / A, end = 6;
+  const auto r = run_text(
+      "param m = 1 kg, g = 9.81 m/s^2, A = 3 N/s\ncoord x1, y1, x2, y2 : length\npoint P mass m at (x1, y1)\n"
+      "point Q mass m at (x2, y2)\ngravity (0, -g)\ncontact y1 >= 0 friction 0.2 static 0.25 slip x1' name floor\n"
+      "contact y2 - y1 >= 0.1 [m] friction 0.4 static 0.5 slip x2' - x1' name mid\nforce on Q = (A t, 0)\n"
+      "start y2 = 0.1 m\n",
+      end);
+  // Together a = (A t - 0.4 m g)/2m; the upper one is held while A t - m a < 0.5 m g.
+  const double parts = (0.5 * g - 0.2 * g) * 2 / A, both = parts - begins;
+  const auto speed = [&](double t) { return (A * (t * t - begins * begins) / 2 - 0.4 * g * (t - begins)) / 2; };
+  const auto way = [&](double t) {
+    return (A * ((t * t * t - begins * begins * begins) / 6 - begins * begins * (t - begins) / 2) -
+            0.2 * g * (t - begins) * (t - begins)) /
+           2;
+  };
+  REQUIRE(both > 0);
+  const double v = speed(parts), x = way(parts), since = end - parts;  // then 0.4 m g pulls and brakes the lower one
+  CHECK(r.final.q[0] == doctest::Approx(x + v * since).epsilon(1e-12));
+  CHECK(r.final.v[0] == doctest::Approx(v).epsilon(1e-12));
+  REQUIRE(!r.remarks.empty());
+  CHECK(r.remarks.front().find("Static friction leaves a choice") != std::string::npos);
+}
