@@ -1,6 +1,7 @@
 #include "columns.hpp"
 
 #include <maupertuis/along_motion.hpp>
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/momentum.hpp>
 #include <maupertuis/simulation.hpp>
 #include <maupertuis/transform.hpp>
@@ -64,6 +65,8 @@ class FormulaColumn {
     const Expr of_state = substitute(formula, momenta);
     const Expr with_forces = with_reactions(equations, {&of_state, 1}).front();
     value_ = expand_time_derivatives(in_terms_of_motion(system_, {&with_forces, 1}).front());
+    asked_ = value_;
+    if (needs_motion() && has_free_functions(equations)) put_in_one_choice(*equations.degenerate);
     if (needs_motion() && !system_.constrained()) value_ = AlongMotion(equations).put_in(of_state);
     if (needs_motion()) put_in_motion(equations);
   }
@@ -75,8 +78,14 @@ class FormulaColumn {
     return false;
   }
 
+  /// Where functions of time are free: whether it is the same with each of them.
+  bool is_determined(const EquationsOfMotion& equations) const {
+    return !has_free_functions(equations) || equations.degenerate->is_determined(asked_);
+  }
+
   /// The values of all rows; errors too, where there are any.
-  void append_to(const Trajectory& rows, std::vector<double>& values, std::vector<double>& errors) {
+  void append_to(const Trajectory& shown, std::vector<double>& values, std::vector<double>& errors) {
+    const Trajectory& rows = shown.of_one_choice ? *shown.of_one_choice : shown;
     find_sources(rows);
     std::vector<Expr> roots{value_};
     const std::vector<Expr> slopes = rows.errors.empty() ? std::vector<Expr>() : gradient(value_, symbols_);
@@ -95,6 +104,15 @@ class FormulaColumn {
   }
 
  private:
+  /// Free accelerations are 0: what does not depend on them is the same with any others.
+  void put_in_one_choice(const DegenerateAnalysis& analysis) {
+    value_ = substitute(value_, analysis.motion);
+    ExprMap at_rest;
+    for (const std::size_t i : analysis.free)
+      at_rest.emplace(system_.coordinates[i].acceleration, system_.context->number(0));
+    value_ = substitute(value_, at_rest);
+  }
+
   void put_in_motion(const EquationsOfMotion& equations) {
     const auto motion = accelerations_and_multipliers(equations);
     if (!motion) return;
@@ -117,10 +135,17 @@ class FormulaColumn {
   }
 
   const MechanicalSystem& system_;
-  Expr value_;
+  Expr asked_, value_;  // as it was asked for; and without accelerations and forces, as far as there is a formula
   std::vector<Expr> symbols_;  // q and q' that are columns
   std::vector<std::size_t> columns_;
 };
+
+/// E0631: there is no such column, or no such formula of a state, since functions of time are free.
+void refuse_free(const std::string& what, Diagnostics& diagnostics) {
+  diagnostics.error("E0631", {}, fmt::format("{} depends on functions that are free", what),
+                    "The Lagrangian leaves them open, so that it has no value of its own.",
+                    "`gauge EXPR = EXPR` makes a choice; differences and momenta may do without one.");
+}
 
 }  // namespace
 
@@ -152,6 +177,10 @@ std::optional<Trajectory> AskedColumns::added_to(Trajectory rows, Study& study) 
     }
     const AskedFormula& asked = model.experiment.asked.at(index);
     FormulaColumn column(asked.value, *study.equations());
+    if (!column.is_determined(*study.equations())) {
+      refuse_free(formula, study.diagnostics());
+      return std::nullopt;
+    }
     if (column.needs_motion()) {
       refuse_option(
           study, option_, formula, fmt::format("{} is not determined by the state in this model", formula),
@@ -187,6 +216,9 @@ std::optional<Trajectory> AskedColumns::chosen_from(const Trajectory& all, Study
   for (const std::string& name : names_) {
     if (const auto column = rows->column(name)) {
       chosen.push_back(*column);
+    } else if (rows->of_one_choice && rows->of_one_choice->column(name)) {
+      refuse_free(name, study.diagnostics());
+      return std::nullopt;
     } else if (name != rows->independent.name) {  // which is always the first column
       const std::string near = did_you_mean(name, known);
       study.diagnostics().error(

@@ -63,6 +63,12 @@ ConstraintChain constraint_algorithm(const ConstraintProblem& problem);
 /// The values of rows × columns at a point, and a set of rows that are independent there, earlier ones first.
 std::vector<std::size_t> independent_conditions(const std::vector<LinearCondition>& conditions,
                                                 const std::vector<Bindings>& points);
+/// The same at one point: the first `fixed` rows in their order, then always the one that adds most.
+std::vector<std::size_t> independent_by_size(const std::vector<LinearCondition>& conditions, std::size_t fixed,
+                                             const Bindings& point);
+/// Unknowns that the rows leave open, as many as `count`, those that they leave most open at a point.
+std::vector<std::size_t> most_open_unknowns(const std::vector<LinearCondition>& conditions, std::size_t count,
+                                            const Bindings& point);
 /// Unknowns that the rows leave open: those without a pivot, later ones first.
 std::vector<std::size_t> open_unknowns(const std::vector<LinearCondition>& conditions,
                                        const std::vector<Bindings>& points);

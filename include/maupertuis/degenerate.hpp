@@ -23,20 +23,25 @@ struct DegenerateAnalysis {
   std::vector<std::size_t> free;       // coordinates whose accelerations nothing determines, as many as functions
   std::size_t motions = 0;             // numbers that single out a motion, apart from the free functions
   std::vector<StateDirection> orbits;  // along which the free functions move a state, independent on the manifold
+  std::optional<Bindings> start;       // a state on all constraints near the start, where the choices below hold
+  ExprMap motion;                      // q̈ and λ in q, q̇, t and the free ones; only where functions are free
 
   bool closed() const { return chain.outcome == ConstraintChain::Outcome::Closed; }
-  /// Whether e(q, q̇, t) is the same whatever the free functions are.
+  /// Whether e(q, q̇, q̈, λ, t) is the same whatever the free functions are.
   bool is_determined(Expr e) const;
 };
 
 /// The Lagrangian constraint algorithm (Gotay and Nester) for the equations of a system, near `center`, which binds
 /// every symbol of coordinates and velocities; parameters have the values of the model. `with_gauges`: the gauge
-/// statements count as constraints. Cost: see constraint_algorithm.
+/// statements count as constraints. `start`: what is free, and which equations a run solves, are chosen so that they
+/// are regular there, too. Cost: see constraint_algorithm.
 DegenerateAnalysis analyse_degenerate(const EquationsOfMotion& equations, const Bindings& center, bool with_gauges,
-                                      bool hold_parameters = true);
+                                      bool hold_parameters = true, const Bindings* start = nullptr);
 
-/// A state near the start of an experiment, away from special places: for analyses by points.
+/// A state near the start of an experiment, away from special places and where L has a value: for analyses by points.
 Bindings generic_state(const Model& model);
+/// The start as it is written, 0 where nothing is: not yet on the constraints.
+Bindings written_start(const Model& model);
 
 /// Equations that determine all accelerations: some rows of Lagrange's are replaced by the derivatives of the
 /// constraints that were found, on which they hold by themselves. In their place stands that the multipliers of these
@@ -50,6 +55,16 @@ const EquationsOfMotion& solvable_equations(const EquationsOfMotion& equations);
 
 /// Whether functions of time stay free, which no `gauge` chooses: what depends on them has no value of its own.
 bool has_free_functions(const EquationsOfMotion& equations);
+
+struct DeterminedQuantity {
+  std::string name;  // "x - y", "p_x"
+  Expr value;        // in q, q̇, t
+  Dimension dimension;
+};
+
+/// What has a value though coordinates in it have none, as functions stay free: differences of coordinates and other
+/// combinations with numbers as coefficients, their rates, and momenta that do not vanish.
+std::vector<DeterminedQuantity> determined_quantities(const EquationsOfMotion& equations);
 
 /// E0631 where functions stay free, of a question that has an answer for one choice of them alone. `who` opens "… want
 /// one choice of them": "Lyapunov exponents".

@@ -52,12 +52,12 @@ ZeroTest zero_test_where(std::span<const Expr> differences, std::span<const Expr
                          std::span<const Expr> unknowns, const Bindings& center, const ZeroTestOptions& options = {});
 
 /// The points of zero_test_where, for many questions: random points near `center` on relations, to 100 digits, where
-/// the rank of the relations is as large as it gets. Cost: the symbolic rows of the relations, and some hundred
-/// evaluations of them.
+/// the rank of the relations is as large as it gets, and where all of `defined` have values. Cost: the symbolic rows of
+/// the relations, and some hundred evaluations of them.
 class PointsWhere {
  public:
   PointsWhere(std::span<const Expr> relations, std::span<const Expr> unknowns, const Bindings& center,
-              const ZeroTestOptions& options = {});
+              const ZeroTestOptions& options = {}, std::span<const Expr> defined = {});
   ~PointsWhere();
   PointsWhere(PointsWhere&&) noexcept;
 

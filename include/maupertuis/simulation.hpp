@@ -42,7 +42,7 @@ struct SimulationOptions {
 /// no digit is certain, NaN beside a NaN.
 struct StateErrors {
   double t = 0;  // 0 but for a time that was located: the end of `run until`
-  std::vector<double> q, v, multipliers, reactions;
+  std::vector<double> q, v, multipliers, reactions, determined{};
 };
 
 struct State {
@@ -51,6 +51,7 @@ struct State {
   std::vector<double> multipliers;      // [constraints] λ; NaN where the equations do not determine it
   std::vector<double> reactions;        // [SimulationResult::reactions]
   std::optional<StateErrors> errors{};  // without where nobody asked
+  std::vector<double> determined{};     // [SimulationResult::determined]
 };
 
 enum class Ending {
@@ -81,6 +82,7 @@ struct SimulationStatistics {
   std::string backend = "interpreter";  // or compiled
   std::string method = "taylor";        // of the last step: taylor, variational, stiff
   double energy_drift = 0;              // docs/theory: |h_E(t) − h_E(0) − work| / max Σ|terms of h_E|
+  bool energy_vanishes = false;         // h_E is 0 at every state of a motion: nothing that could drift
   double constraint_residual = 0;       // docs/theory: largest φ, dφ/dt, ψ, each by the sizes of its terms
   std::size_t switches = 0;             // located switch crossings
   std::size_t companions = 0;           // runs beside it that tell its errors
@@ -130,6 +132,8 @@ struct SimulationResult {
   std::vector<Trajectory::Column> reactions;  // names and units: columns of the trajectory as well
   /// What depends on functions that a degenerate Lagrangian leaves free, "y", "y'": no columns of the trajectory.
   std::vector<std::string> undetermined{};
+  /// Columns in their place that do not depend on these functions: "x - y", "p_x".
+  std::vector<Trajectory::Column> determined{};
   State start, final;
   std::vector<State> at;  // in the order asked; q is empty where the run ended before
   SimulationStatistics statistics;

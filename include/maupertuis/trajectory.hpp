@@ -1,5 +1,6 @@
 #pragma once
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,6 +23,9 @@ struct Trajectory {
   std::vector<std::size_t> gaps;  // rows before which others were left out, ascending: no line goes there (pictures of
                                   // oscillations that are much faster than the run is long)
   std::map<std::string, std::string> metadata;  // system, version, method, tolerance, …
+  /// Where functions of time are free: these rows with every column, as one choice of the functions makes them. For
+  /// formulas that do not depend on the choice; else null.
+  std::shared_ptr<const Trajectory> of_one_choice{};
 
   std::size_t rows() const { return times.size(); }
   double at(std::size_t row, std::size_t column) const { return values[row * columns.size() + column]; }

@@ -2,6 +2,7 @@
 #include "drawing/outlines.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/degenerate.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -118,6 +119,19 @@ void add_frame(Drawing& drawing, std::vector<Outline>& outlines, const std::vect
   for (; at < values.size(); ++at) drawing.follow.push_back(values[at]);
 }
 
+/// Where functions of time are free: what they move has no place, and is not drawn.
+void leave_out_undetermined(drawing::Plan& plan, const EquationsOfMotion& equations) {
+  const DegenerateAnalysis& analysis = *equations.degenerate;
+  const auto depends = [&](const std::vector<Expr>& places) {
+    const std::vector<Expr> of_motion = in_terms_of_motion(*equations.system, places);
+    return !std::all_of(of_motion.begin(), of_motion.end(), [&](Expr e) { return analysis.is_determined(e); });
+  };
+  auto& outlines = plan.outlines;
+  outlines.erase(std::remove_if(outlines.begin(), outlines.end(), [&](const Outline& o) { return depends(o.values); }),
+                 outlines.end());
+  if (depends(plan.follow)) plan.follow.clear();
+}
+
 std::vector<double> gravity_of(const MechanicalSystem& system, const Bindings& parameters) {
   if (system.gravity.empty()) return {};
   Bindings start = parameters;
@@ -128,14 +142,16 @@ std::vector<double> gravity_of(const MechanicalSystem& system, const Bindings& p
 
 }  // namespace
 
-std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& run, std::size_t frames,
+std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& shown_rows, std::size_t frames,
                                         const EquationsOfMotion* equations,
                                         const std::vector<ContactImpulse>& impulses) {
   const MechanicalSystem& system = model.system;
   const Bindings parameters = parameter_bindings(system);
+  const Trajectory& run = shown_rows.of_one_choice ? *shown_rows.of_one_choice : shown_rows;
   Motion motion(system, run, parameters);
   if (run.rows() == 0 || frames == 0 || !motion.complete()) return std::nullopt;
   drawing::Plan plan = drawing::plan_of(model, parameters, equations, run);
+  if (equations && has_free_functions(*equations)) leave_out_undetermined(plan, *equations);
   if (plan.outlines.empty()) return std::nullopt;
 
   std::vector<Expr> wanted;

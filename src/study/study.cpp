@@ -99,7 +99,8 @@ bool Study::admit_degenerate(const Model& model, const Diagnostics& lints, Diagn
   if (other || system.has_modes() || !system.integral_constraints.empty()) return false;
   const auto equations = euler_lagrange(std::make_shared<const MechanicalSystem>(system), found);
   if (!equations) return false;
-  DegenerateAnalysis analysis = analyse_degenerate(*equations, generic_state(model), true);
+  const Bindings start = written_start(model);
+  DegenerateAnalysis analysis = analyse_degenerate(*equations, generic_state(model), true, true, &start);
   const bool from_masses =
       !system.lagrangian_given && system.lagrangian_extra.empty() &&
       std::none_of(system.kinetic.begin(), system.kinetic.end(), [](const EnergyTerm& t) { return t.origin == "T"; });

@@ -230,3 +230,92 @@ TEST_CASE("check lists rates by what they are") {
   CHECK(contains(maup({"check", "-"}, text).out, "rates                 v = cos ψ x' + sin ψ y'\n"));
   CHECK(json_of(maup({"check", "-", "--json"}, text))["rates"].size() == 3);
 }
+
+namespace {
+
+const std::string two_carts_with_gauge =
+    "dimensionless\ncoord x, y, A : number\npoint P at (x - y, 0)\n"
+    "L = 1/2 (x' - A)^2 + 1/2 (y' - A)^2 - 1/2 (x - y)^2\nstart x = 1, y = 0, x' = 0.3, y' = -0.3\nrun 2\n";
+const std::string relativistic = "dimensionless\ncoord T, x, y : number\nL = -sqrt(T'^2 - x'^2 - y'^2)";
+
+}  // namespace
+
+TEST_CASE("formulas that do not depend on free functions have values in every output, others are refused") {
+  const Folder folder;
+  // x - y swings with ω² = 2 from 1 with the rate 0.6, whatever A is; x' - A is half its rate.
+  const double w = std::sqrt(2.0), at_2 = std::cos(2 * w) + 0.6 / w * std::sin(2 * w);
+  const double rate = -w * std::sin(2 * w) + 0.6 * std::cos(2 * w);
+  const auto final = json_of(maup({"simulate", "-", "--json"}, two_carts_with_gauge))["final"];
+  CHECK(std::abs(final["state"]["x - y"].get<double>() - at_2) < 1e-14);
+  CHECK(std::abs(final["state"]["x' - y'"].get<double>() - rate) < 1e-14);
+  CHECK(std::abs(final["state"]["p_x"].get<double>() - rate / 2) < 1e-14);
+  CHECK(final["errors"]["x - y"].get<double>() < 1e-13);
+  CHECK_FALSE(final["state"].contains("x"));
+  const auto columns = [&](const std::string& formulas) {
+    return maup({"simulate", "-", "--every", "2", "--errors", "-o", folder.path("rows.csv"), "--columns", formulas},
+                two_carts_with_gauge);
+  };
+  CHECK(columns("P.x, (x-y)^2, x' - A, x'' - y''").code == 0);
+  const std::string rows = read(folder.path("rows.csv"));
+  const std::string last = rows.substr(rows.rfind("\n2,") + 3);
+  CHECK(std::abs(std::stod(last) - at_2) < 1e-14);
+  CHECK(std::abs(std::stod(last.substr(last.find(',') + 1)) - at_2 * at_2) < 1e-14);
+  std::string third = last;
+  for (int k = 0; k < 3; ++k) third = third.substr(third.find(',') + 1);
+  CHECK(std::abs(std::stod(third) + 2 * at_2) < 1e-14);
+  for (const char* open : {"x", "x + y", "x' + y'", "x''"}) {
+    const Outcome refused = columns(open);
+    CHECK(refused.code != 0);
+    CHECK_MESSAGE(contains(refused.err, "E0631"), refused.err);
+  }
+  CHECK(maup({"plot", "-", "--y", "x-y", "-o", folder.path("plot.svg")}, two_carts_with_gauge).code == 0);
+  CHECK(maup({"test", "-"}, two_carts_with_gauge + "expect x'' - y'' at 0 = -2 rel 1e-12\n").code == 0);
+  CHECK(contains(maup({"test", "-"}, two_carts_with_gauge + "expect x'' at 0 = 1 rel 1e-9\n").err, "free"));
+}
+
+TEST_CASE("drawings show what does not depend on free functions") {
+  const Folder folder;
+  const std::string film = folder.path("film.svg");
+  CHECK(maup({"animate", "-", "-o", film}, two_carts_with_gauge + "draw O - P\n").code == 0);
+  const Outcome open = maup({"animate", "-", "-o", film},
+                            "dimensionless\ncoord x, y, A : number\npoint P at (x, 0)\n"
+                            "L = 1/2 (x' - A)^2 + 1/2 (y' - A)^2 - 1/2 (x - y)^2\nstart x = 1\nrun 2\n");
+  CHECK(contains(open.err, "E0631"));
+  CHECK_FALSE(contains(open.err, "E0843"));
+}
+
+TEST_CASE("a gauge too many is told, with the one that it clashes with") {
+  const auto refused = [](const std::string& text, const char* gauges) {
+    const Outcome outcome = maup({"check", "-"}, text);
+    CHECK(contains(outcome.err, "E0626"));
+    CHECK_MESSAGE(contains(outcome.err, gauges), outcome.err);
+  };
+  refused(two_carts_with_gauge + "gauge A = 0\ngauge x = 0\n", "one too many beside `A = 0`");
+  const std::string two = "dimensionless\ncoord x, y, A, B : number\nL = 1/2 (x' - A)^2 + 1/2 (y' - B)^2\n";
+  refused(two + "gauge A = 0\ngauge A = sin(t)\n", "one too many beside `A = 0`");
+  refused(two + "gauge B = x\ngauge A = 0\ngauge A = sin(t)\n", "one too many beside `A = 0`");
+  CHECK(maup({"check", "-"}, two + "gauge A = 0\ngauge B = x\n").code == 0);
+}
+
+TEST_CASE("a relativistic particle starts along an axis, in its region of timelike velocities") {
+  // p_x = γ v falls by 0.3 a second from γ_0/2; x = (√(1 + p_0²) − √(1 + p²))/0.3.
+  const auto state = json_of(
+      maup({"simulate", "-", "--json"}, relativistic + " - 0.3*x*T'\nstart T' = 1, x' = 0.5\ngauge T = t\nrun 1\n"));
+  const double p0 = 0.5 / std::sqrt(0.75), p1 = p0 - 0.3;
+  CHECK(std::abs(state["final"]["state"]["x'"].get<double>() - p1 / std::sqrt(1 + p1 * p1)) < 1e-14);
+  CHECK(std::abs(state["final"]["state"]["x"].get<double>() - (std::sqrt(1 + p0 * p0) - std::sqrt(1 + p1 * p1)) / 0.3) <
+        1e-14);
+  // Without a gauge its momenta have values, and 2 freedoms are physical.
+  const std::string open = relativistic + "\nstart T' = 1, x' = 0.5\nrun 1\n";
+  const auto free = json_of(maup({"simulate", "-", "--json"}, open));
+  CHECK(std::abs(free["final"]["state"]["p_x"].get<double>() - p0) < 1e-14);
+  CHECK(contains(maup({"hamiltonian", "-"}, open).out, "4 physical dimensions, 2 freedoms"));
+}
+
+TEST_CASE("an energy function that vanishes at every state has no drift") {
+  const Outcome run = maup({"simulate", "-"},
+                           "dimensionless\ncoord x, y : number\nL = sqrt(2*(1 - x^2/2 - y^2/2)*(x'^2 + y'^2))\n"
+                           "start x = 0.5, x' = 0.1, y' = 1\nrun 1\ngauge y = t\n");
+  CHECK(contains(run.out, "h_E = 0 at every state"));
+  CHECK_FALSE(contains(run.out, "drift"));
+}

@@ -223,7 +223,11 @@ std::optional<Drawing> drawing_of(Study& study, SimulationOptions run, Console& 
   const std::size_t frames = 12'000 + 2 * run.rows_at.size();
   std::optional<Drawing> drawing = evaluate_drawing(*study.model(), result->trajectory, frames, study.equations(),
                                                     impulses_of(*result, study.model()->system));
-  if (!drawing)
+  if (!drawing && !result->undetermined.empty())
+    study.diagnostics().error("E0631", {}, "where anything is that this model draws depends on functions that are free",
+                              "The Lagrangian leaves them open, so that it has no place of its own.",
+                              "`gauge EXPR = EXPR` makes a choice.");
+  else if (!drawing)
     study.diagnostics().error("E0843", {}, "The model has nothing to draw.",
                               "A drawing shows points, bodies, springs and what `draw` names; this model has none.",
                               "Mark a point, `point P at (x, y)`, or plot the coordinates: maup plot.");

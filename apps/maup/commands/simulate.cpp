@@ -63,6 +63,8 @@ Json errors_json(const State& state, const SimulationResult& result, const Mecha
     if (is_determined(result, name)) out[name] = number_or_null(errors.q[i]);
     if (is_determined(result, name + "'")) out[name + "'"] = number_or_null(errors.v[i]);
   }
+  for (std::size_t i = 0; i < errors.determined.size(); ++i)
+    out[result.determined[i].name] = number_or_null(errors.determined[i]);
   for (std::size_t i = 0; i < errors.multipliers.size(); ++i)
     out[system.constraints[i].multiplier.name()] = number_or_null(errors.multipliers[i]);
   for (std::size_t i = 0; i < errors.reactions.size(); ++i)
@@ -77,6 +79,8 @@ Json state_json(const State& state, const SimulationResult& result, const Mechan
     if (is_determined(result, name)) values[name] = state.q[i];
     if (is_determined(result, name + "'")) values[name + "'"] = state.v[i];
   }
+  for (std::size_t i = 0; i < state.determined.size(); ++i)
+    values[result.determined[i].name] = number_or_null(state.determined[i]);
   Json multipliers = Json::object(), reactions = Json::object();
   for (std::size_t i = 0; i < state.multipliers.size(); ++i)
     multipliers[system.constraints[i].multiplier.name()] = number_or_null(state.multipliers[i]);
@@ -155,6 +159,8 @@ std::string state_text(const State& state, const SimulationResult& result, const
       line(c.name + "'", state.v[i], errors ? errors->v[i] : 0,
            system.dimensionless ? "" : to_string(c.dimension / system.independent_dimension));
   }
+  for (std::size_t i = 0; i < state.determined.size(); ++i)
+    line(result.determined[i].name, state.determined[i], errors ? errors->determined[i] : 0, result.determined[i].unit);
   for (std::size_t i = 0; i < state.reactions.size(); ++i) {
     const Trajectory::Column& column = result.reactions[i];
     if (std::isnan(state.reactions[i]))
@@ -191,15 +197,16 @@ std::string text_of(const SimulationResult& result, const MechanicalSystem& syst
   const std::string method = s.method == "taylor"  ? fmt::format("of order {}", s.order)
                              : s.method == "stiff" ? "of the stiff method"
                                                    : fmt::format("of the variational method, order {},", s.order);
+  const std::string energy =
+      s.energy_vanishes ? "h_E = 0 at every state" : fmt::format("energy drift {}", brief(s.energy_drift));
   const std::string residual =
       system.constrained() ? fmt::format("; constraint residual {}", brief(s.constraint_residual)) : "";
   const std::string companions =
       s.companions > 0 ? fmt::format("; errors from {} companions in {} s", s.companions, brief(s.companion_seconds))
                        : "";
   return out + uncertain_text(result, system) +
-         fmt::format("{} steps {} in {} s ({}, ready in {} s); energy drift {}{}{}\n", s.steps, method,
-                     brief(s.seconds), s.backend, brief(s.compile_seconds), brief(s.energy_drift), residual,
-                     companions);
+         fmt::format("{} steps {} in {} s ({}, ready in {} s); {}{}{}\n", s.steps, method, brief(s.seconds), s.backend,
+                     brief(s.compile_seconds), energy, residual, companions);
 }
 
 /// What was computed is written whatever the ending.

@@ -110,8 +110,13 @@ class Finder {
 
   bool singular() {
     if (has_free_functions(equations_)) {
-      diagnostics_.error("E1002", {}, "functions of time are free, so that the accelerations are not determined",
-                         "The search needs a rate of change at each point.", "`gauge EXPR = EXPR` makes a choice.");
+      const std::string& free = system_.coordinates[equations_.degenerate->free.front()].name;
+      diagnostics_.error(
+          "E1002", {}, "functions of time are free, so that the accelerations are not determined",
+          "The search needs a rate of change at each point.",
+          fmt::format("`gauge {} = 0`, say, makes a choice; what is conserved and does not depend on it is conserved "
+                      "with any other. `expect FORMULA conserved` judges one formula without it.",
+                      free));
       return false;
     }
     diagnostics_.error("E1002", {}, "the equations do not determine the accelerations",

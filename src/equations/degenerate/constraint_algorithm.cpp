@@ -216,10 +216,16 @@ class Algorithm {
     return out;
   }
 
+  /// States where the conditions have values: beyond the speed of light √(1 − v²) has none.
   void find_points() {
     ZeroTestOptions options;
     options.hold_parameters = problem_.hold_parameters;
-    points_ = std::make_shared<const PointsWhere>(relations_, problem_.states, problem_.center, options);
+    ExprVector given;
+    for (const LinearCondition& c : problem_.conditions) {
+      given.push_back(c.rest);
+      given.insert(given.end(), c.coefficients.begin(), c.coefficients.end());
+    }
+    points_ = std::make_shared<const PointsWhere>(relations_, problem_.states, problem_.center, options, given);
     if (points_->points().empty()) out_.outcome = ConstraintChain::Outcome::Unreached;
   }
 
@@ -258,6 +264,44 @@ std::vector<std::size_t> open_unknowns(const std::vector<LinearCondition>& condi
   for (std::size_t j = 0; j < static_cast<std::size_t>(m.cols()); ++j)
     if (std::find(bound.begin(), bound.end(), j) == bound.end()) open.push_back(j);
   return open;
+}
+
+std::vector<std::size_t> independent_by_size(const std::vector<LinearCondition>& conditions, std::size_t fixed,
+                                             const Bindings& point) {
+  Matrix left = coefficients_at(conditions, point);
+  const double whole = left.size() ? left.cwiseAbs().maxCoeff() : 0;
+  std::vector<std::size_t> chosen;
+  const auto choose = [&](Index row) {
+    const Vector direction = left.row(row).normalized().transpose();
+    chosen.push_back(static_cast<std::size_t>(row));
+    left -= (left * direction) * direction.transpose();
+  };
+  for (Index row = 0; row < static_cast<Index>(fixed); ++row)
+    if (left.row(row).norm() > small * whole) choose(row);
+  for (Index row = 0; left.rows() > 0;) {
+    if (!(left.rowwise().norm().maxCoeff(&row) > small * whole)) break;
+    choose(row);
+  }
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+std::vector<std::size_t> most_open_unknowns(const std::vector<LinearCondition>& conditions, std::size_t count,
+                                            const Bindings& point) {
+  const Matrix m = scaled_rows(coefficients_at(conditions, point));
+  // Directions that no row sees, from the projector on them: its largest columns lie most in the open.
+  Eigen::CompleteOrthogonalDecomposition<Matrix> rows(m);
+  rows.setThreshold(small);
+  Matrix open = Matrix::Identity(m.cols(), m.cols()) - rows.pseudoInverse() * m;
+  std::vector<std::size_t> out;
+  for (Index column = 0; out.size() < count; ++column) {
+    if (!(open.colwise().norm().maxCoeff(&column) > small)) break;
+    out.push_back(static_cast<std::size_t>(column));
+    const Vector direction = open.col(column).normalized();
+    open -= direction * (direction.transpose() * open);
+  }
+  std::sort(out.begin(), out.end());
+  return out;
 }
 
 ConstraintChain constraint_algorithm(const ConstraintProblem& problem) { return Algorithm(problem).run(); }

@@ -124,9 +124,9 @@ Choice choose_rows(const EquationsOfMotion& equations, const DegenerateAnalysis&
 
   struct Tried {
     Choice choice;
-    bool keeps_sign = false;
+    bool keeps_sign = false, regular_at_start = false;
   };
-  const auto chosen = [&](bool lagrange_first) {
+  const auto chosen = [&](bool lagrange_first, bool by_size) {
     std::vector<LinearCondition> rows = lagrange_first ? given : safe;
     rows.insert(rows.end(), lagrange.begin(), lagrange.end());
     if (lagrange_first) rows.insert(rows.end(), safe.begin() + static_cast<std::ptrdiff_t>(m), safe.end());
@@ -134,7 +134,8 @@ Choice choose_rows(const EquationsOfMotion& equations, const DegenerateAnalysis&
     Tried out;
     out.choice.keeps_row.assign(n, false);
     std::vector<LinearCondition> taken;
-    for (const std::size_t r : independent_conditions(rows, points)) {
+    for (const std::size_t r :
+         by_size ? independent_by_size(rows, first_row, *analysis.start) : independent_conditions(rows, points)) {
       taken.push_back(rows[r]);
       if (r >= first_held && r < first_held + kept.size())
         out.choice.held.push_back(kept[r - first_held]);
@@ -147,11 +148,15 @@ Choice choose_rows(const EquationsOfMotion& equations, const DegenerateAnalysis&
       taken.back().coefficients[f] = context.number(1);
     }
     out.keeps_sign = keep_their_sign(taken, points.front());
+    out.regular_at_start = !analysis.start || independent_conditions(taken, {*analysis.start}).size() == taken.size();
     return out;
   };
-  Tried out = chosen(false);
+  Tried out = chosen(false, false);
+  if (!out.regular_at_start)
+    if (Tried better = chosen(false, true); better.regular_at_start) out = std::move(better);
   if (out.keeps_sign) return out.choice;
-  Tried other = chosen(true);
+  Tried other = chosen(true, false);
+  if (out.regular_at_start && !other.regular_at_start) return out.choice;
   return other.keeps_sign ? other.choice : out.choice;
 }
 

@@ -1,5 +1,8 @@
+#include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/degenerate.hpp>
+#include <maupertuis/transform.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace maupertuis {
@@ -11,17 +14,16 @@ double scattered(std::size_t index) {
   return x - std::floor(x);
 }
 
-}  // namespace
-
-Bindings generic_state(const Model& model) {
+/// The start; what is not given, or is 0, lies up to `size` away from 0.
+Bindings near_start(const Model& model, double size) {
   const MechanicalSystem& system = model.system;
   Bindings out;
   for (const Parameter& p : system.parameters) out[p.symbol] = p.si_value;
   out[system.context->time()] = 0.3;
   const Bindings parameters = out;
   for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
-    out[system.coordinates[i].q] = 0.4 + 0.8 * scattered(2 * i);
-    out[system.coordinates[i].velocity] = 0.4 + 0.8 * scattered(2 * i + 1);
+    out[system.coordinates[i].q] = size * (0.4 + 0.8 * scattered(2 * i));
+    out[system.coordinates[i].velocity] = size * (0.4 + 0.8 * scattered(2 * i + 1));
   }
   for (const StartValue& v : model.experiment.start) {
     const double value = evaluate(v.value, parameters);
@@ -29,6 +31,29 @@ Bindings generic_state(const Model& model) {
     if (value != 0 && std::isfinite(value)) out[v.order == 0 ? c.q : c.velocity] = value;
   }
   return out;
+}
+
+}  // namespace
+
+Bindings written_start(const Model& model) {
+  Bindings out = near_start(model, 0);
+  out[model.system.context->time()] = 0;
+  return out;
+}
+
+Bindings generic_state(const Model& model) {
+  const MechanicalSystem& system = model.system;
+  const Expr whole = system.lagrangian();
+  ExprVector wanted{expand_time_derivatives(in_terms_of_motion(system, {&whole, 1}).front())};
+  for (const Coordinate& c : system.coordinates) wanted.push_back(differentiate(wanted.front(), c.velocity));
+  // As far from special values as L allows: a particle slower than light stays so.
+  constexpr double least = 1.0 / 1024;
+  for (double size = 1; size >= least; size /= 2) {
+    Bindings state = near_start(model, size);
+    const std::vector<double> values = evaluate(wanted, state);
+    if (std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); })) return state;
+  }
+  return near_start(model, 1);
 }
 
 }  // namespace maupertuis

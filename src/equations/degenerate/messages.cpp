@@ -118,10 +118,62 @@ class Messages {
                          "Leave it out; `constraint` holds a relation with a force.");
       return false;
     }
+    if (!open.closed()) return true;
     for (const Gauge& gauge : system().gauges)
-      if (open.closed() && open.is_determined(gauge.value)) return fixes_too_much(gauge);
-    if (open.closed() && analysis_.closed() && analysis_.motions < open.motions) return fixes_too_much(first);
+      if (open.is_determined(gauge.value)) return fixes_too_much(gauge);
+    if (analysis_.closed() && analysis_.motions >= open.motions) return true;
+    return one_by_one(open);
+  }
+
+  /// The first gauge that, beside those above it, excludes motions. True where none does.
+  bool one_by_one(const DegenerateAnalysis& open) {
+    const auto& all = system().gauges;
+    std::vector<std::size_t> before;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      std::vector<std::size_t> with_it = before;
+      with_it.push_back(k);
+      if (excludes_motions(with_it, open)) {
+        if (before.empty()) return excludes_motions_by_itself(all[k]);
+        // One of them may be enough for the clash.
+        for (const std::size_t j : before)
+          if (excludes_motions({j, k}, open)) return one_too_many({j}, k);
+        return one_too_many(before, k);
+      }
+      before = std::move(with_it);
+    }
     return true;
+  }
+
+  DegenerateAnalysis with_gauges(const std::vector<std::size_t>& chosen) const {
+    auto fewer = std::make_shared<MechanicalSystem>(*equations_.system);
+    fewer->gauges.clear();
+    for (const std::size_t k : chosen) fewer->gauges.push_back(system().gauges[k]);
+    EquationsOfMotion equations = equations_;
+    equations.system = std::move(fewer);
+    return analyse_degenerate(equations, generic_state(model_), true);
+  }
+
+  bool excludes_motions(const std::vector<std::size_t>& gauges, const DegenerateAnalysis& open) const {
+    using Outcome = ConstraintChain::Outcome;
+    const DegenerateAnalysis found = with_gauges(gauges);
+    if (found.closed()) return found.motions < open.motions;
+    return found.chain.outcome == Outcome::Contradiction || found.chain.outcome == Outcome::Unreached;
+  }
+
+  /// A gauge of its own that no state near the start fulfils is told as such a relation.
+  bool excludes_motions_by_itself(const Gauge& gauge) {
+    return analysis_.chain.outcome == ConstraintChain::Outcome::Unreached || fixes_too_much(gauge);
+  }
+
+  bool one_too_many(const std::vector<std::size_t>& before, std::size_t k) {
+    std::vector<std::string> texts;
+    for (const std::size_t j : before) texts.push_back("`" + system().gauges[j].text + "`");
+    diagnostics_.error("E0626", system().gauges[k].span,
+                       fmt::format("this gauge is one too many beside {}", joined(texts)),
+                       fmt::format("{} what is free of this already; both together exclude motions, or have none.",
+                                   texts.size() == 1 ? texts.front() + " chooses" : "They choose"),
+                       "Leave one of them out; where more functions are free, choose another one of them.");
+    return false;
   }
 
   bool fixes_too_much(const Gauge& gauge) {

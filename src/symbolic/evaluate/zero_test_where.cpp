@@ -348,11 +348,13 @@ struct PointsWhere::Impl {
 };
 
 PointsWhere::PointsWhere(std::span<const Expr> relations, std::span<const Expr> unknowns, const Bindings& center,
-                         const ZeroTestOptions& options)
+                         const ZeroTestOptions& options, std::span<const Expr> defined)
     : impl_(std::make_unique<Impl>(relations, unknowns, center)) {
-  impl_->points = regular_points(impl_->manifold, options, [](const Precise& precise) {
+  impl_->points = regular_points(impl_->manifold, options, [&](const Precise& precise) -> std::optional<Impl::Point> {
     Impl::Point out{{}, precise};
     for (const auto& [symbol, x] : precise) out.point.emplace(symbol, static_cast<double>(x));
+    const std::vector<double> values = evaluate(defined, out.point);
+    if (!std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); })) return std::nullopt;
     return std::optional(std::move(out));
   });
   for (const Impl::Point& p : impl_->points) impl_->rounded.push_back(p.point);
