@@ -301,24 +301,46 @@ Rational pow(const Rational& value, int exponent) {
 
 namespace {
 
+/// Newton's method from above falls down to the root, doubling its digits: numbers of a thousand digits take a dozen
+/// divisions.
 std::optional<BigInteger> integer_root(const BigInteger& n, int k) {
   if (n == 0 || n == 1) return n;
-  BigInteger low = 1, high = BigInteger(1) << (msb(n) / static_cast<unsigned>(k) + 1);
-  while (low < high) {
-    const BigInteger middle = (low + high + 1) >> 1;
-    if (pow(middle, static_cast<unsigned>(k)) <= n)
-      low = middle;
-    else
-      high = middle - 1;
+  const auto others = static_cast<unsigned>(k - 1);
+  BigInteger root = BigInteger(1) << (msb(n) / static_cast<unsigned>(k) + 1);
+  while (true) {
+    BigInteger next = (root * others + n / pow(root, others)) / (others + 1);
+    if (next >= root) break;
+    root = std::move(next);
   }
-  if (pow(low, static_cast<unsigned>(k)) == n) return low;
+  if (pow(root, static_cast<unsigned>(k)) == n) return root;
   return std::nullopt;
+}
+
+/// Euler's criterion: a square is one modulo each prime, and of other numbers half are at each.
+bool is_square_modulo_primes(const Rational& value) {
+  for (const std::uint64_t prime : {1000003, 1000033, 1000037, 1000039, 1000081, 1000099, 1000117, 1000121})
+    for (std::uint64_t base : {value.numerator_mod(prime), value.denominator_mod(prime)}) {
+      std::uint64_t power = 1;
+      const bool divides = base == 0;
+      for (std::uint64_t exponent = (prime - 1) / 2; exponent > 0; exponent /= 2) {
+        if (exponent % 2 == 1) power = power * base % prime;
+        base = base * base % prime;
+      }
+      if (!divides && power != 1) return false;
+    }
+  return true;
 }
 
 }  // namespace
 
 std::optional<Rational> exact_root(const Rational& value, int k) {
   if (value.sign() < 0) return std::nullopt;
+  if (const auto small = value.small()) {
+    const auto n = integer_root(BigInteger(small->numerator), k), d = integer_root(BigInteger(small->denominator), k);
+    return n && d ? std::optional(Rational(n->convert_to<std::int64_t>(), d->convert_to<std::int64_t>()))
+                  : std::nullopt;
+  }
+  if (k == 2 && !is_square_modulo_primes(value)) return std::nullopt;
   const auto n = integer_root(BigInteger(value.numerator_string()), k);
   if (!n) return std::nullopt;
   const auto d = integer_root(BigInteger(value.denominator_string()), k);

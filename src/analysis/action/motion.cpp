@@ -20,6 +20,7 @@ using namespace action;
 constexpr int rows_of_motion = 400;
 constexpr Index fewest_elements_of_motion = 6;
 constexpr int other_order = 24;  // of Taylor's polynomials, beside the usual 20: errors of a motion are not the same
+constexpr std::size_t looked_ahead = 4;  // times the steps of a path: beyond that their number is estimated
 constexpr std::size_t most_unknowns_of_motion = 4000;  // of the second variation: steps times coordinates
 constexpr double shortest_element = 1e-12;             // of the whole: a shorter step belongs to the next one
 
@@ -52,12 +53,19 @@ class Follower {
         motion_(motion_kernel(solvable_equations(problem.equations))),
         stepper_(motion_.kernel, motion_.parameters, options) {}
 
-  /// Where steps end, first the start; nothing where the motion ends before, as `last` says then.
-  std::optional<std::vector<double>> steps(Step& last) {
+  /// Where steps end, first the start; nothing where the motion ends before, as `last` says then. No further than
+  /// `most` steps: then the last one does not come to the end, and `taken` says how many it would be.
+  std::optional<std::vector<double>> steps(Step& last, std::size_t most, double& taken) {
     std::vector<double> out{start_.t};
+    std::size_t count = 0;
     for (stepper_.start(start_.t, start_.q, start_.v); stepper_.time() != end_;) {
       last = stepper_.step(end_);
       if (last.ending != StepEnding::None) return std::nullopt;
+      taken = static_cast<double>(++count);
+      if (count >= most && stepper_.time() != end_) {
+        taken *= (end_ - start_.t) / (stepper_.time() - start_.t);
+        return out;
+      }
       if (stepper_.time() - out.back() > shortest_element * (end_ - start_.t)) out.push_back(stepper_.time());
     }
     out.back() = end_;
@@ -123,17 +131,18 @@ std::optional<Followed> follow(Problem& problem, const MotionState& start, doubl
                                const ActionOptions& options, Diagnostics& diagnostics) {
   Follower follower(problem, start, duration, {.interrupt = options.interrupt});
   Step last;
-  const auto steps = follower.steps(last);
+  const std::size_t most = most_unknowns_of_motion / static_cast<std::size_t>(problem.n());
+  double taken = 0;
+  const auto steps = follower.steps(last, looked_ahead * most, taken);
   if (interrupted(options, diagnostics)) return std::nullopt;
   if (!steps) {
     diagnostics.error("E1208", {}, fmt::format("the motion ends at {}", place(last.begin, problem.model.system)),
                       last.reason, "Choose another start, or a shorter run.");
     return std::nullopt;
   }
-  const std::size_t most = most_unknowns_of_motion / static_cast<std::size_t>(problem.n());
-  if (steps->size() > most) {
+  if (steps->size() > most || steps->back() != start.t + duration) {
     diagnostics.error("E1211", {},
-                      fmt::format("the motion takes {} steps, more than the {} of a path", steps->size() - 1, most),
+                      fmt::format("the motion takes {:.3g} steps, more than the {} of a path", taken, most),
                       "A path has elements as short as the steps of the motion, so that they follow its fastest turns.",
                       "Take a shorter run: S of motions that follow one another adds up.");
     return std::nullopt;

@@ -84,6 +84,14 @@ TEST_CASE("exact roots") {
   CHECK(*exact_root(Rational(9, 4), 2) == Rational(3, 2));
   CHECK(*exact_root(Rational(27), 3) == Rational(3));
   CHECK_FALSE(exact_root(Rational(2), 2));
+  for (int k = 2; k <= 7; ++k) {
+    Rational root(1), power(1);
+    for (int i = 0; i < 400; ++i) root = root * Rational(98765432101234567);  // 6800 digits
+    root = root / Rational(3);
+    for (int i = 0; i < k; ++i) power = power * root;
+    CHECK(*exact_root(power, k) == root);
+    CHECK_FALSE(exact_root(power + Rational(1), k));
+  }
   CHECK_FALSE(exact_root(Rational(-4), 2));
   CHECK(*exact_root(Rational(0), 2) == Rational(0));
 }
