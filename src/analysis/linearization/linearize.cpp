@@ -75,13 +75,19 @@ struct BorderedSolution {
   std::size_t culprit = 0;
 };
 
-BorderedSolution solve_bordered(const Matrix& mass, const Matrix& by_multipliers, const Matrix& a,
-                                const Matrix& right) {
+Matrix bordered(const Matrix& mass, const Matrix& by_multipliers, const Matrix& a) {
   const Index n = mass.rows(), m = a.rows();
   Matrix all = Matrix::Zero(n + m, n + m);
   all.topLeftCorner(n, n) = mass;
   all.topRightCorner(n, m) = by_multipliers;
   all.bottomLeftCorner(m, n) = a;
+  return all;
+}
+
+BorderedSolution solve_bordered(const Matrix& mass, const Matrix& by_multipliers, const Matrix& a,
+                                const Matrix& right) {
+  const Index n = mass.rows();
+  const Matrix all = bordered(mass, by_multipliers, a);
   BorderedSolution out;
   mass.cwiseAbs().rowwise().sum().minCoeff(&out.culprit);
   out.singular = !all.allFinite() || !right.allFinite();
@@ -104,6 +110,25 @@ Matrix cleaned(Matrix part, const Matrix& whole) {
 }
 Matrix clean_symmetric_part(const Matrix& m) { return cleaned(symmetric_part(m), m); }
 Matrix skew_part(const Matrix& m) { return cleaned((m - m.transpose()) / 2, m); }
+
+/// Whether rounding of the coordinates alone makes another matrix of it: at θ = π the number sin²θ is 1.5e-32, and
+/// stands for 0. Solutions for the change tell it, whatever the sizes of rows and columns are.
+bool is_made_by_rounding(PointEquations::Impl& e, const OperatingPoint& point, const Matrix& turning,
+                         const Matrix& matrix) {
+  constexpr double few_roundings = 8 * 2.220446049250313e-16, part = 1e-3;
+  const Equilibration by(matrix);
+  for (const double side : {few_roundings, -few_roundings}) {
+    OperatingPoint beside = point;
+    for (std::size_t i = 0; i < e.n; ++i) beside.q[i] *= 1 + (i % 2 == 0 ? side : -side);
+    const RowsAtPoint balance = in_frame(e.at(e.balance, beside), turning);
+    const RowsAtPoint accelerations = in_frame(e.at(e.accelerations, beside), turning);
+    const Matrix change = bordered(balance.by_a, balance.by_multipliers, accelerations.by_a) - matrix;
+    if (!change.allFinite()) continue;
+    const Matrix relative = least_squares(by.of(matrix), by.of(change), 1e-13).x;
+    if (relative.size() > 0 && relative.lpNorm<Eigen::Infinity>() > part) return true;
+  }
+  return false;
+}
 
 /// All pieces at one point.
 struct Pieces {
@@ -219,14 +244,15 @@ LinearizationResult linearize(const PointEquations& equations, const OperatingPo
   right.topRightCorner(n, k) = -p.balance.by_inputs;
   right.bottomLeftCorner(m, f) = negated_product(p.accelerations.by_q, xi) - product(p.accelerations.by_v, rate_q);
   right.block(n, f, m, g) = negated_product(p.accelerations.by_v, rate_w);
-  const BorderedSolution bordered =
-      solve_bordered(p.balance.by_a, p.balance.by_multipliers, p.accelerations.by_a, right);
-  if (bordered.singular) {
+  const BorderedSolution solved = solve_bordered(p.balance.by_a, p.balance.by_multipliers, p.accelerations.by_a, right);
+  if (solved.singular ||
+      is_made_by_rounding(e, point, turning,
+                          bordered(p.balance.by_a, p.balance.by_multipliers, p.accelerations.by_a))) {
     result.singular = true;
-    result.singular_coordinate = bordered.culprit;
+    result.singular_coordinate = solved.culprit;
     return result;
   }
-  const Matrix acceleration = bordered.x.topRows(n);
+  const Matrix acceleration = solved.x.topRows(n);
 
   Matrix a = Matrix::Zero(f + g, f + g), b = Matrix::Zero(f + g, k), c = Matrix::Zero(2 * n, f + g);
   a.topLeftCorner(f, f) = rows_of(rate_q, out.independent);
@@ -244,7 +270,7 @@ LinearizationResult linearize(const PointEquations& equations, const OperatingPo
   out.d = to_real(Matrix::Zero(2 * n, static_cast<Index>(e.k)));
   Matrix motion = Matrix::Zero(2 * n, f + g + k);
   motion.leftCols(f + g) = c;
-  Matrix answer = bordered.x;
+  Matrix answer = solved.x;
   out_of_frame(turning, motion, answer);
   out.measured = measured_outputs(e, point, {motion, answer, f + g});
 

@@ -112,11 +112,12 @@ void warn_of_failing(const PointEquations& equations, const ModalStudy& study, D
   if (study.failing.empty()) return;
   const std::size_t others = study.failing.size() - 1;
   const std::string first = point_text(equations.system(), study.failing.front(), study.translations);
-  diagnostics.warning("W1301", std::nullopt,
-                      fmt::format("no linearization at {}{}", first,
-                                  others == 0 ? "" : fmt::format(", nor at {} other points", others)),
-                      "The forces vanish there, but the mass matrix is singular: the coordinates fail.",
-                      "Describe the system by other coordinates near there.");
+  diagnostics.warning(
+      "W1301", std::nullopt,
+      fmt::format("no linearization at {}{}", first,
+                  others == 0 ? "" : fmt::format(", nor at {} other point{}", others, others == 1 ? "" : "s")),
+      "The forces vanish there, but the mass matrix is singular: the coordinates fail.",
+      "Describe the system by other coordinates near there.");
 }
 
 void refuse_none(const PointEquations& equations, std::size_t starts, Diagnostics& diagnostics) {

@@ -399,3 +399,25 @@ TEST_CASE("on a ring of rests a way across that only higher terms tell stays und
   CHECK(verdict("-z^4") == Stability::Undecided);
   CHECK(verdict("z^4") == Stability::Undecided);
 }
+
+TEST_CASE("where coordinates fail but for rounding there is no linearization") {
+  // sin²π is 1.5e-32 in numbers: no inertia of φ. Both poles of a spherical pendulum fail alike.
+  for (const char* start : {"170 deg", "10 deg"}) {
+    Linearized m(
+        "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ, φ : angle\n"
+        "point P mass m at l (sin θ cos φ, sin θ sin φ, cos θ)\ngravity (0, 0, -g)\nstart θ = " +
+        std::string(start) + "\nrun 1 s\n");
+    const ModalStudy study = m.study();
+    CHECK(study.entries.empty());
+    CHECK(study.failing.size() == 2);
+  }
+  // Beside the pole they hold: with the axis across, ω² = g/l for both ways.
+  Linearized across(
+      "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ, φ : angle\n"
+      "point P mass m at l (cos θ, sin θ cos φ, sin θ sin φ)\ngravity (0, 0, -g)\n"
+      "start θ = 80 deg, φ = -80 deg\nrun 1 s\n");
+  const ModalStudy study = across.study();
+  REQUIRE_FALSE(study.entries.empty());
+  for (const Mode& mode : study.entries.front().analysis.modes)
+    CHECK(std::abs(mode.eigenvalue.imag()) == doctest::Approx(std::sqrt(9.81)).epsilon(1e-12));
+}
