@@ -31,6 +31,9 @@ std::string dispersion_text(Study& study, std::string& trouble);
 std::string shape_of_bodies(const FieldEquations& equations, const FieldModes& modes, std::size_t index);
 /// [{field: [values at places], coordinate: value}], with the places.
 Json shapes_json(const FieldEquations& equations, const FieldModes& modes);
+/// Values of an equilibrium that was computed, its energy, and, where nothing moves, whether it is a minimum.
+std::string equilibrium_text(const FieldEquations& equations, const FieldModes& modes);
+Json equilibrium_json(const FieldEquations& equations, const FieldEquilibrium& found);
 std::string field_run_text(const FieldRunResult& run, const MechanicalSystem& system);
 Json field_run_json(const FieldRunResult& run, const MechanicalSystem& system);
 

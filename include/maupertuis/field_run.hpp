@@ -102,6 +102,19 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
                                           const std::vector<FieldQuestion>& questions, const FieldRunOptions& options,
                                           Diagnostics& diagnostics);
 
+/// Fields that stay what they are, in numbers.
+struct FieldEquilibrium {
+  std::vector<double> places;
+  std::vector<double> upwards;              // in the plane those of y
+  std::vector<std::vector<double>> fields;  // [varied][places], in the plane [varied][upwards × places], SI
+  std::vector<double> errors;               // [varied] the largest at those places, from fewer functions
+  double energy = 0, energy_error = 0;      // −∫ℒ, SI
+  /// The lowest eigenvalue of the second variation of −∫ℒ in the mean square, and how many lie below zero: none of a
+  /// minimum. Nothing where they have no lower bound.
+  std::optional<double> lowest;
+  std::size_t falling = 0;
+};
+
 /// Small motions about rest, of fields with the coordinates and bodies beside them.
 struct FieldModes {
   std::vector<double> frequencies;  // rad/s, ascending; below 0: the rate of growth of an unstable one, negative
@@ -112,16 +125,18 @@ struct FieldModes {
   };
   std::vector<Shape> shapes;
   std::vector<double> places;
-  std::vector<double> upwards;  // in the plane those of y
-  std::vector<double> errors;   // rad/s, from fewer functions
-  std::string about;            // the rest, where frequencies depend on it: "u = 0"
+  std::vector<double> upwards;                  // in the plane those of y
+  std::vector<double> errors;                   // rad/s, from fewer functions
+  std::string about;                            // the rest, where frequencies depend on it: "u = 0"
+  std::optional<FieldEquilibrium> equilibrium;  // where the rest was computed
 };
 
-/// The lowest `count` about the start, where that is a rest, else about φ = 0: Ritz's method with Legendre polynomials
-/// on elements between the places of bodies and the borders of the density, for densities of first and second
-/// derivatives; rectangles: products of polynomials over all of the domain, without bodies. Functions become more until
-/// frequencies stand still, up to 400 unknowns, in the plane some 1000. Friction is left out, and told (W0653). Empty,
-/// and E0644, where there are none, E0647 where a coefficient is passed by.
+/// The lowest `count` about the start, where that is a rest, else about φ = 0, else about the equilibrium that Newton's
+/// method finds from the start; none where nothing has inertia: the equilibrium alone. Ritz's method with Legendre
+/// polynomials on elements between the places of bodies and the borders of the density, for densities of first and
+/// second derivatives; rectangles: products of polynomials over all of the domain, without bodies. Functions become
+/// more until frequencies stand still, up to 400 unknowns, in the plane some 1000. Friction is left out, and told
+/// (W0653). Empty, and E0644, where there are none, E0647 where a coefficient is passed by.
 FieldModes field_modes(const FieldEquations& equations, std::size_t count, Diagnostics& diagnostics);
 /// Their frequencies alone.
 std::vector<double> field_frequencies(const FieldEquations& equations, std::size_t count, Diagnostics& diagnostics);

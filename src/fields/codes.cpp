@@ -157,9 +157,10 @@ constexpr CodeEntry kEntries[] = {
      "# maup simulate\ndimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 20, 20 order 6\n"
      "density = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2) - (1 - cos u)\nrun 1\n"},
     {"E0644", "no modes of a field",
-     "Frequencies are those of small motions about a rest, the start where it is one, else φ = 0, of a field of one or "
-     "two space variables with a domain, coefficients that are constant in time and a positive energy; dispersion "
-     "relations those of waves through coefficients that are constant in space too.",
+     "Frequencies are those of small motions about a rest, the start where it is one, else φ = 0, else the equilibrium "
+     "that Newton's method finds from the start, of a field of one or two space variables with a domain, coefficients "
+     "that are constant in time and a positive energy; dispersion relations those of waves through coefficients that "
+     "are constant in space too.",
      "# maup modes\nfield u(x) : length on x = 0 m .. 1 m cells 20 boundary u = 0\n"
      "param ρ = 1 kg/m, T0 = 1 N, τ = 2 s\ndensity = 1/2 ρ u'^2 - 1/2 T0 (1 + t/τ) u_x^2\n",
      "# maup modes\nfield u(x) : length on x = 0 m .. 1 m cells 20 boundary u = 0\nparam ρ = 1 kg/m, T0 = 1 N\n"

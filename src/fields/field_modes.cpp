@@ -67,9 +67,7 @@ class ModeProblem {
     double out = 0;
     for (const DensityEntry& e : entries_.list) {
       const RepeatedEvaluation value({&e.value, 1});
-      const auto at = [&](double x) {
-        return value([&](Expr symbol) { return symbol == s_.space.front().symbol ? x : values_.at(symbol); }).front();
-      };
+      const auto at = [&](double x) { return value([&](Expr symbol) { return value_of(symbol, x); }).front(); };
       out = std::max(out, unseen_along(at, left, length, points));
     }
     return out;
@@ -141,6 +139,12 @@ class ModeProblem {
     return best;
   }
   double number(Expr e) const { return evaluate(s_.expanded(e), values_); }
+  /// Of a symbol in a coefficient.
+  double value_of(Expr symbol, double x) const {
+    if (symbol == s_.space.front().symbol) return x;
+    const auto jet = entries_.rest.value(s_, symbol, x, 0);
+    return jet ? *jet : values_.at(symbol);
+  }
   /// Of a point of quadrature, inside of its element: coefficients may jump at borders.
   double place_of(std::size_t q) const {
     const std::vector<ElementSpace::Point>& points = spaces_.front().points();
@@ -156,8 +160,7 @@ class ModeProblem {
     const std::vector<ElementSpace::Point>& points = spaces_.front().points();
     for (std::size_t q = 0; q < points.size(); ++q) {
       const double x = place_of(q);
-      const std::vector<double> c =
-          at([&](Expr symbol) { return symbol == s_.space.front().symbol ? x : values_.at(symbol); });
+      const std::vector<double> c = at([&](Expr symbol) { return value_of(symbol, x); });
       for (std::size_t i = 0; i < entries_.list.size(); ++i) add_entry(entries_.list[i], points[q].weight * c[i], q);
     }
   }
@@ -406,45 +409,18 @@ class ModeProblem {
 
 }  // namespace
 
-FieldModes field_modes(const FieldEquations& equations, std::size_t count, Diagnostics& diagnostics) {
-  const FieldSystem& s = equations.system();
+namespace {
+
+FieldModes line_modes(const FieldEquations& equations, const DensityEntries& entries, std::size_t count,
+                      Diagnostics& diagnostics) {
   FieldModes out;
-  if (s.dissipation)
-    diagnostics.warning(
-        "W0653", s.density_span, "these are the modes without the dissipation of the field",
-        "Dissipation damps the motions, and shifts frequencies and shapes.",
-        "`maup modes --dispersion` has it in the relation of waves, and `maup simulate` shows the decay.");
-  if (equations.bodies && equations.bodies->system->has_modes())
-    diagnostics.warning("W0658", s.density_span, "these are the modes with open contacts and without dry friction",
-                        "A closed contact holds the system on one side alone, and dry friction up to a limit.",
-                        fmt::format("--mode \"{}\" has those of one mode; `maup simulate` goes through all.",
-                                    some_mode(*equations.bodies->system)));
-  if (refuse_too_many_conditions(equations, diagnostics)) return out;
-  if (s.space.size() == 2) return plane_modes(equations, count, diagnostics);
-  if (s.space.size() != 1 || !s.space.front().from) {
-    refuse_modes_of(equations, diagnostics, "It has three space variables, or no domain.");
-    return out;
-  }
-  for (const PlaceCoordinate& p : equations.model->attached)
-    if (p.moves) {
-      refuse_modes_of(equations, diagnostics, "A place at which bodies or forces take hold of it moves in time.");
-      return out;
-    }
-  DensityEntries entries;
-  if (!entries_of(equations, entries, diagnostics) || !has_modes_at_rest(equations, entries, diagnostics)) return out;
-  if (equations.bodies &&
-      std::any_of(equations.bodies->dissipative_terms.begin(), equations.bodies->dissipative_terms.end(),
-                  [](const Expr& e) { return !e.is_zero(); }))
-    diagnostics.warning("W0653", s.density_span, "these are the modes without the friction of the bodies",
-                        "Friction damps the motions, and shifts frequencies and shapes.",
-                        "`maup simulate` shows the decay.");
   constexpr ModeProblem::Size sizes[] = {{1, 100, 30}, {1, 160, 40}, {4, 240, 40}, {8, 400, 40}};
   constexpr std::size_t beyond = 2;
   FrequencyErrors errors;
   int degree = 0;
   std::size_t elements = 0;
   for (const ModeProblem::Size& size : sizes) {
-    interrupt_of(*s.context).throw_if_asked();
+    interrupt_of(*equations.system().context).throw_if_asked();
     const bool more = element_borders(equations, size.cells).size() - 1 > elements;
     ModeProblem problem(equations, entries, size, more ? 0 : degree, diagnostics);
     elements = problem.elements(), degree = problem.degree();
@@ -470,6 +446,54 @@ FieldModes field_modes(const FieldEquations& equations, std::size_t count, Diagn
   out.about = entries.about(equations);
   out.frequencies.resize(std::min(count, out.frequencies.size()));
   out.errors.resize(out.frequencies.size());
+  return out;
+}
+
+}  // namespace
+
+FieldModes field_modes(const FieldEquations& equations, std::size_t count, Diagnostics& diagnostics) {
+  const FieldSystem& s = equations.system();
+  FieldModes out;
+  if (s.dissipation)
+    diagnostics.warning(
+        "W0653", s.density_span, "these are the modes without the dissipation of the field",
+        "Dissipation damps the motions, and shifts frequencies and shapes.",
+        "`maup modes --dispersion` has it in the relation of waves, and `maup simulate` shows the decay.");
+  if (equations.bodies && equations.bodies->system->has_modes())
+    diagnostics.warning("W0658", s.density_span, "these are the modes with open contacts and without dry friction",
+                        "A closed contact holds the system on one side alone, and dry friction up to a limit.",
+                        fmt::format("--mode \"{}\" has those of one mode; `maup simulate` goes through all.",
+                                    some_mode(*equations.bodies->system)));
+  if (refuse_too_many_conditions(equations, diagnostics)) return out;
+  if (s.space.size() == 2) return plane_modes(equations, count, diagnostics);
+  if (s.space.size() != 1 || !s.space.front().from) {
+    refuse_modes_of(equations, diagnostics, "It has three space variables, or no domain.");
+    return out;
+  }
+  for (const PlaceCoordinate& p : equations.model->attached)
+    if (p.moves) {
+      refuse_modes_of(equations, diagnostics, "A place at which bodies or forces take hold of it moves in time.");
+      return out;
+    }
+  DensityEntries entries;
+  std::optional<ComputedRest> rest;
+  if (!entries_at_rest(equations, entries, rest, diagnostics)) return out;
+  if (equations.bodies &&
+      std::any_of(equations.bodies->dissipative_terms.begin(), equations.bodies->dissipative_terms.end(),
+                  [](const Expr& e) { return !e.is_zero(); }))
+    diagnostics.warning("W0653", s.density_span, "these are the modes without the friction of the bodies",
+                        "Friction damps the motions, and shifts frequencies and shapes.",
+                        "`maup simulate` shows the decay.");
+  if (rest && !entries.have_inertia()) {
+    out.equilibrium = rest->values;
+    return out;
+  }
+  out = line_modes(equations, entries, count, diagnostics);
+  if (!rest || out.frequencies.empty()) return out;
+  Diagnostics unheard;
+  add_errors_of_rest(equations, *rest, out,
+                     [&](const DensityEntries& other) { return line_modes(equations, other, count, unheard); });
+  out.equilibrium = rest->values;
   return out;
 }
 

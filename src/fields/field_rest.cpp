@@ -4,6 +4,7 @@
 
 #include "fields/field_sides.hpp"
 #include "fields/given_fields.hpp"
+#include "fields/resting_fields.hpp"
 
 #include <fmt/format.h>
 
@@ -64,6 +65,7 @@ ExprMap FieldRest::values(const FieldEquations& equations, Expr e) const {
     const FieldJet jet = *s.jet_of(symbol);
     const auto a = std::find(equations.varied.begin(), equations.varied.end(), jet.field) - equations.varied.begin();
     if (static_cast<std::size_t>(a) == fields.size()) continue;  // given
+    if (computed && jet.time == 0) continue;
     Expr value = jet.time > 0 ? s.context->number(0) : fields[static_cast<std::size_t>(a)];
     for (std::size_t x = 0; x < s.space.size(); ++x)
       for (int k = 0; k < jet.space[x]; ++k) value = differentiate(value, s.space[x].symbol);
@@ -72,7 +74,14 @@ ExprMap FieldRest::values(const FieldEquations& equations, Expr e) const {
   return out;
 }
 
+std::optional<double> FieldRest::value(const FieldSystem& s, Expr symbol, double x, double y) const {
+  if (!computed) return std::nullopt;
+  const auto jet = s.jet_of(symbol);
+  return jet ? std::optional(computed->value(*jet, x, y)) : std::nullopt;
+}
+
 std::string FieldRest::text(const FieldEquations& equations) const {
+  if (computed) return "the equilibrium";
   std::string out;
   for (std::size_t a = 0; a < fields.size(); ++a)
     out += fmt::format("{}{} = {}", out.empty() ? "" : ", ", equations.system().fields[equations.varied[a]].name,
@@ -86,7 +95,8 @@ bool is_rest(const FieldEquations& equations, const FieldRest& rest) {
 
 FieldRest rest_of(const FieldEquations& equations) {
   const FieldSystem& s = equations.system();
-  const FieldRest none{std::vector<Expr>(equations.varied.size(), s.context->number(0))};
+  FieldRest none;
+  none.fields.assign(equations.varied.size(), s.context->number(0));
   FieldRest start = none;
   for (const FieldStart& one : equations.model->start)
     for (std::size_t a = 0; a < start.fields.size(); ++a)

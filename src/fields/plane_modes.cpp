@@ -123,10 +123,9 @@ class PlaneModes {
   UnseenParts unseen() const {
     UnseenParts out;
     for (const DensityEntry& e : entries_.list) {
-      if (holds_symbol(e.value, s_.space[0].symbol) && holds_symbol(e.value, s_.space[1].symbol))
-        out.between = std::max(out.between, unseen(e.value));
+      if (changes_along(e.value, 0) && changes_along(e.value, 1)) out.between = std::max(out.between, unseen(e.value));
       for (std::size_t along = 0; along < 2; ++along) {
-        if (!holds_symbol(e.value, s_.space[along].symbol)) continue;
+        if (!changes_along(e.value, along)) continue;
         const Axis& other = axes_[1 - along];
         for (Eigen::Index i = 0; i < other.points(); i += std::max<Eigen::Index>(1, other.points() / 5))
           add_unseen_along(e, along, other.place(i), out);
@@ -175,16 +174,23 @@ class PlaneModes {
   }
 
  private:
-  static bool holds_symbol(Expr value, Expr symbol) {
+  /// Whether a coefficient changes along a direction: by its place, or with the rest that was computed.
+  bool changes_along(Expr value, std::size_t direction) const {
     const std::vector<Expr> below = symbols_of({&value, 1});
-    return std::find(below.begin(), below.end(), symbol) != below.end();
+    return std::any_of(below.begin(), below.end(), [&](Expr symbol) {
+      return symbol == s_.space[direction].symbol || s_.jet_of(symbol).has_value();
+    });
+  }
+  /// Of a symbol in a coefficient.
+  double value_of(Expr symbol, double x, double y) const {
+    if (symbol == s_.space[0].symbol) return x;
+    if (symbol == s_.space[1].symbol) return y;
+    const auto jet = entries_.rest.value(s_, symbol, x, y);
+    return jet ? *jet : values_.at(symbol);
   }
   /// A coefficient at a place.
   double value_at(const RepeatedEvaluation& value, double x, double y) const {
-    return value([&](Expr symbol) {
-             return symbol == s_.space[0].symbol ? x : symbol == s_.space[1].symbol ? y : values_.at(symbol);
-           })
-        .front();
+    return value([&](Expr symbol) { return value_of(symbol, x, y); }).front();
   }
   void add_unseen_along(const DensityEntry& e, std::size_t along, double across, UnseenParts& out) const {
     const RepeatedEvaluation evaluation({&e.value, 1});
@@ -202,7 +208,8 @@ class PlaneModes {
 
   /// Over the plane: what is narrow in both directions lies between the lines too.
   double unseen(Expr value) const {
-    constexpr int places = 1000;  // along each side
+    // Along each side; a rest that was computed is a polynomial, which takes its time.
+    const int places = entries_.rest.computed ? 60 : 1000;
     const Expr root[] = {value};
     const RepeatedEvaluation evaluation(root);
     const double length = to_[0] - from_[0], height = to_[1] - from_[1];
@@ -219,7 +226,7 @@ class PlaneModes {
         by_places += v, size += std::abs(v);
       }
     }
-    constexpr double all = static_cast<double>(places) * places;
+    const double all = static_cast<double>(places) * places;
     return size > 0 ? std::abs(by_quadrature - by_places / all) / (size / all) : 0;
   }
 
@@ -241,11 +248,7 @@ class PlaneModes {
 
   /// ∫∫ of an entry with all pairs of functions.
   Eigen::MatrixXd integrals(const DensityEntry& e) const {
-    const std::vector<Expr> below = symbols_of({&e.value, 1});
-    const bool varies = std::any_of(below.begin(), below.end(), [&](Expr symbol) {
-      return symbol == s_.space[0].symbol || symbol == s_.space[1].symbol;
-    });
-    if (!varies) {
+    if (!changes_along(e.value, 0) && !changes_along(e.value, 1)) {
       const double value = evaluate(e.value, values_);
       const Eigen::MatrixXd x = axes_[0].integrals(e.da, e.db), y = axes_[1].integrals(e.ya, e.yb);
       Eigen::MatrixXd out(size_, size_);
@@ -271,11 +274,8 @@ class PlaneModes {
     const RepeatedEvaluation at(root);
     for (Eigen::Index r = 0; r < axes_[1].points(); ++r)
       for (Eigen::Index q = 0; q < axes_[0].points(); ++q) {
-        const double value = at([&](Expr symbol) {
-                               return symbol == s_.space[0].symbol   ? axes_[0].place(q)
-                                      : symbol == s_.space[1].symbol ? axes_[1].place(r)
-                                                                     : values_.at(symbol);
-                             }).front();
+        const double value =
+            at([&](Expr symbol) { return value_of(symbol, axes_[0].place(q), axes_[1].place(r)); }).front();
         out.row(r * axes_[0].points() + q) *= value * axes_[0].weight(q) * axes_[1].weight(r);
       }
     return out;
@@ -356,19 +356,14 @@ std::string trouble_of(const FieldEquations& equations, bool smooth) {
   return equations.bodies ? "Bodies take hold of it in the plane." : "";
 }
 
-}  // namespace
+bool is_smooth(const DensityEntries& entries) {
+  return std::any_of(entries.list.begin(), entries.list.end(),
+                     [](const DensityEntry& e) { return e.da + e.ya > 1 || e.db + e.yb > 1; });
+}
 
-FieldModes plane_modes(const FieldEquations& equations, std::size_t count, Diagnostics& diagnostics) {
-  DensityEntries entries;
-  if (!entries_of(equations, entries, diagnostics)) return {};
-  const bool smooth = std::any_of(entries.list.begin(), entries.list.end(),
-                                  [](const DensityEntry& e) { return e.da + e.ya > 1 || e.db + e.yb > 1; });
-  if (const std::string trouble = trouble_of(equations, smooth); !trouble.empty()) {
-    refuse_modes_of(equations, diagnostics, trouble);
-    return {};
-  }
-  if (!has_modes_at_rest(equations, entries, diagnostics)) return {};
-  PlaneModes problem(equations, entries, smooth);
+FieldModes modes_about(const FieldEquations& equations, const DensityEntries& entries, std::size_t count,
+                       Diagnostics& diagnostics) {
+  PlaneModes problem(equations, entries, is_smooth(entries));
   constexpr std::size_t beyond = 4;  // so that modes of one frequency are seen together
   constexpr double sizes[] = {250, 380, 580, 900}, sizes_sideways[] = {60, 90, 130};
   FieldModes out;
@@ -394,6 +389,27 @@ FieldModes plane_modes(const FieldEquations& equations, std::size_t count, Diagn
   shapes.resize(std::min(count, shapes.size()));
   out.places = problem.places(0), out.upwards = problem.places(1);
   for (const Eigen::VectorXd& c : shapes) out.shapes.push_back(problem.shape(c, out.places, out.upwards));
+  return out;
+}
+
+}  // namespace
+
+FieldModes plane_modes(const FieldEquations& equations, std::size_t count, Diagnostics& diagnostics) {
+  DensityEntries entries;
+  if (!entries_of(equations, entries, diagnostics)) return {};
+  if (const std::string trouble = trouble_of(equations, is_smooth(entries)); !trouble.empty()) {
+    refuse_modes_of(equations, diagnostics, trouble);
+    return {};
+  }
+  std::optional<ComputedRest> rest;
+  if (!entries_at_rest(equations, entries, rest, diagnostics)) return {};
+  FieldModes out;
+  if (!rest || entries.have_inertia()) out = modes_about(equations, entries, count, diagnostics);
+  if (!rest || (entries.have_inertia() && out.frequencies.empty())) return out;
+  Diagnostics unheard;
+  add_errors_of_rest(equations, *rest, out,
+                     [&](const DensityEntries& other) { return modes_about(equations, other, count, unheard); });
+  out.equilibrium = rest->values;
   return out;
 }
 

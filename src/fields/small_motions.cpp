@@ -3,8 +3,8 @@
 #include <maupertuis/evaluate.hpp>
 
 #include "fields/given_fields.hpp"
-#include "linear_algebra/quadrature.hpp"
 #include "linear_algebra/products.hpp"
+#include "linear_algebra/quadrature.hpp"
 
 #include <fmt/format.h>
 
@@ -39,6 +39,12 @@ Expr known(const FieldEquations& equations, Expr e) {
 
 }  // namespace
 
+bool changes_in_time(const FieldSystem& s, Expr e) {
+  ExprMap still;
+  for (const Expr& jet : s.jets_in(e)) still.emplace(jet, s.context->number(Rational(618034, 1000000)));
+  return s.context->depends_on_time(substitute(e, still).id());
+}
+
 Expr density_of(const FieldEquations& equations) { return known(equations, equations.system().density); }
 
 namespace {
@@ -63,8 +69,7 @@ bool add_forces(const FieldEquations& equations, DensityEntries& out, Diagnostic
         return refuse_modes_of(equations, diagnostics, "A force density changes with a slope: it has no potential.");
       const Expr slope = differentiate(f, one), value = substitute(slope, rest);
       if (!s.jets_in(slope).empty()) out.linear = false;
-      if (s.context->depends_on_time(value.id()))
-        return refuse_modes_of(equations, diagnostics, "Its coefficients change in time.");
+      if (changes_in_time(s, value)) return refuse_modes_of(equations, diagnostics, "Its coefficients change in time.");
       for (std::size_t b = 0; b < n; ++b)
         if (equations.varied[b] == jet.field) slopes[a * n + b] = value;
     }
@@ -80,11 +85,20 @@ bool add_forces(const FieldEquations& equations, DensityEntries& out, Diagnostic
 
 }  // namespace
 
-bool entries_of(const FieldEquations& equations, DensityEntries& out, Diagnostics& diagnostics) {
+bool DensityEntries::have_inertia() const {
+  return std::any_of(list.begin(), list.end(), [](const DensityEntry& e) { return e.ta + e.tb > 0; });
+}
+
+bool entries_of(const FieldEquations& equations, DensityEntries& out, Diagnostics& diagnostics,
+                std::shared_ptr<const RestingFields> computed) {
   const FieldSystem& s = equations.system();
   const Expr density = density_of(equations);
   if (!density) return refuse_modes_of(equations, diagnostics, "A given field has no formula.");
-  out.rest = rest_of(equations);
+  out = {};
+  if (computed)
+    out.rest.fields.assign(equations.varied.size(), s.context->number(0)), out.rest.computed = std::move(computed);
+  else
+    out.rest = rest_of(equations);
   const ExprMap rest = out.rest.values(equations, density);
   const auto place = [&](std::size_t field) {
     return static_cast<std::size_t>(std::find(equations.varied.begin(), equations.varied.end(), field) -
@@ -97,8 +111,7 @@ bool entries_of(const FieldEquations& equations, DensityEntries& out, Diagnostic
       if (!s.jets_in(second).empty()) out.linear = false;
       const Expr value = substitute(second, rest);
       if (value.is_zero()) continue;
-      if (s.context->depends_on_time(value.id()))
-        return refuse_modes_of(equations, diagnostics, "Its coefficients change in time.");
+      if (changes_in_time(s, value)) return refuse_modes_of(equations, diagnostics, "Its coefficients change in time.");
       DensityEntry entry{place(a.field), place(b.field), a.space[0], b.space[0], a.time, b.time, value};
       if (s.space.size() > 1) entry.ya = a.space[1], entry.yb = b.space[1];
       out.list.push_back(entry);
@@ -106,15 +119,28 @@ bool entries_of(const FieldEquations& equations, DensityEntries& out, Diagnostic
   return add_forces(equations, out, diagnostics);
 }
 
-bool has_modes_at_rest(const FieldEquations& equations, const DensityEntries& entries, Diagnostics& diagnostics) {
-  const FieldSystem& s = equations.system();
-  if (entries.linear || is_rest(equations, entries.rest)) return true;
-  if (!s.end_forces.empty())
-    return refuse_modes_of(equations, diagnostics, "A force acts at its end, so that φ = 0 is no rest of it.");
-  if (std::any_of(s.boundary.begin(), s.boundary.end(),
-                  [&](const BoundaryCondition& b) { return !s.expanded(b.value).is_zero(); }))
-    return refuse_modes_of(equations, diagnostics, "Its ends are held away from φ = 0, and its start is no rest.");
-  return refuse_modes_of(equations, diagnostics, "φ = 0 is no rest of it, nor is its start.");
+bool entries_at_rest(const FieldEquations& equations, DensityEntries& out, std::optional<ComputedRest>& computed,
+                     Diagnostics& diagnostics) {
+  if (!entries_of(equations, out, diagnostics)) return false;
+  const bool rests = is_rest(equations, out.rest);
+  if (rests && (out.linear || out.have_inertia() || equations.bodies)) return true;
+  std::string why;
+  computed = computed_rest(equations, why);
+  if (computed) return entries_of(equations, out, diagnostics, computed->finest);
+  if (rests || (out.linear && out.have_inertia())) return true;
+  if (equations.bodies) why = "Bodies take hold of it, and φ = 0 is no rest of it, nor is its start.";
+  return refuse_modes_of(equations, diagnostics, why);
+}
+
+void add_errors_of_rest(const FieldEquations& equations, const ComputedRest& computed, FieldModes& modes,
+                        const std::function<FieldModes(const DensityEntries&)>& of) {
+  if (modes.frequencies.empty()) return;
+  Diagnostics unheard;
+  DensityEntries entries;
+  if (!entries_of(equations, entries, unheard, computed.before) || entries.linear) return;
+  const FieldModes other = of(entries);
+  for (std::size_t i = 0; i < modes.errors.size() && i < other.frequencies.size(); ++i)
+    modes.errors[i] += std::abs(modes.frequencies[i] - other.frequencies[i]);
 }
 
 std::string no_small_motions(const SmallMotions& motions) {

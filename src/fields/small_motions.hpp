@@ -3,9 +3,12 @@
 #include <maupertuis/fields.hpp>
 
 #include "fields/field_rest.hpp"
+#include "fields/resting_fields.hpp"
 #include "linear_algebra/dense.hpp"
 
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,14 +35,25 @@ struct DensityEntries {
   FieldRest rest;
   /// What they are about, where that matters: "u = 0".
   std::string about(const FieldEquations& equations) const { return linear ? "" : rest.text(equations); }
+  bool have_inertia() const;
 };
 
+/// By t itself, not by the fields.
+bool changes_in_time(const FieldSystem& system, Expr e);
 /// With given fields by their formulas; an empty handle where one has none.
 Expr density_of(const FieldEquations& equations);
-/// With force densities that have a potential. E0644 where one holds velocities or derivatives in space.
-bool entries_of(const FieldEquations& equations, DensityEntries& out, Diagnostics& diagnostics);
-/// Whether what they are about is a rest, where that counts.
-bool has_modes_at_rest(const FieldEquations& equations, const DensityEntries& entries, Diagnostics& diagnostics);
+/// With force densities that have a potential. E0644 where one holds velocities or derivatives in space. About
+/// `computed`, where there is one, else about the rest of the model that has a formula.
+bool entries_of(const FieldEquations& equations, DensityEntries& out, Diagnostics& diagnostics,
+                std::shared_ptr<const RestingFields> computed = nullptr);
+/// The same, about a rest: one that has a formula, or one that Newton's method finds, which is then in `computed`.
+/// E0644 where that counts, and there is none.
+bool entries_at_rest(const FieldEquations& equations, DensityEntries& out, std::optional<ComputedRest>& computed,
+                     Diagnostics& diagnostics);
+/// Frequencies about a rest that was computed are off by what it is off by: `of`(rest) are those about one of fewer
+/// functions, which come in `entries`.
+void add_errors_of_rest(const FieldEquations& equations, const ComputedRest& computed, FieldModes& modes,
+                        const std::function<FieldModes(const DensityEntries&)>& of);
 
 /// M c̈ + G ċ + K c = 0 in the free unknowns, those that constraints tie together replaced.
 struct SmallMotions {

@@ -41,7 +41,8 @@ std::optional<FieldRunResult> Study::field_motion(const SimulationOptions& setti
   const bool until = model.experiment.until && runs_as_one_system(*equations) && !settings.duration;
   if (!(options.duration > 0) && !until) {
     found.error("E0701", std::nullopt, "the model does not say how long it runs",
-                "A run of a field goes on for a time.", "Add `run 10 s`, or give --duration.");
+                "A run of a field goes on for a time.",
+                "Add `run 10 s`, or give --duration; the equilibrium next to the start is that of `maup modes`.");
     tell(found);
     return std::nullopt;
   }

@@ -307,8 +307,10 @@ ExitCode modes_of_fields(const ModesOptions& options, Study& study, Console& con
   }
   const FieldModes modes = field_modes(*study.field_equations(), shown, study.diagnostics());
   const std::vector<double>& found = modes.frequencies;
-  std::string text = fmt::format("Frequencies of small motions about {}\n", modes.about.empty() ? "rest" : modes.about);
-  if (found.empty()) text.clear();
+  std::string text = equilibrium_text(*study.field_equations(), modes);
+  if (!found.empty())
+    text += fmt::format("Frequencies of small motions about {}\n", modes.about.empty() ? "rest" : modes.about);
+  if (modes.equilibrium) document["equilibrium"] = equilibrium_json(*study.field_equations(), *modes.equilibrium);
   if (!modes.about.empty()) document["about"] = modes.about;
   document["frequencies"] = Json::array();
   for (std::size_t i = 0; i < found.size(); ++i) {

@@ -307,7 +307,10 @@ TEST_CASE("modes are about the start where it is a rest, and say which rest it i
   const double slow = plane_modes_of(kink + "tanh(x/sqrt(2))\nrun 1\n", 1).frequencies[0];
   CHECK(slow > 0);
   CHECK(slow < 0.1);
-  CHECK(refusal(kink + "x/3 tanh(3/sqrt(2))\nrun 1\n") == "E0644");
+  // From a straight line Newton's method comes to the same kink.
+  const FieldModes found = plane_modes_of(kink + "x/3 tanh(3/sqrt(2))\nrun 1\n", 1);
+  CHECK(found.frequencies[0] == doctest::Approx(slow).epsilon(1e-9));
+  CHECK(found.about == "the equilibrium");
 }
 
 TEST_CASE("modes that nothing is known of are refused") {
