@@ -5,8 +5,6 @@
 namespace maupertuis {
 namespace {
 
-constexpr std::size_t kPerField = 4, kSlope = 2;  // φ, φ', φ_x, φ_tx
-
 FunctionKernel kernel_of(const PointForm& form, const std::vector<Parameter>& parameters, std::vector<Expr> outputs) {
   FunctionSource source{form.inputs, {}, std::move(outputs)};
   for (const Parameter& p : parameters) source.parameters.push_back(p.symbol);
@@ -19,19 +17,25 @@ std::vector<Expr> equations_of_nodes(const PointForm& form) {
   return out;
 }
 
-std::vector<Expr> stresses_and_slopes(const PointForm& form) {
-  std::vector<Expr> out = form.s;
-  for (const Expr& s : form.s)
-    for (std::size_t o = 0; o < form.fields; ++o) out.push_back(differentiate(s, form.inputs[kPerField * o + kSlope]));
+std::size_t inputs_of_field(const PointForm& form) { return 2 + 2 * form.directions; }
+
+std::vector<Expr> stresses_and_slopes(const PointForm& form, std::size_t across) {
+  const auto first = form.s.begin() + static_cast<std::ptrdiff_t>(across * form.fields);
+  std::vector<Expr> out(first, first + static_cast<std::ptrdiff_t>(form.fields));
+  for (std::size_t f = 0; f < form.fields; ++f)
+    for (std::size_t o = 0; o < form.fields; ++o)
+      out.push_back(differentiate(out[f], form.inputs[inputs_of_field(form) * o + 2 + across]));
   return out;
 }
 
 }  // namespace
 
-EndSlopes::EndSlopes(const PointForm& form, const std::vector<Parameter>& parameters)
+EndSlopes::EndSlopes(const PointForm& form, const std::vector<Parameter>& parameters, std::size_t across)
     : fields_(form.fields),
+      per_field_(inputs_of_field(form)),
+      slope_(2 + across),
       at_nodes_(kernel_of(form, parameters, equations_of_nodes(form))),
-      at_end_(kernel_of(form, parameters, stresses_and_slopes(form))),
+      at_end_(kernel_of(form, parameters, stresses_and_slopes(form, across))),
       node_work_(at_nodes_),
       end_work_(at_end_) {
   std::vector<double> values;
@@ -60,7 +64,7 @@ std::vector<double> EndSlopes::stresses(const Lobatto& rule, double width, bool 
   return out;
 }
 
-void EndSlopes::solve(std::span<double> inputs, const std::vector<double>& s) {
+void EndSlopes::solve(std::span<double> inputs, const std::vector<double>& s, const std::vector<bool>& kept) {
   const std::vector<double> guess(inputs.begin(), inputs.end());
   std::vector<double> out(at_end_.outputs()), inverse;
   constexpr int rounds = 8;
@@ -68,11 +72,14 @@ void EndSlopes::solve(std::span<double> inputs, const std::vector<double>& s) {
   for (int round = 0; round < rounds; ++round) {
     end_work_.evaluate(inputs, out);
     double change = 0, size = 0;
+    for (std::size_t f = 0; f < fields_; ++f)
+      for (std::size_t o = 0; kept[f] && o < fields_; ++o) out[fields_ + f * fields_ + o] = f == o ? 1 : 0;
     if (!invert_mass({out.begin() + static_cast<std::ptrdiff_t>(fields_), out.end()}, inverse, fields_)) break;
     for (std::size_t f = 0; f < fields_; ++f) {
       double by = 0;
-      for (std::size_t o = 0; o < fields_; ++o) by += inverse[f * fields_ + o] * (s[o] - out[o]);
-      double& slope = inputs[kPerField * f + kSlope];
+      for (std::size_t o = 0; o < fields_; ++o)
+        if (!kept[o]) by += inverse[f * fields_ + o] * (s[o] - out[o]);
+      double& slope = inputs[per_field_ * f + slope_];
       slope += by;
       change = std::max(change, std::abs(by)), size = std::max(size, std::abs(slope));
     }

@@ -406,11 +406,11 @@ void FieldMesh::load(const std::vector<std::vector<double>>& u, const std::vecto
   }
 }
 
-/// How far the series at this moment reaches, at most h: to where its last term is what it was at the start, which is
-/// what the shortest waves of the mesh have in it. It grows where an amplitude, friction, a velocity in the stiffness
-/// or a coefficient in t makes waves faster than ω_max told at the start.
+/// How far the series at this moment reaches, at most h: to where its last term is kLastTerm of the field. It
+/// grows where an amplitude, friction, a velocity in the stiffness or a coefficient in t makes waves faster than ω_max
+/// told at the start.
 double FieldMesh::reach(double h) {
-  constexpr double least = 1e-12, most = 1e-8, room = 4, at_rest = 1e-30;
+  constexpr double at_rest = 1e-30;
   double ratio = 0;
   for (std::size_t f = 0; f < fields_; ++f) {
     const auto largest = [&](std::size_t k) {
@@ -421,8 +421,8 @@ double FieldMesh::reach(double h) {
     const double size = std::max({largest(0), largest(1) * h, at_rest});
     ratio = std::max(ratio, largest(kOrder) * std::pow(h, static_cast<double>(kOrder)) / size);
   }
-  if (!allowed_) allowed_ = std::clamp(room * ratio, least, most) * std::pow(longer_, static_cast<double>(kOrder));
-  return ratio > *allowed_ ? h * std::pow(*allowed_ / ratio, 1.0 / static_cast<double>(kOrder)) : h;
+  const double allowed = kLastTerm * std::pow(longer_, static_cast<double>(kOrder));
+  return ratio > allowed ? h * std::pow(allowed / ratio, 1.0 / static_cast<double>(kOrder)) : h;
 }
 
 bool FieldMesh::step(double h) {
@@ -564,7 +564,7 @@ std::vector<double> FieldMesh::inputs_at_end(bool right) {
     if (std::find(is_held.begin(), is_held.end(), false) != is_held.end()) return out;
     s = end_slopes_->stresses(rule_, width_, right, inputs, accelerations);
   }
-  end_slopes_->solve(out, s);
+  end_slopes_->solve(out, s, std::vector<bool>(fields_, false));
   return out;
 }
 

@@ -86,7 +86,6 @@ class FieldMesh final : public WaveMesh {
   LaneSeries series_, energies_;  // of the equations; of the energy at one moment
   bool needs_rate_ = false;
   double longer_ = 1;
-  std::optional<double> allowed_;           // of the last term of the series beside the field, see reach()
   std::vector<std::vector<double>> u_, v_;  // [fields][lanes]
   std::vector<std::vector<double>> force_;  // [fields][lanes]
   std::vector<double> mass_;                // [fields² × lanes], inverse, of the fields that are free

@@ -503,15 +503,14 @@ double PlaneMesh::advance(double h) {
   return ratio;
 }
 
-/// Steps are held to the last term that the start has, as those of FieldMesh.
+/// Steps are held to kLastTerm, as those of FieldMesh.
 bool PlaneMesh::step(double h) {
-  constexpr double least = 1e-12, most = 1e-8, room = 4, shortest = 1e-7;
+  constexpr double shortest = 1e-7;
   for (double left = h; left > 0 && trouble_.empty();) {
     double tau = left;
     const double ratio = advance(tau);
-    if (!allowed_) allowed_ = std::clamp(room * ratio, least, most);
-    if (ratio > *allowed_) {
-      tau *= std::pow(*allowed_ / ratio, 1.0 / static_cast<double>(kOrder));
+    if (ratio > kLastTerm) {
+      tau *= std::pow(kLastTerm / ratio, 1.0 / static_cast<double>(kOrder));
       ++further_steps_;
       if (tau > shortest * h)
         advance(tau);

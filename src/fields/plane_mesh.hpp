@@ -3,6 +3,7 @@
 #include "fields/tensor_slopes.hpp"
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -67,6 +68,8 @@ class PlaneMesh final : public WaveMesh {
   void take_row(std::size_t row);
   void show_row(std::size_t row);
   std::vector<double> inputs_at(std::size_t row, std::size_t lane) const;
+  std::vector<double> given_stresses(BoundaryCondition::Side side, std::size_t row, std::size_t lane);
+  std::vector<bool> held_on(BoundaryCondition::Side side) const;
   bool is_on(BoundaryCondition::Side side, std::size_t row) const;
   bool is_on(BoundaryCondition::Side side, std::size_t row, std::size_t lane) const;
   std::vector<bool> held_at(std::size_t row, std::size_t lane) const;
@@ -95,7 +98,6 @@ class PlaneMesh final : public WaveMesh {
   std::vector<double> stress_scale_;  // [directions × fields] constant factors of s, which its roots are without
   bool uses_time_ = false, uses_velocity_ = false, uses_rate_ = false;
   std::vector<Rows> u_, v_, next_u_, next_v_;  // [fields]
-  std::optional<double> allowed_;              // of the last term of the series beside the field
   std::vector<double> force_, other_;          // of one row: [fields × lanes], [lanes]
   std::vector<std::vector<double>> pending_;   // [orders] the last line of the row before, [fields × line]
   std::vector<std::vector<double>> first_;     // the same of the first line, where the plane is periodic
@@ -104,6 +106,7 @@ class PlaneMesh final : public WaveMesh {
   std::vector<double> a_pending_, a_first_, a_;
   bool mass_known_ = false;
   std::vector<Held> held_;
+  std::shared_ptr<EndSlopes> side_slopes_[2];  // across x and y
 };
 
 }  // namespace maupertuis

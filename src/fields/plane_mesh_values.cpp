@@ -1,11 +1,15 @@
 #include "fields/plane_mesh.hpp"
 
+#include "fields/end_slopes.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 /// What is read off the mesh of a plane between its steps: energy, values at places, points and sides of the domain.
 namespace maupertuis {
+
+using Side = BoundaryCondition::Side;
 
 /// Coefficient 0 of all that ℒ depends on, of one row, as the inputs of the energy.
 void PlaneMesh::show_row(std::size_t row) {
@@ -93,6 +97,27 @@ std::vector<double> PlaneMesh::inputs_at(std::size_t row, std::size_t lane) cons
   return out;
 }
 
+/// Forces on the free fields of a side as what s is there: p + F = 0 on the far ones, −p + F = 0 on the near ones.
+std::vector<double> PlaneMesh::given_stresses(Side side, std::size_t row, std::size_t lane) {
+  std::vector<double> out(fields_, 0);
+  const bool far = side == Side::Right || side == Side::Top;
+  for (const Held& held : held_)
+    if (held.force && held.side == side && !held.derivatives.front().is_zero())
+      out[held.field] +=
+          (far ? -1 : 1) * value_of(held.derivatives.front(), {{s_.context->time(), t_},
+                                                               {s_.space[0].symbol, place(0, row, lane)},
+                                                               {s_.space[1].symbol, place(1, row, lane)}});
+  return out;
+}
+
+std::vector<bool> PlaneMesh::held_on(Side side) const {
+  std::vector<bool> out(fields_, false);
+  for (const Held& held : held_)
+    if (!held.force && held.side == side) out[held.field] = true;
+  return out;
+}
+
+/// Slopes across a side are those of the condition where a field is free, of the polynomials where it is held.
 void PlaneMesh::visit_sides(const std::vector<Expr>& jets, const SideVisitor& visit) {
   std::vector<std::optional<std::size_t>> known;
   for (const Expr& jet : jets) {
@@ -100,17 +125,28 @@ void PlaneMesh::visit_sides(const std::vector<Expr>& jets, const SideVisitor& vi
     known.push_back(at == form_.inputs.end() ? std::nullopt
                                              : std::optional(static_cast<std::size_t>(at - form_.inputs.begin())));
   }
+  for (const std::size_t across : {0, 1})
+    if (!side_slopes_[across] && !s_.periodic(across))
+      side_slopes_[across] = std::make_shared<EndSlopes>(form_, equations_.model->parameters, across);
   std::vector<double> values(jets.size() + 3);
-  const auto at = [&](std::size_t along, bool far, std::size_t row, std::size_t lane) {
-    const std::vector<double> inputs = inputs_at(row, lane);
+  const auto at = [&](Side side, const std::vector<bool>& kept, std::size_t row, std::size_t lane) {
+    const std::size_t along = side == Side::Left || side == Side::Right ? 0 : 1;
+    std::vector<double> inputs = inputs_at(row, lane);
+    if (side_slopes_[along] && std::find(kept.begin(), kept.end(), false) != kept.end())
+      side_slopes_[along]->solve(inputs, given_stresses(side, row, lane), kept);
     for (std::size_t i = 0; i < jets.size(); ++i) values[i] = known[i] ? inputs[*known[i]] : std::nan("");
     std::copy(inputs.end() - 3, inputs.end(), values.end() - 3);  // x, y, t
     const std::size_t node = along == 0 ? lane / line_ : lane % line_ / cells();
+    const bool far = side == Side::Right || side == Side::Top;
     visit({along, far, rule_.w[node] * axes_[1 - along].width / 2}, values.data());
   };
+  const std::vector<bool> left = held_on(Side::Left), right = held_on(Side::Right), bottom = held_on(Side::Bottom),
+                          top = held_on(Side::Top);
   for (std::size_t row = 0; row < rows(); ++row)
-    for (std::size_t j = 0; j < points(); ++j) at(0, false, row, j * line_), at(0, true, row, (j + 1) * line_ - 1);
-  for (std::size_t i = 0; i < line_; ++i) at(1, false, 0, i), at(1, true, rows() - 1, lanes_ - line_ + i);
+    for (std::size_t j = 0; j < points(); ++j)
+      at(Side::Left, left, row, j * line_), at(Side::Right, right, row, (j + 1) * line_ - 1);
+  for (std::size_t i = 0; i < line_; ++i)
+    at(Side::Bottom, bottom, 0, i), at(Side::Top, top, rows() - 1, lanes_ - line_ + i);
 }
 
 }  // namespace maupertuis

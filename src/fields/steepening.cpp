@@ -114,7 +114,7 @@ void warn_of_drift(const FieldRunResult& run, const FieldEquations& equations, D
       fmt::format("the energy drifts by {:.2g} of its terms along the run", run.energy_drift),
       "Nothing feeds or brakes this field, so that its energy is conserved, and that of the mesh as far as the steps "
       "follow its motion. Here they do not, and values may be off by as much.",
-      "Take shorter steps by `output every`, other `cells` or another `order`; if it stays, please report the model.");
+      "Take shorter steps by `output every`, other `cells` or another `order`.");
 }
 
 }  // namespace maupertuis

@@ -31,6 +31,11 @@ double largest_frequency(const FieldValues& u, FieldValues w,
 /// Numbers of −1/2 .. 1/2, always the same.
 void fill_randomly(FieldValues& w);
 
+/// What the last term of a step may be beside the field. A mode is multiplied by 1 − O((hω)^10) a step. Of a smooth
+/// field the highest modes have nothing; a kink or a start that does not fit its sides puts energy into all of them,
+/// which longer steps would take away.
+constexpr double kLastTerm = 1e-14;
+
 /// A⁻¹ of one point, [n²]; false where it is singular.
 bool invert_mass(std::vector<double> a, std::vector<double>& inverse, std::size_t n);
 /// The same where some fields are held: rows of these say that φ'' is what stands in their place among the forces, so
