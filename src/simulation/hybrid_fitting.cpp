@@ -340,16 +340,7 @@ bool HybridMotion::fits(Found& found, const std::vector<std::size_t>& touching, 
   Trial trial{*this, found, touching, leniency, motion_in(found.mode, found.given), functions_.at(t_, q_, v_)};
   if (!trial.look(bound)) return false;
   for (std::size_t k = 0; k < trial.motion.watches().size(); ++k)
-    if (!trial.keeps(k)) {
-      if (getenv("DBG"))
-        fprintf(
-            stderr, "t=%.12g %s len %d: fails what %d index %zu value %g slope %g side %d reach %g zero %d held %d\n",
-            t_, mode_text(system_, found.mode).c_str(), (int)leniency, (int)trial.watch(k).what, trial.watch(k).index,
-            trial.outlook.values[k], trial.outlook.slopes[k], trial.outlook.sides[k], trial.outlook.reach[k],
-            (int)holds(trial.at_zero, k),
-            (int)(trial.watch(k).what == Watch::What::Slip && is_held(trial.watch(k).index, found.mode, trial.values)));
-      return false;
-    }
+    if (!trial.keeps(k)) return false;
   return true;
 }
 

@@ -10,9 +10,8 @@
 namespace maupertuis {
 namespace {
 
-constexpr std::size_t most_choices = 1024;  // modes that are tried
-constexpr std::size_t most_modes = 128;     // whose motions are kept
-constexpr std::size_t most_kept = 32;       // motions of modes that were tried in vain at an instant
+constexpr std::size_t most_modes = 128;  // whose motions are kept
+constexpr std::size_t most_kept = 32;    // motions of modes that were tried in vain at an instant
 
 bool equal_to_rounding(const std::vector<double>& a, const std::vector<double>& b) {
   double off = 0, size = 0;
@@ -173,7 +172,7 @@ bool HybridMotion::may_be_painleve(const std::vector<Choice>& list, const Contac
     if (!taken) return false;
     if (may_be_several(mode_of(list, *taken), values)) return true;
   }
-  return true;
+  return false;
 }
 
 ContactMode HybridMotion::mode_of(const std::vector<Choice>& list, const std::vector<std::size_t>& taken) const {
@@ -260,17 +259,7 @@ std::optional<HybridMotion::Found> HybridMotion::search_mode(const std::vector<C
     static_cast<void>(fits(*unforced, touching, bound, Leniency::Gaps));  // others were begun after it
     return unforced;
   }
-  const bool rubs = std::any_of(list.begin(), list.end(), [](const Choice& c) { return c.options.size() > 2; }) ||
-                    std::any_of(touching.begin(), touching.end(),
-                                [&](std::size_t i) { return system_.contacts[i].friction.present(); });
-  reason = list.empty() && !no_motion_.empty() ? no_motion_
-           : rubs
-               ? (may_be_painleve(list, values)
-                      ? "Painlevé's paradox: no finite forces of contact and friction fit the motion here."
-                      : "No mode of the contacts and frictions that touch here keeps its own conditions, to rounding.")
-           : tries.number(most_choices - 1)
-               ? fmt::format("None of the {} modes that were tried fits the contacts that touch here.", most_choices)
-               : "No forces keep all contacts that touch here from closing.";
+  reason = why_none_fits(list, touching, values, tries.number(most_choices - 1) != nullptr);
   return std::nullopt;
 }
 
@@ -389,6 +378,7 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
   for (const Watch& w : pending_->left)
     if (w.what == Watch::What::Force) released_[w.index] = true;
   std::optional<Found> found = undetermined_rest(list, touching, bound);
+  if (!found) found = mode_that_goes_on(touching, bound);
   if (!found) found = search_mode(list, touching, bound, reason);
   if (!found) return false;
   if (interrupted()) return true;

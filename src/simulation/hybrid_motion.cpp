@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 /// Steps of a motion through modes: what a step meets waits for the next one, which settles it first.
 namespace maupertuis {
@@ -340,15 +341,18 @@ void HybridMotion::classify(Step& step) {
   take_state();
   step.event.reset();
   auto pending = std::make_unique<Pending>();
+  // At one instant in the order of the model, whether they end the step or not.
+  constexpr double one_instant = 4 * std::numeric_limits<double>::epsilon();
+  const auto is_now = [&](const EventRoot& root) { return std::abs(root.time - t_) <= one_instant * std::abs(t_); };
+  const auto at_end = std::stable_partition(step.events.begin(), step.events.end(), std::not_fn(is_now));
+  std::stable_sort(at_end, step.events.end(), [](const EventRoot& a, const EventRoot& b) { return a.event < b.event; });
   for (const EventRoot& root : step.events) {
     const Watch& watch = now_->watches()[root.event];
     if (watch.what == Watch::What::Until) {
       step.event = 0;
     } else if (watch.what == Watch::What::Event) {
       const ModelEvent& event = model_.experiment.events[watch.index];
-      constexpr double one_instant = 4 * std::numeric_limits<double>::epsilon();
-      if (std::abs(root.time - t_) <= one_instant * std::abs(t_) && is_of_positions(event.function))
-        pending->at_zero.push_back(watch.index);
+      if (is_now(root) && is_of_positions(event.function)) pending->at_zero.push_back(watch.index);
       if (event.direction != 0 && root.direction != event.direction * (forwards_ ? 1 : -1)) continue;
       record_event(event.name, root.time);
       if (event.action == ModelEvent::Action::Stop && !record_.stopped_by) {

@@ -153,6 +153,8 @@ class HybridMotion final : public Method {
                                                         double bound);
   std::optional<Found> search_mode(const std::vector<Choice>& list, const std::vector<std::size_t>& touching,
                                    double bound, std::string& reason);
+  std::optional<Found> mode_that_goes_on(const std::vector<std::size_t>& touching, double bound);
+  void open_idle(ContactMode& mode) const;
   std::optional<Found> undetermined_rest(const std::vector<Choice>& list, const std::vector<std::size_t>& touching,
                                          double bound);
   bool fits_by_given_forces(Found& found, const std::vector<std::size_t>& touching, double bound);
@@ -217,6 +219,9 @@ class HybridMotion final : public Method {
   void note_compliance(const ImpactProblem& problem);
   std::optional<std::size_t> violated(double step);
   bool may_be_several(const ContactMode& mode, const ContactValues& values);
+  std::optional<std::string> weaker_at_rest(const std::vector<Choice>& list, const ContactValues& values) const;
+  std::string why_none_fits(const std::vector<Choice>& list, const std::vector<std::size_t>& touching,
+                            const ContactValues& values, bool were_many);
   bool may_be_painleve(const std::vector<Choice>& list, const ContactValues& values);
   void note_indeterminate(const std::vector<Choice>& list, const ContactMode& mode, const ContactValues& values);
   void note_end_of_rest(std::size_t first);

@@ -14,6 +14,9 @@ inline constexpr double digits_of_sets = 1e-9;
 /// A coefficient of friction for contacts that never slide, where their forces are sought.
 inline constexpr double held_fast = 1e3;
 
+/// Modes that are tried at an instant.
+inline constexpr std::size_t most_choices = 1024;
+
 /// a + factor b
 SparseRow sum_of(const SparseRow& a, const SparseRow& b, double factor);
 

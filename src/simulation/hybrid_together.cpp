@@ -11,11 +11,13 @@ namespace maupertuis {
 /// beyond their limits, unseen.
 void HybridMotion::meet_together(double bound) {
   const auto is_limit = [](const Watch& w) { return w.what == Watch::What::Hold || w.what == Watch::What::Force; };
-  if (!pending_->hit.empty() || !pending_->sets.empty() || now_->given.is_preload || !forwards_) return;
+  if (!pending_->hit.empty() || !pending_->sets.empty() || !forwards_) return;
   if (std::none_of(pending_->left.begin(), pending_->left.end(), is_limit)) return;
   const TaylorStepper::Outlook outlook = now_->stepper->outlook(bound);
   if (outlook.ending != StepEnding::None) return;
   constexpr double falls = 1e-9;  // of the largest, over the length that is judged
+  constexpr double left_open = 1e-10;
+  const double digits = now_->given.is_preload ? left_open : rest_unit;  // a rest that is not determined ends early
   const auto& watches = now_->watches();
   double largest[2] = {0, 0};  // of forces, and of squares, which those of friction in space are
   const auto size_of = [&](std::size_t k) -> double& {
@@ -29,9 +31,46 @@ void HybridMotion::meet_together(double bound) {
       return x.what == w.what && x.index == w.index && x.lower == w.lower;
     });
     if (is_met || !is_limit(w) || !(outlook.slopes[k] * outlook.length < -falls * size_of(k))) continue;
-    if (std::abs(outlook.values[k]) <= rest_unit * (size_of(k) + std::abs(outlook.slopes[k] * t_)))
+    if (std::abs(outlook.values[k]) <= digits * (size_of(k) + std::abs(outlook.slopes[k] * t_)))
       pending_->left.push_back(w);
   }
+}
+
+/// The mode in which all that has come to its limit gives way and all else stays: forces go on in it, so that it is the
+/// one where no more than one fits. Of many contacts that the motion does not need it is far from what their forces
+/// together point to. Those that carried nothing at the end of a rest that was not determined open.
+std::optional<HybridMotion::Found> HybridMotion::mode_that_goes_on(const std::vector<std::size_t>& touching,
+                                                                   double bound) {
+  const ContactValues& values = functions_.at(t_, q_, v_);
+  const bool ends_rest = now_->given.is_preload;
+  Found out{now_->mode, {}, {}};
+  if (pending_->left.size() < 2 || in_space_) return std::nullopt;
+  if (ends_rest) open_idle(out.mode);
+  for (const Watch& w : pending_->left) {
+    if (w.what == Watch::What::Hold)
+      out.mode.friction[w.index] = w.lower ? FrictionState::Forward : FrictionState::Backward;
+    if (w.what == Watch::What::Force) out.mode.closed[w.index] = false;
+  }
+  for (std::size_t i = 0; i < out.mode.closed.size(); ++i)
+    if (!out.mode.closed[i]) out.mode.friction[i] = FrictionState::None;
+  if ((!ends_rest && !changes_no_force(out.mode, values)) || may_be_several(out.mode, values)) return std::nullopt;
+  // A contact that a solution of dependent equations leaves without force needs not be closed, but may.
+  const Leniency leniency = ends_rest ? Leniency::Forces : Leniency::None;
+  const bool is_right = fits(out, touching, bound, leniency) && accelerations_go_on(out.accelerations);
+  return is_right ? std::optional(out) : std::nullopt;
+}
+
+/// Closed contacts with the forces that the rest was given here, 0 to rounding.
+void HybridMotion::open_idle(ContactMode& mode) const {
+  constexpr double idle = 1e-12;
+  std::vector<double> forces;
+  double largest = 0;
+  for (std::size_t i = 0, k = 0; i < mode.closed.size(); ++i) {
+    if (mode.closed[i]) forces.push_back(now_->given.preload(k++, t_));
+    if (mode.closed[i]) largest = std::max(largest, std::abs(forces.back()));
+  }
+  for (std::size_t i = 0, k = 0; i < mode.closed.size(); ++i)
+    if (mode.closed[i]) mode.closed[i] = std::abs(forces[k++]) > idle * largest;
 }
 
 }  // namespace maupertuis

@@ -114,16 +114,19 @@ bool HybridMotion::fits_by_given_forces(Found& found, const std::vector<std::siz
 }
 
 /// The mode in which all that may rest does, with forces that are given: before the least forces are tried, which may
-/// lie beyond the limits of friction though others do not.
+/// lie beyond the limits of friction though others do not. Of more contacts than forces are sought for, those that the
+/// forces of all point to.
 std::optional<HybridMotion::Found> HybridMotion::undetermined_rest(const std::vector<Choice>& list,
                                                                    const std::vector<std::size_t>& touching,
                                                                    double bound) {
   std::vector<std::size_t> taken;
+  const bool are_many = list.size() > most_that_hold;
   for (const Choice& c : list) {
     const auto rests = std::find_if(c.options.begin(), c.options.end(), [&](const HybridOption& o) {
       return o.closed && (o.state == FrictionState::Stick || o.state == FrictionState::None);
     });
-    const bool stays = c.contact < system_.contacts.size() && rests != c.options.end();  // others slide as they do
+    const bool may_stay = c.contact < system_.contacts.size() && rests != c.options.end();  // others slide as they do
+    const bool stays = may_stay && (!are_many || c.options.front().closed);
     taken.push_back(stays ? static_cast<std::size_t>(rests - c.options.begin()) : 0);
   }
   Found out{mode_of(list, taken), {}, {}};

@@ -142,3 +142,46 @@ TEST_CASE("two blocks at their static limits at once: the one that is written fi
   REQUIRE(!r.remarks.empty());
   CHECK(r.remarks.front().find("Static friction leaves a choice") != std::string::npos);
 }
+
+TEST_CASE("a beam on any number of rough legs that all slide begins when friction is overcome") {
+  constexpr double g = 9.81, A = 3, friction = 0.3, begins = friction * g / A, end = 2, since = end - begins;
+  for (const int n : {3, 6, 36, 61})
+    for (const double sense : {1.0, -1.0}) {
+      CAPTURE(n);
+      std::string text =
+          "param m = 1 kg, g = 9.81 m/s^2\ncoord x, z : length, θ : angle\n"
+          "body B mass m inertia 0.1 kg m^2 at (x, z) rotation angle θ\ngravity (0, -g)\n";
+      for (int i = 0; i < n; ++i)
+        text +=
+            fmt::format("point L{0} in B at ({1:.4f} m, 0)\ncontact L{0}.y >= 0 friction 0.3 slip L{0}.x' name c{0}\n",
+                        i, (2.0 * i - n + 1) / n);
+      const auto r = run_text(text + fmt::format("force on B = ({} [N/s] t, 0)\n", sense * A), end);
+      CHECK(r.final.q[0] == doctest::Approx(sense * A * since * since * since / 6).epsilon(1e-11));
+    }
+}
+
+TEST_CASE("where no mode fits, the cause is told: friction that is shared, or weaker at rest than in motion") {
+  const auto reason = [](const std::string& text) {
+    ModelText m(text);
+    return run(m, 5).reason;
+  };
+  const std::string tied =
+      "param m = 1 kg, g = 9.81 m/s^2\ncoord a, b : length\npoint P mass m at (a, 0)\npoint Q mass m at (b, 0)\n"
+      "friction a coefficient 0.2 static 0.3 normal m g\nfriction b coefficient 0.2 static 0.3 normal m g\n"
+      "constraint b - a = 0 name rod\nforce a = 1 [N/s] t\n";
+  CHECK(reason(tied).find("statically indeterminate") != std::string::npos);
+  const std::string weak =
+      "param m = 1 kg\ncoord x : length\npoint P mass m at (x, 0)\n"
+      "friction x limit 2 [N] static 3 [N] - (1 [N/s]) t\nforce on P = (1.5 [N/s] t, 0)\n";
+  CHECK(reason(weak).find("Static friction of x has fallen below kinetic friction") != std::string::npos);
+}
+
+TEST_CASE("events of one instant are told in the order of the model") {
+  const auto r = run_text(
+      "param m = 1 kg\ncoord x, y : length\npoint P mass m at (x, y)\nevent a when x = 1 [m] : set x' = y', y' = x'\n"
+      "event b when x = 1 [m] : record\nevent c when x = 1 [m] : record\nstart x' = 1 m/s, y' = 2 m/s\n",
+      3);
+  REQUIRE(r.happenings.size() == 3);
+  for (std::size_t k = 0; k < 3; ++k) CHECK(r.happenings[k].name == std::string(1, static_cast<char>('a' + k)));
+  CHECK(r.final.q[0] == doctest::Approx(5).epsilon(1e-14));
+}

@@ -1,0 +1,61 @@
+#include "simulation/hybrid_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+/// Why no mode fits at an instant.
+namespace maupertuis {
+
+/// A friction whose static limit has fallen below the kinetic one: what lets it go brakes it more than what held it.
+std::optional<std::string> HybridMotion::weaker_at_rest(const std::vector<Choice>& list,
+                                                        const ContactValues& values) const {
+  constexpr double rounding = 1e-12;
+  for (const Choice& c : list) {
+    const std::size_t contacts = values.gap.size(), i = c.contact;
+    if (c.options.size() < 3 || !(values.fixed[i] < (1 - rounding) * values.kinetic[i])) continue;
+    return fmt::format(
+        "Static friction of {} has fallen below kinetic friction here: once it slides it is held, and once it is held "
+        "it "
+        "slides.",
+        i < contacts ? system_.contact_label(i) : system_.frictions[i - contacts].name);
+  }
+  return std::nullopt;
+}
+
+/// One sentence.
+std::string HybridMotion::why_none_fits(const std::vector<Choice>& list, const std::vector<std::size_t>& touching,
+                                        const ContactValues& values, bool were_many) {
+  if (list.empty() && !no_motion_.empty()) return no_motion_;
+  const bool rubs = std::any_of(list.begin(), list.end(), [](const Choice& c) { return c.options.size() > 2; }) ||
+                    std::any_of(touching.begin(), touching.end(),
+                                [&](std::size_t i) { return system_.contacts[i].friction.present(); });
+  if (!rubs)
+    return were_many
+               ? fmt::format("None of the {} modes that were tried fits the contacts that touch here.", most_choices)
+               : "No forces keep all contacts that touch here from closing.";
+  if (auto weak = weaker_at_rest(list, values)) return *std::move(weak);
+  const auto is_at_rest = [&](std::size_t i) {
+    const bool in_space = friction_of(system_, i).in_space();
+    return in_space ? slip_speed_at(i, values) <= stop_slip(i) : std::abs(values.slip[i]) <= rest_slip(i, values);
+  };
+  ContactMode rest = mode_of(list, std::vector<std::size_t>(list.size(), 0));
+  std::vector<std::size_t> resting;
+  for (const Choice& c : list) {
+    if (!friction_of(system_, c.contact).present() || !is_at_rest(c.contact)) continue;
+    resting.push_back(c.contact);
+    rest.friction[c.contact] = FrictionState::Stick;
+    if (c.contact < rest.closed.size()) rest.closed[c.contact] = true;
+  }
+  const bool is_shared =
+      std::any_of(resting.begin(), resting.end(), [&](std::size_t i) { return is_held(i, rest, values); });
+  if (is_shared)
+    return "Friction at several places holds more than the rest needs here, so that its forces are not determined "
+           "(statically indeterminate), and none that keep the limits of friction were found.";
+  return may_be_painleve(list, values)
+             ? "Painlevé's paradox: no finite forces of contact and friction fit the motion here."
+             : "No mode of the contacts and frictions that touch here keeps its own conditions, to rounding.";
+}
+
+}  // namespace maupertuis
