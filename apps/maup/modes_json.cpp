@@ -101,6 +101,17 @@ Json linearization_json(const MechanicalSystem& system, const Linearization& l) 
   return out;
 }
 
+/// The states are independent positions, then the rates of the model.
+Json in_rates_json(const MechanicalSystem& system, const LinearizationInRates& r) {
+  Json states = names_json(system, r.positions, "");
+  for (const Rate& rate : system.rates) states.push_back(rate.name);
+  return {{"states", states},
+          {"A", matrix_json(r.a)},
+          {"B", matrix_json(r.b)},
+          {"B1", matrix_json(r.b_rate)},
+          {"B2", matrix_json(r.b_acceleration)}};
+}
+
 const char* verdict_word(Stability s) {
   switch (s) {
     case Stability::Energetic:
@@ -141,6 +152,7 @@ Json modes_document(const MechanicalSystem& system, const ModalStudy& study) {
                           {"growth_rate", s.growth_rate},
                           {"hessian", s.hessian}};
     entry["linearization"] = linearization_json(system, e.linearization);
+    if (e.in_rates) entry["linearization"]["in_rates"] = in_rates_json(system, *e.in_rates);
     entry["eigenvalues"] = Json::array();
     for (const std::complex<double>& z : e.analysis.eigenvalues) entry["eigenvalues"].push_back(complex_json(z));
     entry["modes"] = Json::array();

@@ -104,7 +104,26 @@ std::string kind_text(const Mode& m) {
   return "";
 }
 
-std::string modes_table(const MechanicalSystem& system, const ModalAnalysis& analysis) {
+/// δσ of a mode ξ e^{λ t}: from its positions and from its velocities λ ξ.
+std::vector<Complex> rates_of(const Mode& m, const ModalEntry& entry) {
+  std::vector<Complex> states;
+  for (const std::size_t i : entry.linearization.independent) states.push_back(m.shape[i]);
+  for (const std::size_t i : entry.linearization.independent_velocities) states.push_back(m.eigenvalue * m.shape[i]);
+  const RealMatrix& of_states = entry.in_rates->of_states;
+  double largest = 0;
+  for (const Complex& x : states) largest = std::max(largest, std::abs(x));
+  std::vector<Complex> out(of_states.rows);
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    for (std::size_t j = 0; j < states.size(); ++j) out[k] += of_states.at(k, j) * states[j];
+    constexpr double rounding = 1e-14;
+    if (std::abs(out[k].real()) <= rounding * largest) out[k].real(0);
+    if (std::abs(out[k].imag()) <= rounding * largest) out[k].imag(0);
+  }
+  return out;
+}
+
+std::string modes_table(const MechanicalSystem& system, const ModalEntry& entry) {
+  const ModalAnalysis& analysis = entry.analysis;
   const bool damped =
       std::any_of(analysis.modes.begin(), analysis.modes.end(), [](const Mode& m) { return m.eigenvalue.real() != 0; });
   const bool shapes = system.coordinates.size() <= most_shapes;
@@ -113,6 +132,8 @@ std::string modes_table(const MechanicalSystem& system, const ModalAnalysis& ana
   if (damped) head.insert(head.end(), {system.dimensionless ? "Re λ" : "Re λ (1/s)", "ζ"});
   if (shapes)
     for (const Coordinate& c : system.coordinates) head.push_back(c.name);
+  if (shapes && entry.in_rates)
+    for (const Rate& rate : system.rates) head.push_back(rate.name);
   std::vector<std::vector<std::string>> rows{head};
   for (std::size_t i = 0; i < analysis.modes.size(); ++i) {
     const Mode& m = analysis.modes[i];
@@ -128,6 +149,8 @@ std::string modes_table(const MechanicalSystem& system, const ModalAnalysis& ana
                              oscillates && m.eigenvalue.real() != 0 ? fmt::format("{:.4g}", m.damping_ratio()) : ""});
     if (shapes)
       for (const Complex& x : m.shape) row.push_back(complex_number(x));
+    if (shapes && entry.in_rates)
+      for (const Complex& x : rates_of(m, entry)) row.push_back(complex_number(x));
     rows.push_back(std::move(row));
   }
   return table(rows, 2);
@@ -176,7 +199,18 @@ std::string input_matrices_text(const std::string& name, const std::array<const 
 std::string or_zero(const std::string& sum) { return sum.empty() ? "0" : sum; }
 std::string added(const std::string& sum) { return sum.empty() ? "" : " + " + sum; }
 
-std::string matrices_text(const MechanicalSystem& system, const Linearization& l) {
+/// "z' = A z,  z = (x, y; v, w)": the independent positions and the rates of the model.
+std::string in_rates_text(const MechanicalSystem& system, const LinearizationInRates& r) {
+  if (r.a.rows > widest_matrix) return "";
+  std::string states = listed(system, r.positions, "");
+  for (const Rate& rate : system.rates) states += (states.empty() ? "" : ", ") + rate.name;
+  const std::array by_rates{&r.b, &r.b_rate, &r.b_acceleration};
+  return fmt::format("  z' = A z{},  z = ({})\n", added(inputs_text("B", by_rates)), states) + matrix_text("A", r.a) +
+         input_matrices_text("B", by_rates);
+}
+
+std::string matrices_text(const MechanicalSystem& system, const Linearization& l,
+                          const std::optional<LinearizationInRates>& rates) {
   std::string out;
   if (l.independent.empty() && l.independent_velocities.empty()) return "  independent: none\n";
   if (l.independent.size() < system.coordinates.size())
@@ -196,6 +230,9 @@ std::string matrices_text(const MechanicalSystem& system, const Linearization& l
     for (const auto& [name, matrix] : all)
       if (!vanishes(*matrix)) out += matrix_text(name, *matrix);
     out += input_matrices_text("B", by_rates);
+    if (rates) out += in_rates_text(system, *rates);
+  } else if (rates) {
+    out += in_rates_text(system, *rates);
   } else if (l.a.rows <= widest_matrix) {
     const std::array by_rates{&l.b, &l.b_rate, &l.b_acceleration};
     out += fmt::format("  x' = A x{},  x = ({})\n", added(inputs_text("B", by_rates)), state_listed(system, l, ", "));
@@ -303,10 +340,10 @@ std::string modes_text(const MechanicalSystem& system, const ModalStudy& study,
     }
     if (e.analysis.modes.empty() && e.linearization.a.rows > 0) continue;  // frozen coefficients: the verdict says so
     const auto symbolic = formulas[i] ? formulas_text(*formulas[i], order) : std::nullopt;
-    out += symbolic ? *symbolic : matrices_text(system, e.linearization);
+    out += symbolic ? *symbolic : matrices_text(system, e.linearization, e.in_rates);
     out += measured_text(system, e.linearization, outputs);
     if (e.analysis.modes.empty()) continue;
-    out += modes_table(system, e.analysis);
+    out += modes_table(system, e);
     out += fmt::format("  residual of the eigenvalue problem {}\n", brief(e.analysis.residual));
   }
   if (study.entries.size() > detailed)

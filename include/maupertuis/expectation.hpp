@@ -147,8 +147,8 @@ struct Eigenvalues {
 
 /// What a row or a column of a matrix belongs to.
 struct MatrixVariable {
-  std::size_t index = 0;  // of the coordinate or of the input
-  int order = 0;          // 0: q, 1: q', -1: an input
+  std::size_t index = 0;  // of the coordinate, the input or the rate
+  int order = 0;          // 0: q, 1: q', -1: an input, 2: a rate that the model names
 };
 
 struct Matrix {

@@ -161,6 +161,23 @@ struct Linearization {
   bool second_order() const { return mass.rows > 0 || independent.empty(); }
 };
 
+/// The same in the rates σ (quasi-velocities) that the model names: ż = A z + B w + B₁ ẇ + B₂ ẅ with z = (independent
+/// positions, σ).
+struct LinearizationInRates {
+  std::vector<std::size_t> positions;       // [f] coordinates
+  RealMatrix a, b, b_rate, b_acceleration;  // [(f+g) × (f+g)], [(f+g) × k]
+  RealMatrix of_states;                     // [g × (f+g)]: δσ of the states x of the Linearization
+};
+
+/// The rates of the model, then their derivatives: what PointEquations has to measure, after `first` outputs of others,
+/// for `in_rates`.
+ExprVector rates_as_outputs(const MechanicalSystem& system);
+/// Nothing where the rates are fewer than the independent velocities, or do not determine them, and in a frame that
+/// turns. `rates`: how many there are.
+std::optional<LinearizationInRates> in_rates(const Linearization& linearization, std::size_t first, std::size_t rates);
+/// Without the outputs after so many.
+void keep_first_outputs(Linearization& linearization, std::size_t count);
+
 /// Exact derivatives at the point; std::invalid_argument, which names the list, where one of the point has another
 /// length than its comment says (`operating_point` fills all of them). Nothing, and `singular` true, where M and the
 /// constraints do not determine the accelerations. Cost O((n + m)³).

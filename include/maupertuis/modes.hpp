@@ -65,6 +65,7 @@ struct ModalEntry {
   Linearization linearization;
   ModalAnalysis analysis;
   std::string side;  // "x > 0": the point is on a kink, and these are the equations of that side; empty: none
+  std::optional<LinearizationInRates> in_rates{};  // where it was asked for, and is
 };
 
 /// An equilibrium on a kink beyond which the forces do not balance: no linearization.

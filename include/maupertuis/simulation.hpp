@@ -42,7 +42,7 @@ struct SimulationOptions {
 /// no digit is certain, NaN beside a NaN.
 struct StateErrors {
   double t = 0;  // 0 but for a time that was located: the end of `run until`
-  std::vector<double> q, v, multipliers, reactions, determined{};
+  std::vector<double> q, v, multipliers, reactions, quantities{};
 };
 
 struct State {
@@ -51,7 +51,7 @@ struct State {
   std::vector<double> multipliers;      // [constraints] λ; NaN where the equations do not determine it
   std::vector<double> reactions;        // [SimulationResult::reactions]
   std::optional<StateErrors> errors{};  // without where nobody asked
-  std::vector<double> determined{};     // [SimulationResult::determined]
+  std::vector<double> quantities{};     // [SimulationResult::quantities]
 };
 
 enum class Ending {
@@ -132,8 +132,9 @@ struct SimulationResult {
   std::vector<Trajectory::Column> reactions;  // names and units: columns of the trajectory as well
   /// What depends on functions that a degenerate Lagrangian leaves free, "y", "y'": no columns of the trajectory.
   std::vector<std::string> undetermined{};
-  /// Columns in their place that do not depend on these functions: "x - y", "p_x".
-  std::vector<Trajectory::Column> determined{};
+  /// What is told of states beside q and q̇: rates of the model; and where functions are free, what does not depend on
+  /// them, "x - y", "p_x", which are columns of the trajectory as well.
+  std::vector<Trajectory::Column> quantities{};
   State start, final;
   std::vector<State> at;  // in the order asked; q is empty where the run ended before
   SimulationStatistics statistics;

@@ -20,6 +20,7 @@
 #include "simulation/motion_kernel.hpp"
 #include "simulation/observables.hpp"
 #include "simulation/run_plan.hpp"
+#include "simulation/state_quantities.hpp"
 #include "simulation/stiffness.hpp"
 #include "simulation/stopwatch.hpp"
 #include "simulation/undetermined.hpp"
@@ -402,6 +403,7 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
     if (refuse_undetermined(model.experiment, probe, equations, diagnostics)) return std::nullopt;
     auto result = simulate(with_determined_system(model, equations), *equations.determined, asked, diagnostics, probe);
     if (result) in_terms_of_system(*result, equations, diagnostics);
+    if (result && !has_free_functions(equations)) add_rates(*result, model.system);
     return result;
   }
   const SimulationOptions options = with_method_of(model, asked);
@@ -441,6 +443,8 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   if (options.method == StepMethod::Automatic || options.method == StepMethod::Taylor ||
       options.backend == Backend::Compiled)
     warn_of_backend(run.backend(), options.backend, diagnostics);
+  // Determined equations have a system of their own; the rates of the model are told of that.
+  if (!equations.degenerate) add_rates(result, model.system);
   result.statistics.compile_seconds += compile_seconds;
   result.trajectory.metadata["system"] = model.system.name;
   result.trajectory.metadata["method"] =

@@ -1,14 +1,14 @@
 #include "simulation/undetermined.hpp"
 
+#include "simulation/state_quantities.hpp"
+
 #include <maupertuis/degenerate.hpp>
-#include <maupertuis/evaluate.hpp>
 #include <maupertuis/print.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace maupertuis {
 namespace {
@@ -64,90 +64,20 @@ void without_rests(State& state, std::size_t multipliers) {
   if (state.errors && state.errors->multipliers.size() > multipliers) state.errors->multipliers.resize(multipliers);
 }
 
-/// Values of the determined quantities at states, with errors from those of q and q̇.
-class Quantities {
- public:
-  Quantities(const EquationsOfMotion& equations, const std::vector<DeterminedQuantity>& quantities)
-      : system_(*equations.system), count_(quantities.size()), bindings_(parameter_bindings(system_)) {
-    for (const Coordinate& c : system_.coordinates) symbols_.push_back(c.q);
-    for (const Coordinate& c : system_.coordinates) symbols_.push_back(c.velocity);
-    for (const DeterminedQuantity& quantity : quantities) wanted_.push_back(quantity.value);
-    for (const DeterminedQuantity& quantity : quantities)
-      for (const Expr& slope : gradient(quantity.value, symbols_)) wanted_.push_back(slope);
-  }
-
-  /// `state`, `errors`: [q, q̇]; the errors may be missing. The values, then as many errors.
-  std::vector<double> at(double t, const double* state, const double* errors) {
-    bindings_[system_.context->time()] = t;
-    for (std::size_t i = 0; i < symbols_.size(); ++i) bindings_[symbols_[i]] = state[i];
-    const std::vector<double> found = evaluate(wanted_, bindings_);
-    std::vector<double> out(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count_));
-    for (std::size_t k = 0; errors && k < count_; ++k) {
-      double error = 0;
-      for (std::size_t i = 0; i < symbols_.size(); ++i)
-        if (const double slope = found[count_ + k * symbols_.size() + i]; slope != 0)
-          error += std::abs(slope) * errors[i];
-      out.push_back(error);
-    }
-    return out;
-  }
-
-  void put_into(State& state) {
-    if (state.q.empty()) return;
-    const auto together = [](std::vector<double> q, const std::vector<double>& v) {
-      q.insert(q.end(), v.begin(), v.end());
-      return q;
-    };
-    const std::vector<double> numbers = together(state.q, state.v);
-    const std::vector<double> errors =
-        state.errors ? together(state.errors->q, state.errors->v) : std::vector<double>();
-    const std::vector<double> found = at(state.t, numbers.data(), errors.empty() ? nullptr : errors.data());
-    const auto end_of_values = found.begin() + static_cast<std::ptrdiff_t>(count_);
-    state.determined.assign(found.begin(), end_of_values);
-    if (state.errors) state.errors->determined.assign(end_of_values, found.end());
-  }
-
-  /// As further columns, after those that are there.
-  void put_into(Trajectory& rows, const std::vector<Trajectory::Column>& columns, const Trajectory& all) {
-    const std::size_t width = rows.columns.size();
-    std::vector<double> values, errors;
-    for (std::size_t row = 0; row < rows.rows(); ++row) {
-      const std::size_t begin = row * all.columns.size();
-      const std::vector<double> found =
-          at(rows.times[row], &all.values[begin], all.errors.empty() ? nullptr : &all.errors[begin]);
-      const auto copy = [&](std::vector<double>& to, const std::vector<double>& from, std::size_t first) {
-        const auto start = from.begin() + static_cast<std::ptrdiff_t>(row * width);
-        to.insert(to.end(), start, start + static_cast<std::ptrdiff_t>(width));
-        const auto more = found.begin() + static_cast<std::ptrdiff_t>(first);
-        to.insert(to.end(), more, more + static_cast<std::ptrdiff_t>(count_));
-      };
-      copy(values, rows.values, 0);
-      if (!all.errors.empty()) copy(errors, rows.errors, count_);
-    }
-    rows.values = std::move(values);
-    rows.errors = std::move(errors);
-    rows.columns.insert(rows.columns.end(), columns.begin(), columns.end());
-  }
-
- private:
-  const MechanicalSystem& system_;
-  std::size_t count_;
-  Bindings bindings_;
-  ExprVector symbols_, wanted_;
-};
-
 /// What can be shown in place of the coordinates that depend on the free functions.
 void add_determined(SimulationResult& result, const EquationsOfMotion& equations) {
   const MechanicalSystem& system = *equations.system;
-  std::vector<DeterminedQuantity> quantities;
-  for (DeterminedQuantity& quantity : determined_quantities(equations))
-    if (!result.trajectory.column(quantity.name)) quantities.push_back(std::move(quantity));
-  for (const DeterminedQuantity& quantity : quantities)
-    result.determined.push_back({quantity.name, system.dimensionless ? std::string() : to_string(quantity.dimension)});
-  Quantities values(equations, quantities);
-  for (State* state : {&result.start, &result.final}) values.put_into(*state);
-  for (State& state : result.at) values.put_into(state);
-  values.put_into(result.trajectory, result.determined, *result.trajectory.of_one_choice);
+  std::vector<Trajectory::Column> columns;
+  ExprVector wanted;
+  for (const DeterminedQuantity& quantity : determined_quantities(equations)) {
+    if (result.trajectory.column(quantity.name)) continue;
+    columns.push_back({quantity.name, system.dimensionless ? std::string() : to_string(quantity.dimension)});
+    wanted.push_back(quantity.value);
+  }
+  StateQuantities values(system, wanted);
+  values.put_into(result);
+  result.quantities = columns;
+  values.put_into(result.trajectory, columns, *result.trajectory.of_one_choice);
 }
 
 std::string joined(const std::vector<std::string>& names) {

@@ -59,12 +59,15 @@ std::optional<MatrixVariable> matrix_variable(Elaboration& e, const Expression& 
     const auto q = std::find_if(system.coordinates.begin(), system.coordinates.end(), by_name);
     if (q != system.coordinates.end())
       return MatrixVariable{static_cast<std::size_t>(q - system.coordinates.begin()), x.primes};
+    const auto rate = std::find_if(system.rates.begin(), system.rates.end(), by_name);
+    if (allowed.rates && rate != system.rates.end() && x.primes == 0)
+      return MatrixVariable{static_cast<std::size_t>(rate - system.rates.begin()), 2};
   }
   refuse_matrix(
       e, x.span,
       fmt::format("`{}` is no {} of this matrix", e.texts.slice(x.span), allowed.inputs ? "column" : "variable"),
       allowed.inputs  ? "The columns of B belong to the inputs of the model."
-      : allowed.rates ? "The states are coordinates and their velocities."
+      : allowed.rates ? "The states are coordinates and their velocities, or the rates of the model in place of these."
                       : "Its rows and columns belong to coordinates.",
       "");
   return std::nullopt;
@@ -88,6 +91,7 @@ bool matrix_variables(Elaboration& e, const std::vector<syntax::ExpressionPtr>& 
 
 Dimension dimension_of(const Elaboration& e, const MatrixVariable& v) {
   if (v.order < 0) return e.model.system.inputs[v.index].dimension;
+  if (v.order == 2) return e.model.system.rates[v.index].dimension;
   const Dimension& q = e.model.system.coordinates[v.index].dimension;
   return v.order == 0 ? q : q / e.time();
 }

@@ -13,6 +13,7 @@ namespace {
 
 std::string name_of(const expectation::MatrixVariable& v, const MechanicalSystem& system) {
   if (v.order < 0) return system.inputs[v.index].name;
+  if (v.order == 2) return system.rates[v.index].name;
   return system.coordinates[v.index].name + (v.order == 1 ? "'" : "");
 }
 
@@ -50,6 +51,44 @@ std::string independent_names(const Linearization& l, const MechanicalSystem& sy
   return out;
 }
 
+bool asks_for_rates(const expectation::Matrix& e) {
+  const auto is_rate = [](const expectation::MatrixVariable& v) { return v.order == 2; };
+  return std::any_of(e.rows.begin(), e.rows.end(), is_rate) || std::any_of(e.columns.begin(), e.columns.end(), is_rate);
+}
+
+/// A and B in positions and rates of the model.
+void decide_in_rates(const expectation::Matrix& e, const MechanicalSystem& system, const Linearization& l,
+                     ExpectationResult& result) {
+  const auto undefined = [&](std::string message) {
+    result.actual = "not defined";
+    result.message = std::move(message);
+  };
+  const auto found = in_rates(l, 0, system.rates.size());
+  if (!found)
+    return undefined(
+        fmt::format("The rates of the model are {}, and there are {} independent velocities here, which they have to "
+                    "determine.",
+                    system.rates.size(), l.independent_velocities.size()));
+  const auto place = [&](const expectation::MatrixVariable& v) -> std::optional<std::size_t> {
+    if (v.order < 0) return v.index;
+    if (v.order == 2) return found->positions.size() + v.index;
+    const auto at = std::find(found->positions.begin(), found->positions.end(), v.index);
+    if (v.order == 1 || at == found->positions.end()) return std::nullopt;
+    return static_cast<std::size_t>(at - found->positions.begin());
+  };
+  std::vector<double> actual;
+  for (const expectation::MatrixVariable& row : e.rows)
+    for (const expectation::MatrixVariable& column : e.columns) {
+      const auto i = place(row), j = place(column);
+      if (!i || !j)
+        return undefined(
+            fmt::format("{} is no state where the rates are: positions that are independent here, and rates.",
+                        name_of(i ? column : row, system)));
+      actual.push_back((e.letter == 'A' ? found->a : found->b).at(*i, *j));
+    }
+  judge_entries(e, system, actual, result);
+}
+
 }  // namespace
 
 void decide_mass_matrix(const expectation::Matrix& e, const EquationsOfMotion& equations, const MotionState& start,
@@ -79,6 +118,7 @@ void decide_linearization(const expectation::Matrix& e, const MechanicalSystem& 
                           ExpectationResult& result) {
   const char letter = e.letter;
   result.expected = fmt::format("{} as written", letter);
+  if (asks_for_rates(e)) return decide_in_rates(e, system, l, result);
   if (letter != 'A' && letter != 'B' && !l.second_order()) {
     result.actual = "not defined";
     result.message =

@@ -56,7 +56,10 @@ EquationsOfMotion without_contacts(EquationsOfMotion equations) {
 }  // namespace
 
 ModeClaims::ModeClaims(const Model& model, const EquationsOfMotion& equations)
-    : model_(model), derived_(equations), equations_(without_contacts(equations)), plain_(model.system) {
+    : model_(model),
+      derived_(equations),
+      equations_(without_contacts(equations), rates_as_outputs(model.system)),
+      plain_(model.system) {
   for (Friction& f : plain_.frictions)
     if (f.normal) f.normal = with_reactions(equations, {&f.normal, 1}).front();
   Diagnostics unheard;  // why there is no start is for a run to say

@@ -92,3 +92,29 @@ TEST_CASE("rates are starts, columns, events and points of modes") {
   CHECK(contains(modes.out, " 0.57735 "));  // √((B − A)(C − B)/(A C))
   CHECK(contains(maup({"modes", "-", "--at", "θ=0, ω2=1rad/s"}, euler).err, "E0223"));
 }
+
+TEST_CASE("linearizations and the ends of runs are told in the rates of the model") {
+  // A sleigh at the speed v: w' = -m a v w/(J + m a²) = -2 w; v' = a w².
+  const std::string sleigh =
+      "dimensionless\ncoord x, y, θ : number\nparam a = 0.3, m = 2, J = 0.12\n"
+      "T = 1/2 m ((x' - a θ' sin θ)^2 + (y' + a θ' cos θ)^2) + 1/2 J θ'^2\nconstraint x' sin θ = y' cos θ\n"
+      "rates v = x' cos θ + y' sin θ, w = θ'\nstart v = 1, θ = 0.4\nrun 1\n";
+  CHECK(maup({"test", "-"}, sleigh + "expect A in (v, w) at v = 1, θ = 0.4 : ((0, 0), (0, -2)) ± 1e-9\n"
+                                     "expect A in (θ, w) at v = 1, θ = 0.4 : ((0, 1), (0, -2)) ± 1e-9\n")
+            .code == 0);
+  CHECK(maup({"test", "-"}, sleigh + "expect A in (v, w) at v = 1, θ = 0.4 : ((0, 0), (0, -1)) ± 1e-9\n").code == 4);
+  CHECK(contains(maup({"test", "-"}, sleigh + "expect A in (v, θ') at v = 1, θ = 0.4 : ((0, 0), (0, -2)) ± 1e-9\n").out,
+                 "no state where the rates are"));
+  const Outcome modes = maup({"modes", "-", "--at", "v=1, θ=0.4"}, sleigh);
+  CHECK(contains(modes.out, "z' = A z,  z = (x, y, θ, v, w)\n"));
+  const auto linear =
+      json_of(maup({"modes", "-", "--at", "v=1, θ=0.4", "--json"}, sleigh))["points"][0]["linearization"];
+  CHECK(linear["in_rates"]["states"].back() == "w");
+  CHECK(linear["measured"].is_null());
+  const auto final = json_of(maup({"simulate", "-", "--json"}, sleigh + "start w = 0.5\n"))["final"];
+  // v² + (J + m a²)/m w² is the energy, which stays.
+  const double v = final["state"]["v"].get<double>(), w = final["state"]["w"].get<double>();
+  CHECK(std::abs(v * v + 0.15 * w * w - (1 + 0.15 * 0.25)) < 1e-14);
+  CHECK(w == final["state"]["θ'"].get<double>());
+  CHECK(final["errors"]["v"].get<double>() < 1e-12);
+}

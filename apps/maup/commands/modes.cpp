@@ -73,6 +73,23 @@ ExprVector measured(const Model& model) {
   return found;
 }
 
+/// What --y asks for, then what the rates of the model need.
+ExprVector measured_and_rates(const Model& model) {
+  ExprVector found = measured(model);
+  const ExprVector rates = rates_as_outputs(model.system);
+  found.insert(found.end(), rates.begin(), rates.end());
+  return found;
+}
+
+/// The linearization in the rates of the model beside each that was found; measured is what --y asks for again.
+void put_in_rates(ModalStudy& found, const Model& model) {
+  const std::size_t asked = model.experiment.asked.size();
+  for (ModalEntry& entry : found.entries) {
+    entry.in_rates = in_rates(entry.linearization, asked, model.system.rates.size());
+    keep_first_outputs(entry.linearization, asked);
+  }
+}
+
 /// Numbers that are none are not shown.
 bool check_outputs(const ModesOptions& options, const ModalStudy& found, Study& study) {
   const Model& model = *study.model();
@@ -189,6 +206,7 @@ ExitCode points(const ModesOptions& options, Study& study, const PointEquations&
   std::vector<std::optional<FloquetResult>> neighbours;
   if (result && !parse_time(options.at))
     neighbours = settle_driven(*result, equations, *study.model(), *study.equations(), &interrupt_flag());
+  if (result) put_in_rates(*result, *study.model());
   if (!result || !check_outputs(options, *result, study)) return finish(console, study, json_document("modes"));
   const MechanicalSystem& system = study.model()->system;
   constexpr std::size_t usually = 4;
@@ -353,7 +371,7 @@ ExitCode modes(const ModesOptions& options, Console& console) {
   if (study.model()->system.has_modes()) return rest(study, start->state, console);
   if (refuse_free_functions(*equations, "modes", study.diagnostics()))
     return finish(console, study, json_document("modes"));
-  PointEquations at_points(solvable_equations(*equations), measured(*study.model()));
+  PointEquations at_points(solvable_equations(*equations), measured_and_rates(*study.model()));
   return options.locus() ? locus(options, study, at_points, start->state, console)
                          : points(options, study, at_points, start->state, console);
 }

@@ -63,8 +63,8 @@ Json errors_json(const State& state, const SimulationResult& result, const Mecha
     if (is_determined(result, name)) out[name] = number_or_null(errors.q[i]);
     if (is_determined(result, name + "'")) out[name + "'"] = number_or_null(errors.v[i]);
   }
-  for (std::size_t i = 0; i < errors.determined.size(); ++i)
-    out[result.determined[i].name] = number_or_null(errors.determined[i]);
+  for (std::size_t i = 0; i < errors.quantities.size(); ++i)
+    out[result.quantities[i].name] = number_or_null(errors.quantities[i]);
   for (std::size_t i = 0; i < errors.multipliers.size(); ++i)
     out[system.constraints[i].multiplier.name()] = number_or_null(errors.multipliers[i]);
   for (std::size_t i = 0; i < errors.reactions.size(); ++i)
@@ -79,8 +79,8 @@ Json state_json(const State& state, const SimulationResult& result, const Mechan
     if (is_determined(result, name)) values[name] = state.q[i];
     if (is_determined(result, name + "'")) values[name + "'"] = state.v[i];
   }
-  for (std::size_t i = 0; i < state.determined.size(); ++i)
-    values[result.determined[i].name] = number_or_null(state.determined[i]);
+  for (std::size_t i = 0; i < state.quantities.size(); ++i)
+    values[result.quantities[i].name] = number_or_null(state.quantities[i]);
   Json multipliers = Json::object(), reactions = Json::object();
   for (std::size_t i = 0; i < state.multipliers.size(); ++i)
     multipliers[system.constraints[i].multiplier.name()] = number_or_null(state.multipliers[i]);
@@ -159,8 +159,8 @@ std::string state_text(const State& state, const SimulationResult& result, const
       line(c.name + "'", state.v[i], errors ? errors->v[i] : 0,
            system.dimensionless ? "" : to_string(c.dimension / system.independent_dimension));
   }
-  for (std::size_t i = 0; i < state.determined.size(); ++i)
-    line(result.determined[i].name, state.determined[i], errors ? errors->determined[i] : 0, result.determined[i].unit);
+  for (std::size_t i = 0; i < state.quantities.size(); ++i)
+    line(result.quantities[i].name, state.quantities[i], errors ? errors->quantities[i] : 0, result.quantities[i].unit);
   for (std::size_t i = 0; i < state.reactions.size(); ++i) {
     const Trajectory::Column& column = result.reactions[i];
     if (std::isnan(state.reactions[i]))

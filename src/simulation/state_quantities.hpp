@@ -1,0 +1,31 @@
+#pragma once
+#include <maupertuis/evaluate.hpp>
+#include <maupertuis/simulation.hpp>
+
+namespace maupertuis {
+
+/// Functions of q, q̇ and t at the states and rows of a run, with errors from those of q and q̇.
+class StateQuantities {
+ public:
+  StateQuantities(const MechanicalSystem& system, const ExprVector& quantities);
+
+  /// Of its states: [quantities] each, after those that are there.
+  void put_into(SimulationResult& result);
+  /// As further columns of rows, after those that are there; `all`: the same rows with q and q̇.
+  void put_into(Trajectory& rows, const std::vector<Trajectory::Column>& columns, const Trajectory& all);
+
+ private:
+  /// `state`, `errors`: [q, q̇]; the errors may be missing. The values, then as many errors.
+  std::vector<double> at(double t, const double* state, const double* errors);
+  void put_into(State& state);
+
+  const MechanicalSystem& system_;
+  std::size_t count_;
+  Bindings bindings_;
+  ExprVector symbols_, wanted_;
+};
+
+/// The rates that the model names, at the states of a run.
+void add_rates(SimulationResult& result, const MechanicalSystem& system);
+
+}  // namespace maupertuis
