@@ -101,6 +101,17 @@ ExprMap configuration(Elaboration& e, const std::vector<StartValue>& values) {
   return at;
 }
 
+/// What a rate depends on keeps the place at which the velocities were found, or the rate would be another one.
+void hold_places_of_rates(Elaboration& e, const std::vector<StartCondition>& rates, std::vector<StartValue>& values) {
+  for (const StartCondition& r : rates) {
+    const Expr formula = expand_time_derivatives(r.formula);
+    for (const Expr& s : symbols_of({&formula, 1}))
+      for (std::size_t i = 0; i < e.system().coordinates.size(); ++i)
+        if (e.system().coordinates[i].q == s && !given_at(values, i))
+          values.push_back({i, 0, e.number(0), r.span, {}, 1});
+  }
+}
+
 PointRow row_at(Elaboration& e, Expr rate, Expr value, const ExprMap& at) {
   ExprVector velocities;
   ExprMap at_rest;
@@ -123,6 +134,7 @@ bool add_velocities_of_rates(Elaboration& e, const std::vector<StartCondition>& 
                              std::vector<StartValue>& values) {
   if (rates.empty()) return true;
   complete_quaternions(e, rates.front().span, values);
+  hold_places_of_rates(e, rates, values);
   const ExprMap at = configuration(e, values);
   PointRows rows(e);
   for (const StartCondition& r : rates)

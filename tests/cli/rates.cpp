@@ -99,6 +99,10 @@ TEST_CASE("linearizations and the ends of runs are told in the rates of the mode
       "dimensionless\ncoord x, y, θ : number\nparam a = 0.3, m = 2, J = 0.12\n"
       "T = 1/2 m ((x' - a θ' sin θ)^2 + (y' + a θ' cos θ)^2) + 1/2 J θ'^2\nconstraint x' sin θ = y' cos θ\n"
       "rates v = x' cos θ + y' sin θ, w = θ'\nstart v = 1, θ = 0.4\nrun 1\n";
+  // What is not given of the point is 0, and v is 1 there: the start, at θ = 0.4, is no part of it.
+  const auto there = json_of(maup({"modes", "-", "--at", "v=1", "--json"}, sleigh))["points"][0]["state"];
+  CHECK(there["x'"] == 1);
+  CHECK(std::abs(there["y'"].get<double>()) < 1e-15);
   CHECK(maup({"test", "-"}, sleigh + "expect A in (v, w) at v = 1, θ = 0.4 : ((0, 0), (0, -2)) ± 1e-9\n"
                                      "expect A in (θ, w) at v = 1, θ = 0.4 : ((0, 1), (0, -2)) ± 1e-9\n")
             .code == 0);
