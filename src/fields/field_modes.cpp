@@ -73,6 +73,8 @@ class ModeProblem {
     return out;
   }
 
+  /// What turns steadily meanwhile: "ψ' = 100 (SI units)".
+  const std::string& turning() const { return turning_text_; }
   /// A number of elements, and their degree.
   std::size_t elements() const { return mesh_.borders.size() - 1; }
   int degree() const { return mesh_.degree; }
@@ -90,6 +92,10 @@ class ModeProblem {
     for (const std::vector<double>& field : values_of(c))
       for (const double v : field)
         if (std::abs(v) > std::abs(largest)) largest = v;
+    // Where the field is rounding beside the coordinates, the largest of these is 1.
+    constexpr double rounding = 1e-9;
+    for (const Eigen::Index i : body_unknowns_)
+      if (std::abs(largest) < rounding * std::abs(c(i))) largest = c(i);
     if (largest == 0) largest = c.cwiseAbs().maxCoeff();
     if (largest != 0) c /= largest;
     out.fields = values_of(c);
@@ -200,6 +206,7 @@ class ModeProblem {
     for (const Coordinate& c : system.coordinates) at[c.q] = at[c.velocity] = at[c.acceleration] = 0;
     for (const StartValue& v : equations_.body_start)
       if (v.order == 0 && v.coordinate < n) at[system.coordinates[v.coordinate].q] = number(v.value);
+    turn_steadily(rows, at);
     std::vector<Expr> switches;
     for (const Expr& g : switches_of(rows))
       if (holds_coordinates(g)) switches.push_back(g);
@@ -221,6 +228,41 @@ class ModeProblem {
       if (!find_rest(rows, slopes[0], at) || !is_beside_switches(switches, at)) return false;
     }
     return add_linearized(slopes, at);
+  }
+  /// Coordinates on which nothing depends keep the velocity of the start: a shaft that turns.
+  void turn_steadily(const std::vector<Expr>& rows, Bindings& at) {
+    const MechanicalSystem& system = *equations_.bodies->system;
+    turning_.clear();
+    for (const StartValue& v : equations_.body_start) {
+      if (v.order != 1 || v.coordinate >= rows.size() || unknown_of_place(v.coordinate) >= 0) continue;
+      const double rate = number(v.value);
+      const Coordinate& c = system.coordinates[v.coordinate];
+      if (rate == 0 || std::any_of(rows.begin(), rows.end(), [&](const Expr& row) {
+            return zero_test(differentiate(row, c.q)).verdict != Verdict::Zero;
+          }))
+        continue;
+      at[c.velocity] = rate;
+      turning_.push_back(v.coordinate);
+      turning_text_ += fmt::format("{}{}' = {:.6g}{}", turning_text_.empty() ? "" : ", ", c.name, rate,
+                                   system.dimensionless ? "" : " (SI units)");
+    }
+  }
+  /// What turns is left out of the small motions; E0644 where these change its rate.
+  bool leave_turning_out(const std::vector<double>& k, const std::vector<double>& c, const std::vector<double>& m) {
+    const std::size_t n = body_unknowns_.size();
+    for (const std::size_t i : turning_) {
+      for (const auto* part : {&k, &c, &m}) {
+        double size = 0, coupling = 0;
+        for (const double x : *part) size = std::max(size, std::abs(x));
+        for (std::size_t j = 0; j < n; ++j)
+          if (j != i) coupling = std::max({coupling, std::abs((*part)[i * n + j]), std::abs((*part)[j * n + i])});
+        if (coupling > 1e-12 * size)
+          return refuse_modes_of(equations_, diagnostics_,
+                                 "A body turns steadily, and small motions change the rate at which it does.");
+      }
+      held_turning_.push_back(body_unknowns_[i]);
+    }
+    return true;
   }
   /// With numbers for coordinates, so that time alone is left of what changes.
   Expr replaced_by_rest(Expr e) const {
@@ -253,14 +295,15 @@ class ModeProblem {
   bool add_linearized(const std::vector<Expr> (&slopes)[3], const Bindings& at) {
     const std::size_t n = body_unknowns_.size();
     double sideways = 0, size = 0, skew = 0, size_of_k = 0;
-    std::vector<double> k(n * n), c(n * n);
+    std::vector<double> k(n * n), c(n * n), m(n * n);
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < n; ++j) {
         const Eigen::Index row = body_unknowns_[i], column = body_unknowns_[j];
         k[i * n + j] = evaluate(slopes[0][i * n + j], at), c[i * n + j] = evaluate(slopes[1][i * n + j], at);
         stiffness_(row, column) += k[i * n + j];
         gyroscopic_(row, column) += c[i * n + j];
-        mass_(row, column) += evaluate(slopes[2][i * n + j], at);
+        m[i * n + j] = evaluate(slopes[2][i * n + j], at);
+        mass_(row, column) += m[i * n + j];
       }
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < n; ++j) {
@@ -273,7 +316,7 @@ class ModeProblem {
                              "A force on its bodies grows with their velocity: motions are damped or driven.");
     if (skew > 1e-12 * size_of_k)
       return refuse_modes_of(equations_, diagnostics_, "The forces on its bodies have no potential.");
-    return true;
+    return leave_turning_out(k, c, m);
   }
 
   /// Newton's method from the start of the model for the rest that the bodies and the field have together.
@@ -356,6 +399,7 @@ class ModeProblem {
           b.jet.order() == 0 ? spaces_[a].value_at_border(border) : spaces_[a].slope_at_border(border);
       held[static_cast<std::size_t>(first_[a]) + dof] = true;
     }
+    for (const Eigen::Index i : held_turning_) held[static_cast<std::size_t>(i)] = true;
     std::vector<Eigen::Index> kept;
     for (std::size_t i = 0; i < held.size(); ++i)
       if (!held[i]) kept.push_back(static_cast<Eigen::Index>(i));
@@ -402,7 +446,9 @@ class ModeProblem {
   Bindings values_;
   ElementMesh mesh_;
   std::vector<ElementSpace> spaces_;
-  std::vector<Eigen::Index> first_, body_unknowns_;
+  std::vector<Eigen::Index> first_, body_unknowns_, held_turning_;
+  std::vector<std::size_t> turning_;  // coordinates
+  std::string turning_text_;
   Eigen::Index size_ = 0;
   Eigen::MatrixXd mass_, gyroscopic_, stiffness_, free_;
 };
@@ -440,10 +486,11 @@ FieldModes line_modes(const FieldEquations& equations, const DensityEntries& ent
     if (!add_unseen(equations, {problem.unseen(), 0}, out, diagnostics)) return {};
     shapes.resize(std::min(count, shapes.size()));
     out.places = problem.places();
+    out.about = problem.turning();
     for (Eigen::VectorXd& c : shapes) out.shapes.push_back(problem.shape(std::move(c)));
     break;
   }
-  out.about = entries.about(equations);
+  if (out.about.empty()) out.about = entries.about(equations);
   out.frequencies.resize(std::min(count, out.frequencies.size()));
   out.errors.resize(out.frequencies.size());
   return out;

@@ -10,6 +10,7 @@
 #include "fields/start_fit.hpp"
 #include "fields/steepening.hpp"
 #include "fields/switching.hpp"
+#include "fields/well_posed.hpp"
 
 #include <fmt/format.h>
 
@@ -141,16 +142,21 @@ std::string jet_name(const FieldMotion::StartClash& c, const FieldEquations& equ
   return equations.system().jet_name({equations.varied[c.field], std::move(space), c.time});
 }
 
+/// Two numbers that differ, also where they do so in late digits.
+std::string both_numbers(double value, double other) {
+  const std::string one = fmt::format("{:.6g}", value), two = fmt::format("{:.6g}", other);
+  return one != two ? one + " beside " + two : fmt::format("{}, off by {:.2g}", two, value - other);
+}
+
 /// W0646: the end of the mesh is put to its condition, and what the start says beside it runs in as a wave.
 void warn_of_clashes(const FieldMotion& mesh, const FieldEquations& equations, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
   for (const FieldMotion::StartClash& c : mesh.start_clashes())
-    diagnostics.warning(
-        "W0646", equations.model->start.empty() ? s.density_span : equations.model->start.front().span,
-        fmt::format("the start does not fit the condition at the {}: {} = {:.6g} beside {:.6g} (SI units)",
-                    side_name(c.side, s), jet_name(c, equations), c.start, c.condition),
-        "The condition is followed, so that a jump runs into the field, which no mesh resolves.",
-        "Give a start that has the value of the condition there.");
+    diagnostics.warning("W0646", equations.model->start.empty() ? s.density_span : equations.model->start.front().span,
+                        fmt::format("the start does not fit the condition at the {}: {} = {} (SI units)",
+                                    side_name(c.side, s), jet_name(c, equations), both_numbers(c.start, c.condition)),
+                        "The condition is followed, so that a jump runs into the field, which no mesh resolves.",
+                        "Give a start that has the value of the condition there.");
 }
 
 /// W0650: what acts for less than a step; whether there is such.
@@ -512,6 +518,7 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   const auto begin = std::chrono::steady_clock::now();
   auto method = FieldMethod::of(equations, diagnostics);
   if (!method || refuse_too_many_conditions(equations, diagnostics)) return std::nullopt;
+  if (refuse_ill_posed_start(equations, diagnostics)) return std::nullopt;
   const FieldSystem& s = equations.system();
   Cells cells;
   for (const SpaceVariable& x : s.space) {

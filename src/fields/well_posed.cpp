@@ -49,9 +49,10 @@ std::vector<Bindings> places_of(const FieldEquations& equations) {
   return out;
 }
 
-/// The equations with the coefficients that they have at a place. Nothing where one has no value there about φ = 0, or
-/// a higher derivative in time than the second stands there.
-std::optional<std::vector<Term>> linearized(const FieldEquations& equations, const Bindings& place) {
+/// The equations with the coefficients that they have at a place, about φ = 0 or the `jets` that are known. Nothing
+/// where one has no value there, or a higher derivative in time than the second stands there.
+std::optional<std::vector<Term>> linearized(const FieldEquations& equations, const Bindings& place,
+                                            const Bindings& known_jets = {}) {
   const FieldSystem& s = equations.system();
   std::vector<Term> out;
   for (std::size_t row = 0; row < equations.varied.size(); ++row) {
@@ -65,7 +66,11 @@ std::optional<std::vector<Term>> linearized(const FieldEquations& equations, con
       Bindings values;
       for (const Expr& symbol : symbols_of({&slopes[n], 1})) {
         const auto known = place.find(symbol);
-        values[symbol] = known != place.end() ? known->second : s.jet_of(symbol) || symbol.role() == Role::Time ? 0 : 1;
+        const auto jet_value = known_jets.find(symbol);
+        values[symbol] = known != place.end()                              ? known->second
+                         : jet_value != known_jets.end()                   ? jet_value->second
+                         : s.jet_of(symbol) || symbol.role() == Role::Time ? 0
+                                                                           : 1;
       }
       const double c = evaluate(slopes[n], values);
       if (!std::isfinite(c)) return std::nullopt;
@@ -161,26 +166,73 @@ bool changes_in_space(const FieldEquations& equations) {
   return false;
 }
 
-void refuse(const FieldEquations& equations, Diagnostics& diagnostics, const Bindings& place, std::size_t direction,
-            double few, double many) {
+struct IllPosed {
+  std::size_t direction = 0;
+  double few = 0, many = 0;  // rates of growth of waves of 1e4 and 1e6
+  bool fed = false;          // by the dissipation density, not by the stiffness
+};
+
+/// Whether short waves grow the faster the shorter they are, and not behind `part` of their frequency.
+std::optional<IllPosed> ill_posed(const FieldEquations& equations, const std::vector<Term>& terms, double part) {
+  const std::vector<Direction> all = directions(equations.system().space.size());
+  for (std::size_t d = 0; d < all.size(); ++d) {
+    const Growth few = growth(terms, equations.varied.size(), all[d], 1e4),
+                 many = growth(terms, equations.varied.size(), all[d], 1e6);
+    if (!(many.rate > 8 * few.rate) || !(many.rate > 1e3) || !(many.rate > part * many.speed)) continue;
+    IllPosed out{d, few.rate, many.rate, false};
+    std::vector<Term> without;
+    for (const Term& t : terms)
+      if (t.jet.time != 1) without.push_back(t);
+    out.fed = equations.system().dissipation && without.size() < terms.size() && !ill_posed(equations, without, part);
+    return out;
+  }
+  return std::nullopt;
+}
+
+void refuse(const FieldEquations& equations, Diagnostics& diagnostics, const Bindings& place, const IllPosed& found,
+            bool at_start) {
+  const std::size_t direction = found.direction;
   const FieldSystem& s = equations.system();
   std::string trouble, relation, where;
   if (const auto w = dispersion(equations, trouble); w && w->im.is_zero())
     relation = fmt::format(" Its dispersion relation is {} = 0.",
                            to_plain(lay_out(readable(w->re, equations.order), equations.order)));
-  if (changes_in_space(equations))
+  if (at_start) relation.clear();  // which is about φ = 0
+  if (at_start || changes_in_space(equations))
     for (const SpaceVariable& x : s.space)
       where += fmt::format("{}{} = {:.4g}", where.empty() ? " at " : ", ", x.name, place.at(x.symbol));
   const std::string along = s.space.size() == 1           ? ""
                             : direction == s.space.size() ? " along the diagonal"
                                                           : " along " + s.space[direction].name;
-  diagnostics.error("E0641", s.density_span,
-                    fmt::format("the field equation{} ill-posed: short waves grow without bound",
-                                equations.varied.size() == 1 ? " is" : "s are"),
-                    fmt::format("A wave{}{} of wave number 1e6 grows at the rate {:.3g}, one of 1e4 at {:.3g}: the "
-                                "shorter, the faster (elliptic in time).{}",
-                                along, where, many, few, relation),
-                    "The parts of u' and of u_x have opposite signs in the density of a wave.");
+  diagnostics.error(
+      "E0641", s.density_span,
+      fmt::format("the field equation{} ill-posed: short waves grow without bound",
+                  equations.varied.size() == 1 ? " is" : "s are"),
+      fmt::format("A wave{}{} of wave number 1e6 grows at the rate {:.3g}, one of 1e4 at {:.3g}: the "
+                  "shorter, the faster ({}).{}",
+                  along, (at_start ? " about the start" : "") + where, found.many, found.few,
+                  found.fed ? "the dissipation density is negative for them, and feeds them" : "elliptic in time",
+                  relation),
+      found.fed ? "A dissipation density is positive: what it takes is 2 𝒟 for a quadratic one."
+                : "The parts of u' and of u_x have opposite signs in the density of a wave.");
+}
+
+/// What the start says of the jets in the equations at a place.
+Bindings start_jets(const FieldEquations& equations, const Bindings& place) {
+  const FieldSystem& s = equations.system();
+  Bindings out;
+  for (const Expr& residual : equations.residuals)
+    for (const Expr& symbol : s.jets_in(s.expanded(residual))) {
+      const FieldJet jet = *s.jet_of(symbol);
+      for (const FieldStart& start : equations.model->start) {
+        if (start.field != jet.field || start.order != jet.time) continue;
+        Expr value = s.expanded(start.value);
+        for (std::size_t x = 0; x < s.space.size(); ++x)
+          for (int k = 0; k < jet.space[x]; ++k) value = differentiate(value, s.space[x].symbol);
+        out[symbol] = evaluate(value, place);
+      }
+    }
+  return out;
 }
 
 }  // namespace
@@ -189,21 +241,31 @@ void refuse_ill_posed(const FieldEquations& equations, Diagnostics& diagnostics)
   const FieldSystem& s = equations.system();
   constexpr std::size_t most_fields = 12;
   if (equations.varied.size() > most_fields) return;
-  const std::vector<Direction> all = directions(s.space.size());
   // Coefficients of places are held while the wave is looked at, so that their slopes let waves grow which do not, by a
   // rate that falls behind their frequency; elliptic ones do not fall behind.
   const double part = changes_in_space(equations) ? 1e-3 : 0;
   for (const Bindings& place : places_of(equations)) {
     const auto terms = linearized(equations, place);
     if (!terms) continue;
-    for (std::size_t d = 0; d < all.size(); ++d) {
-      const Growth few = growth(*terms, equations.varied.size(), all[d], 1e4),
-                   many = growth(*terms, equations.varied.size(), all[d], 1e6);
-      if (!(many.rate > 8 * few.rate) || !(many.rate > 1e3) || !(many.rate > part * many.speed)) continue;
-      refuse(equations, diagnostics, place, d, few.rate, many.rate);
-      return;
-    }
+    if (const auto found = ill_posed(equations, *terms, part))
+      return refuse(equations, diagnostics, place, *found, false);
   }
+}
+
+bool refuse_ill_posed_start(const FieldEquations& equations, Diagnostics& diagnostics) {
+  const FieldSystem& s = equations.system();
+  constexpr std::size_t most_fields = 12;
+  if (equations.varied.size() > most_fields || !s.space.front().from) return false;
+  constexpr double part = 1e-2;  // as above; two roots that are nearly one are split by 1e-3 of the frequency
+  for (const Bindings& place : places_of(equations)) {
+    const auto terms = linearized(equations, place, start_jets(equations, place));
+    if (!terms) continue;
+    const auto found = ill_posed(equations, *terms, part);
+    if (!found) continue;
+    refuse(equations, diagnostics, place, *found, true);
+    return true;
+  }
+  return false;
 }
 
 }  // namespace maupertuis

@@ -7,4 +7,7 @@ namespace maupertuis {
 /// diagonal: no start determines what follows then.
 void refuse_ill_posed(const FieldEquations& equations, Diagnostics& diagnostics);
 
+/// The same about the start of a model whose equations are not linear: E0641, and true.
+bool refuse_ill_posed_start(const FieldEquations& equations, Diagnostics& diagnostics);
+
 }  // namespace maupertuis

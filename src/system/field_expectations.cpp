@@ -114,6 +114,8 @@ class WaveNames {
  private:
   std::optional<Value> wave(const std::string& name) const {
     const FieldSystem& s = e_.fields->system;
+    // A mistake in the fields, which is told, leaves them without waves.
+    if (!e_.fields->omega) return std::nullopt;
     if (name == "ω") return Value::of(e_.fields->omega, Dimension{} / s.time_dimension);
     for (std::size_t i = 0; i < s.space.size(); ++i)
       if (name == "k_" + s.space[i].name || (s.space.size() == 1 && name == "k"))

@@ -34,6 +34,10 @@ std::vector<fs::path> models() {
 Diagnostics check(const SourceText& source) {
   Study study(source);
   const Model* model = study.model();
+  if (model && study.has_fields()) {
+    study.field_equations();
+    return study.diagnostics();
+  }
   const EquationsOfMotion* equations = study.equations();
   if (!model || !equations) return study.diagnostics();
   Diagnostics& diagnostics = study.diagnostics();
