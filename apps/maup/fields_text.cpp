@@ -508,7 +508,7 @@ std::string values_at_places(const FieldEquations& equations, const FieldEquilib
   return out;
 }
 
-std::string kind_of_rest(const FieldEquilibrium& found) {
+std::string stability_of(const FieldEquilibrium& found) {
   if (!found.lowest) return "  no minimum of the energy: its second variation has no lower bound\n";
   if (found.falling == 0 && *found.lowest > 0)
     return fmt::format("  a minimum of the energy: its second variation is at least {:.6g} in the mean square\n",
@@ -528,7 +528,7 @@ std::string equilibrium_text(const FieldEquations& equations, const FieldModes& 
     out += fmt::format("  {} is off by at most {:.1g}\n", equations.system().fields[equations.varied[a]].name,
                        found.errors[a]);
   out += fmt::format("  energy  {:.13g} ± {:.1g}\n", found.energy, found.energy_error);
-  return out + kind_of_rest(found);
+  return out + stability_of(found);
 }
 
 Json equilibrium_json(const FieldEquations& equations, const FieldEquilibrium& found) {

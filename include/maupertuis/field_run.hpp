@@ -118,7 +118,8 @@ struct FieldEquilibrium {
 /// Small motions about rest, of fields with the coordinates and bodies beside them.
 struct FieldModes {
   std::vector<double> frequencies;  // rad/s, ascending; below 0: the rate of growth of an unstable one, negative
-  /// The shape of each, its largest value 1, that of a coordinate where the field stands still; none where velocities act sideways (gyroscopic terms).
+  /// The shape of each, its largest value 1, that of a coordinate where the field stands still; none where velocities
+  /// act sideways (gyroscopic terms).
   struct Shape {
     std::vector<std::vector<double>> fields;  // [varied][places], in the plane [varied][upwards × places]
     std::vector<double> coordinates;          // [coordinates of `bodies`], SI

@@ -189,8 +189,8 @@ std::optional<IllPosed> ill_posed(const FieldEquations& equations, const std::ve
   return std::nullopt;
 }
 
-void refuse(const FieldEquations& equations, Diagnostics& diagnostics, const Bindings& place, const IllPosed& found,
-            bool at_start) {
+void refuse_growing_waves(const FieldEquations& equations, Diagnostics& diagnostics, const Bindings& place,
+                          const IllPosed& found, bool at_start) {
   const std::size_t direction = found.direction;
   const FieldSystem& s = equations.system();
   std::string trouble, relation, where;
@@ -248,7 +248,7 @@ void refuse_ill_posed(const FieldEquations& equations, Diagnostics& diagnostics)
     const auto terms = linearized(equations, place);
     if (!terms) continue;
     if (const auto found = ill_posed(equations, *terms, part))
-      return refuse(equations, diagnostics, place, *found, false);
+      return refuse_growing_waves(equations, diagnostics, place, *found, false);
   }
 }
 
@@ -262,7 +262,7 @@ bool refuse_ill_posed_start(const FieldEquations& equations, Diagnostics& diagno
     if (!terms) continue;
     const auto found = ill_posed(equations, *terms, part);
     if (!found) continue;
-    refuse(equations, diagnostics, place, *found, true);
+    refuse_growing_waves(equations, diagnostics, place, *found, true);
     return true;
   }
   return false;
