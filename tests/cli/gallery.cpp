@@ -13,7 +13,8 @@ TEST_CASE("each model has a picture below 60 kB and a line in the gallery, and n
   const std::string page = read((project / "docs/gallery/README.md").string());
   std::size_t models = 0, pictures = 0;
   std::vector<fs::path> texts;
-  for (const auto& entry : fs::directory_iterator(project / "models")) texts.push_back(entry.path());
+  for (const char* folder : {"models", "models/degenerate"})
+    for (const auto& entry : fs::directory_iterator(project / folder)) texts.push_back(entry.path());
   for (const auto& entry : fs::directory_iterator(project / "models/fields"))  // of fields those that run
     if (contains(read(entry.path().string()), "\nrun ")) texts.push_back(entry.path());
   for (const fs::path& text : texts) {
