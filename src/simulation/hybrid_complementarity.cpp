@@ -190,8 +190,12 @@ void HybridMotion::close_lowest_flights(const std::vector<std::size_t>& touching
   ImpactResult closed = end_of_bounces(impact_problem(pressed, values), v);
   if (pressed.size() < touching.size()) {  // what touches beside them is not pressed through
     const ImpactResult all = simultaneous_impact(impact_problem(touching, values), closed.v, true);
-    if (!all.unsolved) closed.v = all.v;
+    if (!all.unsolved) {
+      closed.v = all.v;
+      closed.loss += all.loss, closed.moving += all.moving;
+    }
   }
+  book_energy(closed);
   v_.assign(closed.v.data(), closed.v.data() + closed.v.size());
 }
 

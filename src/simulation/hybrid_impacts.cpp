@@ -64,10 +64,14 @@ void HybridMotion::note_order(const ImpactProblem& p, const ImpactResult& first,
                   t_, velocities(first.v), velocities(other.v)));
 }
 
-void HybridMotion::record_impulses(const ImpactResult& result) {
+void HybridMotion::book_energy(const ImpactResult& result) {
   record_.books.impacts += result.loss;
   record_.books.moving += result.moving;
   carried_[0] += result.moving - result.loss;
+}
+
+void HybridMotion::record_impulses(const ImpactResult& result) {
+  book_energy(result);
   constexpr std::size_t most_told = 32;
   if (result.impulses.size() <= most_told) {
     for (const Impulse& impulse : result.impulses)

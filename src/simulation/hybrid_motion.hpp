@@ -129,6 +129,8 @@ class HybridMotion final : public Method {
   static ImpactResult last_impact(const ImpactProblem& problem, const Eigen::VectorXd& v);
   ImpactProblem impact_problem(const std::vector<std::size_t>& touching, const ContactValues& values);
   void note_order(const ImpactProblem& problem, const ImpactResult& first, const Eigen::VectorXd& v);
+  /// What impulses take, and what contacts that move give by them.
+  void book_energy(const ImpactResult& result);
   void record_impulses(const ImpactResult& result);
   std::optional<double> accumulation(std::size_t contact, double speed);
   bool slips_may_stop_before(double end, const std::vector<std::size_t>& touching, const ContactValues& values) const;
