@@ -77,3 +77,10 @@ TEST_CASE("a force that begins as a root of time is told from one that is infini
   CHECK(pole.code != 0);
   CHECK(contains(pole.err, "A force or an acceleration is infinite or undefined here"));
 }
+
+TEST_CASE("check tells the time of a start that is not 0") {
+  const Folder folder;
+  const std::string model = folder.write(
+      "late.lag", "system late\nparam m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\nstart at 1 s, x = 1 m\n");
+  CHECK(contains(maup({"check", model}).out, "t = 1 s, x = 1 m"));
+}

@@ -184,6 +184,11 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
   for (const ModelEvent& event : model.experiment.events) words.push_back(event.name);
   line("events", joined_names(words));
   words.clear();
+  if (const Expr t = model.experiment.start_time)
+    words.push_back(
+        fmt::format("{} = {}", system.independent,
+                    in_unit_of(brief(evaluate(in_terms_of_motion(system, {&t, 1})[0], parameter_bindings(system))),
+                               system.independent_dimension)));
   for (const StartValue& start : model.experiment.start) words.push_back(start_text(start, system));
   if (words.size() > 8) words.resize(8), words.push_back("…");
   line("start", joined_names(words));
