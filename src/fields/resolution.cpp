@@ -241,15 +241,21 @@ std::vector<Acting> what_acts(const FieldEquations& equations) {
   return out;
 }
 
+std::string place_text(const FieldSystem& s, const Unseen& found) {
+  std::string out;
+  for (std::size_t i = 0; i < found.place.size(); ++i)
+    out += fmt::format("{}{} = {:.6g}", i ? ", " : "", s.space[i].name, found.place[i]);
+  return out;
+}
+
 /// E0647 where both meshes of an error estimate would pass something by, and their difference would tell nothing of it.
 void refuse(const FieldEquations& equations, const Unseen& found, Span span, const char* of, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
-  std::string place, width;
-  for (std::size_t i = 0; i < found.place.size(); ++i) {
-    place += fmt::format("{}{} = {:.6g}", i ? ", " : "", s.space[i].name, found.place[i]);
+  std::string width;
+  for (std::size_t i = 0; i < found.element.size(); ++i)
     width += fmt::format("{}{:.3g}", i ? " × " : "", found.element[i]);
-  }
-  diagnostics.error("E0647", span, fmt::format("the mesh is too coarse for what {} has at {}", of, place),
+  diagnostics.error("E0647", span,
+                    fmt::format("the mesh is too coarse for what {} has at {}", of, place_text(s, found)),
                     fmt::format("Elements are {} wide (SI units), and what lies between their nodes is not seen by a "
                                 "second mesh either: no value of this run could be trusted.",
                                 width),
@@ -316,24 +322,59 @@ double left_out_of_start(const FieldEquations& equations, const std::vector<int>
   return out;
 }
 
+namespace {
+
+/// What lies between the nodes of a mesh in functions of places.
+class SpaceScan {
+ public:
+  SpaceScan(const FieldEquations& equations, const Borders& borders, int order)
+      : equations_(equations),
+        x_(space_of(equations)),
+        parameters_(*equations.model),
+        rule_(order),
+        mesh_{rule_, borders, 1e-13} {}
+
+  std::optional<Unseen> find(Expr f) const {
+    if (std::none_of(x_.begin(), x_.end(), [&](Expr one) { return stands_in(one, f); })) return std::nullopt;
+    return Scan(f, x_, parameters_.symbols, parameters_.values).find(mesh_);
+  }
+
+  /// Of the density, the dissipation and force densities as they are at t = 0.
+  std::optional<std::pair<Unseen, const char*>> find_in_what_acts() const {
+    Context& context = *equations_.system().context;
+    for (const Acting& f : what_acts(equations_))
+      if (const auto found = find(substitute(f.value, {{context.time(), context.number(0)}})))
+        return std::pair(*found, f.of);
+    return std::nullopt;
+  }
+
+ private:
+  const FieldEquations& equations_;
+  std::vector<Expr> x_;
+  ParameterValues parameters_;
+  Lobatto rule_;
+  Elements mesh_;
+};
+
+}  // namespace
+
 bool refuse_unresolved(const FieldEquations& equations, const Borders& borders, int order, Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
-  Context& context = *s.context;
-  const std::vector<Expr> x = space_of(equations);
-  const ParameterValues parameters(*equations.model);
-  const Lobatto rule(order);
-  const Elements mesh{rule, borders, 1e-13};
-  const auto look = [&](Expr f, Span span, const char* of) {
-    if (std::none_of(x.begin(), x.end(), [&](Expr one) { return stands_in(one, f); })) return false;
-    const auto found = Scan(f, x, parameters.symbols, parameters.values).find(mesh);
-    if (found) refuse(equations, *found, span, of, diagnostics);
-    return found.has_value();
-  };
+  const SpaceScan scan(equations, borders, order);
   for (const FieldStart& start : equations.model->start)
-    if (look(s.expanded(start.value), start.span, "the start")) return true;
-  for (const Acting& f : what_acts(equations))
-    if (look(substitute(f.value, {{context.time(), context.number(0)}}), s.density_span, f.of)) return true;
-  return false;
+    if (const auto found = scan.find(s.expanded(start.value))) {
+      refuse(equations, *found, start.span, "the start", diagnostics);
+      return true;
+    }
+  const auto found = scan.find_in_what_acts();
+  if (found) refuse(equations, found->first, s.density_span, found->second, diagnostics);
+  return found.has_value();
+}
+
+std::optional<std::string> passed_by(const FieldEquations& equations, const Borders& borders, int order) {
+  const auto found = SpaceScan(equations, borders, order).find_in_what_acts();
+  if (!found) return std::nullopt;
+  return fmt::format("{} has at {}", found->second, place_text(equations.system(), found->first));
 }
 
 }  // namespace maupertuis

@@ -2,6 +2,7 @@
 #include <maupertuis/fields.hpp>
 
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace maupertuis {
@@ -19,6 +20,9 @@ Borders even_borders(const FieldEquations& equations, const std::vector<int>& ce
 /// function's size at all pieces. Derivatives of ℒ and 𝒟 by jets are looked at for one set of values of the field.
 /// Cost: some evaluations an element; more where something narrow is.
 bool refuse_unresolved(const FieldEquations& equations, const Borders& borders, int order, Diagnostics& diagnostics);
+
+/// The same of what acts alone, told: "the density has at x = 0.537". Nothing where all is seen.
+std::optional<std::string> passed_by(const FieldEquations& equations, const Borders& borders, int order);
 
 /// How much of a start the polynomials through the nodes leave out, beside its largest value: at some places of each
 /// element that share no pattern with the nodes, of all lines of the start the largest. Cost: some evaluations an

@@ -7,6 +7,7 @@
 
 #include "fields/field_sides.hpp"
 #include "fields/given_fields.hpp"
+#include "fields/resolution.hpp"
 #include "fields/semi_discrete.hpp"
 #include "fields/small_motions.hpp"
 #include "linear_algebra/products.hpp"
@@ -499,6 +500,17 @@ double change(const FieldEquilibrium& before, FieldEquilibrium& now, double roun
   return out;
 }
 
+/// Two sizes of functions agree as well where both pass a load by that lies between their points.
+std::string what_is_passed_by(const FieldEquations& equations, const std::vector<StaticSpace::Along>& along) {
+  constexpr int highest = 20;  // of polynomials through the points of an element
+  Borders borders;
+  int order = highest;
+  for (const StaticSpace::Along& one : along) borders.push_back(one.borders), order = std::min(order, one.degree);
+  const auto passed = passed_by(equations, borders, order);
+  return passed ? fmt::format("The polynomials of the equilibrium pass by what {}: it is too narrow for them.", *passed)
+                : "";
+}
+
 }  // namespace
 
 std::optional<ComputedRest> computed_rest(const FieldEquations& equations, std::string& why) {
@@ -515,6 +527,7 @@ std::optional<ComputedRest> computed_rest(const FieldEquations& equations, std::
   double off = std::numeric_limits<double>::infinity(), off_before = off;
   int failed = 0;
   double rounding = 0;
+  std::vector<StaticSpace::Along> finest;
   for (std::size_t size = 0; off > std::max(close, 2 * rounding); ++size) {
     const std::vector<StaticSpace::Along> along = layout(equations, size);
     if (along.empty()) break;
@@ -530,6 +543,7 @@ std::optional<ComputedRest> computed_rest(const FieldEquations& equations, std::
       out = {}, off = off_before = std::numeric_limits<double>::infinity();
       continue;
     }
+    finest = along;
     out.before = out.finest;
     out.finest = std::make_shared<const RestingFields>(space, c);
     const FieldEquilibrium before = out.values;
@@ -545,6 +559,7 @@ std::optional<ComputedRest> computed_rest(const FieldEquations& equations, std::
       why = "The equilibria of two sizes of functions are far from each other, so that neither is known.";
     return std::nullopt;
   }
+  if (why = what_is_passed_by(equations, finest); !why.empty()) return std::nullopt;
   // Where changes fall slowly, the last is less than what is left: that of a geometric series beyond it.
   const double ratio = std::isfinite(off_before) && off_before > 0 ? std::min(0.8, off / off_before) : 0;
   const double missing = std::max(1.0, 2 * ratio / (1 - ratio));

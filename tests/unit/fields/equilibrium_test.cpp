@@ -116,3 +116,14 @@ TEST_CASE("where there is no equilibrium, none is told") {
                 "start y = 1\n")
             .substr(0, 5) == "E0644");
 }
+
+TEST_CASE("a load that lies between the points of every size of functions is not passed by") {
+  for (const char* width : {"2e4", "2e5"})
+    for (const char* density : {"-1/2 u_x^2", "1/2 u'^2 - 1/2 u_x^2 - 1/4 u^4"}) {
+      const std::string told =
+          refusal("dimensionless\nfield u(x) : number on x = 0 .. 1\ndensity = " + std::string(density) +
+                  " + 1000 u exp(-((x - 0.537)*" + width + ")^2)\nboundary u = 0\nstart u = 0\n");
+      INFO(told);
+      CHECK(told.starts_with("E0644"));
+    }
+}
