@@ -1,6 +1,6 @@
 #pragma once
-#include "json.hpp"
 #include <maupertuis/formula_document.hpp>
+#include "json.hpp"
 #include "open_study.hpp"
 
 #include <maupertuis/field_run.hpp>
@@ -26,14 +26,6 @@ std::optional<FieldRunResult> run_of_fields(Study& study, const SimulationOption
                                             const FieldMotionOptions& kept);
 /// The dispersion relation; empty, and `trouble`, where there is none.
 std::string dispersion_text(Study& study, std::string& trouble);
-/// "   u(l) 1, y 0.3": how coordinates and places move in a mode, the largest value of the field being 1; empty
-/// without.
-std::string shape_of_bodies(const FieldEquations& equations, const FieldModes& modes, std::size_t index);
-/// [{field: [values at places], coordinate: value}], with the places.
-Json shapes_json(const FieldEquations& equations, const FieldModes& modes);
-/// Values of an equilibrium that was computed, its energy, and, where nothing moves, whether it is a minimum.
-std::string equilibrium_text(const FieldEquations& equations, const FieldModes& modes);
-Json equilibrium_json(const FieldEquations& equations, const FieldEquilibrium& found);
 std::string field_run_text(const FieldRunResult& run, const MechanicalSystem& system);
 Json field_run_json(const FieldRunResult& run, const MechanicalSystem& system);
 

@@ -52,6 +52,8 @@ struct FieldEquations {
   std::vector<InterfaceCondition> interfaces;
 
   const FieldSystem& system() const { return model->system; }
+  /// Of a field among those that are varied; their number where it is given.
+  std::size_t varied_index(std::size_t field) const;
   std::size_t variation_of(std::size_t varied_index) const { return system().fields.size() + varied_index; }
 };
 

@@ -151,6 +151,10 @@ void refuse_without_motion(const FieldEquations& equations, Diagnostics& diagnos
 
 }  // namespace
 
+std::size_t FieldEquations::varied_index(std::size_t field) const {
+  return static_cast<std::size_t>(std::find(varied.begin(), varied.end(), field) - varied.begin());
+}
+
 std::optional<FieldEquations> field_equations(std::shared_ptr<const FieldModel> model, Diagnostics& diagnostics) {
   FieldEquations out;
   out.model = model;

@@ -63,10 +63,10 @@ ExprMap FieldRest::values(const FieldEquations& equations, Expr e) const {
   ExprMap out;
   for (const Expr& symbol : s.jets_in(e)) {
     const FieldJet jet = *s.jet_of(symbol);
-    const auto a = std::find(equations.varied.begin(), equations.varied.end(), jet.field) - equations.varied.begin();
-    if (static_cast<std::size_t>(a) == fields.size()) continue;  // given
+    const std::size_t a = equations.varied_index(jet.field);
+    if (a == fields.size()) continue;  // given
     if (computed && jet.time == 0) continue;
-    Expr value = jet.time > 0 ? s.context->number(0) : fields[static_cast<std::size_t>(a)];
+    Expr value = jet.time > 0 ? s.context->number(0) : fields[a];
     for (std::size_t x = 0; x < s.space.size(); ++x)
       for (int k = 0; k < jet.space[x]; ++k) value = differentiate(value, s.space[x].symbol);
     out.emplace(symbol, value);

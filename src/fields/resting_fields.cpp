@@ -10,6 +10,7 @@
 #include "fields/resolution.hpp"
 #include "fields/semi_discrete.hpp"
 #include "fields/small_motions.hpp"
+#include "fields/static_density.hpp"
 #include "linear_algebra/products.hpp"
 
 #include <fmt/format.h>
@@ -26,78 +27,6 @@ namespace maupertuis {
 namespace {
 
 using Side = BoundaryCondition::Side;
-
-/// ℒ at rest with its derivatives.
-struct StaticDensity {
-  struct Slot {
-    std::size_t a = 0;
-    FieldJet jet;
-    Expr symbol;
-  };
-  std::vector<Slot> slots;
-  std::vector<Expr> roots;  // ℒ, then [slots] forces, then [slots × slots] their slopes
-  std::vector<bool> smooth;
-
-  std::string read(const FieldEquations& equations);
-
- private:
-  std::string read_roots(const FieldEquations& equations, Expr density);
-};
-
-std::size_t varied_index(const FieldEquations& equations, std::size_t field) {
-  return static_cast<std::size_t>(std::find(equations.varied.begin(), equations.varied.end(), field) -
-                                  equations.varied.begin());
-}
-
-Expr without_motion(const FieldSystem& s, Expr e) {
-  ExprMap still;
-  for (const Expr& symbol : s.jets_in(e))
-    if (s.jet_of(symbol)->time > 0) still.emplace(symbol, s.context->number(0));
-  return substitute(s.expanded(e), still);
-}
-
-std::string StaticDensity::read(const FieldEquations& equations) {
-  const FieldSystem& s = equations.system();
-  const Expr whole = density_of(equations);
-  if (!whole) return "A given field has no formula.";
-  const Expr density = without_motion(s, whole);
-  smooth.assign(equations.varied.size(), false);
-  const auto take = [&](Expr e) {
-    for (const Expr& symbol : s.jets_in(e)) {
-      const bool known = std::any_of(slots.begin(), slots.end(), [&](const Slot& x) { return x.symbol == symbol; });
-      if (!known) slots.push_back({varied_index(equations, s.jet_of(symbol)->field), *s.jet_of(symbol), symbol});
-    }
-  };
-  take(density);
-  for (const std::size_t f : equations.varied) {
-    FieldJet plain;
-    plain.field = f, plain.space.assign(s.space.size(), 0);
-    take(s.jet_symbol(plain));
-    if (s.forces[f]) take(without_motion(s, with_given_fields(s, s.forces[f])));
-  }
-  for (const Slot& slot : slots) {
-    if (slot.a == equations.varied.size()) return "A given field has no formula.";
-    if (slot.jet.order() > 2) return "Its density holds derivatives above the second.";
-    if (slot.jet.order() == 2) smooth[slot.a] = true;
-  }
-  return read_roots(equations, density);
-}
-
-std::string StaticDensity::read_roots(const FieldEquations& equations, Expr density) {
-  const FieldSystem& s = equations.system();
-  roots = {density};
-  for (const Slot& slot : slots) {
-    Expr force = differentiate(density, slot.symbol);
-    if (const Expr f = s.forces[equations.varied[slot.a]]; f && slot.jet.order() == 0)
-      force = force + without_motion(s, with_given_fields(s, f));
-    roots.push_back(force);
-  }
-  for (std::size_t i = 0; i < slots.size(); ++i)
-    for (const Slot& by : slots) roots.push_back(differentiate(roots[i + 1], by.symbol));
-  for (const Expr& e : roots)
-    if (changes_in_time(s, e)) return "Its coefficients change in time.";
-  return "";
-}
 
 /// Where −∫ℒ has a minimum its second variation is positive; elsewhere, and where a displacement costs nothing, least
 /// squares.
@@ -199,7 +128,7 @@ class Equilibrium {
     for (const EndForce& f : s_.end_forces)
       if (const std::string trouble = add_load(f.jet, f.side, f.value); !trouble.empty()) return trouble;
     for (const BoundaryCondition& b : s_.boundary) {
-      const std::size_t a = varied_index(equations_, b.jet.field);
+      const std::size_t a = equations_.varied_index(b.jet.field);
       if (s_.context->depends_on_time(s_.expanded(b.value).id())) return "Its ends are moved in time.";
       if (b.jet.order() > 0 && !density_.smooth[a]) {
         if (const std::string trouble = add_given_slope(b); !trouble.empty()) return trouble;
@@ -220,7 +149,7 @@ class Equilibrium {
     return "";
   }
   std::string add_load(const FieldJet& jet, Side side, Expr value) {
-    const std::size_t a = varied_index(equations_, jet.field);
+    const std::size_t a = equations_.varied_index(jet.field);
     if (s_.context->depends_on_time(s_.expanded(value).id())) return "A force at its end changes in time.";
     if (jet.order() > 0 && !density_.smooth[a]) return "A moment acts on an end that does not bend.";
     for (const StaticSpace::Held& one :

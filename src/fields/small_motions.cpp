@@ -100,10 +100,6 @@ bool entries_of(const FieldEquations& equations, DensityEntries& out, Diagnostic
   else
     out.rest = rest_of(equations);
   const ExprMap rest = out.rest.values(equations, density);
-  const auto place = [&](std::size_t field) {
-    return static_cast<std::size_t>(std::find(equations.varied.begin(), equations.varied.end(), field) -
-                                    equations.varied.begin());
-  };
   for (const Expr& one : s.jets_in(density))
     for (const Expr& two : s.jets_in(density)) {
       const FieldJet a = *s.jet_of(one), b = *s.jet_of(two);
@@ -112,7 +108,13 @@ bool entries_of(const FieldEquations& equations, DensityEntries& out, Diagnostic
       const Expr value = substitute(second, rest);
       if (value.is_zero()) continue;
       if (changes_in_time(s, value)) return refuse_modes_of(equations, diagnostics, "Its coefficients change in time.");
-      DensityEntry entry{place(a.field), place(b.field), a.space[0], b.space[0], a.time, b.time, value};
+      DensityEntry entry{equations.varied_index(a.field),
+                         equations.varied_index(b.field),
+                         a.space[0],
+                         b.space[0],
+                         a.time,
+                         b.time,
+                         value};
       if (s.space.size() > 1) entry.ya = a.space[1], entry.yb = b.space[1];
       out.list.push_back(entry);
     }

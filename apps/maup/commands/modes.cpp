@@ -1,3 +1,4 @@
+#include "field_modes_text.hpp"
 #include "fields_text.hpp"
 #include "interrupt.hpp"
 #include "modes_text.hpp"
