@@ -46,6 +46,17 @@ double value_at(const ModelText& m, Expr value, const std::vector<double>& q, co
 
 }  // namespace
 
+TEST_CASE("a rod is found whichever of its ends depends on the coordinates of the constraint") {
+  // Both ends move with θ, and the constraint is twice the square of their distance.
+  const ModelText m(
+      "system two\nparam m = 1 kg, a = 0.5 m, l = 0.6 m, g = 9.81 m/s^2\ncoord θ : angle, s : length\n"
+      "point P mass m at (a cos θ, a sin θ)\npoint Q mass m at (a cos θ + s, 2 a sin θ)\ngravity (0, -g)\n"
+      "constraint 2 (s^2 + a^2 sin(θ)^2) = 2 l^2 name rod\n");
+  const Reaction rod = only_reaction(m);
+  CHECK(rod.kind == Reaction::Kind::Tension);
+  CHECK(rod.sentence.find("pulls P and Q together") != std::string::npos);
+}
+
 TEST_CASE("the tension of a pendulum in x and y: m l θ'² + m g cos θ") {
   const ModelText m(cartesian_pendulum);
   const Reaction rod = only_reaction(m);
