@@ -78,10 +78,10 @@ Bindings sample(const Subject& s, int attempt) {
 void lint(const Model& model, const SourceText& source, Diagnostics& diagnostics) {
   if (model.system.coordinates.empty()) return;
   lint_rules::Subject subject(model, source, diagnostics);
-  if (!lint_rules::mass_matrix_rules(subject, lint_rules::unused_coordinates(subject)))
-    lint_rules::quaternion_norms(subject);
+  const bool contested = lint_rules::claims(subject);  // the mass matrix may be another one than is meant
+  const auto unused = lint_rules::unused_coordinates(subject);
+  if (!contested && !lint_rules::mass_matrix_rules(subject, unused)) lint_rules::quaternion_norms(subject);
   lint_rules::values(subject);
-  lint_rules::claims(subject);
   lint_rules::total_derivatives(subject);
   lint_rules::gravity_twice(subject);
   lint_rules::energies_without_velocity(subject);

@@ -26,7 +26,8 @@ struct Subject {
 /// E0406: nothing depends on the coordinate. The coordinates that it named.
 std::vector<bool> unused_coordinates(Subject& s);
 /// E0407, E0408, E0409, E0417: M is singular wherever it is sampled, also on the directions that the constraints leave;
-/// N0428: they make it regular; W0410: M is not positive definite; W0439: M is singular at the start alone. True after an error.
+/// N0428: they make it regular; W0410: M is not positive definite; W0439: M is singular at the start alone. True after
+/// an error.
 bool mass_matrix_rules(Subject& s, const std::vector<bool>& unused);
 /// A frame or body whose quaternion nothing holds at norm 1.
 struct Stretched {
@@ -38,8 +39,9 @@ std::optional<Stretched> stretched_rotation(const Subject& s);
 void values(Subject& s);
 /// W0427: there is one.
 void quaternion_norms(Subject& s);
-/// E0411: `T = …` beside points says something else than the points.
-void claims(Subject& s);
+/// E0411: `T = …` beside points says something else than the points. True where T or L is such a one: then what the
+/// mass matrix lacks is no second mistake.
+bool claims(Subject& s);
 /// W0412: a term of L that is a total time derivative.
 void total_derivatives(Subject& s);
 /// W0413: weight enters by `gravity` and again by V.

@@ -137,7 +137,8 @@ void energies_without_velocity(Subject& s) {
                             "Linear damping is D = 1/2 c x'^2.");
 }
 
-void claims(Subject& s) {
+bool claims(Subject& s) {
+  bool contested = false;
   const char* name[] = {"T", "V", "U", "L", "D"};
   const char* long_name[] = {"kinetic energy", "potential energy", "generalized potential", "Lagrangian",
                              "dissipation function"};
@@ -162,11 +163,13 @@ void claims(Subject& s) {
           test.reason, "");
       continue;
     }
+    contested = contested || c.which == Which::T || c.which == Which::L;
     s.diagnostics.error("E0411", c.span, fmt::format("this is not the {} that {} give", long_name[k], parts),
                         text.empty() ? fmt::format("Beside them `{} = …` is a claim, and it is false.", name[k])
                                      : fmt::format("It differs by {}.", text),
                         fmt::format("Remove the line, correct it, or write `{} += …` for a further part.", name[k]));
   }
+  return contested;
 }
 
 }  // namespace maupertuis::lint_rules
