@@ -89,6 +89,8 @@ std::vector<std::string> Generator::arguments(const std::string& model, Random& 
       has_length = has_length || is_length;
     }
   }
+  // A studio that finds its page serves it until somebody ends it; hostile requests are sent by tests/studio.
+  if (command->name == "studio") out.insert(out.end(), {"--page", "nowhere"});
   if (length && !has_length && !random.one_in(8)) out.insert(out.end(), {"--duration", "0.3s"});
   if (random.one_in(100)) out.push_back(random.of(junk));
   return out;

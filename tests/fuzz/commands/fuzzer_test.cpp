@@ -32,6 +32,7 @@ int pretender(int count, char** words) {
   if (what == "hang")
     for (std::atomic<int> i = 0;; ++i) {
     }
+  if (what == "wait") ::sleep(60);
   if (what == "odd") return std::puts("word"), 77;
   if (what == "silent") return 3;
   if (what == "report") std::fputs("internal error. Please report it\n", stderr);
@@ -52,7 +53,7 @@ int pretender(int count, char** words) {
 std::map<std::string, std::string> told(const std::vector<Input>& inputs, std::uint64_t& counted) {
   std::map<std::string, std::string> out;
   Limits limits;
-  limits.seconds = 0.3;
+  limits.seconds = 0.3, limits.waiting = 1;
   Supervisor supervisor(pretender, limits);
   supervisor.run(
       0, inputs.size(), [&](std::uint64_t i) { return inputs[i]; }, judge,
@@ -66,19 +67,20 @@ std::map<std::string, std::string> told(const std::vector<Input>& inputs, std::u
 
 TEST_CASE("each kind of failure is told, and what follows it still runs") {
   std::vector<Input> inputs;
-  for (const char* what : {"fine", "crash", "abort", "leave", "hang", "odd", "silent", "report", "code", "number",
-                           "file", "escape", "fine", "fine"})
+  for (const char* what : {"fine", "crash", "abort", "leave", "hang", "wait", "odd", "silent", "report", "code",
+                           "number", "file", "escape", "fine", "fine"})
     inputs.push_back({{what}, "system a\n"});
   inputs.push_back({{"json", "--json"}, ""});
   std::uint64_t counted = 0;
   const auto wrong = told(inputs, counted);
   CHECK(counted == inputs.size());
-  CHECK(wrong.size() == 12);
+  CHECK(wrong.size() == 13);
   CHECK_FALSE(wrong.count("fine"));
   CHECK(wrong.at("crash") == "crash: ended by signal 11");
   CHECK(wrong.at("abort").find("internal precondition") != std::string::npos);
   CHECK(wrong.at("leave").find("ended by") != std::string::npos);
   CHECK(wrong.at("hang").find("takes too long") != std::string::npos);
+  CHECK(wrong.at("wait") == "wait: waits, and computes nothing");
   CHECK(wrong.at("odd").find("undocumented exit code 77") != std::string::npos);
   CHECK(wrong.at("silent").find("without a word") != std::string::npos);
   CHECK(wrong.at("report").find("lease report") != std::string::npos);

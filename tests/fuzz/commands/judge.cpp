@@ -113,6 +113,7 @@ std::optional<std::string> failure(const Input& input, const Outcome& outcome, c
   if (has(outcome.err, "internal precondition"))
     return command + ": " + line_with(outcome.err, "internal precondition");
   if (outcome.signal) return command + ": ended by signal " + std::to_string(outcome.signal);
+  if (outcome.waiting) return command + ": waits, and computes nothing";
   if (outcome.too_long && !outcome.interruptible)
     return command + ": takes too long, and does not end when it is asked to";
   if (outcome.too_long && !runs_motions(input)) return command + ": takes too long";

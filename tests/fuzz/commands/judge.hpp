@@ -13,6 +13,7 @@ struct Outcome {
   int code = 0;               // what the command line returned
   int signal = 0;             // that ended it; 0: none
   bool too_long = false;      // more than the limit of processor time
+  bool waiting = false;       // it computed nothing, and did not end: for input, or for somebody who asks
   bool interruptible = true;  // it then ended by itself when it was asked to
   std::string out, err;
   std::map<std::string, std::string> files;  // that it wrote

@@ -162,15 +162,16 @@ void Supervisor::run(std::uint64_t first, std::uint64_t count, const Draw& draw,
     Outcome outcome;
     int status = 0;
     double asked = 0;  // when it was told to end
-    bool stopped = false;
+    bool stopped = false, waiting = false;
     while (waitpid(pid, &status, WNOHANG) == 0) {
       usleep(2000);
       const double now = seconds_of(CLOCK_MONOTONIC);
       if (stop()) kill(pid, SIGKILL), stopped = true;
       const double used = seconds_of(clock) - shared_->processor_begin, passed = now - shared_->clock_begin;
       // A process of the lowest priority on a busy machine waits for the processor, but not for ever.
-      const bool over = used > limits_.seconds || (passed > limits_.waiting && used < idle_part * passed);
-      if (over && asked == 0 && !shared_->failed) kill(pid, SIGTERM), asked = now;
+      const bool idle = passed > limits_.waiting && used < idle_part * passed;
+      if ((idle || used > limits_.seconds) && asked == 0 && !shared_->failed)
+        kill(pid, SIGTERM), asked = now, waiting = idle;
       if (asked != 0 && now - asked > 5) kill(pid, SIGKILL);
     }
     const std::uint64_t at = shared_->at;
@@ -179,6 +180,7 @@ void Supervisor::run(std::uint64_t first, std::uint64_t count, const Draw& draw,
     outcome.code = shared_->code;
     if (asked != 0 && at < last) {
       outcome.too_long = true;
+      outcome.waiting = waiting;
       outcome.interruptible = shared_->interrupted;
     } else if (WIFSIGNALED(status)) {
       outcome.signal = WTERMSIG(status);

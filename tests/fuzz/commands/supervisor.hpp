@@ -6,8 +6,8 @@
 namespace maupertuis::fuzz {
 
 struct Limits {
-  double seconds = 20;   // of processor time, an input
-  double waiting = 120;  // of the clock, for what waits and computes nothing
+  double seconds = 20;  // of processor time, an input
+  double waiting = 60;  // of the clock, for what waits and computes nothing
   std::uint64_t memory = 4ull << 30;
   std::uint64_t inputs_of_process = 20'000;  // then a fresh one: what one input leaves behind cannot hide for long
 };
