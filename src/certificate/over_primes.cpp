@@ -51,7 +51,7 @@ void find_rows(const Questions& questions, const evaluation::Tape& tape, FieldNu
 
 /// False: no point was found modulo this prime within the attempts.
 bool compare_at_points(const Questions& questions, const evaluation::Tape& tape, const evaluation::FieldHints& hints,
-                       int wanted, std::uint64_t& seed, RoutesResult& result, double& smallest_group) {
+                       bool free_roots, int wanted, std::uint64_t& seed, RoutesResult& result, double& smallest_group) {
   const std::size_t n = questions.system.coordinates.size(), orders = orders_needed(tape);
   const bool walked_twice = !questions.unit_quaternions.empty();  // no value is left of the first path
   Values values;
@@ -73,6 +73,7 @@ bool compare_at_points(const Questions& questions, const evaluation::Tape& tape,
             numbers->set_seed(seed);
           else
             numbers.emplace(primes, hints, seed);
+          if (free_roots) numbers->let_roots_be_free();
         }
         mended = false;
         const auto difference = walked_twice ? differences(questions, tape, *numbers, orders,
@@ -101,6 +102,27 @@ bool compare_at_points(const Questions& questions, const evaluation::Tape& tape,
   return found >= wanted;
 }
 
+/// `free_roots`: each root is a number of its own, so that only what agrees says something.
+RoutesResult compare(const Questions& questions, const evaluation::Tape& tape, const evaluation::FieldHints& hints,
+                     bool free_roots, std::uint64_t seed) {
+  RoutesResult result;
+  evaluation::Complexity size = evaluation::complexity(tape, free_roots);
+  const int affordable =
+      static_cast<int>(std::max<double>(points_per_prime, node_budget / static_cast<double>(tape.size())));
+  const int wanted = std::min(evaluation::points_needed(size, points_per_prime), affordable);
+  double smallest_group = 1;
+  for (int prime = 0; prime < 2 && result.complete; ++prime) {
+    result.complete = compare_at_points(questions, tape, hints, free_roots, wanted, seed, result, smallest_group);
+    for (const RouteResult& r : result.routes)
+      if (r.fails) return result;
+  }
+  // Two derivatives of L multiply its degree by at most 8; one more factor is c or q̇.
+  size.degree = 8 * size.degree + 1;
+  size.height = 8 * size.height + 8;
+  if (result.complete) result.error_bound = evaluation::error_bound(size, wanted, smallest_group);
+  return result;
+}
+
 }  // namespace
 
 RoutesResult compare_over_primes(const Questions& questions, std::uint64_t seed) {
@@ -111,21 +133,13 @@ RoutesResult compare_over_primes(const Questions& questions, std::uint64_t seed)
     return result;
   }
   const evaluation::FieldHints hints = evaluation::field_hints(tape);
-  evaluation::Complexity size = evaluation::complexity(tape);
-  const int affordable =
-      static_cast<int>(std::max<double>(points_per_prime, node_budget / static_cast<double>(tape.size())));
-  const int wanted = std::min(evaluation::points_needed(size, points_per_prime), affordable);
-  double smallest_group = 1;
-  for (int prime = 0; prime < 2 && result.complete; ++prime) {
-    result.complete = compare_at_points(questions, tape, hints, wanted, seed, result, smallest_group);
-    for (const RouteResult& r : result.routes)
-      if (r.fails) return result;
-  }
-  // Two derivatives of L multiply its degree by at most 8; one more factor is c or q̇.
-  size.degree = 8 * size.degree + 1;
-  size.height = 8 * size.height + 8;
-  if (result.complete) result.error_bound = evaluation::error_bound(size, wanted, smallest_group);
-  return result;
+  result = compare(questions, tape, hints, false, seed);
+  const auto fails = [](const RoutesResult& r) {
+    return std::any_of(r.routes.begin(), r.routes.end(), [](const RouteResult& route) { return route.fails; });
+  };
+  if (result.complete || fails(result)) return result;
+  const RoutesResult free = compare(questions, tape, hints, true, seed);
+  return free.complete && !fails(free) ? free : result;
 }
 
 }  // namespace maupertuis::certification

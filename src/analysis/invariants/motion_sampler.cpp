@@ -192,6 +192,14 @@ MotionSampler::Sample MotionSampler::collect() const {
 }
 
 std::optional<MotionSampler::Sample> MotionSampler::draw(const ParameterRoots& roots) {
+  auto sample = attempt(roots);
+  if (sample || !lost_in_roots_) return sample;
+  numbers_->let_roots_be_free();
+  return attempt(roots);
+}
+
+std::optional<MotionSampler::Sample> MotionSampler::attempt(const ParameterRoots& roots) {
+  lost_in_roots_ = false;
   constexpr int attempts = 400;
   int mends = evaluation::mends_allowed(*tape_), unsolved = 0;
   bool mended = false, solved = false;  // solved: some velocities and accelerations were given values
@@ -231,6 +239,7 @@ std::optional<MotionSampler::Sample> MotionSampler::draw(const ParameterRoots& r
                stale_->mend(*numbers_, redraw);
     }
   }
+  lost_in_roots_ = unsolved < 8;
   return std::nullopt;
 }
 

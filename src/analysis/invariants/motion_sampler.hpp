@@ -56,7 +56,8 @@ class MotionSampler {
   ParameterRoots draw_parameters();
   /// Such that a point can be drawn; nothing after some attempts: roots of parameters alone may have no value.
   std::optional<ParameterRoots> usable_parameters();
-  /// Nothing where no point was found at which all roots exist, or where the accelerations are not determined.
+  /// Where no point is found at which all roots exist, roots are numbers of their own from then on. Nothing where the
+  /// accelerations are not determined.
   std::optional<Sample> draw(const ParameterRoots& roots);
   /// Whether accelerations were not determined at the points that were met.
   bool singular() const { return singular_; }
@@ -70,10 +71,12 @@ class MotionSampler {
   bool bind_velocities();
   bool bind_accelerations();
   Sample collect() const;
+  std::optional<Sample> attempt(const ParameterRoots& roots);
 
   std::shared_ptr<const MechanicalSystem> system_;
   std::size_t n_, m_, functions_;
   bool with_rates_, singular_ = false;
+  bool lost_in_roots_ = false;  // the last point was given up, for roots of what is negative
   // The first root of A, a₀, and with rates of M, h, b and dB/dt; the functions themselves come first.
   std::size_t constraint_ = 0, velocity_ = 0, mass_ = 0, bias_ = 0, acceleration_ = 0, rates_ = 0;
   std::vector<Expr> parameters_;

@@ -93,7 +93,7 @@ double error_bound(const Complexity& c, int points, double smallest_group) {
   return std::max(one_prime * one_prime, 1e-300);
 }
 
-Complexity complexity(const Tape& tape) {
+Complexity complexity(const Tape& tape, bool free_roots) {
   Complexity result;
   std::vector<Fraction> f(tape.size()), terms;
   std::unordered_set<Position> bases_of_symbolic_powers, bases_of_roots;
@@ -122,6 +122,10 @@ Complexity complexity(const Tape& tape) {
           f[at] = {1, 1, 0};
           bases_of_symbolic_powers.insert(arguments[0]);
           result.claimable &= bases_of_symbolic_powers.size() == 1;
+          break;
+        }
+        if (free_roots && !exponent.number().is_integer()) {
+          f[at] = product(power(f[arguments[0]], std::floor(exponent.number().to_double())), {1, 0, 1});
           break;
         }
         f[at] = power(f[arguments[0]], exponent.number().to_double());

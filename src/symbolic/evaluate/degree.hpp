@@ -11,7 +11,8 @@ struct Complexity {
   int switches = 0;       // distinct signs asked for
   bool claimable = true;  // false: symbolic exponents of several bases, whose images are not proved independent
 };
-Complexity complexity(const Tape& tape);
+/// `free_roots`: of the image in which roots are numbers of their own (FieldNumbers::let_roots_be_free).
+Complexity complexity(const Tape& tape, bool free_roots = false);
 
 /// Points per prime so that each combination of the signs that switches ask for is likely to come up.
 int points_needed(const Complexity& c, int wanted);

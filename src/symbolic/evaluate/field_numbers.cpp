@@ -13,6 +13,7 @@ enum : std::uint64_t {
   key_exponent = 0x657870,
   key_log = 0x6c6f67,
   key_pi = 0x7069,
+  key_root = 0x726f6f74,
 };
 
 }  // namespace
@@ -93,6 +94,17 @@ std::uint64_t FieldNumbers::residue_of(const Rational& c, const PrimeField& grou
 }
 std::uint64_t FieldNumbers::exponent_of(const Rational& c) const { return residue_of(c, exponents_); }
 
+FieldNumbers::Value FieldNumbers::free_power(Value base, const Rational& exponent) const {
+  if (base == 0) throw Redraw{};
+  const auto parts = exponent.small();
+  std::int64_t whole = parts ? parts->numerator / parts->denominator : 0;
+  if (parts && parts->numerator < 0) --whole;  // no integer: it is not a multiple of its denominator
+  const Value fraction = field_.from(exponent - Rational(whole)),
+              integer = whole < 0 ? field_.power(field_.inverse(base), static_cast<std::uint64_t>(-whole))
+                                  : field_.power(base, static_cast<std::uint64_t>(whole));
+  return field_.multiply(integer, random(mix(key_root ^ fraction), base));
+}
+
 /// What a term c·rest is the multiple of, as a number that names it: its value divided by c.
 FieldNumbers::Value FieldNumbers::term_key(const Tape& tape, const TermView& term,
                                            const std::vector<Value>& values) const {
@@ -125,6 +137,7 @@ FieldNumbers::Value FieldNumbers::power(const Tape& tape, Position at, const std
       return field_.power(values[base], static_cast<std::uint64_t>(*n));
     }
   }
+  if (number && free_roots_ && tape.kind(base) != Kind::Number) return free_power(values[base], *number);
   if (!has_sign(base, values[base], 1)) throw Redraw{false, at};
   return field_.power(values[base], number ? exponent_of(*number) : exponent_of(tape, exponent, values));
 }

@@ -59,6 +59,10 @@ class FieldNumbers {
   /// Another value for one symbol, such that most signs that were met before stay as they are: many roots cost a few
   /// draws each and not 2^roots. Which symbol; an empty handle where none stands below the root.
   Expr mend(const Redraw& redraw);
+  /// From now on x^c with c = n + f, 0 < f < 1, is x^n times a random number that depends on the values of x and f
+  /// alone, whatever the sign of x. Fewer identities hold then ((x^f)² is no power of x any more), none that is false;
+  /// for formulas with so many roots that no point is found at which all of them are defined, as of many bodies.
+  void let_roots_be_free() { free_roots_ = true; }
   /// To be told where a kind of numbers derived from this one gives a symbol another value within one point.
   void symbols_changed() {
     angles_.clear();
@@ -89,6 +93,7 @@ class FieldNumbers {
   bool has_sign(Position argument, Value value, int sign) const;
   Value power(const Tape& tape, Position at, const std::vector<Value>& values);
   Value positive_power(Value base, std::uint64_t exponent) const;
+  Value free_power(Value base, const Rational& exponent) const;
   Value positive(Value a) const;
   std::uint64_t exponent_of(const Rational& c) const;
   std::uint64_t exponent_of(const Tape& tape, Position at, const std::vector<Value>& values);
@@ -115,6 +120,7 @@ class FieldNumbers {
   PrimeTriple primes_;
   const FieldHints& hints_;
   std::uint64_t seed_;
+  bool free_roots_ = false;
   Value generator_ = 0;  // of the positive numbers
   Angle turn_{};         // of the rotations of order r
   Angle root_{};         // rotation by 2π/m

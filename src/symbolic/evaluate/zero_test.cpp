@@ -22,8 +22,10 @@ struct FieldResult {
   double smallest_group = 1;
 };
 
-FieldResult test_over_primes(const Tape& tape, const FieldHints& hints, int points_per_prime, std::uint64_t seed,
-                             const Interrupt& interrupt) {
+enum class Roots { Known, Free };
+
+FieldResult test_over_primes(const Tape& tape, const FieldHints& hints, Roots roots, int points_per_prime,
+                             std::uint64_t seed, const Interrupt& interrupt) {
   FieldResult result;
   std::vector<FieldNumbers::Value> values;
   for (int prime = 0; prime < 2; ++prime) {
@@ -42,6 +44,7 @@ FieldResult test_over_primes(const Tape& tape, const FieldHints& hints, int poin
             seed = mix(seed);
             stale.all();
             numbers ? numbers->set_seed(seed) : static_cast<void>(numbers.emplace(primes, hints, seed));
+            if (roots == Roots::Free) numbers->let_roots_be_free();
           }
           mended = false;
           run(tape, *numbers, values, std::ref(stale));
@@ -97,9 +100,14 @@ ZeroTest zero_test(std::span<const Expr> differences, const ZeroTestOptions& opt
 
   const Tape tape(flatten_arguments(roots));
   const FieldHints hints = field_hints(tape);
-  const Complexity size = complexity(tape);
+  Complexity size = complexity(tape);
   const int points = points_needed(size, options.points);
-  const FieldResult field = test_over_primes(tape, hints, points, options.seed, interrupt_of(roots.front().context()));
+  const Interrupt interrupt = interrupt_of(roots.front().context());
+  FieldResult field = test_over_primes(tape, hints, Roots::Known, points, options.seed, interrupt);
+  if (field.outcome == FieldResult::Outcome::NoPoint && size.radicals > 0) {
+    const FieldResult free = test_over_primes(tape, hints, Roots::Free, points, options.seed, interrupt);
+    if (free.outcome == FieldResult::Outcome::AllZero) field = free, size = complexity(tape, true);
+  }
   if (field.outcome == FieldResult::Outcome::AllZero) {
     test.verdict = Verdict::Zero;
     test.points = field.points;

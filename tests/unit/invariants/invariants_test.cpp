@@ -153,6 +153,24 @@ V = -k/norm(A - B)
   CHECK(f.count("Galilei boost") == 3);
 }
 
+TEST_CASE("twelve bodies in a plane: no random point has a root for each of their 66 distances") {
+  std::string model = "param k = 1\n";
+  for (int i = 1; i <= 12; ++i) {
+    const std::string n = std::to_string(i);
+    model += "param m" + n + " = " + n + "/10\ncoord x" + n + ", y" + n + " : number\npoint P" + n + " mass m" + n +
+             " at (x" + n + ", y" + n + ")\n";
+    for (int j = 1; j < i; ++j)
+      model += "V += -k m" + n + " m" + std::to_string(j) + "/norm(P" + n + " - P" + std::to_string(j) + ")\n";
+  }
+  const Found f(model);
+  CHECK(f.result.integrals.size() == 6);
+  CHECK(f.count("energy") == 1);
+  CHECK(f.count("total momentum") == 2);
+  CHECK(f.count("total angular momentum") == 1);
+  CHECK(f.count("Galilei boost") == 2);
+  for (const ConservedFunction& i : f.result.integrals) CHECK(i.certificate.error_bound < 1e-3);
+}
+
 TEST_CASE("up to gauge: the momenta that a homogeneous magnetic field leaves over") {
   const Found f(
       "param m = 1, q = 1, B = 1\ncoord x, y, z : number\nT = 1/2 m (x'^2 + y'^2 + z'^2)\nU = -1/2 q B (x y' - y "
