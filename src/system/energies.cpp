@@ -118,7 +118,7 @@ void spring(Elaboration& e, const syntax::SpringStatement& s, Span span) {
   const bool refused = refuse_velocity(e, k, *s.stiffness, "the stiffness of a spring") ||
                        (s.length && refuse_velocity(e, l0, *s.length, "the rest length of a spring"));
   if (!r || refused) return;
-  const Expr square = dot_of(*r, *r);
+  const Expr square = square_of(*r);
   const Expr stretch = l0.scalar().is_zero() ? square : pow(sqrt(square) - l0.scalar(), Rational(2));
   e.system().potential.push_back(
       {Rational(1, 2) * (k.scalar() * stretch), "spring " + pair_name(e, s.from, s.to), span});
@@ -163,8 +163,9 @@ void damper(Elaboration& e, const syntax::DamperStatement& s, Span span) {
   if (!r || refuse_velocity_in_coefficient(e, c, *s.coefficient)) return;
   ExprVector rates;
   for (const Expr& component : *r) rates.push_back(e.context.time_derivative(component));
-  const Expr square = keeps_direction(*r, rates) ? dot_of(rates, rates)
-                                                 : pow(e.context.time_derivative(sqrt(dot_of(*r, *r))), Rational(2));
+  const Expr length = sqrt(square_of(*r));
+  const Expr rate = e.context.time_derivative(length.is(maupertuis::Kind::Abs) ? length[0] : length);
+  const Expr square = keeps_direction(*r, rates) ? dot_of(rates, rates) : pow(rate, Rational(2));
   e.system().dissipation.push_back(
       {Rational(1, 2) * (c.scalar() * square), "damper " + pair_name(e, s.from, s.to), span});
 }

@@ -151,7 +151,9 @@ Value of_vectors(Elaboration& e, const Expression& x, const std::vector<Value>& 
   }
   if (x.text == "dot") return dot_product(e, arguments[0], arguments[1], x);
   if (x.text == "cross") return cross_product(e, arguments[0], arguments[1], x);
-  return square_root(e, x, dot_product(e, arguments[0], arguments[0], x));
+  Value square = dot_product(e, arguments[0], arguments[0], x);
+  if (!square.poisoned) square.parts = {square_of(arguments[0].parts)};
+  return square_root(e, x, square);
 }
 
 }  // namespace

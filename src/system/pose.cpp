@@ -1,5 +1,9 @@
 #include "system/pose.hpp"
 
+#include <maupertuis/transform.hpp>
+
+#include <algorithm>
+
 namespace maupertuis::elaboration {
 namespace {
 
@@ -93,6 +97,17 @@ Expr dot_of(const ExprVector& a, const ExprVector& b) {
   ExprVector terms;
   for (std::size_t i = 0; i < a.size(); ++i) terms.push_back(a[i] * b[i]);
   return sum_of(terms, a.front().context());
+}
+
+Expr square_of(const ExprVector& v) {
+  constexpr std::size_t most_nodes = 400;
+  const Expr square = dot_of(v, v);
+  const auto nodes = topological_order({&square, 1});
+  const bool turns = std::any_of(nodes.begin(), nodes.end(),
+                                 [](Expr e) { return e.is(maupertuis::Kind::Sin) || e.is(maupertuis::Kind::Cos); });
+  if (!turns || nodes.size() > most_nodes) return square;
+  const ReadableForm form = readable(square, {});
+  return form.intermediates.empty() && !form.value.is(maupertuis::Kind::Sum) ? form.value : square;
 }
 
 ExprVector cross_of(const ExprVector& a, const ExprVector& b) {

@@ -40,6 +40,9 @@ ExprMatrix matrix_product(const ExprMatrix& a, const ExprMatrix& b);
 ExprVector vector_sum(const ExprVector& a, const ExprVector& b);
 ExprVector scaled(Expr s, const ExprVector& v);
 Expr dot_of(const ExprVector& a, const ExprVector& b);
+/// v·v, where sines and cosines of it add up to one product as that product: r² for r (sin θ, −cos θ). Sums stay as
+/// they are, since other forms of them lose digits where v is short.
+Expr square_of(const ExprVector& v);
 ExprVector cross_of(const ExprVector& a, const ExprVector& b);  // [3]
 
 }  // namespace maupertuis::elaboration

@@ -109,6 +109,20 @@ void gather_factor(const Expr& factor, std::vector<Entry>& entries, Rational& co
   entries.push_back({power.base.id(), std::move(power.exponent)});
 }
 
+/// sign(x) |x|^n = x |x|^(n−1) for odd n: the places of the two factors.
+std::optional<std::pair<std::size_t, std::size_t>> sign_beside_size(Context* context, std::span<const NodeId> factors) {
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    const Expr sign(context, factors[i]);
+    if (!sign.is(Kind::Sign)) continue;
+    for (std::size_t k = 0; k < factors.size(); ++k) {
+      const PowerOf size = split_power(Expr(context, factors[k]));
+      const auto exponent = size.exponent.as_integer();
+      if (size.base.is(Kind::Abs) && size.base[0] == sign[0] && exponent && *exponent % 2 != 0) return {{i, k}};
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Expr Context::product(std::span<const Expr> factors) {
@@ -131,9 +145,15 @@ Expr Context::product(std::span<const Expr> factors) {
     regroup |= factor.is(Kind::Product) || split_power(factor).base != base;
     arguments.push_back(factor.id());
   }
-  if (regroup) {
+  const auto sign = sign_beside_size(this, arguments);
+  if (regroup || sign) {
     std::vector<Expr> again{number(coefficient)};
     for (const NodeId id : arguments) again.emplace_back(this, id);
+    if (sign) {
+      const Expr x = again[sign->first + 1][0], size = again[sign->second + 1];
+      again[sign->first + 1] = x;
+      again[sign->second + 1] = size.is(Kind::Abs) ? number(1) : power(apply(Kind::Abs, x), size[1] - number(1));
+    }
     return product(again);
   }
   if (coefficient.is_zero() || arguments.empty()) return number(coefficient);

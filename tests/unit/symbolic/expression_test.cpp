@@ -40,6 +40,18 @@ TEST_CASE_FIXTURE(Fixture, "roots keep the sign") {
   CHECK(sqrt(c.number(2)) * sqrt(c.number(2)) == c.number(2));
 }
 
+TEST_CASE_FIXTURE(Fixture, "a sign times the size is the number itself") {
+  const Expr size = apply(Kind::Abs, x), sign = apply(Kind::Sign, x);
+  CHECK(sign * size == x);
+  CHECK(m * size * sign * y == m * x * y);
+  CHECK(sign * pow(size, Rational(3)) == pow(x, Rational(3)));
+  CHECK(sign * pow(size, Rational(-1)) == pow(x, Rational(-1)));
+  CHECK(sign * size * x == pow(x, Rational(2)));
+  CHECK(sign * apply(Kind::Abs, y) != y);
+  CHECK((sign * sqrt(size)).size() == 2);  // no whole power
+  CHECK((sign * sign).is(Kind::Power));    // 0 at 0
+}
+
 TEST_CASE_FIXTURE(Fixture, "parity of functions") {
   CHECK(sin(-x) == -sin(x));
   CHECK(cos(-x) == cos(x));

@@ -48,6 +48,28 @@ TEST_CASE("springs with and without a rest length, torsion springs, dampers, gra
   CHECK(value(e.system().dissipation_function(), at) == Approx(0.5 * 0.6 * stretch_rate * stretch_rate));
 }
 
+TEST_CASE("lengths in polar coordinates are written without sines, and sums of squares stay sums") {
+  const std::string model =
+      "param m = 2 kg, k = 3 N/m, c = 0.6 N s/m, l = 0.5 m, b = 1 N m^2\ncoord r, z : length, φ, θ : angle\n";
+  for (const char* place : {"r (sin φ cos θ, sin φ sin θ, cos φ)", "(r cos φ, r sin φ, 0)"}) {
+    const Elaborated e(model + "point P mass m at " + place +
+                       "\nspring O - P stiffness k length l\ndamper O - P coefficient c\nV += -b/norm(P - O)\n");
+    const Expr potential = e.system().potential_energy(), dissipation = e.system().dissipation_function();
+    for (const Expr& node : topological_order(std::array{potential, dissipation}))
+      CHECK_FALSE((node.is(Kind::Sin) || node.is(Kind::Cos)));
+    for (const double r : {0.7, -0.7}) {
+      const auto at = e.at({r, 0, 0.3, 1.1}, {0.2, 0, 0.5, -0.4});
+      CHECK(value(potential, at) == Approx(0.5 * 3 * 0.04 - 1 / 0.7));
+      CHECK(value(dissipation, at) == Approx(0.5 * 0.6 * 0.04));
+    }
+  }
+  // (r cos φ)² + (r sin φ)² + z² would be r² + z²; (r cos φ − z)² + … loses digits where it is multiplied out.
+  const Elaborated near(model + "point P mass m at (r cos φ - z, r sin φ, 0)\nspring O - P stiffness k length l\n");
+  const double z = 1 + 1e-9;
+  CHECK(value(near.system().potential_energy(), near.at({1, z, 0, 0}, {0, 0, 0, 0})) ==
+        Approx(0.5 * 3 * std::pow(1e-9 - 0.5, 2)).epsilon(1e-14));
+}
+
 TEST_CASE("a damper between ends on one line is 1/2 c u'^2 wherever they are, where they meet too") {
   const std::string model = "param m = 2 kg, c = 0.6 N s/m, α = 30 deg\ncoord x : length\n";
   for (const char* place : {"(x, 0)", "(x cos α, -x sin α)", "(-x, 0)"}) {
