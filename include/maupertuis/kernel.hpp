@@ -65,6 +65,9 @@ class Kernel {
   /// The coordinate's name, for messages.
   const std::string& coordinate_name(std::size_t index) const;
   const std::string& constraint_name(std::size_t index) const;
+  /// Of one motion, from which on compiling the code of a stage takes less time than it saves beside the interpreter,
+  /// on the vectors that are used here.
+  double steps_that_repay_code() const;
   /// One line an instruction: `maup derive --emit program`.
   std::string print() const;
 

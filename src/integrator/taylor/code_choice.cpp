@@ -19,13 +19,14 @@ struct EnoughSteps {
 
 EnoughSteps enough_for(const Kernel& kernel) {
   constexpr double written_out_soon = 3'500;  // an unknown
-  constexpr double a_stage = 20'000, an_expansion = 200'000, slow_expansion = 1'000'000, usual_size = 8;
+  constexpr double an_expansion = 200'000, slow_expansion = 1'000'000, usual_size = 8;
   constexpr std::size_t largest_written_out = 16;
   const std::size_t unknowns = kernel.freedoms() + kernel.constraints();
   const auto count = static_cast<double>(unknowns);
+  const double a_stage = kernel.steps_that_repay_code();
   if (is_written_out_soon(kernel)) return {a_stage, written_out_soon * count};
   const bool is_slow_to_compile = count > usual_size && unknowns <= largest_written_out;
-  return {a_stage / std::max(1.0, count / usual_size), is_slow_to_compile ? slow_expansion : an_expansion};
+  return {a_stage, is_slow_to_compile ? slow_expansion : an_expansion};
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "kernel/program/lowering.hpp"
+#include "kernel/program/processor.hpp"
 #include "kernel/program/program.hpp"
 #include "kernel/program/winding.hpp"
 
@@ -89,6 +90,15 @@ std::span<const SwitchFunction> Kernel::switches() const { return program_->swit
 const Winding& winding(const Kernel& kernel) { return kernel.program().winding; }
 const std::string& Kernel::coordinate_name(std::size_t index) const { return program_->coordinate_names.at(index); }
 const std::string& Kernel::constraint_name(std::size_t index) const { return program_->constraint_names.at(index); }
+/// Code saves about the same time with each instruction of each step, and takes a time to compile that grows with their
+/// number, beside what LLVM takes to begin (docs/design/kernel_speed.md, "Default runs").
+double Kernel::steps_that_repay_code() const {
+  constexpr double to_begin = 20e-3, to_compile = 0.14e-3;  // s, and s an instruction
+  const double saved = vector_instructions() == VectorInstructions::Avx512 ? 22e-9 : 105e-9;
+  const auto instructions = static_cast<double>(std::max<std::size_t>(1, program_->instructions.size()));
+  return (to_begin / instructions + to_compile) / saved;
+}
+
 std::string Kernel::print() const { return maupertuis::print(*program_); }
 
 }  // namespace maupertuis
