@@ -40,9 +40,11 @@ std::string Namer::total() const {
 }
 
 Naming Namer::name(Expr integral) const {
-  for (const Fit& fit : {fit_points(integral, rows_, ansatz_, seed_), fit_coordinates(integral, rows_, seed_),
-                         fit_leading_part(integral, rows_, ansatz_, seed_)})
-    if (!fit.terms.empty()) return of_fit(fit, integral);
+  if (auto energy = as_energy(integral)) return *energy;
+  if (const Fit fit = fit_points(integral, rows_, ansatz_, seed_); !fit.terms.empty()) return of_fit(fit, integral);
+  if (const Fit fit = fit_coordinates(integral, rows_, seed_); !fit.terms.empty()) return of_fit(fit, integral);
+  if (const Fit fit = fit_leading_part(integral, rows_, ansatz_, seed_); !fit.terms.empty())
+    return of_fit(fit, integral);
   if (const auto naming = of_relative_rotation(integral)) return *naming;
   Naming naming{"", "", integral, 9};
   if (is_square_of_angular_momentum(integral)) naming.name = "square of the angular momentum";
@@ -54,6 +56,15 @@ Naming Namer::of_fit(const Fit& fit, Expr integral) const {
                           &Namer::of_translation, &Namer::of_boost, &Namer::of_coordinates})
     if (auto naming = (this->*rule)(fit, integral)) return *naming;
   return {"", "", integral, 9};
+}
+
+/// ±h_E = ±(T + V), without the fit of a symmetry: that of a hundred coordinates takes seconds.
+std::optional<Naming> Namer::as_energy(Expr integral) const {
+  if (!energy_is_t_plus_v_ || equations_.system->independent != "t") return std::nullopt;
+  for (const int sign : {1, -1})
+    if (const Expr scaled = Rational(sign) * integral; vanishes_identically(scaled - ansatz_.energy))
+      return Naming{"energy", "translation in time", scaled, EnergyRank};
+  return std::nullopt;
 }
 
 /// −ξ₀ h_E + …: the energy, or Jacobi's integral where it is not T + V or another transformation goes with it.

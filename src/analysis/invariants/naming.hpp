@@ -25,6 +25,7 @@ class Namer {
  private:
   using Fit = SymmetryFit;
   Naming of_fit(const Fit& fit, Expr integral) const;
+  std::optional<Naming> as_energy(Expr integral) const;
   std::optional<Naming> of_time(const Fit& fit, Expr integral) const;
   std::optional<Naming> of_scaling(const Fit& fit, Expr integral) const;
   std::optional<Naming> of_rotation(const Fit& fit, Expr integral) const;
