@@ -1,5 +1,6 @@
 # Thin: each rule calls a script of scripts/, which installs what is missing, configures by a CMake preset and builds.
-.PHONY: demo build test test-long bench instructions sanitize fuzz mutants steep-models gallery format site vscode studio wasm wasm-test arm install package clean
+.PHONY: demo build test test-long bench instructions sanitize fuzz mutants steep-models gallery \
+  format site vscode studio wasm wasm-test arm install package clean
 
 demo:     # check, derive, simulate and report models/double_pendulum.lag
 	@scripts/demo

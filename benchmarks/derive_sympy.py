@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """derive_sympy.py MAUP: SymPy's LagrangesMethod beside `maup derive`, for chains of 2 and 4 pendulums.
 
-Prints JSON. Both derivations are asserted first: SymPy's equations against the closed form at a point, maup's by its certificate."""
+Prints JSON. Both derivations are asserted first: SymPy's equations against the closed form at a point, maup's
+by its certificate."""
 import json, math, statistics, subprocess, sys, tempfile, time
 
 import sympy
@@ -41,8 +42,10 @@ def check(links):
 
 def chain_text(links):
     names = [f"θ{i}" for i in range(1, links + 1)]
-    points = [f"point P{i} mass m at {f'P{i - 1} + ' if i > 1 else ''}l (sin θ{i}, -cos θ{i})" for i in range(1, links + 1)]
-    return "\n".join(["system chain", "param m = 1 kg, l = 1 m, g = 9.81 m/s^2", f"coord {', '.join(names)} : angle", *points,
+    points = [f"point P{i} mass m at {f'P{i - 1} + ' if i > 1 else ''}l (sin θ{i}, -cos θ{i})"
+              for i in range(1, links + 1)]
+    return "\n".join(["system chain", "param m = 1 kg, l = 1 m, g = 9.81 m/s^2", f"coord {', '.join(names)} : angle",
+                      *points,
                       "gravity (0, -g)", "start " + ", ".join(f"{n} = 2 rad" for n in names), "run 1 s", ""])
 
 
@@ -70,7 +73,8 @@ def main():
                 derive(links)
 
             rows.append({"links": links, "sympy_seconds": median_seconds(3, clear_and_derive),
-                         "maup_seconds": median_seconds(11, lambda: subprocess.run(command, capture_output=True, check=True))})
+                         "maup_seconds": median_seconds(
+                             11, lambda: subprocess.run(command, capture_output=True, check=True))})
     print(json.dumps({"version": sympy.__version__, "rows": rows}))
 
 

@@ -1,19 +1,21 @@
 #!/usr/bin/env python3
 """instructions.py WORKLOAD COUNTS [--keep]: instructions a step, a call, a derivation, counted by valgrind's callgrind.
 
-Each count is the difference of two runs, divided by the difference of their turns, so that start-up and set-up drop out. Valgrind knows
-no AVX-512, and not all that compilers make of AVX2: plain code is counted. Counts depend on the compiler, and are compared for the same one alone."""
+Each count is the difference of two runs, divided by the difference of their turns, so that start-up and set-up drop
+out. Valgrind knows no AVX-512, and not all that compilers make of AVX2: plain code is counted. Counts depend on the
+compiler, and are compared for the same one alone."""
 import json, os, re, shutil, subprocess, sys, tempfile
 from pathlib import Path
 
 TOLERANCE = 0.03
-WORK = [("steps", 2, 50, 250), ("steps", 8, 50, 250), ("steps", 100, 5, 15), ("forward", 2, 1000, 5000), ("forward", 100, 100, 500),
-        ("derive", 8, 1, 3)]
+WORK = [("steps", 2, 50, 250), ("steps", 8, 50, 250), ("steps", 100, 5, 15), ("forward", 2, 1000, 5000),
+        ("forward", 100, 100, 500), ("derive", 8, 1, 3)]
 
 
 def instructions(workload, what, links, count):
     with tempfile.TemporaryDirectory() as folder:
-        run = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/out", workload, what, str(links), str(count)],
+        run = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/out",
+                             workload, what, str(links), str(count)],
                              capture_output=True, text=True, env=os.environ | {"MAUPERTUIS_INSTRUCTIONS": "none"})
     found = re.search(r"Collected : (\d+)", run.stderr)
     if run.returncode != 0 or not found:

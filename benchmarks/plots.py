@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""plots.py MEASURED FOLDER: step_cost.svg, forward_dynamics.svg and work_precision.svg from what scripts/bench has measured."""
+"""plots.py MEASURED FOLDER: step_cost.svg, forward_dynamics.svg and work_precision.svg from what
+scripts/bench has measured."""
 import json, math, sys
 from pathlib import Path
 
@@ -31,10 +32,12 @@ def frame(x, y, x_label, y_label):
     right, bottom = WIDTH - RIGHT, HEIGHT - BOTTOM
     parts = [f'<path d="M{LEFT} {TOP}V{bottom}H{right}" fill="none" stroke="#333"/>']
     for value, label in x.ticks:
-        parts.append(f'<path d="M{x.at(value):.1f} {bottom}v5" stroke="#333"/><path d="M{x.at(value):.1f} {bottom}V{TOP}" stroke="#e6e6e6"/>')
+        parts.append(f'<path d="M{x.at(value):.1f} {bottom}v5" stroke="#333"/>'
+                     f'<path d="M{x.at(value):.1f} {bottom}V{TOP}" stroke="#e6e6e6"/>')
         parts.append(text(x.at(value), bottom + 19, label, 'text-anchor="middle"'))
     for value, label in y.ticks:
-        parts.append(f'<path d="M{LEFT} {y.at(value):.1f}h-5" stroke="#333"/><path d="M{LEFT} {y.at(value):.1f}H{right}" stroke="#e6e6e6"/>')
+        parts.append(f'<path d="M{LEFT} {y.at(value):.1f}h-5" stroke="#333"/>'
+                     f'<path d="M{LEFT} {y.at(value):.1f}H{right}" stroke="#e6e6e6"/>')
         parts.append(text(LEFT - 9, y.at(value) + 4, label, 'text-anchor="end"'))
     parts.append(text((LEFT + right) / 2, HEIGHT - 14, x_label, 'text-anchor="middle"'))
     middle = (TOP + bottom) / 2
@@ -54,7 +57,8 @@ def spread(places, distance=16):
 def crosses(curve, left, right, top, bottom):
     """Whether a polyline passes through a box."""
     for (a, b), (c, d) in zip(curve, curve[1:]):
-        if any(left <= a + s * (c - a) <= right and top <= b + s * (d - b) <= bottom for s in (i / 20 for i in range(21))):
+        if any(left <= a + s * (c - a) <= right and top <= b + s * (d - b) <= bottom
+               for s in (i / 20 for i in range(21))):
             return True
     return False
 
@@ -67,7 +71,8 @@ def label_of_early_end(curves, place, label):
 
 
 def draw(path, series, x_label, y_label, x_ticks=None):
-    """series: [(label, [(x, y)])]; each is labelled beside the frame at the height of its last point, at the end itself where the curve ends early."""
+    """series: [(label, [(x, y)])]; each is labelled beside the frame at the height of its last point, at the end itself
+    where the curve ends early."""
     series = [(label, sorted(points)) for label, points in series if points]
     if not series:
         return
@@ -78,7 +83,8 @@ def draw(path, series, x_label, y_label, x_ticks=None):
     beside = iter(spread([y.at(points[-1][1]) + 4 for (_, points), early in zip(series, ends_early) if not early]))
     curves = [[(x.at(a), y.at(b)) for a, b in points] for _, points in series]
     for (label, _), places, color, early in zip(series, curves, COLORS, ends_early):
-        parts.append(f'<polyline points="{" ".join(f"{a:.1f},{b:.1f}" for a, b in places)}" fill="none" stroke="{color}" stroke-width="1.6"/>')
+        parts.append(f'<polyline points="{" ".join(f"{a:.1f},{b:.1f}" for a, b in places)}" fill="none" '
+                     f'stroke="{color}" stroke-width="1.6"/>')
         parts += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="3" fill="{color}"/>' for a, b in places]
         if early:
             a, b, anchor = label_of_early_end(curves, places[-1], label)
@@ -86,7 +92,8 @@ def draw(path, series, x_label, y_label, x_ticks=None):
         else:
             parts.append(text(WIDTH - RIGHT + 4, next(beside), label, f'fill="{color}"'))
     body = "\n".join(parts)
-    path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" '
+    path.write_text('<svg xmlns="http://www.w3.org/2000/svg" '
+                    f'viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" '
                     f'font-family="Latin Modern Roman, STIX Two Text, Georgia, serif" font-size="14" fill="#222">\n'
                     f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>\n{body}\n</svg>\n')
 
@@ -94,7 +101,8 @@ def draw(path, series, x_label, y_label, x_ticks=None):
 def steps(data, backend, compiled):
     points = []
     for name, row in data["stepping"].items():
-        if name.startswith(f"steps/{backend}/") and name.endswith("/order:0") and "step" in row and (row["label"] == "compiled") == compiled:
+        wanted = name.startswith(f"steps/{backend}/") and name.endswith("/order:0") and "step" in row
+        if wanted and (row["label"] == "compiled") == compiled:
             points.append((int(name.split("links:")[1].split("/")[0]), 1e6 * row["step"]))
     return points
 
@@ -113,13 +121,17 @@ def main():
     data, folder = json.loads(Path(sys.argv[1]).read_text()), Path(sys.argv[2])
     folder.mkdir(parents=True, exist_ok=True)
     sizes = [(n, str(n)) for n in (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)]
-    draw(folder / "step_cost.svg", [("interpreter", steps(data, "interpreter", False)), ("compiled", steps(data, "compiled", True))],
+    draw(folder / "step_cost.svg",
+         [("interpreter", steps(data, "interpreter", False)), ("compiled", steps(data, "compiled", True))],
          "links n of the chain", "time of a Taylor step of order 20 / µs", sizes)
-    draw(folder / "forward_dynamics.svg", [("Maupertuis, compiled", forward(data, "compiled_chain")), ("interpreted", forward(data, "chain")), ("MuJoCo, mj_forward", forward(data, "mujoco"))],
+    draw(folder / "forward_dynamics.svg",
+         [("Maupertuis, compiled", forward(data, "compiled_chain")), ("interpreted", forward(data, "chain")),
+          ("MuJoCo, mj_forward", forward(data, "mujoco"))],
          "links n of the chain", "time of a call / µs", sizes)
     draw(folder / "work_precision.svg",
          [("Maupertuis", accuracy(data, "maupertuis")), ("odeint, Fehlberg 7(8)", accuracy(data, "odeint_fehlberg78")),
-          ("odeint, Bulirsch–Stoer", accuracy(data, "odeint_bulirsch_stoer")), ("CVODE, Adams", accuracy(data, "cvode_adams"))],
+          ("odeint, Bulirsch–Stoer", accuracy(data, "odeint_bulirsch_stoer")),
+          ("CVODE, Adams", accuracy(data, "cvode_adams"))],
          "largest relative error of the energy in 100 s", "processor time of a second of motion / µs")
 
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""tables.py FOLDER: the tables of docs/benchmarks.md from what scripts/bench has measured there, and all of it in FOLDER/measured.json."""
+"""tables.py FOLDER: the tables of docs/benchmarks.md from what scripts/bench has measured there, and all of it in
+FOLDER/measured.json."""
 import json, math, statistics, sys
 from pathlib import Path
 
@@ -17,7 +18,8 @@ def google(folder, program):
             found[name] = {"error": row["error_message"]}
         elif row.get("aggregate_name") == "median":
             known = ("name", "family_index", "per_family_instance_index", "repetitions", "threads", "iterations")
-            found[name] = {key: value for key, value in row.items() if key not in known and not key.startswith(("run_", "aggregate"))}
+            found[name] = {key: value for key, value in row.items()
+                           if key not in known and not key.startswith(("run_", "aggregate"))}
     return found
 
 
@@ -29,7 +31,8 @@ def lines(path):
 
 
 def collect(folder):
-    data = {program: google(folder, program) for program in ("peak", "stepping", "ensemble", "forward_dynamics", "peers")}
+    data = {program: google(folder, program)
+            for program in ("peak", "stepping", "ensemble", "forward_dynamics", "peers")}
     data["first_step"] = lines(folder / "first_step.txt")
     data["derivation"] = (lines(folder / "derivation.txt") or [None])[0]
     return data
@@ -73,7 +76,8 @@ def missing(what, why="not measured"):
 
 
 def print_steps(data):
-    reaches = {"compiled": {1: 0.20e-6, 2: 0.38e-6, 4: 0.60e-6, 8: 0.95e-6, 32: 3.5e-6, 100: 14e-6}, "interpreter": {8: 1.6e-6, 100: 50e-6}}
+    reaches = {"compiled": {1: 0.20e-6, 2: 0.38e-6, 4: 0.60e-6, 8: 0.95e-6, 32: 3.5e-6, 100: 14e-6},
+               "interpreter": {8: 1.6e-6, 100: 50e-6}}
     top = peak(data)
     for backend, sizes in reaches.items():
         rows = step_rows(data, backend)
@@ -94,14 +98,17 @@ def print_steps(data):
 
 def print_batches(data):
     for links, order, reach in ((2, 0, 270e3), (2, 26, 270e3), (4, 0, 60e3), (4, 26, 60e3)):
-        rates = {name.removesuffix(f"/order:{order}"): row["trajectory_seconds_per_second"] for name, row in data["ensemble"].items()
-                 if f"links:{links}/" in name and name.endswith(f"/order:{order}") and "trajectory_seconds_per_second" in row}
+        ours = lambda name: f"links:{links}/" in name and name.endswith(f"/order:{order}")
+        rates = {name.removesuffix(f"/order:{order}"): row["trajectory_seconds_per_second"]
+                 for name, row in data["ensemble"].items()
+                 if ours(name) and "trajectory_seconds_per_second" in row}
         what = f"n={links} batch, one core, trajectory·s/s" if order == 0 else f"the same at order {order}"
         if not rates:
             missing(what)
             continue
         best = max(rates, key=rates.get)
-        remark = best.removeprefix("ensemble/").replace("/links", ", links").replace(f", links:{links}/width:", ", width ")
+        remark = best.removeprefix("ensemble/").replace("/links", ", links")
+        remark = remark.replace(f", links:{links}/width:", ", width ")
         short = "" if rates[best] >= reach else f" ({reach / rates[best]:.1f} × below)"
         print(f"| {what} | {rates[best]:,.0f}{short} | {reach:,.0f} | {remark} |")
 
@@ -113,13 +120,15 @@ def print_first_steps(data):
         if not rows:
             missing(what)
             continue
-        remark = "processor time of a whole process" if rows[0]["compiled"] else "no compiled code for this size: the interpreter's step"
+        remark = ("processor time of a whole process" if rows[0]["compiled"] else
+                  "no compiled code for this size: the interpreter's step")
         print_row(what, statistics.median(row["cpu_seconds"] for row in rows), reach, remark)
 
 
 def print_forward(data):
     rows = data["forward_dynamics"]
-    for name, what, reach in (("chain/2", "chain n=2", 28e-9), ("chain/20", "chain n=20", 0.8e-6), ("chain/100", "chain n=100", 5e-6),
+    for name, what, reach in (("chain/2", "chain n=2", 28e-9), ("chain/20", "chain n=20", 0.8e-6),
+                              ("chain/100", "chain n=100", 5e-6),
                               ("arm", "arm with 7 joints", 0.29e-6)):
         compiled, interpreted = rows.get("compiled_" + name, {}), rows.get(name, {})
         if "cpu_time" not in compiled or "cpu_time" not in interpreted:

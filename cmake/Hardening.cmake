@@ -1,6 +1,7 @@
-# What makes a mistake in memory hard to exploit, and binaries that do not tell where they were built. What it costs in hot loops
-# is told by scripts/instructions, with and without it.
-option(MAUPERTUIS_HARDENING "Stack protector, fortified C functions, position-independent program, relocations bound at once" ON)
+# What makes a mistake in memory hard to exploit, and binaries that do not tell where they were built. What it costs in
+# hot loops is told by scripts/instructions, with and without it.
+option(MAUPERTUIS_HARDENING
+  "Stack protector, fortified C functions, position-independent program, relocations bound at once" ON)
 include(CheckPIESupported)
 check_pie_supported()  # CMAKE_POSITION_INDEPENDENT_CODE is then said to the linker as well
 

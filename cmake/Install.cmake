@@ -1,12 +1,13 @@
-# `cmake --install`: the program, the library, the headers, and the package that find_package(maupertuis) finds. Each part belongs to one
-# of the packages of cmake/Package.cmake: runtime, llvm, dev.
+# `cmake --install`: the program, the library, the headers, and the package that find_package(maupertuis) finds. Each
+# part belongs to one of the packages of cmake/Package.cmake: runtime, llvm, dev.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/maupertuis)
 install(TARGETS maupertuis EXPORT maupertuis_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/maupertuis DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
-install(EXPORT maupertuis_targets FILE maupertuis-targets.cmake NAMESPACE maupertuis:: DESTINATION ${package_dir} COMPONENT dev)
+install(EXPORT maupertuis_targets FILE maupertuis-targets.cmake NAMESPACE maupertuis::
+  DESTINATION ${package_dir} COMPONENT dev)
 configure_package_config_file(cmake/maupertuis-config.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/maupertuis-config.cmake
   INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/maupertuis-config-version.cmake
@@ -16,7 +17,8 @@ install(FILES
   ${CMAKE_CURRENT_BINARY_DIR}/maupertuis-config-version.cmake
   DESTINATION ${package_dir} COMPONENT dev)
 
-install(FILES LICENSE CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT sources)  # packages have these as Debian wants them
+# Packages have these as Debian wants them.
+install(FILES LICENSE CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT sources)
 install(FILES README.md ARCHITECTURE.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
 install(DIRECTORY docs/manual docs/theory docs/design DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT runtime)
 install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/maupertuis COMPONENT runtime FILES_MATCHING PATTERN *.lag)
@@ -24,8 +26,8 @@ if(MAUPERTUIS_PROGRAM)
   install(TARGETS maup RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
   if(TARGET maup-studio)
     install(TARGETS maup-studio RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT studio)
-    install(DIRECTORY ${CMAKE_BINARY_DIR}/studio/ DESTINATION ${CMAKE_INSTALL_DATADIR}/maupertuis/studio COMPONENT studio OPTIONAL
-      PATTERN "page.*" EXCLUDE)
+    install(DIRECTORY ${CMAKE_BINARY_DIR}/studio/ DESTINATION ${CMAKE_INSTALL_DATADIR}/maupertuis/studio
+      COMPONENT studio OPTIONAL PATTERN "page.*" EXCLUDE)
   endif()
   include(cmake/Documents.cmake)
   include(cmake/Desktop.cmake)

@@ -1,5 +1,6 @@
-# maup_instruction_sets(<directory below src>): its files *_avx2.cpp and *_avx512.cpp are compiled with these instructions, which
-# their callers ask the processor for. Elsewhere, or with a compiler that lacks them, these files are empty.
+# maup_instruction_sets(<directory below src>): its files *_avx2.cpp and *_avx512.cpp are compiled with these
+# instructions, which their callers ask the processor for. Elsewhere, or with a compiler that lacks them, these files
+# are empty.
 include(CheckCXXCompilerFlag)
 set(avx2_flags -mavx2 -mfma)
 set(avx512_flags ${avx2_flags} -mavx512f -mavx512dq -mavx512vl)

@@ -5,11 +5,12 @@ find_program(LLVM19_CONFIG NAMES llvm-config-19 llvm-config PATHS /usr/lib/llvm-
 find_library(SLEEF_LIBRARY sleef)
 set(llvm_version "")
 if(LLVM19_CONFIG)
-  execute_process(COMMAND ${LLVM19_CONFIG} --version OUTPUT_VARIABLE llvm_version OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  execute_process(COMMAND ${LLVM19_CONFIG} --version OUTPUT_VARIABLE llvm_version
+    OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 endif()
 
-# Of LLVM's archives only what x86-64 needs: the module opens ten times as fast as with the shared library of all targets
-# (docs/design/compiled_kernels.md). The shared one where archives are missing.
+# Of LLVM's archives only what x86-64 needs: the module opens ten times as fast as with the shared library of all
+# targets (docs/design/compiled_kernels.md). The shared one where archives are missing.
 function(find_llvm_libraries)
   execute_process(COMMAND ${LLVM19_CONFIG} --includedir OUTPUT_VARIABLE include OUTPUT_STRIP_TRAILING_WHITESPACE)
   execute_process(COMMAND ${LLVM19_CONFIG} --link-static --libfiles x86codegen x86asmparser x86 scalaropts asmprinter
@@ -21,7 +22,8 @@ function(find_llvm_libraries)
   if(archives AND NOT failed AND ZLIB_FOR_LLVM AND ZSTD_FOR_LLVM)
     set(libraries ${archives} ${ZLIB_FOR_LLVM} ${ZSTD_FOR_LLVM})
   elseif(LLVM19_LIBRARY)
-    message(STATUS "LLVM's archives, zlib or zstd are not here: compiled kernels take LLVM's shared library, which opens slowly")
+    message(STATUS
+      "LLVM's archives, zlib or zstd are not here: compiled kernels take LLVM's shared library, which opens slowly")
     set(libraries ${LLVM19_LIBRARY})
   endif()
   set(LLVM19_INCLUDE_DIR ${include} PARENT_SCOPE)
@@ -38,7 +40,8 @@ if(MAUPERTUIS_LLVM AND NOT llvm_libraries)
 endif()
 
 # The two sides of the border share types; the tag tells whether they are of one build.
-file(GLOB border CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/kernel/program/*.hpp ${PROJECT_SOURCE_DIR}/src/kernel/packed/*.hpp
+file(GLOB border CONFIGURE_DEPENDS
+  ${PROJECT_SOURCE_DIR}/src/kernel/program/*.hpp ${PROJECT_SOURCE_DIR}/src/kernel/packed/*.hpp
   ${PROJECT_SOURCE_DIR}/src/kernel/lanes/*.hpp ${PROJECT_SOURCE_DIR}/src/kernel/machine_code/*.hpp
   ${PROJECT_SOURCE_DIR}/src/kernel/straight_line/*.hpp
   ${PROJECT_SOURCE_DIR}/include/maupertuis/expression.hpp ${PROJECT_SOURCE_DIR}/include/maupertuis/functions.hpp)

@@ -15,8 +15,8 @@ endif()
 if(MAUPERTUIS_SANITIZE)
   target_compile_options(maup_flags INTERFACE
     -fsanitize=${MAUPERTUIS_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
-    # A pointer to no object ends with a signal or is seen by AddressSanitizer without these checks too; they are half of the
-    # time that the compiler takes.
+    # A pointer to no object ends with a signal or is seen by AddressSanitizer without these checks too; they are half
+    # of the time that the compiler takes.
     -fno-sanitize=null,alignment,vptr,object-size,pointer-overflow
     -Wno-maybe-uninitialized)  # these checks hide from the compiler what is set; the other build has this warning
   target_link_options(maup_flags INTERFACE -fsanitize=${MAUPERTUIS_SANITIZE})
@@ -32,9 +32,11 @@ add_library(maup_options INTERFACE)
 target_link_libraries(maup_options INTERFACE maup_flags)
 target_include_directories(maup_options INTERFACE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
 
-# Compiles the sources of a target several at a time (a unity build): most of a small file's time goes into its headers. ALONE: sources whose file-local
-# names are those of others, or which are slow to compile themselves. Sources with options of their own are left alone by CMake.
-# TOGETHER: sources that are one object, since they share what takes long; the others of such a module are batched as everywhere.
+# Compiles the sources of a target several at a time (a unity build): most of a small file's time goes into its headers.
+# ALONE: sources whose file-local names are those of others, or which are slow to compile themselves. Sources with
+# options of their own are left alone by CMake.
+# TOGETHER: sources that are one object, since they share what takes long; the others of such a module are batched as
+# everywhere.
 option(MAUPERTUIS_UNITY "Compile several sources at a time" ON)
 function(maup_compile_together target folder batch)
   if(NOT MAUPERTUIS_UNITY)
@@ -42,7 +44,8 @@ function(maup_compile_together target folder batch)
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # the sources that are compiled together are taken for headers
+    # The sources that are compiled together are taken for headers.
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
   endif()
   cmake_parse_arguments(ARG "" "" "ALONE;TOGETHER" ${ARGN})
   list(TRANSFORM ARG_ALONE PREPEND ${folder}/)
@@ -64,10 +67,10 @@ function(maup_compile_together target folder batch)
   endif()
 endfunction()
 
-# maup_module(<directory below src> LINKS <module>... [COLD] [CHECKED] [ALONE <source>...] [TOGETHER <source>...] [BATCH <sources at a time>]): the library
-# maup_<directory with _ for />. COLD: nothing in it computes for long; it is compiled with less optimization, in three quarters of
-# the time. CHECKED: all its memory is that of containers, which look at every index in every build; sanitizers look at the rest
-# (tests/CMakeLists.txt).
+# maup_module(<directory below src> LINKS <module>... [COLD] [CHECKED] [ALONE <source>...] [TOGETHER <source>...] [BATCH
+# <sources at a time>]): the library maup_<directory with _ for />. COLD: nothing in it computes for long; it is
+# compiled with less optimization, in three quarters of the time. CHECKED: all its memory is that of containers, which
+# look at every index in every build; sanitizers look at the rest (tests/CMakeLists.txt).
 function(maup_module directory)
   cmake_parse_arguments(ARG "COLD;CHECKED" "BATCH" "LINKS;PRIVATE_LINKS;ALONE;TOGETHER" ${ARGN})
   if(NOT ARG_BATCH)
@@ -87,7 +90,8 @@ function(maup_module directory)
   endif()
   add_library(maup_${name} STATIC ${sources})
   target_link_libraries(maup_${name} PUBLIC ${links} PRIVATE maup_options maup_hardening fmt::fmt ${ARG_PRIVATE_LINKS})
-  maup_compile_together(maup_${name} ${PROJECT_SOURCE_DIR}/src/${directory} ${ARG_BATCH} ALONE ${ARG_ALONE} TOGETHER ${ARG_TOGETHER})
+  maup_compile_together(maup_${name} ${PROJECT_SOURCE_DIR}/src/${directory} ${ARG_BATCH}
+    ALONE ${ARG_ALONE} TOGETHER ${ARG_TOGETHER})
   if(ARG_COLD AND NOT EMSCRIPTEN)  # there all is compiled to be small
     target_compile_options(maup_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
@@ -103,14 +107,17 @@ endfunction()
 function(maup_describe_llvm_module)
   include(GNUInstallDirs)
   file(RELATIVE_PATH from_program /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR}/maupertuis)
-  set_source_files_properties(${PROJECT_SOURCE_DIR}/src/kernel/machine_code/backend.cpp PROPERTIES COMPILE_DEFINITIONS
-    "MAUPERTUIS_BUILD_TAG=\"${MAUPERTUIS_BUILD_TAG}\";MAUPERTUIS_LLVM_FILE=\"libmaup_kernel_llvm.so\";MAUPERTUIS_MODULE_FROM_PROGRAM=\"${from_program}\";MAUPERTUIS_MODULE_FOLDER=\"${CMAKE_INSTALL_FULL_LIBDIR}/maupertuis\"")
+  set_property(SOURCE ${PROJECT_SOURCE_DIR}/src/kernel/machine_code/backend.cpp PROPERTY COMPILE_DEFINITIONS
+    "MAUPERTUIS_BUILD_TAG=\"${MAUPERTUIS_BUILD_TAG}\""
+    "MAUPERTUIS_LLVM_FILE=\"libmaup_kernel_llvm.so\""
+    "MAUPERTUIS_MODULE_FROM_PROGRAM=\"${from_program}\""
+    "MAUPERTUIS_MODULE_FOLDER=\"${CMAKE_INSTALL_FULL_LIBDIR}/maupertuis\"")
   target_link_libraries(maup_kernel_machine_code PRIVATE ${CMAKE_DL_LIBS})
   set_property(GLOBAL APPEND PROPERTY MAUP_LIBRARIES ${CMAKE_DL_LIBS})
 endfunction()
 
-# maup_plugin(<directory below src> LINKS <module>... PRIVATE_LINKS <library>...): a shared object that the program opens at run
-# time, lib/maupertuis/libmaup_<name>.so; nothing where its libraries are not installed.
+# maup_plugin(<directory below src> LINKS <module>... PRIVATE_LINKS <library>...): a shared object that the program
+# opens at run time, lib/maupertuis/libmaup_<name>.so; nothing where its libraries are not installed.
 function(maup_plugin directory)
   cmake_parse_arguments(ARG "" "" "LINKS;PRIVATE_LINKS;ALONE" ${ARGN})
   if(NOT ARG_PRIVATE_LINKS)
@@ -128,7 +135,8 @@ function(maup_plugin directory)
   set_target_properties(maup_${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/maupertuis
     CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   if(MAUPERTUIS_SANITIZE)
-    target_compile_options(maup_${name} PRIVATE -fno-sanitize=all)  # the archives of its libraries are not instrumented either
+    # The archives of its libraries are not instrumented either.
+    target_compile_options(maup_${name} PRIVATE -fno-sanitize=all)
   endif()
   target_link_options(maup_${name} PRIVATE -Wl,--exclude-libs,ALL -Wl,--gc-sections)
 endfunction()

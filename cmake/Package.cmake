@@ -1,6 +1,8 @@
-# Debian packages, made by cpack (scripts/package): maupertuis with the program, maupertuis-llvm with the module that makes machine code,
-# maupertuis-studio with the server and the page of the studio, libmaupertuis-dev with what other programs are built with.
-set(MAUPERTUIS_MAINTAINER "The Maupertuis developers <maintainers@maupertuis.invalid>" CACHE STRING "Who answers for the packages")
+# Debian packages, made by cpack (scripts/package): maupertuis with the program, maupertuis-llvm with the module that
+# makes machine code, maupertuis-studio with the server and the page of the studio, libmaupertuis-dev with what other
+# programs are built with.
+set(MAUPERTUIS_MAINTAINER "The Maupertuis developers <maintainers@maupertuis.invalid>"
+  CACHE STRING "Who answers for the packages")
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR Maupertuis)
 set(CPACK_DEBIAN_PACKAGE_MAINTAINER ${MAUPERTUIS_MAINTAINER})
@@ -36,7 +38,8 @@ macro(package component name section)
   # Compressed when it is installed: what was configured is then read, and not what was configured once.
   install(CODE "
     set(folder \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${folder}\")
-    execute_process(COMMAND ${GZIP_PROGRAM} -9nc \"${PROJECT_SOURCE_DIR}/CHANGELOG.md\" OUTPUT_FILE \"\${folder}/changelog.gz\" COMMAND_ERROR_IS_FATAL ANY)
+    execute_process(COMMAND ${GZIP_PROGRAM} -9nc \"${PROJECT_SOURCE_DIR}/CHANGELOG.md\"
+      OUTPUT_FILE \"\${folder}/changelog.gz\" COMMAND_ERROR_IS_FATAL ANY)
     execute_process(COMMAND ${GZIP_PROGRAM} -9nc \"${PROJECT_BINARY_DIR}/packaging/${name}.changelog\"
       OUTPUT_FILE \"\${folder}/changelog.Debian.gz\" COMMAND_ERROR_IS_FATAL ANY)" COMPONENT ${component})
 endmacro()

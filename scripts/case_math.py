@@ -117,7 +117,8 @@ def derivative(tree, values, t):
 
 
 def greek(name):
-    """theta → θ, q1 → q1, omega2 → ω2: whole Greek names only; p_theta → p_θ. lambda3 is the multiplier of the third constraint."""
+    """theta → θ, q1 → q1, omega2 → ω2: whole Greek names only; p_theta → p_θ. lambda3 is the multiplier of the third
+    constraint."""
     if name.startswith("lambda"):
         return f"multiplier(c{name[6:]})"
     if name.startswith("p_"):

@@ -12,11 +12,13 @@ def tolerance(expectation):
     """The tolerance in doubles of the recomputed values, out of the words of the case: "± 1e-12" or "rel 1e-12"."""
     words = expectation["tolerance"]
     number = r"(\d[\d.e+-]*\d)"
-    relative = re.search("recomputed: .*?" + number + " in double", words) or re.search("recomputed relative " + number, words)
+    relative = (re.search("recomputed: .*?" + number + " in double", words) or
+                re.search("recomputed relative " + number, words))
     if relative:
         return "rel " + relative[1]
     at = re.search(rf"t={expectation.get('time')}: {number}", words)
-    recomputed = re.search(number + " against recomputed", words) or re.search("(?:values_recomputed for|recomputed absolute) " + number, words)
+    recomputed = (re.search(number + " against recomputed", words) or
+                  re.search("(?:values_recomputed for|recomputed absolute) " + number, words))
     absolute = re.search("absolute " + number, words)
     if at or recomputed or absolute:
         return "± " + (at or recomputed or absolute)[1]
@@ -26,7 +28,9 @@ def tolerance(expectation):
 def digits(value):
     """20 digits of a decimal, none that says nothing."""
     text = f"{value:.20g}"
-    return "0" if value == 0 or abs(value) < D("1e-15") else case_math.number(text.rstrip("0") if "." in text and "e" not in text.lower() else text)
+    if value == 0 or abs(value) < D("1e-15"):
+        return "0"
+    return case_math.number(text.rstrip("0") if "." in text and "e" not in text.lower() else text)
 
 
 def quoted(text):
@@ -253,7 +257,8 @@ class Model:
 
     def ends(self):
         """The numbers of the oscillator's formula: x1, x2, T, and the parameters."""
-        start, end = re.fullmatch(r"from (\S+) at 0 to (\S+) at (\S+)", PATHS[self.id]).group(1, 2), PATHS[self.id].split()[-1]
+        start = re.fullmatch(r"from (\S+) at 0 to (\S+) at (\S+)", PATHS[self.id]).group(1, 2)
+        end = PATHS[self.id].split()[-1]
         return {**self.constants({}), "x1": D(start[0]), "x2": D(start[1]), "T": D(end)}
 
     def expect_action(self, expectation):
@@ -284,14 +289,16 @@ class Model:
             at = {**values, "a": D(angle)}
             x, y = (digits(case_math.evaluate(parse(expectation["path"][name]), at)) for name in "xy")
             self.add(f"expect path y at {x} m = {y} m ± 1e-9")
-        self.add(f"expect action of (2 x/pi) from 0 to pi R = {expectation['straight_line']} s rel 1e-12   # the straight line")
+        action = expectation["straight_line"]
+        self.add(f"expect action of (2 x/pi) from 0 to pi R = {action} s rel 1e-12   # the straight line")
 
     def expect_extremal_path(self, expectation):
         self.path_statement()
         self.add(f"expect action = {expectation['action']} ± 1e-13")
         self.add("expect index = 0")
         for time in ("0.3", "0.8", "1.3"):
-            self.add(f"expect path x at {time} = {digits(case_math.evaluate(parse(expectation['values']['x']), {'t': D(time)}))} ± 1e-12")
+            x = digits(case_math.evaluate(parse(expectation['values']['x']), {'t': D(time)}))
+            self.add(f"expect path x at {time} = {x} ± 1e-12")
 
     def expect_hamilton_jacobi(self, expectation):
         """The slopes of the formula of S by the end, against momentum and energy there."""
@@ -324,7 +331,8 @@ class Model:
             shown, unit = "T + V", "" if self.dimensionless else "J"
         self.end = max(self.end, D(time))
         second = "" if self.dimensionless else " s"
-        self.add(f"expect {shown} at {case_math.number(time)}{second} = {digits(value)}{' ' + unit if unit else ''} {allowed}")
+        size = digits(value) + (f" {unit}" if unit else "")
+        self.add(f"expect {shown} at {case_math.number(time)}{second} = {size} {allowed}")
 
     def text(self):
         if self.end:

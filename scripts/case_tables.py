@@ -1,5 +1,7 @@
-"""What the reference cases leave unsaid: kinds of coordinates, units, what a scalar means, what an expectation waits for."""
-# The cases do not say what kind of quantity a coordinate is: here for the cases with units; the others are dimensionless.
+"""What the reference cases leave unsaid: kinds of coordinates, units, what a scalar means, what
+an expectation waits for."""
+# The cases do not say what kind of quantity a coordinate is: here for the cases with units; the others are
+# dimensionless.
 KINDS = {
     "bead_rotating_hoop": {"theta": "angle"},
     "celest_kepler_e06": {"x": "length", "y": "length"},
@@ -31,9 +33,11 @@ UNSAID = {"iftomm_a05_flyball": {"0.3*wd^2/6": "0.3 [kg] wd^2/6"}}
 MORE = {
     "gear_planetary_ring_fixed": ("Willis: the ratio of sun and carrier, the speed of the planets",
                                   ["equation ts'' = (1 + rr/rs) tc''", "equation tp'' = (1 - rr/rp) tc''"]),
-    "iftomm_a01_pendulum": ("the period; the tension in the rod, -3 m g y/L = -2 L λ, at the turning points and at the bottom",
+    "iftomm_a01_pendulum": ("the period; the tension in the rod, "
+                            "-3 m g y/L = -2 L λ, at the turning points and at the bottom",
                             ["energy conserved rel 5e-14   # of the sum of its terms: 1e-12 J",
-                             "x at 2.3678419475762374493 s = -1 m ± 1e-11", "y at 2.3678419475762374493 s = 0 m ± 1e-11",
+                             "x at 2.3678419475762374493 s = -1 m ± 1e-11",
+                             "y at 2.3678419475762374493 s = 0 m ± 1e-11",
                              "-2 L multiplier(c1) at 0 s = 0 N ± 1e-11",
                              "-2 L multiplier(c1) at 0.591960486894059362 s = 29.43 N ± 1e-10",
                              "-2 L multiplier(c1) at 1.18392097378811872 s = 0 N ± 1e-10"]),
@@ -49,9 +53,11 @@ MORE = {
 
 # Cases whose conserved quantities the search of `maup invariants` must find as well: `expect integral`.
 SEARCHED = {
-    "noether_caldirola_kanai", "noether_galilei_boost", "noether_helical", "noether_lrl_3d", "noether_relativistic_free",
+    "noether_caldirola_kanai", "noether_galilei_boost", "noether_helical", "noether_lrl_3d",
+    "noether_relativistic_free",
     "noether_rotating_potential", "celest_henon_heiles", "celest_kepler_e06", "sicm_harmonic", "nonhol_knife_edge",
-    "nonhol_particle", "nonhol_rolling_disc", "foucault_linear", "block_on_moving_wedge", "bead_rotating_hoop", "sicm_sliding_pendulum",
+    "nonhol_particle", "nonhol_rolling_disc", "foucault_linear", "block_on_moving_wedge", "bead_rotating_hoop",
+    "sicm_sliding_pendulum",
     "geodesic_sphere", "lagrange_top", "velocity_potential_weber", "celest_arenstorf_3loop",
 }
 # What a published symmetry is the generator of: names of conserved quantities of the same case.
@@ -84,14 +90,16 @@ start ψ' = threshold
 # sleeping-top threshold omega3
 expect equilibrium at α = 0, β = 0, ψ' = 0.999 threshold is unstable
 expect equilibrium at α = 0, β = 0, ψ' = 1.001 threshold is undecided   # gyroscopic forces hold it
-expect frequencies at α = 0, β = 0, ψ' = threshold : 0 rad/s, C threshold/(2 A), C threshold/(2 A) ± 1e-6   # a double root
+expect frequencies at α = 0, β = 0, ψ' = threshold : 0 rad/s, C threshold/(2 A), C threshold/(2 A) ± 1e-6\
+   # a double root
 expect frequencies at α = 0, β = 0, ψ' = 1.25 threshold : 0 rad/s, C threshold/(4 A), C threshold/A rel 1e-12
 """)},
 }
 # What a case says of a linearization in words.
 LINEARIZED = {"sympy_nonminimal_pendulum": ["frequencies squared at q1 = L, q2 = 0 : g/L rel 1e-12"]}
 
-# Between what ends the stationary path of a case runs, and its Morse index: of the oscillator ⌈ω T/π⌉ − 1, of the others 0.
+# Between what ends the stationary path of a case runs, and its Morse index: of the oscillator ⌈ω T/π⌉ − 1, of the
+# others 0.
 PATHS = {
     "action_harmonic": "from 0.4 at 0 to -1.1 at 2",
     "action_minimum_cosine": "from 1 at 0 to 0 at pi/2",

@@ -56,7 +56,8 @@ def is_other_motion(case, expectation):
     slope = lambda text: case_math.derivative(parse(text), values, D(0))
     known = {name: case_math.evaluate(parse(text), values) for part in ("q", "dot") for name, text in
              ((f"{part} {n}", x) for n, x in start[part].items())}
-    return any(abs(at_start(text) - known["q " + name]) > D("1e-12") or abs(slope(text) - known["dot " + name]) > D("1e-12")
+    return any(abs(at_start(text) - known["q " + name]) > D("1e-12")
+               or abs(slope(text) - known["dot " + name]) > D("1e-12")
                for name, text in expectation["values"].items())
 
 
@@ -175,9 +176,11 @@ def convert_all():
             texts = urdf_model(case, CASES)
             passes = ["the accelerations that the torques of the inverse dynamics, and at rest M q̈ + g, give"]
             waits = [("reading the robot's file", "URDF import"), ("M entry by entry", WAITS["matrix"])]
-        elif missing in ("contacts", "rates", "fields", "degenerate") and (MODELS / path.with_suffix(".lag").name).exists():
+        elif missing in ("contacts", "rates", "fields", "degenerate") \
+                and (MODELS / path.with_suffix(".lag").name).exists():
             models = sorted(p.name for p in MODELS.glob(f"{path.stem}*.lag"))
-            rows.append((case, models if missing in ("rates", "degenerate") else models[:1], ["all; the model is written by hand"], []))
+            models = models if missing in ("rates", "degenerate") else models[:1]
+            rows.append((case, models, ["all; the model is written by hand"], []))
             continue
         elif missing:
             texts, passes, waits = {}, [], [("all", missing)]
@@ -201,9 +204,10 @@ def table(rows):
              "| case | model | passes | waits for |", "|---|---|---|---|"]
     for case, models, passes, waits in rows:
         names_of = ", ".join(f"[{m[:-4]}](../tests/problems/{m})" for m in models) or "–"
-        wait = "; ".join(f"{capability}" if what == "all" else f"{capability}: {what}" for what, capability in waits) or "–"
+        wait = "; ".join(capability if what == "all" else f"{capability}: {what}" for what, capability in waits) or "–"
         done = "; ".join(passes) or "–"
-        lines.append(f"| {case['title'].replace('|', '∣')} | {names_of} | {done.replace('|', '∣')} | {wait.replace('|', '∣')} |")
+        title, done, wait = (text.replace('|', '∣') for text in (case['title'], done, wait))
+        lines.append(f"| {title} | {names_of} | {done} | {wait} |")
     return "\n".join(lines) + "\n"
 
 

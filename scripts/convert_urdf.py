@@ -86,7 +86,8 @@ class Robot:
         mass = vector([inertial.find("mass").get("value")])[1:-1]
         if mass == "0" and is_zero(entries):
             return
-        self.lines.append(f"body {short(link)} mass {mass} inertia full{vector(entries)} at {vector(at)}{turned} in {frame}")
+        inertia = f"inertia full{vector(entries)}"
+        self.lines.append(f"body {short(link)} mass {mass} {inertia} at {vector(at)}{turned} in {frame}")
 
 
 def wrapped(head, items, width=110):
@@ -101,7 +102,8 @@ def wrapped(head, items, width=110):
 
 
 def urdf_model(case, folder):
-    """Two models: the stated torques at the stated state, and at rest M q̈ + g; both must give the stated accelerations."""
+    """Two models: the stated torques at the stated state, and at rest M q̈ + g; both must give the stated
+    accelerations."""
     statement = case["statement"]
     robot = Robot(folder / "urdf" / statement["data_file"].split("/")[-1], statement["coordinates"])
     state = next(e for e in case["expected"] if e["kind"] == "state")
@@ -119,7 +121,8 @@ def model(case, robot, suffix, q, qd, torques, qdd):
              f"system {case['id']}{suffix} \"{case['title']}\"", f"source \"{case['source']['where']}\"",
              "dimensionless                          # SI throughout, as the robot's file", ""]
     lines += [f"# {name} = {joint}" for name, joint in zip(coordinates, case["statement"]["coordinates"])]
-    groups = [(kind, [n for n in coordinates if robot.kinds[n] == kind]) for kind in dict.fromkeys(robot.kinds.values())]
+    groups = [(kind, [n for n in coordinates if robot.kinds[n] == kind])
+              for kind in dict.fromkeys(robot.kinds.values())]
     lines += ["coord " + ", ".join(f"{', '.join(members)} : {kind}" for kind, members in groups)] + robot.lines
     lines += ["gravity " + vector(case["statement"]["gravity"])]
     lines += [f"force {name} = {vector([str(torque)[:24]])[1:-1]}" for name, torque in zip(coordinates, torques)]

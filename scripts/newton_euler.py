@@ -1,4 +1,5 @@
-"""Forward dynamics of an open chain of revolute joints by recursive Newton-Euler, in decimals: no Lagrangian anywhere."""
+"""Forward dynamics of an open chain of revolute joints by recursive Newton-Euler, in decimals: no Lagrangian
+anywhere."""
 from precise import D, cos, sin, solve
 
 

@@ -164,7 +164,8 @@ def _extrapolated_step(f, t, y, h, rows):
 
 
 def integrate(f, y, times, tolerance=D("1e-19"), start=D(0), rows=11):
-    """The states of y' = f(t, y) at `times` (ascending), by extrapolation of the midpoint rule (Gragg, Bulirsch, Stoer)."""
+    """The states of y' = f(t, y) at `times` (ascending), by extrapolation of the midpoint rule (Gragg, Bulirsch,
+    Stoer)."""
     t, y, h, results = d(start), [d(a) for a in y], D("0.05"), []
     for target in map(d, times):
         while t < target:

@@ -1,6 +1,7 @@
 """Reference values of the gallery's holonomic systems: closed forms, or equations in independent coordinates by hand.
 
-Each function yields (subject, time, value) of the model of its name; scripts/reference_values.py prints and checks them.
+Each function yields (subject, time, value) of the model of its name; scripts/reference_values.py prints and
+checks them.
 """
 import json
 import pathlib
@@ -75,7 +76,8 @@ def four_bar():
     m1, m2, m3 = D("0.5"), D("1.5"), D("1.2")
 
     def energy(t):
-        """That of three slender bars: m (|A|² + |B|² + A·B)/6 of the velocities of their ends, and the weight of their middles."""
+        """That of three slender bars: m (|A|² + |B|² + A·B)/6 of the velocities of their ends, and the weight of their
+        middles."""
         ends = lambda s: (lambda p: [a * cos(p[0]), a * sin(p[0]), d + c * cos(p[2]), c * sin(p[2])])(crank_and_rod(s))
         ax, ay, bx, by = ends(t)
         h = D("1e-11")
@@ -118,7 +120,8 @@ def parallelogram():
 
 
 def planetary_gear():
-    """Newton for each wheel: sun τ − rs F, planets rp (F − E), carrier (rs + rp)(F + E), with F and E the tooth forces."""
+    """Newton for each wheel: sun τ − rs F, planets rp (F − E), carrier (rs + rp)(F + E),
+    with F and E the tooth forces."""
     rs, rp, tau = D("0.02"), D("0.015"), D("0.1")
     i_s, i_p, i_c = D("1e-5"), 3 * D("4e-6"), D("8e-5") + 3 * D("0.05") * (rs + rp) ** 2
     rr = rs + 2 * rp
@@ -136,7 +139,8 @@ def planetary_gear():
 
 
 def heavy_top():
-    """The top of models/lagrange_top.lag: nutation, precession, spin; the centre of mass is h (sin θ sin φ, −sin θ cos φ, cos θ)."""
+    """The top of models/lagrange_top.lag: nutation, precession, spin; the centre of mass is
+    h (sin θ sin φ, −sin θ cos φ, cos θ)."""
     a, c, mgl = D("1.4e-4"), D("6e-5"), D("0.1") * G * D("0.03")
     theta0, spin, h = 25 * DEG, D(200), D("0.03")
     p_psi, p_phi = c * spin, c * spin * cos(theta0)
@@ -144,7 +148,8 @@ def heavy_top():
     def rates(_, y):
         s, k = sin(y[0]), cos(y[0])
         precession = (p_phi - p_psi * k) / (a * s * s)
-        return [y[1], precession ** 2 * s * k - p_psi * precession * s / a + mgl * s / a, precession, p_psi / c - precession * k]
+        nutation = precession ** 2 * s * k - p_psi * precession * s / a + mgl * s / a
+        return [y[1], nutation, precession, p_psi / c - precession * k]
 
     for t, y in zip(("0.5", "2"), integrate(rates, [theta0, D(0), D(0), D(0)], ["0.5", 2])):
         yield "top.x", f"{t} s", h * sin(y[0]) * sin(y[2])
@@ -160,7 +165,8 @@ def tumbling_satellite():
 
 
 def chain():
-    """Equilibrium of six massless links with five weights between two pegs: the horizontal pull H is the same in all links."""
+    """Equilibrium of six massless links with five weights between two pegs: the horizontal pull H is the same
+    in all links."""
     l, m, span, n = D("0.3"), D("0.2"), D("1.2"), 6
 
     def width(pull):
@@ -193,7 +199,8 @@ def bead_on_rotating_rod():
 
 def squeezer():
     """Recomputed in quadruple precision by extrapolation (tests/problems/cases/ivp_andrews.json)."""
-    case = json.loads((pathlib.Path(__file__).resolve().parent.parent / "tests/problems/cases/ivp_andrews.json").read_text())
+    root = pathlib.Path(__file__).resolve().parent.parent
+    case = json.loads((root / "tests/problems/cases/ivp_andrews.json").read_text())
     state, forces, accelerations = (e["values_recomputed"] for e in case["expected"])
     names = {"theta": "Θ", "phi": "Φ", "omega": "Ω", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε"}
     for name, letter in names.items():
@@ -218,5 +225,5 @@ def bennett_linkage():
         yield "θ3", f"{t} s", -theta
 
 
-MODELS = [bennett_linkage, cartesian_pendulum, dumbbell, bead_on_wire, four_bar, slider_crank, squeezer, parallelogram, planetary_gear, heavy_top,
-          tumbling_satellite, chain, bead_on_rotating_rod]
+MODELS = [bennett_linkage, cartesian_pendulum, dumbbell, bead_on_wire, four_bar, slider_crank, squeezer, parallelogram,
+          planetary_gear, heavy_top, tumbling_satellite, chain, bead_on_rotating_rod]

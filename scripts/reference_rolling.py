@@ -6,7 +6,8 @@ DEG = PI / 180
 
 
 def rolling_disk():
-    """Upright: a circle of radius R φ'/ψ'; the ground gives the centripetal force (Bloch, Nonholonomic Mechanics, §1.4)."""
+    """Upright: a circle of radius R φ'/ψ'; the ground gives the centripetal force (Bloch,
+    Nonholonomic Mechanics, §1.4)."""
     m, radius, spin, turn = D(1), D("0.2"), D(2), D(1)
     for t in (D(1), D(10)):
         yield "x", f"{t} s", radius * spin / turn * sin(turn * t)
@@ -19,13 +20,15 @@ LEAN, TURN, RADIUS = 70 * DEG, D("1.5"), D("0.3")  # of the leaning disk: θ, φ
 
 
 def leaning_spin():
-    """Of the steady motion: 6 ω3 φ' r sin θ − φ'² r sin θ cos θ + 4 g cos θ = 0 with ω3 = ψ' + φ' cos θ (Neimark and Fufaev)."""
+    """Of the steady motion: 6 ω3 φ' r sin θ − φ'² r sin θ cos θ + 4 g cos θ = 0 with ω3 = ψ' + φ' cos θ
+    (Neimark and Fufaev)."""
     s, c = sin(LEAN), cos(LEAN)
     return -(5 * TURN ** 2 * RADIUS * s * c + 4 * G * c) / (6 * TURN * RADIUS * s)
 
 
 def leaning_disk():
-    """Steady rolling (Routh; Neimark and Fufaev): θ, φ', ψ' constant, the centre on a circle of radius −(r/φ')(ψ' + φ' cos θ)."""
+    """Steady rolling (Routh; Neimark and Fufaev): θ, φ', ψ' constant, the centre
+    on a circle of radius −(r/φ')(ψ' + φ' cos θ)."""
     spin = leaning_spin()
     radius = -RADIUS * (spin + TURN * cos(LEAN)) / TURN
     yield "ψ'", "0 s", spin
@@ -37,7 +40,8 @@ def leaning_disk():
 
 
 def ball_on_turntable():
-    """r' = r0' turned by 2/7 Ω t (Milne, Vectorial Mechanics, 1948): a circle that the table's turning does not carry away."""
+    """r' = r0' turned by 2/7 Ω t (Milne, Vectorial Mechanics, 1948): a circle that the table's turning does not
+    carry away."""
     w = 2 * D(5) / 7
     x0, y0, u, v = D("0.3"), D(0), D("0.1"), D("0.4")
     for t in (D(2), D(10)):
@@ -113,7 +117,8 @@ def rattleback():
 
 
 def snakeboard():
-    """The momentum equation p' = 2 J0 cos² φ φ' ψ' − tan φ φ' p and θ' by p, as published; J0 (ψ' + θ')' is the torque of the rotor."""
+    """The momentum equation p' = 2 J0 cos² φ φ' ψ' − tan φ φ' p and θ' by p, as published; J0 (ψ' + θ')' is the torque
+    of the rotor."""
     m, r, j0, j1 = D(6), D("0.2"), D("0.016"), D("1.3e-3")
     a, b, w, k, c = D("0.7"), D("0.5"), D(2), D(40), D(2)
 

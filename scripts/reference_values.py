@@ -225,8 +225,9 @@ def arm_seven_joints():
     chain = Chain([2, 1, 2, 1, 2, 1, 2], [D(x) for x in ("0.34", "0.2", "0.2", "0.2", "0.2", "0.1", "0.1")],
                   [D(x) for x in ("0.17", "0.1", "0.1", "0.1", "0.1", "0.05", "0.05")],
                   [D(x) for x in ("4", "4", "3", "2.7", "1.7", "1.6", "0.3")],
-                  [[D(x), D(x), D(z)] for x, z in (("0.05", "0.01"), ("0.04", "0.01"), ("0.03", "0.008"), ("0.03", "0.006"),
-                                                   ("0.02", "0.005"), ("0.005", "0.004"), ("0.001", "0.001"))], G)
+                  [[D(x), D(x), D(z)] for x, z in (
+                      ("0.05", "0.01"), ("0.04", "0.01"), ("0.03", "0.008"), ("0.03", "0.006"),
+                      ("0.02", "0.005"), ("0.005", "0.004"), ("0.001", "0.001"))], G)
     q0, rate = [20, 40, -30, 60, 10, -50, 0], D("0.5")
     acceleration = lambda t, q, v: chain.acceleration(q, v, [-D("0.02") * x for x in v])
     start = acceleration(0, [x * DEG for x in q0], [rate] * 7)
@@ -252,7 +253,8 @@ def van_der_pol():
 
 
 MODELS = [pendulum, double_pendulum, elastic_pendulum, spherical_pendulum, cart_pendulum, bead_on_hoop, kepler,
-          lagrange_top, satellite, ion_in_fields, rotating_frame, robot_arm, motor_link, absolute_value, arm_seven_joints,
+          lagrange_top, satellite, ion_in_fields, rotating_frame, robot_arm, motor_link,
+          absolute_value, arm_seven_joints,
           henon_heiles, van_der_pol, *reference_constraints.MODELS, *reference_rolling.MODELS]
 UNITS = {"deg": DEG, "ms": D("1e-3"), "μs": D("1e-6"), "h": D(3600)}
 

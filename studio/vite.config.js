@@ -20,8 +20,8 @@ const reportScripts = {
   },
 };
 
-// `@dark { … }` are the colours of dark paper: where the system has it and the user did not choose, or where the user chose
-// it.
+// `@dark { … }` are the colours of dark paper: where the system has it and the user did not choose, or where the user
+// chose it.
 const dark = {
   postcssPlugin: 'dark',
   AtRule: {
@@ -92,7 +92,8 @@ function oneFile(html, {connect, head = () => '', body = ''}) {
   const hash = createHash('sha256').update(script).digest('base64');
   const policy =
     `default-src 'none'; script-src 'sha256-${hash}' 'wasm-unsafe-eval'; style-src 'unsafe-inline'; ` +
-    `img-src data: blob:; font-src data:; worker-src blob:; connect-src ${connect}; base-uri 'none'; form-action 'none'`;
+    `img-src data: blob:; font-src data:; worker-src blob:; connect-src ${connect}; ` +
+    `base-uri 'none'; form-action 'none'`;
   html = html.replace('<meta name="viewport"', () => `${head(policy)}<meta name="viewport"`);
   return {page: html.replace('</body>', () => `${body}<script>${script}</script>\n</body>`), policy};
 }

@@ -1,6 +1,7 @@
 #!/bin/sh
-# on_processor.sh avx2|none PROGRAM [ARGUMENTS]: a test with these vector instructions and no wider ones. The processor is held back where it has
-# them, and emulated where it lacks them; without an emulator the test is skipped (77) with a word.
+# on_processor.sh avx2|none PROGRAM [ARGUMENTS]: a test with these vector instructions and no wider ones. The processor
+# is held back where it has them, and emulated where it lacks them; without an emulator the test is skipped (77) with a
+# word.
 set=$1
 shift
 export MAUPERTUIS_INSTRUCTIONS="$set"

@@ -126,13 +126,13 @@ constexpr CodeEntry own_codes[] = {
      "# maup animate\ncoord x : length\nparam m = 1 kg, k = 1 N/m\npoint P mass m at (x, 0)\nV = 1/2 k x^2\nstart x = "
      "1 m\nrun 1 s\n"},
     {"N0844", "a motion faster than the frames of its drawing",
-     "A page holds up to 12,000 moments of a motion, a film those of its frames. Where less than five of them fall on a "
-     "swing, what is drawn between them would be made up: the nearest moment is shown. As the spokes of a wheel in a "
+     "A page holds up to 12,000 moments of a motion, a film those of its frames. Where less than five of them fall on "
+     "a swing, what is drawn between them would be made up: the nearest moment is shown. As the spokes of a wheel in a "
      "film, such a motion may seem to go slowly, or backwards.",
      "# maup animate -o film.html\ncoord x : length\nparam m = 1 kg, k = 4e7 N/m\npoint P mass m at (x, 0)\nV = 1/2 k "
      "x^2\nstart x = 1 m\nrun 10 s\n",
-     "# maup animate -o film.html --duration 50ms\ncoord x : length\nparam m = 1 kg, k = 4e7 N/m\npoint P mass m at (x, "
-     "0)\nV = 1/2 k x^2\nstart x = 1 m\nrun 10 s\n"},
+     "# maup animate -o film.html --duration 50ms\ncoord x : length\nparam m = 1 kg, k = 4e7 N/m\npoint P mass m at "
+     "(x, 0)\nV = 1/2 k x^2\nstart x = 1 m\nrun 10 s\n"},
     {"E0850", "the studio is not here",
      "`maup studio` shows a page in the browser, served by a program of its own, maup-studio, from the files of the "
      "page. One of the two is not installed with this program. A build makes the page with npm (`make studio`) and the "

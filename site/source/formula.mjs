@@ -270,7 +270,8 @@ function brokenBeforeSigns(latex) {
   return latex.replace(/\\(left|right|begin|end)(?![a-z])|\\.|[{}]|(?<=\s)[-+−](?=\s)/gu, (part, pair, at) => {
     if (part === '{' || pair === 'left' || pair === 'begin') ++depth;
     else if (part === '}' || pair) --depth;
-    else if (!part.startsWith('\\') && depth === 0 && isBinary(latex.slice(0, at))) return `\\allowbreak ${part}\\nobreak `;
+    else if (!part.startsWith('\\') && depth === 0 && isBinary(latex.slice(0, at)))
+      return `\\allowbreak ${part}\\nobreak `;
     return part;
   });
 }

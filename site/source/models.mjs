@@ -225,7 +225,8 @@ function derivation({steps}, where) {
   for (const s of steps) {
     if (s.section !== section) html += `<h4>${named((section = s.section))}</h4>\n`;
     const formula = s.latex && formulas([s], where);
-    html += `<div class="step">${formula}<p class="muted">${named([s.rule, s.sentence].filter(Boolean).join('. '))}</p></div>\n`;
+    const words = named([s.rule, s.sentence].filter(Boolean).join('. '));
+    html += `<div class="step">${formula}<p class="muted">${words}</p></div>\n`;
   }
   return `<details class="derivation"><summary>The derivation, ${steps.length} steps</summary>\n${html}</details>\n`;
 }

@@ -1,5 +1,5 @@
-// Sentences as a book sets them: symbols with what is lowered and raised, variables in italics, powers of ten, quotation
-// marks. Names of programs stand in code and are left alone.
+// Sentences as a book sets them: symbols with what is lowered and raised, variables in italics, powers of ten,
+// quotation marks. Names of programs stand in code and are left alone.
 
 const raised = html =>
   html
@@ -20,7 +20,8 @@ const raised = html =>
 
 /** 2.9e-03 as 2.9 · 10⁻³, 1e-12 as 10⁻¹², 0.0e+00 as 0 */
 const powersOfTen = html =>
-  html.replace(/(?<![\p{L}\p{N}_.])(\d+(?:\.\d+)?)e([-+]?)(\d{1,3})(?![\p{L}\p{N}_])/gu, (all, mantissa, sign, digits) => {
+  html.replace(/(?<![\p{L}\p{N}_.])(\d+(?:\.\d+)?)e([-+]?)(\d{1,3})(?![\p{L}\p{N}_])/gu, (...match) => {
+    const [, mantissa, sign, digits] = match;
     if (Number(mantissa) === 0) return '0';
     const power = `10<sup>${sign === '-' ? '−' : ''}${Number(digits)}</sup>`;
     return mantissa === '1' ? power : `${mantissa} · ${power}`;
@@ -49,7 +50,8 @@ const isInitial = (before, letter, after) =>
 const isArticle = (before, letter, after) =>
   letter === 'a' && (before || after)
     ? !(operator.test(after) || /(\p{L}\(|[=+−·×/]\s?)$/u.test(before))
-    : letter === 'A' && /(^|[.:;!?(“])\s*$/u.test(before) && /^(\s\p{L}{2}|\s*$)/u.test(after) && !/^\s(is|has|and|or)\s/.test(after);
+    : letter === 'A' && /(^|[.:;!?(“])\s*$/u.test(before) && /^(\s\p{L}{2}|\s*$)/u.test(after) &&
+      !/^\s(is|has|and|or)\s/.test(after);
 const isLabel = (before, letter, after) => /[a-g]/.test(letter) && /(^|\s)\($/.test(before) && /^\)\s/.test(after);
 const isNoVariable = (before, letter, after) =>
   [isUnit, isInitial, isArticle, isLabel].some(is => is(before, letter, after)) ||
@@ -57,12 +59,25 @@ const isNoVariable = (before, letter, after) =>
   /[ℒℋ𝒟ℝℂℤΣΠΔΓΛΩΦΨΘΞ]/u.test(letter) ||
   /<[^>]*$/.test(before);
 
+// A letter that belongs to no word, with the sign of a variation or differential before it.
+const letterAlone = new RegExp(
+  [
+    /(?<![\p{Lu}\p{Ll}\p{Nd}_’'&;\uE000])/u,
+    /(δ|d(?=[\p{Script=Greek}txyzqpsvwhA-Z])|\p{Script=Greek}(?=\p{Script=Greek}))?/u,
+    /([\p{Lu}\p{Ll}][\u0300-\u036f]*)/u,
+    /(?![\p{Lu}\p{Ll}\p{Nd}_'’\uE001]|-\p{L}|\+\+)/u,
+  ]
+    .map(part => part.source)
+    .join(''),
+  'gu',
+);
+
 /** Variables, a letter by itself (δφ, dt, λψ) and indices of one or two: in italics, as formulas have them. */
 export const italic = html =>
   html
     .replace(/<su([bp])>(\p{L}{1,2})<\/su\1>/gu, '<su$1>\uE000$2\uE001</su$1>')
     .replace(
-      /(?<![\p{Lu}\p{Ll}\p{Nd}_’'&;\uE000])(δ|d(?=[\p{Script=Greek}txyzqpsvwhA-Z])|\p{Script=Greek}(?=\p{Script=Greek}))?([\p{Lu}\p{Ll}][\u0300-\u036f]*)(?![\p{Lu}\p{Ll}\p{Nd}_'’\uE001]|-\p{L}|\+\+)/gu,
+      letterAlone,
       (all, variation, letter, at, whole) =>
         isNoVariable(whole.slice(0, at), letter, whole.slice(at + all.length)) ? all : `\uE000${all}\uE001`,
     )

@@ -102,7 +102,8 @@ std::string letters(const NameParts& t, double size) {
   std::string dots;
   for (int i = 0; i < t.dots; ++i) dots += "\u0307";
   std::string out =
-      t.upright ? escape_xml(t.base) : fmt::format("<tspan font-style=\"italic\">{}{}</tspan>", escape_xml(t.base), dots);
+      t.upright ? escape_xml(t.base)
+                : fmt::format("<tspan font-style=\"italic\">{}{}</tspan>", escape_xml(t.base), dots);
   if (!t.index.empty())
     out += fmt::format("<tspan dy=\"{}\" font-size=\"{}\">{}</tspan>", number(0.22 * size), number(0.72 * size),
                        escape_xml(t.index));

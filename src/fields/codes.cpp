@@ -59,8 +59,8 @@ constexpr CodeEntry kEntries[] = {
     {"W0650", "forces in time that are shorter than a step",
      "Boundary values, forces and coefficients in t are followed by the series of each step from its beginning. A "
      "pulse "
-     "inside of a step is passed by on both meshes, and no error is estimated. Where the motion of a side has a jump or "
-     "a kink steps end, but waves of every length run in from it, so that the error falls about with the width of a "
+     "inside of a step is passed by on both meshes, and no error is estimated. Where the motion of a side has a jump "
+     "or a kink steps end, but waves of every length run in from it, so that the error falls about with the width of a "
      "cell; its estimate is made for that.",
      "# maup simulate\ndimensionless\nfield u(x) : number on x = 0 .. 1 cells 4 order 6 boundary u = 0\n"
      "density = 1/2 u'^2 - 1/2 u_x^2\nforce density u = 1000 sin(pi x) exp(-((t - 0.5)/1e-5)^2)\nrun 1\n",

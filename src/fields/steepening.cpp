@@ -101,7 +101,8 @@ void SteepeningWatch::warn(Diagnostics& diagnostics) const {
       "W0660", equations_.system().density_span,
       fmt::format("the mesh does not follow the field any more from t = {:.4g} s on", *lost_),
       "Slopes have become so steep that they change within an element. Where waves overtake themselves the slope "
-      "jumps, and the equations alone do not say how it goes on from there: values after this moment are those of the mesh.",
+      "jumps, and the equations alone do not say how it goes on from there: values after this moment are those of the "
+      "mesh.",
       "End the run before, or add what acts on steep slopes, as friction 𝒟(u_tx) or a term with u_xx; if the field is "
       "smooth there, take more `cells`.");
 }

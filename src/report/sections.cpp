@@ -82,13 +82,18 @@ std::string drawing_section(const ReportContent& content) {
   return fmt::format(R"(<figure id="animation" data-drawing="drawing-data" tabindex="0" aria-label="Animation of {}">
 <canvas role="img" aria-label="Drawing of {}"></canvas>
 <div class="controls">
-<button data-control="play" type="button" aria-label="Play"><svg viewBox="0 0 16 16" aria-hidden="true"><path class="icon-play" d="M3 1.5v13l11-6.5z"/><path class="icon-pause" d="M3 2h4v12H3zM9 2h4v12H9z"/></svg></button>
+<button data-control="play" type="button" aria-label="Play"><svg viewBox="0 0 16 16" aria-hidden="true">
+<path class="icon-play" d="M3 1.5v13l11-6.5z"/>
+<path class="icon-pause" d="M3 2h4v12H3zM9 2h4v12H9z"/></svg></button>
 <input data-control="scrub" type="range" min="0" max="1" step="any" value="0" aria-label="Time">
 <output data-control="time"></output>
 <label>speed <select data-control="speed" aria-label="Speed"></select></label>
-<label>trail <select data-control="trail" aria-label="Trail"><option value="some">fading</option><option value="all">whole</option><option value="none">none</option></select></label>
+<label>trail <select data-control="trail" aria-label="Trail">
+<option value="some">fading</option><option value="all">whole</option>
+<option value="none">none</option></select></label>
 </div>
-<figcaption class="hint"><kbd>space</kbd> plays and pauses, <kbd>←</kbd> <kbd>→</kbd> step through the motion{}.</figcaption>
+<figcaption class="hint"><kbd>space</kbd> plays and pauses, <kbd>←</kbd> <kbd>→</kbd> step through the
+motion{}.</figcaption>
 </figure>
 <script type="application/json" id="drawing-data">{}</script>
 )",

@@ -106,7 +106,8 @@ constexpr std::array entries{
         "N0702", "the stiff method took over",
         "Where a fast, strongly damped motion has died out, an explicit method still has to follow its time scale. "
         "The default method sees that its steps are far shorter than the times in which the velocities change and "
-        "goes on with implicit steps (Radau's). They keep a tolerance (1e-12, or --tol), not rounding level. --method taylor forbids the change, --method stiff uses it from the start.",
+        "goes on with implicit steps (Radau's). They keep a tolerance (1e-12, or --tol), not rounding level. --method "
+        "taylor forbids the change, --method stiff uses it from the start.",
         "# maup simulate\ncoord x : length\nparam m = 1 g, k = 10 N/m, c = 1000 kg/s\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"
         "D = 1/2 c x'^2\nstart x = 1 cm\nrun 100 s\n",
         "# maup simulate\ncoord x : length\nparam m = 1 g, k = 10 N/m, c = 0.05 kg/s\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"
@@ -186,26 +187,28 @@ constexpr std::array entries{
         "contact z >= 0 restitution e name floor\nstart z = 1 m\nrun 2 s\n"},
     CodeEntry{"E0733", "friction by a force that is not linear in forces of constraint",
      "Friction changes the forces that press, and these change friction. Where the normal force is a sum of forces of "
-     "constraint the accelerations follow from linear equations. With the resultant of two of them, the root of the sum of "
-     "their squares, they do not, and such a motion is not computed yet.",
-     "# maup simulate\ncoord r : length, θ, φ : angle\nparam m = 0.1 kg, R = 0.3 m, Ω = 8 rad/s, g = 9.81 m/s^2, μ = 0.2\n"
+     "constraint the accelerations follow from linear equations. With the resultant of two of them, the root of the "
+     "sum of their squares, they do not, and such a motion is not computed yet.",
+     "# maup simulate\ncoord r : length, θ, φ : angle\nparam m = 0.1 kg, R = 0.3 m, Ω = 8 rad/s, g = 9.81 m/s^2, μ = "
+     "0.2\n"
      "point P mass m at r (sin θ cos φ, sin θ sin φ, -cos θ)\ngravity (0, 0, -g)\nconstraint r = R name hoop\n"
      "constraint φ = Ω t name spin\nfriction θ coefficient μ normal R sqrt(reaction(hoop)^2 + reaction(spin)^2/(R "
      "sin θ)^2)\nstart r = R, θ = 20 deg\nrun 1 s\n",
-     "# maup simulate\ncoord r : length, θ, φ : angle\nparam m = 0.1 kg, R = 0.3 m, Ω = 8 rad/s, g = 9.81 m/s^2, μ = 0.2\n"
+     "# maup simulate\ncoord r : length, θ, φ : angle\nparam m = 0.1 kg, R = 0.3 m, Ω = 8 rad/s, g = 9.81 m/s^2, μ = "
+     "0.2\n"
      "point P mass m at r (sin θ cos φ, sin θ sin φ, -cos θ)\ngravity (0, 0, -g)\nconstraint r = R name hoop\n"
      "constraint φ = Ω t name spin\nfriction θ coefficient μ normal R reaction(hoop)\nstart r = R, θ = 20 deg\n"
      "run 1 s\n"},
     CodeEntry{"E0732", "friction by a force that the model does not determine",
-     "Redundant constraints, a beam on three supports, share their forces in a way that rigid bodies do not tell: that is a "
-     "question of elasticity. Friction that takes one of them for its normal force is not determined either, and so is the "
-     "motion.",
+     "Redundant constraints, a beam on three supports, share their forces in a way that rigid bodies do not tell: that "
+     "is a question of elasticity. Friction that takes one of them for its normal force is not determined either, and "
+     "so is the motion.",
      "# maup simulate\nparam m = 2 kg, g = 10 m/s^2, μ = 0.1\ncoord y, s : length\npoint P mass m at (0, y)\npoint W "
-     "mass m at (s, 1 m)\ngravity (0, -g)\nconstraint y = 0 name f1\nconstraint 2 y = 0 name f2\nfriction s coefficient "
-     "μ normal reaction(f1)\nstart s' = 1 m/s\nrun 1 s\n",
+     "mass m at (s, 1 m)\ngravity (0, -g)\nconstraint y = 0 name f1\nconstraint 2 y = 0 name f2\nfriction s "
+     "coefficient μ normal reaction(f1)\nstart s' = 1 m/s\nrun 1 s\n",
      "# maup simulate\nparam m = 2 kg, g = 10 m/s^2, μ = 0.1\ncoord y, s : length\npoint P mass m at (0, y)\npoint W "
-     "mass m at (s, 1 m)\ngravity (0, -g)\nconstraint y = 0 name f1\nfriction s coefficient μ normal reaction(f1)\nstart "
-     "s' = 1 m/s\nrun 1 s\n"},
+     "mass m at (s, 1 m)\ngravity (0, -g)\nconstraint y = 0 name f1\nfriction s coefficient μ normal "
+     "reaction(f1)\nstart s' = 1 m/s\nrun 1 s\n"},
     CodeEntry{
         "E0730", "a contact with a kink",
         "A gap made of abs, min, max, step or piecewise may switch where it and its slope go on, as on the border of a "

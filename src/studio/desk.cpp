@@ -103,7 +103,9 @@ void Desk::refuse(const Study& study, const Diagnostics& more) {
 namespace {
 
 /// Whether the equations of the study, or of its fields, were derived.
-bool derived(Study& study) { return study.has_fields() ? study.field_equations() != nullptr : study.equations() != nullptr; }
+bool derived(Study& study) {
+  return study.has_fields() ? study.field_equations() != nullptr : study.equations() != nullptr;
+}
 
 }  // namespace
 

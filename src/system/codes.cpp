@@ -460,8 +460,9 @@ constexpr CodeEntry kEntries[] = {
      "coord x, y : length\nparam m = 1 kg, g = 9.81 m/s^2, a = 1 m^-1\npoint P mass m at (x, y)\ngravity (0, -g)\n"
      "contact y - a x^2 >= 0 friction 0.3 slip (x' + 2 a x y')/sqrt(1 + 4 a^2 x^2)\nstart y = 1 m\n"},
     {"W0438", "two names that are printed alike",
-     "Formulas set a second letter and what follows an underscore below the line, as textbooks do: mS and m_S. Names that differ only in how they say so are one symbol in a formula, and the formula is false. "
-     "The momentum of x is printed as p_x, the energy function as h_E.",
+     "Formulas set a second letter and what follows an underscore below the line, as textbooks do: mS and m_S. Names "
+     "that differ only in how they say so are one symbol in a formula, and the formula is false. The momentum of x is "
+     "printed as p_x, the energy function as h_E.",
      "coord x, y : length\nparam mS = 1 kg, m_S = 2 kg, k = 3 N/m\nT = 1/2 mS x'^2 + 1/2 m_S y'^2\nV = 1/2 k (x - "
      "y)^2\n",
      "coord x, y : length\nparam m1 = 1 kg, m2 = 2 kg, k = 3 N/m\nT = 1/2 m1 x'^2 + 1/2 m2 y'^2\nV = 1/2 k (x - "
@@ -471,10 +472,10 @@ constexpr CodeEntry kEntries[] = {
      "lock: ±90° of rpy and yzx, 0 and 180° of zxz), at r = 0 of polar ones. There a change of a coordinate moves "
      "nothing, its acceleration is not determined, and a run ends before it begins. Bodies have no such position with "
      "`rotation quaternion`.",
-     "coord r : length, φ : angle\nparam m = 1 kg, k = 2 N/m\nT = 1/2 m (r'^2 + r^2 φ'^2)\nV = 1/2 k r^2\nstart r = 0 m\nrun "
-     "1 s\n",
-     "coord x, y : length\nparam m = 1 kg, k = 2 N/m\nT = 1/2 m (x'^2 + y'^2)\nV = 1/2 k (x^2 + y^2)\nstart x = 0 m\nrun 1 "
-     "s\n"},
+     "coord r : length, φ : angle\nparam m = 1 kg, k = 2 N/m\nT = 1/2 m (r'^2 + r^2 φ'^2)\nV = 1/2 k r^2\nstart r = 0 "
+     "m\nrun 1 s\n",
+     "coord x, y : length\nparam m = 1 kg, k = 2 N/m\nT = 1/2 m (x'^2 + y'^2)\nV = 1/2 k (x^2 + y^2)\nstart x = 0 "
+     "m\nrun 1 s\n"},
     {"E0436", "gravity, or a damping coefficient, depends on the motion",
      "`gravity` is one vector for all bodies, whose weights m g come from the potential −m g·r; a field that differs "
      "from place to place has a potential of its own. A damper is D = ½ c ṡ², which gives the force c ṡ only where c "

@@ -21,7 +21,7 @@ std::string tolerance_text(const expectation::Tolerance& tolerance, const expect
 /// " rad", or nothing in SI.
 std::string unit_after(const expectation::DisplayUnit& unit);
 
-/// The sentence of a claim about a time that the run did not reach; `reason` is why it ended, with a full stop or without.
+/// The sentence of a claim about a time that the run did not reach; `reason`: why it ended, with a full stop or not.
 std::string ended_before(const std::string& reason);
 
 /// Fills everything but the message, which says by how much it is off.

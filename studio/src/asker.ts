@@ -22,10 +22,10 @@ export interface AskOptions {
 const ranks: Record<string, number> = {open: 0, pose: 1, run: 3, equations: 2, complete: 1, hover: 2, signature: 2};
 
 /**
- * One question at a time goes to the session, as it answers one at a time. Of one kind only the newest waits. One on its
- * way ends, after the carrier's grace, where a newer one of its kind is asked, where another text is opened, and where
- * the values change that it is about; but a quick one comes to its end before other quick ones, or none would where
- * values move faster than it. What was cancelled gives no answer, not even one that was on its way already.
+ * One question at a time goes to the session, as it answers one at a time. Of one kind only the newest waits. One on
+ * its way ends, after the carrier's grace, where a newer one of its kind is asked, where another text is opened, and
+ * where the values change that it is about; but a quick one comes to its end before other quick ones, or none would
+ * where values move faster than it. What was cancelled gives no answer, not even one that was on its way already.
  */
 export class Asker {
   private queue: Job[] = [];
@@ -99,6 +99,9 @@ export class Asker {
 const dependsOnText = (job: Job): boolean =>
   job.request.do !== 'hello' && job.request.do !== 'explain' && job.request.do !== 'open';
 
-/** Equations are those of the text: they come to their end. A file that is exported is that of the values when it was asked for. */
+/**
+ * Equations are those of the text: they come to their end. A file that is exported is that of the values when it was
+ * asked for.
+ */
 const aboutValues = (job: Job): boolean =>
   ['run', 'modes', 'phase_space', 'conserved', 'section', 'expectations'].includes(job.request.do);

@@ -1,4 +1,4 @@
-/** How the lines of a file end. In the page they end with \n, as editor and session count; a file keeps its own ends. */
+/** How the lines of a file end. In the page they end with \n, as editor and session count; a file keeps its own. */
 export type Ends = '\n' | '\r\n';
 
 export interface Lines {

@@ -27,7 +27,7 @@ export const noDuration = 'E0701',
 /** The model is about paths between two ends (`path from …`), and has no motion from a start. */
 export const betweenEnds = ({text, runTrouble}: State): boolean =>
   runTrouble?.code === heldIntegral || (runTrouble?.code === noDuration && /^path\b/m.test(text));
-/** The equations are those of motions in time: no other variable is declared in its place. Without it there are no modes. */
+/** The equations are those of motions in time: no other variable is declared in its place. Without it no modes. */
 export const inTime = ({text}: State): boolean => !/^independent\b(?!\s+t\b)/m.test(text);
 
 const longest = 1_000_000; // characters of a model: as much as a session takes
@@ -68,7 +68,8 @@ export class Study {
     private readonly clock: Clock,
   ) {
     asker.onBusy(kind => store.update({busy: kind, progress: null}));
-    store.watch(['busy', 'answered', 'readable', 'text', 'openedText'], ({busy, answered, readable, text, openedText}) => {
+    store.watch(['busy', 'answered', 'readable', 'text', 'openedText'], state => {
+      const {busy, answered, readable, text, openedText} = state;
       document.body.dataset.settled = String(busy === null && text === openedText && (answered || !readable));
     });
   }
@@ -222,7 +223,13 @@ export class Study {
     if (texts !== this.texts) return;
     if (answer.ok) {
       this.equationsOf = texts;
-      this.store.update({equations: answer, equationsText: this.store.state.text, equationsTrouble: null, equationsLate: false, deep: answer.diagnostics});
+      this.store.update({
+        equations: answer,
+        equationsText: this.store.state.text,
+        equationsTrouble: null,
+        equationsLate: false,
+        deep: answer.diagnostics,
+      });
       if (!this.shown) document.title = `${answer.title || answer.name} – Maupertuis`;
       this.arrived();
     } else if (answer.kind !== 'cancelled' && changes === this.changes) {
@@ -487,7 +494,10 @@ export class Study {
   }
 
   /** What takes its time and is of the values that stand there now; it is asked for once. */
-  private async search<T extends object>(request: Request, patch: (answer: T | Trouble) => Partial<State>): Promise<void> {
+  private async search<T extends object>(
+    request: Request,
+    patch: (answer: T | Trouble) => Partial<State>,
+  ): Promise<void> {
     const {changes} = this;
     if (this.pending.get(request.do) === changes) return;
     this.pending.set(request.do, changes);

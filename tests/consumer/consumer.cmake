@@ -8,7 +8,8 @@ endfunction()
 
 file(REMOVE_RECURSE ${WORK_DIR})
 step("Installation" ${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/prefix)
-step("Configuration of a project that uses the package" ${CMAKE_COMMAND} -S ${OUTSIDE} -B ${WORK_DIR}/build -G ${GENERATOR}
+step("Configuration of a project that uses the package" ${CMAKE_COMMAND} -S ${OUTSIDE} -B ${WORK_DIR}/build
+     -G ${GENERATOR}
      -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_BUILD_TYPE=Debug
      -D HEADERS=${HEADERS})
 step("Its build" ${CMAKE_COMMAND} --build ${WORK_DIR}/build)

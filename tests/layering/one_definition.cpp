@@ -60,7 +60,8 @@ Scope opened_by(std::string head) {
   static const std::regex space(R"((?:inline\s+)?namespace\s*([\w:]*))"),
       of_template(R"(template\s*<[^{}]*>\s*(?=struct|class|union))"),
       type(
-          R"((?:struct|class|union|enum|enum\s+class)\s+(?:alignas\([^)]*\)\s*)?([\w:]+(?:\s*<[^{}]*>)?)(?:\s+final)?\s*(?::[^{}]*)?)");
+          R"((?:struct|class|union|enum|enum\s+class)\s+(?:alignas\([^)]*\)\s*)?([\w:]+(?:\s*<[^{}]*>)?)(?:\s+final)?)"
+          R"(\s*(?::[^{}]*)?)");
   std::smatch m;
   head = trimmed(head);
   if (std::regex_match(head, m, space)) return {Scope::Kind::Namespace, m[1]};

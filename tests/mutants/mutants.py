@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Changes one line of the sources at a time, and tells whether the tests see it.
 
-The tree and its build are read and never written: a mutant is compiled from a copy of its file, linked before the library that
-holds the original, and run under a limit of processor time. What was found is kept in build/mutants/found.jsonl, so that a
+The tree and its build are read and never written: a mutant is compiled from a copy of its file, linked before the
+library that holds the original, and run under a limit of processor time. What was found is kept in
+build/mutants/found.jsonl, so that a
 measurement goes on where it was interrupted. docs/design/mutants.md says what is measured and how.
 """
 import argparse
@@ -27,13 +28,15 @@ TOOL = Path(__file__).resolve().parent
 
 
 def options():
-    p = argparse.ArgumentParser(prog="scripts/mutants", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p = argparse.ArgumentParser(prog="scripts/mutants", description=__doc__,
+                                formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--count", type=int, default=200, help="mutants, the same number of every module (200)")
     p.add_argument("--seed", default="1744", help="of the draw (1744)")
     p.add_argument("--modules", default=",".join(MODULES), help="modules or files below src, by commas")
     p.add_argument("--without", default="", help="files below src that are left out, by commas")
     p.add_argument("--jobs", type=int, default=os.cpu_count(), help="mutants at a time")
-    p.add_argument("--tree", type=Path, default=TOOL.parents[1], help="the sources (those that this program belongs to)")
+    p.add_argument("--tree", type=Path, default=TOOL.parents[1],
+                   help="the sources (those that this program belongs to)")
     p.add_argument("--build", type=Path, help="their build by the preset `test` (TREE/build)")
     p.add_argument("--folder", type=Path, help="where what was found is kept (BUILD/mutants)")
     p.add_argument("--as-built", action="store_true", help="take the build as it is")
@@ -57,7 +60,8 @@ class Draw:
 
     def __init__(self, tree, module, seed, without):
         texts = {f: (tree / f).read_text() for f in files_of(tree, module, without)}
-        everything = sorted((m for f, text in texts.items() for m in sites.mutants(f, text)), key=lambda m: m.order(seed))
+        everything = sorted((m for f, text in texts.items() for m in sites.mutants(f, text)),
+                            key=lambda m: m.order(seed))
         lines = {}
         for m in everything:
             lines.setdefault((m.path, m.line), m)
@@ -78,7 +82,8 @@ class Ledger:
         return self.found.get((mutant.name, digest(text)))
 
     def add(self, mutant, text, verdict, by, detail):
-        entry = {"name": mutant.name, "file": digest(text), "line": mutant.line, "kind": mutant.kind, "verdict": verdict, "by": by, "detail": detail}
+        entry = {"name": mutant.name, "file": digest(text), "line": mutant.line, "kind": mutant.kind,
+                 "verdict": verdict, "by": by, "detail": detail}
         with self.lock, self.path.open("a") as out:
             self.found[mutant.name, entry["file"]] = entry
             out.write(json.dumps(entry, ensure_ascii=False) + "\n")
@@ -153,11 +158,13 @@ class Work:
 
     def judge(self, trial, mutant, text):
         known = self.ledger.get(mutant, text)
-        if known and (known["verdict"] != "survived" or not self.again or mutant.name in self.tried):  # or no test can see it
+        # Or no test can see it.
+        if known and (known["verdict"] != "survived" or not self.again or mutant.name in self.tried):
             return known
         self.tried.add(mutant.name)
         entry = self.ledger.add(mutant, text, *trial.judge(mutant, text, suites_of(mutant.path), self.limits))
-        print(f"{entry['verdict']:<17}{mutant.path}:{mutant.line}: {mutant.name.split(': ', 1)[1][:150]}   {entry['by']}", flush=True)
+        change = mutant.name.split(': ', 1)[1][:150]
+        print(f"{entry['verdict']:<17}{mutant.path}:{mutant.line}: {change}   {entry['by']}", flush=True)
         return entry
 
 
@@ -168,7 +175,8 @@ def table(draws, wanted, ledger):
     print("|---|---|---|---|---|---|")
     total = [0] * 4
     for module, draw in draws.items():
-        entries = [e for m in draw.all if (e := ledger.get(m, draw.texts[m.path])) and e["verdict"] not in NO_RESULT][:wanted[module]]
+        judged = [e for m in draw.all if (e := ledger.get(m, draw.texts[m.path]))]
+        entries = [e for e in judged if e["verdict"] not in NO_RESULT][:wanted[module]]
         killed = sum(e["verdict"] == "killed" for e in entries)
         same = [e for e in entries if e["verdict"] == "same code" or e["verdict"] == "survived" and e["name"] in known]
         left = [e for e in entries if e["verdict"] == "survived" and e["name"] not in known]
@@ -176,7 +184,8 @@ def table(draws, wanted, ledger):
         total = [a + b for a, b in zip(total, row)]
         print_row(module, row)
         lists["Survivors"] += [f"- {e['name']}" for e in left]
-        lists["Equivalent"] += [f"- {e['name']}: {known.get(e['name'], 'the compiler makes the same code')}" for e in same]
+        lists["Equivalent"] += [
+            f"- {e['name']}: {known.get(e['name'], 'the compiler makes the same code')}" for e in same]
     print_row("**all**", total)
     for title, lines in lists.items():
         print(f"\n{title}:\n" + "\n".join(lines) if lines else f"\n{title}: none")
@@ -185,7 +194,8 @@ def table(draws, wanted, ledger):
 
 def print_row(name, row):
     others = row[0] - row[2]
-    print(f"| {name} | {' | '.join(map(str, row))} | {100 * row[1] / others:.0f} % |" if others else f"| {name} | 0 | | | | |")
+    seen = f"{' | '.join(map(str, row))} | {100 * row[1] / others:.0f} %" if others else "0 | | | |"
+    print(f"| {name} | {seen} |")
 
 
 def main():
@@ -203,7 +213,8 @@ def main():
     if not arguments.table:
         needed = {s.name: s for d in draws.values() for path in d.texts for s in suites_of(path)}
         if not arguments.as_built:
-            subprocess.run(["cmake", "--build", arguments.build, "--target", *sorted({s.target for s in needed.values()})],
+            targets = sorted({s.target for s in needed.values()})
+            subprocess.run(["cmake", "--build", arguments.build, "--target", *targets],
                            check=True, stdout=subprocess.DEVNULL)
         build = Build(arguments.tree, arguments.build)
         limits = processor_limits(build, needed.values(), arguments.folder / "seconds.json")

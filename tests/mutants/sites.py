@@ -19,12 +19,15 @@ BINARY = {
 }
 KIND = {**dict.fromkeys(["+", "-", "*", "/", "+=", "-=", "*=", "/="], "sign"),
         **dict.fromkeys(["<", "<=", ">", ">=", "==", "!="], "relation"), "&&": "logic", "||": "logic"}
-BEFORE_OPERAND = {"(", ",", "=", "?", ":", "{", "[", "<", ">", "<=", ">=", "==", "!=", "+", "-", "*", "/", "&&", "||", "+=", "-=", "return"}
+BEFORE_OPERAND = {"(", ",", "=", "?", ":", "{", "[", "<", ">", "<=", ">=", "==", "!=", "+", "-", "*", "/",
+                  "&&", "||", "+=", "-=", "return"}
 WORDS = {"true": "false", "false": "true", "min": "max", "max": "min"}
-STATEMENT = re.compile(r"^\s*(?!return\b|break\b|continue\b|using\b|case\b|default\b|if\b|for\b|while\b|else\b|throw\b|delete\b|goto\b|static\b|const\b|auto\b|typename\b|friend\b)"
+STATEMENT = re.compile(r"^\s*(?!return\b|break\b|continue\b|using\b|case\b|default\b|if\b|for\b|while\b|else\b|"
+                       r"throw\b|delete\b|goto\b|static\b|const\b|auto\b|typename\b|friend\b)"
                        r"(?:[\w.\[\]>()-]|::|->)*[\w\])](?:\(.*\)| [+*/|&-]?= .*);\s*(?://.*)?$")
 # Broken preconditions and inconsistencies inside are no behaviour; room reserved ahead is none either.
-LEFT_ALONE = re.compile(r"MAUP_REQUIRE|logic_error|please report|\.reserve\(|static_assert|^\s*(?:template|using|namespace)\b")
+LEFT_ALONE = re.compile(r"MAUP_REQUIRE|logic_error|please report|\.reserve\(|static_assert|"
+                        r"^\s*(?:template|using|namespace)\b")
 
 
 @dataclass(frozen=True)
@@ -36,7 +39,7 @@ class Mutant:
     before: str
     after: str
     kind: str        # sign, relation, logic, factor, bound, statement, condition, word
-    name: str        # what it is, independent of line numbers: path, the line's text, the change, which of several in it
+    name: str        # what it is, independent of line numbers: path, the line's text, the change, which of several
 
     def order(self, seed):
         """A place in the draw that other changes of the tree do not move."""
@@ -80,7 +83,8 @@ def _of_tokens(text):
         before = list_of[i - 1][1] if i else ""
         beside_text = any(list_of[j][0] == "text" for j in (i - 1, i + 1) if 0 <= j < len(list_of))
         spaced = text[start - 1:start] in (" ", "\n") and text[end:end + 1] in (" ", "\n")
-        if group == "sign" and word in BINARY and spaced and before != "operator" and not (beside_text and word in "+-"):
+        binary = word in BINARY and spaced and before != "operator"
+        if group == "sign" and binary and not (beside_text and word in "+-"):
             if word in "+-*/" and (before in BEFORE_OPERAND or before in ("const", "auto")):
                 continue
             for after in BINARY[word]:

@@ -33,7 +33,8 @@ class Build:
         """The compiled files that read a header, as the last build found it."""
         if self._readers is None:
             self._readers = {}
-            text = subprocess.run(["ninja", "-C", self.build, "-t", "deps"], capture_output=True, text=True, check=True).stdout
+            text = subprocess.run(["ninja", "-C", self.build, "-t", "deps"], capture_output=True, text=True,
+                                  check=True).stdout
             target = None
             for line in text.split("\n"):
                 if line and not line.startswith(" "):
@@ -75,8 +76,8 @@ def compile_files(build, files, overlay, folder, flags=EXTRA_FLAGS):
 
 
 def link(build, target, objects, folder):
-    """`target` with these objects in the place of its own; None where it does not link. An object of a library stands before the
-    archives, so that the archive's own is never asked for."""
+    """`target` with these objects in the place of its own; None where it does not link. An object of a library stands
+    before the archives, so that the archive's own is never asked for."""
     words = list(build.link_of(target))
     words[words.index(f"bin/{target}")] = str(folder / target)
     first = next(i for i, w in enumerate(words) if w.endswith(".a"))
@@ -87,7 +88,8 @@ def link(build, target, objects, folder):
 
 
 def run(build, suite, program, seconds):
-    """(word, detail): "passed", or "failed", "crashed", "time". Processor time is bounded, so that other work does not count."""
+    """(word, detail): "passed", or "failed", "crashed", "time". Processor time is bounded, so that other work does not
+    count."""
     def bounded():
         resource.setrlimit(resource.RLIMIT_CPU, (int(seconds) + 1, int(seconds) + 2))
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
@@ -96,7 +98,8 @@ def run(build, suite, program, seconds):
     environment = {**os.environ, "RC_PARAMS": "seed=1744", "MAUPERTUIS_LLVM_MODULE": str(module)}
     words = [w.replace("{program}", str(program)) for w in suite.command]
     try:
-        done = subprocess.run(words, cwd=build.root, env=environment, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+        done = subprocess.run(words, cwd=build.root, env=environment, stdin=subprocess.DEVNULL, capture_output=True,
+                              text=True,
                               errors="replace", preexec_fn=bounded, timeout=20 * seconds + 60)
     except subprocess.TimeoutExpired:
         return "time", ""
@@ -123,7 +126,8 @@ class Trial:
         if path.endswith(".cpp"):
             return [str(self.build.root / path)]
         linked = {str(w) for suite in suites for w in self.build.link_of(suite.target)}
-        return [f for f in self.build.readers(path) if f.startswith(f"{self.build.root}/src/") or self.build.object_of(f) in linked]
+        own = f"{self.build.root}/src/"
+        return [f for f in self.build.readers(path) if f.startswith(own) or self.build.object_of(f) in linked]
 
     def objects(self, path, text, files):
         shutil.rmtree(self.folder, ignore_errors=True)

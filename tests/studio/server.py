@@ -127,8 +127,8 @@ def paths(studio):
 def files(studio, folder):
     _, content = studio.ask("GET", "/api/files")
     listed = json.loads(content)
-    expect("models are listed", [f["path"] for f in listed["files"]] == ["double_pendulum.lag", "latin.lag", "pendulum.lag",
-                                                                         "sub/kepler.lag"], content)
+    expected = ["double_pendulum.lag", "latin.lag", "pendulum.lag", "sub/kepler.lag"]
+    expect("models are listed", [f["path"] for f in listed["files"]] == expected, content)
     response, content = studio.ask("GET", "/api/file?path=latin.lag")
     expect("bytes that are no letters are not read", response.status == 415 and b"UTF-8" in content, content)
     _, content = studio.ask("GET", "/api/file?path=pendulum.lag")
@@ -234,7 +234,8 @@ def killed(studio):
     connection = socket.create_connection(("127.0.0.1", studio.port))
     connection.sendall(b"POST /api/request?session=k HTTP/1.1\r\nHost: ")  # a browser that dies in the middle
     connection.close()
-    for garbage in [b"\x00" * 1000, b"GET / HTTP/9.9\r\n\r\n", b"A" * 100000, b"GET " + b"/" * 20000 + b" HTTP/1.1\r\n\r\n"]:
+    for garbage in [b"\x00" * 1000, b"GET / HTTP/9.9\r\n\r\n", b"A" * 100000,
+                    b"GET " + b"/" * 20000 + b" HTTP/1.1\r\n\r\n"]:
         with socket.create_connection(("127.0.0.1", studio.port)) as connection:
             try:
                 connection.sendall(garbage)

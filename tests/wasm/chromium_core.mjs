@@ -23,7 +23,11 @@ function make() {
     worker.onmessage = ({data}) => {
       if (data.started) return code = data.started, resolve();
       if (data.message) return messages.push(data.message);
-      if (data.failed) { reject(new Error(data.failed)); for (const {reject: lose} of waiting.values()) lose(new Error(data.failed)); return; }
+      if (data.failed) {
+        reject(new Error(data.failed));
+        for (const {reject: lose} of waiting.values()) lose(new Error(data.failed));
+        return;
+      }
       waiting.get(data.id).resolve(data.answer);
       waiting.delete(data.id);
     };
@@ -43,7 +47,7 @@ function ask(text) {
 </script>`;
 }
 
-/** The module in a worker of headless Chromium, from file://. `said`: lines of the console; `requests`: of the network. */
+/** The module in a worker of headless Chromium, from file://. `said`: lines of the console; `requests`: of the net. */
 export class ChromiumCore {
   static async start() {
     const core = new ChromiumCore();
@@ -70,7 +74,7 @@ export class ChromiumCore {
   async ask(request) {
     return JSON.parse(await this.page.evaluate(text => ask(text), JSON.stringify(request)));
   }
-  /** Ends the worker in the middle of a request; a new one starts with the code that is compiled. ms until it is ready. */
+  /** Ends the worker in the middle of a request; a new one starts with the compiled code. ms until it is ready. */
   restart() {
     return this.page.evaluate(async () => {
       const begin = performance.now();

@@ -77,7 +77,8 @@ const cases = {
     const links = [...Array(60).keys()].map(i => `θ${i + 1}`);
     const points = links.map((q, i) => `point P${i + 1} mass m at ${i ? `P${i} + ` : ''}l (sin ${q}, -cos ${q})`);
     await open(
-      `system chain\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord ${links.join(', ')} : angle\n${points.join('\n')}\n` +
+      `system chain\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\n` +
+        `coord ${links.join(', ')} : angle\n${points.join('\n')}\n` +
         `gravity (0, -g)\nstart ${links.map(q => `${q} = 2 rad`).join(', ')}\nrun 1 s\n`,
     );
     const begin = performance.now(),
@@ -111,7 +112,8 @@ expect('size', size < 2_700_000, size); // of 3 MB, of which the page has its sh
 for (const text of core.said) expect('the console', false, text);
 expect('the network', core.requests.length === 0, core.requests);
 console.log(
-  `${Object.keys(cases).length} kinds of bad input, ${failed} failures; first ready after ${core.ready.toFixed(0)} ms; ` +
+  `${Object.keys(cases).length} kinds of bad input, ${failed} failures; ` +
+    `first ready after ${core.ready.toFixed(0)} ms; ` +
     `${(size / 1e6).toFixed(2)} MB gzip`,
 );
 await core.end();

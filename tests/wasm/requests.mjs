@@ -60,10 +60,12 @@ function* differences(a, b, path, part) {
 // Sums that cancel (a conserved quantity that is zero) are rounding errors of numbers of the size 1.
 const noise = 1e-5;
 
-/** A motion agrees as far as its own error estimates vouch for it: before that time, each column to a part of its size. */
+/**
+ * A motion agrees as far as its own error estimates vouch for it: before that time, each column to a part of its size.
+ */
 function* runDifferences(a, b) {
-  // The time of an impact, and of an end that the motion finds itself, is right to rounding. An impact is a row twice, before
-  // and after, and once where its time is one of the output: rounding decides on that.
+  // The time of an impact, and of an end that the motion finds itself, is right to rounding. An impact is a row twice,
+  // before and after, and once where its time is one of the output: rounding decides on that.
   const same = (t, u) => Math.abs(t - u) <= 1e-9 * Math.abs(a.times.at(-1) - a.times[0]);
   const rows = [];
   for (let row = 0, other = 0; row < a.times.length && other < b.times.length; )
@@ -77,27 +79,38 @@ function* runDifferences(a, b) {
   const quantity = column => a.columns[column].name.replace(/\([-\d., e]+\)$/, '(x)'),
     sizes = new Map();
   for (const [column, values] of a.values.entries())
-    sizes.set(quantity(column), values.reduce((size, x) => Math.max(size, Math.abs(x ?? 0)), sizes.get(quantity(column)) ?? 0));
+    sizes.set(
+      quantity(column),
+      values.reduce((size, x) => Math.max(size, Math.abs(x ?? 0)), sizes.get(quantity(column)) ?? 0),
+    );
   for (const [column, values] of a.values.entries()) {
     if (a.columns[column].name.endsWith('drift')) continue;
     const size = sizes.get(quantity(column));
     const differs = rows.find(
-      ([row, other]) => a.times[row] < 0.5 * certain && !close(values[row], b.values[column][other], 1e-7, size + noise),
+      ([row, other]) =>
+        a.times[row] < 0.5 * certain && !close(values[row], b.values[column][other], 1e-7, size + noise),
     );
     if (differs) {
       const [row, other] = differs;
-      yield `run: ${a.columns[column].name} at ${a.times[row]}: ${values[row]} | ${b.values[column][other]}, size ${size}`;
+      const at = `${a.columns[column].name} at ${a.times[row]}`;
+      yield `run: ${at}: ${values[row]} | ${b.values[column][other]}, size ${size}`;
     }
   }
 }
 
 /** Of these models lines are written with other signs and in another order: docs/design/web_assembly.md. */
-export const reordered = new Set(['ball_on_turntable.lag', 'heavy_top.lag', 'fields/loaded_bridge.lag', 'fields/moving_load.lag']);
+export const reordered = new Set([
+  'ball_on_turntable.lag',
+  'heavy_top.lag',
+  'fields/loaded_bridge.lag',
+  'fields/moving_load.lag',
+]);
 
 /** A formula as it is printed, with a number for each name: "2 m R^2 (a' - b/3)", where w(L/2) is a name too. */
 export function valueOf(text) {
   const tokens = text.match(/\d+(\.\d+)?|\p{L}[\p{L}\p{N}_.]*'*(\([^()]*\))?|[-+*/^()]|\S/gu) ?? [];
-  const numberOf = name => [...name].reduce((sum, sign, i) => (sum + (i + 7) * sign.codePointAt(0) * 0.6180339) % 1, 0.1) + 0.5;
+  const numberOf = name =>
+    [...name].reduce((sum, sign, i) => (sum + (i + 7) * sign.codePointAt(0) * 0.6180339) % 1, 0.1) + 0.5;
   const take = sign => tokens[0] === sign && tokens.shift();
   const sum = () => {
     let value = take('-') ? -term() : term();
@@ -106,7 +119,8 @@ export function valueOf(text) {
   };
   const term = () => {
     let value = power();
-    while (tokens.length > 0 && !/^[-+)]$/.test(tokens[0])) value = take('/') ? value / power() : (take('*'), value * power());
+    while (tokens.length > 0 && !/^[-+)]$/.test(tokens[0]))
+      value = take('/') ? value / power() : (take('*'), value * power());
     return value;
   };
   const power = () => {

@@ -63,7 +63,8 @@ function certificate(document) {
 }
 
 const style = `
-body { font: var(--vscode-font-size, 13px)/1.5 var(--vscode-font-family, sans-serif); padding: 0 1.2em 2em; max-width: 60em; }
+body { font: var(--vscode-font-size, 13px)/1.5 var(--vscode-font-family, sans-serif); padding: 0 1.2em 2em;
+  max-width: 60em; }
 h1 { font-size: 1.3em; font-weight: 600; margin: 1em 0 0.6em; }
 h2 { font-size: 1em; font-weight: 600; margin: 1.6em 0 0.4em; }
 img { width: 100%; max-width: 480px; background: #fff; border-radius: 4px; }
@@ -94,7 +95,8 @@ function page(shown) {
   parts.push(certificate(document));
   const policy = "default-src 'none'; img-src data:; style-src 'unsafe-inline'";
   return (
-    `<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><meta http-equiv="Content-Security-Policy" content="${policy}">` +
+    `<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">` +
+    `<meta http-equiv="Content-Security-Policy" content="${policy}">` +
     `<title>${escaped(title)}</title><style>${style}</style></head><body>${parts.join("\n")}</body></html>`
   );
 }

@@ -2,7 +2,8 @@
 "use strict";
 const { spawn } = require("node:child_process");
 
-/// {code, out, err}; rejects where the program cannot be started. `signal` (an AbortSignal) and `limit` (milliseconds) end it.
+/// {code, out, err}; rejects where the program cannot be started. `signal` (an AbortSignal) and `limit` (milliseconds)
+/// end it.
 function run(program, args, input, { signal, limit = 30000, cwd } = {}) {
   return new Promise((resolve, reject) => {
     const child = spawn(program, args, { cwd, windowsHide: true });

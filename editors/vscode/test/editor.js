@@ -32,7 +32,8 @@ class TextDocument {
 function editor() {
   const changed = new Emitter();
   const configured = new Emitter();
-  const it = { commands: {}, executed: [], panels: [], terminals: [], errors: [], clients: [], settings: {}, answer: undefined };
+  const it = { commands: {}, executed: [], panels: [], terminals: [], errors: [], clients: [], settings: {},
+    answer: undefined };
   const vscode = {
     ViewColumn: { Beside: -2 },
     workspace: {

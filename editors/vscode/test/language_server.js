@@ -50,7 +50,8 @@ class LanguageServer {
   /// The tokens of a text: [{line, from, to, kind}], kinds as the protocol names them.
   async tokens(text) {
     const uri = "file:///model.lag";
-    this.send({ method: "textDocument/didOpen", params: { textDocument: { uri, languageId: "lag", version: 1, text } } });
+    const textDocument = { uri, languageId: "lag", version: 1, text };
+    this.send({ method: "textDocument/didOpen", params: { textDocument } });
     const { data } = await this.ask("textDocument/semanticTokens/full", { textDocument: { uri } });
     this.send({ method: "textDocument/didClose", params: { textDocument: { uri } } });
     const out = [];

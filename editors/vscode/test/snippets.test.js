@@ -17,10 +17,12 @@ function texts(body) {
   return [body.replace(/\$\{\d+:([^}]*)\}/g, "$1").replace(/\$\d+/g, "")];
 }
 
-const parameters = "param m = 1 kg, l = 1 m, k = 10 N/m, c = 1 kg/s, l0 = 0.5 m, g = 9.81 m/s^2, F = 1 N, Ω = 1 rad/s\n";
+const parameters =
+  "param m = 1 kg, l = 1 m, k = 10 N/m, c = 1 kg/s, l0 = 0.5 m, g = 9.81 m/s^2, F = 1 N, Ω = 1 rad/s\n";
 const plane = `${parameters}coord x : length, y : length\npoint P mass m at (x, y)\n`;
 const falling = `${plane}gravity (0, -g)\nstart x = 0.1 m, y = 1 m\n`;
-const turning = `${parameters}coord θ : angle\npoint bob mass m at l (sin θ, -cos θ)\ngravity (0, -g)\nstart θ = 1 rad\n`;
+const turning =
+  `${parameters}coord θ : angle\npoint bob mass m at l (sin θ, -cos θ)\ngravity (0, -g)\nstart θ = 1 rad\n`;
 const around = {
   "pendulum model": (text) => text,
   param: (text) => `${text}\ncoord x : length\nT = 1/2 m x'^2\n`,

@@ -63,8 +63,8 @@ class Analysis {
         continue;
       }
       const double root = std::sqrt(std::abs(squares[i]));
-      out_.residual =
-          std::max(out_.residual, (form_.k * vectors.col(i) - squares[i] * vectors.col(i)).norm() / form_.k.stableNorm());
+      const double left = (form_.k * vectors.col(i) - squares[i] * vectors.col(i)).norm();
+      out_.residual = std::max(out_.residual, left / form_.k.stableNorm());
       if (squares[i] > 0)
         add(mode(Mode::Kind::Oscillation, {0, root}, error / (2 * root)), shape);
       else {
@@ -80,7 +80,8 @@ class Analysis {
   // (λ² + λ Ĉ + K̂) y = 0 as ẋ = A x with x = (y, ẏ/s), time in units of 1/s.
   void quadratic_modes() {
     const Index f = form_.k.rows();
-    const double s = std::max({std::sqrt(form_.k.stableNorm()), form_.c.stableNorm(), std::numeric_limits<double>::min()});
+    const double k = form_.k.stableNorm(), c = form_.c.stableNorm();
+    const double s = std::max({std::sqrt(k), c, std::numeric_limits<double>::min()});
     Matrix a = Matrix::Zero(2 * f, 2 * f);
     a.topRightCorner(f, f).setIdentity();
     a.bottomLeftCorner(f, f) = -form_.k / (s * s);
@@ -91,9 +92,8 @@ class Analysis {
       const Complex z = system.values[i];
       const ComplexVector left =
           z * z * y + z * (form_.c / s).cast<Complex>() * y + (form_.k / (s * s)).cast<Complex>() * y;
-      out_.residual =
-          std::max(out_.residual, left.norm() / y.norm() /
-                                      (std::norm(z) + std::abs(z) * form_.c.stableNorm() / s + form_.k.stableNorm() / (s * s)));
+      const double size = std::norm(z) + std::abs(z) * c / s + k / (s * s);
+      out_.residual = std::max(out_.residual, left.norm() / y.norm() / size);
       add_pair(s * z, s * system.errors[i], to_coordinates(y));
     }
     add_zeros(system.kernel.topRows(f), system.zeros, system.chained);

@@ -402,8 +402,8 @@ typename Stepper<T>::Outcome Stepper<T>::step(const T& bound) {
   for (;; chosen = std::min(chosen, log2_size(left)) - 1) {
     if (!(chosen > 1 + log2_size(epsilon<T>()) + log2_size(t_)) || chosen < -100'000)
       return {StepEnding::StepUnderflow,
-              "The steps shrink below the resolution of time: a force grows without bound, as in a collision, or a formula "
-              "has no derivatives, as x^(3/2) where x comes to 0."};
+              "The steps shrink below the resolution of time: a force grows without bound, as in a collision, or a "
+              "formula has no derivatives, as x^(3/2) where x comes to 0."};
     const bool reaches = chosen >= log2_size(left);
     const T h = reaches ? left : left > 0 ? exp2_of<T>(chosen) : T(-exp2_of<T>(chosen));
     if (const auto outcome = advance(bound, h, reaches)) return *outcome;

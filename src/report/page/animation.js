@@ -1,7 +1,7 @@
-// The drawings of a report: each figure names the element with its frames, data-drawing. They are drawn on its canvas; the
-// reader plays, pauses, scrubs, changes the speed, and turns a drawing in space, as far as the figure has controls. A mode
-// (data-loop) swings without end over its equilibrium. Nothing is fetched. What a moment looks like is said by scene.js, and
-// painted by painter.js.
+// The drawings of a report: each figure names the element with its frames, data-drawing. They are drawn on its canvas;
+// the reader plays, pauses, scrubs, changes the speed, and turns a drawing in space, as far as the figure has controls.
+// A mode (data-loop) swings without end over its equilibrium. Nothing is fetched. What a moment looks like is said by
+// scene.js, and painted by painter.js.
 'use strict';
 function animate(figure, scene) {
   const loops = 'loop' in figure.dataset;

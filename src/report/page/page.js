@@ -2,7 +2,8 @@
 'use strict';
 (() => {
   const root = document.documentElement, button = document.getElementById('theme');
-  const dark = () => root.dataset.theme ? root.dataset.theme === 'dark' : matchMedia('(prefers-color-scheme: dark)').matches;
+  const dark = () =>
+    root.dataset.theme ? root.dataset.theme === 'dark' : matchMedia('(prefers-color-scheme: dark)').matches;
   const repaint = () => document.dispatchEvent(new Event('maup-theme'));
   const name = () => button.setAttribute('aria-label', dark() ? 'Light page' : 'Dark page');
   button.addEventListener('click', () => {

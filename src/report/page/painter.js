@@ -9,11 +9,13 @@ function maupPainter(context) {
   let palette = {}, tint = null;
   function readColours() {
     const colour = name => channels(getComputedStyle(document.documentElement).getPropertyValue(name).trim());
-    palette = {ink: colour('--ink'), muted: colour('--muted'), paper: colour('--figure'), series: [1, 2, 3, 4, 5, 6, 7].map(i => colour(`--series-${i}`))};
+    palette = {ink: colour('--ink'), muted: colour('--muted'), paper: colour('--figure'),
+               series: [1, 2, 3, 4, 5, 6, 7].map(i => colour(`--series-${i}`))};
   }
   const inkOf = colour => colour.ink === 'paper' ? palette.paper : tint !== null ? palette.series[tint] :
       colour.ink === 'series' ? palette.series[colour.series] : palette[colour.ink];
-  const fillOf = colour => `rgb(${inkOf(colour).map((x, k) => Math.round(palette.paper[k] + colour.strength * (x - palette.paper[k]))).join()})`;
+  const tintOf = (x, k, strength) => Math.round(palette.paper[k] + strength * (x - palette.paper[k]));
+  const fillOf = colour => `rgb(${inkOf(colour).map((x, k) => tintOf(x, k, colour.strength)).join()})`;
 
   // `unit`: of the view that made the strokes. With `only`, everything has the colour of that series, as a ghost has.
   function paint(items, unit, {opacity = 1, only = null} = {}) {
@@ -33,7 +35,8 @@ function maupPainter(context) {
       }
       if (!item.stroke) continue;
       context.globalAlpha = opacity * item.stroke.strength;
-      context.lineCap = item.stroke.strength < 1 ? 'butt' : 'round';  // round ends would show as beads where pieces meet
+      // Round ends would show as beads where pieces meet.
+      context.lineCap = item.stroke.strength < 1 ? 'butt' : 'round';
       context.strokeStyle = `rgb(${inkOf(item.stroke).join()})`;
       context.lineWidth = item.width;
       context.stroke();
@@ -44,7 +47,8 @@ function maupPainter(context) {
   function write(item, x, y, unit) {
     const {base, index, upright, dots = 0} = item.text, size = 15 * unit;
     const faces = "'STIX Two Text','Latin Modern Roman','Cambria','Times New Roman','DejaVu Serif',serif";
-    const large = `${upright ? '' : 'italic '}${size}px ${faces}`, small = `${0.72 * size}px ${faces}`, word = base + '\u0307'.repeat(dots);
+    const large = `${upright ? '' : 'italic '}${size}px ${faces}`, small = `${0.72 * size}px ${faces}`;
+    const word = base + '\u0307'.repeat(dots);
     context.font = small;
     const tail = context.measureText(index).width;
     context.font = large;

@@ -1,4 +1,5 @@
-// A moment of a drawing as strokes in px, for any view: what src/drawing/view.cpp and frame.cpp do, so that a reader can turn it.
+// A moment of a drawing as strokes in px, for any view: what src/drawing/view.cpp and frame.cpp do, so that a reader
+// can turn it.
 // Geometry is in the scene; here are the camera, what it hides, and which lies in front. A test compares the two.
 'use strict';
 const maupScene = (() => {
@@ -21,8 +22,8 @@ const maupScene = (() => {
     return low;
   }
 
-  // Cubic interpolation through the neighbouring frames (Catmull-Rom on uneven times), exact at each; the nearer one where
-  // the motion swings faster than frames follow.
+  // Cubic interpolation through the neighbouring frames (Catmull-Rom on uneven times), exact at each; the nearer one
+  // where the motion swings faster than frames follow.
   function trackAt(scene, track, width, s) {
     const times = scene.times, way = direction(scene), last = times.length - 1;
     if (last === 0) return track.slice(0, width);
@@ -33,7 +34,8 @@ const maupScene = (() => {
     const result = new Array(width);
     for (let k = 0; k < width; ++k) {
       const value = f => track[f * width + k], p = value(i), q = value(i + 1);
-      const slope = f => f <= 0 || f >= last ? q - p : (value(f + 1) - value(f - 1)) / (way * (times[f + 1] - times[f - 1])) * h;
+      const slope = f =>
+        f <= 0 || f >= last ? q - p : (value(f + 1) - value(f - 1)) / (way * (times[f + 1] - times[f - 1])) * h;
       result[k] = p * (1 + 2 * u) * w * w + q * (3 - 2 * u) * u * u + slope(i) * u * w * w - slope(i + 1) * u * u * w;
     }
     return result;
@@ -87,7 +89,8 @@ const maupScene = (() => {
 
   // --------------------------------------------------------------------------------------------------------- strokes
 
-  const det = (x, y, z) => x[0] * (y[1] * z[2] - y[2] * z[1]) - x[1] * (y[0] * z[2] - y[2] * z[0]) + x[2] * (y[0] * z[1] - y[1] * z[0]);
+  const det = (x, y, z) =>
+    x[0] * (y[1] * z[2] - y[2] * z[1]) - x[1] * (y[0] * z[2] - y[2] * z[0]) + x[2] * (y[0] * z[1] - y[1] * z[0]);
   const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
   const dot = (a, b) => a.reduce((sum, x, k) => sum + x * b[k], 0);
 
@@ -102,10 +105,13 @@ const maupScene = (() => {
   function arrow(from, to, colour, weight, unit) {
     const dx = to[0] - from[0], dy = to[1] - from[1], length = hypot(dx, dy);
     if (!(length >= 4 * unit)) return [];
-    const ux = dx / length, uy = dy / length, long = Math.min(8 * Math.sqrt(weight / 1.3) * unit, 0.6 * length), half = 0.4 * long;
-    return [{kind: 'outline', points: [from[0], from[1], to[0] - 0.7 * long * ux, to[1] - 0.7 * long * uy], stroke: colour, width: weight * unit},
-            {kind: 'outline', closed: true, fill: colour, points: [to[0], to[1], to[0] - long * ux - half * uy, to[1] - long * uy + half * ux,
-                                                                    to[0] - long * ux + half * uy, to[1] - long * uy - half * ux]}];
+    const ux = dx / length, uy = dy / length, long = Math.min(8 * Math.sqrt(weight / 1.3) * unit, 0.6 * length),
+          half = 0.4 * long;
+    const shaft = [from[0], from[1], to[0] - 0.7 * long * ux, to[1] - 0.7 * long * uy];
+    return [{kind: 'outline', points: shaft, stroke: colour, width: weight * unit},
+            {kind: 'outline', closed: true, fill: colour,
+             points: [to[0], to[1], to[0] - long * ux - half * uy, to[1] - long * uy + half * ux,
+                      to[0] - long * ux + half * uy, to[1] - long * uy - half * ux]}];
   }
   const words = (text, x, y, align, fill) => ({kind: 'text', points: [x, y], text, align, fill});
 
@@ -119,14 +125,16 @@ const maupScene = (() => {
     return way;
   }
 
-  // Everything of the model at `s` seconds from the first frame. trail: 'none', 'fading' over trailTime seconds, 'whole'.
+  // Everything of the model at `s` seconds from the first frame. trail: 'none', 'fading' over trailTime seconds,
+  // 'whole'.
   function frameItems(scene, view, s, {trail = 'fading', trailTime = 3, trailPieces = 24} = {}) {
     const d = scene.dimension, unit = view.unit, centre = centreAt(scene, view, s), items = [], planes = [], spots = [];
     const eye = d === 3 ? centre.map((x, k) => x + awayInRadii * scene.radius * view.toward[k]) : null;
     const place = p => project(scene, view, p, centre);
     let id = 0;
     const add = item => { items.push({depth: 0, ...item, id: id++}); return items[items.length - 1]; };
-    const stroke = (points, colour, weight, depth) => add({kind: 'outline', points, stroke: colour, width: weight * unit, depth});
+    const stroke = (points, colour, weight, depth) =>
+      add({kind: 'outline', points, stroke: colour, width: weight * unit, depth});
     const disc = (at, radius, fill, edge, depth) =>
       add({kind: 'disc', points: [at[0], at[1]], radius, fill, stroke: edge, width: 1.4 * unit, depth});
     const lay = (from, depth) => { for (let i = from; i < items.length; ++i) items[i].depth = depth; };
@@ -134,7 +142,8 @@ const maupScene = (() => {
     const at = (points, p) => points.slice(p * d, (p + 1) * d);
     const carry = (pose, points, i) => {
       const world = at(pose, 0), origin = at(pose, 0);
-      for (let k = 0; k < d; ++k) for (let a = 0; a < d; ++a) world[k] += points[i + a] * (pose[(a + 1) * d + k] - origin[k]);
+      for (let k = 0; k < d; ++k)
+        for (let a = 0; a < d; ++a) world[k] += points[i + a] * (pose[(a + 1) * d + k] - origin[k]);
       return world;
     };
     const outline = (pose, points) => {
@@ -177,7 +186,8 @@ const maupScene = (() => {
 
     function notePlane(pose, begin) {
       const origin = at(pose, 0), [u, v] = [1, 2].map(a => at(pose, a).map((x, k) => x - origin[k]));
-      const n = cross(u, v), towards = dot(n, eye.map((x, k) => x - origin[k])), length = hypot(...n) * (towards < 0 ? -1 : 1);
+      const n = cross(u, v), towards = dot(n, eye.map((x, k) => x - origin[k]));
+      const length = hypot(...n) * (towards < 0 ? -1 : 1);
       planes.push({begin, end: items.length, origin, normal: n.map(x => x / length), reach: hypot(...u)});
     }
 
@@ -195,10 +205,13 @@ const maupScene = (() => {
       for (let i = plane.begin; i < plane.end; ++i) items[i].depth = underTrail ? -2e299 : own;
     }
 
-    // The eye sees the unit ball from e = A⁻¹(eye − origin): it touches it where x·e = 1, and what has x·e < 1 is behind it.
+    // The eye sees the unit ball from e = A⁻¹(eye − origin): it touches it where x·e = 1, and what has x·e < 1 is
+    // behind it.
     function ball(e, pose, depth, tint) {
-      const origin = at(pose, 0), axes = [1, 2, 3].map(a => at(pose, a).map((x, k) => x - origin[k])), b = eye.map((x, k) => x - origin[k]);
-      const volume = det(...axes), local = [0, 1, 2].map(k => det(...axes.map((axis, j) => j === k ? b : axis)) / volume);
+      const origin = at(pose, 0), axes = [1, 2, 3].map(a => at(pose, a).map((x, k) => x - origin[k])),
+            b = eye.map((x, k) => x - origin[k]);
+      const volume = det(...axes),
+            local = [0, 1, 2].map(k => det(...axes.map((axis, j) => j === k ? b : axis)) / volume);
       const square = dot(local, local);
       if (!(square > 1)) return;
       const [u, v] = sidesOf(local), r = Math.sqrt(1 - 1 / square), rim = [];
@@ -206,9 +219,11 @@ const maupScene = (() => {
         const angle = 2 * Math.PI * i / contour;
         for (let k = 0; k < 3; ++k) rim.push(local[k] / square + r * (Math.cos(angle) * u[k] + Math.sin(angle) * v[k]));
       }
-      Object.assign(stroke(outline(pose, rim)[0], plain(tint === 1 ? 'paper' : 'ink'), 1.6, depth), {closed: true, fill: series(0, tint)});
+      Object.assign(stroke(outline(pose, rim)[0], plain(tint === 1 ? 'paper' : 'ink'), 1.6, depth),
+                    {closed: true, fill: series(0, tint)});
       for (const line of e.lines) {
-        const n = line.points.length / 3, point = i => line.points.slice(i % n * 3, i % n * 3 + 3), seen = i => dot(point(i), local) >= 1;
+        const n = line.points.length / 3, point = i => line.points.slice(i % n * 3, i % n * 3 + 3),
+              seen = i => dot(point(i), local) >= 1;
         let first = 0;
         while (first < n && !(seen(first + 1) && !seen(first))) ++first;
         const half = [];
@@ -238,14 +253,16 @@ const maupScene = (() => {
       for (const face of e.faces) {
         const tint = e.convex ? shade(pose, face) : small ? 1 : bodyTint;
         if (tint === null) { ++id; continue; }
-        Object.assign(stroke(outline(pose, face.points)[0], plain(small ? 'paper' : e.ground ? 'muted' : 'ink'), e.ground ? 1.2 : 1.6, origin[3]),
+        const edge = plain(small ? 'paper' : e.ground ? 'muted' : 'ink');
+        Object.assign(stroke(outline(pose, face.points)[0], edge, e.ground ? 1.2 : 1.6, origin[3]),
                       {closed: true, fill: e.ground ? plain('paper') : series(0, tint)});
       }
       const grid = e.ground && d === 3, bare = !e.faces.length;
       for (const line of e.lines) {
         const [points, near] = outline(pose, line.points);
         const colour = grid ? plain('muted', 0.3) : plain(e.ground ? 'muted' : 'ink');
-        stroke(points, colour, e.ground ? 1 : bare ? (line.closed ? 2.2 : 1.6) : 1.1, bare && !grid ? near : origin[3]).closed = line.closed;
+        const weight = e.ground ? 1 : bare ? (line.closed ? 2.2 : 1.6) : 1.1;
+        stroke(points, colour, weight, bare && !grid ? near : origin[3]).closed = line.closed;
       }
       if (d === 3 && !e.ground && !bare && !e.convex) notePlane(pose, begin);
       else if (d === 3 && !e.ground) note(at(pose, 0), origin[3]);
@@ -267,12 +284,15 @@ const maupScene = (() => {
       const now = pointsAt(scene, e, s);
       if (Number.isFinite(now[0])) note(now, 0, true);
       const steps = Math.min(1500, Math.max(2, scene.times.length));
-      if (!scene.follow.length) stroke(wayKept(e, view, () => thinned(way(0, all, steps), 0.7)), series(colour, whole ? 0.75 : wholeTrail), whole ? 1.4 : 1, -1e299);
+      if (!scene.follow.length)
+        stroke(wayKept(e, view, () => thinned(way(0, all, steps), 0.7)),
+               series(colour, whole ? 0.75 : wholeTrail), whole ? 1.4 : 1, -1e299);
       if (whole) return;
       const from = Math.max(0, s - trailTime);
       for (let k = 0; k < trailPieces; ++k) {
         const part = (k + 1) / trailPieces;
-        stroke(way(from + (s - from) * k / trailPieces, from + (s - from) * part, Math.max(4, Math.floor(192 / trailPieces))),
+        const begin = from + (s - from) * k / trailPieces, pieces = Math.max(4, Math.floor(192 / trailPieces));
+        stroke(way(begin, from + (s - from) * part, pieces),
                series(colour, 0.1 + 0.85 * part ** 1.5), 1.2 + 0.9 * part, -1e298);
       }
     }
@@ -331,7 +351,8 @@ const maupScene = (() => {
 
   function lengthText(scene, size) {
     if (scene.dimensionless) return String(Number(size.toPrecision(2)));
-    const units = [[1e9, 'Gm'], [1e6, 'Mm'], [1e3, 'km'], [1, 'm'], [1e-2, 'cm'], [1e-3, 'mm'], [1e-6, 'µm'], [1e-9, 'nm']];
+    const units =
+      [[1e9, 'Gm'], [1e6, 'Mm'], [1e3, 'km'], [1, 'm'], [1e-2, 'cm'], [1e-3, 'mm'], [1e-6, 'µm'], [1e-9, 'nm']];
     const [factor, unit] = units.find(([f]) => size >= f * 0.999) || units[units.length - 1];
     const number = Number((size / factor).toPrecision(2));
     return number < 1e5 ? `${number} ${unit}` : `${size.toExponential(0)} m`;
@@ -339,9 +360,11 @@ const maupScene = (() => {
 
   function scaleBar(scene, view) {
     const u = view.unit, wanted = 90 * u / view.scale, power = 10 ** Math.floor(Math.log10(wanted));
-    const size = [5, 2, 1].map(f => f * power).find(f => f <= wanted) ?? power, x = 18 * u, y = view.height - 16 * u, end = x + size * view.scale;
+    const size = [5, 2, 1].map(f => f * power).find(f => f <= wanted) ?? power;
+    const x = 18 * u, y = view.height - 16 * u, end = x + size * view.scale;
     return [{kind: 'outline', points: [x, y - 4 * u, x, y, end, y, end, y - 4 * u], stroke: plain('muted'), width: u},
-            words({base: lengthText(scene, size), index: '', upright: true}, end + 7 * u, y - 3 * u, 'l', plain('muted'))];
+            words({base: lengthText(scene, size), index: '', upright: true}, end + 7 * u, y - 3 * u, 'l',
+                  plain('muted'))];
   }
 
   function gravityArrow(scene, view) {
@@ -358,16 +381,19 @@ const maupScene = (() => {
   }
 
   function axes(scene, view) {
-    const centre = view.middle, origin = project(scene, view, centre, centre), u = view.unit, x = 44 * u, y = view.height - 40 * u, step = 0.05 * scene.radius;
+    const centre = view.middle, origin = project(scene, view, centre, centre), u = view.unit;
+    const x = 44 * u, y = view.height - 40 * u, step = 0.05 * scene.radius;
     return ['x', 'y', 'z'].flatMap((name, k) => {
       const at = project(scene, view, centre.map((value, j) => value + (j === k ? step : 0)), centre);
       const dx = (at[0] - origin[0]) / (step * view.scale), dy = (at[1] - origin[1]) / (step * view.scale);
       const shaft = arrow([x, y], [x + 27 * u * dx, y + 27 * u * dy], plain('muted'), 1.2, u);
-      return hypot(dx, dy) > 0.15 ? [...shaft, words({base: name, index: ''}, x + 36 * u * dx, y + 36 * u * dy, 'c', plain('muted'))] : shaft;
+      if (!(hypot(dx, dy) > 0.15)) return shaft;
+      return [...shaft, words({base: name, index: ''}, x + 36 * u * dx, y + 36 * u * dy, 'c', plain('muted'))];
     });
   }
 
-  const furniture = (scene, view) => [...(scene.dimension === 2 ? scaleBar(scene, view) : axes(scene, view)), ...gravityArrow(scene, view)];
+  const furniture = (scene, view) =>
+    [...(scene.dimension === 2 ? scaleBar(scene, view) : axes(scene, view)), ...gravityArrow(scene, view)];
 
   return {duration, direction, makeView, frameItems, furniture, pointsAt, centreAt, project};
 })();

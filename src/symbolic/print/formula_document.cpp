@@ -156,7 +156,7 @@ std::string mathml_document(const std::vector<FormulaLine>& lines) {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const bool last = i + 1 == pieces.size();
       row((i ? "<mspace width=\"2em\"/>" : "") + to_mathml(pieces[i]) +
-          (last && !line.note.empty() ? fmt::format("<mtext>\u2003({})</mtext>", escape_xml(line.note)) : std::string()));
+          (last && !line.note.empty() ? fmt::format("<mtext>\u2003({})</mtext>", escape_xml(line.note)) : ""));
     }
   }
   return out + "</mtable>\n</math>\n";

@@ -22,9 +22,9 @@ export interface Core {
 
 /**
  * The core as WebAssembly in a worker: {id, request} goes there, {id, message} and {id, answer} come back
- * (apps/studio_wasm). A worker cannot hear while it computes. Where pages may share memory, the number of a request that
- * stands there ends it; elsewhere a cancel ends the worker and starts another. A new worker gets the compiled module, and
- * the text that was open as its request 0.
+ * (apps/studio_wasm). A worker cannot hear while it computes. Where pages may share memory, the number of a request
+ * that stands there ends it; elsewhere a cancel ends the worker and starts another. A new worker gets the compiled
+ * module, and the text that was open as its request 0.
  */
 export class WorkerCarrier implements Carrier {
   readonly grace: number;

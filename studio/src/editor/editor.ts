@@ -383,7 +383,8 @@ function acceptFirst(view: EditorView): boolean {
   return acceptCompletion(view);
 }
 
-const fixesFor = (m: Diagnostic, fixes: Fix[]): Fix[] => fixes.filter(fix => fix.code === m.code && fix.from === m.from);
+const fixesFor = (m: Diagnostic, fixes: Fix[]): Fix[] =>
+  fixes.filter(fix => fix.code === m.code && fix.from === m.from);
 
 /** What the text says and what only a derivation finds, each once. */
 function all(text: Diagnostic[], deep: Diagnostic[]): Diagnostic[] {

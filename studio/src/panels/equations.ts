@@ -109,7 +109,8 @@ export class EquationsPanel {
       );
     const {in_rates: rates} = equations,
       first = rates?.equations ?? equations.equations,
-      all = [...first, ...(rates?.definitions ?? []), ...(rates ? equations.equations : []), ...equations.intermediates];
+      all = [...first, ...(rates?.definitions ?? []),
+             ...(rates ? equations.equations : []), ...equations.intermediates];
     const withThese =
       equations.intermediates.length > 0
         ? h('div', {class: 'where'}, h('p', {class: 'muted'}, 'with'), ...equations.intermediates.map(lineElement))
@@ -283,7 +284,8 @@ export class EquationsPanel {
           h(
             'p',
             {class: 'what'},
-            `From ${run.independent.name} = ${withUnit(Number(run.uncertain.from.toPrecision(3)), run.independent.unit)} on no digit of ` +
+            `From ${run.independent.name} = ` +
+              `${withUnit(Number(run.uncertain.from.toPrecision(3)), run.independent.unit)} on no digit of ` +
               `${run.uncertain.everything ? 'the motion' : run.uncertain.columns.map(pretty).join(', ')} is certain.`,
           ),
         )

@@ -104,7 +104,9 @@ export class ValuesPanel {
     private readonly store: Store<State>,
     private readonly study: Study,
   ) {
-    store.watch(['equations', 'run', 'runTrouble', 'answered', 'set', 'start', 'mode', 'duration'], () => this.refresh());
+    store.watch(['equations', 'run', 'runTrouble', 'answered', 'set', 'start', 'mode', 'duration'], () =>
+      this.refresh(),
+    );
   }
 
   private refresh(): void {

@@ -291,7 +291,8 @@ export class Chart {
     if (row === first) return anew ? null : [];
     const context = this.passed.getContext('2d')!,
       curves = this.content.curves.filter(curve => !curve.faint);
-    for (const curve of curves) this.stroke(context, curve, colour(`--series-${curve.series + 1}`), 1.6, first, row + 1);
+    for (const curve of curves)
+      this.stroke(context, curve, colour(`--series-${curve.series + 1}`), 1.6, first, row + 1);
     this.passedTo = row;
     return anew ? null : curves.map(curve => this.boxOf(curve, first, row + 1));
   }

@@ -17,7 +17,8 @@ function notesIn(text: string): {question: string[]; comments: string[]} {
 
 /** With a capital and a full stop; a formula that it begins with keeps its letters. */
 export function asSentence(text: string): string {
-  const words = /^(the|an?|one|numbers|it|its|this|both|there|without|with|only|in|of|terms?|signs?|units?|on)\s+(?!(sin|cos|tan|exp|log|sqrt)\b)[a-z]{3,}/;
+  const begins = /^(the|an?|one|numbers|it|its|this|both|there|without|with|only|in|of|terms?|signs?|units?|on)\s+/;
+  const words = new RegExp(begins.source + /(?!(sin|cos|tan|exp|log|sqrt)\b)[a-z]{3,}/.source);
   return (words.test(text) ? text[0].toUpperCase() + text.slice(1) : text) + (/[.!?]$/.test(text) ? '' : '.');
 }
 

@@ -56,8 +56,8 @@ export function helpDialog(version: string): void {
       h(
         'p',
         {},
-        'Write a model; its equations and its motion follow while you type. Every value is a slider, every body can be ' +
-          'dragged. Nothing leaves your computer.',
+        'Write a model; its equations and its motion follow while you type. Every value is a slider, every body can ' +
+          'be dragged. Nothing leaves your computer.',
       ),
       ...keys.map(([title, list]) =>
         h(

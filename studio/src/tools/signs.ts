@@ -15,4 +15,5 @@ export function signButtons(signs: Iterable<string>, type: (sign: string) => voi
 }
 
 /** Greek letters of a text, each once, and what formulas are written with. */
-export const signsOf = (text: string): Set<string> => new Set([...(text.match(/\p{Script=Greek}/gu) ?? []), ..."'^=()/"]);
+export const signsOf = (text: string): Set<string> =>
+  new Set([...(text.match(/\p{Script=Greek}/gu) ?? []), ..."'^=()/"]);

@@ -16,7 +16,8 @@ let failures = 0;
 function check(what, holds, detail = '') {
   if (holds) return;
   ++failures;
-  console.error(`FAILED: ${what}${detail === '' ? '' : `: ${typeof detail === 'string' ? detail : JSON.stringify(detail)}`}`);
+  const told = typeof detail === 'string' ? detail : JSON.stringify(detail);
+  console.error(`FAILED: ${what}${detail === '' ? '' : `: ${told}`}`);
 }
 
 // ------------------------------------------------------------------------------------------------------------ browser
@@ -84,7 +85,8 @@ class Page {
     }));
     for (const domain of ['Page', 'Runtime', 'Log', 'Network']) await page.send(`${domain}.enable`);
     await page.send('Emulation.setDeviceMetricsOverride', {width, height, deviceScaleFactor: 1, mobile: false});
-    await page.send('Emulation.setEmulatedMedia', {features: [{name: 'prefers-color-scheme', value: dark ? 'dark' : 'light'}]});
+    const features = [{name: 'prefers-color-scheme', value: dark ? 'dark' : 'light'}];
+    await page.send('Emulation.setEmulatedMedia', {features});
     await page.send('Page.navigate', {url: page.url});
     await loaded;
     await page.frames(3);
@@ -92,31 +94,45 @@ class Page {
   }
 
   note({method, params}) {
-    if (method === 'Runtime.exceptionThrown') this.errors.push(params.exceptionDetails.exception?.description ?? params.exceptionDetails.text);
+    if (method === 'Runtime.exceptionThrown') {
+      const details = params.exceptionDetails;
+      this.errors.push(details.exception?.description ?? details.text);
+    }
     if (method === 'Runtime.consoleAPICalled' && ['error', 'warning', 'assert'].includes(params.type))
       this.errors.push(params.args.map(a => a.value ?? a.description).join(' '));
     if (method === 'Log.entryAdded' && params.entry.level !== 'verbose') this.errors.push(params.entry.text);
-    if (method === 'Network.requestWillBeSent' && params.request.url !== this.url && !params.request.url.startsWith('data:'))
+    const own = params.request?.url === this.url;
+    if (method === 'Network.requestWillBeSent' && !own && !params.request.url.startsWith('data:'))
       this.requests.push(params.request.url);
   }
 
   async evaluate(expression) {
-    const {result, exceptionDetails} = await this.send('Runtime.evaluate', {expression, returnByValue: true, awaitPromise: true});
+    const asked = {expression, returnByValue: true, awaitPromise: true};
+    const {result, exceptionDetails} = await this.send('Runtime.evaluate', asked);
     if (exceptionDetails) throw new Error(exceptionDetails.exception?.description ?? exceptionDetails.text);
     return result.value;
   }
 
   frames(count) {
-    return this.evaluate(`new Promise(done => { let n = ${count}; const next = () => n-- ? requestAnimationFrame(next) : done(true); next(); })`);
+    return this.evaluate(`new Promise(done => {
+      let n = ${count};
+      const next = () => n-- ? requestAnimationFrame(next) : done(true);
+      next();
+    })`);
   }
 
   async key(key, target = 'document.activeElement') {
-    await this.evaluate(`${target}.dispatchEvent(new KeyboardEvent('keydown', {key: ${JSON.stringify(key)}, bubbles: true, cancelable: true}))`);
+    const event = `new KeyboardEvent('keydown', {key: ${JSON.stringify(key)}, bubbles: true, cancelable: true})`;
+    await this.evaluate(`${target}.dispatchEvent(${event})`);
   }
 
   // What is on the canvas, as a number.
   picture() {
-    return this.evaluate(`(() => { let hash = 0; for (const c of document.querySelector('#animation canvas').toDataURL()) hash = (hash * 31 + c.charCodeAt(0)) | 0; return hash; })()`);
+    return this.evaluate(`(() => {
+      let hash = 0;
+      for (const c of document.querySelector('#animation canvas').toDataURL()) hash = (hash * 31 + c.charCodeAt(0)) | 0;
+      return hash;
+    })()`);
   }
   time() { return this.evaluate(`Number(document.getElementById('animation').dataset.time)`); }
   state() { return this.evaluate(`document.getElementById('animation').dataset.state`); }
@@ -127,9 +143,13 @@ class Page {
 
 async function checkAnyReport(browser, name, file) {
   const page = await Page.open(browser, file);
-  check(`${name}: has equations in MathML`, await page.evaluate(`document.querySelectorAll('#equations math').length`) > 0);
-  check(`${name}: MathML is laid out`, await page.evaluate(`[...document.querySelectorAll('#equations math')].every(m => m.getBoundingClientRect().height > 5)`));
-  const namespaces = await page.evaluate(`[...document.querySelectorAll('math *')].every(e => e.namespaceURI === 'http://www.w3.org/1998/Math/MathML')`);
+  const all = formulas => page.evaluate(`document.querySelectorAll('${formulas}').length`);
+  check(`${name}: has equations in MathML`, await all('#equations math') > 0);
+  const laidOut = await page.evaluate(
+    `[...document.querySelectorAll('#equations math')].every(m => m.getBoundingClientRect().height > 5)`);
+  check(`${name}: MathML is laid out`, laidOut);
+  const namespaces = await page.evaluate(
+    `[...document.querySelectorAll('math *')].every(e => e.namespaceURI === 'http://www.w3.org/1998/Math/MathML')`);
   check(`${name}: every element of a formula is MathML`, namespaces);
   check(`${name}: nothing is fetched`, page.requests.length === 0, page.requests);
   check(`${name}: no errors`, page.errors.length === 0, page.errors);
@@ -145,7 +165,8 @@ async function checkAnyReport(browser, name, file) {
 async function checkAnimation(browser, name, file) {
   const page = await Page.open(browser, file);
   const first = await page.picture();
-  check(`${name}: begins paused at the start`, await page.state() === 'paused' && await page.time() === 0, await page.time());
+  const begins = await page.state() === 'paused' && await page.time() === 0;
+  check(`${name}: begins paused at the start`, begins, await page.time());
 
   // Play: the clock runs and the picture moves; pause: both stand still.
   await page.evaluate(`document.querySelector('[data-control=play]').click()`);
@@ -161,10 +182,15 @@ async function checkAnimation(browser, name, file) {
   check(`${name}: the picture moved`, picture !== first);
 
   // Scrub to the middle; back to the start gives the first picture again.
-  const scrub = value => page.evaluate(`(() => { const s = document.querySelector('[data-control=scrub]'); s.value = ${value}; s.dispatchEvent(new Event('input')); })()`);
+  const scrub = value => page.evaluate(`(() => {
+    const s = document.querySelector('[data-control=scrub]');
+    s.value = ${value};
+    s.dispatchEvent(new Event('input'));
+  })()`);
   await scrub(0.5);
   check(`${name}: scrubbing sets the time`, Math.abs(await page.time() - 4) < 1e-9, await page.time());
-  check(`${name}: the time is shown`, await page.evaluate(`document.querySelector('[data-control=time]').textContent`) === '4.000 s');
+  const shown = await page.evaluate(`document.querySelector('[data-control=time]').textContent`);
+  check(`${name}: the time is shown`, shown === '4.000 s');
   check(`${name}: scrubbing moves the picture`, await page.picture() !== picture);
   await scrub(0);
   check(`${name}: the same time gives the same picture`, await page.picture() === first);
@@ -182,7 +208,7 @@ async function checkAnimation(browser, name, file) {
   // A faster clock gets farther: 5 times the speed, at least 2 times as far in the same time.
   const distance = async index => {
     await scrub(0);
-    await page.evaluate(`(() => { const s = document.querySelector('[data-control=speed]'); s.selectedIndex = ${index}; })()`);
+    await page.evaluate(`document.querySelector('[data-control=speed]').selectedIndex = ${index}`);
     await page.evaluate(`document.querySelector('[data-control=play]').click()`);
     await page.pause(300);
     await page.evaluate(`document.querySelector('[data-control=play]').click()`);
@@ -195,7 +221,8 @@ async function checkAnimation(browser, name, file) {
   await scrub(0.999);
   await page.key(' ', 'document.body');
   await page.pause(300);
-  check(`${name}: stops at the end`, await page.state() === 'paused' && Math.abs(await page.time() - 8) < 1e-9, await page.time());
+  const ends = await page.state() === 'paused' && Math.abs(await page.time() - 8) < 1e-9;
+  check(`${name}: stops at the end`, ends, await page.time());
 
   // Light and dark.
   const paper = () => page.evaluate(`getComputedStyle(document.body).backgroundColor`);
@@ -209,8 +236,12 @@ async function checkAnimation(browser, name, file) {
 async function checkTurning(browser, file) {
   const page = await Page.open(browser, file);
   const before = await page.picture();
-  const drag = (type, x, y) => page.evaluate(`(() => { const c = document.querySelector('#animation canvas'), r = c.getBoundingClientRect(); c.setPointerCapture = () => {};
-    c.dispatchEvent(new PointerEvent('${type}', {clientX: r.left + ${x}, clientY: r.top + ${y}, pointerId: 1, bubbles: true})); })()`);
+  const drag = (type, x, y) => page.evaluate(`(() => {
+    const c = document.querySelector('#animation canvas'), r = c.getBoundingClientRect();
+    c.setPointerCapture = () => {};
+    const at = {clientX: r.left + ${x}, clientY: r.top + ${y}, pointerId: 1, bubbles: true};
+    c.dispatchEvent(new PointerEvent('${type}', at));
+  })()`);
   await drag('pointerdown', 100, 100);
   await drag('pointermove', 180, 130);
   await drag('pointerup', 180, 130);
@@ -227,14 +258,17 @@ async function checkText(browser, file) {
   const text = selector => page.evaluate(`document.querySelector(${JSON.stringify(selector)}).textContent`);
   check('the title is text, not markup', await text('h1') === 'Spherical pendulum <3-D> & friends', await text('h1'));
   check('the model text is text, not markup', (await text('pre.model')).includes('</script><b>masses</b>'));
-  check('a comment begins at its own #', await text('pre.model .comment') === '# </script><b>masses</b>', await text('pre.model .comment'));
+  const comment = await text('pre.model .comment');
+  check('a comment begins at its own #', comment === '# </script><b>masses</b>', comment);
   check('plots are drawn', await page.evaluate(`document.querySelectorAll('svg.maup-plot path.curve').length`) >= 6);
   const curve = await page.evaluate(`getComputedStyle(document.querySelector('svg.maup-plot .s1')).stroke`);
   check('plots take their colours from the page', curve === 'rgb(90, 180, 236)', curve);
-  await page.send('Emulation.setEmulatedMedia', {media: 'print', features: [{name: 'prefers-color-scheme', value: 'dark'}]});
+  const features = [{name: 'prefers-color-scheme', value: 'dark'}];
+  await page.send('Emulation.setEmulatedMedia', {media: 'print', features});
   const paper = await page.evaluate(`getComputedStyle(document.documentElement).getPropertyValue('--ink').trim()`);
   check('on paper the ink is dark', paper === '#1d1b18', paper);
-  check('on paper there are no controls', await page.evaluate(`getComputedStyle(document.querySelector('.controls')).display`) === 'none');
+  const controls = await page.evaluate(`getComputedStyle(document.querySelector('.controls')).display`);
+  check('on paper there are no controls', controls === 'none');
   await page.close();
 }
 
@@ -242,9 +276,11 @@ async function checkText(browser, file) {
 async function checkTheChecks(browser) {
   const {writeFileSync} = await import('node:fs');
   const file = join(folder, 'bad.html');
-  writeFileSync(file, '<!DOCTYPE html><script>console.error("an error"); undefinedFunction();</script><img src="missing.png">');
+  const wrong = '<script>console.error("an error"); undefinedFunction();</script><img src="missing.png">';
+  writeFileSync(file, `<!DOCTYPE html>${wrong}`);
   const page = await Page.open(browser, file);
-  check('an exception and a logged error are seen', page.errors.filter(e => /an error|undefinedFunction/.test(e)).length >= 2, page.errors);
+  const errors = page.errors.filter(e => /an error|undefinedFunction/.test(e));
+  check('an exception and a logged error are seen', errors.length >= 2, page.errors);
   check('a request is seen', page.requests.some(url => url.endsWith('missing.png')), page.requests);
   await page.close();
 }
@@ -256,7 +292,11 @@ async function run() {
     if (spawnSync(writer, [name, made[name]], {stdio: 'inherit'}).status !== 0) throw new Error(`${writer} failed`);
   }
   const browser = new Browser();
-  const deadline = setTimeout(() => { console.error('FAILED: no end within 120 s'); browser.process.kill('SIGKILL'); process.exit(1); }, 120_000);
+  const deadline = setTimeout(() => {
+    console.error('FAILED: no end within 120 s');
+    browser.process.kill('SIGKILL');
+    process.exit(1);
+  }, 120_000);
   try {
     await checkTheChecks(browser);
     for (const [name, file] of Object.entries(made)) {

@@ -1,4 +1,5 @@
-// The camera of the page against that of the library: `node scene.mjs WRITER SCENE.js`. Both make the same strokes of a moment.
+// The camera of the page against that of the library: `node scene.mjs WRITER SCENE.js`. Both make the same strokes of a
+// moment.
 import {spawnSync} from 'node:child_process';
 import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
 import {createRequire} from 'node:module';
@@ -33,13 +34,15 @@ for (const name of ['scene-plane', 'scene-space']) {
       if (!other) continue;
       if (i < before) ++swaps;
       before = i;
-      check(`${at}: item ${item.id} has its points`, other.points.length === item.points.length, [other.points.length, item.points.length]);
+      const sizes = [other.points.length, item.points.length];
+      check(`${at}: item ${item.id} has its points`, sizes[0] === sizes[1], sizes);
       const worst = Math.max(...item.points.map((x, k) => Math.abs(x - other.points[k])));
       check(`${at}: item ${item.id} is where it is`, worst < 0.02, worst);
       check(`${at}: item ${item.id} has its width`, Math.abs((other.width ?? 0) - item.width) < 1e-3);
       check(`${at}: item ${item.id} has its radius`, Math.abs((other.radius ?? 0) - item.radius) < 0.02);
       check(`${at}: item ${item.id} is closed alike`, Boolean(other.closed) === item.closed);
-      check(`${at}: item ${item.id} has its fill`, Math.abs((other.fill?.strength ?? 0) - item.fill) < 1e-3, [other.fill, item.fill]);
+      const near = Math.abs((other.fill?.strength ?? 0) - item.fill) < 1e-3;
+      check(`${at}: item ${item.id} has its fill`, near, [other.fill, item.fill]);
       const series = (other.fill?.series ?? 0) + (other.stroke?.series ?? 0);
       check(`${at}: item ${item.id} has its colour`, series === item.series, [series, item.series]);
       check(`${at}: item ${item.id} has its stroke`, Math.abs((other.stroke?.strength ?? 0) - item.stroke) < 1e-3);

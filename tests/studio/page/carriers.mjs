@@ -16,7 +16,8 @@ const over = (open, core) =>
           await route.fulfill({contentType: 'text/html', headers, body});
         },
       );
-      await page.route('**/maup_worker.js', route => route.fulfill({contentType: 'text/javascript', headers, body: core}));
+      const answer = {contentType: 'text/javascript', headers, body: core};
+      await page.route('**/maup_worker.js', route => route.fulfill(answer));
     },
   });
 

@@ -34,7 +34,10 @@ export const cases = {
 
     await page.keyboard.press('Control+End');
     await page.keyboard.type('\nlet w = the', {delay: 30});
-    await page.waitForFunction(() => /θ/.test(document.querySelector('.cm-tooltip-autocomplete')?.textContent ?? '')); // theta finds θ
+    // theta finds θ
+    await page.waitForFunction(
+      () => /θ/.test(document.querySelector('.cm-tooltip-autocomplete')?.textContent ?? ''),
+    );
     await picture(page, 'completion');
     await page.keyboard.press('Escape');
 
@@ -313,7 +316,10 @@ export const cases = {
         .evaluateAll(all => all.map(one => getComputedStyle(one).fontSize));
       check(`${name}: the equations have one size`, sizes.length > 1 && new Set(sizes).size === 1, sizes);
       const size = () =>
-        page.locator('#equations-body .mathematics').first().evaluate(one => parseFloat(getComputedStyle(one).fontSize));
+        page
+          .locator('#equations-body .mathematics')
+          .first()
+          .evaluate(one => parseFloat(getComputedStyle(one).fontSize));
       const narrow = await size();
       await page.setViewportSize({width: 2600, height: 900});
       await page.waitForTimeout(300);
@@ -471,7 +477,8 @@ export const cases = {
         await board.keyboard.press('ArrowRight');
         const over = await board.evaluate(() => {
           const line = document.querySelector('#lecture .line.now');
-          return [line, ...line.querySelectorAll('.mathematics, .formula')].some(one => one.scrollWidth > one.clientWidth + 1);
+          const all = [line, ...line.querySelectorAll('.mathematics, .formula')];
+          return all.some(one => one.scrollWidth > one.clientWidth + 1);
         });
         if (over) cut.push(i + 1);
       }

@@ -17,7 +17,11 @@ async function shown(page, element, part) {
 
 /** Of the 25 bands of the bar beside a map, from the top: each reaches down to the foot, and the next covers it. */
 const bandOf = (page, where, band) =>
-  shown(page, page.locator(`${where} g[shape-rendering="crispEdges"]`).first().locator('rect').nth(band), 0.5 / (25 - band));
+  shown(
+    page,
+    page.locator(`${where} g[shape-rendering="crispEdges"]`).first().locator('rect').nth(band),
+    0.5 / (25 - band),
+  );
 
 /** The lightness of the middle of the bar beside a map, and of a corner of the map in motion, 0 to 255. */
 async function nothing(page) {
@@ -85,7 +89,8 @@ export const kinds = {
     check('no room is kept for a drawing that is none', top < 160, top);
     await page.locator('#export-button').tap();
     const files = await page.locator('dialog[open] li').allInnerTexts();
-    check('report and motion, but no drawing', files.length === 5 && !/Drawing|Animation|Plot/.test(files.join()), files);
+    const pictures = /Drawing|Animation|Plot/.test(files.join());
+    check('report and motion, but no drawing', files.length === 5 && !pictures, files);
     await page.keyboard.press('Escape');
     await page.evaluate(() => document.getElementById('lecture-button').click());
     await page.waitForSelector('#lecture .line.now');
@@ -124,7 +129,11 @@ V = 1/2 m w^2 x^2\nstart x = 1 mm\nrun 10 s\n`;
     await page.locator('#run-group > summary').click();
     await page.locator('#duration').fill('200');
     await page.keyboard.press('Enter');
-    await page.waitForFunction(() => /no digit of the motion is certain/.test(document.querySelector('#stage-trouble').innerText), null, {timeout: 60_000});
+    await page.waitForFunction(
+      () => /no digit of the motion is certain/.test(document.querySelector('#stage-trouble').innerText),
+      null,
+      {timeout: 60_000},
+    );
     const told = await page.locator('#stage-trouble').innerText(),
       from = Number(/t = ([\d.]+) s/.exec(told)[1]);
     check('from a time that is well within the run', from > 15 && from < 120, told);
@@ -168,7 +177,8 @@ V = 1/2 m w^2 x^2\nstart x = 1 mm\nrun 10 s\n`;
         check(`${name}: no #${id}`, await page.locator(`#${id}`).isHidden());
       await page.locator('#export-button').click();
       const offered = await page.locator('dialog li small').allInnerTexts();
-      check(`${name}: files of a motion are not offered`, offered.join('; ') === '.lag; A page with everything, for any browser; LaTeX', offered);
+      const expected = '.lag; A page with everything, for any browser; LaTeX';
+      check(`${name}: files of a motion are not offered`, offered.join('; ') === expected, offered);
       await page.keyboard.press('Escape');
     }
     await picture(page, 'path');

@@ -10,7 +10,8 @@ export const setSlider = (page, name, value, rest = true) =>
     },
     [String(value), rest],
   );
-export const field = (page, name) => page.locator(`.value[data-name="${name}"] input[type=number]`).inputValue().then(Number);
+export const field = (page, name) =>
+  page.locator(`.value[data-name="${name}"] input[type=number]`).inputValue().then(Number);
 export const typeAtEnd = async (page, text) => {
   await page.locator('.cm-content').click();
   await page.keyboard.press('Control+End');

@@ -47,7 +47,8 @@ export const texts = {
     check('no ticks', !(await page.locator('#stage-trouble').innerText()).includes('`'));
     await page.locator('#share-button').click();
     await page.waitForFunction(() => /link/.test(document.querySelector('#word').textContent));
-    check('a link of this machine is said to be one', /this machine alone/.test(await page.locator('#word').innerText()));
+    const word = await page.locator('#word').innerText();
+    check('a link of this machine is said to be one', /this machine alone/.test(word));
     await page.context().close();
   },
 
@@ -204,7 +205,8 @@ export const texts = {
     await settled(page);
     await page.keyboard.press('Control+s');
     await page.waitForFunction(() => document.querySelector('#document-state').textContent === '');
-    check('a reload knows how they end', read() === `${ended}# one\r\n# two\r\n# kept`, JSON.stringify(read().slice(-60)));
+    const ends = JSON.stringify(read().slice(-60));
+    check('a reload knows how they end', read() === `${ended}# one\r\n# two\r\n# kept`, ends);
 
     writeFileSync(file, original.replace('\n', '\r\n'));
     await openFile(page, 'pendulum.lag');
@@ -234,7 +236,8 @@ export const texts = {
       [one, '# both\n# first tab'],
       [two, '# both\n# second tab'],
     ]) {
-      check(`the texts of both are kept: ${mark}`, kept.some(draft => draft.endsWith(mark)), kept.map(x => x.slice(-40)));
+      const has = kept.some(draft => draft.endsWith(mark));
+      check(`the texts of both are kept: ${mark}`, has, kept.map(x => x.slice(-40)));
       await tab.reload();
       await settled(tab);
       check(`each keeps its own text: ${mark}`, (await text(tab)).endsWith(mark), (await text(tab)).slice(-60));

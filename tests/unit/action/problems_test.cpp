@@ -177,7 +177,8 @@ param m = 3
 coord x, y, z : number
 T = 1/2 m (x'^2 + y'^2 + z'^2)
 expect action of (4 t + 7, 3 t + 5, 2 t + 1) from 0 to 10 = 435 ± 1e-10
-expect action of (4 t + 7 + 1/1000 t (t - 10) sin t, 3 t + 5 + 1/1000 t (t - 10) cos t, 2 t + 1 + 1/1000 t (t - 10) t^2) from 0 to 10 = 436.29121428571428571 ± 1e-10
+expect action of (4 t + 7 + 1/1000 t (t - 10) sin t, 3 t + 5 + 1/1000 t (t - 10) cos t, 2 t + 1 + )"
+                             R"(1/1000 t (t - 10) t^2) from 0 to 10 = 436.29121428571428571 ± 1e-10
 )");
   Diagnostics diagnostics;
   const double wanted[] = {435, 436.29121428571428571};

@@ -9,8 +9,9 @@ TEST_CASE("chains, trees and combs: unknowns and tangents as by the loops, M x =
     Rods rods(count, parent);
     const MassOfRods mass_of_rods(count, parent);
     Lifted loops(build_kernel(rods.source)), code(build_kernel(rods.source));
-    code.solve.compile({.cache = false, .long_run = count != 100, .in_tiers = false, .processor = {}});  // factors by code too, and not
-    CHECK_FALSE(code.solve.compile_report());                                         // no pivots yet
+    // Factors by code too, and not; no pivots yet.
+    code.solve.compile({.cache = false, .long_run = count != 100, .in_tiers = false, .processor = {}});
+    CHECK_FALSE(code.solve.compile_report());
     const auto n = static_cast<std::size_t>(count);
     for (unsigned seed = 1; seed <= 3; ++seed) {
       const Point p = random_point(n, seed);
