@@ -13,6 +13,7 @@ namespace {
 
 constexpr int points_sampled = 3, points_tried = 40;
 constexpr double no_change = 1e-9;
+constexpr double rounding_of_stiffness = 1e-12;  // of the largest at a point
 
 /// Rows at one random point, each divided by its length, columns by typical sizes; no rows where one has no value
 /// there.
@@ -33,18 +34,38 @@ Matrix sampled_rows(PointEquations::Impl& e, const Vector& sizes, std::uint64_t 
   return out;
 }
 
+/// Stiffnesses ∂R/∂q at a random point at rest, without forces of constraint: beside inertias, in SI, those of a motion
+/// that takes days would pass for none. Each row has length 1, but for those that are rounding of others.
+Matrix sampled_stiffness(PointEquations::Impl& e, const Vector& sizes, std::uint64_t seed) {
+  OperatingPoint point = random_point(e, seed);
+  for (auto* part : {&point.v, &point.a, &point.multipliers}) std::fill(part->begin(), part->end(), 0);
+  const Matrix works = sizes.asDiagonal() * e.at(e.balance, point).by_q * sizes.asDiagonal();
+  Matrix out(works.rows(), sizes.size());
+  if (!works.allFinite()) return Matrix(0, sizes.size());
+  const double largest = works.size() == 0 ? 0 : works.cwiseAbs().maxCoeff();
+  Index rows = 0;
+  for (Index i = 0; i < works.rows(); ++i) {
+    const double length = works.row(i).stableNorm();
+    if (length > rounding_of_stiffness * largest) out.row(rows++) = works.row(i) / length;
+  }
+  return out.topRows(rows);
+}
+
 /// Of the rows at some points where all have values; nothing is claimed where there are no such points.
 Matrix common_null_space(PointEquations::Impl& e, const Vector& sizes) {
   const Index n = sizes.size();
   Matrix all(0, n);
   int good = 0;
   for (int attempt = 0; attempt < points_tried && good < points_sampled; ++attempt) {
-    const Matrix more = sampled_rows(e, sizes, 271 + static_cast<std::uint64_t>(attempt));
+    const std::uint64_t seed = 271 + static_cast<std::uint64_t>(attempt);
+    const Matrix more = sampled_rows(e, sizes, seed);
     if (more.rows() == 0) continue;
     ++good;
-    Matrix both(all.rows() + more.rows(), n);
+    const Matrix stiffness = sampled_stiffness(e, sizes, seed);
+    Matrix both(all.rows() + more.rows() + stiffness.rows(), n);
     both.topRows(all.rows()) = all;
-    both.bottomRows(more.rows()) = more;
+    both.middleRows(all.rows(), more.rows()) = more;
+    both.bottomRows(stiffness.rows()) = stiffness;
     // The triangular factor has the same null space.
     all = both.rows() <= n ? both : triangular_factor(both);
   }

@@ -172,6 +172,32 @@ TEST_CASE("A translation that an input pushes along stays one while the input is
   }
 }
 
+TEST_CASE("A spring is a spring however slowly it swings, and a translation is one however stiff what it carries") {
+  for (const std::string stiffness : {"1", "1e-10", "1e-14", "1e-100", "1e-200", "1e-300"}) {
+    CAPTURE(stiffness);
+    const double k = std::stod(stiffness);
+    Linearized m("system spring\nparam m = 1 kg, k = " + stiffness +
+                 " N/m\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\nstart x = 1 m\n");
+    const ModalStudy study = m.study();
+    REQUIRE(study.entries.size() == 1);
+    CHECK(study.translations.empty());
+    CHECK(study.entries[0].equilibrium.point.q[0] == 0);
+    CHECK(near(study.entries[0].analysis.modes.at(0).frequency(), std::sqrt(k), 1e-14));
+    CHECK(study.entries[0].analysis.stability.verdict == Stability::Energetic);
+  }
+  Linearized beside(
+      "system beside\nparam m = 1 kg, k = 1 N/m, κ = 1e-11 N/m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\n"
+      "V = 1/2 k x^2 + 1/2 κ y^2\nstart x = 1 m, y = 1 m\n");
+  const ModalStudy both = beside.study();
+  REQUIRE(both.entries.size() == 1);
+  CHECK(both.translations.empty());
+  CHECK(near(both.entries[0].analysis.modes.at(0).frequency(), std::sqrt(1e-11), 1e-12));
+  Linearized pair(
+      "system pair\nparam m = 1 kg, k = 1e12 N/m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\n"
+      "V = 1/2 k (x - y)^2\nstart y = 1 m\n");
+  CHECK(pair.study().translations.size() == 1);
+}
+
 TEST_CASE("What has no equilibrium says so") {
   const auto first_code = [](Linearized& m, bool at) {
     Diagnostics told;
