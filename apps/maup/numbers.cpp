@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace maupertuis::app {
 namespace {
@@ -21,15 +22,25 @@ std::string place_of_no_number(const Json& value) {
   return {};
 }
 
-void tell(const std::string& what, Diagnostics& diagnostics) {
+void tell(const std::string& what, Diagnostics& diagnostics, const std::string& further = {}) {
   diagnostics.error("E0816", {}, fmt::format("{} is no finite number", what),
-                    "A quantity grew beyond the range of numbers, or a formula has no value there.",
+                    "A quantity grew beyond the range of numbers, or a formula has no value there." +
+                        (further.empty() ? further : " " + further),
                     "Change start, parameters or the length of the run so that it stays within 1e308.");
 }
 
 bool may_be_open(const std::string& column, std::span<const std::string> open) {
   return std::find(open.begin(), open.end(), column) != open.end() || column.rfind("reaction(", 0) == 0 ||
          column.rfind("error(", 0) == 0;
+}
+
+/// The first row where a column holds what is no finite number; none where it may, or where all are.
+std::optional<std::size_t> row_of_no_number(const Trajectory& rows, std::size_t column,
+                                            std::span<const std::string> open) {
+  if (may_be_open(rows.columns[column].name, open)) return std::nullopt;
+  for (std::size_t row = 0; row < rows.rows(); ++row)
+    if (!std::isfinite(rows.at(row, column))) return row;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -40,17 +51,36 @@ bool check_numbers(const Json& document, Diagnostics& diagnostics) {
   return place.empty();
 }
 
-bool check_numbers(const Trajectory& rows, Diagnostics& diagnostics, std::span<const std::string> open) {
-  for (std::size_t column = 0; column < rows.columns.size(); ++column) {
-    if (may_be_open(rows.columns[column].name, open)) continue;
-    for (std::size_t row = 0; row < rows.rows(); ++row)
-      if (!std::isfinite(rows.at(row, column))) {
-        tell(fmt::format("{} at {} = {}", rows.columns[column].name, rows.independent.name, brief(rows.times[row])),
-             diagnostics);
-        return false;
-      }
-  }
+bool check_numbers(const Trajectory& rows, Diagnostics& diagnostics, std::span<const std::string> open,
+                   const std::string& further) {
+  for (std::size_t column = 0; column < rows.columns.size(); ++column)
+    if (const auto row = row_of_no_number(rows, column, open)) {
+      tell(fmt::format("{} at {} = {}", rows.columns[column].name, rows.independent.name, brief(rows.times[*row])),
+           diagnostics, further);
+      return false;
+    }
   return true;
+}
+
+Trajectory columns_of_numbers(const Trajectory& rows, std::span<const std::string> open) {
+  std::vector<std::size_t> kept;
+  std::set<std::string> left_out;
+  for (std::size_t column = 0; column < rows.columns.size(); ++column)
+    if (row_of_no_number(rows, column, open)) left_out.insert(fmt::format("error({})", rows.columns[column].name));
+  Trajectory out;
+  for (std::size_t column = 0; column < rows.columns.size(); ++column) {
+    const std::string& name = rows.columns[column].name;
+    if (left_out.count(name) || left_out.count(fmt::format("error({})", name))) continue;
+    kept.push_back(column);
+    out.columns.push_back(rows.columns[column]);
+  }
+  out.independent = rows.independent, out.times = rows.times, out.gaps = rows.gaps, out.metadata = rows.metadata;
+  for (std::size_t row = 0; row < rows.rows(); ++row)
+    for (const std::size_t column : kept) {
+      out.values.push_back(rows.at(row, column));
+      if (!rows.errors.empty()) out.errors.push_back(rows.error(row, column));
+    }
+  return out;
 }
 
 }  // namespace maupertuis::app

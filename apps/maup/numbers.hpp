@@ -12,7 +12,11 @@ namespace maupertuis::app {
 /// told: in a document by its place in it, in rows by column and time. False where one was found.
 bool check_numbers(const Json& document, Diagnostics& diagnostics);
 /// Reactions and errors that are not determined are NaN or infinite by their definition, and stay out of this; so do
-/// columns of the names `open`.
-bool check_numbers(const Trajectory& rows, Diagnostics& diagnostics, std::span<const std::string> open = {});
+/// columns of the names `open`. `further`: what is told beside it.
+bool check_numbers(const Trajectory& rows, Diagnostics& diagnostics, std::span<const std::string> open = {},
+                   const std::string& further = {});
+/// The columns that hold numbers alone, and those that may be open; with each that is left out goes the column of its
+/// errors.
+Trajectory columns_of_numbers(const Trajectory& rows, std::span<const std::string> open = {});
 
 }  // namespace maupertuis::app

@@ -84,10 +84,20 @@ ExitCode finish_usage(Console& console, Study& study, const char* command) {
 
 bool write_rows(const std::string& path, const Trajectory& rows, Diagnostics& diagnostics,
                 std::span<const std::string> open) {
+  if (path.empty()) return check_numbers(rows, diagnostics, open);
   const Saving saving(path);
-  const std::string failure = path.empty() ? std::string() : write_trajectory(rows, path);
+  Diagnostics none;
+  const bool numbers = check_numbers(rows, none, open);
+  const Trajectory kept = numbers ? Trajectory{} : columns_of_numbers(rows, open);
+  const bool nothing_left = !numbers && kept.columns.empty();
+  if (!numbers)
+    check_numbers(rows, diagnostics, open,
+                  nothing_left ? fmt::format("No column is left, and {} was not written.", path)
+                               : fmt::format("Columns that hold such a value are left out of {}.", path));
+  if (nothing_left) return false;
+  const std::string failure = write_trajectory(numbers ? rows : kept, path);
   if (!failure.empty()) cannot_write(failure, diagnostics);
-  return check_numbers(rows, diagnostics, open) && failure.empty();
+  return numbers && failure.empty();
 }
 
 void cannot_write(const std::string& failure, Diagnostics& diagnostics) {

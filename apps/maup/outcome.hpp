@@ -42,7 +42,7 @@ bool write_result(const std::string& path, const std::string& content, Diagnosti
 /// The same for a picture, in the format of the ending: .svg, .png or .pdf.
 bool write_picture(const std::string& path, const std::string& svg, Diagnostics& diagnostics);
 /// The same for rows, in the format of the ending; an empty path asks for nothing. Columns of the names `open` may hold
-/// what is no finite number.
+/// what is no finite number; others that do are told (E0816) and left out, and no file is written where none is left.
 bool write_rows(const std::string& path, const Trajectory& rows, Diagnostics& diagnostics,
                 std::span<const std::string> open = {});
 /// N0844: a drawing whose frames do not follow the motion.

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <filesystem>
 #include <functional>
 #include <set>
 
@@ -81,6 +82,20 @@ TEST_CASE("numbers that are none are a failure") {
   CHECK(rows.code == 3);
   CHECK(contains(rows.err, "E0816"));
   CHECK(contains(rows.err, "P.x at t = "));
+  CHECK(contains(rows.err, "left out of " + folder.path("rows.csv")));
+  // The rest of the run is there, and nothing in it but numbers.
+  const std::string kept = read(folder.path("rows.csv"));
+  CHECK(contains(kept, ",x,x',P.y,"));
+  for (const char* none : {"nan", "inf", "P.x"}) CHECK_FALSE(contains(kept, none));
+  const Outcome alone = maup({"simulate", root, "-o", folder.path("alone.csv"), "--columns", "1/t"});
+  CHECK(alone.code == 3);
+  CHECK(contains(alone.err, "1/t at t = 0 is no finite number"));
+  CHECK(contains(alone.err, "alone.csv was not written"));
+  CHECK_FALSE(std::filesystem::exists(folder.path("alone.csv")));
+  CHECK(maup({"simulate", root, "-o", folder.path("two.csv"), "--columns", "x, 1/t", "--errors"}).code == 3);
+  const std::string two = read(folder.path("two.csv"));
+  CHECK(contains(two, ",x,error(x)"));
+  CHECK_FALSE(contains(two, "1/t"));
   const Outcome json = maup({"simulate", root, "--json"});
   CHECK(json.code == 3);
   CHECK(nlohmann::json::parse(json.out)["ok"] == false);
