@@ -1,5 +1,6 @@
 #include "modes_text.hpp"
 
+#include "mirrored.hpp"
 #include "orbits_text.hpp"
 #include "quantity.hpp"
 
@@ -336,6 +337,11 @@ std::string modes_text(const MechanicalSystem& system, const ModalStudy& study,
     out += multipliers_text(system, e.linearization.point);
     if (i < neighbours.size() && neighbours[i]) {
       out += period_text(*neighbours[i], system) + neighbours_text(*neighbours[i]);
+      continue;
+    }
+    if (const auto image = mirrored(study, i)) {
+      out += fmt::format("  the mirror image of {}, in {}: the same modes\n", image->of + 1,
+                         listed(system, image->turned, ""));
       continue;
     }
     if (e.analysis.modes.empty() && e.linearization.a.rows > 0) continue;  // frozen coefficients: the verdict says so

@@ -33,6 +33,30 @@ TEST_CASE("modes of a pendulum: formulas, frequency, verdict") {
   CHECK(contains(one.out, "stable: the Hessian of the potential is positive definite"));
 }
 
+TEST_CASE("mirror images are said once") {
+  const auto times = [](const std::string& text, const std::string& part) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+    return count;
+  };
+  const Outcome cone = maup({"modes", "-"},
+                            "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ, φ : angle\n"
+                            "T = 1/2 m l^2 (θ'^2 + sin(θ)^2 φ'^2)\nV = -m g l cos θ\n"
+                            "start θ = 60 deg, φ' = 4.43 rad/s\n");
+  REQUIRE_MESSAGE(cone.code == 0, cone.err);
+  CHECK(contains(cone.out, "2 steady motions"));
+  CHECK(contains(cone.out, "the mirror image of 1, in θ: the same modes"));
+  CHECK(times(cone.out, "residual of the eigenvalue problem") == 1);
+  // Wells of two depths are no images of each other.
+  const std::string wells = "dimensionless\ncoord x, y : number\nT = 1/2 x'^2 + 1/2 y'^2\nstart x = 1, y = 1\n";
+  const Outcome even = maup({"modes", "-"}, wells + "V = (x^2 - 1)^2 + x y^2/4 + y^2\n");
+  CHECK_MESSAGE(even.code == 0, even.err);
+  CHECK_FALSE(contains(even.out, "mirror image"));
+  const Outcome wells_alike = maup({"modes", "-"}, wells + "V = (x^2 - 1)^2 + x^2 y^2/4 + y^2\n");
+  CHECK(times(wells_alike.out, "mirror image of 1, in x") == 1);
+  CHECK(times(wells_alike.out, "residual of the eigenvalue problem") == 2);  // the saddle between them
+}
+
 TEST_CASE("modes --json: schema, points, matrices, modes") {
   const Json json = document({gallery + "coupled_pendulums.lag", "--at", "θ1=0, θ2=0"});
   CHECK(json.at("schema") == 1);
