@@ -72,6 +72,10 @@ std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& tr
                                         const EquationsOfMotion* equations = nullptr,
                                         const std::vector<ContactImpulse>& impulses = {});
 
+/// Whether frames at these moments, in s after the first row, ascending, show how a motion swings: about five of them
+/// fall on each swing, at least. Each moment is taken for that of the row nearest to it.
+bool frames_follow(const Model& model, const Trajectory& trajectory, const std::vector<double>& elapsed);
+
 /// As JSON, for the page that draws it.
 std::string drawing_json(const Drawing& drawing);
 

@@ -15,6 +15,7 @@ namespace {
 using drawing::Outline;
 
 constexpr std::size_t fewest_frames = 600;
+constexpr double just_followed = 0.1;  // of the range of a coordinate: a sine has five rows in a period
 
 // States of the run at any time between two of its rows.
 class Motion {
@@ -168,7 +169,7 @@ std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& sh
   const std::size_t rows = run.rows();
   const std::size_t parts = rows > 1 ? std::max<std::size_t>(1, (fewest_frames + rows - 2) / (rows - 1)) : 1;
   const std::vector<std::size_t> shown = rows_shown(motion, rows, frames);
-  drawing.moments_only = !motion.is_followed_by(shown, 0.1);
+  drawing.moments_only = !motion.is_followed_by(shown, just_followed);
   const std::size_t between = shown.size() == rows && !drawing.moments_only ? parts : 1;
   for (const std::size_t row : shown)
     for (std::size_t k = 0; k < (row + 1 == rows ? 1 : between); ++k) {
@@ -179,6 +180,21 @@ std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& sh
     }
   drawing::settle(drawing, plan.outlines, plan, system, parameters, contacts, impulses);
   return drawing;
+}
+
+bool frames_follow(const Model& model, const Trajectory& shown_rows, const std::vector<double>& elapsed) {
+  const Trajectory& run = shown_rows.of_one_choice ? *shown_rows.of_one_choice : shown_rows;
+  const Motion motion(model.system, run, parameter_bindings(model.system));
+  if (run.rows() == 0 || !motion.complete()) return true;
+  const auto since_start = [&](std::size_t row) { return std::abs(run.times[row] - run.times.front()); };
+  std::vector<std::size_t> rows;
+  std::size_t row = 0;
+  for (const double moment : elapsed) {
+    while (row + 1 < run.rows() && std::abs(since_start(row + 1) - moment) <= std::abs(since_start(row) - moment))
+      ++row;
+    rows.push_back(row);
+  }
+  return motion.is_followed_by(rows, just_followed);
 }
 
 }  // namespace maupertuis

@@ -193,7 +193,9 @@ TEST_CASE("what cannot be had is said, and nothing is written") {
   refused({"-o", folder.path("a.svg"), "--speed", "1e-9"}, "E0842", "frames");
   refused({"-o", folder.path("a.svg"), "--from", "9s"}, "E0809", "--from");
   refused({"-o", folder.path("a.svg"), "--from", "2s", "--to", "1s"}, "E0809", "--to");
-  refused({"-o", folder.path("a.svg"), "--still", "9s"}, "E0809", "--still");
+  refused({"-o", folder.path("a.svg"), "--still", "9s"}, "E0809", "--duration` makes it longer");
+  refused({"-o", folder.path("a.svg"), "--still=-1s"}, "E0809", "nothing is known before it");
+  refused({"-o", folder.path("a.svg"), "--still", "soon"}, "E0809", "Write a number with a unit of time");
   refused({"-o", folder.path("a.svg"), "--view", "up"}, "E0809", "--view");
   refused({"-o", model}, "E08", "model");
   const Outcome nothing = maup({"animate", bare, "-o", folder.path("a.svg")});

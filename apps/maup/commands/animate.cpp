@@ -116,8 +116,14 @@ double moment(const char* option, const std::string& text, const Drawing& drawin
   const double elapsed = t ? (last < first ? first - t->to_double() : t->to_double() - first) : NAN;
   const double duration = std::abs(last - first);
   if (elapsed >= -1e-9 * duration && elapsed <= duration * (1 + 1e-9)) return std::clamp(elapsed, 0.0, duration);
-  wrong_option(diagnostics, fmt::format("{} {} is no time of this run.", option, text),
-               fmt::format("It goes from {:.6g} s to {:.6g} s; `--duration` makes it longer.", first, last));
+  if (!t)
+    wrong_option(diagnostics, fmt::format("{} \"{}\" is no time.", option, text),
+                 "Write a number with a unit of time, such as 3s, 250ms or \"2 min\".");
+  else
+    wrong_option(diagnostics, fmt::format("{} {} is no time of this run.", option, text),
+                 fmt::format("It goes from {:.6g}{} to {:.6g}{}{}", first, drawing.dimensionless ? "" : " s", last,
+                             drawing.dimensionless ? "" : " s",
+                             elapsed > duration ? "; `--duration` makes it longer." : "; nothing is known before it."));
   return otherwise;
 }
 
@@ -339,12 +345,12 @@ ExitCode animate_fields(AnimateOptions o, Study& study, Console& console) {
 }
 
 /// A motion that swings faster than the drawing's frames follow is run once more, with rows at the moments that are
-/// shown. What swings between two frames of a film cannot be seen in it: said.
+/// shown. What swings between two frames of a film cannot be seen in it: said, unless it goes so slowly that its frames
+/// follow the motion.
 void hit_moments(const Film& film, Study& study, SimulationOptions run, Console& console,
                  std::optional<SimulationResult>& result, std::optional<Drawing>& drawing) {
   if (!drawing->moments_only) return;
-  if (film.elapsed.size() != 1) note_moments_only(study.diagnostics());
-  if (film.elapsed.empty()) return;
+  if (film.elapsed.empty()) return note_moments_only(study.diagnostics());  // a page
   const Diagnostics said = study.diagnostics();
   const double first = drawing->times.front(), way = drawing->times.back() < first ? -1 : 1;
   for (const double elapsed : film.elapsed) run.rows_at.push_back(first + way * elapsed);
@@ -354,6 +360,8 @@ void hit_moments(const Film& film, Study& study, SimulationOptions run, Console&
     drawing = std::move(again);
     study.diagnostics() = said;  // the second run has nothing to add
   }
+  const bool followed = result && frames_follow(*study.model(), result->trajectory, film.elapsed);
+  if (film.elapsed.size() != 1 && !followed) note_moments_only(study.diagnostics());
 }
 
 ExitCode animate(AnimateOptions o, Console& console) {

@@ -381,3 +381,16 @@ TEST_CASE("a motion that swings faster than its frames is shown at them, and not
   CHECK_FALSE(swings(30, 200));
   CHECK_FALSE(swings(0, 10));
 }
+
+TEST_CASE("frames follow a motion where about five of them fall on a swing") {
+  const ModelText m("param m = 1 kg\ncoord x : length\npoint P mass m at (x, 0)\nrun 1 s\n");
+  const Trajectory run = prescribed(*m.system, 1, [](std::size_t, double t) { return std::cos(2 * pi * 100 * t); });
+  const auto follow = [&](double frames_in_a_period) {
+    std::vector<double> moments;
+    for (double t = 0; t < 0.2; t += 0.01 / frames_in_a_period) moments.push_back(t);
+    return frames_follow(m.model, run, moments);
+  };
+  CHECK(follow(8));
+  CHECK_FALSE(follow(3));
+  CHECK_FALSE(follow(1.05));
+}
