@@ -1,5 +1,7 @@
 #include "syntax/declarations.hpp"
 
+#include <maupertuis/language_words.hpp>
+
 #include <algorithm>
 
 namespace maupertuis::syntax {
@@ -98,6 +100,14 @@ std::vector<Name> Declarations::of(const TokenList& list, const StatementTokens&
     while (!reaction && at < statement.end && !list.tokens[at - 1].is("name")) ++at;
     if (at < statement.end && list.tokens[at].kind == Token::Kind::Name)
       found.push_back({name_of(list.tokens[at]), NameKind::None});
+  }
+  // Of a statement whose word is none, as Param, or is missing, x = l sin θ, what it was meant to declare.
+  if (first.kind == Token::Kind::Name && !is_statement_word(first.text)) {
+    const bool definition = statement.begin + 1 < statement.end && list.tokens[statement.begin + 1].is("=");
+    if (definition)
+      found.push_back({name_of(first), NameKind::None});
+    else
+      scan_list(list, statement, NameKind::Definition, found);
   }
   std::vector<Name> names;
   for (Declared& declared : found) names.push_back(std::move(declared.name));

@@ -49,6 +49,10 @@ bool opens_path(const Token& word, const Token& after) {
 Tolerance StatementParser::tolerance(bool required) {
   if (accept("±")) return {quantity(), false};
   if (accept("rel")) return {quantity(), true};
+  if (required && at_end())
+    fail("E0127", statement_span(), "this expectation does not say how near the value has to be",
+         "A computed value agrees with a number only up to an error.",
+         "Add ± and the largest error, or rel and a part: ± 1e-9, rel 1e-6.");
   if (required) missing_clause("± or rel", "expectation", "expect θ at 10 s = 0.5 rad ± 1e-9");
   return {};
 }

@@ -11,6 +11,9 @@ StartStatement::Item StatementParser::assignment() {
   if (item.variable->kind != Expression::Kind::Name && item.variable->kind != Expression::Kind::Member) {
     fail("E0111", item.variable->span, "expected a coordinate or its velocity before `=`");
   }
+  if (peek().is("("))
+    fail_expected(fmt::format("`=` after `{}`", text_of(*item.variable)),
+                  fmt::format("The start is the beginning of the run: write {} = ….", text_of(*item.variable)));
   expect("=", fmt::format("`{}`", text_of(*item.variable)));
   item.value = quantity();
   return item;

@@ -170,7 +170,8 @@ StatementBody StatementParser::spring_statement() {
   SpringStatement spring;
   refuse_coordinate("spring", "the potential energy", "V += 1/2 k x^2, of an angle torsion spring θ stiffness k");
   spring.from = operand("a point");
-  expect("-", "the first end of the spring");
+  if (!peek().is("-")) fail_expected("`-` after the first end of the spring", "Write spring A - B stiffness k.");
+  next();
   spring.to = operand("a point");
   while (!at_end()) {
     if (accept("stiffness"))
@@ -189,7 +190,8 @@ StatementBody StatementParser::damper_statement() {
   DamperStatement damper;
   refuse_coordinate("damper", "the dissipation function", "D += 1/2 c x'^2");
   damper.from = operand("a point");
-  expect("-", "the first end of the damper");
+  if (!peek().is("-")) fail_expected("`-` after the first end of the damper", "Write damper A - B coefficient c.");
+  next();
   damper.to = operand("a point");
   if (!accept("coefficient")) missing_clause("coefficient", "damper", "damper A - B coefficient c");
   damper.coefficient = quantity();

@@ -136,10 +136,12 @@ ExpressionParser::Node ExpressionParser::quantity_or_null() {
 }
 
 void ExpressionParser::refuse_ambiguous_slash() {
-  fail("E0118", *ambiguous_slash_, fmt::format("`{}` has two meanings", text_of(*ambiguous_slash_)),
+  const std::string words(text_of(*ambiguous_slash_)), time = context_.declarations.independent();
+  const bool ends_with_time = !time.empty() && words.ends_with(" " + time);
+  fail("E0118", *ambiguous_slash_, fmt::format("`{}` has two meanings", words),
        "It is not clear whether the second unit belongs to the denominator.",
-       fmt::format("Write /({}) if both belong below the slash, else put the second one before it.",
-                   text_of(*ambiguous_slash_)));
+       fmt::format("Write /({}) if both belong below the slash, else put the second one before it.", words) +
+           (ends_with_time ? fmt::format(" The time stands behind the brackets of a unit: 5 [N/s] {}.", time) : ""));
 }
 
 bool ExpressionParser::ends_quantity(const Token& token) const {

@@ -258,7 +258,12 @@ StatementBody StatementParser::coord_statement() {
     coord.items.push_back(std::move(item));
     if (peek().is(",")) return;
     if (at_end()) coordinate_without_kind(coord.items.back().name);
-    if (!peek().is(":")) fail_expected("`:` and the kind of the coordinate", "Write for example θ : angle.");
+    if (!peek().is(":"))
+      fail_expected("`:` and the kind of the coordinate",
+                    peek().is("(") ? fmt::format("Coordinates are functions of the time as they stand: write {0} : "
+                                                 "length, or {0} : angle.",
+                                                 coord.items.back().name.text)
+                                   : "Write for example θ : angle.");
     next();
     CoordStatement::Item& last = coord.items.back();
     kind_of(last.name, "coordinate", last.kind, last.unit);

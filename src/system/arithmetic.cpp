@@ -70,10 +70,13 @@ void report_sum(Elaboration& e, const Value& a, const Value& b, const Expression
       : x.op == Operator::Subtract
           ? fmt::format("this {} {} from {}", verb, describe(b.dimension), describe(a.dimension))
           : fmt::format("this {} {} to {}", verb, describe(b.dimension), describe(a.dimension));
-  const std::string text(e.texts.slice((left_is_wrong ? left : right)->span));
-  e.diagnostics.error(
-      "E0302", (left_is_wrong ? left : right)->span, message, reason,
-      dimension_advice(left_is_wrong ? a.dimension : b.dimension, place.expected.value_or(a.dimension)));
+  const Value& wrong = left_is_wrong ? a : b;
+  const Dimension expected = place.expected.value_or(a.dimension);
+  const bool damps =
+      wrong.order == 1 && wrong.dimension.same_as(dimensions::force()) && expected.same_as(dimensions::energy());
+  e.diagnostics.error("E0302", (left_is_wrong ? left : right)->span, message, reason,
+                      damps ? "A force that grows with a velocity has no potential: for damping write D = 1/2 c x'^2."
+                            : dimension_advice(wrong.dimension, expected));
 }
 
 bool same_shape(Elaboration& e, const Value& a, const Value& b, const Expression& x) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 /// Checks that the parts of the elaboration share.
@@ -22,9 +23,24 @@ std::string bare_name(Elaboration& e, const Expression& x) {
   return {};
 }
 
+/// 0.3, -9.81, (0, -9.81)
+bool is_bare_number(const Expression& x) {
+  using Kind = Expression::Kind;
+  if (x.kind == Kind::Number) return true;
+  return (x.kind == Kind::Unary || x.kind == Kind::Vector) &&
+         std::all_of(x.arguments.begin(), x.arguments.end(), [](const auto& a) { return is_bare_number(*a); });
+}
+
 /// A bare number in a place for a quantity, or a mass or length that is missing, is most often a parameter whose unit
 /// was left out.
 std::string advice_on(Elaboration& e, const Value& v, const Dimension& expected, const Expression& x) {
+  if (std::string words = advice_on_words(e, x, expected); !words.empty()) return words;
+  if (is_bare_number(x)) {
+    const bool formula = expected.same_as(dimensions::energy()) || expected.same_as(dimensions::power());
+    const std::string unit = to_string(expected);
+    return fmt::format("A number has a unit here, such as {} {}.", e.texts.slice(x.span),
+                       formula ? "[" + unit + "]" : unit);
+  }
   if (x.kind == Expression::Kind::Quantity || x.kind == Expression::Kind::Number) return "";
   const bool bare = v.dimension.same_as(Dimension{}), mass = (v.dimension * dimensions::mass()).same_as(expected),
              length = (v.dimension * dimensions::length()).same_as(expected);

@@ -79,6 +79,9 @@ Value value_of_multiplier(Elaboration& e, const Constraint& c);
 /// A number or vector with unit words.
 Value value_of_number(Elaboration& e, const syntax::Expression& x);
 Value value_of_quantity(Elaboration& e, const syntax::Expression& x, const Place& place);
+/// What to write where words after a number were read as a unit and one of them is the time, or a name with which they
+/// would be of the expected dimension: 5 N/s t is newtons over seconds and tonnes. Empty for all else.
+std::string advice_on_words(Elaboration& e, const syntax::Expression& x, const Dimension& expected);
 /// Whether `x` is a habit of paper that the language does not have (e^x, d/dt θ, 9.81 m/s^2): then it was told.
 bool tell_habit(Elaboration& e, const syntax::Expression& x);
 /// A sum, a product, a power of values.

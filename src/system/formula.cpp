@@ -238,9 +238,13 @@ Value vector_of(Elaboration& e, const Expression& x, const Dimension& expected, 
   Value v = evaluate_formula(e, x, place);
   if (v.poisoned) return v;
   if (!v.is_vector) {
-    e.diagnostics.error(
-        "E0210", x.span, fmt::format("{} is a vector, not a number", what), "",
-        e.system().space_dimension == 2 ? "Write its components: (a, b)." : "Write its components: (a, b, c).");
+    const bool plane = e.system().space_dimension == 2, downward = x.kind == Expression::Kind::Unary;
+    const std::string components =
+        what == "gravity" ? fmt::format("({}0, {}{})", plane ? "" : "0, ", downward ? "" : "-", e.texts.slice(x.span))
+        : plane           ? "(a, b)"
+                          : "(a, b, c)";
+    e.diagnostics.error("E0210", x.span, fmt::format("{} is a vector, not a number", what), "",
+                        fmt::format("Write its components: {}.", components));
     return Value::poison();
   }
   return check_dimension(e, v, expected, what, x) ? v : Value::poison();

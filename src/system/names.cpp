@@ -142,6 +142,11 @@ bool is_silent(Elaboration& e, const std::string& text) { return e.table.is_lost
 /// Where another variable stands in its place, t is a name like any other.
 void unknown_time(Elaboration& e, Span span) {
   const std::string& x = e.system().independent;
+  if (x == "t") {
+    e.diagnostics.error("E0201", span, "`t` is no name that the model declares", "It is the time, in every model.",
+                        "The time of the start is 0, or written: start at 5 s.");
+    return;
+  }
   e.diagnostics.error(
       "E0201", span, "`t` is not declared",
       fmt::format("The independent variable of this model is {}: it stands in the place of the time.", x),
@@ -163,6 +168,36 @@ std::string twin_of(const std::string& text, const std::vector<std::string>& nam
   return twin == names.end() ? std::string() : *twin;
 }
 
+/// A declared name that differs in capital letters alone; empty if there is none.
+std::string other_case_of(const std::string& text, const std::vector<std::string>& names) {
+  const auto small = [](std::string name) {
+    for (char& c : name) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return name;
+  };
+  const auto other =
+      std::find_if(names.begin(), names.end(), [&](const std::string& name) { return small(name) == small(text); });
+  return other == names.end() ? std::string() : *other;
+}
+
+bool differ_in_number_alone(const std::string& x, const std::string& y) {
+  const auto stem = [](const std::string& name) { return name.substr(0, name.find_last_not_of("0123456789") + 1); };
+  return stem(x) == stem(y) && stem(x) != x && stem(y) != y;
+}
+
+/// What to do about a name that is not declared, of which `near` is a neighbour. `in_model`: not in an option.
+std::string advice_on_name(Elaboration& e, const std::string& text, const std::string& near, bool in_model) {
+  const std::vector<Coordinate>& coordinates = e.system().coordinates;
+  const std::string declare = fmt::format("`param {0} = …`, `coord {0} : …` or `let {0} = …`", text);
+  if (text == "v" && near.empty() && coordinates.size() == 1)
+    return fmt::format("The velocity of {0} is written {0}'; another quantity is declared, {1}.",
+                       coordinates.front().name, declare);
+  if (near.empty()) return fmt::format("Declare it: {}.", declare);
+  // In a model one of a row that was forgotten, sooner than a slip of the finger: θ2 beside θ1.
+  if (in_model && differ_in_number_alone(text, near))
+    return fmt::format("Declare it: {}. Did you mean `{}`?", declare, near);
+  return fmt::format("Did you mean `{}`?", near);
+}
+
 }  // namespace
 
 void unknown_name(Elaboration& e, const std::string& text, Span span) {
@@ -180,6 +215,11 @@ void unknown_name(Elaboration& e, const std::string& text, Span span) {
         "Type both with the same letters.");
     return;
   }
+  if (const std::string other = other_case_of(text, names); !other.empty()) {
+    e.diagnostics.error("E0201", span, fmt::format("`{}` is not declared", text),
+                        "Capital and small letters are different names.", fmt::format("Did you mean `{}`?", other));
+    return;
+  }
   if (const syntax::Spelling right = syntax::right_spelling(text, names); !right.text.empty()) {
     e.diagnostics.error("E0201", span, fmt::format("`{}` is not declared", text), right.reason,
                         fmt::format("Write {}.", right.text));
@@ -195,8 +235,7 @@ void unknown_name(Elaboration& e, const std::string& text, Span span) {
   }
   e.diagnostics.error("E0201", span, fmt::format("`{}` is not declared", text),
                       "Every name of a formula is declared somewhere in the model.",
-                      near.empty() ? fmt::format("Declare it: `param {0} = …`, `coord {0} : …` or `let {0} = …`.", text)
-                                   : fmt::format("Did you mean `{}`?", near));
+                      advice_on_name(e, text, near, span.source == 0));
 }
 
 Declaration* find_declared(Elaboration& e, const syntax::Name& name) {

@@ -183,4 +183,42 @@ Value value_of_quantity(Elaboration& e, const Expression& x, const Place& place)
   return v;
 }
 
+namespace {
+
+/// "N/s" rather than "kg m/s^3".
+std::string unit_over(const Dimension& above, const Dimension& below) {
+  const std::string whole = to_string(above), part = to_string(below);
+  const bool plain = whole.find_first_of(" /") == std::string::npos && part.find_first_of(" /") == std::string::npos;
+  return plain && !above.is_one() ? whole + "/" + part : to_string(above / below);
+}
+
+}  // namespace
+
+std::string advice_on_words(Elaboration& e, const Expression& x, const Dimension& expected) {
+  if (x.kind == Expression::Kind::Unary) return advice_on_words(e, *x.arguments[0], expected);
+  if (x.kind != Expression::Kind::Quantity || x.unit_bracketed || !x.unit || !all_units(*x.unit)) return {};
+  std::string first, names;
+  Dimension of_names, of_units;
+  for (const auto& word : x.unit->factors) {
+    const std::optional<Dimension> d = dimension_of_name(e, word.word);
+    const bool is_name = d && word.exponent_numerator > 0;
+    const Rational exponent(word.exponent_numerator, word.exponent_denominator);
+    Dimension& product = is_name ? of_names : of_units;
+    product = product *
+              pow(is_name ? *d : find_unit(word.word)->dimension, word.exponent_numerator, word.exponent_denominator);
+    if (!is_name) continue;
+    if (first.empty()) first = word.word;
+    names += " " + word.word + (exponent.is_one() ? "" : "^" + exponent.to_string());
+  }
+  if (first.empty()) return {};
+  const bool is_time = first == e.system().independent;
+  if (!is_time && !(of_names * of_units).same_as(expected)) return {};
+  const Dimension unit = expected / of_names;
+  return fmt::format("`{}` was read as a unit, with `{}` for {}. For {} write {}{}{}.", e.texts.slice(x.unit->span),
+                     first, describe(find_unit(first)->dimension), is_time ? in_words(e, "the time") : "the name",
+                     written_number(e, *x.arguments[0]),
+                     unit.is_one() ? "" : fmt::format(" [{}]", unit_over(expected, of_names)),
+                     unit.is_one() ? " *" + names : names);
+}
+
 }  // namespace maupertuis::elaboration

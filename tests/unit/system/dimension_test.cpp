@@ -47,6 +47,22 @@ TEST_CASE("formulas of one dimension pass") {
     CHECK_MESSAGE(message_of(good) == "", good << ": " << message_of(good));
 }
 
+TEST_CASE("a name among units after a number is told where it is the time, or where it would fit") {
+  const auto help_of = [](const std::string& line) {
+    const Elaborated e("param m = 1 kg, k = 3 N/m, h = 1 m\ncoord x : length\nT = 1/2 m x'^2\n" + line + "\n");
+    REQUIRE(e.codes() == "E0304");
+    return e.diagnostics.items().front().help;
+  };
+  CHECK(help_of("force x = 5 t N/s") ==
+        "`t N/s` was read as a unit, with `t` for a mass (kg). For the time write 5 [N/s] t.");
+  CHECK(help_of("force x = -5 N t") ==
+        "`N t` was read as a unit, with `t` for a mass (kg). For the time write 5 [N/s] t.");
+  CHECK(help_of("force x = 5 N s^-2 t^2") ==
+        "`N s^-2 t^2` was read as a unit, with `t` for a mass (kg). For the time write 5 [N/s^2] t^2.");
+  CHECK(help_of("start x = 2 kg m") == "");  // no name makes a length of it
+  CHECK(help_of("force x = 5 m") == "");
+}
+
 TEST_CASE("messages name both sides in words of physics") {
   CHECK(message_of("k x^2 + k x") == "E0302 this adds a force (N) to an energy (J)");
   CHECK(message_of("k x^2 - m g") == "E0302 this subtracts a force (N) from an energy (J)");
