@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 /// Checks that the parts of the elaboration share.
 namespace maupertuis::elaboration {
@@ -21,6 +22,24 @@ std::string bare_name(Elaboration& e, const Expression& x) {
   for (const syntax::ExpressionPtr& a : x.arguments)
     if (std::string name = bare_name(e, *a); !name.empty()) return name;
   return {};
+}
+
+/// The parameters and other constants with units that stand in an expression.
+void add_constants(Elaboration& e, const Expression& x, std::map<std::string, Dimension>& found) {
+  if (x.kind == Expression::Kind::Name) {
+    const Value v = evaluate_formula(e, x);  // no new message can come of it
+    if (!v.poisoned && v.order < 0 && !v.dimension.is_one()) found.emplace(x.text, v.dimension);
+  }
+  for (const syntax::ExpressionPtr& a : x.arguments) add_constants(e, *a, found);
+}
+
+/// " Or …" where a formula has one constant alone, whose unit may be the mistake: k = 10 N of a spring.
+std::string doubt_about_unit(Elaboration& e, const Expression& x) {
+  std::map<std::string, Dimension> constants;
+  add_constants(e, x, constants);
+  if (constants.size() != 1) return {};
+  const auto& [name, dimension] = *constants.begin();
+  return fmt::format(" Or the unit of `{}`, {}, is another than was meant.", name, to_string(dimension));
 }
 
 /// 0.3, -9.81, (0, -9.81)
@@ -49,7 +68,10 @@ std::string advice_on(Elaboration& e, const Value& v, const Dimension& expected,
   if (!name.empty())
     return fmt::format("Give `{}` its unit where it is declared, such as {}; or a {} is missing as a factor.", name,
                        mass ? "kg" : "m", mass ? "mass" : "length");
-  return dimension_advice(v.dimension, expected);
+  const std::string advice = dimension_advice(v.dimension, expected);
+  const Dimension more = v.dimension * dimensions::length(), less = v.dimension / dimensions::length();
+  const bool by_a_length = more.same_as(expected) || less.same_as(expected);  // N for N/m
+  return by_a_length && v.order == 0 ? advice + doubt_about_unit(e, x) : advice;
 }
 
 }  // namespace

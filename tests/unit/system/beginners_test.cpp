@@ -41,6 +41,12 @@ TEST_CASE("numbers without their units") {
   CHECK(told(spring + "point P mass m at (x, 0)\ngravity g\n") == "E0210 `g`: Write its components: (0, -g).");
 }
 
+TEST_CASE("the only parameter of a formula may have the wrong unit") {
+  CHECK(told("param m = 1 kg, k = 10 N\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\n") ==
+        "E0304 `1/2 k x^2`: There is a length too many among its factors. Or the unit of `k`, N, is another than was "
+        "meant.");
+}
+
 TEST_CASE("damping that was put into the potential") {
   CHECK(told(spring + "T = 1/2 m x'^2\nV = 1/2 k x^2 + c x'\n") ==
         "E0302 `c x'`: A force that grows with a velocity has no potential: for damping write D = 1/2 c x'^2.");
