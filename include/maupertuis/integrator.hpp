@@ -31,6 +31,8 @@ struct TaylorOptions {
   const StopFlag* interrupt = nullptr;   // looked at once a step
   Backend backend = Backend::Automatic;  // what carries out the expansions
   bool cache = true;                     // of compiled code
+  /// Observables are found at the beginning of every so-manieth step; in other steps step_start() has none.
+  std::size_t observed_steps = 1;
   /// Not 0: where a step ends at a switch or an event, the instant is moved by up to the rounding of its time, one way
   /// or the other, as this number says: what the motion is off by then is what located instants are known to.
   std::uint64_t moved_instants = 0;

@@ -81,12 +81,13 @@ struct SimulationStatistics {
   int order = 0;
   std::string backend = "interpreter";  // or compiled
   std::string method = "taylor";        // of the last step: taylor, variational, stiff
-  double energy_drift = 0;              // docs/theory: |h_E(t) − h_E(0) − work| / max Σ|terms of h_E|
-  bool energy_vanishes = false;         // h_E is 0 at every state of a motion: nothing that could drift
-  double constraint_residual = 0;       // docs/theory: largest φ, dφ/dt, ψ, each by the sizes of its terms
-  std::size_t switches = 0;             // located switch crossings
-  std::size_t companions = 0;           // runs beside it that tell its errors
-  double companion_seconds = 0;         // they took, all together
+  double energy_drift = 0;  // max |h_E(t) − h_E(0) − work| / max Σ|terms of h_E|, over the steps; of more than
+                            // eight coordinates without switches, over every fourth and the end
+  bool energy_vanishes = false;    // h_E is 0 at every state of a motion: nothing that could drift
+  double constraint_residual = 0;  // docs/theory: largest φ, dφ/dt, ψ, each by the sizes of its terms
+  std::size_t switches = 0;        // located switch crossings
+  std::size_t companions = 0;      // runs beside it that tell its errors
+  double companion_seconds = 0;    // they took, all together
 };
 
 /// From a time on no digit of some columns of the trajectory is certain: the companions have gone ways of their own.

@@ -22,7 +22,7 @@ void EnergyBalance::after_step(const Method& method, const Step& step) {
     if (std::isfinite(work)) work_before_ += work;
   }
   at_switch_ = jumps_ && !step.switches.empty();
-  if (moved) add(method.step_start());
+  if (moved && method.step_start().observables.size() >= terms_) add(method.step_start());
 }
 
 void EnergyBalance::add(const Sample& sample) {

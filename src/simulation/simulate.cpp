@@ -41,8 +41,12 @@ namespace {
 
 std::unique_ptr<Method> taylor_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
                                       const SimulationOptions& options) {
-  return method_of(
-      TaylorStepper(motion_kernel(equations, wanted), parameter_values(*equations.system), taylor_options(options)));
+  // Code of few coordinates finds the energy with all else; of many, at each step, it would be a fifth of a run.
+  constexpr std::size_t few = 8, observed_steps = 4;
+  const Kernel kernel = motion_kernel(equations, wanted);
+  TaylorOptions of_steps = taylor_options(options);
+  if (kernel.freedoms() > few && kernel.switches().empty()) of_steps.observed_steps = observed_steps;
+  return method_of(TaylorStepper(kernel, parameter_values(*equations.system), of_steps));
 }
 
 double stiff_tolerance(const SimulationOptions& options) {

@@ -42,7 +42,7 @@ void LastStep::keep_state(const MotionState& state) {
   std::copy(state.integrals.begin(), state.integrals.end(), dense.integrals.begin());
 }
 
-void LastStep::record_start(const KernelWorkspace& work) {
+void LastStep::record_start(const KernelWorkspace& work, bool observe) {
   Sample& out = start_sample;
   const std::size_t n = dense.q.size();
   out.t = begin.hi;
@@ -51,9 +51,9 @@ void LastStep::record_start(const KernelWorkspace& work) {
     out.q[i] = turns.unwound(i, dense.q[i]), out.v[i] = dense.v[i].hi;
     out.a[i] = work.acceleration(i);
   }
-  out.observables.resize(observables_);
+  out.observables.resize(observe ? observables_ : 0);
   for (std::size_t i = 0; i < out.observables.size(); ++i) out.observables[i] = work.observable(i);
-  turns.add_to(out.observables);
+  if (observe) turns.add_to(out.observables);
   out.multipliers.resize(multipliers_);
   multipliers_of(work, out.multipliers);
   out.integrals.resize(dense.integrals.size());

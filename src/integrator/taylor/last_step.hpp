@@ -16,8 +16,8 @@ class LastStep {
   void keep(const KernelWorkspace& work, const MotionState& state);
   /// The same, but for its polynomial.
   void keep_state(const MotionState& state);
-  /// What there is at its beginning, by the workspace that expanded it.
-  void record_start(const KernelWorkspace& work);
+  /// What there is at its beginning, by the workspace that expanded it, with observables or without.
+  void record_start(const KernelWorkspace& work, bool observe);
   /// `point` has the parameters and sides of the step.
   Sample sample(double time, KernelWorkspace& point) const;
   void state(double time, std::span<double> q, std::span<double> v) const;

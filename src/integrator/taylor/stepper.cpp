@@ -215,7 +215,7 @@ bool TaylorStepper::Impl::make_step(double bound, double h, Step& result) {
   last.keep(work, state);
   for (const taylor::Balanced& x : balanced) last.dense.leave_out_acceleration(x.coordinate, x.rests);
   watched.set_sides(probe);
-  last.record_start(work);
+  last.record_start(work, steps % options.observed_steps == 0);
   has_start_sample = true;
   const taylor::Crossing crossing = watched.empty() ? taylor::Crossing() : watched.first_crossing(work, state.t, h);
   if (crossing.found && stuck >= 100) {

@@ -43,6 +43,7 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   x.last_stage = stages - 1;
   along.begin();
   solver.begin(stages == 1 && !corrects_points);
+  observed = at_point.empty();
   if (x.program.time != no_slot) x.memory.row(0)[x.program.time] = t;
   double *const position = x.memory.row(0), *const velocity = x.memory.row(1);
   for (std::size_t i = 0; i < q.size(); ++i) position[i] = q[i], velocity[i] = v[i];
@@ -72,7 +73,8 @@ bool KernelWorkspace::Impl::run_unrolled(std::span<const double> q, std::span<co
   if (!straight::sound(scratch.data())) return false;
   solver.forget_point();
   const bool is_over = along.ends_at_first();
-  if (along.empty() && (at_point.empty() || points_are_unrolled)) return true;
+  observed = observed || points_are_unrolled;
+  if (along.empty()) return true;
   for (int stage = x.program.first_stage; stage < (is_over ? 1 : stages); ++stage) run_along(stage);
   return true;
 }
@@ -149,9 +151,12 @@ void KernelWorkspace::Impl::adopt(workspace::ExpansionCode code) {
 }
 
 /// What follows the solution of a stage.
-void KernelWorkspace::Impl::run_along(int stage) {
-  along.run(expansion.memory, stage);
-  if (stage <= 0) at_point.run(expansion.memory, stage);
+void KernelWorkspace::Impl::run_along(int stage) { along.run(expansion.memory, stage); }
+
+/// Observables, once they are asked for: not each step of a run is looked at.
+void KernelWorkspace::Impl::observe() {
+  if (std::exchange(observed, true)) return;
+  for (int stage = expansion.program.first_stage; stage <= 0; ++stage) at_point.run(expansion.memory, stage);
 }
 
 // ------------------------------------------------------------------------------------------------------- the workspace
@@ -225,6 +230,7 @@ KernelStatus KernelWorkspace::evaluate(double t, std::span<const double> q, std:
 void KernelWorkspace::observe_without_solution() {
   impl_->run_first_stages(std::numeric_limits<double>::quiet_NaN());
   impl_->at_point.run(impl_->expansion.memory, 0);
+  impl_->observed = true;
 }
 
 }  // namespace maupertuis

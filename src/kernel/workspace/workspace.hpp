@@ -22,6 +22,7 @@ struct KernelWorkspace::Impl {
   void run_stage(int stage);
   void renew_blocks(int stage, int stages);
   void run_along(int stage);
+  void observe();
   void adopt(workspace::ExpansionCode code);
 
   workspace::Expansion expansion;
@@ -31,6 +32,7 @@ struct KernelWorkspace::Impl {
   reference::PointSection at_point;
   bool corrects_points;  // something that is read at a point alone depends on q̈
   bool points_are_unrolled;
+  bool observed = true;  // observables have the values of the last point
   workspace::CodeTiers tiers;
 };
 

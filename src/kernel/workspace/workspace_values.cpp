@@ -15,7 +15,10 @@ const double* KernelWorkspace::constants() const { return impl_->expansion.memor
 
 const double* KernelWorkspace::coordinate(int k) const { return impl_->expansion.memory.row(k); }
 double KernelWorkspace::acceleration(std::size_t i) const { return 2 * coordinate(2)[i]; }
-double KernelWorkspace::observable(std::size_t i) const { return coordinate(0)[program().observables[i]]; }
+double KernelWorkspace::observable(std::size_t i) const {
+  impl_->observe();
+  return coordinate(0)[program().observables[i]];
+}
 double KernelWorkspace::switch_function(std::size_t i, int k) const {
   return impl_->expansion.coefficient(program().switch_slots[i], k);
 }
