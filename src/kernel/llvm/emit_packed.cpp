@@ -11,8 +11,8 @@ namespace {
 
 /// Of unrolled code.
 constexpr std::size_t most_solved = 16, most_operations = 40'000;
-/// Of rolled code, whose compilation takes about 1 ms a pack.
-constexpr std::size_t most_packs = 3000;
+/// Of rolled code, whose compilation takes about 1 ms a pack: 64 bodies in space.
+constexpr std::size_t most_packs = 8000;
 
 /// Vector operations that the sums over orders take.
 std::size_t operations(const PackedProgram& program, int order) {

@@ -18,8 +18,14 @@ using packed::rolled_group;
 /// After stage s: s + 1 begins a group, or is one that is added up alone, or is given what s has made final.
 void RolledEmitter::ahead() {
   auto& b = out_.b;
+  const std::size_t blocks = p_.blocks.size();
+  std::vector<llvm::Function*> parts;
+  if (blocks > blocks_of_part)
+    for (std::size_t first = 0; first < blocks; first += blocks_of_part)
+      parts.push_back(part_of_blocks(first, std::min(blocks, first + blocks_of_part)));
   open_stage("ahead");
-  renew_blocks();
+  if (parts.empty()) renew_blocks(0, blocks);
+  for (llvm::Function* part : parts) b.CreateCall(part, {arguments_, stage_});
   renew_copies();
   llvm::Function* const function = b.GetInsertBlock()->getParent();
   const auto block = [&] { return llvm::BasicBlock::Create(out_.context, "", function); };
@@ -55,9 +61,18 @@ void RolledEmitter::ahead() {
 }
 
 /// Copies of what is final now, but for those of coordinates.
-void RolledEmitter::renew_blocks() {
-  for (const Block& block : p_.blocks)
-    if (!block.direct && !p_.copies_coordinates(block)) renew(block);
+void RolledEmitter::renew_blocks(std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; ++i)
+    if (const Block& block = p_.blocks[i]; !block.direct && !p_.copies_coordinates(block)) renew(block);
+}
+
+/// In functions of some blocks, as the packs of a stage.
+llvm::Function* RolledEmitter::part_of_blocks(std::size_t first, std::size_t last) {
+  open_stage("part_of_blocks", false);
+  llvm::Function* const function = out_.b.GetInsertBlock()->getParent();
+  renew_blocks(first, last);
+  out_.end_function();
+  return function;
 }
 
 /// Where the solution did not.

@@ -47,20 +47,21 @@ Value* RolledEmitter::field(std::size_t offset) {
   return out_.b.CreateLoad(out_.pointer(), at(arguments_, static_cast<std::int64_t>(offset)));
 }
 
-void RolledEmitter::open(const char* name, const std::vector<llvm::Type*>& others, llvm::Type* result) {
+void RolledEmitter::open(const char* name, const std::vector<llvm::Type*>& others, llvm::Type* result, bool exported) {
   std::vector<llvm::Type*> parameters{out_.pointer()};
   parameters.insert(parameters.end(), others.begin(), others.end());
-  llvm::Function* const function = out_.function(name, parameters, true, result);
+  llvm::Function* const function = out_.function(name, parameters, exported, result);
   arguments_ = function->getArg(0);
   recent_.clear(), final_.clear(), kept_.clear();
+  scan_ = {no_slot, 0, nullptr, nullptr};
   passing_row_ = nullptr;
   rows_ = field(offsetof(packed::CompiledArguments, rows));
   coefficients_ = field(offsetof(packed::CompiledArguments, coefficients));
   sums_ = field(offsetof(packed::CompiledArguments, sums));
 }
 
-void RolledEmitter::open_stage(const char* name) {
-  open(name, {out_.integer()});
+void RolledEmitter::open_stage(const char* name, bool exported) {
+  open(name, {out_.integer()}, nullptr, exported);
   set_stage(out_.b.GetInsertBlock()->getParent()->getArg(1));
 }
 
@@ -74,22 +75,63 @@ Value* RolledEmitter::row_of(Value* order) {
   return out_.at(rows_, out_.b.CreateNSWMul(order, out_.b.getInt64(static_cast<std::uint64_t>(row_bytes_))));
 }
 
+/// In functions of some hundreds of packs, since what LLVM does with one grows faster than its size: the pairs of many
+/// bodies.
 void RolledEmitter::stage() {
-  auto& b = out_.b;
+  const std::vector<std::size_t> ends = parts_of_stage();
+  std::vector<llvm::Function*> parts;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) parts.push_back(part_of_stage(ends[i], ends[i + 1]));
   open_stage("stage");
-  Value* const position = b.CreateAnd(b.CreateSub(stage_, b.getInt64(1)), b.getInt64(rolled_group - 1));
-  sums_of_stage_.fill(out_.at(sums_, b.CreateShl(position, 6)));
-  run_packs();
+  begin_packs();
+  if (parts.empty()) {
+    find_sums_of_stage();
+    run_packs(0, p_.packs.size());
+  }
+  for (llvm::Function* part : parts) out_.b.CreateCall(part, {arguments_, stage_});
   out_.end_function();
 }
 
-void RolledEmitter::run_packs() {
-  // q_{k+2} counts as 0 also where it is read with other numbers, or by what is called back.
+llvm::Function* RolledEmitter::part_of_stage(std::size_t first, std::size_t last) {
+  open_stage("part_of_stage", false);
+  llvm::Function* const function = out_.b.GetInsertBlock()->getParent();
+  find_sums_of_stage();
+  passing_row_ = field(offsetof(packed::CompiledArguments, passing_row));
+  run_packs(first, last);
+  out_.end_function();
+  return function;
+}
+
+/// The packs where parts begin, and the end; none where one function does. Running sums stay whole.
+std::vector<std::size_t> RolledEmitter::parts_of_stage() const {
+  constexpr std::size_t most = 32;
+  std::vector<std::size_t> out{0};
+  const auto runs_on = [](const Pack& pack) {
+    return pack.kind == Pack::Scan || pack.kind == Pack::ScanDown || pack.kind == Pack::Strand ||
+           pack.kind == Pack::Join || pack.kind == Pack::JoinDown;
+  };
+  for (std::size_t i = 1; i < p_.packs.size(); ++i)
+    if (i - out.back() >= most && !runs_on(p_.packs[i])) out.push_back(i);
+  if (out.size() == 1) return {};
+  out.push_back(p_.packs.size());
+  return out;
+}
+
+void RolledEmitter::find_sums_of_stage() {
+  auto& b = out_.b;
+  Value* const position = b.CreateAnd(b.CreateSub(stage_, b.getInt64(1)), b.getInt64(rolled_group - 1));
+  sums_of_stage_.fill(out_.at(sums_, b.CreateShl(position, 6)));
+}
+
+/// q_{k+2} counts as 0 also where it is read with other numbers, or by what is called back.
+void RolledEmitter::begin_packs() {
   for (Slot slot = 0; slot < program_.unknowns; slot += lanes)
     save(llvm::Constant::getNullValue(vector_), slot_at(row(2), slot));
   recent_.clear();
   passing_row_ = field(offsetof(packed::CompiledArguments, passing_row));
-  for (std::size_t i = 0; i < p_.packs.size(); ++i) {
+}
+
+void RolledEmitter::run_packs(std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; ++i) {
     if (deferred_) correct_up_to(read_of_stage_before(i));
     pack(i);
     if (filling_) filling_->read = p_.packs[i].last_convolution;

@@ -56,11 +56,16 @@ class RolledEmitter {
   void find_convolutions();
   Value* field(std::size_t offset);  // of the arguments, an address
   /// a function of CompiledArguments* and these
-  void open(const char* name, const std::vector<llvm::Type*>& others, llvm::Type* result = nullptr);
-  void open_stage(const char* name);  // … the stage
+  void open(const char* name, const std::vector<llvm::Type*>& others, llvm::Type* result = nullptr,
+            bool exported = true);
+  void open_stage(const char* name, bool exported = true);  // … the stage
   void set_stage(Value* stage);
   void stage();
-  void run_packs();
+  llvm::Function* part_of_stage(std::size_t first, std::size_t last);
+  std::vector<std::size_t> parts_of_stage() const;
+  void find_sums_of_stage();
+  void begin_packs();
+  void run_packs(std::size_t first, std::size_t last);
   Value* row(int ahead) { return rows_of_stage_[static_cast<std::size_t>(ahead)]; }  // of order stage + ahead
   int ahead_of(const Pack& pack) const { return 2 - pack.lag; }
   /// Coordinates of the order that is to be found count as 0.
@@ -126,7 +131,9 @@ class RolledEmitter {
 
   // ------------------------------------------------------------------------------------------ ahead (rolled_ahead.cpp)
   void ahead();
-  void renew_blocks();
+  static constexpr std::size_t blocks_of_part = 48;
+  void renew_blocks(std::size_t first, std::size_t last);
+  llvm::Function* part_of_blocks(std::size_t first, std::size_t last);
   void renew_copies();
   void renew(const Block& block);
   void each_convolution(

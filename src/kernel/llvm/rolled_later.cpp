@@ -78,7 +78,8 @@ void RolledEmitter::later_stage(Value* stage, Value* end, Value* inverse) {
   has_next_ = b.CreateICmpSLT(stage_plus(1), end);
   Filling& f = *filling_;
   f.passed = f.next = f.read = 0;
-  run_packs();
+  begin_packs();
+  run_packs(0, p_.packs.size());
   gap();
   correct_before(deferred_->packs.size());
   solve_by(inverse, deferred_->tangent_row);

@@ -48,6 +48,30 @@ void add_rods(Systems& list, int rods) {
   s.from_lagrangian(lagrangian);
 }
 
+/// Bodies in space that attract each other, with a ring of springs through velocities besides: code in several parts.
+void add_bodies(Systems& list, int count) {
+  System& s = add(list, "bodies: " + std::to_string(count));
+  const Expr g = s.parameter("g", 0.7), c = s.parameter("c", 0.1);
+  std::vector<std::array<Expr, 3>> places;
+  Expr lagrangian = s.context.number(0);
+  for (int i = 0; i < count; ++i) {
+    const std::string n = std::to_string(i);
+    const double a = 2.4 * i;
+    places.push_back({s.coordinate("x" + n, (1 + 0.1 * i) * std::cos(a), -0.3 * std::sin(a)),
+                      s.coordinate("y" + n, (1 + 0.1 * i) * std::sin(a), 0.3 * std::cos(a)),
+                      s.coordinate("z" + n, 0.3 * std::sin(3 * a), 0.1)});
+    for (const Expr& x : places.back())
+      lagrangian = lagrangian + Rational(i + 2, 4) * pow(s.dot(x), 2) + c * pow(s.dot(x), 2) * cos(x);
+    for (int j = 0; j < i; ++j) {
+      Expr square = s.context.number(0);
+      for (std::size_t k = 0; k < 3; ++k)
+        square = square + pow(places.back()[k] - places[static_cast<std::size_t>(j)][k], 2);
+      lagrangian = lagrangian + Rational((i + 2) * (j + 2), 4) * g * pow(square, Rational(-1, 2));
+    }
+  }
+  s.from_lagrangian(lagrangian);
+}
+
 /// Formulas that switch with the motion: dry friction, a one-sided spring, and a choice between two.
 void add_switches(Systems& list) {
   System& s = add(list, "switches");
@@ -212,6 +236,15 @@ TEST_CASE("rolled code: an expansion that is not finite leaves nothing behind") 
       CHECK(work->expand(s.start.t, s.start.q, s.start.v) == KernelStatus::Ok);
     }
     for (int k = 2; k <= rolled_order + 1; ++k) CHECK(difference(rolled, engine, 19, k) <= 1000);
+  }
+}
+
+TEST_CASE("rolled code: pairs of bodies, so many that a stage is several functions") {
+  Systems list;
+  for (const int count : {5, 14}) add_bodies(list, count);
+  for (const auto& s : list) {
+    check_rolled(*s, 1000);
+    for (const std::string& processor : levels_here({"x86-64", "x86-64-v3"})) check_rolled(*s, 1000, false, processor);
   }
 }
 
