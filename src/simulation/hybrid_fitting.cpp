@@ -217,12 +217,16 @@ bool HybridMotion::Trial::has_given_limits() {
 /// legs begins to tip, those of legs that carried nothing too. Lenient: each gap whose acceleration is rounding does. A
 /// wheel in a corner that a torque begins to turn goes through the wall by that, where the wall is open.
 bool HybridMotion::Trial::has_slow_gaps() {
-  const bool goes_on = in.accelerations_go_on(outlook.accelerations);
-  if (leniency != Leniency::Gaps && !goes_on) return false;
+  const auto was_kept_closed = [&](std::size_t k) {
+    const Watch& w = watch(k);
+    return w.what == Watch::What::Gap && !(std::abs(values.rate[w.index]) > in.rest_speed(w.index, values));
+  };
+  if (std::none_of(at_zero.begin(), at_zero.end(), was_kept_closed)) return false;
+  if (leniency != Leniency::Gaps && !in.accelerations_go_on(outlook.accelerations)) return false;
   bool has_some = false;
   for (const std::size_t k : at_zero) {
+    if (!was_kept_closed(k)) continue;
     const Watch& w = watch(k);
-    if (w.what != Watch::What::Gap || std::abs(values.rate[w.index]) > in.rest_speed(w.index, values)) continue;
     const double opens = in.opening_rate(w.index, outlook.accelerations, values);
     if (leniency == Leniency::Gaps ? opens < -rounding_of_forces : std::abs(opens) > located_force) continue;
     motion.stepper->put_at_zero({&k, 1}, 3);

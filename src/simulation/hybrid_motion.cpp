@@ -97,6 +97,7 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   late_by_ = longest_step_ = 0;
   holding_.clear();
   told_choice_ = false;
+  step_start_.reset();
   now_ = &motion_in(open_mode(system_));
   now_->stepper->start(t_, q_, v_, t_rest_);
   pending_ = std::make_unique<Pending>();
@@ -149,7 +150,10 @@ Sample HybridMotion::sample(double t) const {
   out.t = t;
   return out;
 }
-const Sample& HybridMotion::step_start() const { return step_start_ = adjusted(now_->stepper->step_start()); }
+const Sample& HybridMotion::step_start() const {
+  if (!step_start_) step_start_ = adjusted(now_->stepper->step_start());
+  return *step_start_;
+}
 
 Step HybridMotion::ended(StepEnding ending, std::string reason) const {
   Step out;
@@ -161,6 +165,7 @@ Step HybridMotion::ended(StepEnding ending, std::string reason) const {
 
 Step HybridMotion::step(double bound) {
   if (failed_) return *failed_;
+  step_start_.reset();
   instant_.reset();
   forwards_ = bound >= time();
   if (!forwards_ && steps() == 0 && hits_at_start())

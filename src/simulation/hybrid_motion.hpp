@@ -275,9 +275,9 @@ class HybridMotion final : public Method {
   std::vector<double> q_, v_;
   bool forwards_ = true, started_ = false;
   bool meets_late_ = false;
-  double late_by_ = 0;                // until the pending instant is settled
-  double carried_[4] = {0, 0, 0, 0};  // integrals of the modes before
-  mutable Sample step_start_;
+  double late_by_ = 0;                        // until the pending instant is settled
+  double carried_[4] = {0, 0, 0, 0};          // integrals of the modes before
+  mutable std::optional<Sample> step_start_;  // of the last step, where it was asked for
   std::size_t steps_before_ = 0, rejected_before_ = 0, switches_before_ = 0, same_time_ = 0;
   double residual_before_ = 0;
   // The largest so far: what is much smaller is rounding.

@@ -95,10 +95,10 @@ std::optional<HybridMotion::Given> HybridMotion::preload_through(const ContactMo
 /// where none hold the rest, or where another condition of the mode is broken.
 bool HybridMotion::fits_by_given_forces(Found& found, const std::vector<std::size_t>& touching, double bound) {
   const ContactMode& mode = found.mode;
-  const ContactValues values = functions_.at(t_, q_, v_);
   const auto closed = static_cast<std::size_t>(std::count(mode.closed.begin(), mode.closed.end(), true));
-  if (closed < 2 || closed > most_that_hold || !found.given.begins.empty() || !has_dependent_rows(mode, values))
-    return false;
+  if (closed < 2 || closed > most_that_hold || !found.given.begins.empty()) return false;
+  const ContactValues values = functions_.at(t_, q_, v_);
+  if (!has_dependent_rows(mode, values)) return false;
   const auto outlook = outlook_without_contacts(values, bound);
   if (!outlook || !forces_at_rest(mode, values, bound)) return false;
   const double ahead = rest_ahead(mode, std::copysign(outlook->length, bound - t_), bound);

@@ -214,7 +214,7 @@ typename Stepper<T>::Crossing Stepper<T>::first_crossing(const T& h) {
   first.after = switch_state_;
   first.after.insert(first.after.end(), event_state_.begin(), event_state_.end());
   take_rough_constants();
-  roots_->set_constants({work_.constants(), rough_constants_.size()}, rough_constants_.data());
+  roots_->set_constants({work_.constants(), rough_constants_.size()});
   roots_->begin({t_, T(0)}, h, [this](int k) { return work_.coordinate(k); });
   const T together = std::max(T(4 * epsilon<T>()), T(4 * epsilon<T>() * abs(t_ / h)));
   first.x = roots_->window();

@@ -1,4 +1,5 @@
 #pragma once
+#include "integrator/taylor/polynomial_motion.hpp"
 #include "integrator/taylor/switches.hpp"
 #include "kernel/disks/retrace.hpp"
 #include "kernel/disks/scaled_rows.hpp"
@@ -48,7 +49,8 @@ class RootSearchOf {
   RootSearchOf(const Program& program, int order, std::span<const Slot> slots)
       : slots_(slots.begin(), slots.end()),
         order_(order),
-        retrace_(program, std::max(order, least_order), slots),
+        ends_(functions_that_end(program, order, slots)),
+        retrace_(program, all_end() ? order : std::max(order, least_order), slots),
         none_(program.unknowns, T(0)),
         all_disks_(program, slots),
         disks_(program, slots),
@@ -58,14 +60,13 @@ class RootSearchOf {
     for (std::size_t i = 0; i < slots_.size(); ++i) near_.push_back(i);
   }
 
+  /// Functions of which it is enough to know where their polynomials come to zero. [slots]
+  void leave_rough(std::vector<bool> functions) { is_rough_ = std::move(functions); }
   /// [program.constants], under the sides in force.
-  void set_constants(std::span<const T> constants, const double* rough) {
+  void set_constants(std::span<const T> constants) {
     if (std::equal(constants.begin(), constants.end(), constants_.begin(), constants_.end())) return;
-    constants_.assign(constants.begin(), constants.end());
-    rough_.assign(rough, rough + constants.size());
-    retrace_.set_constants(constants_.data());
-    all_disks_.set_constants(rough_.data());
-    disks_.set_constants(rough_.data());
+    retrace_.set_constants(constants.data());
+    adopt(constants);
   }
   /// The time at which a step begins, hi + lo.
   struct Time {
@@ -95,6 +96,16 @@ class RootSearchOf {
     start_.rows = work.rows();
     start_.stride = work.stride();
   }
+  /// From x on the functions are those of other sides, along the same motion: the search goes on there.
+  void go_on(const T& x, std::span<const std::int8_t> sides) {
+    retrace_.set_sides(sides);
+    adopt({retrace_.constants(), constants_.size()});
+    start_ = {};
+    origin_ = x;
+    find_near();
+  }
+  /// Whether all functions but one are on their sides there, clear of zero.
+  bool keeps_sides(std::span<const Watched> watched, std::size_t except);
   /// The part of the step, from its beginning, in which roots can be searched: 1, or less where the functions that come
   /// near zero would be many.
   const T& window() const { return window_; }
@@ -129,11 +140,19 @@ class RootSearchOf {
     std::vector<std::vector<double>> tails;  // [disks][near]
   };
 
+  void adopt(std::span<const T> constants) {
+    constants_.assign(constants.begin(), constants.end());
+    rough_.clear();
+    for (const T& c : constants) rough_.push_back(static_cast<double>(c));
+    all_disks_.set_constants(rough_.data());
+    disks_.set_constants(rough_.data());
+  }
   template <class Row>
   void begin_with(const Time& time, const T& h, Row&& row) {
     retrace_.set_motion(time.hi, time.lo, [&](int k) -> const T* { return k <= order_ + 1 ? row(k) : none_.data(); });
     t_ = time;
     h_ = h;
+    origin_ = T(0);
     const T& t = time.hi;
     // Below it two times are the same, or nearly so.
     using std::abs;
@@ -178,8 +197,12 @@ class RootSearchOf {
   /// pieces would be no longer than (their rounding)^{1/order} of a period.
   static constexpr int least_order = 10;
 
+  bool all_end() const { return std::find(ends_.begin(), ends_.end(), false) == ends_.end(); }
+
   std::vector<Slot> slots_;
-  int order_;  // of the step
+  int order_;               // of the step
+  std::vector<bool> ends_;  // [slots] nothing is left out of its polynomial
+  std::vector<bool> is_rough_ = std::vector<bool>(slots_.size(), false);
   Retrace<T> retrace_;
   std::vector<T> none_;      // [unknowns] 0: coefficients beyond those of the step
   Disks all_disks_, disks_;  // of all functions; of those that come near zero
@@ -191,6 +214,7 @@ class RootSearchOf {
   bool expanded_ = false;  // the rows are those of the place
   Time t_;
   T h_ = T(1), resolution_ = T(0), window_ = T(1);
+  T origin_ = T(0);                                               // where the search begins
   double last_radius_ = std::numeric_limits<double>::infinity();  // of the disk of the piece before, in time
   double last_window_ = 0;                                        // in time; 0: there was none
   std::vector<T> constants_;                                      // those that are set

@@ -159,6 +159,21 @@ T RootSearchOf<T>::value(std::size_t index, const T& x) {
 }
 
 template <class T>
+bool RootSearchOf<T>::keeps_sides(std::span<const Watched> watched, std::size_t except) {
+  using std::abs;
+  if (window_ < 1) return false;
+  value(except, origin_);  // of all that come near zero
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (i == except) continue;
+    const T here = retrace_.row(0)[slots_[i]];
+    const bool is_told = is_clear(i) || abs(here) > watching::unit<T>() * retrace_.scale(slots_[i]);
+    const std::int8_t side = is_clear(i) ? clear_[i] : watching::sign(here);
+    if (!is_told || side != watched[i].side) return false;
+  }
+  return true;
+}
+
+template <class T>
 void RootSearchOf<T>::expand() {
   if (expanded_ || (place_.x == T(0) && start_.rows)) return;
   retrace_.expand_about(T(h_ * place_.x));
@@ -229,6 +244,7 @@ typename RootSearchOf<T>::Piece RootSearchOf<T>::piece(std::size_t index, const 
   Piece result{{}, T(0)};
   const double least = static_cast<double>(resolution_ / most);
   double best_radius = last_radius_;
+  if (ends_[index]) best = 1, result.polynomial = polynomial_over(1);
   for (std::size_t i = 0; i < 200 && best < 1; ++i) {
     const double left = tail(i, near), radius = place_.radii[i];
     if (!(most_of_radius * radius > std::max(best, least) * length)) break;
@@ -324,7 +340,7 @@ T RootSearchOf<T>::refined(std::size_t index, const Piece& piece, const T& begin
   T slope = T(0);
   for (std::size_t k = p.size(); k-- > 1;) slope = slope * root + T(k) * p[k];
   T x = begin + piece.width * root;
-  if (slope == 0) return x;
+  if (slope == 0 || (ends_[index] && is_rough_[index])) return x;
   T there = at_a_time(x), off = value(index, there);
   for (int turn = 0; turn < 2; ++turn) {
     const T change = off / slope * piece.width;
@@ -435,7 +451,8 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watc
   T x = from, most = window_;  // most: of the piece to come
   int turns = 0;               // nearer to one place
   while (x < until) {
-    Piece now = x == T(0) ? up_to(piece(index, x, window_), until) : piece(index, x, std::min(most, T(until - x)));
+    Piece now = x == origin_ ? up_to(piece(index, x, T(window_ - x)), T(until - x))
+                             : piece(index, x, std::min(most, T(until - x)));
     if (now.width == 0) {
       const Gap beyond = gap(index, x, until, watched.side);
       watched.at_zero = false;

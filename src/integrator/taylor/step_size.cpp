@@ -141,6 +141,7 @@ StepControl step_control(double tolerance, int order) {
 }
 
 double step_size(const KernelWorkspace& work, std::size_t freedoms, const StepControl& control, double previous) {
+  if (control.is_exact) return HUGE_VAL;
   const int p = control.order;
   double h = previous;
   int turns = 1;
@@ -158,6 +159,7 @@ double step_size(const KernelWorkspace& work, std::size_t freedoms, const StepCo
 
 double step_within_multipliers(const KernelWorkspace& work, std::size_t freedoms, std::size_t constraints,
                                const StepControl& control, double h) {
+  if (control.is_exact) return h;
   const auto largest = [&](std::size_t j, int begin, int end, double length) {
     double size = 0, power = std::pow(length, begin);
     for (int k = begin; k < end; ++k, power *= length)

@@ -6,8 +6,9 @@
 namespace maupertuis::taylor {
 
 struct StepControl {
-  int order = 20;        // of the polynomial of q̇
-  double factor = 0.13;  // of the estimated radius of convergence
+  int order = 20;         // of the polynomial of q̇
+  double factor = 0.13;   // of the estimated radius of convergence
+  bool is_exact = false;  // nothing of a motion is left out, however long its step is
 };
 
 /// Order and safety factor that a tolerance asks for; an order of 0 follows from the tolerance.

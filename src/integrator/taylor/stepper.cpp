@@ -228,7 +228,7 @@ bool TaylorStepper::Impl::make_step(double bound, double h, Step& result) {
   if (result.ending != StepEnding::None) return true;
   stuck = crossing.found && state.t.hi == last.begin.hi ? stuck + 1 : 0;
   watched.leave(crossing, h, result);
-  switches += result.switches.size();
+  switches += result.switches.size() + crossing.turned.size();
   first = false;
   ++steps;
   return true;
@@ -241,7 +241,7 @@ TaylorStepper::TaylorStepper(const Kernel& kernel, std::span<const double> param
 TaylorStepper::~TaylorStepper() = default;
 TaylorStepper::TaylorStepper(TaylorStepper&&) noexcept = default;
 
-int TaylorStepper::order() const { return impl_->control.order; }
+int TaylorStepper::order() const { return impl_->usual_control.order; }
 
 void TaylorStepper::start(double t, std::span<const double> q, std::span<const double> v, double rest) {
   Impl& s = *impl_;

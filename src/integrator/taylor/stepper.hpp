@@ -3,6 +3,7 @@
 #include "integrator/taylor/constraint_error.hpp"
 #include "integrator/taylor/end_check.hpp"
 #include "integrator/taylor/last_step.hpp"
+#include "integrator/taylor/polynomial_motion.hpp"
 #include "integrator/taylor/rest.hpp"
 #include "integrator/taylor/safe_length.hpp"
 #include "integrator/taylor/shrinking_steps.hpp"
@@ -17,7 +18,8 @@ struct TaylorStepper::Impl {
   Impl(const Kernel& k, std::span<const double> parameters, const TaylorOptions& o)
       : kernel(k),
         options(o),
-        control(taylor::step_control(o.tolerance, o.order)),
+        usual_control(taylor::step_control(o.tolerance, o.order)),
+        control(taylor::control_of(k.program(), usual_control)),
         n(k.freedoms()),
         m(k.constraints()),
         work(k, control.order),
@@ -73,8 +75,9 @@ struct TaylorStepper::Impl {
 
   Kernel kernel;
   TaylorOptions options;
-  taylor::StepControl control;
-  const std::size_t n, m;  // freedoms, constraints
+  taylor::StepControl usual_control;  // of any motion
+  taylor::StepControl control;        // of this one
+  const std::size_t n, m;             // freedoms, constraints
   KernelWorkspace work;
   mutable KernelWorkspace probe;  // for the kernel at points within the step
   taylor::MotionState state;

@@ -1,5 +1,7 @@
 #include "integrator/taylor/watched_functions.hpp"
 
+#include "kernel/disks/unread_switches.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -57,7 +59,11 @@ WatchedFunctions::WatchedFunctions(const Kernel& kernel, const KernelWorkspace& 
   if (empty()) return;
   std::vector<Slot> slots = work.program().switch_slots;
   slots.insert(slots.end(), work.program().events.begin(), work.program().events.end());
+  is_unread_ = switches_of_events_alone(work.program());
   roots_.emplace(work.program(), work.order(), slots);
+  std::vector<bool> is_rough = is_unread_;  // the step goes on there
+  is_rough.resize(slots.size(), false);
+  roots_->leave_rough(std::move(is_rough));
 }
 
 void WatchedFunctions::start() {
@@ -89,11 +95,20 @@ Crossing WatchedFunctions::first_crossing(const KernelWorkspace& work, const Com
   Crossing out;
   out.after = switches;
   out.after.insert(out.after.end(), events.begin(), events.end());
-  roots_->set_constants({work.constants(), work.program().constants.size()}, work.constants());
+  roots_->set_constants({work.constants(), work.program().constants.size()});
   roots_->begin(
       {t.hi, t.lo}, h, [&work](int k) { return work.coordinate(k); }, ExpansionOfWatched{work, switches.size()});
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
-  const double together = std::max(4 * epsilon, 4 * epsilon * std::abs(t.hi / h));
+  together_ = std::max(4 * epsilon, 4 * epsilon * std::abs(t.hi / h));
+  search(work, h, 0, out);
+  while (turns_unread(work, h, out)) {
+  }
+  std::stable_sort(out.passed.begin(), out.passed.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+  return out;
+}
+
+/// The first roots beyond `from`.
+void WatchedFunctions::search(const KernelWorkspace& work, double h, double from, Crossing& out) {
   out.x = roots_->window();
   const std::size_t count = switches.size();
   for (std::size_t i = 0; i < out.after.size(); ++i) {
@@ -101,16 +116,16 @@ Crossing WatchedFunctions::first_crossing(const KernelWorkspace& work, const Com
     Watched& watched = out.after[i];
     if (is_switch && watched.side == 0 && !std::isnan(work.switch_function(i, 0))) continue;  // it vanishes
     if (!is_switch && !ends_step(i - count)) continue;
-    if (!is_switch && !roots_->is_clear(i) && begins_past_root(work, i - count, h, watched))
-      note(out, 0, i, together, watched.side);
+    if (from == 0 && !is_switch && !roots_->is_clear(i) && begins_past_root(work, i - count, h, watched))
+      note(out, 0, i, together_, watched.side);
     // Events at one instant are all told: the search goes on beyond the first root by what a polynomial does not
     // resolve.
-    const double beyond = is_switch ? together : std::max(together, unresolved);
-    const double until = std::min(roots_->window(), out.x * (1 + together) + beyond);
+    const double beyond = is_switch ? together_ : std::max(together_, unresolved);
+    const double until = std::min(roots_->window(), out.x * (1 + together_) + beyond);
     const bool touches = !is_switch && tells_touches(i - count);
-    if (const auto root = roots_->first(i, watched, 0, until, touches, is_switch)) {
+    if (const auto root = roots_->first(i, watched, from, until, touches, is_switch)) {
       const bool jump = root->kind == RootKind::Jump;
-      note(out, root->x, i, together, root->kind == RootKind::Touching ? 0 : -watched.side, jump);
+      note(out, root->x, i, together_, root->kind == RootKind::Touching ? 0 : -watched.side, jump);
       if (jump) watched = {root->after, false};
     }
   }
@@ -122,14 +137,38 @@ Crossing WatchedFunctions::first_crossing(const KernelWorkspace& work, const Com
     Watched& watched = out.after[i];
     watched = {i < count ? static_cast<std::int8_t>(-watched.side) : std::int8_t{0}, true};
   }
-  pass(work, h, out);
-  return out;
+  pass(work, h, from, out);
+}
+
+/// A switch alone that nothing of the motion reads, within the step.
+bool WatchedFunctions::is_unread(const Crossing& crossing) const {
+  return crossing.roots.size() == 1 && crossing.roots[0] < switches.size() && is_unread_[crossing.roots[0]] &&
+         !crossing.jumps[0] && crossing.x > 0 && crossing.x < 1;
+}
+
+/// Where a step comes to a switch that only what is watched depends on, the motion goes on as it is: the other side is
+/// taken, and the search is continued there. False: the step ends where the search has come to. So it does where
+/// another function does not go on from its side, clear of zero.
+bool WatchedFunctions::turns_unread(const KernelWorkspace& work, double h, Crossing& out) {
+  constexpr std::size_t most = 100;
+  if (!is_unread(out) || out.turned.size() >= most) return false;
+  std::vector<std::int8_t> sides;
+  for (std::size_t i = 0; i < switches.size(); ++i) sides.push_back(out.after[i].side);
+  roots_->go_on(out.x, sides);
+  if (!roots_->keeps_sides(out.after, out.roots[0])) return false;
+  const double from = out.x;
+  out.turned.push_back(out.roots[0]);
+  out.found = false;
+  out.roots.clear(), out.directions.clear(), out.jumps.clear();
+  search(work, h, from, out);
+  return true;
 }
 
 /// Roots of events that do not end the step, up to its end: each search goes on from the root before.
-void WatchedFunctions::pass(const KernelWorkspace& work, double h, Crossing& out) {
+void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin, Crossing& out) {
   const std::size_t count = switches.size();
-  const double until = std::min(roots_->window(), out.x + (out.found ? unresolved : 0));
+  const bool may_go_on = is_unread(out);
+  const double until = std::min(roots_->window(), out.x + (out.found && !may_go_on ? unresolved : 0));
   for (std::size_t event = 0; event < events.size(); ++event) {
     if (ends_step(event)) continue;
     const std::size_t i = count + event;
@@ -137,8 +176,8 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, Crossing& out
     const auto note_root = [&](double x, int direction) {
       out.passed.push_back({std::min(x, out.x), event, direction});
     };
-    if (!roots_->is_clear(i) && begins_past_root(work, event, h, watched)) note_root(0, watched.side);
-    for (double from = 0; from < until;) {
+    if (begin == 0 && !roots_->is_clear(i) && begins_past_root(work, event, h, watched)) note_root(0, watched.side);
+    for (double from = begin; from < until;) {
       const auto root = roots_->first(i, watched, from, until, tells_touches(event), false);
       if (!root) break;
       const bool touch = root->kind == RootKind::Touching;
@@ -147,7 +186,6 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, Crossing& out
       from = std::max(root->x, std::nextafter(from, 1.0));
     }
   }
-  std::stable_sort(out.passed.begin(), out.passed.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
 }
 
 std::vector<WatchedFunctions::Side> WatchedFunctions::sides_of_events(const KernelWorkspace& work, double h) const {

@@ -21,11 +21,12 @@ struct PassedRoot {
 struct Crossing {
   double x = 1;  // fraction of the step; less than 1 without a root where the step is too long to be searched
   bool found = false;
-  std::vector<std::size_t> roots;  // switches, then events
-  std::vector<int> directions;     // [roots] 1: rising, −1: falling, 0: touching
-  std::vector<bool> jumps;         // [roots] a switch function jumps there: it has no zero
-  std::vector<Watched> after;      // the same, as the step leaves them
-  std::vector<PassedRoot> passed;  // in time order
+  std::vector<std::size_t> roots;   // switches, then events
+  std::vector<int> directions;      // [roots] 1: rising, −1: falling, 0: touching
+  std::vector<bool> jumps;          // [roots] a switch function jumps there: it has no zero
+  std::vector<Watched> after;       // the same, as the step leaves them
+  std::vector<PassedRoot> passed;   // in time order
+  std::vector<std::size_t> turned;  // switches before it that only what is watched depends on
 };
 
 /// The switch functions and events of a motion: on which sides they are, and where along a step they first leave them.
@@ -67,9 +68,14 @@ class WatchedFunctions {
 
  private:
   void copy_sides(KernelWorkspace& work) const;
-  void pass(const KernelWorkspace& work, double h, Crossing& out);
+  void search(const KernelWorkspace& work, double h, double from, Crossing& out);
+  void pass(const KernelWorkspace& work, double h, double begin, Crossing& out);
+  bool is_unread(const Crossing& crossing) const;
+  bool turns_unread(const KernelWorkspace& work, double h, Crossing& out);
 
   std::optional<RootSearch> roots_;                        // where something is watched
+  std::vector<bool> is_unread_;                            // [switches] nothing of the motion depends on the side
+  double together_ = 0;                                    // of the step: what rounding does not tell apart
   std::vector<TaylorStepper::EventTreatment> treatments_;  // [events], or none: all end the step
 };
 

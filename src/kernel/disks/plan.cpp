@@ -1,15 +1,11 @@
 #include "kernel/disks/plan.hpp"
 
+#include "kernel/disks/degrees.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace maupertuis {
-namespace {
-
-/// The degree of what depends on a coordinate: its series has no end.
-constexpr int not_polynomial = 1'000'000;
-
-}  // namespace
 
 DiskPlan::DiskPlan(const Program& of, std::span<const std::uint32_t> slots) : program(of) {
   std::vector<bool> made(program.slots, false);
@@ -109,34 +105,24 @@ void DiskPlan::need_operands(const Node& node) {
 
 /// Polynomials in t alone have no tail. A power with a constant exponent is not looked into.
 void DiskPlan::find_degrees() {
-  degree.assign(program.slots, 0);
-  for (Slot i = 0; i < program.unknowns; ++i) degree[i] = not_polynomial;
-  if (program.time != no_slot) degree[program.time] = 1;
+  degree = degrees_in_time(program, not_polynomial);
   linear.assign(program.slots, true);
-  const auto product = [](int a, int b) { return std::min(not_polynomial, a + b); };
   for (const Node& node : nodes) {
     const Instruction& i = node.instruction;
-    int of_result = not_polynomial;
     bool is_linear = false;
     if (i.op == Op::Linear || i.op == Op::Products || i.op == Op::Select) {
-      of_result = 0, is_linear = true;
+      is_linear = true;
       for (std::uint32_t t = i.first_term; t < i.last_term; ++t) {
-        const Term& term = terms[t];
-        const bool multiplies = is_product(i, t);
-        of_result = std::max(of_result, multiplies ? product(degree[term.a], degree[term.b]) : degree[term.a]);
-        is_linear =
-            is_linear && linear[term.a] && (!multiplies || product(degree[term.a], degree[term.b]) < not_polynomial);
+        const bool is_known = !is_product(i, t) || degree[terms[t].a] + degree[terms[t].b] < not_polynomial;
+        is_linear = is_linear && linear[terms[t].a] && is_known;
       }
     } else if (i.op == Op::Square) {
-      of_result = product(degree[i.a], degree[i.a]);
-      is_linear = of_result < not_polynomial;
+      is_linear = degree[i.out] < not_polynomial;
     } else if (i.op == Op::Derivative) {
-      of_result = degree[i.a];
       is_linear = linear[i.a];
     }
-    degree[i.out] = of_result;
     linear[i.out] = is_linear;
-    if (i.second != no_slot) degree[i.second] = not_polynomial, linear[i.second] = false;
+    if (i.second != no_slot) linear[i.second] = false;
   }
   for (const Slot slot : program.residual)
     residual_has_tails = residual_has_tails || (slot != no_slot && !linear[slot]);

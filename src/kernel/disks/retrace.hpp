@@ -49,6 +49,13 @@ class Retrace {
     std::copy_n(constants, memory_.constants.size(), memory_.constants.begin());
     reference::prepare_terms(memory_);
   }
+  /// Other sides of the switch functions, of the same parameters.
+  void set_sides(std::span<const std::int8_t> sides) {
+    std::vector<T> parameters(program_.parameters, T(0));
+    for (std::size_t i = 0; i < program_.constants.size(); ++i)
+      if (program_.constants[i].kind == Kind::Symbol) parameters[program_.constants[i].index] = memory_.constants[i];
+    reference::compute_constants(memory_, std::span<const T>(parameters), sides);
+  }
   /// q_p(s) = Σ_k row(k)[i] s^k for k ≤ order + 1, beginning at t + rest.
   template <class Row>
   void set_motion(const T& t, const T& rest, Row&& row) {
@@ -98,6 +105,10 @@ class Retrace {
            int most = never) {
     reference::set_leaves(memory_, T(t_ + (rest_ + s)), order_ + 2 + (-2 - program_.first_stage));
     shift(s, last_of_coordinates);
+    if (most == 0) {  // each of them once: what stands before it is known
+      for (const std::uint32_t index : instructions) reference::run_instruction(memory_, index, 0);
+      return;
+    }
     for (int stage = program_.first_stage; stage < stages; ++stage)
       for (const std::uint32_t index : instructions) {
         const int order = stage + 2 - program_.instructions[index].lag;
@@ -115,7 +126,8 @@ class Retrace {
       move_beside(s);
       return;
     }
-    std::vector<T> c(static_cast<std::size_t>(degree) + 1);
+    std::vector<T>& c = shifted_;
+    c.resize(static_cast<std::size_t>(degree) + 1);
     for (std::size_t i = 0; i < n; ++i) {
       for (int k = 0; k <= degree; ++k)
         c[static_cast<std::size_t>(k)] = polynomials_[static_cast<std::size_t>(k) * n + i];
@@ -143,6 +155,7 @@ class Retrace {
   int order_;
   reference::MemoryOf<T> memory_;
   std::vector<T> polynomials_;  // [order + 2][unknowns]
+  std::vector<T> shifted_;      // scratch
   T t_ = T(0), rest_ = T(0);
   std::vector<std::uint32_t> all_, every_, needed_;  // instructions in order: all, for all slots, for those wanted
   std::vector<bool> wanted_, taken_;                 // [slots], [instructions]

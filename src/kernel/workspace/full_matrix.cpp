@@ -75,28 +75,43 @@ bool StageSolver::has_symmetric_pattern() {
   return *symmetric_pattern_;
 }
 
+/// A matrix that is what it was, as between impacts of points, has the factors and the inverse that it had.
+bool StageSolver::inverts_full() {
+  if (!inverted_.empty() && inverted_ == bordered_) return true;
+  inverted_.clear();
+  if (!x_.engine.negative_inverse(bordered_.data(), x_.unknowns, inverse_.data())) return false;
+  inverted_ = bordered_;
+  return true;
+}
+
 /// Its factors.
 KernelStatus StageSolver::factor_full() {
   const std::size_t n = x_.unknowns;
   need_full();
   if (!x_.engine.are_finite(bordered_.data(), n, n, n)) return KernelStatus::NonFinite;
-  by_inverse_ = by_matrix_ && n == x_.program.freedoms && has_symmetric_pattern() &&
-                x_.engine.negative_inverse(bordered_.data(), n, inverse_.data());
+  by_inverse_ = by_matrix_ && n == x_.program.freedoms && has_symmetric_pattern() && inverts_full();
   if (by_inverse_) return KernelStatus::Ok;
   if (!solver_)
     solver_.emplace(x_.program.freedoms, n - x_.program.freedoms, n > x_.program.freedoms || has_symmetric_pattern());
+  if (!factored_.empty() && factored_ == bordered_) return KernelStatus::Ok;
+  factored_.clear();
   std::copy(bordered_.begin(), bordered_.end(), solver_->matrix().begin());
   if (const auto undetermined = solver_->factor()) {
     singular_ = *undetermined;
     return KernelStatus::SingularMass;
   }
+  factored_ = bordered_;
   return KernelStatus::Ok;
 }
 
 /// The first stage is solved by the factors, which constraints need to be met; the later ones are products.
 bool StageSolver::inverts_bordered() {
-  return by_matrix_ && x_.unknowns > x_.program.freedoms &&
-         solver_->negative_inverse(inverse_.data(), x_.padded_unknowns());
+  if (!by_matrix_ || x_.unknowns == x_.program.freedoms) return false;
+  if (!inverted_.empty() && inverted_ == bordered_) return true;
+  inverted_.clear();
+  if (!solver_->negative_inverse(inverse_.data(), x_.padded_unknowns())) return false;
+  inverted_ = bordered_;
+  return true;
 }
 
 /// How large the acceleration is that the terms of one equation would give alone. Where they balance, what is left of

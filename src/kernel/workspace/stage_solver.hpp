@@ -75,6 +75,7 @@ class StageSolver {
   bool has_mass_in_eights() const;
   void fetch_eights();
   void fetch_mass(std::size_t i, const double* column, std::size_t step, std::size_t first, std::size_t last);
+  bool inverts_full();
   KernelStatus factor_full();
   bool has_symmetric_pattern();
   bool inverts_bordered();
@@ -112,9 +113,9 @@ class StageSolver {
   std::size_t singular_ = 0, contradicting_ = 0;
 
   std::vector<double> usual_accelerations_;  // [n] or empty
-  Doubles solution_;           // q̈_k and λ_k, padded
-  std::span<double> unknown_;  // [n + m] of it: −R_k, then q̈_k and λ_k
-  Doubles rough_;              // a solution that is being corrected, padded
+  Doubles solution_;                         // q̈_k and λ_k, padded
+  std::span<double> unknown_;                // [n + m] of it: −R_k, then q̈_k and λ_k
+  Doubles rough_;                            // a solution that is being corrected, padded
   /// tangents in the direction by which a first solution was wrong, to be taken off again; null: none
   const double* excess_ = nullptr;
   std::pair<Slot, Slot> residual_vectors_;  // see find_residual_vectors()
@@ -131,9 +132,10 @@ class StageSolver {
   std::optional<bool> symmetric_pattern_;  // of M₀, once it was asked for
   std::optional<dense::BorderedSolver> solver_;
 
-  Doubles inverse_;               // −M⁻¹, padded rows and columns
-  Doubles answers_;               // scratch of Engine::run_stages_by_inverse
-  std::vector<std::int8_t> own_;  // see packed::InverseSolution
+  Doubles inverse_;                          // −M⁻¹, padded rows and columns
+  std::vector<double> inverted_, factored_;  // the M₀ that it, and that the factors belong to; empty: none
+  Doubles answers_;                          // scratch of Engine::run_stages_by_inverse
+  std::vector<std::int8_t> own_;             // see packed::InverseSolution
   bool residual_side_by_side_ = false;
   Doubles probe_;           // [stride] the right side of inverts()
   Doubles largest_rest_;    // [stride] that a solution for it may leave; what is no residual may be anything

@@ -164,10 +164,11 @@ const ContactValues& ContactFunctions::at(double t, std::span<const double> q, s
   if (t == t_ && std::equal(q.begin(), q.end(), q_.begin(), q_.end()) &&
       std::equal(v.begin(), v.end(), v_.begin(), v_.end()))
     return values_;
+  const bool is_same_place = t == t_ && std::equal(q.begin(), q.end(), q_.begin(), q_.end());
   t_ = t;
   q_.assign(q.begin(), q.end());
   v_.assign(v.begin(), v.end());
-  evaluate(gaps_work_, gaps_out_, t, q, v);
+  if (!is_same_place) evaluate(gaps_work_, gaps_out_, t, q, v);  // no velocities stand in gaps
   evaluate(slips_work_, slips_out_, t, q, v);
   evaluate(rates_work_, rates_out_, t, q, v);
   ContactValues& out = values_;
@@ -234,6 +235,11 @@ Eigen::MatrixXd solve_by_parts(const Eigen::MatrixXd& matrix, const Eigen::Matri
     for (std::size_t i = 0; i < part.size(); ++i)
       if (part[i] == number) in.push_back(at(i)), touched = touched || (right.row(at(i)).array() != 0).any();
     if (!touched) continue;
+    if (in.size() == 1) {
+      const double alone = matrix(in[0], in[0]);
+      if (alone != 0) out.row(in[0]) = right.row(in[0]) / alone;
+      continue;
+    }
     const Eigen::FullPivLU<Eigen::MatrixXd> lu(Eigen::MatrixXd(matrix(in, in)));
     out(in, Eigen::all) = lu.solve(Eigen::MatrixXd(right(in, Eigen::all)));
   }
