@@ -279,6 +279,7 @@ void TaylorStepper::treat_events(std::span<const EventTreatment> treatments) {
 }
 
 void TaylorStepper::set_usual_sizes(std::span<const double> q, std::span<const double> v, std::span<const double> a) {
+  if (impl_->m == 0) return;
   impl_->constraints.usual.q.assign(q.begin(), q.end());
   impl_->constraints.usual.v.assign(v.begin(), v.end());
   impl_->constraints.usual.a.assign(a.begin(), a.end());

@@ -151,18 +151,19 @@ std::optional<T> first_unclear(const ScaledPolynomialOf<T>& polynomial, const T&
 template <class T>
 std::optional<T> first_unclear(const ScaledPolynomialOf<T>& polynomial, const Watched& watched,
                                const std::type_identity_t<T>& until) {
+  const auto search = [&](const ScaledPolynomialOf<T>& over) {
+    std::vector<T> p = over.p;
+    T power = T(1);
+    for (T& c : p) c *= power, power *= until;
+    return watching::first_unclear<T>(over, T(0), until, crossings::to_bernstein(std::span<const T>(p), watched.side));
+  };
+  if (!watched.at_zero && !polynomial.begins_at_zero()) return search(polynomial);
+  const std::size_t k = polynomial.leading(watched.order);  // a zero that is known is divided out
+  if (k == 0) return std::nullopt;
   ScaledPolynomialOf<T> over = polynomial;
-  if (watched.at_zero || polynomial.begins_at_zero()) {  // a zero that is known is divided out
-    const std::size_t k = polynomial.leading(watched.order);
-    if (k == 0) return std::nullopt;
-    over.p.erase(over.p.begin(), over.p.begin() + static_cast<std::ptrdiff_t>(k));
-    over.scale = T(0);
-  }
-  std::vector<T> p = over.p;
-  T power = T(1);
-  for (T& c : p) c *= power, power *= until;
-  const std::vector<T> b = crossings::to_bernstein(std::span<const T>(p), watched.side);
-  return watching::first_unclear<T>(over, T(0), until, b);
+  over.p.erase(over.p.begin(), over.p.begin() + static_cast<std::ptrdiff_t>(k));
+  over.scale = T(0);
+  return search(over);
 }
 
 template <class Work>

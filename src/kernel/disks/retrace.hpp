@@ -42,6 +42,9 @@ class Retrace {
     needed_.clear();
     for (const std::uint32_t index : all_)
       if (taken_[index]) needed_.push_back(index);
+    moved_.clear();
+    for (std::uint32_t i = 0; i < program_.unknowns; ++i)
+      if (wanted_[i]) moved_.push_back(i);
   }
 
   /// [program.constants]
@@ -116,7 +119,8 @@ class Retrace {
       }
   }
 
-  /// The polynomials about s, by repeated synthetic division, up to order `last`.
+  /// The polynomials about s, by repeated synthetic division, up to order `last`; those that nothing wanted is made of
+  /// are left as they are.
   void shift(const T& s, int last) {
     const std::size_t n = program_.unknowns;
     const int degree = order_ + 1;
@@ -128,7 +132,7 @@ class Retrace {
     }
     std::vector<T>& c = shifted_;
     c.resize(static_cast<std::size_t>(degree) + 1);
-    for (std::size_t i = 0; i < n; ++i) {
+    for (const std::uint32_t i : moved_) {
       for (int k = 0; k <= degree; ++k)
         c[static_cast<std::size_t>(k)] = polynomials_[static_cast<std::size_t>(k) * n + i];
       for (int done = 0; done <= std::min(last, degree); ++done)
@@ -141,7 +145,7 @@ class Retrace {
   void move_beside(const T& s) {
     using std::abs;
     if (share_ == T(0)) return;
-    for (std::size_t i = 0; i < program_.unknowns; ++i) {
+    for (const std::uint32_t i : moved_) {
       T size = T(0);
       for (int k = order_ + 2; k-- > 0;)
         size = size * abs(s) + abs(polynomials_[static_cast<std::size_t>(k) * program_.unknowns + i]);
@@ -158,6 +162,7 @@ class Retrace {
   std::vector<T> shifted_;      // scratch
   T t_ = T(0), rest_ = T(0);
   std::vector<std::uint32_t> all_, every_, needed_;  // instructions in order: all, for all slots, for those wanted
+  std::vector<std::uint32_t> moved_;                 // coordinates that those wanted are made of
   std::vector<bool> wanted_, taken_;                 // [slots], [instructions]
   std::vector<const Instruction*> producer_;         // [slots]
 };

@@ -25,14 +25,34 @@ AlongSection::AlongSection(const Program& program)
   for (const auto* slots : {&program.switch_slots, &program.integrands})
     for (const Slot slot : *slots)
       for (const std::uint32_t i : makers_of(slot)) is_later_[i] = true;
-  for (const Run& run : program.runs[Along])
+  later_ = runs_of(is_later_);
+  std::vector<bool> without_events = is_later_;
+  const auto keep = [&](Slot slot) {
+    for (const std::uint32_t i : makers_of(slot)) without_events[i] = true;
+  };
+  for (const Slot slot : program.observables) keep(slot);
+  for (const Run& run : program.runs[AtPoint])
     for (std::uint32_t i = run.first; i < run.last; ++i) {
-      if (!is_later_[i]) continue;
-      if (!later_.empty() && later_.back().last == i && later_.back().op == run.op && later_.back().lag == run.lag)
-        ++later_.back().last;
-      else
-        later_.push_back({run.op, run.lag, i, i + 1});
+      const Instruction& instruction = program.instructions[i];
+      keep(instruction.a), keep(instruction.b);
+      for (std::uint32_t t = instruction.first_term; t < instruction.last_term; ++t)
+        keep(program.terms[t].a), keep(program.terms[t].b);
     }
+  without_events_ = runs_of(without_events);
+}
+
+/// Those of the section that are chosen, in order.
+std::vector<Run> AlongSection::runs_of(const std::vector<bool>& chosen) const {
+  std::vector<Run> out;
+  for (const Run& run : program_.runs[Along])
+    for (std::uint32_t i = run.first; i < run.last; ++i) {
+      if (!chosen[i]) continue;
+      if (!out.empty() && out.back().last == i && out.back().op == run.op && out.back().lag == run.lag)
+        ++out.back().last;
+      else
+        out.push_back({run.op, run.lag, i, i + 1});
+    }
+  return out;
 }
 
 /// Those of the section without which a slot has no value, in order.
@@ -55,19 +75,27 @@ std::vector<std::uint32_t> AlongSection::makers_of(Slot slot) {
   return out;
 }
 
-void AlongSection::begin() {
+void AlongSection::begin(bool is_point) {
+  is_point_ = is_point;
+  has_events_ = !is_point;
   if (++expansion_ != 0) return;
   std::fill(known_.begin(), known_.end(), 0);
   expansion_ = 1;
 }
 
 void AlongSection::run(reference::Memory& memory, int stage) const {
-  if (stage <= 0) {
+  if (stage <= 0 && !is_point_) {
     if (!empty()) reference::run_section(memory, Along, stage);
     return;
   }
-  for (const Run& run : later_)
+  for (const Run& run : is_point_ ? without_events_ : later_)
     if (const int order = stage + 2 - run.lag; order >= 0) reference::run_instructions(memory, run, order);
+}
+
+void AlongSection::need_point(reference::Memory& memory) {
+  if (has_events_) return;
+  has_events_ = true;
+  for (int stage = program_.first_stage; stage <= 0; ++stage) reference::run_section(memory, Along, stage);
 }
 
 void AlongSection::need_event(reference::Memory& memory, std::size_t event, int last_stage) {

@@ -41,7 +41,7 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   MAUP_REQUIRE(q.size() == x.program.freedoms && v.size() == x.program.freedoms);
   if (x.compute_constants()) solver.constants_changed();
   x.last_stage = stages - 1;
-  along.begin();
+  along.begin(stages == 1);
   solver.begin(stages == 1 && !corrects_points);
   observed = at_point.empty();
   if (x.program.time != no_slot) x.memory.row(0)[x.program.time] = t;

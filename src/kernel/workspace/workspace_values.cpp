@@ -24,6 +24,7 @@ double KernelWorkspace::switch_function(std::size_t i, int k) const {
 }
 double KernelWorkspace::event(std::size_t i, int k) const {
   workspace::Expansion& x = impl_->expansion;
+  impl_->along.need_point(x.memory);
   if (k > 2 - program().lags[program().events[i]]) impl_->along.need_event(x.memory, i, x.last_stage);
   return x.coefficient(program().events[i], k);
 }
@@ -31,7 +32,10 @@ double KernelWorkspace::integrand(std::size_t i, int k) const {
   return impl_->expansion.coefficient(program().integrands[i], k);
 }
 double KernelWorkspace::switch_scale(std::size_t i) const { return impl_->expansion.scale(program().switch_slots[i]); }
-double KernelWorkspace::event_scale(std::size_t i) const { return impl_->expansion.scale(program().events[i]); }
+double KernelWorkspace::event_scale(std::size_t i) const {
+  impl_->along.need_point(impl_->expansion.memory);
+  return impl_->expansion.scale(program().events[i]);
+}
 std::size_t KernelWorkspace::singular_coordinate() const { return impl_->solver.singular(); }
 std::size_t KernelWorkspace::contradicting_constraint() const { return impl_->solver.contradicting(); }
 
