@@ -5,6 +5,7 @@
 #include <maupertuis/across_switches.hpp>
 #include <maupertuis/constraint_analysis.hpp>
 #include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/jacobian.hpp>
 #include <maupertuis/motion_through_modes.hpp>
 #include <maupertuis/simulation.hpp>
 #include <maupertuis/transform.hpp>
@@ -33,10 +34,12 @@ bool has_linear_momenta(const EquationsOfMotion& equations) {
 bool contacts_are_smooth(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
   const MechanicalSystem& system = *equations.system;
   bool smooth = true;
+  ExprVector symbols{system.context->time()};
+  for (const Coordinate& q : system.coordinates) symbols.push_back(q.q);
+  const SparseGradient gradient(symbols);
   for (const Contact& c : system.contacts) {
-    ExprVector symbols{system.context->time()};
-    for (const Coordinate& q : system.coordinates) symbols.push_back(q.q);
-    ExprVector functions = gradient(c.gap, symbols);
+    ExprVector functions;
+    for (const SparseGradient::Entry& slope : gradient(c.gap)) functions.push_back(slope.value);
     functions.push_back(c.gap);
     for (const Expr& f : functions) {
       const auto jump = across_switches(system, f, equations.order).jump;

@@ -238,7 +238,7 @@ bool HybridMotion::Trial::has_slow_gaps() {
 void HybridMotion::Trial::begin() {
   motion.stepper->start(in.t_, in.q_, in.v_, in.t_rest_);
   put_at_zero();
-  in.tell_usual_sizes(*motion.stepper);
+  if (motion.program->kernel.constraints() > 0) in.tell_usual_sizes(*motion.stepper);
 }
 
 /// False where there is no motion.

@@ -203,6 +203,7 @@ void HybridMotion::forget(const ContactMode& mode) {
 std::vector<std::pair<HybridMotion::Leniency, std::size_t>> HybridMotion::attempts_with(std::size_t contacts) {
   constexpr std::size_t few = 4;
   std::vector<std::pair<Leniency, std::size_t>> out;
+  out.reserve(6);
   for (const std::size_t most : {contacts > few ? contacts + 1 : 0, most_choices})
     for (const Leniency leniency : {Leniency::None, Leniency::Forces, Leniency::Gaps})
       if (most > 0) out.emplace_back(leniency, most);

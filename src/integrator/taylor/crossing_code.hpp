@@ -16,11 +16,10 @@ T value(std::span<const T> p, const T& x) {
   return sum;
 }
 
-/// Powers of x to Bernstein polynomials on [0, 1]: b_i = Σ_k C(i,k)/C(d,k) p_k.
+/// Powers of x to Bernstein polynomials on [0, 1], in their place: b_i = Σ_k C(i,k)/C(d,k) p_k.
 template <class T>
-std::vector<T> to_bernstein(std::span<const T> p, int side) {
-  const std::size_t degree = p.size() - 1;
-  std::vector<T> b(p.begin(), p.end());
+std::vector<T> to_bernstein(std::vector<T> b, int side) {
+  const std::size_t degree = b.size() - 1;
   T binomial = T(1);
   for (std::size_t k = 0; k <= degree; ++k) {
     b[k] *= side / binomial;
@@ -41,6 +40,11 @@ std::vector<T> split(std::vector<T>& b) {
     for (std::size_t i = degree; i > level; --i) b[i] = T(0.5) * (b[i] + b[i - 1]);
   }
   return right;
+}
+
+template <class T>
+std::vector<T> to_bernstein(std::span<const T> p, int side) {
+  return to_bernstein(std::vector<T>(p.begin(), p.end()), side);
 }
 
 template <class T>
@@ -84,21 +88,28 @@ class Search {
 
   T side_value(const T& x) const { return side_ * value(p_, x); }
 
-  /// Bisection with a secant in every other turn; [low, high] brackets one simple root.
+  /// Secants, with half the weight of an end that stays (Illinois), and a bisection in every third turn; [low, high]
+  /// brackets one simple root.
   T refine(T low, T high) const {
     T at_low = side_value(low), at_high = side_value(high);
     if (at_low <= 0) return low;
+    T of_low = at_low, of_high = at_high;  // weights
+    int stays = 0;                         // the end that stayed in the last turn: −1 low, 1 high
     for (int turn = 0; turn < most_turns && at_high < 0; ++turn) {
       T x = T(0.5) * (low + high);
       if (!(low < x && x < high)) break;
-      if (turn % 2 == 0) {
-        const T secant = low + (high - low) * (at_low / (at_low - at_high));
+      if (turn % 3 != 2) {
+        const T secant = low + (high - low) * (of_low / (of_low - of_high));
         if (low < secant && secant < high) x = secant;
       }
       const T y = side_value(x);
       if (y == 0) return x;
+      const int moves = y > 0 ? -1 : 1;
       (y > 0 ? low : high) = x;
       (y > 0 ? at_low : at_high) = y;
+      (y > 0 ? of_low : of_high) = y;
+      if (stays == -moves) (y > 0 ? of_high : of_low) *= T(0.5);
+      stays = -moves;
     }
     return at_low <= -at_high ? low : high;
   }

@@ -66,6 +66,9 @@ Sample LastStep::sample(double time, KernelWorkspace& point) const {
   dense.advance(tau_of(time), position, velocity, integral);
   Sample result;
   result.t = time;
+  for (auto* list : {&result.q, &result.v, &result.a}) list->reserve(n);
+  result.integrals.reserve(integral.size());
+  result.observables.reserve(observables_);
   for (std::size_t i = 0; i < n; ++i) {
     result.q.push_back(position[i].hi);
     result.v.push_back(velocity[i].hi);

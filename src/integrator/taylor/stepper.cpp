@@ -279,7 +279,6 @@ void TaylorStepper::treat_events(std::span<const EventTreatment> treatments) {
 }
 
 void TaylorStepper::set_usual_sizes(std::span<const double> q, std::span<const double> v, std::span<const double> a) {
-  if (impl_->m == 0) return;
   impl_->constraints.usual.q.assign(q.begin(), q.end());
   impl_->constraints.usual.v.assign(v.begin(), v.end());
   impl_->constraints.usual.a.assign(a.begin(), a.end());
@@ -301,6 +300,7 @@ TaylorStepper::Outlook TaylorStepper::outlook(double bound) {
   out.length = h;
   for (auto* list : {&out.reach, &out.values, &out.slopes}) list->reserve(s.kernel.events());
   out.sides.reserve(s.kernel.events());
+  out.accelerations.reserve(s.n);
   for (const auto& [side, reach] : s.watched.sides_of_events(s.work, std::copysign(h, s.remaining(bound)))) {
     out.sides.push_back(side);
     out.reach.push_back(reach);

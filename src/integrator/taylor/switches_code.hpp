@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace maupertuis::taylor {
 namespace watching {
@@ -155,7 +156,7 @@ std::optional<T> first_unclear(const ScaledPolynomialOf<T>& polynomial, const Wa
     std::vector<T> p = over.p;
     T power = T(1);
     for (T& c : p) c *= power, power *= until;
-    return watching::first_unclear<T>(over, T(0), until, crossings::to_bernstein(std::span<const T>(p), watched.side));
+    return watching::first_unclear<T>(over, T(0), until, crossings::to_bernstein(std::move(p), watched.side));
   };
   if (!watched.at_zero && !polynomial.begins_at_zero()) return search(polynomial);
   const std::size_t k = polynomial.leading(watched.order);  // a zero that is known is divided out

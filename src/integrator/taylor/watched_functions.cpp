@@ -72,9 +72,9 @@ void WatchedFunctions::start() {
 }
 
 void WatchedFunctions::copy_sides(KernelWorkspace& work) const {
-  std::vector<std::int8_t> sides;
-  for (const Watched& s : switches) sides.push_back(s.side);
-  work.set_branches(sides);
+  sides_.clear();
+  for (const Watched& s : switches) sides_.push_back(s.side);
+  work.set_branches(sides_);
 }
 
 void WatchedFunctions::choose_first_sides(KernelWorkspace& work, const MotionState& state) {
@@ -152,9 +152,9 @@ bool WatchedFunctions::is_unread(const Crossing& crossing) const {
 bool WatchedFunctions::turns_unread(const KernelWorkspace& work, double h, Crossing& out) {
   constexpr std::size_t most = 100;
   if (!is_unread(out) || out.turned.size() >= most) return false;
-  std::vector<std::int8_t> sides;
-  for (std::size_t i = 0; i < switches.size(); ++i) sides.push_back(out.after[i].side);
-  roots_->go_on(out.x, sides);
+  sides_.clear();
+  for (std::size_t i = 0; i < switches.size(); ++i) sides_.push_back(out.after[i].side);
+  roots_->go_on(out.x, sides_);
   if (!roots_->keeps_sides(out.after, out.roots[0])) return false;
   const double from = out.x;
   out.turned.push_back(out.roots[0]);

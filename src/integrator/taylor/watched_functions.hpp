@@ -76,6 +76,7 @@ class WatchedFunctions {
   std::optional<RootSearch> roots_;                        // where something is watched
   std::vector<bool> is_unread_;                            // [switches] nothing of the motion depends on the side
   double together_ = 0;                                    // of the step: what rounding does not tell apart
+  mutable std::vector<std::int8_t> sides_;                 // scratch
   std::vector<TaylorStepper::EventTreatment> treatments_;  // [events], or none: all end the step
 };
 

@@ -1,4 +1,5 @@
 #include <maupertuis/function_kernel.hpp>
+#include <maupertuis/jacobian.hpp>
 #include <maupertuis/kinds.hpp>
 #include <maupertuis/transform.hpp>
 
@@ -199,13 +200,9 @@ DifferentiableKernel build_differentiable(const FunctionSource& source, std::siz
   DifferentiableKernel result;
   result.values = build_function(source);
   FunctionSource with_entries = source;
-  for (std::size_t row = 0; row < source.outputs.size(); ++row) {
-    const auto derivatives = gradient(source.outputs[row], variables);
-    for (std::size_t column = 0; column < derivatives.size(); ++column) {
-      if (derivatives[column].is_zero()) continue;
-      result.entries.push_back({row, first + column});
-      with_entries.outputs.push_back(derivatives[column]);
-    }
+  for (const DerivativeEntry& derivative : jacobian(source.outputs, variables)) {
+    result.entries.push_back({derivative.row, first + derivative.column});
+    with_entries.outputs.push_back(derivative.value);
   }
   result.values_and_entries = build_function(with_entries);
   return result;
