@@ -247,6 +247,9 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   Impl& s = *impl_;
   check_argument(q.size() == s.n, "TaylorStepper::start: q has another length than the kernel has coordinates");
   check_argument(v.size() == s.n, "TaylorStepper::start: v has another length than the kernel has coordinates");
+  // After an impact a motion goes on from where it has come to.
+  const bool is_same_place = s.steps > 0 && s.state.t.hi == t && s.state.t.lo == rest &&
+                             std::equal(q.begin(), q.end(), s.state.q_now.begin()) && s.watched.know_sides();
   s.state.start(t, q, v);
   s.state.t.lo = rest;
   s.watched.start();
@@ -262,7 +265,7 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   s.steps = s.switches = s.rejected = 0;
   s.run_begin = t;
   s.last.start(s.state);
-  s.watched.choose_first_sides(s.work, s.state);
+  if (!is_same_place) s.watched.choose_first_sides(s.work, s.state);
   s.watched.set_sides(s.probe);
   s.last.start_sample.t = t;
   s.has_start_sample = false;

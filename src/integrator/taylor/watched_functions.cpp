@@ -60,6 +60,9 @@ WatchedFunctions::WatchedFunctions(const Kernel& kernel, const KernelWorkspace& 
   std::vector<Slot> slots = work.program().switch_slots;
   slots.insert(slots.end(), work.program().events.begin(), work.program().events.end());
   is_unread_ = switches_of_events_alone(work.program());
+  const std::vector<std::int8_t>& lags = work.program().lags;
+  follow_places_ = std::all_of(work.program().switch_slots.begin(), work.program().switch_slots.end(),
+                               [&](Slot slot) { return lags[slot] <= 0; });
   roots_.emplace(work.program(), work.order(), slots);
   std::vector<bool> is_rough = is_unread_;  // the step goes on there
   is_rough.resize(slots.size(), false);
@@ -75,6 +78,11 @@ void WatchedFunctions::copy_sides(KernelWorkspace& work) const {
   sides_.clear();
   for (const Watched& s : switches) sides_.push_back(s.side);
   work.set_branches(sides_);
+}
+
+bool WatchedFunctions::know_sides() const {
+  return follow_places_ &&
+         std::all_of(switches.begin(), switches.end(), [](const Watched& w) { return w.side != 0 && !w.at_zero; });
 }
 
 void WatchedFunctions::choose_first_sides(KernelWorkspace& work, const MotionState& state) {

@@ -39,6 +39,8 @@ class WatchedFunctions {
   void set_sides(KernelWorkspace& work) const {
     if (!switches.empty()) copy_sides(work);
   }
+  /// Whether the sides of now are those of all motions through this place.
+  bool know_sides() const;
   /// Signs of the switch functions at the start, zeros left open: enough for the values there. A function within
   /// another comes before it. Under sides that are not those of the state forces may have no value (log|x|), but switch
   /// functions do.
@@ -75,6 +77,7 @@ class WatchedFunctions {
 
   std::optional<RootSearch> roots_;                        // where something is watched
   std::vector<bool> is_unread_;                            // [switches] nothing of the motion depends on the side
+  bool follow_places_ = false;                             // no switch reads velocities
   double together_ = 0;                                    // of the step: what rounding does not tell apart
   mutable std::vector<std::int8_t> sides_;                 // scratch
   std::vector<TaylorStepper::EventTreatment> treatments_;  // [events], or none: all end the step
