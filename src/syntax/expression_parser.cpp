@@ -184,11 +184,7 @@ ExpressionParser::Node ExpressionParser::primary() {
   const Token& token = peek();
   if (token.kind == Token::Kind::Number) return number();
   if (token.is("(")) return bracket();
-  if (token.is("friction") && peek(1).is("("))
-    fail("E0111", token.span, "`friction(…)` is a column of runs, no value that a formula has",
-         "Where a contact sticks, no formula gives the force that holds it.",
-         "Write `reaction` and the name of the contact for its normal force: where it slides, friction is μ times "
-         "that.");
+  if (token.is("friction") && peek(1).is("(")) return arguments_of(next(), {"friction"});
   if (token.kind != Token::Kind::Name || is_clause_word(token.text)) {
     fail_expected("a number, a name or a bracket",
                   token.is("[") ? "A unit in square brackets stands directly after a number: 3 [J]." : "");

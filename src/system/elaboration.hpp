@@ -74,6 +74,8 @@ Value value_of_member(Elaboration& e, const syntax::Expression& x, const Place& 
 Value value_of_call(Elaboration& e, const syntax::Expression& x, const Place& place);
 /// multiplier(rod) or reaction(rod).
 Value value_of_reaction(Elaboration& e, const syntax::Expression& x, const Place& place);
+/// friction(floor), friction(x)
+Value value_of_friction(Elaboration& e, const syntax::Expression& x, const Place& place);
 /// λ of a constraint, with its dimension.
 Value value_of_multiplier(Elaboration& e, const Constraint& c);
 /// A number or vector with unit words.

@@ -160,6 +160,7 @@ Value of_vectors(Elaboration& e, const Expression& x, const std::vector<Value>& 
 
 Value value_of_call(Elaboration& e, const Expression& x, const Place& place) {
   if (e.fields && e.fields->system.jet_of_name(x.text)) return value_at_place(e, x);
+  if (x.text == "friction") return value_of_friction(e, x, place);
   if (x.text == "multiplier" || x.text == "reaction") return value_of_reaction(e, x, place);
   if (!is_function(x.text)) return Value::poison();  // a place of a field that was refused: that was told
   const bool vectors = x.text == "dot" || x.text == "cross" || x.text == "norm";

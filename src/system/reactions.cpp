@@ -16,6 +16,10 @@ const char* const kReasonOfPlace =
     "A force of constraint follows from the equations of motion: energies, forces and constraints cannot be made of "
     "it.";
 
+const char* const kHelpOfPlace =
+    "It may stand in events, `run until`, `expect` and `claim`, and as the normal force of a friction: friction x "
+    "coefficient μ normal reaction(rod).";
+
 /// λ is conjugate to the constraint: λ δφ is an energy, λ ψ a power.
 Dimension dimension_of_multiplier(Elaboration& e, const Constraint& c) {
   const bool position = c.level == Constraint::Level::Position;
@@ -101,7 +105,7 @@ Value value_of_reaction(Elaboration& e, const Expression& x, const Place& place)
   }
   if (!place.reactions) {
     e.diagnostics.error("E0225", x.span, fmt::format("`{}` cannot stand here", e.texts.slice(x.span)), kReasonOfPlace,
-                        "Write it in `expect` or `claim`.");
+                        kHelpOfPlace);
     return Value::poison();
   }
   Declaration* d = find_named(e, {name.text, name.span});
@@ -114,6 +118,46 @@ Value value_of_reaction(Elaboration& e, const Expression& x, const Place& place)
   for (const Release& r : e.system().releases)
     if (r.name == name.text) return of_release(e, r, multiplier, x);
   return Value::poison();  // its own line has a mistake
+}
+
+namespace {
+
+/// The friction of the contact of this name, or along this coordinate, with the dimension of its force.
+std::pair<const Friction*, Dimension> find_friction(Elaboration& e, const std::string& name) {
+  for (const Contact& c : e.system().contacts)
+    if (c.name == name && c.friction.present()) return {&c.friction, e.dimension(dimensions::force())};
+  for (const Friction& f : e.system().frictions)
+    if (f.name == name)
+      for (const Coordinate& c : e.system().coordinates)
+        if (c.name == name) return {&f, e.system().lagrangian_dimension / c.dimension};
+  return {nullptr, {}};
+}
+
+}  // namespace
+
+Value value_of_friction(Elaboration& e, const Expression& x, const Place& place) {
+  if (!place.reactions) {
+    e.diagnostics.error("E0225", x.span, fmt::format("`{}` cannot stand here", e.texts.slice(x.span)), kReasonOfPlace,
+                        kHelpOfPlace);
+    return Value::poison();
+  }
+  const Expression& name = *x.arguments[0];
+  const bool is_name = name.kind == Expression::Kind::Name && name.primes == 0;
+  const auto [found, dimension] = is_name ? find_friction(e, name.text) : std::pair<const Friction*, Dimension>();
+  if (!found) {
+    e.diagnostics.error("E0226", name.span, fmt::format("the model has no friction `{}`", e.texts.slice(name.span)),
+                        "friction(…) takes the name of a contact with friction, or a coordinate along which it acts.",
+                        "Name the contact, contact … friction μ slip x' name floor, and write friction(floor).");
+    return Value::poison();
+  }
+  if (found->in_space()) {
+    e.diagnostics.error("E0226", x.span, fmt::format("the friction of `{}` is no number", name.text),
+                        "In space it has two components, along those of its slip.",
+                        "While it slides its size is the coefficient times the normal force, μ reaction(floor).");
+    return Value::poison();
+  }
+  if (Declaration* d = e.table.find(name.text)) d->used = true;
+  return Value::of(found->multipliers[0], dimension, 2);
 }
 
 bool names_a_reaction(Elaboration& e, const syntax::Name& name) { return find_named(e, name) != nullptr; }
