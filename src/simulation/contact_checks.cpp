@@ -7,6 +7,7 @@
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/jacobian.hpp>
 #include <maupertuis/motion_through_modes.hpp>
+#include <maupertuis/normal_force.hpp>
 #include <maupertuis/simulation.hpp>
 #include <maupertuis/transform.hpp>
 
@@ -55,24 +56,89 @@ bool contacts_are_smooth(const EquationsOfMotion& equations, Diagnostics& diagno
   return smooth;
 }
 
-/// Coordinates that are lengths, have the same mass and are not coupled move a body along directions at right angles,
-/// and the point where it touches with it: there the gradients of two components of slip are at right angles too.
+/// Coordinates that are lengths, have the same mass and are not coupled: they move a body along directions at right
+/// angles, and the point where it touches with it.
+class Places {
+ public:
+  explicit Places(const EquationsOfMotion& equations)
+      : system_(*equations.system), mass_(mass_matrix(equations)), n_(system_.coordinates.size()) {}
+
+  /// [the directions that each length belongs to]
+  std::vector<std::vector<std::size_t>> groups() const {
+    std::vector<std::vector<std::size_t>> out;
+    for (std::size_t i = 0; i < n_; ++i) {
+      if (!is_length(i)) continue;
+      out.emplace_back();
+      for (std::size_t j = 0; j < n_; ++j)
+        if (is_length(j) && mass(i, i) == mass(j, j) && (i == j || mass(i, j).is_zero())) out.back().push_back(j);
+    }
+    return out;
+  }
+  bool is_uncoupled(std::size_t i) const {
+    for (std::size_t j = 0; j < n_; ++j)
+      if (i != j && !mass(i, j).is_zero()) return false;
+    return true;
+  }
+
+ private:
+  Expr mass(std::size_t i, std::size_t j) const { return mass_.entries[i * n_ + j]; }
+  bool is_length(std::size_t i) const { return system_.coordinates[i].dimension.same_as(dimensions::length()); }
+
+  const MechanicalSystem& system_;
+  ExprMatrix mass_;
+  std::size_t n_;
+};
+
+bool rubs(const Contact& c) { return c.friction.present(); }
+
+/// The coordinate by which alone, of those of a body, the gap of a contact opens, where the slip holds its rate.
+std::optional<std::size_t> opening_rate_in(const MechanicalSystem& system, const Contact& c, const Places& places,
+                                           const std::vector<std::size_t>& group) {
+  std::optional<std::size_t> opens;
+  for (const std::size_t j : group) {
+    if (differentiate(c.gap, system.coordinates[j].q).is_zero()) continue;
+    if (opens) return std::nullopt;
+    opens = j;
+  }
+  if (!opens || !places.is_uncoupled(*opens)) return std::nullopt;
+  for (const Expr& slip : c.friction.slip)
+    if (zero_test(differentiate(slip, system.coordinates[*opens].velocity)).verdict == Verdict::Nonzero) return opens;
+  return std::nullopt;
+}
+
+/// E0265 where the energies alone tell the place of what slides; where points and bodies do, the text was checked.
+bool slips_are_along_surfaces(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
+  const MechanicalSystem& system = *equations.system;
+  if (system.dimensionless || std::none_of(system.contacts.begin(), system.contacts.end(), rubs)) return true;
+  const Places places(equations);
+  const auto groups = places.groups();
+  for (const Contact& c : system.contacts) {
+    if (!rubs(c) || normal_force_per_multiplier(system, c)) continue;
+    for (const auto& group : groups)
+      if (const auto i = opening_rate_in(system, c, places, group)) {
+        diagnostics.error("E0265", c.friction.span, "this slip velocity is not along the surface",
+                          fmt::format("{}' is the velocity along the normal, at which the contact opens: friction does "
+                                      "no work there.",
+                                      system.coordinates[*i].name),
+                          "Write the velocity along the surface alone, such as slip x' where the contact is z >= 0.");
+        return false;
+      }
+  }
+  return true;
+}
+
+/// The gradients of two components of slip are at right angles where those of the place are.
 bool slips_are_at_right_angles(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
   const MechanicalSystem& system = *equations.system;
   const auto is_in_space = [](const Contact& c) { return c.friction.in_space(); };
   if (system.dimensionless || std::none_of(system.contacts.begin(), system.contacts.end(), is_in_space)) return true;
-  const ExprMatrix mass = mass_matrix(equations);
-  const std::size_t n = system.coordinates.size();
-  const auto m = [&](std::size_t i, std::size_t j) { return mass.entries[i * n + j]; };
-  const auto is_length = [&](std::size_t i) { return system.coordinates[i].dimension.same_as(dimensions::length()); };
+  const auto groups = Places(equations).groups();
   bool good = true;
   for (const Contact& c : system.contacts) {
     if (!c.friction.in_space()) continue;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (!is_length(i)) continue;
+    for (const auto& group : groups) {
       ExprVector terms;
-      for (std::size_t j = 0; j < n; ++j) {
-        if (!is_length(j) || m(i, i) != m(j, j) || (i != j && !m(i, j).is_zero())) continue;
+      for (const std::size_t j : group) {
         const Expr velocity = system.coordinates[j].velocity;
         terms.push_back(differentiate(c.friction.slip[0], velocity) * differentiate(c.friction.slip[1], velocity));
       }
@@ -158,7 +224,8 @@ bool can_go_through_modes(const EquationsOfMotion& equations, Diagnostics& diagn
     return false;
   }
   return contacts_are_smooth(equations, diagnostics) && frictions_are_determined(equations, diagnostics) &&
-         frictions_are_linear(equations, diagnostics) && slips_are_at_right_angles(equations, diagnostics);
+         frictions_are_linear(equations, diagnostics) && slips_are_along_surfaces(equations, diagnostics) &&
+         slips_are_at_right_angles(equations, diagnostics);
 }
 
 bool start_keeps_contacts(const Model& model, double t, std::span<const double> q, Diagnostics& diagnostics) {

@@ -214,6 +214,7 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& written, const SourceTe
   }
   if (!e.fields || e.fields->coupled) expand_definitions(e.model);
   set_normal_forces(e.system(), diagnostics);
+  if (diagnostics.has_errors()) return std::nullopt;
   return std::move(e.model);
 }
 

@@ -18,8 +18,9 @@ namespace {
 /// ∂f/∂r of the one particle or body that it pushes.
 struct Push {
   std::string name;
-  ExprVector along;  // ∂f/∂r [dimension]
-  Expr square;       // |∂f/∂r|²
+  ExprVector along;                         // ∂f/∂r [dimension]
+  Expr square;                              // |∂f/∂r|²
+  std::map<std::size_t, ExprVector> moves;  // by coordinate ∂(r − r')/∂q
 };
 
 /// ∂f/∂q of the coordinates of which it is not 0.
@@ -82,6 +83,15 @@ class Masses {
     return has_one && has_part;
   }
 
+  /// A coordinate whose rate stands in the slip, and which moves what the contact pushes along the normal alone.
+  std::optional<std::size_t> opens_by(const Push& gap, Expr slip) const {
+    for (const auto& [i, slope] : slopes(slip, true)) {
+      const auto move = gap.moves.find(i);
+      if (move != gap.moves.end() && are_parallel(move->second, gap.along)) return i;
+    }
+    return std::nullopt;
+  }
+
   /// Whether |∂f/∂r| is 1 on the surface g = 0.
   bool is_unit(const Push& push, Expr gap) const {
     const Expr off = push.square - system_.context->number(1);
@@ -115,6 +125,14 @@ class Masses {
       if (!slope.is_zero() && turning_.count(i) == 0) row.emplace(i, slope);
     }
     return row;
+  }
+  /// Neither of them 0.
+  static bool are_parallel(const ExprVector& a, const ExprVector& b) {
+    if (std::all_of(a.begin(), a.end(), [](const Expr& x) { return x.is_zero(); })) return false;
+    for (std::size_t k = 0; k < a.size(); ++k)
+      for (std::size_t l = 0; l < k; ++l)
+        if (!vanishes_identically(a[k] * b[l] - a[l] * b[k])) return false;
+    return true;
   }
   /// Of the components of a place those that a coordinate moves.
   std::size_t dimensions_of(const Mass& m) const {
@@ -167,6 +185,7 @@ class Masses {
 
   /// What a coordinate does to the place of one mass, beside that of another.
   struct Column {
+    std::size_t coordinate;
     ExprVector r;  // ∂(r − r')/∂q [dimension]
     Expr slope;    // ∂f/∂q
   };
@@ -183,7 +202,8 @@ class Masses {
         directions.push_back(k);
     const std::optional<ExprVector> d = solved(columns, directions);
     if (!d) return std::nullopt;
-    Push out{*mass.name, ExprVector(mass.position->size(), system_.context->number(0)), {}};
+    Push out{*mass.name, ExprVector(mass.position->size(), system_.context->number(0)), {}, {}};
+    for (const Column& c : columns) out.moves.emplace(c.coordinate, c.r);
     ExprVector squares;
     for (std::size_t k = 0; k < directions.size(); ++k) {
       out.along[directions[k]] = (*d)[k];
@@ -201,7 +221,7 @@ class Masses {
       if (turning_.count(i) > 0) continue;
       const Expr q = system_.coordinates[i].q;
       const auto slope = row.find(i);
-      Column c{{}, slope == row.end() ? system_.context->number(0) : slope->second};
+      Column c{i, {}, slope == row.end() ? system_.context->number(0) : slope->second};
       for (std::size_t k = 0; k < mass.position->size(); ++k) {
         const Expr own = differentiate((*mass.position)[k], q);
         c.r.push_back(other ? own - differentiate((*other->position)[k], q) : own);
@@ -285,6 +305,25 @@ Expr share_of_gap_rate(const Masses& masses, const Contact& contact, const Push&
   return vanishes_identically(share) ? Expr() : share;
 }
 
+/// E0265 where a slip holds the rate of a coordinate that does nothing but open the contact: friction along it would do
+/// work where nothing slides. False then.
+bool slips_along_surface(const Masses& masses, const MechanicalSystem& system, std::size_t k, const Push& gap,
+                         Diagnostics& diagnostics) {
+  const Contact& contact = system.contacts[k];
+  for (const Expr& slip : contact.friction.slip) {
+    const auto i = masses.opens_by(gap, slip);
+    if (!i) continue;
+    diagnostics.error(
+        "E0265", contact.friction.span, "this slip velocity is not along the surface",
+        fmt::format("{}' is the velocity of {} along the normal, at which the contact opens: friction does no work "
+                    "there.",
+                    system.coordinates[*i].name, gap.name),
+        "Write the velocity along the surface alone, such as slip x' where the contact is z >= 0.");
+    return false;
+  }
+  return true;
+}
+
 /// Of the contact and of its written twin.
 void lay_slip_along_surface(const Masses& masses, MechanicalSystem& system, std::size_t k, const Push& gap) {
   const Contact contact = system.contacts[k];
@@ -353,6 +392,7 @@ void set_normal_forces(MechanicalSystem& system, Diagnostics& diagnostics) {
     if (!contact.friction.present()) continue;
     if (!masses) masses.emplace(system);
     const auto push = masses->pushed(contact.gap, false);
+    if (push && !slips_along_surface(*masses, system, k, *push, diagnostics)) continue;
     if (push) lay_slip_along_surface(*masses, system, k, *push);
     if (contact.friction.sticking) continue;  // held whatever the normal force
     look_at_slip(*masses, contact, diagnostics);

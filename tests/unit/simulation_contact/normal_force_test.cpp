@@ -162,6 +162,48 @@ TEST_CASE("the force at the tip of an arm and on a rope, for gaps that are twice
   CHECK(r.final.v[0] == doctest::Approx(5 - 0.1 * 2 * 0.3 * 5).epsilon(1e-13));
 }
 
+TEST_CASE("a slip that holds the rate at which the contact opens is refused, however the body is given") {
+  const auto code = [](const std::string& text) {
+    Diagnostics diagnostics;
+    const SourceText source("model", text);
+    const auto tree = syntax::parse(source, diagnostics);
+    const auto model = diagnostics.has_errors() ? std::nullopt : elaborate(tree, source, diagnostics);
+    if (model) {
+      const auto equations = euler_lagrange(std::make_shared<const MechanicalSystem>(model->system), diagnostics);
+      SimulationOptions options;
+      options.duration = 0.1;
+      if (equations) static_cast<void>(simulate(*model, *equations, options, diagnostics));
+    }
+    for (const Diagnostic& d : diagnostics.items())
+      if (d.severity == Severity::Error) return d.code;
+    return std::string();
+  };
+  const std::string point = "param m = 1 kg, g = 9.81 m/s^2\ncoord x, z : length\npoint P mass m at (x, z)\n",
+                    energies =
+                        "param m = 1 kg, g = 9.81 m/s^2\ncoord x, z : length\n"
+                        "T = 1/2 m (x'^2 + z'^2)\nV = m g z\n",
+                    polar =
+                        "param m = 1 kg, R = 1 m\ncoord r : length, φ : angle\n"
+                        "point P mass m at (r cos φ, r sin φ)\nstart r = R\n",
+                    turned =
+                        "param m = 1 kg, l = 0.5 m\ncoord x, z : length, θ : angle\n"
+                        "body B mass m inertia 0.1 kg m^2 at (x, z) rotation angle θ\n";
+  for (const std::string& model : {point, energies}) {
+    CHECK(code(model + "contact z >= 0 friction 0.3 slip x' + z'\n") == "E0265");
+    CHECK(code(model + "contact z >= 0 friction 0.3 slip x'\n") == "");
+  }
+  CHECK(code(polar + "contact r >= R friction 0.3 slip R φ' + r'\n") == "E0265");
+  CHECK(code(polar + "contact r >= R friction 0.3 slip r φ'\n") == "");
+  CHECK(code(turned + "contact z - l sin θ >= 0 friction 0.3 slip x' + l sin θ θ' - z'\n") == "E0265");
+  CHECK(code(turned + "contact z - l sin θ >= 0 friction 0.3 slip x' + l sin θ θ'\n") == "");
+  // Coordinates along which a point does more than open the contact: the slip is laid along the surface.
+  CHECK(code("param m = 1 kg, α = 30 deg\ncoord s, n : length\npoint P mass m at (s cos α, n + s sin α)\n"
+             "contact n >= 0 friction 0.3 slip s'\n") == "");
+  CHECK(code("param m = 1 kg, α = 30 deg\ncoord s, n : length\n"
+             "T = 1/2 m (s'^2 + n'^2 + 2 s' n' sin α)\n"
+             "contact n >= 0 friction 0.3 slip s' + n' sin α\n") == "");
+}
+
 TEST_CASE("friction by the resultant of forces of constraint is refused, by one of them it is computed") {
   const auto bead = [](const std::string& normal) {
     return "param m = 0.1 kg, R = 0.3 m, Ω = 8 rad/s, g = 9.81 m/s^2, μ = 0.2\ncoord r : length, θ, φ : angle\n"
