@@ -276,9 +276,21 @@ std::string draw_frame(const Figure& figure, const Panel& panel, const Axis& acr
   return svg + labels;
 }
 
+/// With as many names as the panel is high for: the legend has them all.
+RichText vertical_label(const Panel& panel, const Axis& up) {
+  std::vector<std::string> names = names_of(panel.series);
+  RichText text = axis_text(names, panel.unit, up);
+  for (std::size_t count = names.size(); count-- > 1 && text_width(text, label_size) > panel.height;) {
+    names.resize(count);
+    names.emplace_back("…");
+    text = axis_text(names, panel.unit, up);
+  }
+  return text;
+}
+
 std::string draw_vertical_label(const Panel& panel, const Axis& up) {
   const double middle = panel.top + panel.height / 2;
-  const RichText text = axis_text(names_of(panel.series), panel.unit, up);
+  const RichText text = vertical_label(panel, up);
   // "energy (10⁻¹⁵ J from 0.1973920880217)" is longer than the panel is high.
   const double size = label_size * std::min(1.0, panel.height / text_width(text, label_size));
   return text_element(16, middle, "middle", std::round(10 * size) / 10, text,

@@ -228,6 +228,18 @@ TEST_CASE("many curves: colours from a ramp, a legend of some of them") {
   CHECK(curves < 120);
 }
 
+TEST_CASE("an axis of many names shows as many as there is room for, in letters of the usual size") {
+  Trajectory trajectory;
+  for (int k = 1; k <= 12; ++k) trajectory.columns.push_back({"reaction(contact " + std::to_string(k) + ")", "N"});
+  trajectory.times = {0, 1};
+  for (int k = 0; k < 24; ++k) trajectory.values.push_back(k);
+  const std::string svg = plot(trajectory);
+  const auto label = svg.rfind("<text", svg.find("rotate(-90"));
+  CHECK(std::strtod(svg.c_str() + svg.find("font-size=\"", label) + 11, nullptr) == 14);
+  const std::string text = svg.substr(label, svg.find("</text>", label) - label);
+  CHECK(text.find("…") != std::string::npos);
+}
+
 TEST_CASE("the legend stands above the frame") {
   const std::string svg = plot(waves(100), columns({"θ1", "θ2"}));
   const auto texts = attributes(svg, "text", "y");
