@@ -13,7 +13,7 @@ namespace maupertuis {
 /// What one of them went through.
 struct ThroughModes {
   std::string first_mode, last_mode;    // empty: free
-  std::array<std::size_t, 6> counts{};  // by Happening::Kind
+  std::array<std::size_t, 8> counts{};  // by Happening::Kind
   std::size_t modes = 0;                // times that it came into another mode
   std::vector<Happening> happenings;    // the first ones, as many as were asked for
   std::optional<EnergyBooks> books{};   // where the model has contacts or friction

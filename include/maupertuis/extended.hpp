@@ -120,6 +120,13 @@ struct ExtendedMotion {
   bool met = false;    // an event ended the run
   std::size_t steps = 0, switches = 0;
   int order = 0;
+  std::vector<std::size_t> undetermined{};  // contacts that are more than the motion needs, of the first such instant
+  /// Two frictions of which either may be held while the other begins to slide.
+  struct Choice {
+    std::size_t held = 0, slides = 0;
+    std::string t;
+  };
+  std::optional<Choice> choice{};  // the first
 };
 
 /// Runs a motion from begin to end. What was computed is kept whatever the ending.

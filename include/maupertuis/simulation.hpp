@@ -101,12 +101,14 @@ struct Uncertainty {
 /// What happens at an instant of a run with contacts, friction or events.
 struct Happening {
   enum class Kind {
-    Impact,  // a contact was hit
-    Made,    // a contact is closed from here on
-    Lost,    // a contact opens
-    Stick,   // friction holds from here on
-    Slip,    // friction gives way, or goes the other way
-    Event,   // of the model
+    Impact,    // a contact was hit
+    Made,      // a contact is closed from here on
+    Lost,      // a contact opens
+    Stick,     // friction holds from here on
+    Slip,      // friction gives way, or goes the other way
+    Event,     // of the model
+    Unloaded,  // a contact carries nothing from here on, while others keep it closed
+    Loaded,    // it carries again
   } kind = Kind::Event;
   double t = 0;
   double error = 0;          // by how much t may be off; 0 where nobody asked

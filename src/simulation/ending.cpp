@@ -32,7 +32,8 @@ Ending ending_of(StepEnding ending) {
 }
 
 std::string_view word_of(Happening::Kind kind) {
-  static constexpr std::string_view words[] = {"impact", "made", "lost", "stick", "slip", "event"};
+  static constexpr std::string_view words[] = {"impact", "made",  "lost",     "stick",
+                                               "slip",   "event", "unloaded", "loaded"};
   return words[static_cast<int>(kind)];
 }
 

@@ -2,6 +2,7 @@
 #include <maupertuis/expression_lock.hpp>
 #include "simulation/ending.hpp"
 #include "simulation/extended_problem.hpp"
+#include "simulation/mode_remarks.hpp"
 #include "simulation/sets_together.hpp"
 #include "simulation/stopwatch.hpp"
 
@@ -288,8 +289,27 @@ class ExtendedRun {
         Rational::parse((*first)->state.t)->to_double(), name_of(**first), word_of(kind_of((*first)->kind))));
   }
 
-  /// Events at one instant that set the same.
+  std::string friction_label(std::size_t i) const {
+    const std::size_t contacts = system_.contacts.size();
+    return i < contacts ? system_.contact_label(i) : system_.frictions[i - contacts].name;
+  }
+
+  /// Events at one instant that set the same; forces and choices that the motion does not determine.
   void add_remarks(const ExtendedMotion& rough) {
+    if (!rough.undetermined.empty()) out_.remarks.push_back(undetermined_sentence(rough.undetermined));
+    if (rough.choice)
+      out_.remarks.push_back(choice_sentence(friction_label(rough.choice->held), friction_label(rough.choice->slides),
+                                             Rational::parse(rough.choice->t)->to_double()));
+    add_sets_together(rough);
+  }
+
+  std::string undetermined_sentence(const std::vector<std::size_t>& contacts) const {
+    std::vector<std::string> labels;
+    for (const std::size_t c : contacts) labels.push_back(system_.contact_label(c));
+    return undetermined_contacts_sentence(labels, true);
+  }
+
+  void add_sets_together(const ExtendedMotion& rough) {
     std::vector<const ModelEvent*> at_once;
     for (std::size_t i = 0; i < rough.roots.size(); ++i) {
       const ExtendedRoot& root = rough.roots[i];

@@ -33,15 +33,28 @@ void GivenForces::preload(const ContactMode& mode) {
       add(force, [&](const Coordinate& c) { return differentiate(gap, c.q); });
       all_[own_.contacts[i].multiplier] = own_.contacts[i].multiplier + force;
     }
-  for (std::size_t i = 0; i < mode.closed.size(); ++i) {
+  for (std::size_t i = 0; i < mode.friction.size(); ++i) {
     if (mode.friction[i] != FrictionState::Stick) continue;
-    const Friction& f = own_.contacts[i].friction;
+    const Friction& f = friction_of(own_, i);
     for (std::size_t k = 0; k < f.slip.size(); ++k) {
       const Expr force = polynomial(preload_degree, since);
       add(force, [&](const Coordinate& c) { return differentiate(f.slip[k], c.velocity); });
       all_[f.multipliers[k]] = f.multipliers[k] + force;
     }
   }
+  for (const Constraint& c : own_.constraints) {
+    const bool is_position = c.level == Constraint::Level::Position;
+    const Expr force = polynomial(preload_degree, since);
+    if (c.forceless) continue;
+    add(force, [&](const Coordinate& x) { return differentiate(c.value, is_position ? x.q : x.velocity); });
+    all_[c.multiplier] = c.multiplier + force;
+  }
+  with_given_multipliers();
+}
+
+/// Friction that slides by a force of which a part is given.
+void GivenForces::with_given_multipliers() {
+  for (AppliedForce& force : in_mode_.forces) force.components = substitute(force.components, all_);
 }
 
 void GivenForces::direct(std::size_t i, ExprVector& rubbed) {

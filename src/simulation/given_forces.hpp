@@ -13,8 +13,8 @@ class GivenForces {
   GivenForces(MechanicalSystem& own, const ContactMode& mode)
       : own_(own), in_mode_(system_in_mode(own, mode)), work_(own.coordinates.size(), own.context->number(0)) {}
 
-  /// Along each closed contact and each friction that sticks a given force besides its multiplier, a polynomial of the
-  /// time since a parameter (HybridMotion::Given).
+  /// Along each closed contact, each friction that sticks and each constraint of the system a given force besides its
+  /// multiplier, a polynomial of the time since a parameter (HybridMotion::Given).
   void preload(const ContactMode& mode);
   /// Friction of contact i with a direction that is a polynomial of time. `rubbed`: what it takes.
   void direct(std::size_t i, ExprVector& rubbed);
@@ -29,6 +29,7 @@ class GivenForces {
   Expr polynomial(int degree, Expr since);
   template <class Lever>
   void add(Expr force, Lever&& lever);
+  void with_given_multipliers();
 
   MechanicalSystem& own_;
   MechanicalSystem in_mode_;

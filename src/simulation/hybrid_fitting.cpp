@@ -316,7 +316,7 @@ bool HybridMotion::Trial::keeps_slip(std::size_t k) {
   const std::size_t i = watch(k).index;
   if (holds(at_zero, k)) return outlook.sides[k] > 0 && !in.is_held(i, found.mode, values);
   // One that begins in space has not yet the speed at which it counts as stopped.
-  if (friction_of(in.system_, i).in_space() && in.begins_to_slide_[i]) return true;
+  if (friction_of(in.system_, i).in_space() && (in.begins_to_slide_[i] || in.just_began_[i])) return true;
   return outlook.sides[k] >= 0;
 }
 

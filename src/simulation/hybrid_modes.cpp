@@ -1,5 +1,6 @@
 #include "linear_algebra/combinations.hpp"
 #include "simulation/hybrid_parts.hpp"
+#include "simulation/mode_remarks.hpp"
 
 #include <fmt/format.h>
 
@@ -247,8 +248,8 @@ std::optional<HybridMotion::Found> HybridMotion::search_mode(const std::vector<C
       if (equal_to_rounding(found->accelerations, next.accelerations)) continue;
       reason = fmt::format(
           "Painlevé's paradox: friction turns the contact force around here, and more than one motion fits: in the "
-          "mode `{}` and in the mode `{}`.",
-          mode_text(system_, found->mode), mode_text(system_, next.mode));
+          "mode `{}` and in the mode `{}`. {}",
+          mode_text(system_, found->mode), mode_text(system_, next.mode), beyond_painleve);
       return std::nullopt;
     }
     if (!found) continue;
@@ -344,10 +345,6 @@ void HybridMotion::note_choice(const std::vector<Choice>& list, Found& found, co
                                double bound) {
   constexpr std::size_t most = 8;  // pairs that are looked at
   if (told_choice_ || !found.given.values.empty()) return;
-  const auto label = [&](std::size_t i) {
-    const std::size_t contacts = found.mode.closed.size();
-    return i < contacts ? system_.contact_label(i) : system_.frictions[i - contacts].name;
-  };
   auto pairs = exchangeable(list, found.mode);
   pairs.resize(std::min(pairs.size(), most));
   const std::vector<bool> released = released_;
@@ -359,10 +356,7 @@ void HybridMotion::note_choice(const std::vector<Choice>& list, Found& found, co
       if (told_choice_ || !fits(other, touching, bound, Leniency::None)) continue;
       if (gives_way_unforced(list, other, touching, bound)) continue;
       told_choice_ = true;
-      remark(
-          fmt::format("Static friction leaves a choice at t = {:.9g}: {} is held and {} begins to slide; the motion in "
-                      "which the latter is held and the former slides keeps all conditions too.",
-                      t_, label(held), label(slides)));
+      remark(choice_sentence(label_of(held), label_of(slides), t_));
     }
   released_ = released;
   if (!pairs.empty()) static_cast<void>(fits(found, touching, bound, Leniency::Gaps));  // others were begun after it
@@ -393,52 +387,9 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
   const std::size_t first = record_.happenings.size();
   const ContactMode before = now_->mode;
   now_ = &motion_in(found->mode, found->given);
-  record_changes(before, found->mode);
+  record_changes(before, found->mode, found->accelerations);
   if (rest_ends) note_end_of_rest(first);
   return true;
-}
-
-/// Of a rest whose forces were not determined, in what was recorded from `first` on: companions look for forces as the
-/// run itself does, so that their difference does not tell to what these were sought.
-void HybridMotion::note_end_of_rest(std::size_t first) {
-  constexpr double in_plane = 4e-12, in_space = 1e-10;  // planes that touch a circular cone leave more of it open
-  const double known = in_space_ ? in_space : in_plane;
-  for (std::size_t k = first; k < record_.happenings.size(); ++k) record_.happenings[k].error = known * std::abs(t_);
-  remark(
-      fmt::format("A rest whose contact forces are not determined ends where none within their limits are found any "
-                  "more: that time is known to some {:.0e} of itself.",
-                  known));
-}
-
-void HybridMotion::record_changes(const ContactMode& before, const ContactMode& after) {
-  const std::string text = mode_text(system_, after);
-  const std::size_t begin = record_.happenings.size();
-  if (!started_) {
-    record_.first_mode = text;
-  } else {
-    for (std::size_t i = 0; i < after.closed.size(); ++i) {
-      const std::string label = system_.contact_label(i);
-      if (after.closed[i] && !before.closed[i]) {
-        add(Happening::Kind::Made, label, 0, 0, accumulated_.value_or(""));
-        if (accumulated_) record_.happenings.back().t = accumulated_at_;
-      }
-      if (!after.closed[i] && before.closed[i]) add(Happening::Kind::Lost, label);
-    }
-    for (std::size_t i = 0; i < after.friction.size(); ++i) {
-      const FrictionState now = after.friction[i];
-      if (now == before.friction[i] || now == FrictionState::None) continue;
-      const std::string label =
-          i < after.closed.size() ? system_.contact_label(i) : system_.frictions[i - after.closed.size()].name;
-      add(now == FrictionState::Stick ? Happening::Kind::Stick : Happening::Kind::Slip, label);
-      const bool is_made_then = i < after.closed.size() && after.closed[i] && !before.closed[i];
-      if (accumulated_ && is_made_then) record_.happenings.back().t = accumulated_at_;
-    }
-  }
-  for (std::size_t k = record_.happenings.size(); k-- > 0;) {
-    Happening& h = record_.happenings[k];
-    if (k < begin && h.t != t_) break;
-    h.mode = text;
-  }
 }
 
 }  // namespace maupertuis

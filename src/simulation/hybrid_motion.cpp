@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t most_at_once = 1000;  // changes at the same time
 constexpr std::size_t most_happenings = 10'000'000;
+constexpr std::size_t many_happenings = 10'000;  // after which their rate is looked at again
 constexpr const char* met_backwards =
     "Backwards in time the motion meets a change of contact here: what was before an impact or a stop does not follow "
     "from what is after it.";
@@ -80,6 +81,7 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
     speed_[kind_[i]] = std::max(speed_[kind_[i]], usual_v_[i]);
   }
   bounces_.assign(system_.contacts.size(), {});
+  idle_.assign(system_.contacts.size(), false);
   released_.assign(system_.contacts.size(), false);
   released_at_.assign(system_.contacts.size(), std::numeric_limits<double>::quiet_NaN());
   record_ = {};
@@ -98,6 +100,7 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   holding_.clear();
   told_choice_ = false;
   step_start_.reset();
+  counted_at_.clear();
   now_ = &motion_in(open_mode(system_));
   now_->stepper->start(t_, q_, v_, t_rest_);
   pending_ = std::make_unique<Pending>();
@@ -138,8 +141,13 @@ void HybridMotion::state(double t, std::span<double> q, std::span<double> v) con
   move_back(t, q, v);
 }
 
+/// Of the multipliers those of the system's own constraints, with what is given of them.
 Sample HybridMotion::adjusted(Sample sample) const {
-  sample.multipliers.resize(equations_.system->constraints.size());
+  const std::size_t own = equations_.system->constraints.size();
+  if (now_->given.is_preload && sample.multipliers.size() >= own)
+    for (std::size_t k = 0, made = sample.multipliers.size() - own; k < own; ++k)
+      sample.multipliers[k] += now_->given.preload(made + k, sample.t);
+  sample.multipliers.resize(own);
   for (std::size_t k = 0; k < sample.integrals.size(); ++k) sample.integrals[k] += carried_[k];
   return sample;
 }
@@ -197,6 +205,7 @@ Step HybridMotion::step(double bound) {
                     bounces_[*contact].last.empty() ? "" : ": bounces have become too small to be told apart"));
   }
   if (!out.events.empty()) classify(out);
+  if (auto unending = too_many(bound)) return std::move(*unending);
   if (pending_) meet_together(bound);
   if (meets_late_ && pending_) late_by_ = hidden_by_rounding(bound);
   if (!pending_ && (out.end >= end || outgrows_stops())) pending_ = std::make_unique<Pending>();
@@ -484,16 +493,38 @@ Step HybridMotion::stopped(StepEnding ending, std::string reason) {
   return ended(ending, std::move(reason));
 }
 
+/// Events and changes that come at a steady rate, which meets more of them up to the end of the run than are followed,
+/// end it when that is seen. A rate that grows may come to its end: those are counted.
+std::optional<Step> HybridMotion::too_many(double bound) {
+  constexpr double steady = 1.05;
+  const std::size_t count = record_.happenings.size();
+  if (count > most_happenings)
+    return ended(StepEnding::Unending, fmt::format("More than {} events and changes of contact.", most_happenings));
+  if (count < many_happenings * (counted_at_.size() + 1)) return std::nullopt;
+  counted_at_.push_back(time());
+  if (counted_at_.size() < 4) return std::nullopt;
+  const auto last = [&](std::size_t k) {
+    const std::size_t i = counted_at_.size() - k;
+    return std::abs(counted_at_[i] - counted_at_[i - 1]);
+  };
+  const auto [shortest, longest] = std::minmax({last(1), last(2), last(3)});
+  const double to_come = static_cast<double>(many_happenings) * std::abs(bound - time()) / longest;
+  if (!(longest < steady * shortest) || !(to_come > static_cast<double>(most_happenings))) return std::nullopt;
+  return ended(StepEnding::Unending,
+               fmt::format("{} events and changes of contact follow each other in {:.3g} units of time, and as fast "
+                           "before: {:.2g} of them would come up to the end of the run, and {} are followed at most.",
+                           many_happenings, longest, to_come, most_happenings));
+}
+
 /// Sets, impacts, and the mode after them. A step that ended where it cannot go on; nothing where all is well.
 std::optional<Step> HybridMotion::settle(double bound) {
   std::string reason;
   if (!forwards_ && (!pending_->hit.empty() || !pending_->left.empty()))
     return ended(StepEnding::Paradox, met_backwards);
-  if (++same_time_ > most_at_once || record_.happenings.size() > most_happenings)
+  if (++same_time_ > most_at_once)
     return ended(StepEnding::Unending,
-                 same_time_ > most_at_once
-                     ? fmt::format("{} changes follow each other at the same time without an end.", most_at_once)
-                     : fmt::format("More than {} events and changes of contact.", most_happenings));
+                 fmt::format("{} changes follow each other at the same time without an end.", most_at_once));
+  if (auto unending = too_many(bound)) return unending;
   if (!pending_->begins) leave_mode();
   if (derivative_ && !pending_->begins) note_before(bound);
   if (!pending_->sets.empty() && !carry_out_sets(reason)) return stopped(StepEnding::SingularConstraints, reason);
@@ -507,6 +538,7 @@ std::optional<Step> HybridMotion::settle(double bound) {
   note_sizes(values);
   knows_compliance_ = false;
   begins_to_slide_.assign(system_.contacts.size(), false);
+  note_beginnings();
   std::vector<std::size_t> touch = touching(functions_.at(t_, q_, v_));
   if (!hit(touch, reason)) return stopped(StepEnding::Paradox, reason);
   if (!pending_->begins) close_lowest_flights(touch, bound);

@@ -22,6 +22,7 @@
 namespace maupertuis {
 
 class ImpactDerivative;
+class IndependentRows;
 
 /// What a run through modes tells besides the motion.
 struct HybridRecord {
@@ -119,6 +120,7 @@ class HybridMotion final : public Method {
   bool presses_again(std::size_t contact, std::span<const double> accelerations, const ContactValues& values,
                      double digits);
   std::optional<Step> settle(double bound);
+  std::optional<Step> too_many(double bound);
   bool carry_out_sets(std::string& reason);
   const ModelEvent* turned_unseen(double bound);
   std::vector<std::size_t> touching(const ContactValues& values) const;
@@ -160,12 +162,18 @@ class HybridMotion final : public Method {
   std::optional<Found> undetermined_rest(const std::vector<Choice>& list, const std::vector<std::size_t>& touching,
                                          double bound);
   bool fits_by_given_forces(Found& found, const std::vector<std::size_t>& touching, double bound);
+  bool may_be_given(std::size_t friction) const;
+  std::size_t most_that_hold() const;
+  std::size_t number_that_hold(const ContactMode& mode) const;
+  ContactMode mode_without_holding(const ContactMode& mode, std::vector<std::size_t>& holding) const;
   std::optional<std::vector<double>> forces_at_rest(const ContactMode& mode, const ContactValues& values, double bound);
+  std::vector<double> ordered_forces(const ContactMode& mode, const Cones& cones, const Eigen::VectorXd& found,
+                                     std::vector<double> of_constraints);
   std::optional<std::vector<double>> forces_later(const ContactMode& mode, double later, double bound);
   double rest_ahead(const ContactMode& mode, double length, double bound);
   std::optional<Given> preload_through(const ContactMode& mode, double ahead, int power, double bound);
   bool is_held(std::size_t contact, const ContactMode& mode, const ContactValues& values);
-  bool has_dependent_rows(const ContactMode& mode, const ContactValues& values) const;
+  bool has_dependent_rows(const ContactMode& mode, const ContactValues& values);
   std::vector<Choice> choices(const std::vector<std::size_t>& touching, const ContactValues& values) const;
   ContactMode mode_without_contacts(const std::vector<Choice>& list) const;
   bool rubs(std::size_t contact, const ContactValues& values) const;
@@ -188,14 +196,18 @@ class HybridMotion final : public Method {
   std::vector<Pressed> pressed_in(const ContactMode& mode, const ContactValues& values) const;
   Cones cones_of(const std::vector<Pressed>& pressed, const ContactValues& values,
                  std::span<const double> accelerations);
+  Cones cones_of(const std::vector<Pressed>& pressed, const std::vector<std::size_t>& holding, const ContactMode& base,
+                 const ContactValues& values, std::span<const double> accelerations);
   std::vector<double> stops();
   std::vector<double> energy_and_sets_at(double t, std::span<const double> q, std::span<const double> v);
   void move_on(double by, const Eigen::VectorXd& accelerations);
   void book_rubbing(double gained);
   std::optional<TaylorStepper::Outlook> outlook_without_contacts(const ContactValues& values, double bound);
+  std::optional<TaylorStepper::Outlook> outlook_in(const ContactMode& mode, double bound);
   void take_out_slips(const std::vector<std::size_t>& stopping, const std::vector<std::size_t>& touching);
   bool all_stop(const std::vector<std::size_t>& slow, const std::vector<std::size_t>& touching,
                 const ContactValues& values, std::span<const double> accelerations, double within);
+  void note_beginnings();
   void come_to_rest(const std::vector<std::size_t>& touching, double bound);
   bool choose_slips(const std::vector<std::size_t>& touching, double bound, bool gives_way, std::string& reason);
   std::optional<Given> given_in(const ContactMode& mode, double bound);
@@ -225,9 +237,15 @@ class HybridMotion final : public Method {
   std::string why_none_fits(const std::vector<Choice>& list, const std::vector<std::size_t>& touching,
                             const ContactValues& values, bool were_many);
   bool may_be_painleve(const std::vector<Choice>& list, const ContactValues& values);
+  std::string label_of(std::size_t friction) const;
+  std::vector<std::string> labels_of(std::vector<std::size_t> places) const;
   void note_indeterminate(const std::vector<Choice>& list, const ContactMode& mode, const ContactValues& values);
   void note_end_of_rest(std::size_t first);
-  void record_changes(const ContactMode& before, const ContactMode& after);
+  std::vector<bool> idle_in(const ContactMode& before, const ContactMode& mode, std::span<const double> accelerations);
+  IndependentRows rows_that_carry(const ContactMode& mode, const ContactValues& values);
+  void record_contact(std::size_t i, const ContactMode& before, const ContactMode& after,
+                      const std::vector<bool>& idle);
+  void record_changes(const ContactMode& before, const ContactMode& after, std::span<const double> accelerations);
   void add(Happening::Kind kind, const std::string& name, double impulse = 0, double speed = 0,
            const std::string& remark = {});
   void remark(const std::string& sentence);
@@ -289,6 +307,7 @@ class HybridMotion final : public Method {
   std::vector<double> place_, speed_, acceleration_;  // [kinds] |q|, |q'|, |q''|
   std::vector<double> usual_q_, usual_v_;             // [n] or empty
   std::vector<double> compliance_;                    // [contacts] what a force λ = 1 does to g̈, where it was needed
+  std::vector<double> counted_at_;                    // times of every ten thousandth happening
   bool told_choice_ = false;                          // that static friction leaves one
   bool knows_compliance_ = false;                     // of all that touch at this instant
   struct Bounces {
@@ -296,6 +315,7 @@ class HybridMotion final : public Method {
     double fastest = 0;                           // of all impacts so far, not rounding of other speeds
   };
   std::vector<Bounces> bounces_;     // [contacts]
+  std::vector<bool> idle_;           // [contacts] open in the mode, but others keep them closed
   std::vector<bool> released_;       // [contacts] λ is 0 to rounding at this instant, and falls
   std::vector<double> released_at_;  // [contacts] when that was last; not a number before
   std::vector<std::size_t> cycle_;   // contacts that bounce together towards an end of their bounces
@@ -306,6 +326,7 @@ class HybridMotion final : public Method {
   bool in_space_ = false;               // a contact has friction in space
   std::vector<bool> keeps_friction_;    // [contacts] its coefficients stay what they are, whatever moves
   std::vector<bool> begins_to_slide_;   // [contacts] in space, at this instant
+  std::vector<bool> just_began_;        // [contacts] in space, before this instant
   std::vector<double> begins_towards_;  // [contacts] in which direction, an angle in the plane of contact
   std::vector<double> slip_scale_;      // [contacts] of friction in space, the largest slips so far
   std::size_t looks_at_forces_ = 0;     // where friction gave way

@@ -1,4 +1,5 @@
 #pragma once
+#include "simulation/contact/cone_forces.hpp"
 #include "simulation/hybrid_motion.hpp"
 
 #include <maupertuis/integrator.hpp>
@@ -13,6 +14,14 @@ inline constexpr double digits_of_sets = 1e-9;
 
 /// A coefficient of friction for contacts that never slide, where their forces are sought.
 inline constexpr double held_fast = 1e3;
+
+/// What is said where rigid contact has no motion, or several.
+inline constexpr const char* beyond_painleve =
+    "Textbooks go on by an impact without collision, an impulse of the contact that is not hit; none is made here: a "
+    "stiff spring in place of the rigid contact says what happens.";
+
+/// A row with its zeros.
+std::vector<double> whole_row(const SparseRow& row, std::size_t n);
 
 /// Modes that are tried at an instant.
 inline constexpr std::size_t most_choices = 1024;
@@ -66,6 +75,17 @@ struct HybridOption {
 struct HybridMotion::Choice {
   std::size_t contact = 0;  // or contacts + friction of a coordinate
   std::vector<HybridOption> options;
+};
+
+/// Contacts that touch and do not open, as one problem over their cones, and frictions that hold along coordinates.
+struct HybridMotion::Cones {
+  std::vector<std::size_t> contacts;
+  std::vector<std::size_t> first;       // [contacts] of its rows
+  std::vector<bool> slides;             // [contacts]
+  std::vector<SparseRow> rows, forces;  // ∂g/∂q, ∂v_t/∂q̇ of those at rest; what a unit of each force does
+  std::vector<SparseRow> held;          // ∂v_t/∂q̇ of frictions of coordinates that hold without a limit
+  Eigen::MatrixXd response;             // of q̈ to the forces
+  ConeProblem problem;
 };
 
 /// A mode that fits.

@@ -13,13 +13,13 @@ std::optional<std::string> HybridMotion::weaker_at_rest(const std::vector<Choice
                                                         const ContactValues& values) const {
   constexpr double rounding = 1e-12;
   for (const Choice& c : list) {
-    const std::size_t contacts = values.gap.size(), i = c.contact;
+    const std::size_t i = c.contact;
     if (c.options.size() < 3 || !(values.fixed[i] < (1 - rounding) * values.kinetic[i])) continue;
     return fmt::format(
         "Static friction of {} has fallen below kinetic friction here: once it slides it is held, and once it is held "
         "it "
         "slides.",
-        i < contacts ? system_.contact_label(i) : system_.frictions[i - contacts].name);
+        label_of(i));
   }
   return std::nullopt;
 }
@@ -54,7 +54,8 @@ std::string HybridMotion::why_none_fits(const std::vector<Choice>& list, const s
     return "Friction at several places holds more than the rest needs here, so that its forces are not determined "
            "(statically indeterminate), and none that keep the limits of friction were found.";
   return may_be_painleve(list, values)
-             ? "Painlevé's paradox: no finite forces of contact and friction fit the motion here."
+             ? "Painlevé's paradox: no finite forces of contact and friction fit the motion here. " +
+                   std::string(beyond_painleve)
              : "No mode of the contacts and frictions that touch here keeps its own conditions, to rounding.";
 }
 

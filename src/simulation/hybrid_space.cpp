@@ -111,16 +111,6 @@ SparseRow HybridMotion::sliding_force(std::size_t i, const ContactValues& values
   return sum_of(out, values.second_tangent[i], -mu * across);
 }
 
-/// Contacts that touch and do not open, as one problem over their cones.
-struct HybridMotion::Cones {
-  std::vector<std::size_t> contacts;
-  std::vector<std::size_t> first;       // [contacts] of its rows
-  std::vector<bool> slides;             // [contacts]
-  std::vector<SparseRow> rows, forces;  // ∂g/∂q, ∂v_t/∂q̇ of those at rest; what a unit of each force does
-  Eigen::MatrixXd response;             // of q̈ to the forces
-  ConeProblem problem;
-};
-
 /// Contacts that touch and do not open, with the friction that they have here.
 std::vector<HybridMotion::Pressed> HybridMotion::pressed_of(const std::vector<std::size_t>& touching,
                                                             const ContactValues& values) const {
@@ -153,6 +143,14 @@ std::vector<HybridMotion::Pressed> HybridMotion::pressed_in(const ContactMode& m
 
 HybridMotion::Cones HybridMotion::cones_of(const std::vector<Pressed>& pressed, const ContactValues& values,
                                            std::span<const double> accelerations) {
+  return cones_of(pressed, {}, mode_without_contacts(choices({}, values)), values, accelerations);
+}
+
+/// `holding`: frictions of coordinates whose forces are sought too. Those that hold in the mode `base`, the one with
+/// the given accelerations, are among what holds.
+HybridMotion::Cones HybridMotion::cones_of(const std::vector<Pressed>& pressed, const std::vector<std::size_t>& holding,
+                                           const ContactMode& base, const ContactValues& values,
+                                           std::span<const double> accelerations) {
   const std::span<const double> drifts = functions_.drifts(t_, q_, v_);
   const std::size_t contacts = values.gap.size(), seconds = drifts.size() - contacts;
   Cones out;
@@ -176,39 +174,19 @@ HybridMotion::Cones HybridMotion::cones_of(const std::vector<Pressed>& pressed, 
     }
     out.problem.contacts.push_back(contact);
   }
-  const ContactMode base = mode_without_contacts(choices({}, values));
-  std::vector<SparseRow> held;  // coordinates with friction that sticks
+  for (const std::size_t i : holding) {
+    add(values.tangent[i], values.tangent[i], drifts[contacts + i]);
+    out.problem.limits.push_back(values.fixed[i]);
+  }
   for (std::size_t i = contacts; i < base.friction.size(); ++i)
-    if (base.friction[i] == FrictionState::Stick) held.push_back(values.tangent[i]);
-  out.response = functions_.response(t_, q_, v_, out.forces, held);
+    if (base.friction[i] == FrictionState::Stick) out.held.push_back(values.tangent[i]);
+  out.response = functions_.response(t_, q_, v_, out.forces, out.held);
   const auto size = at(out.rows.size());
   out.problem.response.resize(size, size);
   for (Index r = 0; r < size; ++r)
     for (Index c = 0; c < size; ++c)
       out.problem.response(r, c) = dot(out.rows[static_cast<std::size_t>(r)], out.response.col(c));
   out.problem.free = Eigen::Map<const VectorXd>(free.data(), size);
-  return out;
-}
-
-/// Forces under which the closed contacts of a mode stay so, in the order of their multipliers in it: normal forces,
-/// then friction of those that rest. Those of contacts that slide are left to the constraints. Nothing where there are
-/// none within the limits of friction.
-std::optional<std::vector<double>> HybridMotion::forces_at_rest(const ContactMode& mode, const ContactValues& values,
-                                                                double bound) {
-  const auto outlook = outlook_without_contacts(values, bound);
-  if (!outlook) return std::nullopt;
-  const Cones cones = cones_of(pressed_in(mode, values), values, outlook->accelerations);
-  if (!cones.problem.response.allFinite()) return std::nullopt;  // a slip that has no direction yet
-  const auto found = resting_forces(cones.problem);
-  if (!found) return std::nullopt;
-  const VectorXd balanced = cones.response.cwiseAbs() * found->cwiseAbs();  // what they would do alone
-  for (std::size_t k = 0; k < kind_.size(); ++k)
-    acceleration_[kind_[k]] = std::max(acceleration_[kind_[k]], balanced(at(k)));
-  std::vector<double> out;
-  for (std::size_t c = 0; c < cones.contacts.size(); ++c)
-    out.push_back(cones.slides[c] ? 0 : (*found)(at(cones.first[c])));
-  for (std::size_t c = 0; c < cones.contacts.size(); ++c)
-    for (int k = 1; k <= cones.problem.contacts[c].tangents; ++k) out.push_back((*found)(at(cones.first[c]) + k));
   return out;
 }
 
@@ -237,8 +215,11 @@ void HybridMotion::book_rubbing(double gained) {
 /// Accelerations of the motion without contact forces, and how far it is looked at; nothing where there is none.
 std::optional<TaylorStepper::Outlook> HybridMotion::outlook_without_contacts(const ContactValues& values,
                                                                              double bound) {
-  const ContactMode base = mode_without_contacts(choices({}, values));
-  TaylorStepper& stepper = *motion_in(base).stepper;
+  return outlook_in(mode_without_contacts(choices({}, values)), bound);
+}
+
+std::optional<TaylorStepper::Outlook> HybridMotion::outlook_in(const ContactMode& mode, double bound) {
+  TaylorStepper& stepper = *motion_in(mode).stepper;
   stepper.start(t_, q_, v_, t_rest_);
   TaylorStepper::Outlook outlook = stepper.outlook(bound);
   if (outlook.ending != StepEnding::None) return std::nullopt;
@@ -301,6 +282,15 @@ bool HybridMotion::all_stop(const std::vector<std::size_t>& slow, const std::vec
   return true;
 }
 
+/// Slips whose beginning is over, and which nothing has stopped: however slow they are, they have just begun.
+void HybridMotion::note_beginnings() {
+  just_began_.assign(system_.contacts.size(), false);
+  for (std::size_t i = 0; i < now_->given.begins.size(); ++i)
+    just_began_[i] = now_->given.begins[i] && std::none_of(pending_->left.begin(), pending_->left.end(), [&](auto& w) {
+                       return w.what == Watch::What::Slip && w.index == i;
+                     });
+}
+
 /// A slip that is slow and falls comes to rest after v_t²/(−v_t·v̇_t): the motion moves on to there, where both
 /// components are 0. One that grows has just begun.
 void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double bound) {
@@ -309,7 +299,7 @@ void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double
   const auto is_slow = [&](std::size_t i) {
     const double speed = slip_speed_at(i, values);
     return system_.contacts[i].friction.in_space() && !system_.contacts[i].friction.sticking && rubs(i, values) &&
-           !(values.rate[i] > rest_speed(i, values)) && speed > rest_slip(i, values) &&
+           !just_began_[i] && !(values.rate[i] > rest_speed(i, values)) && speed > rest_slip(i, values) &&
            speed <= stop_slip(i) + rest_slip(i, values);
   };
   if (std::none_of(touching.begin(), touching.end(), is_slow)) return;

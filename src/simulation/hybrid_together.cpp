@@ -36,9 +36,10 @@ void HybridMotion::meet_together(double bound) {
   }
 }
 
-/// The mode in which all that has come to its limit gives way and all else stays: forces go on in it, so that it is the
-/// one where no more than one fits. Of many contacts that the motion does not need it is far from what their forces
-/// together point to. Those that carried nothing at the end of a rest that was not determined open.
+/// The mode in which all that has come to its limit gives way and all else stays: forces go on in it, or a rest ends in
+/// it that was not determined, so that it is the one where no more than one fits. Of many contacts that the motion does
+/// not need it is far from what their forces together point to. Those that carried nothing at the end of a rest that
+/// was not determined open.
 std::optional<HybridMotion::Found> HybridMotion::mode_that_goes_on(const std::vector<std::size_t>& touching,
                                                                    double bound) {
   const ContactValues& values = functions_.at(t_, q_, v_);
@@ -56,7 +57,8 @@ std::optional<HybridMotion::Found> HybridMotion::mode_that_goes_on(const std::ve
   if ((!ends_rest && !changes_no_force(out.mode, values)) || may_be_several(out.mode, values)) return std::nullopt;
   // A contact that a solution of dependent equations leaves without force needs not be closed, but may.
   const Leniency leniency = ends_rest ? Leniency::Forces : Leniency::None;
-  const bool is_right = fits(out, touching, bound, leniency) && accelerations_go_on(out.accelerations);
+  // Where a rest ends that was not determined, kinetic friction may take the place of more static friction.
+  const bool is_right = fits(out, touching, bound, leniency) && (ends_rest || accelerations_go_on(out.accelerations));
   return is_right ? std::optional(out) : std::nullopt;
 }
 

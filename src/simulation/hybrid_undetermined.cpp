@@ -1,5 +1,7 @@
 #include "linear_algebra/independent_rows.hpp"
+#include "simulation/contact/resting_forces.hpp"
 #include "simulation/hybrid_parts.hpp"
+#include "simulation/mode_remarks.hpp"
 
 #include <fmt/format.h>
 
@@ -10,16 +12,14 @@
 namespace maupertuis {
 namespace {
 
-constexpr std::size_t most_that_hold = 32;  // contacts whose forces at rest are sought
+constexpr std::size_t most_in_plane = 128, most_in_space = 32;  // contacts whose forces at rest are sought
 
-bool are_dependent(const std::vector<SparseRow>& rows, std::size_t n) {
+/// Whether rows depend on each other beside those of constraints, whatever these do among themselves.
+bool are_dependent(const std::vector<SparseRow>& rows, std::size_t n, const std::vector<SparseRow>& constraints = {}) {
   IndependentRows independent;
-  for (const SparseRow& row : rows) {
-    std::vector<double> whole(n, 0);
-    for (const auto& [k, x] : row) whole[k] = x;
-    if (!independent.add(std::move(whole))) return true;
-  }
-  return false;
+  const auto add = [&](const SparseRow& row) { return independent.add(whole_row(row, n)); };
+  for (const SparseRow& row : constraints) static_cast<void>(add(row));
+  return std::any_of(rows.begin(), rows.end(), [&](const SparseRow& row) { return !add(row); });
 }
 
 }  // namespace
@@ -44,6 +44,77 @@ double HybridMotion::Given::preload(std::size_t constraint, double t) const {
   constexpr auto powers = static_cast<std::size_t>(preload_degree) + 1;
   double out = 0;
   for (std::size_t power = powers; power-- > 0;) out = out * (t - values[0]) + values[1 + constraint * powers + power];
+  return out;
+}
+
+/// Friction of a coordinate whose limit is known without the forces of constraints.
+bool HybridMotion::may_be_given(std::size_t friction) const {
+  return friction >= system_.contacts.size() && !has_multipliers(friction_of(system_, friction).normal);
+}
+
+std::size_t HybridMotion::most_that_hold() const { return in_space_ ? most_in_space : most_in_plane; }
+
+/// Closed contacts, and frictions of coordinates that hold.
+std::size_t HybridMotion::number_that_hold(const ContactMode& mode) const {
+  auto out = static_cast<std::size_t>(std::count(mode.closed.begin(), mode.closed.end(), true));
+  for (std::size_t i = mode.closed.size(); i < mode.friction.size(); ++i)
+    out += mode.friction[i] == FrictionState::Stick && may_be_given(i);
+  return out;
+}
+
+/// The mode with its contacts open and without the frictions of coordinates that hold, which `holding` gets.
+ContactMode HybridMotion::mode_without_holding(const ContactMode& mode, std::vector<std::size_t>& holding) const {
+  ContactMode out = mode;
+  std::fill(out.closed.begin(), out.closed.end(), false);
+  for (std::size_t i = 0; i < out.friction.size(); ++i) {
+    const bool holds = out.friction[i] == FrictionState::Stick && may_be_given(i);
+    if (holds) holding.push_back(i);
+    if (holds || i < out.closed.size()) out.friction[i] = FrictionState::None;
+  }
+  return out;
+}
+
+/// Forces under which the closed contacts of a mode stay so, in the order of their multipliers in it: normal forces,
+/// then friction of those that rest, then forces of the system's own constraints. Those of contacts that slide are left
+/// to the constraints. Nothing where there are none within the limits of friction.
+std::optional<std::vector<double>> HybridMotion::forces_at_rest(const ContactMode& mode, const ContactValues& values,
+                                                                double bound) {
+  std::vector<std::size_t> holding;
+  const ContactMode base = mode_without_holding(mode, holding);
+  const auto outlook = outlook_in(base, bound);
+  if (!outlook) return std::nullopt;
+  std::vector<double> of_constraints = motion_in(base).stepper->sample(t_).multipliers;
+  const Cones cones = cones_of(pressed_in(mode, values), holding, base, values, outlook->accelerations);
+  if (!cones.problem.response.allFinite()) return std::nullopt;  // a slip that has no direction yet
+  const auto found = resting_forces(cones.problem);
+  if (!found) return std::nullopt;
+  const Eigen::VectorXd balanced = cones.response.cwiseAbs() * found->cwiseAbs();  // what they would do alone
+  for (std::size_t k = 0; k < kind_.size(); ++k)
+    acceleration_[kind_[k]] = std::max(acceleration_[kind_[k]], balanced(at(k)));
+  return ordered_forces(mode, cones, *found, std::move(of_constraints));
+}
+
+/// As a mode is given them. `of_constraints`: without the forces that were found, those of frictions that hold beside
+/// them behind those of constraints.
+std::vector<double> HybridMotion::ordered_forces(const ContactMode& mode, const Cones& cones,
+                                                 const Eigen::VectorXd& found, std::vector<double> of_constraints) {
+  Eigen::VectorXd work = Eigen::VectorXd::Zero(at(q_.size()));
+  for (std::size_t k = 0; k < cones.forces.size(); ++k)
+    for (const auto& [i, x] : cones.forces[k]) work(at(i)) += x * found(at(k));
+  const Eigen::VectorXd more =
+      functions_.multipliers(t_, q_, v_, Eigen::VectorXd(cones.response * found), work, cones.held);
+  for (std::size_t k = 0; k < of_constraints.size(); ++k) of_constraints[k] += more(at(k));
+  std::vector<double> out;
+  for (std::size_t c = 0; c < cones.contacts.size(); ++c)
+    out.push_back(cones.slides[c] ? 0 : found(at(cones.first[c])));
+  for (std::size_t c = 0; c < cones.contacts.size(); ++c)
+    for (int k = 1; k <= cones.problem.contacts[c].tangents; ++k) out.push_back(found(at(cones.first[c]) + k));
+  const std::size_t own = system_.constraints.size();
+  std::size_t next = cones.forces.size() - cones.problem.limits.size(), next_held = own;
+  for (std::size_t i = mode.closed.size(); i < mode.friction.size(); ++i)
+    if (mode.friction[i] == FrictionState::Stick)
+      out.push_back(may_be_given(i) ? found(at(next++)) : of_constraints[next_held++]);
+  out.insert(out.end(), of_constraints.begin(), of_constraints.begin() + static_cast<std::ptrdiff_t>(own));
   return out;
 }
 
@@ -90,13 +161,15 @@ std::optional<HybridMotion::Given> HybridMotion::preload_through(const ContactMo
   return out;
 }
 
-/// Contacts that hold each other where they rest (a ladder between rough walls, three rough feet) have forces that the
-/// equations do not determine: some that keep the limits of friction are given. False where the forces are determined,
+/// Contacts that hold each other where they rest (a ladder between rough walls, three rough feet), and frictions of
+/// coordinates that constraints tie together (two blocks on a rod), have forces that the equations do not determine:
+/// some that keep the limits of friction are given. False where the forces are determined,
 /// where none hold the rest, or where another condition of the mode is broken.
 bool HybridMotion::fits_by_given_forces(Found& found, const std::vector<std::size_t>& touching, double bound) {
   const ContactMode& mode = found.mode;
-  const auto closed = static_cast<std::size_t>(std::count(mode.closed.begin(), mode.closed.end(), true));
-  if (closed < 2 || closed > most_that_hold || !found.given.begins.empty()) return false;
+  const std::size_t holds = number_that_hold(mode);
+  const bool may_share = holds >= 2 || (holds == 1 && system_.constrained());
+  if (!may_share || holds > most_that_hold() || !found.given.begins.empty()) return false;
   const ContactValues values = functions_.at(t_, q_, v_);
   if (!has_dependent_rows(mode, values)) return false;
   const auto outlook = outlook_without_contacts(values, bound);
@@ -120,68 +193,68 @@ std::optional<HybridMotion::Found> HybridMotion::undetermined_rest(const std::ve
                                                                    const std::vector<std::size_t>& touching,
                                                                    double bound) {
   std::vector<std::size_t> taken;
-  const bool are_many = list.size() > most_that_hold;
+  const bool are_many = list.size() > most_that_hold();
   for (const Choice& c : list) {
+    const bool is_contact = c.contact < system_.contacts.size();
     const auto rests = std::find_if(c.options.begin(), c.options.end(), [&](const HybridOption& o) {
-      return o.closed && (o.state == FrictionState::Stick || o.state == FrictionState::None);
+      return o.closed == is_contact &&
+             (o.state == FrictionState::Stick || (is_contact && o.state == FrictionState::None));
     });
-    const bool may_stay = c.contact < system_.contacts.size() && rests != c.options.end();  // others slide as they do
-    const bool stays = may_stay && (!are_many || c.options.front().closed);
+    const bool may_stay = rests != c.options.end();  // others slide as they do
+    const bool stays = may_stay && (!are_many || c.options.front().closed == is_contact);
     taken.push_back(stays ? static_cast<std::size_t>(rests - c.options.begin()) : 0);
   }
   Found out{mode_of(list, taken), {}, {}};
   return fits_by_given_forces(out, touching, bound) ? std::optional(out) : std::nullopt;
 }
 
-/// ∂g/∂q of closed contacts with ∂v_t/∂q̇ of those that stick.
-bool HybridMotion::has_dependent_rows(const ContactMode& mode, const ContactValues& values) const {
+/// ∂g/∂q of closed contacts with ∂v_t/∂q̇ of frictions that stick, beside the rows of constraints.
+bool HybridMotion::has_dependent_rows(const ContactMode& mode, const ContactValues& values) {
   std::vector<SparseRow> rows;
-  for (std::size_t i = 0; i < mode.closed.size(); ++i) {
-    if (!mode.closed[i]) continue;
-    rows.push_back(values.normal[i]);
+  for (std::size_t i = 0; i < mode.friction.size(); ++i) {
+    const bool is_contact = i < mode.closed.size();
+    if (is_contact && !mode.closed[i]) continue;
+    if (is_contact) rows.push_back(values.normal[i]);
     if (mode.friction[i] != FrictionState::Stick) continue;
     rows.push_back(values.tangent[i]);
-    if (!values.second_tangent[i].empty()) rows.push_back(values.second_tangent[i]);
+    if (is_contact && !values.second_tangent[i].empty()) rows.push_back(values.second_tangent[i]);
   }
-  return are_dependent(rows, q_.size());
+  return are_dependent(rows, q_.size(), functions_.constraint_rows(t_, q_, v_));
 }
 
-/// More contacts than the motion needs: their forces are not unique, and what friction makes of them is not either.
+/// More contacts and frictions than the motion needs: their forces are not unique, and what friction makes of them is
+/// not either.
 void HybridMotion::note_indeterminate(const std::vector<Choice>& list, const ContactMode& mode,
                                       const ContactValues& values) {
-  std::vector<std::size_t> contacts;
+  std::vector<std::size_t> contacts, holding;  // that touch; all frictions that hold
   std::vector<SparseRow> normals;
-  bool rubs = false, holds = false;
+  bool rubs = false;
   for (const Choice& c : list) {
     const std::size_t i = c.contact;
+    const Friction& f = friction_of(system_, i);
+    if (mode.friction[i] == FrictionState::Stick && !f.sticking) holding.push_back(i);
     if (i >= values.gap.size()) continue;
-    const Friction& f = system_.contacts[i].friction;
     contacts.push_back(i);
     normals.push_back(values.normal[i]);
     rubs = rubs || (f.present() && !f.sticking);
-    holds = holds || (mode.friction[i] == FrictionState::Stick && !f.sticking);
   }
-  if (contacts.size() < 2) return;
-  const bool are_normals = are_dependent(normals, q_.size());
-  if (!are_normals && !(holds && has_dependent_rows(mode, values))) return;
-  std::sort(contacts.begin(), contacts.end());
-  std::string names;
-  constexpr std::size_t shown = 6;
-  for (std::size_t k = 0; k < std::min(shown, contacts.size()); ++k)
-    names += (k == 0 ? "" : ", ") + system_.contact_label(contacts[k]);
-  if (contacts.size() > shown) names += ", …";
-  if (are_normals)
-    remark(fmt::format(
-        "The contacts {} are more than the motion needs, so that it does not determine their forces (statically "
-        "indeterminate). One distribution that carries it is shown{}.",
-        names,
-        rubs ? ", and friction follows that one: with another the motion may be another"
-             : "; the motion is the same for all"));
-  else
-    remark(fmt::format(
-        "Friction at the contacts {} holds more than the motion needs, so that it does not determine their forces "
-        "(statically indeterminate). One distribution within the limits of friction is shown.",
-        names));
+  const bool are_normals =
+      contacts.size() > 1 && are_dependent(normals, q_.size(), functions_.constraint_rows(t_, q_, v_));
+  if (are_normals) {
+    remark(undetermined_contacts_sentence(labels_of(contacts), rubs));
+    return;
+  }
+  if (holding.empty() || !has_dependent_rows(mode, values)) return;
+  std::sort(holding.begin(), holding.end());
+  const bool are_contacts = holding.back() < values.gap.size();
+  remark(
+      fmt::format("Friction at {}{} holds more than the motion needs, so that it does not determine {} (statically "
+                  "indeterminate). One distribution within the limits of friction is shown.",
+                  !are_contacts          ? ""
+                  : contacts.size() == 1 ? "the contact "
+                                         : "the contacts ",
+                  list_of(labels_of(are_contacts ? contacts : holding)),
+                  holding.size() > 1 || are_contacts ? "their forces" : "its force"));
 }
 
 }  // namespace maupertuis

@@ -34,9 +34,10 @@ inline constexpr int preload_degree = 6;
 /// What the motion in a mode needs to be told besides.
 struct ModeDetails {
   std::vector<double> stops;  // [contacts] the speed at which a slip in space counts as stopped, where it slides
-  /// Closed contacts and their friction carry given forces, and multipliers add to these: so that a statically
-  /// indeterminate rest has forces that keep its conditions: Σ_k p_k (t − t_0)^k. Parameters after those of the model:
-  /// t_0, then the coefficients of each, in the order of the constraints of the mode that contacts make.
+  /// Closed contacts, friction that sticks and constraints carry given forces, and multipliers add to these: so that a
+  /// statically indeterminate rest has forces that keep its conditions: Σ_k p_k (t − t_0)^k. Parameters after those of
+  /// the model: t_0, then the coefficients of each, in the order of the constraints of the mode that contacts and
+  /// frictions make; those of the system's own last.
   bool preloaded = false;
   /// [contacts] or empty. A slip in space begins: its friction is −μ N d with d = Σ_k d_k (t − t_0)^k instead of
   /// v_t/|v_t|. Of each such contact parameters after those of the model: t_0, then the coefficients of one component

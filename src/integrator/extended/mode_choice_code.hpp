@@ -164,25 +164,83 @@ bool Modes<T>::may_be_several(const ExtendedMode& mode) const {
   return false;
 }
 
-/// Whether contacts that stick hold each other: rows of their normals and slips depend on each other.
+/// Rows of numbers one after the other, those of constraints first.
 template <class T>
-bool Modes<T>::holds_undetermined(const ExtendedMode& mode) const {
-  bool holds = false;
-  bool are_dependent = false;
-  IndependentRows independent;
-  const auto add = [&](const std::vector<T>& row) {
+class Modes<T>::Rows {
+ public:
+  explicit Rows(const Modes& modes) {
+    const std::size_t n = modes.q_.size(), constraints = modes.base_.program().unknowns - n;
+    for (std::size_t k = 0; k < constraints; ++k) {
+      std::vector<double> row;
+      for (std::size_t i = 0; i < n; ++i) row.push_back(static_cast<double>(modes.base_.constraint_matrix(k, i)));
+      static_cast<void>(independent_.add(std::move(row)));
+    }
+  }
+  void add(const std::vector<T>& row) {
     std::vector<double> rounded;
     for (const T& x : row) rounded.push_back(static_cast<double>(x));
-    are_dependent = !independent.add(std::move(rounded)) || are_dependent;
-  };
-  for (std::size_t c = 0; c < problem_.contacts.count; ++c) {
-    if (!mode.closed[c]) continue;
-    add(point_->normal[c]);
-    if (mode.friction[c] != ExtendedMode::Friction::Stick) continue;
-    add(point_->tangent[c]);
-    holds = holds || !problem_.contacts.frictions[c].sticking;
+    are_dependent_ = !independent_.add(std::move(rounded)) || are_dependent_;
   }
-  return holds && are_dependent;
+  bool are_dependent() const { return are_dependent_; }
+
+ private:
+  IndependentRows independent_;
+  bool are_dependent_ = false;
+};
+
+/// Whether frictions that stick hold each other, or what constraints hold: rows of normals and slips depend on each
+/// other.
+template <class T>
+bool Modes<T>::holds_undetermined(const ExtendedMode& mode) const {
+  const ExtendedContacts& all = problem_.contacts;
+  bool holds = false;
+  Rows rows(*this);
+  for (std::size_t f = 0; f < mode.friction.size(); ++f) {
+    if (f < all.count && !mode.closed[f]) continue;
+    if (f < all.count) rows.add(point_->normal[f]);
+    if (mode.friction[f] != ExtendedMode::Friction::Stick) continue;
+    rows.add(point_->tangent[f]);
+    holds = holds || !all.frictions[f].sticking;
+  }
+  return holds && rows.are_dependent();
+}
+
+/// More contacts than the motion needs, with friction by their forces.
+template <class T>
+void Modes<T>::note_indeterminate(const std::vector<std::size_t>& touching) {
+  Rows rows(*this);
+  bool rubs = false;
+  for (const std::size_t c : touching) {
+    if (point_->rate[c] > rest_rate(c)) continue;
+    rows.add(point_->normal[c]);
+    rubs = rubs || (problem_.contacts.frictions[c].present && !problem_.contacts.frictions[c].sticking);
+  }
+  if (rubs && rows.are_dependent() && out_.undetermined.empty()) out_.undetermined = touching;
+}
+
+/// Where one friction begins to slide and another is held, that the other way round would have done as well is told.
+template <class T>
+void Modes<T>::note_choice(const std::vector<Choice>& list, const ExtendedMode& mode,
+                           const std::vector<std::size_t>& touching, const Met& met) {
+  const auto is_left = [&](const Choice& c) { return through_modes::holds(met.left, What::Hold, c.index); };
+  const auto begins = [&](const Choice& c) {
+    return mode.friction[c.index] == Slides::Forward || mode.friction[c.index] == Slides::Backward;
+  };
+  for (const Choice& slides : list)
+    for (const Choice& held : list) {
+      if (out_.choice || slides.options.size() < 3 || held.options.size() < 3 || !begins(slides) ||
+          mode.friction[held.index] != Slides::Stick || (is_left(slides) && !is_left(held)) ||
+          !(may_hold(held) || may_hold(slides)))
+        continue;
+      for (const Slides way : {Slides::Forward, Slides::Backward}) {
+        ExtendedMode other = mode;
+        other.friction[slides.index] = Slides::Stick, other.friction[held.index] = way;
+        std::vector<T> accelerations;
+        if (fits(in_mode(other), touching, met, false, &accelerations) &&
+            !gives_way_unforced(list, other, touching, met))
+          out_.choice = ExtendedMotion::Choice{held.index, slides.index, stepper().sample(stepper().time()).t};
+      }
+    }
 }
 
 /// At rest, with a static limit beyond the kinetic one: where it holds another motion fits as well, in which it slides.
@@ -237,6 +295,18 @@ bool Modes<T>::gives_way_unforced(const std::vector<Choice>& list, const Extende
     held.friction[c.index] = Slides::Stick;
     const auto beyond = beyond_limits(in_mode(held), touching, met);
     if (beyond && std::find(beyond->begin(), beyond->end(), c.index) == beyond->end()) return true;
+  }
+  return false;
+}
+
+/// Whether in one of the modes that are possible more normal force makes a contact close faster.
+template <class T>
+bool Modes<T>::is_painleve(const std::vector<Choice>& list, Combinations& tries) const {
+  constexpr std::size_t most = 256;
+  for (std::size_t turn = 0; turn < most; ++turn) {
+    const std::vector<std::size_t>* taken = tries.number(turn);
+    if (!taken) return false;
+    if (may_be_several(mode_of(list, *taken))) return true;
   }
   return false;
 }
@@ -316,15 +386,19 @@ bool Modes<T>::choose(const std::vector<std::size_t>& touching, const Met& met) 
   if (!found && unforced) found = unforced, first = std::move(unforced_accelerations), by_leniency = unforced_lenient;
   // Others were begun after it, to see what they would hold.
   if (std::any_of(list.begin(), list.end(), [&](const Choice& c) { return may_hold(c); })) last = nullptr;
+  if (found && !last && !out_.choice) note_choice(list, found->mode, touching, met);
+  note_indeterminate(touching);
   // Of a rest that is not determined one distribution of forces was tried, be it within the limits or not.
   if (holds_undetermined(found ? found->mode : mode_of(list, std::vector<std::size_t>(list.size(), 0))))
     return stop(StepEnding::Paradox, std::nullopt,
-                "Friction at several contacts holds more than the rest needs, and its forces are not determined: with "
-                "more digits none are sought within its limits.");
+                "Friction holds more than the rest needs here, so that its forces are not determined (statically "
+                "indeterminate): with more digits none are sought within its limits, as in double precision.");
+  if (!found && bound_ < t_) return stop(StepEnding::Paradox, std::nullopt, through_modes::met_backwards);
   if (!found)
     return stop(StepEnding::Paradox, std::nullopt,
-                bound_ < t_ ? through_modes::met_backwards
-                            : "No mode of the contacts and frictions was found that keeps its conditions here.");
+                is_painleve(list, tries)
+                    ? "Painlevé's paradox: no finite forces of contact and friction fit the motion here."
+                    : "No mode of the contacts and frictions was found that keeps its conditions here.");
   note_accelerations(first);
   if (last != found) static_cast<void>(fits(*found, touching, met, by_leniency, &first));
   const ExtendedMode before = now_->mode;

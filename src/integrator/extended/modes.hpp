@@ -1,6 +1,7 @@
 #pragma once
 #include "integrator/extended/impact_code.hpp"
 #include "integrator/extended/stepper.hpp"
+#include "linear_algebra/combinations.hpp"
 
 #include <limits>
 #include <map>
@@ -83,7 +84,9 @@ class Modes {
   bool hit(const std::vector<std::size_t>& touching, Met& met);
   bool keeps_sticking(const std::vector<std::size_t>& touching, const Met& met);
   std::optional<T> end_of_bounces(std::size_t contact, const T& speed);
+  class Rows;
   bool holds_undetermined(const ExtendedMode& mode) const;
+  void note_indeterminate(const std::vector<std::size_t>& touching);
   std::vector<Choice> choices(const std::vector<std::size_t>& touching, const Met& met) const;
   Choice choice_of_contact(std::size_t contact, const Met& met) const;
   ExtendedMode mode_of(const std::vector<Choice>& list, const std::vector<std::size_t>& taken) const;
@@ -93,12 +96,15 @@ class Modes {
   bool sets_positions(const Met& met) const;
   void put_at_zero(InMode& candidate, const std::vector<std::size_t>& touching, const Met& met);
   bool may_be_several(const ExtendedMode& mode) const;
+  bool is_painleve(const std::vector<Choice>& list, Combinations& tries) const;
   bool may_hold(const Choice& choice) const;
   void order_by_limits(std::vector<Choice>& list, const std::vector<std::size_t>& touching, const Met& met);
   std::optional<std::vector<std::size_t>> beyond_limits(InMode& candidate, const std::vector<std::size_t>& touching,
                                                         const Met& met);
   bool gives_way_unforced(const std::vector<Choice>& list, const ExtendedMode& mode,
                           const std::vector<std::size_t>& touching, const Met& met);
+  void note_choice(const std::vector<Choice>& list, const ExtendedMode& mode, const std::vector<std::size_t>& touching,
+                   const Met& met);
   void measure_forces(const Met& met);
   bool choose(const std::vector<std::size_t>& touching, const Met& met);
   void record(ExtendedRoot::Kind kind, std::size_t index, const std::optional<T>& time = std::nullopt);

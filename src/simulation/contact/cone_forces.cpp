@@ -1,7 +1,5 @@
 #include "simulation/contact/cone_forces.hpp"
 
-#include "linear_algebra/least_distance.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -143,95 +141,6 @@ std::optional<ConeForces> cone_forces(const ConeProblem& problem) {
   out.residual = residual_of(projections, x);
   if (!(out.residual <= converged)) return std::nullopt;
   return out;
-}
-
-namespace {
-
-/// Forces of an undetermined rest: λ = λ_0 + N c with the solutions N of W N = 0, c the shortest that keeps the cones.
-/// A cone is told by planes that touch it, λ_n ≥ 0 and part μ λ_n ≥ u·λ_t for unit vectors u, more of them where a
-/// solution lies outside (J. E. Kelley, J. Soc. Ind. Appl. Math. 8 (1960) 703).
-class UndeterminedRest {
- public:
-  explicit UndeterminedRest(const ConeProblem& p)
-      : p_(p), solver_(p.response, Eigen::ComputeFullU | Eigen::ComputeFullV) {
-    solver_.setThreshold(converged);
-    least_ = solver_.solve(VectorXd(-p.free));
-    free_ = solver_.matrixV().rightCols(p.response.cols() - solver_.rank());
-    Index n = 0;
-    for (const auto& c : p.contacts) {
-      first_.push_back(n);
-      touch(first_.size() - 1, VectorXd::Zero(c.tangents));
-      for (Index k = 0; k < c.tangents; ++k)
-        for (const double side : {1.0, -1.0}) touch(first_.size() - 1, side * VectorXd::Unit(c.tangents, k));
-      n += 1 + c.tangents;
-    }
-  }
-
-  /// Whether nothing accelerates under some forces, be they in their cones or not.
-  bool exists() const {
-    const VectorXd off = p_.free + p_.response * least_;
-    return off.cwiseAbs().maxCoeff() <= converged * p_.free.cwiseAbs().maxCoeff();
-  }
-
-  std::optional<VectorXd> with_margin(double margin) {
-    constexpr int most_turns = 30;
-    constexpr double rounding = 1e-13;
-    for (int turn = 0; turn < most_turns; ++turn) {
-      const auto x = between_planes(1 - margin);
-      if (!x) return std::nullopt;
-      bool is_inside = true;
-      for (std::size_t c = 0; c < first_.size(); ++c) {
-        const VectorXd t = x->segment(first_[c] + 1, p_.contacts[c].tangents);
-        const double most = (1 - 0.9 * margin) * p_.contacts[c].friction * (*x)(first_[c]);
-        if (!(t.norm() > most + rounding * x->cwiseAbs().maxCoeff())) continue;  // all may be at the tip of a cone
-        if (p_.contacts[c].tangents == 1) return std::nullopt;                   // its planes are there: rounding
-        is_inside = false;
-        touch(c, t.normalized());
-      }
-      if (is_inside) return x;
-    }
-    return std::nullopt;
-  }
-
- private:
-  struct Plane {
-    std::size_t contact;
-    VectorXd along;  // [tangents] u; 0: λ_n ≥ 0
-  };
-  void touch(std::size_t contact, VectorXd along) { planes_.push_back({contact, std::move(along)}); }
-
-  std::optional<VectorXd> between_planes(double part) const {
-    MatrixXd rows = MatrixXd::Zero(static_cast<Index>(planes_.size()), p_.free.size());
-    for (Index k = 0; k < rows.rows(); ++k) {
-      const auto& [c, along] = planes_[static_cast<std::size_t>(k)];
-      const bool is_normal = along.size() == 0 || along.norm() == 0;
-      rows(k, first_[c]) = is_normal ? 1 : part * p_.contacts[c].friction;
-      rows.row(k).segment(first_[c] + 1, along.size()) = -along.transpose();
-      rows.row(k).normalize();
-    }
-    const auto c = least_distance(rows * free_, -(rows * least_));
-    return c ? std::optional(VectorXd(least_ + free_ * *c)) : std::nullopt;
-  }
-
-  const ConeProblem& p_;
-  Eigen::JacobiSVD<MatrixXd> solver_;
-  VectorXd least_;
-  MatrixXd free_;
-  std::vector<Index> first_;  // [contacts] where each begins
-  std::vector<Plane> planes_;
-};
-
-}  // namespace
-
-std::optional<VectorXd> resting_forces(const ConeProblem& problem) {
-  if (problem.free.size() == 0) return std::nullopt;
-  UndeterminedRest rest(problem);
-  if (!rest.exists()) return std::nullopt;
-  constexpr int most_quarters = 20;
-  double margin = 0.5;
-  for (int quarter = 0; quarter < most_quarters; ++quarter, margin *= 0.25)
-    if (auto found = rest.with_margin(margin)) return found;
-  return std::nullopt;
 }
 
 }  // namespace maupertuis

@@ -2,21 +2,22 @@
 #include "linear_algebra/dense.hpp"
 
 #include <optional>
-#include <span>
 #include <vector>
 
 namespace maupertuis {
 
 /// Contacts with Coulomb's circular cones: for each a normal force and its friction along `tangents` directions at
-/// right angles to each other (0, 1 or 2), one after the other in the vectors.
+/// right angles to each other (0, 1 or 2), one after the other in the vectors. Friction with a limit of its own, behind
+/// all contacts, has no normal force.
 struct ConeProblem {
   struct Contact {
     int tangents = 2;
     double friction = 0;
   };
   std::vector<Contact> contacts;
-  Eigen::MatrixXd response;  // W [Σ (1 + tangents)]²
-  Eigen::VectorXd free;      // accelerations (or velocities) of gaps and slips without the forces
+  std::vector<double> limits;  // of frictions without a contact; resting_forces alone knows them
+  Eigen::MatrixXd response;    // W [Σ (1 + tangents) + limits]²
+  Eigen::VectorXd free;        // accelerations (or velocities) of gaps and slips without the forces
 };
 
 struct ConeForces {
@@ -30,12 +31,5 @@ struct ConeForces {
 /// projections (P. Alart and A. Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353). Nothing where it does not
 /// converge to 1e-10. Cost: some ten solutions of a linear system of the size of W.
 std::optional<ConeForces> cone_forces(const ConeProblem& problem);
-
-/// Forces within their cones under which nothing accelerates, W λ + free = 0, where there are such: of the many that a
-/// statically indeterminate rest may have one that leaves friction a margin: of the parts ½, ⅛, 1/32, … of its limits
-/// that may be left, the largest that can, and there the forces next to the least ones. Nothing where less than 10⁻¹²
-/// is left. By planes that touch the cones and
-/// the shortest way between them (least_distance). Cost: some hundred small least-squares problems.
-std::optional<Eigen::VectorXd> resting_forces(const ConeProblem& problem);
 
 }  // namespace maupertuis

@@ -269,6 +269,33 @@ Eigen::MatrixXd ContactFunctions::response(double t, std::span<const double> q, 
   return solve_by_parts(bordered, right).topRows(n);
 }
 
+std::vector<SparseRow> ContactFunctions::constraint_rows(double t, std::span<const double> q,
+                                                         std::span<const double> v) {
+  if (m_ == 0) return {};
+  evaluate(matrices_work_, matrices_out_, t, q, v);
+  std::vector<SparseRow> out(m_);
+  for (std::size_t k = 0; k < m_; ++k)
+    for (std::size_t j = 0; j < n_; ++j)
+      if (const double x = matrices_out_[(n_ + k) * n_ + j]; x != 0) out[k].emplace_back(j, x);
+  return out;
+}
+
+Eigen::VectorXd ContactFunctions::multipliers(double t, std::span<const double> q, std::span<const double> v,
+                                              const Eigen::VectorXd& change, const Eigen::VectorXd& force,
+                                              std::span<const SparseRow> held) {
+  if (m_ + held.size() == 0) return {};
+  std::vector<SparseRow> rows = constraint_rows(t, q, v);
+  rows.insert(rows.end(), held.begin(), held.end());
+  evaluate(matrices_work_, matrices_out_, t, q, v);
+  const auto n = static_cast<Index>(n_);
+  Eigen::MatrixXd levers = Eigen::MatrixXd::Zero(n, static_cast<Index>(rows.size()));
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    for (const auto& [j, x] : rows[k]) levers(static_cast<Index>(j), static_cast<Index>(k)) = x;
+  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> mass(
+      matrices_out_.data(), n, n);
+  return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(levers).solve(Eigen::VectorXd(mass * change - force));
+}
+
 std::span<const double> ContactFunctions::drifts(double t, std::span<const double> q, std::span<const double> v) {
   if (!drifts_work_) {
     drifts_work_.emplace(programs_->drifts());

@@ -67,6 +67,13 @@ class ContactFunctions {
   /// `held`: rows h besides those of A, with h x = 0.
   Eigen::MatrixXd response(double t, std::span<const double> q, std::span<const double> v,
                            std::span<const SparseRow> rows, std::span<const SparseRow> held = {});
+  /// ∂φ/∂q or ∂ψ/∂q̇ of the constraints of the system.
+  std::vector<SparseRow> constraint_rows(double t, std::span<const double> q, std::span<const double> v);
+  /// The shortest λ [constraints + held] with M `change` = `force` + (A, held)ᵀ λ: what constraints do where a force
+  /// [n] changes q̈ [n].
+  Eigen::VectorXd multipliers(double t, std::span<const double> q, std::span<const double> v,
+                              const Eigen::VectorXd& change, const Eigen::VectorXd& force,
+                              std::span<const SparseRow> held);
   /// What g̈ and v̇_t are where q̈ = 0: [contacts], then [contacts + frictions], then second components [contacts]. Cost
   /// of the first call: the second derivatives of all gaps.
   std::span<const double> drifts(double t, std::span<const double> q, std::span<const double> v);

@@ -86,7 +86,7 @@ void check_same(const ThroughModesResult& found, const SimulationResult& run, co
   CHECK(through.first_mode == run.first_mode);
   CHECK(through.remarks == run.remarks);
   REQUIRE(through.happenings.size() == run.happenings.size());
-  std::array<std::size_t, 6> counts{};
+  std::array<std::size_t, 8> counts{};
   for (std::size_t i = 0; i < run.happenings.size(); ++i) {
     const Happening &a = through.happenings[i], &b = run.happenings[i];
     ++counts[static_cast<std::size_t>(b.kind)];
