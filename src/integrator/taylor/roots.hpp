@@ -179,7 +179,6 @@ class RootSearchOf {
   T value(std::size_t index, const T& x);
   T at_a_time(const T& x) const;
   T refined(std::size_t index, const Piece& piece, const T& begin, const T& root);
-  T bisected(std::size_t index, const T& x, const T& width);
   struct Gap {
     T end;             // where the function is analytic again
     std::int8_t side;  // that it has there; 0: it has no value any more

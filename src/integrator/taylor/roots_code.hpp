@@ -254,28 +254,6 @@ T RootSearchOf<T>::at_a_time(const T& x) const {
   return abs(near - x) <= T(most) ? near : x;
 }
 
-/// A root of third order, or higher: its slope says nothing, the sign of the function itself does. Between the places
-/// beside it, next to each other and no further than a millionth of the piece, at which the signs are opposite.
-template <class T>
-T RootSearchOf<T>::bisected(std::size_t index, const T& x, const T& width) {
-  const auto sign_at = [&](const T& at) { return watching::sign(value(index, at_a_time(at))); };
-  T low = x, high = x;
-  std::int8_t before = 0;
-  for (T apart = std::numeric_limits<T>::epsilon() * x; apart <= T(1e-6) * width; apart *= 4) {
-    low = x - apart, high = x + apart;
-    before = sign_at(low);
-    if (before != 0 && sign_at(high) == -before) break;
-    before = 0;
-  }
-  if (before == 0) return x;
-  for (int turn = 0; turn < 2 * std::numeric_limits<T>::digits; ++turn) {
-    const T middle = T(0.5) * (low + high);
-    if (!(low < middle && middle < high)) break;
-    (sign_at(middle) == before ? low : high) = middle;
-  }
-  return high;
-}
-
 /// Secants on the function itself, whose digits near the root are its own and not those of the polynomial.
 template <class T>
 T RootSearchOf<T>::refined(std::size_t index, const Piece& piece, const T& begin, const T& root) {

@@ -1,10 +1,7 @@
-// Events on friction, at roots of third order, and at a rate that no run can follow.
+// Events on friction, and at a rate that no run can follow.
 #include "run_text.hpp"
 
 #include <doctest/doctest.h>
-#include <fmt/format.h>
-
-#include <cmath>
 
 using namespace maupertuis;
 
@@ -22,25 +19,6 @@ TEST_CASE("the force of friction is an event's condition, of a contact and along
       1);
   REQUIRE(count(coordinate, Happening::Kind::Event, "half") == 1);
   CHECK(coordinate.happenings.front().t == doctest::Approx(2.0 / 3).epsilon(1e-15));
-}
-
-TEST_CASE("a root of third or fifth order is located to the rounding of its time, as it is said to be") {
-  for (const int order : {3, 5})
-    for (const double at : {0.35, 0.1, 0.77}) {
-      CAPTURE(order);
-      CAPTURE(at);
-      ModelText m(
-          fmt::format("param m = 1 kg\ncoord x : length\npoint P mass m at (x, 0)\n"
-                      "event e when (x - {} [m])^{} = 0 [m^{}] : record\nstart x' = 1 m/s\n",
-                      at, order, order));
-      SimulationOptions options;
-      options.duration = 1;
-      const auto r = simulate(m.model, m.equations, options, m.diagnostics);
-      REQUIRE(r);
-      REQUIRE(r->happenings.size() == 1);
-      CHECK(std::abs(r->happenings[0].t - at) <= 2 * r->happenings[0].error);
-      CHECK(std::abs(r->happenings[0].t - at) <= 1e-15);
-    }
 }
 
 TEST_CASE("events at a steady rate that would be too many end the run when that is seen") {
