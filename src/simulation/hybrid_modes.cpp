@@ -220,6 +220,7 @@ std::optional<HybridMotion::Found> HybridMotion::search_mode(const std::vector<C
   for (const Choice& c : list) counts.push_back(c.options.size());
   Combinations tries(std::move(counts), most_choices);
   std::optional<Found> found, unforced;
+  finds_no_directions_ = false;
   for (const auto& [leniency, most] : attempts_with(list.size())) {
     for (std::size_t turn = 0; turn < (found ? most_choices : most); ++turn) {
       const std::vector<std::size_t>* taken = tries.number(turn);
@@ -229,6 +230,7 @@ std::optional<HybridMotion::Found> HybridMotion::search_mode(const std::vector<C
       met_.reset();
       const std::optional<Given> given = given_in(next.mode, bound);
       if (given) next.given = *given;
+      finds_no_directions_ = finds_no_directions_ || !given;
       const bool is_right = given && (fits(next, touching, bound, leniency) ||
                                       (leniency == Leniency::None && fits_by_given_forces(next, touching, bound)));
       if (!is_right) {

@@ -335,6 +335,7 @@ class HybridMotion final : public Method {
   double gap_begin_ = std::numeric_limits<double>::quiet_NaN();  // of a moment in which a slip began
   std::vector<double> moment_accelerations_;                     // [n] in it
   bool just_moved_on_ = false;                                   // the last step follows it
+  bool finds_no_directions_ = false;                             // of slips that begin, in the mode that was tried last
   std::optional<std::size_t> met_;  // a contact that the constraints of the mode that was tried move through zero
   std::string no_motion_;           // why the mode that was tried last has none, if that is so
   std::shared_ptr<ImpactDerivative> derivative_;  // where instants are kept

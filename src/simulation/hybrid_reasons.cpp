@@ -36,6 +36,10 @@ std::string HybridMotion::why_none_fits(const std::vector<Choice>& list, const s
                ? fmt::format("None of the {} modes that were tried fits the contacts that touch here.", most_choices)
                : "No forces keep all contacts that touch here from closing.";
   if (auto weak = weaker_at_rest(list, values)) return *std::move(weak);
+  if (finds_no_directions_)
+    return "Slips in space begin here, and no directions were found along which all of them grow, as where a body "
+           "turns "
+           "about a foot whose friction is just at its limit.";
   const auto is_at_rest = [&](std::size_t i) {
     const bool in_space = friction_of(system_, i).in_space();
     return in_space ? slip_speed_at(i, values) <= stop_slip(i) : std::abs(values.slip[i]) <= rest_slip(i, values);
