@@ -86,7 +86,9 @@ std::optional<std::vector<double>> HybridMotion::forces_at_rest(const ContactMod
   std::vector<double> of_constraints = motion_in(base).stepper->sample(t_).multipliers;
   const Cones cones = cones_of(pressed_in(mode, values), holding, base, values, outlook->accelerations);
   if (!cones.problem.response.allFinite()) return std::nullopt;  // a slip that has no direction yet
-  const auto found = resting_forces(cones.problem);
+  // A rest ends early by the margin that is left. Companions leave four times of it, so that their difference tells
+  // what that does where forces jump.
+  const auto found = resting_forces(cones.problem, (meets_late_ ? 4 : 1) * least_margin_of_rest);
   if (!found) return std::nullopt;
   const Eigen::VectorXd balanced = cones.response.cwiseAbs() * found->cwiseAbs();  // what they would do alone
   for (std::size_t k = 0; k < kind_.size(); ++k)

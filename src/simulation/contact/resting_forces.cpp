@@ -259,14 +259,12 @@ std::optional<VectorXd> many_forces(const UndeterminedRest& rest, double margin)
 
 }  // namespace
 
-std::optional<VectorXd> resting_forces(const ConeProblem& problem) {
+std::optional<VectorXd> resting_forces(const ConeProblem& problem, double least_margin) {
   if (problem.free.size() == 0) return std::nullopt;
   UndeterminedRest rest(problem);
   if (!rest.exists()) return std::nullopt;
   const bool are_many = rest.is_large() && rest.has_edges();
-  constexpr int most_quarters = 20;
-  double margin = 0.5;
-  for (int quarter = 0; quarter < most_quarters; ++quarter, margin *= 0.25)
+  for (double margin = 0.5; margin >= least_margin; margin *= 0.25)
     if (auto found = are_many ? many_forces(rest, margin) : rest.between_planes(margin)) return found;
   return std::nullopt;
 }

@@ -12,6 +12,7 @@ namespace maupertuis {
 /// plane those that W tells apart are as few as there are freedoms: whether there are forces is found over that few
 /// rows, by edges of the cones, and the least ones by as few unknowns. Cost: some hundred small least-squares problems;
 /// of many contacts O(contacts² · freedoms).
-std::optional<Eigen::VectorXd> resting_forces(const ConeProblem& problem);
+inline constexpr double least_margin_of_rest = 1.8e-12;  // 2⁻³⁹: above rounding
+std::optional<Eigen::VectorXd> resting_forces(const ConeProblem& problem, double least_margin = least_margin_of_rest);
 
 }  // namespace maupertuis

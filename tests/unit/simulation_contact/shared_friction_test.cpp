@@ -51,6 +51,24 @@ TEST_CASE("blocks on rods, one of them pulled, rest until friction of all is ove
     }
 }
 
+TEST_CASE("what the end of a shared rest leaves open is in the errors, where static friction is more than kinetic") {
+  // 3 x'' = A t − 5 N − 6 N from t₀ on, A t₀ = 5 N + 8 N.
+  ModelText m(
+      "param m = 1 kg, A = 2 N/s\ncoord x1, x2, x3 : length\npoint P1 mass m at (x1, 0)\npoint P2 mass m at (x2, 0)\n"
+      "point P3 mass m at (x3, 0)\nfriction x1 limit 1 [N]\nfriction x2 limit 2 [N] static 3 [N]\n"
+      "friction x3 limit 3 [N] static 4 [N]\nconstraint x2 - x1 = 1 [m] name r1\nconstraint x3 - x2 = 1 [m] name r2\n"
+      "force x1 = A t - 5 [N]\nstart x2 = 1 m, x3 = 2 m\n");
+  SimulationOptions options;
+  options.duration = 20;
+  const auto r = simulate(m.model, m.equations, options, m.diagnostics);
+  REQUIRE(r);
+  REQUIRE(r->ok());
+  REQUIRE(r->final.errors);
+  CHECK(std::abs(r->final.v[0] - 69.75) <= 2 * r->final.errors->v[0]);
+  CHECK(r->final.errors->v[0] < 1e-10);
+  for (const Happening& h : r->happenings) CHECK(std::abs(h.t - 6.5) <= h.error);
+}
+
 TEST_CASE("friction of what a constraint holds anyway may be any within its limits") {
   const auto r = run_text(
       "param m = 1 kg\ncoord x, y : length\npoint P mass m at (x, y)\nconstraint x = 0 name pin\n"
