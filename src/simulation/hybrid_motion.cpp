@@ -11,8 +11,6 @@ namespace maupertuis {
 namespace {
 
 constexpr std::size_t most_at_once = 1000;  // changes at the same time
-constexpr std::size_t most_happenings = 10'000'000;
-constexpr std::size_t many_happenings = 10'000;  // after which their rate is looked at again
 constexpr const char* met_backwards =
     "Backwards in time the motion meets a change of contact here: what was before an impact or a stop does not follow "
     "from what is after it.";
@@ -491,29 +489,6 @@ bool HybridMotion::keeps_sticking(const std::vector<std::size_t>& touching, std:
 Step HybridMotion::stopped(StepEnding ending, std::string reason) {
   now_->stepper->start(t_, q_, v_, t_rest_);
   return ended(ending, std::move(reason));
-}
-
-/// Events and changes that come at a steady rate, which meets more of them up to the end of the run than are followed,
-/// end it when that is seen. A rate that grows may come to its end: those are counted.
-std::optional<Step> HybridMotion::too_many(double bound) {
-  constexpr double steady = 1.05;
-  const std::size_t count = record_.happenings.size();
-  if (count > most_happenings)
-    return ended(StepEnding::Unending, fmt::format("More than {} events and changes of contact.", most_happenings));
-  if (count < many_happenings * (counted_at_.size() + 1)) return std::nullopt;
-  counted_at_.push_back(time());
-  if (counted_at_.size() < 4) return std::nullopt;
-  const auto last = [&](std::size_t k) {
-    const std::size_t i = counted_at_.size() - k;
-    return std::abs(counted_at_[i] - counted_at_[i - 1]);
-  };
-  const auto [shortest, longest] = std::minmax({last(1), last(2), last(3)});
-  const double to_come = static_cast<double>(many_happenings) * std::abs(bound - time()) / longest;
-  if (!(longest < steady * shortest) || !(to_come > static_cast<double>(most_happenings))) return std::nullopt;
-  return ended(StepEnding::Unending,
-               fmt::format("{} events and changes of contact follow each other in {:.3g} units of time, and as fast "
-                           "before: {:.2g} of them would come up to the end of the run, and {} are followed at most.",
-                           many_happenings, longest, to_come, most_happenings));
 }
 
 /// Sets, impacts, and the mode after them. A step that ended where it cannot go on; nothing where all is well.

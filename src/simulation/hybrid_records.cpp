@@ -6,8 +6,14 @@
 #include <algorithm>
 #include <cmath>
 
-/// What is told of the modes that a motion goes through.
+/// What is told of the modes that a motion goes through, and how much of it.
 namespace maupertuis {
+namespace {
+
+constexpr std::size_t most_happenings = 10'000'000;
+constexpr std::size_t many_happenings = 10'000;  // after which their rate is looked at again
+
+}  // namespace
 
 std::vector<double> whole_row(const SparseRow& row, std::size_t n) {
   std::vector<double> out(n, 0);
@@ -111,6 +117,29 @@ void HybridMotion::record_changes(const ContactMode& before, const ContactMode& 
     h.mode = text;
   }
   idle_ = idle;
+}
+
+/// Events and changes that come at a steady rate, which meets more of them up to the end of the run than are followed,
+/// end it when that is seen. A rate that grows may come to its end: those are counted.
+std::optional<Step> HybridMotion::too_many(double bound) {
+  constexpr double steady = 1.05;
+  const std::size_t count = record_.happenings.size();
+  if (count > most_happenings)
+    return ended(StepEnding::Unending, fmt::format("More than {} events and changes of contact.", most_happenings));
+  if (count < many_happenings * (counted_at_.size() + 1)) return std::nullopt;
+  counted_at_.push_back(time());
+  if (counted_at_.size() < 4) return std::nullopt;
+  const auto last = [&](std::size_t k) {
+    const std::size_t i = counted_at_.size() - k;
+    return std::abs(counted_at_[i] - counted_at_[i - 1]);
+  };
+  const auto [shortest, longest] = std::minmax({last(1), last(2), last(3)});
+  const double to_come = static_cast<double>(many_happenings) * std::abs(bound - time()) / longest;
+  if (!(longest < steady * shortest) || !(to_come > static_cast<double>(most_happenings))) return std::nullopt;
+  return ended(StepEnding::Unending,
+               fmt::format("{} events and changes of contact follow each other in {:.3g} units of time, and as fast "
+                           "before: {:.2g} of them would come up to the end of the run, and {} are followed at most.",
+                           many_happenings, longest, to_come, most_happenings));
 }
 
 }  // namespace maupertuis
