@@ -38,7 +38,7 @@ namespace {
 
 /// Some of the places of the equilibrium, a line each along x, in the plane one along y too.
 std::string values_at_places(const FieldEquations& equations, const FieldEquilibrium& found) {
-  constexpr std::size_t every = 2, every_in_plane = 5;
+  constexpr std::size_t every = 4, every_in_plane = 10;
   const bool plane = !found.upwards.empty();
   const FieldSystem& s = equations.system();
   std::string out = fmt::format("  {:>12}", s.space[0].name);
@@ -60,7 +60,11 @@ std::string values_at_places(const FieldEquations& equations, const FieldEquilib
 }
 
 std::string stability_of(const FieldEquilibrium& found) {
-  if (!found.lowest) return "  no minimum of the energy: its second variation has no lower bound\n";
+  if (!found.lowest)
+    return "  no minimum of an energy: its second variation has no lower bound, or forces have no potential\n";
+  // The coordinates of bodies have squares of their own, which no measure has in common with those of fields.
+  if (found.falling == 0 && *found.lowest > 0 && !found.coordinates.empty())
+    return "  a minimum of the energy: its second variation is positive\n";
   if (found.falling == 0 && *found.lowest > 0)
     return fmt::format("  a minimum of the energy: its second variation is at least {:.6g} in the mean square\n",
                        *found.lowest);
@@ -78,6 +82,9 @@ std::string equilibrium_text(const FieldEquations& equations, const FieldModes& 
   for (std::size_t a = 0; a < found.errors.size(); ++a)
     out += fmt::format("  {} is off by at most {:.1g}\n", equations.system().fields[equations.varied[a]].name,
                        found.errors[a]);
+  for (std::size_t i = 0; i < found.coordinates.size(); ++i)
+    out += fmt::format("  {} = {:.13g} ± {:.1g}\n", equations.bodies->system->coordinates[i].name, found.coordinates[i],
+                       found.coordinate_errors[i]);
   out += fmt::format("  energy  {:.13g} ± {:.1g}\n", found.energy, found.energy_error);
   return out + stability_of(found);
 }
@@ -88,6 +95,11 @@ Json equilibrium_json(const FieldEquations& equations, const FieldEquilibrium& f
   for (std::size_t a = 0; a < found.fields.size(); ++a) {
     const std::string& name = equations.system().fields[equations.varied[a]].name;
     out["fields"][name] = found.fields[a], out["errors"][name] = found.errors[a];
+  }
+  if (equations.bodies) out["coordinates"] = Json::object(), out["coordinate_errors"] = Json::object();
+  for (std::size_t i = 0; i < found.coordinates.size(); ++i) {
+    const std::string& name = equations.bodies->system->coordinates[i].name;
+    out["coordinates"][name] = found.coordinates[i], out["coordinate_errors"][name] = found.coordinate_errors[i];
   }
   out["energy"] = found.energy, out["energy_error"] = found.energy_error;
   out["second_variation"] = found.lowest ? Json(*found.lowest) : Json(nullptr);

@@ -56,7 +56,7 @@ std::optional<std::string> page_of_fields(Study& study, const SimulationOptions&
   if (run && run->trajectory.rows() > 1) parts.run = &*run;
   if (currents) parts.currents = &*currents;
   if (waves) parts.dispersion = &*waves;
-  if (!modes.frequencies.empty()) parts.modes = &modes;
+  if (!modes.frequencies.empty() || modes.equilibrium) parts.modes = &modes;
   if (verification) parts.verification = &*verification;
   ReportContent content = compose_field_report(model, study.source(), *equations, *study.field_certificate(), parts);
   study.diagnostics().append(budget.warnings());

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 
 namespace maupertuis::app {
 
@@ -19,9 +20,8 @@ bool declares_fields(const syntax::SyntaxTree* tree) {
 void refuse_options_of_motions(const RunOptions& run, const std::vector<std::pair<const char*, bool>>& more,
                                Diagnostics& diagnostics) {
   std::vector<std::pair<const char*, bool>> given{
-      {"--until", !run.until.empty()},      {"--within", !run.within.empty()}, {"--at", !run.at.empty()},
-      {"--method", run.method.has_value()}, {"--step", run.step.has_value()},  {"--order", run.order.has_value()},
-      {"--tol", run.tolerance.has_value()}};
+      {"--until", !run.until.empty()},  {"--within", !run.within.empty()},  {"--method", run.method.has_value()},
+      {"--step", run.step.has_value()}, {"--order", run.order.has_value()}, {"--tol", run.tolerance.has_value()}};
   given.insert(given.end(), more.begin(), more.end());
   for (const auto& [name, is_given] : given)
     if (is_given)
@@ -61,15 +61,16 @@ std::vector<FieldPictureOptions> field_pictures_of(Study& study, const FieldEqua
   return out;
 }
 
-std::string pictures_of_fields(Study& study, const FieldEquations& equations, const FieldRunResult& run,
-                               std::vector<FieldPictureOptions> pictures) {
-  if (pictures.empty()) pictures = field_pictures_of(study, equations, {}, {});
-  std::vector<std::string> all;
+namespace {
+
+/// Pictures below each other, with the title of the first for all.
+std::string below_each_other(std::vector<FieldPictureOptions> pictures,
+                             const std::function<std::string(const FieldPictureOptions&)>& draw) {
   double width = 0, height = 0;
   std::string inside;
   for (std::size_t i = 0; i < pictures.size(); ++i) {
-    if (i > 0) pictures[i].title.clear();  // one for all
-    std::string one = field_picture_svg(equations, run, pictures[i]);
+    if (i > 0) pictures[i].title.clear();
+    std::string one = draw(pictures[i]);
     if (pictures.size() == 1) return one;
     double across = 0, up = 0;  // it says its size itself
     if (const std::size_t at = one.find(" width=\""); at != std::string::npos)
@@ -81,6 +82,21 @@ std::string pictures_of_fields(Study& study, const FieldEquations& equations, co
       "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
       "viewBox=\"0 0 {0:.0f} {1:.0f}\">\n{2}</svg>\n",
       width, height, inside);
+}
+
+}  // namespace
+
+std::string pictures_of_fields(Study& study, const FieldEquations& equations, const FieldRunResult& run,
+                               std::vector<FieldPictureOptions> pictures) {
+  if (pictures.empty()) pictures = field_pictures_of(study, equations, {}, {});
+  return below_each_other(std::move(pictures),
+                          [&](const FieldPictureOptions& one) { return field_picture_svg(equations, run, one); });
+}
+
+std::string pictures_of_rest(const FieldEquations& equations, const FieldEquilibrium& rest,
+                             std::vector<FieldPictureOptions> pictures) {
+  return below_each_other(std::move(pictures),
+                          [&](const FieldPictureOptions& one) { return field_equilibrium_svg(equations, rest, one); });
 }
 
 }  // namespace maupertuis::app

@@ -27,4 +27,8 @@ std::vector<FieldPictureOptions> field_pictures_of(Study& study, const FieldEqua
 std::string pictures_of_fields(Study& study, const FieldEquations& equations, const FieldRunResult& run,
                                std::vector<FieldPictureOptions> pictures);
 
+/// The same of fields at rest.
+std::string pictures_of_rest(const FieldEquations& equations, const FieldEquilibrium& rest,
+                             std::vector<FieldPictureOptions> pictures);
+
 }  // namespace maupertuis::app

@@ -35,6 +35,10 @@ std::string field_frame_svg(const FieldEquations& equations, const FieldRunResul
 std::string field_shape_svg(const FieldEquations& equations, const FieldModes& modes, std::size_t mode,
                             const FieldPictureOptions& options);
 
+/// Fields at rest: of one variable the curve of the field `options.field`, in the plane a map of it.
+std::string field_equilibrium_svg(const FieldEquations& equations, const FieldEquilibrium& rest,
+                                  const FieldPictureOptions& options);
+
 /// Pictures of one size, each with its style, turned like pages in `seconds`.
 std::string turned_pictures_svg(const std::vector<std::string>& frames, double seconds, bool loop);
 /// The same on a page that needs nothing else, with controls.

@@ -32,6 +32,7 @@ struct FieldCharge {
 struct FieldRunResult {
   struct Value {
     double value = 0, error = 0;  // SI; the error is estimated from a second mesh of half the cells
+    double order = 0;  // the power of the width of cells by which it converges, from a third; 0: not measured
   };
   std::vector<Value> answers;   // to the questions, in their order
   Trajectory trajectory;        // fields and velocities at the borders of cells, or at as many parts of them
@@ -105,12 +106,14 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
 /// Fields that stay what they are, in numbers.
 struct FieldEquilibrium {
   std::vector<double> places;
-  std::vector<double> upwards;              // in the plane those of y
-  std::vector<std::vector<double>> fields;  // [varied][places], in the plane [varied][upwards × places], SI
-  std::vector<double> errors;               // [varied] the largest at those places, from fewer functions
-  double energy = 0, energy_error = 0;      // −∫ℒ, SI
-  /// The lowest eigenvalue of the second variation of −∫ℒ in the mean square, and how many lie below zero: none of a
-  /// minimum. Nothing where they have no lower bound.
+  std::vector<double> upwards;                         // in the plane those of y
+  std::vector<std::vector<double>> fields;             // [varied][places], in the plane [varied][upwards × places], SI
+  std::vector<double> errors;                          // [varied] the largest at those places, from fewer functions
+  std::vector<double> coordinates, coordinate_errors;  // [coordinates of `bodies`] SI
+  double energy = 0, energy_error = 0;                 // −∫ℒ, and −L of the bodies, SI
+  /// The lowest eigenvalue of the second variation of the energy in the mean square, and how many lie below zero: none
+  /// of a minimum. With bodies, whose coordinates have squares of their own, the sign alone counts. Nothing where they
+  /// have no lower bound, or forces no potential.
   std::optional<double> lowest;
   std::size_t falling = 0;
 };

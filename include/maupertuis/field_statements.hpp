@@ -66,6 +66,7 @@ struct FieldExpectation {
   struct Total {  // total DENSITY at 2 s = 3 J ± 1e-9
     ExpressionPtr density, time;
     expectation::Number expected;
+    bool at_equilibrium = false;  // total DENSITY at equilibrium = …
   };
   struct Current {  // current J flux F, G
     ExpressionPtr density;

@@ -63,6 +63,7 @@ struct PlaceValue {
   Expr jet;
   std::vector<Expr> place;  // [space variables]
   Span span;
+  int side = 0;  // u_xxx(l - 0): the limit from the left (−1) or the right (+1), in equations alone
 };
 
 /// A value of a field at a place that stands in T, V, L, D, positions, constraints or forces: u(l), u_x(l). It is a
@@ -125,6 +126,16 @@ struct ValueAt {
 struct Total {
   Expr density, time;
   expectation::Number expected;
+  bool at_equilibrium = false;
+};
+struct Equilibrium {
+  struct Place {
+    Expr subject;  // u(l/2) or a coordinate, in symbols of place values
+    std::string name;
+    expectation::Number expected;
+  };
+  std::vector<Place> places;
+  std::string word;  // stable, unstable, undecided, or none
 };
 struct Current {
   Expr density;
@@ -139,7 +150,7 @@ struct Frequencies {
   expectation::Tolerance tolerance;
   expectation::DisplayUnit unit;
 };
-using Kind = std::variant<Natural, Solution, ValueAt, Total, Current, Dispersion, Frequencies>;
+using Kind = std::variant<Natural, Solution, ValueAt, Total, Current, Dispersion, Frequencies, Equilibrium>;
 }  // namespace field_expectation
 
 struct FieldExpectationLine {

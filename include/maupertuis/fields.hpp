@@ -72,6 +72,7 @@ struct FieldCurrent {
   Expr density;
   std::vector<Expr> fluxes;  // [space variables]
   bool certified = false;    // by the zero test
+  Expr source;               // Σ Q_a E_a on motions with friction and forces; an empty handle: 0, it is conserved
 };
 
 struct FieldCurrents {

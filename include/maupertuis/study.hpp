@@ -25,6 +25,8 @@ struct FieldMotionOptions {
   std::vector<double> moments = {};                       // s; rows at these times beside the others
   const FieldCurrents* currents = nullptr;                // whose charges are followed; null: none
   std::function<void(const std::string&)> announce = {};  // as in FieldRunOptions
+  std::vector<FieldQuestion> questions = {};              // FieldRunResult::answers
+  bool errors = false;                                    // of the answers, by further runs
 };
 
 /// A model text on its way through the stages: tree → model → equations → derivation, certificate; and what they are

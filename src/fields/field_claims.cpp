@@ -4,6 +4,8 @@
 #include <maupertuis/field_verification.hpp>
 
 #include "fields/on_shell.hpp"
+#include "fields/polynomial_division.hpp"
+#include "fields/rest_claims.hpp"
 
 #include <fmt/format.h>
 
@@ -55,6 +57,7 @@ class FieldVerifier {
       std::visit([&](const auto& kind) { decide(kind, out.results.back()); }, e.kind);
     }
     carry_out_run(out);
+    judge_rests(equations_, at_rest_, out);
     std::stable_sort(out.results.begin(), out.results.end(),
                      [](const auto& a, const auto& b) { return a.line < b.line; });
     return out;
@@ -144,7 +147,24 @@ class FieldVerifier {
     asked_.push_back({line_, expected});
   }
   void decide(const expectation::ValueAt& e, ExpectationResult&) { ask(e.subject, false, e.time, e.expected); }
-  void decide(const fe::Total& e, ExpectationResult&) { ask(e.density, true, e.time, e.expected); }
+  void decide(const fe::Total& e, ExpectationResult&) {
+    if (e.at_equilibrium)
+      at_rest_.push_back({line_, {{e.density, true}}, {{"", given(e.expected)}}, ""});
+    else
+      ask(e.density, true, e.time, e.expected);
+  }
+  void decide(const fe::Equilibrium& e, ExpectationResult&) {
+    AskedRest asked{line_, {}, {}, e.word};
+    for (const fe::Equilibrium::Place& place : e.places) {
+      asked.questions.push_back({place.subject});
+      asked.expected.push_back({place.name, given(place.expected)});
+    }
+    at_rest_.push_back(std::move(asked));
+  }
+  GivenValue given(const expectation::Number& e) const {
+    const double expected = number_of(e.value);
+    return {expected, allowed(e.tolerance, expected), e.unit};
+  }
   void decide(const expectation::EnergyConserved& e, ExpectationResult&) { energy_.push_back({line_, e.tolerance}); }
   void decide(const expectation::Event& e, ExpectationResult&) { moments_.push_back({line_, &e}); }
   void decide(const expectation::EventCount& e, ExpectationResult&) { counts_.push_back({line_, &e}); }
@@ -219,26 +239,7 @@ class FieldVerifier {
     }
   }
   void judge(ExpectationResult& r, const expectation::Number& e, const FieldRunResult::Value& value) const {
-    const double expected = number_of(e.value), tolerance = allowed(e.tolerance, expected);
-    if (!std::isfinite(value.value)) {
-      r.passed = false, r.actual = "no value";
-      r.message = "The elements have no such derivative, or the expression has no value there.";
-      return;
-    }
-    const ValueVerdict verdict = value_verdict(value.value, expected, tolerance, value.error);
-    const std::string unit = e.unit.name.empty() ? "" : " " + e.unit.name;
-    r.passed = verdict.passed, r.beyond_digits = verdict.beyond_digits;
-    r.actual = fmt::format("{:.16g}{}", value.value / e.unit.factor, unit);
-    r.expected = fmt::format("{:.16g}{}", expected / e.unit.factor, unit);
-    r.tolerance = fmt::format("± {:.3g}{}", tolerance / e.unit.factor, unit);
-    const bool estimated = std::isfinite(value.error);
-    r.uncertainty = estimated ? fmt::format("± {:.2g}{}", value.error / e.unit.factor, unit) : "no digit is certain";
-    if (!r.passed && !estimated)
-      r.message = fmt::format("It is off by {:.3g}{}, and there is no estimate of the error of mesh and steps.",
-                              (value.value - expected) / e.unit.factor, unit);
-    else if (!r.passed)
-      r.message = fmt::format("It is off by {:.3g}{}; the error of mesh and steps is estimated as {:.2g}{}.",
-                              (value.value - expected) / e.unit.factor, unit, value.error / e.unit.factor, unit);
+    judge_field_value(r, given(e), value, "mesh and steps");
   }
 
   void judge_moment(ExpectationResult& r, const expectation::Event& e, const std::vector<Happening>& all) const {
@@ -353,10 +354,8 @@ class FieldVerifier {
     const Expr roots[] = {e.right};
     const std::vector<Expr> below = symbols_of(roots);
     if (left.base != omega || left.exponent == Rational(0) ||
-        std::find(below.begin(), below.end(), omega) != below.end()) {
-      result.message = "A dispersion relation is written ω = … or ω^2 = ….";
-      return;
-    }
+        std::find(below.begin(), below.end(), omega) != below.end())
+      return decide_implicit(s_.expanded(e.left - e.right), *relation, result);
     const Expr root = pow(e.right, Rational(1) / left.exponent);
     std::vector<Expr> parts;
     for (const Expr& part : {relation->re, relation->im})
@@ -367,6 +366,23 @@ class FieldVerifier {
       result.actual = to_plain(lay_out(readable(relation->re, equations_.order), equations_.order)) + " = 0";
     if (!result.passed)
       result.expected = to_plain(lay_out(readable(e.left - e.right, equations_.order), equations_.order)) + " = 0";
+  }
+
+  /// A relation that is not solved for ω: each of its roots ω is one of the equations.
+  void decide_implicit(Expr written, const ComplexExpr& relation, ExpectationResult& result) {
+    const Expr whole = s_.expanded(relation.re.is_zero() ? relation.im : relation.re);
+    const bool complex = !relation.re.is_zero() && !relation.im.is_zero();
+    const auto rest = complex ? std::nullopt : remainder_of_division(whole, written, equations_.model->omega);
+    if (!rest) {
+      result.message = complex ? "Waves decay or grow: the relation is complex, and is compared solved for ω alone."
+                               : "A relation that is not solved for ω is a polynomial in it, and holds it.";
+      return;
+    }
+    say(result, zero_test(*rest), "Waves of the linearized equations obey it.",
+        "Waves of the linearized equations do not obey it.");
+    if (result.passed) return;
+    result.actual = to_plain(lay_out(readable(whole, equations_.order), equations_.order)) + " = 0";
+    result.expected = to_plain(lay_out(readable(written, equations_.order), equations_.order)) + " = 0";
   }
 
   const Model& model_;
@@ -387,6 +403,7 @@ class FieldVerifier {
   std::vector<FieldQuestion> questions_;
   std::vector<Asked> asked_;
   std::vector<AskedEnergy> energy_;
+  std::vector<AskedRest> at_rest_;
   std::vector<std::pair<std::size_t, const expectation::Event*>> moments_;  // line of each
   std::vector<std::pair<std::size_t, const expectation::EventCount*>> counts_;
 };

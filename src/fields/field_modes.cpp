@@ -225,7 +225,12 @@ class ModeProblem {
       for (const Expr& row : rows)
         if (s_.context->depends_on_time(replaced_by_rest(row).id()))
           return refuse_modes_of(equations_, diagnostics_, "Its bodies are driven, so that they have no rest.");
-      if (!find_rest(rows, slopes[0], at) || !is_beside_switches(switches, at)) return false;
+      if (entries_.rest.computed)
+        for (std::size_t i = 0; i < n; ++i)
+          at[system.coordinates[i].q] = entries_.rest.computed->bodies()(static_cast<Eigen::Index>(i));
+      else if (!find_rest(rows, slopes[0], at))
+        return false;
+      if (!is_beside_switches(switches, at)) return false;
     }
     return add_linearized(slopes, at);
   }

@@ -125,12 +125,17 @@ bool entries_at_rest(const FieldEquations& equations, DensityEntries& out, std::
                      Diagnostics& diagnostics) {
   if (!entries_of(equations, out, diagnostics)) return false;
   const bool rests = is_rest(equations, out.rest);
-  if (rests && (out.linear || out.have_inertia() || equations.bodies)) return true;
+  if (rests && !equations.bodies && (out.linear || out.have_inertia())) return true;
   std::string why;
-  computed = computed_rest(equations, why);
+  computed = rest_in_numbers(equations, why);
+  if (computed && rests && out.have_inertia() && vanishes(equations, computed->values)) {
+    computed.reset();
+    return true;
+  }
   if (computed) return entries_of(equations, out, diagnostics, computed->finest);
-  if (rests || (out.linear && out.have_inertia())) return true;
-  if (equations.bodies) why = "Bodies take hold of it, and φ = 0 is no rest of it, nor is its start.";
+  // Frequencies of linear fields are the same about every rest.
+  if (out.linear && (rests || out.have_inertia())) return true;
+  if (rests && !equations.bodies) return true;
   return refuse_modes_of(equations, diagnostics, why);
 }
 
@@ -148,6 +153,9 @@ void add_errors_of_rest(const FieldEquations& equations, const ComputedRest& com
 std::string no_small_motions(const SmallMotions& motions) {
   if (!motions.mass.allFinite() || !motions.stiffness.allFinite() || !motions.gyroscopic.allFinite())
     return "A coefficient of its density is infinite, or has no value, somewhere in the domain.";
+  const bool first_order = motions.mass.cwiseAbs().maxCoeff() == 0 && motions.gyroscopic.size() > 0 &&
+                           motions.gyroscopic.cwiseAbs().maxCoeff() > 0;
+  if (first_order) return "Of first order in time it has frequencies where every displacement costs energy.";
   if (!(motions.mass.trace() > 0)) return "No velocity has a positive kinetic energy.";
   if (motions.gyroscopic.size() > 0 && motions.gyroscopic.cwiseAbs().maxCoeff() > 0)
     return "Forces act sideways on velocities, and not every displacement costs energy.";
@@ -197,7 +205,9 @@ bool solve_conservative(const SmallMotions& motions, std::size_t count, std::vec
 /// With N² = M̂ the Hermitian matrix ((−iĜ, N), (N, 0)) has
 /// the eigenvalues μ. As a real symmetric matrix of twice the size it has each of them twice.
 bool solve_gyroscopic(const SmallMotions& motions, std::size_t count, std::vector<double>& out) {
-  if (!motions.stiffness.allFinite() || !motions.mass.allFinite() || !(motions.mass.trace() > 0)) return false;
+  if (!motions.stiffness.allFinite() || !motions.mass.allFinite()) return false;
+  // Of the first order in time: no mass at all, G ċ + K c = 0, as waves of quantum mechanics.
+  if (!(motions.mass.trace() > 0) && motions.mass.cwiseAbs().maxCoeff() > 0) return false;
   const Eigen::LLT<Eigen::MatrixXd> factor(motions.stiffness);
   // Where a displacement costs nothing its pivot is rounding, of either sign.
   constexpr double rounding = 1e-13;

@@ -123,6 +123,24 @@ double StaticSpace::value(const Eigen::VectorXd& c, const FieldJet& jet, double 
   return sum;
 }
 
+bool StaticSpace::has(const FieldJet& jet) const {
+  const auto a = static_cast<std::size_t>(std::find(varied_.begin(), varied_.end(), jet.field) - varied_.begin());
+  for (std::size_t i = 0; a < varied_.size() && i < jet.space.size(); ++i) {
+    const bool smooth = lines_[a][i].space.front().kind() == ElementSpace::Kind::Smooth;
+    if (jet.space[i] > (smooth ? 2 : 1)) return false;
+  }
+  return a < varied_.size();
+}
+
+Eigen::Index StaticSpace::function_at(std::size_t field, double place, bool slope) const {
+  const Line& line = lines_[field][0];
+  std::size_t best = 0;
+  for (std::size_t b = 0; b < line.borders.size(); ++b)
+    if (std::abs(line.borders[b] - place) < std::abs(line.borders[best] - place)) best = b;
+  const ElementSpace& space = line.space.front();
+  return first_[field] + static_cast<Eigen::Index>(slope ? space.slope_at_border(best) : space.value_at_border(best));
+}
+
 void StaticSpace::fit(std::size_t field, const Function& f, Eigen::VectorXd& c) const {
   const Line &x = lines_[field][0], &y = lines_[field][1];
   Eigen::MatrixXd values(x.weight.size(), y.weight.size());

@@ -31,6 +31,10 @@ class StaticSpace {
   /// A derivative of the functions of a field at all points, [points × functions].
   Eigen::MatrixXd table(std::size_t field, const std::vector<int>& space) const;
   double value(const Eigen::VectorXd& c, const FieldJet& jet, double x, double y) const;
+  /// Whether the functions have this derivative: continuous ones the first, smooth ones the second.
+  bool has(const FieldJet& jet) const;
+  /// Of one space variable: the function that is φ at the border of elements next to `place`, or its slope there.
+  Eigen::Index function_at(std::size_t field, double place, bool slope) const;
 
   using Function = std::function<double(double x, double y)>;
   /// Next to a function in the mean square; c of that field alone.

@@ -196,6 +196,34 @@ std::string field_shape_svg(const FieldEquations& equations, const FieldModes& m
   return diagram_svg(out);
 }
 
+std::string field_equilibrium_svg(const FieldEquations& equations, const FieldEquilibrium& rest,
+                                  const FieldPictureOptions& options) {
+  const FieldSystem& s = equations.system();
+  const SpaceVariable& x = s.space.front();
+  const Field& field = s.fields[equations.varied[options.field]];
+  std::vector<double> values = rest.fields[options.field];
+  const bool degrees = options.degrees && to_string(field.dimension) == "rad";
+  for (double& v : values) v *= degrees ? turn_degrees : 1;
+  const std::string unit = degrees ? "°" : shown_unit(field.dimension, options);
+  if (s.space.size() == 2) {
+    FieldMap map;
+    map.title = options.title, map.theme = options.theme, map.width = options.width;
+    map.x_name = x.name, map.x_unit = shown_unit(x.dimension, options);
+    map.y_name = s.space[1].name, map.y_unit = shown_unit(s.space[1].dimension, options);
+    map.value_name = field.name, map.value_unit = unit;
+    map.x = rest.places, map.y = rest.upwards;
+    map.equal_scales = x.dimension == s.space[1].dimension;
+    map.sheets.push_back({"", std::move(values)});
+    return field_map_svg(map);
+  }
+  Diagram out;
+  out.title = options.title, out.theme = options.theme, out.width = options.width;
+  out.x_name = x.name, out.x_unit = shown_unit(x.dimension, options);
+  out.y_name = field.name, out.y_unit = unit;
+  out.curves.push_back({rest.places, std::move(values), 0, false, false});
+  return diagram_svg(out);
+}
+
 std::vector<double> field_values(const FieldRunResult& run, std::size_t row, std::size_t field, int order) {
   const std::size_t count = run.places.size() * std::max<std::size_t>(run.upwards.size(), 1);
   const std::size_t first = (2 * field + static_cast<std::size_t>(order)) * count;

@@ -132,6 +132,11 @@ class FieldComposer {
       out.conserved.push_back({c.name + ": " + c.meaning, {current("t"), shown(c.density), "", ""}, "", ""});
       for (std::size_t x = 0; x < c.fluxes.size(); ++x)
         out.conserved.push_back({"", {current(s_.space[x].name), shown(c.fluxes[x]), "", ""}, "", ""});
+      if (c.source)
+        out.conserved.push_back({"Not conserved: friction and forces make the divergence",
+                                 {layouts::name("Q·E"), shown(c.source), "", ""},
+                                 "",
+                                 ""});
       add_charge(out, static_cast<std::size_t>(&c - found.currents.data()), run);
     }
     add_stress_energy(out, found);
@@ -173,7 +178,26 @@ class FieldComposer {
     }
   }
 
+  /// Fields at rest: what they are worth, and a picture of each.
+  void add_equilibrium(ReportContent& out, const FieldModes& modes) const {
+    const FieldEquilibrium& found = *modes.equilibrium;
+    ReportContent::ModePoint rest;
+    rest.name = "Equilibrium next to the start";
+    rest.stable = found.falling == 0 && found.lowest.value_or(0) > 0;
+    rest.stability = (rest.stable         ? "A minimum of the energy, which is "
+                      : found.falling > 0 ? "No minimum of the energy, which is "
+                                          : "Not decided to second order; the energy is ") +
+                     with_error(found.energy, found.energy_error, "J") + ".";
+    FieldPictureOptions options;
+    options.theme = PlotTheme::Page, options.dimensionless = model_.system.dimensionless, options.width = 320;
+    for (options.field = 0; options.field < found.fields.size(); ++options.field)
+      rest.shapes.push_back({fmt::format("{} at rest", s_.fields[e_.varied[options.field]].name), std::nullopt,
+                             std::nullopt, field_equilibrium_svg(e_, found, options)});
+    out.mode_points.push_back(std::move(rest));
+  }
+
   void add_waves(ReportContent& out, const FieldReportParts& parts) const {
+    if (parts.modes && parts.modes->equilibrium) add_equilibrium(out, *parts.modes);
     if (!parts.dispersion && (!parts.modes || parts.modes->frequencies.empty())) return;
     ReportContent::ModePoint rest;
     rest.name = "Waves and modes about the field at rest";

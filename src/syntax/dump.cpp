@@ -282,6 +282,7 @@ class Dumper {
   void expected_field(const FieldExpectation::Solution& x) { head(expectation_, "solution"), equations(x.fields); }
   void expected_field(const FieldExpectation::Total& x) {
     head(expectation_, "total"), child("density", x.density), child("time", x.time), expected(x.expected);
+    if (x.at_equilibrium) word("at", "equilibrium");
   }
   void expected_field(const FieldExpectation::Current& x) {
     head(expectation_, "current"), child("density", x.density), children("flux", x.fluxes);

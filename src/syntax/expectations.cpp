@@ -171,14 +171,14 @@ expectation::Kind StatementParser::expect_conserved() {
   return conserved;
 }
 
-// equilibrium at θ = 0 is stable,   equilibrium at x = 0.8369151 ± 1e-7, y = 0
+// equilibrium at θ = 0 is stable,   equilibrium at x = 0.8369151 ± 1e-7, y = 0,   equilibrium at u(l/2) = 1 m ± 1e-9
 expectation::Kind StatementParser::expect_equilibrium() {
   next();
   expect("at", "`equilibrium`");
   expectation::Equilibrium equilibrium;
   do {
     expectation::Place place;
-    place.value = assignment();
+    place.value = assignment(true);
     place.tolerance = tolerance(false);
     equilibrium.at.push_back(std::move(place));
   } while (accept(","));

@@ -5,10 +5,12 @@
 /// start, run, output, method, precision, sweep, draw.
 namespace maupertuis::syntax {
 
-StartStatement::Item StatementParser::assignment() {
+StartStatement::Item StatementParser::assignment(bool at_places) {
   StartStatement::Item item;
   item.variable = variable();
-  if (item.variable->kind != Expression::Kind::Name && item.variable->kind != Expression::Kind::Member) {
+  const Expression::Kind kind = item.variable->kind;
+  if (kind != Expression::Kind::Name && kind != Expression::Kind::Member &&
+      !(at_places && kind == Expression::Kind::Call)) {
     fail("E0111", item.variable->span, "expected a coordinate or its velocity before `=`");
   }
   if (peek().is("("))

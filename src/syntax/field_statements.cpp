@@ -31,10 +31,12 @@ void StatementParser::field_items(FieldDeclaration& field) {
   } while (accept(","));
   expect(":", "the field");
   FieldDeclaration::Item& last = field.items.back();
-  if (peek().is("complex"))
+  if (peek().is("complex")) {
     last.kind = {std::string(next().text), previous().span};
-  else
+    if (peek().is("[")) last.unit = bracketed_unit();  // of both parts
+  } else {
     kind_of(last.name, "field", last.kind, last.unit);
+  }
   for (FieldDeclaration::Item& item : field.items) {
     item.kind = last.kind;
     item.unit = last.unit;
@@ -176,7 +178,10 @@ expectation::Kind StatementParser::expect_of_field() {
   if (accept("total")) {
     FieldExpectation::Total total;
     total.density = formula();
-    if (accept("at")) total.time = quantity();
+    if (accept("at")) {
+      total.at_equilibrium = !context_.declarations.contains("equilibrium") && accept("equilibrium");
+      if (!total.at_equilibrium) total.time = quantity();
+    }
     expect("=", "the density");
     total.expected = expected_number();
     return of_field({std::move(total)});

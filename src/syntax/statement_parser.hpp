@@ -100,7 +100,8 @@ class StatementParser : private ExpressionParser {
   void inertia(BodyStatement& body);
   template <class Part>
   Part ended(Part part);
-  StartStatement::Item assignment();
+  /// `at_places`: also of the value of a field at a place, u(l/2) = 1 m.
+  StartStatement::Item assignment(bool at_places = false);
   RunStatement run_length();
   SweepStatement sweep_values();
   PathStatement path_ends();

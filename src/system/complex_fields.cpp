@@ -379,6 +379,14 @@ class RealFields {
       for (const syntax::Equation& one : equations({*e})) push(one);
     } else if (const auto* v = std::get_if<ex::ValueAt>(&s.kind)) {
       push(ex::ValueAt{real(v->subject), v->time, {real(v->expected.value), v->expected.tolerance}});
+    } else if (const auto* at_rest = std::get_if<ex::Equilibrium>(&s.kind)) {
+      ex::Equilibrium both{{}, at_rest->word};
+      for (const ex::Place& place : at_rest->at) {
+        const Parts a = parts(place.value.variable), b = parts(place.value.value);
+        both.at.push_back({{a.re, b.re}, place.tolerance});
+        if (a.im) both.at.push_back({{a.im, or_zero(b.im, place.value.value->span)}, place.tolerance});
+      }
+      push(std::move(both));
     } else if (const auto* f = std::get_if<ex::OfField>(&s.kind)) {
       using said = syntax::FieldExpectation;
       const auto of = [&](auto body) { push(ex::OfField{std::make_shared<const said>(said{std::move(body)})}); };
@@ -387,11 +395,15 @@ class RealFields {
       else if (const auto* x = std::get_if<said::Solution>(&f->said->body))
         of(said::Solution{equations(x->fields)});
       else if (const auto* t = std::get_if<said::Total>(&f->said->body))
-        of(said::Total{real(t->density), t->time, {real(t->expected.value), t->expected.tolerance}});
+        of(said::Total{real(t->density), t->time, {real(t->expected.value), t->expected.tolerance}, t->at_equilibrium});
       else if (const auto* c = std::get_if<said::Current>(&f->said->body)) {
         said::Current current{real(c->density), {}};
         for (const ExpressionPtr& flux : c->fluxes) current.fluxes.push_back(real(flux));
         of(std::move(current));
+      } else if (const auto* w = std::get_if<said::Frequencies>(&f->said->body); w && fields_.count(w->field.text)) {
+        said::Frequencies of_part = *w;  // those of both parts together
+        of_part.field.text += "_r";
+        of(std::move(of_part));
       } else
         push(s.kind);
     } else {

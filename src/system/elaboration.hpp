@@ -260,6 +260,8 @@ bool refuse_without_place(Elaboration& e, Expr value, const syntax::Expression& 
 /// u(3 m)
 Value value_at_place(Elaboration& e, const syntax::Expression& x);
 Expected meaning_of(Elaboration& e, const written::OfField& x, Span line);
+/// equilibrium at u(l/2) = 1 m ± 1e-9, θ = 0: in a model with fields; nothing, kept among the expectations of fields.
+Expected equilibrium_of_fields(Elaboration& e, const written::Equilibrium& x, Span line);
 void check_statement_counts(Elaboration& e);
 /// Parameters that nothing names, definitions that nothing uses.
 void warn_unused(Elaboration& e);

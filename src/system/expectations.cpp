@@ -379,7 +379,7 @@ std::optional<expectation::Place> place_of_equilibrium(Elaboration& e, const wri
   return expectation::Place{std::move(value), *tolerance, unit};
 }
 
-Expected meaning_of(Elaboration& e, const written::Equilibrium& x, Span) {
+Expected meaning_of(Elaboration& e, const written::Equilibrium& x, Span line) {
   const std::string& word = x.word.text;
   const bool known = word.empty() || word == "stable" || word == "unstable" || word == "undecided";
   if (!known)
@@ -387,10 +387,12 @@ Expected meaning_of(Elaboration& e, const written::Equilibrium& x, Span) {
         "E0238", x.word.span, fmt::format("`{}` is no word for the stability of an equilibrium", word),
         "The energy or the eigenvalues prove it stable or unstable, or the linearization does not decide.",
         "Write stable, unstable or undecided.");
+  if (!known) return std::nullopt;
+  if (e.fields) return equilibrium_of_fields(e, x, line);
   written::Point written_point;
   for (const written::Place& place : x.at) written_point.push_back(place.value);
   const auto point = point_of_expectation(e, written_point);
-  if (!point || !known) return std::nullopt;
+  if (!point) return std::nullopt;
   expectation::Equilibrium out;
   out.word = word;
   std::size_t next = 0;  // coordinates and velocities as written, then the velocities that rates ask for

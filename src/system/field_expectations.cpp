@@ -72,6 +72,7 @@ FieldMeaning field_meaning(Elaboration& e, const written_field::Total& x) {
   if (!expected) return std::nullopt;
   out.density = density.scalar();
   out.expected = *expected;
+  out.at_equilibrium = x.at_equilibrium;
   return out;
 }
 
@@ -190,7 +191,33 @@ FieldMeaning field_meaning(Elaboration& e, const written_field::Frequencies& x) 
   return out;
 }
 
+/// E0291 where a velocity is asked for.
+bool refuse_velocity(Elaboration& e, const Value& value, const syntax::Expression& x) {
+  if (value.order == 0) return false;
+  e.diagnostics.error(
+      "E0291", x.span, fmt::format("`{}` is a velocity, and an equilibrium rests", e.texts.slice(x.span)),
+      "Fields that stay what they are have no velocity anywhere.", "Ask for the field, a slope or a coordinate.");
+  return true;
+}
+
 }  // namespace
+
+Expected equilibrium_of_fields(Elaboration& e, const written::Equilibrium& x, Span line) {
+  field_expectation::Equilibrium out;
+  out.word = x.word.text;
+  for (const written::Place& place : x.at) {
+    const syntax::Expression& subject = *place.value.variable;
+    const Value v = evaluate_formula(e, subject, Place{});
+    if (v.poisoned || v.is_vector || refuse_without_place(e, v.scalar(), subject) || refuse_velocity(e, v, subject))
+      return std::nullopt;
+    const std::string name(e.texts.slice(subject.span));
+    const auto expected = expected_number(e, {place.value.value, place.tolerance}, v.dimension, "`" + name + "`");
+    if (!expected) return std::nullopt;
+    out.places.push_back({v.scalar(), name, *expected});
+  }
+  e.fields->expectations.push_back({std::string(e.texts.slice(line)), line, std::move(out)});
+  return std::nullopt;
+}
 
 Expected meaning_of(Elaboration& e, const written::OfField& x, Span line) {
   if (!e.fields) {

@@ -38,11 +38,20 @@ ExitCode write_svg(const PlotCommandOptions& options, const std::string& svg, St
   return study.wrong() ? ExitCode::RunFailed : ExitCode::Fine;
 }
 
+/// What a model without a run has to show: the equilibrium of its fields; nothing where it is φ = 0, or there is none.
+std::optional<FieldEquilibrium> rest_to_draw(const PlotCommandOptions& options, Study& study,
+                                             const FieldEquations& equations) {
+  if (study.model()->experiment.duration || options.run.duration.has_value()) return std::nullopt;
+  Diagnostics unheard;
+  return field_modes(equations, 1, unheard).equilibrium;
+}
+
 /// u(x) at moments, the space-time map, the plane at moments.
 ExitCode plot_fields(const PlotCommandOptions& options, Study& study, Console& console) {
   Json document = json_document("plot");
   document["file"] = options.output;
-  refuse_options_of_motions(options.run, {{"--x", !options.x.empty()}}, study.diagnostics());
+  refuse_options_of_motions(options.run, {{"--x", !options.x.empty()}, {"--at", !options.run.at.empty()}},
+                            study.diagnostics());
   if (options.map && options.curves)
     study.diagnostics().error("E0809", {}, "--map and --curves exclude each other.", {},
                               "Both stand in one picture where neither is given.");
@@ -61,6 +70,12 @@ ExitCode plot_fields(const PlotCommandOptions& options, Study& study, Console& c
   like.degrees = options.picture.degrees, like.theme = options.picture.theme, like.title = options.picture.title;
   const auto pictures = field_pictures_of(study, *equations, options.y, like);
   if (study.wrong()) return finish_usage(console, study, "plot");
+  if (const auto rest = rest_to_draw(options, study, *equations)) {
+    const ExitCode written =
+        write_svg(options, pictures_of_rest(*equations, *rest, pictures), study, document, console);
+    finish(console, study, document);
+    return written;
+  }
   const auto run = run_model(study, settings, FieldMotionOptions{true, true}, console);
   if (!run) return finish(console, study, document);
   const ExitCode written =
