@@ -91,13 +91,8 @@ double FieldMethod::width_of_cell(const FieldEquations& equations, const Cells& 
   return (evaluate(s.expanded(x.to), values) - evaluate(s.expanded(x.from), values)) / cells.front();
 }
 
-/// p + 2 (up to that of the steps) where elements meet, 2p in integrals, p + 1 between, p of a slope. The power 2p of
-/// the elements where they meet is not that of a start: what its nodes leave out of it moves at once.
-int FieldMethod::power_of_waves(const FieldEquations& equations, const FieldQuestion& question,
-                                const Cells& half) const {
-  int power = std::min(2 * order_, static_cast<int>(kOrder));
-  if (question.total) return power;
-  power = std::min(power, order_ + 2);
+bool FieldMethod::stands_on_borders(const FieldEquations& equations, const FieldQuestion& question,
+                                    const Cells& cells) {
   const FieldSystem& s = equations.system();
   Bindings values;
   for (const Parameter& p : equations.model->parameters) values[p.symbol] = p.si_value;
@@ -105,15 +100,28 @@ int FieldMethod::power_of_waves(const FieldEquations& equations, const FieldQues
   const std::vector<Expr> asked = symbols_of({&question.value, 1});
   for (const PlaceValue& place : equations.model->places) {
     if (std::find(asked.begin(), asked.end(), place.symbol) == asked.end()) continue;
-    const FieldJet jet = *s.jet_of(place.jet);
-    if (jet.order() > jet.time) power = std::min(power, order_);
-    for (std::size_t i = 0; i < half.size(); ++i) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
       const double from = number(s.space[i].from), width = number(s.space[i].to) - from;
-      const double cell = (number(place.place[i]) - from) / width * half[i];
-      if (std::abs(cell - std::round(cell)) > 1e-9 * half[i]) power = std::min(power, order_ + 1);
+      const double cell = (number(place.place[i]) - from) / width * cells[i];
+      if (std::abs(cell - std::round(cell)) > 1e-9 * cells[i]) return false;
     }
   }
-  return power;
+  return true;
+}
+
+/// p + 2 (up to that of the steps) where elements meet, 2p in integrals, p + 1 between, p of a slope. The power 2p of
+/// the elements where they meet is not that of a start: what its nodes leave out of it moves at once.
+int FieldMethod::power_of_waves(const FieldEquations& equations, const FieldQuestion& question,
+                                const Cells& half) const {
+  const int power = std::min(2 * order_, static_cast<int>(kOrder));
+  if (question.total) return power;
+  const FieldSystem& s = equations.system();
+  const std::vector<Expr> asked = symbols_of({&question.value, 1});
+  for (const PlaceValue& place : equations.model->places) {
+    if (std::find(asked.begin(), asked.end(), place.symbol) == asked.end()) continue;
+    if (const FieldJet jet = *s.jet_of(place.jet); jet.order() > jet.time) return std::min(power, order_);
+  }
+  return std::min(power, stands_on_borders(equations, question, half) ? order_ + 2 : order_ + 1);
 }
 
 }  // namespace maupertuis

@@ -36,12 +36,19 @@ class FieldMethod {
   /// Of a varied field: whether its slopes are continuous, and its rates follow from its values.
   bool is_smooth(std::size_t field) const { return stiff_ && stiff_->smooth[field]; }
   bool is_first_order(std::size_t field) const { return stiff_ && stiff_->first_order[field]; }
-  /// Waves: `alike`, at places that lie in elements as the place itself does.
-  void look_beside(double width, bool alike) { width_ = width, alike_ = alike; }
+  /// Waves: `alike`, at places that lie in elements as the place itself does, where that is a border of elements of
+  /// both meshes, which are off there by far less than between. `half`: the cells of the coarser.
+  void look_beside(double width, bool alike, Cells half) { width_ = width, alike_ = alike, half_ = std::move(half); }
   bool looks_alike() const { return alike_; }
+  /// Whether that is done for a question.
+  bool looks_alike(const FieldEquations& equations, const FieldQuestion& question) const {
+    return alike_ && stands_on_borders(equations, question, half_);
+  }
   /// Moments at which steps end, since what is given at the sides has other branches from there on.
   void end_steps_at(std::vector<double> moments) { switching_ = std::move(moments); }
   const std::vector<double>& switching() const { return switching_; }
+  /// Whether all places that a question asks about are borders of so many cells.
+  static bool stands_on_borders(const FieldEquations& equations, const FieldQuestion& question, const Cells& cells);
   /// The power of the width of a cell by which an answer is off on two meshes with their steps; `half`: the coarser.
   int power(const FieldEquations& equations, const FieldQuestion& question, const Cells& half) const;
 
@@ -54,6 +61,7 @@ class FieldMethod {
   int order_ = 0;
   double step_ = 0, width_ = 0;  // of the first mesh by collocation
   bool alike_ = false;
+  Cells half_;
   std::vector<double> switching_;
 };
 

@@ -99,7 +99,7 @@ void refuse_infinite_density(const FieldEquations& equations, Diagnostics& diagn
 /// Where a value of smooth elements, or of a wave with a jump in it, is looked at beside its place, in widths of the
 /// first mesh's cells: the error inside an element goes through zero several times, and two meshes agree by chance.
 constexpr double beside[] = {-1, -0.7, -0.4, 0.4, 0.7, 1};
-/// And a value of other waves: at the same place of elements of both meshes.
+/// At the same place of elements of both meshes; of waves, at a border of both alone, where they are off by far less.
 constexpr double beside_alike[] = {-4, -2, 2, 4};
 
 struct OneRun {
@@ -320,6 +320,16 @@ double felt_rounding(FieldMotion& mesh, const FieldMethod& method, const FieldEq
   return out;
 }
 
+/// The answer beside its place.
+void look_around(FieldMotion& mesh, const FieldMethod& method, const FieldEquations& equations,
+                 const FieldQuestion& question, std::vector<double>& out) {
+  const auto look = [&](std::span<const double> shifts) {
+    for (const double shift : shifts) out.push_back(mesh.answer_beside(question, shift * method.width()));
+  };
+  if (method.looks_alike()) look(beside_alike);
+  if (!method.looks_alike(equations, question)) look(beside);
+}
+
 /// On one mesh: with rows and warnings the first, without the others, which are there for the error.
 std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& method, const Cells& cells,
                              const std::vector<FieldQuestion>& questions, const FieldRunOptions& options,
@@ -402,9 +412,7 @@ std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& metho
         if (first && method.is_wave()) out.sizes[i] = size_along(mesh, questions[i], method.width() * cells[0]);
         if (first) out.felt[i] = felt_rounding(mesh, method, equations, questions[i], cells, out.omega);
         out.follows[i] = follows;
-        for (const double shift : method.looks_alike() ? std::span<const double>(beside_alike) : beside)
-          if (method.width() > 0 && !questions[i].total)
-            out.near[i].push_back(mesh.answer_beside(questions[i], shift * method.width()));
+        if (method.width() > 0 && !questions[i].total) look_around(mesh, method, equations, questions[i], out.near[i]);
       }
     if (!rows.empty() && std::binary_search(of_rows.begin(), of_rows.end(), stop) &&
         (out.trajectory.times.empty() || mesh.time() > out.trajectory.times.back()))
@@ -424,6 +432,33 @@ double difference(const OneRun& one, const OneRun& other, std::size_t question) 
   const std::vector<double>&a = one.near[question], &b = other.near[question];
   for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) out = std::max(out, std::abs(a[k] - b[k]));
   return out;
+}
+
+/// `between` of two meshes, or more where a third and the second differ by more than three times what belongs to that;
+/// at most four times, as the third may not follow the wave at all. At a border of elements the third has one too at
+/// the outermost places beside it alone.
+double seen_by_coarser(const OneRun& coarser, const OneRun& coarse, double between, double gain, std::size_t question) {
+  constexpr double beyond = 3, most = 4;
+  const std::vector<double>&a = coarser.near[question], &b = coarse.near[question];
+  double seen = std::abs(coarser.answers[question] - coarse.answers[question]);
+  const bool alike = a.size() == std::size(beside_alike);
+  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k)
+    if (!alike || k == 0 || k + 1 == a.size()) seen = std::max(seen, std::abs(a[k] - b[k]));
+  return std::clamp(seen / (beyond * gain), between, most * between);
+}
+
+/// How far off an answer is, and the power of the width of cells by which it comes nearer; 0: not measured.
+struct AnswerError {
+  double size = std::numeric_limits<double>::infinity(), order = 0;
+};
+
+/// By three meshes, each of `ratio` times the cells of the one before; where the last two differ by more than rounding.
+double measured_order(const OneRun& coarser, const OneRun& coarse, const OneRun& fine, double rounding, double ratio,
+                      std::size_t question) {
+  constexpr double clear = 10;
+  const double first = std::abs(coarser.answers[question] - coarse.answers[question]),
+               second = std::abs(coarse.answers[question] - fine.answers[question]);
+  return second > clear * rounding && first > second ? std::log(first / second) / std::log(ratio) : 0;
 }
 
 /// Of so many parts the cells of the first mesh.
@@ -466,22 +501,26 @@ Rough roughness_of(const FieldEquations& equations, const FieldMethod& method, c
 /// The other meshes, and how far off the answers on the first are.
 ///
 /// Meshes and their steps are off by a power of the width of a cell, but never by less than rounding. Where a third
-/// mesh shows that the difference falls more slowly, by that; where the start breaks, by the first power; where it does
-/// not fit a side, by that of the derivative that jumps, and twice the difference counts. Where slopes are about as
-/// steep as the mesh can follow the difference itself counts, and beyond there is no estimate. Where the mesh follows
-/// the start in part alone, a mesh of twice the cells tells what both others miss. Tails of pulses that do not fit a
-/// side are jumps too, as far as they reach.
-std::vector<double> errors_of(const OneRun& fine, const FieldEquations& equations, FieldMethod& method,
-                              const Cells& cells, const std::vector<FieldQuestion>& questions,
-                              const FieldRunOptions& options, Rough start, Diagnostics& diagnostics) {
-  std::vector<double> out(questions.size(), std::numeric_limits<double>::infinity());
+/// mesh shows that the difference falls more slowly, by that; of waves, which go through zero together at some moments
+/// on two meshes, by what the third and the second differ where that is more, up to four times; where the start breaks,
+/// by the first power; where it does not fit a side, by that of the derivative that jumps, and twice the difference
+/// counts. Where slopes are about as steep as the mesh can follow the difference itself counts, and beyond there is no
+/// estimate. Where the mesh follows the start in part alone, a mesh of twice the cells tells what both others miss.
+/// Tails of pulses that do not fit a side are jumps too, as far as they reach.
+std::vector<AnswerError> errors_of(const OneRun& fine, const FieldEquations& equations, FieldMethod& method,
+                                   const Cells& cells, const std::vector<FieldQuestion>& questions,
+                                   const FieldRunOptions& options, Rough start, Diagnostics& diagnostics) {
+  std::vector<AnswerError> out(questions.size());
   const Cells half = divided(cells, 2), quarter = divided(cells, 4);
   if (!options.errors || questions.empty() || half == cells || fine.passes_by) return out;
   const auto coarse = run_on(equations, method, half, questions, options, {}, false, diagnostics);
   if (!coarse) return out;
   std::optional<OneRun> coarser;
   Diagnostics ignored;  // without the third there is a broader estimate
-  if (!method.is_wave() && cells[0] >= 4)
+  constexpr int least_of_wave = 8;
+  const bool smooth_wave = method.is_wave() && start.how == Rough::No && !start.jump &&
+                           *std::min_element(cells.begin(), cells.end()) >= least_of_wave;
+  if (smooth_wave || (!method.is_wave() && cells[0] >= 4))
     coarser = run_on(equations, method, quarter, questions, options, {}, false, ignored);
   std::optional<OneRun> finer;
   if (start.how != Rough::No) {
@@ -504,9 +543,17 @@ std::vector<double> errors_of(const OneRun& fine, const FieldEquations& equation
       const double seen = coarser ? difference(*coarser, *coarse, i) / difference(*coarse, fine, i) : 2;
       gain = std::isfinite(seen) ? std::min(gain, std::max(seen, 2.0)) : gain;
     }
-    if (finer) out[i] = 2 * difference(*finer, fine, i);
-    const double between = difference(*coarse, fine, i), tail = std::min(2 * between, start.tail * fine.sizes[i]);
-    out[i] = std::max({finer ? out[i] : 0, between / (gain - 1), tail}) + rounding * std::max(fine.felt[i], 1e-300);
+    double between = difference(*coarse, fine, i);
+    // Where the place is no border of the third mesh that is off by far more there.
+    const bool comparable =
+        !method.looks_alike(equations, questions[i]) || method.stands_on_borders(equations, questions[i], quarter);
+    const double felt = rounding * std::max(fine.felt[i], 1e-300);
+    if (coarser && comparable) out[i].order = measured_order(*coarser, *coarse, fine, felt, ratio, i);
+    if (smooth_wave && coarser && comparable && gain > 2)
+      between = seen_by_coarser(*coarser, *coarse, between, gain, i);
+    const double tail = std::min(2 * between, start.tail * fine.sizes[i]),
+                 missed = finer ? 2 * difference(*finer, fine, i) : 0;
+    out[i].size = std::max({missed, between / (gain - 1), tail}) + felt;
   }
   return out;
 }
@@ -535,7 +582,7 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   const Rough start = roughness_of(equations, *method, cells, options, diagnostics);
   if (method->is_wave()) {
     const std::vector<double> borders = even_borders(equations, cells).front();
-    method->look_beside(borders[1] - borders[0], !start.jump);
+    method->look_beside(borders[1] - borders[0], !start.jump, divided(cells, 2));
   }
   std::vector<std::vector<double>> rows;
   if (options.trajectory) rows = places_of_rows(equations, cells, options.least_values);
@@ -554,9 +601,10 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   out.charges = std::move(fine->charges);
   if (!rows.empty()) out.places = rows[0];
   if (rows.size() == 2) out.upwards = rows[1];
-  const std::vector<double> errors =
+  const std::vector<AnswerError> errors =
       errors_of(*fine, equations, *method, cells, questions, options, start, diagnostics);
-  for (std::size_t i = 0; i < questions.size(); ++i) out.answers.push_back({fine->answers[i], errors[i]});
+  for (std::size_t i = 0; i < questions.size(); ++i)
+    out.answers.push_back({fine->answers[i], errors[i].size, errors[i].order});
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;
 }
