@@ -2,6 +2,7 @@
 #include <maupertuis/fields.hpp>
 #include <maupertuis/interrupt_scope.hpp>
 
+#include "fields/noether_ansatz.hpp"
 #include "symbolic/evaluate/field_numbers.hpp"
 #include "symbolic/evaluate/normalize.hpp"
 
@@ -21,47 +22,6 @@ namespace {
 
 using evaluation::FieldNumbers;
 using Scalar = FieldNumbers::Value;
-
-/// One generator of the ansatz: ξ^μ = factor, or η_a = factor.
-struct Generator {
-  bool moves_space = false;
-  std::size_t index = 0;             // μ (space variables, then t), or a
-  Expr factor;                       // 1, t, x, φ_b
-  std::vector<Expr> characteristic;  // [varied]
-};
-
-class Ansatz {
- public:
-  explicit Ansatz(const FieldEquations& equations)
-      : equations_(equations), s_(equations.system()), n_(s_.space.size()) {
-    std::vector<Expr> places{s_.context->number(1), s_.context->time()};
-    for (const SpaceVariable& x : s_.space) places.push_back(x.symbol);
-    for (std::size_t mu = 0; mu <= n_; ++mu)
-      for (const Expr& factor : places) add_motion(mu, factor);
-    for (std::size_t a = 0; a < equations.varied.size(); ++a) {
-      for (const Expr& factor : places) add_shift(a, factor);
-      for (const std::size_t b : equations.varied) add_shift(a, field(b));
-    }
-  }
-  std::vector<Generator> generators;
-
- private:
-  Expr field(std::size_t f) const { return s_.jet_symbol({f, std::vector<int>(n_, 0), 0}); }
-  void add_motion(std::size_t mu, Expr factor) {
-    Generator g{true, mu, factor, {}};
-    for (const std::size_t f : equations_.varied)
-      g.characteristic.push_back(-(factor * s_.total_derivative(field(f), mu)));
-    generators.push_back(std::move(g));
-  }
-  void add_shift(std::size_t a, Expr factor) {
-    Generator g{false, a, factor, std::vector<Expr>(equations_.varied.size(), s_.context->number(0))};
-    g.characteristic[a] = factor;
-    generators.push_back(std::move(g));
-  }
-  const FieldEquations& equations_;
-  const FieldSystem& s_;
-  std::size_t n_;
-};
 
 Expr power_of(const FieldEquations& equations, const std::vector<Expr>& q) {
   Expr sum = equations.system().context->number(0);
@@ -370,66 +330,13 @@ std::optional<std::vector<Expr>> linear_gauge(const FieldEquations& equations, E
   return std::nullopt;
 }
 
-struct NamedCurrent {
-  std::string name, meaning;
-  bool reversed = false;  // −T^0_i is the density of momentum
-};
-
-/// Whether e is below zero wherever it is not zero, as far as random fields tell: |ψ|² with the other sign.
-bool is_nowhere_positive(const FieldEquations& equations, Expr e) {
+/// Q·E on motions, which friction and forces make other than 0; an empty handle where they do not.
+Expr source_of(const FieldEquations& equations, const std::vector<Expr>& q) {
   const FieldSystem& s = equations.system();
-  Bindings values;
-  for (const Parameter& p : equations.model->parameters) values[p.symbol] = p.si_value;
-  const Expr root = s.expanded(e);
-  std::uint64_t seed = 1;
-  bool negative = false;
-  constexpr int points = 24;
-  for (int point = 0; point < points; ++point) {
-    for (const Expr& symbol : symbols_of({&root, 1}))
-      if (s.jet_of(symbol) || symbol.role() == Role::Time ||
-          std::any_of(s.space.begin(), s.space.end(), [&](const SpaceVariable& x) { return x.symbol == symbol; }))
-        seed = evaluation::mix(seed), values[symbol] = static_cast<double>(seed % 2001) / 1000 - 1;
-    const double value = evaluate(root, values);
-    if (!(value <= 0)) return false;
-    negative = negative || value < 0;
-  }
-  return negative;
-}
-
-NamedCurrent name_of(const FieldEquations& equations, const std::vector<Generator>& g,
-                     const std::vector<std::size_t>& support) {
-  const FieldSystem& s = equations.system();
-  const std::size_t n = s.space.size();
-  const Generator& first = g[support[0]];
-  const auto variable = [&](std::size_t mu) { return mu == n ? std::string("t") : s.space[mu].name; };
-  const auto field = [&](std::size_t a) { return s.fields[equations.varied[a]].name; };
-  std::vector<const Generator*> motions, shifts;
-  for (const std::size_t i : support) (g[i].moves_space ? motions : shifts).push_back(&g[i]);
-  if (motions.size() == 1 && motions[0]->factor.is_one() && shifts.empty())
-    return motions[0]->index == n ? NamedCurrent{"energy", "translations in time"}
-                                  : NamedCurrent{"momentum along " + variable(motions[0]->index),
-                                                 "translations along " + variable(motions[0]->index), true};
-  if (motions.size() == 2) {
-    const std::size_t a = motions[0]->index, b = motions[1]->index;
-    if (a < n && b < n)
-      return {"angular momentum", fmt::format("rotations in the plane of {} and {}", variable(a), variable(b))};
-    const auto moves_by = [&](std::size_t mu) { return mu == n ? s.context->time() : s.space[mu].symbol; };
-    if (a != b && motions[0]->factor == moves_by(b) && motions[1]->factor == moves_by(a))
-      return {"boost along " + variable(std::min(a, b)), "motions at constant speed"};
-  }
-  if (motions.size() == 1 && motions[0]->index < n && motions[0]->factor.role() == Role::Time &&
-      motions[0]->factor.is_symbol())
-    return {"boost along " + variable(motions[0]->index), "motions at constant speed"};
-  if (!motions.empty() && motions.size() >= n) return {"dilation", "a change of scale"};
-  if (motions.empty() && shifts.size() == 1 && !s.jet_of(first.factor))
-    return {"shift of " + field(first.index),
-            field(first.index) + " + ε" +
-                (first.factor.is_one() ? std::string() : " " + to_plain(lay_out(first.factor, equations.order)))};
-  if (motions.empty() && shifts.size() == 2)
-    return {"charge",
-            fmt::format("rotations of {} and {} into each other", field(shifts[0]->index), field(shifts[1]->index))};
-  if (motions.empty()) return {"inner symmetry", "changes of the fields alone"};
-  return {"symmetry", "motions of space and time with a change of the fields"};
+  Expr sum = s.context->number(0);
+  for (std::size_t a = 0; a < q.size(); ++a)
+    sum = sum + q[a] * s.expanded(equations.euler[a] + equations.residuals[a]);
+  return vanishes_identically(sum) ? Expr{} : sum;
 }
 
 std::optional<FieldCurrent> current_of(const FieldEquations& equations, const std::vector<Generator>& generators,
@@ -452,9 +359,10 @@ std::optional<FieldCurrent> current_of(const FieldEquations& equations, const st
   std::vector<Expr> j;
   for (std::size_t mu = 0; mu <= n; ++mu) j.push_back(k[mu] + (*rest)[mu] - b[mu]);
   FieldCurrent out;
-  const NamedCurrent named = name_of(equations, generators, support);
-  const bool inner =
-      std::none_of(support.begin(), support.end(), [&](std::size_t i) { return generators[i].moves_space; });
+  std::vector<const Generator*> parts;
+  for (const std::size_t i : support) parts.push_back(&generators[i]);
+  const NamedCurrent named = name_of(equations, parts);
+  const bool inner = std::none_of(parts.begin(), parts.end(), [](const Generator* g) { return g->moves_space; });
   if (named.reversed || (inner && is_nowhere_positive(equations, j[n]))) {
     for (Expr& x : q) x = -x;
     for (Expr& x : j) x = -x;
@@ -468,6 +376,7 @@ std::optional<FieldCurrent> current_of(const FieldEquations& equations, const st
   out.characteristic = q;
   out.density = j[n];
   out.fluxes.assign(j.begin(), j.begin() + static_cast<std::ptrdiff_t>(n));
+  out.source = source_of(equations, q);
   return out;
 }
 
@@ -481,7 +390,10 @@ FieldCurrents field_currents(const FieldEquations& equations) {
   out.basis =
       "Looked for among symmetries ξ ∂ + η ∂/∂φ with ξ affine in space and time, η affine in space, time and the "
       "fields; each is certified by ∂_μ j^μ = Q·E.";
-  if (forced) out.basis += " Forces and dissipation do not come from the density: what they change is not booked here.";
+  if (forced)
+    out.basis +=
+        " Forces and dissipation do not come from the density. Where they change what flows, the divergence is not 0 on "
+        "motions but what is shown beside the current.";
   const std::vector<Generator> generators = Ansatz(equations).generators;
   const std::vector<std::vector<Expr>> table = conditions(equations, generators);
   PrimeRows prime(table);
