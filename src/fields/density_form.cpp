@@ -44,6 +44,15 @@ struct FormBuilder {
     return true;
   }
 
+  /// 𝒟 of u_txx.
+  bool damps_bending(std::size_t a) const {
+    const std::vector<Expr> jets = s.jets_in(dissipation);
+    return std::any_of(jets.begin(), jets.end(), [&](const Expr& symbol) {
+      const FieldJet jet = *s.jet_of(symbol);
+      return jet.field == equations.varied[a] && jet.time == 1 && jet.order() == 3;
+    });
+  }
+
   void slots() {
     std::vector<Expr> all{density, dissipation};
     for (const Expr& f : s.forces)
@@ -59,7 +68,7 @@ struct FormBuilder {
     // A field whose u_tx has a kinetic energy has slopes of its own too: its highest derivatives are those of a beam.
     for (std::size_t a = 0; a < n; ++a)
       for (const bool rate : {false, true})
-        for (int order = 0; order <= (out.smooth[a] && !rate ? 2 : 1); ++order)
+        for (int order = 0; order <= (out.smooth[a] && (!rate || damps_bending(a)) ? 2 : 1); ++order)
           for (int along_y = 0; along_y <= (directions() > 1 ? order : 0); ++along_y) {
             const std::array<int, 2> space{order - along_y, along_y};
             out.slots.push_back({a, space, rate, false, jet(a, space, rate)});
@@ -76,11 +85,9 @@ struct FormBuilder {
       if (slot.rate) {
         energy.push_back(slot.jet * e);
       } else {
-        if (slot.order() < 2) {
-          const Expr friction = differentiate(dissipation, jet(slot.field, slot.space, true));
-          out.damps = out.damps || (slot.order() > 0 && !friction.is_zero());
-          e = e - friction;
-        }
+        const Expr friction = differentiate(dissipation, jet(slot.field, slot.space, true));
+        out.damps = out.damps || (slot.order() > 0 && !friction.is_zero());
+        e = e - friction;
         if (const Expr f = s.forces[equations.varied[slot.field]]; slot.order() == 0 && f) e = e + plain(f);
       }
       out.by_slot.push_back(e);

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
+#include <optional>
 
 /// δ∫ℒ = 0: the field equations, the terms that are left at the boundary, and what is natural there.
 namespace maupertuis {
@@ -95,30 +95,46 @@ class Variation {
   std::vector<std::vector<Expr>> p_, m_;
 };
 
+/// ∂𝒟/∂φ_tJ; an empty handle where 𝒟 does not hold it.
+Expr friction_on(const FieldSystem& s, std::size_t field, std::size_t x, std::optional<std::size_t> y = std::nullopt) {
+  FieldJet rate{field, std::vector<int>(s.space.size(), 0), 1};
+  ++rate.space[x];
+  if (y) ++rate.space[*y];
+  const Expr out = differentiate(s.dissipation, s.jet_symbol(rate));
+  return out.is_zero() ? Expr{} : out;
+}
+
 Expr residual_of(const FieldSystem& s, std::size_t field, Expr euler) {
   Expr out = -euler;
   if (s.dissipation) {
     const FieldJet velocity{field, std::vector<int>(s.space.size(), 0), 1};
     std::vector<Expr> parts{differentiate(s.dissipation, s.jet_symbol(velocity))};
-    for (std::size_t x = 0; x < s.space.size(); ++x) {  // internal friction: 𝒟 of u_tx
-      FieldJet strain = velocity;
-      ++strain.space[x];
-      parts.push_back(-s.total_derivative(differentiate(s.dissipation, s.jet_symbol(strain)), x));
+    for (std::size_t x = 0; x < s.space.size(); ++x) {  // internal friction: 𝒟 of u_tx, u_txx, u_txy
+      if (const Expr d = friction_on(s, field, x)) parts.push_back(-s.total_derivative(d, x));
+      for (std::size_t y = x; y < s.space.size(); ++y)
+        if (const Expr d = friction_on(s, field, x, y))
+          parts.push_back(s.total_derivative(s.total_derivative(d, x), y));
     }
     out = out + s.context->sum(parts);
   }
   return s.forces[field] ? out - s.forces[field] : out;
 }
 
-/// Internal friction 𝒟(φ_tx) acts at an end as well: p − ∂𝒟/∂φ_tx is what is left there.
+/// Internal friction acts at an end as well: p − ∂𝒟/∂φ_tx + D_x ∂𝒟/∂φ_txx is what is left there, and m − ∂𝒟/∂φ_txx.
 void add_friction_at_ends(FieldEquations& out) {
   const FieldSystem& s = out.model->system;
   if (!s.dissipation) return;
   for (NaturalCondition& n : out.natural) {
-    if (n.moment) continue;
-    FieldJet strain{n.field, std::vector<int>(s.space.size(), 0), 1};
-    ++strain.space[n.along];
-    n.value = n.value - differentiate(s.dissipation, s.jet_symbol(strain));
+    const Expr bending = friction_on(s, n.field, n.along, n.along);
+    if (n.moment) {
+      if (bending) n.value = n.value - bending;
+      continue;
+    }
+    if (const Expr d = friction_on(s, n.field, n.along)) n.value = n.value - d;
+    if (bending) n.value = n.value + s.total_derivative(bending, n.along);
+    for (std::size_t y = 0; y < s.space.size(); ++y)
+      if (y != n.along)
+        if (const Expr twist = friction_on(s, n.field, n.along, y)) n.value = n.value + s.total_derivative(twist, y);
   }
 }
 

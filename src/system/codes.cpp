@@ -580,7 +580,8 @@ constexpr CodeEntry kEntries[] = {
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u u'' - 1/2 T u_x^2\n",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},
     {"E0283", "a derivative above the second in a density",
-     "Densities hold derivatives up to the second: beams, plates, dispersive waves.",
+     "Densities hold derivatives up to the second: beams, plates, dispersive waves. A dissipation density holds rates "
+     "of these, u_txx of what bends.",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\nparam a = "
      "1 N m^2\ndensity += a u_x u_xxx\n",
      "field u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N\ndensity = 1/2 ρ u'^2 - 1/2 T u_x^2\n"},

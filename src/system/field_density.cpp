@@ -25,8 +25,11 @@ bool refuse_values_at_places(Elaboration& e, Expr value, const Expression& x) {
   return false;
 }
 
+/// Whether a jet is one of friction on what bends: the rate of a second derivative in space.
+bool is_rate_of_bending(const FieldJet& jet) { return jet.time == 1 && jet.order() == 3; }
+
 /// E0282, E0283 and E0299 for what a density cannot hold; `time` and `space`: derivatives that it may hold.
-bool check_jets(Elaboration& e, Expr value, const Expression& x, int time, int space) {
+bool check_jets(Elaboration& e, Expr value, const Expression& x, int time, int space, bool friction = false) {
   if (refuse_values_at_places(e, value, x)) return false;
   for (const Expr& symbol : system_of(e).jets_in(value)) {
     const FieldJet jet = *system_of(e).jet_of(symbol);
@@ -40,9 +43,10 @@ bool check_jets(Elaboration& e, Expr value, const Expression& x, int time, int s
           "Write it with first derivatives in time.");
       return false;
     }
-    if (jet.order() <= space) continue;
+    if (jet.order() <= space || (friction && is_rate_of_bending(jet))) continue;
     e.diagnostics.error("E0283", x.span, fmt::format("`{}` stands in the density", system_of(e).jet_name(jet)),
-                        "A density holds derivatives up to the second.",
+                        friction ? "A dissipation density holds rates of derivatives in space up to the second."
+                                 : "A density holds derivatives up to the second.",
                         "Name what is differentiated as a field of its own.");
     return false;
   }
@@ -60,6 +64,31 @@ bool check_real(Elaboration& e, const syntax::DensityText& s, const Dimension& d
       fmt::format("Its imaginary part is {}; an action is a real number.", to_plain(imaginary, ReadingOrder{})),
       "Write for example i/2 (conj(ψ) ψ' - ψ conj(ψ')) in the place of i conj(ψ) ψ'.");
   return false;
+}
+
+}  // namespace
+
+namespace {
+
+/// E0283 for 𝒟 of u_txx where the density holds no u_xx: no moment is there that it could damp.
+void refuse_friction_without_bending(Elaboration& e, Span span) {
+  const FieldSystem& system = system_of(e);
+  const std::vector<Expr> jets = system.jets_in(system.density);
+  for (const Expr& symbol : system.jets_in(system.dissipation)) {
+    const FieldJet rate = *system.jet_of(symbol);
+    if (!is_rate_of_bending(rate)) continue;
+    const bool bends = std::any_of(jets.begin(), jets.end(), [&](const Expr& one) {
+      const FieldJet jet = *system.jet_of(one);
+      return jet.field == rate.field && jet.time == 0 && jet.order() == 2;
+    });
+    if (bends) continue;
+    e.diagnostics.error("E0283", span, fmt::format("`{}` stands in the dissipation density", system.jet_name(rate)),
+                        fmt::format("The density holds no second derivative of {} in space: what does not bend has no "
+                                    "moment that friction could damp.",
+                                    system.fields[rate.field].name),
+                        "Give the density a bending energy, or damp u_tx.");
+    return;
+  }
 }
 
 }  // namespace
@@ -87,7 +116,7 @@ void densities(Elaboration& e) {
     if (v.poisoned) return;
     const Expr value = drives_as_formulas(e, v.scalar());
     if (s.imaginary && !check_real(e, s, dimension)) return;
-    if (check_jets(e, value, *s.value, 1, 2)) parts[s.dissipation].push_back(value);
+    if (check_jets(e, value, *s.value, 1, 2, s.dissipation)) parts[s.dissipation].push_back(value);
   });
   if (!first[0]) {
     if (!e.diagnostics.has_errors())  // else it was lost with a mistake of its own
@@ -101,6 +130,7 @@ void densities(Elaboration& e) {
   system.density_span = *first[0];
   system.density = sum_of(parts[0], e.context);
   if (first[1]) system.dissipation = sum_of(parts[1], e.context);
+  if (first[1] && !parts[0].empty()) refuse_friction_without_bending(e, *first[1]);
   for (const Field& f : system.fields) {
     if (f.given) continue;
     bool stands = false;
