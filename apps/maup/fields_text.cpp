@@ -135,9 +135,11 @@ std::vector<FormulaLine> field_lines(Study& study, bool with_steps) {
       out.push_back(
           line_of(layouts::symbol(i.symbol), field_layout(s, lay_out(i.value, order)), "Field equations", ""));
   }
-  for (const NaturalCondition& n : equations.natural)
+  for (const NaturalCondition& n : equations.natural) {
     out.push_back(
         line_of(shown(equations, n.value), zero(), "Natural boundary conditions", where_natural(equations, n)));
+    out.back().declared = "natural";  // as `expect` has it
+  }
   add_coupled_lines(equations, out);
   return out;
 }
@@ -349,7 +351,9 @@ std::string currents_text(Study& study) {
   const FieldEquations& equations = equations_of(study);
   const FieldSystem& s = equations.system();
   const FieldCurrents found = field_currents(equations);
-  std::string out = "Conservation laws ∂_t j^t + ∂_i j^i = Q·E\n";
+  const bool broken = std::any_of(found.currents.begin(), found.currents.end(),
+                                  [](const FieldCurrent& c) { return static_cast<bool>(c.source); });
+  std::string out = std::string(broken ? "Balance laws" : "Conservation laws") + " ∂_t j^t + ∂_i j^i = Q·E\n";
   for (const FieldCurrent& c : found.currents) {
     out += fmt::format("\n{}: {}\n  j^t = {}\n", c.name, c.meaning, plain_of(equations, c.density));
     for (std::size_t x = 0; x < c.fluxes.size(); ++x)
@@ -357,6 +361,10 @@ std::string currents_text(Study& study) {
     std::string q;
     for (const Expr& one : c.characteristic) q += (q.empty() ? "" : ", ") + plain_of(equations, one);
     out += fmt::format("  Q   = {}\n", q);
+    if (c.source)
+      out += fmt::format("  not conserved: Q·E = {} on motions, by friction and forces\n", plain_of(equations, c.source));
+    else if (broken)
+      out += "  conserved all the same: Q·E = 0 on motions\n";
   }
   if (found.currents.empty()) out += "\nNone was found.\n";
   if (const auto tensor = stress_energy(equations, found)) out += tensor_text(equations, *tensor, true);
@@ -378,7 +386,9 @@ Json currents_json(Study& study) {
                                     {"density", plain_of(equations, c.density)},
                                     {"fluxes", fluxes},
                                     {"characteristic", q},
-                                    {"certified", c.certified}});
+                                    {"certified", c.certified},
+                                    {"conserved", !c.source},
+                                    {"source", c.source ? Json(plain_of(equations, c.source)) : Json(0)}});
   }
   document["basis"] = found.basis;
   if (const auto tensor = stress_energy(equations, found)) document["stress_energy"] = tensor_json(equations, *tensor);

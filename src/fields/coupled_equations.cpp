@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 /// Where fields and bodies meet. The variation of the action at a place is −R δu of the bodies and ±B of the density on
@@ -45,13 +46,42 @@ double number_of(const FieldEquations& equations, Expr place, const Bindings& pa
   return evaluate(equations.system().expanded(place), parameters);
 }
 
+/// Whether a condition without symbols holds.
+bool holds(Expr condition) {
+  Context& c = condition.context();
+  const std::array pieces{condition, c.number(1), c.number(0)};
+  return evaluate(c.function(Kind::Piecewise, pieces), {}) == 1;
+}
+
+/// Pieces whose conditions are decided are taken, or left out.
+Expr without_decided_pieces(Expr e) {
+  ExprMap taken;
+  for (const Expr& node : topological_order({&e, 1})) {
+    if (!node.is(Kind::Piecewise)) continue;
+    std::vector<Expr> left;
+    std::size_t i = 0;
+    for (; i + 1 < node.size(); i += 2) {
+      const Expr condition = node[i];
+      if (!symbols_of({&condition, 1}).empty())
+        left.push_back(condition), left.push_back(node[i + 1]);
+      else if (holds(condition))
+        break;
+    }
+    const Expr last = i + 1 < node.size() ? node[i + 1] : node[node.size() - 1];
+    if (left.size() + 1 == node.size()) continue;
+    left.push_back(last);
+    taken.emplace(node, left.size() == 1 ? last : e.context().function(Kind::Piecewise, left));
+  }
+  return taken.empty() ? e : without_decided_pieces(substitute(e, taken));
+}
+
 /// e as it is at a place, in the limit from one side.
 Expr limit_at(const FieldEquations& equations, Expr e, Expr place, int side, const std::vector<DensityBorder>& borders,
               double at) {
   const FieldSystem& s = equations.with_variations;
   for (const DensityBorder& b : borders)
     if (std::abs(b.at - at) <= 1e-12 * (1 + std::abs(at)) && side != 0)
-      e = on_side({&e, 1}, b.switching, b.rising == (side > 0)).front();
+      e = without_decided_pieces(on_side({&e, 1}, b.switching, b.rising == (side > 0)).front());
   ExprMap map{{s.space.front().symbol, place}};
   for (const Expr& symbol : s.jets_in(e)) map[symbol] = jet_at_place(equations, *s.jet_of(symbol), place, side);
   return substitute(e, map);
@@ -151,7 +181,7 @@ Expr jet_at_place(const FieldEquations& equations, const FieldJet& jet, Expr pla
   // Where no moment acts, curvatures do not jump either, nor with them u_tx and u_tt along a path.
   const bool moved = s.context->depends_on_time(place.id()) && !attached_at(equations, {varied, {1}, 0}, place);
   const bool continuous = slopes == 0 || (slopes <= (moved ? 2 : 1) && has_derivative(s, varied, 2));
-  const char* mark = side == 0 || continuous ? "" : side > 0 ? "+" : "-";
+  const char* mark = side == 0 || continuous ? "" : side > 0 ? " + 0" : " - 0";
   const int order = along ? 0 : jet.time;  // u_t(v t+) is a name
   const std::string name = fmt::format("{}({}{})", place_jet_name(s, jet, along), place_text(equations, place), mark);
   return s.context->symbol(name, Role::Coordinate, order);
@@ -300,7 +330,7 @@ std::optional<bool> row_of_bodies(const FieldEquations& equations, Expr differen
     Expr place = p.place.front();
     for (const InterfaceCondition& c : equations.interfaces)
       if (zero_test(c.place - place).verdict == Verdict::Zero) place = c.place;
-    places[p.symbol] = jet_at_place(equations, jet, place, 0);
+    places[p.symbol] = jet_at_place(equations, jet, place, p.side);
   }
   const Expr roots[] = {e};
   bool of_bodies = false;
@@ -376,10 +406,15 @@ CertificateCheck interface_identity(const FieldEquations& equations) {
     if (std::none_of(places.begin(), places.end(), [&](const auto& p) { return p.first == c.place; }))
       places.push_back({c.place, c.end});
   Expr b_along = equations.boundary_terms.front();
-  if (s.dissipation)  // internal friction does virtual work along δφ_x: at an end −∂𝒟/∂φ_tx δφ
-    for (std::size_t a = 0; a < equations.varied.size(); ++a)
-      b_along = b_along - differentiate(s.dissipation, s.jet_symbol({equations.varied[a], {1}, 1})) *
-                              s.jet_symbol({equations.variation_of(a), {0}, 0});
+  if (s.dissipation)  // internal friction does virtual work along δφ_x and δφ_xx, as stresses do
+    for (std::size_t a = 0; a < equations.varied.size(); ++a) {
+      const auto friction = [&](int order) {
+        return differentiate(s.dissipation, s.jet_symbol({equations.varied[a], {order}, 1}));
+      };
+      const Expr eta = s.jet_symbol({equations.variation_of(a), {0}, 0}),
+                 slope = s.jet_symbol({equations.variation_of(a), {1}, 0});
+      b_along = b_along - friction(1) * eta - friction(2) * slope + s.total_derivative(friction(2), 0) * eta;
+    }
   for (const auto& [place, end] : places) {
     const double at = number_of(equations, place, values);
     // A place that moves leaves B^x − X' B^t on each side of its path.
@@ -479,7 +514,7 @@ ReadableForm readable_row(const FieldEquations& equations, Expr row, Expr own) {
 
 namespace {
 
-/// u_x(l+) of a symbol of that name: the field, what it is differentiated by, the place.
+/// u_x(l + 0) of a symbol of that name: ∂u/∂x, and the place.
 Layout place_layout(const FieldEquations& equations, Layout layout) {
   const FieldSystem& s = equations.system();
   const std::string& name = layout.symbol.name();
@@ -493,13 +528,15 @@ Layout place_layout(const FieldEquations& equations, Layout layout) {
     out.text = std::move(text);
     return out;
   };
-  std::string below(static_cast<std::size_t>(layout.symbol.order() + jet->time), 't');
+  Layout partial;
+  partial.shape = Shape::Partial;
+  partial.parts.push_back(layouts::symbol(s.jet_symbol({jet->field, std::vector<int>(s.space.size(), 0), 0})));
+  for (int k = 0; k < layout.symbol.order() + jet->time; ++k) partial.parts.push_back(layouts::name("t"));
   for (std::size_t x = 0; x < s.space.size(); ++x)
-    for (int k = 0; k < jet->space[x]; ++k) below += s.space[x].name;
-  const Layout field = layouts::symbol(s.jet_symbol({jet->field, std::vector<int>(s.space.size(), 0), 0}));
+    for (int k = 0; k < jet->space[x]; ++k) partial.parts.push_back(layouts::symbol(s.space[x].symbol));
   Layout typeset;
   typeset.shape = Shape::Row;
-  typeset.parts.push_back(below.empty() ? field : layouts::indexed(field, {as_written(below)}));
+  typeset.parts.push_back(partial.parts.size() == 1 ? partial.parts.front() : partial);
   typeset.parts.push_back(as_written(name.substr(open)));
   std::string plain = name + std::string(static_cast<std::size_t>(layout.symbol.order()), '\'');
   return layouts::labelled(std::move(plain), std::move(typeset));

@@ -30,7 +30,7 @@ double FieldMotion::answer_at_places(Expr value, double shift) const {
   for (const PlaceValue& place : equations_.model->places) {
     const FieldJet jet = *s_.jet_of(place.jet);
     const std::size_t a = varied(jet.field);
-    if (a == equations_.varied.size()) {
+    if (a == equations_.varied.size() || place.side != 0) {
       extra[place.symbol] = std::nan("");
       continue;
     }

@@ -524,13 +524,15 @@ Expr SemiDiscrete::discretised(const FieldQuestion& question, Diagnostics& diagn
     std::size_t a = 0;
     while (a < spaces_.size() && equations_->varied[a] != jet.field) ++a;
     const int known = a < spaces_.size() && spaces_[a].kind() == EKind::Smooth ? 2 : 1;
-    if (a < spaces_.size() && jet.space[0] <= known && jet.time <= 2) {
+    if (a < spaces_.size() && place.side == 0 && jet.space[0] <= known && jet.time <= 2) {
       map[place.symbol] = value_at(a, jet.time, jet.space[0], inside(number(place.place[0]) + shift));
       continue;
     }
-    diagnostics.error(
-        "E0508", place.span, fmt::format("not supported yet: the value of `{}` at a place", s.jet_name(jet)),
-        "Runs have the fields, their slopes and, where the density bends, their curvatures at places.", "");
+    diagnostics.error("E0508", place.span,
+                      place.side != 0 ? "not supported yet: a limit from one side in a run"
+                                      : fmt::format("not supported yet: the value of `{}` at a place", s.jet_name(jet)),
+                      "Runs have the fields, their slopes and, where the density bends, their curvatures at places.",
+                      place.side != 0 ? "Ask beside the place." : "");
     return {};
   }
   return substitute(s.expanded(substitute(s.expanded(question.value), map)), moving_);

@@ -51,11 +51,28 @@ bool refuse_moving_place(Elaboration& e, const Expression& x, const FieldJet& je
   return true;
 }
 
+/// u_x(l - 0), u_x(l + 0): from which side; 0: from both.
+int side_of(const Expression& place) {
+  if (place.kind != Expression::Kind::Binary) return 0;
+  const Expression& last = *place.arguments[1];
+  const bool nothing = last.kind == Expression::Kind::Number && last.text == "0";
+  return !nothing ? 0 : place.op == syntax::Operator::Subtract ? -1 : place.op == syntax::Operator::Add ? 1 : 0;
+}
+
+/// E0289 where a limit from one side stands elsewhere than in an equation that is expected.
+bool refuse_side(Elaboration& e, const Expression& x) {
+  if (system_of(e).space.size() == 1 && (e.fields->complete || !e.fields->coupled)) return false;
+  e.diagnostics.error("E0289", x.span, fmt::format("`{}` is a limit from one side", e.texts.slice(x.span)),
+                      "Bodies and forces act on a field at a place, with what it has on both sides of it.",
+                      "Leave the `+ 0` or `- 0` out; `expect equation` may ask for such limits along a line.");
+  return true;
+}
+
 /// The place along one space variable: a constant, or a function of coordinates and t; nothing, and told, where it is
 /// neither.
 std::optional<Expr> place_along(Elaboration& e, const Expression& x, const FieldJet& jet, std::size_t i) {
   const SpaceVariable& along = system_of(e).space[i];
-  const Expression& written = *x.arguments[i];
+  const Expression& written = side_of(*x.arguments[i]) != 0 ? *x.arguments[i]->arguments[0] : *x.arguments[i];
   Place quiet;
   quiet.inline_constants = true;
   const Value read = evaluate_formula(e, written, quiet);
@@ -163,13 +180,16 @@ Value value_at_place(Elaboration& e, const syntax::Expression& x) {
   for (std::size_t i = 0; i < x.arguments.size(); ++i) {
     const std::optional<Expr> place = place_along(e, x, *jet, i);
     if (!place) return Value::poison();
+    out.side = side_of(*x.arguments[i]);
+    if (out.side != 0 && refuse_side(e, x)) return Value::poison();
     out.place.push_back(*place);
   }
   if (e.fields->coupled && !e.fields->complete) return coordinate_at_place(e, x, *jet, out.place.front());
   if (e.fields->coupled)
     if (const auto q = attached_symbol(e, *jet, out.place.front()))
       return Value::of(*q, system.dimension_of(*jet), jet->time);
-  if (!std::all_of(out.place.begin(), out.place.end(), [&](Expr at) { return constant_value(e, at).has_value(); })) {
+  if (out.side == 0 &&
+      !std::all_of(out.place.begin(), out.place.end(), [&](Expr at) { return constant_value(e, at).has_value(); })) {
     e.diagnostics.error("E0289", x.span, "not supported yet: a place that moves where nothing takes hold of the field",
                         "Runs follow the places of masses and forces; other values are asked for at fixed places.",
                         "Ask at the place where the load is at that time.");

@@ -7,12 +7,13 @@ using namespace print_test;
 
 namespace {
 
-/// The lines as statements: equations are expected, names and comments stand as they are.
+/// The lines as statements: equations and natural conditions are expected, names and comments stand as they are.
 std::string as_statements(const std::string& printed) {
   std::string out;
   for (const std::string& line : lines_of(printed)) {
     const bool statement = line.rfind("let ", 0) == 0 || line.rfind("#", 0) == 0;
-    out += (statement ? "" : "expect equation ") + line + "\n";
+    const bool natural = line.rfind("natural ", 0) == 0;
+    out += (statement ? "" : natural ? "expect " : "expect equation ") + line + "\n";
   }
   return out;
 }
@@ -43,6 +44,13 @@ TEST_CASE("every equation of the gallery passes as an expectation of its own mod
       CAPTURE(file);
       expect_equations(file, options);
     }
+}
+
+TEST_CASE("what is printed of the fields of the gallery passes as expectations of its own model") {
+  for (const std::string& file : models_in("models/fields")) {
+    CAPTURE(file);
+    expect_equations(file, {});
+  }
 }
 
 TEST_CASE("every M, h, A and b of the gallery is read back as definitions") {
