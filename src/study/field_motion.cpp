@@ -34,7 +34,7 @@ std::optional<FieldRunResult> Study::field_motion(const SimulationOptions& setti
   options.duration = settings.duration ? *settings.duration : number(model.experiment.duration);
   options.every = settings.output_every ? *settings.output_every : number(model.experiment.output_every);
   options.trajectory = kept.rows;
-  options.errors = false;
+  options.errors = kept.errors;
   options.moments = kept.moments;
   options.currents = kept.currents;
   if (kept.pictured) refine_for_pictures(options, s.space.size() == 1);
@@ -47,8 +47,8 @@ std::optional<FieldRunResult> Study::field_motion(const SimulationOptions& setti
     return std::nullopt;
   }
   const InterruptScope scope = interruptible();
-  auto result = runs_as_one_system(*equations) ? run_coupled(model, *equations, {}, options, found)
-                                               : run_fields(*equations, {}, options, found);
+  auto result = runs_as_one_system(*equations) ? run_coupled(model, *equations, kept.questions, options, found)
+                                               : run_fields(*equations, kept.questions, options, found);
   tell(found);
   return result;
 }

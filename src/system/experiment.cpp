@@ -327,7 +327,8 @@ void override_experiment(Elaboration& e) {
   for (const syntax::ExpressionPtr& formula : o.formulas) {
     Place along_motion;
     along_motion.reactions = true;
-    if (const auto v = number_of(e, *formula, along_motion, "a formula that is asked for"))
+    if (const auto v = number_of(e, *formula, along_motion, "a formula that is asked for");
+        v && !refuse_without_place(e, v->scalar(), *formula))
       e.experiment().asked.push_back({v->scalar(), v->dimension, formula->span});
   }
   override_given_path(e);

@@ -130,11 +130,43 @@ TEST_CASE("simulate shows charges with what flowed out, derive the symmetric ten
   CHECK(maup({"report", folder.write("s.lag", string_text), "-o", page}).code == 0);
   CHECK(contains(read(page), "symmetric stress-energy tensor"));
   CHECK(contains(read(page), "What is left over is at most"));
-  const Json certificate = Json::parse(document.out).at("certificate");
+  const nlohmann::json certificate = nlohmann::json::parse(document.out).at("certificate");
   CHECK(certificate.at("passed") == true);
   REQUIRE(certificate.at("checks").size() >= 2);
-  for (const Json& check : certificate.at("checks")) {
+  for (const nlohmann::json& check : certificate.at("checks")) {
     CHECK(check.at("statement").get<std::string>().size() > 20);
     CHECK(check.at("verdict") == "zero");
+  }
+}
+
+TEST_CASE("formulas at places are printed with their errors and written as columns") {
+  const std::string wave =
+      "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 16 order 4 boundary u = 0\n"
+      "density = 1/2 u'^2 - 1/2 u_x^2\nstart u = sin(pi*x)\nrun 1\n";
+  const Outcome shown = maup({"simulate", "-", "--columns", "u(1/2), u(0.3) - u(0.7)", "--at", "0.25,1"}, wave);
+  CHECK(shown.code == 0);
+  CHECK(contains(shown.out, "at t = 0.25"));
+  CHECK(contains(shown.out, "u(0.3) - u(0.7)"));
+  const auto document = nlohmann::json::parse(
+      maup({"simulate", "-", "--columns", "u(3/16), u_x(1/4)", "--at", "0.25", "--json"}, wave).out);
+  const auto& at = document["at"][0];
+  for (const auto& [name, exact] :
+       {std::pair{"u(3/16)", std::sin(std::acos(-1.0) * 3 / 16) * std::sqrt(0.5)}, {"u_x(1/4)", std::acos(-1.0) / 2}}) {
+    const double off = std::abs(at["values"][name].get<double>() - exact);
+    CHECK(off < 5 * at["errors"][name].get<double>());
+    CHECK(at["errors"][name].get<double>() < 1e-2);
+  }
+  CHECK(at["orders"]["u_x(1/4)"].get<double>() > 3);  // of slopes the power p at least
+  const Folder folder;
+  const std::string csv = folder.path("u.csv"), model = folder.write("u.lag", wave);
+  CHECK(maup({"simulate", model, "--columns", "u(1/2)", "--every", "0.25", "--errors", "-o", csv}).code == 0);
+  const std::string rows = read(csv);
+  CHECK(contains(rows, "u(1/2),error(u(1/2))"));
+  CHECK(times_in(rows, "\n") == 6);
+  for (const std::vector<std::string>& wrong : std::vector<std::vector<std::string>>{
+           {"--at", "1"}, {"--columns", "energy"}, {"--columns", "u(1/2)", "--at", "3"}, {"--errors"}}) {
+    std::vector<std::string> arguments{"simulate", model};
+    arguments.insert(arguments.end(), wrong.begin(), wrong.end());
+    CHECK(maup(arguments).code == 2);
   }
 }

@@ -276,8 +276,12 @@ std::vector<std::size_t> rows_of_frames(const FieldRunResult& run, const Film& f
 ExitCode animate_fields(AnimateOptions o, Study& study, Console& console) {
   Json document = json_document("animate");
   Diagnostics& diagnostics = study.diagnostics();
-  refuse_options_of_motions(
-      o.run, {{"--view", !o.view.empty()}, {"--trail", o.trail != "fading"}, {"--plain", o.plain}}, diagnostics);
+  refuse_options_of_motions(o.run,
+                            {{"--view", !o.view.empty()},
+                             {"--trail", o.trail != "fading"},
+                             {"--plain", o.plain},
+                             {"--at", !o.run.at.empty()}},
+                            diagnostics);
   const SimulationOptions settings = simulation_options(o.run, diagnostics, study.tree());
   Film film = read_options(o, diagnostics);
   if (film.height_given)

@@ -290,7 +290,10 @@ ExitCode report_fields(const ReportOptions& options, Study& study, Console& cons
   Json document = json_document("report");
   const OrbitsOptions& o = options.orbits;
   refuse_options_of_motions(options.run,
-                            {{"--floquet", o.floquet}, {"--lyapunov", o.lyapunov}, {"--section", o.has_section()}},
+                            {{"--floquet", o.floquet},
+                             {"--lyapunov", o.lyapunov},
+                             {"--section", o.has_section()},
+                             {"--at", !options.run.at.empty()}},
                             study.diagnostics());
   const SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
   check_sections(options.sections, study.diagnostics());

@@ -1,5 +1,6 @@
 #include "columns.hpp"
 #include "extended_text.hpp"
+#include "field_table.hpp"
 #include "field_views.hpp"
 #include "fields_text.hpp"
 #include "happenings_text.hpp"
@@ -305,29 +306,55 @@ std::optional<FieldCurrents> currents_of_run(Study& study) {
   return field_currents(equations);
 }
 
+/// --at and --errors of fields are about the formulas of --columns.
+void check_field_columns(const SimulateOptions& options, Diagnostics& diagnostics) {
+  for (const auto& [name, given] : {std::pair{"--at", !options.run.at.empty()}, {"--errors", options.errors}})
+    if (given && options.columns.empty())
+      diagnostics.error("E0809", {}, fmt::format("{} is about the values of --columns, and there are none.", name),
+                        "A field has a value at each place: formulas say at which.",
+                        "Add for example --columns \"u(3 m), u_x(1 m)\".");
+  if (options.errors && (options.output.empty() || options.run.no_errors))
+    diagnostics.error(
+        "E0809", {},
+        options.output.empty() ? "--errors is about the file of -o, and there is none."
+                               : "--errors and --no-errors exclude each other.",
+        "It writes the errors of each row beside it; those of values that are printed stand there anyway.",
+        options.output.empty() ? "Add -o values.csv, or leave --errors out." : "Leave one of them out.");
+}
+
 ExitCode simulate_fields(const SimulateOptions& options, Study& study, Console& console) {
   Json document = json_document("simulate");
   check_output_files({{"-o", options.output, FileKind::Table}, {"--plot", options.plot, FileKind::Picture}},
                      options.model.path, study.diagnostics());
-  refuse_options_of_motions(options.run, {{"--columns", !options.columns.empty()}, {"--errors", options.errors}},
-                            study.diagnostics());
+  refuse_options_of_motions(options.run, {}, study.diagnostics());
+  check_field_columns(options, study.diagnostics());
   const SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
   if (study.wrong()) return finish_usage(console, study, "simulate");
   if (options.precision && *options.precision != "double")
     study.diagnostics().error("E0809", {}, "Fields are run in double.", "The mesh limits the digits, not the numbers.",
                               "Leave --precision out.");
+  FieldTable table(options.columns, study);
   const FieldEquations* equations = study.field_equations();
   if (!equations) return finish(console, study, std::move(document));
+  const bool rows_of_table = !table.empty() && !options.output.empty();
+  const std::vector<FieldQuestion> questions = table.questions(study, settings, rows_of_table);
+  if (study.wrong()) return finish_usage(console, study, "simulate");
   const std::optional<FieldCurrents> currents = currents_of_run(study);
-  const FieldMotionOptions kept{
-      !options.output.empty() || !options.plot.empty(), options.output.empty(), {}, currents ? &*currents : nullptr};
+  FieldMotionOptions kept{(!options.output.empty() && !rows_of_table) || !options.plot.empty(),
+                          options.output.empty() || rows_of_table,
+                          {},
+                          currents ? &*currents : nullptr};
+  kept.questions = questions, kept.errors = !options.run.no_errors;
   const auto run = run_model(study, settings, kept, console);
   if (!run) return finish(console, study, std::move(document));
-  if (!options.output.empty()) write_rows(options.output, run->trajectory, study.diagnostics());
+  if (!options.output.empty())
+    write_rows(options.output, rows_of_table ? table.rows(*run, options.errors) : run->trajectory, study.diagnostics());
   if (!options.plot.empty())
     write_picture(options.plot, pictures_of_fields(study, *equations, *run, {}), study.diagnostics());
-  if (!console.json()) console.print(field_run_text(*run, study.model()->system));
-  const ExitCode told = finish(console, study, field_run_json(*run, study.model()->system));
+  if (!console.json()) console.print(field_run_text(*run, study.model()->system) + table.text(*run));
+  document = field_run_json(*run, study.model()->system);
+  if (!table.empty()) document["at"] = table.json(*run);
+  const ExitCode told = finish(console, study, std::move(document));
   return run->trouble.empty() || told != ExitCode::Fine ? told : ExitCode::RunFailed;
 }
 
