@@ -3,6 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <cstdio>
+
 using namespace cli_test;
 
 namespace {
@@ -121,4 +124,34 @@ TEST_CASE("linearizations and the ends of runs are told in the rates of the mode
   CHECK(std::abs(v * v + 0.15 * w * w - (1 + 0.15 * 0.25)) < 1e-14);
   CHECK(w == final["state"]["θ'"].get<double>());
   CHECK(final["errors"]["v"].get<double>() < 1e-12);
+}
+
+TEST_CASE("a blade and a disk that go round a circle are steady motions in rates") {
+  const std::string blade =
+      "dimensionless\ncoord x, y : number, θ : angle\nparam m = 1, J = 1/2\nT = 1/2 m (x'^2 + y'^2) + 1/2 J θ'^2\n"
+      "constraint x' sin θ - y' cos θ = 0 name blade\nrates v = x' cos θ + y' sin θ, w = θ'\nstart v = 1, w = 2\n";
+  CHECK(maup({"test", "-"}, blade + "expect A in (v, w) at v = 1, w = 2 : ((0, 0), (0, 0)) ± 1e-12\n").code == 0);
+  // The force across is m v w.
+  CHECK(contains(maup({"modes", "-", "--at", "v=1, w=2"}, blade).out, "blade -2"));
+  // 5 r ω1' + 6 r ω2 ω3 - r ω2² cot θ + 4 g cos θ = 0, ω2' = (2 ω3 - ω2 cot θ) ω1, 3 ω3' = 2 ω1 ω2 (Routh).
+  const std::string disk = std::string(PROJECT_DIR) + "/models/leaning_disk.lag";
+  const double theta = 70 * std::acos(-1.0) / 180, r = 0.3, g = 9.81, cot = 1 / std::tan(theta);
+  const double turn = 1.5, w2 = turn * std::sin(theta);
+  const double w3 = (w2 * w2 * r * cot - 4 * g * std::cos(theta)) / (6 * r * w2);
+  char line[700];
+  std::snprintf(line, sizeof line,
+                "\nexpect A in (ω1, ω2, ω3) at θ = 70 deg, ω1 = 0 rad/s, ω2 = %.17g rad/s, ω3 = %.17g rad/s :\n"
+                "    ((0, %.17g, %.17g), (%.17g, 0, 0), (%.17g, 0, 0)) ± 1e-9\n",
+                w2, w3, (2 * w2 * cot - 6 * w3) / 5, -6 * w2 / 5, 2 * w3 - w2 * cot, 2 * w2 / 3);
+  const Outcome circle = maup({"test", "-"}, read(disk) + line);
+  CHECK_MESSAGE(circle.code == 0, circle.out, circle.err);
+  // The wobble, of the rates alone and of the lean: ω² = 47.9029.
+  const double square = (6 * w3 * (2 * w3 - w2 * cot) + 4 * w2 * w2 - 2 * w2 * cot * (2 * w3 - w2 * cot) +
+                         w2 * w2 / std::pow(std::sin(theta), 2) - 4 * g * std::sin(theta) / r) /
+                        5;
+  char wobble[40];
+  std::snprintf(wobble, sizeof wobble, "%.8f", std::sqrt(square));
+  const Outcome modes = maup({"modes", disk, "--at", "θ=70deg, φ'=1.5 rad/s, ψ'=-5.7172259171592269 rad/s"});
+  CHECK(contains(modes.out, std::string(wobble)));
+  CHECK(contains(modes.out, "z' = A z,  z = (x, y, φ, θ, ψ, ω1, ω2, ω3)"));
 }

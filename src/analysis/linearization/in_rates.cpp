@@ -8,7 +8,8 @@
 #include <algorithm>
 
 /// The state in rates is z = (independent positions, σ). To first order z = S x and ż = P x with the rows of σ and of
-/// dσ/dt as measured outputs, so that A = P S⁻¹ holds at any point of a motion, whatever S changes there.
+/// dσ/dt as measured outputs, so that A = P S⁻¹ holds at any point of a motion, whatever S changes there. In a frame
+/// that turns along x is that of the frame; rates that do not turn with it have no constant coefficients, and no rows.
 namespace maupertuis {
 
 ExprVector rates_as_outputs(const MechanicalSystem& system) {
@@ -23,9 +24,7 @@ std::optional<LinearizationInRates> in_rates(const Linearization& l, std::size_t
   const auto f = static_cast<Index>(l.independent.size()), g = static_cast<Index>(l.independent_velocities.size());
   const auto r = static_cast<Index>(rates), at = static_cast<Index>(first);
   const Matrix a = to_eigen(l.a), c = to_eigen(l.measured.c);
-  // In a turning frame x is no longer what the coordinates are.
-  if (rates == 0 || r != g || a.rows() != f + g || c.rows() < at + 2 * r || l.point.turning.rows > 0)
-    return std::nullopt;
+  if (rates == 0 || r != g || a.rows() != f + g || c.rows() < at + 2 * r) return std::nullopt;
   Matrix states = Matrix::Identity(f + g, f + g), changes = a;
   states.bottomRows(g) = c.middleRows(at, r);
   changes.bottomRows(g) = c.middleRows(at + r, r);

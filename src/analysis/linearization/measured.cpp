@@ -90,7 +90,12 @@ std::vector<bool> rough_rows(const PointEquations::Impl& e, const Beside& beside
 /// Beside the motion their coefficients are not constant, even where they are along it.
 std::vector<Index> changing_rows(PointEquations::Impl& e, const OperatingPoint& point) {
   const Matrix turning = to_eigen(point.turning);
-  const Vector shift = to_eigen(point.v) - turning * to_eigen(point.q);
+  const Vector sizes = to_eigen(typical_sizes(*e.system, {}));
+  const double fastest = to_eigen(point.v).cwiseQuotient(sizes).lpNorm<Eigen::Infinity>();
+  Vector shift = to_eigen(point.v) - turning * to_eigen(point.q);
+  constexpr double of_velocities = 1e-12;  // rounding of a steady motion that was solved for
+  for (Index i = 0; i < shift.size(); ++i)
+    if (std::abs(shift[i]) <= of_velocities * fastest * sizes[i]) shift[i] = 0;
   std::vector<Index> out;
   for (const std::uint64_t seed : {4001, 4002}) {
     const OperatingPoint there = random_point(e, seed);

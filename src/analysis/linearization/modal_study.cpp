@@ -205,6 +205,28 @@ std::vector<Translation> seen_in_frame(const OperatingPoint& point, std::vector<
   return translations;
 }
 
+/// Velocities that are not given, as constraints ask for them with those that are; 0 where none does.
+void complete_velocities(PointEquations::Impl& e, const std::vector<bool>& given, MotionState& start) {
+  for (std::size_t i = 0; i < start.v.size(); ++i)
+    if (!given[i]) start.v[i] = 0;
+  const OperatingPoint point{
+      start.t, start.q, start.v, std::vector<double>(e.n), std::vector<double>(e.m), std::vector<double>(e.k)};
+  const RowsAtPoint velocities = e.at(e.velocities, point), positions = e.at(e.positions, point);
+  Matrix by(velocities.value.size() + positions.value.size(), static_cast<Index>(e.n));
+  by << velocities.by_v, positions.by_q;
+  Vector left(by.rows());
+  left << velocities.value, positions.by_q * to_eigen(start.v);
+  const std::vector<double> sizes = typical_sizes(*e.system, start);
+  for (Index i = 0; i < by.cols(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    by.col(i) *= given[k] ? 0 : sizes[k];
+  }
+  if (by.rows() == 0 || !by.allFinite() || !left.allFinite()) return;
+  const Vector move = least_squares(by, -left, 1e-9).x;
+  for (std::size_t i = 0; i < start.v.size(); ++i)
+    if (!given[i]) start.v[i] = sizes[i] * move[static_cast<Index>(i)];
+}
+
 /// Where velocities are given: the steady motion along rotations that has them.
 std::optional<Equilibrium> turning_motion(const PointEquations& equations, const EquilibriumSearch& asked) {
   if (asked.fixed.v.empty() || !equations.autonomous()) return std::nullopt;
@@ -212,6 +234,10 @@ std::optional<Equilibrium> turning_motion(const PointEquations& equations, const
   for (std::size_t i = 0; i < start.v.size(); ++i)
     if (!asked.fixed.v[i]) start.v[i] = 0;
   std::optional<Equilibrium> found = steady_rotation_near(equations, start);
+  if (!found || distance(asked, found->point, equations.system()) > meant) {
+    complete_velocities(equations.impl(), asked.fixed.v, start);
+    found = steady_rotation_near(equations, start);
+  }
   if (!found || distance(asked, found->point, equations.system()) > meant) return std::nullopt;
   found->coordinates_fail = linearize(equations, found->point).singular;
   return found;

@@ -12,16 +12,27 @@
 ///     R_q Ξ q + R_v Ξ v + R_a Ξ a + Ξᵀ R = 0,   φ_q Ξ q = 0,   ψ_q Ξ q + ψ_v Ξ v = 0
 ///
 /// at random points. Of each quaternion three turn about axes of space, p ∘ q / 2, and three about axes of the body,
-/// q ∘ p / 2; of each pair of lengths one turns their plane. What is sought is one of their combinations, with
-/// translations, as Marsden's relative equilibria (Lectures on Mechanics, 1992, ch. 4): q(t) = exp(Ξ t) q₀.
+/// q ∘ p / 2; of each pair of lengths one turns their plane. Where these are none, angles go along with what turns,
+/// Ξ q + d with d along angles: a blade or a disk that rolls in a circle. What is sought is one of their combinations,
+/// with translations, as Marsden's relative equilibria (Lectures on Mechanics, 1992, ch. 4): q(t) = exp(Ξ t) q₀.
 namespace maupertuis {
 namespace {
 
 constexpr int samples = 3, attempts = 40, turns_of_newton = 40;
 constexpr double small = 1e-9, settled = 1e-13, rank_of_rates = 1e-9;
 
+/// q → Ξ q + d.
+struct Generator {
+  Matrix turning;
+  Vector shift;
+
+  explicit Generator(Matrix xi) : turning(std::move(xi)), shift(Vector::Zero(turning.rows())) {}
+  Generator(Matrix xi, Vector d) : turning(std::move(xi)), shift(std::move(d)) {}
+  Vector at(const Vector& q) const { return turning * q + shift; }
+};
+
 struct Generators {
-  std::vector<Matrix> in_space, in_body;
+  std::vector<Generator> in_space, in_body, of_angles;
 };
 
 /// p ∘ q / 2 for p = e_axis, and q ∘ p / 2 for side −1: (w, v) → (−p·v, w p + side p × v) / 2.
@@ -45,8 +56,8 @@ Generators candidates(const MechanicalSystem& system) {
   for (const std::array<std::size_t, 4>& q : quaternion_coordinates(system)) {
     for (const std::size_t i : q) taken[i] = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      out.in_space.push_back(half_turn(n, q, axis, 1));
-      out.in_body.push_back(half_turn(n, q, axis, -1));
+      out.in_space.emplace_back(half_turn(n, q, axis, 1));
+      out.in_body.emplace_back(half_turn(n, q, axis, -1));
     }
   }
   for (std::size_t i = 0; i < n; ++i)
@@ -56,15 +67,43 @@ Generators candidates(const MechanicalSystem& system) {
       Matrix plane = Matrix::Zero(static_cast<Index>(n), static_cast<Index>(n));
       plane(static_cast<Index>(j), static_cast<Index>(i)) = 1;
       plane(static_cast<Index>(i), static_cast<Index>(j)) = -1;
-      out.in_space.push_back(plane);
+      out.in_space.emplace_back(plane);
     }
+  for (std::size_t i = 0; i < n; ++i)
+    if (!taken[i] && system.coordinates[i].dimension.same_as(Dimension{}))  // an angle, or a number that may be one
+      out.of_angles.emplace_back(Matrix::Zero(static_cast<Index>(n), static_cast<Index>(n)),
+                                 Vector::Unit(static_cast<Index>(n), static_cast<Index>(i)));
   return out;
+}
+
+/// Whether each row of the equations has to be the same in every turned place, or their span alone: constraints that
+/// turn into each other, as the two of a disk that rolls, with their multipliers.
+enum class Rows { Alone, OfOneSpan };
+
+/// v that the constraints of velocities allow, next to that of the point.
+void keep_velocities(PointEquations::Impl& e, OperatingPoint& point) {
+  const RowsAtPoint at = e.at(e.velocities, point);
+  if (at.value.size() == 0 || !at.value.allFinite() || !at.by_v.allFinite()) return;
+  const Vector sizes = to_eigen(typical_sizes(*e.system, {}));
+  const Matrix by = at.by_v * sizes.asDiagonal();
+  point.v = to_list(to_eigen(point.v) - Vector(sizes.asDiagonal() * least_squares(by, at.value, rank_of_rates).x));
+}
+
+/// Combinations of rows of the balance, as works by typical sizes, in which no multiplier stands.
+Matrix beside_constraints(const PointEquations::Impl& e, const Matrix& by_multipliers) {
+  const Vector sizes = to_eigen(typical_sizes(*e.system, {}));
+  Matrix works = sizes.asDiagonal() * by_multipliers;
+  for (Index j = 0; j < works.cols(); ++j)
+    if (const double size = works.col(j).norm(); size > 0) works.col(j) /= size;
+  const KernelFirst split = kernel_first(works.transpose(), small);
+  return sizes.asDiagonal() * split.basis.leftCols(split.kernel);
 }
 
 /// What each candidate leaves of the three conditions at one random point, rows by their sizes; no rows where one has
 /// no value there.
-Matrix defects(PointEquations::Impl& e, const std::vector<Matrix>& generators, std::uint64_t seed) {
-  const OperatingPoint point = random_point(e, seed);
+Matrix defects(PointEquations::Impl& e, const std::vector<Generator>& generators, std::uint64_t seed, Rows rows_are) {
+  OperatingPoint point = random_point(e, seed);
+  if (rows_are == Rows::OfOneSpan) keep_velocities(e, point);
   const Vector q = to_eigen(point.q), v = to_eigen(point.v), a = to_eigen(point.a);
   std::vector<Vector> rows;
   for (auto* family : {&e.balance, &e.positions, &e.velocities}) {
@@ -73,9 +112,14 @@ Matrix defects(PointEquations::Impl& e, const std::vector<Matrix>& generators, s
     Vector size = at.by_q.cwiseAbs() * q.cwiseAbs() + at.by_v.cwiseAbs() * v.cwiseAbs() +
                   at.by_a.cwiseAbs() * a.cwiseAbs() + at.value.cwiseAbs();
     for (std::size_t k = 0; k < generators.size(); ++k) {
-      const Matrix& g = generators[k];
-      part.col(static_cast<Index>(k)) = at.by_q * Vector(g * q) + at.by_v * Vector(g * v) + at.by_a * Vector(g * a);
+      const Matrix& g = generators[k].turning;
+      part.col(static_cast<Index>(k)) =
+          at.by_q * generators[k].at(q) + at.by_v * Vector(g * v) + at.by_a * Vector(g * a);
       if (family == &e.balance) part.col(static_cast<Index>(k)) += g.transpose() * at.value;
+    }
+    if (family == &e.balance && rows_are == Rows::OfOneSpan && e.m > 0) {
+      const Matrix along = beside_constraints(e, at.by_multipliers);
+      part = along.transpose() * part, size = along.cwiseAbs().transpose() * size;
     }
     if (!part.allFinite()) return Matrix(0, part.cols());
     for (Index i = 0; i < part.rows(); ++i)
@@ -87,12 +131,12 @@ Matrix defects(PointEquations::Impl& e, const std::vector<Matrix>& generators, s
 }
 
 /// A basis of the combinations that are symmetries.
-std::vector<Matrix> symmetries(PointEquations::Impl& e, const std::vector<Matrix>& generators) {
+std::vector<Generator> symmetries(PointEquations::Impl& e, const std::vector<Generator>& generators, Rows rows_are) {
   if (generators.empty()) return {};
   Matrix all(0, static_cast<Index>(generators.size()));
   int good = 0;
   for (int attempt = 0; attempt < attempts && good < samples; ++attempt) {
-    const Matrix more = defects(e, generators, 3301 + static_cast<std::uint64_t>(attempt));
+    const Matrix more = defects(e, generators, 3301 + static_cast<std::uint64_t>(attempt), rows_are);
     if (more.rows() == 0) continue;
     ++good;
     const Index before = all.rows();
@@ -101,11 +145,15 @@ std::vector<Matrix> symmetries(PointEquations::Impl& e, const std::vector<Matrix
   }
   if (good < samples) return {};
   const KernelFirst split = kernel_first(all, small);
-  std::vector<Matrix> out;
+  std::vector<Generator> out;
   for (Index k = 0; k < split.kernel; ++k) {
-    Matrix sum = Matrix::Zero(generators.front().rows(), generators.front().cols());
-    for (std::size_t g = 0; g < generators.size(); ++g) sum += split.basis(static_cast<Index>(g), k) * generators[g];
-    out.push_back(sum);
+    const Index n = generators.front().shift.size();
+    Generator sum(Matrix::Zero(n, n));
+    for (std::size_t g = 0; g < generators.size(); ++g) {
+      sum.turning += split.basis(static_cast<Index>(g), k) * generators[g].turning;
+      sum.shift += split.basis(static_cast<Index>(g), k) * generators[g].shift;
+    }
+    out.push_back(std::move(sum));
   }
   return out;
 }
@@ -114,7 +162,7 @@ std::vector<Matrix> symmetries(PointEquations::Impl& e, const std::vector<Matrix
 /// λ).
 class TurningState {
  public:
-  TurningState(PointEquations::Impl& e, std::vector<Matrix> rotations, std::vector<Vector> translations)
+  TurningState(PointEquations::Impl& e, std::vector<Generator> rotations, std::vector<Vector> translations)
       : e_(e),
         rotations_(std::move(rotations)),
         translations_(std::move(translations)),
@@ -161,13 +209,13 @@ class TurningState {
   Matrix directions(const Vector& q) const {
     Matrix out(q.size(), static_cast<Index>(rotations_.size() + translations_.size()));
     Index k = 0;
-    for (const Matrix& g : rotations_) out.col(k++) = g * q;
+    for (const Generator& g : rotations_) out.col(k++) = g.at(q);
     for (const Vector& d : translations_) out.col(k++) = d;
     return out;
   }
   Matrix turning(const Vector& rates) const {
     Matrix out = Matrix::Zero(sizes_.size(), sizes_.size());
-    for (std::size_t k = 0; k < rotations_.size(); ++k) out += rates[static_cast<Index>(k)] * rotations_[k];
+    for (std::size_t k = 0; k < rotations_.size(); ++k) out += rates[static_cast<Index>(k)] * rotations_[k].turning;
     constexpr double rounding = 4e-16;  // what combinations of rotations leave where none of them turns
     const double largest = out.size() > 0 ? out.lpNorm<Eigen::Infinity>() : 0;
     for (Index i = 0; i < out.size(); ++i)
@@ -191,7 +239,8 @@ class TurningState {
     const Matrix xi = turning(z.rates), by_rates = directions(z.q);
     const Vector v = to_eigen(point.v);
     Matrix a_by_rates = product(xi, by_rates);
-    for (std::size_t k = 0; k < rotations_.size(); ++k) a_by_rates.col(static_cast<Index>(k)) += rotations_[k] * v;
+    for (std::size_t k = 0; k < rotations_.size(); ++k)
+      a_by_rates.col(static_cast<Index>(k)) += rotations_[k].turning * v;
     const Matrix a_by_q = product(xi, xi);
     System out;
     for (auto* family : {&e_.balance, &e_.positions, &e_.velocities}) {
@@ -254,21 +303,33 @@ class TurningState {
 
   Equilibrium answer(const OperatingPoint& from, const Unknowns& z, double residual) const {
     Equilibrium out{point_of(from, z), false, residual, 0, {}, false, {}};
-    const Matrix xi = turning(z.rates);
-    out.ways = ways(xi, z.q);
+    constexpr double rounding = 1e-15;  // beside the fastest, by typical sizes
+    const double fastest = to_eigen(out.point.v).cwiseQuotient(sizes_).lpNorm<Eigen::Infinity>();
+    for (std::size_t i = 0; i < out.point.v.size(); ++i)
+      if (std::abs(out.point.v[i]) <= rounding * fastest * sizes_[static_cast<Index>(i)]) out.point.v[i] = 0;
+    Generator motion(turning(z.rates));
+    for (std::size_t k = 0; k < rotations_.size(); ++k)
+      motion.shift += z.rates[static_cast<Index>(k)] * rotations_[k].shift;
+    const bool with_angles = motion.shift.squaredNorm() > 0;
+    for (std::size_t k = 0; with_angles && k < translations_.size(); ++k)
+      motion.shift += z.rates[static_cast<Index>(rotations_.size() + k)] * translations_[k];
+    out.ways = ways(motion, z.q);
     return out;
   }
 
-  /// Independent directions Ξ_k q of the rotations that commute with Ξ, the motion itself first.
-  std::vector<Translation> ways(const Matrix& xi, const Vector& q) const {
-    Matrix brackets(xi.size(), static_cast<Index>(rotations_.size()));
+  /// Independent directions Ξ_k q + d_k of the rotations that commute with the motion, that itself first.
+  std::vector<Translation> ways(const Generator& motion, const Vector& q) const {
+    const Matrix& xi = motion.turning;
+    Matrix brackets(xi.size() + q.size(), static_cast<Index>(rotations_.size()));
     for (std::size_t k = 0; k < rotations_.size(); ++k) {
-      const Matrix bracket = product(xi, rotations_[k]) - product(rotations_[k], xi);
-      brackets.col(static_cast<Index>(k)) = Eigen::Map<const Vector>(bracket.data(), bracket.size());
+      const Generator& g = rotations_[k];
+      const Matrix bracket = product(xi, g.turning) - product(g.turning, xi);
+      brackets.col(static_cast<Index>(k)) << Eigen::Map<const Vector>(bracket.data(), bracket.size()),
+          Vector(xi * g.shift - g.turning * motion.shift);
     }
     const KernelFirst split = kernel_first(brackets, small * xi.norm());
     Matrix moved(q.size(), split.kernel + 1);
-    moved.col(0) = xi * q;
+    moved.col(0) = motion.at(q);
     moved.rightCols(split.kernel) = directions(q).leftCols(brackets.cols()) * split.basis.leftCols(split.kernel);
     std::vector<Translation> out;
     Matrix kept(q.size(), 0);  // by typical sizes
@@ -286,7 +347,7 @@ class TurningState {
   }
 
   PointEquations::Impl& e_;
-  std::vector<Matrix> rotations_;
+  std::vector<Generator> rotations_;
   std::vector<Vector> translations_;
   Vector sizes_;
 };
@@ -296,18 +357,20 @@ class TurningState {
 std::optional<Equilibrium> steady_rotation_near(const PointEquations& equations, const MotionState& start) {
   PointEquations::Impl& e = equations.impl();
   const Generators generators = candidates(equations.system());
-  std::vector<Matrix> all = generators.in_space;
+  std::vector<Generator> all = generators.in_space, with_angles = generators.in_space;
   all.insert(all.end(), generators.in_body.begin(), generators.in_body.end());
+  with_angles.insert(with_angles.end(), generators.of_angles.begin(), generators.of_angles.end());
   std::vector<Vector> translations;
   for (const Translation& t : equations.translations()) translations.push_back(to_eigen(t.direction));
   OperatingPoint from{
       start.t, start.q, start.v, std::vector<double>(e.n), std::vector<double>(e.m), equations.inputs_at(start.t)};
   // A body that turns about an axis of space is seen from itself; only where that is no symmetry, or not enough, about
-  // axes of its own as well. Rotations alone first: of a particle that circles, a part of the velocity could as well be
-  // a translation's.
-  for (const std::vector<Matrix>* chosen :
-       std::initializer_list<const std::vector<Matrix>*>{&generators.in_space, &all}) {
-    const std::vector<Matrix> rotations = symmetries(e, *chosen);
+  // axes of its own as well, and only then with angles. Rotations alone first: of a particle that circles, a part of
+  // the velocity could as well be a translation's.
+  for (const std::vector<Generator>* chosen :
+       std::initializer_list<const std::vector<Generator>*>{&generators.in_space, &all, &with_angles}) {
+    const std::vector<Generator> rotations =
+        symmetries(e, *chosen, chosen == &with_angles ? Rows::OfOneSpan : Rows::Alone);
     for (const bool shifted : {false, true}) {
       if (rotations.empty() || (shifted && translations.empty())) continue;
       const TurningState state(e, rotations, shifted ? translations : std::vector<Vector>{});
