@@ -435,15 +435,18 @@ double difference(const OneRun& one, const OneRun& other, std::size_t question) 
 }
 
 /// `between` of two meshes, or more where a third and the second differ by more than three times what belongs to that;
-/// at most four times, as the third may not follow the wave at all. At a border of elements the third has one too at
-/// the outermost places beside it alone.
-double seen_by_coarser(const OneRun& coarser, const OneRun& coarse, double between, double gain, std::size_t question) {
+/// at most four times, as the third may not follow the wave at all. A place at a border of the second is one of the
+/// third too (`aligned`), or else the places two cells of the first beside it are.
+double seen_by_coarser(const OneRun& coarser, const OneRun& coarse, double between, double gain, bool aligned,
+                       std::size_t question) {
   constexpr double beyond = 3, most = 4;
   const std::vector<double>&a = coarser.near[question], &b = coarse.near[question];
-  double seen = std::abs(coarser.answers[question] - coarse.answers[question]);
   const bool alike = a.size() == std::size(beside_alike);
-  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k)
-    if (!alike || k == 0 || k + 1 == a.size()) seen = std::max(seen, std::abs(a[k] - b[k]));
+  double seen = alike && !aligned ? 0 : std::abs(coarser.answers[question] - coarse.answers[question]);
+  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) {
+    const bool far = k == 0 || k + 1 == a.size();  // four cells beside it
+    if (!alike || far == aligned) seen = std::max(seen, std::abs(a[k] - b[k]));
+  }
   return std::clamp(seen / (beyond * gain), between, most * between);
 }
 
@@ -544,13 +547,11 @@ std::vector<AnswerError> errors_of(const OneRun& fine, const FieldEquations& equ
       gain = std::isfinite(seen) ? std::min(gain, std::max(seen, 2.0)) : gain;
     }
     double between = difference(*coarse, fine, i);
-    // Where the place is no border of the third mesh that is off by far more there.
-    const bool comparable =
+    const bool aligned =
         !method.looks_alike(equations, questions[i]) || method.stands_on_borders(equations, questions[i], quarter);
     const double felt = rounding * std::max(fine.felt[i], 1e-300);
-    if (coarser && comparable) out[i].order = measured_order(*coarser, *coarse, fine, felt, ratio, i);
-    if (smooth_wave && coarser && comparable && gain > 2)
-      between = seen_by_coarser(*coarser, *coarse, between, gain, i);
+    if (coarser && aligned) out[i].order = measured_order(*coarser, *coarse, fine, felt, ratio, i);
+    if (smooth_wave && coarser && gain > 2) between = seen_by_coarser(*coarser, *coarse, between, gain, aligned, i);
     const double tail = std::min(2 * between, start.tail * fine.sizes[i]),
                  missed = finer ? 2 * difference(*finer, fine, i) : 0;
     out[i].size = std::max({missed, between / (gain - 1), tail}) + felt;
