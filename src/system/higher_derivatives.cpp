@@ -42,7 +42,9 @@ bool refuse_beside_higher(Elaboration& e) {
   e.diagnostics.error("E0259", place_of_lagrangian(s),
                       fmt::format("an acceleration stands in the Lagrangian of a model with {}", what),
                       "With q'' in L a state is (q, q', q'', q'''), and nothing says yet how the two go together.",
-                      "Write the Lagrangian without q'', or leave the other out.");
+                      x.path ? "Between two ends such a curve is a field at rest: `field v(x)` with its boundary and "
+                               "density, `expect equilibrium` and `maup modes`."
+                             : "Write the Lagrangian without q'', or leave the other out.");
   return true;
 }
 
