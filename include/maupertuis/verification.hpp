@@ -19,6 +19,7 @@ struct ExpectationResult {
   std::string uncertainty;     // of what came out, where its error is known; "no digit is certain"; empty otherwise
   bool beyond_digits = false;  // the tolerance is smaller than that: more is asked for than is known
   std::string message;         // one sentence when it failed, or what was proved and on what ground
+  std::string where;           // "r > 0": an equation that passed holds there alone; empty: everywhere
   std::string pitfall;         // the known mistake whose signature the difference has; empty if none
 };
 

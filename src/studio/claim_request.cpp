@@ -15,10 +15,11 @@ namespace {
 /// For exercises: whether it is right, and which known mistake it is, but not by what it differs.
 Json without_answer(const ExpectationResult& r) {
   const std::string message =
-      r.passed            ? "It follows from Lagrange's equations of this system."
+      !r.where.empty()    ? "It follows from Lagrange's equations of this system where " + r.where + "."
+      : r.passed          ? "It follows from Lagrange's equations of this system."
       : r.pitfall.empty() ? "It does not follow from Lagrange's equations of this system, and it is no known mistake."
                           : "It does not follow from Lagrange's equations of this system.";
-  return {{"passed", r.passed}, {"message", message}, {"pitfall", r.pitfall}, {"text", r.text}};
+  return {{"passed", r.passed}, {"message", message}, {"pitfall", r.pitfall}, {"where", r.where}, {"text", r.text}};
 }
 
 /// Whether both sides are the same formula.

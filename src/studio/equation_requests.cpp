@@ -216,7 +216,7 @@ Json conserved(Desk& desk, const Work& work) {
 Json result_json(const ExpectationResult& r) {
   return {{"line", r.line},       {"text", r.text},         {"claim", r.claim},         {"passed", r.passed},
           {"actual", r.actual},   {"expected", r.expected}, {"tolerance", r.tolerance}, {"uncertainty", r.uncertainty},
-          {"message", r.message}, {"pitfall", r.pitfall}};
+          {"message", r.message}, {"pitfall", r.pitfall},   {"where", r.where}};
 }
 
 std::optional<Verification> verification_of(Study& study, const Interrupt& interrupt) {

@@ -86,6 +86,8 @@ Value value_of_quantity(Elaboration& e, const syntax::Expression& x, const Place
 std::string advice_on_words(Elaboration& e, const syntax::Expression& x, const Dimension& expected);
 /// Whether `x` is a habit of paper that the language does not have (e^x, d/dt θ, 9.81 m/s^2): then it was told.
 bool tell_habit(Elaboration& e, const syntax::Expression& x);
+/// d/dt (r^2 θ'), m d/dt (l θ'): the derivative of what stands in the brackets, d and dt no names of the model.
+std::optional<Value> derivative_of_bracket(Elaboration& e, const syntax::Expression& x, const Place& place);
 /// A sum, a product, a power of values.
 Value add(Elaboration& e, const Value& a, const Value& b, bool subtract, const syntax::Expression& x,
           const Place& place);

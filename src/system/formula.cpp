@@ -38,6 +38,7 @@ Value sum_chain(Elaboration& e, const Expression& x, const Place& place) {
 
 Value binary(Elaboration& e, const Expression& x, const Place& place) {
   if (x.op == Operator::Add || x.op == Operator::Subtract) return sum_chain(e, x, place);
+  if (const auto derivative = derivative_of_bracket(e, x, place)) return *derivative;
   if (tell_habit(e, x)) return Value::poison();
   Place inner = place;
   inner.expected.reset();

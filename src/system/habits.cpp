@@ -7,7 +7,8 @@
 #include <algorithm>
 
 /// Formulas as they stand on paper and do not stand in the model language: e^x, d/dt θ, dθ/dt, 9.81 m/s^2. Each is
-/// told as a whole, with what to write instead; its parts are then no mistakes of their own.
+/// told as a whole, with what to write instead; its parts are then no mistakes of their own. d/dt (r^2 θ') alone is
+/// read: its brackets say what is differentiated.
 namespace maupertuis::elaboration {
 namespace {
 
@@ -78,6 +79,24 @@ bool derivative_operator(Elaboration& e, const Expression& x) {
   if (order == 0 || order_of_word(e, *quotient.arguments[1], "dt") != order) return false;
   tell_derivative(e, cover(d.span, x.arguments[1]->span), *x.arguments[1], order);
   return true;
+}
+
+/// d and the operand of d/dt (…): brackets say how far the derivative reaches, so that it can be read.
+struct BracketedDerivative {
+  const Expression* factor = nullptr;  // what stands before the d; null: nothing
+  const Expression* of = nullptr;
+  int order = 1;
+};
+
+std::optional<BracketedDerivative> bracketed_derivative(Elaboration& e, const Expression& x) {
+  if (!joins(x, Operator::Juxtapose) || !x.arguments[1]->bracketed) return std::nullopt;
+  const Expression& quotient = *x.arguments[0];
+  if (!is_plain_binary(quotient, Operator::Divide)) return std::nullopt;
+  const Expression& before = *quotient.arguments[0];
+  const int order = order_of_word(e, factor_at_end(before), "d");
+  if (order == 0 || order_of_word(e, *quotient.arguments[1], "dt") != order) return std::nullopt;
+  return BracketedDerivative{is_plain_product(before) ? before.arguments[0].get() : nullptr, x.arguments[1].get(),
+                             order};
 }
 
 /// dθ/dt, d²θ/dt²
@@ -157,6 +176,17 @@ bool number_with_unit(Elaboration& e, const Expression& x) {
 }
 
 }  // namespace
+
+std::optional<Value> derivative_of_bracket(Elaboration& e, const Expression& x, const Place& place) {
+  const auto found = bracketed_derivative(e, x);
+  if (!found) return std::nullopt;
+  Place inner = place;
+  inner.expected.reset();
+  const Value rate = time_derivative(e, evaluate_formula(e, *found->of, inner), found->order, x);
+  if (!found->factor) return rate;
+  const Value factor = evaluate_formula(e, *found->factor, inner);
+  return rate.poisoned || factor.poisoned ? Value::poison() : multiply(e, factor, rate, x);
+}
 
 bool tell_habit(Elaboration& e, const Expression& x) {
   return exponential(e, x) || derivative_operator(e, x) || quotient_of_differentials(e, x) || number_with_unit(e, x);

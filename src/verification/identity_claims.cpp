@@ -239,10 +239,32 @@ void IdentityClaims::decide(const expectation::Equation& e, ExpectationResult& r
   result.message = failure(test, {"Along the motion, left side − right side", along().put_in(difference)});
   if (test.verdict != Verdict::Nonzero) return;
   if (!equations_.system->higher.empty()) return;  // its rows are not those that a reader writes
-  auto resemblance = resembled_equation_in_rates(difference, equations_);
-  if (!resemblance) resemblance = resembled_equation(difference, equations_);
+  if (const auto sides = distances_with_signs()) {
+    const Expr on_side = sides->with_signs(difference);
+    if (AlongMotion(sides->equations).vanishes(on_side).verdict == Verdict::Zero) {
+      result.passed = true;
+      result.actual = result.expected;
+      result.where = sides->where;
+      result.message = fmt::format("follows where {}", sides->where);
+      return;
+    }
+    return explain_false(on_side, sides->equations, result);
+  }
+  explain_false(difference, equations_, result);
+}
+
+/// Where the motion starts; nothing where no distance of the energies is |r| in a coordinate.
+std::optional<SignedDistances> IdentityClaims::distances_with_signs() const {
+  Diagnostics told_by_the_run;
+  const auto start = consistent_start(model_, equations_, told_by_the_run);
+  return start ? signed_distances(equations_, start->state) : std::nullopt;
+}
+
+void IdentityClaims::explain_false(Expr difference, const EquationsOfMotion& equations, ExpectationResult& result) {
+  auto resemblance = resembled_equation_in_rates(difference, equations);
+  if (!resemblance) resemblance = resembled_equation(difference, equations);
   if (resemblance) result.message = resemblance->text;
-  result.pitfall = diagnose_claim(difference, equations_, resemblance ? &*resemblance : nullptr);
+  result.pitfall = diagnose_claim(difference, equations, resemblance ? &*resemblance : nullptr);
   if (resemblance && result.pitfall.empty()) result.message += " No known mistake has this signature.";
 }
 

@@ -1,4 +1,6 @@
 #pragma once
+#include "verification/distances.hpp"
+
 #include <maupertuis/along_motion.hpp>
 #include <maupertuis/integrals_through_modes.hpp>
 #include <maupertuis/invariants.hpp>
@@ -29,6 +31,8 @@ class IdentityClaims {
   };
   const AlongMotion& along();
   bool needs_solvable(ExpectationResult& result);
+  std::optional<SignedDistances> distances_with_signs() const;
+  static void explain_false(Expr difference, const EquationsOfMotion& equations, ExpectationResult& result);
   std::string ground(const ZeroTest& test) const;
   std::string failure(const ZeroTest& test, const Identity& identity) const;
   std::string state_text(const Bindings& sample) const;

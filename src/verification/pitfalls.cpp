@@ -1,6 +1,11 @@
 #include "verification/pitfalls.hpp"
 
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/print.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
 
 /// Each function below derives the equations with one classic mistake in them (Goldstein ch. 1, exercises; the usual
 /// list of teachers). A claim that follows from such equations, and not from the right ones, made that mistake.
@@ -17,24 +22,21 @@ class MistakenDerivations {
     }
     kinetic_ = expand_time_derivatives(system_.kinetic_energy());
     potential_ = expand_time_derivatives(system_.potential_energy());
+    others_ = equations_.lagrangian_expanded - kinetic_ + potential_;
   }
 
   std::vector<Pitfall> all() {
     const auto& d = equations_.dissipative_terms;
     const auto& forces = equations_.generalized_forces;
-    const std::vector<TermOrigin> of_kinetic{TermOrigin::Inertia, TermOrigin::Coupling, TermOrigin::Velocity,
-                                             TermOrigin::PrescribedMotion};
     add("the term ∂T/∂q is missing: T depends on the coordinates as well as on the velocities",
         without(gradient(kinetic_, q_), +1), {TermOrigin::Velocity, TermOrigin::PrescribedMotion});
     add("a part of the total time derivative is missing: d/dt ∂L/∂q' acts through q as well as through q'",
         without(transport(), -1), {TermOrigin::Velocity});
+    add_time_derivative_without_t();
     add("V has the wrong sign: L is T − V", lagrangian_with(kinetic_, -potential_), {TermOrigin::Potential});
-    add("T has no factor ½: the kinetic energy of a particle is ½ m v²",
-        lagrangian_with(kinetic_ * Rational(2), potential_), of_kinetic);
-    add("T has a factor ½ too many", lagrangian_with(kinetic_ / Rational(2), potential_), of_kinetic);
-    add("V has a factor 2 too many: the energy of a spring is ½ k x²",
-        lagrangian_with(kinetic_, potential_ * Rational(2)), {TermOrigin::Potential});
-    add("V has a factor ½ too many", lagrangian_with(kinetic_, potential_ / Rational(2)), {TermOrigin::Potential});
+    add_factors();
+    add_parts_left_out();
+    add_generalized_potential_left_out();
     if (any(d)) {
       add("the dissipation was left out: +∂D/∂q' belongs to the left side", without(d, -1), {TermOrigin::Dissipation});
       add("the dissipation has the wrong sign: it enters as +∂D/∂q' on the left side", without(d, -2),
@@ -49,6 +51,7 @@ class MistakenDerivations {
     add("a velocity was written as its coordinate: v² of a pendulum is (l θ')², not (l θ)²",
         coordinates_for_velocities());
     for (const Coordinate& c : system_.coordinates) add_momentum_put_into_lagrangian(c);
+    add_small_angles();
     return std::move(pitfalls_);
   }
 
@@ -94,15 +97,178 @@ class MistakenDerivations {
     return residual;
   }
 
+  /// What L has beside T and V, as a generalized potential, stays.
   ExprVector lagrangian_with(Expr kinetic, Expr potential) const {
-    return with_forces(variational_residual(kinetic - potential, q_));
+    return with_forces(variational_residual(kinetic - potential + others_, q_));
+  }
+
+  /// ∂²L/∂t∂q̇: what d/dt ∂L/∂q̇ has through t alone, where something moves in a prescribed way.
+  void add_time_derivative_without_t() {
+    ExprMap no_accelerations;
+    for (const Coordinate& c : system_.coordinates) no_accelerations.emplace(c.acceleration, context_.number(0));
+    ExprVector terms;
+    const ExprVector by_coordinates = transport();
+    for (std::size_t i = 0; i < q_.size(); ++i) {
+      const Expr whole = expand_time_derivatives(total_time_derivative(equations_.momenta[i]));
+      terms.push_back(substitute(whole, no_accelerations) - by_coordinates[i]);
+    }
+    if (std::all_of(terms.begin(), terms.end(), [](const Expr& e) { return vanishes_identically(e); })) return;
+    add("a part of the total time derivative is missing: ∂L/∂q' holds t as well, and d/dt acts through it: what moves "
+        "in a prescribed way accelerates",
+        without(terms, -1), {TermOrigin::Velocity, TermOrigin::PrescribedMotion, TermOrigin::PrescribedAcceleration});
+  }
+
+  /// Where L is T − V and nothing else acts, twice T and half of V give the same equations.
+  void add_factors() {
+    const std::vector<TermOrigin> of_kinetic{TermOrigin::Inertia, TermOrigin::Coupling, TermOrigin::Velocity,
+                                             TermOrigin::PrescribedMotion, TermOrigin::PrescribedAcceleration};
+    const std::vector<TermOrigin> of_potential{TermOrigin::Potential};
+    const std::string spring = has_spring() ? ": the energy of a spring is ½ k x²" : "";
+    const bool told_apart = any(equations_.dissipative_terms) || any(equations_.generalized_forces) ||
+                            !vanishes_identically(others_) || vanishes_identically(potential_);
+    const ExprVector twice_t = lagrangian_with(kinetic_ * Rational(2), potential_),
+                     half_t = lagrangian_with(kinetic_ / Rational(2), potential_);
+    if (!told_apart) {
+      add("T has no factor ½ (the kinetic energy of a particle is ½ m v²), or V has a factor ½ too many", twice_t);
+      add("V has a factor 2 too many" + spring + (has_spring() ? ";" : ",") + " or T has a factor ½ too many", half_t);
+      return;
+    }
+    add("T has no factor ½: the kinetic energy of a particle is ½ m v²", twice_t, of_kinetic);
+    add("T has a factor ½ too many", half_t, of_kinetic);
+    add("V has a factor 2 too many" + spring, lagrangian_with(kinetic_, potential_ * Rational(2)), of_potential);
+    add("V has a factor ½ too many", lagrangian_with(kinetic_, potential_ / Rational(2)), of_potential);
+  }
+
+  /// A spring of the model, or a term of V such as ½ k x², with k a parameter alone.
+  bool has_spring() const {
+    for (const Link& link : system_.links)
+      if (link.kind == Link::Kind::Spring) return true;
+    const MechanicalSystem& shown = *equations_.shown().system;
+    const Expr potential = expand_time_derivatives(shown.potential_energy());
+    for (const Coordinate& c : shown.coordinates) {
+      const Expr stiffness = expand(differentiate(differentiate(potential, c.q), c.q));
+      if (!stiffness) continue;
+      for (std::size_t k = 0; k < (stiffness.is(Kind::Sum) ? stiffness.size() : 1); ++k) {
+        const Expr term = stiffness.is(Kind::Sum) ? stiffness[k] : stiffness;
+        const std::vector<Expr> symbols = symbols_of({&term, 1});
+        if (symbols.size() == 1 && symbols[0].role() != Role::Coordinate &&
+            vanishes_identically(differentiate(differentiate(term, symbols[0]), symbols[0])))
+          return true;
+      }
+    }
+    return false;
+  }
+
+  /// Parts of T that are easily forgotten: what bodies have of their rotation, or of the motion of their centre of
+  /// mass; or a term ½ I ω² of a formula.
+  void add_parts_left_out() {
+    const MechanicalSystem& shown = *equations_.shown().system;
+    Expr rotation = context_.number(0), motion = context_.number(0);
+    std::size_t parts = 0;
+    for (const EnergyTerm& t : shown.kinetic) {
+      const Expr value = expand_time_derivatives(t.value);
+      for (std::size_t k = 0; k < (value.is(Kind::Sum) ? value.size() : 1); ++k, ++parts) {
+        const Expr term = value.is(Kind::Sum) ? value[k] : value;
+        const bool turns = t.origin == "T" ? holds_moment_of_inertia(shown, term) : t.origin.starts_with("rotation of");
+        (turns ? rotation : motion) = (turns ? rotation : motion) + term;
+      }
+    }
+    const auto values = shown.definition_values();
+    rotation = substitute(rotation, ExprMap(values.begin(), values.end()));
+    motion = substitute(motion, ExprMap(values.begin(), values.end()));
+    constexpr std::size_t most_parts = 50;
+    if (parts > most_parts || vanishes_identically(rotation) || vanishes_identically(motion)) return;
+    add("the energy of rotation is missing from T: a body that turns has ½ I ω² beside the ½ m v² of its centre of "
+        "mass",
+        lagrangian_with(kinetic_ - rotation, potential_));
+    add("the energy of the centre of mass is missing from T: a body that turns has ½ m v² beside its ½ I ω²",
+        lagrangian_with(kinetic_ - motion, potential_));
+  }
+
+  /// A term of T with a parameter, or a `let`, that has the unit of a moment of inertia.
+  static bool holds_moment_of_inertia(const MechanicalSystem& shown, Expr term) {
+    if (shown.dimensionless) return false;
+    const Dimension inertia = dimensions::mass() * dimensions::length() * dimensions::length();
+    const auto has_unit = [&](const auto& list, const Expr& s) {
+      return std::any_of(list.begin(), list.end(),
+                         [&](const auto& one) { return one.symbol == s && one.dimension.same_as(inertia); });
+    };
+    for (const Expr& s : symbols_of({&term, 1}))
+      if (has_unit(shown.parameters, s) || has_unit(shown.definitions, s)) return true;
+    return false;
+  }
+
+  void add_generalized_potential_left_out() {
+    const Expr u = expand_time_derivatives(system_.total_generalized_potential());
+    if (system_.lagrangian_given || u.is_zero()) return;
+    const std::vector<TermOrigin> of_u{TermOrigin::Velocity, TermOrigin::Potential, TermOrigin::PrescribedMotion,
+                                       TermOrigin::PrescribedAcceleration};
+    add("the generalized potential U was left out: L is T − V − U, and U gives a force that depends on velocities",
+        with_forces(variational_residual(equations_.lagrangian_expanded + u, q_)), of_u);
+    add("U has the wrong sign: L is T − V − U",
+        with_forces(variational_residual(equations_.lagrangian_expanded + u * Rational(2), q_)), of_u);
+  }
+
+  /// sin θ as θ and cos θ as 1 throughout, and products of what is small left out.
+  void add_small_angles() {
+    const ExprVector rows = simplified_rows();
+    ExprMap map;
+    std::string first;
+    for (const Expr& node : topological_order(rows)) {
+      if (!node.is(Kind::Sin) && !node.is(Kind::Cos)) continue;
+      const Expr argument = node[0];
+      const std::vector<Expr> symbols = symbols_of({&argument, 1});
+      if (std::none_of(symbols.begin(), symbols.end(), [](Expr s) { return s.role() == Role::Coordinate; })) continue;
+      if (first.empty() && node.is(Kind::Sin))
+        first = fmt::format("{} is written as {}, which holds for small angles only", to_plain(node, equations_.order),
+                            to_plain(argument, equations_.order));
+      map.emplace(node, node.is(Kind::Sin) ? argument : context_.number(1));
+    }
+    if (map.empty()) return;
+    const ExprVector written = substitute(rows, map);
+    add(first.empty() ? "the cosine of a coordinate is written as 1, which holds for small angles only" : first,
+        written);
+    add("the equation is linearized: it holds for small motions only", linearized(rows));
+  }
+
+  /// The left sides with sin² + cos² put together; empty where they are too long to be read.
+  ExprVector simplified_rows() const {
+    constexpr std::size_t most_coordinates = 10;
+    if (q_.size() > most_coordinates) return {};
+    const ExprMatrix mass = mass_matrix(equations_);
+    ExprVector rows;
+    for (std::size_t i = 0; i < q_.size(); ++i) {
+      ExprVector terms;
+      for (const RowTerm& t : row_terms(equations_, mass, i))
+        if (t.origin != TermOrigin::Constraint) terms.push_back(t.value);
+      if (terms.empty()) return {};
+      rows.push_back(context_.sum(terms));
+    }
+    return rows;
+  }
+
+  /// To first order about q = 0, where that is an equilibrium at all times.
+  ExprVector linearized(const ExprVector& rows) const {
+    ExprVector small;
+    ExprMap none;
+    for (const Coordinate& c : system_.coordinates)
+      for (const Expr& s : {c.q, c.velocity, c.acceleration}) small.push_back(s), none.emplace(s, context_.number(0));
+    ExprVector out;
+    for (const Expr& row : rows) {
+      const std::vector<Expr> slopes = gradient(row, small);
+      ExprVector terms{substitute(row, none)};
+      for (std::size_t k = 0; k < small.size(); ++k) terms.push_back(substitute(slopes[k], none) * small[k]);
+      out.push_back(context_.sum(terms));
+    }
+    return out;
   }
 
   ExprVector coordinates_for_velocities() const {
     ExprMap map;
     for (std::size_t i = 0; i < q_.size(); ++i) map.emplace(velocities_[i], q_[i]);
     ExprVector residual;
-    for (const Expr& force : gradient(substitute(kinetic_, map) - potential_, q_)) residual.push_back(-force);
+    const Expr lagrangian = substitute(kinetic_, map) - potential_ + substitute(others_, map);
+    for (const Expr& force : gradient(lagrangian, q_)) residual.push_back(-force);
     return with_forces(residual);
   }
 
@@ -130,7 +296,7 @@ class MistakenDerivations {
   const MechanicalSystem& system_;
   Context& context_;
   ExprVector q_, velocities_;
-  Expr kinetic_, potential_;
+  Expr kinetic_, potential_, others_;  // L = T − V + others
   std::vector<Pitfall> pitfalls_;
 };
 

@@ -176,7 +176,34 @@ class Resembler {
     if (changed.empty() || (!inertia_stands && 2 * changed.size() > terms.size() + 1)) return std::nullopt;
     Finding out{of, "", "", {}, 10 * changed.size() + factor_cost(of.factor)};
     tell(out, changed);
+    if (const auto ratio = ratio_to_inertia(changed, terms)) {
+      out.origins.clear();
+      out.sentence =
+          fmt::format("what stands beside the inertia has a factor {} too many, or the inertia has a factor {}",
+                      ratio->to_string(), (Rational(1) / *ratio).to_string());
+    }
     return out;
+  }
+
+  /// Where all terms but those with accelerations, or only these, have one number before them, the claim says nothing
+  /// of which of the two is wrong.
+  static std::optional<Rational> ratio_to_inertia(const std::vector<std::pair<RowTerm, Rational>>& changed,
+                                                  const std::vector<RowTerm>& terms) {
+    const auto accelerates = [](const RowTerm& t) {
+      return t.origin == TermOrigin::Inertia || t.origin == TermOrigin::Coupling;
+    };
+    const Rational number = changed.front().second;
+    if (std::all_of(changed.begin(), changed.end(),
+                    [](const auto& c) { return c.first.origin == TermOrigin::Velocity; }))
+      return std::nullopt;
+    const bool inertia = accelerates(changed.front().first);
+    for (const auto& [term, factor] : changed)
+      if (factor != number || accelerates(term) != inertia) return std::nullopt;
+    const auto alike =
+        std::count_if(terms.begin(), terms.end(), [&](const RowTerm& t) { return accelerates(t) == inertia; });
+    if (number.is_zero() || number == Rational(-1) || static_cast<std::size_t>(alike) != changed.size())
+      return std::nullopt;
+    return inertia ? Rational(1) / number : number;
   }
 
   /// The number before most terms; among equals that before the own acceleration.
@@ -297,6 +324,7 @@ class Resembler {
       case TermOrigin::Velocity:
         return "a term with velocities";
       case TermOrigin::PrescribedMotion:
+      case TermOrigin::PrescribedAcceleration:
         return "the term from the prescribed motion";
       case TermOrigin::Potential:
         return "a force of the potential";
@@ -320,7 +348,9 @@ class Resembler {
       case TermOrigin::Velocity:
         return fmt::format("d/dt ∂L/∂{0}' − ∂L/∂{0} gives it", q);
       case TermOrigin::PrescribedMotion:
-        return "T has a part without velocities";
+        return fmt::format("T has a part without velocities, and ∂T/∂{} holds it", q);
+      case TermOrigin::PrescribedAcceleration:
+        return fmt::format("∂L/∂{}' holds t, and d/dt acts through it too", q);
       case TermOrigin::Potential:
         return fmt::format("it is in ∂V/∂{}", q);
       case TermOrigin::Dissipation:

@@ -41,7 +41,16 @@ class RowReader {
     const Expr given = system_.lagrangian_given ? at_rest : differentiate(potential, system_.coordinates[row_].q);
     add(TermOrigin::Velocity, rest - at_rest);
     add(TermOrigin::Potential, given);
-    add(TermOrigin::PrescribedMotion, at_rest - given);
+    const Expr accelerated = system_.lagrangian_given ? system_.context->number(Rational(0)) : by_time_alone();
+    add(TermOrigin::PrescribedAcceleration, accelerated);
+    add(TermOrigin::PrescribedMotion, at_rest - given - accelerated);
+  }
+
+  /// ∂/∂t of the momentum at rest: what d/dt has through t alone.
+  Expr by_time_alone() const {
+    const Expr momentum = substitute(expand_time_derivatives(equations_.momenta[row_]), zeros(1));
+    ExprMap resting = zeros(1);
+    return substitute(expand_time_derivatives(total_time_derivative(momentum)), resting);
   }
 
   ExprMap zeros(int order) const {

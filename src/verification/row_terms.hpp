@@ -10,14 +10,15 @@ bool is_short_enough(Expr e);
 
 /// What a term of a derived equation comes from.
 enum class TermOrigin {
-  Inertia,           // M_ii q̈_i
-  Coupling,          // M_ij q̈_j
-  Velocity,          // of T or L, with velocities in it: Coriolis, centrifugal, gyroscopic
-  PrescribedMotion,  // of T, without velocities: the coordinates are measured from something that is moved
-  Potential,         // ∂V/∂q_i
-  Dissipation,       // ∂D/∂q̇_i
-  Force,             // −Q_i
-  Constraint,        // −(Aᵀλ)_i
+  Inertia,                 // M_ii q̈_i
+  Coupling,                // M_ij q̈_j
+  Velocity,                // of T or L, with velocities in it: Coriolis, centrifugal, gyroscopic
+  PrescribedMotion,        // −∂T0/∂q_i, of the part of T without velocities: what q is measured from moves
+  PrescribedAcceleration,  // ∂²L1/∂t∂q̇_i, of the part of L linear in q̇: what q is measured from accelerates
+  Potential,               // ∂V/∂q_i
+  Dissipation,             // ∂D/∂q̇_i
+  Force,                   // −Q_i
+  Constraint,              // −(Aᵀλ)_i
 };
 
 /// One term of the left side of R_i − (Aᵀλ)_i = 0, with q̈ left in.

@@ -239,6 +239,7 @@ export interface ClaimAnswer {
   passed: boolean;
   message: string;
   pitfall: string;
+  where?: string; // "r > 0": it is right there
 }
 export interface ExpectationResult {
   line: number;
@@ -249,6 +250,7 @@ export interface ExpectationResult {
   expected: string;
   message: string;
   pitfall: string;
+  where: string; // "r > 0": it holds there alone
 }
 export interface ExportAnswer {
   name: string;

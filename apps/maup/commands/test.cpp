@@ -20,6 +20,7 @@ struct FileOutcome {
 };
 
 std::string expectation_text(const ExpectationResult& r, const std::string& file) {
+  if (!r.where.empty()) return fmt::format("{}:{}: {} holds where {}\n", file, r.line, r.text, r.where);
   if (r.passed && !r.beyond_digits) return {};
   std::string out = fmt::format("{}:{}: {} {}\n", file, r.line, r.text,
                                 r.passed ? "holds, but asks for more digits than are known" : "fails");
@@ -44,7 +45,8 @@ Json expectation_json(const ExpectationResult& r, const std::string& file) {
           {"uncertainty", r.uncertainty},
           {"beyond_digits", r.beyond_digits},
           {"message", r.message},
-          {"pitfall", r.pitfall}};
+          {"pitfall", r.pitfall},
+          {"where", r.where}};
 }
 
 /// What was decided before an interrupt came does not tell what the whole run would have: nothing is said of such a

@@ -7,12 +7,16 @@ import {exercises, type FileTools} from './files';
 import {signButtons, signsOf} from './signs';
 import type {Storage_} from './storage';
 
-/** Notes before the model ask; those behind it comment on the answer. */
-function notesIn(text: string): {question: string[]; comments: string[]} {
+/** Notes before the model ask; those behind it comment on the answer, and are not in the text that the student sees. */
+function partsOf(text: string): {question: string[]; comments: string[]; asking: string} {
   const begin = text.search(/^(param|coord|let)\b/m),
-    notes = [...text.matchAll(/^note\s+"([^"]*)"/gm)];
+    notes = [...text.matchAll(/^note\s+"([^"]*)"[^\n]*\n?/gm)];
   const of = (before: boolean): string[] => notes.filter(note => note.index < begin === before).map(note => note[1]);
-  return {question: of(true), comments: of(false)};
+  const asking = notes.reduceRight(
+    (left, note) => (note.index < begin ? left : left.slice(0, note.index) + left.slice(note.index + note[0].length)),
+    text,
+  );
+  return {question: of(true), comments: of(false), asking};
 }
 
 /** With a capital and a full stop; a formula that it begins with keeps its letters. */
@@ -85,10 +89,10 @@ export class Exercises {
   private async begin(name: string, title: string, text: string): Promise<void> {
     if (!(await this.files.mayLeave())) return;
     this.current = name;
-    this.study.load({text, name});
-    const {question, comments: said} = notesIn(text),
+    const {question, comments: said, asking} = partsOf(text),
       asked = / motion of ([^.,;]* )?(\S+?)[.,;]/.exec(question.join(' '))?.[2] ?? '',
       coordinate = asked || 'q';
+    this.study.load({text: asking, name});
     const field = h('input', {
       type: 'text',
       id: 'claim',
@@ -202,7 +206,7 @@ export class Exercises {
               ),
         ),
       );
-    verdict.replaceChildren(h('div', {class: 'message right'}, h('p', {class: 'what'}, '✓ Right.')));
+    verdict.replaceChildren(h('div', {class: 'message right'}, h('p', {class: 'what'}, ...prose(answer.where ? `✓ Right where ${answer.where}.` : '✓ Right.'))));
     this.solved.add(name);
     this.storage.setSetting('solved', [...this.solved].join(' '));
     right();

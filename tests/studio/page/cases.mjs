@@ -511,6 +511,8 @@ export const cases = {
       check(`${name}: it asks`, /Find|find/.test(await page.locator('#exercise').innerText()));
       const begins = (await page.locator('#claim').getAttribute('placeholder')).replace(/ =.*/, '');
       check(`${name}: it shows how an answer begins`, right[0].includes(begins), [begins, right]);
+      const text = await page.evaluate(() => document.querySelector('.cm-content').innerText);
+      check(`${name}: no note after the model comments on the answer`, !/^coord[^]*^note/m.test(text), text);
       const told = await claim(wrong[0][0]);
       check(
         `${name}: a wrong claim is told with its pitfall`,

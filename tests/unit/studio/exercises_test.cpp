@@ -63,6 +63,16 @@ TEST_CASE("exercises take the right equations, and name known mistakes without t
   }
 }
 
+TEST_CASE("an answer that is right where a distance is positive says where") {
+  Asked page(
+      "system turntable\nparam m = 1 kg, k = 30 N/m, L0 = 20 cm, Ω = 3 rad/s\ncoord r : length\n"
+      "point P mass m at (r cos(Ω t), r sin(Ω t))\npoint O1 at (0, 0)\nspring O1 - P stiffness k length L0\n"
+      "start r = 30 cm\nrun 1 s\n");
+  Json judged = page.ask({{"do", "claim"}, {"text", "m r'' = m r Ω^2 - k (r - L0)"}, {"exercise", true}});
+  CHECK(judged["passed"] == true);
+  CHECK(judged["where"] == "r > 0");
+}
+
 TEST_CASE("claims that cannot be read are told at their place") {
   Asked page(file_text("studio/exercises/01_pendulum.lag"));
   Json judged = page.ask({{"do", "claim"}, {"text", "θ'' = -g/l sinn θ"}});

@@ -43,7 +43,8 @@ TEST_CASE("habits of paper are told with what to write") {
            Habit{"let a = thetadot1", "E0201", "thetadot1", "Write θ1'."},
            Habit{"let a = xddot", "E0201", "xddot", "Write x''."},
            Habit{"let a = d/dt θ", "E0201", "d/dt θ", "Write θ'."},
-           Habit{"let a = m d/dt (l θ)", "E0201", "d/dt (l θ)", "Write (l θ)'."},
+           Habit{"let a = m d/dt l θ", "E0201", "d/dt l", "Write l'."},
+           Habit{"let a = d/dt (l θ)^2", "E0201", "d/dt (l θ)^2", "Write ((l θ)^2)'."},
            Habit{"let a = dθ/dt", "E0201", "dθ/dt", "Write θ'."},
            Habit{"let a = dtheta/dt", "E0201", "dtheta/dt", "Write θ'."},
            Habit{"let a = d^2θ/dt^2", "E0201", "d^2θ/dt^2", "Write θ''."},
@@ -75,4 +76,22 @@ TEST_CASE("a declared name is a name, whatever it looks like") {
       "dimensionless\nparam e = 2, d = 3, dt = 4, mgl = 5, ln = 6, xdot = 7\ncoord x : number\nT = 1/2 mgl x'^2\n"
       "V = e^x + d/dt x + ln x + xdot x\n");
   CHECK_MESSAGE(e.model.has_value(), e.messages());
+}
+
+TEST_CASE("d/dt of a bracket is the derivative of what stands in it") {
+  for (const auto& [written, primes] : {std::pair("d/dt (l θ)", "(l θ)'"),
+                                        {"m d/dt(l^2 θ)", "m (l^2 θ)'"},
+                                        {"d/dt (θ x)/l", "(θ x)'/l"},
+                                        {"d²/dt² (θ)", "θ''"},
+                                        {"2 m d/dt (x) l", "2 m x' l"}}) {
+    CAPTURE(written);
+    const Elaborated e(kHead + "claim " + written + " = " + primes + "\n");
+    CHECK_FALSE(e.diagnostics.has_errors());
+    const auto* claim = std::get_if<expectation::Equation>(&e.model->experiment.expectations.at(0).kind);
+    REQUIRE(claim);
+    CHECK(claim->left == claim->right);
+  }
+  // The names are the model's where it has them.
+  const Elaborated named(kHead + "param d = 2 m, dt = 3 m\nlet a = d/dt (l θ)\nclaim a = d l θ/dt\n");
+  CHECK_FALSE(named.diagnostics.has_errors());
 }

@@ -66,4 +66,88 @@ TEST_CASE("a momentum put into L whose velocity also stands linearly, as in a ma
   CHECK(mistake_of(charge, "m r'' = -m r φ'^2 - b r φ' + b^2 r/(2 m)") == "");
 }
 
+TEST_CASE("a generalized potential stays in equations that have another mistake, and is told where it was left out") {
+  // T − V − U with U = −½ q B (x y' − y x'): m x'' = q B y'.
+  const std::string charge =
+      "system charge\ndimensionless\nparam m = 1.5, q = 1, B = 2\ncoord x, y : number\n"
+      "T = 1/2 m (x'^2 + y'^2)\nU = -1/2 q B (x y' - y x')\n";
+  CHECK(mistake_of(charge, "m x'' = q B y'") == "none");
+  CHECK(begins_with(mistake_of(charge, "m x'' = 0"), "the generalized potential U was left out"));
+  CHECK(begins_with(mistake_of(charge, "m x'' = -q B y'"), "U has the wrong sign"));
+  CHECK(begins_with(mistake_of(charge, "2 m x'' = q B y'"), "a part of the total time derivative is missing"));
+}
+
+TEST_CASE("a forgotten rotation is told, of a body and of a term with a moment of inertia") {
+  // 3/2 m s'' = m g sin α of a cylinder that rolls; without its rotation m s'' = m g sin α, without the rest ½ m s''.
+  const std::string given =
+      "system rolling\nparam m = 2 kg, R = 10 cm, α = 20 deg, g = 9.81 m/s^2\nlet I = 1/2 m R^2\ncoord s : length\n"
+      "T = 1/2 m s'^2 + 1/2 I (s'/R)^2\nV = -m g s sin α\n";
+  const std::string body =
+      "system rolling\nparam m = 2 kg, R = 10 cm, α = 20 deg, g = 9.81 m/s^2\ncoord s : length\n"
+      "body c mass m inertia 1/2 m R^2 at (s cos α, -s sin α) rotation angle -s/R\ngravity (0, -g)\n";
+  for (const std::string& system : {given, body}) {
+    CHECK(mistake_of(system, "s'' = 2/3 g sin α") == "none");
+    CHECK(begins_with(mistake_of(system, "s'' = g sin α"), "the energy of rotation is missing from T"));
+    CHECK(begins_with(mistake_of(system, "s'' = 2 g sin α"), "the energy of the centre of mass is missing from T"));
+  }
+}
+
+TEST_CASE(
+    "where T and V alone act, a factor 2 of the one is a factor ½ of the other, and springs are named where they are") {
+  const std::string pendulum =
+      "system pendulum\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ : angle\npoint P mass m at l (sin θ, -cos θ)\n"
+      "gravity (0, -g)\n";
+  CHECK(mistake_of(pendulum, "θ'' = -2 g sin θ/l") == "V has a factor 2 too many, or T has a factor ½ too many");
+  CHECK(begins_with(mistake_of(pendulum, "2 l θ'' = -g sin θ"), "T has no factor ½ (the kinetic energy of a particle"));
+  CHECK(begins_with(mistake_of(pendulum, "3 l θ'' = -g sin θ"), "what stands beside the inertia has a factor 1/3"));
+  const std::string spring =
+      "system spring\nparam m = 1 kg, k = 2 N/m\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\n";
+  CHECK(
+      begins_with(mistake_of(spring, "m x'' = -2 k x"), "V has a factor 2 too many: the energy of a spring is ½ k x²"));
+  const std::string wire =  // no spring: gravity on a parabola, for small motions
+      "system wire\nparam m = 1 kg, a = 2 m^-1, g = 9.81 m/s^2\ncoord x : length\nT = 1/2 m x'^2\nV = m g a x^2\n";
+  CHECK(mistake_of(wire, "x'' = -4 g a x") == "V has a factor 2 too many, or T has a factor ½ too many");
+}
+
+TEST_CASE("of a pivot that is moved the motion that was left out is told, and small angles in several terms") {
+  const std::string driven =  // l θ'' + (g − a Ω² cos Ω t) sin θ = 0
+      "system driven\nparam m = 1 kg, l = 1 m, a = 5 cm, Ω = 120 rad/s, g = 9.81 m/s^2\ncoord θ : angle\n"
+      "point P mass m at (l sin θ, a cos(Ω t) - l cos θ)\ngravity (0, -g)\n";
+  CHECK(mistake_of(driven, "l θ'' + (g - a Ω^2 cos(Ω t)) sin θ = 0") == "none");
+  CHECK(begins_with(mistake_of(driven, "l θ'' + g sin θ = 0"),
+                    "a part of the total time derivative is missing: ∂L/∂q' holds t as well"));
+  CHECK(mistake_of(driven, "l θ'' + (g + a Ω^2 cos(Ω t)) sin θ = 0").find("∂L/∂θ' holds t") != std::string::npos);
+  CHECK(begins_with(mistake_of(driven, "l θ'' + (g - a Ω^2 cos(Ω t)) θ = 0"),
+                    "sin θ is written as θ, which holds for small angles only"));
+  const std::string cart =
+      "system cart\nparam M = 1 kg, m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x : length, θ : angle\n"
+      "point A mass M at (x, 0)\npoint B mass m at A + l (sin θ, -cos θ)\ngravity (0, -g)\n";
+  CHECK(mistake_of(cart, "(M + m) x'' + m l θ'' = 0") == "the equation is linearized: it holds for small motions only");
+}
+
+TEST_CASE("with a distance that is |r| the textbook's equation is right where r > 0, and says so") {
+  const std::string turntable =
+      "system turntable\nparam m = 1 kg, k = 30 N/m, L0 = 20 cm, Ω = 3 rad/s\ncoord r : length\n"
+      "point P mass m at (r cos(Ω t), r sin(Ω t))\npoint O1 at (0, 0)\nspring O1 - P stiffness k length L0\n";
+  const auto judged = [&](const std::string& start, const std::string& claim) {
+    const ModelText m(turntable + start + "claim " + claim + "\n");
+    Diagnostics diagnostics;
+    return verify(m.model, m.equations, m.source, {}, diagnostics).results.at(0);
+  };
+  const std::string outside = "start r = 30 cm\n", inside = "start r = -30 cm\n";
+  const ExpectationResult right = judged(outside, "m r'' = m r Ω^2 - k (r - L0)");
+  CHECK(right.passed);
+  CHECK(right.where == "r > 0");
+  CHECK(right.message == "follows where r > 0");
+  CHECK_FALSE(judged(inside, "m r'' = m r Ω^2 - k (r - L0)").passed);
+  CHECK(judged(inside, "m r'' = m r Ω^2 - k (r + L0)").where == "-r > 0");
+  CHECK(judged(outside, "m r'' = m r Ω^2 - k (r - L0 r/abs(r))").where == "");  // everywhere
+  CHECK(begins_with(judged(outside, "m r'' = -k (r - L0)").pitfall, "the term ∂T/∂q is missing"));
+  CHECK(begins_with(judged(outside, "m r'' = m r Ω^2 + k (r - L0)").pitfall, "V has the wrong sign"));
+  // abs(x) that is no distance: the two halves are two laws, and half of it is not the equation.
+  CHECK_FALSE(mistake_of("system hill\ndimensionless\nparam m = 1, k = 2\ncoord x : number\nT = 1/2 m x'^2\n"
+                         "V = k abs(x)\nstart x = 1\n",
+                         "m x'' = -k") == "none");
+}
+
 }  // namespace pitfalls_test
