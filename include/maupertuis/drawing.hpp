@@ -28,10 +28,12 @@ struct SolidShape {
 /// pages and for frames alike; what is left is the camera.
 struct Drawing {
   enum class Kind { Path, Trail, Solid, Arrow, Label };
+  /// Whether an arrow is of the model's own drawing (reactions, contacts), and what acts otherwise.
+  enum class ForceOrigin { Asked, Reaction, Weight, Spring, Damper, Applied, Torque };
   struct Element {
     Kind kind = Kind::Path;
-    std::size_t points =
-        1;  // of a frame; Solid: dimension + 1, its origin and the tips of its axes; Arrow: foot and tip
+    std::size_t points = 1;  // of a frame; Solid: dimension + 1, its origin and the tips of its axes; Arrow: from its
+                             // foot to its tip, an arc about its place for a torque
     std::vector<double> positions =
         {};  // [frames × points × dimension], or [points × dimension] where still; NaN: no value
     bool still = false;
@@ -42,6 +44,7 @@ struct Drawing {
     NameParts text = {};                  // Label, Arrow
     SolidShape shape = {};                // Solid
     bool impulse = false;                 // Arrow: of an impact, not of a force
+    ForceOrigin origin = ForceOrigin::Asked;  // Arrow
   };
   int dimension = 2;              // 2 or 3
   std::vector<double> times;      // [frames] s, ascending or descending
@@ -50,6 +53,8 @@ struct Drawing {
   bool dimensionless = false;     // no metres, no seconds
   bool moments_only = false;   // the motion swings faster than the frames follow: between two, the nearer one is shown
   std::vector<double> follow;  // [frames × dimension] what the camera goes along with; empty: it rests
+  double metres_a_newton = 0;  // of arrows of forces; 0: there are none
+  double largest_torque = 0;   // N m, of which the arc is three quarters of a turn; 0: there is none
   std::vector<double> low, high;  // [dimension] all that ever appears, seen from what is followed
   double radius = 1;              // of the ball about the middle that holds it
 
@@ -63,6 +68,11 @@ struct ContactImpulse {
   double size = 0;          // Λ
 };
 
+/// Which arrows of forces a drawing has: those that the model asks for, or those of all forces between places as well,
+/// weights, springs, dampers, applied forces, torques and reactions of constraints. Forces of V and of `force q = …`
+/// act on coordinates and have no place.
+enum class ForcesShown { Asked, All };
+
 /// The drawing of a model at the rows of a run, at most `frames` of them. Where the model has no `draw`, it shows what
 /// the model has: bobs where mass is, rods where a distance is kept, bodies as the ellipsoids of their inertia,
 /// springs, dampers. Nothing where there is neither a point nor a body. With the equations the forces of `draw reaction
@@ -70,7 +80,8 @@ struct ContactImpulse {
 /// no item shows them, with the equations their forces, and impulses as arrows that shrink from the instant on.
 std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& trajectory, std::size_t frames = 6000,
                                         const EquationsOfMotion* equations = nullptr,
-                                        const std::vector<ContactImpulse>& impulses = {});
+                                        const std::vector<ContactImpulse>& impulses = {},
+                                        ForcesShown forces = ForcesShown::Asked);
 
 /// Whether frames at these moments, in s after the first row, ascending, show how a motion swings: about five of them
 /// fall on each swing, at least. Each moment is taken for that of the row nearest to it.

@@ -37,6 +37,10 @@ class Document {
   const syntax::TextReading& reading();
   /// Elaborated and past the physics lint; null where the text has a mistake.
   const Model* model();
+  /// What can be elaborated of the text while it has mistakes, without the statements in which they are: what hover
+  /// says of the other names. The model itself where it has none; null where nothing is left. Cost: some elaborations,
+  /// once.
+  const Model* readable_part();
   /// Of syntax, names, units and the physics lint.
   const Diagnostics& diagnostics();
   const Interrupt& interrupt() const;

@@ -265,6 +265,7 @@ class ContactPictures {
     const double metres = s_.metres_a_newton > 0 ? s_.metres_a_newton
                           : force > 0            ? longest_force * s_.extent / force
                                                  : 0;
+    if (force > 0) s_.drawing.metres_a_newton = metres;
     for (const ContactPlaces& c : s_.tracks.contacts) {
       const std::string label = s_.system.contact_label(c.contact);
       for (const auto& place : c.places) {

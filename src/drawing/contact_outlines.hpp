@@ -11,7 +11,7 @@ struct WrittenGround {
 
 /// What the pictures of contacts are made from, when all else is in its place.
 struct ContactSetting {
-  const Drawing& drawing;
+  Drawing& drawing;
   const MechanicalSystem& system;
   const Bindings& parameters;
   const ContactTracks& tracks;

@@ -144,14 +144,14 @@ std::vector<double> gravity_of(const MechanicalSystem& system, const Bindings& p
 }  // namespace
 
 std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& shown_rows, std::size_t frames,
-                                        const EquationsOfMotion* equations,
-                                        const std::vector<ContactImpulse>& impulses) {
+                                        const EquationsOfMotion* equations, const std::vector<ContactImpulse>& impulses,
+                                        ForcesShown forces) {
   const MechanicalSystem& system = model.system;
   const Bindings parameters = parameter_bindings(system);
   const Trajectory& run = shown_rows.of_one_choice ? *shown_rows.of_one_choice : shown_rows;
   Motion motion(system, run, parameters);
   if (run.rows() == 0 || frames == 0 || !motion.complete()) return std::nullopt;
-  drawing::Plan plan = drawing::plan_of(model, parameters, equations, run);
+  drawing::Plan plan = drawing::plan_of(model, parameters, equations, run, forces);
   if (equations && has_free_functions(*equations)) leave_out_undetermined(plan, *equations);
   if (plan.outlines.empty()) return std::nullopt;
 

@@ -362,9 +362,18 @@ void Painter::trail(const Drawing::Element& e, std::size_t series) {
 }
 
 void Painter::force(const Drawing::Element& e, const std::vector<double>& points) {
-  const View::Placed foot = place(&points[0]), tip = place(&points[d_]);
-  for (FrameItem& item : drawing::arrow({foot.x, foot.y}, {tip.x, tip.y}, {Ink::Series, e.impulse ? std::size_t{4} : 1},
-                                        2.2, view_.unit()))
+  const std::size_t last = e.points - 1;
+  const FrameColour colour{Ink::Series, drawing::series_of(e)};
+  if (last > 1) {  // an arc, whose last piece has the head
+    std::vector<double> way;
+    for (std::size_t p = 0; p < last; ++p) {
+      const View::Placed at = place(&points[p * d_]);
+      way.insert(way.end(), {at.x, at.y});
+    }
+    stroke(way, colour, 2.2, 0);
+  }
+  const View::Placed foot = place(&points[(last - 1) * d_]), tip = place(&points[last * d_]);
+  for (FrameItem& item : drawing::arrow({foot.x, foot.y}, {tip.x, tip.y}, colour, 2.2, view_.unit()))
     add(std::move(item));
   const double dx = tip.x - foot.x, dy = tip.y - foot.y, length = std::hypot(dx, dy), gap = 14 * view_.unit();
   if (length <= 24 * view_.unit() || e.text.base.empty()) return;

@@ -8,6 +8,8 @@ namespace maupertuis::drawing {
 /// A shaft and a head, in px; nothing where it is too short to be one.
 std::vector<FrameItem> arrow(std::array<double, 2> from, std::array<double, 2> to, FrameColour colour, double weight,
                              double unit);
+/// The ink of an arrow, by what acts.
+std::size_t series_of(const Drawing::Element& arrow);
 FrameItem words(const NameParts& text, double x, double y, char align, FrameColour colour);
 /// Without the points that are nearer than `step` px to the last one kept.
 std::vector<double> thinned(const std::vector<double>& line, double step);

@@ -96,6 +96,27 @@ std::vector<FrameItem> furniture(const Drawing& drawing, const View& view, const
   return out;
 }
 
+std::size_t series_of(const Drawing::Element& e) {
+  using Origin = Drawing::ForceOrigin;
+  switch (e.origin) {
+    case Origin::Asked:
+      return e.impulse ? 4 : 1;
+    case Origin::Reaction:
+      return 1;
+    case Origin::Weight:
+      return 3;
+    case Origin::Spring:
+      return 2;
+    case Origin::Damper:
+      return 6;
+    case Origin::Applied:
+      return 5;
+    case Origin::Torque:
+      return 4;
+  }
+  return 1;
+}
+
 std::vector<FrameItem> arrow(std::array<double, 2> from, std::array<double, 2> to, FrameColour colour, double weight,
                              double unit) {
   const double dx = to[0] - from[0], dy = to[1] - from[1], length = std::hypot(dx, dy);

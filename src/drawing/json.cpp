@@ -38,6 +38,26 @@ std::string_view kind_name(Drawing::Kind kind) {
   return "path";
 }
 
+std::string_view origin_name(Drawing::ForceOrigin origin) {
+  switch (origin) {
+    case Drawing::ForceOrigin::Asked:
+      return "asked";
+    case Drawing::ForceOrigin::Reaction:
+      return "reaction";
+    case Drawing::ForceOrigin::Weight:
+      return "weight";
+    case Drawing::ForceOrigin::Spring:
+      return "spring";
+    case Drawing::ForceOrigin::Damper:
+      return "damper";
+    case Drawing::ForceOrigin::Applied:
+      return "applied";
+    case Drawing::ForceOrigin::Torque:
+      return "torque";
+  }
+  return "asked";
+}
+
 /// In a <script> of a page: neither quotes nor the end of the script.
 std::string quoted(std::string_view text) {
   std::string out = "\"";
@@ -72,6 +92,9 @@ void append_element(std::string& out, const Drawing::Element& e) {
     out += fmt::format(",\"text\":{{\"base\":{},\"index\":{},\"dots\":{},\"upright\":{}}}", quoted(e.text.base),
                        quoted(e.text.index), e.text.dots, e.text.upright);
   if (e.impulse) out += ",\"impulse\":true";
+  if (e.origin != Drawing::ForceOrigin::Asked)
+    out +=
+        fmt::format(",\"origin\":\"{}\",\"name\":{}", origin_name(e.origin), quoted(e.names.empty() ? "" : e.names[0]));
   if (e.kind == Drawing::Kind::Solid) {
     out += fmt::format(",\"ground\":{},\"convex\":{},\"ball\":{}", e.shape.role == SolidShape::Role::Ground,
                        e.shape.convex, e.shape.ball);
@@ -97,6 +120,8 @@ std::string drawing_json(const Drawing& drawing) {
     out += fmt::format(",\"{}\":", name);
     append_numbers(out, *list, digits);
   }
+  if (drawing.metres_a_newton > 0) out += fmt::format(",\"metresANewton\":{:.6g}", drawing.metres_a_newton);
+  if (drawing.largest_torque > 0) out += fmt::format(",\"largestTorque\":{:.6g}", drawing.largest_torque);
   out += ",\"elements\":[";
   for (std::size_t i = 0; i < drawing.elements.size(); ++i) {
     const Drawing::Element& e = drawing.elements[i];

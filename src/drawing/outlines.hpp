@@ -13,7 +13,8 @@ struct Outline {
     AboutAxis,  // a place and an axis of space: the third axis of a solid of radius `size`
     Between,    // two places: the first axis reaches from one to the other
     Along,      // two places: the first axis is a metre towards the other
-    Force,      // a place and a force for each newton of a reaction
+    Force,      // a place and a force, for each newton of a reaction where there is one
+    Torque,     // a place and a torque: one number in the plane, a vector in space
   };
   Drawing::Element element;
   std::vector<Expr> values;
@@ -43,7 +44,12 @@ struct Plan {
   std::vector<Ground> grounds;
 };
 
-Plan plan_of(const Model& model, const Bindings& parameters, const EquationsOfMotion* equations, const Trajectory& run);
+Plan plan_of(const Model& model, const Bindings& parameters, const EquationsOfMotion* equations, const Trajectory& run,
+             ForcesShown forces);
+
+/// Arrows of what acts between places and is not asked for by the model: weights, springs, dampers, applied forces,
+/// torques. In space and in the plane.
+void add_acting_forces(const MechanicalSystem& system, Plan& plan);
 
 /// Whether these expressions have the same values wherever the system is and whenever: at some random states.
 bool same_everywhere(const MechanicalSystem& system, const std::vector<Expr>& expressions, const Bindings& parameters);

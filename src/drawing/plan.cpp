@@ -39,11 +39,15 @@ class Planner {
         run_(run),
         dimension_(static_cast<std::size_t>(model.system.space_dimension)) {}
 
-  Plan plan() {
+  Plan plan(ForcesShown forces) {
     for (const DrawElement& element : model_.experiment.drawing) add(element);
     if (model_.experiment.drawing.empty()) add_what_is_there();
     add_bobs_of_trails();
     add_links();
+    if (forces == ForcesShown::All) {
+      add_reactions();
+      add_acting_forces(system_, plan_);
+    }
     return std::move(plan_);
   }
 
@@ -52,6 +56,7 @@ class Planner {
   void add_what_is_there();
   void add_bobs_of_trails();
   void add_links();
+  void add_reactions();
 
   Outline& path(const std::vector<ExprVector>& places, const std::vector<std::string>& names, Kind kind) {
     Outline outline;
@@ -268,6 +273,21 @@ void Planner::arrows(const std::string& name) {
   }
 }
 
+/// Of constraints, those that the model does not ask for.
+void Planner::add_reactions() {
+  if (!equations_) return;
+  for (std::size_t i = 0; i < system_.constraints.size(); ++i) {
+    const std::string name = system_.constraint_label(i);
+    const auto shown = [&](const Outline& o) {
+      return o.placement == Outline::Placement::Force && o.element.names[0] == name;
+    };
+    const std::size_t before = plan_.outlines.size();
+    if (std::none_of(plan_.outlines.begin(), plan_.outlines.end(), shown)) arrows(name);
+    for (std::size_t k = before; k < plan_.outlines.size(); ++k)
+      plan_.outlines[k].element.origin = Drawing::ForceOrigin::Reaction;
+  }
+}
+
 void Planner::add(const DrawElement& e) {
   const auto size = [&](std::size_t i) { return i < e.sizes.size() ? value_of(system_, e.sizes[i], parameters_) : 0; };
   const ExprMatrix* rotation = e.names.size() == 1 ? rotation_of(e.names[0]) : nullptr;
@@ -456,8 +476,8 @@ bool same_everywhere(const MechanicalSystem& system, const std::vector<Expr>& ex
 }
 
 Plan plan_of(const Model& model, const Bindings& parameters, const EquationsOfMotion* equations,
-             const Trajectory& run) {
-  return Planner(model, parameters, equations, run).plan();
+             const Trajectory& run, ForcesShown forces) {
+  return Planner(model, parameters, equations, run).plan(forces);
 }
 
 }  // namespace maupertuis::drawing

@@ -20,7 +20,8 @@ using Placement = Outline::Placement;
 constexpr double bob_size = 0.024, joint_size = 0.007, pivot_size = 0.042, anchor_size = 0.042, coil_size = 0.02,
                  dashpot_size = 0.018;
 constexpr int spokes_of_a_wheel = 6;
-constexpr double hatching = 0.028, longest_arrow = 1.0 / 3;
+constexpr double hatching = 0.028, longest_arrow = 1.0 / 3, torque_size = 0.07;
+constexpr std::size_t points_of_an_arc = 9;
 
 double distance(const double* a, const double* b, std::size_t d) {
   double square = 0;
@@ -43,6 +44,7 @@ class Settler {
 
   void settle() {
     find_bounds();
+    drawing_.metres_a_newton = longest_force_ > 0 ? longest_arrow * extent_ / longest_force_ : 0;
     for (Outline& o : outlines_) place(o);
     size_marks();
     const std::vector<WrittenGround> grounds = written_grounds();
@@ -69,6 +71,7 @@ class Settler {
   void place_axis(Outline& o);
   bool spins(const Drawing::Element& e) const;
   void place_arrow(Outline& o);
+  void place_torque(Outline& o) const;
   void place_pivot(Outline& o);
   void size_marks();
   std::vector<WrittenGround> written_grounds() const;
@@ -135,6 +138,10 @@ void Settler::find_bounds() {
         double force = 0;
         for (std::size_t k = 0; k < d_; ++k) force = std::hypot(force, at[d_ + k]);
         if (std::isfinite(force)) longest_force_ = std::max(longest_force_, force);
+      } else if (o.placement == Placement::Torque) {
+        double torque = 0;
+        for (std::size_t k = d_; k < width; ++k) torque = std::hypot(torque, at[k]);
+        if (std::isfinite(torque)) drawing_.largest_torque = std::max(drawing_.largest_torque, torque);
       } else if (o.fitting == Fitting::Pivot)
         include(at, f);
       else if (o.element.kind == Kind::Solid && (o.fitting == Fitting::None || o.fitting == Fitting::Wheel))
@@ -174,6 +181,8 @@ bool Settler::spins(const Drawing::Element& e) const {
 void Settler::place(Outline& o) {
   if (o.placement == Placement::Force)
     place_arrow(o);
+  else if (o.placement == Placement::Torque)
+    place_torque(o);
   else if (o.placement == Placement::AboutAxis)
     place_axis(o);
   else if (o.placement != Placement::Direct)
@@ -294,12 +303,38 @@ void Settler::place_axis(Outline& o) {
 }
 
 void Settler::place_arrow(Outline& o) {
-  const double metres = longest_force_ > 0 ? longest_arrow * extent_ / longest_force_ : 0;
+  const double metres = drawing_.metres_a_newton;
   for (std::size_t i = 0; i + 2 * d_ <= o.element.positions.size(); i += 2 * d_) {
     double* foot = &o.element.positions[i];
     for (std::size_t k = 0; k < d_; ++k) foot[d_ + k] = foot[k] + metres * foot[d_ + k];
-    include(foot + d_, i / (2 * d_));
+    if (o.element.origin == Drawing::ForceOrigin::Asked) include(foot + d_, i / (2 * d_));
   }
+}
+
+/// An arc about the place that turns as the torque does, counter-clockwise where it is positive; three quarters of a
+/// turn for the largest.
+void Settler::place_torque(Outline& o) const {
+  const double radius = torque_size * extent_;
+  const std::size_t width = o.values.size();
+  std::vector<double> arcs;
+  for (std::size_t f = 0; f * width < o.element.positions.size(); ++f) {
+    const double* at = &o.element.positions[f * width];
+    double size = at[d_];
+    std::array<std::array<double, 3>, 2> sides{{{1, 0, 0}, {0, 1, 0}}};
+    if (d_ == 3) {
+      size = std::hypot(at[3], at[4], at[5]);
+      const auto basis = shapes::basis_about({at[3], at[4], size > 0 ? at[5] : 1});
+      sides = {basis[0], basis[1]};
+    }
+    const double sweep = drawing_.largest_torque > 0 ? 1.5 * M_PI * size / drawing_.largest_torque : 0;
+    for (std::size_t i = 0; i < points_of_an_arc; ++i) {
+      const double angle = sweep * static_cast<double>(i) / (points_of_an_arc - 1);
+      for (std::size_t k = 0; k < d_; ++k)
+        arcs.push_back(at[k] + radius * (std::cos(angle) * sides[0][k] + std::sin(angle) * sides[1][k]));
+    }
+  }
+  o.element.points = points_of_an_arc;
+  o.element.positions = std::move(arcs);
 }
 
 std::vector<double> Settler::up() const {
@@ -395,7 +430,7 @@ std::vector<WrittenGround> Settler::written_grounds() const {
 void Settler::add_contacts(const std::vector<WrittenGround>& grounds) {
   if (contacts_.contacts.empty()) return;
   drawing::add_contacts({drawing_, system_, parameters_, contacts_, impulses_, grounds, world_low_, world_high_,
-                         extent_, hatching * extent_, longest_force_ > 0 ? longest_arrow * extent_ / longest_force_ : 0,
+                         extent_, hatching * extent_, drawing_.metres_a_newton,
                          [&](const double* place, std::size_t frame) { include(place, frame); }},
                         outlines_);
 }

@@ -16,7 +16,8 @@ struct Document::Implementation {
   Interrupt interrupt;
   std::optional<syntax::TextReading> reading;
   std::optional<Roles> roles;
-  std::map<std::uint32_t, bool> names_at;  // by the beginning of the place
+  std::map<std::uint32_t, bool> names_at;    // by the beginning of the place
+  std::optional<std::optional<Model>> part;  // of a text with mistakes; looked for once
 };
 
 Document::Document(SourceText source, const Interrupt& interrupt)
@@ -44,6 +45,49 @@ bool Document::reads_names(Span place, const std::function<bool()>& probe) {
 }
 
 const Model* Document::model() { return implementation_->study.model(); }
+
+namespace {
+
+/// Blanks in the place of the statements in which these mistakes are; false where they are in none.
+bool blank_out(std::string& text, const syntax::TextReading& reading, const Diagnostics& found) {
+  bool any = false;
+  for (const Diagnostic& d : found.items()) {
+    if (d.severity != Severity::Error || !d.span || d.span->source != 0) continue;
+    for (const syntax::TextStatement& s : reading.statements) {
+      if (s.begin == s.end) continue;
+      const std::uint32_t begin = reading.tokens[s.begin].span.begin, end = reading.tokens[s.end - 1].span.end;
+      if (d.span->begin > end || d.span->end < begin) continue;
+      for (std::uint32_t k = begin; k < end && k < text.size(); ++k)
+        if (text[k] != '\n' && text[k] != ' ') text[k] = ' ', any = true;
+    }
+  }
+  return any;
+}
+
+}  // namespace
+
+const Model* Document::readable_part() {
+  if (const Model* whole = model()) return whole;
+  if (implementation_->part) return *implementation_->part ? &**implementation_->part : nullptr;
+  implementation_->part.emplace();
+  std::string text(source().text());
+  Diagnostics found = diagnostics();
+  // What names a statement that was left out is a mistake of the next round.
+  constexpr int most_rounds = 6;
+  for (int round = 0; round < most_rounds; ++round) {
+    if (!blank_out(text, reading(), found)) return nullptr;
+    interrupt().throw_if_asked();
+    const SourceText rest(source().name(), text);
+    found = Diagnostics();
+    const syntax::SyntaxTree tree = syntax::parse(rest, found);
+    if (found.has_errors()) continue;
+    auto model = elaborate(tree, rest, found);
+    if (!model || found.has_errors()) continue;
+    implementation_->part->emplace(std::move(*model));
+    return &**implementation_->part;
+  }
+  return nullptr;
+}
 
 const Diagnostics& Document::diagnostics() {
   implementation_->study.model();

@@ -63,7 +63,7 @@ std::string of_mass(const Expr& mass, const MechanicalSystem& system, const char
 std::string short_number(double value) { return fmt::format("{:.6g}", value); }
 
 std::string facts_of(const Declared& declared, Document& document) {
-  const Model* model = document.model();
+  const Model* model = document.readable_part();
   if (!model) return {};
   const MechanicalSystem& system = model->system;
   switch (declared.kind) {

@@ -86,7 +86,7 @@ std::size_t count_of(const Json& request, const char* key, double otherwise, dou
 
 /// The run with what a page shows of it: drawing, statistics, values and drifts of what is conserved.
 Json run_json(const Study& study, const Model& model, const EquationsOfMotion& equations,
-              const SimulationResult& result, std::size_t frames) {
+              const SimulationResult& result, std::size_t frames, ForcesShown forces) {
   ReportParts parts;
   parts.simulation = &result;
   const Derivation derivation;  // what is certified is told with the equations
@@ -98,7 +98,7 @@ Json run_json(const Study& study, const Model& model, const EquationsOfMotion& e
                                                  return shown;
                                                });
   const auto drawing =
-      evaluate_drawing(model, result.trajectory, frames, &equations, impulses_of(result, model.system));
+      evaluate_drawing(model, result.trajectory, frames, &equations, impulses_of(result, model.system), forces);
   Json out = {{"drawing", drawing_of(drawing)}};
   add_trajectory(out, content.trajectory, std::max<std::size_t>(frames, 2));
   out["statistics"] = pairs_json(content.statistics);
@@ -174,6 +174,10 @@ SimulationOptions with_even_rows(const Model& model, SimulationOptions options) 
 
 }  // namespace
 
+ForcesShown forces_in(const Json& request) {
+  return is_true(request, "forces") ? ForcesShown::All : ForcesShown::Asked;
+}
+
 Json run(Desk& desk, const Work& work) {
   Study& study = desk.moved(work.request);
   const std::size_t frames = count_of(work.request, "frames", 600, 1, 12'000);
@@ -191,7 +195,7 @@ Json run(Desk& desk, const Work& work) {
     const auto result = simulate(model, *study.equations(), with_even_rows(model, options), found);
     if (!result) desk.refuse(study, found);
     if (result->ending == Ending::Interrupted && result->trajectory.rows() < 2) throw Interrupted();
-    out = run_json(study, model, *study.equations(), *result, frames);
+    out = run_json(study, model, *study.equations(), *result, frames, forces_in(work.request));
   }
   out["diagnostics"] = desk.diagnostics(study, found);
   return out;

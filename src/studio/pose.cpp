@@ -1,16 +1,18 @@
 #include "linear_algebra/dense.hpp"
+#include "studio/gaps.hpp"
 #include "studio/requests.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 /// The mechanism at its start, and dragged by one of the points that are drawn.
 ///
 /// A drawn point p(q) is pulled to where the pointer is: δq minimizes |p(q) + J δq − target|² + μ δqᵀ M δq, then the
 /// constraints are met again in the metric of M (docs/design/studio.md). J comes from drawings at neighbouring
-/// positions, so that whatever is drawn can be dragged.
+/// positions, so that whatever is drawn can be dragged. Contacts that a step would violate hold in it as equations.
 namespace maupertuis::studio {
 namespace {
 
@@ -23,6 +25,7 @@ constexpr double small = 1e-6;  // a step for J, as a part of the size of a coor
 struct Drag {
   std::size_t element = 0, point = 0;
   std::vector<double> to;
+  std::map<std::string, double> velocities;  // x', SI: what the velocities were before the drag began
 };
 
 Trajectory rows_at(const MechanicalSystem& system, const std::vector<MotionState>& states) {
@@ -42,7 +45,7 @@ Trajectory rows_at(const MechanicalSystem& system, const std::vector<MotionState
 class Pull {
  public:
   Pull(const Model& model, const EquationsOfMotion& equations, const Drag& drag)
-      : model_(model), manifold_(equations), drag_(drag) {}
+      : model_(model), manifold_(equations), gaps_(model.system), drag_(drag) {}
 
   /// Moves the state as far as it goes; false where the point cannot be dragged.
   bool carry_out(MotionState& state) const {
@@ -56,6 +59,11 @@ class Pull {
       if (distance < 1e-9 * size_of(*place)) break;
       if (!pull(state, *place, gap)) break;
     }
+    // The velocities of the beginning, whatever way the drag took.
+    for (std::size_t i = 0; i < state.v.size(); ++i)
+      if (const auto given = drag_.velocities.find(model_.system.coordinates[i].name + "'");
+          given != drag_.velocities.end())
+        state.v[i] = given->second;
     const std::vector<bool> free(state.q.size(), false);
     return manifold_.constraints() == 0 || manifold_.move_velocities(state, free);
   }
@@ -108,17 +116,17 @@ class Pull {
       if (!moved) return false;
       j.col(i) = (*moved - place) / step;
     }
-    const std::vector<double> rows = manifold_.mass(state);
-    MatrixXd m = Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(rows.data(), n, n);
-    const double scale = m.diagonal().cwiseAbs().maxCoeff();
-    if (!(scale > 0) || !m.allFinite()) m = MatrixXd::Identity(n, n);
-    m /= scale > 0 ? scale : 1;
+    const MatrixXd m = metric(state);
     const double size = j.squaredNorm();
     if (!(size > 0)) return false;
     // The motion along the constraints alone counts: A δq = 0.
     const MatrixXd k =
         j.transpose() * j + 1e-4 * size / static_cast<double>(n) * m + 1e-9 * size * MatrixXd::Identity(n, n);
-    const VectorXd delta = on_constraints(state, k, VectorXd(j.transpose() * gap));
+    const VectorXd force = j.transpose() * gap;
+    std::vector<bool> closed(model_.system.contacts.size(), false);
+    VectorXd delta = on_constraints(state, k, force, closed);
+    for (std::size_t tries = 0; tries < closed.size() && close_crossed(state, delta, closed); ++tries)
+      delta = on_constraints(state, k, force, closed);
     // A place out of reach is overshot by the whole step: it is halved as long as that comes nearer.
     std::optional<MotionState> best;
     double nearest = gap.norm();
@@ -133,37 +141,89 @@ class Pull {
     return best.has_value();
   }
 
+  /// Contacts that this step goes through are closed in the next; whether there are new ones.
+  bool close_crossed(const MotionState& state, const VectorXd& delta, std::vector<bool>& closed) const {
+    MotionState next = state;
+    for (std::size_t i = 0; i < next.q.size(); ++i) next.q[i] += delta(static_cast<Eigen::Index>(i));
+    const std::vector<Gaps::Gap> gaps = gaps_.at(next);
+    bool more = false;
+    for (std::size_t c = 0; c < gaps.size(); ++c)
+      if (!closed[c] && !gaps[c].kept()) closed[c] = more = true;
+    return more;
+  }
+
+  /// Back from behind contacts by the least change; false where that does not succeed.
+  bool out_of_contacts(MotionState& state) const {
+    constexpr int most_steps = 12;
+    for (int k = 0; k < most_steps; ++k) {
+      const std::vector<Gaps::Gap> gaps = gaps_.at(state);
+      std::vector<bool> violated;
+      for (const Gaps::Gap& g : gaps) violated.push_back(!g.kept());
+      if (std::none_of(violated.begin(), violated.end(), [](bool v) { return v; })) return true;
+      const auto n = static_cast<Eigen::Index>(state.q.size());
+      const VectorXd delta = on_constraints(state, metric(state), VectorXd::Zero(n), violated);
+      if (!delta.allFinite()) return false;
+      for (std::size_t i = 0; i < state.q.size(); ++i) state.q[i] += delta(static_cast<Eigen::Index>(i));
+      if (!on_manifold(state)) return false;
+    }
+    return false;
+  }
+
+  bool on_manifold(MotionState& state) const {
+    return manifold_.constraints() == 0 || manifold_.move_positions(state, std::vector<bool>(state.q.size(), false));
+  }
+
+  /// M in parts of its largest entry; the identity where M says nothing.
+  MatrixXd metric(const MotionState& state) const {
+    const auto n = static_cast<Eigen::Index>(state.q.size());
+    const std::vector<double> rows = manifold_.mass(state);
+    MatrixXd m = Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(rows.data(), n, n);
+    const double scale = m.diagonal().cwiseAbs().maxCoeff();
+    if (!(scale > 0) || !m.allFinite()) return MatrixXd::Identity(n, n);
+    return m / scale;
+  }
+
   /// The state after a part of a step, on the constraints, and how far its point is from the pointer then.
   std::pair<std::optional<MotionState>, double> moved_by(const MotionState& state, const VectorXd& delta,
                                                          double part) const {
     MotionState next = state;
     for (std::size_t i = 0; i < next.q.size(); ++i) next.q[i] += part * delta(static_cast<Eigen::Index>(i));
-    const std::vector<bool> free(next.q.size(), false);
-    if (manifold_.constraints() > 0 && !manifold_.move_positions(next, free)) return {};
+    if (!on_manifold(next) || !out_of_contacts(next)) return {};
     const auto moved = place_of(next);
     if (!moved) return {};
     return {std::move(next), (target() - *moved).norm()};
   }
 
-  /// K δ + Aᵀ ν = r, A δ = 0; the shortest where rows of A depend on each other.
-  VectorXd on_constraints(const MotionState& state, const MatrixXd& k, const VectorXd& r) const {
+  /// K δ + Aᵀ ν = r, A δ = 0, and closed contacts come to g = 0; the shortest where these rows depend on each other.
+  VectorXd on_constraints(const MotionState& state, const MatrixXd& k, const VectorXd& r,
+                          const std::vector<bool>& closed) const {
     const auto n = k.rows(), m = static_cast<Eigen::Index>(manifold_.constraints());
-    MatrixXd bordered = MatrixXd::Zero(n + m, n + m);
+    const auto more = static_cast<Eigen::Index>(std::count(closed.begin(), closed.end(), true));
+    MatrixXd bordered = MatrixXd::Zero(n + m + more, n + m + more);
     bordered.topLeftCorner(n, n) = k;
     if (m > 0) {
       const std::vector<double> rows = manifold_.matrix(state);
       const MatrixXd a = Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(rows.data(), m, n);
-      bordered.bottomLeftCorner(m, n) = a;
-      bordered.topRightCorner(n, m) = a.transpose();
+      bordered.block(n, 0, m, n) = a;
+      bordered.block(0, n, n, m) = a.transpose();
     }
-    VectorXd right = VectorXd::Zero(n + m);
+    VectorXd right = VectorXd::Zero(n + m + more);
     right.head(n) = r;
+    const std::vector<Gaps::Gap> gaps = more > 0 ? gaps_.at(state) : std::vector<Gaps::Gap>();
+    Eigen::Index row = n + m;
+    for (std::size_t c = 0; c < gaps.size(); ++c) {
+      if (!closed[c]) continue;
+      for (Eigen::Index i = 0; i < n; ++i)
+        bordered(row, i) = bordered(i, row) = gaps[c].slope[static_cast<std::size_t>(i)];
+      right(row++) = gaps[c].wanted() - gaps[c].value;
+    }
     const Eigen::CompleteOrthogonalDecomposition<MatrixXd> factors(bordered);
     return VectorXd(factors.solve(right)).head(n);
   }
 
   const Model& model_;
   ConstraintManifold manifold_;
+  Gaps gaps_;
   const Drag& drag_;
 };
 
@@ -180,6 +240,9 @@ std::optional<Drag> drag_of(const Json& request) {
     if (!x.is_number()) throw Trouble{"request", "`drag.to` is no place.", "", "", "", nullptr};
     drag.to.push_back(x.get<double>());
   }
+  if (const auto given = found->find("velocities"); given != found->end() && given->is_object())
+    for (const auto& [name, value] : given->items())
+      if (value.is_number()) drag.velocities[name] = value.get<double>();
   return drag;
 }
 
@@ -208,7 +271,8 @@ Json pose(Desk& desk, const Work& work) {
     adjusted.push_back(system.coordinates[a.coordinate].name + (a.order ? "'" : ""));
   return {{"start", std::move(values)},
           {"adjusted", std::move(adjusted)},
-          {"drawing", drawing_of(evaluate_drawing(model, rows_at(system, {state}), 1, study.equations()))},
+          {"drawing", drawing_of(evaluate_drawing(model, rows_at(system, {state}), 1, study.equations(), {},
+                                                  forces_in(work.request)))},
           {"diagnostics", desk.diagnostics(study, found)}};
 }
 

@@ -5,6 +5,9 @@
 /// Trouble or Interrupted.
 namespace maupertuis::studio {
 
+/// Which arrows of forces a request wants: `forces: true` for all.
+ForcesShown forces_in(const Json& request);
+
 // text_requests.cpp
 Json open_text(Desk& desk, const Work& work);
 Json fixes(Desk& desk, const Work& work);

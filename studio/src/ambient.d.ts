@@ -41,6 +41,7 @@ declare module '*/report/page/scene.js' {
     furniture(scene: Scene, view: View): Item[];
     pointsAt(scene: Scene, element: Scene['elements'][number], s: number): number[];
     centreAt(scene: Scene, view: View, s: number): number[];
+    forceSeries(element: Scene['elements'][number]): number;
     project(scene: Scene, view: View, p: number[], centre: number[]): [number, number, number, number];
   };
   export default scene;

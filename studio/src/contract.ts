@@ -38,6 +38,8 @@ export interface SceneElement {
   bobs?: boolean[];
   names?: string[];
   ground?: boolean;
+  impulse?: boolean;
+  origin?: string; // of an arrow that the model's drawing does not ask for
   [key: string]: unknown;
 }
 export interface Scene {
@@ -50,6 +52,8 @@ export interface Scene {
   gravity: number[];
   follow: number[];
   dimensionless: boolean;
+  metresANewton?: number;
+  largestTorque?: number; // N m
 }
 export interface Trouble {
   code: string;
@@ -263,6 +267,7 @@ export interface ExportAnswer {
 export interface Values {
   set: Record<string, string>;
   start: Record<string, string>;
+  forces?: boolean; // arrows of all forces, not only of those that the model draws
   run?: string;
   mode?: string;
 }

@@ -55,7 +55,7 @@ new ValuesPanel(store, study);
 new EquationsPanel(store, study);
 new MotionPanel(store, study, clock, stage);
 expectationsPanel(store, study);
-const files = new FileTools(store, study, carrier);
+const files = new FileTools(store, study, carrier, storage);
 new Exercises(store, study, storage, files);
 themes(storage, () => {
   for (const one of stages) one.recolour();

@@ -74,7 +74,7 @@ export interface State {
   pane: Pane;
   charts: ChartSpec[] | null; // null: what the model asks for
   trail: 'some' | 'bodies' | 'all' | 'none';
-  forces: boolean;
+  forces: 'asked' | 'all' | 'none';
   busy: string | null;
   progress: number | null;
   word: {text: string; trouble: boolean} | null;
@@ -123,7 +123,7 @@ export const initialState: State = {
   pane: 'motion',
   charts: null,
   trail: 'some',
-  forces: true,
+  forces: 'asked',
   busy: null,
   progress: null,
   word: null,

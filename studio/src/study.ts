@@ -30,7 +30,7 @@ export const betweenEnds = ({text, runTrouble}: State): boolean =>
 /** The equations are those of motions in time: no other variable is declared in its place. Without it no modes. */
 export const inTime = ({text}: State): boolean => !/^independent\b(?!\s+t\b)/m.test(text);
 
-const longest = 1_000_000; // characters of a model: as much as a session takes
+export const longest = 1_000_000; // characters of a model: as much as a session takes
 const restAfter = 220, // ms without a move of a slider
   lateAfter = 500, // ms that an older answer may stand in the place of the one that is asked for
   quick = {frames: 160, budget: 1},
@@ -59,7 +59,13 @@ export class Study {
   private resting = 0; // a timer, while a slider moves
   private late = 0; // a timer, while something that is shown is of former values
   private pending = new Map<string, number>(); // searches on their way, of `changes`
-  private grabbed: {values: Values; start: Record<string, string>; moved: boolean; told: boolean} | null = null;
+  private grabbed: {
+    values: Values;
+    start: Record<string, string>;
+    velocities: Record<string, number>; // SI, before the drag: each place of it begins with these
+    moved: boolean;
+    told: boolean;
+  } | null = null;
   private shown = false; // something of this model was shown: the clock goes on where it is
 
   constructor(
@@ -75,8 +81,8 @@ export class Study {
   }
 
   get values(): Values {
-    const {set, start, duration, mode} = this.store.state;
-    return {set, start, ...(duration ? {run: duration} : {}), ...(mode ? {mode} : {})};
+    const {set, start, duration, mode, forces} = this.store.state;
+    return {set, start, ...(forces === 'all' ? {forces: true} : {}), ...(duration ? {run: duration} : {}), ...(mode ? {mode} : {})};
   }
 
   say(text: string, trouble = false): void {
@@ -375,6 +381,13 @@ export class Study {
     this.changeValues({duration: bare && unit ? `${text} ${unit}` : text}, true);
   }
 
+  /** Arrows of all forces come with a run: it is asked for again where they are not in it. */
+  showForces(forces: State['forces']): void {
+    if (forces !== 'all' || this.store.state.forces === 'all') return this.store.update({forces});
+    this.change({forces}, {ofText: false});
+    void this.everything();
+  }
+
   setMode(mode: string): void {
     this.change({mode}, {ofText: true});
     void this.follow();
@@ -408,7 +421,12 @@ export class Study {
   grab(): void {
     const {run, equations} = this.store.state,
       {s} = this.clock;
-    const start = {...this.store.state.start};
+    const start = {...this.store.state.start},
+      velocities: Record<string, number> = {};
+    for (const c of equations?.coordinates ?? []) {
+      const v = s > 0 ? 0 : run?.start[c.name + "'"];
+      if (typeof v === 'number') velocities[c.name + "'"] = v;
+    }
     if (run && equations && s > 0) {
       const row = nearestRow(run, s);
       for (const c of equations.coordinates) {
@@ -420,7 +438,7 @@ export class Study {
       }
     }
     this.clock.play(false);
-    this.grabbed = {values: this.values, start, moved: false, told: false};
+    this.grabbed = {values: this.values, start, velocities, moved: false, told: false};
   }
 
   async drag(element: number, point: number, to: number[]): Promise<void> {
@@ -429,7 +447,7 @@ export class Study {
     const answer = await this.asker.ask<PoseAnswer>({
       do: 'pose',
       budget: 2,
-      drag: {element, point, to},
+      drag: {element, point, to, velocities: grabbed.velocities},
       ...grabbed.values,
       start: grabbed.start,
     });
@@ -535,18 +553,28 @@ const tooFar = 'The constraints could not be solved in time for this place. Move
 /** It ended with its budget, and holds what was computed until then. */
 export const unfinished = (run: RunAnswer): boolean => run.ending.kind === 'interrupted';
 
+const few = 50; // points, of which a range says little
+
 /**
  * The name of a curve that turns more often than it has points, so that what is drawn is a slower one: between many
- * neighbouring points its velocity alone would take it through half of its range. Null where all are drawn finely.
+ * neighbouring points its velocity alone would take it through half of its range; of a few points, as a run has that
+ * was cut short, the velocities lead elsewhere than to the next one. Null where all are drawn finely.
  */
 export function drawnTooCoarsely({columns, times, values}: RunAnswer): string | null {
   const numbersOf = (k: number): number[] => values[k].map(value => value ?? NaN);
   for (const [k, {name}] of columns.entries()) {
     const rate = columns.findIndex(column => column.name === `${name}'`);
-    if (rate < 0 || times.length < 50) continue;
+    if (rate < 0 || times.length < 2) continue;
     const x = numbersOf(k).filter(Number.isFinite),
       range = x.reduce((a, b) => Math.max(a, b), -Infinity) - x.reduce((a, b) => Math.min(a, b), Infinity),
-      coarse = numbersOf(rate).filter((v, i) => i > 0 && Math.abs(v * (times[i] - times[i - 1])) > 0.5 * range);
+      rates = numbersOf(rate),
+      step = (i: number): number => times[i] - times[i - 1];
+    if (times.length < few) {
+      const [all, way] = [numbersOf(k), (i: number): number => (step(i) * (rates[i - 1] + rates[i])) / 2];
+      if (times.some((_, i) => i > 0 && Math.abs(all[i] - all[i - 1] - way(i)) > 2 * range)) return name;
+      continue;
+    }
+    const coarse = rates.filter((v, i) => i > 0 && Math.abs(v * step(i)) > 0.5 * range);
     if (coarse.length > 0.1 * times.length) return name;
   }
   return null;

@@ -102,6 +102,9 @@ const maupScene = (() => {
     return [first, cross(n, first)];
   }
 
+  const originSeries = {weight: 3, spring: 2, damper: 6, applied: 5, torque: 4, reaction: 1};
+  const forceSeries = e => e.impulse ? 4 : originSeries[e.origin] ?? 1;
+
   function arrow(from, to, colour, weight, unit) {
     const dx = to[0] - from[0], dy = to[1] - from[1], length = hypot(dx, dy);
     if (!(length >= 4 * unit)) return [];
@@ -298,8 +301,14 @@ const maupScene = (() => {
     }
 
     function force(e, points) {
-      const [foot, tip] = [0, 1].map(p => place(at(points, p)));
-      for (const item of arrow(foot, tip, series(e.impulse ? 4 : 1), 2.2, unit)) add(item);
+      const last = e.points - 1, colour = series(forceSeries(e));
+      if (last > 1) { // an arc, whose last piece has the head
+        const way = [];
+        for (let p = 0; p < last; ++p) way.push(...place(at(points, p)).slice(0, 2));
+        stroke(way, colour, 2.2, 0);
+      }
+      const [foot, tip] = [last - 1, last].map(p => place(at(points, p)));
+      for (const item of arrow(foot, tip, colour, 2.2, unit)) add(item);
       const dx = tip[0] - foot[0], dy = tip[1] - foot[1], length = hypot(dx, dy), gap = 14 * unit;
       if (length <= 24 * unit || !e.text.base) return;
       const align = dy > 0.3 * length ? 'r' : dy < -0.3 * length ? 'l' : 'c';
@@ -395,6 +404,6 @@ const maupScene = (() => {
   const furniture = (scene, view) =>
     [...(scene.dimension === 2 ? scaleBar(scene, view) : axes(scene, view)), ...gravityArrow(scene, view)];
 
-  return {duration, direction, makeView, frameItems, furniture, pointsAt, centreAt, project};
+  return {duration, direction, makeView, frameItems, furniture, pointsAt, centreAt, project, forceSeries};
 })();
 if (typeof module !== 'undefined') module.exports = maupScene;

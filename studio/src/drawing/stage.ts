@@ -85,8 +85,8 @@ export class Stage {
 
   /** All runs that are shown fit; bounds that hardly change stay, so that the picture rests. */
   private bound(): void {
-    const {run, pins, quick, pose} = this.store.state,
-      scene = run?.drawing;
+    const {run, pins, quick, pose, forces} = this.store.state,
+      scene = run?.drawing && forces === 'all' ? withArrows(run.drawing) : run?.drawing;
     if (!scene) {
       this.bounds = null;
       return;
@@ -123,8 +123,10 @@ export class Stage {
     const view = this.view(scene),
       {pins, pose, trail, forces} = this.store.state,
       s = pose ? 0 : this.clock.s;
+    const hidden = (e: SceneElement): boolean =>
+      e.kind === 'arrow' && (forces === 'none' || (forces === 'asked' && e.origin !== undefined));
     const shown = (one: Scene): Scene =>
-      forces ? one : {...one, elements: one.elements.filter(e => e.kind !== 'arrow')};
+      one.elements.some(hidden) ? {...one, elements: one.elements.filter(e => !hidden(e))} : one;
     for (const pin of pins)
       if (pin.shown && pin.run.drawing)
         this.painter.paint(
@@ -276,6 +278,30 @@ export class Stage {
     ]);
     this.draw();
   }
+}
+
+const widened = new WeakMap<Scene, Scene>();
+
+/** The scene with bounds that hold the arrows of all forces too. */
+function withArrows(scene: Scene): Scene {
+  const made = widened.get(scene);
+  if (made) return made;
+  const d = scene.dimension,
+    low = [...scene.low],
+    high = [...scene.high];
+  for (const e of scene.elements) {
+    if (e.kind !== 'arrow' || e.origin === undefined) continue;
+    for (let i = 0; i < e.positions.length; ++i) {
+      const k = i % d,
+        frame = Math.floor(i / (e.points * d)),
+        x = e.positions[i] - (scene.follow.length ? scene.follow[frame * d + k] : 0);
+      if (x < low[k]) low[k] = x;
+      if (x > high[k]) high[k] = x;
+    }
+  }
+  const whole = {...scene, low, high, radius: Math.hypot(...low.map((x, k) => (high[k] - x) / 2)) || 1};
+  widened.set(scene, whole);
+  return whole;
 }
 
 const trailed = new WeakMap<Scene, Scene>();

@@ -36,11 +36,11 @@ import {
   type Tooltip,
   type ViewUpdate,
 } from '@codemirror/view';
-import type {CompletionItem, Diagnostic, Edit, Fix} from '../contract';
+import type {CompletionItem, Diagnostic, Edit, Fix, OpenAnswer} from '../contract';
 import {byId, h, prose} from '../dom';
 import type {Store} from '../store';
 import type {State} from '../state';
-import type {Study} from '../study';
+import {longest, type Study} from '../study';
 import {ask as askFor} from '../tools/dialog';
 import {known, knownMarks} from './marks';
 import {markdown} from './markdown';
@@ -236,7 +236,8 @@ export class Editor {
   // ----------------------------------------------------------------------------------------------------- diagnostics
 
   private async mark(): Promise<void> {
-    const {opened, openedText, deep} = this.store.state;
+    const {opened, openedText, deep, text} = this.store.state;
+    if (opened && text.length > longest) return this.unmark(opened);
     if (!opened || openedText !== this.view.state.doc.toString()) return;
     const messages = all(opened.diagnostics, deep);
     this.fixes = [];
@@ -248,6 +249,13 @@ export class Editor {
     this.fixes = answer.fixes;
     this.fixesOf = this.view.state.doc;
     this.show(messages);
+  }
+
+  /** A text that is not read has no colours, and none of the marks of the one before. */
+  private unmark(opened: OpenAnswer): void {
+    this.fixes = [];
+    this.view.dispatch({effects: known.of({...opened, tokens: [], folding: []})});
+    this.show([]);
   }
 
   private show(messages: Diagnostic[]): void {

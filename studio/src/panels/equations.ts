@@ -306,11 +306,10 @@ export class EquationsPanel {
           ? this.withoutMotion(state) ?? troubleElement(runTrouble)
           : ending
             ? ending.cloneNode(true)
-            : run && coarse
-              ? troubleElement(tooCoarse(coarse, run.times.length), 'warning')
-              : lost
-                ? lost.cloneNode(true)
+            : lost && !coarse
+              ? lost.cloneNode(true)
               : '',
+      !slow && !runTrouble && run && coarse ? troubleElement(tooCoarse(coarse, run.times.length), 'warning') : '',
     );
   }
 
@@ -375,7 +374,7 @@ export class EquationsPanel {
         h('h3', {}, pretty(point.name), h('span', {class: point.stable ? 'good' : 'bad'}, ` ${point.stability}`)),
         h(
           'div',
-          {class: 'scroll'},
+          {class: 'scroll', tabindex: 0, role: 'group', 'aria-label': 'Frequencies and damping'},
           h(
             'table',
             {},
@@ -466,7 +465,7 @@ function happenings(list: Happening[], first: string): HTMLElement {
     first && h('p', {class: 'muted'}, `It begins ${first}.`),
     h(
       'div',
-      {class: 'scroll'},
+      {class: 'scroll', tabindex: 0, role: 'group', 'aria-label': 'Events'},
       h(
         'table',
         {},

@@ -1,4 +1,6 @@
+import maupScene from '../../../src/report/page/scene.js';
 import type {Clock} from '../clock';
+import type {Scene, SceneElement} from '../contract';
 import {byId, h, icon} from '../dom';
 import {numbers, raised} from './words';
 import type {Stage} from '../drawing/stage';
@@ -27,7 +29,7 @@ export class MotionPanel {
   ) {
     this.transport();
     clock.onTick(() => this.tick());
-    store.watch(['run', 'runTrouble', 'opened', 'readable', 'runLate'], state => this.shown(state));
+    store.watch(['run', 'runTrouble', 'opened', 'readable', 'runLate', 'forces'], state => this.shown(state));
     store.watch(['pins'], state => this.pins(state));
     store.watch(['section', 'sectionTrouble', 'sectionGone', 'busy'], state => this.section(state));
     store.watch(['equations', 'runTrouble'], () => this.sectionPlace());
@@ -53,7 +55,7 @@ export class MotionPanel {
       store.update({trail: (event.target as HTMLSelectElement).value as State['trail']}),
     );
     byId('forces').addEventListener('change', event =>
-      store.update({forces: (event.target as HTMLInputElement).checked}),
+      this.study.showForces((event.target as HTMLSelectElement).value as State['forces']),
     );
     byId('home-view').addEventListener('click', () => {
       this.stage.camera.reset();
@@ -96,6 +98,31 @@ export class MotionPanel {
     );
   }
 
+  /** What the arrows are, each with its colour, and how long a force is. */
+  private legend({run, forces}: State): void {
+    const list = byId('force-legend'),
+      drawing = run?.drawing,
+      arrows = drawing?.elements.filter(e => e.kind === 'arrow') ?? [];
+    list.hidden = forces !== 'all' || !drawing;
+    if (list.hidden || !drawing) return;
+    const entry = (e: SceneElement): HTMLElement =>
+      h('li', {class: `s${maupScene.forceSeries(e) + 1}`}, h('span', {class: 'dot', 'aria-hidden': 'true'}), nameOf(e));
+    const seen = new Map(arrows.map(e => [nameOf(e), e]));
+    const scale = drawing.metresANewton,
+      longest = scale ? lengthOfArrows(drawing) / scale : 0,
+      unit = drawing.dimensionless ? '' : ' N';
+    list.replaceChildren(
+      ...[...seen.values()].map(entry),
+      ...(longest > 0 ? [h('li', {}, `longest arrow: ${Number(longest.toPrecision(3))}${unit}`)] : []),
+      ...(drawing.largestTorque
+        ? [h('li', {}, `three quarters of a turn: ${Number(drawing.largestTorque.toPrecision(3))}${unit && ' N m'}`)]
+        : []),
+      ...(arrows.length === 0
+        ? [h('li', {}, 'No force of this model acts between places: those of V, and of coordinates, have none.')]
+        : []),
+    );
+  }
+
   private shown(state: State): void {
     const {run, runTrouble, runLate} = state;
     const drawing = run?.drawing,
@@ -118,7 +145,8 @@ export class MotionPanel {
     byId('stage-stale').hidden = !(mistake && run);
     byId('transport').hidden = !run;
     byId('trail-label').hidden = !drawing;
-    byId('forces-label').hidden = !drawing?.elements.some(e => e.kind === 'arrow');
+    byId('forces-label').hidden = !drawing;
+    this.legend(state);
     byId('home-view').hidden = !drawing;
     if (drawing)
       byId('drawing').setAttribute(
@@ -199,4 +227,29 @@ export class MotionPanel {
       h('p', {class: 'muted'}, numbers(facts)),
     );
   }
+}
+
+const names: Record<string, string> = {
+  reaction: 'forces of constraint',
+  weight: 'weights',
+  spring: 'springs',
+  damper: 'dampers',
+  applied: 'applied forces',
+  torque: 'torques',
+};
+const nameOf = (e: SceneElement): string =>
+  e.impulse ? 'impulses' : (names[e.origin ?? ''] ?? 'reactions and contacts');
+
+/** Metres of the longest arrow of a force, at any time. */
+function lengthOfArrows(drawing: Scene): number {
+  const d = drawing.dimension;
+  let longest = 0;
+  for (const e of drawing.elements) {
+    if (e.kind !== 'arrow' || e.impulse || e.points !== 2) continue;
+    for (let i = 0; i < e.positions.length; i += 2 * d) {
+      const length = Math.hypot(...Array.from({length: d}, (_, k) => e.positions[i + d + k] - e.positions[i + k]));
+      if (length > longest) longest = length;
+    }
+  }
+  return longest;
 }

@@ -6,6 +6,7 @@ import type {State} from '../state';
 import type {Store} from '../store';
 import type {Study} from '../study';
 import {ask, choose, dialog} from './dialog';
+import type {Storage_} from './storage';
 
 const titleOf = (text: string, name: string): string =>
   /^system\s+\S+\s+"([^"]+)"/m.exec(text)?.[1] ?? name.replaceAll('_', ' ');
@@ -29,6 +30,7 @@ export class FileTools {
     private readonly store: Store<State>,
     private readonly study: Study,
     carrier: Carrier,
+    private readonly storage: Storage_,
   ) {
     this.files = carrier.files;
     byId('open-button').addEventListener('click', () => void this.open());
@@ -48,8 +50,9 @@ export class FileTools {
   private title(): void {
     const {origin, name, text, saved, storage} = this.store.state;
     byId('document-name').textContent = origin?.path ?? name;
+    const lost = this.storage.works ? 'it is too long for the storage of this browser' : 'this browser has no storage';
     byId('document-state').textContent =
-      origin || storage ? (text === saved ? '' : ' – changed') : ' – not kept: this browser has no storage';
+      origin || storage ? (text === saved ? '' : ' – changed') : ` – not kept: ${lost}`;
   }
 
   /** Whether what is changed may be left: another model takes the place of the text, and no undo brings it back. */

@@ -46,6 +46,20 @@ TEST_CASE("hover says kind, dimension, value, declaration and the comment beside
   CHECK(has(hovered(at_mark(pendulum, "bob mass")), "mass 0.5 kg"));
 }
 
+TEST_CASE("hover says kind, dimension and value while another line has a mistake") {
+  const std::string head =
+      "system pendulum\nparam m = 500 g, l = 1 m, g = 9.81 m/s^2\nlet ω0 = sqrt(g/l)\ncoord θ : angle\n"
+      "T = 1/2 m l^2 θ'^2\nV = -m g l cos θ\nstart θ = 1 rad\nrun 2 s\n";
+  for (const char* mistake : {"draw Q\n", "let w = m *\n", "run 5,5 s\n",
+                              "let w = m + l\nlet u = 2 w\nD = 1/2 u θ'^2\n", "expect θ at 1 s = \n"}) {
+    CAPTURE(mistake);
+    CHECK(has(hovered(at_mark(head + mistake, "l = 1 m")), "parameter `l`: length (m), 1 m in SI"));
+    CHECK(has(hovered(at_mark(head + mistake, "m = 500")), "mass (kg), 0.5 kg in SI"));
+    CHECK(has(hovered(at_mark(head + mistake, "ω0")), "3.13209"));
+    CHECK(has(hovered(at_mark(head + mistake, "θ : ")), "coordinate `θ`: angle (rad)"));
+  }
+}
+
 TEST_CASE("hover explains words, functions, units and mistakes") {
   CHECK(has(hovered(at_mark(pendulum, "point bob")), "A particle, or without mass a marked point."));
   CHECK(has(hovered(at_mark(pendulum, "mass m at")), "Its mass."));
