@@ -1,6 +1,6 @@
 # Thin: each rule calls a script of scripts/, which installs what is missing, configures by a CMake preset and builds.
 .PHONY: demo build test test-long bench instructions sanitize fuzz mutants steep-models gallery \
-  format site vscode studio wasm wasm-test arm install package clean
+  format site site-quick vscode studio wasm wasm-test arm install package clean
 
 demo:     # check, derive, simulate and report models/double_pendulum.lag
 	@scripts/demo
@@ -26,8 +26,10 @@ gallery:  # the pictures of docs/gallery
 	@scripts/gallery
 format:   # clang-format over the sources
 	@scripts/format
-site:     # build/site: the static site
+site:     # build/site: the static site with the studio in it, for which the core is built with emscripten
 	@scripts/site
+site-quick:  # the same with the studio that is there already, or without
+	@scripts/site --quick
 vscode:   # editors/vscode/maupertuis.vsix: the extension for Visual Studio Code
 	@scripts/vscode
 studio:   # build/studio: the page of `maup studio`; needs npm

@@ -71,9 +71,10 @@ struct ReportContent {
   };
   struct ModeShape {
     std::string caption;
-    std::optional<Drawing> drawing;  // one period, swinging from its turning point
-    std::optional<Diagram> diagram;  // of systems that have no drawing
-    std::string svg = {};            // of fields, in the page's theme
+    std::optional<Drawing> drawing;     // one period, swinging from its turning point
+    std::optional<Diagram> diagram;     // of systems that have no drawing, and of motions about which they swing
+    std::string svg = {};               // of fields, in the page's theme
+    std::optional<Drawing> beads = {};  // what `diagram` shows, in motion: each coordinate a bead that goes up and down
   };
   struct ModePoint {
     std::string name, stability;  // "θ1 = 0, θ2 = π"; the verdict with its reason

@@ -1,10 +1,15 @@
 #include "drawing/outlines.hpp"
+#include "drawing/shapes.hpp"
+
+#include <array>
+#include <cmath>
 
 /// Forces between places that no `draw` line asks for, as arrows where they act.
 namespace maupertuis::drawing {
 namespace {
 
 using Origin = Drawing::ForceOrigin;
+constexpr std::size_t points_of_an_arc = 17;
 
 Outline arrow_of(const ExprVector& place, const ExprVector& force, Origin origin, const std::string& name) {
   Outline out;
@@ -142,6 +147,29 @@ void add_acting_forces(const MechanicalSystem& system, Plan& plan) {
   add_weights(system, plan.outlines);
   add_links(system, plan.outlines);
   add_applied(system, plan.outlines);
+}
+
+void place_torque(Outline& o, std::size_t d, double radius, double largest) {
+  const std::size_t width = o.values.size();
+  std::vector<double> arcs;
+  for (std::size_t f = 0; f * width < o.element.positions.size(); ++f) {
+    const double* at = &o.element.positions[f * width];
+    double size = at[d];
+    std::array<std::array<double, 3>, 2> sides{{{1, 0, 0}, {0, 1, 0}}};
+    if (d == 3) {
+      size = std::hypot(at[3], at[4], at[5]);
+      const auto basis = shapes::basis_about({at[3], at[4], size > 0 ? at[5] : 1});
+      sides = {basis[0], basis[1]};
+    }
+    const double sweep = largest > 0 ? 1.5 * M_PI * size / largest : 0;
+    for (std::size_t i = 0; i < points_of_an_arc; ++i) {
+      const double angle = sweep * static_cast<double>(i) / (points_of_an_arc - 1);
+      for (std::size_t k = 0; k < d; ++k)
+        arcs.push_back(at[k] + radius * (std::cos(angle) * sides[0][k] + std::sin(angle) * sides[1][k]));
+    }
+  }
+  o.element.points = points_of_an_arc;
+  o.element.positions = std::move(arcs);
 }
 
 }  // namespace maupertuis::drawing

@@ -51,6 +51,10 @@ Plan plan_of(const Model& model, const Bindings& parameters, const EquationsOfMo
 /// torques. In space and in the plane.
 void add_acting_forces(const MechanicalSystem& system, Plan& plan);
 
+/// A torque becomes an arc about its place that turns as it does, counter-clockwise where it is positive; three
+/// quarters of a turn for the largest. `d`: of space.
+void place_torque(Outline& torque, std::size_t d, double radius, double largest);
+
 /// Whether these expressions have the same values wherever the system is and whenever: at some random states.
 bool same_everywhere(const MechanicalSystem& system, const std::vector<Expr>& expressions, const Bindings& parameters);
 

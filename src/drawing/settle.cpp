@@ -21,7 +21,6 @@ constexpr double bob_size = 0.024, joint_size = 0.007, pivot_size = 0.042, ancho
                  dashpot_size = 0.018;
 constexpr int spokes_of_a_wheel = 6;
 constexpr double hatching = 0.028, longest_arrow = 1.0 / 3, torque_size = 0.07;
-constexpr std::size_t points_of_an_arc = 9;
 
 double distance(const double* a, const double* b, std::size_t d) {
   double square = 0;
@@ -71,7 +70,6 @@ class Settler {
   void place_axis(Outline& o);
   bool spins(const Drawing::Element& e) const;
   void place_arrow(Outline& o);
-  void place_torque(Outline& o) const;
   void place_pivot(Outline& o);
   void size_marks();
   std::vector<WrittenGround> written_grounds() const;
@@ -182,7 +180,7 @@ void Settler::place(Outline& o) {
   if (o.placement == Placement::Force)
     place_arrow(o);
   else if (o.placement == Placement::Torque)
-    place_torque(o);
+    place_torque(o, d_, torque_size * extent_, drawing_.largest_torque);
   else if (o.placement == Placement::AboutAxis)
     place_axis(o);
   else if (o.placement != Placement::Direct)
@@ -309,32 +307,6 @@ void Settler::place_arrow(Outline& o) {
     for (std::size_t k = 0; k < d_; ++k) foot[d_ + k] = foot[k] + metres * foot[d_ + k];
     if (o.element.origin == Drawing::ForceOrigin::Asked) include(foot + d_, i / (2 * d_));
   }
-}
-
-/// An arc about the place that turns as the torque does, counter-clockwise where it is positive; three quarters of a
-/// turn for the largest.
-void Settler::place_torque(Outline& o) const {
-  const double radius = torque_size * extent_;
-  const std::size_t width = o.values.size();
-  std::vector<double> arcs;
-  for (std::size_t f = 0; f * width < o.element.positions.size(); ++f) {
-    const double* at = &o.element.positions[f * width];
-    double size = at[d_];
-    std::array<std::array<double, 3>, 2> sides{{{1, 0, 0}, {0, 1, 0}}};
-    if (d_ == 3) {
-      size = std::hypot(at[3], at[4], at[5]);
-      const auto basis = shapes::basis_about({at[3], at[4], size > 0 ? at[5] : 1});
-      sides = {basis[0], basis[1]};
-    }
-    const double sweep = drawing_.largest_torque > 0 ? 1.5 * M_PI * size / drawing_.largest_torque : 0;
-    for (std::size_t i = 0; i < points_of_an_arc; ++i) {
-      const double angle = sweep * static_cast<double>(i) / (points_of_an_arc - 1);
-      for (std::size_t k = 0; k < d_; ++k)
-        arcs.push_back(at[k] + radius * (std::cos(angle) * sides[0][k] + std::sin(angle) * sides[1][k]));
-    }
-  }
-  o.element.points = points_of_an_arc;
-  o.element.positions = std::move(arcs);
 }
 
 std::vector<double> Settler::up() const {

@@ -164,6 +164,48 @@ Trajectory swing(const MechanicalSystem& system, const OperatingPoint& point, co
   return run;
 }
 
+/// One period of the deviations alone, each a bead on a stem above its place in a row: for systems that have no
+/// drawing, and about motions.
+Drawing beads_of(const MechanicalSystem& system, const Mode& mode) {
+  constexpr double bead = 0.07, label_at = -1.55;
+  Drawing out;
+  out.dimensionless = true;
+  double largest = 0;
+  for (const auto& x : mode.shape) largest = std::max(largest, std::abs(x));
+  for (std::size_t f = 0; f <= frames_of_a_mode; ++f)
+    out.times.push_back(turn / mode.frequency() * static_cast<double>(f) / static_cast<double>(frames_of_a_mode));
+  const auto n = static_cast<double>(mode.shape.size());
+  Drawing::Element line;
+  line.points = 2;
+  line.still = true;
+  line.positions = {-0.5, 0, n - 0.5, 0};
+  line.masses = line.radii = {0, 0};
+  line.names = {"", ""};
+  out.elements.push_back(line);
+  for (std::size_t i = 0; i < mode.shape.size(); ++i) {
+    const auto x = static_cast<double>(i);
+    Drawing::Element stem = line, label;
+    stem.still = false;
+    stem.positions.clear();
+    stem.masses = {0, 1};
+    stem.radii = {0, bead};
+    for (const double t : out.times) {
+      const double y = largest > 0 ? (mode.shape[i] / largest * std::polar(1.0, mode.frequency() * t)).real() : 0;
+      stem.positions.insert(stem.positions.end(), {x, 0, x, y});
+    }
+    out.elements.push_back(std::move(stem));
+    label.kind = Drawing::Kind::Label;
+    label.still = true;
+    label.positions = {x - bead, label_at};
+    label.text = name_parts(system.coordinates[i].name);
+    out.elements.push_back(std::move(label));
+  }
+  out.low = {-0.5, label_at};
+  out.high = {n - 0.5, 1 + bead};
+  out.radius = std::hypot(n, out.high[1] - out.low[1]) / 2;
+  return out;
+}
+
 /// As many frames as a mode needs: drawings of runs are finer.
 Drawing thinned(const Drawing& d) {
   Drawing out = d;
@@ -229,7 +271,10 @@ void add_shapes(ReportContent::ModePoint& out, const Model& model, const ModalEn
     ReportContent::ModeShape shape{fmt::format("Mode {}: ω = {}", k + 1, out.rows[k].frequency), std::nullopt,
                                    std::nullopt};
     if (entry.equilibrium.at_rest) shape.drawing = drawing_of(model, entry.equilibrium.point, m);
-    if (!shape.drawing) shape.diagram = shape_diagram(model.system, m);
+    if (!shape.drawing) {
+      shape.diagram = shape_diagram(model.system, m);
+      shape.beads = beads_of(model.system, m);
+    }
     out.shapes.push_back(std::move(shape));
   }
 }

@@ -95,7 +95,7 @@ void Desk::refuse(const Study& study, const Diagnostics& more) {
   Trouble trouble{"model", "The model has a mistake.", "", "", "", diagnostics(study, more)};
   if (first != items.end()) {
     trouble.message = first->message, trouble.reason = first->reason;
-    trouble.help = first->help, trouble.code = first->code;
+    trouble.help = help_on_page(*first), trouble.code = first->code;
   }
   throw trouble;
 }

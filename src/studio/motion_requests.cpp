@@ -212,7 +212,9 @@ Json mode_point_json(const ReportContent::ModePoint& point) {
                     {"period", row.period},
                     {"damping", row.damping}});
   for (const auto& shape : point.shapes) {
-    Json one = {{"caption", shape.caption}, {"drawing", drawing_of(shape.drawing)}, {"svg", shape.svg}};
+    Json one = {{"caption", shape.caption},
+                {"drawing", drawing_of(shape.drawing ? shape.drawing : shape.beads)},
+                {"svg", shape.svg}};
     if (shape.diagram) {
       Diagram diagram = *shape.diagram;
       diagram.theme = PlotTheme::Page;

@@ -35,6 +35,9 @@ Json run(Desk& desk, const Work& work);
 Json modes(Desk& desk, const Work& work);
 Json section(Desk& desk, const Work& work);
 
+// path_requests.cpp
+Json paths(Desk& desk, const Work& work);
+
 // pose.cpp
 Json pose(Desk& desk, const Work& work);
 

@@ -34,6 +34,7 @@ const std::map<std::string_view, Answering>& answering() {
       {"run", run},
       {"modes", modes},
       {"section", section},
+      {"paths", paths},
       {"pose", pose},
       {"export", export_file},
   };

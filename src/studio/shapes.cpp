@@ -98,6 +98,13 @@ Json pairs_json(const std::vector<std::pair<std::string, std::string>>& pairs) {
   return list;
 }
 
+std::string help_on_page(const Diagnostic& d) {
+  if (d.code == "E0109") return "Begin with a line such as `coord x : length`, or open one of the examples.";
+  if (d.code == "E1301") return "Look at the model for a force that nothing balances.";
+  if (d.code == "E1303") return "Declare the drive as `input u : [N] = …`: it is held at its value at the start.";
+  return d.help;
+}
+
 Json diagnostics_json(const Diagnostics& diagnostics, const SourceTexts& texts, const Units& units) {
   Json list = Json::array();
   for (const Diagnostic& d : diagnostics.items()) {
@@ -111,7 +118,7 @@ Json diagnostics_json(const Diagnostics& diagnostics, const SourceTexts& texts, 
     const LineColumn place = placed ? texts.locate(*d.span) : LineColumn{};
     item["line"] = placed ? Json(place.line) : Json();
     item["column"] = placed ? Json(place.column) : Json();
-    item["message"] = d.message, item["reason"] = d.reason, item["help"] = d.help;
+    item["message"] = d.message, item["reason"] = d.reason, item["help"] = help_on_page(d);
     item["text"] = d.span && !placed ? std::string(texts.of(*d.span).text()) : std::string();
     list.push_back(std::move(item));
   }

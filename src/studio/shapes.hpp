@@ -49,6 +49,8 @@ Json lines_json(const std::vector<ReportContent::Formula>& lines);
 Json sections_json(const std::vector<ReportContent::Section>& sections);
 Json conserved_json(const std::vector<ReportContent::Conserved>& conserved);
 Json pairs_json(const std::vector<std::pair<std::string, std::string>>& pairs);
+/// The help of a message where it speaks of the command line: what to do on the page.
+std::string help_on_page(const Diagnostic& diagnostic);
 /// [{code, severity, from, to, line, column, message, reason, help, text}]
 Json diagnostics_json(const Diagnostics& diagnostics, const SourceTexts& texts, const Units& units);
 Json edits_json(const std::vector<language::TextEdit>& edits, const Units& units);

@@ -152,6 +152,7 @@ export interface Conserved {
   drift: string;
 }
 export interface EquationsAnswer {
+  section?: string; // where a section of a driven motion is taken
   title: string;
   name: string;
   source: string;
@@ -230,6 +231,11 @@ export interface ModePoint {
 }
 export interface ModesAnswer {
   points: ModePoint[];
+  search: string;
+}
+export interface PathsAnswer {
+  paths: {title: string; facts: [string, string][]}[];
+  figures: {caption: string; svg: string}[];
   search: string;
 }
 export interface SectionAnswer extends Table {

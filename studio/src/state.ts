@@ -2,6 +2,7 @@ import type {
   Diagnostic,
   EquationsAnswer,
   ModesAnswer,
+  PathsAnswer,
   OpenAnswer,
   RunAnswer,
   Scene,
@@ -64,6 +65,7 @@ export interface State {
   deep: Diagnostic[]; // what only a derivation finds
   modes: ModesAnswer | Trouble | null;
   phaseSpace: Section[] | Trouble | null;
+  paths: PathsAnswer | Trouble | null; // between the ends of the model
   found: Conserved[] | Trouble | null;
   section: SectionAnswer | null;
   sectionTrouble: Trouble | null;
@@ -114,6 +116,7 @@ export const initialState: State = {
   deep: [],
   modes: null,
   phaseSpace: null,
+  paths: null,
   found: null,
   section: null,
   sectionTrouble: null,

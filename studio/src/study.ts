@@ -8,6 +8,7 @@ import type {
   Failure,
   ModesAnswer,
   OpenAnswer,
+  PathsAnswer,
   PoseAnswer,
   Request,
   RunAnswer,
@@ -126,6 +127,7 @@ export class Study {
     return {
       modes: null,
       phaseSpace: null,
+      paths: null,
       found: null,
       section: null,
       sectionTrouble: null,
@@ -504,6 +506,9 @@ export class Study {
     return this.search<{sections: Section[]}>({do: 'phase_space'}, answer => ({
       phaseSpace: 'sections' in answer ? answer.sections : answer,
     }));
+  }
+  askPaths(): Promise<void> {
+    return this.search<PathsAnswer>({do: 'paths', budget: 20}, paths => ({paths}));
   }
   askConserved(): Promise<void> {
     return this.search<{conserved: Conserved[]}>({do: 'conserved', budget: 60}, answer => ({

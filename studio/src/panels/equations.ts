@@ -65,7 +65,7 @@ export class EquationsPanel {
       this.facts(state);
     });
     store.watch(['equations', 'run', 'found'], state => this.conserved(state));
-    store.watch(['run', 'runTrouble', 'slow', 'quick'], state => this.motion(state));
+    store.watch(['run', 'runTrouble', 'slow', 'quick', 'paths'], state => this.motion(state));
     store.watch(['modes'], state => this.modes(state));
     store.watch(['phaseSpace'], state => this.phaseSpace(state));
     store.watch(['readable', 'opened', 'equations', 'equationsLate', 'runLate'], state => this.stale(state));
@@ -75,7 +75,7 @@ export class EquationsPanel {
     onOpening('derivation', () => void study.wantSteps());
     onOpening('modes', () => this.asked());
     onOpening('phase-space', () => this.asked());
-    store.watch(['answered', 'modes', 'phaseSpace', 'equations'], () => this.asked());
+    store.watch(['answered', 'modes', 'phaseSpace', 'equations', 'paths', 'runTrouble'], () => this.asked());
   }
 
   /** What is of a former text or of former values looks so, and is told where it is the text. */
@@ -97,6 +97,7 @@ export class EquationsPanel {
     if (!equations || !answered) return;
     if (isOpen('modes') && modes === null) void this.study.askModes();
     if (isOpen('phase-space') && phaseSpace === null) void this.study.askPhaseSpace();
+    if (betweenEnds(this.store.state) && this.store.state.paths === null) void this.study.askPaths();
   }
 
   private equations({equations, equationsTrouble}: State): void {
@@ -333,12 +334,30 @@ export class EquationsPanel {
         'p',
         {},
         ...prose(
-          `\`maup action ${state.name}.lag\` finds the paths, \`maup report ${state.name}.lag\` draws them. Here its ` +
-            '`expect` lines are carried out, which ask for the action, the index and places of a path. ',
+          'Below are the paths on which the action is stationary. ' +
+            'Its `expect` lines ask for the action, the index and places of a path. ',
         ),
         h('button', {type: 'button', onclick: carryOut}, 'Carry them out'),
       ),
+      this.paths(state),
       inTime(state) && h('p', {}, ...prose('With lines `start` and `run` it has a motion beside its paths.')),
+    );
+  }
+
+  private paths({paths}: State): HTMLElement {
+    if (paths === null) return h('p', {class: 'muted'}, 'They are sought …');
+    if (isTrouble(paths)) return troubleElement(paths);
+    return h(
+      'div',
+      {class: 'paths'},
+      ...paths.figures.map(({caption, svg}) =>
+        h('figure', {class: 'given'}, h('div', {html: svg}), h('figcaption', {}, ...prose(caption))),
+      ),
+      ...paths.paths.flatMap(path => [
+        h('h3', {}, path.title),
+        h('dl', {}, ...path.facts.flatMap(([name, value]) => [h('dt', {}, name), h('dd', {}, numbers(value))])),
+      ]),
+      h('p', {class: 'muted'}, ...prose(paths.search)),
     );
   }
 

@@ -20,6 +20,7 @@ const icons = {play: 'M6 4v16l14-8z', pause: 'M6 4h4v16H6zM14 4h4v16h-4z', start
 /** Play, scrub, speed, trails, pinned runs, and the Poincaré section. */
 export class MotionPanel {
   private offered = 0;
+  private offeredSection = '';
 
   constructor(
     private readonly store: Store<State>,
@@ -198,8 +199,12 @@ export class MotionPanel {
       first = this.store.state.equations?.coordinates[0]?.name;
     const {state} = this.store;
     byId('section').hidden = !first || betweenEnds(state) || !inTime(state) || (state.opened?.fields ?? false);
-    const known = this.store.state.equations?.coordinates.some(c => field.value.includes(c.name)) ?? false;
-    if (first && !known) field.value = `${first} = 0`;
+    // What was typed stays as long as it is about this model.
+    const offered = state.equations?.section || `${first} = 0`,
+      typed = field.value !== this.offeredSection && field.value !== '',
+      names = [...(state.equations?.coordinates ?? []), ...(state.equations?.parameters ?? [])],
+      known = names.some(one => field.value.includes(one.name));
+    if (first && !(typed && known)) field.value = this.offeredSection = offered;
   }
 
   private sectionForm(): void {

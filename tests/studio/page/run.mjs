@@ -8,6 +8,7 @@ import {carriers} from './carriers.mjs';
 import {cases} from './cases.mjs';
 import {check, checks, failures, openBrowser, pictures, serverVariant, staticVariant} from './harness.mjs';
 import {kinds} from './kinds.mjs';
+import {lessons} from './lessons.mjs';
 import {texts} from './texts.mjs';
 
 const [kind, ...words] = process.argv.slice(2);
@@ -19,7 +20,7 @@ const wanted = words.slice(kind === 'server' ? 2 : 1),
   picture = pictures(process.env.STUDIO_PICTURES);
 const browser = await openBrowser(variant);
 try {
-  for (const [name, run] of Object.entries({...cases, ...texts, ...answers, ...carriers, ...kinds})) {
+  for (const [name, run] of Object.entries({...cases, ...texts, ...answers, ...carriers, ...kinds, ...lessons})) {
     if (wanted.length > 0 && !wanted.includes(name)) continue;
     const begin = Date.now(),
       before = failures;

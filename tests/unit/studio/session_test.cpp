@@ -161,6 +161,60 @@ TEST_CASE("few frames stand for the whole run") {
   }
 }
 
+TEST_CASE("a driven system has its section once in each period of the drive") {
+  const std::string driven =
+      "system driven\ndimensionless\nparam γ = 0.5, ω = 1.2\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\n"
+      "force x = γ cos(ω t)\nstart x = 0.1\nrun 10\n";
+  Asked page(driven);
+  CHECK(page.ask("equations")["section"] == "sin(ω t) = 0 rising");
+  Json taken = page.ask({{"do", "section"}, {"at", "sin(ω t) = 0 rising"}, {"crossings", 5}});
+  REQUIRE(taken["ok"] == true);
+  for (std::size_t k = 1; k < taken["times"].size(); ++k)
+    CHECK(taken["times"][k].get<double>() - taken["times"][k - 1].get<double>() ==
+          doctest::Approx(2 * std::numbers::pi / 1.2));
+  CHECK(Asked(pendulum).ask("equations")["section"] == "");
+  CHECK(Asked(driven + "force x = γ cos(2 ω t)\n").ask("equations")["section"] == "");  // no one period by its sines
+}
+
+TEST_CASE("modes without a drawing, and about motions, move as beads") {
+  Asked page(
+      "system beads\nparam m = 2 kg, k = 50 N/m\ncoord x1, x2 : length\nT = 1/2 m (x1'^2 + x2'^2)\n"
+      "V = 1/2 k (x1^2 + (x2 - x1)^2 + x2^2)\nstart x1 = 10 cm\nrun 1 s\n");
+  Json shapes = page.ask("modes")["points"][0]["shapes"];
+  REQUIRE(shapes.size() == 2);
+  for (std::size_t k = 0; k < 2; ++k) {  // together, then against each other
+    Json drawing = shapes[k]["drawing"];
+    REQUIRE(drawing.is_object());
+    std::vector<double> tips;
+    for (Json& e : drawing["elements"])
+      if (e["kind"] == "path" && e["still"] == false) tips.push_back(e["positions"][3]);
+    REQUIRE(tips.size() == 2);
+    CHECK(tips[1] / tips[0] == doctest::Approx(k == 0 ? 1 : -1));
+    CHECK(drawing["times"].back().get<double>() ==
+          doctest::Approx(2 * std::numbers::pi / (k == 0 ? 5 : 5 * std::sqrt(3.0))));
+  }
+}
+
+TEST_CASE("the paths between the ends of a model are drawn") {
+  Asked page(file_text("models/brachistochrone.lag"));
+  Json found = page.ask("paths");
+  REQUIRE(found["ok"] == true);
+  REQUIRE(found["paths"].size() >= 1);
+  CHECK(found["figures"][0]["svg"].get<std::string>().find("<svg") != std::string::npos);
+  CHECK(Asked(pendulum).ask("paths")["kind"] == "refused");
+}
+
+TEST_CASE("help on the page does not speak of the command line") {
+  Asked page("");
+  Json nothing = page.ask({{"do", "open"}, {"text", "\n"}});
+  CHECK(nothing.dump().find("maup new") == std::string::npos);
+  Asked driven(
+      "system driven\ndimensionless\nparam γ = 0.5, ω = 1.2\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\n"
+      "force x = γ cos(ω t)\nrun 10\n");
+  Json refused = driven.ask("modes");
+  CHECK(refused.dump().find("--at") == std::string::npos);
+}
+
 TEST_CASE("a drawn point follows the pointer") {
   Asked page(pendulum);
   Json rest = page.ask("pose");
