@@ -180,8 +180,9 @@ start x = 1 m\nrun 1 h\n`,
       const asked = route.request().postDataJSON();
       if (asked.do !== 'run') return route.fallback();
       const response = await route.fetch(),
-        body = (await response.text()).replace(/"kind":"(end|time)[^"]*"/, '"kind":"interrupted"');
-      await route.fulfill({response, body: body.replace(/"ending":\{"ok":true,"kind":"[^"]*"/, '"ending":{"ok":false,"kind":"interrupted"')});
+        cut = '"ending":{"ok":false,"kind":"interrupted"',
+        body = (await response.text()).replace(/"ending":\{"ok":true,"kind":"[^"]*"/, cut);
+      await route.fulfill({response, body});
     });
     await page.locator('.value[data-name="m"] input[type=number]').fill('1.1');
     await page.keyboard.press('Enter');
