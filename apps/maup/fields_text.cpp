@@ -362,7 +362,8 @@ std::string currents_text(Study& study) {
     for (const Expr& one : c.characteristic) q += (q.empty() ? "" : ", ") + plain_of(equations, one);
     out += fmt::format("  Q   = {}\n", q);
     if (c.source)
-      out += fmt::format("  not conserved: Q·E = {} on motions, by friction and forces\n", plain_of(equations, c.source));
+      out +=
+          fmt::format("  not conserved: Q·E = {} on motions, by friction and forces\n", plain_of(equations, c.source));
     else if (broken)
       out += "  conserved all the same: Q·E = 0 on motions\n";
   }

@@ -334,8 +334,7 @@ std::optional<std::vector<Expr>> linear_gauge(const FieldEquations& equations, E
 Expr source_of(const FieldEquations& equations, const std::vector<Expr>& q) {
   const FieldSystem& s = equations.system();
   Expr sum = s.context->number(0);
-  for (std::size_t a = 0; a < q.size(); ++a)
-    sum = sum + q[a] * s.expanded(equations.euler[a] + equations.residuals[a]);
+  for (std::size_t a = 0; a < q.size(); ++a) sum = sum + q[a] * s.expanded(equations.euler[a] + equations.residuals[a]);
   return vanishes_identically(sum) ? Expr{} : sum;
 }
 
@@ -392,8 +391,8 @@ FieldCurrents field_currents(const FieldEquations& equations) {
       "fields; each is certified by ∂_μ j^μ = Q·E.";
   if (forced)
     out.basis +=
-        " Forces and dissipation do not come from the density. Where they change what flows, the divergence is not 0 on "
-        "motions but what is shown beside the current.";
+        " Forces and dissipation do not come from the density. Where they change what flows, the divergence is not 0 "
+        "on motions but what is shown beside the current.";
   const std::vector<Generator> generators = Ansatz(equations).generators;
   const std::vector<std::vector<Expr>> table = conditions(equations, generators);
   PrimeRows prime(table);

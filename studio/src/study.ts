@@ -83,7 +83,13 @@ export class Study {
 
   get values(): Values {
     const {set, start, duration, mode, forces} = this.store.state;
-    return {set, start, ...(forces === 'all' ? {forces: true} : {}), ...(duration ? {run: duration} : {}), ...(mode ? {mode} : {})};
+    return {
+      set,
+      start,
+      ...(forces === 'all' ? {forces: true} : {}),
+      ...(duration ? {run: duration} : {}),
+      ...(mode ? {mode} : {}),
+    };
   }
 
   say(text: string, trouble = false): void {

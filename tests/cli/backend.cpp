@@ -99,7 +99,7 @@ TEST_CASE("a device that is full: the run is as it would be, with one warning, a
 TEST_CASE("a program too large to compile: the interpreter carries the run, and one warning says so") {
   if (!has_compiled_code()) return;  // the test of a missing module is the one
   std::string model = "system large\ndimensionless\ncoord x : number\nlet a0 = sin(x)\n";
-  constexpr int steps = 3100;  // each waits for the one before, so that none shares a pack with another
+  constexpr int steps = 8100;  // each waits for the one before, so that none shares a pack with another
   for (int i = 1; i < steps; ++i) model += "let a" + std::to_string(i) + " = sin(a" + std::to_string(i - 1) + " + x)\n";
   model += "force x = -x - a" + std::to_string(steps - 1) + "/10\nT = 1/2 x'^2\nstart x = 1\nrun 0.01\n";
   const Folder folder;

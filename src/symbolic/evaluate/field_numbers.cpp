@@ -75,6 +75,11 @@ bool FieldNumbers::has_sign(Position argument, Value value, int sign) const {
   return field_.character(value) == sign && (known == 0 || known == sign);
 }
 
+/// Its roots have no value at any real point.
+bool FieldNumbers::is_never_positive(Position argument) const {
+  return argument < hints_.sign.size() && hints_.sign[argument] < 0;
+}
+
 FieldNumbers::Value FieldNumbers::positive(Value a) const {
   if (field_.character(a) <= 0) throw Redraw{};
   return a;
@@ -137,7 +142,8 @@ FieldNumbers::Value FieldNumbers::power(const Tape& tape, Position at, const std
       return field_.power(values[base], static_cast<std::uint64_t>(*n));
     }
   }
-  if (number && free_roots_ && tape.kind(base) != Kind::Number) return free_power(values[base], *number);
+  if (number && free_roots_ && tape.kind(base) != Kind::Number && !is_never_positive(base))
+    return free_power(values[base], *number);
   if (!has_sign(base, values[base], 1)) throw Redraw{false, at};
   return field_.power(values[base], number ? exponent_of(*number) : exponent_of(tape, exponent, values));
 }

@@ -93,6 +93,7 @@ class FieldNumbers {
   bool has_sign(Position argument, Value value, int sign) const;
   Value power(const Tape& tape, Position at, const std::vector<Value>& values);
   Value positive_power(Value base, std::uint64_t exponent) const;
+  bool is_never_positive(Position argument) const;
   Value free_power(Value base, const Rational& exponent) const;
   Value positive(Value a) const;
   std::uint64_t exponent_of(const Rational& c) const;

@@ -55,7 +55,11 @@ function resultsElements(results: ExpectationResult[]): Node[] {
             'span',
             {},
             h('code', {}, r.text),
-            r.passed ? (r.where ? h('p', {}, ...prose(`It holds where ${r.where}.`)) : '') : h('p', {}, ...prose([r.message, r.pitfall].filter(Boolean).join(' '))),
+            r.passed
+              ? r.where
+                ? h('p', {}, ...prose(`It holds where ${r.where}.`))
+                : ''
+              : h('p', {}, ...prose([r.message, r.pitfall].filter(Boolean).join(' '))),
           ),
           h('span', {class: 'muted'}, r.actual),
         ),

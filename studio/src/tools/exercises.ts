@@ -206,7 +206,8 @@ export class Exercises {
               ),
         ),
       );
-    verdict.replaceChildren(h('div', {class: 'message right'}, h('p', {class: 'what'}, ...prose(answer.where ? `✓ Right where ${answer.where}.` : '✓ Right.'))));
+    const said = answer.where ? `✓ Right where ${answer.where}.` : '✓ Right.';
+    verdict.replaceChildren(h('div', {class: 'message right'}, h('p', {class: 'what'}, ...prose(said))));
     this.solved.add(name);
     this.storage.setSetting('solved', [...this.solved].join(' '));
     right();

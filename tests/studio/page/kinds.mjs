@@ -172,7 +172,8 @@ V = 1/2 m w^2 x^2\nstart x = 1 mm\nrun 10 s\n`;
       await toExample(page, name);
       check(`${name}: it is said`, /paths between two ends/.test(await stage.innerText()), await stage.innerText());
       await page.waitForSelector('#stage-trouble .paths figure svg');
-      check(`${name}: what they are is told`, /Path 1[^]*S[^]*(minimum|index)/.test(await stage.innerText()), await stage.innerText());
+      const told = await stage.innerText();
+      check(`${name}: what they are is told`, /Path 1[^]*S[^]*(minimum|index)/.test(told), told);
       check(`${name}: no run is offered`, (await stage.locator('button', {hasText: 'Run'}).count()) === 0);
       for (const id of ['start-group', 'section', 'transport', 'run-facts', ...(inTime ? [] : ['modes', 'run-group'])])
         check(`${name}: no #${id}`, await page.locator(`#${id}`).isHidden());

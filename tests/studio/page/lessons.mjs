@@ -125,7 +125,8 @@ V = 1/2 k (x1^2 + (x2 - x1)^2 + x2^2)\nstart x1 = 10 cm\nrun 2 s\n`,
     check('each mode can be watched', (await page.locator('#modes-body figure.mode button').count()) === 2);
     await page.locator('#modes-body').scrollIntoViewIfNeeded();
     await picture(page, 'modes-beads');
-    check('the table is reached by Tab', (await page.locator('#modes-body .scroll').first().getAttribute('tabindex')) === '0');
+    const table = page.locator('#modes-body .scroll').first();
+    check('the table is reached by Tab', (await table.getAttribute('tabindex')) === '0');
     await axe(page, 'modes of beads');
     await page.context().close();
   },

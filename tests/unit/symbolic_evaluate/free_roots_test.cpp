@@ -71,6 +71,13 @@ TEST_CASE("what needs that a root squared is its radicand is left open there, an
   CHECK(zero_test(hidden + b.torque()).verdict == Verdict::Undecided);
 }
 
+TEST_CASE("a root of what is negative everywhere is no symbol: nothing is said of it") {
+  Context c;
+  const Expr x = c.symbol("x", Role::Coordinate), y = c.symbol("y", Role::Coordinate);
+  const Expr nowhere = pow(c.number(Rational(-1)) - x * x, Rational(1, 2));
+  CHECK(zero_test((x + y) * nowhere - (x * nowhere + y * nowhere)).verdict == Verdict::Undecided);
+}
+
 TEST_CASE("powers with free roots: what stays of the laws of powers") {
   Context c;
   const Expr x = c.symbol("x", Role::Coordinate);
