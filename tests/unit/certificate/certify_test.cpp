@@ -313,6 +313,30 @@ V = sqrt(3 + 2 sqrt(2)) x
     }
 }
 
+TEST_CASE("many bodies: more distances than a point modulo a prime has roots for are proved all the same") {
+  std::string text = "dimensionless\nparam k = 1\n";
+  for (int i = 1; i <= 12; ++i) {
+    const std::string n = std::to_string(i);
+    text += "coord x" + n + ", y" + n + " : number\npoint P" + n + " mass " + n + " at (x" + n + ", y" + n + ")\n";
+    for (int j = 1; j < i; ++j) text += "V += -k/norm(P" + n + " - P" + std::to_string(j) + ")\n";
+  }
+  const ModelText model(text);
+  const Derivation readable = readable_derivation(model.equations, false);
+  for (const CertificateCheck& check : certify(model.equations, &readable).checks) {
+    CAPTURE(check.name);
+    CHECK(check.verdict == Verdict::Zero);
+    CHECK(check.error_bound < 1e-6);
+    CHECK(check.statement.find("digits") == std::string::npos);
+  }
+  // A wrong force between two of them is seen, and by which equation.
+  const Names names = caught(text.c_str(), [](EquationsOfMotion& e) {
+    const auto& q = e.system->coordinates;
+    const Expr square = pow(q[0].q - q[2].q, Rational(2)) + pow(q[1].q - q[3].q, Rational(2));
+    e.residual[0] = e.residual[0] + Rational(1, 1000) * (q[0].q - q[2].q) * pow(square, Rational(-3, 2));
+  });
+  CHECK(names == Names{"forms_agree", "jet_residual", "dalembert", "power_balance"});
+}
+
 TEST_CASE("derivatives of derivatives are followed as far as they are written") {
   ModelText model("dimensionless\nparam m = 1\ncoord x, y : number\nT = 1/2 m (x'^2 + y'^2)\nV = x y\n");
   Context& c = *model.system->context;
