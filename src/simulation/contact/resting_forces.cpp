@@ -166,7 +166,9 @@ Projection project(const ConeProblem& p, const VectorXd& z, double part) {
 /// where no force changes its side any more; nothing where they do not.
 std::optional<VectorXd> UndeterminedRest::shortest_in_cones(double margin) const {
   constexpr int most_turns = 100, most_halvings = 40;
-  const auto& [rows, right] = few_rows_;
+  // No structured binding: clang 14 refuses those in lambdas.
+  const MatrixXd& rows = few_rows_.b;
+  const VectorXd& right = few_rows_.right;
   const auto value = [&](const VectorXd& z, const VectorXd& point, const VectorXd& y) {
     return z.dot(point) - 0.5 * point.squaredNorm() - right.dot(y);
   };
