@@ -94,7 +94,8 @@ expectation::Kind StatementParser::expected(bool claim) {
   if (accept("constraint")) return expect_class();
   if (accept("integral")) return expectation::Integral{formula()};
   if (accept("frequencies")) return expect_frequencies();
-  if (peek().is("equilibrium") && peek(1).is("at")) return expect_equilibrium();
+  const bool names_follow = !declared && peek(1).kind == Token::Kind::Name;
+  if (peek().is("equilibrium") && (peek(1).is("at") || names_follow)) return expect_equilibrium();
   if (accept("event")) return expect_event();
   if (accept("until")) return expect_until();
   if (opens_matrix()) return expect_matrix();
