@@ -238,7 +238,6 @@ Bindings start_jets(const FieldEquations& equations, const Bindings& place) {
 }  // namespace
 
 void refuse_ill_posed(const FieldEquations& equations, Diagnostics& diagnostics) {
-  const FieldSystem& s = equations.system();
   constexpr std::size_t most_fields = 12;
   if (equations.varied.size() > most_fields) return;
   // Coefficients of places are held while the wave is looked at, so that their slopes let waves grow which do not, by a

@@ -167,6 +167,19 @@ bool HybridMotion::slips_may_stop_before(double end, const std::vector<std::size
   return false;
 }
 
+/// Where the last flights say that infinitely many bounces end; then all contacts of their cycle are touching.
+std::optional<double> HybridMotion::accumulation_among(std::vector<std::size_t>& touching,
+                                                       const ContactValues& values) {
+  std::optional<double> end;
+  for (const std::size_t i : touching)
+    if (values.rate[i] < -rest_speed(i, values))
+      if (const auto found = accumulation(i, -values.rate[i])) end = found;
+  if (!end || slips_may_stop_before(*end, touching, values)) return std::nullopt;
+  for (const std::size_t i : cycle_)
+    if (std::find(touching.begin(), touching.end(), i) == touching.end()) touching.push_back(i);
+  return end;
+}
+
 /// What closing contacts do to the velocities. False, and why, where no impulses are found.
 bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) {
   accumulated_.reset();
@@ -175,14 +188,7 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
                                    [&](std::size_t i) { return values.rate[i] < -rest_speed(i, values); });
   if (!closing) return true;
   for (const std::size_t i : touching) bounces_[i].fastest = std::max(bounces_[i].fastest, -values.rate[i]);
-  std::optional<double> end;
-  for (const std::size_t i : touching)
-    if (values.rate[i] < -rest_speed(i, values))
-      if (const auto found = accumulation(i, -values.rate[i])) end = found;
-  if (end && slips_may_stop_before(*end, touching, values)) end.reset();
-  if (end)
-    for (const std::size_t i : cycle_)
-      if (std::find(touching.begin(), touching.end(), i) == touching.end()) touching.push_back(i);
+  const std::optional<double> end = accumulation_among(touching, values);
   const bool rubs =
       std::any_of(touching.begin(), touching.end(), [&](std::size_t i) { return !values.tangent[i].empty(); });
   ImpactProblem p = impact_problem(end ? cycle_ : touching, values);

@@ -135,6 +135,7 @@ class HybridMotion final : public Method {
   void book_energy(const ImpactResult& result);
   void record_impulses(const ImpactResult& result);
   std::optional<double> accumulation(std::size_t contact, double speed);
+  std::optional<double> accumulation_among(std::vector<std::size_t>& touching, const ContactValues& values);
   bool slips_may_stop_before(double end, const std::vector<std::size_t>& touching, const ContactValues& values) const;
   double speed_left_by_time(const SparseRow& row) const;
   double rest_speed(std::size_t contact, const ContactValues& values) const;
