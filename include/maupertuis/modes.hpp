@@ -71,8 +71,9 @@ struct ModalEntry {
 /// An equilibrium on a kink beyond which the forces do not balance: no linearization.
 struct Kink {
   Equilibrium equilibrium;
-  std::string side;    // where they do not
-  bool steep = false;  // they do, but the stiffness grows without bound: |x|^1.5 at 0
+  std::string side;          // where they do not
+  bool steep = false;        // they do, but the stiffness grows without bound: |x|^1.5 at 0
+  std::size_t switches = 0;  // that meet there, where they are too many for their sides to be looked at
 };
 
 struct ModalStudy {

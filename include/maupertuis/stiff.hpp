@@ -5,13 +5,17 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 /// Implicit steps of a stiff motion (docs/theory/stiff.md); used as a TaylorStepper is.
 namespace maupertuis {
 
 struct StiffOptions {
   double tolerance = 1e-12;  // relative, per step
-  double absolute = 0;       // in the unit of each coordinate and velocity; 0: 1e-4 · tolerance
+  double absolute = 0;       // in the unit of each coordinate and velocity; 0: 1e-4 · tolerance, of sizes at the start
+  /// [n] Coordinates with one number share a unit. The largest of them at the start is their size, and that of their
+  /// velocities, where it is less than 1; a start at zero leaves it 1. Empty: 1.
+  std::vector<std::size_t> kinds = {};
   std::size_t maximum_steps = 100'000'000;
   const StopFlag* interrupt = nullptr;  // looked at once a step
 };

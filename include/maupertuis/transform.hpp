@@ -1,6 +1,8 @@
 #pragma once
 #include <maupertuis/expression.hpp>
 
+#include <functional>
+
 #include <memory>
 #include <span>
 #include <unordered_map>
@@ -41,8 +43,9 @@ Expr expand(Expr e, std::size_t term_budget = 20000);
 /// For evaluation in floating point: quotients and logarithms of sums of exponentials of one argument, 1/(1 + exp(u)),
 /// sinh u/cosh³ u, log(1 + exp(u)), written so that they are finite where exp(u) is not. They differ from the given
 /// ones by less than 1e-60 of their largest value (1e-130 where coefficients are near 1), and have switches at |u| =
-/// 300. Cost: O(nodes).
-std::vector<Expr> without_overflow(std::span<const Expr> roots);
+/// 300. `value_of` tells what does not move, as parameters; without it sums that hold such are left as they are.
+/// Cost: O(nodes).
+std::vector<Expr> without_overflow(std::span<const Expr> roots, const std::function<double(Expr)>& value_of = {});
 
 struct ReadingPlaces;
 

@@ -397,7 +397,9 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
   const int order = s.element_order ? s.element_order : usual_coupled_order;
   if (refuse_too_many_conditions(equations, diagnostics)) return std::nullopt;
   const auto mesh = SemiDiscrete::make(model, equations, cells, order, diagnostics);
-  if (!mesh || refuse_unresolved(equations, {mesh->borders()}, mesh->order(), diagnostics)) return std::nullopt;
+  if (!mesh ||
+      refuse_unresolved(equations, {mesh->borders()}, mesh->order(), {options.begin, options.duration}, diagnostics))
+    return std::nullopt;
   if (mesh->start_clashes())
     diagnostics.warning("W0646", equations.model->start.empty() ? s.density_span : equations.model->start.front().span,
                         "the start does not fit the condition at an end",

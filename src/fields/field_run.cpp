@@ -162,7 +162,7 @@ void warn_of_clashes(const FieldMotion& mesh, const FieldEquations& equations, D
 /// W0650: what acts for less than a step; whether there is such.
 bool warn_of_short_action(const FieldEquations& equations, const std::vector<double>& switching, double step,
                           const FieldRunOptions& options, Diagnostics& diagnostics) {
-  const auto moment = unresolved_moment(equations, switching, step, options.begin, options.duration);
+  const auto moment = unresolved_moment(equations, switching, step, {options.begin, options.duration});
   if (!moment) return false;
   diagnostics.warning(
       "W0650", equations.system().density_span,
@@ -577,7 +577,9 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   }
   if (refuse_large_mesh(equations, *method, cells, diagnostics)) return std::nullopt;
   announce_memory(options, method->bytes(equations, cells));
-  if (refuse_unresolved(equations, even_borders(equations, cells), method->order(), diagnostics)) return std::nullopt;
+  if (refuse_unresolved(equations, even_borders(equations, cells), method->order(), {options.begin, options.duration},
+                        diagnostics))
+    return std::nullopt;
   if (auto moments = switching_moments(equations, options.begin, options.begin + options.duration))
     method->end_steps_at(std::move(*moments));
   const Rough start = roughness_of(equations, *method, cells, options, diagnostics);

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <queue>
 
 namespace maupertuis {
 namespace {
@@ -138,6 +139,47 @@ class Scan {
     for (std::size_t e = 0; e < mesh.count(); ++e)
       if (const auto place = find_in(mesh, mesh.box(e))) return Unseen{*place, mesh.box(e).width};
     return std::nullopt;
+  }
+
+  /// Where the function is largest between two corners, and how large: the piece that may be largest is halved along
+  /// its longest side until none may exceed what was found. Nothing where the function is 0 wherever it was looked at.
+  std::optional<Place> strongest(const Place& from, const Place& to) {
+    constexpr int looks = 20'000;
+    struct Ranked {
+      double most = 0;
+      Place middle, half;
+      bool operator<(const Ranked& other) const { return most < other.most; }
+    };
+    std::priority_queue<Ranked> open;
+    double largest = 0;
+    std::optional<Place> out;
+    const auto look = [&](Place middle, Place half) {
+      const double f = std::abs(at(middle));
+      if (std::isfinite(f) && f > largest) largest = f, out = middle;
+      disks_.set_centre(middle);
+      disks_.evaluate(half);
+      const double reach = disks_.reach(0), most = std::isfinite(f + reach) ? f + reach : HUGE_VAL;
+      if (most > largest) open.push({most, std::move(middle), std::move(half)});
+    };
+    Place middle = from, half = to;
+    for (std::size_t i = 0; i < from.size(); ++i) half[i] = (to[i] - from[i]) / 2, middle[i] = from[i] + half[i];
+    const Place whole = half;
+    look(middle, half);
+    for (int seen = 0; !open.empty() && seen < looks; ++seen) {
+      Ranked piece = open.top();
+      open.pop();
+      if (!(piece.most > 2 * largest)) break;  // what is left is no stronger by far
+      std::size_t along = 0;
+      for (std::size_t i = 1; i < whole.size(); ++i)
+        if (piece.half[i] * whole[along] > piece.half[along] * whole[i]) along = i;
+      piece.half[along] /= 2;
+      for (const int side : {-1, 1}) {
+        Place part = piece.middle;
+        part[along] += side * piece.half[along];
+        look(std::move(part), piece.half);
+      }
+    }
+    return out;
   }
 
  private:
@@ -277,36 +319,91 @@ Borders even_borders(const FieldEquations& equations, const std::vector<int>& ce
   return out;
 }
 
-std::optional<double> unresolved_moment(const FieldEquations& equations, const std::vector<double>& switching,
-                                        double step, double begin, double duration) {
-  constexpr double most_steps = 200'000;
-  if (!(step > 0) || duration / step > most_steps) return std::nullopt;
+namespace {
+
+/// Where f(x, t) is strongest in each of some equal parts of the run, as (x, t): what is narrow in both is 0 wherever
+/// it is looked at along one of them alone.
+std::vector<Place> strongest_moments(const FieldEquations& equations, const ParameterValues& parameters, Expr f,
+                                     const RunTime& run, int parts) {
   const FieldSystem& s = equations.system();
-  Context& context = *s.context;
-  const Expr time = context.time();
+  std::vector<Place> out;
+  std::vector<Expr> variables = space_of(equations);
+  variables.push_back(s.context->time());
+  Scan scan(f, variables, parameters.symbols, parameters.values);
+  Place from, to;
+  for (const SpaceVariable& x : s.space) {
+    from.push_back(evaluate(s.expanded(x.from), parameters.known));
+    to.push_back(evaluate(s.expanded(x.to), parameters.known));
+  }
+  from.push_back(0), to.push_back(0);
+  for (int part = 0; part < parts; ++part) {
+    from.back() = run.begin + run.duration * part / parts, to.back() = run.begin + run.duration * (part + 1) / parts;
+    if (auto found = scan.strongest(from, to)) out.push_back(std::move(*found));
+  }
+  return out;
+}
+
+/// Borders of steps: of all, or of those next to a moment where there are more than can be looked at.
+std::vector<double> borders_of_steps(const RunTime& run, double step, const std::vector<double>& switching,
+                                     std::optional<double> near) {
+  constexpr double most_steps = 200'000, beside = 1000;
+  const double count = std::ceil(run.duration / step);
+  double first = 0, last = count;
+  if (count > most_steps) {
+    const double middle = near ? std::floor((*near - run.begin) / step) : 0;
+    first = std::clamp(middle - beside, 0.0, count), last = std::clamp(middle + beside, 0.0, count);
+  }
+  std::vector<double> out;
+  for (double k = first; k <= last; ++k) out.push_back(run.begin + step * k);
+  for (const double t : switching)
+    if (t > out.front() && t < out.back()) out.push_back(t);
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+}  // namespace
+
+std::optional<double> unresolved_moment(const FieldEquations& equations, const std::vector<double>& switching,
+                                        double step, const RunTime& run) {
+  constexpr int parts = 8;
+  if (!(step > 0) || !(run.duration > 0)) return std::nullopt;
+  const FieldSystem& s = equations.system();
+  const Expr time = s.context->time();
   const ParameterValues parameters(*equations.model);
   const Lobatto rule(2);
-  Elements steps{rule, {switching}, 1e-9};
-  for (double k = 0; k <= std::ceil(duration / step); ++k) steps.borders[0].push_back(begin + step * k);
-  std::sort(steps.borders[0].begin(), steps.borders[0].end());
-  steps.borders[0].erase(std::unique(steps.borders[0].begin(), steps.borders[0].end()), steps.borders[0].end());
-  const auto look = [&](Expr f) -> std::optional<double> {
+  const auto look = [&](Expr f, std::optional<double> near) -> std::optional<double> {
     if (!stands_in(time, f)) return std::nullopt;
+    const Elements steps{rule, {borders_of_steps(run, step, switching, near)}, 1e-9};
+    if (steps.borders[0].size() < 2) return std::nullopt;
     const auto found = Scan(f, {time}, parameters.symbols, parameters.values).with_poles().find(steps);
     return found ? std::optional(found->place[0]) : std::nullopt;
   };
+  // Of what holds t and places: at some places, and where it is strongest.
+  const auto look_everywhere = [&](Expr f) -> std::optional<double> {
+    if (!stands_in(time, f)) return std::nullopt;
+    const std::vector<Place> strongest = strongest_moments(equations, parameters, f, run, parts);
+    for (const int part : {13, 29, 50, 83}) {  // hundredths of the domain
+      ExprMap fixed;
+      for (const SpaceVariable& x : s.space)
+        fixed.emplace(x.symbol, s.expanded(x.from) + Rational(part, 100) * (s.expanded(x.to) - s.expanded(x.from)));
+      if (const auto found = look(substitute(f, fixed), std::nullopt)) return found;
+    }
+    for (const Place& at : strongest) {
+      ExprMap fixed;
+      for (std::size_t i = 0; i < s.space.size(); ++i)
+        fixed.emplace(s.space[i].symbol, s.context->number(Rational::from_double(at[i])));
+      if (const auto found = look(substitute(f, fixed), at.back())) return found;
+    }
+    return std::nullopt;
+  };
   for (const EndForce& force : s.end_forces)
-    if (const auto found = look(s.expanded(force.value))) return found;
-  for (const int part : {13, 29, 50, 83}) {  // hundredths of the domain
-    ExprMap fixed;
-    for (const SpaceVariable& x : s.space)
-      fixed.emplace(x.symbol, s.expanded(x.from) + Rational(part, 100) * (s.expanded(x.to) - s.expanded(x.from)));
-    for (const BoundaryCondition& b : s.boundary)  // along a side
-      if (b.value)
-        if (const auto found = look(substitute(s.expanded(b.value), fixed))) return found;
-    for (const Acting& f : what_acts(equations))
-      if (const auto found = look(substitute(f.value, fixed))) return found;
-  }
+    if (const auto found = look_everywhere(s.expanded(force.value))) return found;
+  for (const BoundaryCondition& b : s.boundary)  // along a side
+    if (b.value)
+      if (const auto found = look_everywhere(s.expanded(b.value))) return found;
+  for (const Acting& f : what_acts(equations))
+    if (const auto found = look_everywhere(f.value)) return found;
   return std::nullopt;
 }
 
@@ -339,12 +436,19 @@ class SpaceScan {
     return Scan(f, x_, parameters_.symbols, parameters_.values).find(mesh_);
   }
 
-  /// Of the density, the dissipation and force densities as they are at t = 0.
-  std::optional<std::pair<Unseen, const char*>> find_in_what_acts() const {
+  /// Of the density, the dissipation and force densities, as they are when the run begins and when they are strongest.
+  std::optional<std::pair<Unseen, const char*>> find_in_what_acts(const RunTime& run) const {
+    constexpr int parts = 8;
     Context& context = *equations_.system().context;
-    for (const Acting& f : what_acts(equations_))
-      if (const auto found = find(substitute(f.value, {{context.time(), context.number(0)}})))
-        return std::pair(*found, f.of);
+    for (const Acting& f : what_acts(equations_)) {
+      std::vector<double> moments{run.begin};
+      if (run.duration > 0 && stands_in(context.time(), f.value))
+        for (const Place& at : strongest_moments(equations_, parameters_, f.value, run, parts))
+          moments.push_back(at.back());
+      for (const double t : moments)
+        if (const auto found = find(substitute(f.value, {{context.time(), context.number(Rational::from_double(t))}})))
+          return std::pair(*found, f.of);
+    }
     return std::nullopt;
   }
 
@@ -358,7 +462,8 @@ class SpaceScan {
 
 }  // namespace
 
-bool refuse_unresolved(const FieldEquations& equations, const Borders& borders, int order, Diagnostics& diagnostics) {
+bool refuse_unresolved(const FieldEquations& equations, const Borders& borders, int order, const RunTime& run,
+                       Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
   const SpaceScan scan(equations, borders, order);
   for (const FieldStart& start : equations.model->start)
@@ -366,13 +471,13 @@ bool refuse_unresolved(const FieldEquations& equations, const Borders& borders, 
       refuse(equations, *found, start.span, "the start", diagnostics);
       return true;
     }
-  const auto found = scan.find_in_what_acts();
+  const auto found = scan.find_in_what_acts(run);
   if (found) refuse(equations, found->first, s.density_span, found->second, diagnostics);
   return found.has_value();
 }
 
 std::optional<std::string> passed_by(const FieldEquations& equations, const Borders& borders, int order) {
-  const auto found = SpaceScan(equations, borders, order).find_in_what_acts();
+  const auto found = SpaceScan(equations, borders, order).find_in_what_acts({});
   if (!found) return std::nullopt;
   return fmt::format("{} has at {}", found->second, place_text(equations.system(), found->first));
 }

@@ -166,19 +166,35 @@ bool changes_in_space(const FieldEquations& equations) {
   return false;
 }
 
+/// What a wave number is measured by: the reciprocal of the longest side of the domain; 1 where none has ends.
+double wave_unit(const FieldEquations& equations) {
+  const FieldSystem& s = equations.system();
+  Bindings parameters;
+  for (const Parameter& p : equations.model->parameters) parameters[p.symbol] = p.si_value;
+  double longest = 0;
+  for (const SpaceVariable& x : s.space)
+    if (x.from)
+      longest = std::max(longest,
+                         std::abs(evaluate(s.expanded(x.to), parameters) - evaluate(s.expanded(x.from), parameters)));
+  return longest > 0 && std::isfinite(longest) ? 1 / longest : 1;
+}
+
+constexpr double few_waves = 1e4, many_waves = 1e6;  // over the domain, in radians
+
 struct IllPosed {
   std::size_t direction = 0;
-  double few = 0, many = 0;  // rates of growth of waves of 1e4 and 1e6
+  double few = 0, many = 0;  // rates of growth
   bool fed = false;          // by the dissipation density, not by the stiffness
 };
 
 /// Whether short waves grow the faster the shorter they are, and not behind `part` of their frequency.
 std::optional<IllPosed> ill_posed(const FieldEquations& equations, const std::vector<Term>& terms, double part) {
   const std::vector<Direction> all = directions(equations.system().space.size());
+  const double unit = wave_unit(equations);
   for (std::size_t d = 0; d < all.size(); ++d) {
-    const Growth few = growth(terms, equations.varied.size(), all[d], 1e4),
-                 many = growth(terms, equations.varied.size(), all[d], 1e6);
-    if (!(many.rate > 8 * few.rate) || !(many.rate > 1e3) || !(many.rate > part * many.speed)) continue;
+    const Growth few = growth(terms, equations.varied.size(), all[d], few_waves * unit),
+                 many = growth(terms, equations.varied.size(), all[d], many_waves * unit);
+    if (!(many.rate > 8 * few.rate) || !(many.rate > part * many.speed)) continue;
     IllPosed out{d, few.rate, many.rate, false};
     std::vector<Term> without;
     for (const Term& t : terms)
@@ -208,9 +224,10 @@ void refuse_growing_waves(const FieldEquations& equations, Diagnostics& diagnost
       "E0641", s.density_span,
       fmt::format("the field equation{} ill-posed: short waves grow without bound",
                   equations.varied.size() == 1 ? " is" : "s are"),
-      fmt::format("A wave{}{} of wave number 1e6 grows at the rate {:.3g}, one of 1e4 at {:.3g}: the "
+      fmt::format("A wave{}{} of wave number {:.3g} grows at the rate {:.3g}, one of {:.3g} at {:.3g}: the "
                   "shorter, the faster ({}).{}",
-                  along, (at_start ? " about the start" : "") + where, found.many, found.few,
+                  along, (at_start ? " about the start" : "") + where, many_waves * wave_unit(equations), found.many,
+                  few_waves * wave_unit(equations), found.few,
                   found.fed ? "the dissipation density is negative for them, and feeds them" : "elliptic in time",
                   relation),
       found.fed ? "A dissipation density is positive: what it takes is 2 𝒟 for a quadratic one."

@@ -48,8 +48,8 @@ class Lowering {
   ExprVector inputs_, velocities_, parameters_;
 };
 
-/// Σ |terms|
-Expr size_of_terms(Expr e) {
+/// Σ |terms| of the sum itself
+Expr size_of_outer_terms(Expr e) {
   ExprVector sizes;
   if (e.is(Kind::Sum))
     for (std::size_t i = 0; i < e.size(); ++i) sizes.push_back(apply(Kind::Abs, e[i]));
@@ -77,8 +77,8 @@ MotionFunctions lower_motion(const Lowering& lowering, const EquationsOfMotion& 
   out.rates = lowering.differentiable(equations.constraint_rates);
   out.positions = lowering.differentiable(positions);
   ExprVector scales;
-  for (const Expr& e : positions) scales.push_back(size_of_terms(e));
-  for (const Expr& e : equations.constraint_rates) scales.push_back(size_of_terms(expand_time_derivatives(e)));
+  for (const Expr& e : positions) scales.push_back(size_of_outer_terms(e));
+  for (const Expr& e : equations.constraint_rates) scales.push_back(size_of_outer_terms(expand_time_derivatives(e)));
   out.constraint_scales = lowering.function(scales);
   out.observables = lowering.function(wanted.observables);
   out.events = lowering.function(wanted.events);

@@ -95,8 +95,20 @@ void HybridMotion::record_impulses(const ImpactResult& result) {
   }
 }
 
+/// A series of bounces goes on while each impact is what the one before left, give or take a thousand times. What drag
+/// slowed, or another body throws down anew, begins another one: a millionth of the old one may be all that moves.
+void HybridMotion::note_bounce(std::size_t contact, double speed, double restitution) {
+  constexpr double most = 1e3;
+  Bounces& bounces = bounces_[contact];
+  const double left = restitution * bounces.before;
+  const bool goes_on = most * speed >= left && speed <= most * left;
+  bounces.fastest = goes_on ? std::max(bounces.fastest, speed) : speed;
+  bounces.before = speed;
+}
+
 /// When infinitely many bounces come to their end, told from the last three of a contact; nothing while they go on. The
-/// flights are then as short as their rounding allows to tell: speeds of a millionth of the fastest impact there.
+/// flights are then as short as their rounding allows to tell: speeds of a millionth of the fastest impact of the
+/// series.
 std::optional<double> HybridMotion::accumulation(std::size_t contact, double speed) {
   auto& last = bounces_[contact].last;
   last.emplace_back(t_, speed);
@@ -187,7 +199,8 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
   const bool closing = std::any_of(touching.begin(), touching.end(),
                                    [&](std::size_t i) { return values.rate[i] < -rest_speed(i, values); });
   if (!closing) return true;
-  for (const std::size_t i : touching) bounces_[i].fastest = std::max(bounces_[i].fastest, -values.rate[i]);
+  for (const std::size_t i : touching)
+    if (values.rate[i] < -rest_speed(i, values)) note_bounce(i, -values.rate[i], values.restitution[i]);
   const std::optional<double> end = accumulation_among(touching, values);
   const bool rubs =
       std::any_of(touching.begin(), touching.end(), [&](std::size_t i) { return !values.tangent[i].empty(); });

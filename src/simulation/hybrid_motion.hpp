@@ -134,6 +134,7 @@ class HybridMotion final : public Method {
   /// What impulses take, and what contacts that move give by them.
   void book_energy(const ImpactResult& result);
   void record_impulses(const ImpactResult& result);
+  void note_bounce(std::size_t contact, double speed, double restitution);
   std::optional<double> accumulation(std::size_t contact, double speed);
   std::optional<double> accumulation_among(std::vector<std::size_t>& touching, const ContactValues& values);
   bool slips_may_stop_before(double end, const std::vector<std::size_t>& touching, const ContactValues& values) const;
@@ -313,7 +314,8 @@ class HybridMotion final : public Method {
   bool knows_compliance_ = false;                     // of all that touch at this instant
   struct Bounces {
     std::vector<std::pair<double, double>> last;  // (t, speed) of the last impacts
-    double fastest = 0;                           // of all impacts so far, not rounding of other speeds
+    double fastest = 0;                           // impact of the series that goes on, not rounding of other speeds
+    double before = 0;                            // the speed of the impact before
   };
   std::vector<Bounces> bounces_;     // [contacts]
   std::vector<bool> idle_;           // [contacts] open in the mode, but others keep them closed

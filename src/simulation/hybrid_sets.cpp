@@ -32,6 +32,9 @@ bool HybridMotion::carry_out_sets(std::string& reason) {
           fmt::format("The event `{}` sets a state that violates the contact {}.", before, system_.contact_label(i));
       return false;
     }
+  for (std::size_t i = 0; i < bounces_.size(); ++i)  // what is set down anew bounces anew
+    for (const auto& [k, g] : values.normal[i])
+      if (q[k] != q_[k] || v[k] != v_[k]) bounces_[i].before = 0;
   const double gained = energy_and_sets_at(t_, q, v)[0] - found[0];
   carried_[0] += gained;  // what a set puts in is work
   record_.books.events += gained;

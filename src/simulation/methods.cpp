@@ -72,8 +72,22 @@ bool is_tolerance(double tolerance, Diagnostics& diagnostics) {
   return false;
 }
 
-StiffStepper stiff_stepper(const EquationsOfMotion& equations, const WantedFunctions& wanted,
-                           const StiffOptions& options) {
+/// Coordinates of one unit share a number; angles count as none of the numbers.
+std::vector<std::size_t> kinds_of(const MechanicalSystem& system) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
+    const Coordinate& c = system.coordinates[i];
+    std::size_t like = 0;
+    while (like < i && !(system.coordinates[like].dimension == c.dimension &&
+                         (system.coordinates[like].kind == "angle") == (c.kind == "angle")))
+      ++like;
+    out.push_back(like);
+  }
+  return out;
+}
+
+StiffStepper stiff_stepper(const EquationsOfMotion& equations, const WantedFunctions& wanted, StiffOptions options) {
+  options.kinds = kinds_of(*equations.system);
   return {motion_functions(equations, wanted), parameter_values(*equations.system), options};
 }
 

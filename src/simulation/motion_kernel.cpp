@@ -30,10 +30,12 @@ KernelSource motion_source(const EquationsOfMotion& equations) {
 KernelSource motion_source(const EquationsOfMotion& equations, const WantedFunctions& wanted) {
   const MechanicalSystem& system = *equations.system;
   KernelSource source = motion_source(equations);
-  source.residual = without_overflow(source.residual);
-  source.observables = without_overflow(in_terms_of_motion(system, wanted.observables));
+  const Bindings parameters = parameter_bindings(system);
+  const auto value_of = [&](Expr e) { return evaluate(e, parameters); };
+  source.residual = without_overflow(source.residual, value_of);
+  source.observables = without_overflow(in_terms_of_motion(system, wanted.observables), value_of);
   source.events = in_terms_of_motion(system, wanted.events);
-  source.integrands = without_overflow(in_terms_of_motion(system, wanted.integrands));
+  source.integrands = without_overflow(in_terms_of_motion(system, wanted.integrands), value_of);
   return source;
 }
 

@@ -101,8 +101,10 @@ void ModeClaims::decide_at(const MotionState& begin, const std::vector<StartValu
   result.passed = false;
   const Kink& kink = study->kinks.front();
   result.message =
-      kink.steep ? "The stiffness grows without bound near the point: there is no linearization."
-                 : fmt::format("On the side {} of a kink forces are left over: there is no linearization.", kink.side);
+      kink.switches > 0 ? fmt::format("{} formulas switch at the point: more sides than are looked at.", kink.switches)
+      : kink.steep
+          ? "The stiffness grows without bound near the point: there is no linearization."
+          : fmt::format("On the side {} of a kink forces are left over: there is no linearization.", kink.side);
 }
 
 void ModeClaims::decide_linear(const std::vector<StartValue>& at, const char* what, const Judge& judge,

@@ -1,6 +1,7 @@
 #include "analysis/action/everywhere.hpp"
 
 #include <maupertuis/motion_kernel.hpp>
+#include <maupertuis/size_of_terms.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,7 @@
 
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/motion_kernel.hpp>
+#include <maupertuis/size_of_terms.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <algorithm>
@@ -33,20 +34,6 @@ Expr auxiliary(Context& context, const char* name, Index i) {
 }
 
 }  // namespace
-
-Expr size_of_terms(Expr e) {
-  std::unordered_map<NodeId, Expr> sizes;
-  for (const Expr& node : topological_order({&e, 1})) {
-    ExprVector parts;
-    for (std::size_t i = 0; i < node.size(); ++i) parts.push_back(sizes.at(node[i].id()));
-    const bool power = node.is(Kind::Power) && node[1].is_number() && node[1].number().sign() > 0;
-    sizes.emplace(node.id(), node.is(Kind::Sum)       ? e.context().sum(parts)
-                             : node.is(Kind::Product) ? e.context().product(parts)
-                             : power                  ? pow(parts[0], node[1].number())
-                                                      : apply(Kind::Abs, node));
-  }
-  return sizes.at(e.id());
-}
 
 Functional::Functional(const EquationsOfMotion& equations)
     : n_(static_cast<Index>(equations.system->coordinates.size())),

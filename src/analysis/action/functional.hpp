@@ -30,9 +30,6 @@ struct Sensitivity {
   double by_time = 0;
 };
 
-/// The sum of the absolute values of the terms, where products of sums are multiplied out: what a sum is rounded by.
-Expr size_of_terms(Expr e);
-
 constexpr double rounding_unit = 1.1102230246251565e-16;  // of one operation
 
 /// A sum with the rounding of one addition (Neumaier).

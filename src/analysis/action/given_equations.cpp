@@ -4,6 +4,7 @@
 
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/motion_kernel.hpp>
+#include <maupertuis/size_of_terms.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <fmt/format.h>

@@ -2,6 +2,7 @@
 
 #include "linear_algebra/dense.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace maupertuis {
@@ -45,9 +46,42 @@ Matrix triangular_factor(const Matrix& a) {
 
 Matrix orthogonal_factor(const Matrix& a) { return columns_of_q(Eigen::HouseholderQR<Matrix>(a), a.rows()); }
 
+std::vector<std::vector<Index>> uncoupled_parts(const Matrix& a) {
+  std::vector<std::vector<Index>> out;
+  std::vector<bool> taken(static_cast<std::size_t>(a.rows()), false);
+  for (Index first = 0; first < a.rows(); ++first) {
+    if (taken[static_cast<std::size_t>(first)]) continue;
+    std::vector<Index> part{first};
+    taken[static_cast<std::size_t>(first)] = true;
+    for (std::size_t k = 0; k < part.size(); ++k)
+      for (Index j = 0; j < a.rows(); ++j)
+        if (!taken[static_cast<std::size_t>(j)] && (a(part[k], j) != 0 || a(j, part[k]) != 0)) {
+          taken[static_cast<std::size_t>(j)] = true;
+          part.push_back(j);
+        }
+    std::sort(part.begin(), part.end());
+    out.push_back(std::move(part));
+  }
+  return out;
+}
+
 SymmetricEigen symmetric_eigen(const Matrix& a) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(a);
-  return {solver.eigenvalues(), solver.eigenvectors()};
+  const Index n = a.rows();
+  std::vector<Index> order;
+  Vector values(n), norms(n);
+  Matrix vectors = Matrix::Zero(n, n);
+  for (const std::vector<Index>& part : uncoupled_parts(a)) {
+    const Matrix block = a(part, part);
+    const Eigen::SelfAdjointEigenSolver<Matrix> solver(block);
+    for (Index i = 0; i < block.rows(); ++i) {
+      const auto at = static_cast<Index>(order.size());
+      values[at] = solver.eigenvalues()[i], norms[at] = block.stableNorm();
+      vectors(part, at) = solver.eigenvectors().col(i);
+      order.push_back(at);
+    }
+  }
+  std::stable_sort(order.begin(), order.end(), [&](Index i, Index j) { return values[i] < values[j]; });
+  return {values(order), vectors(Eigen::all, order), norms(order)};
 }
 
 std::optional<Cholesky> cholesky(const Matrix& a) {

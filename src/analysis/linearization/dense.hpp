@@ -33,9 +33,14 @@ Matrix triangular_factor(const Matrix& a);
 /// The orthogonal factor [rows × rows].
 Matrix orthogonal_factor(const Matrix& a);
 
+/// Groups of indices that no entry of a [n × n] joins: what stands in one knows nothing of what stands in another,
+/// and of its sizes. Each ascending.
+std::vector<std::vector<Index>> uncoupled_parts(const Matrix& a);
+
 struct SymmetricEigen {
   Vector values;   // ascending
   Matrix vectors;  // orthonormal columns
+  Vector norms;    // ‖·‖ of the uncoupled part of each: its rounding is measured by it
 };
 SymmetricEigen symmetric_eigen(const Matrix& a);
 

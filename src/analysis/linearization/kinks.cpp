@@ -1,5 +1,6 @@
 #include "analysis/linearization/kinks.hpp"
 
+#include "analysis/linearization/dense.hpp"
 #include "analysis/linearization/steady_state.hpp"
 
 #include <maupertuis/switch_text.hpp>
@@ -21,8 +22,7 @@ namespace {
 constexpr double on_switch = 1e-7;  // of the change of g over typical sizes
 constexpr double aside = 1e-5;  // of typical sizes: far enough to tell the sides, near enough to stay beside the point
 constexpr double agreement = 1e-9;  // relative
-constexpr std::size_t most_switches = 3;
-constexpr int directions = 32;
+constexpr int directions = 64;      // at random, beside those that the slopes of the switches tell
 
 struct Place {
   Bindings at;
@@ -53,7 +53,7 @@ bool is_known(Expr g, const Bindings& at) {
 ExprVector switches_through(const ExprVector& balance, const Place& place) {
   ExprVector out;
   for (const Expr& g : switches_of(balance)) {
-    if (!is_known(g, place.at) || out.size() == most_switches) continue;
+    if (!is_known(g, place.at)) continue;
     const std::vector<double> slopes = evaluate(gradient(g, place.symbols), place.at);
     double change = 0;
     for (std::size_t i = 0; i < slopes.size(); ++i) change += std::abs(slopes[i]) * place.sizes[i];
@@ -62,14 +62,39 @@ ExprVector switches_through(const ExprVector& balance, const Place& place) {
   return out;
 }
 
+/// Ways from the point on which the switches take given signs, to first order: where their slopes are independent
+/// there is one for each combination.
+std::vector<Vector> ways_to_sides(const ExprVector& switches, const Place& place) {
+  const auto rows = static_cast<Index>(switches.size()), columns = static_cast<Index>(place.symbols.size());
+  Matrix slopes(rows, columns);
+  for (Index k = 0; k < rows; ++k) {
+    const std::vector<double> slope =
+        evaluate(gradient(switches[static_cast<std::size_t>(k)], place.symbols), place.at);
+    for (Index i = 0; i < columns; ++i)
+      slopes(k, i) = slope[static_cast<std::size_t>(i)] * place.sizes[static_cast<std::size_t>(i)];
+    slopes.row(k).normalize();
+  }
+  std::vector<Vector> out;
+  for (unsigned sides = 0; sides < 1U << switches.size(); ++sides) {
+    Vector signs(rows);
+    for (Index k = 0; k < rows; ++k) signs[k] = (sides >> k & 1U) != 0 ? 1 : -1;
+    const Vector way = least_squares(slopes, signs, 1e-9).x;
+    if (way.allFinite() && way.lpNorm<Eigen::Infinity>() > 0) out.push_back(way / way.lpNorm<Eigen::Infinity>());
+  }
+  std::mt19937_64 random(1744);
+  for (int k = 0; k < directions; ++k)
+    out.push_back(
+        Vector::NullaryExpr(columns, [&](Index) { return 2 * std::generate_canonical<double, 53>(random) - 1; }));
+  return out;
+}
+
 /// The combinations of sides that meet at the point.
 std::vector<std::vector<bool>> sides_that_meet(const ExprVector& switches, const Place& place) {
   std::vector<std::vector<bool>> out;
-  std::mt19937_64 random(1744);
-  for (int k = 0; k < directions; ++k) {
+  for (const Vector& way : ways_to_sides(switches, place)) {
     Bindings near = place.at;
     for (std::size_t i = 0; i < place.symbols.size(); ++i)
-      near[place.symbols[i]] += aside * place.sizes[i] * (2 * std::generate_canonical<double, 53>(random) - 1);
+      near[place.symbols[i]] += aside * place.sizes[i] * way[static_cast<Index>(i)];
     std::vector<bool> sides;
     for (const Expr& g : switches) sides.push_back(evaluate(g, near) > 0);
     if (std::find(out.begin(), out.end(), sides) == out.end()) out.push_back(sides);
@@ -147,6 +172,11 @@ bool is_stiffness_unbounded(const PointEquations& equations, const OperatingPoin
     if (grows_along(e, point, way)) return true;
   }
   return false;
+}
+
+std::size_t switches_at(const PointEquations& equations, const Equilibrium& x) {
+  const PointEquations::Impl& e = equations.impl();
+  return switches_through(e.balance_rows, place_of(e, x.point, typical_sizes(*e.system, {}))).size();
 }
 
 std::vector<OneSide> sides_at(const PointEquations& equations, const Equilibrium& x,

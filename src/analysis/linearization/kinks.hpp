@@ -13,6 +13,10 @@ struct OneSide {
   double residual = 0;  // of rest at the point on this side, as Equilibrium::residual
 };
 
+/// How many formulas switch at the point; n of them part its neighbourhood into up to 2ⁿ sides.
+std::size_t switches_at(const PointEquations& equations, const Equilibrium& x);
+constexpr std::size_t most_switches = 6;  // whose sides are looked at
+
 /// The sides of a point at which the equations, or their first derivatives, are not those of its other side: a kink of
 /// the potential, dry friction at rest. Empty where all sides agree, or no switch passes through the point; one side
 /// without a name where all sides agree with each other and the formula on the switch itself does not.

@@ -41,6 +41,10 @@ ModalStudy analysed(const PointEquations& equations, std::vector<Equilibrium> fo
   ModalStudy study;
   study.translations = std::move(translations);
   for (Equilibrium& x : found) {
+    if (const std::size_t count = x.coordinates_fail ? 0 : switches_at(equations, x); count > most_switches) {
+      study.kinks.push_back({x, {}, false, count});
+      continue;
+    }
     const std::vector<OneSide> sides =
         x.coordinates_fail ? std::vector<OneSide>() : sides_at(equations, x, study.translations);
     if (sides.empty() && is_stiffness_unbounded(equations, x.point)) {
@@ -67,12 +71,27 @@ ModalStudy analysed(const PointEquations& equations, std::vector<Equilibrium> fo
 constexpr const char* unbounded_stiffness =
     "The forces balance there, but the stiffness grows without bound near the point, as that of abs(x)^1.5 at 0: small "
     "oscillations have frequencies that depend on their amplitudes.";
+std::string crowded_switches(std::size_t count) {
+  return fmt::format(
+      "{} formulas switch there, which part its neighbourhood into up to 2^{} sides, each with its own "
+      "frequencies. The sides of {} are looked at.",
+      count, count, most_switches);
+}
+constexpr const char* one_side_instead = "Write the model with the formulas of the side that is meant.";
+
 constexpr const char* smooth_instead = "`maup simulate` runs the model as it is.";
 
 /// E1307: all that was found is on kinks, and balances on no side of them.
 bool refuse_kinks_alone(const PointEquations& equations, const ModalStudy& study, std::optional<Span> place,
                         Diagnostics& diagnostics) {
   if (!study.entries.empty() || study.kinks.empty()) return false;
+  if (const Kink& first = study.kinks.front(); first.switches > 0) {
+    diagnostics.error(
+        "E1307", place,
+        fmt::format("no linearization at {}", point_text(equations.system(), first.equilibrium, study.translations)),
+        crowded_switches(first.switches), one_side_instead);
+    return true;
+  }
   const bool steep = std::any_of(study.kinks.begin(), study.kinks.end(), [](const Kink& k) { return k.steep; });
   if (steep)
     diagnostics.error("E1307", place,
@@ -92,7 +111,12 @@ bool refuse_kinks_alone(const PointEquations& equations, const ModalStudy& study
 
 void tell_of_kinks(const PointEquations& equations, const ModalStudy& study, Diagnostics& diagnostics) {
   for (const Kink& k : study.kinks)
-    if (k.steep)
+    if (k.switches > 0)
+      diagnostics.warning(
+          "W1302", std::nullopt,
+          fmt::format("no linearization at {}", point_text(equations.system(), k.equilibrium, study.translations)),
+          crowded_switches(k.switches), one_side_instead);
+    else if (k.steep)
       diagnostics.warning(
           "W1302", std::nullopt,
           fmt::format("no linearization at {}{}", point_text(equations.system(), k.equilibrium, study.translations),

@@ -52,51 +52,77 @@ class Analysis {
   // K̂ y = ω² y in coordinates with unit mass.
   void symmetric_modes() {
     out_.symmetric = true;
-    const auto [squares, vectors] = symmetric_eigen((form_.k + form_.k.transpose()) / 2);
-    const double error =
-        8 * static_cast<double>(squares.size()) * std::numeric_limits<double>::epsilon() * form_.k.stableNorm();
+    const SymmetricEigen parts = symmetric_eigen((form_.k + form_.k.transpose()) / 2);
+    const Vector &squares = parts.values, errors = 8 * static_cast<double>(squares.size()) *
+                                                   std::numeric_limits<double>::epsilon() * parts.norms;
     std::vector<Index> zeros;
     for (Index i = 0; i < squares.size(); ++i) {
-      const ComplexVector shape = to_coordinates(vectors.col(i).cast<Complex>());
-      if (std::abs(squares[i]) <= error) {
+      const Vector vector = parts.vectors.col(i);
+      const ComplexVector shape = to_coordinates(vector.cast<Complex>());
+      if (std::abs(squares[i]) <= errors[i]) {
         zeros.push_back(i);
         continue;
       }
-      const double root = std::sqrt(std::abs(squares[i]));
-      const double left = (form_.k * vectors.col(i) - squares[i] * vectors.col(i)).norm();
+      const double root = std::sqrt(std::abs(squares[i])), error = errors[i] / (2 * root);
+      const double left = (form_.k * vector - squares[i] * vector).norm();
       out_.residual = std::max(out_.residual, left / form_.k.stableNorm());
       if (squares[i] > 0)
-        add(mode(Mode::Kind::Oscillation, {0, root}, error / (2 * root)), shape);
+        add(mode(Mode::Kind::Oscillation, {0, root}, error), shape);
       else {
-        add(mode(Mode::Kind::Growth, {root, 0}, error / (2 * root)), shape);
-        add(mode(Mode::Kind::Decay, {-root, 0}, error / (2 * root)), shape);
+        add(mode(Mode::Kind::Growth, {root, 0}, error), shape);
+        add(mode(Mode::Kind::Decay, {-root, 0}, error), shape);
       }
     }
     Matrix kernel(squares.size(), static_cast<Index>(zeros.size()));
-    for (std::size_t k = 0; k < zeros.size(); ++k) kernel.col(static_cast<Index>(k)) = vectors.col(zeros[k]);
+    for (std::size_t k = 0; k < zeros.size(); ++k) kernel.col(static_cast<Index>(k)) = parts.vectors.col(zeros[k]);
     add_zeros(kernel, 2 * zeros.size(), zeros.size());
   }
 
-  // (λ² + λ Ĉ + K̂) y = 0 as ẋ = A x with x = (y, ẏ/s), time in units of 1/s.
+  /// Each uncoupled part for itself: slow motions beside fast ones are not rounding of them.
   void quadratic_modes() {
     const Index f = form_.k.rows();
-    const double k = form_.k.stableNorm(), c = form_.c.stableNorm();
+    Zeros zeros{Matrix(f, 0), Matrix(f, 0), 0};
+    for (const std::vector<Index>& part : uncoupled_parts(form_.k.cwiseAbs() + form_.c.cwiseAbs()))
+      quadratic_modes_of(part, zeros);
+    Matrix kernel(f, zeros.chained.cols() + zeros.single.cols());
+    kernel << zeros.chained, zeros.single;
+    add_zeros(kernel, zeros.count, static_cast<std::size_t>(zeros.chained.cols()));
+  }
+
+  struct Zeros {
+    Matrix chained, single;  // [f × …] in y: those that begin a Jordan chain, and the others
+    std::size_t count = 0;
+  };
+
+  /// (λ² + λ Ĉ + K̂) y = 0 as ẋ = A x with x = (y, ẏ/s), time in units of 1/s.
+  void quadratic_modes_of(const std::vector<Index>& part, Zeros& zeros) {
+    const auto f = static_cast<Index>(part.size());
+    const Matrix stiffness = form_.k(part, part), rates = form_.c(part, part);
+    const double k = stiffness.stableNorm(), c = rates.stableNorm();
     const double s = std::max({std::sqrt(k), c, std::numeric_limits<double>::min()});
     Matrix a = Matrix::Zero(2 * f, 2 * f);
     a.topRightCorner(f, f).setIdentity();
-    a.bottomLeftCorner(f, f) = -form_.k / (s * s);
-    a.bottomRightCorner(f, f) = -form_.c / s;
+    a.bottomLeftCorner(f, f) = -stiffness / (s * s);
+    a.bottomRightCorner(f, f) = -rates / s;
     const EigenSystem system = eigen_system(a);
     for (Index i = 0; i < system.values.size(); ++i) {
       const ComplexVector y = system.vectors.col(i).head(f);
       const Complex z = system.values[i];
       const ComplexVector left =
-          z * z * y + z * (form_.c / s).cast<Complex>() * y + (form_.k / (s * s)).cast<Complex>() * y;
+          z * z * y + z * (rates / s).cast<Complex>() * y + (stiffness / (s * s)).cast<Complex>() * y;
       const double size = std::norm(z) + std::abs(z) * c / s + k / (s * s);
       out_.residual = std::max(out_.residual, left.norm() / y.norm() / size);
-      add_pair(s * z, s * system.errors[i], to_coordinates(y));
+      ComplexVector shape = ComplexVector::Zero(form_.k.rows());
+      shape(part) = y;
+      add_pair(s * z, s * system.errors[i], to_coordinates(shape));
     }
-    add_zeros(system.kernel.topRows(f), system.zeros, system.chained);
+    zeros.count += system.zeros;
+    for (Index i = 0; i < system.kernel.cols(); ++i) {
+      Matrix& of = static_cast<std::size_t>(i) < system.chained ? zeros.chained : zeros.single;
+      of.conservativeResize(Eigen::NoChange, of.cols() + 1);
+      of.col(of.cols() - 1).setZero();
+      of.col(of.cols() - 1)(part) = system.kernel.col(i).head(f);
+    }
   }
 
   // ẋ = A x as it stands, columns scaled by inertia: non-holonomic constraints, or an M that is not positive definite.
@@ -290,9 +316,14 @@ MassNormalForm mass_normal_form(const Linearization& l, const std::vector<Transl
                circulatory = to_eigen(l.circulatory);
   out.k = both_sides(to_eigen(l.stiffness) + circulatory);
   out.c = both_sides(damping + gyroscopic);
-  const double rate = std::sqrt(out.k.stableNorm());
-  out.symmetric = out.c.stableNorm() <= 1e-14 * rate && both_sides(circulatory).norm() <= 1e-14 * out.k.stableNorm();
-  out.potential = both_sides(circulatory).norm() <= 1e-12 * out.k.stableNorm();
+  const Matrix no_potential = both_sides(circulatory);
+  out.symmetric = out.potential = true;
+  for (const std::vector<Index>& part : uncoupled_parts(out.k.cwiseAbs() + out.c.cwiseAbs())) {
+    const double stiffness = Matrix(out.k(part, part)).stableNorm(), rates = Matrix(out.c(part, part)).stableNorm(),
+                 circulation = Matrix(no_potential(part, part)).norm();
+    out.symmetric &= rates <= 1e-14 * std::sqrt(stiffness) && circulation <= 1e-14 * stiffness;
+    out.potential &= circulation <= 1e-12 * stiffness;
+  }
   out.to_independent = factor->inverse.transpose();
   Matrix directions(mass.rows(), static_cast<Index>(translations.size()));
   for (std::size_t t = 0; t < translations.size(); ++t)

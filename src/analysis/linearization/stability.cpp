@@ -1,6 +1,7 @@
 #include "analysis/linearization/stability.hpp"
 
 #include "analysis/linearization/dense.hpp"
+#include "analysis/linearization/folds.hpp"
 #include "analysis/linearization/point_equations.hpp"
 #include "linear_algebra/products.hpp"
 
@@ -13,20 +14,25 @@
 namespace maupertuis {
 namespace {
 
+/// A matrix by its directions in y: Bᵀ K B with orthonormal columns of B [f × …].
+struct Stiffness {
+  Matrix k, basis;
+};
+
 /// The Hessian of the effective potential, in y: along translations that are symmetries nothing is at stake, and where
 /// their momenta are kept, δp = ẏ_s + Ĉ_sr y_r = 0 turns the rates ẏ_s into positions:
 ///     K_eff = K̂_rr − Ĉ_rs Ĉ_sr
 /// Not where the momenta of two of them hold y_s as well, Ĉ_ss ≠ 0, as in a magnetic field.
-Matrix effective_stiffness(const MassNormalForm& form, bool keeps_momenta) {
+Stiffness effective_stiffness(const MassNormalForm& form, bool keeps_momenta) {
   const Index f = form.k.rows(), s = form.translations.cols();
-  if (s == 0) return form.k;
+  if (s == 0) return {form.k, Matrix::Identity(f, f)};
   const Matrix q = orthogonal_factor(form.translations);
   const Matrix along = q.leftCols(s), rest = q.rightCols(f - s);
   Matrix k = quadratic_form(rest, form.k);
   constexpr double rounding = 1e-9;
   if (keeps_momenta && quadratic_form(along, form.c).norm() <= rounding * form.c.stableNorm())
     k -= product(product(transposed_product(rest, form.c), along), product(transposed_product(along, form.c), rest));
-  return k;
+  return {k, rest};
 }
 
 struct Verdicts {
@@ -41,18 +47,42 @@ struct Verdicts {
     return std::all_of(translations.begin(), translations.end(), [](const Translation& t) { return t.conserved; });
   }
 
-  /// Eigenvalues of the Hessian; empty where the energy says nothing.
-  std::vector<double> hessian() const {
+  /// Eigenvalues of the Hessian with their directions in y; none where the energy says nothing.
+  SymmetricEigen hessian() const {
     if (!form.valid || !form.potential || !equations.energy_never_grows_near(equilibrium.point)) return {};
     if (!equilibrium.at_rest && !all_conserved()) return {};
-    const Matrix k = effective_stiffness(form, all_conserved());
-    if (k.size() == 0) return {};
-    return to_list(symmetric_eigen(symmetric_part(k)).values);
+    const Stiffness stiffness = effective_stiffness(form, all_conserved());
+    if (stiffness.k.size() == 0) return {};
+    SymmetricEigen out = symmetric_eigen(symmetric_part(stiffness.k));
+    out.vectors = product(stiffness.basis, out.vectors);
+    return out;
   }
 
-  double hessian_tolerance() const {
-    return 16 * static_cast<double>(form.k.rows()) * std::numeric_limits<double>::epsilon() *
-           (form.k.stableNorm() + form.c.squaredNorm());
+  /// Whether the soft ones among these eigenvalues have signs that the error of the place leaves, or one is negative
+  /// beyond it. What vanishes to rounding anyway is judged elsewhere.
+  bool has_certain_signs(const SymmetricEigen& hessian) const {
+    constexpr double soft = 1e-4;  // of the largest
+    if (!equilibrium.at_rest || equilibrium.family > 0 || hessian.values.size() == 0) return true;
+    const double largest = hessian.values.cwiseAbs().maxCoeff();
+    const Vector none = hessian_tolerances(hessian);
+    bool certain = true;
+    for (Index i = 0; i < hessian.values.size(); ++i) {
+      const double value = hessian.values[i];
+      if (i > 0 && std::abs(value) > soft * largest) continue;
+      if (std::abs(value) <= none[i]) continue;
+      const Vector direction =
+          product(to_eigen(linearization.positions), product(form.to_independent, hessian.vectors.col(i)));
+      const Curvature found = curvature_at_rest(equations.impl(), equilibrium.point, direction);
+      if (found == Curvature::Negative) return true;
+      certain = certain && found != Curvature::Undecided;
+    }
+    return certain || hessian.values[0] < -soft * largest;
+  }
+
+  /// [eigenvalues of the Hessian] what rounding leaves of each.
+  Vector hessian_tolerances(const SymmetricEigen& hessian) const {
+    const double unit = 16 * static_cast<double>(form.k.rows()) * std::numeric_limits<double>::epsilon();
+    return unit * (hessian.norms.array() + form.c.squaredNorm()).matrix();
   }
 
   /// At rest on a family of equilibria the Hessian vanishes along it, and V is the same on all of it: where it is
@@ -124,16 +154,22 @@ StabilityReport judge_stability(const PointEquations& equations, const Lineariza
     return out;
   }
   const Verdicts v{equations, linearization, form, translations, modes, *equilibrium};
-  out.hessian = v.hessian();
+  const SymmetricEigen hessian = v.hessian();
+  out.hessian = to_list(hessian.values);
   out.effective = !translations.empty();
   const bool has_hessian = !out.hessian.empty();
-  const double tolerance = has_hessian ? v.hessian_tolerance() : 0;
-  const bool strict_minimum = has_hessian ? out.hessian.front() > tolerance
+  const Vector none = v.hessian_tolerances(hessian);
+  const bool strict_minimum = has_hessian ? (hessian.values.array() > none.array()).all()
                                           : form.valid && form.potential &&
                                                 equations.energy_never_grows_near(equilibrium->point) &&
                                                 v.all_conserved() && form.translations.cols() == form.k.rows();
   const std::string_view potential = equilibrium->at_rest && translations.empty() ? "potential" : "effective potential";
-  if (margin > 0) {
+  if (!v.has_certain_signs(hessian)) {
+    out.reason = fmt::format(
+        "the Hessian of the {} vanishes within the error of the place, as where equilibria "
+        "come together: terms of higher order decide",
+        potential);
+  } else if (margin > 0) {
     out.verdict = Stability::Unstable;
     out.reason = "an eigenvalue has a positive real part";
   } else if (decay > 0 && decay < HUGE_VAL && v.zeros() <= v.explained_zeros()) {
@@ -151,7 +187,7 @@ StabilityReport judge_stability(const PointEquations& equations, const Lineariza
   } else if (const int extremum = v.extremum_of_kept_energy(); extremum != 0) {
     out.verdict = Stability::Energetic;
     out.reason = fmt::format("h_E is conserved and has a strict {} here", extremum > 0 ? "minimum" : "maximum");
-  } else if (has_hessian && out.hessian.front() < -tolerance) {
+  } else if (has_hessian && (hessian.values.array() < -none.array()).any()) {
     out.reason = fmt::format(
         "no eigenvalue has a positive real part, but the Hessian of the {} is not positive: gyroscopic forces hold it",
         potential);

@@ -33,7 +33,8 @@ constexpr double longest_step = 0.2;                     // of the size of the o
 constexpr double near_impact = 0.01;                     // of the stretch that is seen, and of the size of the orbit
 constexpr double near_return = 0.02, any_return = 0.25;  // distances from the start, of the largest
 constexpr std::size_t most_returns = 8;
-constexpr int most_parts = 100;  // of a period that may be the true one
+constexpr int most_parts = 100;                        // of a period that may be the true one
+constexpr int some_periods = 64, many_periods = 4096;  // after which the equations of a drive are looked at
 
 Vector state_vector(const MotionState& s) {
   Vector out(static_cast<Index>(2 * s.q.size()));
@@ -119,7 +120,7 @@ class Closer {
     const Vector f = flow_at(at_);
     if (f.size() == 0) return refuse_end(at_.t, "An acceleration has no value here.", *diagnostics_);
     if (!out_.motion.driven && f.cwiseAbs().maxCoeff() == 0) return refuse_rest();
-    if (out_.motion.driven && !repeats_in_time(system_, motion_, seen_, *period_)) {
+    if (out_.motion.driven && !repeats_in_time(system_, motion_, seen_, *period_, compared_)) {
       diagnostics_->error("E1404", {},
                           fmt::format("the equations do not repeat after {:.9g} s{}", *period_,
                                       options_.period ? "" : ", the period of the sines and cosines of t in them"),
@@ -127,6 +128,12 @@ class Closer {
                           "If there is one, give it with --period.");
       return false;
     }
+    if (out_.motion.driven && compared_ == many_periods)
+      diagnostics_->warning("W1403", {},
+                            fmt::format("the equations were compared over {} periods of {:.9g} s", compared_, *period_),
+                            "t stands outside of sines and cosines too: whether they are the same after that is not "
+                            "known, and what is said of stability holds for so long.",
+                            "A model whose drive is made of sines and cosines of t alone repeats for ever.");
     return true;
   }
 
@@ -289,7 +296,7 @@ class Closer {
     for (const TangentPoint& point : points) {
       const double part = point.state.t - out_.motion.start.t;
       if (gap(out_.motion.start, point.state).norm() > converged) continue;
-      if (out_.motion.driven && !repeats_in_time(system_, motion_, seen_, part)) continue;
+      if (out_.motion.driven && !repeats_in_time(system_, motion_, seen_, part, compared_)) continue;
       at_ = out_.motion.start;
       period_ = part;
       const int before = out_.motion.iterations;
@@ -447,6 +454,7 @@ class Closer {
   TangentFlow flow_;
   MotionState at_, first_;
   std::optional<double> period_;
+  const int compared_ = stands_in_waves_alone(equations_) ? some_periods : many_periods;
   std::vector<double> returns_;  // s after the start: periods to begin with
   Survey seen_;
   std::vector<bool> is_angle_;

@@ -141,6 +141,14 @@ constexpr CodeEntry entries[] = {
      "T = 1/2 m (r'^2 + r^2 φ'^2)\nV = -m μ/r\nstart r = 1 m, φ' = 0.03 rad/s\nrun 20 s\n",
      "# maup orbits --floquet\nparam m = 1 kg, μ = 1 m^3/s^2\ncoord r : length, φ : angle\n"
      "T = 1/2 m (r'^2 + r^2 φ'^2)\nV = -m μ/r\nstart r = 1 m, φ' = 1.2 rad/s\nrun 20 s\n"},
+    {"W1403", "a drive that was looked at for some periods",
+     "Sines and cosines of t repeat for ever. Where t stands elsewhere too, as in a pulse exp(-((t - t0)/τ)^2) or a "
+     "switch at a time, "
+     "equations that are the same after thousands of periods may still be others later.",
+     "# maup orbits --floquet\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - 2 x^2\n"
+     "force x = sin(t) - 0.1 x' + 3 exp(-((t - 1e6)/5)^2)\nstart x = 0.3\nrun 60\n",
+     "# maup orbits --floquet\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - 2 x^2\n"
+     "force x = sin(t) - 0.1 x'\nstart x = 0.3\nrun 60\n"},
 };
 
 }  // namespace

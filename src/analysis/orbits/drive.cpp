@@ -10,6 +10,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <unordered_set>
 
 namespace maupertuis::orbits {
 namespace {
@@ -190,10 +191,22 @@ std::optional<double> period_of_drive(const EquationsOfMotion& equations) {
   return std::nullopt;
 }
 
-bool repeats_in_time(const MechanicalSystem& system, const MotionKernel& motion, const Survey& seen, double period) {
-  // A switch of t may stand still for longer than the period that is asked for.
-  constexpr int multiples = 64;
-  for (int k = 1; k <= multiples; ++k)
+bool stands_in_waves_alone(const EquationsOfMotion& equations) {
+  const Expr time = equations.system->context->time();
+  std::unordered_set<NodeId> outside;  // what holds t beside sines and cosines
+  const ExprVector roots = of_motion(equations);
+  for (const Expr& node : topological_order(roots)) {
+    bool holds = node == time;
+    for (std::size_t i = 0; i < node.size() && !node.is(Kind::Sin) && !node.is(Kind::Cos); ++i)
+      holds = holds || outside.count(node[i].id()) != 0;
+    if (holds) outside.insert(node.id());
+  }
+  return std::none_of(roots.begin(), roots.end(), [&](const Expr& e) { return outside.count(e.id()) != 0; });
+}
+
+bool repeats_in_time(const MechanicalSystem& system, const MotionKernel& motion, const Survey& seen, double period,
+                     int periods) {
+  for (int k = 1; k <= periods; ++k)
     if (!repeats(system, motion, seen, [period, k](MotionState& s) { s.t += k * period; })) return false;
   return true;
 }

@@ -26,7 +26,11 @@ std::optional<double> period_of_drive(const EquationsOfMotion& equations);
 
 /// Whether the accelerations, the gaps and the slip velocities at the states of a motion and beside them are the same
 /// when t is later by `period`, and when coordinate i is larger by 2π: to rounding.
-bool repeats_in_time(const MechanicalSystem& system, const MotionKernel& motion, const Survey& seen, double period);
+bool repeats_in_time(const MechanicalSystem& system, const MotionKernel& motion, const Survey& seen, double period,
+                     int periods);
+/// Whether t stands in sines and cosines alone: then what repeats over some periods repeats for ever. A switch of t may
+/// stand still for longer than the period that is asked for, and a pulse come late.
+bool stands_in_waves_alone(const EquationsOfMotion& equations);
 bool repeats_in_angle(const MechanicalSystem& system, const MotionKernel& motion, const Survey& seen,
                       std::size_t coordinate);
 

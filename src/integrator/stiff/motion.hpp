@@ -29,13 +29,14 @@ class Motion {
   /// At the point of the last solve.
   void integrand_values(std::span<double> out) { integrands_.evaluate(at_point.point(), out); }
 
-  void forget_sizes() { sizes_.assign(2 * freedoms(), 0); }
+  /// Begins at y, after solve(t, y): what is small then is measured by its like.
+  void take_sizes(std::span<const double> y);
   /// The reciprocals of the errors that a step may make. Each coordinate and velocity is measured against its own size,
   /// which it keeps for a while when it passes through zero; whatever follows v in y has no part in the control of the
   /// error.
   bool weigh(std::span<const double> y, std::span<double> weights);
   /// What a step may err in velocity i.
-  double velocity_error(std::size_t i) const { return options.tolerance * sizes_[freedoms() + i] + options.absolute; }
+  double velocity_error(std::size_t i) const { return allowed(freedoms() + i); }
 
   const MotionFunctions functions;
   StiffOptions options;
@@ -44,8 +45,10 @@ class Motion {
   PointStatus status = PointStatus::Ok;  // of the last point that the method asked for
 
  private:
+  double allowed(std::size_t i) const { return options.tolerance * sizes_[i] + options.absolute * units_[i]; }
+
   FunctionWorkspace integrands_;
-  std::vector<double> sizes_;  // [2n]
+  std::vector<double> sizes_, units_;  // [2n] of late; at the start
 };
 
 }  // namespace maupertuis::stiff

@@ -77,9 +77,9 @@ void StiffStepper::Impl::start(double time, std::span<const double> q, std::span
   steps = rejected = attempts_window = 0;
   residual = 0;
   bound_steps(0);
-  motion.forget_sizes();
   motion.at_point.forget_rows();
   motion.solve(t, now);
+  motion.take_sizes(now);
   restart();
 }
 

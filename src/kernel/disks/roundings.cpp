@@ -7,7 +7,8 @@ namespace maupertuis {
 double FormulaRoundings::of(Slot slot, const SlotCoefficients& coefficients, double length) {
   now_ = coefficients;
   if (length_ != length) find(length);
-  return of_[slot];
+  // Where the bound overflows nothing is known, and nothing may be forgiven: all of a force could be called rounding.
+  return std::isfinite(of_[slot]) ? of_[slot] : 0;
 }
 
 double FormulaRoundings::size(Slot slot, std::uint32_t shift) const {

@@ -14,7 +14,7 @@ class FormulaRoundings {
   explicit FormulaRoundings(const DiskPlan& plan) : plan_(plan), of_(plan.program.slots, 0.0) {}
   /// Another step begins.
   void forget() { length_ = 0; }
-  /// length: over which what is differentiated is known.
+  /// length: over which what is differentiated is known. 0 where the analysis overflows.
   double of(Slot slot, const SlotCoefficients& coefficients, double length);
 
  private:

@@ -14,7 +14,8 @@
 ///     0 ┤            ╲▁▁▁▁▁▁▁▁▁▁                                           −300 ┤▁▁╱
 ///            −300     0      300   u                                              −300  300   u
 ///
-/// A side where the quotient grows keeps its u.
+/// A side where the quotient grows keeps its u. Of cosh³ u and (1 + exp(u))⁶ the powers must not overflow either: u
+/// stays at ±600/3 and ±600/6 there.
 namespace maupertuis {
 namespace {
 
@@ -52,6 +53,9 @@ class Exponents {
     return exponential.is(Kind::Exp) ? Growth{a, -a} : Growth{std::abs(a), std::abs(a)};
   }
 
+  /// exp(n u) is computed on the way: it must not overflow either.
+  void pass_through(double n) { largest_ = std::max(largest_, std::abs(n)); }
+
   Expr u() const { return u_; }
   double limit() const { return std::floor(std::min(bound, most / largest_)); }
 
@@ -87,13 +91,18 @@ class Exponents {
   std::unordered_map<Expr, double, ExprHash> multiples_;
 };
 
-/// A sum of exponentials times numbers, and of numbers; or one exponential.
+using ValueOf = std::function<double(Expr)>;
+
+/// A sum of exponentials times what does not move, and of what does not move; or one exponential.
 class Quotient {
  public:
+  explicit Quotient(const ValueOf& value_of) : value_of_(value_of) {}
+
   /// The factors of a product, or a power alone.
-  static std::optional<Quotient> of(Expr node) {
-    Quotient out;
+  static std::optional<Quotient> of(Expr node, const ValueOf& value_of) {
+    Quotient out(value_of);
     const auto factors = node.is(Kind::Product) ? arguments(node) : std::vector<Expr>{node};
+    Growth above, below;  // of what is multiplied, and of what divides
     for (const Expr& factor : factors) {
       const PowerOf power = split_power(factor);
       if (!moves(power.base)) continue;
@@ -103,13 +112,16 @@ class Quotient {
       out.overflows_up_ = out.overflows_up_ || growth->up > 0;
       out.overflows_down_ = out.overflows_down_ || growth->down > 0;
       out.total_.up += k * growth->up, out.total_.down += k * growth->down;
+      Growth& part = k > 0 ? above : below;
+      part.up += std::abs(k * growth->up), part.down += std::abs(k * growth->down);
     }
+    for (const double n : {above.up, above.down, below.up, below.down}) out.exponents_.pass_through(n);
     return out.exponents_.u() ? std::optional(out) : std::nullopt;
   }
 
   /// Of a logarithm of a sum.
-  static std::optional<Quotient> of_logarithm(Expr argument) {
-    Quotient out;
+  static std::optional<Quotient> of_logarithm(Expr argument, const ValueOf& value_of) {
+    Quotient out(value_of);
     const auto growth = out.growth_of(argument);
     if (!growth || !out.exponents_.u()) return std::nullopt;
     out.total_ = *growth;
@@ -153,11 +165,14 @@ class Quotient {
 
   std::optional<Growth> growth_of_term(Expr term) {
     const ScaledTerm scaled = split_coefficient(term);
-    const double size = std::abs(scaled.coefficient.to_double());
-    if (!(size < largest_coefficient && size > 1 / largest_coefficient)) return std::nullopt;
+    double size = std::abs(scaled.coefficient.to_double());
     Growth out;
     for (const Expr& factor : scaled.rest.is(Kind::Product) ? arguments(scaled.rest) : std::vector<Expr>{scaled.rest}) {
       if (factor.is_number()) continue;
+      if (!moves(factor) && value_of_) {
+        size *= std::abs(value_of_(factor));
+        continue;
+      }
       const PowerOf power = split_power(factor);
       if (!is_exponential(power.base) || !exponents_.take(power.base)) return std::nullopt;
       const Growth growth = exponents_.growth(power.base);
@@ -165,6 +180,8 @@ class Quotient {
       if (k < 0 && !power.base.is(Kind::Exp)) return std::nullopt;
       out.up += k * growth.up, out.down += k * growth.down;
     }
+    if (!(size < largest_coefficient && size > 1 / largest_coefficient)) return std::nullopt;
+    exponents_.pass_through(out.up), exponents_.pass_through(out.down);
     return out;
   }
 
@@ -173,15 +190,16 @@ class Quotient {
     return std::any_of(nodes.begin(), nodes.end(), [](const Expr& n) { return is_exponential(n) && moves(n); });
   }
 
+  const ValueOf& value_of_;
   Exponents exponents_;
   Growth total_;
   bool overflows_up_ = false, overflows_down_ = false;
 };
 
 /// log D(u) = log D(w) + (growth of D) · (u − w), where both sides are kept.
-Expr logarithm(Expr node) {
+Expr logarithm(Expr node, const ValueOf& value_of) {
   const auto quotient =
-      node[0].is(Kind::Sum) || node[0].is(Kind::Cosh) ? Quotient::of_logarithm(node[0]) : std::nullopt;
+      node[0].is(Kind::Sum) || node[0].is(Kind::Cosh) ? Quotient::of_logarithm(node[0], value_of) : std::nullopt;
   if (!quotient || (quotient->total().up <= 0 && quotient->total().down <= 0)) return node;
   Context& c = node.context();
   const Growth growth = quotient->total();
@@ -194,8 +212,8 @@ Expr logarithm(Expr node) {
   return out;
 }
 
-Expr quotient(Expr node) {
-  const auto quotient = Quotient::of(node);
+Expr quotient(Expr node, const ValueOf& value_of) {
+  const auto quotient = Quotient::of(node, value_of);
   if (!quotient) return node;
   const Expr w = quotient->kept();
   return w == quotient->exponents().u() ? node : substitute(node, quotient->exponents().with(w));
@@ -203,7 +221,7 @@ Expr quotient(Expr node) {
 
 }  // namespace
 
-std::vector<Expr> without_overflow(std::span<const Expr> roots) {
+std::vector<Expr> without_overflow(std::span<const Expr> roots, const ValueOf& value_of) {
   const std::vector<Expr> nodes = topological_order(roots);
   std::vector<Expr> out(roots.begin(), roots.end());
   if (std::none_of(nodes.begin(), nodes.end(), [](const Expr& e) { return is_exponential(e) && moves(e); })) return out;
@@ -215,9 +233,9 @@ std::vector<Expr> without_overflow(std::span<const Expr> roots) {
   for (const Expr& node : nodes) {
     Expr value = node;
     if (node.is(Kind::Log))
-      value = logarithm(node);
+      value = logarithm(node, value_of);
     else if (node.is(Kind::Product) || node.is(Kind::Power))
-      value = quotient(node);
+      value = quotient(node, value_of);
     if (value == node) value = rebuild(node, replaced);
     if (value != node) done.emplace(node, value);
   }

@@ -1,3 +1,5 @@
+#include "fields/resolution.hpp"
+
 #include <maupertuis/field_run.hpp>
 #include <maupertuis/study.hpp>
 
@@ -55,4 +57,49 @@ TEST_CASE("no energy flows out of free and clamped sides, whatever the start") {
   const FieldCharge& energy = charge_named(run, "energy");
   CHECK(std::abs(energy.outflow) < 1e-12 * energy.size);
   CHECK(energy.left_over() < 1e-12);
+}
+
+TEST_CASE("a tap that is narrow in place and in time is seen, and a late pulse in a long run") {
+  const auto codes = [](const std::string& text, double duration) {
+    Study study(SourceText("field.lag", text));
+    const FieldEquations* equations = study.field_equations();
+    REQUIRE(equations);
+    Diagnostics diagnostics;
+    FieldRunOptions options;
+    options.duration = duration, options.errors = false;
+    run_fields(*equations, {}, options, diagnostics);
+    std::string out;
+    for (const Diagnostic& d : diagnostics.items()) out += d.code + " ";
+    return out;
+  };
+  const std::string string_of_50 =
+      "param μ = 1 kg/m, c = 1 m/s\nfield u(x) : length on x = 0 m .. 1 m cells 50 boundary u = 0\n"
+      "density = 1/2 μ u'^2 - 1/2 μ c^2 u_x^2\nstart u = 0\n";
+  CHECK(codes(string_of_50 + "param A = 1 N, x0 = 0.4003 m, w = 1e-6 m, t0 = 0.3 s, τ = 0.01 s\n"
+                             "force density u = A/w exp(-((x - x0)/w)^2) exp(-((t - t0)/τ)^2)\n",
+              0.01 /* the force acts later in the run that is asked for */)
+            .find("E0647") == std::string::npos);
+  CHECK(codes(string_of_50 + "param A = 1 N, x0 = 0.4003 m, w = 1e-6 m, t0 = 0.3 s, τ = 0.01 s\n"
+                             "force density u = A/w exp(-((x - x0)/w)^2) exp(-((t - t0)/τ)^2)\n",
+              1)
+            .find("E0647") != std::string::npos);
+  // A pulse that the mesh can follow, in place and in time, is nothing to refuse.
+  CHECK(codes(string_of_50 + "param A = 1 N/m, t0 = 0.3 s, τ = 0.1 s\n"
+                             "force density u = A sin(3 [1/m] x) exp(-((t - t0)/τ)^2)\n",
+              1)
+            .empty());
+}
+
+TEST_CASE("a pulse of 10 µs after half an hour is seen among more steps than can be looked at") {
+  Study study(SourceText("field.lag",
+                         "param μ = 1 kg/m, t0 = 1500.0037 s, τ = 1e-5 s\n"
+                         "field u(x) : length on x = 0 m .. 1 m boundary u = 0\n"
+                         "density = 1/2 μ u'^2 - 1/2 (1 [N]) u_x^2\n"
+                         "force density u = (1e5 [N/m]) exp(-((t - t0)/τ)^2)\n"));
+  const FieldEquations* equations = study.field_equations();
+  REQUIRE(equations);
+  const auto found = unresolved_moment(*equations, {}, 1e-3, {0, 1600});
+  REQUIRE(found);
+  CHECK(std::abs(*found - 1500.0037) < 1e-3);
+  CHECK_FALSE(unresolved_moment(*equations, {}, 1e-3, {0, 1400}));
 }

@@ -70,3 +70,21 @@ TEST_CASE("coefficients count in the domain, wherever that lies") {
             .find("x = 0.47") != std::string::npos);
   CHECK(ill_posed("field u(x) : number on x = -0.5 .. 0.5\ndensity = 1/2 u'^2 - 1/2 (x^2 - 1) u_x^2\n"));
 }
+
+TEST_CASE("short waves are those of the domain, whatever its size and the speed of waves") {
+  const auto said = [](const std::string& text) {
+    Study study(SourceText("field.lag", text));
+    study.field_equations();
+    for (const Diagnostic& d : study.diagnostics().items())
+      if (d.severity == Severity::Error) return d.code;
+    return std::string();
+  };
+  // Elliptic at 0.1 mm/s: waves of 1e6/m grow at 100/s.
+  CHECK(said("param μ = 1 kg/m, c = 1e-4 m/s\nfield u(x) : length on x = 0 m .. 1 m boundary u = 0\n"
+             "density = 1/2 μ u'^2 + 1/2 μ c^2 u_x^2\n") == "E0641");
+  // A ribbon of 2 nm, pressed: long waves buckle, those below its thickness are held by its stiffness.
+  CHECK(said("param μ = 1e-15 kg/m, N = 1e-9 N, EI = 1e-27 N m^2\n"
+             "field u(x) : length on x = 0 m .. 2 nm boundary u = 0\n"
+             "density = 1/2 μ u'^2 + 1/2 N u_x^2 - 1/2 EI u_xx^2\n")
+            .empty());
+}

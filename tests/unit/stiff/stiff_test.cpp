@@ -2,6 +2,7 @@
 #include "simulation/function_kernels.hpp"
 
 #include <maupertuis/motion_kernel.hpp>
+#include <maupertuis/simulation.hpp>
 #include <maupertuis/stiff.hpp>
 
 #include <algorithm>
@@ -305,3 +306,13 @@ TEST_CASE("a run ends with its reason") {
 }
 
 }  // namespace stiff_test
+
+TEST_CASE("motions of 1e-18 m have their digits") {
+  ModelText run("param m = 40 kg, k = 40 N/m\ncoord x : length\nL = 1/2 m x'^2 - 1/2 k x^2\nstart x = 1e-18 m\n");
+  maupertuis::SimulationOptions options;
+  options.method = maupertuis::StepMethod::Stiff;
+  options.duration = 10;
+  const auto result = simulate(run.model, run.equations, options, run.diagnostics);
+  REQUIRE(result);
+  CHECK(result->final.q[0] == doctest::Approx(1e-18 * std::cos(10)).epsilon(1e-10));
+}

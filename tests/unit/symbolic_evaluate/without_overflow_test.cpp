@@ -77,3 +77,26 @@ TEST_CASE_FIXTURE(Line, "what grows, or may begin elsewhere, stays") {
   CHECK(value(finite, 305) == doctest::Approx(std::exp(610.0)).epsilon(1e-13));
   CHECK(value(finite, -5000) < 1e-120);
 }
+
+TEST_CASE_FIXTURE(Line, "powers on the way do not overflow either") {
+  const Expr cosh = apply(Kind::Cosh, x), sinh = apply(Kind::Sinh, x), e = exponential(x);
+  // At 240 cosh³ is beyond the doubles, and the quotient e^(-480) is not.
+  const Expr cubed = rewritten(sinh * power(cosh, -3));
+  CHECK(value(cubed, 240) > 0);
+  CHECK(value(cubed, 190) == doctest::Approx(4 * std::exp(-380.0)).epsilon(1e-12));
+  const Expr squared = rewritten(power(e, 2) * power(one + power(e, 2), -2));
+  CHECK(value(squared, 300) > 0);
+  CHECK(value(squared, 120) == doctest::Approx(std::exp(-240.0)).epsilon(1e-12));
+}
+
+TEST_CASE_FIXTURE(Line, "a parameter before an exponential counts by its value") {
+  const Expr quotient = exponential(x) * power(one + a * exponential(x), -2);
+  const auto with = [&](double value) {
+    return without_overflow({&quotient, 1}, [value](Expr) { return value; }).front();
+  };
+  CHECK(rewritten(quotient) == quotient);
+  CHECK(with(1e100) == quotient);  // it switches beyond what is kept
+  const Expr finite = with(3);
+  CHECK(evaluate(finite, {{x, 400}, {a, 3}}) > 0);
+  CHECK(evaluate(finite, {{x, 100}, {a, 3}}) == doctest::Approx(std::exp(-100.0) / 9).epsilon(1e-12));
+}

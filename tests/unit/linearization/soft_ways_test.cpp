@@ -1,0 +1,86 @@
+// Slow motions beside fast ones, rests that are known to half of their digits, and many switches at one point.
+#include "support.hpp"
+
+#include <numbers>
+
+using namespace maupertuis;
+
+namespace {
+
+Stability verdict_of(const std::string& text) {
+  const ModalStudy study = Linearized(text).study();
+  REQUIRE(study.entries.size() >= 1);
+  return study.entries.front().analysis.stability.verdict;
+}
+
+}  // namespace
+
+TEST_CASE("at a fold the sign of the second derivative is an accident, and decides nothing") {
+  // V' = F (1 - cos(x/w - 0.3)) ≥ 0 touches 0 without a sign change: an inflection of V.
+  CHECK(verdict_of("param m = 2 kg, w = 0.8 m, F = 1 N\ncoord x : length\nT = 1/2 m x'^2\n"
+                   "V = F x - F w sin(x/w - 0.3)\nstart x = 0.9 m\n") == Stability::Undecided);
+  // (x - 0.7)³, multiplied out.
+  CHECK(verdict_of("dimensionless\nparam a = 0.7\ncoord x : number\nL = 1/2 x'^2 - (x^3 - 3 x^2 a + 3 x a^2)\n"
+                   "start x = 0.9\n") == Stability::Undecided);
+  // Beside another coordinate that is held.
+  CHECK(verdict_of("dimensionless\nparam b = 0.3\ncoord x, y : number\n"
+                   "L = 1/2 (x'^2 + y'^2) - (x - b - sin(x - b)) - 1/2 (y - x)^2\nstart x = 0.9, y = 0.9\n") ==
+        Stability::Undecided);
+  // With a constraint: the same inflection along a line.
+  CHECK(verdict_of("dimensionless\nparam b = 0.3\ncoord x, y : number\n"
+                   "L = 1/2 (x'^2 + y'^2) - (x - b - sin(x - b))\nconstraint y = 2 x\nstart x = 0.9, y = 1.8\n") ==
+        Stability::Undecided);
+}
+
+TEST_CASE("what is soft and has a sign keeps it") {
+  CHECK(verdict_of("dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) - 1/2 y^2 - 0.5e-9 (x - 0.3)^2\n"
+                   "start x = 0.9, y = 0\n") == Stability::Energetic);
+  CHECK(verdict_of("dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) - 1/2 y^2 + 0.5e-9 (x - 0.3)^2\n"
+                   "start x = 0.9, y = 0\n") == Stability::Unstable);
+}
+
+TEST_CASE("a slow swing beside a stiff bar that does not touch it") {
+  Linearized slow(
+      "param m = 1 kg, k = 1e12 N/m, T0 = 200 s\ncoord x, y : length\n"
+      "L = 1/2 m (x'^2 + y'^2) - 1/2 k x^2 - 1/2 m (2 pi/T0)^2 y^2\n");
+  const auto found = frequencies(slow.study().entries.front().analysis);
+  REQUIRE(found.size() == 2);
+  CHECK(near(found[0], std::numbers::pi / 100, 1e-12));
+  CHECK(near(found[1], 1e6, 1e-12));
+}
+
+TEST_CASE("negative damping of a slow coordinate is not rounding of a fast one") {
+  Linearized fed(
+      "param m = 1 kg, k = 1e16 N/m, k2 = 1 N/m, c = -1e-7 N s/m\ncoord x, y : length\n"
+      "L = 1/2 m (x'^2 + y'^2) - 1/2 k x^2 - 1/2 k2 y^2\nD = 1/2 c y'^2\n");
+  const ModalAnalysis analysis = fed.study().entries.front().analysis;
+  CHECK(analysis.stability.verdict == Stability::Unstable);
+  CHECK(near(analysis.modes.front().eigenvalue.real(), 0.5e-7, 1e-6));
+}
+
+TEST_CASE("sides of a point on which many formulas switch") {
+  const auto springs = [](std::size_t count) {
+    std::string names, kinetic, potential;
+    for (std::size_t i = 1; i <= count; ++i) {
+      const std::string x = "x" + std::to_string(i), k = std::to_string(i * i);
+      names += (i > 1 ? ", " : "") + x;
+      kinetic += (i > 1 ? " + " : "") + x + "'^2";
+      potential += " - " + k + "/2 * (" + x + "^2 + 3 max(" + x + ", 0)^2)";
+    }
+    return "dimensionless\ncoord " + names + " : number\nL = 1/2 (" + kinetic + ")" + potential + "\n";
+  };
+  // Each coordinate has the frequency i on one side and 2 i on the other.
+  const ModalStudy four = Linearized(springs(4)).study();
+  CHECK(four.entries.size() == 16);
+  std::size_t with_four = 0;
+  for (const ModalEntry& e : four.entries) {
+    const auto found = frequencies(e.analysis);
+    with_four += std::count_if(found.begin(), found.end(), [](double w) { return near(w, 8, 1e-12); });
+  }
+  CHECK(with_four == 8);
+  Linearized seven(springs(7));
+  CHECK_FALSE(modal_study(seven.at, seven.start, seven.diagnostics));
+  REQUIRE_FALSE(seven.diagnostics.items().empty());
+  CHECK(seven.diagnostics.items().front().code == "E1307");
+  CHECK(seven.diagnostics.items().front().reason.find("7 formulas switch there") == 0);
+}
