@@ -86,6 +86,15 @@ export interface State {
 /** What stands in the page is of an older text, as this one has a mistake, and not as nobody answers. */
 export const hasMistake = ({opened, readable}: State): boolean => opened !== null && !readable && !opened.readable;
 
+export const noDuration = 'E0701',
+  heldIntegral = 'E0244';
+
+/** The model is about paths between two ends (`path from …`), and has no motion from a start. */
+export const betweenEnds = ({text, runTrouble}: State): boolean =>
+  runTrouble?.code === heldIntegral || (runTrouble?.code === noDuration && /^path\b/m.test(text));
+/** The equations are those of motions in time: no other variable is declared in its place. Without it no modes. */
+export const inTime = ({text}: State): boolean => !/^independent\b(?!\s+t\b)/m.test(text);
+
 export const initialState: State = {
   text: '',
   ends: '\n',

@@ -1,35 +1,12 @@
 import type {Asker} from './asker';
 import type {Clock} from './clock';
-import type {
-  Answer,
-  ClaimAnswer,
-  Conserved,
-  EquationsAnswer,
-  Failure,
-  ModesAnswer,
-  OpenAnswer,
-  PathsAnswer,
-  PoseAnswer,
-  Request,
-  RunAnswer,
-  Scene,
-  Section,
-  SectionAnswer,
-  Trouble,
-  Values,
-} from './contract';
+import type {Answer, ClaimAnswer, EquationsAnswer, Failure, OpenAnswer, RunAnswer, Values} from './contract';
+import {Drags} from './drags';
 import type {Ends} from './lines';
+import {short, unfinished} from './runs';
+import {Searches} from './searches';
+import {heldIntegral, inTime, noDuration, type State} from './state';
 import type {Store} from './store';
-import type {State} from './state';
-
-export const noDuration = 'E0701',
-  heldIntegral = 'E0244';
-
-/** The model is about paths between two ends (`path from …`), and has no motion from a start. */
-export const betweenEnds = ({text, runTrouble}: State): boolean =>
-  runTrouble?.code === heldIntegral || (runTrouble?.code === noDuration && /^path\b/m.test(text));
-/** The equations are those of motions in time: no other variable is declared in its place. Without it no modes. */
-export const inTime = ({text}: State): boolean => !/^independent\b(?!\s+t\b)/m.test(text);
 
 export const longest = 1_000_000; // characters of a model: as much as a session takes
 const restAfter = 220, // ms without a move of a slider
@@ -53,27 +30,23 @@ export class Study {
   // Changes of what is asked for: of the text or the mode, and of these or any value. Answers to what was asked before
   // are let go.
   private texts = 0;
-  private changes = 0;
+  changes = 0;
   private equationsOf = 0; // of `texts`: what the equations that are shown were asked for
   private runOf = 0; // of `changes`
   private troubleOf = 0; // of `changes`: what the trouble of the run was asked for
   private resting = 0; // a timer, while a slider moves
   private late = 0; // a timer, while something that is shown is of former values
-  private pending = new Map<string, number>(); // searches on their way, of `changes`
-  private grabbed: {
-    values: Values;
-    start: Record<string, string>;
-    velocities: Record<string, number>; // SI, before the drag: each place of it begins with these
-    moved: boolean;
-    told: boolean;
-  } | null = null;
   private shown = false; // something of this model was shown: the clock goes on where it is
+  readonly drags: Drags;
+  readonly searches: Searches;
 
   constructor(
     readonly store: Store<State>,
     readonly asker: Asker,
     private readonly clock: Clock,
   ) {
+    this.drags = new Drags(this, clock);
+    this.searches = new Searches(this);
     asker.onBusy(kind => store.update({busy: kind, progress: null}));
     store.watch(['busy', 'answered', 'readable', 'text', 'openedText'], state => {
       const {busy, answered, readable, text, openedText} = state;
@@ -146,7 +119,7 @@ export class Study {
   /** Another model: nothing of the one before stays. */
   load({text, ends = '\n', saved = text, name, set = {}, start = {}, origin = null}: Model): void {
     this.shown = false;
-    this.grabbed = null;
+    this.drags.letGo();
     this.clock.play(false);
     this.clock.seek(0);
     const patch: Partial<State> = {
@@ -319,7 +292,7 @@ export class Study {
       slow: false,
       quick: how === quick,
       answered: how === full,
-      pose: this.grabbed ? this.store.state.pose : null,
+      pose: this.drags.holding ? this.store.state.pose : null,
     });
     this.arrived();
     const still = matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -352,6 +325,14 @@ export class Study {
       this.resting = 0;
       void this.everything();
     }, restAfter);
+  }
+
+  /** The motion begins here, as a drag left it; false where something was changed before it came. */
+  async beginAt(start: Record<string, string>): Promise<boolean> {
+    this.change({start, ...this.nothingFound()}, {ofText: false});
+    const {changes} = this;
+    await this.everything();
+    return changes === this.changes;
   }
 
   private async everything(): Promise<void> {
@@ -420,175 +401,10 @@ export class Study {
     this.store.update({pins: [...pins, {id, label: said || 'as in the text', series, run, shown: true}]});
   }
 
-  // --------------------------------------------------------------------------------------------------------- dragging
-
-  /**
-   * Takes hold of the system at the moment that is shown. At its start it keeps its velocities; in flight it is held
-   * still.
-   */
-  grab(): void {
-    const {run, equations} = this.store.state,
-      {s} = this.clock;
-    const start = {...this.store.state.start},
-      velocities: Record<string, number> = {};
-    for (const c of equations?.coordinates ?? []) {
-      const v = s > 0 ? 0 : run?.start[c.name + "'"];
-      if (typeof v === 'number') velocities[c.name + "'"] = v;
-    }
-    if (run && equations && s > 0) {
-      const row = nearestRow(run, s);
-      for (const c of equations.coordinates) {
-        const column = run.columns.findIndex(other => other.name === c.name),
-          value = column < 0 ? null : run.values[column][row];
-        if (value === null) continue;
-        start[c.name] = withUnit(value, c.unit);
-        start[c.name + "'"] = withUnit(0, c.velocity_unit);
-      }
-    }
-    this.clock.play(false);
-    this.grabbed = {values: this.values, start, velocities, moved: false, told: false};
-  }
-
-  async drag(element: number, point: number, to: number[]): Promise<void> {
-    const grabbed = this.grabbed;
-    if (!grabbed) return;
-    const answer = await this.asker.ask<PoseAnswer>({
-      do: 'pose',
-      budget: 2,
-      drag: {element, point, to, velocities: grabbed.velocities},
-      ...grabbed.values,
-      start: grabbed.start,
-    });
-    if (this.grabbed !== grabbed) return;
-    if (!answer.ok) {
-      if (answer.kind === 'cancelled' || grabbed.told) return;
-      grabbed.told = true;
-      return this.say(answer.kind === 'budget' ? tooFar : `${answer.trouble.message} ${answer.trouble.help}`, true);
-    }
-    for (const c of this.store.state.equations?.coordinates ?? []) {
-      const q = answer.start[c.name],
-        v = answer.start[c.name + "'"];
-      grabbed.moved ||=
-        typeof q === 'number' &&
-        q !==
-          (grabbed.start[c.name] === undefined
-            ? this.store.state.run?.start[c.name]
-            : Number.parseFloat(grabbed.start[c.name]));
-      if (q !== null && q !== undefined) grabbed.start[c.name] = withUnit(q, c.unit);
-      if (v !== null && v !== undefined) grabbed.start[c.name + "'"] = withUnit(v, c.velocity_unit);
-    }
-    this.store.update({pose: posed(answer.drawing, this.store.state.run?.drawing ?? null)});
-  }
-
-  async release(moved: boolean): Promise<void> {
-    const grabbed = this.grabbed;
-    this.grabbed = null;
-    if (!grabbed || !moved) return this.store.update({pose: null});
-    if (!grabbed.moved) {
-      this.say('Its constraints hold it where it is.');
-      return this.store.update({pose: null});
-    }
-    this.clock.seek(0);
-    this.change({start: grabbed.start, ...this.nothingFound()}, {ofText: false});
-    const {changes} = this;
-    await this.everything();
-    if (changes !== this.changes) return;
-    this.store.update({pose: null});
-    if (!this.store.state.runTrouble) this.clock.play(true);
-  }
-
-  // ------------------------------------------------------------------------------------------------------- questions
-
-  askModes(): Promise<void> {
-    return this.search<ModesAnswer>({do: 'modes'}, modes => {
-      if ('points' in modes)
-        for (const shape of modes.points.flatMap(point => point.shapes))
-          for (const element of shape.drawing?.elements ?? [])
-            element.positions = element.positions.map(value => value ?? NaN);
-      return {modes};
-    });
-  }
-  askPhaseSpace(): Promise<void> {
-    return this.search<{sections: Section[]}>({do: 'phase_space'}, answer => ({
-      phaseSpace: 'sections' in answer ? answer.sections : answer,
-    }));
-  }
-  askPaths(): Promise<void> {
-    return this.search<PathsAnswer>({do: 'paths', budget: 20}, paths => ({paths}));
-  }
-  askConserved(): Promise<void> {
-    return this.search<{conserved: Conserved[]}>({do: 'conserved', budget: 60}, answer => ({
-      found: 'conserved' in answer ? answer.conserved : answer,
-    }));
-  }
-
-  /** What takes its time and is of the values that stand there now; it is asked for once. */
-  private async search<T extends object>(
-    request: Request,
-    patch: (answer: T | Trouble) => Partial<State>,
-  ): Promise<void> {
-    const {changes} = this;
-    if (this.pending.get(request.do) === changes) return;
-    this.pending.set(request.do, changes);
-    const answer = await this.asker.ask<T>({...request, ...this.values});
-    if (changes !== this.changes) return;
-    this.pending.delete(request.do);
-    if (answer.ok) this.store.update(patch(answer));
-    else if (answer.kind !== 'cancelled') this.store.update(patch(answer.trouble));
-  }
-
-  async askSection(at: string, crossings: number): Promise<void> {
-    const {changes} = this;
-    this.store.update({section: null, sectionTrouble: null, sectionGone: false});
-    const answer = await this.asker.ask<SectionAnswer>(
-      {do: 'section', at, crossings, budget: 60, ...this.values},
-      {
-        onMessage: message => {
-          if (message.section && changes === this.changes) this.store.update({section: message.section});
-        },
-      },
-    );
-    if (changes !== this.changes) return;
-    if (answer.ok) this.store.update({section: answer});
-    else if (answer.kind !== 'cancelled') this.store.update({sectionTrouble: answer.trouble});
-  }
-
   /** A claim of an exercise: a wrong one is not told what would be right. */
   claim(text: string, about: string): Promise<Answer<ClaimAnswer>> {
     return this.asker.ask<ClaimAnswer>({do: 'claim', text, about, exercise: true});
   }
-}
-
-const tooFar = 'The constraints could not be solved in time for this place. Move more slowly, or less far.';
-
-/** It ended with its budget, and holds what was computed until then. */
-export const unfinished = (run: RunAnswer): boolean => run.ending.kind === 'interrupted';
-
-const few = 50; // points, of which a range says little
-
-/**
- * The name of a curve that turns more often than it has points, so that what is drawn is a slower one: between many
- * neighbouring points its velocity alone would take it through half of its range; of a few points, as a run has that
- * was cut short, the velocities lead elsewhere than to the next one. Null where all are drawn finely.
- */
-export function drawnTooCoarsely({columns, times, values}: RunAnswer): string | null {
-  const numbersOf = (k: number): number[] => values[k].map(value => value ?? NaN);
-  for (const [k, {name}] of columns.entries()) {
-    const rate = columns.findIndex(column => column.name === `${name}'`);
-    if (rate < 0 || times.length < 2) continue;
-    const x = numbersOf(k).filter(Number.isFinite),
-      range = x.reduce((a, b) => Math.max(a, b), -Infinity) - x.reduce((a, b) => Math.min(a, b), Infinity),
-      rates = numbersOf(rate),
-      step = (i: number): number => times[i] - times[i - 1];
-    if (times.length < few) {
-      const [all, way] = [numbersOf(k), (i: number): number => (step(i) * (rates[i - 1] + rates[i])) / 2];
-      if (times.some((_, i) => i > 0 && Math.abs(all[i] - all[i - 1] - way(i)) > 2 * range)) return name;
-      continue;
-    }
-    const coarse = rates.filter((v, i) => i > 0 && Math.abs(v * step(i)) > 0.5 * range);
-    if (coarse.length > 0.1 * times.length) return name;
-  }
-  return null;
 }
 
 const withValue = (values: Record<string, string>, name: string, value: string | null): Record<string, string> => {
@@ -597,39 +413,3 @@ const withValue = (values: Record<string, string>, name: string, value: string |
   else next[name] = value;
   return next;
 };
-
-export const withUnit = (value: number, unit: string): string =>
-  `${Number(value.toPrecision(12))}${unit ? ' ' + unit : ''}`;
-export const short = (value: string): string =>
-  value.replace(/-?\d+\.\d{4,}/, number => String(Number(Number(number).toPrecision(4))));
-
-/** The row whose time is next to `s` seconds after the first. */
-export function nearestRow(run: {times: number[]}, s: number): number {
-  const {times} = run,
-    way = times[times.length - 1] < times[0] ? -1 : 1;
-  let low = 0,
-    high = times.length - 1;
-  while (high - low > 1) {
-    const middle = (low + high) >> 1;
-    if (way * (times[middle] - times[0]) <= s) low = middle;
-    else high = middle;
-  }
-  return s - way * (times[low] - times[0]) < way * (times[high] - times[0]) - s ? low : high;
-}
-
-/** The moment as the run draws it: sizes of bobs and of the ground come from a whole motion. */
-function posed(pose: Scene | null, run: Scene | null): Scene | null {
-  if (!pose) return null;
-  for (const one of pose.elements) one.positions = one.positions.map(value => value ?? NaN);
-  const alike =
-    run &&
-    run.elements.length === pose.elements.length &&
-    run.elements.every((one, i) => one.kind === pose.elements[i].kind && one.points === pose.elements[i].points);
-  if (!alike) return pose;
-  const elements = run.elements.map((one, i) =>
-    one.still && pose.elements[i].still
-      ? one
-      : {...one, still: pose.elements[i].still, positions: pose.elements[i].positions},
-  );
-  return {...run, times: [0], follow: pose.follow, elements};
-}

@@ -27,19 +27,29 @@ export function requestsFor(model) {
 }
 
 /** Numbers that come from arithmetic, not from the text: compared as numbers, to this part of their size. */
-const close = (a, b, part, size = Math.max(Math.abs(a), Math.abs(b))) =>
-  a === b || Math.abs(a - b) <= part * size + 1e-14;
+const close = (a, b, part, size = Math.max(Math.abs(a), Math.abs(b)), least = 1e-14) =>
+  a === b || Math.abs(a - b) <= part * size + least;
 
 const number = /[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?/g;
 
-/** Two texts whose words are the same and whose numbers agree. */
-function sameText(a, b, part) {
+/** Two texts whose words are the same and whose numbers agree, to a part of their size or to `least`. */
+function sameText(a, b, part, least = 1e-14) {
   if (a === b) return true;
   if (a.replace(number, '#') !== b.replace(number, '#')) return false;
   const left = a.match(number) ?? [],
     right = b.match(number) ?? [];
-  return left.every((n, i) => close(Number(n), Number(right[i]), part));
+  return left.every((n, i) => close(Number(n), Number(right[i]), part, undefined, Math.max(least, 1e-14)));
 }
+
+/** Of values of runs so many digits agree. */
+const digits = 1e-5;
+
+/**
+ * Of "± 1e-06 m", in the unit of the value; 0 where a line has none. A value that a line expects to be 0, as a wave
+ * where it has a node, is what the errors of numbers of the size 1 leave, and has no size of its own: its line says by
+ * its tolerance what counts, and five digits of that are compared, as of values five of theirs.
+ */
+const absoluteTolerance = text => Number(/^± ([-+.\deE]+)/.exec(text ?? '')?.[1] ?? 0) || 0;
 
 // A drift and a residual are rounding errors themselves.
 const roundings = new Set(['drift', 'residual', 'statistics']);
@@ -164,9 +174,15 @@ export function compare(model, request, native, wasm) {
       // The drift of what is conserved is rounding.
       const values = answer => answer.results.map(result => (/ conserved/.test(result.text) ? '' : result.actual));
       const failed = answer => answer.results.filter(result => !result.passed).map(result => result.text);
+      const [here, there] = [values(native), values(wasm)];
       return [
         ...differences(failed(native), failed(wasm), 'failed', 0),
-        ...differences(values(native), values(wasm), 'actual', 1e-5),
+        ...differences(here.length, there.length, 'lines', 0),
+        ...here.flatMap((actual, i) =>
+          sameText(actual, there[i], digits, digits * absoluteTolerance(native.results[i].tolerance))
+            ? []
+            : [`actual.${i}: ${actual} | ${there[i]}`],
+        ),
       ];
     }
     case 'run':

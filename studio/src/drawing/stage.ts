@@ -212,7 +212,7 @@ export class Stage {
         ? this.pick(x, y, event.pointerType === 'touch' ? reach.touch : reach.mouse)
         : null;
     this.moved = false;
-    if (this.grip) this.study?.grab();
+    if (this.grip) this.study?.drags.grab();
     this.draw();
   }
 
@@ -245,7 +245,7 @@ export class Stage {
     const s = this.store.state.pose ? 0 : this.clock.s,
       view = this.view(scene);
     const to = placeUnder(scene, view, x, y, grip.place, maupScene.centreAt(scene, view, s));
-    void this.study?.drag(grip.element, grip.point, to);
+    this.study?.drags.drag(grip.element, grip.point, to);
   }
 
   private pinch(id: number, x: number, y: number): void {
@@ -265,7 +265,7 @@ export class Stage {
   private letGo(moved: boolean): void {
     if (!this.grip) return;
     this.grip = null;
-    void this.study?.release(moved);
+    void this.study?.drags.release(moved);
     this.draw();
   }
 

@@ -1,9 +1,10 @@
 import type {Check, Conserved, Happening, ModesAnswer, Section, Trouble} from '../contract';
 import {byId, h, prose} from '../dom';
 import {loopDrawing} from '../drawing/loop';
-import {hasMistake, type State} from '../state';
+import {drawnTooCoarsely, unfinished, withUnit} from '../runs';
+import {betweenEnds, hasMistake, inTime, noDuration, type State} from '../state';
 import type {Store} from '../store';
-import {betweenEnds, drawnTooCoarsely, inTime, noDuration, unfinished, withUnit, type Study} from '../study';
+import type {Study} from '../study';
 import {modeOptions, numbers, pretty} from './words';
 import {copyButton, lineElement, sectionsElements} from './formulas';
 
@@ -95,9 +96,9 @@ export class EquationsPanel {
   private asked(): void {
     const {answered, modes, phaseSpace, equations} = this.store.state;
     if (!equations || !answered) return;
-    if (isOpen('modes') && modes === null) void this.study.askModes();
-    if (isOpen('phase-space') && phaseSpace === null) void this.study.askPhaseSpace();
-    if (betweenEnds(this.store.state) && this.store.state.paths === null) void this.study.askPaths();
+    if (isOpen('modes') && modes === null) void this.study.searches.modes();
+    if (isOpen('phase-space') && phaseSpace === null) void this.study.searches.phaseSpace();
+    if (betweenEnds(this.store.state) && this.store.state.paths === null) void this.study.searches.paths();
   }
 
   private equations({equations, equationsTrouble}: State): void {
@@ -249,7 +250,7 @@ export class EquationsPanel {
     );
     const search = h(
       'button',
-      {type: 'button', class: 'quiet', onclick: () => void this.study.askConserved()},
+      {type: 'button', class: 'quiet', onclick: () => void this.study.searches.conserved()},
       'Search for more',
     );
     byId('conserved-body').replaceChildren(

@@ -4,9 +4,9 @@ import type {Scene, SceneElement} from '../contract';
 import {byId, h, icon} from '../dom';
 import {numbers, raised} from './words';
 import type {Stage} from '../drawing/stage';
-import {hasMistake, type State} from '../state';
+import {betweenEnds, hasMistake, inTime, type State} from '../state';
 import type {Store} from '../store';
-import {betweenEnds, inTime, type Study} from '../study';
+import type {Study} from '../study';
 import {troubleElement} from './equations';
 
 function speedText(speed: number): string {
@@ -212,7 +212,7 @@ export class MotionPanel {
       event.preventDefault();
       const at = byId<HTMLInputElement>('section-at').value.trim(),
         way = byId<HTMLSelectElement>('section-way').value;
-      void this.study.askSection(at + way, Number(byId<HTMLInputElement>('section-count').value) || 300);
+      void this.study.searches.section(at + way, Number(byId<HTMLInputElement>('section-count').value) || 300);
     });
     byId('section-stop').addEventListener('click', () => this.study.asker.cancel('section'));
   }

@@ -1,8 +1,8 @@
 import type {Coordinate, Formula, Parameter} from '../contract';
 import {byId, h} from '../dom';
-import type {State} from '../state';
+import {betweenEnds, inTime, type State} from '../state';
 import type {Store} from '../store';
-import {betweenEnds, inTime, type Study} from '../study';
+import type {Study} from '../study';
 import {unitText} from './words';
 import {rangeOfParameter, rangeOfStart, shown, widened, type Range} from './range';
 

@@ -3,7 +3,7 @@ import type {RunAnswer} from '../contract';
 import {byId, h} from '../dom';
 import type {ChartSpec, Pin, State} from '../state';
 import type {Store} from '../store';
-import {nearestRow} from '../study';
+import {nearestRow} from '../runs';
 import {pretty, unitText} from '../panels/words';
 import {movingFields, type MovingField} from './field';
 import {Chart, type Curve} from './chart';

@@ -1,9 +1,9 @@
 import type {Answer, ExportAnswer} from '../contract';
 import {download, h} from '../dom';
 import {fileOf} from '../lines';
-import type {State} from '../state';
+import {betweenEnds, type State} from '../state';
 import type {Store} from '../store';
-import {betweenEnds, type Study} from '../study';
+import type {Study} from '../study';
 import {dialog} from './dialog';
 
 const kinds: [string, string, string][] = [

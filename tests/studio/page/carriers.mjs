@@ -1,6 +1,6 @@
 // What brings questions to the core and answers back, with cores that a test makes up: each a case as in cases.mjs.
 import {check} from './harness.mjs';
-import {shows, text, typeAtEnd} from './steps.mjs';
+import {answered, shows, text, typeAtEnd} from './steps.mjs';
 
 /** The page over a worker of this script, in pages that share memory with their worker. */
 const over = (open, core) =>
@@ -82,14 +82,18 @@ export const carriers = {
 
   async 'an answer after its cancel'({open}, variant) {
     if (variant.name !== 'server') return;
-    // The second question cancels the first, whose answer was on its way.
+    // The second question cancels the first, whose answer is sent as its cancel comes.
     const page = await over(
       open,
-      core(`id => ++formats === 1 ? setTimeout(() => write(id, '# late\\n'), 600) : write(id, '# second\\n')`),
+      core(`id => {
+        const late = () => Atomics.load(cancel, 0) === id ? write(id, '# late\\n') : setTimeout(late, 5);
+        ++formats === 1 ? late() : write(id, '# second\\n');
+      }`),
     );
     await textIs(page, 'system');
+    await answered(page);
     await page.locator('#format-button').click();
-    await page.waitForTimeout(100);
+    await page.waitForSelector('#busy.busy', {state: 'attached'});
     await page.locator('#format-button').click();
     await textIs(page, '# second');
     check('it is let go', !(await text(page)).includes('# late'), (await text(page)).slice(0, 30));

@@ -75,6 +75,9 @@ export const outOfTime = {
   trouble: {code: '', message: 'It did not come within 1 s.', reason: '', help: ''},
 };
 
+/** Waits until no question is on its way. */
+export const answered = page => page.waitForFunction(() => !document.querySelector('#busy').classList.contains('busy'));
+
 /** Waits until these words stand at this place. */
 export const shows = (page, what) =>
   page.waitForFunction(
