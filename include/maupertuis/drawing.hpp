@@ -29,7 +29,7 @@ struct SolidShape {
 struct Drawing {
   enum class Kind { Path, Trail, Solid, Arrow, Label };
   /// Whether an arrow is of the model's own drawing (reactions, contacts), and what acts otherwise.
-  enum class ForceOrigin { Asked, Reaction, Weight, Spring, Damper, Applied, Torque };
+  enum class ForceOrigin { Asked, Reaction, Weight, Spring, Damper, Applied, Potential, Torque };
   struct Element {
     Kind kind = Kind::Path;
     std::size_t points = 1;  // of a frame; Solid: dimension + 1, its origin and the tips of its axes; Arrow: from its
@@ -55,8 +55,9 @@ struct Drawing {
   std::vector<double> follow;  // [frames × dimension] what the camera goes along with; empty: it rests
   double metres_a_newton = 0;  // of arrows of forces; 0: there are none
   double largest_torque = 0;   // N m, of which the arc is three quarters of a turn; 0: there is none
-  std::vector<double> low, high;  // [dimension] all that ever appears, seen from what is followed
-  double radius = 1;              // of the ball about the middle that holds it
+  std::vector<std::string> unplaced_forces;  // of all forces: those that no arrow stands for, "V on s", "U"
+  std::vector<double> low, high;             // [dimension] all that ever appears, seen from what is followed
+  double radius = 1;                         // of the ball about the middle that holds it
 
   bool empty() const { return elements.empty() || times.empty(); }
 };
@@ -68,9 +69,10 @@ struct ContactImpulse {
   double size = 0;          // Λ
 };
 
-/// Which arrows of forces a drawing has: those that the model asks for, or those of all forces between places as well,
-/// weights, springs, dampers, applied forces, torques and reactions of constraints. Forces of V and of `force q = …`
-/// act on coordinates and have no place.
+/// Which arrows of forces a drawing has: those that the model asks for, or those of all forces as well, weights,
+/// springs, dampers, applied forces, torques and reactions of constraints. Forces of V, of D, of torsion springs and of
+/// `force q = …` act on coordinates: each is shown at what its coordinate moves, as the force or the torque there that
+/// does the same work; where no single one does, it is named in `unplaced_forces`.
 enum class ForcesShown { Asked, All };
 
 /// The drawing of a model at the rows of a run, at most `frames` of them. Where the model has no `draw`, it shows what

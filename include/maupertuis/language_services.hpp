@@ -143,8 +143,13 @@ struct Symbol {
 };
 std::vector<Symbol> symbols(Document& document);
 
-/// `maup fmt`: one edit that replaces the text, none where it is in canonical layout or has a mistake of syntax.
-std::vector<TextEdit> formatting(Document& document);
+/// `maup fmt`: one edit that replaces the text, none where it is in canonical layout. A text with a mistake of syntax
+/// stays as it is; then this is the first of them.
+struct Formatting {
+  std::vector<TextEdit> edits;
+  std::optional<Diagnostic> mistake;
+};
+Formatting formatting(Document& document);
 
 enum class TokenKind : std::uint8_t {
   Keyword,

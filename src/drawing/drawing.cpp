@@ -166,6 +166,7 @@ std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& sh
   drawing.dimension = system.space_dimension;
   drawing.dimensionless = system.dimensionless;
   drawing.gravity = gravity_of(system, parameters);
+  drawing.unplaced_forces = plan.unplaced;
   const std::size_t rows = run.rows();
   const std::size_t parts = rows > 1 ? std::max<std::size_t>(1, (fewest_frames + rows - 2) / (rows - 1)) : 1;
   const std::vector<std::size_t> shown = rows_shown(motion, rows, frames);

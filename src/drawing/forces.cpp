@@ -1,27 +1,15 @@
-#include "drawing/outlines.hpp"
+#include "drawing/coordinate_forces.hpp"
 #include "drawing/shapes.hpp"
 
 #include <array>
 #include <cmath>
 
-/// Forces between places that no `draw` line asks for, as arrows where they act.
+/// Forces that no `draw` line asks for, as arrows where they act.
 namespace maupertuis::drawing {
 namespace {
 
 using Origin = Drawing::ForceOrigin;
 constexpr std::size_t points_of_an_arc = 17;
-
-Outline arrow_of(const ExprVector& place, const ExprVector& force, Origin origin, const std::string& name) {
-  Outline out;
-  out.element.kind = Drawing::Kind::Arrow;
-  out.element.points = 2;
-  out.element.names = {name, ""};
-  out.element.origin = origin;
-  out.placement = origin == Origin::Torque ? Outline::Placement::Torque : Outline::Placement::Force;
-  out.values = place;
-  for (const Expr& f : force) out.values.push_back(expand_time_derivatives(f));
-  return out;
-}
 
 ExprVector negative(const ExprVector& v) {
   ExprVector out;
@@ -128,7 +116,7 @@ void add_links(const MechanicalSystem& system, std::vector<Outline>& out) {
 
 void add_torque(const MechanicalSystem& system, const std::string& on, const ExprVector& torque,
                 std::vector<Outline>& out) {
-  if (const Body* body = system.find_body(on)) out.push_back(arrow_of(body->position, torque, Origin::Torque, on));
+  if (const Body* body = system.find_body(on)) out.push_back(torque_about(body->position, torque, Origin::Torque, on));
 }
 
 void add_applied(const MechanicalSystem& system, std::vector<Outline>& out) {
@@ -147,6 +135,25 @@ void add_acting_forces(const MechanicalSystem& system, Plan& plan) {
   add_weights(system, plan.outlines);
   add_links(system, plan.outlines);
   add_applied(system, plan.outlines);
+  add_forces_on_coordinates(system, plan);
+}
+
+Outline arrow_of(const ExprVector& place, const ExprVector& force, Origin origin, const std::string& name) {
+  Outline out;
+  out.element.kind = Drawing::Kind::Arrow;
+  out.element.points = 2;
+  out.element.names = {name, ""};
+  out.element.origin = origin;
+  out.placement = Outline::Placement::Force;
+  out.values = place;
+  for (const Expr& f : force) out.values.push_back(expand_time_derivatives(f));
+  return out;
+}
+
+Outline torque_about(const ExprVector& place, const ExprVector& torque, Origin origin, const std::string& name) {
+  Outline out = arrow_of(place, torque, origin, name);
+  out.placement = Outline::Placement::Torque;
+  return out;
 }
 
 void place_torque(Outline& o, std::size_t d, double radius, double largest) {

@@ -111,6 +111,8 @@ std::size_t series_of(const Drawing::Element& e) {
       return 6;
     case Origin::Applied:
       return 5;
+    case Origin::Potential:
+      return 0;
     case Origin::Torque:
       return 4;
   }

@@ -52,6 +52,8 @@ std::string_view origin_name(Drawing::ForceOrigin origin) {
       return "damper";
     case Drawing::ForceOrigin::Applied:
       return "applied";
+    case Drawing::ForceOrigin::Potential:
+      return "potential";
     case Drawing::ForceOrigin::Torque:
       return "torque";
   }
@@ -122,6 +124,12 @@ std::string drawing_json(const Drawing& drawing) {
   }
   if (drawing.metres_a_newton > 0) out += fmt::format(",\"metresANewton\":{:.6g}", drawing.metres_a_newton);
   if (drawing.largest_torque > 0) out += fmt::format(",\"largestTorque\":{:.6g}", drawing.largest_torque);
+  if (!drawing.unplaced_forces.empty()) {
+    out += ",\"unplacedForces\":[";
+    for (const std::string& name : drawing.unplaced_forces)
+      out += (&name == &drawing.unplaced_forces.front() ? "" : ",") + quoted(name);
+    out += ']';
+  }
   out += ",\"elements\":[";
   for (std::size_t i = 0; i < drawing.elements.size(); ++i) {
     const Drawing::Element& e = drawing.elements[i];

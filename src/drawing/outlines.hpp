@@ -42,14 +42,21 @@ struct Plan {
     bool wall = false;
   };
   std::vector<Ground> grounds;
+  std::vector<std::string> unplaced;  // forces that no arrow stands for
 };
 
 Plan plan_of(const Model& model, const Bindings& parameters, const EquationsOfMotion* equations, const Trajectory& run,
              ForcesShown forces);
 
-/// Arrows of what acts between places and is not asked for by the model: weights, springs, dampers, applied forces,
-/// torques. In space and in the plane.
+/// Arrows of what acts and is not asked for by the model: weights, springs, dampers, applied forces, torques, and
+/// forces on coordinates. In space and in the plane.
 void add_acting_forces(const MechanicalSystem& system, Plan& plan);
+
+/// A force in newtons with its foot at a place; a torque about a place, one number in the plane.
+Outline arrow_of(const ExprVector& place, const ExprVector& force, Drawing::ForceOrigin origin,
+                 const std::string& name);
+Outline torque_about(const ExprVector& place, const ExprVector& torque, Drawing::ForceOrigin origin,
+                     const std::string& name);
 
 /// A torque becomes an arc about its place that turns as it does, counter-clockwise where it is positive; three
 /// quarters of a turn for the largest. `d`: of space.

@@ -127,13 +127,14 @@ std::vector<Symbol> symbols(Document& document) {
   return out;
 }
 
-std::vector<TextEdit> formatting(Document& document) {
+Formatting formatting(Document& document) {
   Diagnostics found;
   const syntax::SyntaxTree tree = syntax::parse(document.source(), found);
-  if (found.has_errors()) return {};
+  for (const Diagnostic& d : found.items())
+    if (d.severity == Severity::Error) return {{}, d};
   std::string text = syntax::format(tree, document.source());
   if (text == document.source().text()) return {};
-  return {{document.source().whole(), std::move(text)}};
+  return {{{document.source().whole(), std::move(text)}}, std::nullopt};
 }
 
 std::vector<SemanticToken> semantic_tokens(Document& document) {

@@ -1,5 +1,6 @@
 #include "studio/in_rates.hpp"
 #include "studio/requests.hpp"
+#include "studio/stroboscopic.hpp"
 #include "studio/verified.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
@@ -105,28 +106,6 @@ Json equations_of_fields(Desk& desk, Study& study, bool steps) {
   return out;
 }
 
-/// Where a section of the motion is taken if nobody says: once in each period of the drive, where sines and cosines of
-/// one frequency drive the system; else empty.
-std::string stroboscopic(const EquationsOfMotion& equations) {
-  const MechanicalSystem& system = *equations.system;
-  std::vector<Expr> formulas{equations.lagrangian_expanded};
-  for (const auto* list : {&equations.generalized_forces, &equations.dissipative_terms})
-    formulas.insert(formulas.end(), list->begin(), list->end());
-  formulas = expand_time_derivatives(in_terms_of_motion(system, formulas));
-  const Expr t = system.context->time();
-  Expr rate;
-  for (const Expr& node : topological_order(formulas)) {
-    if (!node.is(Kind::Sin) && !node.is(Kind::Cos)) continue;
-    const Expr argument = node[0], speed = differentiate(argument, t);
-    if (speed.is_zero()) continue;
-    for (const Expr& s : symbols_of({&speed, 1}))
-      if (s.role() != Role::Parameter && s.role() != Role::Constant) return {};
-    if (rate && !vanishes_identically(speed - rate) && !vanishes_identically(speed + rate)) return {};
-    if (!rate) rate = speed;
-  }
-  return rate ? to_plain(sin(rate * t), equations.order) + " = 0 rising" : std::string();
-}
-
 /// The names of the modes of contacts and frictions that a reader may ask for, the free one first.
 Json modes_json(const MechanicalSystem& system) {
   constexpr std::size_t most = 16;
@@ -194,7 +173,7 @@ Json equations(Desk& desk, const Work& work) {
     const auto start = look_into_start(model, equations, found).start;
     out["coordinates"] = coordinates_json(model, equations.order, start);
     out["parameters"] = parameters_json(model.system, equations.order, desk.units());
-    out["section"] = stroboscopic(equations);
+    out["sections"] = stroboscopic_sections(equations);
     out["contacts"] = Json::array();
     for (std::size_t k = 0; k < model.system.contacts.size(); ++k)
       out["contacts"].push_back({{"name", model.system.contact_label(k)}});

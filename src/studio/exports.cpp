@@ -53,8 +53,11 @@ SimulationResult motion_of(Desk& desk, Study& study, const Work& work) {
   return *std::move(result);
 }
 
-Drawing drawing_for(const Model& model, const EquationsOfMotion& equations, const SimulationResult& run) {
-  auto drawing = evaluate_drawing(model, run.trajectory, 12'000, &equations, impulses_of(run, model.system));
+/// With the arrows of forces that are asked for: those of the model, all, or none.
+Drawing drawing_for(const Model& model, const EquationsOfMotion& equations, const SimulationResult& run,
+                    const Json& request) {
+  auto drawing =
+      evaluate_drawing(model, run.trajectory, 12'000, &equations, impulses_of(run, model.system), forces_in(request));
   if (!drawing)
     throw Trouble{"refused",
                   "This model has nothing to draw.",
@@ -62,6 +65,10 @@ Drawing drawing_for(const Model& model, const EquationsOfMotion& equations, cons
                   "Mark a point, `point P at (x, y)`.",
                   "",
                   nullptr};
+  if (const auto asked = request.find("forces"); asked != request.end() && *asked == false)
+    drawing->elements.erase(std::remove_if(drawing->elements.begin(), drawing->elements.end(),
+                                           [](const auto& e) { return e.kind == Drawing::Kind::Arrow; }),
+                            drawing->elements.end());
   return *std::move(drawing);
 }
 
@@ -200,7 +207,7 @@ Json export_file(Desk& desk, const Work& work) {
   if (what == "json") return text_file(name, ".json", "application/json", to_json(run.trajectory));
   if (what == "plot.svg") return text_file(name, ".svg", "image/svg+xml", plot_of(run, model.system));
   if (what == "plot.png") return png_file(name, ".png", plot_of(run, model.system));
-  const Drawing drawing = drawing_for(model, *study.equations(), run);
+  const Drawing drawing = drawing_for(model, *study.equations(), run, work.request);
   if (what == "animation") return text_file(name, ".html", "text/html", animation_html(drawing, model.system.title));
   const std::string svg = frame_of(drawing, number_of(work.request, "t", drawing.times.front()));
   if (what == "drawing.svg") return text_file(name, ".svg", "image/svg+xml", svg);

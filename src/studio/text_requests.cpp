@@ -163,7 +163,8 @@ Json rename(Desk& desk, const Work& work) {
 }
 
 Json format(Desk& desk, const Work&) {
-  return {{"edits", edits_json(language::formatting(desk.document()), desk.units())}};
+  const language::Formatting found = language::formatting(desk.document());
+  return {{"edits", edits_json(found.edits, desk.units())}, {"refusal", found.mistake ? found.mistake->message : ""}};
 }
 
 Json explain(Desk&, const Work& work) {

@@ -54,6 +54,7 @@ export interface Scene {
   dimensionless: boolean;
   metresANewton?: number;
   largestTorque?: number; // N m
+  unplacedForces?: string[]; // that no arrow stands for
 }
 export interface Trouble {
   code: string;
@@ -152,7 +153,7 @@ export interface Conserved {
   drift: string;
 }
 export interface EquationsAnswer {
-  section?: string; // where a section of a driven motion is taken
+  sections?: string[]; // of a driven motion: once in a period of each drive
   title: string;
   name: string;
   source: string;

@@ -121,7 +121,7 @@ function applyValues(): void {
 
 function bar(): void {
   byId('share-button').addEventListener('click', () => void share());
-  byId('export-button').addEventListener('click', () => exportDialog(store, study));
+  byId('export-button').addEventListener('click', () => exportDialog(store, study, clock));
   byId('help-button').addEventListener('click', () => helpDialog(store.state.version));
   byId('lecture-button').addEventListener('click', () => void lecture(store, study, clock, stages));
   byId('format-button').addEventListener('click', () => void editor.format());

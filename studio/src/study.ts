@@ -59,7 +59,7 @@ export class Study {
     return {
       set,
       start,
-      ...(forces === 'all' ? {forces: true} : {}),
+      ...(forces === 'asked' ? {} : {forces: forces === 'all'}),
       ...(duration ? {run: duration} : {}),
       ...(mode ? {mode} : {}),
     };

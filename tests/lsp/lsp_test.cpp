@@ -132,6 +132,13 @@ TEST_CASE("every request about a text") {
   CHECK(symbols[0]["name"] == "pendulum");
   CHECK(symbols[1]["children"].size() == 3);
   CHECK(editor.result("textDocument/formatting", about(uri)).size() == 1);  // the blanks before the comment
+  // A text with a mistake of grammar is not laid out, and that is told, as `maup fmt` tells it.
+  const std::string half = "file:///half.lag";
+  editor.open(half, "coord θ :   angle\nT = (θ'^2\n");
+  const int formatted = editor.ask("textDocument/formatting", about(half));
+  const std::string told = editor.notification("window/showMessage")["message"];
+  CHECK(has(told, "not laid out. line 2: "));
+  CHECK(editor.answer(formatted)["result"] == Json::array());
   const Json tokens = editor.result("textDocument/semanticTokens/full", about(uri))["data"];
   CHECK(tokens.size() % 5 == 0);
   CHECK(std::vector<int>(tokens.begin(), tokens.begin() + 5) == std::vector<int>{0, 0, 6, 0, 0});

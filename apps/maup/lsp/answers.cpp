@@ -304,7 +304,16 @@ Json symbols_json(OpenText& text, const Json&, const Client&) {
 }
 
 Json formatting_json(OpenText& text, const Json&, const Client&) {
-  return edits_json(formatting(text.document()), text);
+  return edits_json(formatting(text.document()).edits, text);
+}
+
+std::string why_not_formatted(OpenText& text) {
+  const auto mistake = formatting(text.document()).mistake;
+  if (!mistake) return "";
+  const std::string place =
+      mistake->span ? fmt::format("line {}: ", text.document().source().locate(mistake->span->begin).line) : "";
+  return fmt::format("maup: a text with a mistake of grammar is not laid out. {}{} [{}] {}", place, mistake->message,
+                     mistake->code, mistake->help);
 }
 
 Json code_actions_json(OpenText& text, const Json& params, const Client& client) {

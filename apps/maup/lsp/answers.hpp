@@ -34,6 +34,8 @@ Json prepare_rename_json(OpenText& text, const Json& params, const Client& clien
 Json rename_json(OpenText& text, const Json& params, const Client& client);
 Json symbols_json(OpenText& text, const Json& params, const Client& client);
 Json formatting_json(OpenText& text, const Json& params, const Client& client);
+/// The mistake that keeps a text from being laid out, for the user; empty where there is none.
+std::string why_not_formatted(OpenText& text);
 Json code_actions_json(OpenText& text, const Json& params, const Client& client);
 Json semantic_tokens_json(OpenText& text, const Json& params, const Client& client);
 Json folding_json(OpenText& text, const Json& params, const Client& client);

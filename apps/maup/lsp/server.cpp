@@ -1,7 +1,7 @@
 #include "lsp/server.hpp"
 
-#include <maupertuis/json_depth.hpp>
 #include <fmt/format.h>
+#include <maupertuis/json_depth.hpp>
 
 #include <csignal>
 #include <thread>
@@ -237,6 +237,10 @@ Json Server::result_of(const std::string& method, const Json& params) {
     if (known.name != method) continue;
     OpenText* text = open_text(params);
     if (!text) throw Refusal{error::invalid_params, "This text is not open."};
+    // No error in the protocol: editors that lay out what they save would not save it then.
+    if (method == "textDocument/formatting")
+      if (const std::string why = why_not_formatted(*text); !why.empty())
+        tell("window/showMessage", {{"type", 2}, {"message", why}});
     return known.answer(*text, params, client_);
   }
   throw Refusal{error::unknown_method, fmt::format("There is no method `{}`.", method.substr(0, 100))};

@@ -102,7 +102,7 @@ const maupScene = (() => {
     return [first, cross(n, first)];
   }
 
-  const originSeries = {weight: 3, spring: 2, damper: 6, applied: 5, torque: 4, reaction: 1};
+  const originSeries = {potential: 0, reaction: 1, spring: 2, weight: 3, torque: 4, applied: 5, damper: 6};
   const forceSeries = e => e.impulse ? 4 : originSeries[e.origin] ?? 1;
 
   function arrow(from, to, colour, weight, unit) {

@@ -373,13 +373,12 @@ export class Editor {
 
   async format(): Promise<void> {
     const {doc} = this.view.state,
-      answer = await this.study.asker.ask<{edits: Edit[]}>({do: 'format'});
+      answer = await this.study.asker.ask<{edits: Edit[]; refusal?: string}>({do: 'format'});
     if (!answer.ok) return this.study.say(answer.trouble.message, true);
     if (this.view.state.doc !== doc) return;
-    if (answer.edits.length === 0)
-      this.study.say(
-        this.store.state.readable ? 'The text is in its layout.' : 'A text with a mistake of grammar is not laid out.',
-      );
+    if (answer.refusal)
+      return this.study.say(`A text with a mistake of grammar is not laid out: ${answer.refusal}.`, true);
+    if (answer.edits.length === 0) this.study.say('The text is in its layout.');
     this.apply(answer.edits);
   }
 }

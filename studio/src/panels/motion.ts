@@ -2,7 +2,7 @@ import maupScene from '../../../src/report/page/scene.js';
 import type {Clock} from '../clock';
 import type {Scene, SceneElement} from '../contract';
 import {byId, h, icon} from '../dom';
-import {numbers, raised} from './words';
+import {numbers, pretty, raised} from './words';
 import type {Stage} from '../drawing/stage';
 import {betweenEnds, hasMistake, inTime, type State} from '../state';
 import type {Store} from '../store';
@@ -118,9 +118,10 @@ export class MotionPanel {
       ...(drawing.largestTorque
         ? [h('li', {}, `three quarters of a turn: ${Number(drawing.largestTorque.toPrecision(3))}${unit && ' N m'}`)]
         : []),
-      ...(arrows.length === 0
-        ? [h('li', {}, 'No force of this model acts between places: those of V, and of coordinates, have none.')]
+      ...(drawing.unplacedForces
+        ? [h('li', {}, `no arrow alone does what these do: ${drawing.unplacedForces.map(pretty).join(', ')}`)]
         : []),
+      ...(arrows.length === 0 && !drawing.unplacedForces ? [h('li', {}, 'No force acts in this model.')] : []),
     );
   }
 
@@ -200,17 +201,46 @@ export class MotionPanel {
     const {state} = this.store;
     byId('section').hidden = !first || betweenEnds(state) || !inTime(state) || (state.opened?.fields ?? false);
     // What was typed stays as long as it is about this model.
-    const offered = state.equations?.section || `${first} = 0`,
+    const periods = state.equations?.sections ?? [];
+    this.offerPeriods(periods);
+    const offered = periods[0] ?? `${first} = 0`,
       typed = field.value !== this.offeredSection && field.value !== '',
       names = [...(state.equations?.coordinates ?? []), ...(state.equations?.parameters ?? [])],
-      known = names.some(one => field.value.includes(one.name));
+      known = periods.includes(field.value) || names.some(one => field.value.includes(one.name));
     if (first && !(typed && known)) field.value = this.offeredSection = offered;
+    this.showPeriod();
+  }
+
+  /** Where several frequencies drive the system, one has to be chosen. */
+  private offerPeriods(periods: string[]): void {
+    const choice = byId<HTMLSelectElement>('section-drive'),
+      before = [...choice.options].map(option => option.value);
+    byId('section-period').hidden = periods.length < 2;
+    if (before.join() === ['', ...periods].join()) return;
+    const drive = (at: string): string => at.replace(/ = 0.*/, '');
+    choice.replaceChildren(
+      h('option', {value: ''}, 'none'),
+      ...periods.map(at => h('option', {value: at}, pretty(drive(at)))),
+    );
+  }
+
+  /** The choice says what stands in the field. */
+  private showPeriod(): void {
+    const choice = byId<HTMLSelectElement>('section-drive'),
+      at = byId<HTMLInputElement>('section-at').value.trim();
+    choice.value = [...choice.options].some(option => option.value === at) ? at : '';
   }
 
   private sectionForm(): void {
+    const field = byId<HTMLInputElement>('section-at');
+    byId('section-drive').addEventListener('change', event => {
+      const first = this.store.state.equations?.coordinates[0]?.name;
+      field.value = (event.target as HTMLSelectElement).value || `${first} = 0`;
+    });
+    field.addEventListener('input', () => this.showPeriod());
     byId('section-form').addEventListener('submit', event => {
       event.preventDefault();
-      const at = byId<HTMLInputElement>('section-at').value.trim(),
+      const at = field.value.trim(),
         way = byId<HTMLSelectElement>('section-way').value;
       void this.study.searches.section(at + way, Number(byId<HTMLInputElement>('section-count').value) || 300);
     });
@@ -240,6 +270,7 @@ const names: Record<string, string> = {
   spring: 'springs',
   damper: 'dampers',
   applied: 'applied forces',
+  potential: 'forces of V',
   torque: 'torques',
 };
 const nameOf = (e: SceneElement): string =>

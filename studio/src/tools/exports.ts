@@ -1,3 +1,4 @@
+import type {Clock} from '../clock';
 import type {Answer, ExportAnswer} from '../contract';
 import {download, h} from '../dom';
 import {fileOf} from '../lines';
@@ -36,12 +37,13 @@ function pixels(svg: string): Promise<Blob | null> {
   });
 }
 
-export function exportDialog(store: Store<State>, study: Study): void {
+/** Files of what stands in the page: its values, its arrows of forces, and of the drawing the moment that is shown. */
+export function exportDialog(store: Store<State>, study: Study, clock: Clock): void {
   const make = async (what: string): Promise<void> => {
     box.close();
     study.say('It is made …');
     const ask = (one: string): Promise<Answer<ExportAnswer>> =>
-      study.asker.ask<ExportAnswer>({do: 'export', what: one, budget: 60, ...study.values});
+      study.asker.ask<ExportAnswer>({do: 'export', what: one, t: clock.now, budget: 60, ...study.values});
     let answer = await ask(what);
     if (!answer.ok && answer.kind === 'refused' && what.endsWith('.png')) {
       // a core without pixels, as the one in a browser: the browser has them

@@ -139,6 +139,17 @@ V = 1/2 k (x1^2 + (x2 - x1)^2 + x2^2)\nstart x1 = 10 cm\nrun 2 s\n`,
 force x = γ cos(ω t)\nstart x = 0.1\nrun 20\n`,
     );
     check('it is offered', (await page.locator('#section-at').inputValue()) === 'sin(ω t) = 0 rising');
+    check('one period needs no choice', await page.locator('#section-period').isHidden());
+    await write(
+      page,
+      `system driven "Driven"\ndimensionless\nparam γ = 0.5, ω = 1.2, ν = 0.7\ncoord x : number\nT = 1/2 x'^2
+V = 1/2 x^2\nforce x = γ cos(ω t) + sin(ν t)\nstart x = 0.1\nrun 20\n`,
+    );
+    check('of two one is offered', (await page.locator('#section-drive').inputValue()) === 'sin(ω t) = 0 rising');
+    await page.locator('#section-drive').selectOption('sin(ν t) = 0 rising');
+    check('and the other is taken', (await page.locator('#section-at').inputValue()) === 'sin(ν t) = 0 rising');
+    await page.locator('#section-at').fill('x = 0');
+    check('what is typed is neither', (await page.locator('#section-drive').inputValue()) === '');
     await write(page, rod);
     check('and not where nothing drives', (await page.locator('#section-at').inputValue()) === 'x = 0');
     await page.context().close();

@@ -109,4 +109,88 @@ TEST_CASE("a torque is an arc about its body that turns as it does, and its oppo
   CHECK(turned["A"] == doctest::Approx(-1.5 * M_PI));
 }
 
+TEST_CASE("a torsion spring is an arc about the place about which its coordinate turns, also of a clockwise angle") {
+  for (const int way : {1, -1}) {
+    const ModelText m(
+        "system lever\nparam m = 1 kg, l = 2 m, k = 5 N m/rad\ncoord θ : angle\npoint O at (1 [m], 0)\n"
+        "point P mass m at O + (l sin θ, " +
+        std::string(way > 0 ? "-" : "") + "l cos θ)\ntorsion spring θ stiffness k rest 0.1 rad\n");
+    const auto drawn =
+        evaluate_drawing(m.model, at_state(m.model.system, {0.5}, {0}), 1, &m.equations, {}, ForcesShown::All);
+    REQUIRE(drawn);
+    CHECK(drawn->unplaced_forces.empty());
+    CHECK(drawn->largest_torque == doctest::Approx(5 * 0.4));
+    std::size_t found = 0;
+    for (const Drawing::Element& e : drawn->elements) {
+      if (e.kind != Drawing::Kind::Arrow) continue;
+      ++found;
+      CHECK(e.origin == Origin::Spring);
+      const std::size_t last = 2 * (e.points - 1);  // after three quarters of a turn against θ
+      CHECK(e.positions[0] - 1 == doctest::Approx(e.positions[last + 1] * way));
+      CHECK(e.positions[last] == doctest::Approx(1));
+    }
+    CHECK(found == 1);
+  }
+}
+
+TEST_CASE("forces of V, of D and on coordinates stand where their coordinate moves a place") {
+  const ModelText chain(
+      "system chain\nparam m = 1 kg, k = 10 N/m, c = 2 N/m, b = 3 N s/m, F = 7 N\ncoord x1, x2 : length\n"
+      "T = 1/2 m (x1'^2 + x2'^2)\nV = 1/2 k x1^2 + 1/2 c (x2 - x1)^2\nD = 1/2 b x2'^2\nforce x1 = F\n"
+      "point W at (-1 [m], 0)\npoint A at (x1, 0)\npoint B at (x2 + 1 [m], 0)\n");
+  const auto drawn = evaluate_drawing(chain.model, at_state(chain.model.system, {0.3, 0.8}, {0, -1}), 1,
+                                      &chain.equations, {}, ForcesShown::All);
+  REQUIRE(drawn);
+  CHECK(drawn->unplaced_forces.empty());
+  const auto of_v = forces(*drawn, Origin::Potential);
+  REQUIRE(of_v.size() == 2);
+  check(of_v[0], {0.3, 0, -10 * 0.3 + 2 * 0.5, 0});
+  check(of_v[1], {1.8, 0, -2 * 0.5, 0});
+  check(forces(*drawn, Origin::Damper).at(0), {1.8, 0, 3, 0});
+  check(forces(*drawn, Origin::Applied).at(0), {0.3, 0, 7, 0});
+
+  // In polar coordinates: one arrow, −∂V/∂r along r.
+  const ModelText planet(
+      "system planet\ndimensionless\nparam μ = 2\ncoord r, φ : number\nT = 1/2 (r'^2 + r^2 φ'^2)\nV = -μ/r\n"
+      "point P at (r cos φ, r sin φ)\n");
+  const auto central = evaluate_drawing(planet.model, at_state(planet.model.system, {2, 0.6}, {0, 0}), 1,
+                                        &planet.equations, {}, ForcesShown::All);
+  REQUIRE(central);
+  REQUIRE(forces(*central, Origin::Potential).size() == 1);
+  check(forces(*central, Origin::Potential)[0],
+        {2 * std::cos(0.6), 2 * std::sin(0.6), -0.5 * std::cos(0.6), -0.5 * std::sin(0.6)});
+
+  // In the plane of x and y: both parts of one force.
+  const ModelText well(
+      "system well\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = 1/2 x^2 + 2 y^2 + x y\n"
+      "point P at (x, y)\n");
+  const auto both = evaluate_drawing(well.model, at_state(well.model.system, {2, 3}, {0, 0}), 1, &well.equations, {},
+                                     ForcesShown::All);
+  REQUIRE(both);
+  REQUIRE(forces(*both, Origin::Potential).size() == 1);
+  check(forces(*both, Origin::Potential)[0], {2, 3, -5, -14});
+}
+
+TEST_CASE("a force that no single arrow stands for is named") {
+  // On the block alone it would push the wedge as well; on the wedge it does what it says.
+  const ModelText m(
+      "system wedge\nparam M = 3 kg, m = 1 kg, k = 9 N/m, F = 4 N\ncoord X, s : length\npoint W mass M at (X, 0)\n"
+      "point P mass m at (X + s/2, -s)\nV += 1/2 k s^2\nforce X = F\n");
+  const auto drawn =
+      evaluate_drawing(m.model, at_state(m.model.system, {1, 0.5}, {0, 0}), 1, &m.equations, {}, ForcesShown::All);
+  REQUIRE(drawn);
+  CHECK(drawn->unplaced_forces == std::vector<std::string>{"V on s"});
+  CHECK(forces(*drawn, Origin::Potential).empty());
+  check(forces(*drawn, Origin::Applied).at(0), {1, 0, 4, 0});
+  CHECK(drawing_json(*drawn).find("\"unplacedForces\":[\"V on s\"]") != std::string::npos);
+
+  const ModelText charge(
+      "system charge\ndimensionless\nparam B = 2\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n"
+      "U = -1/2 B (x y' - y x')\npoint P at (x, y)\n");
+  const auto bent = evaluate_drawing(charge.model, at_state(charge.model.system, {1, 0}, {0, 1}), 1, &charge.equations,
+                                     {}, ForcesShown::All);
+  REQUIRE(bent);
+  CHECK(bent->unplaced_forces == std::vector<std::string>{"U"});
+}
+
 }  // namespace forces_test

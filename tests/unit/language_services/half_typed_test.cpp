@@ -24,7 +24,7 @@ void ask_fast(Document& asked, const std::string& text, std::uint32_t place) {
   }
   for (const Symbol& symbol : symbols(asked)) check_span(symbol.span, text), check_span(symbol.name_span, text);
   for (const Span& span : folding(asked)) check_span(span, text);
-  for (const TextEdit& edit : formatting(asked)) check_span(edit.span, text);
+  for (const TextEdit& edit : formatting(asked).edits) check_span(edit.span, text);
   signature(asked, place);
 }
 

@@ -21,13 +21,17 @@ TEST_CASE("the outline has every statement, with the names of lists below it") {
 
 TEST_CASE("formatting is that of maup fmt, and leaves a text with mistakes alone") {
   Document asked = document("coord theta:angle\nT=theta'^2\n");
-  const auto edits = formatting(asked);
+  const auto edits = formatting(asked).edits;
   REQUIRE(edits.size() == 1);
   CHECK(edits[0].text == "coord θ : angle\nT = θ'^2\n");
   Document done = document(edits[0].text);
-  CHECK(formatting(done).empty());
+  CHECK((formatting(done).edits.empty() && !formatting(done).mistake));
   Document wrong = document("coord theta:angle\nT=(theta'^2\n");
-  CHECK(formatting(wrong).empty());
+  const Formatting kept = formatting(wrong);
+  CHECK(kept.edits.empty());
+  REQUIRE(kept.mistake);
+  CHECK(kept.mistake->severity == Severity::Error);
+  CHECK(wrong.source().locate(kept.mistake->span->begin).line == 2);
 }
 
 TEST_CASE("tokens have the kind that the language reads in them, and do not overlap") {

@@ -166,14 +166,30 @@ TEST_CASE("a driven system has its section once in each period of the drive") {
       "system driven\ndimensionless\nparam γ = 0.5, ω = 1.2\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\n"
       "force x = γ cos(ω t)\nstart x = 0.1\nrun 10\n";
   Asked page(driven);
-  CHECK(page.ask("equations")["section"] == "sin(ω t) = 0 rising");
+  CHECK(page.ask("equations")["sections"] == Json{"sin(ω t) = 0 rising"});
   Json taken = page.ask({{"do", "section"}, {"at", "sin(ω t) = 0 rising"}, {"crossings", 5}});
   REQUIRE(taken["ok"] == true);
   for (std::size_t k = 1; k < taken["times"].size(); ++k)
     CHECK(taken["times"][k].get<double>() - taken["times"][k - 1].get<double>() ==
           doctest::Approx(2 * std::numbers::pi / 1.2));
-  CHECK(Asked(pendulum).ask("equations")["section"] == "");
-  CHECK(Asked(driven + "force x = γ cos(2 ω t)\n").ask("equations")["section"] == "");  // no one period by its sines
+  CHECK(Asked(pendulum).ask("equations")["sections"] == Json::array());
+}
+
+TEST_CASE("of several drives each period is offered once, and those with a common one have that") {
+  const auto offered = [](const std::string& drive) {
+    return Asked(
+               "system driven\ndimensionless\nparam γ = 0.5, ω = 1.2, ν = 0.7\ncoord x : number\nT = 1/2 x'^2\n"
+               "V = 1/2 x^2\nforce x = " +
+               drive + "\nrun 10\n")
+        .ask("equations")["sections"];
+  };
+  const std::string ω = "sin(ω t) = 0 rising", ν = "sin(ν t) = 0 rising";
+  CHECK(offered("γ cos(ω t) + sin(ν t)") == Json{ω, ν});
+  CHECK(offered("γ cos(2 ω t) + cos(3 ω t)") == Json{ω});
+  CHECK(offered("γ cos(-ω t) + cos(1/2 ω t)") == Json{"sin(ω t/2) = 0 rising"});
+  CHECK(offered("γ cos(ω t^2) + cos(ν t)") == Json::array());  // a drive without a period
+  // What is written with t and does not depend on it has no period.
+  CHECK(offered("γ (cos(ω t)^2 + sin(ω t)^2) x") == Json::array());
 }
 
 TEST_CASE("modes without a drawing, and about motions, move as beads") {
