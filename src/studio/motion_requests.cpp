@@ -86,7 +86,7 @@ std::size_t count_of(const Json& request, const char* key, double otherwise, dou
 
 /// The run with what a page shows of it: drawing, statistics, values and drifts of what is conserved.
 Json run_json(const Study& study, const Model& model, const EquationsOfMotion& equations,
-              const SimulationResult& result, std::size_t frames, ForcesShown forces) {
+              const SimulationResult& result, std::size_t frames, ForcesShown forces, bool formulas) {
   ReportParts parts;
   parts.simulation = &result;
   const Derivation derivation;  // what is certified is told with the equations
@@ -108,7 +108,7 @@ Json run_json(const Study& study, const Model& model, const EquationsOfMotion& e
                    {"kind", word_of(result.ending)},
                    {"reason", result.reason},
                    {"t", number_or_null(result.final.t)}};
-  out["conserved"] = conserved_json(content.conserved);
+  out["conserved"] = conserved_json(content.conserved, formulas);
   out["pictures"] = pictures_json(content);
   out["figures"] = figures_json(content);
   out["start"] = state_json(result.start, model.system);
@@ -195,7 +195,8 @@ Json run(Desk& desk, const Work& work) {
     const auto result = simulate(model, *study.equations(), with_even_rows(model, options), found);
     if (!result) desk.refuse(study, found);
     if (result->ending == Ending::Interrupted && result->trajectory.rows() < 2) throw Interrupted();
-    out = run_json(study, model, *study.equations(), *result, frames, forces_in(work.request));
+    out = run_json(study, model, *study.equations(), *result, frames, forces_in(work.request),
+                   !is_true(work.request, "brief"));
   }
   out["diagnostics"] = desk.diagnostics(study, found);
   return out;

@@ -84,11 +84,12 @@ Json sections_json(const std::vector<ReportContent::Section>& sections) {
   return list;
 }
 
-Json conserved_json(const std::vector<ReportContent::Conserved>& conserved) {
+Json conserved_json(const std::vector<ReportContent::Conserved>& conserved, bool formulas) {
   Json list = Json::array();
-  for (const auto& c : conserved)
-    list.push_back(
-        {{"sentence", c.sentence}, {"formula", line_json(c.formula)}, {"value", c.value}, {"drift", c.drift}});
+  for (const auto& c : conserved) {
+    list.push_back({{"sentence", c.sentence}, {"value", c.value}, {"drift", c.drift}});
+    if (formulas) list.back()["formula"] = line_json(c.formula);
+  }
   return list;
 }
 

@@ -47,7 +47,7 @@ Json line_json(const ReportContent::Formula& line);
 Json lines_json(const std::vector<ReportContent::Formula>& lines);
 /// [{title, lines}]
 Json sections_json(const std::vector<ReportContent::Section>& sections);
-Json conserved_json(const std::vector<ReportContent::Conserved>& conserved);
+Json conserved_json(const std::vector<ReportContent::Conserved>& conserved, bool formulas = true);
 Json pairs_json(const std::vector<std::pair<std::string, std::string>>& pairs);
 /// The help of a message where it speaks of the command line: what to do on the page.
 std::string help_on_page(const Diagnostic& diagnostic);

@@ -88,6 +88,7 @@ std::string dimension_advice(const Dimension& found, const Dimension& expected) 
   if ((found / length()).same_as(expected)) return "There is a length too many among its factors.";
   if ((found / velocity()).same_as(expected)) return "There is a velocity too many among its factors.";
   if ((found * mass()).same_as(expected)) return "A mass is missing as a factor.";
+  if ((found / mass()).same_as(expected)) return "There is a mass too many among its factors.";
   if ((found * time()).same_as(expected) || (found / time()).same_as(expected))
     return "A time derivative (') is missing or too many.";
   if ((found * acceleration()).same_as(expected)) return "An acceleration such as g is missing as a factor.";

@@ -166,6 +166,12 @@ void warn_identity(Elaboration& e, Span span) {
                         "Expect something that the equations of motion decide.");
 }
 
+/// An angle more or less is no mistake of its own: g/l is an angular acceleration.
+std::string advice_on_sides(const Dimension& found, const Dimension& expected) {
+  const std::string advice = dimension_advice(found, expected);
+  return advice.empty() ? dimension_advice(found * dimensions::angle(), expected) : advice;
+}
+
 Expected meaning_of(Elaboration& e, const written::Equation& x, Span line) {
   Place place = along_motion();
   const Value left = evaluate_formula(e, *x.left, place);
@@ -182,7 +188,7 @@ Expected meaning_of(Elaboration& e, const written::Equation& x, Span line) {
     e.diagnostics.error(
         "E0304", x.right->span,
         fmt::format("the left side is {}, this is {}", describe(left.dimension), describe(right.dimension)),
-        "Both sides of an equation have one dimension.", "");
+        "Both sides of an equation have one dimension.", advice_on_sides(right.dimension, left.dimension));
     return std::nullopt;
   }
   const Expr difference = left.scalar() - right.scalar();

@@ -25,19 +25,39 @@ bool proportional(Expr a, Expr b) {
   return true;
 }
 
+/// Whether several accelerations of the claim are 0 by the mistaken equations, each for itself: then any sum of them
+/// is.
+bool follows_idly(Expr difference, const AlongMotion& mistaken, const EquationsOfMotion& equations) {
+  std::size_t count = 0;
+  for (const Coordinate& c : equations.system->coordinates) {
+    if (differentiate(difference, c.acceleration).is_zero()) continue;
+    if (mistaken.vanishes(c.acceleration).verdict != Verdict::Zero) return false;
+    ++count;
+  }
+  return count > 1;
+}
+
 bool follows_from(Expr difference, const EquationsOfMotion& equations, const ExprVector& residual) {
   if (has_acceleration(difference)) {
     ExprVector balance = residual;
     for (std::size_t i = 0; i < equations.constraint_forces.size(); ++i)
       balance[i] = balance[i] - equations.constraint_forces[i];
     const AlongMotion mistaken(equations, balance);
-    return mistaken.solvable() && mistaken.vanishes(difference).verdict == Verdict::Zero;
+    return mistaken.solvable() && mistaken.vanishes(difference).verdict == Verdict::Zero &&
+           !follows_idly(difference, mistaken, equations);
   }
   for (const Expr& row : residual) {
     const Expr plain = expand_time_derivatives(row);
     if (!has_acceleration(plain) && proportional(difference, plain)) return true;
   }
   return false;
+}
+
+/// A first integral that is claimed to be 0, as a momentum or the energy.
+bool is_conserved(Expr difference, const EquationsOfMotion& equations) {
+  if (has_acceleration(difference)) return false;
+  const AlongMotion along(equations);
+  return along.solvable() && along.vanishes(total_time_derivative(difference)).verdict == Verdict::Zero;
 }
 
 bool is_about(const Pitfall& pitfall, const Resemblance* resemblance) {
@@ -51,9 +71,19 @@ bool is_about(const Pitfall& pitfall, const Resemblance* resemblance) {
 
 std::string diagnose_claim(Expr difference, const EquationsOfMotion& equations, const Resemblance* resemblance) {
   const Expr plain = expand_time_derivatives(difference);
-  for (const Pitfall& pitfall : pitfalls(equations))
-    if (is_about(pitfall, resemblance) && follows_from(plain, equations, pitfall.residual)) return pitfall.sentence;
-  return resemblance ? resemblance->sentence : "";
+  const bool explained = resemblance && !resemblance->sentence.empty();
+  for (const Pitfall& pitfall : pitfalls(equations)) {
+    if ((explained && pitfall.throughout) || !is_about(pitfall, resemblance)) continue;
+    if (!follows_from(plain, equations, pitfall.residual)) continue;
+    const bool perhaps_a_slip =
+        resemblance && resemblance->signs_alone && pitfall.sentence.find("sign") == std::string::npos;
+    return pitfall.sentence + (perhaps_a_slip ? ", or its sign is a slip" : "");
+  }
+  if (explained) return resemblance->sentence;
+  return is_conserved(plain, equations)
+             ? "its value stays along every motion, and is 0 along some of them alone: what holds along all of them is "
+               "that its rate of change is 0"
+             : "";
 }
 
 }  // namespace maupertuis

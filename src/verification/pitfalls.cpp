@@ -51,7 +51,7 @@ class MistakenDerivations {
     add("a velocity was written as its coordinate: v² of a pendulum is (l θ')², not (l θ)²",
         coordinates_for_velocities());
     for (const Coordinate& c : system_.coordinates) add_momentum_put_into_lagrangian(c);
-    add_small_angles();
+    add_throughout();
     return std::move(pitfalls_);
   }
 
@@ -64,6 +64,9 @@ class MistakenDerivations {
 
   void add(std::string sentence, ExprVector residual, std::vector<TermOrigin> about = {}) {
     pitfalls_.push_back({std::move(sentence), std::move(residual), std::move(about)});
+  }
+  void add_made_throughout(std::string sentence, ExprVector residual) {
+    pitfalls_.push_back({std::move(sentence), std::move(residual), {}, true});
   }
 
   /// The right residual plus `factor` times the terms.
@@ -124,13 +127,17 @@ class MistakenDerivations {
                                              TermOrigin::PrescribedMotion, TermOrigin::PrescribedAcceleration};
     const std::vector<TermOrigin> of_potential{TermOrigin::Potential};
     const std::string spring = has_spring() ? ": the energy of a spring is ½ k x²" : "";
-    const bool told_apart = any(equations_.dissipative_terms) || any(equations_.generalized_forces) ||
-                            !vanishes_identically(others_) || vanishes_identically(potential_);
+    // What acts beside T: where it is one thing, its factor cannot be told from that of T.
+    const bool forced = any(equations_.dissipative_terms) || any(equations_.generalized_forces),
+               has_v = !vanishes_identically(potential_), has_others = !vanishes_identically(others_);
     const ExprVector twice_t = lagrangian_with(kinetic_ * Rational(2), potential_),
                      half_t = lagrangian_with(kinetic_ / Rational(2), potential_);
-    if (!told_apart) {
-      add("T has no factor ½ (the kinetic energy of a particle is ½ m v²), or V has a factor ½ too many", twice_t);
-      add("V has a factor 2 too many" + spring + (has_spring() ? ";" : ",") + " or T has a factor ½ too many", half_t);
+    if (!forced && has_v != has_others) {
+      const std::string name = has_v ? "V" : system_.lagrangian_given ? "what L has beside T" : "U";
+      add("T has no factor ½ (the kinetic energy of a particle is ½ m v²), or " + name + " has a factor ½ too many",
+          twice_t);
+      add(name + " has a factor 2 too many" + spring + (spring.empty() ? "," : ";") + " or T has a factor ½ too many",
+          half_t);
       return;
     }
     add("T has no factor ½: the kinetic energy of a particle is ½ m v²", twice_t, of_kinetic);
@@ -209,10 +216,10 @@ class MistakenDerivations {
         with_forces(variational_residual(equations_.lagrangian_expanded + u * Rational(2), q_)), of_u);
   }
 
-  /// sin θ as θ and cos θ as 1 throughout, and products of what is small left out.
-  void add_small_angles() {
+  /// sin θ as θ and cos θ as 1 throughout, and products of what is small left out; sines and cosines exchanged.
+  void add_throughout() {
     const ExprVector rows = simplified_rows();
-    ExprMap map;
+    ExprMap map, exchanged;
     std::string first;
     for (const Expr& node : topological_order(rows)) {
       if (!node.is(Kind::Sin) && !node.is(Kind::Cos)) continue;
@@ -223,12 +230,15 @@ class MistakenDerivations {
         first = fmt::format("{} is written as {}, which holds for small angles only", to_plain(node, equations_.order),
                             to_plain(argument, equations_.order));
       map.emplace(node, node.is(Kind::Sin) ? argument : context_.number(1));
+      exchanged.emplace(node, node.is(Kind::Sin) ? cos(argument) : sin(argument));
     }
     if (map.empty()) return;
-    const ExprVector written = substitute(rows, map);
-    add(first.empty() ? "the cosine of a coordinate is written as 1, which holds for small angles only" : first,
-        written);
-    add("the equation is linearized: it holds for small motions only", linearized(rows));
+    add_made_throughout(
+        first.empty() ? "the cosine of a coordinate is written as 1, which holds for small angles only" : first,
+        substitute(rows, map));
+    add_made_throughout("the equation is linearized: it holds for small motions only", linearized(rows));
+    add_made_throughout("sine and cosine are exchanged in every term, as where an angle is measured from another line",
+                        substitute(rows, exchanged));
   }
 
   /// The left sides with sin² + cos² put together; empty where they are too long to be read.

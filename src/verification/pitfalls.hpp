@@ -11,6 +11,7 @@ struct Pitfall {
   std::string sentence;           // "the term ∂T/∂q is missing: T depends on the coordinates as well"
   ExprVector residual;            // [n] may be free of q̈
   std::vector<TermOrigin> about;  // the terms that it changes; empty: any
+  bool throughout = false;        // it is made in every term: not looked at where one term explains the claim
 };
 
 std::vector<Pitfall> pitfalls(const EquationsOfMotion& equations);

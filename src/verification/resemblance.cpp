@@ -29,6 +29,7 @@ struct Finding {
   RowFactor of;
   std::string difference, sentence;
   std::vector<TermOrigin> origins;
+  bool signs_alone = false;
   std::size_t cost = 0;  // terms that differ, with a little for a factor that is no number: the smaller one is believed
 };
 
@@ -174,14 +175,8 @@ class Resembler {
       return c.first.origin == TermOrigin::Inertia || c.first.origin == TermOrigin::Coupling;
     });
     if (changed.empty() || (!inertia_stands && 2 * changed.size() > terms.size() + 1)) return std::nullopt;
-    Finding out{of, "", "", {}, 10 * changed.size() + factor_cost(of.factor)};
-    tell(out, changed);
-    if (const auto ratio = ratio_to_inertia(changed, terms)) {
-      out.origins.clear();
-      out.sentence =
-          fmt::format("what stands beside the inertia has a factor {} too many, or the inertia has a factor {}",
-                      ratio->to_string(), (Rational(1) / *ratio).to_string());
-    }
+    Finding out{of, "", "", {}, false, 10 * changed.size() + factor_cost(of.factor)};
+    tell(out, changed, terms);
     return out;
   }
 
@@ -201,7 +196,7 @@ class Resembler {
       if (factor != number || accelerates(term) != inertia) return std::nullopt;
     const auto alike =
         std::count_if(terms.begin(), terms.end(), [&](const RowTerm& t) { return accelerates(t) == inertia; });
-    if (number.is_zero() || number == Rational(-1) || static_cast<std::size_t>(alike) != changed.size())
+    if (number.is_zero() || (number == Rational(-1) && !inertia) || static_cast<std::size_t>(alike) != changed.size())
       return std::nullopt;
     return inertia ? Rational(1) / number : number;
   }
@@ -232,35 +227,91 @@ class Resembler {
     const Expr more = claim - all;
     for (const RowTerm& t : candidates(terms)) {
       const Expr written = more + t.value;
-      Finding out{of, "", "", {t.origin}, 12 + factor_cost(of.factor)};
+      Finding out{of, "", "", {t.origin}, false, 12 + factor_cost(of.factor)};
+      if (stands_as_variant(out, written, t)) return out;
       if (const auto ratio = constant_ratio(written, t.value); ratio && constant_in_motion(*ratio)) {
         const Expr shown = *ratio * t.value;
         if (!vanishes(shown - written) || ratio->is_zero() || terms_in(shown) > terms_in(t.value)) continue;
-        out.difference = fmt::format("{} stands in the place of {}", text(shown, of.row), text(t.value, of.row));
-        out.sentence = is_value_of_symbols(*ratio)
-                           ? "numbers stand in the place of symbols: equations hold for all values of the parameters, "
-                             "so that a claim names them"
-                           : fmt::format("a factor of {} is wrong", name_of(t));
+        tell_ratio(out, *ratio, t, terms);
         return out;
-      }
-      for (const TermVariant& variant : term_variants(t.value, equations_)) {
-        for (const bool minus : {false, true}) {
-          const Expr value = minus ? -variant.value : variant.value;
-          if (!vanishes(written - value)) continue;
-          out.difference = fmt::format("{} stands in the place of {}", text(value, of.row), text(t.value, of.row));
-          out.sentence = variant.sentence + (minus ? ", and the sign is wrong" : "");
-          out.cost += minus ? 5 : 0;
-          return out;
-        }
       }
     }
     return std::nullopt;
   }
 
+  bool stands_as_variant(Finding& out, Expr written, const RowTerm& t) {
+    for (const TermVariant& variant : term_variants(t.value, equations_))
+      for (const bool minus : {false, true}) {
+        const Expr value = minus ? -variant.value : variant.value;
+        if (!vanishes(written - value)) continue;
+        out.difference = stands_for(value, t.value, out.of.row);
+        out.sentence = variant.sentence + (minus ? ", and the sign is wrong" : "");
+        out.cost += minus ? 5 : 0;
+        return true;
+      }
+    return false;
+  }
+
+  /// A ratio of what is written to a term, in symbols: powers above and below, and its number.
+  struct Fraction {
+    Rational number{1};
+    Expr above, below;
+    bool quantities = false;  // a number with a unit stands in it
+  };
+  Fraction fraction_of(Expr ratio) const {
+    Fraction out{1, one(), one()};
+    for (std::size_t k = 0; k < (ratio.is(Kind::Product) ? ratio.size() : 1); ++k) {
+      const Expr factor = ratio.is(Kind::Product) ? ratio[k] : ratio;
+      for (const Expr& s : symbols_of({&factor, 1})) out.quantities = out.quantities || s.role() == Role::Constant;
+      const Rational* exponent = factor.is(Kind::Power) ? factor[1].number_or_null() : nullptr;
+      if (const Rational* number = factor.number_or_null())
+        out.number *= *number;
+      else if (exponent && exponent->sign() < 0)
+        out.below = out.below / factor;
+      else
+        out.above = out.above * factor;
+    }
+    return out;
+  }
+
   /// 200/k with k = 200: right with the values that the model gives its parameters.
-  bool is_value_of_symbols(Expr ratio) const {
+  bool is_value_of_symbols(Expr ratio, const Fraction& parts) const {
     constexpr double digits = 1e-12;
-    return !ratio.is_number() && std::abs(number_of(system_, ratio) - 1) <= digits;
+    const bool numbers = parts.quantities || !(parts.number.is_one() || (-parts.number).is_one());
+    return numbers && !parts.below.is_one() && std::abs(number_of(system_, ratio) - 1) <= digits;
+  }
+
+  void tell_ratio(Finding& out, Expr ratio, const RowTerm& t, const std::vector<RowTerm>& terms) const {
+    const std::size_t row = out.of.row;
+    if (const Rational* number = ratio.number_or_null()) {
+      std::vector<std::pair<RowTerm, Rational>> changed;
+      for (const RowTerm& one : terms)
+        if (one.origin == t.origin && one.of == t.of && (one.value == t.value || !stands_among(terms, t)))
+          changed.push_back({one, *number});
+      return tell(out, changed, terms);
+    }
+    out.difference = stands_for(ratio * t.value, t.value, row);
+    const Fraction parts = fraction_of(ratio);
+    if (is_value_of_symbols(ratio, parts)) {
+      out.sentence =
+          "numbers stand in the place of symbols: equations hold for all values of the parameters, so that a claim "
+          "names them";
+      return;
+    }
+    const Expr above = parts.number * parts.above;
+    const std::string what = parts.below.is_one() ? text(above, row) + " is too many"
+                             : above.is_one()     ? text(parts.below, row) + " is missing"
+                                                  : stands_for(above, parts.below, row);
+    out.sentence = fmt::format("a factor of {} is wrong: {}", name_of(t), what);
+  }
+
+  /// Whether a candidate is a term itself, not a sum of several.
+  static bool stands_among(const std::vector<RowTerm>& terms, const RowTerm& t) {
+    return std::any_of(terms.begin(), terms.end(), [&](const RowTerm& one) { return one.value == t.value; });
+  }
+
+  std::string stands_for(Expr written, Expr right, std::size_t row) const {
+    return fmt::format("{} stands in the place of {}", text(written, row), text(right, row));
   }
 
   /// A factor leaves the number of terms as it is; F + k in the place of F has a term more.
@@ -291,7 +342,7 @@ class Resembler {
         const std::string more = text(claim_ / factor - all, row);
         constexpr std::size_t longest = 200;
         if (more.size() > longest) return std::nullopt;
-        return Finding{{row, factor}, fmt::format("on its left side stands more: {}", more), "", {}, 100};
+        return Finding{{row, factor}, fmt::format("on its left side stands more: {}", more), "", {}, false, 100};
       }
     }
     return std::nullopt;
@@ -363,7 +414,22 @@ class Resembler {
     return "";
   }
 
-  void tell(Finding& out, const std::vector<std::pair<RowTerm, Rational>>& changed) const {
+  /// A part of the inertia where another part of it stands as it should.
+  std::string name_in(const std::vector<RowTerm>& terms, const std::vector<std::pair<RowTerm, Rational>>& changed,
+                      const RowTerm& t) const {
+    if (t.origin != TermOrigin::Inertia && t.origin != TermOrigin::Coupling && t.origin != TermOrigin::Dissipation)
+      return name_of(t);
+    const auto same = [&](const RowTerm& one) { return one.origin == t.origin && one.of == t.of; };
+    const auto all = std::count_if(terms.begin(), terms.end(), same);
+    const auto wrong = std::count_if(changed.begin(), changed.end(), [&](const auto& c) { return same(c.first); });
+    return wrong < all ? "a part of " + name_of(t) : name_of(t);
+  }
+
+  void tell(Finding& out, const std::vector<std::pair<RowTerm, Rational>>& changed,
+            const std::vector<RowTerm>& terms) const {
+    out.origins.clear();
+    out.signs_alone =
+        std::all_of(changed.begin(), changed.end(), [](const auto& c) { return c.second == Rational(-1); });
     std::map<std::string, std::vector<std::pair<RowTerm, Rational>>>
         by_kind;  // in the order: missing, wrong factor, wrong sign
     for (const auto& c : changed)
@@ -377,19 +443,29 @@ class Resembler {
       const Expr sum = system_.context->sum(values);
       const std::string shown = text(sum, out.of.row);
       out.difference +=
-          (out.difference.empty() ? "" : "; ") +
-          (kind.find("factor") == std::string::npos
-               ? fmt::format("{}: {}", kind, shown)
-               : fmt::format("{} stands in the place of {}", text(list.front().second * sum, out.of.row), shown));
+          (out.difference.empty() ? "" : "; ") + (kind.find("factor") == std::string::npos
+                                                      ? fmt::format("{}: {}", kind, shown)
+                                                      : stands_for(list.front().second * sum, sum, out.of.row));
       for (const auto& [term, number] : list) {
         if (std::find(out.origins.begin(), out.origins.end(), term.origin) != out.origins.end()) continue;
         out.origins.push_back(term.origin);
-        const std::string what = number.is_zero() ? name_of(term) + " is missing"
+        const std::string name = name_in(terms, changed, term);
+        const std::string what = number.is_zero() ? name + " is missing"
                                  : number == Rational(-1)
-                                     ? name_of(term) + " has the wrong sign"
-                                     : fmt::format("{} has a factor {} too many", name_of(term), number.to_string());
+                                     ? name + " has the wrong sign"
+                                     : fmt::format("{} has a factor {} too many", name, number.to_string());
         out.sentence += fmt::format("{}{}: {}", out.sentence.empty() ? "" : "; ", what, where_from(term, out.of.row));
       }
+    }
+    if (const auto ratio = ratio_to_inertia(changed, terms)) {
+      out.origins.clear();
+      if (*ratio == Rational(-1)) {
+        out.sentence = "what stands beside the inertia has the wrong sign, all of it, or the inertia has";
+        return;
+      }
+      out.sentence =
+          fmt::format("what stands beside the inertia has a factor {} too many, or the inertia has a factor {}",
+                      ratio->to_string(), (Rational(1) / *ratio).to_string());
     }
   }
 
@@ -402,7 +478,7 @@ class Resembler {
                               : factor.size() > longest ? ", times a factor"
                                                         : fmt::format(", times {}", factor);
     return {fmt::format("It resembles the equation for {}{}; {}.", c.name, times, found.difference), found.sentence,
-            found.origins};
+            found.origins, found.signs_alone};
   }
 
   const EquationsOfMotion& equations_;

@@ -13,6 +13,7 @@ struct Resemblance {
   std::string text;                 // "It is the equation for θ1, times 1/(m l^2), but for this: missing: c x'"
   std::string sentence;             // the mistake in words of physics; empty: unknown
   std::vector<TermOrigin> origins;  // of the terms that differ; empty: unknown
+  bool signs_alone = false;         // they differ by their sign
 };
 
 /// `difference`: left side − right side of a claim that does not follow from the equations. Nothing where it resembles

@@ -46,6 +46,11 @@ class Slips {
     for (const Expr& s : symbols_of({&argument, 1}))  // θ1 + θ2 for θ1 − θ2
       if (s.role() == Role::Coordinate) replace(node, function(node.kind(), substitute(argument, {{s, -s}})));
     add(term_ * node, fmt::format("{} stands with a power too many", text(node)));
+    for (const Kind kind : {Kind::Sin, Kind::Cos})
+      if (!node.is(kind)) {
+        const Expr more = function(kind, argument);
+        add(term_ * more, fmt::format("a factor {} is too many", text(more)));
+      }
   }
 
   bool stands(Expr symbol) const {
@@ -62,10 +67,10 @@ class Slips {
       add(term_ * symbol, fmt::format("{} stands with a power too many", text(symbol)));
     }
     if (stands(c.acceleration)) replace(c.acceleration, c.q);
+    if (stands(c.velocity)) replace(c.velocity, c.acceleration);
     if (stands(c.q)) {
       replace(c.q, c.velocity);
-      add(term_ / c.q, fmt::format("{} stands with a power too few", text(c.q)));
-      add(term_ * c.q, fmt::format("{} stands with a power too many", text(c.q)));
+      for (const Expr& power : {term_ / c.q, term_ * c.q}) add(power, fmt::format("a power of {} is wrong", text(c.q)));
     }
     for (const Coordinate& other : equations_.system->coordinates) {
       if (other.q == c.q) continue;

@@ -1,6 +1,6 @@
 import type {Asker} from './asker';
 import type {Clock} from './clock';
-import type {Answer, ClaimAnswer, EquationsAnswer, Failure, OpenAnswer, RunAnswer, Values} from './contract';
+import type {Answer, ClaimAnswer, Conserved, EquationsAnswer, Failure, OpenAnswer, RunAnswer, Values} from './contract';
 import {Drags} from './drags';
 import type {Ends} from './lines';
 import {short, unfinished} from './runs';
@@ -11,8 +11,8 @@ import type {Store} from './store';
 export const longest = 1_000_000; // characters of a model: as much as a session takes
 const restAfter = 220, // ms without a move of a slider
   lateAfter = 500, // ms that an older answer may stand in the place of the one that is asked for
-  quick = {frames: 160, budget: 1},
-  full = {frames: 1500, budget: 20};
+  quick = {frames: 160, budget: 1, brief: true},
+  full = {frames: 1500, budget: 20, brief: false};
 
 /** `saved`: the text of its file, or as it was before it was changed; without it, `text`. */
 export interface Model {
@@ -280,6 +280,7 @@ export class Study {
     if (run.drawing)
       for (const element of run.drawing.elements) element.positions = element.positions.map(value => value ?? NaN);
     if (/^dimensionless\b/m.test(this.store.state.text)) run.independent.unit = '';
+    if (how.brief) run.conserved = this.withFormulas(run.conserved);
     const first = !this.shown;
     this.shown = true;
     this.runOf = of;
@@ -297,6 +298,13 @@ export class Study {
     this.arrived();
     const still = matchMedia('(prefers-reduced-motion: reduce)').matches;
     if (first && !still) this.clock.play(true);
+  }
+
+  /** Formulas stay while values move: a brief run has none. */
+  private withFormulas(brief: Conserved[]): Conserved[] {
+    const {run, equations} = this.store.state,
+      known = new Map([...(equations?.conserved ?? []), ...(run?.conserved ?? [])].map(c => [c.sentence, c.formula]));
+    return brief.flatMap(c => (known.has(c.sentence) ? [{...c, formula: known.get(c.sentence)!}] : []));
   }
 
   private showRunTrouble(failure: Failure, how: typeof full): void {

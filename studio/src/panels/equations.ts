@@ -1,4 +1,4 @@
-import type {Check, Conserved, Happening, ModesAnswer, Section, Trouble} from '../contract';
+import type {Check, Conserved, Happening, Line, ModesAnswer, Section, Trouble} from '../contract';
 import {byId, h, prose} from '../dom';
 import {loopDrawing} from '../drawing/loop';
 import {drawnTooCoarsely, unfinished, withUnit} from '../runs';
@@ -19,6 +19,7 @@ export function troubleElement(trouble: Trouble, severity = 'error'): HTMLElemen
   );
 }
 
+const sameLine = (a: Line, b: Line): boolean => a === b || a.mathml === b.mathml;
 const isTrouble = (x: object): x is Trouble => 'message' in x;
 
 const slowly: Trouble = {
@@ -53,7 +54,7 @@ const isOpen = (id: string): boolean => byId<HTMLDetailsElement>(id).open;
 export class EquationsPanel {
   private readonly say = (text: string): void => this.study.say(text);
   private loops: (() => void)[] = [];
-  private conservedKey = '';
+  private conservedOf: {list: Conserved[]; found: State['found']; any: boolean} | null = null; // what is shown
   private conservedNumbers: HTMLElement[] = [];
 
   constructor(
@@ -231,9 +232,14 @@ export class EquationsPanel {
         return [value, drift];
       };
     // While values move the formulas stay, which may be long, and the numbers change.
-    const key = JSON.stringify([equations !== null, found, list.map(c => [c.sentence, c.formula.mathml])]);
-    if (key !== this.conservedKey) this.buildConserved(list, state);
-    this.conservedKey = key;
+    const before = this.conservedOf,
+      same =
+        before?.found === found &&
+        before.any === (equations !== null) &&
+        before.list.length === list.length &&
+        list.every((c, i) => c.sentence === before.list[i].sentence && sameLine(c.formula, before.list[i].formula));
+    if (!same) this.buildConserved(list, state);
+    this.conservedOf = {list, found, any: equations !== null};
     list.forEach((c, i) => this.conservedNumbers[i].replaceChildren(...driftElements(numbersOf(c))));
   }
 

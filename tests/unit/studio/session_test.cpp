@@ -161,6 +161,17 @@ TEST_CASE("few frames stand for the whole run") {
   }
 }
 
+TEST_CASE("a brief run has the numbers of what is conserved, without the formulas") {
+  Asked page(pendulum);
+  const Json whole = page.ask({{"do", "run"}, {"frames", 10}})["conserved"];
+  Json brief = page.ask({{"do", "run"}, {"frames", 10}, {"brief", true}})["conserved"];
+  REQUIRE(whole.size() == 1);
+  CHECK(whole[0]["formula"]["mathml"].get<std::string>().size() > 100);
+  CHECK_FALSE(brief[0].contains("formula"));
+  brief[0]["formula"] = whole[0]["formula"];
+  CHECK(brief == whole);
+}
+
 TEST_CASE("a driven system has its section once in each period of the drive") {
   const std::string driven =
       "system driven\ndimensionless\nparam γ = 0.5, ω = 1.2\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\n"
