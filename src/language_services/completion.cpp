@@ -121,6 +121,8 @@ class Collector {
     } else if (before.is("euler")) {
       for (const char* axes : {"zxz", "zyx", "xyz", "zyz", "xyx", "xzx", "yxy", "yzy", "xzy", "yxz", "yzx", "zxy"})
         add(axes, CompletionKind::Word, "axes of the three rotations", "", 0);
+    } else if (place_.statement_word == "coord" && before.is(":")) {
+      add_words(0);  // its kind: no name stands there
     } else if (!declares_name_here()) {
       add_inside();
     }

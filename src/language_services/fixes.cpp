@@ -286,7 +286,7 @@ class Proposals {
       propose("a" + text.substr(0, text.find_first_of(" ^⁻")));
     if (code == "E0129" && diagnostic_.help.rfind("Write " + text + " : ", 0) == 0)
       for (const char* kind : {" : angle", " : length", " : charge", " : number"}) insert(kind);
-    if (code == "E0210" && statement_begins_with("gravity"))
+    if (code == "E0210" && statement_begins_with("gravity") && text.front() != '(')  // (0 -g) lacks a comma
       for (const char* zeros : {"(0, -", "(0, 0, -"}) propose(zeros + text + ")");
     if (code == "E0304") bare_number();
     if (code == "E0306") turns_a_second();
@@ -323,12 +323,28 @@ class Proposals {
 
   /// gravity = (0, -g); start x(0) = 1 m; constraint x^2 + y^2 - l^2
   void something_else_expected(const std::string& text) {
+    if (const std::string word = did_you_mean(text, expected_words()); !word.empty()) propose(word);
     if (text == "=" && statement_begins_with("gravity"))
       add("Leave = out", {span_.begin, skip_blanks(span_.end), span_.source}, "");
     if (after().rfind("(0)", 0) == 0 && statement_begins_with("start"))
       add("Leave (0) out", {span_.begin, span_.begin + 3, span_.source}, "");
     if (diagnostic_.message.find("expected `=`") != std::string::npos && statement_begins_with("constraint"))
       insert_at_end(" = 0");
+  }
+
+  /// `stiffness or length` of "expected `stiffness or length`, found …".
+  std::vector<std::string> expected_words() const {
+    const std::string& message = diagnostic_.message;
+    const std::size_t begin = message.find("expected `"), end = message.find('`', begin + 10);
+    if (begin != 0 || end == std::string::npos) return {};
+    std::vector<std::string> words{""};
+    for (const char c : message.substr(10, end - 10)) {
+      if (c == ' ' || c == ',')
+        words.emplace_back();
+      else
+        words.back() += c;
+    }
+    return words;
   }
 
   /// 50 Hz, where an angular velocity is meant.

@@ -241,9 +241,10 @@ Value vector_of(Elaboration& e, const Expression& x, const Dimension& expected, 
   if (!v.is_vector) {
     const bool plane = e.system().space_dimension == 2, downward = x.kind == Expression::Kind::Unary;
     const std::string components =
-        what == "gravity" ? fmt::format("({}0, {}{})", plane ? "" : "0, ", downward ? "" : "-", e.texts.slice(x.span))
-        : plane           ? "(a, b)"
-                          : "(a, b, c)";
+        what == "gravity" && !x.bracketed
+            ? fmt::format("({}0, {}{})", plane ? "" : "0, ", downward ? "" : "-", e.texts.slice(x.span))
+        : plane ? "(a, b)"
+                : "(a, b, c)";
     e.diagnostics.error("E0210", x.span, fmt::format("{} is a vector, not a number", what), "",
                         fmt::format("Write its components: {}.", components));
     return Value::poison();

@@ -1,5 +1,6 @@
 #include "system/elaboration.hpp"
 
+#include <maupertuis/language_words.hpp>
 #include <maupertuis/look_alikes.hpp>
 #include <maupertuis/momentum.hpp>
 #include <maupertuis/spelling.hpp>
@@ -248,6 +249,20 @@ Declaration* find_declared(Elaboration& e, const syntax::Name& name) {
   return nullptr;
 }
 
+/// `sim θ` is a product of two names for the grammar: where no declared name is near, a function may be.
+bool misspelt_function(Elaboration& e, const Expression& x) {
+  if (is_silent(e, x.text) || find_unit(x.text) || !did_you_mean(x.text, e.table.names()).empty()) return false;
+  std::vector<std::string> functions;
+  for (const syntax::Function& f : syntax::functions()) functions.emplace_back(f.name);
+  const std::string near = did_you_mean(x.text, functions);
+  if (near.empty() || !e.unknown_names.insert(x.text).second) return false;
+  e.diagnostics.error(
+      "E0201", x.name_span, fmt::format("`{}` is not declared", x.text),
+      "Every name of a formula is declared somewhere in the model, or is a function.",
+      fmt::format("Declare it: `param {0} = …`, `coord {0} : …` or `let {0} = …`. Did you mean `{1}`?", x.text, near));
+  return true;
+}
+
 Value value_of_name(Elaboration& e, const Expression& x, const Place& place) {
   Declaration* d = e.table.find(x.text);
   if (d) {
@@ -274,7 +289,7 @@ Value value_of_name(Elaboration& e, const Expression& x, const Place& place) {
     if (const std::optional<Value> p = momentum(e, x.text)) return *p;
     if (const std::optional<Value> force = multiplier(e, x.text)) return *force;
   }
-  unknown_name(e, x.text, x.name_span);
+  if (!misspelt_function(e, x)) unknown_name(e, x.text, x.name_span);
   return Value::poison();
 }
 

@@ -38,6 +38,8 @@ const std::vector<Case> cases = {
     {"E0111", model("V = -m g l cos θ\nstart θ(0) = 1\n"), model("V = -m g l cos θ\nstart θ = 1\n")},
     {"E0111", "param m = 1 kg, l = 1 m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint x^2 + y^2 - l^2\n",
      "param m = 1 kg, l = 1 m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint x^2 + y^2 - l^2 = 0\n"},
+    {"E0111", head + "point P mas m at l (sin θ, -cos θ)\n", head + "point P mass m at l (sin θ, -cos θ)\n"},
+    {"E0201", model("V = -m g l coss θ\n"), model("V = -m g l cos θ\n")},
     {"E0104", model("V = m g l θ**2\n"), model("V = m g l θ^2\n")},
     {"E0129", "param m = 1 kg\ncoord x\nT = 1/2 m x'^2\n", "param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n"},
     {"E0201", "param m = 1 kg\ncoord x : length\nT = 1/2 m (dx/dt)^2\n",
@@ -182,6 +184,10 @@ TEST_CASE("a fix is offered where the next mistake stands behind it") {
 }
 
 TEST_CASE("a proposal that does not mend is not offered") {
+  // A comma is missing: with a zero more and a minus before the bracket gravity would point upwards.
+  Document upwards = document(head + "point P mass m at l (sin θ, -cos θ)\ngravity (0 -g)\n");
+  CHECK(upwards.diagnostics().has_errors());
+  for (const Diagnostic& d : upwards.diagnostics().items()) CHECK(fixes_of(upwards, d).empty());
   // "Write s" for the hour that is no unit of length: the dimension stays wrong, whatever is written.
   Document asked = document("system a\nparam m = 1 kg\ncoord x : length\nT = 1/2 m x'\n");
   for (const Diagnostic& d : asked.diagnostics().items()) CHECK(fixes_of(asked, d).empty());
