@@ -33,9 +33,10 @@ export class Clock {
     this.seek(fresh ? 0 : this.s);
   }
 
+  /** While it plays the next frame tells. */
   seek(s: number): void {
     this.s = Math.min(this.duration, Math.max(0, s));
-    this.tell();
+    if (!this.playing) this.tell();
   }
 
   play(on: boolean): void {

@@ -44,10 +44,9 @@ export class Stage {
     this.size.observe(canvas);
     clock.onTick(() => this.draw());
     store.watch(['run', 'pose', 'pins', 'trail', 'forces', 'quick'], () => {
-      if (!this.ended) {
-        this.bound();
-        this.draw();
-      }
+      if (this.ended) return;
+      this.bound();
+      if (!clock.playing) this.draw(); // else with the next frame, once
     });
     if (study) this.listen();
     canvas.addEventListener('wheel', event => this.wheel(event), {passive: false});

@@ -87,7 +87,7 @@ export class PlotsPanel {
       this.build(specs, run);
     else this.host.querySelector('.figures')?.replaceChildren(...this.figures(run));
     for (const one of this.shown) this.fill(one, run);
-    this.present();
+    if (!this.clock.playing) this.present();
   }
 
   private figures(run: RunAnswer): HTMLElement[] {

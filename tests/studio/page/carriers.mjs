@@ -36,7 +36,7 @@ const core = format => `
     request.do === 'format' ? format(id) : answer(id, {});
   };`;
 const textIs = (page, word) =>
-  page.waitForFunction(one => document.querySelector('.cm-content').innerText.includes(one), word);
+  page.waitForFunction(one => document.querySelector('.cm-content')?.innerText.includes(one), word);
 
 export const carriers = {
   async 'a worker that was lost'({open}, variant) {
