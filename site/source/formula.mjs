@@ -203,7 +203,8 @@ function script(reader) {
   }
   const text = reader.takeWhile(s => isLetter(s) || /[0-9]/.test(s) || isMark(s));
   if (text === '') throw new FormulaError('nothing stands in an index');
-  return /^[a-z]{3,}$/.test(text) ? `{\\mathrm{${text}}}` : `{${[...text].map(letter).join('')}}`;
+  const word = /^[a-z]{3,}$/.test(text) && !/^[txyz]+$/.test(text); // q_max; φ_txx is a derivative
+  return word ? `{\\mathrm{${text}}}` : `{${[...text].map(letter).join('')}}`;
 }
 
 const letter = sign => (sign in greek ? `\\${greek[sign]} ` : sign);

@@ -24,7 +24,7 @@ export async function checkParts(check, root) {
   check('primes and powers', squeezed("q'' + x²") === 'q^{\\prime\\prime}+x^{2}', squeezed("q'' + x²"));
   check(
     'indices',
-    squeezed('φ_xx p_0 λ_rod') === '\\varphi_{xx}\\,p_{0}\\,\\lambda_{\\mathrm{rod}}',
+    squeezed('φ_xxt p_0 λ_rod') === '\\varphi_{xxt}\\,p_{0}\\,\\lambda_{\\mathrm{rod}}',
     squeezed('φ_xx p_0 λ_rod'),
   );
   check('dots are those of the letter', squeezed('ξ̈ + ṗ') === '\\ddot{\\xi}+\\dot{p}', squeezed('ξ̈ + ṗ'));
