@@ -199,9 +199,14 @@ std::string advice_on_name(Elaboration& e, const std::string& text, const std::s
   return fmt::format("Did you mean `{}`?", near);
 }
 
-}  // namespace
+/// `sim θ` is a product of two names for the grammar: where no declared name is near, a function may be.
+std::string near_function(const std::string& text) {
+  std::vector<std::string> functions;
+  for (const syntax::Function& f : syntax::functions()) functions.emplace_back(f.name);
+  return did_you_mean(text, functions);
+}
 
-void unknown_name(Elaboration& e, const std::string& text, Span span) {
+void unknown_name_of(Elaboration& e, const std::string& text, Span span, bool in_formula) {
   if (is_silent(e, text)) return;
   if (!e.unknown_names.insert(text).second) return;  // told at its first use
   if (text == "t") return unknown_time(e, span);
@@ -234,10 +239,16 @@ void unknown_name(Elaboration& e, const std::string& text, Span span) {
         fmt::format("Write 3 [{0}] for a number with the unit {0}, or declare {0} with `param`.", text));
     return;
   }
+  const std::string function = in_formula && near.empty() ? near_function(text) : "";
   e.diagnostics.error("E0201", span, fmt::format("`{}` is not declared", text),
                       "Every name of a formula is declared somewhere in the model.",
-                      advice_on_name(e, text, near, span.source == 0));
+                      advice_on_name(e, text, near, span.source == 0) +
+                          (function.empty() ? "" : fmt::format(" Did you mean `{}`?", function)));
 }
+
+}  // namespace
+
+void unknown_name(Elaboration& e, const std::string& text, Span span) { unknown_name_of(e, text, span, false); }
 
 Declaration* find_declared(Elaboration& e, const syntax::Name& name) {
   Declaration* d = e.table.find(name.text);
@@ -247,20 +258,6 @@ Declaration* find_declared(Elaboration& e, const syntax::Name& name) {
   }
   unknown_name(e, name.text, name.span);
   return nullptr;
-}
-
-/// `sim θ` is a product of two names for the grammar: where no declared name is near, a function may be.
-bool misspelt_function(Elaboration& e, const Expression& x) {
-  if (is_silent(e, x.text) || find_unit(x.text) || !did_you_mean(x.text, e.table.names()).empty()) return false;
-  std::vector<std::string> functions;
-  for (const syntax::Function& f : syntax::functions()) functions.emplace_back(f.name);
-  const std::string near = did_you_mean(x.text, functions);
-  if (near.empty() || !e.unknown_names.insert(x.text).second) return false;
-  e.diagnostics.error(
-      "E0201", x.name_span, fmt::format("`{}` is not declared", x.text),
-      "Every name of a formula is declared somewhere in the model, or is a function.",
-      fmt::format("Declare it: `param {0} = …`, `coord {0} : …` or `let {0} = …`. Did you mean `{1}`?", x.text, near));
-  return true;
 }
 
 Value value_of_name(Elaboration& e, const Expression& x, const Place& place) {
@@ -289,7 +286,7 @@ Value value_of_name(Elaboration& e, const Expression& x, const Place& place) {
     if (const std::optional<Value> p = momentum(e, x.text)) return *p;
     if (const std::optional<Value> force = multiplier(e, x.text)) return *force;
   }
-  if (!misspelt_function(e, x)) unknown_name(e, x.text, x.name_span);
+  unknown_name_of(e, x.text, x.name_span, true);
   return Value::poison();
 }
 
