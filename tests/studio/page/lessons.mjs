@@ -93,6 +93,16 @@ export const lessons = {
     await page.waitForTimeout(100);
     check('none are shown', (await inked(page, weight)) === 0);
     check('nor a legend', await page.locator('#force-legend').isHidden());
+
+    // Forces of V stand where their coordinate moves a place; one that no single arrow stands for is named.
+    await page.selectOption('#forces', 'all');
+    await write(
+      page,
+      `system wedge\nparam M = 3 kg, m = 1 kg, k = 9 N/m, c = 5 N/m\ncoord X, s : length\npoint W mass M at (X, 0)
+point P mass m at (X + s/2, -s)\nV += 1/2 c X^2\nV += 1/2 k s^2\nstart X = 1 m, s = 1 m\nrun 2 s\n`,
+    );
+    await shows(page, ['#force-legend', 'forces of V[^]*no arrow alone does what these do: V on s']);
+    check('that of X is an arrow', (await inked(page, '--series-1')) > 20, await inked(page, '--series-1'));
     await page.context().close();
   },
 

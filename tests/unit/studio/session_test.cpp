@@ -161,6 +161,20 @@ TEST_CASE("few frames stand for the whole run") {
   }
 }
 
+TEST_CASE("an exported drawing has the arrows and the moment that are asked for") {
+  Asked hanging(pendulum);
+  const auto drawing = [](Asked& of, Json more) {
+    more["do"] = "export";
+    more["what"] = "drawing.svg";
+    return of.ask(more)["text"].get<std::string>();
+  };
+  const std::string asked = drawing(hanging, Json::object());
+  CHECK(drawing(hanging, {{"forces", true}}).size() > asked.size());  // the weight
+  CHECK(drawing(hanging, {{"forces", false}}) == asked);              // it asks for no arrow
+  CHECK(drawing(hanging, {{"t", 0.0}}) == asked);
+  CHECK(drawing(hanging, {{"t", 0.5}}) != asked);
+}
+
 TEST_CASE("a brief run has the numbers of what is conserved, without the formulas") {
   Asked page(pendulum);
   const Json whole = page.ask({{"do", "run"}, {"frames", 10}})["conserved"];
