@@ -50,7 +50,6 @@ class Retrace {
   /// [program.constants]
   void set_constants(const T* constants) {
     std::copy_n(constants, memory_.constants.size(), memory_.constants.begin());
-    reference::prepare_terms(memory_);
   }
   /// Other sides of the switch functions, of the same parameters.
   void set_sides(std::span<const std::int8_t> sides) {

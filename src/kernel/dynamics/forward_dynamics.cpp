@@ -1,7 +1,7 @@
 #include <maupertuis/forward_dynamics.hpp>
 
 #include "kernel/dynamics/written_dynamics.hpp"
-#include "kernel/reference/elementary.hpp"
+#include "kernel/reference/reference.hpp"
 #include "kernel/reference/sampled_states.hpp"
 #include "kernel/sparse/graph_product.hpp"
 #include "kernel/straight_line/compile.hpp"
@@ -123,7 +123,7 @@ struct ForwardDynamics::Impl {
   straight::Code code;
   CompileReport report;
   std::vector<double> rest, scratch;  // [unknowns] zeros; of the code
-  double operands[64] = {};
+  std::vector<double> operands;       // of a constant
 };
 
 void ForwardDynamics::Impl::find_live() {
@@ -138,16 +138,7 @@ void ForwardDynamics::Impl::find_live() {
 }
 
 double ForwardDynamics::Impl::constant(std::size_t i) {
-  const Constant& c = program.constants[i];
-  if (c.kind == Kind::Number) return c.value;
-  if (c.kind == Kind::Symbol) return parameters[c.index];
-  if (c.kind == Kind::Sign && c.arguments == 0) return sides[c.index];
-  std::vector<double> many;
-  double* values = operands;
-  if (c.arguments > 64) many.resize(c.arguments), values = many.data();
-  for (std::uint32_t k = 0; k < c.arguments; ++k)
-    values[k] = constants[program.constant_arguments[c.first_argument + k]];
-  return reference::constant_operation<double>(c.kind, {values, c.arguments});
+  return reference::compute_constant<double>(program, i, parameters, sides, constants, operands);
 }
 
 double ForwardDynamics::Impl::number(const dynamics::NumberSource& source) const {
@@ -155,7 +146,7 @@ double ForwardDynamics::Impl::number(const dynamics::NumberSource& source) const
     case dynamics::NumberSource::OfConstant:
       return constants[source.index];
     case dynamics::NumberSource::OfChoice:
-      return sparse::constant_factor(system->edges[source.index], program, constants.data());
+      return sparse::constant_factor(system->edges[source.index], program.terms.data(), constants.data());
     case dynamics::NumberSource::OfPivot:
       break;
   }

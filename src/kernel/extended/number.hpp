@@ -1,5 +1,5 @@
 #pragma once
-#include "kernel/reference/elementary.hpp"
+#include "kernel/series/elementary.hpp"
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/version.hpp>
@@ -67,7 +67,7 @@ struct constant_initializer2<maupertuis::extended::Real<Bits>, N, F> {
 }  // namespace boost::math::constants::detail
 #endif
 
-namespace maupertuis::reference {
+namespace maupertuis::series {
 
 template <unsigned Bits>
 struct Exactly<boost::multiprecision::number<
@@ -78,4 +78,4 @@ struct Exactly<boost::multiprecision::number<
   static T from(const Rational& value) { return T(value.numerator_string()) / T(value.denominator_string()); }
 };
 
-}  // namespace maupertuis::reference
+}  // namespace maupertuis::series

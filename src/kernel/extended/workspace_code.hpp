@@ -1,9 +1,9 @@
 #pragma once
 #include "kernel/extended/workspace.hpp"
-#include "kernel/reference/elementary_code.hpp"
 #include "kernel/reference/memory_code.hpp"
 #include "kernel/reference/run_code.hpp"
 #include "kernel/reference/tangents_code.hpp"
+#include "kernel/series/elementary_code.hpp"
 
 namespace maupertuis::extended {
 

@@ -1,7 +1,7 @@
 #include "kernel/lanes/lanes.hpp"
 #include "kernel/lanes/plan.hpp"
 #include "kernel/program/processor.hpp"
-#include "kernel/reference/elementary.hpp"
+#include "kernel/series/elementary.hpp"
 
 #include <maupertuis/lanes.hpp>
 #include <maupertuis/require.hpp>
@@ -11,7 +11,7 @@
 namespace maupertuis {
 namespace lanes {
 
-double elementary_function(Kind function, double x, double y) { return reference::elementary<double>(function, x, y); }
+double elementary_function(Kind function, double x, double y) { return series::elementary<double>(function, x, y); }
 double power_function(double x, double y) { return std::pow(x, y); }
 
 }  // namespace lanes

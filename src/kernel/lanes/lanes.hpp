@@ -15,10 +15,6 @@ std::size_t row_stride(const Program& program);
 /// Doubles of scratch memory, to be multiplied by W.
 std::size_t scratch_size(const Program& program);
 
-/// All constants of one lane, at constants[id · W].
-void evaluate_constants(const Program& program, std::span<const double> parameters, double* constants,
-                        std::size_t width);
-
 /// The stages first_stage … stages − 1 of section Dynamics.
 ///   rows       [orders][stride][W]. In: slots of One and Time at all orders, q and q̇ in rows 0 and 1 (q̇_k and λ_k
 ///   beyond are

@@ -1,6 +1,6 @@
 #pragma once
-#include "kernel/reference/elementary.hpp"
 #include "kernel/reference/reference.hpp"
+#include "kernel/series/elementary.hpp"
 
 #include <cmath>
 
@@ -16,58 +16,35 @@ MemoryOf<T>::MemoryOf(const Program& p, int orders, std::size_t cells)
     : program(p),
       stride(padded(cells)),
       constants(p.constants.size()),
-      coefficients(p.terms.size()),
-      linear(p.terms.size()),
-      rows(static_cast<std::size_t>(orders) * stride, T(0)) {
-  for (int k = 0; k < orders; ++k)
-    shift_factors.insert(shift_factors.end(), {T(1), T(k + 1.0), T((k + 1.0) * (k + 2.0))});
-}
+      rows(static_cast<std::size_t>(orders) * stride, T(0)) {}
 
 template <class T>
 T literal(const Program& program, const Constant& constant) {
   if constexpr (std::is_same_v<T, double>)
     return constant.value;
   else
-    return Exactly<T>::from(program.literals[constant.index]);
+    return series::Exactly<T>::from(program.literals[constant.index]);
 }
 
 template <class T>
-void prepare_terms(MemoryOf<T>& memory) {
-  const Program& program = memory.program;
-  for (std::size_t i = 0; i < program.terms.size(); ++i) {
-    const Term& term = program.terms[i];
-    memory.coefficients[i] = memory.constants[term.coefficient];
-    memory.linear[i] = {memory.coefficients[i], static_cast<std::uint32_t>(term.a + term.shift * memory.stride),
-                        term.shift};
-  }
+T compute_constant(const Program& program, std::size_t index, std::span<const std::type_identity_t<T>> parameters,
+                   std::span<const std::int8_t> sides, std::span<const T> constants, std::vector<T>& operands) {
+  const Constant& constant = program.constants[index];
+  if (constant.kind == Kind::Number) return literal<T>(program, constant);
+  if (constant.kind == Kind::Symbol) return parameters[constant.index];
+  if (constant.kind == Kind::Sign && constant.arguments == 0) return T(sides[constant.index]);
+  operands.clear();
+  for (std::uint32_t k = 0; k < constant.arguments; ++k)
+    operands.push_back(constants[program.constant_arguments[constant.first_argument + k]]);
+  return series::operation<T>(constant.kind, operands);
 }
 
 template <class T>
-void compute_constants(MemoryOf<T>& memory, std::span<const std::type_identity_t<T>> parameters,
-                       std::span<const std::int8_t> sides) {
-  const Program& program = memory.program;
+void compute_constants(const Program& program, std::span<const std::type_identity_t<T>> parameters,
+                       std::span<const std::int8_t> sides, std::span<T> constants) {
   std::vector<T> operands;
-  for (std::size_t i = 0; i < program.constants.size(); ++i) {
-    const Constant& constant = program.constants[i];
-    T& value = memory.constants[i];
-    if (constant.kind == Kind::Number) {
-      value = literal<T>(program, constant);
-      continue;
-    }
-    if (constant.kind == Kind::Symbol) {
-      value = parameters[constant.index];
-      continue;
-    }
-    if (constant.kind == Kind::Sign && constant.arguments == 0) {
-      value = T(sides[constant.index]);
-      continue;
-    }
-    operands.clear();
-    for (std::uint32_t k = 0; k < constant.arguments; ++k)
-      operands.push_back(memory.constants[program.constant_arguments[constant.first_argument + k]]);
-    value = constant_operation<T>(constant.kind, operands);
-  }
-  prepare_terms(memory);
+  for (std::size_t i = 0; i < constants.size(); ++i)
+    constants[i] = compute_constant<T>(program, i, parameters, sides, constants, operands);
 }
 
 template <class T>
@@ -89,7 +66,7 @@ T term_size(const MemoryOf<T>& memory, const Instruction* producer, Slot slot) {
     const Term& term = memory.program.terms[i];
     const int factor = term.shift == 2 ? 2 : 1;
     const T a = factor * memory.row(static_cast<int>(term.shift))[term.a];
-    size += abs(memory.coefficients[i] * a * (term.b == no_slot ? T(1) : now[term.b]));
+    size += abs(memory.constants[term.coefficient] * a * (term.b == no_slot ? T(1) : now[term.b]));
   }
   return size;
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include "kernel/program/program.hpp"
+#include "kernel/series/elementary.hpp"
 #include "kernel/series/rules.hpp"
 #include "kernel/sparse/tangent_graph.hpp"
 
@@ -13,18 +14,23 @@
 /// (kernel/extended); the *_code.hpp files hold the definitions, for those who instantiate them.
 namespace maupertuis::reference {
 
-/// A linear term ready for use: coefficient · factor of the shift · row[offset].
-template <class T>
-struct LinearTermOf {
-  T coefficient;
-  std::uint32_t offset;  // from the row of the result's order: slot + shift · stride
-  std::uint32_t shift;
-};
+// Vectors bring their own (kernel/lanes).
+using series::add_product, series::chosen, series::elementary, series::sine_cosine;
 
 /// Aligned to cache lines, so that packs of slots are too.
 template <class T>
 using Aligned = std::vector<T, boost::alignment::aligned_allocator<T, 64>>;
 using Doubles = Aligned<double>;
+
+/// What instructions work on, as plain pointers.
+template <class T>
+struct Rows {
+  const Instruction* instructions;
+  const Term* terms;
+  const T* constants;
+  T* first;  // [orders × stride]: coefficient k of slot s at [k · stride + s]
+  std::size_t stride;
+};
 
 /// What the operations work on. `cells`: numbers of a row, at least the slots of the program.
 template <class T>
@@ -33,31 +39,36 @@ struct MemoryOf {
 
   T* row(int order) { return rows.data() + static_cast<std::size_t>(order) * stride; }
   const T* row(int order) const { return rows.data() + static_cast<std::size_t>(order) * stride; }
-  series::Column<T> column(Slot slot) const { return {rows.data() + slot, stride}; }
+  Rows<T> view() { return {program.instructions.data(), program.terms.data(), constants.data(), rows.data(), stride}; }
 
   const Program& program;
   std::size_t stride;
-  std::vector<T> constants;             // [constants]
-  std::vector<T> coefficients;          // [terms], from the constants
-  std::vector<LinearTermOf<T>> linear;  // [terms], the same made ready
-  std::vector<T> shift_factors;         // [orders × 3]: 1, k + 1, (k + 1)(k + 2)
-  Aligned<T> rows;                      // [orders × stride]: coefficient k of slot s at [k · stride + s]
+  std::vector<T> constants;  // [constants]
+  Aligned<T> rows;           // [orders × stride], see Rows
 };
 
 using Memory = MemoryOf<double>;
 
-/// Fills constants and coefficients.
+/// A constant of a program, of those before it. `operands`: scratch.
+template <class T>
+T compute_constant(const Program& program, std::size_t index, std::span<const std::type_identity_t<T>> parameters,
+                   std::span<const std::int8_t> sides, std::span<const T> constants, std::vector<T>& operands);
+/// All of them. [constants]
+template <class T>
+void compute_constants(const Program& program, std::span<const std::type_identity_t<T>> parameters,
+                       std::span<const std::int8_t> sides, std::span<T> constants);
 template <class T>
 void compute_constants(MemoryOf<T>& memory, std::span<const std::type_identity_t<T>> parameters,
-                       std::span<const std::int8_t> sides);
-
-/// Fills coefficients alone.
-template <class T>
-void prepare_terms(MemoryOf<T>& memory);
+                       std::span<const std::int8_t> sides) {
+  compute_constants(memory.program, parameters, sides, std::span<T>(memory.constants));
+}
 
 /// Sets the leaves but the coordinates at all orders.
 template <class T>
 void set_leaves(MemoryOf<T>& memory, const std::type_identity_t<T>& t, int orders);
+
+/// Where the interpreter meets an instruction that it has no rule for.
+[[noreturn]] void throw_unknown(Op op);
 
 /// One instruction at one order.
 template <class T>

@@ -1,24 +1,21 @@
 #pragma once
-#include "kernel/reference/elementary.hpp"
 #include "kernel/reference/reference.hpp"
+#include "kernel/series/elementary.hpp"
 
 #include <cmath>
 
 namespace maupertuis::reference {
 
-/// One run of instructions at one order: `row` is that order's row. Each case decides once for the whole run.
+/// One run of instructions at one order. Each case decides once for the whole run. T: a number, or several side by side
+/// (kernel/lanes), of which nothing but pointers is asked then.
 template <class T>
 class RunAtOrder {
  public:
-  RunAtOrder(MemoryOf<T>& memory, int order)
-      : memory_(memory),
+  RunAtOrder(const Rows<T>& rows, int order)
+      : rows_(rows),
         k_(order),
-        row_(memory.row(order)),
-        instructions_(memory.program.instructions.data()),
-        terms_(memory.program.terms.data()),
-        linear_(memory.linear.data()),
-        factors_(memory.shift_factors.data() + 3 * order),
-        pairing_(order, memory.stride) {}
+        row_(rows.first + static_cast<std::size_t>(order) * rows.stride),
+        pairing_(order, rows.stride) {}
 
   void operator()(const Run& run) {
     switch (run.op) {
@@ -50,30 +47,34 @@ class RunAtOrder {
       case Op::Companion:
         return;
     }
-    throw unknown_op(run.op, "the interpreter");
+    throw_unknown(run.op);
   }
 
  private:
   template <class F>
   void each(const Run& run, F&& f) {
-    const Instruction* const last = instructions_ + run.last;
-    for (const Instruction* i = instructions_ + run.first; i != last; ++i) f(*i);
+    const Instruction* const last = rows_.instructions + run.last;
+    for (const Instruction* i = rows_.instructions + run.first; i != last; ++i) f(*i);
   }
-  series::Column<T> column(Slot slot) const { return memory_.column(slot); }
+  series::Column<T> column(Slot slot) const { return {rows_.first + slot, rows_.stride}; }
+  const T& coefficient(const Term& term) const { return rows_.constants[term.coefficient]; }
 
   T linear_part(const Instruction& i) const {
+    const int factors[] = {1, k_ + 1, (k_ + 1) * (k_ + 2)};
     T sum = T(0);
-    const LinearTermOf<T>* const last = linear_ + i.first_product;
-    for (const LinearTermOf<T>* term = linear_ + i.first_term; term != last; ++term)
-      sum += term->coefficient * (factors_[term->shift] * row_[term->offset]);
+    for (std::uint32_t t = i.first_term; t < i.first_product; ++t) {
+      const Term& term = rows_.terms[t];
+      add_product(sum, coefficient(term), row_[term.a + term.shift * rows_.stride] * factors[term.shift]);
+    }
     return sum;
   }
 
   T products(const Instruction& i) const {
     T sum = T(0);
-    const T* const rows = memory_.rows.data();
-    for (std::uint32_t t = i.first_product; t < i.last_term; ++t)
-      sum += linear_[t].coefficient * series::product(rows + terms_[t].a, rows + terms_[t].b, pairing_);
+    for (std::uint32_t t = i.first_product; t < i.last_term; ++t) {
+      const Term& term = rows_.terms[t];
+      add_product(sum, coefficient(term), series::product(rows_.first + term.a, rows_.first + term.b, pairing_));
+    }
     return sum;
   }
 
@@ -88,28 +89,22 @@ class RunAtOrder {
 
   void power(const Instruction& i) {
     using std::pow;
-    const T& p = memory_.constants[i.constant];
+    const T& p = rows_.constants[i.constant];
     row_[i.out] = k_ == 0 ? pow(row_[i.a], p) : series::power(column(i.a), column(i.out), p, k_);
   }
 
   void sincos(const Instruction& i) {
-    using std::sin, std::cos;
-    if (k_ == 0) {
-      row_[i.out] = sin(row_[i.a]);
-      row_[i.second] = cos(row_[i.a]);
-    } else {
+    if (k_ == 0)
+      sine_cosine(row_[i.a], row_[i.out], row_[i.second]);
+    else
       series::integral_pair(column(i.out), column(i.second), column(i.a), k_, T(-1), row_[i.out], row_[i.second]);
-    }
   }
 
   void sinhcosh(const Instruction& i) {
-    using std::sinh, std::cosh;
-    if (k_ == 0) {
-      row_[i.out] = sinh(row_[i.a]);
-      row_[i.second] = cosh(row_[i.a]);
-    } else {
-      series::integral_pair(column(i.out), column(i.second), column(i.a), k_, T(1), row_[i.out], row_[i.second]);
-    }
+    if (k_ > 0)
+      return series::integral_pair(column(i.out), column(i.second), column(i.a), k_, T(1), row_[i.out], row_[i.second]);
+    row_[i.out] = elementary(Kind::Sinh, row_[i.a], T(0));
+    row_[i.second] = elementary(Kind::Cosh, row_[i.a], T(0));
   }
 
   void function(const Instruction& i) {
@@ -119,47 +114,45 @@ class RunAtOrder {
     }
     T sum = T(0);
     for (std::uint32_t t = i.first_term; t < i.last_term; ++t) {
-      const Term& term = memory_.program.terms[t];
-      sum += memory_.coefficients[t] * series::integral(column(term.a), column(term.b), k_);
+      const Term& term = rows_.terms[t];
+      add_product(sum, coefficient(term), series::integral(column(term.a), column(term.b), k_));
     }
     row_[i.out] = sum;
   }
 
   /// (du/dt)_k = (k + 1) u_{k+1}
-  void derivative(const Instruction& i) { row_[i.out] = (k_ + 1) * row_[memory_.stride + i.a]; }
+  void derivative(const Instruction& i) { row_[i.out] = row_[rows_.stride + i.a] * (k_ + 1); }
 
+  /// The first term whose condition is not 0, else the last.
   void select(const Instruction& i) {
-    std::uint32_t t = i.first_term;
-    while (t + 1 < i.last_term && memory_.coefficients[t] == 0) ++t;
-    row_[i.out] = row_[memory_.program.terms[t].a];
+    std::uint32_t t = i.last_term - 1;
+    T value = row_[rows_.terms[t].a];
+    while (t-- > i.first_term) value = chosen(coefficient(rows_.terms[t]), row_[rows_.terms[t].a], value);
+    row_[i.out] = value;
   }
 
-  MemoryOf<T>& memory_;
+  Rows<T> rows_;
   int k_;
   T* row_;
-  const Instruction* instructions_;
-  const Term* terms_;
-  const LinearTermOf<T>* linear_;
-  const T* factors_;
-  series::Pairing pairing_;
+  series::Pairing<T> pairing_;
 };
 
 template <class T>
 void run_instruction(MemoryOf<T>& memory, std::uint32_t index, int order) {
   const Instruction& instruction = memory.program.instructions[index];
-  RunAtOrder<T>(memory, order)({instruction.op, instruction.lag, index, index + 1});
+  RunAtOrder<T>(memory.view(), order)({instruction.op, instruction.lag, index, index + 1});
 }
 
 template <class T>
 void run_instructions(MemoryOf<T>& memory, const Run& run, int order) {
-  RunAtOrder<T>(memory, order)(run);
+  RunAtOrder<T>(memory.view(), order)(run);
 }
 
 template <class T>
 void run_section(MemoryOf<T>& memory, Section section, int stage) {
   for (const Run& run : memory.program.runs[section]) {
     const int order = stage + 2 - run.lag;
-    if (order >= 0) RunAtOrder<T>(memory, order)(run);
+    if (order >= 0) RunAtOrder<T>(memory.view(), order)(run);
   }
 }
 

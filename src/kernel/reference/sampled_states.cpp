@@ -44,7 +44,6 @@ std::vector<std::vector<double>> sampled_entries(const Program& program, const s
   std::vector<std::vector<double>> samples;
   Memory memory(program, 1 - program.first_stage, program.slots);
   std::copy_n(constants.begin(), memory.constants.size(), memory.constants.begin());
-  prepare_terms(memory);
   std::vector<Slot> same(program.slots);
   std::iota(same.begin(), same.end(), Slot{0});
   sparse::Assembly assembly(system, program, same);

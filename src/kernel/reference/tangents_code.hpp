@@ -12,9 +12,7 @@ void tangents(const MemoryOf<T>& memory, T* tangent, std::span<const sparse::Edg
     const Slot out = edges[i].out;
     for (; i < edges.size() && edges[i].out == out; ++i) {
       const sparse::Edge& edge = edges[i];
-      const T factor = sparse::is_constant(edge.rule)
-                           ? sparse::constant_factor(edge, memory.program, memory.constants.data())
-                           : sparse::factor_at(edge, memory.constants.data(), memory.row(0));
+      const T factor = sparse::factor_at(edge, memory.program.terms.data(), memory.constants.data(), memory.row(0));
       if (edge.rule == sparse::Rule::Choice && factor == 0) continue;  // what is not chosen may be undefined
       const T* const from = tangent + static_cast<std::size_t>(edge.operand) * Width;
       for (int d = 0; d < Width; ++d) sum[d] += factor * from[d];

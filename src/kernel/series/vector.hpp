@@ -80,6 +80,8 @@ struct Vec {
 
   Reals part[parts];
 
+  Vec() = default;
+  explicit Vec(double x) : Vec(all(x)) {}
   static Vec load(const double* from) {
     Vec out;
     for (int i = 0; i < parts; ++i) out.part[i] = *reinterpret_cast<const Reals*>(from + i * width);

@@ -172,7 +172,7 @@ void Assembly::set_constants(const double* constants, std::span<double> values) 
   constants_ = constants;
   base_ = minus_and_plus_;
   for (std::size_t i = 0; i < constant_.size(); ++i)
-    base_[entry_of_constant_[i]] += constant_factor(constant_[i], program_, constants);
+    base_[entry_of_constant_[i]] += constant_factor(constant_[i], program_.terms.data(), constants);
   std::copy(base_.begin(), base_.end(), values.begin());
   const auto factor = [&](const Edge& edge) {
     return edge.rule == Rule::Scaled     ? constants[edge.index]
@@ -190,7 +190,8 @@ void Assembly::operator()(const double* now, std::span<double> values) const {
   for (const Multiple& m : first_) values[m.entry] = m.base + m.factor * now[m.slot];
   for (const Multiple& m : more_) values[m.entry] += m.factor * now[m.slot];
   for (const std::uint32_t entry : of_others_alone_) values[entry] = base_[entry];
-  for (std::size_t i = 0; i < others_.size(); ++i) values[entry_of_other_[i]] += factor_at(others_[i], constants_, now);
+  for (std::size_t i = 0; i < others_.size(); ++i)
+    values[entry_of_other_[i]] += factor_at(others_[i], program_.terms.data(), constants_, now);
 }
 
 }  // namespace maupertuis::sparse

@@ -1,5 +1,6 @@
 #pragma once
 #include "kernel/program/program.hpp"
+#include "kernel/series/rules.hpp"
 
 #include <vector>
 
@@ -7,6 +8,8 @@
 /// factor that the coefficients of order 0 give. The factors are the edges of a graph that leads from q̈ to the
 /// residual.
 namespace maupertuis::sparse {
+
+using series::chosen;
 
 /// What the factor of an edge is made of. x and y are values at order 0, c a coefficient of a term.
 enum class Rule : std::uint8_t {
@@ -48,18 +51,19 @@ bool has_symmetric_pattern(const Program& program);
 inline bool is_constant(Rule rule) { return rule == Rule::One || rule == Rule::Coefficient || rule == Rule::Choice; }
 
 template <class T>
-T constant_factor(const Edge& edge, const Program& program, const T* constants) {
+T constant_factor(const Edge& edge, const Term* terms, const T* constants) {
   if (edge.rule == Rule::One) return T(1);
   if (edge.rule == Rule::Coefficient) return constants[edge.index];
   // Choice: the first term whose condition holds is taken, the last one if none does.
-  std::uint32_t t = edge.x;
-  while (t + 1 < edge.y && constants[program.terms[t].coefficient] == 0) ++t;
-  return T(t == edge.index ? 1 : 0);
+  T taken = T(1);
+  if (edge.index + 1 < edge.y) taken = chosen(constants[terms[edge.index].coefficient], T(1), T(0));
+  for (std::uint32_t t = edge.x; t < edge.index; ++t) taken = chosen(constants[terms[t].coefficient], T(0), taken);
+  return taken;
 }
 
-/// Of any other edge. `now`: [slots] values at order 0.
+/// Of any edge. `now`: [slots] values at order 0.
 template <class T>
-T factor_at(const Edge& edge, const T* constants, const T* now) {
+T factor_at(const Edge& edge, const Term* terms, const T* constants, const T* now) {
   switch (edge.rule) {
     case Rule::Scaled:
       return constants[edge.index] * now[edge.x];
@@ -68,9 +72,9 @@ T factor_at(const Edge& edge, const T* constants, const T* now) {
     case Rule::Negative:
       return -now[edge.x];
     case Rule::Double:
-      return 2 * now[edge.x];
+      return now[edge.x] + now[edge.x];
     case Rule::Reciprocal:
-      return 1 / now[edge.x];
+      return T(1) / now[edge.x];
     case Rule::HalfReciprocal:
       return T(0.5) / now[edge.x];
     case Rule::Ratio:
@@ -80,9 +84,9 @@ T factor_at(const Edge& edge, const T* constants, const T* now) {
     case Rule::One:
     case Rule::Coefficient:
     case Rule::Choice:
-      break;  // see constant_factor
+      break;
   }
-  return T(0);
+  return constant_factor(edge, terms, constants);
 }
 
 }  // namespace maupertuis::sparse

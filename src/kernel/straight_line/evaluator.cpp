@@ -1,11 +1,12 @@
 #include "kernel/straight_line/evaluator.hpp"
 
 #include "kernel/program/processor.hpp"
+#include "kernel/series/elementary.hpp"
 
-#include <maupertuis/functions.hpp>
 #include <maupertuis/require.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -25,32 +26,10 @@ struct Shape {
   std::uint32_t linear = 0, products = 0, triples = 0;
 };
 
-/// NaN stays NaN: a comparison with it must not choose a side in silence.
-double sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : x == 0 ? 0 : x; }
-double step(double x) { return x >= 0 ? 1 : x < 0 ? 0 : x; }
-double smaller(double x, double y) { return y < x || std::isnan(y) ? y : x; }
-double larger(double x, double y) { return y > x || std::isnan(y) ? y : x; }
-
-double call(Kind function, double x, double y) {
-  if (is_function(function)) return functions::value(function, x);
-  if (function == Kind::Power) return std::pow(x, y);
-  if (function == Kind::Atan2) return std::atan2(x, y);
-  if (function == Kind::Abs) return std::abs(x);
-  if (function == Kind::Sign) return sign(x);
-  if (function == Kind::Step) return step(x);
-  if (function == Kind::Min) return smaller(x, y);
-  if (function == Kind::Max) return larger(x, y);
-  if (function == Kind::Less) return x < y;
-  if (function == Kind::LessEqual) return x <= y;
-  if (function == Kind::And) return x != 0 && y != 0;
-  if (function == Kind::Or) return x != 0 || y != 0;
-  throw unknown_kind(function, "a straight line");
-}
-
 double value(Node::What what, Kind function, double a, double b, double c) {
   if (what == Node::Chosen) return a != 0 ? b : c;
   if (what == Node::Root) return std::sqrt(a);
-  if (what == Node::Call) return call(function, a, b);
+  if (what == Node::Call) return series::operation<double>(function, std::array{a, b});
   throw std::logic_error("a straight line holds a node that is not evaluated; please report");
 }
 

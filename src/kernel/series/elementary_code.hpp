@@ -1,16 +1,29 @@
 #pragma once
-#include "kernel/reference/elementary.hpp"
+#include "kernel/series/elementary.hpp"
 
 #include <maupertuis/functions.hpp>
 
 #include <cmath>
 
-namespace maupertuis::reference {
-namespace on_constants {
+namespace maupertuis::series {
+namespace on_numbers {
 
+/// What is no number stays none: a comparison with it must not choose a side in silence.
 template <class T>
 T sign(const T& x) {
-  return T((x > 0) - (x < 0));
+  return x > 0 ? T(1) : x < 0 ? T(-1) : x;
+}
+template <class T>
+T step(const T& x) {
+  return x >= 0 ? T(1) : x < 0 ? T(0) : x;
+}
+template <class T>
+T smaller(const T& x, const T& y) {
+  return y < x || y != y ? y : x;
+}
+template <class T>
+T larger(const T& x, const T& y) {
+  return y > x || y != y ? y : x;
 }
 
 template <class T>
@@ -56,28 +69,28 @@ bool any(std::span<const T> operands) {
   return false;
 }
 
-}  // namespace on_constants
+}  // namespace on_numbers
 
 template <class T>
 T elementary(Kind function, const T& x, const T& y) {
   using std::abs, std::atan2;
   if (is_function(function)) return functions::value(function, x);
   if (function == Kind::Abs) return abs(x);
-  if (function == Kind::Sign) return on_constants::sign(x);
-  if (function == Kind::Step) return T(x >= 0 ? 1 : 0);
+  if (function == Kind::Sign) return on_numbers::sign(x);
+  if (function == Kind::Step) return on_numbers::step(x);
   if (function == Kind::Atan2) return atan2(x, y);
-  throw unknown_kind(function, "the interpreter");
+  throw unknown_kind(function, "the operations on numbers");
 }
 
 template <class T>
-T constant_operation(Kind kind, std::span<const T> operands) {
-  using namespace on_constants;
+T operation(Kind kind, std::span<const T> operands) {
+  using namespace on_numbers;
   if (kind == Kind::Pi) return Exactly<T>::pi();
   if (kind == Kind::Sum) return sum(operands);
   if (kind == Kind::Product) return product(operands);
   if (kind == Kind::Power) return power(operands[0], operands[1]);
-  if (kind == Kind::Min) return operands[0] <= operands[1] ? operands[0] : operands[1];
-  if (kind == Kind::Max) return operands[0] >= operands[1] ? operands[0] : operands[1];
+  if (kind == Kind::Min) return smaller(operands[0], operands[1]);
+  if (kind == Kind::Max) return larger(operands[0], operands[1]);
   if (kind == Kind::Less) return T(operands[0] < operands[1]);
   if (kind == Kind::LessEqual) return T(operands[0] <= operands[1]);
   if (kind == Kind::And) return T(all(operands));
@@ -86,4 +99,4 @@ T constant_operation(Kind kind, std::span<const T> operands) {
   return elementary(kind, operands[0], operands.size() > 1 ? operands[1] : T(0));  // throws on others
 }
 
-}  // namespace maupertuis::reference
+}  // namespace maupertuis::series

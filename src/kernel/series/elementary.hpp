@@ -4,7 +4,7 @@
 
 #include <span>
 
-namespace maupertuis::reference {
+namespace maupertuis::series {
 
 /// How a number type takes exact numbers. A type of more digits brings its own specialization (kernel/extended).
 template <class T>
@@ -20,8 +20,8 @@ struct Exactly<double> {
 template <class T>
 T elementary(Kind function, const T& x, const T& y);
 
-/// Any operation on constants: sums, products, powers, functions, comparisons (1 or 0), piecewise.
+/// Any operation on numbers: sums, products, powers, functions, comparisons (1 or 0), piecewise.
 template <class T>
-T constant_operation(Kind kind, std::span<const T> operands);
+T operation(Kind kind, std::span<const T> operands);
 
-}  // namespace maupertuis::reference
+}  // namespace maupertuis::series
