@@ -192,10 +192,7 @@ Value* RolledEmitter::late_terms(const packed::Convolution& c, Value* sum) {
   if (!adds_late({c.lag, a_ahead, b_ahead})) return sum;
   const auto term = [&](std::uint32_t x, std::uint32_t y, int ahead) {
     if (ahead > 1) return;
-    const auto kept = kept_.find(p_.blocks[x].first);
-    Value* const newest = kept != kept_.end()
-                              ? kept->second
-                              : load(at(slot_at(row(0), p_.blocks[x].first), (1 - p_.blocks[x].lag) * row_bytes_));
+    Value* const newest = load(at(slot_at(row(0), p_.blocks[x].first), (1 - p_.blocks[x].lag) * row_bytes_));
     sum = out_.fma(newest, load(at(slot_at(rows_, p_.blocks[y].first), (1 - ahead) * row_bytes_)), sum);
   };
   term(c.a, c.b, a_ahead);

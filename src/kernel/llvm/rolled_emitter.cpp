@@ -52,7 +52,7 @@ void RolledEmitter::open(const char* name, const std::vector<llvm::Type*>& other
   parameters.insert(parameters.end(), others.begin(), others.end());
   llvm::Function* const function = out_.function(name, parameters, exported, result);
   arguments_ = function->getArg(0);
-  recent_.clear(), final_.clear(), kept_.clear();
+  recent_.clear(), final_.clear();
   scan_ = {no_slot, 0, nullptr, nullptr};
   passing_row_ = nullptr;
   rows_ = field(offsetof(packed::CompiledArguments, rows));
@@ -132,10 +132,8 @@ void RolledEmitter::begin_packs() {
 
 void RolledEmitter::run_packs(std::size_t first, std::size_t last) {
   for (std::size_t i = first; i < last; ++i) {
-    if (deferred_) correct_up_to(read_of_stage_before(i));
     pack(i);
     if (filling_) filling_->read = p_.packs[i].last_convolution;
-    if (deferred_) correct_before(deferred_->packs.size() * (i + 1) / p_.packs.size());
     gap();
   }
 }

@@ -160,20 +160,7 @@ class RolledEmitter {
   // ------------------------------------------------------------------------------------------ later (rolled_later.cpp)
   bool has_later() const;
   void later();
-  void later_stage(Value* stage, Value* end, Value* inverse);
-  void begin_without_corrections();
-  void set_stage_before(Value* stage);
-  void choose_deferred();
-  std::vector<std::size_t> vectors_of(const Block& block) const;
-  std::size_t turn_of(const Block& block) const;
-  std::vector<std::size_t> read_of_stage_before(std::size_t pack) const;
-  void correct_now(Value* tangent_row);
-  void correct_pack(std::size_t pack, Value* tangent_row);
-  void correct_before(std::size_t count);
-  void correct_up_to(const std::vector<std::size_t>& vectors);
-  void switch_to_stage_before();
-  std::vector<Slot> kept_slots() const;
-  bool is_found_now(Slot first) const;
+  void later_stage(Value* stage, Value* end, Value* inverse, Value* tangent_row);
 
   // -------------------------------------------------------------------------------------- filling (rolled_filling.cpp)
   void choose_slots();
@@ -231,7 +218,6 @@ class RolledEmitter {
 
   std::map<Slot, Recent> recent_;  // by first slot
   std::map<Slot, Value*> final_;   // what a solution has corrected, by first slot or cell
-  std::map<Slot, Value*> kept_;    // the same of the stage before, if it is still in registers
   Scan scan_{no_slot, 0, nullptr, nullptr};
   std::vector<bool> passing_;     // [slots / 8] vectors that are read in the stage that makes them alone
   Value* passing_row_ = nullptr;  // where these stand; null where the rows are not those of orders
@@ -244,31 +230,12 @@ class RolledEmitter {
   /// Of `later`: where sums for later stages stand.
   struct Filling {
     std::vector<std::map<Class, std::vector<std::size_t>>> slots;  // convolutions
-    std::vector<std::size_t> last, turn;         // [slots] the last convolution; deferred corrections that come before
+    std::vector<std::size_t> last;                                 // [slots] the last convolution
     std::size_t gaps = 0, passed = 0, next = 0;  // places between packs, those behind us; the next slot
     std::size_t read = 0;                        // convolutions whose sums the stage has read
   };
   std::optional<Filling> filling_;
   Value* has_next_ = nullptr;  // whether another stage follows
-  /// Of `later`: corrections of the stage before that stand between the packs of a stage, and with what they are
-  /// written.
-  struct Deferred {
-    std::vector<bool> now;             // [packs] whose tangents a stage finds at its end
-    std::vector<std::size_t> packs;    // the others, in order
-    std::vector<std::size_t> turn_of;  // [vectors] how many of them have to be there before it is final
-    std::vector<int> lag;              // [vectors] as corrected_lags()
-    std::size_t done = 0;
-    Value* tangent_row = nullptr;
-
-    Value* stage = nullptr;
-    std::vector<Value*> rows_of_stage;
-    std::array<Value*, 3> correction_factors{};
-    std::map<Slot, Recent> recent;
-    Scan scan{no_slot, 0, nullptr, nullptr};
-    Value* passing_row = nullptr;
-    std::size_t time = 0;
-  };
-  std::optional<Deferred> deferred_;
 };
 
 }  // namespace maupertuis::llvm_backend

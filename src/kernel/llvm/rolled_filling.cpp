@@ -21,13 +21,15 @@ void RolledEmitter::choose_slots() {
   const std::size_t count = p_.convolutions.size(),
                     slots = count == 0 ? 0 : std::clamp<std::size_t>(count / in_slot, 1, most_slots);
   Filling f;
-  f.slots.resize(slots), f.last.resize(slots), f.turn.resize(slots);
+  f.slots.resize(slots), f.last.resize(slots);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t slot = i * slots / count;
     phase_[i] = slot % rolled_group;
     f.slots[slot][class_of(p_.convolutions[i])].push_back(i);
     f.last[slot] = i;
   }
+  const std::vector<bool> corrected = needed_for_corrections(corrected_lags());
+  f.gaps = p_.packs.size() + 2 + static_cast<std::size_t>(std::count(corrected.begin(), corrected.end(), true));
   filling_ = std::move(f);
 }
 
@@ -43,7 +45,6 @@ void RolledEmitter::gap() {
 void RolledEmitter::fill_next() {
   auto& b = out_.b;
   Filling& f = *filling_;
-  correct_before(f.turn[f.next]);
   const auto& members = f.slots[f.next];
   const int phase = static_cast<int>(f.next++ % rolled_group);
   llvm::Function* const function = b.GetInsertBlock()->getParent();

@@ -34,10 +34,7 @@ void RolledEmitter::solve_by(Value* inverse, Value* tangent_row) {
     recent_[slot] = {accelerations[v], time_};
   }
   gap();
-  if (deferred_)
-    correct_now(tangent_row);
-  else
-    correct(tangent_row);
+  correct(tangent_row);
 }
 
 /// −M₀⁻¹ R_k, a vector in several sums, since products of one wait for each other.
@@ -118,6 +115,7 @@ void RolledEmitter::correct(Value* tangent_row) {
     if (pack.kind == Pack::Scalar || pack.kind == Pack::Strand) continue;
     for (Slot out = pack.out; out < pack.out + std::max(pack.strands, 1u) * lanes; out += lanes)
       if (int& own = lag[out / lanes]; own >= 0) correct(out, std::exchange(own, -1), in_register(out));
+    gap();
   }
   for (std::size_t i = 0; i < lag.size(); ++i)  // what stands alone
     if (const auto slot = static_cast<Slot>(i * lanes); lag[i] >= 0)
