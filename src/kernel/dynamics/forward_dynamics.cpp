@@ -190,9 +190,13 @@ void ForwardDynamics::Impl::plan() {
 bool ForwardDynamics::Impl::is_symmetric(const std::vector<std::vector<double>>& samples) {
   constexpr double rounding = 1e-12;
   sparse::GraphProduct product(*system);
-  std::vector<double> m(n * n);
+  std::vector<double> m(n * n), unit(n, 0.0);  // column by column
   for (const std::vector<double>& sample : samples) {
-    product.matrix(sample, m);
+    for (std::size_t j = 0; j < n; ++j) {
+      unit[j] = 1;
+      product.multiply(sample, unit, std::span(m).subspan(j * n, n));
+      unit[j] = 0;
+    }
     double largest = 0, difference = 0;
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < n; ++j) {

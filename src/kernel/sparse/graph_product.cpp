@@ -9,7 +9,7 @@ constexpr std::uint32_t none = ~std::uint32_t{0};
 }  // namespace
 
 /// The tangents slot by slot, then what is b.
-GraphProduct::GraphProduct(const LiftedSystem& system) : unknowns_(system.row_of_residual.size()), z_(system.size) {
+GraphProduct::GraphProduct(const LiftedSystem& system) : z_(system.size) {
   const std::size_t n = system.size;
   std::vector<std::vector<std::uint32_t>> entries(n);
   for (std::uint32_t e = 0; e < system.entries.size(); ++e) entries[system.entries[e].row].push_back(e);
@@ -27,24 +27,6 @@ GraphProduct::GraphProduct(const LiftedSystem& system) : unknowns_(system.row_of
     const auto first = static_cast<std::uint32_t>(row_entries_.size());
     for (const std::uint32_t e : entries[row]) row_entries_.push_back({e, system.entries[e].column});
     rows_.push_back({column[row], residual[row], first, static_cast<std::uint32_t>(row_entries_.size())});
-  }
-  for (const RowEntry& e : row_entries_) terms_.push_back({e.entry, e.column});
-  for (const Row& row : rows_)
-    block_rows_.push_back(
-        {row.residual == none ? row.column : static_cast<std::uint32_t>(n) + row.residual, row.first, row.last});
-  block_.assign(8 * (n + unknowns_), 0.0);
-}
-
-void GraphProduct::matrix(std::span<const double> entries, std::span<double> out) {
-  const std::size_t n = unknowns_;
-  for (std::size_t first = 0; first < n; first += 8) {
-    for (std::size_t i = 0; i < 8 * n; ++i) block_[i] = 0;
-    for (std::size_t d = 0; d < 8 && first + d < n; ++d) block_[8 * (first + d) + d] = 1;
-    loops().block(block_rows_.data(), block_rows_.data() + block_rows_.size(), terms_.data(), entries.data(),
-                  block_.data());
-    const double* const result = block_.data() + 8 * z_.size();
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t d = 0; d < 8 && first + d < n; ++d) out[i * n + first + d] = result[8 * i + d];
   }
 }
 

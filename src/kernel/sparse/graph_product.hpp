@@ -1,6 +1,5 @@
 #pragma once
 #include "kernel/sparse/lifted_system.hpp"
-#include "kernel/sparse/loops.hpp"
 
 namespace maupertuis::sparse {
 
@@ -11,11 +10,6 @@ class GraphProduct {
 
   /// out = M₀ x; [unknowns] each.
   void multiply(std::span<const double> entries, std::span<const double> x, std::span<double> out);
-
-  /// M₀ itself, row by row [unknowns × unknowns]: 8 columns at a time.
-  void matrix(std::span<const double> entries, std::span<double> out);
-  /// Products of matrix(), in vectors of 8.
-  std::size_t matrix_products() const { return (unknowns_ + 7) / 8 * terms_.size(); }
 
   /// rest = b − M₀ x. Returns its largest part in units of a bound of the rounding errors with which it was computed
   /// (running error analysis: N. J. Higham, Accuracy and Stability of Numerical Algorithms, §3.3): below 1, x cannot be
@@ -38,10 +32,6 @@ class GraphProduct {
     double value, error;  // and a bound of its rounding error
   };
 
-  std::size_t unknowns_;
-  std::vector<BlockRow> block_rows_;
-  std::vector<BlockTerm> terms_;
-  std::vector<double> block_;  // [columns + unknowns][8]
   std::vector<Row> rows_;
   std::vector<RowEntry> row_entries_;
   std::vector<WithError> z_;  // [columns]

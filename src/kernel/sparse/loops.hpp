@@ -51,20 +51,9 @@ struct FactorTables {
   double *factors, *inverse;
 };
 
-/// Rows of a product along the tangent graph, for 8 directions at once.
-struct BlockRow {
-  std::uint32_t target;
-  std::uint32_t first, last;  // its terms
-};
-struct BlockTerm {
-  std::uint32_t entry, operand;
-};
-
 struct Loops {
   double (*factor)(const FactorTables& tables);
   void (*sweep)(const SweepTables& tables, double* x);
-  /// z[target · 8 + lane] = Σ entries[entry] · z[operand · 8 + lane]
-  void (*block)(const BlockRow* rows, const BlockRow* last, const BlockTerm* terms, const double* entries, double* z);
 };
 
 Loops baseline_loops();

@@ -121,17 +121,7 @@ double factor(const FactorTables& t) {
   return least;
 }
 
-void block(const BlockRow* row, const BlockRow* last, const BlockTerm* terms, const double* entries, double* z) {
-  typedef double Vector __attribute__((vector_size(64), aligned(8)));
-  for (; row != last; ++row) {
-    Vector sum = {};
-    for (std::uint32_t k = row->first; k < row->last; ++k)
-      sum += entries[terms[k].entry] * *reinterpret_cast<const Vector*>(z + std::size_t{8} * terms[k].operand);
-    *reinterpret_cast<Vector*>(z + std::size_t{8} * row->target) = sum;
-  }
-}
-
-Loops loops_of_this_file() { return {factor, sweep, block}; }
+Loops loops_of_this_file() { return {factor, sweep}; }
 
 }  // namespace
 }  // namespace maupertuis::sparse
