@@ -1,4 +1,5 @@
-# What kernel/llvm links: LLVM 19 and SLEEF. A build without one of them has no compiled kernels and is whole otherwise.
+# What machine_code/llvm links: LLVM 19 and SLEEF. A build without one of them has no compiled kernels and is whole
+# otherwise.
 option(MAUPERTUIS_LLVM "Build the module of compiled kernels, if LLVM 19 and SLEEF are installed" ON)
 set(llvm_libraries "")
 find_program(LLVM19_CONFIG NAMES llvm-config-19 llvm-config PATHS /usr/lib/llvm-19/bin)
@@ -42,7 +43,7 @@ endif()
 # The two sides of the border share types; the tag tells whether they are of one build.
 file(GLOB border CONFIGURE_DEPENDS
   ${PROJECT_SOURCE_DIR}/src/kernel/program/*.hpp ${PROJECT_SOURCE_DIR}/src/kernel/packed/*.hpp
-  ${PROJECT_SOURCE_DIR}/src/kernel/lanes/*.hpp ${PROJECT_SOURCE_DIR}/src/kernel/machine_code/*.hpp
+  ${PROJECT_SOURCE_DIR}/src/kernel/lanes/*.hpp ${PROJECT_SOURCE_DIR}/src/machine_code/*.hpp
   ${PROJECT_SOURCE_DIR}/src/kernel/straight_line/*.hpp
   ${PROJECT_SOURCE_DIR}/include/maupertuis/expression.hpp ${PROJECT_SOURCE_DIR}/include/maupertuis/functions.hpp)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${border})

@@ -103,16 +103,17 @@ function(maup_module directory)
   set_property(GLOBAL APPEND PROPERTY MAUP_MODULES maup_${name})
 endfunction()
 
-# What the program has to know of the module kernel/llvm: its file, where it is installed, and the build it belongs to.
+# What the program has to know of the module machine_code/llvm: its file, where it is installed, and the build it
+# belongs to.
 function(maup_describe_llvm_module)
   include(GNUInstallDirs)
   file(RELATIVE_PATH from_program /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR}/maupertuis)
-  set_property(SOURCE ${PROJECT_SOURCE_DIR}/src/kernel/machine_code/backend.cpp PROPERTY COMPILE_DEFINITIONS
+  set_property(SOURCE ${PROJECT_SOURCE_DIR}/src/machine_code/backend.cpp PROPERTY COMPILE_DEFINITIONS
     "MAUPERTUIS_BUILD_TAG=\"${MAUPERTUIS_BUILD_TAG}\""
-    "MAUPERTUIS_LLVM_FILE=\"libmaup_kernel_llvm.so\""
+    "MAUPERTUIS_LLVM_FILE=\"libmaup_machine_code_llvm.so\""
     "MAUPERTUIS_MODULE_FROM_PROGRAM=\"${from_program}\""
     "MAUPERTUIS_MODULE_FOLDER=\"${CMAKE_INSTALL_FULL_LIBDIR}/maupertuis\"")
-  target_link_libraries(maup_kernel_machine_code PRIVATE ${CMAKE_DL_LIBS})
+  target_link_libraries(maup_machine_code PRIVATE ${CMAKE_DL_LIBS})
   set_property(GLOBAL APPEND PROPERTY MAUP_LIBRARIES ${CMAKE_DL_LIBS})
 endfunction()
 

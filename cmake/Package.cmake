@@ -54,7 +54,7 @@ certifies them by independent routes, and runs them to the last digits of
 double precision. It finds equilibria and modes, conserved quantities,
 periodic motions and paths of stationary action, and writes a whole study
 on one page.")
-  if(TARGET maup_kernel_llvm)
+  if(TARGET maup_machine_code_llvm)
     package(llvm maupertuis-llvm science
       DEPENDS "maupertuis (= ${package_version}), libsleef3"
       SUMMARY "machine code for the motions of maupertuis"

@@ -94,7 +94,7 @@ def run(build, suite, program, seconds):
         resource.setrlimit(resource.RLIMIT_CPU, (int(seconds) + 1, int(seconds) + 2))
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    module = build.build / "lib/maupertuis/libmaup_kernel_llvm.so"
+    module = build.build / "lib/maupertuis/libmaup_machine_code_llvm.so"
     environment = {**os.environ, "RC_PARAMS": "seed=1744", "MAUPERTUIS_LLVM_MODULE": str(module)}
     words = [w.replace("{program}", str(program)) for w in suite.command]
     try:

@@ -1,5 +1,5 @@
 #pragma once
-#include "kernel/disks/envelope.hpp"
+#include "disks/envelope.hpp"
 
 #include <maupertuis/disks.hpp>
 

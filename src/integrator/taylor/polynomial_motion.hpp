@@ -1,6 +1,6 @@
 #pragma once
 #include "integrator/taylor/step_size.hpp"
-#include "kernel/disks/degrees.hpp"
+#include "disks/degrees.hpp"
 
 #include <span>
 #include <vector>

@@ -1,8 +1,8 @@
 #pragma once
 #include "integrator/taylor/polynomial_motion.hpp"
 #include "integrator/taylor/switches.hpp"
-#include "kernel/disks/retrace.hpp"
-#include "kernel/disks/scaled_rows.hpp"
+#include "disks/retrace.hpp"
+#include "disks/scaled_rows.hpp"
 
 #include <algorithm>
 #include <limits>

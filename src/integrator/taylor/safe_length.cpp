@@ -1,6 +1,6 @@
 #include "integrator/taylor/safe_length.hpp"
 
-#include "kernel/disks/whole_power.hpp"
+#include "disks/whole_power.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "integrator/taylor/watched_functions.hpp"
 
-#include "kernel/disks/unread_switches.hpp"
+#include "disks/unread_switches.hpp"
 
 #include <algorithm>
 #include <cmath>

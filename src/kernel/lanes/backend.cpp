@@ -1,6 +1,6 @@
 #include "kernel/lanes/lanes.hpp"
 #include "kernel/lanes/plan.hpp"
-#include "kernel/program/processor.hpp"
+#include "machine_code/processor.hpp"
 #include "kernel/series/elementary.hpp"
 
 #include <maupertuis/lanes.hpp>

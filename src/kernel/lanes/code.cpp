@@ -1,5 +1,5 @@
+#include "kernel/program/code.hpp"
 #include "kernel/lanes/lanes.hpp"
-#include "kernel/machine_code/backend.hpp"
 
 #include <maupertuis/lanes.hpp>
 #include <maupertuis/require.hpp>
@@ -32,13 +32,13 @@ CompiledLanes compiled_lanes(const Kernel& kernel, int width, const CompileOptio
   request.emitter = machine_code::Emitter::Lanes;
   request.source = &kernel.program();
   request.width = width;
-  auto [code, report] = machine_code::compile(request, machine_code::digest_of(kernel.program()), options);
+  machine_code::Compiled made = machine_code::compile(request, digest_of(kernel.program()), options);
   CompiledLanes out;
-  if (code) out.expansion = std::make_shared<LanesInCode>(width, code);
-  out.trouble = std::move(report.trouble);
-  out.cache_trouble = std::move(report.cache_trouble);
-  out.seconds = report.seconds;
-  out.from_cache = report.from_cache;
+  if (made.code) out.expansion = std::make_shared<LanesInCode>(width, made.code);
+  out.trouble = std::move(made.trouble);
+  out.cache_trouble = std::move(made.cache_trouble);
+  out.seconds = made.seconds;
+  out.from_cache = made.from_cache;
   return out;
 }
 

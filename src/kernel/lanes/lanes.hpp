@@ -16,13 +16,12 @@ std::size_t row_stride(const Program& program);
 std::size_t scratch_size(const Program& program);
 
 /// The stages first_stage … stages − 1 of section Dynamics.
-///   rows       [orders][stride][W]. In: slots of One and Time at all orders, q and q̇ in rows 0 and 1 (q̇_k and λ_k
-///   beyond are
-///              found). Out: every coefficient of the slots of Dynamics up to the order that the stages reach.
+///   rows       [orders][stride][W]. In: slots of One and Time at all orders, q and q̇ in rows 0 and 1. Out: every
+///              coefficient of the slots of Dynamics up to the order that the stages reach.
 ///   constants  [program.constants][W], evaluated: each lane may have its own parameters.
 ///   quality    [W] out: the smallest pivot of M₀, scaled to a unit diagonal, in units of the largest; NaN where
-///   something is
-///              not finite. A lane of low quality is to be repeated by the reference interpreter, which decides.
+///              something is not finite. A motion of low quality is to be repeated by itself, with a solver that
+///              pivots.
 ///   scratch    [scratch_size(program)][W]
 /// All pointers are aligned to 64 bytes. The results of a lane depend neither on W nor on the other lanes, to the bit.
 using Expand = void (*)(double* rows, const double* constants, double* quality, double* scratch, int stages);

@@ -1,6 +1,6 @@
 #include "kernel/packed/engine.hpp"
 
-#include "kernel/program/processor.hpp"
+#include "machine_code/processor.hpp"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 #include "kernel/program/lowering.hpp"
-#include "kernel/program/processor.hpp"
+#include "machine_code/processor.hpp"
 #include "kernel/program/program.hpp"
 #include "kernel/program/winding.hpp"
 

@@ -1,6 +1,6 @@
 #include "kernel/sparse/loops.hpp"
 
-#include "kernel/program/processor.hpp"
+#include "machine_code/processor.hpp"
 
 namespace maupertuis::sparse {
 namespace {

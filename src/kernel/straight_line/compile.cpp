@@ -1,7 +1,6 @@
 #include "kernel/straight_line/compile.hpp"
 
-#include "kernel/machine_code/backend.hpp"
-#include "kernel/machine_code/digest.hpp"
+#include "kernel/program/code.hpp"
 
 #include <string>
 
@@ -39,12 +38,12 @@ std::pair<Code, CompileReport> compile(const std::vector<StraightLine>& lines, c
   machine_code::Request request;
   request.emitter = machine_code::Emitter::StraightLines;
   request.source = &lines;
-  auto [made, report] = machine_code::compile(request, digester.digest(), options);
+  const machine_code::Compiled made = machine_code::compile(request, digester.digest(), options);
   Code code;
-  code.memory_ = made;
-  for (std::size_t i = 0; made && i < lines.size(); ++i)
-    code.functions_.push_back(made->find("line" + std::to_string(i)));
-  return {std::move(code), std::move(report)};
+  code.memory_ = made.code;
+  for (std::size_t i = 0; made.code && i < lines.size(); ++i)
+    code.functions_.push_back(made.code->find("line" + std::to_string(i)));
+  return {std::move(code), report_of(made)};
 }
 
 }  // namespace maupertuis::straight

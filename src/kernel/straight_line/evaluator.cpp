@@ -1,6 +1,6 @@
 #include "kernel/straight_line/evaluator.hpp"
 
-#include "kernel/program/processor.hpp"
+#include "machine_code/processor.hpp"
 #include "kernel/series/elementary.hpp"
 
 #include <maupertuis/require.hpp>

@@ -1,6 +1,6 @@
 #include "kernel/workspace/expansion_code.hpp"
 
-#include "kernel/machine_code/backend.hpp"
+#include "kernel/program/code.hpp"
 
 #include <type_traits>
 
@@ -13,10 +13,9 @@ std::pair<ExpansionCode, CompileReport> compile(const packed::PackedProgram& pro
   request.source = &program;
   request.order = order;
   request.stride = stride;
-  auto compiled = machine_code::compile(request, machine_code::digest_of(program.program), options);
-  const auto& made = compiled.first;
+  const machine_code::Compiled compiled = machine_code::compile(request, digest_of(program.program), options);
   ExpansionCode code;
-  if (made) {
+  if (const auto& made = compiled.code) {
     const auto find = [&](auto& function, const char* name) {
       function = reinterpret_cast<std::decay_t<decltype(function)>>(made->find(name));
     };
@@ -25,7 +24,7 @@ std::pair<ExpansionCode, CompileReport> compile(const packed::PackedProgram& pro
     find(code.ahead, "ahead"), find(code.later, "later"), find(code.tangents, "tangents");
     code.memory = made;
   }
-  return {std::move(code), std::move(compiled.second)};
+  return {std::move(code), report_of(compiled)};
 }
 
 }  // namespace maupertuis::workspace

@@ -13,7 +13,8 @@ std::size_t count(const std::string& text, const std::string& part) {
 }  // namespace
 
 TEST_CASE("names of files keep their underscores in prose") {
-  CHECK(sentence_html("libmaup_kernel_llvm.so of x_longname") == "libmaup_kernel_llvm.so of x<sub>longname</sub>");
+  CHECK(sentence_html("libmaup_machine_code_llvm.so of x_longname") ==
+        "libmaup_machine_code_llvm.so of x<sub>longname</sub>");
 }
 
 TEST_CASE("text is never markup") {

@@ -1,6 +1,6 @@
 // Motions on parabolas: short expansions, long steps, and steps that go on where only what is watched changes.
 #include "integrator/taylor/polynomial_motion.hpp"
-#include "kernel/disks/unread_switches.hpp"
+#include "disks/unread_switches.hpp"
 
 #include <doctest/doctest.h>
 #include <maupertuis/integrator.hpp>
