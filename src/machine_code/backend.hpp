@@ -19,9 +19,8 @@ struct Module {
   std::string trouble;  // one sentence; empty where `interface` is set
 };
 
-/// Where the module is looked for: the file that the environment variable MAUPERTUIS_LLVM_MODULE names and no other, if
-/// it is set; else
-/// ../lib/maupertuis from the program, then the folder of the installation.
+/// Where the module is looked for: where the environment variable MAUPERTUIS_LLVM_MODULE says, if it is set; else in
+/// ../lib/maupertuis from the program, then in the folder of the installation.
 std::filesystem::path module_path();
 
 /// Opens the module. It stays open until the process ends.

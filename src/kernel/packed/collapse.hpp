@@ -16,9 +16,9 @@ namespace maupertuis::packed {
 struct Step {
   Instruction head;
   std::vector<Term> linear, products;  // Function: its differential is in `products`; Select: its choices in `linear`
-  /// number of the running sum that it belongs to; its first linear term is the sum before, or for the
+  /// The running sum that it is a member of; −1: none. The first linear term of a member is the member before it; that
+  /// of the first member is the leaf 1 times 0.
   int chain = -1;
-  // first member the leaf 1 times 0
 };
 
 /// The instructions of section Dynamics, in order.

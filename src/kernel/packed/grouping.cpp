@@ -40,12 +40,13 @@ class Grouping {
     }
   }
 
-  /// A running sum is one member of the order; what nothing in Dynamics waits for comes last, all at once.
+  /// The level of a step is one above the highest of those that it waits for. The members of a running sum share one,
+  /// since they are found together. Steps that no other reads, such as the rows of the residual, share the last.
   void find_levels() {
     constexpr int patience = 200;
     int turn = 0;
     while (raise_levels() && turn < patience) ++turn;
-    if (turn == patience) {  // running sums that wait for each other
+    if (turn == patience) {  // two running sums wait for each other: their members become single steps
       for (Step& s : steps_) s.chain = -1;
       while (raise_levels()) {
       }
@@ -106,7 +107,7 @@ class Grouping {
     for (const auto* slots : {&in_.switch_slots, &in_.events, &in_.observables, &in_.integrands, &in_.constraint_values,
                               &in_.constraint_rates})
       for (const Slot slot : *slots) store(slot);
-    std::map<int, bool> of_chain;  // all members or none
+    std::map<int, bool> of_chain;  // a running sum is stored as a whole
     for (const Step& s : steps_)
       if (s.chain >= 0 && stored_[s.head.out]) of_chain[s.chain] = true;
     for (const Step& s : steps_)
@@ -115,7 +116,7 @@ class Grouping {
 
   // --------------------------------------------------------------------------------------------------------- groups
 
-  /// Where a slot comes from, coarsely: operands of one class may become neighbours.
+  /// Level and operation of the step that a slot comes from: slots of one class may come to lie side by side.
   std::size_t class_of(Slot slot) const {
     const std::size_t producer = producer_[slot];
     if (producer == none) return 0;
@@ -125,7 +126,8 @@ class Grouping {
            is_second;
   }
 
-  /// The factor of lower lag first; like terms of several sums in like places.
+  /// Factors in the order of lag, class and number, and products likewise: so the third product of one sum is like the
+  /// third of another, and both can be lanes of one convolution.
   void align_products() {
     for (Step& s : steps_) {
       if (s.head.op != Op::Products && s.head.op != Op::Linear) continue;

@@ -105,7 +105,7 @@ class Elimination {
     return largest;
   }
 
-  /// Of the entry in the largest one of its column, where it is least.
+  /// The size of an entry against the largest of its column, at the sampled state where that is least.
   double share(const Cell& cell) {
     const Values largest = largest_in_column(cell.column);
     double least = 1;
@@ -114,8 +114,8 @@ class Elimination {
     return least;
   }
 
-  /// M₀ may be singular at a sampled state: then no pivot is large there. The first one is that of the motion, and
-  /// stays.
+  /// M₀ may be singular at a sampled state, where no pivot is large then: the state with the smallest best pivot is
+  /// left out from now on. The first state is that of the motion itself and stays. False: there is no other.
   bool drop_worst_state() {
     Values best{};
     for (const std::uint32_t group : open_)
@@ -150,10 +150,12 @@ class Elimination {
     return out;
   }
 
-  /// The columns of a group are those that its rows own, however they are eliminated.
+  /// The column that stands for a row in its group. Each row owns one, so that a group has as many columns as rows,
+  /// though a row need not be eliminated with its own.
   std::uint32_t partner(std::uint32_t row) const { return own_column_[row]; }
 
-  /// The cheapest groups, as far as they do not touch each other.
+  /// Those groups of the least cost that share no row or column with each other's borders: they can be eliminated in
+  /// any order.
   std::vector<std::uint32_t> choose_round() {
     double least = std::numeric_limits<double>::infinity();
     for (const std::uint32_t group : open_) {
@@ -183,8 +185,8 @@ class Elimination {
     part_ = 0;
   }
 
-  /// Whether what has no acceptable pivot here went to a neighbour: a multiplier has none before its coordinates are
-  /// gone.
+  /// Eliminates all of a group that has an acceptable pivot. The rest, such as a multiplier whose coordinates are still
+  /// there, joins a neighbouring group. True: something did.
   bool eliminate_group(std::uint32_t group) {
     std::uint32_t round = round_;
     while (const auto place = best_pivot(group)) eliminate(place->first, place->second, round++);
@@ -206,7 +208,7 @@ class Elimination {
 
   using Place = std::pair<std::uint32_t, std::uint32_t>;
 
-  /// The cheapest acceptable one among the rows and columns of the group, the rows' own before others.
+  /// The acceptable pivot of the group that fills in least; a row's own column is preferred to all others.
   std::optional<Place> best_pivot(std::uint32_t group) {
     if (between_parts_) return most_certain_pivot(group);
     for (const bool own : {true, false}) {
@@ -272,8 +274,8 @@ class Elimination {
     pivots_.push_back(std::move(pivot));
   }
 
-  /// What is left of the group keeps as many rows as columns: the row that owned the column owns that of this row from
-  /// now on.
+  /// A row eliminated with a column that another row owns gives its own column to that one in exchange, so that the
+  /// groups keep as many columns as rows.
   void take_from_group(std::uint32_t row, std::uint32_t column) {
     std::erase(members_[group_of_row_[row]], row);
     if (own_column_[row] == column) return;

@@ -22,7 +22,8 @@ Value Unrolling::tangents(Step::Part part, const Slots& slots, const std::vector
   return gathered(std::move(lanes));
 }
 
-/// A source of the same lag as the step has f and, of factors at order 1, g; one of the lag before has h.
+/// What the change of a step is made of (see Source): f times the change of an operand of the same lag; where f itself
+/// changes along the motion, g is its coefficient of order 1; h belongs to operands one lag below.
 std::vector<Unrolling::Source> Unrolling::sources(const Step& step) {
   std::vector<Source> out;
   for (const Column& c : step.columns)
@@ -99,8 +100,9 @@ void Unrolling::find_tangents(Step& step) {
   add(Step::own, step.direction);
 }
 
-/// Whether A and B of all steps are found by the rules for sums and integrals, and no sum reads what the stage before
-/// has just found: that would hold the q̈ that is to come last.
+/// Looking ahead, a stage is computed before q̈ of the stage before is known, whose part is added at the end by A and B.
+/// Sums and integrals alone have rules for A and B; and no sum may read the coefficient that q̈ of the stage before
+/// changes, since its part would be missing there.
 bool Unrolling::can_look_ahead() const {
   return n_ <= most_waiting && std::all_of(steps_.begin(), steps_.end(), [&](const Step& step) {
            if (!is_moved(step)) return true;
@@ -111,7 +113,7 @@ bool Unrolling::can_look_ahead() const {
          });
 }
 
-/// After stage 1, when all coefficients of order 1 are known that A and B take.
+/// A and B of the residual times −M₀⁻¹. After stage 1: they are made of coefficients of order 1.
 void Unrolling::look_ahead() {
   for (Step& step : steps_)
     if (is_moved(step)) find_second_tangents(step);
@@ -125,8 +127,8 @@ void Unrolling::look_ahead() {
   }
 }
 
-/// Whether A and B of each lane are of the direction that its T has: not so where q̈_i = f(q, q̇_j), as in polar
-/// coordinates.
+/// Whether each lane is changed by one coordinate alone also through A and B, the one that changes it through T. Not so
+/// where q̈_i = f(q, q̇_j), as in polar coordinates.
 bool Unrolling::keeps_directions(const Step& step, const std::vector<Source>& all) {
   const auto is_moved_by = [&](const Source& s, std::size_t lane, int d) {
     const auto has = [&](Step::Part part) { return !to_.is_zero(tangent(part, s.slots[lane], d)); };

@@ -13,9 +13,9 @@ namespace maupertuis::workspace {
 using reference::Doubles;
 using reference::Memory;
 
-/// M₀ x = b for systems so large that a full M₀ costs more. M₀ of a chain is full, but it is what is left of a sparse
-/// matrix when the points between q̈ and the residual are eliminated: that larger system (sparse::LiftedSystem) is
-/// solved in place of M₀, at a cost that grows as the number of links.
+/// M₀ x = b for systems so large that a full M₀ costs more. The mass matrix of a chain is full, but the accelerations of
+/// its points follow from each other by a few products a link. With these accelerations as unknowns beside q̈ the system
+/// is larger and sparse (sparse::LiftedSystem), and solving it costs as much a link however many links there are.
 ///
 /// Its pivots are chosen once, and may become small where the motion goes. So the first solution of each step is put
 /// into the equations again. What it leaves of b decides: the step is solved here, perhaps with a correction of each
@@ -54,10 +54,10 @@ class LiftedSolve {
   /// In the direction of the last solution, of a stage, those of the stored slots of the packed program; null where
   /// they are too rough.
   const double* tangents(int stage) const { return is_rough(stage) ? nullptr : cells_.data(); }
-  /// A solution in parts leaves up to 40 times as much of b as one from link to link, since it closes the gaps between
-  /// parts by forces, which are large where a chain is heavy. A motion depends on its orders the less the higher they
-  /// are: q̈₀ is to be solved for twice, and its tangents found from it. (With q̈₁ solved for twice as well, energies err
-  /// by as much.)
+  /// Whether the solution of a stage is to be improved by a second one for what the first leaves of b. A solution in
+  /// parts leaves up to 40 times as much as one from link to link, since it closes the gaps between parts by forces,
+  /// which are large where a chain is heavy. Only q̈₀ is worth it: with q̈₁ solved for twice as well, energies of runs
+  /// err by as much as without.
   bool is_rough(int stage) const { return in_parts_ && stage == 0; }
 
   /// The smallest pivot in units of its terms and of its size where the pivots were chosen; by code 1 where all are
@@ -107,10 +107,11 @@ class LiftedSolve {
   int failures_ = 0;
   std::optional<CompileOptions> options_;  // of the code that is wanted
   std::optional<CompileReport> report_;
-  /// of the solver's solve(), then of what is named here, where it is not 0
+  /// The code of a solution; then that of the factors and that of −M₀⁻¹, at the places that follow (0: there is none).
   straight::Code code_;
   std::size_t factor_line_ = 0, columns_line_ = 0;
-  /// of negative_inverse(), [eights of columns]: eights of rows that are found there, but not the other way round
+  /// The code finds half of the symmetric −M₀⁻¹, in blocks of 8 × 8. [eights of columns] the eights of rows that it
+  /// finds there; negative_inverse() mirrors these.
   std::vector<std::vector<std::size_t>> mirrored_;
   bool in_parts_ = false, parts_failed_ = false;
   std::vector<double> scratch_;  // of the code

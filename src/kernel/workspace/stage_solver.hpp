@@ -115,8 +115,9 @@ class StageSolver {
   std::vector<double> usual_accelerations_;  // [n] or empty
   Doubles solution_;                         // q̈_k and λ_k, padded
   std::span<double> unknown_;                // [n + m] of it: −R_k, then q̈_k and λ_k
-  Doubles rough_;                            // a solution that is being corrected, padded
-  /// tangents in the direction by which a first solution was wrong, to be taken off again; null: none
+  Doubles rough_;                            // a first solution that a second one improves, padded
+  /// Tangents in the direction of the second solution: `tangent_` is that of the first one, and the corrections of the
+  /// stage are to take these off. Null: there was no second solution.
   const double* excess_ = nullptr;
   std::pair<Slot, Slot> residual_vectors_;  // see find_residual_vectors()
 

@@ -180,13 +180,15 @@ void RolledEmitter::add_up_alone(int stage) {
   });
 }
 
-/// Not where at the first stage b_1, with which the highest order of a is multiplied, would not be final.
+/// Whether a stage multiplies the highest orders of its operands itself. Not where both have the lag 2 of the result:
+/// the highest order of a meets b_1 then, which stage 1 itself has still to find.
 bool RolledEmitter::adds_late(const Class& c) {
   const auto [lag, a_ahead, b_ahead] = c;
   return lag < 2 || a_ahead > 0 || b_ahead > 0;
 }
 
-/// Of stage s itself: a_{m−1+D_a} b_{1−D_a} and the other way round, where D_a ≤ 1.
+/// sum + the products that stage s adds itself: the highest order of a that is final before it, a_{m−1+D_a} b_{1−D_a},
+/// and the same with a and b exchanged. None where an operand is two orders ahead.
 Value* RolledEmitter::late_terms(const packed::Convolution& c, Value* sum) {
   const int a_ahead = c.lag - p_.blocks[c.a].lag, b_ahead = c.lag - p_.blocks[c.b].lag;
   if (!adds_late({c.lag, a_ahead, b_ahead})) return sum;
