@@ -64,7 +64,7 @@ struct CommandLine::Implementation {
                        "\n`maup COMMAND --help` shows examples and options. A first model: maup new pendulum"};
   Console console;
   bool json = false;
-  std::string color;
+  std::string color, name;
   Action chosen;
 };
 
@@ -75,8 +75,10 @@ CommandLine::~CommandLine() = default;
 Command& CommandLine::add(const std::string& name, const std::string& summary, const std::string& examples,
                           Action action) {
   Implementation& line = *implementation_;
-  Command& command =
-      line.parser.add(name, summary, examples, [&line, action = std::move(action)] { line.chosen = action; });
+  Command& command = line.parser.add(name, summary, examples, [&line, name, action = std::move(action)] {
+    line.chosen = action;
+    line.name = name;
+  });
   command.add_flag("--json", line.json, "The result as a JSON document on standard output");
   command.add_option("--color", line.color, "Color in messages; NO_COLOR is honoured")
       ->one_of({"auto", "always", "never"})
@@ -101,7 +103,9 @@ ExitCode CommandLine::run(int argc, char** argv) {
   line.console.use_json(line.json);
   line.console.use_color(color_named(line.color));
   warn_of_environment(line.console);
+  line.console.begin_progress(line.name);
   const ExitCode code = outcome_of(line.chosen, line.console);
+  line.console.end_progress();
   const std::string failure = line.console.flush();
   if (failure.empty()) return code;
   Diagnostics diagnostics;

@@ -32,7 +32,17 @@ void Console::show(const Diagnostics& diagnostics, const SourceTexts& texts) con
 
 void Console::say(std::string_view text) const { draw(visible(text)); }
 
-void Console::draw(std::string_view text) const { std::fwrite(text.data(), 1, text.size(), stderr); }
+void Console::draw(std::string_view text) const {
+  if (progress_) progress_->wipe();
+  std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
+void Console::begin_progress(std::string command) {
+  constexpr std::chrono::milliseconds patience(1000);
+  if (json_ || !interactive()) return;
+  progress_ = std::make_unique<ProgressLine>(
+      std::move(command), patience, [](std::string_view text) { std::fwrite(text.data(), 1, text.size(), stderr); });
+}
 
 std::string Console::flush() {
   errno = 0;

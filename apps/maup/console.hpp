@@ -1,6 +1,9 @@
 #pragma once
+#include "progress_line.hpp"
+
 #include <maupertuis/diagnostic.hpp>
 
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
@@ -30,6 +33,16 @@ class Console {
   /// To standard error as it is: escape sequences of our own.
   void draw(std::string_view text) const;
 
+  /// From here on a line of the terminal tells what is done, where standard error is one and nothing asks for JSON.
+  void begin_progress(std::string command);
+  void end_progress() { progress_.reset(); }
+  /// The line; null where there is none.
+  ProgressLine* progress() const { return progress_.get(); }
+  /// The part of the work that begins.
+  void at(std::string part) const {
+    if (progress_) progress_->tell(std::move(part));
+  }
+
   /// Whether something was printed that flush() will write.
   bool has_data() const { return !data_.empty(); }
   /// What an interrupted command leaves, where that is not what it printed: "run.svg shows the motion up to t = 3 s."
@@ -46,6 +59,7 @@ class Console {
   Color color_ = Color::Auto;
   bool json_ = false;
   std::string data_, left_;
+  std::unique_ptr<ProgressLine> progress_;
 };
 
 }  // namespace maupertuis::app

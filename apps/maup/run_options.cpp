@@ -29,29 +29,17 @@ std::optional<double> time_option(const char* option, const std::string& text, D
   return value ? std::optional(value->to_double()) : std::nullopt;
 }
 
-/// One line on the terminal, redrawn at most ten times a second, and wiped at the end.
-class Progress {
- public:
-  explicit Progress(const Console& console) : console_(console) {}
-  ~Progress() {
-    if (drawn_) console_.draw("\r\x1b[K");
-  }
-  void operator()(double fraction) {
-    const auto now = Clock::now();
-    if (now - last_ < std::chrono::milliseconds(100)) return;
-    last_ = now;
-    const double passed = std::chrono::duration<double>(now - begin_).count();
-    if (passed < 0.5 || !(fraction > 0)) return;
-    drawn_ = true;
-    console_.draw(fmt::format("\r\x1b[K{:3.0f} %, {:.0f} s to go", 100 * fraction, passed / fraction - passed));
-  }
-
- private:
+/// What the line of progress says of a run: a fraction of it is done.
+std::function<void(double)> progress_of_run(const Console& console) {
   using Clock = std::chrono::steady_clock;
-  const Console& console_;
-  Clock::time_point begin_ = Clock::now(), last_ = begin_;
-  bool drawn_ = false;
-};
+  if (!console.progress()) return {};
+  return [line = console.progress(), begin = Clock::now()](double fraction) {
+    const double passed = std::chrono::duration<double>(Clock::now() - begin).count();
+    line->measure(fraction > 0 && fraction < 1
+                      ? fmt::format("{:.0f} %, {:.0f} s to go", 100 * fraction, passed / fraction - passed)
+                      : std::string());
+  };
+}
 
 }  // namespace
 
@@ -222,26 +210,23 @@ void put_in_run(const RunOptions& options, Study& study) {
 }
 
 std::optional<SimulationResult> run_model(Study& study, const SimulationOptions& options, const Console& console) {
-  Progress progress(console);
   SimulationOptions with_progress = options;
-  if (console.interactive()) with_progress.progress = [&progress](double fraction) { progress(fraction); };
+  with_progress.progress = progress_of_run(console);
   return study.motion(with_progress);
 }
 
 std::optional<FieldRunResult> run_model(Study& study, const SimulationOptions& options, FieldMotionOptions kept,
                                         const Console& console) {
-  Progress progress(console);
   SimulationOptions with_progress = options;
-  if (console.interactive()) with_progress.progress = [&progress](double fraction) { progress(fraction); };
+  with_progress.progress = progress_of_run(console);
   kept.announce = [&console](const std::string& sentence) { console.say(sentence + "\n"); };
   return run_of_fields(study, with_progress, kept);
 }
 
 std::optional<ExtendedResult> run_model(Study& study, const ExtendedSimulationOptions& options,
                                         const Console& console) {
-  Progress progress(console);
   ExtendedSimulationOptions with_progress = options;
-  if (console.interactive()) with_progress.progress = [&progress](double fraction) { progress(fraction); };
+  with_progress.progress = progress_of_run(console);
   return study.motion(with_progress);
 }
 

@@ -23,10 +23,6 @@ SectionBudget::SectionBudget(std::optional<double> seconds, std::vector<std::str
     end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*seconds));
 }
 
-SectionBudget::~SectionBudget() {
-  if (drawn_) console_.draw("\r\x1b[K");
-}
-
 bool SectionBudget::wanted(std::string_view section) const {
   return chosen_.empty() || std::find(chosen_.begin(), chosen_.end(), section) != chosen_.end();
 }
@@ -35,11 +31,9 @@ bool SectionBudget::wanted(std::string_view section) const {
 std::optional<double> SectionBudget::begin(std::string_view section) {
   Interrupt(&interrupt_flag()).throw_if_asked();
   const double left = seconds_ ? std::max(0.0, std::chrono::duration<double>(end_ - Clock::now()).count()) : 0;
-  if (console_.interactive() && !console_.json()) {
-    drawn_ = true;
-    console_.draw(fmt::format("\r\x1b[K{}{}", section,
-                              seconds_ ? fmt::format(", {:.0f} s of {:.0f} s left", left, *seconds_) : ""));
-  }
+  if (ProgressLine* const line = console_.progress())
+    line->tell_now(seconds_ ? fmt::format("{} ({:.0f} s of {:.0f} s left)", section, left, *seconds_)
+                            : std::string(section));
   return seconds_ ? std::optional(left / 2) : std::nullopt;
 }
 

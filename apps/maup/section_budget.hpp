@@ -22,7 +22,6 @@ class SectionBudget {
 
   /// `seconds`: none is no bound. `chosen`: empty is all. `console` shows progress where it is a terminal.
   SectionBudget(std::optional<double> seconds, std::vector<std::string> chosen, const Console& console);
-  ~SectionBudget();
   SectionBudget(const SectionBudget&) = delete;
   SectionBudget& operator=(const SectionBudget&) = delete;
 
@@ -52,7 +51,6 @@ class SectionBudget {
   std::optional<double> seconds_;
   std::vector<std::string> chosen_, written_, left_out_;
   const Console& console_;
-  bool drawn_ = false;
 };
 
 }  // namespace maupertuis::app

@@ -190,15 +190,14 @@ std::string video_of(const AnimateOptions& o, const Drawing& drawing, Film& film
   film.picture.width = options.width;
   film.picture.height = options.height;
   Video video(find_ffmpeg(), options);
-  const std::size_t tenth = std::max<std::size_t>(1, film.elapsed.size() / 100);
+  const std::size_t hundredth = std::max<std::size_t>(1, film.elapsed.size() / 100);
   for (std::size_t i = 0; i < film.elapsed.size(); ++i) {
     if (interrupt_flag().load()) return {};
     film.picture.caption = caption(drawing, film.elapsed[i], film.speed / film.fps / 2, film.picture);
     if (!video.add(pixels_of(frame_svg(drawing, film.elapsed[i], film.picture), options.width, options.height))) break;
-    if (console.interactive() && !console.json() && i % tenth == 0)
-      console.say(fmt::format("\r\x1b[K{} of {} frames", i + 1, film.elapsed.size()));
+    if (console.progress() && i % hundredth == 0)
+      console.progress()->measure(fmt::format("{} of {} frames", i + 1, film.elapsed.size()));
   }
-  if (console.interactive() && !console.json()) console.say("\r\x1b[K");
   if (interrupt_flag().load()) return {};  // the film in the making goes with `video`
   const Video::Film made = video.finish();
   if (!made.problem.empty())

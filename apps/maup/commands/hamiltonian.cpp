@@ -92,10 +92,11 @@ std::optional<DegenerateAnalysis> count_of_lagrange(Study& study) {
   return analyse_degenerate(*study.equations(), generic_state(*study.model()), false);
 }
 
-PhaseSpace analyse(const HamiltonianOptions& options, Study& study) {
+PhaseSpace analyse(const HamiltonianOptions& options, Study& study, const Console& console) {
   PhaseSpace found;
   const InterruptScope scope = study.interruptible();
   const EquationsOfMotion& equations = *study.equations();
+  console.at("Legendre transform");
   found.hamiltonian = hamiltonian(equations);
   report_legendre(found.hamiltonian, study.diagnostics());
   const std::vector<std::size_t> replaced = coordinates_named(options.routhian, study);
@@ -103,11 +104,13 @@ PhaseSpace analyse(const HamiltonianOptions& options, Study& study) {
   if (found.hamiltonian.legendre.has(LegendreKind::Singular))
     found.dirac = dirac_analysis(found.hamiltonian, equations, generic_state(*study.model()));
   found.brackets = brackets_of(options, found.hamiltonian, found.dirac, study);
+  console.at("proofs");
   found.certificate = certify(found.hamiltonian, equations);
   if (found.routhian)
     for (CertificateCheck& check : certify(*found.routhian, found.hamiltonian, equations).checks)
       found.certificate.checks.push_back(std::move(check));
   judge(found.certificate, study.diagnostics());
+  console.at("lines to read");
   found.lines = phase_space_lines(found.hamiltonian, found.routhian ? &*found.routhian : nullptr, equations);
   if (found.dirac) {
     const auto lagrange = count_of_lagrange(study);
@@ -183,7 +186,7 @@ ExitCode hamiltonian_of(const HamiltonianOptions& options, Console& console) {
   if (!options.integrate) study.admit_singular_mass_matrix();  // then there are primary constraints
   if (!study.model() || study.refuse_held_integrals() || study.refuse_modes() || !study.certificate())
     return finish(console, study, document);
-  const PhaseSpace found = analyse(options, study);
+  const PhaseSpace found = analyse(options, study, console);
   if (study.wrong()) return finish(console, study, document);
   if (!console.json()) {
     if (options.latex)

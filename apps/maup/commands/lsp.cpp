@@ -8,6 +8,7 @@ namespace maupertuis::app {
 namespace {
 
 ExitCode serve(Console& console) {
+  console.end_progress();
   if (isatty(STDIN_FILENO) == 1)
     console.say("maup lsp waits for an editor: it speaks the Language Server Protocol. Ctrl-C ends it.\n");
   lsp::Server server(STDIN_FILENO, STDOUT_FILENO, interrupt_flag());

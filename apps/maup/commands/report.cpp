@@ -303,12 +303,11 @@ ExitCode report_fields(const ReportOptions& options, Study& study, Console& cons
     check_output_files({{"-o", options.output, FileKind::Page}}, options.model.path, study.diagnostics());
   if (study.wrong()) return finish_usage(console, study, "report");
   if (!study.model()) return finish(console, study, document);
-  std::optional<SectionBudget> budget(std::in_place, seconds, options.sections, console);
-  const auto html = page_of_fields(study, settings, !options.without_run, *budget);
+  SectionBudget budget(seconds, options.sections, console);
+  const auto html = page_of_fields(study, settings, !options.without_run, budget);
   if (!html) return finish(console, study, document);
-  document["sections"] = budget->written();
-  document["left_out"] = budget->left_out();
-  budget.reset();  // wipes the line of progress
+  document["sections"] = budget.written();
+  document["left_out"] = budget.left_out();
   return write_page(*html, std::nullopt, options, study, document, console);
 }
 
@@ -328,16 +327,15 @@ ExitCode report(const ReportOptions& options, Console& console) {
   put_in_section(options.orbits, study);
   if (study.refuse_held_integrals() || !study.model()) return finish(console, study, document);
 
-  std::optional<SectionBudget> budget(std::in_place, seconds, options.sections, console);
-  Page page(options, study, *budget, settings, console);
+  SectionBudget budget(seconds, options.sections, console);
+  Page page(options, study, budget, settings, console);
   if (!page.certify()) return finish_without(console, study, "report");
   if (!study.wrong()) page.run();
   if (study.wrong()) return finish(console, study, document);
   if (!page.find()) return finish_without(console, study, "report");
   const std::string html = page.html();
-  document["sections"] = budget->written();
-  document["left_out"] = budget->left_out();
-  budget.reset();  // wipes the line of progress
+  document["sections"] = budget.written();
+  document["left_out"] = budget.left_out();
   return write_page(html, page.result(), options, study, document, console);
 }
 

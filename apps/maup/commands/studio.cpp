@@ -62,6 +62,7 @@ bool find_models(const StudioOptions& options, fs::path& folder, std::string& op
 }
 
 ExitCode start(const StudioOptions& options, Console& console) {
+  console.end_progress();
   Diagnostics diagnostics;
   fs::path folder;
   std::string open;

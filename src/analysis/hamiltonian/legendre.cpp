@@ -113,6 +113,7 @@ class Transform {
   LegendreBlock block_of(const std::vector<std::size_t>& rows) {
     LegendreBlock block;
     block.mass = {rows.size(), rows.size(), {}};
+    const bool is_solved = rows.size() <= largest_eliminated;  // else nobody reads n² entries of M one by one
     ExprVector own;
     bool quadratic = true;
     for (const std::size_t i : rows) {
@@ -120,7 +121,9 @@ class Transform {
       own.push_back(velocities_[i]);
       for (const std::size_t j : rows) {
         const std::size_t k = block.mass.entries.size(), row = k / rows.size(), column = k % rows.size();
-        block.mass.entries.push_back(column < row ? block.mass.at(column, row) : tidy(mass_.at(i, j), problem_.order));
+        block.mass.entries.push_back(column < row ? block.mass.at(column, row)
+                                     : is_solved  ? tidy(mass_.at(i, j), problem_.order)
+                                                  : mass_.at(i, j));
         quadratic &= !has_velocities(mass_.at(i, j));
       }
     }
@@ -128,7 +131,7 @@ class Transform {
     if (const auto root = quadratic ? std::nullopt : root_lagrangian(problem_, block.coordinates)) {
       roots_.emplace(blocks_, root->root);
       transform_root(block, *root, problem_);
-    } else if (!quadratic || rows.size() > largest_eliminated) {
+    } else if (!quadratic || !is_solved) {
       block.kind = LegendreKind::Unsolved;
     } else {
       for (const std::size_t i : rows)

@@ -1,5 +1,6 @@
 #include "analysis/hamiltonian/readable_choice.hpp"
 
+#include <maupertuis/couplings.hpp>
 #include <maupertuis/hamiltonian.hpp>
 #include <maupertuis/print.hpp>
 #include <maupertuis/shared_form.hpp>
@@ -26,11 +27,7 @@ class Lines {
       : h_(h), equations_(equations), shown_(equations.shown()) {}
 
   std::vector<DerivationStep> write(const Routhian* routhian) {
-    for (std::size_t i = 0; i < h_.momenta.size(); ++i) {
-      const ReadableForm form = momentum(i);
-      if (!form.intermediates.empty()) long_ones_.emplace_back(lines_.size(), h_.momentum_values[i]);
-      formula("Momenta", "p = ∂L/∂q'", h_.momenta[i], form);
-    }
+    momenta();
     primary_constraints();
     hamiltonian();
     canonical_equations();
@@ -66,17 +63,28 @@ class Lines {
     lines_[long_ones_.front().first].intermediates = std::move(shared.intermediates);
   }
 
+  void momenta() {
+    const bool by_shared_parts = couples_too_much_to_read(equations_);
+    for (std::size_t i = 0; i < h_.momenta.size(); ++i) {
+      const ReadableForm form = by_shared_parts ? ReadableForm{} : momentum(i);
+      const bool is_short = form.value && form.intermediates.empty();
+      if (!is_short) long_ones_.emplace_back(lines_.size(), h_.momentum_values[i]);
+      formula("Momenta", "p = ∂L/∂q'", h_.momenta[i], form);
+    }
+  }
+
   /// The shortest of the readable form and Σ M_ij q_j' + b_i with each coefficient in brackets.
   ReadableForm momentum(std::size_t i) const {
+    constexpr std::size_t most_arranged = 24;  // longer sums are collected by their velocities as it is
     ReadableForm form = readable(h_.momentum_values[i], h_.order);
-    if (!form.intermediates.empty()) return form;
-    ExprVector velocities, terms;
+    const ExprVector velocities = velocities_in(h_.momentum_values[i]);
+    if (!form.intermediates.empty() || velocities.size() > most_arranged) return form;
+    ExprVector terms;
     ExprMap at_rest;
-    for (const Coordinate& c : h_.system->coordinates)
-      velocities.push_back(c.velocity), at_rest.emplace(c.velocity, c.q.context().number(0));
+    for (const Expr& v : velocities) at_rest.emplace(v, v.context().number(0));
     const ExprVector coefficients = gradient(h_.momentum_values[i], velocities);
     for (std::size_t j = 0; j < velocities.size(); ++j) {
-      if (has_velocity(coefficients[j])) return form;
+      if (!velocities_in(coefficients[j]).empty()) return form;
       terms.push_back(tidy(coefficients[j], h_.order) * velocities[j]);
     }
     terms.push_back(tidy(substitute(h_.momentum_values[i], at_rest), h_.order));
@@ -85,10 +93,10 @@ class Lines {
     return form;
   }
 
-  bool has_velocity(Expr e) const {
-    const ExprVector symbols = symbols_of({&e, 1});
-    return std::any_of(symbols.begin(), symbols.end(),
-                       [](Expr s) { return s.role() == Role::Coordinate && s.order() == 1; });
+  static ExprVector velocities_in(Expr e) {
+    ExprVector symbols = symbols_of({&e, 1});
+    std::erase_if(symbols, [](Expr s) { return s.role() != Role::Coordinate || s.order() != 1; });
+    return symbols;
   }
 
   void primary_constraints() {
