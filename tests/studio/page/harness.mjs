@@ -103,6 +103,7 @@ export async function openBrowser(variant) {
       permissions: ['clipboard-read', 'clipboard-write'],
       acceptDownloads: true,
     });
+    context.setDefaultTimeout(120_000); // what does not come at all: a machine may be busy
     const page = await context.newPage();
     page.on('console', message =>
       check(
