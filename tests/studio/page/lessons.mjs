@@ -156,6 +156,7 @@ force x = γ cos(ω t)\nstart x = 0.1\nrun 20\n`,
 V = 1/2 x^2\nforce x = γ cos(ω t) + sin(ν t)\nstart x = 0.1\nrun 20\n`,
     );
     check('of two one is offered', (await page.locator('#section-drive').inputValue()) === 'sin(ω t) = 0 rising');
+    await page.locator('#section > summary').click();
     await page.locator('#section-drive').selectOption('sin(ν t) = 0 rising');
     check('and the other is taken', (await page.locator('#section-at').inputValue()) === 'sin(ν t) = 0 rising');
     await page.locator('#section-at').fill('x = 0');
