@@ -31,7 +31,7 @@ void take_in(Companions& to, CompanionRun run, const CompanionPlan& plan) {
   to.squares.resize(plan.grid.size() * columns);
   for (std::size_t g = 0; g < plan.grid.size(); ++g)
     for (std::size_t c = 0; c < columns; ++c) {
-      const double value = plan.result.trajectory.at(plan.grid[g], c), off = run.rows[g * columns + c] - value;
+      const double value = plan.value(g, c), off = run.rows[g * columns + c] - value;
       if (std::isfinite(value))
         to.squares[g * columns + c] += std::isfinite(off) ? off * off : std::numeric_limits<double>::infinity();
     }
@@ -117,13 +117,7 @@ class Recorder {
     const std::size_t n = plan_.run.q.size(), from = out_.rows.size();
     out_.rows.resize(from + 2 * n);
     const std::span<double> q = std::span(out_.rows).subspan(from, n), v = std::span(out_.rows).subspan(from + n, n);
-    if (plan_.result.statistics.method == "variational") {  // its polynomials are worse than the ends of steps
-      const Sample there = method_.sample(t);
-      std::copy(there.q.begin(), there.q.end(), q.begin());
-      std::copy(there.v.begin(), there.v.end(), v.begin());
-    } else {
-      method_.state(t, q, v);
-    }
+    method_.state(t, q, v);
     if (lost_ && lost_->look(next_row_, out_.rows.data() + from)) last_row_ = std::min(last_row_, next_row_);
   }
 
@@ -299,7 +293,7 @@ class SideBySide {
       next_row_ = rows_until(to);
       const bool all_go_on =
           std::all_of(found.endings.begin(), found.endings.end(), [](const TrajectoryEnding& e) { return e.ok(); });
-      if ((is_lost_ && may_end_early()) || !all_go_on) break;
+      if ((is_lost_ && may_end_early() && !has_probes_after(to)) || !all_go_on) break;
       q_ = found.q, v_ = found.v, from = to;
     }
     Companions out;
@@ -390,6 +384,12 @@ class SideBySide {
   /// Where energy is conserved, motions that have parted do not come together again (Liouville's theorem); where there
   /// is damping they may, on their way to the same rest.
   bool may_end_early() const { return may_end_where_lost(plan_) && plan_.equations.power.is_zero(); }
+
+  /// Functions of a state that is lost may be known: an energy.
+  bool has_probes_after(double t) const {
+    const std::vector<double>& at = plan_.options.at;
+    return plan_.observables.probes > 0 && std::any_of(at.begin(), at.end(), [&](double asked) { return asked > t; });
+  }
 
   std::size_t index_of(double t) const {
     return static_cast<std::size_t>(std::lower_bound(part_.begin(), part_.end(), t) - part_.begin());

@@ -11,6 +11,11 @@
 /// they differ by tells how much of a result is known (docs/design/certain_digits.md).
 namespace maupertuis {
 
+/// States of the run at RunPlan::times_between, as far as it came.
+struct StatesBetween {
+  std::vector<double> times, values;  // [times], [times × 2n]: q, q'
+};
+
 /// What a companion is to follow: the run, and where it is looked at.
 struct CompanionPlan {
   const Model& model;
@@ -18,13 +23,23 @@ struct CompanionPlan {
   const SimulationOptions& options;
   const RunPlan& run;
   const Observables& observables;
-  const SimulationResult& result;        // of the run that counts
-  std::vector<std::size_t> grid;         // rows of the trajectory that are compared, in the order of the run
+  const SimulationResult& result;  // of the run that counts
+  const StatesBetween& between;
+  std::vector<std::size_t> grid;         // what is compared, in the order of the run: row i of the trajectory, or
+                                         // state k between its rows as rows() + k
   bool whole_rows = false;               // all their columns, else q and q' alone
   std::shared_ptr<ModeLibrary> modes{};  // of the run, where it goes through modes
   std::vector<double> accelerations{};   // [n] then: the largest, also of forces that balance
 
-  double time(std::size_t g) const { return result.trajectory.times[grid[g]]; }
+  bool is_row(std::size_t g) const { return grid[g] < result.trajectory.rows(); }
+  double time(std::size_t g) const {
+    return is_row(g) ? result.trajectory.times[grid[g]] : between.times[grid[g] - result.trajectory.rows()];
+  }
+  /// Of the run. Precondition: c < columns(); whole rows have no states between them.
+  double value(std::size_t g, std::size_t c) const {
+    return is_row(g) ? result.trajectory.at(grid[g], c)
+                     : between.values[(grid[g] - result.trajectory.rows()) * 2 * run.q.size() + c];
+  }
   std::size_t columns() const { return whole_rows ? result.trajectory.columns.size() : 2 * run.q.size(); }
 };
 

@@ -11,7 +11,6 @@ namespace maupertuis {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t usual_rows = 400;  // that are compared where no row is to have its errors
 
 constexpr double shrinking = 0.5;  // of what shorter steps change: what still shorter ones change
 constexpr double noise = 1e-6;     // of a column's largest value
@@ -316,14 +315,21 @@ class Teller {
 
 }  // namespace
 
-std::vector<std::size_t> comparison_grid(const Trajectory& rows, const RunPlan& plan, ErrorEstimates wanted) {
+std::vector<std::size_t> comparison_grid(const Trajectory& rows, const StatesBetween& between, const RunPlan& plan,
+                                         ErrorEstimates wanted) {
   std::vector<std::size_t> all;  // rows of the output times; those beside jumps are not
   for (std::size_t row = 0; row < rows.rows() && all.size() < plan.output_times.size(); ++row)
     if (rows.times[row] == plan.output_times[all.size()]) all.push_back(row);
-  const std::size_t stride = wanted == ErrorEstimates::Rows ? 1 : 1 + all.size() / usual_rows;
+  const std::size_t stride = wanted == ErrorEstimates::Rows ? 1 : 1 + all.size() / usual_comparisons;
   std::vector<std::size_t> out;
   for (std::size_t k = 0; k < all.size(); k += stride) out.push_back(all[k]);
   if (!all.empty() && out.back() != all.back()) out.push_back(all.back());
+  const auto time = [&](std::size_t i) { return i < rows.rows() ? rows.times[i] : between.times[i - rows.rows()]; };
+  const auto first_between = static_cast<std::ptrdiff_t>(out.size());
+  for (std::size_t k = 0; k < between.times.size(); ++k) out.push_back(rows.rows() + k);
+  const bool backwards = plan.end < plan.begin;
+  std::inplace_merge(out.begin(), out.begin() + first_between, out.end(),
+                     [&](std::size_t a, std::size_t b) { return backwards ? time(a) > time(b) : time(a) < time(b); });
   return out;
 }
 

@@ -16,10 +16,17 @@ constexpr double noise_of_balance = 1e-12;
 /// An angle has a size of its own, a radian: where nothing turns by more than this, what turns less by far is noise.
 constexpr double small_turn = 1e-6;
 
-double largest_of(const Trajectory& trajectory, std::size_t column) {
+/// In all rows, and of the state between them.
+double largest_of(const CompanionPlan& plan, std::size_t column) {
   double out = 0;
-  for (std::size_t row = 0; row < trajectory.rows(); ++row)
-    if (const double x = std::abs(trajectory.at(row, column)); std::isfinite(x)) out = std::max(out, x);
+  const auto look = [&](double x) {
+    if (std::isfinite(x)) out = std::max(out, std::abs(x));
+  };
+  const Trajectory& rows = plan.result.trajectory;
+  for (std::size_t row = 0; row < rows.rows(); ++row) look(rows.at(row, column));
+  const std::size_t state = 2 * plan.run.q.size();
+  for (std::size_t i = column; column < state && i < plan.between.values.size(); i += state)
+    look(plan.between.values[i]);
   return out;
 }
 
@@ -31,8 +38,7 @@ LostDigits::LostDigits(const CompanionPlan& plan) {
   // Of points, too: a shaft that is held lies still at 0, and its ends do not. Energies and forces are no sizes of
   // places, though numbers without units look alike.
   std::vector<double> largest;
-  for (std::size_t c = 0; c < 2 * n + plan.observables.points; ++c)
-    largest.push_back(largest_of(plan.result.trajectory, c));
+  for (std::size_t c = 0; c < 2 * n + plan.observables.points; ++c) largest.push_back(largest_of(plan, c));
   sizes_.assign(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(2 * n));
   for (std::size_t c = 0; c < 2 * n; ++c) {
     double of_unit = names[c].unit == "rad" ? small_turn : 0;
@@ -59,7 +65,7 @@ LostCompanion::LostCompanion(const CompanionPlan& plan, double share)
 bool LostCompanion::look(std::size_t g, const double* row) {
   bool everything = true;
   for (std::size_t c = 0; c < largest_.size(); ++c) {
-    const double value = plan_.result.trajectory.at(plan_.grid[g], c), off = std::abs(row[c] - value);
+    const double value = plan_.value(g, c), off = std::abs(row[c] - value);
     if (std::isfinite(off)) largest_[c] = std::max(largest_[c], off);
     // A column that never moves is known although all others are lost.
     everything = everything && digits_.size(c) > 0 && digits_.is_lost(c, share_ * largest_[c]);

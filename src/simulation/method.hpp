@@ -1,11 +1,13 @@
 #pragma once
 #include <maupertuis/integrator.hpp>
 #include <maupertuis/step.hpp>
+#include <maupertuis/variational.hpp>
 
 #include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 namespace maupertuis {
@@ -40,7 +42,9 @@ class MethodOf final : public Method {
   bool covers(double t) const override { return stepper_.covers(t); }
   Sample sample(double t) const override { return stepper_.sample(t); }
   void state(double t, std::span<double> q, std::span<double> v) const override {
-    if constexpr (requires { stepper_.state(t, q, v); }) return stepper_.state(t, q, v);
+    constexpr bool is_variational = std::is_same_v<Stepper, VariationalStepper>;  // its polynomials err more than its
+                                                                                  // steps, from which samples follow
+    if constexpr (!is_variational) return stepper_.state(t, q, v);
     const Sample found = stepper_.sample(t);
     std::copy(found.q.begin(), found.q.end(), q.begin());
     std::copy(found.v.begin(), found.v.end(), v.begin());

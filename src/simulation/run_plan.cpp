@@ -116,7 +116,18 @@ class Planner {
       plan_.output_times.push_back(plan_.end);
     plan_.row_interval = every;
     add_rows_asked_for();
+    if (options_.errors == ErrorEstimates::States) plan_comparison();
     return true;
+  }
+
+  /// Between few rows nobody would see where the motion is lost, nor how large it becomes.
+  void plan_comparison() {
+    const std::vector<double>& rows = plan_.output_times;
+    const std::size_t parts = rows.size() > 1 ? usual_comparisons / (rows.size() - 1) : 0;
+    for (std::size_t row = 0; row + 1 < rows.size(); ++row)
+      for (std::size_t k = 1; k < parts; ++k)
+        plan_.times_between.push_back(rows[row] + (rows[row + 1] - rows[row]) * static_cast<double>(k) /
+                                                      static_cast<double>(parts));
   }
 
   void add_rows_asked_for() {

@@ -132,6 +132,7 @@ class Run {
   }
 
   bool turned_stiff() const { return turned_stiff_; }
+  const StatesBetween& between() const { return between_; }
   const BackendUse& backend() const { return backend_; }
 
  private:
@@ -210,6 +211,9 @@ class Run {
   void record_covered() {
     while (next_output_ < plan_.output_times.size() && method_->covers(plan_.output_times[next_output_]))
       add_row(sample(plan_.output_times[next_output_++]));
+    const std::vector<double>& between = plan_.times_between;
+    while (between_.times.size() < between.size() && method_->covers(between[between_.times.size()]))
+      add_state_between(between[between_.times.size()]);
     while (next_request_ < requests_.size() && method_->covers(options_.at[requests_[next_request_]])) {
       const std::size_t index = requests_[next_request_++];
       const Sample found = sample(options_.at[index]);
@@ -218,6 +222,14 @@ class Run {
         probe_->values[index].assign(found.observables.end() - static_cast<std::ptrdiff_t>(observables_.probes),
                                      found.observables.end());
     }
+  }
+
+  void add_state_between(double t) {
+    const std::size_t n = plan_.q.size(), from = between_.values.size();
+    between_.times.push_back(t);
+    between_.values.resize(from + 2 * n);
+    const std::span<double> values = std::span(between_.values).subspan(from);
+    method_->state(t, values.first(n), values.last(n));
   }
 
   /// The rows that the last step covers, with those between the output times where they are asked for: 2p/5 of them in
@@ -238,8 +250,8 @@ class Run {
       while (next_output_ < plan_.output_times.size() &&
              std::abs(plan_.output_times[next_output_] - begin) <= std::abs(t - begin))
         add_row(sample(plan_.output_times[next_output_++]));
-      if (next_output_ != before) between_ = 0;
-      if (between_++ >= most_between)
+      if (next_output_ != before) rows_since_output_ = 0;
+      if (rows_since_output_++ >= most_between)
         left_out_ = true;
       else if (result_.trajectory.times.back() != t)
         add_row(sample(t));
@@ -330,7 +342,8 @@ class Run {
   std::vector<std::size_t> requests_;
   std::vector<State> answers_;
   std::size_t next_output_ = 0, next_request_ = 0;
-  std::size_t between_ = 0;                          // rows since the last output time
+  StatesBetween between_;
+  std::size_t rows_since_output_ = 0;                // since the last output time
   bool left_out_ = false;                            // a row, since the last one
   static constexpr std::size_t most_jumps = 10'000;  // that have rows of their own
   std::size_t jumps_ = 0;
@@ -369,7 +382,7 @@ void warn_of_backend(const BackendUse& use, Backend wanted, Diagnostics& diagnos
 /// The errors, as companion runs tell them.
 void add_errors(SimulationResult& result, Probe* probe, const Model& model, const EquationsOfMotion& equations,
                 const SimulationOptions& options, const RunPlan& plan, const Observables& observables,
-                const WantedFunctions& wanted, const HybridMotion* hybrid) {
+                const WantedFunctions& wanted, const HybridMotion* hybrid, const StatesBetween& between) {
   const auto begin = Clock::now();
   const auto of_literals = hybrid ? with_literals_as_parameters(model, wanted) : nullptr;
   const RoundedNumbers numbers(of_literals ? of_literals->model : model,
@@ -381,7 +394,8 @@ void add_errors(SimulationResult& result, Probe* probe, const Model& model, cons
       plan,
       observables,
       result,
-      comparison_grid(result.trajectory, plan, options.errors),
+      between,
+      comparison_grid(result.trajectory, between, plan, options.errors),
       options.errors == ErrorEstimates::Rows,
       of_literals ? std::make_shared<ModeLibrary>(of_literals->model, of_literals->equations, of_literals->wanted)
       : hybrid    ? hybrid->library()
@@ -442,7 +456,7 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
 
   SimulationResult result = run.carry_out();
   if (options.errors != ErrorEstimates::None && result.ending != Ending::Interrupted)
-    add_errors(result, probe, model, equations, options, *plan, observables, wanted, hybrid);
+    add_errors(result, probe, model, equations, options, *plan, observables, wanted, hybrid, run.between());
   if (run.turned_stiff()) note_stiffness(result, model.system, stiff_tolerance(options), diagnostics);
   if (options.method == StepMethod::Automatic || options.method == StepMethod::Taylor ||
       options.backend == Backend::Compiled)

@@ -54,6 +54,15 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a run that goes over to machine code on its way is the same with new code and with kept code, to the bit") {
+  const Folder folder;
+  const Run first = simulate(folder, "--duration 3000s"), second = simulate(folder, "--duration 3000s");
+  CHECK(first.code == 0);
+  CHECK(backend_of(first) == (has_compiled_code() ? "compiled" : "interpreter"));
+  CHECK(backend_of(second) == backend_of(first));
+  CHECK(second.document.at("final") == first.document.at("final"));
+}
+
 TEST_CASE("--no-cache leaves nothing on the disk") {
   const Folder folder;
   CHECK(simulate(folder, "--backend compiled --no-cache").code == 0);

@@ -134,6 +134,25 @@ TEST_CASE("companions of a motion that is lost end early, but not where damping 
   CHECK(damped.final.errors->q[1] < 1e-3);
 }
 
+TEST_CASE("where a motion is lost does not depend on the rows: companions end between few of them") {
+  SimulationOptions few_rows;
+  few_rows.output_every = 60;
+  for (const double duration : {60.0, -60.0}) {
+    SimulationOptions usual;
+    usual.duration = few_rows.duration = duration;
+    const SimulationResult few = run(double_pendulum, few_rows), many = run(double_pendulum, usual);
+    CHECK(few.trajectory.rows() == 2);
+    REQUIRE(few.uncertain.everything);
+    CHECK(std::abs(few.uncertain.from - many.uncertain.from) < 1);
+    CHECK(std::abs(few.uncertain.first - many.uncertain.first) < 1);
+  }
+  few_rows.duration = 10;
+  few_rows.output_every = 10;
+  const SimulationResult known = run(double_pendulum, few_rows);
+  CHECK(known.uncertain.columns.empty());
+  CHECK(known.final.errors->q[0] < 1e-4);
+}
+
 TEST_CASE("equal runs have equal errors, and each row has one where that is asked") {
   SimulationOptions options = at({3});
   options.errors = ErrorEstimates::Rows;
@@ -274,6 +293,21 @@ TEST_CASE("probes have errors of their own") {
   const double expected = 2 * std::abs(r->at[1].q[0]) * r->at[1].errors->q[0];
   CHECK(probe.errors[1][0] > 0.5 * expected);
   CHECK(probe.errors[1][0] < 2 * expected);
+}
+
+TEST_CASE("an energy is known at times at which the state is lost") {
+  const ModelText m(double_pendulum);
+  Probe probe;
+  probe.expressions = {m.equations.energy_function, m.q(0)};
+  SimulationOptions options = at({900});
+  options.duration = 1000;
+  Diagnostics diagnostics;
+  const auto r = simulate(m.model, m.equations, options, diagnostics, &probe);
+  REQUIRE(r);
+  CHECK(r->uncertain.from < 100);
+  REQUIRE(probe.errors.size() == 1);
+  CHECK(probe.errors[0][0] < 1e-11);
+  CHECK(probe.errors[0][1] == infinity);
 }
 
 TEST_CASE("rounding noise about zero is no motion that was lost") {
