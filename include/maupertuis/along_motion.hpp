@@ -28,7 +28,7 @@ class AlongMotion {
   AlongMotion(const EquationsOfMotion& equations, const ExprVector& residual);
 
   /// False where M is singular: then nothing can be said.
-  bool solvable() const { return constrained() || accelerations_.has_value(); }
+  bool solvable() const { return constrained() || accelerations(); }
   /// e with q̈ put in; lets, inputs and reactions as well.
   Expr put_in(Expr e) const;
   ZeroTest vanishes(Expr e) const;
@@ -37,6 +37,9 @@ class AlongMotion {
   ZeroTest vanishes_on(Expr e, std::span<const Expr> level) const;
   /// dI/dt along the motion, q̈ put in.
   Expr rate(Expr integral) const;
+  /// Whether dI/dt vanishes along the motion. Of functions of the energy that is seen from the equations as they are:
+  /// of n coordinates M⁻¹ takes n³ nodes.
+  ZeroTest is_constant(Expr integral) const;
   /// Whether an integral of each side goes on where a motion passes a switch.
   AcrossSwitches across(Expr integral) const;
   /// Where the motion starts: points near it are looked at.
@@ -44,6 +47,9 @@ class AlongMotion {
 
  private:
   ZeroTest as_formula(Expr plain) const;
+  std::optional<ZeroTest> is_constant_with_energy(Expr integral) const;
+  const ExprMap* accelerations() const;
+  Expr in_motion(Expr e) const;
   bool constrained() const { return equations_.system->constrained() || equations_.degenerate; }
   /// What points along the motion fulfil, in which unknowns, and where to look for them.
   struct Where {
@@ -57,7 +63,8 @@ class AlongMotion {
   const EquationsOfMotion& equations_;
   ExprVector residual_;
   std::optional<MotionState> start_;
-  std::optional<ExprMap> accelerations_;
+  mutable bool looked_for_accelerations_ = false;  // at first use
+  mutable std::optional<ExprMap> accelerations_;
 };
 
 }  // namespace maupertuis

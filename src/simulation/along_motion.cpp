@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace maupertuis {
 
@@ -25,20 +26,34 @@ std::string asked_column(std::size_t index) { return fmt::format("asked({})", in
 AlongMotion::AlongMotion(const EquationsOfMotion& equations) : AlongMotion(equations, equations.balance()) {}
 
 AlongMotion::AlongMotion(const EquationsOfMotion& equations, const ExprVector& residual)
-    : equations_(equations), residual_(residual) {
-  if (constrained()) return;
-  const MechanicalSystem& system = *equations.system;
-  const auto solved = accelerations(in_terms_of_motion(system, residual), system);
-  if (!solved) return;
-  accelerations_.emplace();
-  for (std::size_t i = 0; i < solved->size(); ++i)
-    accelerations_->emplace(system.coordinates[i].acceleration, (*solved)[i]);
+    : equations_(equations), residual_(residual) {}
+
+/// q̈(q, q̇, t) of every coordinate; null with constraints, and where M is singular.
+const ExprMap* AlongMotion::accelerations() const {
+  if (!std::exchange(looked_for_accelerations_, true) && !constrained()) {
+    const MechanicalSystem& system = *equations_.system;
+    if (const auto solved = maupertuis::accelerations(in_terms_of_motion(system, residual_), system)) {
+      accelerations_.emplace();
+      for (std::size_t i = 0; i < solved->size(); ++i)
+        accelerations_->emplace(system.coordinates[i].acceleration, (*solved)[i]);
+    }
+  }
+  return accelerations_ ? &*accelerations_ : nullptr;
+}
+
+/// Lets, inputs and reactions put in, d/dt carried out.
+Expr AlongMotion::in_motion(Expr e) const {
+  e = with_reactions(equations_, {&e, 1}).front();
+  return expand_time_derivatives(in_terms_of_motion(*equations_.system, {&e, 1}).front());
 }
 
 Expr AlongMotion::put_in(Expr e) const {
-  e = with_reactions(equations_, {&e, 1}).front();
-  const Expr plain = expand_time_derivatives(in_terms_of_motion(*equations_.system, {&e, 1}).front());
-  return accelerations_ ? substitute(plain, *accelerations_) : plain;
+  const Expr plain = in_motion(e);
+  const std::vector<Expr> symbols = symbols_of({&plain, 1});
+  const bool accelerates = std::any_of(symbols.begin(), symbols.end(),
+                                       [](const Expr& s) { return s.role() == Role::Coordinate && s.order() >= 2; });
+  const ExprMap* const known = accelerates ? accelerations() : nullptr;
+  return known ? substitute(plain, *known) : plain;
 }
 
 ZeroTest AlongMotion::vanishes(Expr e) const {
@@ -74,6 +89,29 @@ ZeroTest AlongMotion::vanishes_on(Expr e, std::span<const Expr> level) const {
 
 Expr AlongMotion::rate(Expr integral) const {
   return put_in(total_time_derivative(put_in(integral)));  // d/dt of q̈ is that of its formula
+}
+
+ZeroTest AlongMotion::is_constant(Expr integral) const {
+  if (const auto with_energy = is_constant_with_energy(integral)) return *with_energy;
+  return vanishes(rate(integral));
+}
+
+/// The power P = Σ q̇ᵢ Rᵢ vanishes along the motion. Where W = dI/dt, for any q̈, is a multiple of it, W ∂P/∂q̈ₖ is
+/// P ∂W/∂q̈ₖ identically, and W vanishes with P, since ∂P/∂q̈ₖ does not. Nothing where this says nothing.
+std::optional<ZeroTest> AlongMotion::is_constant_with_energy(Expr integral) const {
+  const MechanicalSystem& system = *equations_.system;
+  if (constrained() || system.coordinates.empty()) return std::nullopt;
+  ExprVector parts;
+  for (std::size_t i = 0; i < system.coordinates.size(); ++i)
+    parts.push_back(system.coordinates[i].velocity * in_motion(residual_[i]));
+  const Expr power = system.context->sum(parts),
+             rate = expand_time_derivatives(total_time_derivative(in_motion(integral)));
+  const Expr acceleration = system.coordinates.front().acceleration;
+  const Expr of_power = differentiate(power, acceleration), of_rate = differentiate(rate, acceleration);
+  if (of_rate.is_zero()) return std::nullopt;
+  const ZeroTest test = zero_test(rate * of_power - power * of_rate);
+  if (test.verdict != Verdict::Zero || zero_test(of_power).verdict != Verdict::Nonzero) return std::nullopt;
+  return test;
 }
 
 AcrossSwitches AlongMotion::across(Expr integral) const {
