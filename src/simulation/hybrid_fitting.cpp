@@ -107,6 +107,7 @@ struct HybridMotion::Trial {
   bool has_slow_slips();
   bool has_given_limits();
   bool has_slow_gaps();
+  bool has_hidden_events();
   bool look(double bound);
 
   bool is_squared(const Watch& w) const {
@@ -235,6 +236,17 @@ bool HybridMotion::Trial::has_slow_gaps() {
   return has_some;
 }
 
+/// An event that is beyond its zero by rounding alone goes on from there: its slope tells whether the motion passes it.
+bool HybridMotion::Trial::has_hidden_events() {
+  bool has_some = false;
+  for (std::size_t k = 0; k < motion.watches().size(); ++k) {
+    if (watch(k).what != Watch::What::Event || !is_hidden(in.event_sides_[watch(k).index], outlook, k)) continue;
+    motion.stepper->put_at_zero({&k, 1});
+    has_some = true;
+  }
+  return has_some;
+}
+
 void HybridMotion::Trial::begin() {
   motion.stepper->start(in.t_, in.q_, in.v_, in.t_rest_);
   put_at_zero();
@@ -258,8 +270,9 @@ bool HybridMotion::Trial::look(double bound) {
     if (watch(k).what == Watch::What::Force || watch(k).what == Watch::What::Hold)
       largest_force = std::max(largest_force, is_squared(watch(k)) ? std::sqrt(force) : force);
   }
-  const bool slips = has_slow_slips(), forces = has_given_limits(), gaps = has_slow_gaps();
-  if (slips || forces || gaps) outlook = s.outlook(bound);
+  const bool slips = has_slow_slips(), forces = has_given_limits(), gaps = has_slow_gaps(),
+             events = has_hidden_events();
+  if (slips || forces || gaps || events) outlook = s.outlook(bound);
   found.accelerations = outlook.accelerations;
   return true;
 }

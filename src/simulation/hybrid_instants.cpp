@@ -367,6 +367,30 @@ double HybridMotion::hidden_by_rounding(double bound) {
   return out;
 }
 
+/// For how long before its root a gap is not told from 0, where it closes ever more slowly: the third root of its
+/// rounding at a root of third order. 0 at a simple one, which is known as time is. `length`: of the step.
+double HybridMotion::hides_gap(std::size_t contact, double length) {
+  constexpr double slow = 1e-4, slower = 2;
+  const ContactValues& here = functions_.at(t_, q_, v_);
+  const double speed = std::abs(here.rate[contact]);
+  if (speed > slow * fastest_[contact]) return 0;
+  const double rounding = 8 * rest_unit * size_of_gap(contact, here);  // to which roots are searched
+  std::vector<double> q = q_, v = v_;
+  for (double hidden = rest_unit * std::max(std::abs(t_), length); hidden < length; hidden *= 2) {
+    const double before = forwards_ ? t_ - hidden : t_ + hidden;
+    now_->stepper->state(before, q, v);
+    const ContactValues& values = functions_.at(before, q, v);
+    if (std::abs(values.gap[contact]) > rounding) return std::abs(values.rate[contact]) > slower * speed ? hidden : 0;
+  }
+  return length;
+}
+
+/// Companions meet such a root where the same rounding hides it: their difference does not tell that.
+void HybridMotion::note_hidden(std::size_t first) {
+  for (std::size_t k = first; k < record_.happenings.size(); ++k)
+    record_.happenings[k].error = std::max(record_.happenings[k].error, pending_->hidden);
+}
+
 /// On in the mode that ends here.
 Step HybridMotion::wait(double bound) {
   const double until = time() + (forwards_ ? late_by_ : -late_by_);

@@ -28,6 +28,7 @@ HybridMotion::HybridMotion(std::shared_ptr<ModeLibrary> library, std::vector<dou
       options_(options),
       functions_(library_->contacts(), parameters_) {
   parameters_.resize(system_.parameters.size());
+  for (const ModelEvent& e : model_.experiment.events) of_positions_.push_back(is_of_positions(e.function));
   for (const Contact& c : system_.contacts) {
     in_space_ = in_space_ || c.friction.in_space();
     keeps_friction_.push_back(c.friction.present() && is_of_parameters(c.friction.kinetic) &&
@@ -99,6 +100,9 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   told_choice_ = false;
   step_start_.reset();
   counted_at_.clear();
+  sets_that_follow_ = {};
+  sets_end_.reset();
+  event_sides_.assign(of_positions_.size(), 0);
   now_ = &motion_in(open_mode(system_));
   now_->stepper->start(t_, q_, v_, t_rest_);
   pending_ = std::make_unique<Pending>();
@@ -169,6 +173,13 @@ Step HybridMotion::ended(StepEnding ending, std::string reason) const {
   return out;
 }
 
+/// An event that stops the run at the instant that was settled.
+Step HybridMotion::stopped_here() const {
+  Step out = ended(StepEnding::None, {});
+  out.event = 0;
+  return out;
+}
+
 Step HybridMotion::step(double bound) {
   if (failed_) return *failed_;
   step_start_.reset();
@@ -181,11 +192,14 @@ Step HybridMotion::step(double bound) {
   // Its mode was chosen for what follows: a contact that opens at the start was hit there.
   if (!forwards_ && steps() == 0 && !goes_on(bound)) return ended(StepEnding::Paradox, met_backwards);
   if (pending_ && late_by_ > 0) return wait(bound);
-  if (pending_) {
+  while (pending_) {
     if (auto failed = settle(bound)) return std::move(*failed);
+    if (record_.stopped_by) return stopped_here();
   }
+  if (sets_end_ && time() == sets_end_->t) return ended(StepEnding::Unending, sets_without_end());
   const double end = now_->given.end;
-  Step out = now_->stepper->step(forwards_ ? std::min({bound, end, end_of_slips()}) : bound);
+  const double until = sets_end_ ? sets_end_->t : bound;
+  Step out = now_->stepper->step(forwards_ ? std::min({until, end, end_of_slips()}) : until);
   if (out.end != out.begin) same_time_ = 0;
   longest_step_ = std::max(longest_step_, std::abs(out.end - out.begin));
   if (!just_moved_on_) gap_begin_ = std::numeric_limits<double>::quiet_NaN();
@@ -204,6 +218,8 @@ Step HybridMotion::step(double bound) {
   }
   if (!out.events.empty()) classify(out);
   if (auto unending = too_many(bound)) return std::move(*unending);
+  if (sets_end_ && out.end == sets_end_->t && !pending_ && !out.event)
+    return ended(StepEnding::Unending, sets_without_end());
   if (pending_) meet_together(bound);
   if (meets_late_ && pending_) late_by_ = hidden_by_rounding(bound);
   if (!pending_ && (out.end >= end || outgrows_stops())) pending_ = std::make_unique<Pending>();
@@ -338,15 +354,13 @@ void HybridMotion::record_event(const std::string& name, double at) {
   told.mode = mode_text(system_, now_->mode);
 }
 
-namespace {
-
-bool sets_positions(const std::vector<const ModelEvent*>& events) {
-  return std::any_of(events.begin(), events.end(), [](const ModelEvent* e) {
-    return std::any_of(e->sets.begin(), e->sets.end(), [](const ModelEvent::Assignment& a) { return a.order == 0; });
-  });
+/// An event whose function comes to 0 this way: 1 rising along the run, −1 falling, 0 touching.
+void HybridMotion::meet_event(const ModelEvent& event, int way, double t, Pending& pending) {
+  if (event.direction != 0 && way != event.direction * (forwards_ ? 1 : -1)) return;
+  record_event(event.name, t);
+  if (event.action == ModelEvent::Action::Stop && !record_.stopped_by) record_.stopped_by = event.name;
+  if (event.action == ModelEvent::Action::Set) pending.sets.push_back(&event), pending.ways.push_back(way);
 }
-
-}  // namespace
 
 /// Roots of the step: events of the model are recorded at once; what changes the mode waits for the next step.
 void HybridMotion::classify(Step& step) {
@@ -363,19 +377,17 @@ void HybridMotion::classify(Step& step) {
     if (watch.what == Watch::What::Until) {
       step.event = 0;
     } else if (watch.what == Watch::What::Event) {
-      const ModelEvent& event = model_.experiment.events[watch.index];
-      if (is_now(root) && is_of_positions(event.function)) pending->at_zero.push_back(watch.index);
-      if (event.direction != 0 && root.direction != event.direction * (forwards_ ? 1 : -1)) continue;
-      record_event(event.name, root.time);
-      if (event.action == ModelEvent::Action::Stop && !record_.stopped_by) {
-        record_.stopped_by = event.name;
-        step.event = 0;
+      if (of_positions_[watch.index]) {
+        if (is_now(root)) pending->at_zero.push_back(watch.index);
+        event_sides_[watch.index] = is_now(root) ? std::int8_t{0} : static_cast<std::int8_t>(root.direction);
       }
-      if (event.action == ModelEvent::Action::Set)
-        pending->sets.push_back(&event), pending->ways.push_back(root.direction);
+      meet_event(model_.experiment.events[watch.index], root.direction, root.time, *pending);
+      if (record_.stopped_by) step.event = 0;
     } else if (root.direction <= 0) {
       if (watch.what == Watch::What::Gap) {
-        if (!is_just_released(watch.index)) pending->hit.push_back(watch.index);
+        if (is_just_released(watch.index)) continue;
+        pending->hit.push_back(watch.index);
+        pending->hidden = std::max(pending->hidden, hides_gap(watch.index, std::abs(step.end - step.begin)));
       } else
         pending->left.push_back(watch);
     }
@@ -498,11 +510,14 @@ std::optional<Step> HybridMotion::settle(double bound) {
     return ended(StepEnding::Paradox, met_backwards);
   if (++same_time_ > most_at_once)
     return ended(StepEnding::Unending,
-                 fmt::format("{} changes follow each other at the same time without an end.", most_at_once));
+                 sets_end_
+                     ? sets_without_end()
+                     : fmt::format("{} changes follow each other at the same time without an end.", most_at_once));
   if (auto unending = too_many(bound)) return unending;
   if (!pending_->begins) leave_mode();
   if (derivative_ && !pending_->begins) note_before(bound);
   if (!pending_->sets.empty() && !carry_out_sets(reason)) return stopped(StepEnding::SingularConstraints, reason);
+  const std::size_t first = record_.happenings.size();
   const ContactValues& values = functions_.at(t_, q_, v_);
   note_usual_gaps(values);
   if (pending_->begins)
@@ -534,16 +549,15 @@ std::optional<Step> HybridMotion::settle(double bound) {
     touch.push_back(*met_);
     if (!hit(touch, reason)) return stopped(StepEnding::Paradox, reason);
   }
+  note_sets(bound);
   if (const ModelEvent* const event = turned_unseen(bound))
-    return stopped(StepEnding::Unending,
-                   fmt::format("The event `{}` follows itself faster and faster: its returns accumulate here, and have "
-                               "become too short to be told apart.",
-                               event->name));
+    return stopped(StepEnding::Unending, too_short_to_tell(*event));
+  note_rest_that_begins();
   if (pending_->begins) tell_events_at_start(bound);
   if (settled_) note_after(bound);
-  pending_.reset();
+  note_hidden(first);
   started_ = true;
-  return std::nullopt;
+  return meet_unseen(bound);
 }
 
 }  // namespace maupertuis

@@ -1,4 +1,5 @@
 #pragma once
+#include "linear_algebra/accumulation.hpp"
 #include "simulation/contact/contact_forces.hpp"
 #include "simulation/contact/contact_functions.hpp"
 #include "simulation/contact/impact.hpp"
@@ -114,6 +115,8 @@ class HybridMotion final : public Method {
   void record_event(const std::string& name, double t);
   bool is_just_released(std::size_t contact);
   double hidden_by_rounding(double bound);
+  double hides_gap(std::size_t contact, double length);
+  void note_hidden(std::size_t first);
   void meet_together(double bound);
   Step wait(double bound);
   double opening_rate(std::size_t contact, std::span<const double> accelerations, const ContactValues& values);
@@ -123,6 +126,12 @@ class HybridMotion final : public Method {
   std::optional<Step> too_many(double bound);
   bool carry_out_sets(std::string& reason);
   const ModelEvent* turned_unseen(double bound);
+  void note_sets(double bound);
+  std::string sets_without_end() const;
+  void meet_event(const ModelEvent& event, int way, double t, Pending& pending);
+  std::optional<Step> meet_unseen(double bound);
+  std::string too_short_to_tell(const ModelEvent& event) const;
+  static bool is_hidden(std::int8_t before, const TaylorStepper::Outlook& outlook, std::size_t watch);
   std::vector<std::size_t> touching(const ContactValues& values) const;
   bool keeps_sticking(const std::vector<std::size_t>& touching, std::string& reason);
   bool is_lost_in_rounding(const std::vector<std::size_t>& touching, const ContactValues& values) const;
@@ -227,6 +236,7 @@ class HybridMotion final : public Method {
   void note_slip_rates(const ContactValues& values);
   void note_limits(const ContactValues& values);
   void note_holding_forces(const Sample& sample);
+  void note_rest_that_begins();
   void tell_usual_sizes(TaylorStepper& stepper) const;
   void note_gaps(const ContactValues& values);
   void note_usual_gaps(const ContactValues& values);
@@ -268,6 +278,7 @@ class HybridMotion final : public Method {
 
   Step ended(StepEnding ending, std::string reason) const;
   Step stopped(StepEnding ending, std::string reason);
+  Step stopped_here() const;
   void take_state();
   bool pulls() const;
   bool goes_on(double bound);
@@ -303,7 +314,7 @@ class HybridMotion final : public Method {
   // The largest so far: what is much smaller is rounding.
   std::vector<double> fastest_, fastest_slip_;  // [contacts], [contacts + frictions] sizes of the terms of ġ and of v_t
   std::vector<double> widest_, hardest_;        // [contacts] sizes of the terms of g; of λ
-  std::vector<double> holding_;                 // [contacts + frictions] static forces that were measured
+  std::vector<double> holding_;                 // [2 contacts + frictions] normal and static forces that were measured
   std::vector<std::size_t> kind_;               // [n] coordinates of one dimension share a number
   std::vector<std::size_t> gap_kind_;           // [contacts] so do gaps
   std::vector<double> place_, speed_, acceleration_;  // [kinds] |q|, |q'|, |q''|
@@ -317,11 +328,16 @@ class HybridMotion final : public Method {
     double fastest = 0;                           // impact of the series that goes on, not rounding of other speeds
     double before = 0;                            // the speed of the impact before
   };
-  std::vector<Bounces> bounces_;     // [contacts]
-  std::vector<bool> idle_;           // [contacts] open in the mode, but others keep them closed
-  std::vector<bool> released_;       // [contacts] λ is 0 to rounding at this instant, and falls
-  std::vector<double> released_at_;  // [contacts] when that was last; not a number before
-  std::vector<std::size_t> cycle_;   // contacts that bounce together towards an end of their bounces
+  std::vector<Bounces> bounces_;                       // [contacts]
+  std::vector<bool> idle_;                             // [contacts] open in the mode, but others keep them closed
+  std::vector<bool> released_;                         // [contacts] λ is 0 to rounding at this instant, and falls
+  std::vector<double> released_at_;                    // [contacts] when that was last; not a number before
+  std::vector<std::size_t> cycle_;                     // contacts that bounce together towards an end of their bounces
+  Accumulation<double> sets_that_follow_;              // events that set the state
+  std::optional<Accumulation<double>::End> sets_end_;  // where these accumulate within the run
+  std::vector<bool> of_positions_;                     // [events]
+  std::vector<std::int8_t>
+      event_sides_;  // [events] of positions: the side on which the motion is; 0: at zero, or not known
   std::optional<std::string> accumulated_;
   double accumulated_at_ = 0;
   HybridRecord record_;

@@ -18,10 +18,15 @@ inline constexpr double held_fast = 1e3;
 /// What is said where rigid contact has no motion, or several.
 inline constexpr const char* beyond_painleve =
     "Textbooks go on by an impact without collision, an impulse of the contact that is not hit; none is made here: a "
-    "stiff spring in place of the rigid contact says what happens.";
+    "stiff spring in place of the rigid contact says what happens, as `force on P = (-μ N P.x'/sqrt(P.x'^2 + v0^2), "
+    "N)` "
+    "with N = k max(-P.y, 0) on a floor.";
 
 /// A row with its zeros.
 std::vector<double> whole_row(const SparseRow& row, std::size_t n);
+
+/// Whether one of these events sets a coordinate.
+bool sets_positions(const std::vector<const ModelEvent*>& events);
 
 /// Modes that are tried at an instant.
 inline constexpr std::size_t most_choices = 1024;
@@ -62,6 +67,7 @@ struct HybridMotion::Pending {
   std::vector<const ModelEvent*> sets;
   std::vector<int> ways;             // [sets] in which their functions come to 0 along the run: 1 rising, −1 falling
   std::vector<std::size_t> at_zero;  // events on positions that are met here: their functions go on from 0
+  double hidden = 0;                 // for how long rounding hides the roots of gaps that are met
   bool begins = false;
 };
 

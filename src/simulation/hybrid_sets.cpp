@@ -4,9 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 /// Events that set the state.
 namespace maupertuis {
+
+bool sets_positions(const std::vector<const ModelEvent*>& events) {
+  return std::any_of(events.begin(), events.end(), [](const ModelEvent* e) {
+    return std::any_of(e->sets.begin(), e->sets.end(), [](const ModelEvent::Assignment& a) { return a.order == 0; });
+  });
+}
 
 /// Assigns what events set, all from the values before.
 bool HybridMotion::carry_out_sets(std::string& reason) {
@@ -39,6 +47,7 @@ bool HybridMotion::carry_out_sets(std::string& reason) {
   carried_[0] += gained;  // what a set puts in is work
   record_.books.events += gained;
   q_ = q, v_ = v;
+  if (sets_positions(pending_->sets)) event_sides_.assign(event_sides_.size(), 0);
   return true;
 }
 
@@ -60,6 +69,79 @@ const ModelEvent* HybridMotion::turned_unseen(double bound) {
     if (turns && outlook.sides[k] != -way) return event;
   }
   return nullptr;
+}
+
+namespace {
+
+/// "The event `a` follows itself", "The events `a` and `b` follow each other".
+std::string names_of(const std::vector<ModelEvent>& events, std::vector<std::size_t> which) {
+  std::sort(which.begin(), which.end());
+  which.erase(std::unique(which.begin(), which.end()), which.end());
+  std::string out;
+  for (std::size_t k = 0; k < which.size(); ++k)
+    out += fmt::format("{}`{}`", k == 0 ? "" : k + 1 < which.size() ? ", " : " and ", events[which[k]].name);
+  return which.size() == 1 ? fmt::format("The event {} follows itself", out)
+                           : fmt::format("The events {} follow each other", out);
+}
+
+}  // namespace
+
+/// Sets that follow each other in shorter and shorter cycles come to an end, beyond which no step goes.
+void HybridMotion::note_sets(double bound) {
+  if (pending_->sets.empty()) return;
+  for (const ModelEvent* event : pending_->sets)
+    sets_that_follow_.add(static_cast<std::size_t>(event - model_.experiment.events.data()), t_);
+  const auto end = sets_that_follow_.end();  // none where they have become too short: the last one stands
+  if (end && (forwards_ ? end->t <= bound : end->t >= bound)) sets_end_ = end;
+}
+
+/// One sentence on an event whose returns rounding hides.
+std::string HybridMotion::too_short_to_tell(const ModelEvent& event) const {
+  if (sets_end_) return sets_without_end();
+  return fmt::format(
+      "The event `{}` follows itself faster and faster: its returns accumulate here, and have become too short to be "
+      "told apart.",
+      event.name);
+}
+
+/// One sentence on the end of sets that accumulate.
+std::string HybridMotion::sets_without_end() const {
+  return fmt::format(
+      "{} faster and faster, infinitely often up to t = {:.12g}: `set` does not say what comes after it. A `contact` "
+      "with `restitution` in place of such an event does: bounces on it end at rest.",
+      names_of(model_.experiment.events, sets_end_->kinds), sets_end_->t);
+}
+
+/// Events on positions whose sign has changed at the instant that was settled though no root was told: so near to it
+/// that rounding hides their own. The motion meets them here, to be settled next; one that has just set the state, and
+/// is met again in no time, follows itself without an end.
+std::optional<Step> HybridMotion::meet_unseen(double bound) {
+  const std::unique_ptr<Pending> settled = std::move(pending_);
+  if (std::none_of(of_positions_.begin(), of_positions_.end(), [](bool x) { return x; })) return std::nullopt;
+  const TaylorStepper::Outlook outlook = now_->stepper->outlook(bound);
+  if (outlook.ending != StepEnding::None) return std::nullopt;  // the next step says why it cannot be made
+  auto met = std::make_unique<Pending>();
+  for (std::size_t k = 0; k < now_->watches().size(); ++k) {
+    const Watch& watch = now_->watches()[k];
+    if (watch.what != Watch::What::Event || !of_positions_[watch.index]) continue;
+    const std::int8_t before = std::exchange(event_sides_[watch.index], outlook.sides[k]);
+    if (!is_hidden(before, outlook, k)) continue;
+    const ModelEvent& event = model_.experiment.events[watch.index];
+    if (std::find(settled->sets.begin(), settled->sets.end(), &event) != settled->sets.end())
+      return stopped(StepEnding::Unending, too_short_to_tell(event));
+    met->at_zero.push_back(watch.index);
+    event_sides_[watch.index] = 0;
+    meet_event(event, -before, t_, *met);
+  }
+  if (!met->sets.empty()) pending_ = std::move(met);
+  return std::nullopt;
+}
+
+/// Whether an event that was on the side `before` is on the other one by no more than rounding.
+bool HybridMotion::is_hidden(std::int8_t before, const TaylorStepper::Outlook& outlook, std::size_t watch) {
+  constexpr double rounding = 1e-12;  // of its terms
+  return before != 0 && outlook.sides[watch] == -before &&
+         std::abs(outlook.values[watch]) <= rounding * outlook.reach[watch];
 }
 
 }  // namespace maupertuis

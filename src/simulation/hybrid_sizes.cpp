@@ -45,29 +45,47 @@ void HybridMotion::note_step() {
   note_holding_forces(s.step_start());
 }
 
-/// Static friction that grows while all rests: what it balances is a measure of forces too. Its forces come behind
-/// those of constraints and closed contacts.
+/// Forces of closed contacts and of static friction that grow while all rests: what they balance is a measure of forces
+/// too, of each coordinate that one of them would move alone. They come behind those of constraints.
 void HybridMotion::note_holding_forces(const Sample& sample) {
   constexpr double grown = 2;
   const ContactMode& mode = now_->mode;
   const ContactValues& values = functions_.at(t_, q_, v_);
-  std::size_t k = equations_.system->constraints.size() +
-                  static_cast<std::size_t>(std::count(mode.closed.begin(), mode.closed.end(), true));
-  holding_.resize(mode.friction.size(), 0);
+  const std::size_t contacts = mode.closed.size();
+  std::size_t k = equations_.system->constraints.size();
+  holding_.resize(contacts + mode.friction.size(), 0);
   bool more = false;
-  for (std::size_t i = 0; i < mode.friction.size(); ++i) {
-    if (mode.friction[i] != FrictionState::Stick) continue;
-    const std::size_t components = friction_of(system_, i).slip.size();
-    double force = 0;
-    for (std::size_t c = 0; c < components; ++c) force = std::max(force, std::abs(sample.multipliers.at(k++)));
-    if (!(force > grown * holding_[i]) || !std::isfinite(force)) continue;
-    holding_[i] = force;
-    const Eigen::VectorXd alone = functions_.response(t_, q_, v_, {&values.tangent[i], 1}).col(0);
+  const auto note = [&](double& known, double force, const SparseRow& row) {
+    if (!(force > grown * known) || !std::isfinite(force)) return;
+    known = force;
+    const Eigen::VectorXd alone = functions_.response(t_, q_, v_, {&row, 1}).col(0);
     for (std::size_t n = 0; n < kind_.size(); ++n)
       acceleration_[kind_[n]] = std::max(acceleration_[kind_[n]], force * std::abs(alone(at(n))));
     more = true;
+  };
+  for (std::size_t i = 0; i < contacts; ++i)
+    if (mode.closed[i]) note(holding_[i], std::abs(sample.multipliers.at(k++)), values.normal[i]);
+  for (std::size_t i = 0; i < mode.friction.size(); ++i) {
+    if (mode.friction[i] != FrictionState::Stick) continue;
+    double force = 0;
+    for (std::size_t c = 0; c < friction_of(system_, i).slip.size(); ++c)
+      force = std::max(force, std::abs(sample.multipliers.at(k++)));
+    note(holding_[contacts + i], force, values.tangent[i]);
   }
   if (more) tell_usual_sizes(*now_->stepper);
+}
+
+/// A first step may be as long as the rest that it begins: it has to know of the forces that balance in it.
+void HybridMotion::note_rest_that_begins() {
+  const ContactMode& mode = now_->mode;
+  const std::size_t contacts = mode.closed.size();
+  holding_.resize(contacts + mode.friction.size(), 0);
+  bool all_known = true;
+  for (std::size_t i = 0; i < mode.friction.size(); ++i) {
+    if (i < contacts && mode.closed[i]) all_known = all_known && holding_[i] > 0;
+    if (mode.friction[i] == FrictionState::Stick) all_known = all_known && holding_[contacts + i] > 0;
+  }
+  if (!all_known) note_holding_forces(now_->stepper->sample(t_));
 }
 
 /// A limit of friction below zero is none: the force would drive what it is to brake.

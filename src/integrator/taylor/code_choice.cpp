@@ -1,6 +1,7 @@
 #include "integrator/taylor/code_choice.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace maupertuis::taylor {
 
@@ -44,14 +45,22 @@ void CodeChoice::compile_at_once(KernelWorkspace& work, const TaylorOptions& opt
   compile(work, options.cache, Length::Stage);
 }
 
+void CodeChoice::begin(double t, std::size_t steps) {
+  const bool goes_on = (t - run_begin_) * way_ > 0;
+  steps_before_ = goes_on ? steps_before_ + steps : 0;
+  if (!goes_on) run_begin_ = t;
+}
+
 /// The expected number of steps decides, not the clock and not what the cache holds: so that equal runs give equal
 /// results.
 void CodeChoice::compile_if_it_pays(KernelWorkspace& work, const Kernel& kernel, const TaylorOptions& options,
-                                    std::size_t steps, double done, double left) {
+                                    std::size_t steps, double t, double bound) {
   constexpr std::size_t first_look = 64;
-  if (options.backend == Backend::Interpreter || steps < first_look || (steps & (steps - 1)) != 0) return;
+  way_ = bound - t;
+  const std::size_t all = steps_before_ + steps;
+  if (options.backend == Backend::Interpreter || all < first_look || (all & (all - 1)) != 0) return;
   if (!use_.trouble.empty() || runs_long_) return;
-  const double expected = static_cast<double>(steps) * (1 + left / done);
+  const double expected = static_cast<double>(all) * (1 + std::abs(way_ / (t - run_begin_)));
   const EnoughSteps enough = enough_for(kernel);
   if (expected >= enough.long_code)
     compile(work, options.cache, Length::WholeExpansion);

@@ -133,6 +133,14 @@ bool TaylorStepper::Impl::is_at_rest() const {
   return true;
 }
 
+/// Whether all forces balance over a step of length h, all velocities are rounding, and no formula asks for the time:
+/// then nothing ever moves, whatever rounding makes of the coefficients.
+bool TaylorStepper::Impl::stays(double h) const {
+  if (m == 0 || work.program().time != no_slot) return false;
+  const auto still = taylor::balanced(work, n, m, h, std::abs(state.t.hi - last.begin.hi), constraints.usual);
+  return still.size() == n && std::all_of(still.begin(), still.end(), [](const auto& x) { return x.rests; });
+}
+
 /// What the last coefficients, the multipliers and the disks about every value allow; infinite for a motion that is a
 /// polynomial.
 double TaylorStepper::Impl::choose_length(double bound) {
@@ -142,6 +150,7 @@ double TaylorStepper::Impl::choose_length(double bound) {
   length = std::isfinite(chosen) ? chosen : 0;
   end_check.note_rates(work.coordinate(1), work.coordinate(2), 1, std::min(chosen, left));
   if (!safe.is_needed()) return chosen;
+  if (stays(left)) return std::numeric_limits<double>::infinity();
   // What is left of velocities below the range of double tells nothing of the motion.
   if (is_at_rest()) chosen = std::numeric_limits<double>::infinity();
   if (!watched.switches.empty() || !safe.has_constants()) safe.set_constants(work.constants());
@@ -177,13 +186,16 @@ Step TaylorStepper::Impl::step(double bound) {
   Step result;
   result.begin = result.end = state.t.hi;
   if (remaining(bound) == 0 || !may_go_on(bound, result)) return result;
-  code.compile_if_it_pays(work, kernel, options, steps, std::abs(state.t.hi - run_begin), std::abs(remaining(bound)));
+  code.compile_if_it_pays(work, kernel, options, steps, state.t.hi, bound);
   if (!expanded) state.wind();
   if (!std::exchange(expanded, false) && !expand(bound, result)) {
     if (result.ending == StepEnding::Overflow) passes_from_here(bound, result);
     return result;
   }
   double chosen = choose_length(bound);
+  constexpr double no_time = 16 * std::numeric_limits<double>::epsilon();
+  if (std::abs(remaining(bound)) <= no_time * std::abs(state.t.hi))
+    chosen = std::max(chosen, std::abs(remaining(bound)));
   attempts = 0;
   if (passes_shrinking(chosen, bound, result)) return result;
   if (m > 0 && forces_diverge()) {
@@ -262,8 +274,8 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   s.expanded = s.noisy = false;
   s.stuck = 0;
   s.end_status = KernelStatus::Ok;
+  s.code.begin(t, s.steps);
   s.steps = s.switches = s.rejected = 0;
-  s.run_begin = t;
   s.last.start(s.state);
   if (!is_same_place) s.watched.choose_first_sides(s.work, s.state);
   s.watched.set_sides(s.probe);

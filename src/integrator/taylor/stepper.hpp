@@ -44,6 +44,7 @@ struct TaylorStepper::Impl {
   bool switches_have_values(double bound, Step& result);
   double choose_length(double bound);
   bool is_at_rest() const;
+  bool stays(double h) const;
   bool make_step(double bound, double h, Step& result);
   void advance(double bound, double h, const taylor::Crossing& crossing, Step& result);
   double moved(double tau, double h) const;
@@ -104,7 +105,6 @@ struct TaylorStepper::Impl {
   int stuck = 0;                               // crossings in a row that did not move time
   KernelStatus end_status = KernelStatus::Ok;  // of the last look at an end
   std::size_t steps = 0, switches = 0, rejected = 0;
-  double run_begin = 0;
   mutable std::vector<double> q_unwound;  // [n]
 };
 

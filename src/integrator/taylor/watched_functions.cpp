@@ -176,7 +176,9 @@ bool WatchedFunctions::turns_unread(const KernelWorkspace& work, double h, Cross
 void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin, Crossing& out) {
   const std::size_t count = switches.size();
   const bool may_go_on = is_unread(out);
-  const double until = std::min(roots_->window(), out.x + (out.found && !may_go_on ? unresolved : 0));
+  // Those of its last instant are told with what ends it there.
+  const double last = out.x * (1 + together_) + std::max(together_, unresolved);
+  const double until = std::min(roots_->window(), out.found && !may_go_on ? last : out.x);
   for (std::size_t event = 0; event < events.size(); ++event) {
     if (ends_step(event)) continue;
     const std::size_t i = count + event;

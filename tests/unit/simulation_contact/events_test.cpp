@@ -2,6 +2,9 @@
 #include "run_text.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
 
 using namespace maupertuis;
 
@@ -61,4 +64,62 @@ TEST_CASE("after drag has slowed a pellet its bounces are as visible as those of
       6.2);
   CHECK(count(r, Happening::Kind::Impact) >= 6);
   CHECK(r.final.q[0] > 1e-3);
+
+namespace {
+
+/// Two lines through (x0, y0), inclined by a and b, that throw back a particle which falls between them.
+std::string wedge(double x0, double y0, double a, double b, double give_back_a, double give_back_b) {
+  const auto line = [&](const char* name, double angle, double e, int side) {
+    const double nx = -side * std::sin(angle), ny = side * std::cos(angle);
+    const std::string rate = fmt::format("({:.17g} x' + {:.17g} y')", nx, ny);
+    return fmt::format(
+        "event {0} when {1:.17g} (x - X) + {2:.17g} (y - Y) = 0 : set x' = x' - {3:.17g} {5}, y' = y' - {4:.17g} {5}\n",
+        name, nx, ny, (1 + e) * nx, (1 + e) * ny, rate);
+  };
+  return fmt::format("dimensionless\nparam X = {:.17g}, Y = {:.17g}\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) - y\n",
+                     x0, y0) +
+         line("a", a, give_back_a, 1) + line("b", b, give_back_b, -1) +
+         fmt::format("start x = {:.17g}, y = {:.17g}, x' = 0.1\n", x0 + 0.05, y0 + 1);
+}
+
+}  // namespace
+
+TEST_CASE("sets in a corner that follow each other infinitely often end the run: none is passed") {
+  const double degree = std::acos(-1.0) / 180;
+  std::size_t in_turns = 0;
+  for (int k = 0; k < 40; ++k) {
+    const double x0 = 0.37 * std::sin(3 * k), y0 = 0.41 * std::cos(5 * k);
+    const double e[] = {0.3, 0.5, 0.8, 0.9};
+    ModelText m(wedge(x0, y0, (20 + 1.5 * k) * degree, (100 + 37 * k % 60) * degree, e[k % 4], e[k / 4 % 4]));
+    const auto r = run(m, 100);
+    CAPTURE(k);
+    INFO(r.reason);
+    CHECK(r.ending == Ending::Unending);
+    CHECK(std::hypot(r.final.q[0] - x0, r.final.q[1] - y0) < 3);
+    // The energy above the last place is what the sets have left.
+    const double energy = 0.5 * (r.final.v[0] * r.final.v[0] + r.final.v[1] * r.final.v[1]);
+    CHECK(energy < 10);
+    in_turns += r.reason.find("`a` and `b` follow each other") != std::string::npos;
+  }
+  CHECK(in_turns > 0);
+}
+
+TEST_CASE("a ball between two events that double its speed: the time at which its sets accumulate is told") {
+  // Each flight is half as long as the one before: 1 + 1/2 + 1/4 + …
+  const auto r = [&] {
+    ModelText m(
+        "dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n"
+        "event a when x = 0 : set x' = -2 x'\nevent b when x = 1 : set x' = -2 x'\nstart x' = 1\n");
+    return run(m, 5);
+  }();
+  CHECK(r.ending == Ending::Unending);
+  CHECK(r.reason.find("`a` and `b` follow each other faster and faster, infinitely often up to t = 2:") !=
+        std::string::npos);
+  CHECK(r.final.t == doctest::Approx(2).epsilon(1e-9));
+  CHECK(r.happenings.size() < 100);
+  // A run that ends before is none of that kind.
+  ModelText earlier(
+      "dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n"
+      "event a when x = 0 : set x' = -2 x'\nevent b when x = 1 : set x' = -2 x'\nstart x' = 1\n");
+  CHECK(run(earlier, 2 - 1e-7).ok());
 }

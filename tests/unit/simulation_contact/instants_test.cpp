@@ -155,3 +155,43 @@ TEST_CASE("errors take in what rounding does to instants and to large states") {
     CHECK(r.final.errors->v[0] < 1e-6);
   }
 }
+
+TEST_CASE("the time at which a gap comes to a root of third order is known to what rounding hides of it") {
+  // x = (1/3 − t)³ − c
+  for (const char* place : {"0", "0.7"}) {
+    const SimulationResult r = with_errors(
+        "dimensionless\ncoord x : number\nT = 1/2 x'^2\nforce x = 6 (1/3 - t)\nparam c = " + std::string(place) +
+        "\ncontact x >= -c name wall\nstart x = 1/27 - c, x' = -1/3\nrun 3\n");
+    REQUIRE(!r.happenings.empty());
+    for (const Happening& h : r.happenings) {
+      CHECK(std::abs(h.t - 1.0 / 3) <= h.error);
+      CHECK(h.error < 1e-3);
+    }
+  }
+  // One of first order is known to the rounding of time.
+  const SimulationResult r = with_errors(falls + "contact x >= 0 name floor\n");
+  REQUIRE(!r.happenings.empty());
+  CHECK(r.happenings.front().error < 1e-14);
+}
+
+TEST_CASE("cards that lean on each other stay where they are, for any time") {
+  const auto cards = [](double end) {
+    return run_text(
+        "param m = 1 kg, l = 1 m, g = 9.81 m/s^2, α = 1.2 rad\ncoord x1, y1 : length, a : angle\n"
+        "coord x2, y2 : length, b : angle\n"
+        "L = 1/2 m (x1'^2 + y1'^2 + x2'^2 + y2'^2) + 1/24 m l^2 (a'^2 + b'^2) - m g (y1 + y2)\n"
+        "contact y1 - l/2 sin a >= 0 friction 0.5 slip x1' + l/2 a' sin a name left\n"
+        "contact y2 - l/2 sin b >= 0 friction 0.5 slip x2' - l/2 b' sin b name right\n"
+        "contact (x2 - l/2 cos b) - (x1 + l/2 cos a) >= 0 friction 0.5 "
+        "slip (y1' + l/2 a' cos a) - (y2' + l/2 b' cos b) name top\n"
+        "start x1 = -l/2 cos α, y1 = l/2 sin α, a = α, x2 = l/2 cos α, y2 = l/2 sin α, b = α\n",
+        end);
+  };
+  const auto begins = cards(1e-3);
+  for (const double end : {100.0, 1e5}) {
+    const auto r = cards(end);
+    CHECK(r.happenings.empty());
+    CHECK(r.final.q == begins.final.q);
+    for (const double v : r.final.v) CHECK(v == 0);
+  }
+}
