@@ -64,6 +64,7 @@ TEST_CASE("after drag has slowed a pellet its bounces are as visible as those of
       6.2);
   CHECK(count(r, Happening::Kind::Impact) >= 6);
   CHECK(r.final.q[0] > 1e-3);
+}
 
 namespace {
 
