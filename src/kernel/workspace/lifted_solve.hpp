@@ -13,9 +13,10 @@ namespace maupertuis::workspace {
 using reference::Doubles;
 using reference::Memory;
 
-/// M₀ x = b for systems so large that a full M₀ costs more. The mass matrix of a chain is full, but the accelerations of
-/// its points follow from each other by a few products a link. With these accelerations as unknowns beside q̈ the system
-/// is larger and sparse (sparse::LiftedSystem), and solving it costs as much a link however many links there are.
+/// M₀ x = b for systems so large that a full M₀ costs more. The mass matrix of a chain is full, but the accelerations
+/// of its points follow from each other by a few products a link. With these accelerations as unknowns beside q̈ the
+/// system is larger and sparse (sparse::LiftedSystem), and solving it costs as much a link however many links there
+/// are.
 ///
 /// Its pivots are chosen once, and may become small where the motion goes. So the first solution of each step is put
 /// into the equations again. What it leaves of b decides: the step is solved here, perhaps with a correction of each
