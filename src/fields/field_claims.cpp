@@ -316,6 +316,34 @@ class FieldVerifier {
     }
     return worst;
   }
+  /// With the parameters' exact values.
+  std::vector<Expr> at_values_of_the_model(const std::vector<Expr>& residuals) const {
+    ExprMap values;
+    for (const Parameter& p : equations_.model->parameters) values.emplace(p.symbol, p.value);
+    return substitute(residuals, values);
+  }
+  void decide_at_values(const ZeroTest& test, ExpectationResult& result) const {
+    result.passed = test.verdict == Verdict::Zero;
+    result.message = result.passed ? "It solves the field equations at the values of the model."
+                                   : "It does not solve the field equations.";
+    if (result.passed) return;
+    result.expected = "residual 0";
+    result.actual = test.witness.empty()
+                        ? "another function"
+                        : fmt::format("{:.2g} at {} (SI)", test.witness_value, place_text(test.witness));
+  }
+  /// t and the places of a point, as x = 1.2, t = 3.4.
+  std::string place_text(const Bindings& point) const {
+    std::string out;
+    const auto add = [&](Expr symbol) {
+      const auto found = point.find(symbol);
+      if (found == point.end()) return;
+      out += fmt::format("{}{} = {:.3g}", out.empty() ? "" : ", ", symbol.name(), found->second);
+    };
+    for (const SpaceVariable& x : s_.space) add(x.symbol);
+    add(s_.context->time());
+    return out;
+  }
   void decide(const fe::Solution& e, ExpectationResult& result) {
     std::vector<Expr> residuals;
     for (const Expr& r : equations_.residuals) residuals.push_back(inserted(r, e));
@@ -325,6 +353,8 @@ class FieldVerifier {
       result.message = "It solves the field equations identically.";
       return;
     }
+    if (const ZeroTest here = zero_test(at_values_of_the_model(residuals)); here.verdict != Verdict::Undecided)
+      return decide_at_values(here, result);
     const double worst = largest_residual(e);
     result.expected = "residual below 1e-11 of its terms";
     result.actual = worst < 0 ? "nothing" : fmt::format("{:.2g} of the largest term", worst);

@@ -2,14 +2,137 @@
 
 #include <maupertuis/degenerate.hpp>
 #include <maupertuis/simulation.hpp>
+#include <maupertuis/switches.hpp>
 #include <maupertuis/transform.hpp>
+
+#include "linear_algebra/dense.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace maupertuis {
+namespace {
+
+constexpr int far_centers = 2;
+constexpr double part_of_size = 0.3;  // of what starts at 0: where points are looked for
+
+/// What the base units are worth in a model: such that its numbers are of order one in these units, as nearly as they
+/// can be (least squares of the logarithms); 1 where none knows a unit. A pendulum of 1 nm has lengths of 1 nm, and
+/// times of √(l/g).
+class NaturalUnits {
+ public:
+  explicit NaturalUnits(const MechanicalSystem& system, const MotionState* start) {
+    for (const Parameter& p : system.parameters) add(p.dimension, p.si_value);
+    for (std::size_t i = 0; start && i < system.coordinates.size(); ++i) {
+      const Dimension& d = system.coordinates[i].dimension;
+      if (std::abs(start->q[i]) > noise) add(d, start->q[i]);
+      if (std::abs(start->v[i]) > noise) add(d / dimensions::time(), start->v[i]);
+    }
+    solve();
+  }
+
+  double of(const Dimension& dimension) const { return std::exp(exponents(dimension).dot(logarithms_)); }
+
+ private:
+  static constexpr int bases = Dimension::Angle;  // an angle is of order one
+  static constexpr double noise = 1e-12;          // of starts that were moved onto the constraints
+  using Row = Eigen::VectorXd;
+
+  static Row exponents(const Dimension& dimension) {
+    Row row = Row::Zero(bases);
+    for (int b = 0; b < bases; ++b) {
+      const Dimension::Exponent e = dimension.exponents[static_cast<std::size_t>(b)];
+      row[b] = static_cast<double>(e.numerator) / e.denominator;
+    }
+    return row;
+  }
+  void add(const Dimension& dimension, double value) {
+    if (value == 0 || !std::isfinite(value) || exponents(dimension).isZero()) return;
+    rows_.push_back(exponents(dimension));
+    values_.push_back(std::log(std::abs(value)));
+  }
+  /// The shortest of the best: what is not determined stays 1 in SI.
+  void solve() {
+    logarithms_ = Row::Zero(bases);
+    if (rows_.empty()) return;
+    Eigen::MatrixXd matrix(static_cast<Eigen::Index>(rows_.size()), bases);
+    for (std::size_t i = 0; i < rows_.size(); ++i) matrix.row(static_cast<Eigen::Index>(i)) = rows_[i].transpose();
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(matrix);
+    logarithms_ = solver.solve(Row(Eigen::Map<const Row>(values_.data(), matrix.rows())));
+  }
+
+  std::vector<Row> rows_;
+  std::vector<double> values_;
+  Row logarithms_;
+};
+
+/// Coordinates away from the center by up to one and a half of their sizes, other ones at each turn.
+Bindings far_center(Bindings center, const MechanicalSystem& system, int turn) {
+  constexpr double golden = 0.6180339887498949, another = 0.2763932022500211;
+  double place = 0.31 + another * turn;
+  for (const Coordinate& c : system.coordinates)
+    for (const Expr& symbol : {c.q, c.velocity}) {
+      place = std::fmod(place + golden, 1.0);
+      center[symbol] += (3 * place - 1.5) * std::abs(center.at(symbol));
+    }
+  return center;
+}
+
+/// What the terms of a sum amount to; 1 where that has no value.
+double amount_of_terms(Expr g, const Bindings& at) {
+  std::vector<Expr> terms{g};
+  if (g.is(Kind::Sum)) {
+    terms.clear();
+    for (std::size_t i = 0; i < g.size(); ++i) terms.push_back(g[i]);
+  }
+  double sum = 0;
+  for (const double x : evaluate(terms, at)) sum += std::abs(x);
+  return sum > 0 && std::isfinite(sum) ? sum : 1;
+}
+
+/// Tests of one formula in several parts of the constraint manifold: what does not vanish in one decides, and where no
+/// point is found nothing is said.
+class OnConstraints {
+ public:
+  OnConstraints(Expr formula, const ExprVector& relations, const ExprVector& unknowns)
+      : formula_(formula), relations_(relations), unknowns_(unknowns) {}
+
+  void near(const Bindings& center) { take(relations_, unknowns_, center); }
+
+  /// On both sides of a switch, where the constraints let it pass: at states where g has a small value, of several
+  /// sizes, so that a narrow branch is met as well.
+  void beside(Expr g, Bindings center, Context& context) {
+    const Expr level = context.symbol("level of a switch", Role::Constant);
+    ExprVector relations = relations_, unknowns = unknowns_;
+    relations.push_back(g - level);
+    if (!differentiate(g, context.time()).is_zero()) unknowns.push_back(context.time());
+    const double size = amount_of_terms(g, center);
+    for (const double part : {0.1, -0.1, 1e-3, -1e-3, 1e-6, -1e-6}) {
+      center[level] = part * size;
+      take(relations, unknowns, center);
+    }
+  }
+
+  const ZeroTest& verdict() const { return all_; }
+
+ private:
+  void take(const ExprVector& relations, const ExprVector& unknowns, const Bindings& center) {
+    if (all_.verdict == Verdict::Nonzero) return;
+    ZeroTest here = zero_test_where({&formula_, 1}, relations, unknowns, center);
+    if (here.verdict == Verdict::Undecided && all_.verdict == Verdict::Zero) return;
+    if (here.verdict == Verdict::Zero && all_.verdict == Verdict::Zero) here.points += all_.points;
+    all_ = std::move(here);
+  }
+
+  Expr formula_;
+  const ExprVector &relations_, &unknowns_;
+  ZeroTest all_;
+};
+
+}  // namespace
 
 std::string ground_of(const ZeroTest& test, bool constrained) {
   if (test.points == 0 && test.error_bound == 0)
@@ -70,7 +193,13 @@ ZeroTest AlongMotion::vanishes(Expr e) const {
 ZeroTest AlongMotion::as_formula(Expr plain) const {
   if (!constrained() || plain.is_zero()) return zero_test(plain);
   const Where where = relations_for(plain);
-  return zero_test_where({&plain, 1}, where.relations, where.unknowns, where.center);
+  OnConstraints test(plain, where.relations, where.unknowns);
+  test.near(where.center);
+  for (int turn = 0; turn < far_centers; ++turn) test.near(far_center(where.center, *equations_.system, turn));
+  ExprVector functions = where.relations;
+  functions.push_back(plain);
+  for (const Expr& g : switches_of(functions)) test.beside(g, where.center, *equations_.system->context);
+  return test.verdict();
 }
 
 ZeroTest AlongMotion::vanishes_on(Expr e, std::span<const Expr> level) const {
@@ -165,14 +294,21 @@ AlongMotion::Where AlongMotion::relations_for(Expr e) const {
   return out;
 }
 
+/// What starts at 0 has a part of its size instead: where a term vanishes there, as x (x/l)⁶, points beside it see it.
 Bindings AlongMotion::center() const {
   const MechanicalSystem& system = *equations_.system;
+  const NaturalUnits units(system, start_ ? &*start_ : nullptr);
   Bindings out = parameter_bindings(system);
+  const auto set = [&](Expr symbol, double value, const Dimension& dimension) {
+    const double size = part_of_size * units.of(dimension);
+    out[symbol] = std::abs(value) > 1e-9 * size ? value : size;
+  };
   for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
     const Coordinate& c = system.coordinates[i];
-    out[c.q] = start_ ? start_->q[i] : 0.0;
-    out[c.velocity] = start_ ? start_->v[i] : 0.0;
-    out[c.acceleration] = 0.0;
+    const Dimension rate = c.dimension / dimensions::time();
+    set(c.q, start_ ? start_->q[i] : 0, c.dimension);
+    set(c.velocity, start_ ? start_->v[i] : 0, rate);
+    set(c.acceleration, 0, rate / dimensions::time());
   }
   for (const Expr& multiplier : equations_.multipliers) out[multiplier] = 0.0;
   if (start_) out[system.context->time()] = start_->t;

@@ -1,6 +1,7 @@
 #include "simulation/energy_balance.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace maupertuis {
@@ -38,10 +39,24 @@ void EnergyBalance::add(const Sample& sample) {
     overflows_ = true;
     return;
   }
-  if (!begun_) first_ = energy;
+  if (!begun_) {
+    first_ = energy;
+    first_terms_.assign(sample.observables.begin(), sample.observables.begin() + static_cast<std::ptrdiff_t>(terms_));
+  }
   begun_ = true;
+  double change = 0;
+  for (std::size_t i = 0; i < terms_; ++i)
+    change += std::abs(sample.observables[i] - (!of_places_.empty() && of_places_[i] ? first_terms_[i] : 0));
+  largest_change_ = std::max(largest_change_, change);
   largest_scale_ = std::max(largest_scale_, scale);
   largest_error_ = std::max(largest_error_, std::abs(energy - first_ - work_before_ - work_of(sample)));
+}
+
+double EnergyBalance::drift(double rounding) const {
+  constexpr double sums = 16 * std::numeric_limits<double>::epsilon();  // rounding of h_E, by its terms
+  if (std::max(largest_scale_, largest_error_) <= rounding || !(largest_scale_ > 0)) return 0;
+  const double beyond = largest_error_ - sums * largest_scale_, of_terms = largest_error_ / largest_scale_;
+  return beyond > 0 && largest_change_ > 0 ? std::max(of_terms, beyond / largest_change_) : of_terms;
 }
 
 }  // namespace maupertuis

@@ -4,14 +4,20 @@
 #include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <utility>
+#include <vector>
 
 namespace maupertuis {
 
 /// energy_drift = max |h_E(t) − h_E(0) − work(t)| / max Σ |terms of h_E| of a run. Without power there is no integral.
+/// What is more than rounding of h_E is measured by what can change as well: terms of places alone count by how far
+/// they are from their first value, so that a constant in V, a height above the centre of the earth, hides nothing.
 class EnergyBalance {
  public:
   /// `terms`: so many first observables add up to h_E. `jumps`: its formula jumps at switches in time.
-  EnergyBalance(std::size_t terms, bool jumps) : terms_(terms), jumps_(jumps) {}
+  /// `of_places`: [terms] it knows no velocity; empty where nobody says.
+  EnergyBalance(std::size_t terms, bool jumps, std::vector<bool> of_places = {})
+      : terms_(terms), jumps_(jumps), of_places_(std::move(of_places)) {}
 
   void before_step(const Method& method);
   void after_step(const Method& method, const Step& step);
@@ -20,10 +26,7 @@ class EnergyBalance {
   void carry_over(const Sample& last) { work_before_ += work_of(last); }
 
   /// `rounding`: of energies; where there have been no larger ones they do not drift.
-  double drift(double rounding = 0) const {
-    if (std::max(largest_scale_, largest_error_) <= rounding) return 0;
-    return largest_scale_ > 0 ? largest_error_ / largest_scale_ : 0;
-  }
+  double drift(double rounding = 0) const;
   /// Nothing is known of it: a term was infinite, or it had no value at any state.
   bool is_lost() const { return overflows_ || (terms_ > 0 && !begun_); }
   static constexpr const char* lost =
@@ -35,9 +38,11 @@ class EnergyBalance {
 
   std::size_t terms_;
   bool jumps_, at_switch_ = false;  // the last step ended there
+  std::vector<bool> of_places_;
+  std::vector<double> first_terms_;
   std::optional<Sample> on_switch_;
   bool begun_ = false, overflows_ = false;
-  double first_ = 0, largest_scale_ = 0, largest_error_ = 0, work_before_ = 0;
+  double first_ = 0, largest_scale_ = 0, largest_change_ = 0, largest_error_ = 0, work_before_ = 0;
 };
 
 }  // namespace maupertuis

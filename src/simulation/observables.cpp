@@ -96,6 +96,12 @@ void find_dependences(Observables& out, const EquationsOfMotion& equations) {
     }
 }
 
+bool knows_velocity(Expr e) {
+  const std::vector<Expr> symbols = symbols_of({&e, 1});
+  return std::any_of(symbols.begin(), symbols.end(),
+                     [](const Expr& s) { return s.role() == Role::Coordinate && s.order() > 0; });
+}
+
 }  // namespace
 
 Observables collect_observables(const EquationsOfMotion& equations, const Probe* probe,
@@ -103,6 +109,7 @@ Observables collect_observables(const EquationsOfMotion& equations, const Probe*
   Observables out;
   out.expressions = energy_terms(equations);
   out.energy_terms = out.expressions.size();
+  for (const Expr& term : out.expressions) out.of_places.push_back(!knows_velocity(term));
   for (const Point& point : equations.system->points)
     out.expressions.insert(out.expressions.end(), point.position.begin(), point.position.end());
   out.points = out.expressions.size() - out.energy_terms;

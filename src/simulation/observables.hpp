@@ -22,6 +22,7 @@ struct Observables {
 
   std::vector<Expr> expressions;
   std::size_t energy_terms = 0, points = 0, probes = 0;
+  std::vector<bool> of_places;  // [energy_terms] it knows no velocity
   std::vector<Named> reactions, asked;
   std::vector<Dependence> dependences;
 };

@@ -110,7 +110,7 @@ class Run {
         method_(std::move(method)),
         stiff_(std::move(stiff)),
         hybrid_(hybrid),
-        balance_(observables.energy_terms, energy_jumps) {
+        balance_(observables.energy_terms, energy_jumps, observables.of_places) {
     result_.statistics.method = word_of(*options.method);
     result_.trajectory.independent = {model.system.independent, model.system.independent_unit()};
     name_trajectory_columns(model.system, observables, result_.trajectory.columns, result_.reactions);
@@ -412,6 +412,23 @@ void add_errors(SimulationResult& result, Probe* probe, const Model& model, cons
   result.statistics.companion_seconds = seconds_since(begin);
 }
 
+/// Far beyond what steps leave: something was passed that the equations do not hold. Variational steps may.
+void warn_of_drift(const SimulationResult& result, const SimulationOptions& options, Diagnostics& diagnostics) {
+  constexpr double always = 1e-7, of_tolerance = 1e5;
+  const double drift = result.statistics.energy_drift;
+  if (result.statistics.energy_vanishes || options.method == StepMethod::Variational) return;
+  const double tolerance =
+      result.statistics.method == word_of(StepMethod::Stiff) ? stiff_tolerance(options) : options.tolerance;
+  if (!(drift > std::max(always, of_tolerance * tolerance))) return;
+  diagnostics.warning(
+      "W0734", std::nullopt,
+      fmt::format("the energy drifts by {:.2g} of its terms, far beyond the errors of the steps", drift),
+      "Nothing in the equations of motion changes it so. Where an energy jumps, a force acts that no "
+      "derivative of it shows, and the motion goes through as if there were none.",
+      "Let the pieces of energies meet, or round the jump: V0/2 (1 + tanh((x - a)/w)); a force may "
+      "jump.");
+}
+
 }  // namespace
 
 std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMotion& equations,
@@ -457,6 +474,7 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   SimulationResult result = run.carry_out();
   if (options.errors != ErrorEstimates::None && result.ending != Ending::Interrupted)
     add_errors(result, probe, model, equations, options, *plan, observables, wanted, hybrid, run.between());
+  warn_of_drift(result, options, diagnostics);
   if (run.turned_stiff()) note_stiffness(result, model.system, stiff_tolerance(options), diagnostics);
   if (options.method == StepMethod::Automatic || options.method == StepMethod::Taylor ||
       options.backend == Backend::Compiled)

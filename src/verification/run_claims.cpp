@@ -143,14 +143,22 @@ void RunClaims::run_direction(bool forwards, std::vector<ExpectationResult>& res
   for (const EventCount& e : counts_) judge_count(e, run, results[e.line]);
 }
 
-/// 200 times along the run.
+/// Times along the run: within each step as many as its polynomials need to show their extremes, so that what repeats
+/// itself is not met at one phase alone; of more than a budget every second, third … and always the last.
 std::vector<double> RunClaims::samples() const {
-  const double begin = number(model_.experiment.start_time);
-  const double length =
-      options_.duration ? *options_.duration : number(model_.experiment.duration, number(model_.experiment.within));
-  constexpr int count = 200;
+  constexpr std::size_t most = 20'000;
+  SimulationOptions options = options_;
+  options.at.clear();
+  options.rows_of_steps = true;
+  options.errors = ErrorEstimates::None;
+  Diagnostics unheard;  // the run that is judged says it
+  const auto run = simulate(model_, equations_, options, unheard);
   std::vector<double> times;
-  for (int k = 0; k <= count; ++k) times.push_back(begin + length * k / count);
+  if (!run) return times;
+  const std::vector<double>& rows = run->trajectory.times;
+  const std::size_t every = rows.size() / most + 1;
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (k % every == 0 || k + 1 == rows.size()) times.push_back(rows[k]);
   return times;
 }
 
@@ -192,6 +200,10 @@ void RunClaims::judge_drift(const Drift& drift, std::size_t column, const std::o
                             const Probe& probe, ExpectationResult& result) const {
   if (!run) {
     result.message = kNoStart;
+    return;
+  }
+  if (!run->ok()) {
+    result.message = ended_before(run->reason);
     return;
   }
   double low = std::numeric_limits<double>::infinity(), high = -low, largest = 0;

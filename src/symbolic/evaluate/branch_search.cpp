@@ -11,20 +11,29 @@ namespace {
 
 constexpr double unreached = 1e6;  // of one sign that is undefined
 constexpr int rounds = 4;
+constexpr std::size_t most_constants = 40;
 
-/// The constants of a tape: numbers, and symbols that keep their value.
-std::set<double> constants_of(const Tape& tape, const std::vector<Expr>& moving, const Bindings& center) {
-  std::set<double> out;
-  const auto add = [&out](double x) {
-    x = std::abs(x);
-    if (x > 1e-12 && x < 1e12) out.insert(x);
-  };
-  for (Position at = 0; at < tape.size() && out.size() < 40; ++at) {
+/// What does not move in a tape: numbers, symbols that keep their value, and all that is made of them alone, as l sin α
+/// and a b, at which a switch may stand. Those that stand beside what moves come first.
+std::vector<double> constants_of(const Tape& tape, const std::vector<Expr>& moving, const Bindings& center) {
+  RealNumbers<double> numbers([&](Expr symbol) { return center.at(symbol); });
+  std::vector<double> values;
+  run(tape, numbers, values);
+  std::vector<bool> moves(tape.size(), false), beside(tape.size(), false);
+  for (Position at = 0; at < tape.size(); ++at) {
     const Expr e = tape.expression(at);
-    if (e.is_number()) add(e.number().to_double());
-    if (e.is(Kind::Pi)) add(3.14159265358979323846);
-    if (e.is_symbol() && std::find(moving.begin(), moving.end(), e) == moving.end()) add(center.at(e));
+    moves[at] = e.is_symbol() && std::find(moving.begin(), moving.end(), e) != moving.end();
+    for (const Position argument : tape.arguments(at)) moves[at] = moves[at] || moves[argument];
+    if (!moves[at]) continue;
+    for (const Position argument : tape.arguments(at)) beside[argument] = true;
   }
+  std::vector<double> out;
+  for (const bool first : {true, false})
+    for (Position at = 0; at < tape.size() && out.size() < most_constants; ++at) {
+      const double x = std::abs(values[at]);
+      const bool counts = !moves[at] && beside[at] == first && x > 1e-12 && x < 1e12;
+      if (counts && std::find(out.begin(), out.end(), x) == out.end()) out.push_back(x);
+    }
   return out;
 }
 
@@ -45,7 +54,7 @@ BranchSearch::BranchSearch(std::span<const Expr> functions, const SwitchSearch& 
   for (const Expr& symbol : search.moving)
     for (Position at = 0; at < tape_.size(); ++at)
       if (tape_.expression(at) == symbol) moving_.push_back(symbol);
-  const std::set<double> constants = constants_of(tape_, moving_, search.center);
+  const std::vector<double> constants = constants_of(tape_, moving_, search.center);
   for (const Expr& symbol : moving_) {
     std::set<double> values{0, search.center.at(symbol)};
     for (const double c : constants) values.insert({c, -c});

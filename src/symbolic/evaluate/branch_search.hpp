@@ -11,8 +11,8 @@ namespace maupertuis::evaluation {
 using Signs = std::vector<std::int8_t>;
 
 /// Points by the signs of some functions, in double. Along each symbol that moves a fixed set of values is tried: zero,
-/// the center, every constant that stands in the functions, powers of ten, and what lies between. A narrow gate
-/// exp(-100 (x - 3)^2) > 1/2 is met because its 3 is among them.
+/// the center, every constant and every part without what moves that stands in the functions, powers of ten, and what
+/// lies between. A narrow gate exp(-100 (x - 3)^2) > 1/2 is met because its 3 is among them.
 class BranchSearch {
  public:
   BranchSearch(std::span<const Expr> functions, const SwitchSearch& search);

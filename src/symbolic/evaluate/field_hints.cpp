@@ -2,6 +2,8 @@
 #include "symbolic/evaluate/interval.hpp"
 #include "symbolic/evaluate/real_numbers.hpp"
 
+#include <maupertuis/kinds.hpp>
+
 #include <algorithm>
 #include <numeric>
 
@@ -53,6 +55,30 @@ std::vector<std::int8_t> definite_signs(const Tape& tape) {
   return signs;
 }
 
+/// What matters only where a piece is in force: a value or a later condition of piecewise, a factor beside one that
+/// switches and may be 0 (derivatives of pieces are written so: log x · piecewise(0 < x : 1, else : 0)), and what
+/// stands below these and nowhere else.
+std::vector<bool> nodes_in_pieces(const Tape& tape) {
+  std::vector<bool> in_a_piece(tape.size(), true), switches(tape.size(), false);
+  for (Position at = 0; at < tape.size(); ++at) {
+    switches[at] = has_switch(tape.kind(at));
+    for (const Position argument : tape.arguments(at)) switches[at] = switches[at] || switches[argument];
+  }
+  for (const Position root : tape.roots()) in_a_piece[root] = false;
+  for (Position at = static_cast<Position>(tape.size()); at-- > 0;) {
+    if (in_a_piece[at]) continue;
+    const auto arguments = tape.arguments(at);
+    const auto switching = std::count_if(arguments.begin(), arguments.end(), [&](Position x) { return switches[x]; });
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      const bool guarded = tape.kind(at) == Kind::Piecewise ? i > 0
+                           : tape.kind(at) == Kind::Product ? switching > (switches[arguments[i]] ? 1 : 0)
+                                                            : false;
+      if (!guarded) in_a_piece[arguments[i]] = false;
+    }
+  }
+  return in_a_piece;
+}
+
 /// For each node that asks for a sign, the symbol below it that was met last: by the smallest number of earlier such
 /// nodes.
 void find_free_symbols(const Tape& tape, const std::vector<Position>& askers, FieldHints& hints) {
@@ -89,8 +115,11 @@ int mends_allowed(const Tape& tape) {
   return static_cast<int>(std::min<std::size_t>(4000, 20'000'000 / (tape.size() + 1)));
 }
 
+int definite_sign(Expr e) { return definite_signs(Tape({&e, 1})).back(); }
+
 FieldHints field_hints(const Tape& tape) {
   FieldHints hints;
+  hints.in_a_piece = nodes_in_pieces(tape);
   std::vector<Position> askers;
   for (Position at = 0; at < tape.size(); ++at) {
     const Kind kind = tape.kind(at);
@@ -100,7 +129,7 @@ FieldHints field_hints(const Tape& tape) {
     askers.push_back(at);
     const Expr argument = tape.expression(tape.argument(at, 0));
     const bool under_root = kind == Kind::Log || kind == Kind::Power;
-    if (argument.is_symbol() && under_root) hints.positive.insert(argument.id());
+    if (argument.is_symbol() && under_root && !hints.in_a_piece[at]) hints.positive.insert(argument.id());
   }
   if (askers.empty()) return hints;
   hints.sign = definite_signs(tape);

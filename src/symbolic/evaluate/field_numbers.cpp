@@ -144,7 +144,11 @@ FieldNumbers::Value FieldNumbers::power(const Tape& tape, Position at, const std
   }
   if (number && free_roots_ && tape.kind(base) != Kind::Number && !is_never_positive(base))
     return free_power(values[base], *number);
-  if (!has_sign(base, values[base], 1)) throw Redraw{false, at};
+  if (!has_sign(base, values[base], 1)) {
+    // Within a piece that is not in force here: any number will do, and the other pieces are met.
+    if (stands_in_a_piece(at)) return random(mix(key_root ^ values[exponent]), values[base]);
+    throw Redraw{false, at};
+  }
   return field_.power(values[base], number ? exponent_of(*number) : exponent_of(tape, exponent, values));
 }
 
@@ -308,7 +312,7 @@ FieldNumbers::Value FieldNumbers::function(const Tape& tape, Position at, const 
       return tape.kind(at) == Kind::Sinh ? sinh : cosh;
     }
     case Kind::Log:
-      return logarithm(tape, argument, values);
+      return stands_in_a_piece(at) ? absolute_logarithm(tape, argument, values) : logarithm(tape, argument, values);
     // The logarithms of exp of these nodes; and a function that no algebra ties to others.
     case Kind::Asinh:
     case Kind::Acosh:

@@ -16,14 +16,19 @@ struct Redraw {
 
 /// What an evaluation over a prime field must know of an expression beside its nodes.
 struct FieldHints {
-  std::uint64_t m_used = 0;             // lcm of 2·denominator over the multiples of π in angles; 0: none
-  std::uint64_t m = 840;                // lcm of that and 840
-  std::vector<std::int8_t> sign;        // [tape] +1, −1 where the value has this sign at all real points, else 0
-  std::unordered_set<NodeId> positive;  // symbols under a root or a logarithm: drawn positive
+  std::uint64_t m_used = 0;       // lcm of 2·denominator over the multiples of π in angles; 0: none
+  std::uint64_t m = 840;          // lcm of that and 840
+  std::vector<std::int8_t> sign;  // [tape] +1, −1 where the value has this sign at all real points, else 0
+  // Symbols under a root or a logarithm that stands outside of all pieces: drawn positive, since the formula has no
+  // value otherwise.
+  std::unordered_set<NodeId> positive;
+  std::vector<bool> in_a_piece;  // [tape] asked only where a piece of piecewise is in force
   std::unordered_map<Position, Expr>
       free;  // of a node with a sign to meet: the symbol that fewest earlier such nodes see
 };
 FieldHints field_hints(const Tape& tape);
+/// +1, −1 where a formula has this sign at all real values of its symbols, by interval arithmetic; else 0.
+int definite_sign(Expr e);
 /// How many roots may be mended before a search for points is given up: bounded work for a hopeless one.
 int mends_allowed(const Tape& tape);
 
@@ -94,6 +99,7 @@ class FieldNumbers {
   Value power(const Tape& tape, Position at, const std::vector<Value>& values);
   Value positive_power(Value base, std::uint64_t exponent) const;
   bool is_never_positive(Position argument) const;
+  bool stands_in_a_piece(Position at) const { return at < hints_.in_a_piece.size() && hints_.in_a_piece[at]; }
   Value free_power(Value base, const Rational& exponent) const;
   Value positive(Value a) const;
   std::uint64_t exponent_of(const Rational& c) const;

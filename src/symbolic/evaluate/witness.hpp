@@ -1,6 +1,7 @@
 #pragma once
 #include <maupertuis/evaluate.hpp>
 
+#include "symbolic/evaluate/leaves.hpp"
 #include "symbolic/evaluate/tape.hpp"
 
 #include <optional>
@@ -20,6 +21,9 @@ std::optional<Witness> find_precise_witness(const Tape& tape, int points, std::u
 
 /// The same at points in all branches of the switches that are found, first in double, then with 100 digits.
 std::optional<Witness> find_witness_in_branches(std::span<const Expr> roots, std::uint64_t seed);
+
+/// The same of a formula at points on the sides on which it is in force, if such points are found.
+std::optional<Witness> find_witness_on_leaf(const Leaf& leaf, std::uint64_t seed);
 
 /// A random real point for the symbols of a tape: mostly of order one, now and then large or small.
 Bindings random_real_point(const Tape& tape, int trial, std::uint64_t seed);

@@ -209,3 +209,13 @@ TEST_CASE_FIXTURE(Fixture, "a switch that is no sum is 0 at its root up to round
 TEST_CASE_FIXTURE(Fixture, "a switch at a constant larger than all other values is met") {
   for (const int far : {2'000'000, 40'000'000, -900'000'000}) CHECK(largest_jump(step(x - number(far))).first == 1);
 }
+
+TEST_CASE_FIXTURE(Fixture, "a narrow gate about a product or a function of constants is met") {
+  const Expr a = context.symbol("a", Role::Parameter), b = context.symbol("b", Role::Parameter);
+  for (const Expr& place : {a * b, a * sin(b), a / (b + number(3))}) {
+    const Expr gate = piecewise(less(pow(x - place, Rational(2)), number(Rational(1, 1000000))), number(1), number(0));
+    const auto samples = sample_switches({&gate, 1}, switches_of({&gate, 1}), {{x}, {{x, 0.1}, {a, 0.71}, {b, 0.93}}});
+    REQUIRE(!samples.empty());
+    CHECK(std::abs(samples.front().jump[0]) == 1);
+  }
+}

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <string>
+#include <vector>
 
 using namespace maupertuis;
 
@@ -178,6 +180,69 @@ TEST_CASE_FIXTURE(Names, "switches are split by region, consistently") {
   is_nonzero(abs(x) - x);
   is_nonzero(abs(x) + abs(y) - abs(x + y));
   is_nonzero(fn(Kind::Max, {x, number(0)}));
+}
+
+TEST_CASE_FIXTURE(Names, "each piece of a table is tested, the last as well as the first") {
+  const auto table = [&](int pieces, Expr last, bool otherwise_written) {
+    std::vector<Expr> out;
+    for (int k = 1; k < pieces; ++k) {
+      const Expr value = number(k) * (x + number(1));
+      out.push_back(fn(Kind::Less, {x, number(k)}));
+      out.push_back(otherwise_written ? number(k) * x + number(k) : value);
+    }
+    out.push_back(last);
+    return c.function(Kind::Piecewise, out);
+  };
+  for (const int pieces : {18, 30, 200}) {
+    is_zero(table(pieces, 5 * y, false) - table(pieces, 2 * y + 3 * y, true));
+    is_nonzero(table(pieces, 5 * y, false) - table(pieces, 7 * y, true));
+  }
+}
+
+TEST_CASE_FIXTURE(Names, "signs that have to come together are looked for, those of different terms are not combined") {
+  Expr product = number(1), sum = number(0);
+  for (int k = 0; k < 24; ++k) {
+    const Expr u = c.symbol("u" + std::to_string(k), Role::Coordinate);
+    product = product * apply(Kind::Step, u);
+    sum = sum + (k + 1) * (abs(u) - fn(Kind::Max, {u, -u}));
+  }
+  is_nonzero(product);
+  is_zero(sum);
+  is_nonzero(sum + y * apply(Kind::Step, y - number(1000)));
+}
+
+TEST_CASE_FIXTURE(Names, "a root or a logarithm in one piece hides none of the other pieces") {
+  const auto above = [&](Expr e, Expr from) { return fn(Kind::Less, {from, e}); };
+  const auto hertz = [&](Expr far) {
+    return fn(Kind::Piecewise, {above(x, number(0)), pow(x, Rational(3, 2)), above(x, number(-5)), number(0), far});
+  };
+  is_nonzero(hertz(a) - hertz(2 * a));
+  is_zero(hertz(a + a) - hertz(2 * a));
+  const auto entropy = [&](Expr far) {
+    return fn(Kind::Piecewise, {above(x, number(0)), x * log(x), above(x, number(-5)), number(0), far});
+  };
+  is_nonzero(entropy(sq(x + number(5))) - entropy(3 * sq(x + number(5))));
+  is_zero(differentiate(entropy(sq(x)), x) -
+          fn(Kind::Piecewise, {above(x, number(0)), log(x) + number(1), above(x, number(-5)), number(0), 2 * x}));
+  // As derivatives of pieces are written, with the logarithm in front.
+  const auto in_front = [&](Expr far) {
+    const auto pieces = [&](Expr first, Expr last) {
+      return fn(Kind::Piecewise, {above(x, number(0)), first, above(x, number(-5)), number(0), last});
+    };
+    return log(x) * pieces(number(1), number(0)) + far * pieces(number(0), number(1));
+  };
+  CHECK(zero_test(in_front(x) - in_front(2 * x)).verdict == Verdict::Nonzero);
+  is_zero(in_front(sq(x + y)) - in_front(sq(x) + 2 * x * y + sq(y)));
+  // Within another piece, and in a condition that is asked for in one piece alone.
+  const auto nested = [&](Expr far) {
+    const Expr inner = fn(Kind::Piecewise, {above(number(3), sqrt(x)), y, a * y});
+    return fn(Kind::Piecewise, {above(x, number(0)), inner, far});
+  };
+  is_nonzero(nested(x) - nested(2 * x));
+  is_zero(nested(x + x) - nested(2 * x));
+  // What holds on the side of a switch alone.
+  is_zero(fn(Kind::Piecewise, {above(x, number(0)), sqrt(sq(x)), number(0)}) -
+          fn(Kind::Piecewise, {above(x, number(0)), x, number(0)}));
 }
 
 TEST_CASE_FIXTURE(Names, "values near zero are told apart from zero") {
