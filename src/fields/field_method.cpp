@@ -83,6 +83,13 @@ int FieldMethod::power(const FieldEquations& equations, const FieldQuestion& que
   return std::min(std::max(degree + 1 - lost, 1), order_of_collocation());
 }
 
+std::vector<double> FieldMethod::looks_at(double time, double begin) const {
+  std::vector<double> out{time};
+  for (double steps = 1; before_ > 0 && steps <= nodes_ && time - steps * before_ > begin; steps *= 2)
+    out.push_back(time - steps * before_);
+  return out;
+}
+
 double FieldMethod::width_of_cell(const FieldEquations& equations, const Cells& cells) const {
   const FieldSystem& s = equations.system();
   Bindings values;

@@ -44,6 +44,11 @@ class FieldMethod {
   bool looks_alike(const FieldEquations& equations, const FieldQuestion& question) const {
     return alike_ && stands_on_borders(equations, question, half_);
   }
+  /// Waves: answers are looked at before their moments too, the first time by this step of the first mesh, then by 2,
+  /// 4, 8 … of them up to so many as it has nodes, which is about how long a wave takes through the domain.
+  void look_before(double step, double nodes) { before_ = step, nodes_ = nodes; }
+  /// The moment of an answer, then those before it.
+  std::vector<double> looks_at(double time, double begin) const;
   /// Moments at which steps end, since what is given at the sides has other branches from there on.
   void end_steps_at(std::vector<double> moments) { switching_ = std::move(moments); }
   const std::vector<double>& switching() const { return switching_; }
@@ -60,6 +65,7 @@ class FieldMethod {
   std::optional<DensityForm> stiff_;
   int order_ = 0;
   double step_ = 0, width_ = 0;  // of the first mesh by collocation
+  double before_ = 0, nodes_ = 0;
   bool alike_ = false;
   Cells half_;
   std::vector<double> switching_;

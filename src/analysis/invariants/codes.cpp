@@ -21,11 +21,9 @@ constexpr std::array entries{
     CodeEntry{"E1002", "the accelerations are not determined, so that nothing can be said of conservation",
               "dI/dt along the motion needs the accelerations. Where the mass matrix, bordered by the constraints, is "
               "singular, "
-              "several motions start from one state.",
-              "# maup invariants\nparam m = 1 kg, k = 4 N/m\ncoord r : length, θ : angle, z : [rad/s]\n"
-              "L = 1/2 m r'^2 + 1/2 m r^2 (θ' - z)^2 - 1/2 k r^2\nstart r = 1 m, θ = 30 deg\nrun 3 s\n",
-              "# maup invariants\nparam m = 1 kg, k = 4 N/m\ncoord r : length, θ : angle, z : [rad/s]\n"
-              "L = 1/2 m r'^2 + 1/2 m r^2 (θ' - z)^2 - 1/2 k r^2\nstart r = 1 m, θ = 30 deg\ngauge z = 0\nrun 3 s\n"},
+              "several motions start from one state. Functions of time that a degenerate Lagrangian leaves free are no "
+              "obstacle: what is found is conserved whatever they are.",
+              "", ""},
     CodeEntry{"E1003", "constraints that are not linear in the velocities are not searched",
               "Points of the motion are drawn over a prime field. Velocities that satisfy linear equations are found "
               "there by "

@@ -67,7 +67,8 @@ class Finder {
     if (options_.completeness && hamiltonian_)
       result_.symmetry_bound =
           symmetry_bound(equations_, ansatz_.atoms.natural, result_.noether_symmetries, options_.seed + 7);
-    if (options_.drift) measure_drift(result_, model_, equations_, diagnostics_);
+    // Where functions are free the sizes of terms, which drift is measured by, are a matter of their choice.
+    if (options_.drift && !has_free_functions(equations_)) measure_drift(result_, model_, equations_, diagnostics_);
     return std::move(result_);
   }
 
@@ -109,16 +110,6 @@ class Finder {
   }
 
   bool singular() {
-    if (has_free_functions(equations_)) {
-      const std::string& free = system_.coordinates[equations_.degenerate->free.front()].name;
-      diagnostics_.error(
-          "E1002", {}, "functions of time are free, so that the accelerations are not determined",
-          "The search needs a rate of change at each point.",
-          fmt::format("`gauge {} = 0`, say, makes a choice; what is conserved and does not depend on it is conserved "
-                      "with any other. `expect FORMULA conserved` judges one formula without it.",
-                      free));
-      return false;
-    }
     diagnostics_.error("E1002", {}, "the equations do not determine the accelerations",
                        "At random points the mass matrix, bordered by the constraints, was singular: conservation "
                        "along the motion has no "

@@ -1,7 +1,9 @@
 #include "analysis/invariants/motion_sampler.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/degenerate.hpp>
 #include <maupertuis/interrupt_scope.hpp>
+#include <maupertuis/jacobian.hpp>
 #include <maupertuis/transform.hpp>
 
 #include "symbolic/evaluate/normalize.hpp"
@@ -17,11 +19,45 @@ ExprVector in_state_variables(const MechanicalSystem& system, const ExprVector& 
   return in_terms_of_motion(system, expand_time_derivatives(v));
 }
 
+namespace {
+
+/// ∂rows/∂symbols, entry by entry.
+ExprMatrix slopes_of(const ExprVector& rows, const ExprVector& symbols, Context& context) {
+  ExprMatrix out{rows.size(), symbols.size(), ExprVector(rows.size() * symbols.size(), context.number(0))};
+  for (const auto& [row, column, value] : jacobian(rows, symbols)) out.entries[row * symbols.size() + column] = value;
+  return out;
+}
+
+/// Of a degenerate Lagrangian some rows are none of Lagrange's: M and Aᵀ are what the rows say. A row that sets a free
+/// acceleration to zero gives it a symbol instead, which is drawn anew at each point.
+void take_rows_as_they_are(const EquationsOfMotion& equations, MotionRows& rows) {
+  const MechanicalSystem& system = *equations.system;
+  Context& context = *system.context;
+  const ExprVector balance = in_state_variables(system, equations.balance());
+  ExprVector accelerations;
+  for (const Coordinate& c : system.coordinates) accelerations.push_back(c.acceleration);
+  rows.mass = slopes_of(balance, accelerations, context);
+  rows.reaction = slopes_of(balance, equations.multipliers, context);
+  for (Expr& entry : rows.reaction.entries) entry = -entry;
+  ExprMap at_rest;
+  ExprVector unknowns = accelerations;
+  unknowns.insert(unknowns.end(), equations.multipliers.begin(), equations.multipliers.end());
+  for (const Expr& unknown : unknowns) at_rest.emplace(unknown, context.number(0));
+  rows.bias = substitute(balance, at_rest);
+  for (const std::size_t f : equations.degenerate->free)
+    for (std::size_t i = 0; i < balance.size(); ++i)
+      if (balance[i] == accelerations[f])
+        rows.bias[i] = -context.symbol("free acceleration of " + system.coordinates[f].name, Role::Auxiliary);
+}
+
+}  // namespace
+
 MotionRows motion_rows(const EquationsOfMotion& equations) {
   const MechanicalSystem& system = *equations.system;
-  MotionRows rows{equations.system, mass_matrix(equations), bias(equations), {}, {}, {}, false};
+  MotionRows rows{equations.system, mass_matrix(equations), bias(equations), {}, {}, {}, {}, false};
   rows.mass.entries = in_state_variables(system, rows.mass.entries);
   rows.bias = in_state_variables(system, rows.bias);
+  if (equations.degenerate) take_rows_as_they_are(equations, rows);
   if (!system.constrained()) return rows;
   rows.constraint = constraint_matrix(equations);
   rows.constraint.entries = in_state_variables(system, rows.constraint.entries);
@@ -41,7 +77,7 @@ ExprVector conservative_residual(const EquationsOfMotion& equations) {
 
 MotionRows conservative_rows(const EquationsOfMotion& equations) {
   const MechanicalSystem& system = *equations.system;
-  MotionRows rows{equations.system, mass_matrix(equations), {}, {}, {}, {}, true};
+  MotionRows rows{equations.system, mass_matrix(equations), {}, {}, {}, {}, {}, true};
   rows.mass.entries = in_state_variables(system, rows.mass.entries);
   ExprMap at_rest;
   for (const Coordinate& c : system.coordinates) at_rest.emplace(c.acceleration, system.context->number(0));
@@ -77,6 +113,8 @@ MotionSampler::MotionSampler(const MotionRows& rows, std::vector<Expr> functions
   if (with_rates) {
     mass_ = append(rows.mass.entries);
     bias_ = append(rows.bias);
+    reaction_ = append(rows.reaction.entries);
+    own_reaction_ = !rows.reaction.entries.empty();
     acceleration_ = append(rows.acceleration);
     rates_ = roots.size();
     for (const Expr& f : functions) roots.push_back(total_time_derivative(f));
@@ -170,7 +208,8 @@ bool MotionSampler::bind_accelerations() {
   for (std::size_t i = 0; i < n_; ++i) {
     for (std::size_t j = 0; j < n_; ++j) bordered.at(i, j) = root(mass_ + i * n_ + j);
     for (std::size_t k = 0; k < m_; ++k) {
-      bordered.at(i, n_ + k) = field().negate(root(constraint_ + k * n_ + i));
+      bordered.at(i, n_ + k) =
+          field().negate(own_reaction_ ? root(reaction_ + i * m_ + k) : root(constraint_ + k * n_ + i));
       bordered.at(n_ + k, i) = root(constraint_ + k * n_ + i);
     }
     bordered.at(i, size) = field().negate(root(bias_ + i));

@@ -24,8 +24,10 @@ struct MotionRows {
   ExprMatrix constraint;      // A [m × n], in q, t alone
   ExprVector acceleration;    // b [m]
   ExprVector velocity;        // a₀ [m]
+  ExprMatrix reaction;        // in the place of Aᵀ [n × m], where it is another one; else empty
   bool conservative = false;  // without Q and ∂D/∂q̇, and without constraints
 };
+/// Accelerations that nothing determines are symbols of their own: what is conserved is so whatever they are.
 MotionRows motion_rows(const EquationsOfMotion& equations);
 /// Of L alone: forces, dissipation and constraints left out.
 MotionRows conservative_rows(const EquationsOfMotion& equations);
@@ -76,9 +78,10 @@ class MotionSampler {
   std::shared_ptr<const MechanicalSystem> system_;
   std::size_t n_, m_, functions_;
   bool with_rates_, singular_ = false;
+  bool own_reaction_ = false;   // Aᵀ is not that of the constraints
   bool lost_in_roots_ = false;  // the last point was given up, for roots of what is negative
   // The first root of A, a₀, and with rates of M, h, b and dB/dt; the functions themselves come first.
-  std::size_t constraint_ = 0, velocity_ = 0, mass_ = 0, bias_ = 0, acceleration_ = 0, rates_ = 0;
+  std::size_t constraint_ = 0, reaction_ = 0, velocity_ = 0, mass_ = 0, bias_ = 0, acceleration_ = 0, rates_ = 0;
   std::vector<Expr> parameters_;
   std::unique_ptr<evaluation::Tape> tape_;
   std::unique_ptr<evaluation::StaleNodes> stale_;
