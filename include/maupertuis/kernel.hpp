@@ -107,12 +107,21 @@ using PolynomialIncrements = void(const double* first, std::size_t stride, std::
                                   double* dq, double* dv);
 PolynomialIncrements polynomial_increments;
 /// Σ_{k≥2} k (k − 1) c_k τ^{k−2} of the same polynomials; written in eights.
-void polynomial_accelerations(const double* first, std::size_t stride, std::size_t columns, int degree, double tau,
-                              double* a);
+using PolynomialAccelerations = void(const double* first, std::size_t stride, std::size_t columns, int degree,
+                                     double tau, double* a);
+PolynomialAccelerations polynomial_accelerations;
 /// Σ_{k≥1} w_k |c_k| of each column for three rows of weights [3][degree + 1]; sizes: [3][columns], rounded up to
 /// eights.
 void polynomial_sizes(const double* first, std::size_t stride, std::size_t columns, int degree, const double* weights,
                       double* sizes);
+/// Σ_{k≥1} |c_k| r^k, Σ k |c_k| r^{k−1} and Σ k (k − 1) |c_k| r^{k−2}: [3][columns], with room for a fourth row.
+using PolynomialSizes = void(const double* first, double radius, double* sizes);
+/// For any number of columns and any degree, or as code for those of one workspace.
+struct Polynomials {
+  PolynomialIncrements* increments = polynomial_increments;
+  PolynomialAccelerations* accelerations = polynomial_accelerations;
+  PolynomialSizes* sizes = nullptr;  // code alone
+};
 /// q += (dq + q̇) τ and q̇ += dv with compensation: q and q̇ are sums hi + lo, pair by pair [count][2]. Results may take
 /// the place of what they come from.
 void add_increments(std::size_t count, double tau, const double* dq, const double* dv, const double* q, const double* v,
@@ -206,8 +215,9 @@ class KernelWorkspace {
   /// where the last two are taken as they are and the others times 1.25. To 5·10⁻⁴/k + 10⁻⁴, k being the one that
   /// decides; infinite where all these v_k vanish; not a number where some s_i is 0 (or nearly so): no estimate.
   double radius(double h) const;
-  /// polynomial_increments for the coefficients coordinate(k), k ≤ order + 1, until the next `compile`.
-  PolynomialIncrements* increments() const;
+  /// For the coefficients coordinate(k), k ≤ order + 1, until the next `compile`; accelerations for copies of these of
+  /// any stride, until the one after it.
+  Polynomials polynomials() const;
   /// Doubles from one order of coordinate() to the next.
   std::size_t row_stride() const;
   /// The program that is run: that of the kernel, with slots numbered anew. Coefficient k of slot s is

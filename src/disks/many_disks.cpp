@@ -1,6 +1,5 @@
 #include "disks/many_disks.hpp"
 
-#include "disks/whole_power.hpp"
 #include "machine_code/processor.hpp"
 
 #include <cmath>
@@ -64,15 +63,27 @@ bool ManyDisks::ask_more() {
   return true;
 }
 
-void ManyDisks::find_left_out(double h) {
+/// Of tails: x^p/(1 − x). Nothing on a disk that ends too near says nothing of what lies farther on: ∞ · 0 is no
+/// number, and does not count. All disks at once in each loop.
+std::array<double, Disks::many> ManyDisks::weights_for(double h) const {
   constexpr double most_of_radius = 0.5 * (1 + 1e-12);  // half of a radius, which is a rounded product
-  std::array<double, Disks::many> weights, left_out;
-  for (std::size_t disk = 0; disk < weights.size(); ++disk) {
-    const double x = h / radii_[disk];
-    // Nothing on a disk that ends too near says nothing of what lies farther on: ∞ · 0 is no number, and does not
-    // count.
-    weights[disk] = x <= most_of_radius ? whole_power(x, now_.order) / (1 - x) : infinity;
+  std::array<double, Disks::many> x, square, weights;
+  for (std::size_t disk = 0; disk < x.size(); ++disk) square[disk] = x[disk] = h / radii_[disk];
+  weights.fill(1);
+  for (int n = now_.order; n > 0; n /= 2) {
+    if (n % 2 != 0)
+      for (std::size_t disk = 0; disk < x.size(); ++disk) weights[disk] *= square[disk];
+    for (std::size_t disk = 0; disk < x.size(); ++disk) square[disk] *= square[disk];
   }
+  for (std::size_t disk = 0; disk < x.size(); ++disk) weights[disk] /= 1 - x[disk];
+  for (std::size_t disk = 0; disk < x.size(); ++disk)
+    if (!(x[disk] <= most_of_radius)) weights[disk] = infinity;
+  return weights;
+}
+
+void ManyDisks::find_left_out(double h) {
+  const std::array<double, Disks::many> weights = weights_for(h);
+  std::array<double, Disks::many> left_out;
   for (std::size_t t = 0; t < tails_.size(); ++t) {
     for (std::size_t disk = 0; disk < weights.size(); ++disk) left_out[disk] = weights[disk] * tails_[t][disk];
     least_[t] = smallest(left_out);

@@ -47,6 +47,8 @@ class ManyDisks {
   const ResidualTerms& rows() const { return rows_; }
 
  private:
+  std::array<double, Disks::many> weights_for(double h) const;
+
   ResidualTerms rows_;
   DiskPlan plan_;  // of the terms alone: rows are added up here
   std::unique_ptr<Values> values_;

@@ -179,8 +179,14 @@ void DiskPlan::find_bases() {
 void DiskPlan::set_constants(const double* values) {
   constants = values;
   for (Term& term : terms) term.size = std::abs(values[term.coefficient]);
-  for (Node& node : nodes)
-    if (node.instruction.op == Op::Power) node.exponent = values[node.instruction.constant];
+  constexpr double most_halves = 32;
+  for (Node& node : nodes) {
+    if (node.instruction.op != Op::Power) continue;
+    node.exponent = values[node.instruction.constant];
+    const double twice = 2 * node.exponent;
+    const bool is_half = std::abs(twice) <= most_halves && std::abs(std::remainder(twice, 2)) == 1;
+    node.halves = is_half ? static_cast<int>(twice) : 0;
+  }
 }
 
 }  // namespace maupertuis

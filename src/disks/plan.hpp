@@ -15,6 +15,7 @@ struct DiskPlan {
   struct Node {
     Instruction instruction;
     double exponent;  // Op::Power
+    int halves = 0;   // where it is half of a small odd number: that one
   };
   struct Term {
     double size = 0;  // |coefficient|

@@ -73,6 +73,24 @@ template <class V>
   return where<V>(all<V>(0) < a.low, {reach, reach, low, high}, unbounded<V>());
 }
 
+/// x^(n/2) of a small odd n.
+template <class V>
+[[gnu::always_inline]] inline V of_halves(const V& x, int n) {
+  V size = root(x);
+  for (int left = std::abs(n); left > 1; left -= 2) size = size * x;
+  return n < 0 ? all<V>(1) / size : size;
+}
+
+/// The same as power(), by roots and products.
+template <class V>
+[[gnu::always_inline]] inline Bounds<V> half_power(double value, const Bounds<V>& a, int n) {
+  const V at_low = of_halves(a.low, n), at_high = of_halves(a.high, n);
+  const V slope = (n < 2 ? at_low / a.low : at_high / a.high) * (0.5 * std::abs(n));
+  const V low = n < 0 ? at_high : at_low, high = n < 0 ? at_low : at_high;
+  const V reach = smaller(slope * a.reach, high + all<V>(value));
+  return where<V>(all<V>(0) < a.low, {reach, reach, low, high}, unbounded<V>());
+}
+
 }  // namespace
 
 /// a^c; value: |a₀^c|.

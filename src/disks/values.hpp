@@ -30,7 +30,8 @@ class DiskValues {
   void begin(const SlotCoefficients& coefficients) {
     now_ = coefficients;
     radius_ = larger_ = disk_rules::all<V>(0);
-    powers_.resize(static_cast<std::size_t>(now_.order) + 8);
+    const std::size_t orders = (static_cast<std::size_t>(now_.order) + 11) / 4 * 4;
+    if (powers_.size() != orders) powers_.resize(orders);
   }
   /// by_coefficients: what the rows say of a value besides the rules, where a larger disk has bounded what they leave
   /// out.
@@ -122,12 +123,15 @@ void DiskValues<V>::find_what_is_passed_on() {
         radius_, larger_);
 }
 
-/// In four strands, since each product waits for the one before.
+/// In four strands, since each product waits for the one before, in registers.
 template <class V>
 void DiskValues<V>::find_powers() {
   const V x = radius_ / now_.unit, second = x * x, fourth = second * second;
-  powers_[0] = number(1), powers_[1] = x, powers_[2] = second, powers_[3] = second * x;
-  for (std::size_t k = 4; k < powers_.size(); ++k) powers_[k] = powers_[k - 4] * fourth;
+  V a = number(1), b = x, c = second, d = second * x;
+  for (std::size_t k = 0; k + 4 <= powers_.size(); k += 4) {
+    powers_[k] = a, powers_[k + 1] = b, powers_[k + 2] = c, powers_[k + 3] = d;
+    a *= fourth, b *= fourth, c *= fourth, d *= fourth;
+  }
 }
 
 /// q, q̇ and q̈ of the coordinates, and of what multipliers are the second derivatives of: polynomials that are known
@@ -149,10 +153,14 @@ void DiskValues<V>::evaluate_coordinates() {
 template <class V>
 V DiskValues<V>::series(std::uint32_t slot, int first, int last) const {
   V even = number(0), odd = even;
-  for (int k = first; k <= last; k += 2) {
-    even = even + powers_[static_cast<std::size_t>(k)] * std::abs(coefficient(k, slot));
-    if (k < last) odd = odd + powers_[static_cast<std::size_t>(k) + 1] * std::abs(coefficient(k + 1, slot));
+  const V* power = powers_.data() + first;
+  const double* c = now_.rows + static_cast<std::size_t>(first) * now_.stride + slot * now_.step;
+  int left = last - first + 1;
+  for (; left > 1; left -= 2, power += 2, c += 2 * now_.stride) {
+    even = even + power[0] * std::abs(c[0]);
+    odd = odd + power[1] * std::abs(c[now_.stride]);
   }
+  if (left == 1) even = even + power[0] * std::abs(c[0]);
   return even + odd;
 }
 
@@ -237,6 +245,7 @@ void DiskValues<V>::evaluate(const DiskPlan::Node& node) {
     case Op::SquareRoot:
       return set(i.out, disk_rules::square_root(size(i.out), values_[i.a]));
     case Op::Power:
+      if (node.halves != 0) return set(i.out, disk_rules::half_power(size(i.out), values_[i.a], node.halves));
       return set(i.out,
                  of_each([&](const Disk& a, const Disk&) { return disk_rules::power(a, node.exponent, size(i.out)); }));
     case Op::SinCos: {

@@ -26,15 +26,15 @@ void DenseOutput::resize(std::size_t freedoms, std::size_t integral_count, int d
 
 void DenseOutput::copy(const double* first, std::size_t stride) {
   const std::size_t row = padded(freedoms_);
-  for (int k = 0; k <= degree_; ++k)
-    if (stride >= row)  // rows of a workspace end with whole vectors
-      for (std::size_t i = 0; i < row; i += 8)
-        std::memcpy(coefficients_.data() + static_cast<std::size_t>(k) * row + i,
-                    first + static_cast<std::size_t>(k) * stride + i, 8 * sizeof(double));
-    else
-      std::copy_n(first + static_cast<std::size_t>(k) * stride, freedoms_,
-                  coefficients_.data() + static_cast<std::size_t>(k) * row);
-  refer_to(coefficients_.data(), padded(freedoms_));
+  double* to = coefficients_.data();
+  for (int k = 0; k <= degree_; ++k, first += stride, to += row)
+    if (stride < row)
+      std::copy_n(first, freedoms_, to);
+    else if (freedoms_ <= 2)
+      std::memcpy(to, first, 2 * sizeof(double));
+    else  // rows of a workspace end with whole vectors
+      for (std::size_t i = 0; i < row; i += 8) std::memcpy(to + i, first + i, 8 * sizeof(double));
+  refer_to(coefficients_.data(), row, {.accelerations = by_.accelerations});
 }
 
 void DenseOutput::leave_out_acceleration(std::size_t i, bool rests) {
@@ -48,7 +48,7 @@ void DenseOutput::advance(double tau, std::span<Compensated> q_out, std::span<Co
                           std::span<Compensated> integrals_out) const {
   double* const dq = increments_.data();
   double* const dv = dq + padded(freedoms_);
-  add_up_(first_, stride_, freedoms_, degree_, tau, dq, dv);
+  by_.increments(first_, stride_, freedoms_, degree_, tau, dq, dv);
   if (freedoms_ > 0) add_increments(freedoms_, tau, dq, dv, &q[0].hi, &v[0].hi, &q_out[0].hi, &v_out[0].hi);
   const std::size_t m = integrals.size();
   for (std::size_t i = 0; i < m; ++i) {
@@ -60,7 +60,7 @@ void DenseOutput::advance(double tau, std::span<Compensated> q_out, std::span<Co
 }
 
 std::span<const double> DenseOutput::accelerations(double tau) const {
-  polynomial_accelerations(first_, stride_, freedoms_, degree_, tau, increments_.data());
+  by_.accelerations(first_, stride_, freedoms_, degree_, tau, increments_.data());
   return {increments_.data(), freedoms_};
 }
 

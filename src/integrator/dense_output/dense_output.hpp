@@ -27,8 +27,8 @@ class DenseOutput {
   void resize(std::size_t freedoms, std::size_t integrals, int degree);
 
   /// Takes the coefficients c_k = first[k · stride …] of q from where they are, as long as they stay there …
-  void refer_to(const double* first, std::size_t stride, PolynomialIncrements* increments = polynomial_increments) {
-    first_ = first, stride_ = stride, add_up_ = increments;
+  void refer_to(const double* first, std::size_t stride, const Polynomials& by = {}) {
+    first_ = first, stride_ = stride, by_ = by;
   }
   /// … or copies them.
   void copy(const double* first, std::size_t stride);
@@ -56,7 +56,7 @@ class DenseOutput {
   int degree_ = 0;
   const double* first_ = nullptr;
   std::size_t stride_ = 0;
-  PolynomialIncrements* add_up_ = polynomial_increments;
+  Polynomials by_;
   std::vector<double> coefficients_;        // [degree + 1][n] of q, where they are copied
   std::vector<double> integrands_;          // [degree + 1][m]
   mutable std::vector<double> increments_;  // of q and q̇

@@ -7,6 +7,11 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
+/// Where a list has its length already nothing is called.
+void fit(std::vector<double>& list, std::size_t length) {
+  if (list.size() != length) list.resize(length);
+}
+
 void multipliers_of(const KernelWorkspace& work, std::vector<double>& values) {
   for (std::size_t i = 0; i < values.size(); ++i)
     values[i] = work.multiplier_is_determined(i) ? work.multiplier(i) : nothing;
@@ -29,7 +34,7 @@ void LastStep::start(const MotionState& state) {
 
 void LastStep::keep(const KernelWorkspace& work, const MotionState& state) {
   keep_state(state);
-  dense.refer_to(work.coordinate(0), work.row_stride(), work.increments());
+  dense.refer_to(work.coordinate(0), work.row_stride(), work.polynomials());
   for (std::size_t i = 0; i < state.integrals.size(); ++i)
     for (int k = 0; k <= degree_; ++k) dense.integrand(k)[i] = work.integrand(i, k);
 }
@@ -46,17 +51,17 @@ void LastStep::record_start(const KernelWorkspace& work, bool observe) {
   Sample& out = start_sample;
   const std::size_t n = dense.q.size();
   out.t = begin.hi;
-  out.q.resize(n), out.v.resize(n), out.a.resize(n);
+  fit(out.q, n), fit(out.v, n), fit(out.a, n);
   for (std::size_t i = 0; i < n; ++i) {
     out.q[i] = turns.unwound(i, dense.q[i]), out.v[i] = dense.v[i].hi;
     out.a[i] = work.acceleration(i);
   }
-  out.observables.resize(observe ? observables_ : 0);
+  fit(out.observables, observe ? observables_ : 0);
   for (std::size_t i = 0; i < out.observables.size(); ++i) out.observables[i] = work.observable(i);
   if (observe) turns.add_to(out.observables);
-  out.multipliers.resize(multipliers_);
+  fit(out.multipliers, multipliers_);
   multipliers_of(work, out.multipliers);
-  out.integrals.resize(dense.integrals.size());
+  fit(out.integrals, dense.integrals.size());
   for (std::size_t i = 0; i < out.integrals.size(); ++i) out.integrals[i] = dense.integrals[i].hi;
 }
 

@@ -155,7 +155,10 @@ double TaylorStepper::Impl::choose_length(double bound) {
   if (is_at_rest()) chosen = std::numeric_limits<double>::infinity();
   if (!watched.switches.empty() || !safe.has_constants()) safe.set_constants(work.constants());
   if (safe.wants_momenta(end_check.rates())) safe.set_momenta(end_check.rates(), work);
-  return safe.within({work.coordinate(0), work.row_stride(), control.order, 1}, state.t.hi, chosen, left);
+  const auto measure = safe.disks().has_bases() ? nullptr : work.polynomials().sizes;
+  if (measure) measure(work.coordinate(0), safe.disk_radius(std::min(chosen, left)), sizes.data());
+  return safe.within({work.coordinate(0), work.row_stride(), control.order, 1}, state.t.hi, chosen, left,
+                     measure ? sizes.data() : nullptr);
 }
 
 /// Whether the velocities of now would be made, or taken away, in a small part of the longest step so far.

@@ -29,7 +29,8 @@ struct TaylorStepper::Impl {
         watched(k, work),
         safe(work.program(), control.order, taylor::safe_tolerance(o.tolerance)),
         end_check(n, o.tolerance),
-        constraints(n, m) {
+        constraints(n, m),
+        sizes(4 * n) {
     work.set_parameters(parameters);
     probe.set_parameters(parameters);
     if (options.backend == Backend::Compiled) code.compile_at_once(work, options);
@@ -91,9 +92,10 @@ struct TaylorStepper::Impl {
   taylor::EndCheck end_check;
   taylor::ConstraintRecord constraints;
   taylor::ShrinkingSteps shrinking;
-  double length = 0;   // the last one that the control chose
-  double longest = 0;  // so far
-  double tried = 0;    // the last one at which no place was passed
+  std::vector<double> sizes;  // [4][n] by code: of q on its disk, as SafeLength::within takes them
+  double length = 0;          // the last one that the control chose
+  double longest = 0;         // so far
+  double tried = 0;           // the last one at which no place was passed
 
   // How the run goes.
   bool has_start_sample = false;               // before the first step it is made when it is asked for

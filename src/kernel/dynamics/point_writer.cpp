@@ -1,5 +1,7 @@
 #include "kernel/dynamics/point_writer.hpp"
 
+#include "kernel/straight_line/power.hpp"
+
 #include <algorithm>
 
 namespace maupertuis::dynamics {
@@ -118,7 +120,7 @@ Value PointWriter::root(const Instruction& i, int k) {
 /// Σ_{j=1..k} (p j − (k − j)) u_j y_{k−j}/(k u_0)
 Value PointWriter::power(const Instruction& i, int k) {
   const Value p = numbers_.constant(to_, i.constant);
-  if (k == 0) return to_.call(Kind::Power, at(i.a), p);
+  if (k == 0) return straight::power(to_, at(i.a), p);
   Terms terms;
   for (int j = 1; j <= k; ++j) {
     const Value factor = to_.sum({{static_cast<double>(j) / k, p}, {-static_cast<double>(k - j) / k}});

@@ -39,10 +39,13 @@ struct CompiledArguments {
 using CompiledExpand = void (*)(double* rows, const double* q, const double* v, const double* coefficients,
                                 const double* constants, double* scratch);
 
-/// With unrolled code: as Engine::radius and Engine::increments, for its rows.
+/// With unrolled code: as Engine::radius, increments and accelerations (of rows with any stride), and PolynomialSizes.
 using CompiledRadius = double (*)(const double* first, double h);
 using CompiledIncrements = void (*)(const double* first, std::size_t stride, std::size_t count, int degree, double tau,
                                     double* dq, double* dv);
+using CompiledAccelerations = void (*)(const double* first, std::size_t stride, std::size_t count, int degree,
+                                       double tau, double* a);
+using CompiledSizes = void (*)(const double* first, double radius, double* sizes);
 
 /// Rolled code of long runs, `first`: the stages up to 0, as Engine::run_stage, and Engine::renew_blocks after all but
 /// the last.

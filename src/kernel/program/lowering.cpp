@@ -12,7 +12,8 @@
 namespace maupertuis::lowering {
 namespace {
 
-constexpr std::int64_t most_halves = 32;  // beyond, products cost more than a power of its own
+constexpr std::int64_t most_halves = 32;    // beyond, products cost more than a power of its own
+constexpr std::size_t few_coordinates = 4;  // a pair of bodies, or one in a field: no powers to stand beside each other
 
 }  // namespace
 
@@ -168,9 +169,12 @@ Scaled Lowering::integer_power(Scaled base, std::int64_t exponent) {
 }
 
 /// base^(n/2) by roots, products and one division, which are carried out side by side; a power of its own is not. So
-/// r^(−3) of many pairs of bodies, 1/(r² √r²), costs as little as their distances.
+/// r^(−3) of many pairs of bodies, 1/(r² √r²), costs as little as their distances. Of one pair it is a power: two sums
+/// over orders instead of three, and less that waits for each other.
 Scaled Lowering::half_power(Scaled base, std::int64_t halves) {
   const std::int64_t size = std::abs(halves);
+  if (size % 2 != 0 && size > 1 && coordinates_.size() <= few_coordinates)
+    return plain_power(base, graph.constants.literal(Rational(halves, 2)));
   Scaled above = integer_power(base, size / 2);
   if (size % 2 != 0) above = multiply({above, graph.scaled(graph.unary(Op::SquareRoot, graph.node_of(base)))});
   return halves > 0 ? above : divide(constant(graph.constants.literal(1)), above);

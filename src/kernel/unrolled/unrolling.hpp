@@ -110,6 +110,7 @@ class Unrolling {
   Value quotient(const Step& step);
   Value root(const Step& step);
   Value power(const Step& step);
+  Value weighted_pair(Value p, const Slots& a, int j);
 
   // -------------------------------------------------------------------------------------------- tangents
   // (tangents.cpp)
@@ -166,6 +167,7 @@ class Unrolling {
   bool looks_ahead_ = false;
   std::vector<Value> final_, early_;                 // [orders × slots]; early: without q̈ of the stage
   std::map<std::pair<Value, int>, Value> weighted_;  // k u_k by u_k and k
+  std::map<std::pair<Value, int>, Value> pairs_;     // of powers: (p + 1) k u_k and u_k, likewise
   std::map<Slot, Value> starts_;                     // values of functions
   std::map<std::pair<Slot, int>, Value> rates_;      // of integrals of this stage: first and second derivatives
   std::vector<Value> accelerations_, coordinates_;   // [stages]

@@ -1,3 +1,4 @@
+#include "kernel/straight_line/power.hpp"
 #include "kernel/unrolled/unrolling.hpp"
 
 #include <algorithm>
@@ -275,17 +276,34 @@ Value Unrolling::root(const Step& step) {
   return to_.sum({{0.5, u}, {-0.5, square(step.out, 1)}}, to_.reciprocal(operand(step.out, 0)));
 }
 
-/// y = a^p: a y' = p y a'
+/// y = a^p from a y' = p y a', as a_0 y_k = p a_k y_0 + Σ_{0<j<k} ((p + 1) j/k − 1) a_j y_{k−j}: the sums with both
+/// weights side by side, what is known last by itself.
 Value Unrolling::power(const Step& step) {
   const Slots& a = step.products[0].a;
-  const Value p = step.products[0].coefficient;
-  if (k_ == 0) return to_.call(Kind::Power, operand(a, 0), p);
-  std::vector<Term> terms;
-  for (int j = 1; j <= k_; ++j) {
-    const Value weight = to_.sum({{static_cast<double>(j), p}, {static_cast<double>(j - k_)}});
-    terms.push_back({1, weight, operand(a, j), operand(step.out, k_ - j)});
+  const Value p = step.products[0].coefficient, first = operand(a, 0);
+  if (k_ == 0) return straight::power(to_, first, p);
+  const Value reciprocal = to_.reciprocal(first);
+  const Value slope = to_.product(1, to_.product(1, p, operand(step.out, 0)), reciprocal);
+  const Term newest{1, slope, operand(a, k_)};
+  if (k_ == 1) return to_.sum({newest});
+  const auto both = [&](int j) { return j < k_ ? weighted_pair(p, a, j) : to_.literal(0); };
+  const Value sums = convolution(
+      both, [&](int j) { return operand(step.out, j); }, 1);
+  const Value rest = to_.sum({{-1, to_.lane(sums, 1)}, {1, over(to_.lane(sums, 0), k_)}});
+  return to_.sum({{1, reciprocal, rest}, newest});
+}
+
+/// (p + 1) j a_j and a_j.
+Value Unrolling::weighted_pair(Value p, const Slots& a, int j) {
+  const Value value = operand(a, j);
+  const auto [found, fresh] = pairs_.try_emplace({value, j}, none);
+  if (fresh) {
+    const double k = j;
+    const Value weighted =
+        to_.is_literal(p) ? to_.product(k * (to_.literal_of(p) + 1), value) : to_.sum({{k, value}, {k, p, value}});
+    found->second = to_.gather({weighted, value});
   }
-  return to_.sum(terms, none, to_.product(k_, operand(a, 0)));
+  return found->second;
 }
 
 }  // namespace maupertuis::unrolled

@@ -20,6 +20,7 @@ std::pair<ExpansionCode, CompileReport> compile(const packed::PackedProgram& pro
       function = reinterpret_cast<std::decay_t<decltype(function)>>(made->find(name));
     };
     find(code.expand, "expand"), find(code.radius, "radius"), find(code.increments, "increments");
+    find(code.accelerations, "accelerations"), find(code.sizes, "sizes");
     find(code.first, "first"), find(code.stage, "stage"), find(code.solve, "solve"), find(code.correct, "correct");
     find(code.ahead, "ahead"), find(code.later, "later"), find(code.tangents, "tangents");
     code.memory = made;

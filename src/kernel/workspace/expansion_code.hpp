@@ -15,6 +15,8 @@ struct ExpansionCode {
   packed::CompiledExpand expand = nullptr;
   packed::CompiledRadius radius = nullptr;
   packed::CompiledIncrements increments = nullptr;
+  packed::CompiledAccelerations accelerations = nullptr;
+  packed::CompiledSizes sizes = nullptr;
   packed::CompiledFirst first = nullptr;
   packed::CompiledStage stage = nullptr, solve = nullptr, correct = nullptr, ahead = nullptr;
   packed::CompiledLater later = nullptr;

@@ -47,8 +47,9 @@ double KernelWorkspace::radius(double h) const {
   return x.engine.radius(x.memory.row(0), x.memory.stride, x.program.freedoms, x.order, h);
 }
 
-PolynomialIncrements* KernelWorkspace::increments() const {
-  return impl_->in_code.code.increments ? impl_->in_code.code.increments : polynomial_increments;
+Polynomials KernelWorkspace::polynomials() const {
+  const workspace::ExpansionCode& code = impl_->in_code.code;
+  return code.increments ? Polynomials{code.increments, code.accelerations, code.sizes} : Polynomials{};
 }
 
 void polynomial_increments(const double* first, std::size_t stride, std::size_t columns, int degree, double tau,

@@ -1,12 +1,13 @@
 #include "machine_code/llvm/emission.hpp"
 #include "machine_code/llvm/emitters.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <limits>
 
-/// The engine's radius and increments for the rows of one small program: all orders and weights written out, in vectors
-/// no wider than the unknowns.
+/// The engine's functions of polynomials for the rows of one small program: all orders and weights written out, in
+/// vectors no wider than the unknowns.
 namespace maupertuis::llvm_backend {
 namespace {
 
@@ -26,6 +27,8 @@ class StepEmitter {
 
   void radius();
   void increments();
+  void accelerations();
+  void sizes();
 
  private:
   Value* argument(unsigned i) { return function_->getArg(i); }
@@ -40,7 +43,13 @@ class StepEmitter {
   Value* rough_exp2(Value* x);
   Value* size();
   Value* least_lane(Value* x);
-  void increment(unsigned out, bool derivative, Value* const (&powers)[3]);
+  void store(Value* x, Value* address) { b_.CreateAlignedStore(x, address, llvm::Align(8)); }
+  struct Powers {
+    Value *first, *second, *fourth;
+  };
+  Powers powers(Value* tau);
+  Value* joined(Value* const (&sums)[4], const Powers& tau);
+  void increment(unsigned out, bool derivative, const Powers& tau);
 
   Emission& out_;
   llvm::IRBuilder<>& b_;
@@ -128,30 +137,75 @@ void StepEmitter::radius() {
   b_.CreateRet(b_.CreateSelect(known, estimate, out_.number(std::numeric_limits<double>::quiet_NaN(), scalar_)));
 }
 
+StepEmitter::Powers StepEmitter::powers(Value* tau) {
+  Value *const first = spread(tau), *const second = out_.multiply(first, first);
+  return {first, second, out_.multiply(second, second)};
+}
+
+/// Σ_r sums[r] τ^r of the remainders r that there are.
+Value* StepEmitter::joined(Value* const (&sums)[4], const Powers& tau) {
+  const auto pair = [&](Value* x, Value* y) { return y ? out_.fma(y, tau.first, x) : x; };
+  Value* const low = pair(sums[0], sums[1]);
+  return sums[2] ? out_.fma(pair(sums[2], sums[3]), tau.second, low) : low;
+}
+
 /// Powers of τ apart by their remainders mod 4, each by Horner's rule.
-void StepEmitter::increment(unsigned out, bool derivative, Value* const (&powers)[3]) {
+void StepEmitter::increment(unsigned out, bool derivative, const Powers& tau) {
   Value* sums[4] = {};
   for (int k = order_ + 1; k >= 2; --k) {
     Value*& sum = sums[(k - 2) % 4];
     Value* term = row(k);
     if (derivative && sum) term = out_.multiply(term, number(k));
-    sum = sum ? out_.fma(sum, powers[2], term) : derivative ? out_.multiply(term, number(k)) : term;
+    sum = sum ? out_.fma(sum, tau.fourth, term) : derivative ? out_.multiply(term, number(k)) : term;
   }
-  const auto pair = [&](Value* x, Value* y) { return y ? out_.fma(y, powers[0], x) : x; };
-  Value* result = pair(sums[0], sums[1]);
-  if (sums[2]) result = out_.fma(pair(sums[2], sums[3]), powers[1], result);
-  b_.CreateAlignedStore(out_.multiply(result, powers[0]), argument(out), llvm::Align(8));
+  store(out_.multiply(joined(sums, tau), tau.first), argument(out));
 }
 
 /// The parameters are the engine's; stride, columns and degree are known.
 void StepEmitter::increments() {
   function_ = out_.function("increments", {out_.pointer(), out_.integer(), out_.integer(), b_.getInt32Ty(), scalar_,
                                            out_.pointer(), out_.pointer()});
-  Value* const t = spread(argument(4));
-  Value* const square = out_.multiply(t, t);
-  Value* const powers[3] = {t, square, out_.multiply(square, square)};
-  increment(5, false, powers);
-  increment(6, true, powers);
+  const Powers tau = powers(argument(4));
+  increment(5, false, tau);
+  increment(6, true, tau);
+  out_.end_function();
+}
+
+/// The stride is the caller's: these are asked of copies.
+void StepEmitter::accelerations() {
+  function_ = out_.function("accelerations",
+                            {out_.pointer(), out_.integer(), out_.integer(), b_.getInt32Ty(), scalar_, out_.pointer()});
+  const Powers tau = powers(argument(4));
+  Value* const stride = b_.CreateShl(argument(1), 3);
+  Value* sums[4] = {};
+  for (int k = order_ + 1; k >= 2; --k) {
+    Value* const c =
+        b_.CreateAlignedLoad(type_, out_.at(argument(0), b_.CreateMul(stride, b_.getInt64(k))), llvm::Align(8));
+    Value*& sum = sums[(k - 2) % 4];
+    Value* const term = out_.multiply(c, number(k * (k - 1)));
+    sum = sum ? out_.fma(sum, tau.fourth, term) : term;
+  }
+  store(joined(sums, tau), argument(5));
+  out_.end_function();
+}
+
+/// Of |c_k|, its products with k and with k (k − 1).
+void StepEmitter::sizes() {
+  function_ = out_.function("sizes", {out_.pointer(), scalar_, out_.pointer()});
+  const Powers r = powers(argument(1));
+  for (int derivative = 0; derivative < 3; ++derivative) {
+    const int first = std::max(1, derivative);  // order
+    Value* sums[4] = {};
+    for (int k = order_ + 1; k >= first; --k) {
+      const int weight = derivative == 0 ? 1 : derivative == 1 ? k : k * (k - 1);
+      Value*& sum = sums[(k - first) % 4];
+      Value* const size = out_.absolute(row(k));
+      Value* const term = weight == 1 ? size : out_.multiply(size, number(weight));
+      sum = sum ? out_.fma(sum, r.fourth, term) : term;
+    }
+    Value* const all = joined(sums, r);
+    store(derivative == 0 ? out_.multiply(all, r.first) : all, out_.at(argument(2), std::int64_t{8} * derivative * n_));
+  }
   out_.end_function();
 }
 
@@ -161,6 +215,8 @@ void emit_step(Emission& out, std::size_t unknowns, std::size_t stride, int orde
   StepEmitter emitter(out, unknowns, stride, order);
   emitter.radius();
   emitter.increments();
+  emitter.accelerations();
+  emitter.sizes();
 }
 
 }  // namespace maupertuis::llvm_backend

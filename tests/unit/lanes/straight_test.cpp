@@ -75,17 +75,58 @@ double radius_by_definition(const KernelWorkspace& work, std::size_t n, double h
 
 std::array<std::vector<double>, 2> increments_of(const KernelWorkspace& work, std::size_t n, double tau) {
   std::array<std::vector<double>, 2> out{std::vector<double>((n + 7) / 8 * 8), std::vector<double>((n + 7) / 8 * 8)};
-  work.increments()(work.coordinate(0), work.row_stride(), n, straight_order + 1, tau, out[0].data(), out[1].data());
+  work.polynomials().increments(work.coordinate(0), work.row_stride(), n, straight_order + 1, tau, out[0].data(),
+                                out[1].data());
   return out;
 }
 
-/// Both ways to the radius, and increments against Horner's rule.
+/// Against Horner's rule, of a copy with rows of another length.
+void check_accelerations(const KernelWorkspace& work, std::size_t n, double tau) {
+  const std::size_t stride = (n + 7) / 8 * 8;
+  std::vector<double> copy((straight_order + 2) * stride), a(stride);
+  for (int k = 0; k <= straight_order + 1; ++k)
+    std::copy_n(work.coordinate(k), n, copy.begin() + static_cast<std::ptrdiff_t>(k * stride));
+  work.polynomials().accelerations(copy.data(), stride, n, straight_order + 1, tau, a.data());
+  for (std::size_t i = 0; i < n; ++i) {
+    double sum = 0, terms = 0;
+    for (int k = straight_order + 1; k >= 2; --k) {
+      const double c = k * (k - 1) * work.coordinate(k)[i];
+      sum = sum * tau + c, terms = terms * std::abs(tau) + std::abs(c);
+    }
+    CHECK(std::abs(a[i] - sum) <= 8 * epsilon * terms);
+  }
+}
+
+/// Term by term.
+void check_sizes(const KernelWorkspace& work, std::size_t n) {
+  constexpr double radius = 0.3;
+  std::vector<double> sizes(4 * n);
+  const auto measure = work.polynomials().sizes;
+  REQUIRE((measure != nullptr));
+  measure(work.coordinate(0), radius, sizes.data());
+  for (std::size_t i = 0; i < n; ++i) {
+    double value = 0, rate = 0, acceleration = 0;
+    for (int k = 1; k <= straight_order + 1; ++k) {
+      const double c = std::abs(work.coordinate(k)[i]);
+      value += c * std::pow(radius, k);
+      rate += k * c * std::pow(radius, k - 1);
+      acceleration += k * (k - 1) * c * std::pow(radius, k - 2);
+    }
+    CHECK(sizes[i] == doctest::Approx(value).epsilon(1e-14));
+    CHECK(sizes[n + i] == doctest::Approx(rate).epsilon(1e-14));
+    CHECK(sizes[2 * n + i] == doctest::Approx(acceleration).epsilon(1e-14));
+  }
+}
+
+/// Both ways to the radius, sizes, and polynomials against Horner's rule.
 void check_step(const KernelWorkspace& code, const KernelWorkspace& engine, std::size_t n) {
   const double h = 0.1 * radius_by_definition(engine, n, 0.1);
   for (const KernelWorkspace* work : {&code, &engine})
     CHECK(work->radius(h) == doctest::Approx(radius_by_definition(*work, n, h)).epsilon(2e-4));
+  check_sizes(code, n);
   for (const double tau : {h, -0.3 * h})
     for (const KernelWorkspace* work : {&code, &engine}) {
+      check_accelerations(*work, n, tau);
       const auto [dq, dv] = increments_of(*work, n, tau);
       for (std::size_t i = 0; i < n; ++i) {
         double q = 0, v = 0, terms = 0;

@@ -72,11 +72,11 @@ TEST_CASE("code in tiers: the second follows the first without a change of a bit
   KernelWorkspace work = tiered_workspace(kernel, true);
   expand_at(work, m);
   std::vector<double> first(work.coordinate(order_of_tiers), work.coordinate(order_of_tiers) + 2);
-  const PolynomialIncrements* const increments = work.increments();
+  const PolynomialIncrements* const increments = work.polynomials().increments;
   bool has_changed = false;
   for (int i = 0; i < 20'000'000 && !has_changed; ++i) {
     expand_at(work, m);
-    has_changed = work.increments() != increments;
+    has_changed = work.polynomials().increments != increments;
   }
   CHECK(has_changed);
   CHECK(same_bits(work.coordinate(order_of_tiers)[0], first[0]));
