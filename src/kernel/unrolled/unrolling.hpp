@@ -6,6 +6,7 @@
 #include <bit>
 #include <map>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -165,14 +166,14 @@ class Unrolling {
   };
   std::vector<Point> points_;
   bool looks_ahead_ = false;
-  std::vector<Value> final_, early_;                 // [orders × slots]; early: without q̈ of the stage
-  std::map<std::pair<Value, int>, Value> weighted_;  // k u_k by u_k and k
-  std::map<std::pair<Value, int>, Value> pairs_;     // of powers: (p + 1) k u_k and u_k, likewise
-  std::map<Slot, Value> starts_;                     // values of functions
-  std::map<std::pair<Slot, int>, Value> rates_;      // of integrals of this stage: first and second derivatives
-  std::vector<Value> accelerations_, coordinates_;   // [stages]
-  std::vector<Value> inverse_;                       // columns of −M₀⁻¹
-  std::vector<Value> ahead_a_, ahead_b_;             // q̈_k by q̈_{k−1}: A + B/k
+  std::vector<Value> final_, early_;                      // [orders × slots]; early: without q̈ of the stage
+  std::map<std::pair<Value, int>, Value> weighted_;       // k u_k by u_k and k
+  std::map<std::tuple<Value, Value, int>, Value> pairs_;  // of powers: (p + 1) k u_k and u_k by u_k, p and k
+  std::map<Slot, Value> starts_;                          // values of functions
+  std::map<std::pair<Slot, int>, Value> rates_;           // of integrals of this stage: first and second derivatives
+  std::vector<Value> accelerations_, coordinates_;        // [stages]
+  std::vector<Value> inverse_;                            // columns of −M₀⁻¹
+  std::vector<Value> ahead_a_, ahead_b_;                  // q̈_k by q̈_{k−1}: A + B/k
   Value check_ = none;
 };
 

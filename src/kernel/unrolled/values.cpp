@@ -296,7 +296,7 @@ Value Unrolling::power(const Step& step) {
 /// (p + 1) j a_j and a_j.
 Value Unrolling::weighted_pair(Value p, const Slots& a, int j) {
   const Value value = operand(a, j);
-  const auto [found, fresh] = pairs_.try_emplace({value, j}, none);
+  const auto [found, fresh] = pairs_.try_emplace({value, p, j}, none);
   if (fresh) {
     const double k = j;
     const Value weighted =
