@@ -93,6 +93,52 @@ double amount_of_terms(Expr g, const Bindings& at) {
   return sum > 0 && std::isfinite(sum) ? sum : 1;
 }
 
+/// Unknowns in powers of ten near their sizes, so that what is 0 to rounding is told from what is small: 1e-15 m of a
+/// pendulum of 1 nm, and a multiplier of 5e-16 kg/s² of one of 1e12 m. That of a multiplier follows from the other
+/// terms of its equations.
+class OwnUnits {
+ public:
+  OwnUnits(const ExprVector& relations, const ExprVector& unknowns, const Bindings& center) {
+    for (const Expr& u : unknowns) {
+      const double value = std::abs(center.at(u));
+      const double size = value != 0                     ? value
+                          : u.role() == Role::Multiplier ? size_of_multiplier(u, relations, center)
+                                                         : 1;
+      const long power = std::lround(std::log10(size));
+      if (power == 0 || std::abs(power) > 200) continue;
+      units_.emplace(u, std::pow(10.0, static_cast<double>(power)));
+      in_units_.emplace(u, *Rational::parse(fmt::format("1e{}", power)) * u);
+    }
+  }
+
+  ExprVector of(std::span<const Expr> formulas) const { return substitute(formulas, in_units_); }
+  Bindings of(Bindings center) const {
+    for (const auto& [symbol, unit] : units_) center[symbol] /= unit;
+    return center;
+  }
+  ZeroTest in_si(ZeroTest test) const {
+    for (auto& [symbol, value] : test.witness)
+      if (const auto unit = units_.find(symbol); unit != units_.end()) value *= unit->second;
+    return test;
+  }
+
+ private:
+  static double size_of_multiplier(Expr multiplier, const ExprVector& relations, const Bindings& center) {
+    double products = 0, squares = 0;
+    for (const Expr& r : relations) {
+      const double slope = std::abs(evaluate(differentiate(r, multiplier), center));
+      if (slope == 0) continue;
+      products += slope * amount_of_terms(r, center);
+      squares += slope * slope;
+    }
+    const double size = products / squares;
+    return std::isfinite(size) && size > 0 ? size : 1;
+  }
+
+  Bindings units_;
+  ExprMap in_units_;
+};
+
 /// Tests of one formula in several parts of the constraint manifold: what does not vanish in one decides, and where no
 /// point is found nothing is said.
 class OnConstraints {
@@ -193,13 +239,16 @@ ZeroTest AlongMotion::vanishes(Expr e) const {
 ZeroTest AlongMotion::as_formula(Expr plain) const {
   if (!constrained() || plain.is_zero()) return zero_test(plain);
   const Where where = relations_for(plain);
-  OnConstraints test(plain, where.relations, where.unknowns);
-  test.near(where.center);
-  for (int turn = 0; turn < far_centers; ++turn) test.near(far_center(where.center, *equations_.system, turn));
-  ExprVector functions = where.relations;
-  functions.push_back(plain);
-  for (const Expr& g : switches_of(functions)) test.beside(g, where.center, *equations_.system->context);
-  return test.verdict();
+  const OwnUnits units(where.relations, where.unknowns, where.center);
+  const ExprVector relations = units.of(where.relations), formula = units.of({&plain, 1});
+  const Bindings center = units.of(where.center);
+  OnConstraints test(formula.front(), relations, where.unknowns);
+  test.near(center);
+  for (int turn = 0; turn < far_centers; ++turn) test.near(far_center(center, *equations_.system, turn));
+  ExprVector functions = relations;
+  functions.push_back(formula.front());
+  for (const Expr& g : switches_of(functions)) test.beside(g, center, *equations_.system->context);
+  return units.in_si(test.verdict());
 }
 
 ZeroTest AlongMotion::vanishes_on(Expr e, std::span<const Expr> level) const {
