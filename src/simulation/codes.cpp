@@ -244,8 +244,8 @@ constexpr std::array entries{
               "V = m g z\ncontact z >= 0 restitution e name floor\nstart z = 1 cm\nrun 2 s\n"},
     CodeEntry{"W0734", "the energy drifts far beyond the errors of the steps",
               "Nothing in the equations of motion changes it so. Where an energy jumps, a force acts that no "
-              "derivative shows, and the motion goes through as if there were none. Most jumps are refused before a run (E0430); "
-              "this is the word for those that only the run meets.",
+              "derivative shows, and the motion goes through as if there were none. Most jumps are "
+              "refused before a run (E0430); this is the word for those that only the run meets.",
               "# maup simulate\ndimensionless\ncoord x : number\nT = 1/2 x'^2\n"
               "V = piecewise((x^2 + x - 1)^2 < 1e-8 : 0.3, else : 0)\nstart x = 0, x' = 1\nrun 2\n",
               "# maup simulate\ndimensionless\ncoord x : number\nT = 1/2 x'^2\n"
