@@ -225,7 +225,7 @@ std::optional<OperatingPoint> SteadyState::step_towards(const OperatingPoint& so
 /// gone along each of its directions, and Newton's method asked where the next solution is. It projects on the family,
 /// and its projections have as many dimensions as the family.
 void SteadyState::find_family(Solution& solution, const System& s, const Vector& z) const {
-  constexpr double step = 1e-3, farther = 0.05, followed = 0.25, felt = 1e-3;  // followed: squared
+  constexpr double step = 1e-3, followed = 0.25, felt = 1e-3;  // followed: squared
   const Matrix derivatives = without_rounding(s, z);
   const Equilibration by(derivatives);
   const Matrix ways = soft_ways(derivatives, by);
@@ -233,20 +233,13 @@ void SteadyState::find_family(Solution& solution, const System& s, const Vector&
   Matrix gone = Matrix::Zero(moving, ways.cols());  // by the length of the way
   for (Index k = 0; k < ways.cols(); ++k) {
     const Vector whole = by.columns.cwiseProduct(ways.col(k));
-    // How far the next solution lies, by the length of the way that was gone. Multipliers that constraints leave open
-    // are fitted anew at each point: they say nothing about it.
-    const auto solution_after = [&](double way) -> Vector {
-      const double part = way / length(whole, z);
-      OperatingPoint moved = solution.point;
-      if (std::isfinite(part)) place(z + part * whole, moved);
-      const auto there = std::isfinite(part) ? solve(moved, false) : std::nullopt;
-      if (!there) return Vector::Zero(moving);
-      return (unknowns(there->point) - z).head(moving).cwiseQuotient(by.columns.head(moving)) / part;
-    };
-    // In a flat place forces are rounding next to it, and not farther on.
-    const Vector near = solution_after(step);
-    if (near.isZero(0) || solution_after(farther).norm() < 0.5 * near.norm()) continue;
-    gone.col(k) = near;
+    const double part = step / length(whole, z);
+    if (!std::isfinite(part)) continue;
+    OperatingPoint moved = solution.point;
+    place(z + part * whole, moved);
+    const auto there = solve(moved, false);
+    // Multipliers that constraints leave open are fitted anew at each point: they say nothing about the way.
+    if (there) gone.col(k) = (unknowns(there->point) - z).head(moving).cwiseQuotient(by.columns.head(moving)) / part;
   }
   if (gone.isZero(0)) return;  // no way at all, or none that was followed
   const SymmetricEigen projections = symmetric_eigen(transposed_product(gone, gone));

@@ -30,7 +30,7 @@ void DenseOutput::copy(const double* first, std::size_t stride) {
   for (int k = 0; k <= degree_; ++k, first += stride, to += row)
     if (stride < row)
       std::copy_n(first, freedoms_, to);
-    else if (freedoms_ <= 2)
+    else if (freedoms_ == 1 || freedoms_ == 2)
       std::memcpy(to, first, 2 * sizeof(double));
     else  // rows of a workspace end with whole vectors
       for (std::size_t i = 0; i < row; i += 8) std::memcpy(to + i, first + i, 8 * sizeof(double));

@@ -32,22 +32,6 @@ TEST_CASE("at a fold the sign of the second derivative is an accident, and decid
         Stability::Undecided);
 }
 
-TEST_CASE("a flat place is no family of rests") {
-  const auto first = [](const std::string& beside) {
-    return Linearized("dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = (x - y^2)^2" + beside +
-                      "\nstart x = 0, y = 0\n")
-        .study()
-        .entries.front();
-  };
-  // ∇V = 0 at the origin alone; along x = y² the energy falls with -y⁶, and grows with +y⁶.
-  for (const char* sixth : {" - y^6", " + y^6"}) {
-    const ModalEntry entry = first(sixth);
-    CHECK(entry.equilibrium.family == 0);
-    CHECK(entry.analysis.stability.verdict == Stability::Undecided);
-  }
-  CHECK(first("").equilibrium.family == 1);  // a trough
-}
-
 TEST_CASE("what is soft and has a sign keeps it") {
   CHECK(verdict_of("dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) - 1/2 y^2 - 0.5e-9 (x - 0.3)^2\n"
                    "start x = 0.9, y = 0\n") == Stability::Energetic);
