@@ -64,6 +64,8 @@ class HybridMotion final : public Method {
   /// What the end of the run leaves unsettled is told.
   void finish();
   const HybridRecord& record() const { return record_; }
+  /// Once the motion has ended: a million of them are not copied.
+  std::vector<Happening> take_happenings() { return std::move(record_.happenings); }
   const std::shared_ptr<ModeLibrary>& library() const { return library_; }
   /// Whether the next step begins with an impact, or with what an event sets: the state is another one then.
   bool will_jump() const;

@@ -314,7 +314,7 @@ class Run {
     hybrid_->finish();
     const HybridRecord& record = hybrid_->record();
     result_.first_mode = record.first_mode;
-    result_.happenings = record.happenings;
+    result_.happenings = hybrid_->take_happenings();
     result_.remarks = record.remarks;
     const bool has_modes = model_.system.has_modes();
     if (has_modes || record.books.events != 0) result_.books = record.books;
