@@ -42,8 +42,6 @@ struct Tables {
   const ColumnRun* runs = nullptr;
   const ProductTerm* products = nullptr;
   const Convolution* convolutions = nullptr;
-  std::size_t convolution_count = 0;
-  double* sums = nullptr;  // [convolutions][rolled_group][lanes], aligned to 64 bytes
   const std::uint32_t* functions = nullptr;
   const double* coefficients = nullptr;  // values of PackedProgram::coefficients
   double* rows = nullptr;                // [orders][stride], aligned to 64 bytes

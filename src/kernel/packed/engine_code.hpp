@@ -7,8 +7,6 @@
 
 #include "kernel/packed/engine_convolution.hpp"
 
-#include "kernel/packed/engine_ahead.hpp"
-
 #include "kernel/packed/engine_stage.hpp"
 
 #include "kernel/packed/engine_tangents.hpp"

@@ -20,8 +20,6 @@ struct Stage {
   Stage(const Tables& tables, int number)
       : t(tables),
         stage(number),
-        by_sums(has_sums_ahead(number)),
-        position((number - 1) % rolled_group),
         newest(tables.orders + (number + 2)) {}
 
   /// Of slots of that lag; not below 0.
@@ -32,8 +30,6 @@ struct Stage {
 
   const Tables& t;
   int stage;
-  bool by_sums;         // that were made ahead
-  int position;         // of this stage among the four of a sum
   const Order* newest;  // of lag 0
 };
 
@@ -128,15 +124,6 @@ Vector square(const Stage& s, const double* a, int k, int first) {
   return k == 0 ? all(0) : convolution(s.t.rows + c.first_a + stride, s.t.rows + c.first_b, k - 1, stride);
 }
 
-inline bool goes_by_sum(const Stage& s, const Convolution& c) { return s.by_sums && c.goes_ahead; }
-
-/// A convolution by the sum that was made ahead.
-inline Vector completed(const Stage& s, const Convolution& c, const Order& order) {
-  if (c.copies_a) copy(s, s.t.blocks[c.a]);
-  if (c.copies_b) copy(s, s.t.blocks[c.b]);
-  return completed_sum(s.t, c, s.position, order.offset);
-}
-
 // -------------------------------------------------------------------------------------------------------------- packs
 
 /// Runs a pack; returns the last one that is done with it.
@@ -148,7 +135,7 @@ const Pack* run_sum(const Stage& s, const Pack* pack) {
   const ProductTerm* term = s.t.products + pack->first_product;
   const Convolution* const last = s.t.convolutions + pack->last_convolution;
   for (const Convolution* c = s.t.convolutions + pack->first_convolution; c != last; ++c, ++term) {
-    const Vector sum = goes_by_sum(s, *c) ? completed(s, *c, order) : product(s, *pack, *c, order.number);
+    const Vector sum = product(s, *pack, *c, order.number);
     result += load(s.t.coefficients + term->coefficients) * sum;
   }
   save(order.row + pack->out, result);
@@ -161,17 +148,6 @@ const Pack* run_neighbours(const Stage& s, const Pack* pack) {
   const Vector sum = columns_of_neighbours(order.row + run.shift * s.t.stride + run.source, run.last - run.first,
                                            s.t.coefficients + run.coefficients);
   save(order.row + pack->out, sum * all(order.shift_factors[run.shift]));
-  return pack;
-}
-
-const Pack* run_products(const Stage& s, const Pack* pack) {
-  const Order& order = s.order_of(pack->lag);
-  Vector result = all(0);
-  const ProductTerm* term = s.t.products + pack->first_product;
-  const Convolution* const last = s.t.convolutions + pack->last_convolution;
-  for (const Convolution* c = s.t.convolutions + pack->first_convolution; c != last; ++c, ++term)
-    result += load(s.t.coefficients + term->coefficients) * completed(s, *c, order);
-  save(order.row + pack->out, result);
   return pack;
 }
 
@@ -224,17 +200,11 @@ const Pack* run_integral(const Stage& s, const Pack* pack) {
   return pack;
 }
 
-const Pack* run_integral_by_sum(const Stage& s, const Pack* pack) {
-  const Order& order = s.order_of(pack->lag);
-  save_integral(s, *pack, order, completed(s, s.t.convolutions[pack->first_convolution], order));
-  return pack;
-}
-
 const Pack* run_quotient(const Stage& s, const Pack* pack) {
   const Order& order = s.order_of(pack->lag);
   const Convolution& c = s.t.convolutions[pack->first_convolution];
   bring(s, *pack, pack->a), bring(s, *pack, pack->b);
-  const Vector sum = goes_by_sum(s, c) ? completed(s, c, order) : without_first(s, c, order.number);
+  const Vector sum = without_first(s, c, order.number);
   save(order.row + pack->out, (load(s.cells(pack->a) + order.offset) - sum) / load(s.cells(pack->b)));
   return pack;
 }
@@ -246,7 +216,7 @@ const Pack* run_square_root(const Stage& s, const Pack* pack) {
   Vector u = load(s.cells(pack->a) + order.offset);
   const double* const y = s.cells(pack->y);
   if (order.number > 0) {
-    const Vector sum = goes_by_sum(s, c) ? completed(s, c, order) : square(s, y, order.number, 1);
+    const Vector sum = square(s, y, order.number, 1);
     u = (u - sum) / (load(y) + load(y));
   } else {
     for (unsigned lane = 0; lane < lanes; ++lane) u[lane] = __builtin_sqrt(u[lane]);
@@ -260,7 +230,7 @@ const Pack* run_scalar(const Stage& s, const Pack* pack) {
   return pack;
 }
 
-/// By Pack::Kind, joins being done with their strands; from stage 1 on by Pack::Way as well, where there are sums.
+/// By Pack::Kind, joins being done with their strands.
 constexpr RunPack run_of[] = {run_sum,
                               run_scan<running_sum>,
                               run_scan<running_sum_down>,
@@ -270,10 +240,7 @@ constexpr RunPack run_of[] = {run_sum,
                               run_integral,
                               run_quotient,
                               run_square_root,
-                              run_scalar,
-                              run_neighbours,
-                              run_products,
-                              run_integral_by_sum};
+                              run_scalar};
 
 /// Up to stage 0.
 void run_first_packs(const Stage& s) {
@@ -284,10 +251,7 @@ void run_first_packs(const Stage& s) {
 inline void run_packs(const Stage& s) {
   if (s.stage <= 0) return run_first_packs(s);
   const Pack *pack = s.t.packs, *const last = s.t.packs + s.t.pack_count;
-  if (s.by_sums)
-    for (; pack != last; ++pack) pack = run_of[pack->way](s, pack);
-  else
-    for (; pack != last; ++pack) pack = (pack->way == Pack::Neighbours ? run_neighbours : run_of[pack->kind])(s, pack);
+  for (; pack != last; ++pack) pack = (pack->is_neighbours ? run_neighbours : run_of[pack->kind])(s, pack);
 }
 
 void run_stage(const Tables& tables, int stage) {
@@ -300,7 +264,6 @@ void run_stage(const Tables& tables, int stage) {
 inline void renew(const Stage& s) {
   for (const Block *block = s.t.blocks, *last = s.t.blocks + s.t.block_count; block != last; ++block)
     if (!block->direct && s.has_order_of(block->lag)) copy(s, *block);
-  if (begins_sums_ahead(s.stage)) make_sums_ahead(s.t, s.stage);
 }
 void renew_blocks(const Tables& tables, int stage) { renew(Stage(tables, stage)); }
 

@@ -292,16 +292,16 @@ class Packs {
     switch (pack.kind) {
       case Pack::Sum:
         for (std::uint32_t i = pack.first_product; i < pack.last_product; ++i)
-          convolution(pack, out_.products[i].a, false, out_.products[i].b, false);
+          convolution(pack, out_.products[i].a, out_.products[i].b);
         break;
       case Pack::Integral:
-        convolution(pack, pack.a, false, pack.b, true);
+        convolution(pack, pack.a, pack.b);
         break;
       case Pack::Quotient:
-        convolution(pack, pack.b, false, pack.y, true);
+        convolution(pack, pack.b, pack.y);
         break;
       case Pack::SquareRoot:
-        convolution(pack, pack.y, true, pack.y, true);
+        convolution(pack, pack.y, pack.y);
         break;
       case Pack::Scan:
       case Pack::ScanDown:
@@ -312,44 +312,13 @@ class Packs {
         break;
     }
     pack.last_convolution = static_cast<std::uint32_t>(out_.convolutions.size());
-    pack.way = way_of(pack);
+    pack.is_neighbours = pack.kind == Pack::Sum && pack.first_convolution == pack.last_convolution &&
+                         pack.last_run - pack.first_later_run == 1 && out_.runs[pack.first_later_run].neighbours;
   }
 
-  std::uint8_t way_of(const Pack& pack) const {
-    const auto first = out_.convolutions.begin() + pack.first_convolution;
-    const auto last = out_.convolutions.begin() + pack.last_convolution;
-    const bool all_ahead = std::all_of(first, last, [](const Convolution& c) { return c.goes_ahead; });
-    const std::uint32_t runs = pack.last_run - pack.first_later_run;
-    if (pack.kind == Pack::Sum && first == last && runs == 1 && out_.runs[pack.first_later_run].neighbours)
-      return Pack::Neighbours;
-    if (pack.kind == Pack::Sum && runs == 0 && all_ahead) return Pack::Products;
-    if (pack.kind == Pack::Integral && all_ahead) return Pack::IntegralBySum;
-    return pack.kind;
-  }
-
-  void convolution(const Pack& pack, std::uint32_t a, bool finds_a, std::uint32_t b, bool finds_b) {
+  void convolution(const Pack& pack, std::uint32_t a, std::uint32_t b) {
     const auto ahead = [&](std::uint32_t block) { return static_cast<std::int8_t>(pack.lag - out_.blocks[block].lag); };
-    const auto fits = [&](std::int8_t by) { return by >= 0 && by <= pack.lag; };
-    const auto lacks_newest = [&](std::uint32_t block, bool finds) {
-      return ahead(block) == 0 && (finds || is_of_coordinates(out_.blocks[block]));
-    };
-    Convolution c{a, b, pack.lag, ahead(a), ahead(b), fits(ahead(a)) && fits(ahead(b))};
-    c.number = static_cast<std::uint32_t>(out_.convolutions.size());
-    c.first_a = out_.blocks[a].first, c.first_b = out_.blocks[b].first;
-    c.lacks_newest_a = lacks_newest(a, finds_a), c.lacks_newest_b = lacks_newest(b, finds_b);
-    const auto is_copied = [&](std::uint32_t block) {  // by an earlier one of the pack
-      return std::any_of(
-          out_.convolutions.begin() + pack.first_convolution, out_.convolutions.end(),
-          [&](const Convolution& x) { return (x.a == block && x.copies_a) || (x.b == block && x.copies_b); });
-    };
-    c.copies_a = !c.lacks_newest_a && !out_.blocks[a].direct && ahead(a) <= 0 && !is_copied(a);
-    c.copies_b =
-        !c.lacks_newest_b && !out_.blocks[b].direct && ahead(b) <= 0 && !is_copied(b) && !(a == b && c.copies_a);
-    out_.convolutions.push_back(c);
-  }
-
-  bool is_of_coordinates(const Block& block) const {
-    return std::all_of(block.slots.begin(), block.slots.end(), [&](Slot slot) { return slot < out_.program.unknowns; });
+    out_.convolutions.push_back({a, b, pack.lag, ahead(a), ahead(b), out_.blocks[a].first, out_.blocks[b].first});
   }
 
   bool passes_tangent(const Column& column, int lag) const {

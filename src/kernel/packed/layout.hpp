@@ -58,18 +58,13 @@ struct ProductTerm {
   std::uint32_t coefficients = 0;
 };
 
-/// Σ_j a_j b_{m−j} of a pack of lag ℓ, which finds m = k + 2 − ℓ at stage k. The engine and rolled code make these sums
-/// for several stages at once (`engine_ahead.hpp`), of all that is final, and leave what is newer to the stages.
+/// Σ_j a_j b_{m−j} of a pack of lag ℓ, which finds m = k + 2 − ℓ at stage k. Rolled code makes these sums for several
+/// stages at once, of all that is final, and leaves what is newer to the stages.
 struct Convolution {
   std::uint32_t a = 0, b = 0;            // blocks
   std::int8_t lag = 0;                   // ℓ
   std::int8_t a_ahead = 0, b_ahead = 0;  // ℓ − lag of the operand: by so many orders it is known earlier
-  bool goes_ahead = false;               // both are 0 … ℓ; functions of t alone may be known earlier still
-  /// No a_m b_0, or no a_0 b_m: a stage finds that operand itself, or it is of coordinates, which count as 0.
-  bool lacks_newest_a = false, lacks_newest_b = false;
-  bool copies_a = false, copies_b = false;  // a stage has to copy the newest first, as it is not final
-  Slot first_a = 0, first_b = 0;            // cells of the operands
-  std::uint32_t number = 0;                 // of all
+  Slot first_a = 0, first_b = 0;         // cells of the operands
 };
 
 /// Up to eight results side by side.
@@ -101,13 +96,7 @@ struct Pack {
     SquareRoot,  // of block a
     Scalar,      // one instruction, by the reference rules
   } kind = Scalar;
-  /// How a stage from 1 on runs it: by its kind, but what needs little has code of its own.
-  enum Way : std::uint8_t {
-    Neighbours = Scalar + 1,  // one run of neighbours
-    Products,                 // where sums are made ahead: products by these
-    IntegralBySum,
-  };
-  std::uint8_t way = Scalar;  // Kind or Way
+  bool is_neighbours = false;  // from stage 1 on: a Sum of one run of neighbours, which has code of its own
   std::int8_t lag = 0;
   std::int8_t level = 0;
   std::uint32_t width = 0;  // lanes in use

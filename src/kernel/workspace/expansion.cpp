@@ -36,10 +36,7 @@ void Expansion::bind() {
   const int before_all = -2 - program.first_stage;  // so that stages without an order of lag 0 find their place
   of_orders.insert(of_orders.begin(), static_cast<std::size_t>(before_all), {});
   tables.orders = of_orders.data() + before_all;
-  sums.assign(packed.convolutions.size() * packed::rolled_group * packed::lanes, 0.0);
   tables.convolutions = packed.convolutions.data();
-  tables.convolution_count = packed.convolutions.size();
-  tables.sums = sums.data();
   lane_coefficients.resize(packed.coefficients.size());
   tables.coefficients = lane_coefficients.data();
   for (const packed::Pack& pack : packed.packs)
@@ -73,7 +70,8 @@ void ExpansionInCode::adopt(ExpansionCode made, Expansion& x) {
   if (!code.stage) return;
   tangent_row.assign(x.memory.stride, 0.0);
   passing_row.assign(x.memory.stride, 0.0);
-  arguments.sums = x.sums.data();
+  sums.assign(x.packed.convolutions.size() * packed::rolled_group * packed::lanes, 0.0);
+  arguments.sums = sums.data();
   arguments.tangent_row = tangent_row.data(), arguments.passing_row = passing_row.data();
   arguments.value = x.tables.scalar.value, arguments.tangent = x.tables.scalar.tangent;
   arguments.context = x.tables.scalar.context;

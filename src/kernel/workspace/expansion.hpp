@@ -43,7 +43,6 @@ struct Expansion {
   packed::Tables tables;
   std::vector<packed::Order> of_orders;  // those below 0, which nothing reads, then [orders]
   Doubles lane_coefficients;             // [packed.coefficients]
-  Doubles sums;                          // [convolutions × rolled_group × 8] of products, made for stages that follow
   std::map<std::uint32_t, std::vector<sparse::Edge>> edges_of_scalars;  // of instructions that stand alone
   std::vector<const Instruction*> producer;                             // [slots]
   std::vector<double> parameters;
@@ -62,6 +61,7 @@ struct ExpansionInCode {
 
   ExpansionCode code;
   packed::CompiledArguments arguments;
+  Doubles sums;                      // [convolutions × rolled_group × 8] of products, made for stages that follow
   Doubles tangent_row, passing_row;  // scratch
 };
 
