@@ -420,11 +420,10 @@ double CollocationMotion::choose_step(double longest, double duration, double go
     double error = 0;
     std::vector<double> difference(one.size());
     for (std::size_t i = 0; i < one.size(); ++i) difference[i] = one[i] - two[i];
-    for (std::size_t f = 0; f < form_.smooth.size(); ++f) {
-      double size = mesh_.largest_value(two.data(), f), all = 1e-300;
-      for (std::size_t g = 0; g < form_.smooth.size(); ++g) all = std::max(all, mesh_.largest_value(two.data(), g));
-      error = std::max(error, mesh_.largest_value(difference.data(), f) / std::max(size, 1e-8 * all));
-    }
+    const std::vector<double> sizes = mesh_.squares(two), errors = mesh_.squares(difference);
+    const double all = *std::max_element(sizes.begin(), sizes.end());
+    for (std::size_t f = 0; f < sizes.size(); ++f)
+      error = std::max(error, std::sqrt(errors[f] / std::max({sizes[f], 1e-16 * all, 1e-300})));
     const double expected = error / gain * (duration / h);
     // From so many steps on less is asked for, by the power of the steps: a start that does not fit the conditions at
     // the ends moves frequencies of the mesh, and to follow them is worth nothing.

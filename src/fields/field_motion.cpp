@@ -27,7 +27,10 @@ std::size_t FieldMotion::varied(std::size_t field) const {
 
 double FieldMotion::answer_at_places(Expr value, double shift) const {
   Bindings extra{{s_.context->time(), t_}};
+  const Expr answer[] = {value};
+  const std::vector<Expr> symbols = symbols_of(answer);
   for (const PlaceValue& place : equations_.model->places) {
+    if (std::find(symbols.begin(), symbols.end(), place.symbol) == symbols.end()) continue;
     const FieldJet jet = *s_.jet_of(place.jet);
     const std::size_t a = varied(jet.field);
     if (a == equations_.varied.size() || place.side != 0) {

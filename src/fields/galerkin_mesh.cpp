@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace maupertuis {
 
@@ -21,7 +22,7 @@ GalerkinMesh::GalerkinMesh(const FieldEquations& equations, const DensityForm& f
   add_products();
   for (const DensityForm::Slot& slot : form.slots) {
     tables_.push_back(table_of(slot.field, slot.space));
-    loads_.push_back(loads_of(slot.field, tables_.back()));
+    for (std::size_t d = 0; d < 2; ++d) loads_[d].push_back(loads_along(d, form.smooth[slot.field], slot.space[d]));
   }
   for (std::size_t point = 0; point < points(); ++point)
     for (std::size_t cell = 0; cell < this->cells(); ++cell) {
@@ -92,6 +93,16 @@ std::vector<double> GalerkinMesh::table_of(std::size_t field, const std::array<i
   return out;
 }
 
+std::vector<double> GalerkinMesh::loads_along(std::size_t direction, bool smooth, int k) const {
+  const MeshAxis& axis = axes_[direction];
+  const std::vector<double>& table = axis.table(smooth, k);
+  const std::size_t n = axis.size(smooth);
+  std::vector<double> out(table.size());
+  for (std::size_t p = 0; p < axis.points(); ++p)
+    for (std::size_t i = 0; i < n; ++i) out[i * axis.points() + p] = axis.weight(p) * table[p * n + i];
+  return out;
+}
+
 std::vector<double> GalerkinMesh::loads_of(std::size_t field, const std::vector<double>& table) const {
   const std::size_t n = functions(field);
   std::vector<double> out(table.size());
@@ -102,67 +113,121 @@ std::vector<double> GalerkinMesh::loads_of(std::size_t field, const std::vector<
 
 namespace {
 
-/// So many lanes from one row to the next that rows are whole vectors.
-std::size_t padded(std::size_t lanes) { return (lanes + kWide - 1) / kWide * kWide; }
+/// to_r = Σ_m c_rm from_m for n cells, of `count` rows from_m; where rows begin is so far apart, and the from_m may be
+/// read up to whole vectors. Four rows at a time, whose sums do not wait for each other.
+MAUP_LANES void combine(double* to, std::size_t to_row, std::size_t rows, const double* from, std::size_t from_row,
+                        std::size_t count, const double* c, std::size_t n) {
+  for (std::size_t i = 0; i < n; i += kWide)
+    for (std::size_t r = 0; r < rows; r += 4) {
+      Lanes sum[4] = {};
+      const double* factors[4];
+      for (std::size_t k = 0; k < 4; ++k) factors[k] = c + std::min(r + k, rows - 1) * count;
+      for (std::size_t m = 0; m < count; ++m) {
+        const Lanes x = lanes_at(from + m * from_row + i);
+        for (std::size_t k = 0; k < 4; ++k) sum[k] += factors[k][m] * x;
+      }
+      for (std::size_t k = 0; k < std::min<std::size_t>(4, rows - r); ++k) {
+        double* const out = to + (r + k) * to_row + i;
+        if (i + kWide <= n)
+          lanes_at(out) = sum[k];
+        else
+          for (std::size_t cell = 0; cell < n - i; ++cell) out[cell] = sum[k][cell];
+      }
+    }
+}
 
-/// to = Σ_m c_m from_m for n lanes; the from_m are `padded(n)` apart, what lies between is not used.
-MAUP_LANES void combine(double* __restrict to, const double* from, const double* c, std::size_t count, std::size_t n) {
-  const std::size_t stride = padded(n);
-  for (std::size_t i = 0; i < n; i += kWide) {
-    Lanes sum = {};
-    for (std::size_t m = 0; m < count; ++m) sum += c[m] * lanes_at(from + m * stride + i);
-    if (i + kWide <= n)
-      lanes_at(to + i) = sum;
-    else
-      for (std::size_t k = i; k < n; ++k) to[k] = sum[k - i];
+/// to_ij += w a_i b_j, where rows begin so far apart.
+MAUP_LANES void add_outer_product(double* __restrict to, std::size_t row, double w, std::span<const double> a,
+                                  std::span<const double> b) {
+  const double* const factors = b.data();
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double factor = w * a[i];
+    double* __restrict const out = to + i * row;
+    for (std::size_t j = 0; j < b.size(); ++j) out[j] += factor * factors[j];
   }
 }
+
+/// Cells that are taken together: what they need stays in the cache.
+constexpr std::size_t group_of_cells = 64;
+static_assert(group_of_cells % kWide == 0);
+
+/// Σ_j y_qj (Σ_i x_pi from_ij) for a group of cells: one direction after the other, as functions and points are
+/// products of those along x and y. [points p, q] of [functions i, j], or the other way round.
+class ProductOfDirections {
+ public:
+  ProductOfDirections(const std::array<std::size_t, 2>& from, const std::array<std::size_t, 2>& to)
+      : from_(from), to_(to), between_(to[0] * from[1] * group_of_cells) {}
+
+  void operator()(double* to, std::size_t to_row, const double* from, const double* x, const double* y, std::size_t n) {
+    constexpr std::size_t row = group_of_cells;
+    for (std::size_t j = 0; j < from_[1]; ++j)
+      combine(between_.data() + j * to_[0] * row, row, to_[0], from + j * from_[0] * row, row, from_[0], x, n);
+    for (std::size_t p = 0; p < to_[0]; ++p)
+      combine(to + p * to_row, to_[0] * to_row, to_[1], between_.data() + p * row, to_[0] * row, from_[1], y, n);
+  }
+
+ private:
+  std::array<std::size_t, 2> from_, to_;
+  std::vector<double> between_;
+};
 
 }  // namespace
 
 /// Derivatives along a direction are taken of differences: what stands at the right ends of elements becomes its
 /// distance from the left ones, these become 0, so that rounding of a large constant does not enter slopes.
 void GalerkinMesh::take_differences(double* local, std::size_t field, std::size_t direction) const {
-  const std::size_t n = cells(), row = padded(n), other = 1 - direction;
+  constexpr std::size_t row = group_of_cells;
+  const std::size_t other = 1 - direction;
   const std::size_t step = direction == 0 ? 1 : along(field, 0), line = direction == 0 ? along(field, 0) : 1;
   const std::size_t right = axes_[direction].at_end(form_.smooth[field]) * step;
   for (std::size_t k = 0; k < along(field, other); ++k) {
     double *l = local + k * line * row, *r = l + right * row;
-    for (std::size_t cell = 0; cell < n; ++cell) r[cell] -= l[cell], l[cell] = 0;
+    for (std::size_t cell = 0; cell < row; ++cell) r[cell] -= l[cell], l[cell] = 0;
   }
 }
 
 void GalerkinMesh::set(const double* c, const double* rates, double t, bool all) {
-  const std::size_t n = cells(), row = padded(n);
-  std::vector<double> local(local_ * row);
-  for (std::size_t slot = 0; slot < form_.slots.size(); ++slot) {
-    const DensityForm::Slot& s = form_.slots[slot];
-    if (!s.stands && !all) continue;
-    const double* from = s.rate ? rates : c;
-    for (std::size_t cell = 0; cell < n; ++cell)
-      for (std::size_t i = 0; i < functions(s.field); ++i) local[i * row + cell] = from[index(s.field, cell, i)];
-    for (std::size_t d = 0; d < 2; ++d)
-      if (s.space[d] > 0) take_differences(local.data(), s.field, d);
-    for (std::size_t q = 0; q < points(); ++q)
-      combine(series_.input(slot, 0) + q * n, local.data(), table(slot, q), functions(s.field), n);
-  }
+  for (std::size_t slot = 0; slot < form_.slots.size(); ++slot)
+    if (form_.slots[slot].stands || all) set_jet(slot, form_.slots[slot].rate ? rates : c);
   std::fill_n(series_.input(form_.inputs.size() - 1, 0), lanes(), t);
   series_.advance(0);
 }
 
+void GalerkinMesh::set_jet(std::size_t slot, const double* c) {
+  const DensityForm::Slot& s = form_.slots[slot];
+  const bool smooth = form_.smooth[s.field];
+  const std::size_t n = cells(), count = functions(s.field);
+  std::vector<double> local(count * group_of_cells);
+  ProductOfDirections product({along(s.field, 0), along(s.field, 1)}, {axes_[0].points(), axes_[1].points()});
+  for (std::size_t first = 0; first < n; first += group_of_cells) {
+    const std::size_t group = std::min(group_of_cells, n - first);
+    for (std::size_t cell = 0; cell < group; ++cell)
+      for (std::size_t i = 0; i < count; ++i) local[i * group_of_cells + cell] = c[index(s.field, first + cell, i)];
+    for (std::size_t d = 0; d < 2; ++d)
+      if (s.space[d] > 0) take_differences(local.data(), s.field, d);
+    product(series_.input(slot, 0) + first, n, local.data(), axes_[0].table(smooth, s.space[0]).data(),
+            axes_[1].table(smooth, s.space[1]).data(), group);
+  }
+}
+
 void GalerkinMesh::assemble(double* out, bool rates) const {
   std::fill_n(out, size_, 0.0);
-  const std::size_t n = cells(), row = padded(n);
-  std::vector<double> local(n), roots(points() * row);
-  for (std::size_t slot = 0; slot < form_.slots.size(); ++slot) {
-    const DensityForm::Slot& s = form_.slots[slot];
-    if (s.rate != rates || form_.by_slot[slot].is_zero()) continue;
+  for (std::size_t slot = 0; slot < form_.slots.size(); ++slot)
+    if (form_.slots[slot].rate == rates && !form_.by_slot[slot].is_zero()) add_loads(slot, out);
+}
+
+void GalerkinMesh::add_loads(std::size_t slot, double* out) const {
+  const std::size_t field = form_.slots[slot].field, n = cells(), count = functions(field);
+  std::vector<double> local(count * group_of_cells), roots(points() * group_of_cells);
+  ProductOfDirections product({axes_[0].points(), axes_[1].points()}, {along(field, 0), along(field, 1)});
+  for (std::size_t first = 0; first < n; first += group_of_cells) {
+    const std::size_t group = std::min(group_of_cells, n - first);
     for (std::size_t q = 0; q < points(); ++q)
-      std::copy_n(series_.root(slot, 0) + q * n, n, roots.begin() + static_cast<std::ptrdiff_t>(q * row));
-    for (std::size_t i = 0; i < functions(s.field); ++i) {
-      combine(local.data(), roots.data(), loads_[slot].data() + i * points(), points(), n);
-      for (std::size_t cell = 0; cell < n; ++cell) out[index(s.field, cell, i)] += local[cell];
-    }
+      std::copy_n(series_.root(slot, 0) + q * n + first, group, roots.data() + q * group_of_cells);
+    product(local.data(), group_of_cells, roots.data(), loads_[0][slot].data(), loads_[1][slot].data(), group);
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t cell = 0; cell < group; ++cell)
+        out[index(field, first + cell, i)] += local[i * group_of_cells + cell];
   }
 }
 
@@ -187,8 +252,7 @@ GalerkinMesh::Matrices GalerkinMesh::matrices() {
       for (std::size_t q = 0; q < points(); ++q) {
         const double weight = sign * point_weight(q) * value[q * cells() + cell];
         const double *a = table(first, q), *b = table(second, q);
-        for (std::size_t i = 0; i < rows; ++i)
-          for (std::size_t j = 0; j < columns; ++j) local[i * local_ + j] += weight * a[i] * b[j];
+        add_outer_product(local.data(), local_, weight, {a, rows}, {b, columns});
       }
       const auto add_to = [&](MeshMatrix<double>& matrix) {
         for (std::size_t i = 0; i < rows; ++i)
@@ -352,15 +416,6 @@ std::vector<std::size_t> GalerkinMesh::values_at_ends(std::size_t field) const {
   for (const std::size_t j : ends[1])
     for (const std::size_t i : ends[0]) out.push_back(j * along(field, 0) + i);
   return out;
-}
-
-double GalerkinMesh::largest_value(const double* c, std::size_t field) const {
-  double out = 0, any = 0;
-  for (std::size_t cell = 0; cell < cells(); ++cell) {
-    for (const std::size_t i : values_at_ends(field)) out = std::max(out, std::abs(c[index(field, cell, i)]));
-    for (std::size_t i = 0; i < functions(field); ++i) any = std::max(any, std::abs(c[index(field, cell, i)]));
-  }
-  return out > 0 ? out : any;
 }
 
 void GalerkinMesh::add_products() {

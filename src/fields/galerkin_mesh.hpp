@@ -62,8 +62,6 @@ class GalerkinMesh {
 
   /// ∫ u² of each field.
   std::vector<double> squares(const std::vector<double>& c) const;
-  /// The largest coefficient of u at the ends of elements; where all of these are held, of any function.
-  double largest_value(const double* c, std::size_t field) const;
   std::size_t cells() const { return axes_[0].cells() * axes_[1].cells(); }
   const std::vector<std::size_t>& fields_of_coefficients() const { return field_of_; }
   /// Whether a function has all but nothing in common with those that change slowly over an element: its mean over each
@@ -87,11 +85,14 @@ class GalerkinMesh {
   void number_coefficients();
   std::vector<double> table_of(std::size_t field, const std::array<int, 2>& space) const;
   std::vector<double> loads_of(std::size_t field, const std::vector<double>& table) const;
+  std::vector<double> loads_along(std::size_t direction, bool smooth, int k) const;
   const double* table(std::size_t slot, std::size_t point) const {
     return tables_[slot].data() + point * functions(form_.slots[slot].field);
   }
   void take_differences(double* local, std::size_t field, std::size_t direction) const;
+  void set_jet(std::size_t slot, const double* c);
   void assemble(double* out, bool rates) const;
+  void add_loads(std::size_t slot, double* out) const;
   void add_products();
   std::vector<std::size_t> values_at_ends(std::size_t field) const;
   Expr side_symbol(Side side) const;
@@ -104,10 +105,11 @@ class GalerkinMesh {
   std::shared_ptr<const SparsityPattern> pattern_;
   std::vector<std::vector<double>>
       tables_;  // [slots] the derivative of each function at each point: [points × functions]
-  std::vector<std::vector<double>> loads_;  // [slots] times the weights of the points: [functions × points]
-  MeshMatrix<double> products_;             // ∫ N_i N_j within each field
-  std::vector<std::size_t> field_of_;       // [size]
-  std::vector<double> places_[2];           // of the lanes
+  /// Along a direction, of each slot, times the weights of the points: [functions × points].
+  std::vector<std::vector<double>> loads_[2];
+  MeshMatrix<double> products_;        // ∫ N_i N_j within each field
+  std::vector<std::size_t> field_of_;  // [size]
+  std::vector<double> places_[2];      // of the lanes
   mutable LaneSeries series_, hessian_, energies_;
   Bindings values_;
 };

@@ -33,6 +33,17 @@ FieldRunResult::Value value_at_end(const std::string& text, double end, bool err
   return run->answers[0];
 }
 
+std::size_t steps_until(double end, const std::string& text) {
+  Study study = study_of_text(text);
+  REQUIRE(study.field_equations());
+  Diagnostics diagnostics;
+  FieldRunOptions options;
+  options.duration = end, options.errors = false;
+  const auto run = run_fields(*study.field_equations(), {}, options, diagnostics);
+  REQUIRE(run);
+  return run->steps;
+}
+
 /// All expectations of a model hold.
 void holds(const std::string& text) {
   Study study = study_of_text(text);
@@ -214,7 +225,7 @@ TEST_CASE("solitons of fields of first order in time, with their charges") {
 TEST_CASE("a potential on a ring keeps its constant, which is told") {
   // w_tx + w_xxxx = 0, waves ω = −k³: of u = w_x
   const std::string ring =
-      "dimensionless\nfield w(x) : number on x = 0 .. 2*pi cells 6 order 9 boundary periodic\n"
+      "dimensionless\nfield w(x) : number on x = 0 .. 2*pi cells 6 order 10 boundary periodic\n"
       "density = 1/2 w' w_x - 1/2 w_xx^2\nstart w = cos(2*x)\nrun 1\nexpect w_x(1) at 1 = -2 sin(2 + 8) ± 1e-8\n";
   CHECK(codes_of_run(ring) == "N0648");
   Study study = study_of_text(ring);
@@ -333,6 +344,11 @@ TEST_CASE("plates on hinges, with conditions that change along a side") {
       "density = 1/2 w'^2 - 1/2 ((w_xx + w_yy)^2 - 2 (1 - ν) (w_xx w_yy - w_xy^2))\n"
       "start w = sin(2*pi*x) sin(pi*y)\nrun 0.03\nexpect energy conserved rel 1e-12\n"
       "expect w(0.3, 0.4) at 0.03 = sin(0.6*pi) sin(0.4*pi) cos(5*pi^2*0.03) ± 1e-5\n");
+  // The ends of elements are nodes of this shape: it is large beside what the mesh adds there, which no step follows.
+  CHECK(steps_until(0.03,
+                    "dimensionless\nfield w(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 2, 2 order 7\n"
+                    "boundary w = 0\ndensity = 1/2 w'^2 - 1/2 (w_xx + w_yy)^2\nstart w = sin(2*pi*x) sin(2*pi*y)\n") <=
+        300);
   // w = x y sin t under the force density that it needs, its natural conditions by hand: none, all sides are given.
   holds(
       "dimensionless\nfield w(x, y) : number on x = 0 .. 1, y = 0 .. 1 cells 1, 2 order 7\n"
