@@ -86,6 +86,13 @@ std::string below_each_other(std::vector<FieldPictureOptions> pictures,
 
 }  // namespace
 
+bool has_pictures(const FieldRunResult& run, Diagnostics& diagnostics) {
+  if (run.trajectory.rows() > 1 && !run.places.empty()) return true;
+  diagnostics.error("E0843", {}, "The run ended at its start: there is nothing to draw.", run.trouble,
+                    "`maup simulate` shows what is known of the start.");
+  return false;
+}
+
 std::string pictures_of_fields(Study& study, const FieldEquations& equations, const FieldRunResult& run,
                                std::vector<FieldPictureOptions> pictures) {
   if (pictures.empty()) pictures = field_pictures_of(study, equations, {}, {});

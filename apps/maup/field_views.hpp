@@ -23,7 +23,10 @@ std::vector<FieldPictureOptions> field_pictures_of(Study& study, const FieldEqua
                                                    const std::vector<std::string>& names,
                                                    const FieldPictureOptions& like);
 
-/// The pictures of the fields of a run below each other.
+/// E0843 where the run ended before there was anything to draw.
+bool has_pictures(const FieldRunResult& run, Diagnostics& diagnostics);
+
+/// The pictures of the fields of a run below each other. Precondition: has_pictures.
 std::string pictures_of_fields(Study& study, const FieldEquations& equations, const FieldRunResult& run,
                                std::vector<FieldPictureOptions> pictures);
 

@@ -169,7 +169,7 @@ class Comparer {
                          b, expand_time_derivatives(in_terms_of_motion(b, {&b_equations_.energy_function, 1})))
                          .front();
     const Expr difference = pull_back_(a_equations_.energy_function) - own;
-    const ZeroTest equal = motions_.vanish({&difference, 1});
+    const ZeroTest equal = motions_.vanish_for_given_signs({&difference, 1});
     if (equal.verdict != Verdict::Nonzero)
       return equal.verdict == Verdict::Zero ? EnergyRelation::Equal : EnergyRelation::Undecided;
     ExprVector derivatives{differentiate(difference, b.context->time())};

@@ -74,6 +74,15 @@ ZeroTest Motions::vanish(std::span<const Expr> functions) const {
   return at_points(functions);
 }
 
+ZeroTest Motions::vanish_for_given_signs(std::span<const Expr> functions) const {
+  if (accelerations_) {
+    const ExprVector put_in = substitute(functions, *accelerations_);
+    const ZeroTest exact = maupertuis::vanish_for_given_signs(model_.system, put_in);
+    if (exact.verdict != Verdict::Undecided) return exact;
+  }
+  return at_points(functions);
+}
+
 ZeroTest Motions::vanish_at_these_values(std::span<const Expr> functions) const {
   if (!accelerations_) return at_points(functions);
   ExprMap values;

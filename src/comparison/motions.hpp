@@ -17,6 +17,8 @@ class Motions {
   /// Do the functions of q, q̇, q̈, t vanish along all motions? Exact without constraints; with them, and where roots or
   /// inverse functions keep the exact test from an answer, at points to 60 digits.
   ZeroTest vanish(std::span<const Expr> functions) const;
+  /// The same, or for parameters that have the signs of the model's alone.
+  ZeroTest vanish_for_given_signs(std::span<const Expr> functions) const;
   /// The same where the parameters have the values of the model, and only these.
   ZeroTest vanish_at_these_values(std::span<const Expr> functions) const;
   /// At states near the start, with parameters within a hundredth of their values; and, where switches stand in the

@@ -1,5 +1,13 @@
 #include <maupertuis/constraint_manifold.hpp>
 
+#include <maupertuis/kinds.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <string>
+#include <unordered_set>
+
 namespace maupertuis {
 
 MotionTerms::MotionTerms(const MechanicalSystem& system)
@@ -28,6 +36,43 @@ ExprVector with_constants_as_numbers(const MechanicalSystem& system, std::span<c
   for (const Parameter& p : system.parameters)
     if (p.symbol.role() == Role::Constant) numbers.emplace(p.symbol, p.value);
   return numbers.empty() ? ExprVector(expressions.begin(), expressions.end()) : substitute(expressions, numbers);
+}
+
+namespace {
+
+/// Whether an identity of the node's arguments may depend on their signs: of roots, logarithms and switches.
+bool depends_on_signs(const Expr& node) {
+  if (node.is(Kind::Power)) return !node[1].is_number() || !node[1].number().is_integer();
+  return node.is(Kind::Log) || has_switch(node.kind());
+}
+
+std::unordered_set<Expr, ExprHash> symbols_whose_signs_matter(std::span<const Expr> expressions) {
+  std::unordered_set<Expr, ExprHash> out;
+  for (const Expr& node : topological_order(expressions))
+    if (depends_on_signs(node))
+      for (const Expr& symbol : symbols_of({&node, 1})) out.insert(symbol);
+  return out;
+}
+
+}  // namespace
+
+ZeroTest vanish_for_given_signs(const MechanicalSystem& system, std::span<const Expr> expressions) {
+  const ZeroTest for_all = zero_test(expressions);
+  if (for_all.verdict == Verdict::Zero) return for_all;
+  const auto matter = symbols_whose_signs_matter(expressions);
+  ExprMap squares;
+  std::vector<std::string> signs;
+  for (const Parameter& p : system.parameters) {
+    if (p.si_value == 0 || !matter.contains(p.symbol)) continue;
+    const Expr root = system.context->symbol("root of " + p.name, Role::Auxiliary);
+    squares.emplace(p.symbol, p.si_value > 0 ? root * root : -root * root);
+    signs.push_back(fmt::format("{} {} 0", p.name, p.si_value > 0 ? '>' : '<'));
+  }
+  if (squares.empty()) return for_all;
+  ZeroTest for_signs = zero_test(substitute(expressions, squares));
+  if (for_signs.verdict != Verdict::Zero) return for_all;
+  for_signs.reason = fmt::format("for {}", fmt::join(signs, ", "));
+  return for_signs;
 }
 
 std::vector<Expr> in_terms_of_motion(const MechanicalSystem& system, std::span<const Expr> expressions) {

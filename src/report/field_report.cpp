@@ -274,6 +274,7 @@ class FieldComposer {
                       quantity(run.books->friction, bare ? "" : "J", 6),
                       quantity(run.books->dampers, bare ? "" : "J", 6)));
     if (!run.trouble.empty()) add("it ended early", run.trouble);
+    if (run.trajectory.rows() < 2) return;  // it ended at its start
     for (std::size_t a = 0; a < e_.varied.size(); ++a) {
       FieldPictureOptions options;
       options.field = a, options.theme = PlotTheme::Page, options.dimensionless = bare;

@@ -186,7 +186,8 @@ std::string ground_of(const ZeroTest& test, bool constrained) {
   if (constrained && test.error_bound == 1)
     return fmt::format("vanishes to 60 digits at {} points of the constraints", test.points);
   if (test.error_bound < 1)
-    return fmt::format("proved at {} random points, error bound {:.1e}", test.points, test.error_bound);
+    return fmt::format("proved{}{} at {} random points, error bound {:.1e}", test.reason.empty() ? "" : " ",
+                       test.reason, test.points, test.error_bound);
   return test.reason.empty() ? fmt::format("vanishes at {} random points", test.points) : test.reason;
 }
 
@@ -237,7 +238,7 @@ ZeroTest AlongMotion::vanishes(Expr e) const {
 }
 
 ZeroTest AlongMotion::as_formula(Expr plain) const {
-  if (!constrained() || plain.is_zero()) return zero_test(plain);
+  if (!constrained() || plain.is_zero()) return vanish_for_given_signs(*equations_.system, {&plain, 1});
   const Where where = relations_for(plain);
   const OwnUnits units(where.relations, where.unknowns, where.center);
   const ExprVector relations = units.of(where.relations), formula = units.of({&plain, 1});

@@ -74,7 +74,7 @@ bool RandomStates::vanishes(Expr e) {
   constexpr double surely_not = 1e-6;
   for (const auto& row : values({plain}, 2))
     if (std::abs(row.front()) > surely_not) return false;
-  return zero_test(plain).verdict == Verdict::Zero;
+  return vanish_for_given_signs(system_, {&plain, 1}).verdict == Verdict::Zero;
 }
 
 std::optional<std::vector<Rational>> RandomStates::combination(Expr sum, const std::vector<Expr>& terms) {

@@ -37,7 +37,7 @@ void judge_sides(const Sides& sides, const Hamiltonian& h, ExpectationResult& re
     result.message = "There is no such function: " + sides.reason + ".";
     return;
   }
-  const ZeroTest test = zero_test(with_definitions(*h.system, {&sides.difference, 1}).front());
+  const ZeroTest test = vanish_for_given_signs(*h.system, with_definitions(*h.system, {&sides.difference, 1}));
   result.passed = test.verdict == Verdict::Zero;
   result.actual = result.passed ? result.expected : test.verdict == Verdict::Nonzero ? "another function" : "undecided";
   if (result.passed) {

@@ -296,7 +296,7 @@ ExitCode animate_fields(AnimateOptions o, Study& study, Console& console) {
   std::vector<double> asked;
   if (const auto t = o.still.empty() ? std::nullopt : parse_exact_time(o.still)) asked.push_back(t->to_double());
   const auto run = run_model(study, settings, FieldMotionOptions{true, true, asked}, console);
-  if (!run) return finish(console, study, document);
+  if (!run || !has_pictures(*run, study.diagnostics())) return finish(console, study, document);
 
   Drawing times;  // of the run
   times.times = run->trajectory.times;

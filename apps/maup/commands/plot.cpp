@@ -77,7 +77,7 @@ ExitCode plot_fields(const PlotCommandOptions& options, Study& study, Console& c
     return written;
   }
   const auto run = run_model(study, settings, FieldMotionOptions{true, true}, console);
-  if (!run) return finish(console, study, document);
+  if (!run || !has_pictures(*run, study.diagnostics())) return finish(console, study, document);
   const ExitCode written =
       write_svg(options, pictures_of_fields(study, *equations, *run, pictures), study, document, console);
   finish(console, study, document);

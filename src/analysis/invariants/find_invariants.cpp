@@ -9,6 +9,7 @@
 #include "analysis/invariants/balance.hpp"
 #include "analysis/invariants/completeness.hpp"
 #include "analysis/invariants/drift.hpp"
+#include "analysis/invariants/named_constants.hpp"
 #include "analysis/invariants/naming.hpp"
 #include "analysis/invariants/search.hpp"
 #include "analysis/invariants/symmetry.hpp"
@@ -305,7 +306,20 @@ std::optional<Invariants> find_invariants(const Model& model, const EquationsOfM
         "`expect conserved EXPR` proves a single integral of such a system.");
     return std::nullopt;
   }
-  return Finder(model, equations, options, diagnostics).carry_out();
+  const auto named = invariants::with_named_constants(equations);
+  if (!named) return Finder(model, equations, options, diagnostics).carry_out();
+  InvariantsOptions without_drift = options;
+  without_drift.drift = false;
+  auto found = Finder(model, named->equations, without_drift, diagnostics).carry_out();
+  if (!found) return std::nullopt;
+  invariants::put_back(named->meaning, *found);
+  if (named->related) {  // as it is written: sin² α + cos² α = 1 may be needed
+    auto as_written = Finder(model, equations, without_drift, diagnostics).carry_out();
+    const auto size = [](const Invariants& i) { return std::make_pair(i.autonomous_rank, i.noether_symmetries); };
+    if (as_written && size(*as_written) > size(*found)) found = std::move(as_written);
+  }
+  if (options.drift) measure_drift(*found, model, equations, diagnostics);
+  return found;
 }
 
 namespace {

@@ -83,6 +83,15 @@ TEST_CASE("the pendulum in x, y and in θ, both ways") {
   CHECK(back.result.energies == EnergyRelation::Equal);
 }
 
+TEST_CASE("energies that are equal for the signs of the parameters") {
+  const std::string a = "system A\nparam m = 1 kg, c = 3 m/s, k = 2 N/m\ncoord x : length\n",
+                    b = "start x = 1 m\nrun 1 s\n";
+  const Compared c = compare_texts(a + "L = -m c^2 sqrt(1 - x'^2/c^2) - 1/2 k x^2\n" + b,
+                                   a + "L = -sqrt(m^2 c^4 - m^2 c^2 x'^2) - 1/2 k x^2\n" + b);
+  check_same(c);
+  CHECK(c.result.energies == EnergyRelation::Equal);
+}
+
 TEST_CASE("an inverse map of a pendulum that turns over: whole turns do not count, other branches do") {
   const std::string over =
       replaced(cartesian_pendulum, "start x = 1 m, y' = 0, y = -1.7320508075688772 m", "start y = -l, x' = 12 m/s");

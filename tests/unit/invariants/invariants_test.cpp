@@ -86,6 +86,33 @@ TEST_CASE("Kepler in space: seven integrals, five independent, two relations") {
   CHECK(f.result.completely_integrable);
 }
 
+TEST_CASE("coefficients with sines of parameters, π and functions of numbers are found as those of parameters are") {
+  const Found years("coord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = -4 pi^2/sqrt(x^2 + y^2)\n");
+  CHECK(years.count("Laplace-Runge-Lenz") == 2);
+  CHECK(years.result.autonomous_rank == 3);
+  for (const char* slope :
+       {"sin(α)", "exp(α)", "pi", "sin(0.3)", "tan(α)", "sqrt(α + 2)", "α^(1/3)", "(1 + sqrt(5))/2", "2^α"}) {
+    CAPTURE(slope);
+    const Found incline("param m = 1, g = 9, α = 0.4\ncoord x : number\nT = 1/2 m x'^2\nV = -m g " +
+                        std::string(slope) + " x\n");
+    CHECK(incline.result.noether_symmetries == 5);
+    CHECK(incline.result.symmetry_bound == 5);
+  }
+  // The stiffness under a root, in the phase of sines of the time.
+  const Found tilted(
+      "param k = 1, α = 0.4\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = 1/2 k cos(α) (x^2 + y^2)\n");
+  CHECK(tilted.count("Fradkin") >= 2);
+  CHECK(tilted.result.noether_symmetries == 8);
+  CHECK(tilted.text("energy") == "1/2 x'^2 + 1/2 y'^2 + 1/2 k cos α (x^2 + y^2)");
+}
+
+TEST_CASE("what is conserved because sin² + cos² is 1 is found as well") {
+  const Found f(
+      "param α = 0.4\ncoord x, y : number\nT = 1/2 (cos(α)^2 x'^2 + (1 - sin(α)^2) y'^2)\nV = (x^2 + y^2)^2\n");
+  CHECK(f.count("angular momentum") == 1);
+  CHECK(f.result.autonomous_rank == 2);
+}
+
 TEST_CASE("the brackets of angular momentum and of the Runge-Lenz vector") {
   const Found f(kepler);
   const auto bracket = [&](std::size_t i, std::size_t j) {

@@ -50,4 +50,30 @@ TEST_CASE("H, the Routhian and brackets: the closed forms hold, and no others") 
   }
 }
 
+TEST_CASE("identities of roots hold for the signs that the parameters have, and these are told") {
+  const auto decided = [](const std::string& parameters, const std::string& line) {
+    const ModelText m("system relativistic\n" + parameters +
+                      "coord x : length\nL = -m c^2 sqrt(1 - x'^2/c^2) - 1/2 k x^2\nstart x = 1 m\nrun 1 s\n" + line);
+    Diagnostics diagnostics;
+    return verify(m.model, m.equations, m.source, {}, diagnostics).results.at(0);
+  };
+  const std::string positive = "param m = 1 kg, c = 3 m/s, k = 2 N/m\n",
+                    negative = "param m = 1 kg, c = -3 m/s, k = 2 N/m\n";
+  const std::string h = "expect hamiltonian = sqrt(p_x^2 c^2 + m^2 c^4) + 1/2 k x^2\n",
+                    of_gamma = "expect equation m c^3 x'' = -k x (c^2 - x'^2)^(3/2)\n",
+                    other_sign = "expect equation m c^3 x'' = k x (c^2 - x'^2)^(3/2)\n",
+                    energy = "expect conserved m c^3/sqrt(c^2 - x'^2) + 1/2 k x^2\n";
+  for (const std::string& line : {h, of_gamma, energy}) {
+    const ExpectationResult r = decided(positive, line);
+    INFO(line, r.message);
+    CHECK(r.passed);
+    CHECK(r.message.find("c > 0") != std::string::npos);
+  }
+  CHECK(decided(negative, h).passed);  // holds for |c|
+  CHECK(decided(negative, other_sign).passed);
+  CHECK(decided(negative, other_sign).message.find("c < 0") != std::string::npos);
+  for (const std::string& line : {of_gamma, energy}) CHECK_FALSE(decided(negative, line).passed);
+  CHECK_FALSE(decided(positive, other_sign).passed);
+}
+
 }  // namespace phase_space_test
