@@ -183,5 +183,25 @@ double step_within_multipliers(const KernelWorkspace& work, std::size_t freedoms
   return least;
 }
 
+double step_within_integrals(const KernelWorkspace& work, std::size_t integrals, const StepControl& control, double h) {
+  constexpr double converged_integral = 1e-8;
+  const int p = control.order;
+  if (p < 8) return h;
+  const auto largest = [&](std::size_t i, int begin, double length) {  // of four terms
+    double size = 0;
+    for (int k = begin + 3; k >= begin; --k) size = std::max(size * length, std::abs(work.integrand(i, k)));
+    return size;
+  };
+  double least = h;
+  for (std::size_t i = 0; i < integrals; ++i) {
+    const auto last = [&](double length) { return largest(i, p - 3, length) * std::pow(length, p - 3); };
+    double own = least;
+    int cuts = 0;
+    while (cuts < most_cuts && last(own) > converged_integral * largest(i, 0, own)) own *= cut, ++cuts;
+    if (cuts < most_cuts) least = own;
+  }
+  return least;
+}
+
 }  // namespace taylor
 }  // namespace maupertuis

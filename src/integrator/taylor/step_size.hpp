@@ -24,4 +24,8 @@ double step_size(const KernelWorkspace& work, std::size_t freedoms, const StepCo
 double step_within_multipliers(const KernelWorkspace& work, std::size_t freedoms, std::size_t constraints,
                                const StepControl& control, double h);
 
+/// At most h (finite), and so short that the series of the integrals along the motion converge: a power made of sines
+/// may have a series that ends far from where that of a parabola does.
+double step_within_integrals(const KernelWorkspace& work, std::size_t integrals, const StepControl& control, double h);
+
 }  // namespace maupertuis::taylor

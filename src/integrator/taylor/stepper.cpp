@@ -147,6 +147,8 @@ double TaylorStepper::Impl::choose_length(double bound) {
   double chosen = constraints.restraint * taylor::step_size(work, n, control, length);
   const double left = std::abs(remaining(bound));
   if (m > 0) chosen = taylor::step_within_multipliers(work, n, m, control, std::min(chosen, left));
+  if (const std::size_t integrals = state.integrals.size(); integrals > 0)
+    chosen = taylor::step_within_integrals(work, integrals, control, std::min(chosen, left));
   length = std::isfinite(chosen) ? chosen : 0;
   end_check.note_rates(work.coordinate(1), work.coordinate(2), 1, std::min(chosen, left));
   if (!safe.is_needed()) return chosen;

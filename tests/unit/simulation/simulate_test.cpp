@@ -150,6 +150,21 @@ run 20 s
   for (const State& s : run(m, late).at) CHECK(std::abs(s.q[0] - amplitude * std::sin(3 * s.t - phase)) < 1e-12);
 }
 
+TEST_CASE("a step is as short as the series of the power asks, where the motion is a parabola itself") {
+  // q = −3 t² and dh_E/dt = 5 t − 1, made of sines of q + t + t²/2. One step of any length has the motion, not the
+  // work.
+  for (const char* end : {"8", "40"}) {
+    CAPTURE(end);
+    const ModelText m(
+        "dimensionless\ncoord q : number\npoint P mass 1 at (cos(q + t + t^2/2), sin(q + t + t^2/2))\nV = 5 q\n"
+        "start q = 0\nrun " +
+        std::string(end) + "\n");
+    const SimulationResult r = run(m);
+    CHECK(r.final.q[0] == doctest::Approx(-3 * std::pow(r.final.t, 2)).epsilon(1e-13));
+    CHECK(r.statistics.energy_drift < 1e-10);
+  }
+}
+
 TEST_CASE("run until ends at the located root, or says that it was not met") {
   const ModelText m(R"(system fall
 param m = 1 kg, g = 10 m/s^2, h = 5 m
