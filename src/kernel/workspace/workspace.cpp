@@ -71,7 +71,6 @@ bool KernelWorkspace::Impl::run_unrolled(std::span<const double> q, std::span<co
   in_code.code.expand(x.memory.rows.data(), q.data(), v.data(), x.lane_coefficients.data(), x.memory.constants.data(),
                       scratch.data());
   if (!straight::sound(scratch.data())) return false;
-  solver.forget_point();
   const bool is_over = along.ends_at_first();
   observed = observed || points_are_unrolled;
   if (along.empty()) return true;
@@ -118,7 +117,7 @@ bool KernelWorkspace::Impl::runs_on() const {
 bool KernelWorkspace::Impl::run_later_stages(int stages) {
   if (in_code.code.later) return in_code.code.later(&in_code.arguments, stages) == 1;
   const workspace::Expansion& x = expansion;
-  const packed::InverseSolution solution = solver.inverse_solution();
+  const packed::InverseSolution solution = solver.inverse_for_engine();
   if (along.ends_at_first()) return x.engine.run_stages_by_inverse(x.tables, solution, 1, stages, false);
   bool finite = true;
   for (int stage = 1; stage < stages; ++stage) {

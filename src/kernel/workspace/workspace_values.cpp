@@ -36,7 +36,7 @@ double KernelWorkspace::event_scale(std::size_t i) const {
   impl_->along.need_point(impl_->expansion.memory);
   return impl_->expansion.scale(program().events[i]);
 }
-std::size_t KernelWorkspace::singular_coordinate() const { return impl_->solver.singular(); }
+std::size_t KernelWorkspace::singular_coordinate() const { return impl_->solver.factors().singular(); }
 std::size_t KernelWorkspace::contradicting_constraint() const { return impl_->solver.contradicting(); }
 
 // -------------------------------------------------------------------------------------------------------- polynomials
@@ -72,7 +72,7 @@ void add_increments(std::size_t count, double tau, const double* dq, const doubl
 // -------------------------------------------------------------------------------------------------------- constraints
 
 double KernelWorkspace::multiplier(std::size_t i) const { return 2 * coordinate(2)[program().freedoms + i]; }
-bool KernelWorkspace::multiplier_is_determined(std::size_t i) const { return impl_->solver.determines(i); }
+bool KernelWorkspace::multiplier_is_determined(std::size_t i) const { return impl_->solver.factors().determines(i); }
 
 double KernelWorkspace::constraint_value(std::size_t i) const {
   const Slot slot = program().constraint_values[i];
@@ -105,16 +105,16 @@ void KernelWorkspace::corrections(std::span<double> dq, std::span<double> dv) {
 
 std::size_t KernelWorkspace::constraints_in_force() const {
   std::size_t count = 0;
-  for (std::size_t i = 0; i + program().freedoms < program().unknowns; ++i) count += impl_->solver.keeps(i);
+  for (std::size_t i = 0; i + program().freedoms < program().unknowns; ++i) count += impl_->solver.factors().keeps(i);
   return count;
 }
 double KernelWorkspace::pivot_ratio() const {
-  return program().unknowns == program().freedoms ? 1 : impl_->solver.pivot_ratio();
+  return program().unknowns == program().freedoms ? 1 : impl_->solver.factors().pivot_ratio();
 }
 
-double KernelWorkspace::mass(std::size_t i, std::size_t j) const { return impl_->solver.bordered(i, j); }
+double KernelWorkspace::mass(std::size_t i, std::size_t j) const { return impl_->solver.matrix().at(i, j); }
 double KernelWorkspace::constraint_matrix(std::size_t constraint, std::size_t coordinate) const {
-  return -impl_->solver.bordered(program().freedoms + constraint, coordinate);
+  return -impl_->solver.matrix().at(program().freedoms + constraint, coordinate);
 }
 
 }  // namespace maupertuis
