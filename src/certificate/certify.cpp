@@ -37,6 +37,10 @@ CertificateCheck check_of(Route route, const RoutesResult& primes, const RoutesR
   check.statement = texts[route].statement;
   const RouteResult& exact = primes.routes[route];
   check.row = exact.row;
+  if (exact.is_doubtful) {
+    check.reason = "on one side of a switch the two formulas differ, and no point on that side was found";
+    return check;
+  }
   if (primes.complete && !exact.fails && exact.points > 0) {
     check.verdict = Verdict::Zero;
     check.points = exact.points;
@@ -103,7 +107,7 @@ Certificate certify(const EquationsOfMotion& equations, const Derivation* readab
   bool open = !primes.complete;
   for (const RouteResult& r : primes.routes) open |= r.fails;
   std::optional<RoutesResult> reals;
-  if (open) reals = compare_over_reals(questions, options.seed, real_points);
+  if (open) reals = primes.is_real ? primes : compare_over_reals(questions, options.seed, real_points);
 
   for (const Route route : {Action, Dalembert, Power, ConstraintRows}) {
     if (route == ConstraintRows && !equations.system->constrained()) continue;

@@ -18,6 +18,7 @@ using evaluation::mix;
 using Values = std::vector<Jet<FieldNumbers::Value>>;
 
 constexpr int points_per_prime = 3;
+constexpr double certain = 1e-6;     // of signs that come up by chance: the probability that some never did
 constexpr double node_budget = 1e6;  // bounds the extra points that switches ask for
 
 std::vector<FieldNumbers::Value> random_direction(const FieldNumbers& numbers, std::size_t n) {
@@ -126,6 +127,16 @@ RoutesResult compare(const Questions& questions, const evaluation::Tape& tape, c
 }  // namespace
 
 RoutesResult compare_over_primes(const Questions& questions, std::uint64_t seed) {
+  const auto by_sides = compare_by_sides(questions, seed);
+  if (by_sides && (by_sides->complete || by_sides->is_real)) return *by_sides;
+  RoutesResult result = compare_formulas(questions, seed);
+  if (by_sides && result.error_bound > certain)  // else each side was met, and formulas agree there: √(x²) and x
+    for (std::size_t route = 0; route < RouteCount; ++route)
+      result.routes[route].is_doubtful = by_sides->routes[route].is_doubtful;
+  return result;
+}
+
+RoutesResult compare_formulas(const Questions& questions, std::uint64_t seed) {
   RoutesResult result;
   const auto tape = evaluation::Tape::with_gaussians(evaluation::flatten_arguments(questions.roots));
   if (orders_needed(tape) > Jet<FieldNumbers::Value>::max_orders) {

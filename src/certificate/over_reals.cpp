@@ -22,7 +22,8 @@ class HundredDigits : public Reals {
     Real100 cosine, sine;
   };
 
-  explicit HundredDigits(std::uint64_t seed) : Reals([this](Expr e) { return draw(e); }), seed_(seed) {}
+  explicit HundredDigits(std::uint64_t seed, const Bindings* given = nullptr)
+      : Reals([this](Expr e) { return draw(e); }), seed_(seed), given_(given) {}
 
   Real100 random(std::uint64_t key, std::uint64_t second) const {
     const std::uint64_t bits = mix(mix(seed_ ^ mix(key)) ^ second);
@@ -43,11 +44,14 @@ class HundredDigits : public Reals {
 
  private:
   Real100 draw(Expr e) const {
+    if (given_)
+      if (const auto known = given_->find(e); known != given_->end()) return Real100(known->second);
     const Real100 value = random(0x73796d, e.id());
     const bool positive = e.role() == Role::Parameter || e.role() == Role::Constant || e.role() == Role::Time;
     return positive ? Real100(abs(value)) : value;
   }
   std::uint64_t seed_;
+  const Bindings* given_;
 };
 
 std::vector<Real100> some_direction(const HundredDigits& numbers, std::size_t n) {
@@ -66,38 +70,50 @@ Real100 largest(const std::vector<Jet<Real100>>& values) {
   return most;
 }
 
+/// Adds what one point tells. False: not everything is defined there.
+bool compare_at(HundredDigits& numbers, const Questions& questions, const Tape& tape, RoutesResult& result) {
+  std::vector<Jet<Real100>> values;
+  const auto direction = some_direction(numbers, questions.system.coordinates.size());
+  const auto all = differences(questions, tape, numbers, orders_needed(tape), direction, values, every_position);
+  const Real100 scale = largest(values), tolerance = scale * Real100(1e-60);
+  const auto undefined = [](const Real100& x) { return !isfinite(x); };
+  const bool any_undefined = std::any_of(all.begin(), all.end(), [&](const std::vector<Real100>& route) {
+    return std::any_of(route.begin(), route.end(), undefined);
+  });
+  if (!isfinite(scale) || any_undefined) return false;
+  for (std::size_t route = 0; route < RouteCount; ++route) {
+    RouteResult& r = result.routes[route];
+    for (const Real100& x : all[route]) {
+      if (!(abs(x) > tolerance)) continue;
+      r.fails = true;
+      r.difference = static_cast<double>(x);
+    }
+    if (!r.fails) ++r.points;
+  }
+  return true;
+}
+
 }  // namespace
 
 RoutesResult compare_over_reals(const Questions& questions, std::uint64_t seed, int points) {
   RoutesResult result;
-  const std::size_t n = questions.system.coordinates.size();
   const Tape tape = Tape::with_gaussians(questions.roots);
-  const std::size_t orders = orders_needed(tape);
-  result.complete = orders <= Jet<Real100>::max_orders;
-  std::vector<Jet<Real100>> values;
+  result.complete = orders_needed(tape) <= Jet<Real100>::max_orders;
   int found = 0;
   for (int attempt = 0; result.complete && found < points && attempt < 20 * points; ++attempt) {
     interrupt_of(*questions.system.context).throw_if_asked();
     HundredDigits numbers(mix(seed + static_cast<std::uint64_t>(attempt)));
-    const auto all = differences(questions, tape, numbers, orders, some_direction(numbers, n), values, every_position);
-    const Real100 scale = largest(values), tolerance = scale * Real100(1e-60);
-    const auto undefined = [](const Real100& x) { return !isfinite(x); };
-    const bool any_undefined = std::any_of(all.begin(), all.end(), [&](const std::vector<Real100>& route) {
-      return std::any_of(route.begin(), route.end(), undefined);
-    });
-    if (!isfinite(scale) || any_undefined) continue;
-    ++found;
-    for (std::size_t route = 0; route < RouteCount; ++route) {
-      RouteResult& r = result.routes[route];
-      for (const Real100& x : all[route]) {
-        if (!(abs(x) > tolerance)) continue;
-        r.fails = true;
-        r.difference = static_cast<double>(x);
-      }
-      if (!r.fails) ++r.points;
-    }
+    found += compare_at(numbers, questions, tape, result);
   }
   result.complete &= found >= points;
+  return result;
+}
+
+RoutesResult compare_at_real_point(const Questions& questions, const Bindings& point, std::uint64_t seed) {
+  RoutesResult result;
+  const Tape tape = Tape::with_gaussians(questions.roots);
+  HundredDigits numbers(mix(seed), &point);
+  result.complete = orders_needed(tape) <= Jet<Real100>::max_orders && compare_at(numbers, questions, tape, result);
   return result;
 }
 

@@ -70,6 +70,31 @@ Questions::Questions(const EquationsOfMotion& equations, bool with_matrix) : sys
   // A `let` that stays a symbol in print stands for its value.
   const ExprMap definitions = system.definition_values();
   if (!definitions.empty()) roots = substitute(roots, definitions);
+  asked = roots.size();
+}
+
+evaluation::Products Questions::products() const {
+  evaluation::Products out;
+  for (const Expr& root : roots) out.push_back({root});
+  for (const ForceQuestion& f : forces)
+    for (std::size_t k = 0; k < f.lever.size(); ++k) out.push_back({roots[f.components[k]], roots[f.lever[k]]});
+  for (const ParticleQuestion& p : particles)  // d/dt(m ṙ)·δr and m g·δr
+    for (std::size_t k = 0; k < p.position.size(); ++k) {
+      out.push_back({roots[p.mass], roots[p.position[k]], roots[p.position[k]]});
+      if (!gravity.empty()) out.back().push_back(roots[gravity[k]]);
+    }
+  for (const BodyQuestion& body : bodies) {  // ω from Ṙ Rᵀ, d/dt(R I Rᵀ ω)·δθ
+    out.emplace_back();
+    for (const Root root : body.inertia) out.back().push_back(roots[root]);
+    for (const Root root : body.rotation) out.back().insert(out.back().end(), 2, roots[root]);
+  }
+  return out;
+}
+
+Questions Questions::about(std::vector<Expr> formulas) const {
+  Questions out = *this;
+  out.roots = std::move(formulas);
+  return out;
 }
 
 void Questions::ask_about_matter() {

@@ -1,6 +1,8 @@
 #pragma once
 #include <maupertuis/equations_of_motion.hpp>
 
+#include "symbolic/evaluate/leaves.hpp"
+
 #include <array>
 #include <optional>
 
@@ -35,8 +37,15 @@ struct BodyQuestion {
 struct Questions {
   explicit Questions(const EquationsOfMotion& equations, bool with_matrix);
 
+  /// Which roots the checks multiply with each other; they are linear in all others.
+  evaluation::Products products() const;
+  /// The same questions about formulas, one answer to all of them after the other.
+  Questions about(std::vector<Expr> formulas) const;
+  std::size_t answers() const { return roots.size() / asked; }
+
   const MechanicalSystem& system;
-  std::vector<Expr> roots;
+  std::vector<Expr> roots;  // [answers × asked]
+  std::size_t asked = 0;
 
   // what the model says
   Root lagrangian, dissipation;

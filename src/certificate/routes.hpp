@@ -23,17 +23,18 @@ using evaluation::JetNumbers;
 
 enum Variation : std::size_t { Base = 0, Shift = 1, Ramp = 2, Clock = 3 };
 
-/// The values of all questions as jets along one path, and the direction c.
+/// One answer to all questions as jets along one path, and the direction c.
 template <class Numbers>
 struct PathValues {
   using Scalar = typename Numbers::Value;
   const Questions& questions;
+  std::size_t answer;
   JetNumbers<Numbers>& jets;
   const evaluation::Tape& tape;
   const std::vector<Jet<Scalar>>& values;
   std::vector<Scalar> direction;  // [n]
 
-  const Jet<Scalar>& of(Root root) const { return values[tape.roots()[root]]; }
+  const Jet<Scalar>& of(Root root) const { return values[tape.roots()[answer * questions.asked + root]]; }
   Scalar zero() const { return jets.base().number(0); }
   Scalar add(const Scalar& a, const Scalar& b) const { return jets.base().add(a, b); }
   Scalar subtract(const Scalar& a, const Scalar& b) const { return jets.base().subtract(a, b); }

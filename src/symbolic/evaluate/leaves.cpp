@@ -9,14 +9,17 @@
 #include <maupertuis/transform.hpp>
 
 #include <algorithm>
+#include <set>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 namespace maupertuis::evaluation {
 namespace {
 
-constexpr std::size_t most_leaves = 4096;
-constexpr std::size_t most_visits = 2'000'000;  // of nodes above switches and of conditions, over all leaves
+constexpr std::size_t most_leaves = 16384;
+constexpr std::size_t most_visits = 2'000'000;      // of nodes above switches and of conditions, over all leaves
+constexpr std::size_t most_joint_visits = 500'000;  // their formulas are evaluated with all variations of a path
 
 /// What a switch asks, up to a positive factor: `turned` where the question is the sign of −g.
 struct Question {
@@ -42,16 +45,18 @@ Question question_of(Expr g) {
   return out;
 }
 
-/// The switches of one root, and which of them stand together in a term.
+/// The switches of products, and which of them stand together in a term.
 class Terms {
  public:
-  explicit Terms(Expr root) {
-    for (const Expr& node : topological_order({&root, 1})) {
+  explicit Terms(const Products& products) {
+    std::vector<Expr> all;
+    for (const std::vector<Expr>& factors : products) all.insert(all.end(), factors.begin(), factors.end());
+    for (const Expr& node : topological_order(all)) {
       bool above = has_switch(node.kind());
       for (std::size_t i = 0; i < node.size() && !above; ++i) above = holds_switch(node[i]);
       if (above) above_switches_.insert(node.id());
     }
-    if (holds_switch(root)) split(root);
+    for (const std::vector<Expr>& factors : products) take(factors);
   }
 
   bool holds_switch(Expr e) const { return above_switches_.count(e.id()) > 0; }
@@ -65,22 +70,29 @@ class Terms {
   }
 
  private:
+  void take(const std::vector<Expr>& factors) {
+    std::vector<Expr> switching;
+    for (const Expr& factor : factors)
+      if (holds_switch(factor)) switching.push_back(factor);
+    if (switching.size() == 1) return split(switching.front());
+    if (!switching.empty()) gather(std::move(switching));
+  }
+
   /// Down through sums and what multiplies them to the terms that do not come apart.
   void split(Expr e) {
     std::vector<Expr> below;
     for (std::size_t i = 0; i < e.size(); ++i)
       if (holds_switch(e[i])) below.push_back(e[i]);
     const bool comes_apart = e.is(Kind::Sum) || (e.is(Kind::Product) && below.size() == 1);
-    if (!comes_apart) return gather(e);
+    if (!comes_apart) return gather({e});
     for (const Expr& part : below) split(part);
   }
 
-  /// All that decides in this term is one group, with the groups that it is a part of already.
-  void gather(Expr term) {
+  /// All that decides in this product is one group, with the groups that it is a part of already.
+  void gather(std::vector<Expr> open) {
     const std::size_t group = merged_.size();
     merged_.push_back(group);
     std::unordered_set<NodeId> seen;
-    std::vector<Expr> open{term};
     while (!open.empty()) {
       const Expr node = open.back();
       open.pop_back();
@@ -115,15 +127,19 @@ class Terms {
 /// Walks through the sides of the switches of one group, in the order in which they are asked for.
 class Walk {
  public:
-  Walk(Expr root, const Terms& terms, std::size_t group, std::size_t& visits)
-      : root_(root), terms_(terms), group_(group), visits_(visits) {}
+  Walk(std::span<const Expr> roots, const Terms& terms, std::size_t group, std::size_t& visits)
+      : roots_(roots), terms_(terms), group_(group), visits_(visits) {}
 
-  Leaf leaf() {
+  /// Its choices are added to those of `to`.
+  Leaf leaf(Leaves& to) {
     built_.clear();
     others_.clear();
-    Leaf out{in_force(root_), {}};
-    out.sides = path_;
-    out.sides.insert(out.sides.end(), others_.begin(), others_.end());
+    Leaf out;
+    for (const Expr& root : roots_) out.formulas.push_back(in_force(root));
+    for (; numbers_.size() < path_.size(); numbers_.push_back(to.choices.size() - 1))
+      to.choices.push_back({path_[numbers_.size()], numbers_.empty() ? 0 : numbers_.back()});
+    out.last_choice = numbers_.empty() ? 0 : numbers_.back();
+    out.not_varied = others_;
     return out;
   }
 
@@ -135,17 +151,33 @@ class Walk {
     }
     if (path_.empty()) return false;
     path_.back().above = false;
-    chosen_[path_.back().g.id()] = false;
+    chosen_[path_.back().g.id()].above = false;
+    numbers_.resize(std::min(numbers_.size(), path_.size() - 1));
+    for (auto& [node, depths] : failed_)
+      while (!depths.empty() && depths.back() >= path_.size()) depths.pop_back();
     return true;
   }
 
  private:
+  struct Chosen {
+    bool above = true;
+    std::size_t depth = 0;  // its place in the path, from 1
+  };
+  struct Built {
+    Expr formula;
+    std::size_t depth = 0;  // of the deepest choice that it depends on
+  };
   Expr in_force(Expr e) {
     if (!terms_.holds_switch(e)) return e;
-    if (const auto known = built_.find(e.id()); known != built_.end()) return known->second;
+    if (const auto known = built_.find(e.id()); known != built_.end()) {
+      depth_ = std::max(depth_, known->second.depth);
+      return known->second.formula;
+    }
     ++visits_;
+    const std::size_t outside = std::exchange(depth_, 0);
     const Expr out = build(e);
-    built_.emplace(e.id(), out);
+    built_.emplace(e.id(), Built{out, depth_});
+    depth_ = std::max(depth_, outside);
     return out;
   }
 
@@ -161,9 +193,7 @@ class Walk {
       case Family::Extremum:
         return in_force(e[is_above(e, in_force(e[1]) - in_force(e[0])) == e.is(Kind::Max) ? 1 : 0]);
       case Family::Piecewise:
-        for (std::size_t i = 0; i + 1 < e.size(); i += 2)
-          if (holds(e[i])) return in_force(e[i + 1]);
-        return in_force(e[e.size() - 1]);
+        return in_force(e[piece_of(e)]);
       case Family::Algebra:
         if (e.is(Kind::Product)) return product(e);
         break;
@@ -176,6 +206,18 @@ class Walk {
         break;
     }
     return rebuild(e, [&](Expr argument) { return in_force(argument); });
+  }
+
+  /// The argument that is in force. A table is not gone through again from its first piece: conditions that did not
+  /// hold still do not, as long as the choices that they depend on stay.
+  std::size_t piece_of(Expr e) {
+    std::vector<std::size_t>& failed = failed_[e.id()];
+    const std::size_t others = others_.size(), outside = depth_;
+    std::size_t i = 2 * failed.size();
+    for (depth_ = failed.empty() ? 0 : failed.back(); i + 1 < e.size() && !holds(e[i]); i += 2)
+      if (others_.size() == others) failed.push_back(depth_);
+    depth_ = std::max(depth_, outside);
+    return std::min(i + 1, e.size() - 1);
   }
 
   /// Where a factor is 0 nothing is asked of the others.
@@ -215,44 +257,92 @@ class Walk {
       others_.push_back({g, true});
       return true;
     }
-    const auto [known, fresh] = chosen_.try_emplace(g.id(), true);
-    if (fresh) path_.push_back({g, true});
-    return known->second;
+    const auto [known, fresh] = chosen_.try_emplace(g.id());
+    if (fresh) {
+      path_.push_back({g, true});
+      known->second.depth = path_.size();
+    }
+    depth_ = std::max(depth_, known->second.depth);
+    return known->second.above;
   }
 
-  Expr root_;
+  std::span<const Expr> roots_;
   const Terms& terms_;
   std::size_t group_;
   std::size_t& visits_;
   std::vector<Side> path_;
-  std::unordered_map<NodeId, bool> chosen_;
+  std::vector<std::size_t> numbers_;  // [path] among the choices of all leaves, as far as they are there
+  std::unordered_map<NodeId, Chosen> chosen_;
   std::vector<Side> others_;
-  std::unordered_map<NodeId, Expr> built_;
+  std::unordered_map<NodeId, Built> built_;
+  /// Of a piecewise, the first conditions, which do not hold: how deep the choices are that these depend on.
+  std::unordered_map<NodeId, std::vector<std::size_t>> failed_;
+  std::size_t depth_ = 0;  // of the deepest choice that was asked for since the node that is being built was begun
   std::unordered_map<NodeId, Question> questions_;
   std::unordered_map<NodeId, int> signs_;  // that a g has at all real points; 0: either
 };
 
 }  // namespace
 
-std::optional<std::vector<Leaf>> leaves_of(std::span<const Expr> roots) {
-  std::vector<Leaf> out;
-  std::unordered_set<NodeId> known;
-  std::size_t count = 0, visits = 0;
-  const auto take = [&](Leaf leaf) {
-    if (!leaf.formula.is_zero() && known.insert(leaf.formula.id()).second) out.push_back(std::move(leaf));
-  };
-  for (const Expr& root : roots) {
-    const Terms terms(root);
-    if (!terms.holds_switch(root)) take({root, {}});
-    for (const std::size_t group : terms.groups()) {
-      Walk walk(root, terms, group, visits);
-      do {
-        interrupt_of(root.context()).throw_if_asked();
-        if (++count > most_leaves || visits > most_visits) return std::nullopt;
-        take(walk.leaf());
-      } while (walk.next());
-    }
+std::vector<Side> Leaves::sides_of(const Leaf& leaf) const {
+  std::vector<Side> out;
+  for (std::size_t at = leaf.last_choice; at != 0; at = choices[at].before) out.push_back(choices[at].side);
+  out.insert(out.end(), leaf.not_varied.begin(), leaf.not_varied.end());
+  return out;
+}
+
+namespace {
+
+/// What the leaves of all roots may cost.
+struct Budget {
+  std::size_t visits_left, leaves_left = most_leaves, visits = 0;
+
+  bool is_spent() { return leaves_left-- == 0 || visits > visits_left; }
+};
+
+/// False where there are more than the budget allows.
+template <class Take>
+bool go_through(std::span<const Expr> roots, const Terms& terms, Budget& budget, Leaves& to, Take&& take) {
+  for (const std::size_t group : terms.groups()) {
+    Walk walk(roots, terms, group, budget.visits);
+    do {
+      interrupt_of(roots.front().context()).throw_if_asked();
+      if (budget.is_spent()) return false;
+      take(walk.leaf(to));
+    } while (walk.next());
   }
+  return true;
+}
+
+}  // namespace
+
+std::optional<Leaves> leaves_of(std::span<const Expr> roots) {
+  Leaves out;
+  std::unordered_set<NodeId> known;
+  const auto take = [&](Leaf leaf) {
+    const Expr formula = leaf.formulas.front();
+    if (!formula.is_zero() && known.insert(formula.id()).second) out.all.push_back(std::move(leaf));
+  };
+  Budget budget{most_visits};
+  for (const Expr& root : roots) {
+    const Terms terms({{root}});
+    if (!terms.holds_switch(root)) take({{root}, 0, {}});
+    if (!go_through({&root, 1}, terms, budget, out, take)) return std::nullopt;
+  }
+  return out;
+}
+
+std::optional<Leaves> joint_leaves(std::span<const Expr> roots, const Products& products) {
+  Leaves out;
+  const Terms terms(products);
+  Budget budget{most_joint_visits};
+  std::set<std::vector<NodeId>> known;
+  const auto take = [&](Leaf leaf) {
+    std::vector<NodeId> nodes;
+    for (const Expr& formula : leaf.formulas) nodes.push_back(formula.id());
+    if (known.insert(std::move(nodes)).second) out.all.push_back(std::move(leaf));
+  };
+  if (!go_through(roots, terms, budget, out, take)) return std::nullopt;
   return out;
 }
 

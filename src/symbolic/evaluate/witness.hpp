@@ -4,6 +4,7 @@
 #include "symbolic/evaluate/leaves.hpp"
 #include "symbolic/evaluate/tape.hpp"
 
+#include <functional>
 #include <optional>
 
 namespace maupertuis::evaluation {
@@ -23,7 +24,11 @@ std::optional<Witness> find_precise_witness(const Tape& tape, int points, std::u
 std::optional<Witness> find_witness_in_branches(std::span<const Expr> roots, std::uint64_t seed);
 
 /// The same of a formula at points on the sides on which it is in force, if such points are found.
-std::optional<Witness> find_witness_on_leaf(const Leaf& leaf, std::uint64_t seed);
+std::optional<Witness> find_witness_on_sides(Expr formula, const std::vector<Side>& sides, std::uint64_t seed);
+
+/// Looks for points on these sides, as interval arithmetic shows, with values for `symbols` too, until one is accepted.
+bool any_point_on_sides(const std::vector<Side>& sides, std::span<const Expr> symbols, std::uint64_t seed,
+                        const std::function<bool(const Bindings&)>& accept);
 
 /// A random real point for the symbols of a tape: mostly of order one, now and then large or small.
 Bindings random_real_point(const Tape& tape, int trial, std::uint64_t seed);

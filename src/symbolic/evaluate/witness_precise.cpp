@@ -43,6 +43,28 @@ bool has_signs(const Tape& tape, const Signs& wanted, const Bindings& point) {
   return true;
 }
 
+/// The search is led by the first `led_by` sides. Those that were asked for last say most: between which two of its
+/// places a piece of a table lies.
+bool any_point_led_by(std::size_t led_by, const std::vector<Side>& sides, std::span<const Expr> symbols,
+                      std::uint64_t seed, const std::function<bool(const Bindings&)>& accept) {
+  std::vector<Expr> all(symbols.begin(), symbols.end()), switches;
+  Signs wanted;
+  for (const Side& side : sides) {
+    all.push_back(side.g);
+    switches.push_back(side.g);
+    wanted.push_back(side.above ? 1 : -1);
+  }
+  const Tape tape(switches);
+  const SwitchSearch search{symbols_of(all), random_real_point(Tape(all), 2, seed), 0, seed};
+  BranchSearch branches(std::span<const Expr>(switches).first(led_by), search);
+  const Signs leading(wanted.begin(), wanted.begin() + static_cast<std::ptrdiff_t>(led_by));
+  for (int turn = 0; turn < starts_on_leaf; ++turn) {
+    Bindings point = turn == 0 ? search.center : branches.draw();
+    if (branches.reach(point, leading) && has_signs(tape, wanted, point) && accept(point)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::optional<Witness> find_precise_witness(const Tape& tape, int points, std::uint64_t seed) {
@@ -64,24 +86,22 @@ std::optional<Witness> find_witness_in_branches(std::span<const Expr> roots, std
   return std::nullopt;
 }
 
-std::optional<Witness> find_witness_on_leaf(const Leaf& leaf, std::uint64_t seed) {
-  std::vector<Expr> all{leaf.formula}, switches;
-  Signs wanted;
-  for (const Side& side : leaf.sides) {
-    all.push_back(side.g);
-    switches.push_back(side.g);
-    wanted.push_back(side.above ? 1 : -1);
-  }
-  const Tape tape({&leaf.formula, 1}), sides(switches);
-  const SwitchSearch search{symbols_of(all), random_real_point(Tape(all), 2, seed), 0, seed};
-  BranchSearch branches(switches, search);
-  for (int turn = 0; turn < starts_on_leaf; ++turn) {
-    Bindings point = turn == 0 ? search.center : branches.draw();
-    if (!branches.reach(point, wanted) || !has_signs(sides, wanted, point)) continue;
-    if (const auto found = witness_at<double>(tape, point)) return found;
-    if (const auto found = witness_at<Real100>(tape, point)) return found;
-  }
-  return std::nullopt;
+bool any_point_on_sides(const std::vector<Side>& sides, std::span<const Expr> symbols, std::uint64_t seed,
+                        const std::function<bool(const Bindings&)>& accept) {
+  constexpr std::size_t few = 12;
+  return (sides.size() > few && any_point_led_by(few, sides, symbols, seed, accept)) ||
+         any_point_led_by(sides.size(), sides, symbols, seed, accept);
+}
+
+std::optional<Witness> find_witness_on_sides(Expr formula, const std::vector<Side>& sides, std::uint64_t seed) {
+  const Tape tape({&formula, 1});
+  std::optional<Witness> found;
+  any_point_on_sides(sides, symbols_of({&formula, 1}), seed, [&](const Bindings& point) {
+    found = witness_at<double>(tape, point);
+    if (!found) found = witness_at<Real100>(tape, point);
+    return found.has_value();
+  });
+  return found;
 }
 
 }  // namespace maupertuis::evaluation

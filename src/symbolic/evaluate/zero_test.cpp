@@ -105,7 +105,7 @@ LeafJudgement judge_leaves(const std::vector<Leaf>& leaves, const ZeroTestOption
   LeafJudgement out;
   const auto take = [&](std::size_t from, std::size_t to) {
     std::vector<Expr> formulas;
-    for (std::size_t k = from; k < to; ++k) formulas.push_back(leaves[k].formula);
+    for (std::size_t k = from; k < to; ++k) formulas.push_back(leaves[k].formulas.front());
     const Judgement here = judge_over_primes(formulas, options);
     if (here.outcome != FieldResult::Outcome::AllZero) return false;
     out.all.points += here.points;
@@ -161,9 +161,11 @@ ZeroTest by_witnesses(std::span<const Expr> roots, const Judgement& field, const
 ZeroTest with_switches(const std::vector<Expr>& roots, const ZeroTestOptions& options) {
   const auto leaves = leaves_of(roots);
   if (leaves) {
-    const LeafJudgement judged = judge_leaves(*leaves, options);
+    const LeafJudgement judged = judge_leaves(leaves->all, options);
     if (!judged.failing) return zero(judged.all);
-    if (const auto witness = find_witness_on_leaf(*judged.failing, options.seed + 4)) return nonzero(*witness);
+    const Leaf& leaf = *judged.failing;
+    if (const auto witness = find_witness_on_sides(leaf.formulas.front(), leaves->sides_of(leaf), options.seed + 4))
+      return nonzero(*witness);
   }
   const Judgement field = judge_over_primes(roots, options);
   if (field.outcome != FieldResult::Outcome::AllZero) return by_witnesses(roots, field, options);
