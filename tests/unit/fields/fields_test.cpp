@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -42,6 +43,27 @@ TEST_CASE("the certificate sees a wrong equation, a wrong boundary term and a wr
     wrong.boundary_terms[mu] = -wrong.boundary_terms[mu];
     CHECK(fails(wrong));
   }
+}
+
+TEST_CASE("the certificate of a field sees one wrong piece of a long table") {
+  constexpr int pieces = 40;
+  std::string text = "dimensionless\nfield u(x) : number\ndensity = 1/2 u'^2 - 1/2 u_x^2 - piecewise(";
+  for (int i = 0; i + 1 < pieces; ++i) text += fmt::format("u < {} : {} u, ", i + 1, i % 3 + 1);
+  Study study = study_of(text + "else : u^2)\n");
+  REQUIRE_MESSAGE(study.field_equations(), "no equations");
+  const CertificateCheck right = certify(*study.field_equations()).checks[0];
+  CHECK(right.verdict == Verdict::Zero);
+  CHECK(right.error_bound < 1e-12);
+  FieldEquations wrong = *study.field_equations();
+  Context& c = *wrong.system().context;
+  const Expr u = wrong.system().jet_symbol({0, {0}, 0});
+  std::vector<Expr> arguments;
+  for (int i = 0; i + 1 < pieces; ++i)
+    arguments.insert(arguments.end(), {c.function(Kind::Less, std::array{u, c.number(i + 1)}), c.number(0)});
+  arguments.push_back(Rational(1, 1000) * u);
+  wrong.euler[0] = wrong.euler[0] + c.function(Kind::Piecewise, arguments);
+  CHECK_FALSE(certify(wrong).passed());
+  CHECK(certify(wrong).checks[0].verdict != Verdict::Zero);
 }
 
 TEST_CASE("total derivatives commute") {
