@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <unordered_map>
 
@@ -29,14 +30,58 @@ namespace {
 
 constexpr double on_the_switch = 1e-9;
 
+/// The nodes of a tape at a point, each when it is asked for: of a long table the conditions up to the piece in force.
+class ValuesAt {
+ public:
+  explicit ValuesAt(const Tape& tape)
+      : tape_(tape),
+        numbers_([this](Expr symbol) { return point_->at(symbol); }),
+        values_(tape.size(), 0.0),
+        known_(tape.size(), false) {}
+  ValuesAt(const ValuesAt&) = delete;
+
+  /// Numbers keep their values.
+  void move_to(const Bindings& point) {
+    point_ = &point;
+    for (const Position at : found_) known_[at] = false;
+    found_.clear();
+  }
+  double operator[](Position at) {
+    if (!known_[at]) find(at);
+    return values_[at];
+  }
+
+ private:
+  /// Arguments first, whose positions are smaller.
+  void find(Position root) {
+    needed_.assign(1, root);
+    known_[root] = true;
+    for (std::size_t k = 0; k < needed_.size(); ++k)
+      for (const Position argument : tape_.arguments(needed_[k])) {
+        if (known_[argument]) continue;
+        known_[argument] = true;
+        needed_.push_back(argument);
+      }
+    std::sort(needed_.begin(), needed_.end());
+    for (const Position at : needed_) {
+      run_node(tape_, numbers_, at, values_);
+      if (tape_.kind(at) != Kind::Number) found_.push_back(at);
+    }
+  }
+
+  const Tape& tape_;
+  const Bindings* point_ = nullptr;
+  RealNumbers<double> numbers_;
+  std::vector<double> values_;
+  std::vector<bool> known_;
+  std::vector<Position> found_, needed_;
+};
+
 /// What the values of a tape at two points decide, and what is left of its nodes.
 class Decisions {
  public:
-  Decisions(const Tape& tape, const std::vector<bool>& switching, const Bindings& from, const Bindings& to)
-      : tape_(tape), switching_(switching) {
-    fill(from, from_);
-    fill(to, to_);
-  }
+  Decisions(const Tape& tape, const std::vector<bool>& switching, ValuesAt& from, ValuesAt& to)
+      : tape_(tape), switching_(switching), from_(from), to_(to) {}
 
   Expr in_force(Position at) {
     const Expr e = tape_.expression(at);
@@ -100,13 +145,8 @@ class Decisions {
     return kept.size() == 1 ? kept.front() : e.context().function(Kind::Piecewise, kept);
   }
 
-  void fill(const Bindings& at, std::vector<double>& values) const {
-    RealNumbers<double> numbers([&](Expr symbol) { return at.at(symbol); });
-    run(tape_, numbers, values);
-  }
-
   /// What a sum came from: rounding is measured by that.
-  double size(Position at, const std::vector<double>& values) const {
+  double size(Position at, ValuesAt& values) const {
     if (tape_.kind(at) != Kind::Sum) return std::abs(values[at]);
     double sum = 0;
     for (const Position term : tape_.arguments(at)) sum += std::abs(values[term]);
@@ -115,15 +155,15 @@ class Decisions {
 
   /// 0: none that is certain.
   static int certain_sign(double x, double size) { return std::abs(x) > on_the_switch * size ? (x > 0 ? 1 : -1) : 0; }
-  int sign_at(Position x, const std::vector<double>& values) const { return certain_sign(values[x], size(x, values)); }
+  int sign_at(Position x, ValuesAt& values) const { return certain_sign(values[x], size(x, values)); }
 
-  std::optional<int> sign(Position a, Position b) const {
-    const auto at = [&](const std::vector<double>& v) { return certain_sign(v[a] - v[b], size(a, v) + size(b, v)); };
+  std::optional<int> sign(Position a, Position b) {
+    const auto at = [&](ValuesAt& v) { return certain_sign(v[a] - v[b], size(a, v) + size(b, v)); };
     const int side = at(from_);
     return side != 0 && side == at(to_) ? std::optional<int>(side) : std::nullopt;
   }
 
-  std::optional<bool> holds(Position condition) const {
+  std::optional<bool> holds(Position condition) {
     const Position a = tape_.argument(condition, 0), b = tape_.argument(condition, 1);
     if (family_of(tape_.kind(condition)) == Family::Comparison) {
       const auto side = sign(a, b);
@@ -137,25 +177,38 @@ class Decisions {
 
   const Tape& tape_;
   const std::vector<bool>& switching_;
-  std::vector<double> from_, to_;
+  ValuesAt &from_, &to_;
   std::unordered_map<Position, Expr> built_;
 };
 
 }  // namespace
 
+struct Branches::Points {
+  explicit Points(const Tape& tape) : from(tape), to(tape) {}
+  ValuesAt from, to;
+};
+
 Branches::Branches(std::vector<Expr> functions)
-    : functions_(std::move(functions)), tape_(functions_), switching_(tape_.size()) {
-  for (Position at = 0; at < tape_.size(); ++at) {
-    const auto arguments = tape_.arguments(at);
-    switching_[at] = has_switch(tape_.kind(at)) ||
+    : functions_(std::move(functions)),
+      tape_(std::make_unique<const Tape>(functions_)),
+      switching_(tape_->size()),
+      points_(std::make_unique<Points>(*tape_)) {
+  for (Position at = 0; at < tape_->size(); ++at) {
+    const auto arguments = tape_->arguments(at);
+    switching_[at] = has_switch(tape_->kind(at)) ||
                      std::any_of(arguments.begin(), arguments.end(), [&](Position below) { return switching_[below]; });
   }
 }
 
-std::vector<Expr> Branches::in_force(const Bindings& from, const Bindings& to) const {
-  Decisions decisions(tape_, switching_, from, to);
+Branches::~Branches() = default;
+Branches::Branches(Branches&&) noexcept = default;
+Branches& Branches::operator=(Branches&&) noexcept = default;
+
+std::vector<Expr> Branches::in_force(const Bindings& from, const Bindings& to) {
+  points_->from.move_to(from), points_->to.move_to(to);
+  Decisions decisions(*tape_, switching_, points_->from, points_->to);
   std::vector<Expr> out;
-  for (const Position root : tape_.roots()) out.push_back(decisions.in_force(root));
+  for (const Position root : tape_->roots()) out.push_back(decisions.in_force(root));
   return out;
 }
 

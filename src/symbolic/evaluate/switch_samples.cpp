@@ -20,7 +20,7 @@ using evaluation::Position;
 using evaluation::Real100;
 using evaluation::Tape;
 
-const Real100 far_off("1e-20"), close_by("1e-40"), root_width("1e-90"), rounding("1e-70");
+const Real100 far_off("1e-20"), close_by("1e-40"), root_width("1e-90"), rounding("1e-70"), beyond_secant("1e-12");
 constexpr double falls = 1e-2;        // what vanishes like a power of the distance above 0.1 falls by at least that
 constexpr double grows = 1e3;         // from 1e-20 to 1e-40: a singularity
 constexpr double beside_root = 1e-9;  // of its size: what switches there as well is evaluated on both of its sides
@@ -59,7 +59,7 @@ std::optional<Root> refine(const Tape& g, const Bracket& bracket) {
     Real100 middle = (low + high) / 2;
     if (turn % 2 == 1) {
       // A little beyond the secant's root, so that it closes in from both sides.
-      const Real100 secant = low - at_low * (high - low) / (at_high - at_low), margin = (high - low) * Real100("1e-12");
+      const Real100 secant = low - at_low * (high - low) / (at_high - at_low), margin = (high - low) * beyond_secant;
       middle = turn % 4 == 1 ? secant - margin : secant + margin;
       if (!(middle > low && middle < high)) middle = (low + high) / 2;
     }
@@ -110,8 +110,7 @@ std::vector<Bracket> brackets(const BranchSearch& own, const Bindings& base, std
   return out;
 }
 
-SwitchSample both_sides(const Branches& functions, std::span<const Expr> beside, const Bracket& bracket,
-                        const Root& root) {
+SwitchSample both_sides(Branches& functions, std::span<const Expr> beside, const Bracket& bracket, const Root& root) {
   SwitchSample out;
   const Real100 size = abs(root.at) + Real100(bracket.high - bracket.low);
   out.at = bracket.point;
@@ -152,7 +151,7 @@ struct SwitchSampler::Impl {
     for (int k = 0; k < search.points; ++k) bases.push_back(all.draw());
   }
 
-  std::vector<SwitchSample> sample(Expr which, std::span<const Expr> beside) const {
+  std::vector<SwitchSample> sample(Expr which, std::span<const Expr> beside) {
     std::vector<SwitchSample> out;
     const Tape g({&which, 1});
     const BranchSearch own({&which, 1}, search);
@@ -187,7 +186,7 @@ std::vector<SwitchSample> sample_switches(std::span<const Expr> functions, std::
                                           const SwitchSearch& search) {
   std::vector<SwitchSample> out;
   if (switches.empty()) return out;
-  const SwitchSampler::Impl sampler({functions.begin(), functions.end()}, switches, search);
+  SwitchSampler::Impl sampler({functions.begin(), functions.end()}, switches, search);
   for (std::size_t k = 0; k < switches.size(); ++k)
     for (SwitchSample& x : sampler.sample(switches[k], {})) {
       x.which = k;
