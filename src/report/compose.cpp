@@ -6,6 +6,7 @@
 
 #include <maupertuis/constraint_analysis.hpp>
 #include <maupertuis/hamiltonian.hpp>
+#include <maupertuis/interrupt_scope.hpp>
 #include <maupertuis/print.hpp>
 #include <maupertuis/report.hpp>
 
@@ -127,9 +128,12 @@ void add_equations(ReportContent& content, const Derivation& derivation, const R
         content.energies.push_back({step.left, lay_out(step.right, order), "", ""});
 }
 
-std::vector<ReportContent::Section> sections_of(const std::vector<DerivationStep>& steps, const ReadingOrder& order) {
+/// Ends with Interrupted between two steps: a table of thousands of pieces stands in many of them.
+std::vector<ReportContent::Section> sections_of(const std::vector<DerivationStep>& steps, const ReadingOrder& order,
+                                                const Interrupt& interrupt) {
   std::vector<ReportContent::Section> sections;
   for (const DerivationStep& step : steps) {
+    interrupt.throw_if_asked();
     if (sections.empty() || sections.back().title != step.section) sections.push_back({step.section, {}});
     auto& lines = sections.back().lines;
     Formula line{step.left, {}, step.rule, step.sentence};
@@ -151,7 +155,8 @@ std::vector<ReportContent::Section> sections_of(const std::vector<DerivationStep
 void add_phase_space(ReportContent& content, const EquationsOfMotion& equations) {
   const Hamiltonian h = hamiltonian(equations);
   const auto r = routhian(equations, h);
-  content.phase_space = sections_of(phase_space_lines(h, r ? &*r : nullptr, equations), h.order);
+  content.phase_space = sections_of(phase_space_lines(h, r ? &*r : nullptr, equations), h.order,
+                                    interrupt_of(*equations.system->context));
   content.phase_space_certified =
       h.value && certify(h, equations).passed() && (!r || !r->value || certify(*r, h, equations).passed());
 }
@@ -239,7 +244,9 @@ ReportContent compose_report(const Model& model, const SourceText& source, const
   section("model", [&] { add_freedoms(content, equations, parts.simulation); });
   add_model(content, model, source, equations, parts.simulation);
   section("equations", [&] { add_equations(content, derivation, equations.order); });
-  section("derivation", [&] { content.derivation = sections_of(derivation.steps, equations.order); });
+  section("derivation", [&] {
+    content.derivation = sections_of(derivation.steps, equations.order, interrupt_of(*equations.system->context));
+  });
   add_notes(content, model);
   section("phase-space", [&] { add_phase_space(content, equations); });
   add_certificate(content, certificate);

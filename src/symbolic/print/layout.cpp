@@ -4,6 +4,7 @@
 #include "symbolic/print/reading_rank.hpp"
 #include "symbolic/print/symbol_name.hpp"
 
+#include <maupertuis/interrupt_scope.hpp>
 #include <maupertuis/kinds.hpp>
 #include <maupertuis/require.hpp>
 
@@ -102,7 +103,11 @@ class Builder {
   Layout with_function(Shape shape, Expr e) const {
     Layout layout = combined(shape, {});
     layout.function = e.kind();
-    for (std::size_t i = 0; i < e.size(); ++i) layout.parts.push_back(build(e[i]));
+    constexpr std::size_t many = 64;  // pieces of a table
+    for (std::size_t i = 0; i < e.size(); ++i) {
+      if (i % many == many - 1) interrupt_of(e.context()).throw_if_asked();
+      layout.parts.push_back(build(e[i]));
+    }
     return layout;
   }
 

@@ -79,6 +79,23 @@ TEST_CASE("a flag that is not set does not disturb; scopes end where they began"
   CHECK_NOTHROW(readable_derivation(m.equations, true));
 }
 
+TEST_CASE("the steps of a derivation are laid out until a flag is set") {
+  const ModelText m(text);
+  const Derivation derivation = readable_derivation(m.equations, true);
+  const Certificate certificate = certify(m.equations, &derivation, {});
+  bool ended = false;
+  compose_report(m.model, m.source, m.equations, derivation, certificate, {},
+                 [&](std::string_view name, const std::function<void()>& work) {
+                   if (name != "derivation") return false;
+                   const std::atomic<bool> set = true;
+                   const InterruptScope scope(*m.system->context, &set);
+                   CHECK_THROWS_AS(work(), Interrupted);
+                   ended = true;
+                   return false;
+                 });
+  CHECK(ended);
+}
+
 TEST_CASE("a section of a page that is given up leaves nothing behind, the others stay") {
   const ModelText m(text);
   const Derivation derivation = readable_derivation(m.equations, true);
