@@ -55,8 +55,8 @@ using CompiledFirst = void (*)(const CompiledArguments*);
 ///   stage    ≥ 1; as Engine::run_stage, with q_{k+2} = 0
 ///   solve    ≥ 1; as Engine::solve_by_inverse, set_accelerations and correct
 ///   correct  ≥ 1; as the last two, by `tangents`
-///   ahead    ≥ 0, after the others, in turn; as Engine::renew_blocks, but for what `correct` has renewed, and sums for
-///   the stages that follow
+///   ahead    ≥ 0, after the others and for each stage in turn, what later stages read: copies of blocks, as
+///            Engine::renew_blocks (but for those that `correct` has renewed), and parts of their sums of products
 using CompiledStage = void (*)(const CompiledArguments*, std::int64_t stage);
 
 /// Rolled code of long runs, `later`: `stage`, `solve` and `ahead` for all stages from 1 to `end` − 1. 1: q̈ is finite

@@ -24,16 +24,20 @@ struct Step {
 /// The instructions of section Dynamics, in order.
 std::vector<Step> dynamics_of(const Program& program);
 
-/// Finds running sums s_i = s_{i−1} + …, of at least `least` members, and numbers them. What is added must not depend
-/// on them. d/dt has to be a linear term by then (collapse_sums does that). The coefficient 0 is appended to the
-/// program's constants.
+/// Finds running sums of at least `least` members and numbers them, as the positions along a chain are,
+///
+///     s_1 = x_1,   s_2 = s_1 + x_2,   s_3 = s_2 + x_3, …
+///
+/// where no x_i depends on one of the s. Precondition: write_derivatives() has been called. The coefficient 0 is
+/// appended to the program's constants.
 void find_chains(Program& program, std::vector<Step>& steps, std::size_t least);
 
 /// d/dt becomes a linear term with a shift.
 void write_derivatives(Program& program, std::vector<Step>& steps);
 
-/// Writes sums that sums read out in them, so that fewer wait for each other, and drops those that nothing reads any
-/// more. A sum gets at most `longest` terms that way. New coefficients are appended to the program's constants.
+/// Where a sum has another sum among its terms, puts the terms of that one in its place (see above): the two need not
+/// be computed one after the other then. Sums that nothing reads any more are dropped. A sum gets at most `longest`
+/// terms that way. New coefficients are appended to the program's constants.
 void collapse_sums(Program& program, std::vector<Step>& steps, std::size_t longest);
 
 /// The coefficients of products go to factors that are sums and read nowhere else, whose slots then hold other values

@@ -72,12 +72,10 @@ void add_compensated(V& hi, V& lo, V b) {
 /// Eight numbers hi and lo that stand pair by pair.
 inline void load_pairs(const double* p, Vector& hi, Vector& lo) {
   const Vector a = load(p), b = load(p + lanes);
-  hi = shuffled<0, 2, 4, 6, 8, 10, 12, 14>(a, b),
-  lo = shuffled<1, 3, 5, 7, 9, 11, 13, 15>(a, b);
+  hi = shuffled<0, 2, 4, 6, 8, 10, 12, 14>(a, b), lo = shuffled<1, 3, 5, 7, 9, 11, 13, 15>(a, b);
 }
 inline void save_pairs(double* p, Vector hi, Vector lo) {
-  save(p, shuffled<0, 8, 1, 9, 2, 10, 3, 11>(hi, lo)),
-      save(p + lanes, shuffled<4, 12, 5, 13, 6, 14, 7, 15>(hi, lo));
+  save(p, shuffled<0, 8, 1, 9, 2, 10, 3, 11>(hi, lo)), save(p + lanes, shuffled<4, 12, 5, 13, 6, 14, 7, 15>(hi, lo));
 }
 
 /// What is added to lo may be fused with its product: TwoSum takes it as one number.
@@ -107,8 +105,10 @@ inline double least_lane(Vector v) {
   return v[0];
 }
 
-/// Of each order the largest coefficient of all coordinates, in their own measure; logarithms of these alone. Early
-/// orders first: they are there while the last coefficients are still waited for.
+/// The radius of convergence, from the largest coefficient of each order. Coordinates are measured by their own size,
+/// so that units do not decide. A logarithm is slow, so it is taken once an order and not once a coefficient. The
+/// orders are gone through from the lowest: the processor can begin with them while the last coefficients are being
+/// computed.
 double radius(const double* first, std::size_t stride, std::size_t count, int order, double h) {
   constexpr double widened = 0.32192809488736235;  // log₂ 1.25
   constexpr int most = 6;

@@ -45,8 +45,10 @@ bool is_symmetric(const double* m, const Vector (&)[N][2]) {
   return symmetric;
 }
 
-/// Column p, of vector V, gives its room to that of the inverse. V is known when this is compiled, since an address
-/// that is not lets every load wait for the stores before it. False: the pivot is too small.
+/// One step of Gauss and Jordan in place: column p of M, which is 0 and 1 from then on, is overwritten by column p of
+/// the inverse. The column stands in vector V of each row. V is a template argument: if it were computed at run time,
+/// the processor could not tell early that what it loads of a row is not what it has just stored, and would wait.
+/// False: the pivot is too small.
 template <std::size_t V, std::size_t N, std::size_t W>
 [[gnu::always_inline]] inline bool eliminate(const double* m, Vector (&rows)[N][W], std::size_t p) {
   constexpr double least_pivot = 1e-10;

@@ -274,8 +274,9 @@ class Elimination {
     pivots_.push_back(std::move(pivot));
   }
 
-  /// A row eliminated with a column that another row owns gives its own column to that one in exchange, so that the
-  /// groups keep as many columns as rows.
+  /// The row is eliminated and leaves its group. Each row has one column of its own in its group; if the pivot stands
+  /// in the column of another row, the two rows exchange their columns first. So each group loses one row and one
+  /// column with each elimination, and keeps as many columns as rows.
   void take_from_group(std::uint32_t row, std::uint32_t column) {
     std::erase(members_[group_of_row_[row]], row);
     if (own_column_[row] == column) return;

@@ -10,10 +10,13 @@ using straight::Builder;
 using straight::Term;
 using straight::Value;
 
-/// Factors and pivots are there from the beginning, the unknowns of a sum are not: what is known is multiplied first,
-/// so that a sum waits for one operation after its newest unknown. Forward, what a part leaves for a sum between parts
-/// is a sum of its own; and all parts are written down in the same order, so that they can be seen to be alike. Of
-/// several right sides each has the sums of one after the other, since these do not wait for each other.
+/// Forward and backward substitution with given factors, as a straight line.
+///
+/// Factors and inverse pivots are known from the beginning, unknowns become known one after the other. In each sum the
+/// products with earlier unknowns come first, so that only one operation has to wait for the latest unknown. In the
+/// forward part, what a part adds to an equation between parts is gathered in a sum of that part; and all parts are
+/// written in the same order, so that widen() can find that they are alike. Where there are several right sides, an
+/// unknown is found for all of them before the next unknown, because these sums do not depend on each other.
 class SolveWriter {
  public:
   SolveWriter(const SparseSolver& solver, Builder& to, const WrittenFactors& factors)

@@ -11,9 +11,10 @@ namespace maupertuis::straight {
 /// Numbers of an evaluation, aligned to 64 bytes.
 using Cells = std::vector<double, boost::alignment::aligned_allocator<double, 64>>;
 
-/// A straight line made ready to be run number by number, where there is no machine code of it: nodes that do not wait
-/// for each other and have as many terms stand together, so that the loop over them has no branches of its own. Nothing
-/// changes after construction. Precondition: wide nodes are Unit, Wide and Lane alone, of up to 8 lanes.
+/// Runs a straight line where there is no machine code of it. Its nodes are sorted first: by level (a node is one level
+/// above the highest of its operands, so that nodes of one level can be computed in any order), and within a level by
+/// kind and number of terms. So one loop without branches runs all nodes that are alike. Nothing changes after
+/// construction. Precondition: wide nodes are Unit, Wide and Lane alone, of up to 8 lanes.
 class Evaluation {
  public:
   /// `seldom`: arrays whose numbers change seldom. What follows from them alone is computed by set() and not again.

@@ -6,8 +6,12 @@
 
 namespace maupertuis::straight {
 
-/// Where numbers of an array go whose order is known to two straight lines alone: what a lane each reads or writes goes
-/// side by side.
+/// The places of the numbers of an array that one straight line writes and another reads, and nobody else: factors, for
+/// instance, between factorization and solution. Since nobody else cares, numbers that belong to the lanes of a vector
+/// are placed side by side:
+///
+///     by index    f0 f1 f2 f3 f4 f5        part 1 reads f0 and f2, part 2 reads f3 and f5
+///     placed      f0 f3 | f2 f5 | … f4 f1  one vector load for f0 f3, one for f2 f5
 class Places {
  public:
   explicit Places(std::size_t size) : place_(size, none), top_(static_cast<std::uint32_t>(size)) {}

@@ -100,9 +100,10 @@ void Unrolling::find_tangents(Step& step) {
   add(Step::own, step.direction);
 }
 
-/// Looking ahead, a stage is computed before q̈ of the stage before is known, whose part is added at the end by A and B.
-/// Sums and integrals alone have rules for A and B; and no sum may read the coefficient that q̈ of the stage before
-/// changes, since its part would be missing there.
+/// Whether stage k can be computed before q̈_{k−1} is known. Its part in q̈_k is linear, (A + B/k) q̈_{k−1} with matrices
+/// A and B of the point alone, and is added at the end: so stage k does not wait for the solution of stage k − 1. Only
+/// sums and integrals have rules for A and B; and no sum may read a coefficient that q̈_{k−1} changes, since that change
+/// would be missing in it.
 bool Unrolling::can_look_ahead() const {
   return n_ <= most_waiting && std::all_of(steps_.begin(), steps_.end(), [&](const Step& step) {
            if (!is_moved(step)) return true;
