@@ -124,84 +124,121 @@ std::string rate_text(const Rate& rate, const ReadingOrder& order) {
 std::string mode_name(const std::string& mode) { return mode.empty() ? "free" : mode; }
 
 /// The coordinates with their kinds, the parts of each energy, … : one line each, in the order of a lecture.
-std::string summary(const Model& model, const EquationsOfMotion& equations, const StartFindings& findings) {
-  const MechanicalSystem& system = model.system;
-  std::string out = spoken_name(system) + (system.title.empty() ? "" : fmt::format(" — {}", system.title)) + "\n";
-  const auto line = [&out](const char* head, const std::string& text) {
-    if (!text.empty()) out += fmt::format("  {:<22}{}\n", head, text);
-  };
-  const auto energy = [&line](const char* head, const std::vector<EnergyTerm>& terms) {
-    std::vector<std::string> origins;
-    for (const EnergyTerm& term : terms) origins.push_back(term.origin);
+class Summary {
+ public:
+  Summary(const Model& model, const EquationsOfMotion& equations, const StartFindings& findings)
+      : model_(model), system_(model.system), equations_(equations), findings_(findings) {}
+
+  std::string text() {
+    out_ = spoken_name(system_) + (system_.title.empty() ? "" : fmt::format(" — {}", system_.title)) + "\n";
+    add_coordinates();
+    add_symbols();
+    add_energies();
+    add_contacts();
+    add_experiment();
+    return std::move(out_);
+  }
+
+ private:
+  void line(const char* head, const std::string& text) {
+    if (!text.empty()) out_ += fmt::format("  {:<22}{}\n", head, text);
+  }
+  /// One word for each, as `word` says it.
+  template <class List, class Word>
+  static std::vector<std::string> words_of(const List& list, Word word) {
+    std::vector<std::string> out;
+    for (const auto& one : list) out.push_back(word(one));
+    return out;
+  }
+
+  void add_coordinates() {
+    auto words = words_of(system_.coordinates,
+                          [](const Coordinate& c) { return c.kind.empty() ? c.name : c.name + " : " + c.kind; });
+    if (words.size() > 8)
+      words = {fmt::format("{} … {} ({} of them)", words.front(), words.back(), system_.coordinates.size())};
+    line("coordinates", joined_names(words));
+    if (const std::string unit = system_.independent_unit(); system_.independent != "t")
+      line("independent variable",
+           unit.empty() ? system_.independent : fmt::format("{} in {}", system_.independent, unit));
+    for (std::size_t i = 0; i < system_.rates.size(); ++i)
+      line(i == 0 ? "rates" : "", rate_text(system_.rates[i], equations_.order));
+    summarise_constraints(equations_, findings_.constraints,
+                          [this](const char* head, const std::string& text) { line(head, text); });
+    if (equations_.degenerate)
+      line("degenerate", fmt::format("{} of the {} numbers of a state are left, {} single{} out a motion",
+                                     equations_.degenerate->chain.manifold_dimension, 2 * system_.coordinates.size(),
+                                     equations_.degenerate->motions, equations_.degenerate->motions == 1 ? "s" : ""));
+  }
+
+  void add_symbols() {
+    std::vector<std::string> words;
+    for (const Parameter& p : system_.parameters)
+      if (p.symbol.role() == Role::Parameter)
+        words.push_back(fmt::format("{} = {}", p.name, parameter_text(p, system_)));
+    if (words.size() > 12) words = {fmt::format("{} of them", words.size())};
+    line("parameters", joined_names(words));
+    line("inputs", joined_names(words_of(system_.inputs, [](const Input& u) { return u.name; })));
+  }
+
+  void energy(const char* head, const std::vector<EnergyTerm>& terms) {
+    auto origins = words_of(terms, [](const EnergyTerm& term) { return term.origin; });
     if (origins.size() > 8)
       origins = {fmt::format("{} terms, from {} to {}", terms.size(), origins.front(), origins.back())};
     line(head, joined_names(origins));
-  };
-
-  std::vector<std::string> words;
-  for (const Coordinate& c : system.coordinates) words.push_back(c.kind.empty() ? c.name : c.name + " : " + c.kind);
-  if (words.size() > 8)
-    words = {fmt::format("{} … {} ({} of them)", words.front(), words.back(), system.coordinates.size())};
-  line("coordinates", joined_names(words));
-  if (const std::string unit = system.independent_unit(); system.independent != "t")
-    line("independent variable", unit.empty() ? system.independent : fmt::format("{} in {}", system.independent, unit));
-  for (std::size_t i = 0; i < system.rates.size(); ++i)
-    line(i == 0 ? "rates" : "", rate_text(system.rates[i], equations.order));
-  summarise_constraints(equations, findings.constraints, line);
-  if (equations.degenerate)
-    line("degenerate", fmt::format("{} of the {} numbers of a state are left, {} single{} out a motion",
-                                   equations.degenerate->chain.manifold_dimension, 2 * system.coordinates.size(),
-                                   equations.degenerate->motions, equations.degenerate->motions == 1 ? "s" : ""));
-  words.clear();
-  for (const Parameter& p : system.parameters)
-    if (p.symbol.role() == Role::Parameter) words.push_back(fmt::format("{} = {}", p.name, parameter_text(p, system)));
-  if (words.size() > 12) words = {fmt::format("{} of them", words.size())};
-  line("parameters", joined_names(words));
-  words.clear();
-  for (const Input& u : system.inputs) words.push_back(u.name);
-  line("inputs", joined_names(words));
-  if (system.lagrangian_given) {
-    line("Lagrangian L", "given");
-  } else {
-    energy("kinetic energy T", system.kinetic);
-    energy("potential energy V", system.potential);
-    energy("generalized pot. U", system.generalized_potential);
   }
-  energy("added to L", system.lagrangian_extra);
-  energy("dissipation D", system.dissipation);
-  words.clear();
-  for (const AppliedForce& force : system.forces) words.push_back("on " + force.target);
-  line("forces Q", joined_names(words));
-  for (std::size_t i = 0; i < system.contacts.size() && i < 12; ++i)
-    line(i == 0 ? "contacts" : "", contact_text(system, i, equations.order, findings.contacts));
-  if (system.contacts.size() > 12) line("", fmt::format("… {} of them", system.contacts.size()));
-  for (std::size_t i = 0; i < system.frictions.size(); ++i)
-    line(i == 0 ? "friction" : "", friction_of_coordinate(system.frictions[i], system, equations.order));
-  if (findings.contacts)
-    line("begins", findings.contacts->trouble.empty() ? "in the mode " + mode_name(findings.contacts->mode)
-                                                      : "not: " + findings.contacts->trouble);
-  words.clear();
-  for (const ModelEvent& event : model.experiment.events) words.push_back(event.name);
-  line("events", joined_names(words));
-  words.clear();
-  if (const Expr t = model.experiment.start_time)
-    words.push_back(
-        fmt::format("{} = {}", system.independent,
-                    in_unit_of(brief(evaluate(in_terms_of_motion(system, {&t, 1})[0], parameter_bindings(system))),
-                               system.independent_dimension)));
-  for (const StartValue& start : model.experiment.start) words.push_back(start_text(start, system));
-  if (words.size() > 8) words.resize(8), words.push_back("…");
-  line("start", joined_names(words));
-  if (model.experiment.path) line("path", path_ends_text(*model.experiment.path, system));
-  words.clear();
-  for (const IntegralConstraint& held : system.integral_constraints)
-    words.push_back(held_integral_text(held, equations));
-  line("integrals held", joined_names(words));
-  if (findings.start) line("consistent start", moved_start(system, *findings.start));
-  if (!model.experiment.expectations.empty())
-    line("expectations", fmt::format("{} (run them with `maup test`)", model.experiment.expectations.size()));
-  return out;
-}
+
+  void add_energies() {
+    if (system_.lagrangian_given) {
+      line("Lagrangian L", "given");
+    } else {
+      energy("kinetic energy T", system_.kinetic);
+      energy("potential energy V", system_.potential);
+      energy("generalized pot. U", system_.generalized_potential);
+    }
+    energy("added to L", system_.lagrangian_extra);
+    energy("dissipation D", system_.dissipation);
+    line("forces Q",
+         joined_names(words_of(system_.forces, [](const AppliedForce& force) { return "on " + force.target; })));
+  }
+
+  void add_contacts() {
+    for (std::size_t i = 0; i < system_.contacts.size() && i < 12; ++i)
+      line(i == 0 ? "contacts" : "", contact_text(system_, i, equations_.order, findings_.contacts));
+    if (system_.contacts.size() > 12) line("", fmt::format("… {} of them", system_.contacts.size()));
+    for (std::size_t i = 0; i < system_.frictions.size(); ++i)
+      line(i == 0 ? "friction" : "", friction_of_coordinate(system_.frictions[i], system_, equations_.order));
+    if (findings_.contacts)
+      line("begins", findings_.contacts->trouble.empty() ? "in the mode " + mode_name(findings_.contacts->mode)
+                                                         : "not: " + findings_.contacts->trouble);
+  }
+
+  std::string start_time(Expr t) const {
+    const double value = evaluate(in_terms_of_motion(system_, {&t, 1})[0], parameter_bindings(system_));
+    return fmt::format("{} = {}", system_.independent, in_unit_of(brief(value), system_.independent_dimension));
+  }
+
+  void add_experiment() {
+    const Experiment& experiment = model_.experiment;
+    line("events", joined_names(words_of(experiment.events, [](const ModelEvent& event) { return event.name; })));
+    auto words = words_of(experiment.start, [this](const StartValue& start) { return start_text(start, system_); });
+    if (experiment.start_time) words.insert(words.begin(), start_time(experiment.start_time));
+    if (words.size() > 8) words.resize(8), words.push_back("…");
+    line("start", joined_names(words));
+    if (experiment.path) line("path", path_ends_text(*experiment.path, system_));
+    line("integrals held", joined_names(words_of(system_.integral_constraints, [this](const IntegralConstraint& held) {
+           return held_integral_text(held, equations_);
+         })));
+    if (findings_.start) line("consistent start", moved_start(system_, *findings_.start));
+    if (!experiment.expectations.empty())
+      line("expectations", fmt::format("{} (run them with `maup test`)", experiment.expectations.size()));
+  }
+
+  const Model& model_;
+  const MechanicalSystem& system_;
+  const EquationsOfMotion& equations_;
+  const StartFindings& findings_;
+  std::string out_;
+};
 
 Json friction_json(const Friction& f, const EquationsOfMotion& equations) {
   if (f.sticking) return {{"sticking", true}};
@@ -273,7 +310,7 @@ ExitCode check(const ModelOptions& options, Console& console) {
     if (counted && model->system.has_modes()) add_contacts(document, *equations, findings->contacts);
     return finish(console, study, document);
   }
-  if (findings && !study.wrong()) console.print(summary(*model, *equations, *findings) + "No mistakes found.\n");
+  if (findings && !study.wrong()) console.print(Summary(*model, *equations, *findings).text() + "No mistakes found.\n");
   return finish(console, study, {});
 }
 
