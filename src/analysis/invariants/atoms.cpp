@@ -85,18 +85,19 @@ class Collector {
   void take_atom(Monomial m, Expr factor) {
     for (Factor& f : m) f.exponent = 1;
     if (!depends_on_coordinates(factor)) {
-      if (!split_power(factor).base.is_symbol()) add_once(atoms_.time, m);
+      if (!split_power(factor).base.is_symbol()) add_with_partner(atoms_.time, m);
       return;
     }
     if (m.size() == 1 && generators_.values()[m[0].generator].is_symbol()) return;
-    add_once(atoms_.functions, m);
-    complete_pair(generators_.values()[m[0].generator]);
+    add_with_partner(atoms_.functions, m);
   }
 
-  /// sin x beside cos x.
-  void complete_pair(Expr e) {
-    if (e.is(Kind::Sin)) add_once(atoms_.functions, generators_.add(cos(e[0])));
-    if (e.is(Kind::Cos)) add_once(atoms_.functions, generators_.add(sin(e[0])));
+  /// sin x beside cos x: its derivative, and what ∫ cos x of a drive holds.
+  void add_with_partner(std::vector<Monomial>& list, const Monomial& m) {
+    add_once(list, m);
+    const Expr e = generators_.values()[m[0].generator];
+    if (e.is(Kind::Sin)) add_once(list, generators_.add(cos(e[0])));
+    if (e.is(Kind::Cos)) add_once(list, generators_.add(sin(e[0])));
   }
 
   /// Of a formula that is too long to be multiplied out: its functions alone.

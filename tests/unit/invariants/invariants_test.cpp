@@ -106,6 +106,12 @@ TEST_CASE("coefficients with sines of parameters, π and functions of numbers ar
   CHECK(tilted.text("energy") == "1/2 x'^2 + 1/2 y'^2 + 1/2 k cos α (x^2 + y^2)");
 }
 
+TEST_CASE("a drive by cos w t gives its momentum sin w t") {
+  const Found f("param A = 2, w = 0.5\ncoord x : number\nL = 1/2 x'^2 + A x cos(w t)\n");
+  REQUIRE(f.result.integrals.size() >= 1);
+  CHECK(to_plain(f.result.integrals[0].readable, f.m.equations.order) == "x' - A sin(w t)/w");
+}
+
 TEST_CASE("what is conserved because sin² + cos² is 1 is found as well") {
   const Found f(
       "param α = 0.4\ncoord x, y : number\nT = 1/2 (cos(α)^2 x'^2 + (1 - sin(α)^2) y'^2)\nV = (x^2 + y^2)^2\n");
