@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 namespace maupertuis::workspace {
@@ -33,22 +32,10 @@ std::vector<bool> stored_slots(const Program& program, const packed::PackedProgr
 
 LiftedSolve::LiftedSolve(const Program& program, const sparse::Strip& strip, const packed::PackedProgram& packed,
                          std::size_t stride)
-    : program_(program),
-      strip_(strip),
-      stored_(packed.program.stored_end[2]),
-      system_(sparse::lift(program, stored_slots(program, packed))) {
+    : program_(program), strip_(strip), system_(sparse::lift(program, stored_slots(program, packed))) {
   if (!system_) return;
   assembly_.emplace(*system_, program, packed.number);
-  for (std::uint32_t column = 0; column < system_->size; ++column) {
-    const Slot number = packed.number[system_->slot_of_column[column]];
-    cell_of_column_.push_back(number != no_slot ? number : static_cast<std::uint32_t>(stride + column));
-  }
-  for (const Slot slot : packed.program.residual) places_.push_back(slot);
-  number_ = packed.number;
-  for (const packed::Block& block : packed.blocks)
-    if (packed.copies_coordinates(block))
-      for (std::uint32_t lane = 0; lane < packed::lanes; ++lane)
-        copies_.push_back({block.slots[lane], block.first + lane});
+  places_.emplace(*system_, packed, stride);
   product_.emplace(*system_);
   entries_.resize(system_->entries.size());
   residual_.resize(program.unknowns);
@@ -72,9 +59,10 @@ bool LiftedSolve::choose_pivots(const Memory& memory) {
     samples.push_back(std::move(sample));
   const auto pivots = sparse::eliminate(*system_, samples, {});
   if (!pivots) return false;
-  if (options_ && !parts_failed_ && program_.unknowns > packed::most_by_inverse && choose_parts(samples, *pivots))
+  if (code_.options() && !parts_failed_ && program_.unknowns > packed::most_by_inverse &&
+      choose_parts(samples, *pivots))
     return true;
-  solver_.emplace(*system_, *pivots, cell_of_column_);
+  solver_.emplace(*system_, *pivots, places_->cell_of_column);
   // What the full matrix costs: its solution, and the tangents in the direction of that.
   if (solver_->solve_products() < program_.unknowns * program_.unknowns + system_->edges.size()) {
     make_code(samples[1]);
@@ -89,39 +77,23 @@ bool LiftedSolve::choose_pivots(const Memory& memory) {
 
 /// With pivots for code, from the next factorization on.
 void LiftedSolve::compile(const CompileOptions& options) {
-  options_ = options;
+  code_.ask(options);
   drop_solver();
-}
-
-LiftedSolve::AllWanted LiftedSolve::wanted() const {
-  AllWanted out;
-  for (std::uint32_t column = 0; column < system_->size; ++column)
-    if (system_->wanted[column]) out.push_back({cell_of_column_[column], cell_of_column_[column]});
-  out.insert(out.end(), copies_.begin(), copies_.end());
-  return out;
-}
-
-bool LiftedSolve::compile_lines(const std::vector<straight::StraightLine>& lines) {
-  for (const straight::StraightLine& line : lines)
-    scratch_.resize(std::max(scratch_.size(), straight::scratch_size(line)));
-  std::tie(code_, report_) = straight::compile(lines, *options_);
-  if (!code_) factor_line_ = columns_line_ = 0;
-  return bool{code_};
 }
 
 /// The code belongs to the pivots of this solver alone.
 bool LiftedSolve::make_code(std::span<const double> sample) {
-  if (!options_) return false;
-  std::vector<straight::StraightLine> lines{solver_->written_solve({wanted(), places_})};
-  if (options_->long_run) {
-    factor_line_ = lines.size();
+  if (!code_.options()) return false;
+  std::vector<straight::StraightLine> lines{solver_->written_solve({places_->wanted(*system_), places_->residual})};
+  if (code_.options()->long_run) {
+    code_.factor_line = lines.size();
     lines.push_back(solver_->written_factor(entries_in_line(), least_sound_pivot));
   }
   if (program_.unknowns <= packed::most_by_inverse && is_symmetric(sample)) {
-    columns_line_ = lines.size();
+    code_.columns_line = lines.size();
     lines.push_back(columns());
   }
-  return compile_lines(lines);
+  return code_.compile(lines);
 }
 
 /// From the first two arrays of a line: values at order 0 and constants.
@@ -140,7 +112,7 @@ sparse::EntryWriter LiftedSolve::entries_in_line() const {
     return out;
   };
   return {*system_,
-          {.value = [this](Builder& to, Slot slot) { return to.given(sparse::NowArray, number_[slot]); },
+          {.value = [this](Builder& to, Slot slot) { return to.given(sparse::NowArray, places_->number[slot]); },
            .constant = constant,
            .choice = choice}};
 }
@@ -179,7 +151,7 @@ straight::StraightLine LiftedSolve::columns() {
       sum += order[i], ++count;
     return std::pair(sum / count, eight);
   };
-  mirrored_.assign(eights, {});
+  code_.mirrored.assign(eights, {});
   std::vector<sparse::SparseSolver::RightSide> sides(eights);
   for (std::uint32_t eight = 0; eight < eights; ++eight) {
     sides[eight].places.assign(n, sparse::no_place);
@@ -188,7 +160,7 @@ straight::StraightLine LiftedSolve::columns() {
     for (std::uint32_t i = 0; i < n; ++i)
       if (turn(i / lanes) >= turn(eight)) sides[eight].wanted.push_back({i, i * eights + eight});
     for (std::size_t other = 0; other < eights; ++other)
-      if (turn(other) > turn(eight)) mirrored_[eight].push_back(other);
+      if (turn(other) > turn(eight)) code_.mirrored[eight].push_back(other);
   }
   return straight::in_columns(solver_->written_columns(entries_in_line(), sides), sparse::UnitArray,
                               sparse::ColumnArray, lanes);
@@ -196,16 +168,16 @@ straight::StraightLine LiftedSolve::columns() {
 
 bool LiftedSolve::negative_inverse(const Memory& memory, double* inverse) {
   using packed::lanes;
-  if (columns_line_ == 0) return false;
+  if (code_.columns_line == 0) return false;
   alignas(64) static constexpr auto units = [] {
     std::array<double, lanes * lanes> out{};
     for (std::size_t i = 0; i < lanes; ++i) out[i * lanes + i] = -1;
     return out;
   }();
-  code_(columns_line_, memory.row(0), memory.constants.data(), units.data(), inverse, scratch_.data());
+  code_.run(code_.columns_line, memory.row(0), memory.constants.data(), units.data(), inverse);
   const std::size_t padded = packed::padded(program_.unknowns);
-  for (std::size_t eight = 0; eight < mirrored_.size(); ++eight)
-    for (const std::size_t other : mirrored_[eight])
+  for (std::size_t eight = 0; eight < code_.mirrored.size(); ++eight)
+    for (const std::size_t other : code_.mirrored[eight])
       packed::engine().transpose(inverse + other * lanes * padded + eight * lanes, padded,
                                  inverse + eight * lanes * padded + other * lanes, padded);
   return true;
@@ -226,50 +198,48 @@ bool LiftedSolve::try_parts(const std::vector<std::vector<double>>& samples, con
   if (parts.empty()) return false;
   const auto chosen = sparse::eliminate(*system_, samples, {}, parts);
   if (!chosen) return false;
-  solver_.emplace(*system_, *chosen, cell_of_column_);
+  solver_.emplace(*system_, *chosen, places_->cell_of_column);
   Places factors(solver_->factor_count()), inverse(chosen->size());
-  auto solve = straight::widen(solver_->written_solve({wanted(), places_}),
+  auto solve = straight::widen(solver_->written_solve({places_->wanted(*system_), places_->residual}),
                                {{sparse::FactorArray, &factors}, {sparse::InverseArray, &inverse}}, {});
   auto factor = straight::widen(solver_->written_factor(entries_in_line(), least_sound_pivot), {},
                                 {{sparse::FactorOutArray, &factors}, {sparse::FactorInverseArray, &inverse}});
-  factor_line_ = 1;
-  in_parts_ = solve && factor && compile_lines({std::move(*solve), std::move(*factor)});
+  code_.factor_line = 1;
+  in_parts_ = solve && factor && code_.compile({std::move(*solve), std::move(*factor)});
   if (!in_parts_) drop_solver();
   return in_parts_;
 }
 
 void LiftedSolve::drop_solver() {
   solver_.reset();
-  code_ = {};
-  report_.reset();
-  factor_line_ = columns_line_ = 0;
+  code_.drop();
   in_parts_ = false;
 }
 
 void LiftedSolve::run_solve(std::span<const double> b, double* x) {
   if (!code_) return solver_->solve(b, x);
-  for (std::size_t i = 0; i < b.size(); ++i) row_[places_[i]] = b[i];
-  code_(0, solver_->factors(), solver_->inverse_pivots(), row_.data(), x, scratch_.data());
+  for (std::size_t i = 0; i < b.size(); ++i) row_[places_->residual[i]] = b[i];
+  code_.run(0, solver_->factors(), solver_->inverse_pivots(), row_.data(), x);
 }
 
 const double* LiftedSolve::solve_row(const double* row) {
   if (code_)
-    code_(0, solver_->factors(), solver_->inverse_pivots(), row, cells_.data(), scratch_.data());
+    code_.run(0, solver_->factors(), solver_->inverse_pivots(), row, cells_.data());
   else
-    solver_->solve(row, places_, cells_.data());
+    solver_->solve(row, places_->residual, cells_.data());
   return cells_.data();
 }
 
 /// Code tells no more of pivots than whether they are sound.
 void LiftedSolve::run_factor(const Memory& memory) {
-  if (factor_line_ == 0) {
+  if (code_.factor_line == 0) {
     assemble(memory);
     least_pivot_ = solver_->factor(entries_);
     return;
   }
-  code_(factor_line_, memory.row(0), memory.constants.data(), solver_->usual_sizes(), solver_->factors(),
-        solver_->inverse_pivots(), scratch_.data());
-  least_pivot_ = straight::sound(scratch_.data()) ? 1 : 0;
+  code_.run(code_.factor_line, memory.row(0), memory.constants.data(), solver_->usual_sizes(), solver_->factors(),
+            solver_->inverse_pivots());
+  least_pivot_ = code_.is_sound() ? 1 : 0;
 }
 
 void LiftedSolve::assemble(const Memory& memory) {
@@ -296,14 +266,14 @@ bool LiftedSolve::factor(const Memory& memory) {
 }
 
 double LiftedSolve::remainder(std::span<const double> b) {
-  return product_->remainder(entries_, {cells_.data(), b.size()}, b, residual_, cells_.data(), cell_of_column_,
-                             in_parts_ ? 0 : stored_);
+  return product_->remainder(entries_, {cells_.data(), b.size()}, b, residual_, cells_.data(), places_->cell_of_column,
+                             in_parts_ ? 0 : places_->stored);
 }
 
 /// The solution for what is left of b.
 void LiftedSolve::add_correction() {
   run_solve(residual_, change_.data());
-  for (std::size_t i = 0; i < stored_; ++i) cells_[i] += change_[i];
+  for (std::size_t i = 0; i < places_->stored; ++i) cells_[i] += change_[i];
 }
 
 bool LiftedSolve::solve_first(const Memory& memory, std::span<double> b) {

@@ -4,7 +4,8 @@
 #include "kernel/sparse/graph_product.hpp"
 #include "kernel/sparse/parts.hpp"
 #include "kernel/sparse/sparse_solver.hpp"
-#include "kernel/straight_line/compile.hpp"
+#include "kernel/workspace/lifted_code.hpp"
+#include "kernel/workspace/lifted_places.hpp"
 
 #include <optional>
 
@@ -31,7 +32,7 @@ class LiftedSolve {
   /// From then on solutions are machine code, made whenever pivots are chosen; where that cannot be the loops go on.
   void compile(const CompileOptions& options);
   /// Of the pivots in use; nothing where no code was asked for, or no pivots are chosen yet.
-  const std::optional<CompileReport>& compile_report() const { return report_; }
+  const std::optional<CompileReport>& compile_report() const { return code_.report(); }
   /// For each point that `memory` holds at order 0, first of all; false: there are no acceptable pivots, and the full
   /// matrix is to decide.
   bool has_pivots(const Memory& memory);
@@ -77,45 +78,30 @@ class LiftedSolve {
   using Parts = std::vector<std::vector<std::uint32_t>>;
   bool choose_parts(const std::vector<std::vector<double>>& samples, const std::vector<sparse::Pivot>& pivots);
   bool try_parts(const std::vector<std::vector<double>>& samples, const Parts& parts);
-  using AllWanted = std::vector<sparse::SparseSolver::Wanted>;
-  AllWanted wanted() const;
   bool is_symmetric(std::span<const double> sample);
   sparse::EntryWriter entries_in_line() const;
   straight::StraightLine columns();
-  bool compile_lines(const std::vector<straight::StraightLine>& lines);
   void drop_solver();
   void run_factor(const Memory& memory);
   void run_solve(std::span<const double> b, double* x);
 
   const Program& program_;
   const sparse::Strip& strip_;
-  std::size_t stored_;  // cells that tangents() gives
   std::optional<sparse::LiftedSystem> system_;
   std::optional<sparse::Assembly> assembly_;
   std::optional<sparse::GraphProduct> product_;
   std::optional<sparse::SparseSolver> solver_;
-  std::vector<std::uint32_t> places_;          // [unknowns] of the residual in a row
-  std::vector<std::uint32_t> cell_of_column_;  // [columns] slots of the packed program, then cells of their own
-  AllWanted copies_;                           // of q̈ in the cells of blocks
-  std::vector<Slot> number_;                   // [slots] in a row of the packed program
-  std::vector<double> entries_;                // [entries]
-  bool has_entries_ = false;                   // of this point
-  std::vector<double> residual_;               // [unknowns] b − M₀ x
-  Doubles cells_, change_;                     // [stride + columns]
-  Doubles row_;                                // [stride] b, where code reads it
+  std::optional<LiftedPlaces> places_;
+  std::vector<double> entries_;   // [entries]
+  bool has_entries_ = false;      // of this point
+  std::vector<double> residual_;  // [unknowns] b − M₀ x
+  Doubles cells_, change_;        // [stride + columns]
+  Doubles row_;                   // [stride] b, where code reads it
   double least_pivot_ = 1;
   bool refines_ = false;  // each solution of this step
   int failures_ = 0;
-  std::optional<CompileOptions> options_;  // of the code that is wanted
-  std::optional<CompileReport> report_;
-  /// The code of a solution; then that of the factors and that of −M₀⁻¹, at the places that follow (0: there is none).
-  straight::Code code_;
-  std::size_t factor_line_ = 0, columns_line_ = 0;
-  /// The code finds half of the symmetric −M₀⁻¹, in blocks of 8 × 8. [eights of columns] the eights of rows that it
-  /// finds there; negative_inverse() mirrors these.
-  std::vector<std::vector<std::size_t>> mirrored_;
+  LiftedCode code_;
   bool in_parts_ = false, parts_failed_ = false;
-  std::vector<double> scratch_;  // of the code
 };
 
 }  // namespace maupertuis::workspace
