@@ -78,6 +78,8 @@ class ModeProblem {
   /// A number of elements, and their degree.
   std::size_t elements() const { return mesh_.borders.size() - 1; }
   int degree() const { return mesh_.degree; }
+  const std::vector<double>& borders() const { return mesh_.borders; }
+  int points() const { return mesh_.points; }  // of quadrature, in an element
 
   std::vector<double> places() const {
     constexpr int shown = 20;
@@ -488,7 +490,9 @@ FieldModes line_modes(const FieldEquations& equations, const DensityEntries& ent
     const bool settled = errors.settle(out.frequencies, count, motions->mass.rows());
     if (!settled && &size + 1 != std::end(sizes)) continue;
     out.errors = errors.errors();
-    if (!add_unseen(equations, {problem.unseen(), 0}, out, diagnostics)) return {};
+    if (!add_unseen(equations, {problem.unseen(), 0}, out, diagnostics) ||
+        !sees_what_acts(equations, {problem.borders()}, {problem.points()}, diagnostics))
+      return {};
     shapes.resize(std::min(count, shapes.size()));
     out.places = problem.places();
     out.about = problem.turning();

@@ -134,6 +134,15 @@ class PlaneModes {
     return out;
   }
 
+  Borders borders() const { return {borders_[0], borders_[1]}; }
+  /// Of quadrature, in an element along each side.
+  std::vector<int> points() const {
+    std::vector<int> out;
+    for (std::size_t i = 0; i < 2; ++i)
+      out.push_back(static_cast<int>(axes_[i].points()) / static_cast<int>(borders_[i].size() - 1));
+    return out;
+  }
+
   /// Modes of one frequency are told apart by how much they change along x: on a square sin 2πx sin πy from sin πx
   /// sin 2πy.
   void part_equals(const std::vector<double>& frequencies, std::vector<Eigen::VectorXd>& shapes) const {
@@ -382,7 +391,9 @@ FieldModes modes_about(const FieldEquations& equations, const DensityEntries& en
     if (errors.settle(out.frequencies, count, motions.mass.rows())) break;
   }
   out.about = entries.about(equations), out.errors = errors.errors();
-  if (!add_unseen(equations, problem.unseen(), out, diagnostics)) return {};
+  if (!add_unseen(equations, problem.unseen(), out, diagnostics) ||
+      !sees_what_acts(equations, problem.borders(), problem.points(), diagnostics))
+    return {};
   problem.part_equals(out.frequencies, shapes);
   out.frequencies.resize(std::min(count, out.frequencies.size()));
   out.errors.resize(out.frequencies.size());

@@ -340,4 +340,26 @@ bool add_unseen(const FieldEquations& equations, const UnseenParts& unseen, Fiel
   return true;
 }
 
+bool sees_what_acts(const FieldEquations& equations, const Borders& elements, const std::vector<int>& points,
+                    Diagnostics& diagnostics) {
+  constexpr int highest = 20;  // of polynomials through nodes: longer elements are looked at in parts
+  const int order = std::min(highest, *std::min_element(points.begin(), points.end()));
+  Borders parts;
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    const std::vector<double>& borders = elements[i];
+    const int count = std::max(points[i] / order, 1);
+    parts.push_back({borders.front()});
+    for (std::size_t e = 0; e + 1 < borders.size(); ++e) {
+      for (int k = 1; k < count; ++k) parts[i].push_back(borders[e] + (borders[e + 1] - borders[e]) * k / count);
+      parts[i].push_back(borders[e + 1]);
+    }
+  }
+  const auto passed = passed_by(equations, parts, order);
+  if (passed)
+    diagnostics.error("E0647", equations.system().density_span, "the polynomials of the modes pass by what " + *passed,
+                      "It lies between the points at which coefficients are taken, and no value could be trusted.",
+                      "Make it wider, or `maup simulate` the motion with more `cells`.");
+  return !passed;
+}
+
 }  // namespace maupertuis

@@ -3,6 +3,7 @@
 #include <maupertuis/fields.hpp>
 
 #include "fields/field_rest.hpp"
+#include "fields/resolution.hpp"
 #include "fields/resting_fields.hpp"
 #include "linear_algebra/dense.hpp"
 
@@ -87,6 +88,11 @@ struct UnseenParts {
 /// They count as errors, what lies between points four times; false, and E0647, where they are much.
 bool add_unseen(const FieldEquations& equations, const UnseenParts& unseen, FieldModes& modes,
                 Diagnostics& diagnostics);
+
+/// False and E0647 for a bump or a jump in what acts that lies between the points of quadrature, `points` of them in an
+/// element along each direction, so that neither frequencies of two sizes nor samples of coefficients see it.
+bool sees_what_acts(const FieldEquations& equations, const Borders& elements, const std::vector<int>& points,
+                    Diagnostics& diagnostics);
 
 /// Errors of frequencies that are computed on one size of functions after the other.
 class FrequencyErrors {

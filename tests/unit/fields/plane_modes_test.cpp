@@ -154,6 +154,22 @@ TEST_CASE("a mass that is narrow along both sides is not passed by") {
   CHECK(diagnostics.items()[0].code == "E0647");
 }
 
+TEST_CASE("a stiffness that lies between all points of modes is not passed by, on a line and in the plane") {
+  // As narrow as a millionth of the domain: neither two sizes of functions nor samples of the coefficient see it.
+  for (const char* text :
+       {"dimensionless\nfield u(x) : number on x = 0 .. 1 boundary u = 0\n"
+        "density = 1/2 u'^2 - 1/2 u_x^2 - 1e6 exp(-(1e6 (x - 0.4877))^2) u^2\n",
+        "dimensionless\nfield u(x, y) : number on x = 0 .. 1, y = 0 .. 1 boundary u = 0\n"
+        "density = 1/2 u'^2 - 1/2 (u_x^2 + u_y^2) - 1e12 exp(-(1e6 (x - 0.4877))^2 - (1e6 (y - 0.4877))^2) u^2\n"}) {
+    Study study(SourceText("field.lag", text));
+    REQUIRE(study.field_equations());
+    Diagnostics diagnostics;
+    CHECK(field_modes(*study.field_equations(), 2, diagnostics).frequencies.empty());
+    REQUIRE(diagnostics.items().size() == 1);
+    CHECK(diagnostics.items()[0].code == "E0647");
+  }
+}
+
 TEST_CASE("frequencies of a membrane whose tension jumps within the domain are within their errors" *
           doctest::skip(under_sanitizers)) {
   // Separable: sin π y times a string whose tension jumps, on elements that end at the jump.
