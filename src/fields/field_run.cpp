@@ -46,6 +46,7 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   }
   std::vector<std::vector<double>> rows;
   if (options.trajectory) rows = places_of_rows(equations, cells, options.least_values);
+  if (refuse_too_many_rows(equations, options, rows, diagnostics)) return std::nullopt;
   auto fine = run_on(equations, *method, cells, questions, options, rows, true, diagnostics);
   if (!fine) return std::nullopt;
   FieldRunResult out;

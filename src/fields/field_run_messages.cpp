@@ -164,6 +164,22 @@ bool refuse_large_mesh(const FieldEquations& equations, const FieldMethod& metho
   return true;
 }
 
+bool refuse_too_many_rows(const FieldEquations& equations, const FieldRunOptions& options,
+                          const std::vector<std::vector<double>>& rows, Diagnostics& diagnostics) {
+  constexpr double most_rows = 20'000'000, most_values = 10 * most_rows;  // as of coordinates
+  if (!(options.every > 0)) return false;
+  double values = rows.empty() ? 0 : 2 * static_cast<double>(equations.varied.size());  // with velocities
+  for (const std::vector<double>& places : rows) values *= static_cast<double>(places.size());
+  const double count = std::abs(options.duration) / options.every;
+  if (count <= most_rows && count * values <= most_values) return false;
+  diagnostics.error("E0705", std::nullopt,
+                    fmt::format("this run would write {:.3g} rows", count) +
+                        (values > 0 ? fmt::format(" of {:.0f} values", values) : ""),
+                    "The whole trajectory is kept in memory until it is written.",
+                    "Choose a longer `output every`, or a shorter run.");
+  return true;
+}
+
 void announce_memory(const FieldRunOptions& options, double bytes) {
   constexpr double gigabyte = 1e9;
   if (options.announce && bytes >= gigabyte)

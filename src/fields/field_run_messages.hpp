@@ -14,6 +14,9 @@ void refuse_infinite_density(const FieldEquations& equations, Diagnostics& diagn
 /// E0649 before anything of a mesh is made that the machine has no room for.
 bool refuse_large_mesh(const FieldEquations& equations, const FieldMethod& method, const Cells& cells,
                        Diagnostics& diagnostics);
+/// E0705: rows of values at so many places, or moments at which steps end, that do not fit into memory.
+bool refuse_too_many_rows(const FieldEquations& equations, const FieldRunOptions& options,
+                          const std::vector<std::vector<double>>& rows, Diagnostics& diagnostics);
 /// What a mesh of more than a gigabyte takes is said before it is made.
 void announce_memory(const FieldRunOptions& options, double bytes);
 /// W0646: the end of the mesh is put to its condition, and what the start says beside it runs in as a wave.
