@@ -34,6 +34,7 @@ Cells divided(const Cells& cells, int parts);
 /// by the first power; where it does not fit a side, by that of the derivative that jumps, and twice the difference
 /// counts. Where slopes are about as steep as the mesh can follow the difference itself counts, and beyond there is no
 /// estimate. Where the mesh follows the start in part alone, a mesh of twice the cells tells what both others miss.
+/// Meshes of few cells may share a symmetry with the motion; there a third between both counts too, by the same power.
 /// Tails of pulses that do not fit a side are jumps too, as far as they reach.
 std::vector<AnswerError> errors_of(const OneRun& fine, const FieldEquations& equations, FieldMethod& method,
                                    const Cells& cells, const std::vector<FieldQuestion>& questions,

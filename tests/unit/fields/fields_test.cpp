@@ -368,6 +368,26 @@ TEST_CASE("runs begin at the moment that the model says") {
   }
 }
 
+TEST_CASE("rows of a field that do not fit into memory are refused before the run") {
+  Study study = study_of(
+      "dimensionless\nfield u(x) : number on x = 0 .. 1 cells 8 boundary u = 0\n"
+      "density = 1/2 u'^2 - 1/2 u_x^2\nstart u = sin(pi x)\nrun 1\n");
+  REQUIRE(study.field_equations());
+  struct Case {
+    double duration, every;
+    bool trajectory;
+  };
+  // rows without end; rows that would do by their number, but for the 18 values of each
+  for (const Case c : {Case{1e9, 1e-8, false}, Case{1, 1 / 15e6, true}}) {
+    FieldRunOptions options;
+    options.duration = c.duration, options.every = c.every, options.trajectory = c.trajectory;
+    Diagnostics diagnostics;
+    CHECK(!run_fields(*study.field_equations(), {}, options, diagnostics));
+    REQUIRE(diagnostics.items().size() == 1);
+    CHECK(diagnostics.items()[0].code == "E0705");
+  }
+}
+
 TEST_CASE("a value that the elements do not have is told as such") {
   Study study(
       SourceText("field.lag",
@@ -424,7 +444,11 @@ TEST_CASE("standing waves where the errors of two meshes go through zero togethe
                         {1, 5, 8, 0.25, 4.7, "u_t"},
                         {1, 2, 16, 0.5, 1.13, "u_t"},
                         {1, 3, 40, 0.5, 1.13, "u_t"},
-                        {1, 5, 8, 0.5, 1.13, "u"}};
+                        {1, 5, 8, 0.5, 1.13, "u"},
+                        // 13 to 18 times: on half the cells the error is less than belongs to their width
+                        {3, 6, 8, 0.5, 0.37, "u_t"},
+                        {3, 6, 8, 0.25, 0.37, "u_t"},
+                        {2, 4, 8, 0.25, 1.13, "u"}};
   for (const Case& c : cases) {
     CAPTURE(c.order);
     CAPTURE(c.t);
