@@ -28,7 +28,8 @@ constexpr std::array entries{
         "", ""},
     CodeEntry{"E0705", "the trajectory would be too large",
               "The trajectory is kept in memory until it is written. With more than twenty million rows, of fields ten "
-              "values each, it would not fit; choose a longer interval between rows. The steps of the integrator are not affected.",
+              "values each, it would not fit; choose a longer interval between rows. The steps of the integrator are "
+              "not affected.",
               "# maup simulate\ncoord x : length\nparam m = 1 kg, k = 4 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"
               "start x = 10 cm\nrun 5 s\noutput every 1 ps\n",
               "# maup simulate\ncoord x : length\nparam m = 1 kg, k = 4 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"
