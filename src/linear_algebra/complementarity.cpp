@@ -1,5 +1,7 @@
 #include "linear_algebra/complementarity.hpp"
 
+#include "linear_algebra/equilibrated.hpp"
+
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -10,19 +12,19 @@ namespace {
 
 using Eigen::Index;
 
-/// The tableau of w − W z − d z₀ = q with d = (1, …, 1). Columns: w [n], z [n], z₀, right side.
+/// The tableau of w − W z − d z₀ = q. Columns: w [n], z [n], z₀, right side.
 class Tableau {
  public:
-  Tableau(const Eigen::MatrixXd& w, const Eigen::VectorXd& q) : n_(q.size()), t_(n_, 2 * n_ + 2), basis_(rows()) {
+  Tableau(const Eigen::MatrixXd& w, const Eigen::VectorXd& q, const Eigen::VectorXd& d)
+      : n_(q.size()), t_(n_, 2 * n_ + 2), basis_(rows()), d_(d) {
     t_.setZero();
     for (Index i = 0; i < n_; ++i) {
       t_(i, i) = 1;
       for (Index j = 0; j < n_; ++j) t_(i, n_ + j) = -w(i, j);
-      t_(i, 2 * n_) = -1;
+      t_(i, 2 * n_) = -d(i);
       t_(i, 2 * n_ + 1) = q(i);
       basis_[static_cast<std::size_t>(i)] = i;
     }
-    scale_ = std::max(w.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
   }
 
   std::optional<Eigen::VectorXd> solve() {
@@ -46,7 +48,7 @@ class Tableau {
   Index most_negative() const {
     Index row = -1;
     for (Index i = 0; i < n_; ++i)
-      if (t_(i, 2 * n_ + 1) < 0 && (row < 0 || t_(i, 2 * n_ + 1) < t_(row, 2 * n_ + 1))) row = i;
+      if (t_(i, 2 * n_ + 1) < 0 && (row < 0 || t_(i, 2 * n_ + 1) * d_(row) < t_(row, 2 * n_ + 1) * d_(i))) row = i;
     return row;
   }
 
@@ -64,7 +66,7 @@ class Tableau {
   /// as soon as it may.
   Index leaving_row(Index column) const {
     Index best = -1;
-    const double least = 1e-13 * std::max(scale_, 1.0);
+    constexpr double least = 1e-13;
     for (Index i = 0; i < n_; ++i) {
       if (!(t_(i, column) > least)) continue;
       if (best < 0 || precedes(i, best, column)) best = i;
@@ -95,7 +97,7 @@ class Tableau {
   Index n_;
   Eigen::MatrixXd t_;
   std::vector<Index> basis_;
-  double scale_ = 1;
+  Eigen::VectorXd d_;
 };
 
 /// The z that vanish stay so; the others are solved for anew with W itself.
@@ -125,23 +127,28 @@ Eigen::VectorXd refined(const Eigen::MatrixXd& w, const Eigen::VectorXd& q, cons
 
 std::optional<Eigen::VectorXd> linear_complementarity(const Eigen::MatrixXd& w, const Eigen::VectorXd& q) {
   if (q.size() == 0) return Eigen::VectorXd();
+  // W = R⁻¹ W' C⁻¹, q = R⁻¹ q', z = C z': the same pivots, told from rounding in units of their own.
+  const Equilibrated own(w);
+  const Eigen::VectorXd own_q = own.rows.cwiseProduct(q);
   const auto solves = [&](const Eigen::VectorXd& z) {
     constexpr double allowed = 1e-9;
-    const Eigen::VectorXd slack = q + w * z;
-    const double most = allowed * q.cwiseAbs().maxCoeff(), some = allowed * z.maxCoeff();
+    const Eigen::VectorXd slack = own_q + own.matrix * z;
+    const double most = allowed * own_q.cwiseAbs().maxCoeff(), some = allowed * z.maxCoeff();
     for (Index i = 0; i < z.size(); ++i)
       if (!(slack(i) >= -most) || (z(i) > some && slack(i) > most)) return false;
     return true;
   };
-  const auto direct = Tableau(w, q).solve();
-  if (direct && solves(*direct)) return direct;
+  const auto in_given_units = [&](const std::optional<Eigen::VectorXd>& z) {
+    return z ? std::optional<Eigen::VectorXd>(own.columns.cwiseProduct(*z)) : z;
+  };
+  const auto direct = Tableau(own.matrix, own_q, own.rows).solve();
+  if (direct && solves(*direct)) return in_given_units(direct);
   // Redundant rows make pivots of rounding alone: a little on the diagonal tells them apart.
   constexpr double little = 1e-11;
-  const double size = w.cwiseAbs().maxCoeff();
-  const auto z = Tableau(w + little * size * Eigen::MatrixXd::Identity(w.rows(), w.cols()), q).solve();
-  if (!z) return direct;
-  const Eigen::VectorXd out = refined(w, q, *z);
-  return solves(out) ? std::optional(out) : direct;
+  const auto z = Tableau(own.matrix + little * Eigen::MatrixXd::Identity(w.rows(), w.cols()), own_q, own.rows).solve();
+  if (!z) return in_given_units(direct);
+  const Eigen::VectorXd out = refined(own.matrix, own_q, *z);
+  return in_given_units(solves(out) ? std::optional(out) : direct);
 }
 
 }  // namespace maupertuis

@@ -225,6 +225,23 @@ std::vector<std::size_t> parts_of(const Eigen::MatrixXd& matrix) {
   return part;
 }
 
+/// Units in which the diagonal of M is about 1, and then each row of A: atoms are no rounding beside the directions in
+/// which they are held. Powers of 2: nothing is rounded.
+Eigen::VectorXd scales_by_mass(const Eigen::MatrixXd& bordered) {
+  const auto unit_of = [](double size) { return size > 0 ? std::ldexp(1.0, -std::ilogb(size)) : 0.0; };
+  Eigen::VectorXd out(bordered.rows());
+  for (Index i = 0; i < out.size(); ++i) {
+    const double mass = std::abs(bordered(i, i));
+    out(i) = mass > 0 ? std::ldexp(1.0, -std::ilogb(mass) / 2) : 0.0;
+  }
+  for (int turn = 0; turn < 2; ++turn) {  // rows of A, then coordinates without inertia by these
+    const Eigen::VectorXd known = out;
+    for (Index i = 0; i < out.size(); ++i)
+      if (known(i) == 0) out(i) = unit_of(bordered.row(i).transpose().cwiseAbs().cwiseProduct(known).maxCoeff());
+  }
+  return out.unaryExpr([](double x) { return x > 0 ? x : 1.0; });
+}
+
 /// matrix x = right, each part of the system that the right sides touch by itself: many bodies hang together in few.
 Eigen::MatrixXd solve_by_parts(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(right.rows(), right.cols());
@@ -240,8 +257,10 @@ Eigen::MatrixXd solve_by_parts(const Eigen::MatrixXd& matrix, const Eigen::Matri
       if (alone != 0) out.row(in[0]) = right.row(in[0]) / alone;
       continue;
     }
-    const Eigen::FullPivLU<Eigen::MatrixXd> lu(Eigen::MatrixXd(matrix(in, in)));
-    out(in, Eigen::all) = lu.solve(Eigen::MatrixXd(right(in, Eigen::all)));
+    const Eigen::MatrixXd given = matrix(in, in);
+    const Eigen::VectorXd scale = scales_by_mass(given);
+    const Eigen::FullPivLU<Eigen::MatrixXd> lu(scale.asDiagonal() * given * scale.asDiagonal());
+    out(in, Eigen::all) = scale.asDiagonal() * lu.solve(Eigen::MatrixXd(scale.asDiagonal() * right(in, Eigen::all)));
   }
   return out;
 }
