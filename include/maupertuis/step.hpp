@@ -47,7 +47,7 @@ struct Sample {
   std::vector<double> q, v, a;      // [n] each
   std::vector<double> observables;  // [observables]
   std::vector<double> multipliers;  // [constraints]; NaN where the equations do not determine λ
-  std::vector<double> integrals;    // [integrands], from the start of the run to t; the step follows the motion alone
+  std::vector<double> integrals;    // [integrands], from the start of the run to t
 };
 
 }  // namespace maupertuis

@@ -7,6 +7,7 @@
 #include "fields/field_sides.hpp"
 #include "fields/outlook.hpp"
 #include "fields/resolution.hpp"
+#include "fields/resting_fields.hpp"
 #include "fields/semi_discrete.hpp"
 #include "fields/start_fit.hpp"
 #include "fields/steepening.hpp"
@@ -396,6 +397,12 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
   const int cells = s.space.front().cells ? s.space.front().cells : usual_coupled_cells;
   const int order = s.element_order ? s.element_order : usual_coupled_order;
   if (refuse_too_many_conditions(equations, diagnostics)) return std::nullopt;
+  if (nothing_moves(equations)) {
+    diagnostics.error("E0642", s.density_span, "nothing moves in this model",
+                      "No equation of its fields and of what takes hold of them holds a derivative by t.",
+                      "The rest is that of `maup modes` and `expect equilibrium at …`.");
+    return std::nullopt;
+  }
   const auto mesh = SemiDiscrete::make(model, equations, cells, order, diagnostics);
   if (!mesh ||
       refuse_unresolved(equations, {mesh->borders()}, mesh->order(), {options.begin, options.duration}, diagnostics))

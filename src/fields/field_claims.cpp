@@ -6,6 +6,7 @@
 #include "fields/on_shell.hpp"
 #include "fields/polynomial_division.hpp"
 #include "fields/rest_claims.hpp"
+#include "fields/resting_fields.hpp"
 
 #include <fmt/format.h>
 
@@ -32,6 +33,10 @@ double energy_exchanged(const FieldRunResult& run) {
   return std::abs(run.books->impacts) + std::abs(run.books->friction) + std::abs(run.books->moving) +
          std::abs(run.books->events);
 }
+
+constexpr const char* nothing_moves_here =
+    "No derivative by the time stands in the equations: nothing moves. A value without a time, or `expect equilibrium "
+    "at …`, is that of the rest.";
 
 class FieldVerifier {
  public:
@@ -142,16 +147,24 @@ class FieldVerifier {
     for (const Parameter& p : equations_.model->parameters) values[p.symbol] = p.si_value;
     return evaluate(s_.expanded(e), values);
   }
-  void ask(Expr value, bool total, Expr time, const expectation::Number& expected) {
-    questions_.push_back({s_.expanded(value), total, number_of(time)});
-    asked_.push_back({line_, expected});
+  /// Where nothing moves, a value without a time is that of the rest.
+  void ask(const FieldQuestion& question, Expr time, const expectation::Number& expected, ExpectationResult& result) {
+    if (!rests_) {
+      questions_.push_back({s_.expanded(question.value), question.total, number_of(time)});
+      asked_.push_back({line_, expected});
+    } else if (time) {
+      result.actual = "no value";
+      result.message = nothing_moves_here;
+    } else {
+      at_rest_.push_back({line_, {question}, {{"", given(expected)}}, ""});
+    }
   }
-  void decide(const expectation::ValueAt& e, ExpectationResult&) { ask(e.subject, false, e.time, e.expected); }
-  void decide(const fe::Total& e, ExpectationResult&) {
+  void decide(const expectation::ValueAt& e, ExpectationResult& r) { ask({e.subject}, e.time, e.expected, r); }
+  void decide(const fe::Total& e, ExpectationResult& r) {
     if (e.at_equilibrium)
       at_rest_.push_back({line_, {{e.density, true}}, {{"", given(e.expected)}}, ""});
     else
-      ask(e.density, true, e.time, e.expected);
+      ask({e.density, true}, e.time, e.expected, r);
   }
   void decide(const fe::Equilibrium& e, ExpectationResult&) {
     AskedRest asked{line_, {}, {}, e.word};
@@ -196,8 +209,15 @@ class FieldVerifier {
     if (!t.size) return 1e-9 * std::abs(size);
     return number_of(t.size) * (t.relative ? std::abs(size) : 1);
   }
+  void say_of_run(Verification& out, const std::string& message) const {
+    for (const auto& [line, expected] : asked_) out.results[line].message = message;
+    for (const auto& [line, tolerance] : energy_) out.results[line].message = message;
+    for (const auto& [line, moment] : moments_) out.results[line].message = message;
+    for (const auto& [line, count] : counts_) out.results[line].message = message;
+  }
   void carry_out_run(Verification& out) {
     if (questions_.empty() && energy_.empty() && moments_.empty() && counts_.empty()) return;
+    if (rests_) return say_of_run(out, nothing_moves_here);
     FieldRunOptions options;
     options.interrupt = options_.interrupt;
     if (model_.experiment.start_time) options.begin = number_of(model_.experiment.start_time);
@@ -207,13 +227,8 @@ class FieldVerifier {
     const auto run = runs_as_one_system(equations_) ? run_coupled(model_, equations_, questions_, options, diagnostics_)
                                                     : run_fields(equations_, questions_, options, diagnostics_);
     if (!run || !run->trouble.empty()) {
-      const std::string early =
-          run ? fmt::format("The run ended early: {}.", run->trouble) : "The run did not come to it.";
-      for (const auto& [line, expected] : asked_) out.results[line].message = early;
-      for (const auto& [line, tolerance] : energy_) out.results[line].message = early;
-      for (const auto& [line, moment] : moments_) out.results[line].message = early;
-      for (const auto& [line, count] : counts_) out.results[line].message = early;
-      return;
+      return say_of_run(out,
+                        run ? fmt::format("The run ended early: {}.", run->trouble) : "The run did not come to it.");
     }
     for (const auto& [line, moment] : moments_) judge_moment(out.results[line], *moment, run->happenings);
     for (const auto& [line, count] : counts_) judge_count(out.results[line], *count, run->happenings);
@@ -440,6 +455,7 @@ class FieldVerifier {
   std::vector<Asked> asked_;
   std::vector<AskedEnergy> energy_;
   std::vector<AskedRest> at_rest_;
+  const bool rests_ = nothing_moves(equations_);
   std::vector<std::pair<std::size_t, const expectation::Event*>> moments_;  // line of each
   std::vector<std::pair<std::size_t, const expectation::EventCount*>> counts_;
 };

@@ -210,6 +210,23 @@ std::vector<Expr> start_of(const FieldEquations& equations) {
 
 }  // namespace
 
+bool nothing_moves(const FieldEquations& equations) {
+  const auto moves = [&](const Expr& e) {
+    const std::vector<Expr> symbols = symbols_of({&e, 1});
+    return std::any_of(symbols.begin(), symbols.end(), [&](const Expr& symbol) {
+      if (const auto jet = equations.system().jet_of(symbol)) return jet->time > 0;
+      return symbol.role() == Role::Coordinate && symbol.order() > 0;
+    });
+  };
+  const auto any_moves = [&](const ExprVector& list) { return std::any_of(list.begin(), list.end(), moves); };
+  if (any_moves(equations.residuals)) return false;
+  if (!equations.bodies) return true;
+  const EquationsOfMotion& bodies = *equations.bodies;
+  return !any_moves(expand_time_derivatives(bodies.balance())) && !any_moves(bodies.dissipative_terms) &&
+         std::none_of(bodies.system->constraints.begin(), bodies.system->constraints.end(),
+                      [](const Constraint& c) { return c.level == Constraint::Level::Velocity; });
+}
+
 bool vanishes(const FieldEquations& equations, const FieldEquilibrium& rest) {
   constexpr double rounding = 1e-13;
   const FieldSystem& s = equations.system();

@@ -47,6 +47,9 @@ std::optional<ComputedRest> computed_rest(const FieldEquations& equations, const
 /// next to the start.
 std::optional<ComputedRest> rest_in_numbers(const FieldEquations& equations, std::string& why);
 
+/// Whether nothing of a model can move: no derivative by the time stands in the equations of its fields and bodies.
+bool nothing_moves(const FieldEquations& equations);
+
 /// Whether fields are 0 everywhere, but for rounding.
 bool vanishes(const FieldEquations& equations, const FieldEquilibrium& rest);
 

@@ -1,6 +1,7 @@
 #include "fields/small_motions.hpp"
 
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/kinds.hpp>
 
 #include "fields/given_fields.hpp"
 #include "linear_algebra/products.hpp"
@@ -342,6 +343,10 @@ bool add_unseen(const FieldEquations& equations, const UnseenParts& unseen, Fiel
 
 bool sees_what_acts(const FieldEquations& equations, const Borders& elements, const std::vector<int>& points,
                     Diagnostics& diagnostics) {
+  // Beside a jump no polynomial follows; what that does to frequencies is in their errors, by meshes of several widths.
+  const Expr density = equations.system().density;
+  const std::vector<Expr> nodes = topological_order({&density, 1});
+  if (std::any_of(nodes.begin(), nodes.end(), [](const Expr& e) { return has_switch(e.kind()); })) return true;
   constexpr int highest = 20;  // of polynomials through nodes: longer elements are looked at in parts
   const int order = std::min(highest, *std::min_element(points.begin(), points.end()));
   Borders parts;

@@ -45,3 +45,31 @@ TEST_CASE("equations and currents are tested in every piece of a density") {
   CHECK(line_holds(pieces, energy + "(u+5)^2) flux -u' u_x"));
   CHECK_FALSE(line_holds(pieces, energy + "7 (u+5)^2) flux -u' u_x"));
 }
+
+TEST_CASE("a value without a time is that of the rest where nothing moves, with loads at places too") {
+  const auto result = [](const std::string& load, const std::string& line) {
+    Study study(SourceText("field.lag",
+                           "dimensionless\nparam EI = 5, P = 10, L = 1\nfield w(x) : number on x = 0 .. L\n"
+                           "boundary w = 0\n" +
+                               load + line + "\n"));
+    const auto verification = study.verification();
+    REQUIRE(verification);
+    return verification->results.at(0);
+  };
+  const std::string beam = "density = -1/2 EI w_xx^2\n", at_middle = "force w(L/2) = -P\n";
+  CHECK(result(beam + at_middle, "expect w(L/2) = -P L^3/(48 EI)").passed);
+  CHECK(result(beam + "V = P w(L/2)\n", "expect w(L/4) = -11*P L^3/(768 EI)").passed);
+  CHECK(result("density = -1/2 EI w_xx^2 - P/L w\n", "expect w(L/2) = -5*P L^3/(384 EI)").passed);
+  CHECK(result(beam + at_middle, "expect total w = -5*P L^4/(384 EI) ± 1e-9").passed);
+  for (const char* wrong : {"expect w(L/2) = 0", "expect w(L/2) = P L^3/(48 EI)",
+                            "expect w(L/2) at 1 = -P L^3/(48 EI) ± 1e-9", "expect energy conserved"}) {
+    const ExpectationResult r = result(beam + at_middle + "run 2\n", wrong);
+    INFO(wrong, " | ", r.message);
+    CHECK_FALSE(r.passed);
+    CHECK_FALSE(r.message.empty());
+  }
+  // A mass on a field that has none does move, which is another question.
+  const ExpectationResult moving =
+      result("density = -1/2 EI w_xx^2\nT = 1/2 w(L/2)'^2\nstart w = 0\nrun 1\n", "expect w(L/2) at 1 = 0 ± 1");
+  CHECK(moving.message.find("nothing moves") == std::string::npos);
+}
