@@ -15,9 +15,9 @@ std::vector<Expr> in_terms_of_motion(const MechanicalSystem& system, std::span<c
 /// Numbers with units that stand in formulas, as the SI numbers that they are: each is a symbol of its own otherwise.
 ExprVector with_constants_as_numbers(const MechanicalSystem& system, std::span<const Expr> expressions);
 
-/// Whether all of them vanish for all parameters or, where one does not, for those that have the signs of the model's: √(m² c²) is
-/// m c for positive m and c alone. `reason` of a Zero then says "for c > 0, m > 0". Parameters that stand below roots
-/// and in switches are replaced by ± the square of a symbol. Cost: at most twice that of zero_test.
+/// Whether all of them vanish for all parameters or, where one does not, for those that have the signs of the model's:
+/// √(m² c²) is m c for positive m and c alone. `reason` of a Zero then says "for c > 0, m > 0". Parameters that stand
+/// below roots and in switches are replaced by ± the square of a symbol. Cost: at most twice that of zero_test.
 ZeroTest vanish_for_given_signs(const MechanicalSystem& system, std::span<const Expr> expressions);
 
 /// The same as `in_terms_of_motion` for many lists: what is put in is made once.

@@ -631,10 +631,10 @@ constexpr CodeEntry kEntries[] = {
      "current ρ u' flux -T u_x\n"},
     {"E0509", "an expectation of fields at other values of parameters",
      "`expect … with a = 2` is carried out for models of coordinates; one with fields is verified at its own values.",
-     "# maup test\nparam ρ = 1 kg/m, F = 1 N, l = 1 m, a = 1 mm\nfield u(x) : length on x = 0 m .. l cells 4 boundary "
+     "# maup test\nparam ρ = 1 kg/m, F = 1 N, l = 1 m, a = 1 mm\nfield u(x) : length on x = 0 m .. l cells 10 boundary "
      "u = 0\ndensity = 1/2 ρ u'^2 - 1/2 F u_x^2\nstart u = a sin(pi x/l)\nrun 1 s\nexpect u(l/2) at 0 s = 1 mm ± 1e-6 "
      "with F = 2 N\n",
-     "# maup test\nparam ρ = 1 kg/m, F = 1 N, l = 1 m, a = 1 mm\nfield u(x) : length on x = 0 m .. l cells 4 boundary "
+     "# maup test\nparam ρ = 1 kg/m, F = 1 N, l = 1 m, a = 1 mm\nfield u(x) : length on x = 0 m .. l cells 10 boundary "
      "u = 0\ndensity = 1/2 ρ u'^2 - 1/2 F u_x^2\nstart u = a sin(pi x/l)\nrun 1 s\nexpect u(l/2) at 0 s = 1 mm ± "
      "1e-6\n"},
     {"E0504", "a value that is given for what has none here",

@@ -41,15 +41,40 @@ bool is_to_be_named(const Expr& e) {
   return (is_function(e.kind()) || has_switch(e.kind()) || is_other_power(e)) && is_constant(e);
 }
 
+/// A function of a sum with a multiple of π.
+bool turns_by_pi(const Expr& e) {
+  if (!is_function(e.kind()) || !e[0].is(Kind::Sum)) return false;
+  for (std::size_t i = 0; i < e[0].size(); ++i) {
+    const Expr term = e[0][i];
+    const std::vector<Expr> nodes = topological_order({&term, 1});
+    if (symbols_of({&term, 1}).empty() &&
+        std::any_of(nodes.begin(), nodes.end(), [](const Expr& node) { return node.is(Kind::Pi); }))
+      return true;
+  }
+  return false;
+}
+
 /// The outermost ones in the expressions of a system, each with the parameter that takes its place.
 class Constants {
  public:
   explicit Constants(const MechanicalSystem& system) : system_(system) {}
 
   void take(const Expr& e) {
+    keeps_pi_ = keeps_pi_ || turns_by_pi(e);
     if (is_to_be_named(e)) return add(e);
     for (std::size_t i = 0; i < e.size(); ++i)
       if (seen_.insert(e[i]).second) take(e[i]);
+  }
+
+  /// sin(q + π/2) is cos q: no other number may stand in the place of π then.
+  void leave_pi_where_angles_turn_by_it() {
+    if (!keeps_pi_) return;
+    const auto holds_pi = [&](const Parameter& p) { return meaning_.at(p.symbol).is(Kind::Pi); };
+    const auto found = std::find_if(parameters_.begin(), parameters_.end(), holds_pi);
+    if (found == parameters_.end()) return;
+    places_.erase(meaning_.at(found->symbol));
+    meaning_.erase(found->symbol);
+    parameters_.erase(found);
   }
 
   const std::vector<Parameter>& parameters() const { return parameters_; }
@@ -80,6 +105,7 @@ class Constants {
 
   const MechanicalSystem& system_;
   std::unordered_set<Expr, ExprHash> seen_;
+  bool keeps_pi_ = false;
   std::vector<Parameter> parameters_;
   ExprMap places_, meaning_;
 };
@@ -100,6 +126,7 @@ std::optional<NamedConstants> with_named_constants(const EquationsOfMotion& equa
   for_each_expression(*system, [&](Expr& e) {
     if (e) constants.take(e);
   });
+  constants.leave_pi_where_angles_turn_by_it();
   if (constants.parameters().empty()) return std::nullopt;
   const auto name = [&](Expr& e) {
     if (e) e = substitute(e, constants.places());

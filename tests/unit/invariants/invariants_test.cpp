@@ -106,6 +106,14 @@ TEST_CASE("coefficients with sines of parameters, π and functions of numbers ar
   CHECK(tilted.text("energy") == "1/2 x'^2 + 1/2 y'^2 + 1/2 k cos α (x^2 + y^2)");
 }
 
+TEST_CASE("angles that are turned by parts of π stay what they are") {
+  const Found f(
+      "param m = 1, g = 9\ncoord x, φ : number\nT = 1/2 m (x'^2 + φ'^2) + m x' φ' sin(φ + pi/2)\n"
+      "V = -pi m g x - m g sin(φ + pi/2)\n");
+  CHECK(f.text("energy").find("pi/2") == std::string::npos);
+  CHECK(f.count("energy") == 1);
+}
+
 TEST_CASE("a drive by cos w t gives its momentum sin w t") {
   const Found f("param A = 2, w = 0.5\ncoord x : number\nL = 1/2 x'^2 + A x cos(w t)\n");
   REQUIRE(f.result.integrals.size() >= 1);
