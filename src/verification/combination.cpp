@@ -8,9 +8,10 @@
 namespace maupertuis {
 namespace {
 
-/// The nearest fraction with a small denominator; nothing where none is near.
+/// The nearest fraction with a small denominator; nothing where none is near. Ratios of the inertias of rolling bodies,
+/// as 15/14 and 21/25, are among them.
 std::optional<Rational> simple_fraction(double x) {
-  constexpr int largest_denominator = 12;
+  constexpr int largest_denominator = 40;
   constexpr double near = 1e-7;
   for (int q = 1; q <= largest_denominator; ++q)
     if (const double p = std::round(x * q); std::abs(x * q - p) < near * q && std::abs(p) < 1000)

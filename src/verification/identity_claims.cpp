@@ -1,9 +1,11 @@
 #include "verification/identity_claims.hpp"
 
 #include "verification/claims.hpp"
+#include "verification/one_fraction.hpp"
 #include "verification/phase_space_claims.hpp"
 #include "verification/rate_resemblance.hpp"
 #include "verification/row_terms.hpp"
+#include "verification/solved_resemblance.hpp"
 
 #include <maupertuis/print.hpp>
 
@@ -236,7 +238,7 @@ void IdentityClaims::decide(const expectation::Equation& e, ExpectationResult& r
     return;
   }
   result.actual = test.verdict == Verdict::Undecided ? "undecided" : "does not follow";
-  result.message = failure(test, {"Along the motion, left side − right side", along().put_in(difference)});
+  result.message = failure(test, {"Along the motion, left side − right side", in_solved_motion(difference)});
   if (test.verdict != Verdict::Nonzero) return;
   if (!equations_.system->higher.empty()) return;  // its rows are not those that a reader writes
   if (const auto sides = distances_with_signs()) {
@@ -253,6 +255,14 @@ void IdentityClaims::decide(const expectation::Equation& e, ExpectationResult& r
   explain_false(difference, equations_, result);
 }
 
+/// With q̈ and λ put in, over one denominator: what is left can be read. As it is where the equations are not solved.
+Expr IdentityClaims::in_solved_motion(Expr difference) {
+  const Expr with_forces = with_reactions(equations_, {&difference, 1}).front();
+  const Expr plain = expand_time_derivatives(in_terms_of_motion(*equations_.system, {&with_forces, 1}).front());
+  const Expr solved = expand_time_derivatives(substitute(plain, solved_motion(equations_)));
+  return is_short_enough(solved) ? as_one_fraction(solved, equations_.order).value() : along().put_in(difference);
+}
+
 /// Where the motion starts; nothing where no distance of the energies is |r| in a coordinate.
 std::optional<SignedDistances> IdentityClaims::distances_with_signs() const {
   Diagnostics told_by_the_run;
@@ -263,9 +273,12 @@ std::optional<SignedDistances> IdentityClaims::distances_with_signs() const {
 void IdentityClaims::explain_false(Expr difference, const EquationsOfMotion& equations, ExpectationResult& result) {
   auto resemblance = resembled_equation_in_rates(difference, equations);
   if (!resemblance) resemblance = resembled_equation(difference, equations);
+  if (!resemblance || !resemblance->explained())
+    if (auto solved = resembled_solution(difference, equations)) resemblance = std::move(solved);
   if (resemblance) result.message = resemblance->text;
   result.pitfall = diagnose_claim(difference, equations, resemblance ? &*resemblance : nullptr);
-  if (resemblance && result.pitfall.empty()) result.message += " No known mistake has this signature.";
+  if (result.pitfall.empty() && (resemblance || result.claim))
+    result.message += " No known mistake has this signature.";
 }
 
 /// Names the difference where it is short enough to be read.

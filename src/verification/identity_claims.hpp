@@ -32,6 +32,7 @@ class IdentityClaims {
   const AlongMotion& along();
   bool needs_solvable(ExpectationResult& result);
   std::optional<SignedDistances> distances_with_signs() const;
+  Expr in_solved_motion(Expr difference);
   static void explain_false(Expr difference, const EquationsOfMotion& equations, ExpectationResult& result);
   std::string ground(const ZeroTest& test) const;
   std::string failure(const ZeroTest& test, const Identity& identity) const;

@@ -51,6 +51,7 @@ class MistakenDerivations {
     add("a velocity was written as its coordinate: v² of a pendulum is (l θ')², not (l θ)²",
         coordinates_for_velocities());
     for (const Coordinate& c : system_.coordinates) add_momentum_put_into_lagrangian(c);
+    add_terms_of_potential();
     add_throughout();
     return std::move(pitfalls_);
   }
@@ -134,10 +135,12 @@ class MistakenDerivations {
                      half_t = lagrangian_with(kinetic_ / Rational(2), potential_);
     if (!forced && has_v != has_others) {
       const std::string name = has_v ? "V" : system_.lagrangian_given ? "what L has beside T" : "U";
+      std::vector<TermOrigin> of_both = of_kinetic;
+      of_both.push_back(TermOrigin::Potential);
       add("T has no factor ½ (the kinetic energy of a particle is ½ m v²), or " + name + " has a factor ½ too many",
-          twice_t);
+          twice_t, of_both);
       add(name + " has a factor 2 too many" + spring + (spring.empty() ? "," : ";") + " or T has a factor ½ too many",
-          half_t);
+          half_t, of_both);
       return;
     }
     add("T has no factor ½: the kinetic energy of a particle is ½ m v²", twice_t, of_kinetic);
@@ -203,6 +206,33 @@ class MistakenDerivations {
     for (const Expr& s : symbols_of({&term, 1}))
       if (has_unit(shown.parameters, s) || has_unit(shown.definitions, s)) return true;
     return false;
+  }
+
+  /// One of several terms of V: that of one spring of a chain, which stands in two equations.
+  void add_terms_of_potential() {
+    if (system_.lagrangian_given) return;
+    const MechanicalSystem& shown = *equations_.shown().system;
+    ExprVector terms;
+    for (const EnergyTerm& t : shown.potential)
+      for (std::size_t k = 0; k < (t.value.is(Kind::Sum) ? t.value.size() : 1); ++k)
+        terms.push_back(t.value.is(Kind::Sum) ? t.value[k] : t.value);
+    constexpr std::size_t most_terms = 12;
+    if (terms.size() < 2 || terms.size() > most_terms) return;
+    const auto values = shown.definition_values();
+    for (const Expr& term : terms) {
+      const Expr plain = substitute(expand_time_derivatives(term), ExprMap(values.begin(), values.end()));
+      const std::string name = to_plain(term, equations_.order);
+      pitfalls_.push_back({fmt::format("the force of {} in V has the wrong sign", name),
+                           lagrangian_with(kinetic_, potential_ - Rational(2) * plain),
+                           {TermOrigin::Potential},
+                           false,
+                           true});
+      pitfalls_.push_back({fmt::format("the force of {} in V is missing", name),
+                           lagrangian_with(kinetic_, potential_ - plain),
+                           {TermOrigin::Potential},
+                           false,
+                           true});
+    }
   }
 
   void add_generalized_potential_left_out() {

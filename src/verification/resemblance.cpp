@@ -1,6 +1,7 @@
 #include "verification/resemblance.hpp"
 
 #include "verification/combination.hpp"
+#include "verification/phrases.hpp"
 #include "verification/term_variants.hpp"
 
 #include <maupertuis/print.hpp>
@@ -29,7 +30,7 @@ struct Finding {
   RowFactor of;
   std::string difference, sentence;
   std::vector<TermOrigin> origins;
-  bool signs_alone = false;
+  bool signs_alone = false, in_several_ways = false;
   std::size_t cost = 0;  // terms that differ, with a little for a factor that is no number: the smaller one is believed
 };
 
@@ -175,9 +176,21 @@ class Resembler {
       return c.first.origin == TermOrigin::Inertia || c.first.origin == TermOrigin::Coupling;
     });
     if (changed.empty() || (!inertia_stands && 2 * changed.size() > terms.size() + 1)) return std::nullopt;
-    Finding out{of, "", "", {}, false, 10 * changed.size() + factor_cost(of.factor)};
+    if (is_solved_for_forces(changed)) return std::nullopt;
+    Finding out{of, "", "", {}, false, false, 10 * changed.size() + factor_cost(of.factor)};
     tell(out, changed, terms);
     return out;
+  }
+
+  /// A claim without λ whose other terms differ too, as in s'' = 5/7 g sin β of what rolls, has the force of the
+  /// constraint put in; one without q̈ has the acceleration put in. Neither errs in this equation.
+  bool is_solved_for_forces(const std::vector<std::pair<RowTerm, Rational>>& changed) const {
+    const auto among = [&](TermOrigin origin) {
+      return std::count_if(changed.begin(), changed.end(), [&](const auto& c) { return c.first.origin == origin; });
+    };
+    const auto of_constraints = among(TermOrigin::Constraint), of_inertia = among(TermOrigin::Inertia);
+    const auto all = static_cast<std::ptrdiff_t>(changed.size());
+    return (of_constraints > 0 && of_constraints < all) || (no_accelerations() && of_inertia > 0 && of_inertia < all);
   }
 
   /// Where all terms but those with accelerations, or only these, have one number before them, the claim says nothing
@@ -227,11 +240,12 @@ class Resembler {
     const Expr more = claim - all;
     for (const RowTerm& t : candidates(terms)) {
       const Expr written = more + t.value;
-      Finding out{of, "", "", {t.origin}, false, 12 + factor_cost(of.factor)};
+      Finding out{of, "", "", {t.origin}, false, false, 12 + factor_cost(of.factor)};
       if (stands_as_variant(out, written, t)) return out;
       if (const auto ratio = constant_ratio(written, t.value); ratio && constant_in_motion(*ratio)) {
         const Expr shown = *ratio * t.value;
         if (!vanishes(shown - written) || ratio->is_zero() || terms_in(shown) > terms_in(t.value)) continue;
+        if (fraction_of(*ratio).below.is(Kind::Sum)) continue;  // M cos α for M + m is no slip of a factor
         tell_ratio(out, *ratio, t, terms);
         return out;
       }
@@ -339,13 +353,26 @@ class Resembler {
         if (!same_accelerations(row, factor)) continue;
         Expr all = zero();
         for (const RowTerm& t : terms_of(row)) all = all + t.value;
+        if (no_multipliers() && !states_.vanishes(forces_of_constraints(row))) return std::nullopt;
         const std::string more = text(claim_ / factor - all, row);
         constexpr std::size_t longest = 200;
         if (more.size() > longest) return std::nullopt;
-        return Finding{{row, factor}, fmt::format("on its left side stands more: {}", more), "", {}, false, 100};
+        return Finding{{row, factor}, fmt::format("on its left side stands more: {}", more), "", {}, false, false, 100};
       }
     }
     return std::nullopt;
+  }
+
+  /// A claim that has the forces of constraints put in lacks them in no equation.
+  bool no_multipliers() const {
+    const std::vector<Expr> symbols = symbols_of({&claim_, 1});
+    return std::none_of(symbols.begin(), symbols.end(), [](const Expr& s) { return s.role() == Role::Multiplier; });
+  }
+  Expr forces_of_constraints(std::size_t row) {
+    Expr sum = zero();
+    for (const RowTerm& t : terms_of(row))
+      if (t.origin == TermOrigin::Constraint) sum = sum + t.value;
+    return sum;
   }
 
   bool same_accelerations(std::size_t row, Expr factor) {
@@ -437,6 +464,7 @@ class Resembler {
               : c.second == Rational(-1) ? "wrong sign"
                                          : "wrong factor " + c.second.to_string()]
           .push_back(c);
+    out.in_several_ways = by_kind.size() > 1;
     for (const auto& [kind, list] : by_kind) {
       std::vector<Expr> values;
       for (const auto& [term, number] : list) values.push_back(term.value);
@@ -450,11 +478,8 @@ class Resembler {
         if (std::find(out.origins.begin(), out.origins.end(), term.origin) != out.origins.end()) continue;
         out.origins.push_back(term.origin);
         const std::string name = name_in(terms, changed, term);
-        const std::string what = number.is_zero() ? name + " is missing"
-                                 : number == Rational(-1)
-                                     ? name + " has the wrong sign"
-                                     : fmt::format("{} has a factor {} too many", name, number.to_string());
-        out.sentence += fmt::format("{}{}: {}", out.sentence.empty() ? "" : "; ", what, where_from(term, out.of.row));
+        out.sentence += fmt::format("{}{} {}: {}", out.sentence.empty() ? "" : "; ", name, phrases::of_factor(number),
+                                    where_from(term, out.of.row));
       }
     }
     if (const auto ratio = ratio_to_inertia(changed, terms)) {
@@ -463,9 +488,7 @@ class Resembler {
         out.sentence = "what stands beside the inertia has the wrong sign, all of it, or the inertia has";
         return;
       }
-      out.sentence =
-          fmt::format("what stands beside the inertia has a factor {} too many, or the inertia has a factor {}",
-                      ratio->to_string(), (Rational(1) / *ratio).to_string());
+      out.sentence = phrases::of_ratio_to_inertia(*ratio);
     }
   }
 
@@ -478,7 +501,7 @@ class Resembler {
                               : factor.size() > longest ? ", times a factor"
                                                         : fmt::format(", times {}", factor);
     return {fmt::format("It resembles the equation for {}{}; {}.", c.name, times, found.difference), found.sentence,
-            found.origins, found.signs_alone};
+            found.origins, found.signs_alone, found.in_several_ways};
   }
 
   const EquationsOfMotion& equations_;

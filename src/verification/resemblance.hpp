@@ -14,6 +14,8 @@ struct Resemblance {
   std::string sentence;             // the mistake in words of physics; empty: unknown
   std::vector<TermOrigin> origins;  // of the terms that differ; empty: unknown
   bool signs_alone = false;         // they differ by their sign
+  bool in_several_ways = false;     // one is missing and another has the wrong sign
+  bool explained() const { return !sentence.empty(); }
 };
 
 /// `difference`: left side − right side of a claim that does not follow from the equations. Nothing where it resembles

@@ -3,6 +3,8 @@
 #include "verification/judge.hpp"
 #include "verification/phase_space_claims.hpp"
 
+#include <maupertuis/across_switches.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>

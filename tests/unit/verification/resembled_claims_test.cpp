@@ -143,7 +143,7 @@ const Wrong kWrong[] = {
     {"pendulum", "m l^2 θ'' + m g sin θ * (2 [m]) = 0", "stands in the place of m g l sin θ",
      "numbers stand in the place of symbols"},
     {"kepler", "m r^2 φ'' + m r r' φ' = 0", "m r r' φ' stands in the place of 2 m r r' φ'",
-     "velocities has a factor 1/2 too many"},
+     "velocities lacks a factor 2"},
     {"elastic", "m r'' - m r θ'^2 + 2 k (r - l0) - m g cos θ = 0", "stands in the place of", "factor 2 too many"},
     // wrong functions, arguments, powers
     {"pendulum", "m l^2 θ'' + m g l cos θ = 0", "m g l cos θ stands in the place of m g l sin θ",
