@@ -106,9 +106,8 @@ std::string diagnose_claim(Expr difference, const EquationsOfMotion& equations, 
   const Expr plain = expand_time_derivatives(with_reactions(equations, {&difference, 1}).front());
   const bool explained = resemblance && resemblance->explained();
   if (explained && errs_in_multipliers(plain, resemblance)) return resemblance->sentence;
-  for (const Pitfall& pitfall : pitfalls(equations)) {
+  for (const Pitfall& pitfall : pitfalls(equations, resemblance && resemblance->in_several_ways)) {
     if ((explained && pitfall.throughout) || !is_about(pitfall, resemblance)) continue;
-    if (pitfall.of_part && !(resemblance && resemblance->in_several_ways)) continue;
     if (!follows_from(plain, equations, pitfall.residual)) continue;
     const bool perhaps_a_slip =
         resemblance && resemblance->signs_alone && pitfall.sentence.find("sign") == std::string::npos;

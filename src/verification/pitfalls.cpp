@@ -25,7 +25,7 @@ class MistakenDerivations {
     others_ = equations_.lagrangian_expanded - kinetic_ + potential_;
   }
 
-  std::vector<Pitfall> all() {
+  std::vector<Pitfall> all(bool of_parts) {
     const auto& d = equations_.dissipative_terms;
     const auto& forces = equations_.generalized_forces;
     add("the term ∂T/∂q is missing: T depends on the coordinates as well as on the velocities",
@@ -51,7 +51,7 @@ class MistakenDerivations {
     add("a velocity was written as its coordinate: v² of a pendulum is (l θ')², not (l θ)²",
         coordinates_for_velocities());
     for (const Coordinate& c : system_.coordinates) add_momentum_put_into_lagrangian(c);
-    add_terms_of_potential();
+    if (of_parts) add_parts_of_potential();
     add_throughout();
     return std::move(pitfalls_);
   }
@@ -208,30 +208,38 @@ class MistakenDerivations {
     return false;
   }
 
-  /// One of several terms of V: that of one spring of a chain, which stands in two equations.
-  void add_terms_of_potential() {
-    if (system_.lagrangian_given) return;
+  /// Parts of V with a name: what the model gives by a spring or by gravity, and the terms of a formula.
+  std::vector<std::pair<std::string, Expr>> parts_of_potential() const {
     const MechanicalSystem& shown = *equations_.shown().system;
-    ExprVector terms;
-    for (const EnergyTerm& t : shown.potential)
-      for (std::size_t k = 0; k < (t.value.is(Kind::Sum) ? t.value.size() : 1); ++k)
-        terms.push_back(t.value.is(Kind::Sum) ? t.value[k] : t.value);
-    constexpr std::size_t most_terms = 12;
-    if (terms.size() < 2 || terms.size() > most_terms) return;
     const auto values = shown.definition_values();
-    for (const Expr& term : terms) {
-      const Expr plain = substitute(expand_time_derivatives(term), ExprMap(values.begin(), values.end()));
-      const std::string name = to_plain(term, equations_.order);
-      pitfalls_.push_back({fmt::format("the force of {} in V has the wrong sign", name),
-                           lagrangian_with(kinetic_, potential_ - Rational(2) * plain),
-                           {TermOrigin::Potential},
-                           false,
-                           true});
-      pitfalls_.push_back({fmt::format("the force of {} in V is missing", name),
-                           lagrangian_with(kinetic_, potential_ - plain),
-                           {TermOrigin::Potential},
-                           false,
-                           true});
+    std::vector<std::pair<std::string, Expr>> parts;
+    const auto add_part = [&](const std::string& name, const Expr& e) {
+      parts.emplace_back(name, substitute(expand_time_derivatives(e), ExprMap(values.begin(), values.end())));
+    };
+    for (const EnergyTerm& t : shown.potential) {
+      if (t.origin != "V") {
+        add_part(t.origin, t.value);
+        continue;
+      }
+      for (std::size_t k = 0; k < (t.value.is(Kind::Sum) ? t.value.size() : 1); ++k) {
+        const Expr term = t.value.is(Kind::Sum) ? t.value[k] : t.value;
+        add_part(to_plain(term, equations_.order), term);
+      }
+    }
+    return parts;
+  }
+
+  /// Of one of several parts of V: that of one spring of a chain, which stands in two equations.
+  void add_parts_of_potential() {
+    if (system_.lagrangian_given) return;
+    const auto parts = parts_of_potential();
+    constexpr std::size_t most_parts = 12;
+    if (parts.size() < 2 || parts.size() > most_parts) return;
+    for (const auto& [name, part] : parts) {
+      add(fmt::format("the force of {} in V has the wrong sign", name),
+          lagrangian_with(kinetic_, potential_ - Rational(2) * part), {TermOrigin::Potential});
+      add(fmt::format("the force of {} in V is missing", name), lagrangian_with(kinetic_, potential_ - part),
+          {TermOrigin::Potential});
     }
   }
 
@@ -342,6 +350,8 @@ class MistakenDerivations {
 
 }  // namespace
 
-std::vector<Pitfall> pitfalls(const EquationsOfMotion& equations) { return MistakenDerivations(equations).all(); }
+std::vector<Pitfall> pitfalls(const EquationsOfMotion& equations, bool of_parts) {
+  return MistakenDerivations(equations).all(of_parts);
+}
 
 }  // namespace maupertuis

@@ -12,9 +12,9 @@ struct Pitfall {
   ExprVector residual;            // [n] may be free of q̈
   std::vector<TermOrigin> about;  // the terms that it changes; empty: any
   bool throughout = false;        // it is made in every term: not looked at where one term explains the claim
-  bool of_part = false;           // in a part of an energy: looked at where the claim differs in several ways alone
 };
 
-std::vector<Pitfall> pitfalls(const EquationsOfMotion& equations);
+/// `of_parts`: of single springs and terms of V as well, two derivations for each.
+std::vector<Pitfall> pitfalls(const EquationsOfMotion& equations, bool of_parts);
 
 }  // namespace maupertuis

@@ -26,7 +26,10 @@ struct Replaced {
     return changed.size() == numbers.size() &&
            std::all_of(numbers.begin(), numbers.end(), [&](const Rational& b) { return b == numbers.front(); });
   }
-  bool is_one_mistake() const { return changed.size() == 1 || (!changed.empty() && all_alike()); }
+  /// Where all of it is missing, or nothing, there is no resemblance.
+  bool is_one_mistake() const {
+    return all_alike() ? !numbers.front().is_zero() && !numbers.front().is_one() : changed.size() == 1;
+  }
 };
 
 class SolutionResembler {
@@ -42,6 +45,7 @@ class SolutionResembler {
     if (solution.empty()) return std::nullopt;
     const Expr beside = states_.settled(-substitute(leading_, solution)), written = claim_ - leading_;
     if (!is_short_enough(beside) || !is_short_enough(written)) return std::nullopt;
+    velocities_alone_ = states_.vanishes(at_rest(beside));
     const auto in_terms = replaced(written, beside);
     const bool sums_inertia = differentiate(leading_, unknowns_.front()).is(Kind::Sum);
     if (in_terms && (in_terms->all_alike() || !sums_inertia)) return told_beside(*in_terms);
@@ -67,6 +71,13 @@ class SolutionResembler {
     }
     leading_ = equations_.system->context->sum(leading);
     return !unknowns_.empty();
+  }
+
+  Expr at_rest(Expr e) const {
+    ExprMap map;
+    for (const Coordinate& c : equations_.system->coordinates)
+      map.emplace(c.velocity, equations_.system->context->number(0));
+    return substitute(e, map);
   }
 
   /// Of a claim c q̈ = f with f ≠ 0 that has its terms right: c should be f over the acceleration.
@@ -144,7 +155,7 @@ class SolutionResembler {
     if (of_force && found.all_alike() && number == Rational(-1)) {
       out.origins = {TermOrigin::Constraint};
       out.sentence = "λ has the wrong sign: +Aᵀλ belongs to the right side, with A the derivatives of left − right";
-    } else if (!found.all_alike()) {
+    } else if (!found.all_alike() || velocities_alone_) {
       out.sentence = "one of its terms " + phrases::of_factor(number);
     } else if (!holds_multiplier_ && number == Rational(-1)) {
       out.sentence = "what stands beside the accelerations has the wrong sign, all of it, or these have";
@@ -163,7 +174,7 @@ class SolutionResembler {
   RandomStates states_;
   Expr claim_, leading_;  // leading: Σ slope u over q̈ and λ
   ExprVector unknowns_;   // that stand in the claim
-  bool holds_multiplier_ = false;
+  bool holds_multiplier_ = false, velocities_alone_ = false;
 };
 
 }  // namespace

@@ -33,6 +33,17 @@ const std::map<std::string, std::string> kModels = {
      "param m = 2 kg, J = 0.3 kg m^2, g = 9.81 m/s^2, δ = 10 deg\ncoord x, y : length, ψ : angle\n"
      "T = 1/2 m (x'^2 + y'^2) + 1/2 J ψ'^2\nV = -m g sin δ x\nconstraint x' sin ψ - y' cos ψ = 0 name edge\n"
      "start ψ' = 1 rad/s\n"},
+    {"disk",
+     "param m = 1 kg, R = 0.2 m\nlet I = 1/2 m R^2, J = 1/4 m R^2\ncoord x, y : length\ncoord φ, ψ : angle\n"
+     "T = 1/2 m (x'^2 + y'^2) + 1/2 I φ'^2 + 1/2 J ψ'^2\nconstraint x' = R φ' cos ψ name a\n"
+     "constraint y' = R φ' sin ψ name b\nstart φ' = 2 rad/s, ψ' = 1 rad/s\n"},
+    {"twice",  // constraints that repeat each other: λ is not determined
+     "param m = 1 kg, g = 9.81 m/s^2, J = 1 kg m^2, R = 1 m\ncoord y : length\ncoord θ : angle\n"
+     "T = 1/2 m y'^2 + 1/2 J θ'^2\nV = -m g y\nconstraint y = R θ name a\nconstraint 2 y = 2 R θ name b\n"},
+    {"springs",
+     "param m = 1 kg, k = 5 N/m, κ = 3 N/m, L0 = 1 m, g = 9.81 m/s^2\ncoord a, b : length\n"
+     "point P mass m at (a, 0)\npoint Q1 mass m at (b, 0)\npoint O1 at (0, 0)\nspring O1 - P stiffness k\n"
+     "spring P - Q1 stiffness κ\nstart a = 1 m, b = 2 m\n"},
     {"wedge",
      "param M = 3 kg, m = 1.2 kg, α = 30 deg, g = 9.81 m/s^2\ncoord X, s : length\npoint W mass M at (X, 0)\n"
      "point B mass m at (X + s cos α, -s sin α)\ngravity (0, -g)\n"},
@@ -125,6 +136,11 @@ TEST_CASE("one mistake explains a claim with the forces of constraints put in, o
       {"atwood", "y1'' = g", unknown, ""},
       {"roll", "s'' = -g sin β", unknown, ""},
       {"roll", "s'' = 2 g", unknown, ""},
+      {"disk", "x'' = -2 R φ' ψ' sin ψ", "stands in the place of R sin ψ φ' ψ'", "one of its terms has a factor 2"},
+      {"disk", "x'' = -R φ' ψ' cos ψ", "stands in the place of R sin ψ φ' ψ'", "cos ψ stands in the place of sin ψ"},
+      {"twice", "(m + J/R^2) y'' = -m g", "Along the motion", "V has the wrong sign"},
+      {"twice", "m y'' = m g", "missing", "the energy of rotation is missing"},
+      {"twice", "multiplier(a) = m g", unknown, ""},
   };
   check(claims);
 }
@@ -152,10 +168,11 @@ TEST_CASE("what is left of a claim along the motion is shown with accelerations 
        "one of its terms has the wrong sign"},
       {"wedge", "s'' = (M + m) g sin α/(M + m cos(α)^2)",
        "is -(M + m) (1 - 2 cos^2 α) m g sin α/((M + m cos^2 α) (M + m sin^2 α)), not 0", ""},
-      {"wedge", "M X'' + m s'' = 0", unknown, ""},  // two mistakes
+      {"wedge", "M X'' + m s'' = 0", "Along the motion, left side − right side is", ""},  // two mistakes
       {"chain", "M x2'' + κ (x2 - x1) + κ (x3 - x2) + c (x2' - x1') = 0", "wrong sign: -κ x3",
        "the force of 1/2 κ (x3 - x2)^2 in V has the wrong sign"},
       {"chain", "M x2'' + κ (x2 - x1) + c (x2' - x1') = 0", "", "the force of 1/2 κ (x3 - x2)^2 in V is missing"},
+      {"springs", "m a'' + k a + κ (b - a) = 0", "wrong sign", "a force of the potential has the wrong"},
   };
   check(claims);
 }
