@@ -54,7 +54,7 @@ constexpr CodeEntry own_codes[] = {
      "The command is part of the plan and its name is taken, but this version does not carry it out.",
      "maup sweep pendulum.lag", "maup modes pendulum.lag --sweep \"l = 1 m .. 2 m steps 3\""},
     {"E0807", "a file exists already",
-     "`maup new` never overwrites a model. Choose another name with -o, or say --force.",
+     "`maup new` and `maup reduce` never overwrite a model. Choose another name with -o, or say --force.",
      "maup new pendulum -o pendulum.lag", "maup new pendulum -o second.lag"},
     {"E0808", "there is no starter of this name", "`maup new --list` shows the starters.", "maup new penduluum",
      "maup new --list"},
@@ -68,8 +68,8 @@ constexpr CodeEntry own_codes[] = {
      ".html for a report.",
      "maup simulate pendulum.lag -o motion.xls", "maup simulate pendulum.lag -o motion.csv"},
     {"E0812", "the result would be written over the model",
-     "The file of -o, or of a plot, is the model that is read. Results never take the place of what they were made "
-     "from.",
+     "The file of -o, or of a plot, is the model that is read, also by standard input, or a link to another model. "
+     "Results never take the place of what they were made from.",
      "maup reduce arm.lag -o arm.lag", "maup reduce arm.lag -o arm_reduced.lag"},
     {"W0813", "a section of the report is left out",
      "A report has a budget of time, 20 s unless --budget says otherwise. No section takes more than half of what is "
@@ -99,6 +99,13 @@ constexpr CodeEntry own_codes[] = {
      "m\nrun 1 s\n",
      "# maup simulate\ncoord x : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\nstart x = 1 m\nrun "
      "1 s\n"},
+    {"N0819", "a curve has a gap",
+     "A formula of --y, --x or --columns has no finite value at some moments of the motion: it divides by what is 0 "
+     "there, or takes a root of what is negative. The picture leaves these moments out.",
+     "# maup plot --y 1/x\ncoord x : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\nstart x' = 1 "
+     "m/s\nrun 1 s\n",
+     "# maup plot --y x\ncoord x : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\nstart x' = 1 "
+     "m/s\nrun 1 s\n"},
     {"E0814", "the budget of a report was used up before its equations were certified",
      "Every section of a page stands on the certified equations: without them there is none.",
      "maup report chain.lag --budget 1s", "maup report chain.lag --budget none"},

@@ -161,9 +161,9 @@ AskedColumns::AskedColumns(const std::string& option, const std::vector<std::str
     }
 }
 
-std::vector<std::string> AskedColumns::formulas() const {
-  std::vector<std::string> out;
-  for (const Formula& f : formulas_) out.push_back(f.text);
+WrittenColumns AskedColumns::formulas(Study& study) const {
+  WrittenColumns out;
+  for (const Formula& f : formulas_) out.emplace(f.text, study.model()->experiment.asked.at(f.asked).span);
   return out;
 }
 

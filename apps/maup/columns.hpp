@@ -1,4 +1,5 @@
 #pragma once
+#include "numbers.hpp"
 #include "open_study.hpp"
 
 #include <maupertuis/trajectory.hpp>
@@ -23,8 +24,8 @@ class AskedColumns {
   bool empty() const { return names_.empty(); }
   /// As they were written.
   const std::vector<std::string>& names() const { return names_; }
-  /// Those of them that are formulas, not columns of the trajectory.
-  std::vector<std::string> formulas() const;
+  /// Those of them that are formulas, not columns of the trajectory. Precondition: `study` has a model.
+  WrittenColumns formulas(Study& study) const;
   /// The trajectory with the formulas as further columns, their errors to first order where it has errors. Nothing, and
   /// E0811, where one of them has no value that the rows determine. Precondition: `study` has equations.
   std::optional<Trajectory> added_to(Trajectory rows, Study& study) const;

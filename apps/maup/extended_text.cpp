@@ -23,12 +23,16 @@ std::string time_text(const AgreedNumber& t) {
   return text;
 }
 
-std::string state_text(const ExtendedState& state, const ExtendedResult& result) {
+std::string moment_text(const std::string& t, const ExtendedResult& result) {
   const std::string& second = result.independent.unit;
-  std::string out =
-      fmt::format("{} = {}{}{}\n", result.independent.name, time_text(state.t), second.empty() ? "" : " ", second);
-  const auto line = [&out](const std::string& name, const AgreedNumber& x, const std::string& unit) {
-    out += fmt::format("  {} = {}{}{}\n", name, digits_text(x), unit == "1" || unit.empty() ? "" : " ",
+  return fmt::format("{} = {}{}{}\n", result.independent.name, t, second.empty() ? "" : " ", second);
+}
+
+std::string state_text(const ExtendedState& state, const ExtendedResult& result) {
+  std::string out = moment_text(time_text(state.t), result);
+  const auto line = [&](const std::string& name, const AgreedNumber& x, const std::string& unit) {
+    const std::string number = state.compared || x.text.empty() ? digits_text(x) : x.text;
+    out += fmt::format("  {} = {}{}{}\n", name, number, unit == "1" || unit.empty() ? "" : " ",
                        unit == "1" ? "" : unit);
   };
   const std::size_t n = state.q.size();
@@ -94,6 +98,19 @@ Json state_json(const ExtendedState& state, const ExtendedResult& result) {
           {"digits", std::move(digits)}};
 }
 
+std::string statistics_text(const ExtendedResult& result) {
+  const ExtendedStatistics& s = result.statistics;
+  const std::string run =
+      fmt::format("{} steps of order {} with {} bits in {} s", s.steps, s.order, s.bits, brief(s.seconds));
+  if (result.ending == Ending::Interrupted)
+    return "How many of these digits are right is not known: the run was interrupted before the runs that tell it.\n" +
+           run + "\n";
+  return run + fmt::format("; digits on which {} steps of order {} in {} s and {} steps of order {} with {} bits in {} s "
+                           "agree\n",
+                           s.companion_steps, s.companion_order, brief(s.companion_seconds), s.check_steps,
+                           s.check_order, s.check_bits, brief(s.check_seconds));
+}
+
 }  // namespace
 
 std::string impulse_text(const std::string& number, const std::string& contact, const MechanicalSystem& system) {
@@ -110,15 +127,10 @@ std::string extended_text(const ExtendedResult& result, const MechanicalSystem& 
   out += happenings_text(result, system);
   for (const std::string& remark : result.remarks) out += "  " + remark + "\n";
   for (const ExtendedState& state : result.at)
-    out += state.reached ? state_text(state, result) : "a time asked for was not reached\n";
+    out += state.reached ? state_text(state, result) : moment_text(state.t.text, result) + "  not reached\n";
   const bool told = !result.at.empty() && result.at.back().reached && result.at.back().t.text == result.final.t.text;
   if (result.final.reached && !told) out += state_text(result.final, result);
-  const ExtendedStatistics& s = result.statistics;
-  return out + fmt::format(
-                   "{} steps of order {} with {} bits in {} s; digits on which {} steps of order {} in {} s and {} "
-                   "steps of order {} with {} bits in {} s agree\n",
-                   s.steps, s.order, s.bits, brief(s.seconds), s.companion_steps, s.companion_order,
-                   brief(s.companion_seconds), s.check_steps, s.check_order, s.check_bits, brief(s.check_seconds));
+  return out + statistics_text(result);
 }
 
 Json extended_document(const ExtendedResult& result, const std::string& precision, const MechanicalSystem& system) {

@@ -10,9 +10,9 @@
 namespace maupertuis::app {
 
 bool FieldTable::has_formulas_alone(Study& study) const {
-  const std::vector<std::string> formulas = columns_.formulas();
+  const WrittenColumns formulas = columns_.formulas(study);
   for (const std::string& name : columns_.names()) {
-    if (std::find(formulas.begin(), formulas.end(), name) != formulas.end()) continue;
+    if (formulas.count(name) != 0) continue;
     study.diagnostics().error("E0811", {}, fmt::format("--columns: `{}` is no formula of values of fields", name),
                               "The columns of a run with fields are formulas of values at places and of coordinates.",
                               "Write for example --columns \"u(3 m), u_x(1 m)\".");

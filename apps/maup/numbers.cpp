@@ -22,11 +22,17 @@ std::string place_of_no_number(const Json& value) {
   return {};
 }
 
-void tell(const std::string& what, Diagnostics& diagnostics, const std::string& further = {}) {
-  diagnostics.error("E0816", {}, fmt::format("{} is no finite number", what),
+void tell(const std::string& what, Diagnostics& diagnostics, const std::string& further = {},
+          std::optional<Span> span = {}) {
+  diagnostics.error("E0816", span, fmt::format("{} is no finite number", what),
                     "A quantity grew beyond the range of numbers, or a formula has no value there." +
                         (further.empty() ? further : " " + further),
                     "Change start, parameters or the length of the run so that it stays within 1e308.");
+}
+
+std::optional<Span> span_of(const std::string& column, const WrittenColumns& written) {
+  const auto found = written.find(column);
+  return found == written.end() ? std::nullopt : std::optional(found->second);
 }
 
 bool may_be_open(const std::string& column, std::span<const std::string> open) {
@@ -52,14 +58,32 @@ bool check_numbers(const Json& document, Diagnostics& diagnostics) {
 }
 
 bool check_numbers(const Trajectory& rows, Diagnostics& diagnostics, std::span<const std::string> open,
-                   const std::string& further) {
+                   const std::string& further, const WrittenColumns& written) {
   for (std::size_t column = 0; column < rows.columns.size(); ++column)
     if (const auto row = row_of_no_number(rows, column, open)) {
       tell(fmt::format("{} at {} = {}", rows.columns[column].name, rows.independent.name, brief(rows.times[*row])),
-           diagnostics, further);
+           diagnostics, further, span_of(rows.columns[column].name, written));
       return false;
     }
   return true;
+}
+
+bool check_picture(const Trajectory& rows, Diagnostics& diagnostics, const WrittenColumns& written) {
+  std::vector<std::string> with_gaps;
+  for (const auto& [name, span] : written) {
+    const auto column = rows.column(name);
+    const auto gap = column ? row_of_no_number(rows, *column, {}) : std::nullopt;
+    std::size_t row = 0;
+    while (gap && row < rows.rows() && !std::isfinite(rows.at(row, *column))) ++row;
+    if (!gap || row == rows.rows()) continue;
+    with_gaps.push_back(name);
+    diagnostics.note("N0819", span,
+                     fmt::format("{} at {} = {} is no finite number: its curve has a gap", name, rows.independent.name,
+                                 brief(rows.times[*gap])),
+                     "A formula has no value where it divides by 0 or takes the root of a negative number.",
+                     "Draw what stays finite, or begin the run where it is.");
+  }
+  return check_numbers(rows, diagnostics, with_gaps, {}, written);
 }
 
 Trajectory columns_of_numbers(const Trajectory& rows, std::span<const std::string> open) {

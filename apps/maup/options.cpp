@@ -26,7 +26,17 @@ Option* Option::one_of(std::initializer_list<const char*> words) {
   return own_->check(CLI::IsMember(std::vector<std::string>(words.begin(), words.end()))), this;
 }
 Option* Option::between(int least, int most) { return own_->check(CLI::Range(least, most)), this; }
-Option* Option::positive() { return own_->check(CLI::PositiveNumber), this; }
+Option* Option::positive() {
+  const auto problem = [](std::string& text) {
+    double value = 0;
+    return std::string(CLI::detail::lexical_cast(text, value) && value > 0 ? "" : text + " is no positive number");
+  };
+  return own_->check(CLI::Validator(problem, "POSITIVE")), this;
+}
+Option* Option::not_empty() {
+  own_->check(CLI::Validator([](std::string& text) { return std::string(text.empty() ? "nothing is written" : ""); }, ""));
+  return this;
+}
 Option* Option::delimiter(char separator) { return own_->delimiter(separator), this; }
 Option* Option::allow_extra_args(bool allowed) { return own_->allow_extra_args(allowed), this; }
 Option* Option::type_size(int arguments) { return own_->type_size(arguments), this; }

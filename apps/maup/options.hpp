@@ -31,6 +31,8 @@ class Option {
   Option* one_of(std::initializer_list<const char*> words);
   Option* between(int least, int most);
   Option* positive();
+  /// An empty text is refused, instead of being taken for an option that is not given.
+  Option* not_empty();
   /// One argument may hold several values, parted by `separator`.
   Option* delimiter(char separator);
   /// False: each value of a list wants the option written before it.

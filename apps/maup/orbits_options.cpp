@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace maupertuis::app {
 namespace {
 
@@ -64,6 +66,12 @@ void check_orbits_options(const OrbitsOptions& o, Diagnostics& diagnostics) {
   if (const auto interval = time_of(o.interval); interval && !(*interval > 0))
     diagnostics.error("E0809", {}, fmt::format("--interval \"{}\" is no time that passes.", *o.interval),
                       "Directions are orthogonalized each time that it has passed.", "Write one such as 0.5s.");
+  if (const auto longest = time_of(o.longest); longest && !(*longest > 0))
+    diagnostics.error("E0809", {}, fmt::format("--longest \"{}\" is no time that passes.", *o.longest),
+                      "A motion is followed so long at most.", "Write one such as 100s, or leave it out.");
+  if (o.energy && !std::isfinite(*o.energy))
+    diagnostics.error("E0809", {}, "--energy is no finite number.", "Motions of a section share one energy.",
+                      "Write it in J, such as --energy 0.125.");
   if (!o.section.empty() && o.strobe)
     diagnostics.error("E0809", {}, "--section and --strobe exclude each other.",
                       "One looks at the motion where it is, the other when it is time.", "Give one of them.");

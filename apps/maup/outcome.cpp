@@ -83,8 +83,8 @@ ExitCode finish_usage(Console& console, Study& study, const char* command) {
 }
 
 bool write_rows(const std::string& path, const Trajectory& rows, Diagnostics& diagnostics,
-                std::span<const std::string> open) {
-  if (path.empty()) return check_numbers(rows, diagnostics, open);
+                std::span<const std::string> open, const WrittenColumns& written) {
+  if (path.empty()) return check_numbers(rows, diagnostics, open, {}, written);
   const Saving saving(path);
   Diagnostics none;
   const bool numbers = check_numbers(rows, none, open);
@@ -93,7 +93,8 @@ bool write_rows(const std::string& path, const Trajectory& rows, Diagnostics& di
   if (!numbers)
     check_numbers(rows, diagnostics, open,
                   nothing_left ? fmt::format("No column is left, and {} was not written.", path)
-                               : fmt::format("Columns that hold such a value are left out of {}.", path));
+                               : fmt::format("Columns that hold such a value are left out of {}.", path),
+                  written);
   if (nothing_left) return false;
   const std::string failure = write_trajectory(numbers ? rows : kept, path);
   if (!failure.empty()) cannot_write(failure, diagnostics);

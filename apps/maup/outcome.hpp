@@ -2,6 +2,7 @@
 #include "console.hpp"
 #include "exit_code.hpp"
 #include "json.hpp"
+#include "numbers.hpp"
 #include "open_study.hpp"
 
 #include <maupertuis/trajectory.hpp>
@@ -44,7 +45,7 @@ bool write_picture(const std::string& path, const std::string& svg, Diagnostics&
 /// The same for rows, in the format of the ending; an empty path asks for nothing. Columns of the names `open` may hold
 /// what is no finite number; others that do are told (E0816) and left out, and no file is written where none is left.
 bool write_rows(const std::string& path, const Trajectory& rows, Diagnostics& diagnostics,
-                std::span<const std::string> open = {});
+                std::span<const std::string> open = {}, const WrittenColumns& written = {});
 /// N0844: a drawing whose frames do not follow the motion.
 void note_moments_only(Diagnostics& diagnostics);
 /// The diagnostic of it; `failure` is the sentence of the writer.

@@ -15,6 +15,18 @@ namespace {
 
 constexpr std::size_t size_limit = 64u << 20;
 
+/// A name in messages stays on its line.
+std::string on_one_line(std::string_view name) {
+  std::string out;
+  for (const char c : visible(name)) {
+    if (c == '\n' || c == '\t')
+      out += c == '\n' ? "\\n" : "\\t";
+    else
+      out += c;
+  }
+  return out;
+}
+
 /// The file of the same folder whose name is nearest to a misspelt path.
 std::string nearest_file(const std::string& path) {
   namespace fs = std::filesystem;
@@ -42,8 +54,8 @@ void cannot_open(const std::string& path, int error, Diagnostics& diagnostics) {
 /// A name that is not what it seems is told with every file that has one.
 void warn_of_letters(const std::string& path, Diagnostics& diagnostics) {
   const std::string name = std::filesystem::path(path).filename().string(), foreign = foreign_letter(name);
-  if (visible(name) != name)
-    diagnostics.warning("W0817", {}, fmt::format("the name of the file is shown as {}", visible(name)),
+  if (on_one_line(name) != name)
+    diagnostics.warning("W0817", {}, fmt::format("the name of the file is shown as {}", on_one_line(name)),
                         "It holds characters that a terminal carries out instead of showing them.", "Rename it.");
   else if (!foreign.empty())
     diagnostics.warning("W0817", {}, fmt::format("the name of the file mixes two alphabets: {}", foreign),
@@ -52,7 +64,7 @@ void warn_of_letters(const std::string& path, Diagnostics& diagnostics) {
 
 }  // namespace
 
-std::string display_name(const std::string& path) { return path == "-" ? "standard input" : path; }
+std::string display_name(const std::string& path) { return path == "-" ? "standard input" : on_one_line(path); }
 
 std::string read_file(const std::string& path, Diagnostics& diagnostics) {
   std::error_code error;

@@ -22,8 +22,10 @@ struct ExtendedSimulationOptions {
   std::function<void(double)> progress;
 };
 
+/// Numbers that were not `compared`, since the run was interrupted before, have 17 digits of the run to read, and 0 of
+/// which it is known that they are right.
 struct ExtendedState {
-  bool reached = false;
+  bool reached = false, compared = false;
   AgreedNumber t;                    // s
   std::vector<AgreedNumber> q, v;    // [n] SI
   std::vector<AgreedNumber> points;  // coordinates of the points

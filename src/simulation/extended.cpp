@@ -87,6 +87,9 @@ class ExtendedRun {
         0,           0};
     tell_ending(rough);
     out_.at.resize(options_.at.size());
+    for (std::size_t i = 0; i < out_.at.size(); ++i)  // also where it is not reached
+      out_.at[i].t.text = fmt::format("{}", options_.at[i].to_double());
+    if (out_.ending == Ending::Interrupted) keep_without_digits(rough);
     if (out_.ending == Ending::Interrupted || !rough.final.reached) return std::move(out_);
     end_with(rough);
     begin = Clock::now();
@@ -104,6 +107,23 @@ class ExtendedRun {
   }
 
  private:
+  /// States that were asked for and reached: how many of their digits are right is not known.
+  void keep_without_digits(const ExtendedMotion& rough) {
+    for (std::size_t i = 0; i < rough.at.size(); ++i)
+      if (rough.at[i].reached) out_.at[plan_.order_of_times[i]] = as_it_is(rough.at[i]);
+  }
+
+  ExtendedState as_it_is(const ExtendedSample& s) const {
+    constexpr int shown = 17;
+    const auto open = [](AgreedNumber& x) { x.digits = 0; };
+    ExtendedState out = agreed({s, s, s}, shown);
+    out.compared = false;
+    for (std::vector<AgreedNumber>* values : {&out.q, &out.v, &out.points, &out.reactions})
+      std::for_each(values->begin(), values->end(), open);
+    open(out.energy);
+    return out;
+  }
+
   /// Where the first run could not go on, the others end at the same time.
   void end_with(const ExtendedMotion& rough) {
     if (rough.ending == StepEnding::None) return;
@@ -186,10 +206,12 @@ class ExtendedRun {
   }
 
   void compare(const ExtendedMotion& rough, const ExtendedMotion& companion, const ExtendedMotion& fine) {
-    for (std::size_t i = 0; i < rough.at.size(); ++i)
-      out_.at[plan_.order_of_times[i]] = agreed({rough.at[i], companion.at[i], fine.at[i]});
     tell_other_ending(rough, companion, "the companion of another order that tells the digits");
     tell_other_ending(rough, fine, fmt::format("the check in {} bits that tells the digits", level_.check_bits));
+    if (out_.ending == Ending::Interrupted) keep_without_digits(rough);
+    for (std::size_t i = 0; i < rough.at.size(); ++i)
+      if (const ExtendedState told = agreed({rough.at[i], companion.at[i], fine.at[i]}); told.reached)
+        out_.at[plan_.order_of_times[i]] = told;
     if (out_.ending == Ending::Interrupted) return;
     const ExtendedState final = agreed({rough.final, companion.final, fine.final});
     const bool together = out_.ok() || final.t.digits >= digits_of_one_end;
@@ -356,33 +378,35 @@ class ExtendedRun {
   };
 
   /// The digits of `fine` that neither of the others contradicts.
-  AgreedNumber agreed(const std::string& rough, const std::string& companion, const std::string& fine) const {
+  AgreedNumber agreed(const std::string& rough, const std::string& companion, const std::string& fine,
+                      std::optional<int> most = {}) const {
     if (rough.empty() || fine.empty()) return {};
     if (companion.empty()) return {"0", 0, "more than can be told: one of them has no value here"};
-    const AgreedNumber first = agreed_number(rough, fine, level_.digits),
-                       second = agreed_number(companion, fine, level_.digits);
+    const AgreedNumber first = agreed_number(rough, fine, most.value_or(level_.digits)),
+                       second = agreed_number(companion, fine, most.value_or(level_.digits));
     return first.digits <= second.digits ? first : second;
   }
 
   std::vector<AgreedNumber> agreed(const Samples& s, const std::vector<std::string> ExtendedSample::*values,
-                                   std::size_t first, std::size_t count) const {
+                                   std::size_t first, std::size_t count, std::optional<int> most = {}) const {
     std::vector<AgreedNumber> out;
     for (std::size_t i = first; i < first + count; ++i)
-      out.push_back(agreed((s.rough.*values)[i], (s.companion.*values)[i], (s.fine.*values)[i]));
+      out.push_back(agreed((s.rough.*values)[i], (s.companion.*values)[i], (s.fine.*values)[i], most));
     return out;
   }
 
-  ExtendedState agreed(const Samples& s) const {
+  /// `most`: digits; of the precision without it.
+  ExtendedState agreed(const Samples& s, std::optional<int> most = {}) const {
     ExtendedState out;
     if (!s.rough.reached || !s.companion.reached || !s.fine.reached) return out;
     const std::size_t n = s.rough.q.size();
-    out.reached = true;
+    out.reached = out.compared = true;
     out.t = agreed(s.rough.t, s.companion.t, s.fine.t);
-    out.q = agreed(s, &ExtendedSample::q, 0, n);
-    out.v = agreed(s, &ExtendedSample::v, 0, n);
-    out.energy = agreed(s, &ExtendedSample::observables, 0, 1).front();
-    out.points = agreed(s, &ExtendedSample::observables, 1, plan_.points);
-    out.reactions = agreed(s, &ExtendedSample::observables, 1 + plan_.points, plan_.reactions);
+    out.q = agreed(s, &ExtendedSample::q, 0, n, most);
+    out.v = agreed(s, &ExtendedSample::v, 0, n, most);
+    out.energy = agreed(s, &ExtendedSample::observables, 0, 1, most).front();
+    out.points = agreed(s, &ExtendedSample::observables, 1, plan_.points, most);
+    out.reactions = agreed(s, &ExtendedSample::observables, 1 + plan_.points, plan_.reactions, most);
     for (const Observables::Dependence& d : observables_.dependences)
       if (s.rough.multipliers[d.constraint].empty())
         out.reactions[d.observable - observables_.energy_terms - plan_.points] = {};

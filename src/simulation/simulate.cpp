@@ -153,6 +153,7 @@ class Run {
       return backwards ? options_.at[a] > options_.at[b] : options_.at[a] < options_.at[b];
     });
     answers_.resize(options_.at.size());
+    for (std::size_t i = 0; i < answers_.size(); ++i) answers_[i].t = options_.at[i];  // also where it is not reached
     if (probe_) probe_->values.assign(options_.at.size(), {});
   }
 

@@ -115,9 +115,9 @@ Name ExpressionParser::new_name(std::string_view what) {
   return {std::string(token.text), token.span};
 }
 
-Name ExpressionParser::used_name(std::string_view what) {
+Name ExpressionParser::used_name(std::string_view what, std::string help) {
   const Token& token = peek();
-  if (token.kind != Token::Kind::Name || is_clause_word(token.text)) fail_expected(what);
+  if (token.kind != Token::Kind::Name || is_clause_word(token.text)) fail_expected(what, std::move(help));
   next();
   return {std::string(token.text), token.span};
 }

@@ -129,8 +129,36 @@ expectation::Kind StatementParser::expect_until() {
   return expectation::UntilAt{expected_number()};
 }
 
+/// θ(3) = 0.1: a value at a time, as books write it.
+void StatementParser::refuse_time_in_brackets() {
+  const Token& name = peek();
+  const Declarations::Kind kind = context_.declarations.kind(name.text);
+  if (kind != Declarations::Kind::Coordinate && kind != Declarations::Kind::Angle) return;
+  std::size_t i = 1;
+  while (peek(i).is("'")) ++i;
+  const std::size_t open = i;
+  if (!peek(open).is("(") || !peek(open).attached || peek(open + 1).kind != Token::Kind::Number) return;
+  while (peek(i).kind != Token::Kind::End && !peek(i).is(")")) ++i;
+  if (!peek(i).is(")") || !peek(i + 1).is("=")) return;
+  const std::string subject = text_of(cover(name.span, peek(open - 1).span));
+  fail("E0121", cover(name.span, peek(i).span),
+       fmt::format("`{}` would be a product", text_of(cover(name.span, peek(i).span))),
+       fmt::format("{} depends on time by itself; a value at a time is asked for with `at`.", subject),
+       fmt::format("Write {} at 3 s = ….", subject));
+}
+
+/// What is expected without its `=`.
+void StatementParser::refuse_half(bool claim, const std::string& subject) {
+  fail_expected("`=` after what is expected",
+                claim               ? fmt::format("Write both sides of the equation, such as claim {} = 0.", subject)
+                : peek().is("is") ? fmt::format("Write expect conserved {0}, or expect {0} at 3 s = ….", subject)
+                                    : fmt::format("Write for example expect {0} at 3 s = …, or expect conserved {0}.",
+                                                  subject));
+}
+
 // θ at 10 s = 0.5 rad ± 1e-9,   x^2 + y^2 not conserved,   T = 3 J ± 1e-9,   claim θ'' = -g/l sin θ
 expectation::Kind StatementParser::expect_value(bool claim) {
+  refuse_time_in_brackets();
   const ExpressionPtr subject = formula();
   if (accept("not")) {
     if (!peek().is("conserved")) fail_expected("`conserved` after `not`");
@@ -140,6 +168,7 @@ expectation::Kind StatementParser::expect_value(bool claim) {
   const bool timed = accept("at");
   const bool until = timed && accept("until");
   const ExpressionPtr time = timed && !until ? quantity() : nullptr;
+  if (!timed && !peek().is("=")) refuse_half(claim, text_of(*subject));
   expect("=", timed ? "the time" : "what is expected");
   if (claim && !timed) return Equation{subject, formula()};
   expectation::Number number;

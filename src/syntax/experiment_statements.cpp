@@ -13,6 +13,9 @@ StartStatement::Item StatementParser::assignment(bool at_places) {
       !(at_places && kind == Expression::Kind::Call)) {
     fail("E0111", item.variable->span, "expected a coordinate or its velocity before `=`");
   }
+  if (peek().is(":"))
+    fail_expected(fmt::format("`=` after `{}`", text_of(*item.variable)),
+                  fmt::format("A start value has the sign `=`: write {} = ….", text_of(*item.variable)));
   if (peek().is("("))
     fail_expected(fmt::format("`=` after `{}`", text_of(*item.variable)),
                   fmt::format("The start is the beginning of the run: write {} = ….", text_of(*item.variable)));
@@ -37,6 +40,9 @@ StatementBody StatementParser::start_statement() {
 // 10 s,   until P.y = 0 within 60 s; the limit is left out at most
 RunStatement StatementParser::run_length() {
   RunStatement run;
+  if (peek().is("from"))
+    fail_expected("how long the run is",
+                  "A run begins at the start of the model: write run 3 s; `start at 1 s` begins at another time.");
   if (!accept("until")) {
     run.duration = quantity();
     return run;

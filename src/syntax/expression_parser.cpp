@@ -241,6 +241,7 @@ ExpressionParser::Node ExpressionParser::name() {
   node->name_span = token.span;
   if (peek().is("[") && token.is("pi")) return with_bracketed_unit(std::move(node));
   if (peek().is("[")) {
+    refuse_brackets_of_function(token);
     fail("E0119", peek().span, fmt::format("a unit in square brackets cannot follow `{}`", token.text),
          "A name has its unit from its declaration; in formulas only numbers are given units.",
          "Write the unit after a number: 3 [J].");
@@ -296,6 +297,21 @@ void ExpressionParser::check_application(const Token& name) {
   if (kind != Declared::None || is_predefined(name.text) || energy_of(name.text) || is_momentum(name.text)) return;
   if (name.is("i") && context_.declarations.complex()) return;
   unknown_before_bracket(name);
+}
+
+// Cos[θ], as one writes for another program.
+void ExpressionParser::refuse_brackets_of_function(const Token& name) {
+  std::string lower(name.text);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const Function* function = find_function(lower);
+  if (!function) return;
+  std::size_t i = 1;
+  while (peek(i).kind != Token::Kind::End && !peek(i).is("]")) ++i;
+  const std::string argument = i > 1 && peek(i).is("]") ? text_of(cover(peek(1).span, peek(i - 1).span)) : "…";
+  fail("E0119", peek().span, fmt::format("`{}` is followed by square brackets", name.text),
+       "Arguments of functions stand in round brackets; square ones hold a unit.",
+       fmt::format("Write {}({}).", function->name, argument));
 }
 
 // mgl(1 - cos θ), arctan(x), sine(x): what it was meant to be, with the text to write.

@@ -59,7 +59,7 @@ class ExpressionParser {
   /// A name that this statement declares; reserved words are refused.
   Name new_name(std::string_view what);
   /// A name that is used.
-  Name used_name(std::string_view what);
+  Name used_name(std::string_view what, std::string help = {});
 
   // ---------------------------------------------------------------------------------------------- formulas
   Node formula() { return sum(); }
@@ -112,6 +112,7 @@ class ExpressionParser {
   void check_number(const Token& token);
   void check_application(const Token& name);
   [[noreturn]] void unknown_before_bracket(const Token& name);
+  void refuse_brackets_of_function(const Token& name);
   std::string text_to_closing_bracket() const;
   bool is_momentum(std::string_view name) const;
   void lint_product(const Expression& left, Operator op, const Expression& right);

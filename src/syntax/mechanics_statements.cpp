@@ -226,7 +226,8 @@ StatementBody StatementParser::force_statement() {
     force.target = ForceStatement::Target::Point;
     force.on = used_name("the name of a point or body");
   } else {
-    force.on = used_name("`on` and a point, or the name of a coordinate");
+    force.on = used_name("`on` and a point, or the name of a coordinate",
+                         "Write force q = … along a coordinate q, or force on P = (…) at a point.");
   }
   if (accept("in")) force.in = used_name("the name of a frame");
   expect("=", fmt::format("`{}`", force.on.text));

@@ -126,6 +126,31 @@ std::string_view meant_by(std::string_view word) {
 
 }  // namespace
 
+/// A line that is an equation, of motion or between coordinates, or gives a force; empty for others.
+std::string StatementParser::help_for_equation() const {
+  const auto& tokens = context_.list.tokens;
+  std::size_t equals = index_;
+  bool second_derivative = false;
+  for (; equals < end_ && !tokens[equals].is("="); ++equals) {
+    const bool twice = equals + 1 < end_ && tokens[equals].is("'") && tokens[equals + 1].is("'");
+    second_derivative = second_derivative || twice;
+  }
+  if (equals == end_) return {};
+  const std::string line = text_of(cover(tokens[index_].span, tokens[end_ - 1].span));
+  if (second_derivative)
+    return fmt::format("Equations of motion follow from the energies; to have one checked, write claim {}.", line);
+  const std::string_view word = tokens[index_].text;
+  if (equals > index_ + 1 && !tokens[index_ + 1].is("'"))
+    return fmt::format("A condition that the motion keeps is `constraint {}`; an equation of motion that is to be "
+                       "checked is a `claim`.",
+                       line);
+  if (equals == index_ + 1 && (word[0] == 'F' || word[0] == 'Q'))
+    return fmt::format("A force along a coordinate q is written `force q = …`, on a point `force on P = (…)`; a "
+                       "definition `let {} = …`.",
+                       word);
+  return {};
+}
+
 void StatementParser::unknown_statement() {
   const Token& word = peek();
   if (word.kind != Token::Kind::Name) {
@@ -145,6 +170,8 @@ void StatementParser::unknown_statement() {
   std::string help;
   if (!near.empty()) {
     help = fmt::format("Did you mean `{}`?", near);
+  } else if (std::string of_equation = help_for_equation(); !of_equation.empty()) {
+    help = std::move(of_equation);
   } else if (equation) {
     help = fmt::format("A definition is `let {0} = …`, a parameter `param {0} = …`, an initial value `start {0} = …`.",
                        word.text);
@@ -152,6 +179,18 @@ void StatementParser::unknown_statement() {
     help = "Statements begin with param, coord, let, point, T, V, force, start, run, …; a continued line is indented.";
   }
   fail("E0110", word.span, fmt::format("`{}` does not begin a statement", word.text), "", std::move(help));
+}
+
+// m = 1 kg g = 9.81 m/s^2: the name of the next item was read as a unit, or as a factor, of this one.
+void StatementParser::refuse_missing_comma() {
+  const Token& name = previous();
+  if (!peek().is("=") || name.kind != Token::Kind::Name || index_ < begin_ + 3) return;
+  const Token& before = context_.list.tokens[index_ - 2];
+  const bool ends_value = before.kind == Token::Kind::Number || before.kind == Token::Kind::Name || before.is(")") ||
+                          before.is("]") || before.is("'");
+  if (!ends_value) return;
+  fail("E0111", name.span, fmt::format("a comma is missing before `{}`", name.text),
+       "The items of a list are separated by commas.", fmt::format("Write …, {} = ….", name.text));
 }
 
 // After a mistake in the item that begins at `first`: to the comma before the next `name =` or `name :`, outside
@@ -176,6 +215,11 @@ StatementBody StatementParser::system_statement() {
   SystemStatement system;
   system.name = new_name("the name of the system");
   if (peek().kind == Token::Kind::String) system.title = next().text;
+  if (peek().kind == Token::Kind::Name && !peek().is("source"))
+    fail("E0111", peek().span, fmt::format("the statement should end before {}", describe(peek())),
+         "The name of a system is one word.",
+         fmt::format("Write {0}_{1}, or give a title in quotes: system {0} \"{0} {1}\".", system.name.text,
+                     peek().text));
   return system;
 }
 
@@ -227,6 +271,11 @@ void StatementParser::coordinate_without_kind(const Name& name) {
        fmt::format("Write {0} : angle, {0} : length, {0} : charge, {0} : number or {0} : [unit].", name.text));
 }
 
+static bool is_word_of_angles(std::string_view word) {
+  constexpr std::string_view all[] = {"degrees", "degree", "deg", "radians", "radian", "rad"};
+  return std::find(std::begin(all), std::end(all), word) != std::end(all);
+}
+
 // After the colon: angle, length, charge, number or a unit in brackets.
 void StatementParser::kind_of(const Name& name, const char* what, Name& kind, std::optional<UnitExpression>& unit) {
   if (peek().is("[")) {
@@ -241,8 +290,10 @@ void StatementParser::kind_of(const Name& name, const char* what, Name& kind, st
          fmt::format("expected the kind of {} {}, found {}", *what == 'i' ? "an" : "a", what, describe(word)),
          fmt::format("{} {} is an angle, a length, a charge, a number, or has a unit in brackets.",
                      *what == 'i' ? "An" : "A", what),
-         !near.empty() ? fmt::format("Did you mean `{}`?", near)
-                       : fmt::format("Write for example {0} : length, or {0} : [m].", name.text));
+         is_word_of_angles(word.text) ? fmt::format("Write {} : angle; angles are in rad, and 60 deg is a value of one.",
+                                                    name.text)
+         : !near.empty() ? fmt::format("Did you mean `{}`?", near)
+                         : fmt::format("Write for example {0} : length, or {0} : [m].", name.text));
   }
   kind = {std::string(next().text), word.span};
 }

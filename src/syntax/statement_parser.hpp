@@ -35,6 +35,7 @@ class StatementParser : private ExpressionParser {
   };
   static std::span<const Entry> table();
   [[noreturn]] void unknown_statement();
+  std::string help_for_equation() const;
   [[noreturn]] void coordinate_without_kind(const Name& name);
   void kind_of(const Name& name, const char* what, Name& kind, std::optional<UnitExpression>& unit);
   Statement complete(StatementBody body, std::size_t first) const;
@@ -154,6 +155,7 @@ class StatementParser : private ExpressionParser {
       try {
         item();
         refuse_decimal_comma();
+        refuse_missing_comma();
         if (!at_end() && !peek().is(",")) expect_end();
       } catch (const Abandoned&) {
         failed = true;
@@ -163,6 +165,9 @@ class StatementParser : private ExpressionParser {
     if (failed) throw Abandoned{};
   }
   void skip_item(std::size_t first);
+  void refuse_missing_comma();
+  void refuse_time_in_brackets();
+  [[noreturn]] void refuse_half(bool claim, const std::string& subject);
 };
 
 }  // namespace maupertuis::syntax

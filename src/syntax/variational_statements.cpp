@@ -11,7 +11,11 @@ StatementBody StatementParser::constraint_statement() {
   ConstraintStatement constraint;
   constraint.integral =
       peek().is("integral") && !peek(1).is("=") && !context_.declarations.contains("integral") && accept("integral");
+  if (peek().is(":")) fail_expected("an equation", "No colon stands here: write constraint x^2 + y^2 = l^2.");
   constraint.left = formula();
+  if (at_end())
+    fail_expected("`=` after the left side of the constraint",
+                  fmt::format("Write constraint {} = 0.", text_of(*constraint.left)));
   expect("=", "the left side of the constraint");
   constraint.right = quantity();
   if (accept("name")) constraint.name = new_name("the name of the constraint");

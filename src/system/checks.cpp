@@ -39,7 +39,27 @@ std::string doubt_about_unit(Elaboration& e, const Expression& x) {
   add_constants(e, x, constants);
   if (constants.size() != 1) return {};
   const auto& [name, dimension] = *constants.begin();
-  return fmt::format(" Or the unit of `{}`, {}, is another than was meant.", name, to_string(dimension));
+  const Dimension rate = Dimension{} / dimensions::time();
+  const bool milliseconds = dimension.same_as(rate) || dimension.same_as(rate * rate);  // 9.81 ms^-2
+  return fmt::format(" Or the unit of `{}`, {}, is another than was meant{}.", name, to_string(dimension),
+                     milliseconds ? ": ms is a millisecond, and m s a metre times a second" : "");
+}
+
+/// 2 m (sin θ, cos θ) where m is a mass: "Write 2 [m] …"; empty where no unit in the place of a name fits.
+std::string unit_that_is_a_name(Elaboration& e, const Value& v, const Dimension& expected, const Expression& x) {
+  using Kind = Expression::Kind;
+  if (x.kind == Kind::Binary && x.op == syntax::Operator::Juxtapose && x.arguments[0]->kind == Kind::Number &&
+      x.arguments[1]->kind == Kind::Name) {
+    const std::string& name = x.arguments[1]->text;
+    const auto unit = find_unit(name);
+    const Value meant = evaluate_formula(e, *x.arguments[1]);  // no new message can come of it
+    if (unit && !meant.poisoned && (v.dimension / meant.dimension * unit->dimension).same_as(expected))
+      return fmt::format("Here `{0}` is the name of the model; with the unit it is written {1} [{0}].", name,
+                         x.arguments[0]->text);
+  }
+  for (const syntax::ExpressionPtr& a : x.arguments)
+    if (std::string found = unit_that_is_a_name(e, v, expected, *a); !found.empty()) return found;
+  return {};
 }
 
 /// 0.3, -9.81, (0, -9.81)
@@ -61,6 +81,7 @@ std::string advice_on(Elaboration& e, const Value& v, const Dimension& expected,
                        formula ? "[" + unit + "]" : unit);
   }
   if (x.kind == Expression::Kind::Quantity || x.kind == Expression::Kind::Number) return "";
+  if (std::string unit = unit_that_is_a_name(e, v, expected, x); !unit.empty()) return unit;
   const bool bare = v.dimension.same_as(Dimension{}), mass = (v.dimension * dimensions::mass()).same_as(expected),
              length = (v.dimension * dimensions::length()).same_as(expected);
   const std::string name = bare || mass || length ? bare_name(e, x) : std::string();
@@ -71,7 +92,7 @@ std::string advice_on(Elaboration& e, const Value& v, const Dimension& expected,
   const std::string advice = dimension_advice(v.dimension, expected);
   const Dimension more = v.dimension * dimensions::length(), less = v.dimension / dimensions::length();
   const bool by_a_length = more.same_as(expected) || less.same_as(expected);  // N for N/m
-  return by_a_length && v.order == 0 ? advice + doubt_about_unit(e, x) : advice;
+  return by_a_length && v.order <= 0 ? advice + doubt_about_unit(e, x) : advice;
 }
 
 }  // namespace

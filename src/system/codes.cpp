@@ -69,6 +69,20 @@ constexpr CodeEntry kEntries[] = {
      "are of moderate size.",
      "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nV = 1 [N] x * 10^5000\n",
      "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nV = 1 [N] x * 10^5\n"},
+    {"N0252", "an expected value that does not exist with these parameters",
+     "`expect frequencies : sqrt(Ω^2 - k)` says something where Ω² > k. With other values of the parameters, by --set "
+     "or in a sweep, the expectation fails in `test`; everything else of the model is computed as ever.",
+     "dimensionless\nparam k = 1, Ω = 0.9\ncoord x : number\nL = 1/2 x'^2 - 1/2 k x^2\nexpect frequencies at x = 0 : "
+     "sqrt(Ω^2 - k)\n",
+     "dimensionless\nparam k = 1, Ω = 1.5\ncoord x : number\nL = 1/2 x'^2 - 1/2 k x^2\nexpect frequencies at x = 0 : "
+     "sqrt(Ω^2 - k)\n"},
+    {"E0253", "the condition that is to end a run does not depend on the motion",
+     "`run until A = B` ends where A - B passes zero. Where it is made of numbers and parameters alone, or vanishes "
+     "always as x - x does, it marks no moment.",
+     "coord x : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\nstart x = 1 m\n"
+     "run until x = x within 10 s\n",
+     "coord x : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\nstart x = 1 m\n"
+     "run until x = 0 m within 10 s\n"},
     {"E0219", "division by zero", "A quotient by zero and a negative power of zero have no value.",
      "coord x : length\nparam m = 1 kg\nT = m x'^2/0\n", "coord x : length\nparam m = 1 kg\nT = m x'^2/2\n"},
     {"E0220", "the dissipation function is given beside dampers",

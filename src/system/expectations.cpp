@@ -47,7 +47,7 @@ std::optional<expectation::Tolerance> tolerance_of(Elaboration& e, const syntax:
 
 std::optional<expectation::Number> expected_number(Elaboration& e, const written::Number& number,
                                                    const Dimension& dimension, const std::string& what) {
-  const Value value = constant_of(e, *number.value, dimension, what);
+  const Value value = expected_constant_of(e, *number.value, dimension, what);
   if (value.poisoned) return std::nullopt;
   warn_of_degrees(e, value, dimension, *number.value);
   const expectation::DisplayUnit unit = display_unit(e, *number.value, dimension).value_or(expectation::DisplayUnit{});
@@ -351,7 +351,7 @@ Expected meaning_of(Elaboration& e, const written::Frequencies& x, Span) {
   out.squared = x.squared;
   bool good = point.has_value();
   for (const auto& value : x.values) {
-    const Value v = constant_of(e, *value, dimension, x.squared ? "the square of a frequency" : "a frequency");
+    const Value v = expected_constant_of(e, *value, dimension, x.squared ? "the square of a frequency" : "a frequency");
     good = good && !v.poisoned;
     if (const auto unit = display_unit(e, *value, dimension)) out.unit = *unit;
     if (v.poisoned) continue;

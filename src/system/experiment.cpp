@@ -76,11 +76,26 @@ void duplicate_start(Elaboration& e, Span second, Span first) {
 
 namespace {
 
-Value known_before_the_run(Elaboration& e, const Value& v, const Expression& x, const std::string& what) {
+/// What stands in a model, and there has a value; or what is expected, which may have none with other parameters.
+enum class Existence { Needed, OfExpectation };
+
+bool exists(Elaboration& e, Expr value, const Expression& x, const std::string& what, Existence existence) {
+  if (existence == Existence::Needed) return is_finite(e, value, x, what);
+  const std::optional<double> size = constant_value(e, value);
+  if (size && !std::isfinite(*size))
+    e.diagnostics.note("N0252", x.span, fmt::format("{} that is expected has no value with these parameters", what),
+                       "It is a division by zero, a root of a negative number, or beyond 1e308: the expectation fails, "
+                       "and nothing else depends on it.",
+                       "");
+  return true;
+}
+
+Value known_before_the_run(Elaboration& e, const Value& v, const Expression& x, const std::string& what,
+                           Existence existence = Existence::Needed) {
   if (v.poisoned) return v;
   for (const Expr& part : v.parts) {
     if (!e.context.depends_on_time(part.id())) {
-      if (!is_finite(e, part, x, what)) return Value::poison();
+      if (!exists(e, part, x, what, existence)) return Value::poison();
       continue;
     }
     const Span at = culprit_of_order(e, x, 0);
@@ -97,6 +112,12 @@ Value constant_of(Elaboration& e, const Expression& x, const Dimension& expected
   Place place;
   place.inline_constants = true;
   return known_before_the_run(e, scalar_of(e, x, expected, what, place), x, what);
+}
+
+Value expected_constant_of(Elaboration& e, const Expression& x, const Dimension& expected, const std::string& what) {
+  Place place;
+  place.inline_constants = true;
+  return known_before_the_run(e, scalar_of(e, x, expected, what, place), x, what, Existence::OfExpectation);
 }
 
 Value constant_vector_of(Elaboration& e, const Expression& x, const Dimension& expected, const std::string& what) {
@@ -207,6 +228,11 @@ void run(Elaboration& e, const syntax::RunStatement& s) {
   if (!s.within) x.within = e.number(usual_limit);
   if (!within.poisoned) x.within = within.scalar();
   x.until = condition(e, *s.until_left, *s.until_right, "a run ends");
+  if (x.until && !e.context.depends_on_time(x.until.id()))
+    e.diagnostics.error("E0253", cover(s.until_left->span, s.until_right->span),
+                        "the condition of `run until` does not depend on the motion",
+                        "Both sides are equal always, or never: it marks no moment of the run.",
+                        "Write for example run until x = 0 within 10 s.");
 }
 
 void output(Elaboration& e, const syntax::OutputStatement& s) {
@@ -247,6 +273,17 @@ const Parameter* swept_parameter(Elaboration& e, const Expression& x) {
   return nullptr;
 }
 
+/// E0403 for the end of a sweep that takes a mass below 0.
+bool is_mass_that_may_be(Elaboration& e, const Parameter& parameter, const Value& end, const Expression& x) {
+  if (e.dimensionless || !(parameter.dimension == dimensions::mass())) return true;
+  const std::optional<double> size = constant_value(e, end.scalar());
+  if (!size || *size >= 0) return true;
+  e.diagnostics.error("E0403", x.span, fmt::format("the sweep makes the mass `{}` negative", parameter.name),
+                      "Masses are positive: a negative one would gain speed against every force.",
+                      "Begin and end it at positive values.");
+  return false;
+}
+
 void sweep(Elaboration& e, const syntax::SweepStatement& s, Span span) {
   const Parameter* parameter = swept_parameter(e, *s.variable);
   if (!parameter) return;
@@ -257,6 +294,7 @@ void sweep(Elaboration& e, const syntax::SweepStatement& s, Span span) {
   const Value steps =
       s.steps ? constant_of(e, *s.steps, Dimension{}, "the number of values of a sweep") : Value::poison();
   if (from.poisoned || to.poisoned || (s.steps && steps.poisoned)) return;
+  if (!is_mass_that_may_be(e, *parameter, from, *s.from) || !is_mass_that_may_be(e, *parameter, to, *s.to)) return;
   const double count = s.steps ? constant_value(e, steps.scalar()).value_or(0) : usual_count;
   constexpr double most = 1e6;
   if (!(count >= 2 && count <= most && count == std::floor(count))) {

@@ -20,7 +20,7 @@ std::optional<expectation::Spectrum> spectrum(Elaboration& e, const written::Spe
   bool good = true;
   const auto part = [&](const syntax::ExpressionPtr& value) {
     if (!value) return e.number(0);
-    const Value v = constant_of(e, *value, dimension, what);
+    const Value v = expected_constant_of(e, *value, dimension, what);
     good = good && !v.poisoned;
     if (const auto unit = display_unit(e, *value, dimension)) out.unit = *unit;
     return v.poisoned ? e.number(0) : v.scalar();

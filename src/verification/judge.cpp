@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace maupertuis {
@@ -121,9 +122,17 @@ std::string ended_before(const std::string& reason) {
   return "The run ended before: " + reason + (reason.ends_with('.') ? "" : ".");
 }
 
+bool expected_exists(std::span<const double> expected, ExpectationResult& result) {
+  if (std::all_of(expected.begin(), expected.end(), [](double x) { return std::isfinite(x); })) return true;
+  result.expected = "no value";
+  result.message = "What is expected has no value with these parameters.";
+  return false;
+}
+
 void judge_number(const expectation::Number& e, const MechanicalSystem& system, double actual,
                   ExpectationResult& result) {
   const double expected = number_of(system, e.value), error = std::abs(actual - expected);
+  if (!expected_exists({&expected, 1}, result)) return;
   result.actual = fmt::format("{:.17g}{}", actual / e.unit.factor, unit_after(e.unit));
   result.expected = fmt::format("{:.17g}{}", expected / e.unit.factor, unit_after(e.unit));
   result.tolerance = tolerance_text(e.tolerance, e.unit, system);
@@ -143,6 +152,8 @@ std::size_t spectrum_size(const expectation::Spectrum& e, const MechanicalSystem
 void judge_spectrum(const expectation::Spectrum& e, const MechanicalSystem& system, const std::vector<Complex>& actual,
                     ExpectationResult& result) {
   const std::vector<Complex> expected = expected_spectrum(e, system);
+  for (const Complex& z : expected)
+    if (!expected_exists(std::array{z.real(), z.imag()}, result)) return;
   result.actual = spectrum_text(actual, e.unit);
   result.expected = spectrum_text(expected, e.unit);
   result.tolerance = tolerance_text(e.tolerance, e.unit, system);

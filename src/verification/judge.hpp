@@ -2,6 +2,7 @@
 #include <maupertuis/verification.hpp>
 
 #include <complex>
+#include <span>
 #include <vector>
 
 /// Numbers that came out against numbers that are expected. NaN agrees with nothing.
@@ -24,6 +25,8 @@ std::string unit_after(const expectation::DisplayUnit& unit);
 /// The sentence of a claim about a time that the run did not reach; `reason`: why it ended, with a full stop or not.
 std::string ended_before(const std::string& reason);
 
+/// False, and why, where a value that is expected does not exist with the values of the parameters.
+bool expected_exists(std::span<const double> expected, ExpectationResult& result);
 /// Fills everything but the message, which says by how much it is off.
 void judge_number(const expectation::Number& expected, const MechanicalSystem& system, double actual,
                   ExpectationResult& result);

@@ -186,6 +186,7 @@ void ModeClaims::judge_frequencies(const expectation::Frequencies& e, const Moda
                                    ExpectationResult& result) const {
   std::vector<double> expected;
   for (const Expr& v : e.values) expected.push_back(number(model_, v));
+  if (!expected_exists(expected, result)) return;
   std::sort(expected.begin(), expected.end());
   const std::vector<double> actual = frequencies(analysis, e.squared);
   const double tolerance = number(model_, e.tolerance.size);

@@ -89,3 +89,16 @@ TEST_CASE("a load that leaves its bridge ends the run before its time: exit code
   CHECK(nlohmann::json::parse(over.out)["trouble"] == "w(t/2) leaves the domain");
   CHECK(maup({"simulate", folder.write("on.lag", bridge + "run 2\n")}).code == 0);
 }
+
+TEST_CASE("a time that no number of steps comes to is told, and is not waited for") {
+  const std::string henon = PROJECT_DIR "/models/henon_heiles.lag";
+  for (const char* options : {"simulate --duration 1e308s", "simulate --at 1e300s", "orbits --strobe 1e300s",
+                              "orbits --floquet --period 1e300s"}) {
+    const std::string words = options;
+    const std::size_t blank = words.find(' ');
+    const Outcome outcome = shell("timeout 60 \"$MAUP\" " + words.substr(0, blank) + " " + henon + words.substr(blank));
+    CAPTURE(options);
+    CHECK(outcome.code == 3);
+    CHECK_MESSAGE(contains(outcome.err, "of them were left, and a run has 1e+08"), outcome.err);
+  }
+}

@@ -41,6 +41,12 @@ TEST_CASE("a file name reaches no terminal as it is") {
   CHECK(contains(maup({"check", model}).err, "W0817"));
   CHECK(contains(maup({"check", folder.write("mаss.lag", pendulum)}).err, "W0817"));
   CHECK(is_safe(maup({"check", "--\x1b[31m"}).err));
+  const Outcome line = maup({"check", folder.write("new\nline.lag", "coord x\n")});
+  CHECK(contains(line.err, "W0817"));
+  CHECK(contains(line.err, "new\\nline.lag:1"));
+  const std::string page = folder.path("page.html");
+  CHECK(maup({"report", folder.write("turned.lag", std::string("note \"\u202e\"\n") + pendulum), "-o", page}).code == 0);
+  CHECK(read(page).find("\u202e") == std::string::npos);
 }
 
 TEST_CASE("a comment or a title that turns the direction of writing is warned of, and shown as it is") {

@@ -152,3 +152,28 @@ TEST_CASE("a file that a killed run left beside its output goes with the next on
   CHECK(::access(gone.c_str(), F_OK) != 0);
   CHECK(::access(alive.c_str(), F_OK) == 0);
 }
+
+TEST_CASE("two motions of which one did not begin were not compared") {
+  const Outcome run =
+      interrupted({"hamiltonian", star_in_a_galaxy, "--integrate", "--duration", "100000000s"}, SIGINT, moment);
+  check_end(run);
+  CHECK(contains(run.out, "0 steps of order"));
+  CHECK(contains(run.out, "the two motions were not compared"));
+  CHECK_FALSE(contains(run.out, "to the last digit"));
+}
+
+TEST_CASE("times that an interrupted run did not reach are named, and states that it passed are kept") {
+  const Outcome run = interrupted({"simulate", star_in_a_galaxy, "--duration", "1e7s", "--at", "10s", "--at", "9e6s"},
+                                  SIGINT, moment);
+  check_end(run);
+  CHECK(contains(run.out, "t = 10 s\n  x = "));
+  CHECK(contains(run.out, "t = 9000000 s\n  not reached"));
+  const Outcome many = interrupted({"simulate", star_in_a_galaxy, "--duration", "1e7s", "--at", "1s", "--at", "9e6s",
+                                    "--precision", "quad"},
+                                   SIGINT, 2);
+  check_end(many);
+  CHECK(contains(many.out, "t = 1 s\n  x = "));
+  CHECK(contains(many.out, "t = 9000000 s\n  not reached"));
+  CHECK(contains(many.out, "How many of these digits are right is not known"));
+  CHECK_FALSE(contains(many.out, "steps of order 0"));
+}

@@ -173,11 +173,78 @@ TEST_CASE("--sweep with one unit and without its number of values") {
 TEST_CASE("a plot of a formula has a gap where it has no value; --x takes one") {
   const Folder folder;
   const std::string model = folder.write("pendulum.lag", pendulum), svg = folder.path("p.svg");
+  for (const std::vector<std::string>& asked :
+       {std::vector<std::string>{"plot", "--y"}, {"plot", "--y", "θ", "--x"}, {"simulate", "--plot", "-", "--columns"}}) {
+    std::vector<std::string> line = asked;
+    for (std::string& word : line)
+      if (word == "-") word = folder.path("columns.svg");
+    line.insert(line.begin() + 1, model);
+    line.emplace_back("1/θ'");  // infinite at t = 0 alone
+    if (line[0] == "plot") line.insert(line.end(), {"-o", svg});
+    const Outcome gap = maup(line);
+    CAPTURE(asked.back());
+    CHECK(gap.code == 0);
+    CHECK(contains(gap.err, "1/θ' at t = 0 is no finite number: its curve has a gap"));
+    CHECK(contains(gap.err, "1 | 1/θ'\n"));
+  }
   CHECK(maup({"plot", model, "--y", "1/(t - 1 [s])", "-o", svg}).code == 0);
+  const Outcome columns =
+      maup({"simulate", model, "--plot", folder.path("columns.svg"), "--columns", "θ, log(-1 - θ^2)"});
+  CHECK(columns.code == 3);
+  CHECK(contains(columns.err, "log(-1 - θ^2) at t = 0 is no finite number"));
   const Outcome none = maup({"plot", model, "--y", "sqrt(-1 - θ^2)", "-o", svg});
   CHECK(none.code == 3);
   CHECK(contains(none.err, "sqrt(-1 - θ^2) at t = 0 is no finite number"));
+  CHECK(contains(none.err, "1 | sqrt(-1 - θ^2)\n"));
   const Outcome two = maup({"plot", model, "--x", "θ, θ'", "--y", "θ", "-o", svg});
   CHECK(two.code == 2);
   CHECK(contains(two.err, "--x names 2 columns."));
+}
+
+TEST_CASE("numbers and texts of options that mean nothing are told in words") {
+  const Folder folder;
+  const std::string model = folder.write("pendulum.lag", pendulum), henon = PROJECT_DIR "/models/henon_heiles.lag";
+  struct Wrong {
+    std::vector<std::string> line;
+    const char* says;
+  };
+  for (const Wrong& w : {Wrong{{"orbits", model, "--lyapunov", "--exponents", "0"}, "0 is no positive number"},
+                         Wrong{{"orbits", henon, "--section", "x = 0", "--crossings", "0"}, "0 is no positive number"},
+                         Wrong{{"orbits", henon, "--section", "x = 0", "--longest", "0s"}, "is no time that passes"},
+                         Wrong{{"orbits", henon, "--section", "x = 0", "--starts", "3", "--energy", "nan"},
+                               "--energy is no finite number"},
+                         Wrong{{"modes", model, "--sweep", ""}, "nothing is written"},
+                         Wrong{{"modes", model, "--sweep", "m = -1 .. 1 kg steps 3"}, "makes the mass `m` negative"},
+                         Wrong{{"simulate", model, "--until", "θ = θ"}, "does not depend on the motion"},
+                         Wrong{{"simulate", model, "--until", "0 = 0"}, "does not depend on the motion"}}) {
+    const Outcome outcome = maup(w.line);
+    CAPTURE(w.says);
+    CHECK(outcome.code == 2);
+    CHECK_MESSAGE(contains(outcome.err, w.says), outcome.err);
+    CHECK(outcome.err.size() < 1500);
+  }
+  const std::string broken = folder.write("broken.lag", "coord x \x1b\n");
+  for (const char* command : {"simulate", "plot", "derive", "modes"}) CHECK(maup({command, broken}).code == 1);
+}
+
+TEST_CASE("an expectation that has no value with other parameters keeps nothing from being computed") {
+  const std::string model =
+      "system saddle\ndimensionless\nparam k = 1, Ω = 1.5\ncoord x, y : number\nframe F rotation angle Ω t\n"
+      "point P mass 1 at (x, y) in F\nV = 1/2 k (x^2 - y^2)\nstart x = 0.1\nrun 1\n"
+      "expect frequencies at x = 0, y = 0 : sqrt(Ω^2 - k), sqrt(Ω^2 + k) rel 1e-12\n"
+      "expect x at 0 = 1/(Ω - 0.99)\n";
+  CHECK(maup({"test", "-"}, model).out.find("sqrt") == std::string::npos);
+  for (const char* command : {"simulate", "derive", "modes", "check"}) {
+    const Outcome outcome = maup({command, "-", "--set", "Ω=0.99"}, model);
+    CAPTURE(command);
+    CHECK_MESSAGE(outcome.code == 0, outcome.err);
+    CHECK(contains(outcome.err, "N0252"));
+  }
+  const Outcome test = maup({"test", "-"}, "dimensionless\nparam k = 1, Ω = 0.99\ncoord x : number\n"
+                                           "L = 1/2 x'^2 - 1/2 k x^2\nstart x = 1\n"
+                                           "expect frequencies at x = 0 : sqrt(Ω^2 - k)\n"
+                                           "expect x at 0 = 1/(Ω - 0.99) rel 1e-3\n");
+  CHECK(test.code == 4);
+  CHECK(contains(test.out, "0 of 2 expectations hold"));
+  CHECK(contains(test.out, "has no value with these parameters"));
 }

@@ -139,6 +139,7 @@ TEST_CASE("orbits: what cannot be had, and wrong usage") {
   CHECK(code_of(refused({"--section", "x' = 0", "--starts", "4"})) == "E1407");
   CHECK(code_of(refused({"--strobe", "0s"})) == "E1406");
   CHECK(code_of(refused({"--floquet", "--start", "x'=0", "--start", "y=0"})) == "E1402");
+  CHECK(code_of(refused({"--floquet", "--period", "1e-300s"})) == "E1406");  // it moves, and not in so short a time
   const Outcome unknown = refused({"--section", "z = 0"});
   CHECK(unknown.code == 2);
   CHECK(code_of(unknown) == "E0201");

@@ -80,3 +80,44 @@ TEST_CASE("two options that ask for one file; devices take what they are given")
   CHECK(maup({"plot", model, "-o", "/dev/null"}).code == 0);
   CHECK(contains(maup({"reduce", model, "-o", "-"}).out, "system"));
 }
+
+TEST_CASE("the model of standard input, and another one behind a link, are not written over") {
+  const Folder folder;
+  const std::string input = folder.write("s.csv", bead), model = folder.write("bead.lag", bead),
+                    other = folder.write("other.lag", pendulum), link = folder.path("link.svg");
+  std::filesystem::create_symlink(other, link);
+  const Outcome own = shell("\"$MAUP\" simulate - -o " + input + " < " + input);
+  CHECK(own.code == 2);
+  CHECK(contains(own.err, "E0812"));
+  CHECK(read(input) == bead);
+  for (const Outcome& outcome : {maup({"plot", model, "-o", link}), maup({"animate", model, "--still", "1s", "-o", link})}) {
+    CHECK(outcome.code == 2);
+    CHECK(contains(outcome.err, "is a link to the model other.lag"));
+  }
+  const Outcome reduced = maup({"reduce", model, "-o", other});
+  CHECK(reduced.code == 2);
+  CHECK(contains(reduced.err, "E0807"));
+  CHECK(read(other) == pendulum);
+  CHECK(maup({"reduce", model, "--force", "-o", other}).code == 0);
+  CHECK(read(other) != pendulum);
+}
+
+TEST_CASE("a folder that is missing and a table without a format are told before the run") {
+  const Folder folder;
+  const std::string model = folder.write("bead.lag", bead);
+  for (const auto& writer : writers) {
+    const std::string ending = writer[0] == "report" ? ".html" : writer[0] == "reduce" ? ".lag"
+                               : writer.back() == "--plot" || writer.back() == "--roots" || writer[0] == "plot" ||
+                                       writer[0] == "animate"
+                                   ? ".svg"
+                                   : ".csv";
+    const Outcome outcome = write(writer, model, folder.path("no/such/result" + ending));
+    CAPTURE(writer[0] + " " + writer.back() + outcome.err);
+    CHECK(outcome.code == 2);
+    CHECK(contains(outcome.err, "there is no folder"));
+    CHECK(outcome.out.empty());
+  }
+  const Outcome device = maup({"simulate", model, "--duration", "100000000", "-o", "/dev/null"});
+  CHECK(device.code == 2);
+  CHECK(contains(device.err, "E0810"));
+}

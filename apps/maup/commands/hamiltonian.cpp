@@ -120,6 +120,18 @@ PhaseSpace analyse(const HamiltonianOptions& options, Study& study, const Consol
   return found;
 }
 
+/// Both begin in one state, so that the first row compares nothing.
+bool is_compared(const CanonicalMotion& motion) { return motion.trajectory.rows() > 1; }
+
+std::string difference_text(const CanonicalMotion& motion, const MechanicalSystem& system) {
+  if (!is_compared(motion)) return "  the two motions were not compared: no row behind the start was reached\n";
+  const std::string until =
+      motion.ending.empty() ? "" : fmt::format(" up to {}", system.moment(brief(motion.trajectory.times.back())));
+  if (motion.difference == 0) return fmt::format("  the two motions agree to the last digit{}\n", until);
+  return fmt::format("  the two motions differ{} by {} of its size in {}, at {}\n", until, brief(motion.difference),
+                     motion.difference_name, system.moment(brief(motion.difference_time)));
+}
+
 std::string motion_text(const CanonicalMotion& motion, const SimulationResult& run, const MechanicalSystem& system) {
   const Trajectory& rows = motion.trajectory;
   std::string out = fmt::format("\nCanonical integration\n  {}\n", system.moment(exact(motion.final_time)));
@@ -137,11 +149,7 @@ std::string motion_text(const CanonicalMotion& motion, const SimulationResult& r
   }
   out += fmt::format("  {} steps of order {}; Lagrange's equations took {}\n", motion.steps, motion.order,
                      run.statistics.steps);
-  if (!complete) return out;
-  return out + (motion.difference > 0
-                    ? fmt::format("  the two motions differ by {} of its size in {}, at {}\n", brief(motion.difference),
-                                  motion.difference_name, system.moment(brief(motion.difference_time)))
-                    : std::string("  the two motions agree to the last digit\n"));
+  return complete ? out + difference_text(motion, system) : out;
 }
 
 Json motion_json(const CanonicalMotion& motion) {
@@ -152,9 +160,9 @@ Json motion_json(const CanonicalMotion& motion) {
   return {{"final", {{"t", motion.final_time}, {"state", std::move(state)}}},
           {"steps", motion.steps},
           {"order", motion.order},
-          {"difference", motion.difference},
+          {"difference", is_compared(motion) ? Json(motion.difference) : Json()},
           {"difference_in", motion.difference_name},
-          {"difference_at", motion.difference_time},
+          {"difference_at", is_compared(motion) ? Json(motion.difference_time) : Json()},
           {"ended", motion.ending}};
 }
 

@@ -409,6 +409,7 @@ void add_modes(CommandLine& line) {
   command
       .add_option("--sweep", options->sweep,
                   "A locus over values of one parameter, e.g. \"Ω = 0 .. 12 rad/s steps 121\"")
+      ->not_empty()
       ->type_name("SWEEP");
   command.add_option("--plot", options->plot, "The bifurcation diagram of the sweep: .svg")->type_name("FILE");
   command.add_option("--roots", options->roots, "The eigenvalues of the sweep in the complex plane: .svg")

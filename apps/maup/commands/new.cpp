@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 namespace maupertuis::app {
 namespace {
 
@@ -68,14 +66,9 @@ ExitCode write_starter(const NewOptions& options, Console& console) {
     console.print(text);
     return ExitCode::Fine;
   }
-  check_output_files({{"-o", path, FileKind::Model}}, "-", diagnostics);
+  check_output_files({{"-o", path, FileKind::Model}}, "", diagnostics);
+  check_is_new(path, options.force, diagnostics);
   if (diagnostics.has_errors()) return finish_new(ExitCode::Usage, path, diagnostics, console);
-  std::error_code error;
-  if (!options.force && std::filesystem::exists(path, error)) {
-    diagnostics.error("E0807", {}, fmt::format("{} exists already.", path), {},
-                      "Choose another name with -o, or say --force to overwrite it.");
-    return finish_new(ExitCode::Usage, path, diagnostics, console);
-  }
   if (!write_result(path, text, diagnostics)) return finish_new(ExitCode::RunFailed, path, diagnostics, console);
   if (!console.json()) console.say(fmt::format("Wrote {}. Next: maup check {}\n", path, path));
   return finish_new(ExitCode::Fine, path, diagnostics, console);

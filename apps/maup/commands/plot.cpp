@@ -13,7 +13,6 @@
 #include <maupertuis/plot.hpp>
 
 #include <cmath>
-#include <initializer_list>
 
 namespace maupertuis::app {
 namespace {
@@ -84,26 +83,12 @@ ExitCode plot_fields(const PlotCommandOptions& options, Study& study, Console& c
   return written;
 }
 
-/// Formulas that have a value in some row: where one has none, its curve has a gap. One that nowhere has any is a
-/// mistake.
-std::vector<std::string> with_some_values(std::initializer_list<const AskedColumns*> asked, const Trajectory& rows) {
-  std::vector<std::string> out;
-  for (const AskedColumns* columns : asked)
-    for (const std::string& formula : columns->formulas()) {
-      const std::size_t column = *rows.column(formula);
-      std::size_t row = 0;
-      while (row < rows.rows() && !std::isfinite(rows.at(row, column))) ++row;
-      if (row < rows.rows()) out.push_back(formula);
-    }
-  return out;
-}
-
 ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
   Study study = open_study(options.model);
   Json document = json_document("plot");
   document["file"] = options.output;
-  const bool readable_model = !study.wrong();
   if (declares_fields(study.tree())) return plot_fields(options, study, console);
+  const bool readable_model = !study.wrong();
   for (const auto& [name, given] : {std::pair{"--map", options.map}, {"--curves", options.curves}})
     if (given)
       study.diagnostics().error("E0809", {}, fmt::format("{} is for fields, and the model has none.", name),
@@ -146,7 +131,9 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
     console.leaves(
         fmt::format("{} shows the motion up to {}.", options.output == "-" ? "the picture" : options.output, moment));
   }
-  check_numbers(result->trajectory, study.diagnostics(), with_some_values({&y, &x}, result->trajectory));
+  WrittenColumns formulas = y.formulas(study);
+  formulas.merge(x.formulas(study));
+  check_picture(result->trajectory, study.diagnostics(), formulas);
   show_happenings(picture, *result, study.model()->system);
   const std::string svg = plot_svg(result->trajectory, picture);
   const bool written = write_svg(options, svg, study, document, console) == ExitCode::Fine;

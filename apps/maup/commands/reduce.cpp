@@ -13,6 +13,7 @@ namespace {
 
 struct ReduceOptions {
   std::string path, output;
+  bool force = false;
 };
 
 std::string joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
@@ -36,6 +37,7 @@ ExitCode reduce_model(const ReduceOptions& options, Console& console) {
   const bool readable_model = !study.wrong();
   const std::string output = options.output == "-" ? std::string() : options.output;
   check_output_files({{"-o", output, FileKind::Model}}, options.path, study.diagnostics());
+  check_is_new(output, options.force, study.diagnostics());
   if (readable_model && study.wrong()) return finish_usage(console, study, "reduce");
   const EquationsOfMotion* equations = study.equations();
   if (!equations || study.refuse_held_integrals() || study.refuse_modes() || !study.certificate())
@@ -79,6 +81,7 @@ void add_reduce(CommandLine& line) {
   command.add_option("MODEL", options->path, "The model file (.lag), or - for standard input")->required();
   command.add_option("-o,--output", options->output,
                      "Write the reduced model to this file (.lag), or - for standard output");
+  command.add_flag("--force", options->force, "Overwrite a file that exists");
 }
 
 }  // namespace maupertuis::app

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <maupertuis/look_alikes.hpp>
 #include <maupertuis/contact_mode.hpp>
 #include <maupertuis/degenerate.hpp>
 #include <maupertuis/page_findings.hpp>
@@ -273,7 +274,7 @@ ExitCode write_page(const std::string& page, const std::optional<SimulationResul
   if (path == "-")
     console.print(page);
   else
-    write_result(path, page, study.diagnostics());
+    write_result(path, visible(page), study.diagnostics());  // titles and names may turn the direction of writing
   document["file"] = path;
   document["bytes"] = page.size();
   const bool written = !study.wrong();

@@ -216,10 +216,12 @@ void write_files(const SimulateOptions& options, const AskedColumns& columns, co
   Diagnostics& diagnostics = study.diagnostics();
   const auto rows = columns.empty() ? result.trajectory : columns.chosen_from(result.trajectory, study);
   if (!rows) return;
+  const WrittenColumns formulas = columns.formulas(study);
   if (!options.output.empty())
-    write_rows(options.output, options.errors ? with_error_columns(*rows) : *rows, diagnostics);
+    write_rows(options.output, options.errors ? with_error_columns(*rows) : *rows, diagnostics, {}, formulas);
   const bool began = result.ok() || result.trajectory.rows() > 1;  // else the reason of the end says it all
-  if (options.output.empty() && began) check_numbers(result.trajectory, diagnostics);
+  if (options.output.empty() && began && check_numbers(result.trajectory, diagnostics))
+    check_picture(*rows, diagnostics, formulas);
   if (!options.plot.empty()) {
     PlotOptions picture;
     picture.title = study.model()->system.title;

@@ -81,6 +81,13 @@ class Closer {
                         "Start away from the equilibrium, or use `maup modes` for the motion near it.");
     return false;
   }
+  /// A start that moves, and not in the period that was given.
+  bool refuse_short_period() {
+    diagnostics_->error("E1406", {}, fmt::format("this motion hardly moves in a period of {:.9g} s", *period_),
+                        "Where nothing has turned, to come back and to stay are not to be told apart.",
+                        "Give the time after which it comes back, or leave --period out: then it is looked for.");
+    return false;
+  }
   std::optional<MotionState> start_of_model() {
     const auto start = consistent_start(model_, equations_, *diagnostics_);
     return start ? std::optional(start->state) : std::nullopt;
@@ -120,6 +127,7 @@ class Closer {
     const Vector f = flow_at(at_);
     if (f.size() == 0) return refuse_end(at_.t, "An acceleration has no value here.", *diagnostics_);
     if (!out_.motion.driven && f.cwiseAbs().maxCoeff() == 0) return refuse_rest();
+    if (!out_.motion.driven && period_ && !turns(at_)) return refuse_short_period();
     if (out_.motion.driven && !repeats_in_time(system_, motion_, seen_, *period_, compared_)) {
       diagnostics_->error("E1404", {},
                           fmt::format("the equations do not repeat after {:.9g} s{}", *period_,
@@ -410,7 +418,13 @@ class Closer {
     out_.motion.moved = gap(first_, out_.motion.start).norm();
     out_.flow = flow_at(out_.motion.start);
     out_.motion.rests = out_.motion.driven && rests_at(out_.motion.start);
-    return out_.motion.driven || turning(out_.motion.start).cwiseAbs().maxCoeff() > 1e-6 || refuse_rest();
+    return out_.motion.driven || turns(out_.motion.start) || refuse_rest();
+  }
+
+  /// Whether a period takes the state away from where it is.
+  bool turns(const MotionState& s) {
+    constexpr double still = 1e-6;
+    return turning(s).cwiseAbs().maxCoeff() > still;
   }
 
   /// To rounding of the place, or of the motion that Newton's method began with.

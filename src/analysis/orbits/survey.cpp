@@ -11,6 +11,7 @@ namespace {
 
 constexpr int states_of_a_step = 16;
 constexpr double rounding_of_rest = 1e-12;
+constexpr std::size_t most_states = 1u << 20;
 
 /// What a coordinate that never moves is measured against.
 double size_at_rest(double value) { return value != 0 ? std::abs(value) : 1.0; }
@@ -68,12 +69,26 @@ void note_instant(const MotionThroughModes& motion, Survey& out) {
   if (motion.stopped_by()) out.ended = "The event `" + *motion.stopped_by() + "` of the model stops it.";
 }
 
+/// Of a motion that is longer than can be kept every second state is left out, again and again.
+void keep_every_second(std::vector<MotionState>& states) {
+  for (std::size_t k = 1; 2 * k < states.size(); ++k) std::swap(states[k], states[2 * k]);
+  states.resize((states.size() + 1) / 2);
+}
+
 template <class Stepper>
 Survey survey_by(Stepper stepper, const MechanicalSystem& system, const MotionState& start, double duration) {
   Survey out;
   stepper.start(start.t, start.q, start.v);
   out.states.push_back(start);
   const double end = start.t + duration;
+  std::size_t seen = 0, stride = 1;
+  const auto add = [&](double t) {
+    if (out.states.size() >= most_states) keep_every_second(out.states), stride *= 2;
+    MotionState state = start;
+    state.t = t;
+    stepper.state(state.t, state.q, state.v);
+    out.states.push_back(std::move(state));
+  };
   while (stepper.time() != end && out.ended.empty()) {
     const Step step = stepper.step(end);
     if (step.ending != StepEnding::None) {
@@ -81,13 +96,11 @@ Survey survey_by(Stepper stepper, const MechanicalSystem& system, const MotionSt
       break;
     }
     note_instant(stepper, out);
-    for (int k = 1; k <= states_of_a_step; ++k) {
-      MotionState state = start;
-      state.t = k == states_of_a_step ? step.end : step.begin + (step.end - step.begin) * k / states_of_a_step;
-      stepper.state(state.t, state.q, state.v);
-      out.states.push_back(std::move(state));
-    }
+    for (int k = 1; k <= states_of_a_step; ++k)
+      if (++seen % stride == 0)
+        add(k == states_of_a_step ? step.end : step.begin + (step.end - step.begin) * k / states_of_a_step);
   }
+  if (out.states.back().t != stepper.time()) add(stepper.time());
   out.steps = stepper.steps();
   out.rests = true;
   out.sizes = sizes_of(system, out.states, out.rests);

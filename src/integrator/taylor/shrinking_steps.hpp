@@ -27,6 +27,17 @@ class ShrinkingSteps {
     return goes_on && std::abs(left) > too_many * mean;
   }
 
+  /// At such a look: what is left would take ten thousand times the steps that a run has, and the steps do not grow so
+  /// that they could come there sooner (with the time to a power p, from which the ratio follows as 2^(p/(1 − p))).
+  bool never_arrives(std::size_t steps, double left) const {
+    constexpr std::size_t enough = 1u << 17;
+    constexpr double far_too_many = 1e12, hardly_grows = 1.4;
+    return steps >= enough && steps == steps_ && ratio_ < hardly_grows && std::isfinite(left) &&
+           std::abs(left) > far_too_many * mean_;
+  }
+  /// Of the steps since the look before, s.
+  double mean() const { return mean_; }
+
  private:
   std::size_t steps_ = 0;                   // at the last look
   double time_ = 0, mean_ = 0, ratio_ = 1;  // of the mean to the one before

@@ -184,6 +184,12 @@ bool TaylorStepper::Impl::may_go_on(double bound, Step& result) {
     end(result, StepEnding::StepUnderflow,
         "The steps go on shrinking, so that their number would have no bound: near here a force or a switch oscillates "
         "without end, or a coordinate grows beyond all bounds.");
+  else if (shrinking.never_arrives(steps, remaining(bound)))
+    end(result, StepEnding::TooManySteps,
+        fmt::format("Steps of this motion are about {:.2g} s long: some 10^{:.0f} of them were left, and a run has "
+                    "{:.1g}.",
+                    shrinking.mean(), std::log10(std::abs(remaining(bound))) - std::log10(shrinking.mean()),
+                    static_cast<double>(options.maximum_steps)));
   return result.ending == StepEnding::None;
 }
 

@@ -74,3 +74,14 @@ TEST_CASE("what a statement without its word was meant to declare is not asked f
              "V = m g y\n") ==
         "E0110 `y`: A definition is `let y = …`, a parameter `param y = …`, an initial value `start y = …`.");
 }
+
+TEST_CASE("a unit that is read as a name or as thousandths of another") {
+  const std::string rod = "param m = 1 kg, g = 9.81 ms^-2\ncoord θ : angle\n";
+  const auto says = [&](const std::string& line, const std::string& part) {
+    const Elaborated e(rod + line);
+    CHECK_MESSAGE(e.messages().find(part) != std::string::npos, e.messages());
+  };
+  says("point P mass m at 2 m (sin θ, -cos θ)\n", "Here `m` is the name of the model; with the unit it is written 2 [m].");
+  says("point P mass m at 2 [m] (sin θ, -cos θ)\ngravity (0, -g)\n",
+       "ms is a millisecond, and m s a metre times a second");
+}
