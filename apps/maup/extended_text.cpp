@@ -32,8 +32,8 @@ std::string state_text(const ExtendedState& state, const ExtendedResult& result)
   std::string out = moment_text(time_text(state.t), result);
   const auto line = [&](const std::string& name, const AgreedNumber& x, const std::string& unit) {
     const std::string number = state.compared || x.text.empty() ? digits_text(x) : x.text;
-    out += fmt::format("  {} = {}{}{}\n", name, number, unit == "1" || unit.empty() ? "" : " ",
-                       unit == "1" ? "" : unit);
+    out +=
+        fmt::format("  {} = {}{}{}\n", name, number, unit == "1" || unit.empty() ? "" : " ", unit == "1" ? "" : unit);
   };
   const std::size_t n = state.q.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -105,10 +105,11 @@ std::string statistics_text(const ExtendedResult& result) {
   if (result.ending == Ending::Interrupted)
     return "How many of these digits are right is not known: the run was interrupted before the runs that tell it.\n" +
            run + "\n";
-  return run + fmt::format("; digits on which {} steps of order {} in {} s and {} steps of order {} with {} bits in {} s "
-                           "agree\n",
-                           s.companion_steps, s.companion_order, brief(s.companion_seconds), s.check_steps,
-                           s.check_order, s.check_bits, brief(s.check_seconds));
+  return run + fmt::format(
+                   "; digits on which {} steps of order {} in {} s and {} steps of order {} with {} bits in {} s "
+                   "agree\n",
+                   s.companion_steps, s.companion_order, brief(s.companion_seconds), s.check_steps, s.check_order,
+                   s.check_bits, brief(s.check_seconds));
 }
 
 }  // namespace

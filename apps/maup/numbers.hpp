@@ -17,8 +17,8 @@ using WrittenColumns = std::map<std::string, Span>;
 /// told: in a document by its place in it, in rows by column and time. False where one was found.
 bool check_numbers(const Json& document, Diagnostics& diagnostics);
 /// Reactions and errors that are not determined are NaN or infinite by their definition, and stay out of this; so do
-/// columns of the names `open`. `further`: what is told beside it. `written`: where columns that are formulas of options
-/// were written.
+/// columns of the names `open`. `further`: what is told beside it. `written`: where columns that are formulas of
+/// options were written.
 bool check_numbers(const Trajectory& rows, Diagnostics& diagnostics, std::span<const std::string> open = {},
                    const std::string& further = {}, const WrittenColumns& written = {});
 /// The same of a picture: a formula that was asked for and has a value in some row leaves a gap where it has none

@@ -34,7 +34,8 @@ Option* Option::positive() {
   return own_->check(CLI::Validator(problem, "POSITIVE")), this;
 }
 Option* Option::not_empty() {
-  own_->check(CLI::Validator([](std::string& text) { return std::string(text.empty() ? "nothing is written" : ""); }, ""));
+  own_->check(
+      CLI::Validator([](std::string& text) { return std::string(text.empty() ? "nothing is written" : ""); }, ""));
   return this;
 }
 Option* Option::delimiter(char separator) { return own_->delimiter(separator), this; }

@@ -77,9 +77,10 @@ void check_folder(const OutputFile& file, Diagnostics& diagnostics) {
   const fs::path folder = fs::path(file.path).parent_path();
   std::error_code error;
   if (!folder.empty() && !fs::is_directory(folder, error))
-    diagnostics.error("E0804", {}, fmt::format("{} {} cannot be written: there is no folder {}.", file.option,
-                                               file.path, folder.string()),
-                      "Nothing was computed.", fmt::format("Make it first: mkdir -p {}", folder.string()));
+    diagnostics.error(
+        "E0804", {},
+        fmt::format("{} {} cannot be written: there is no folder {}.", file.option, file.path, folder.string()),
+        "Nothing was computed.", fmt::format("Make it first: mkdir -p {}", folder.string()));
 }
 
 std::string help_for(const OutputFile& file, const Kind& kind) {

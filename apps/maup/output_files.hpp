@@ -23,9 +23,9 @@ struct OutputFile {
 };
 
 /// Before anything is computed: E0810 for an ending of another kind, E0812 for the model that is read and for a link to
-/// another one, E0804 for a folder that is missing, E0809 where two options ask for one file. Model "-": the file behind
-/// standard input. Devices and pipes take what they are given, tables apart: their format is in the name. "-" is a file name here; commands that take it
-/// for standard output leave it out.
+/// another one, E0804 for a folder that is missing, E0809 where two options ask for one file. Model "-": the file
+/// behind standard input. Devices and pipes take what they are given, tables apart: their format is in the name. "-" is
+/// a file name here; commands that take it for standard output leave it out.
 void check_output_files(std::initializer_list<OutputFile> files, const std::string& model, Diagnostics& diagnostics);
 /// A model that is written takes the place of no file unless `force`d to: E0807. Devices and pipes take it.
 void check_is_new(const std::string& path, bool force, Diagnostics& diagnostics);

@@ -150,10 +150,11 @@ void StatementParser::refuse_time_in_brackets() {
 /// What is expected without its `=`.
 void StatementParser::refuse_half(bool claim, const std::string& subject) {
   fail_expected("`=` after what is expected",
-                claim               ? fmt::format("Write both sides of the equation, such as claim {} = 0.", subject)
-                : peek().is("is") ? fmt::format("Write expect conserved {0}, or expect {0} at 3 s = ….", subject)
-                                    : fmt::format("Write for example expect {0} at 3 s = …, or expect conserved {0}.",
-                                                  subject));
+                subject == "energy" ? "Write expect energy conserved."
+                : claim             ? fmt::format("Write both sides of the equation, such as claim {} = 0.", subject)
+                : peek().is("is")
+                    ? fmt::format("Write expect conserved {0}, or expect {0} at 3 s = ….", subject)
+                    : fmt::format("Write for example expect {0} at 3 s = …, or expect conserved {0}.", subject));
 }
 
 // θ at 10 s = 0.5 rad ± 1e-9,   x^2 + y^2 not conserved,   T = 3 J ± 1e-9,   claim θ'' = -g/l sin θ

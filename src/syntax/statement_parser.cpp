@@ -141,13 +141,15 @@ std::string StatementParser::help_for_equation() const {
     return fmt::format("Equations of motion follow from the energies; to have one checked, write claim {}.", line);
   const std::string_view word = tokens[index_].text;
   if (equals > index_ + 1 && !tokens[index_ + 1].is("'"))
-    return fmt::format("A condition that the motion keeps is `constraint {}`; an equation of motion that is to be "
-                       "checked is a `claim`.",
-                       line);
+    return fmt::format(
+        "A condition that the motion keeps is `constraint {}`; an equation of motion that is to be "
+        "checked is a `claim`.",
+        line);
   if (equals == index_ + 1 && (word[0] == 'F' || word[0] == 'Q'))
-    return fmt::format("A force along a coordinate q is written `force q = …`, on a point `force on P = (…)`; a "
-                       "definition `let {} = …`.",
-                       word);
+    return fmt::format(
+        "A force along a coordinate q is written `force q = …`, on a point `force on P = (…)`; a "
+        "definition `let {} = …`.",
+        word);
   return {};
 }
 
@@ -290,8 +292,8 @@ void StatementParser::kind_of(const Name& name, const char* what, Name& kind, st
          fmt::format("expected the kind of {} {}, found {}", *what == 'i' ? "an" : "a", what, describe(word)),
          fmt::format("{} {} is an angle, a length, a charge, a number, or has a unit in brackets.",
                      *what == 'i' ? "An" : "A", what),
-         is_word_of_angles(word.text) ? fmt::format("Write {} : angle; angles are in rad, and 60 deg is a value of one.",
-                                                    name.text)
+         is_word_of_angles(word.text)
+             ? fmt::format("Write {} : angle; angles are in rad, and 60 deg is a value of one.", name.text)
          : !near.empty() ? fmt::format("Did you mean `{}`?", near)
                          : fmt::format("Write for example {0} : length, or {0} : [m].", name.text));
   }

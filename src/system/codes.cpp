@@ -73,9 +73,9 @@ constexpr CodeEntry kEntries[] = {
      "`expect frequencies : sqrt(Ω^2 - k)` says something where Ω² > k. With other values of the parameters, by --set "
      "or in a sweep, the expectation fails in `test`; everything else of the model is computed as ever.",
      "dimensionless\nparam k = 1, Ω = 0.9\ncoord x : number\nL = 1/2 x'^2 - 1/2 k x^2\nexpect frequencies at x = 0 : "
-     "sqrt(Ω^2 - k)\n",
+     "sqrt(Ω^2 - k) rel 1e-9\n",
      "dimensionless\nparam k = 1, Ω = 1.5\ncoord x : number\nL = 1/2 x'^2 - 1/2 k x^2\nexpect frequencies at x = 0 : "
-     "sqrt(Ω^2 - k)\n"},
+     "sqrt(Ω^2 - k) rel 1e-9\n"},
     {"E0253", "the condition that is to end a run does not depend on the motion",
      "`run until A = B` ends where A - B passes zero. Where it is made of numbers and parameters alone, or vanishes "
      "always as x - x does, it marks no moment.",

@@ -45,7 +45,8 @@ TEST_CASE("a file name reaches no terminal as it is") {
   CHECK(contains(line.err, "W0817"));
   CHECK(contains(line.err, "new\\nline.lag:1"));
   const std::string page = folder.path("page.html");
-  CHECK(maup({"report", folder.write("turned.lag", std::string("note \"\u202e\"\n") + pendulum), "-o", page}).code == 0);
+  CHECK(maup({"report", folder.write("turned.lag", std::string("note \"\u202e\"\n") + pendulum), "-o", page}).code ==
+        0);
   CHECK(read(page).find("\u202e") == std::string::npos);
 }
 

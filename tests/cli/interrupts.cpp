@@ -163,14 +163,14 @@ TEST_CASE("two motions of which one did not begin were not compared") {
 }
 
 TEST_CASE("times that an interrupted run did not reach are named, and states that it passed are kept") {
-  const Outcome run = interrupted({"simulate", star_in_a_galaxy, "--duration", "1e7s", "--at", "10s", "--at", "9e6s"},
-                                  SIGINT, moment);
+  const Outcome run =
+      interrupted({"simulate", star_in_a_galaxy, "--duration", "1e7s", "--at", "10s", "--at", "9e6s"}, SIGINT, moment);
   check_end(run);
   CHECK(contains(run.out, "t = 10 s\n  x = "));
   CHECK(contains(run.out, "t = 9000000 s\n  not reached"));
-  const Outcome many = interrupted({"simulate", star_in_a_galaxy, "--duration", "1e7s", "--at", "1s", "--at", "9e6s",
-                                    "--precision", "quad"},
-                                   SIGINT, 2);
+  const Outcome many = interrupted(
+      {"simulate", star_in_a_galaxy, "--duration", "1e7s", "--at", "1s", "--at", "9e6s", "--precision", "quad"}, SIGINT,
+      2);
   check_end(many);
   CHECK(contains(many.out, "t = 1 s\n  x = "));
   CHECK(contains(many.out, "t = 9000000 s\n  not reached"));

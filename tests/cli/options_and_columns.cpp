@@ -173,8 +173,9 @@ TEST_CASE("--sweep with one unit and without its number of values") {
 TEST_CASE("a plot of a formula has a gap where it has no value; --x takes one") {
   const Folder folder;
   const std::string model = folder.write("pendulum.lag", pendulum), svg = folder.path("p.svg");
-  for (const std::vector<std::string>& asked :
-       {std::vector<std::string>{"plot", "--y"}, {"plot", "--y", "θ", "--x"}, {"simulate", "--plot", "-", "--columns"}}) {
+  for (const std::vector<std::string>& asked : {std::vector<std::string>{"plot", "--y"},
+                                                {"plot", "--y", "θ", "--x"},
+                                                {"simulate", "--plot", "-", "--columns"}}) {
     std::vector<std::string> line = asked;
     for (std::string& word : line)
       if (word == "-") word = folder.path("columns.svg");
@@ -232,7 +233,7 @@ TEST_CASE("an expectation that has no value with other parameters keeps nothing 
       "system saddle\ndimensionless\nparam k = 1, Ω = 1.5\ncoord x, y : number\nframe F rotation angle Ω t\n"
       "point P mass 1 at (x, y) in F\nV = 1/2 k (x^2 - y^2)\nstart x = 0.1\nrun 1\n"
       "expect frequencies at x = 0, y = 0 : sqrt(Ω^2 - k), sqrt(Ω^2 + k) rel 1e-12\n"
-      "expect x at 0 = 1/(Ω - 0.99)\n";
+      "expect x at 0 = 1/(Ω - 0.99) rel 1e-3\n";
   CHECK(maup({"test", "-"}, model).out.find("sqrt") == std::string::npos);
   for (const char* command : {"simulate", "derive", "modes", "check"}) {
     const Outcome outcome = maup({command, "-", "--set", "Ω=0.99"}, model);
@@ -240,10 +241,11 @@ TEST_CASE("an expectation that has no value with other parameters keeps nothing 
     CHECK_MESSAGE(outcome.code == 0, outcome.err);
     CHECK(contains(outcome.err, "N0252"));
   }
-  const Outcome test = maup({"test", "-"}, "dimensionless\nparam k = 1, Ω = 0.99\ncoord x : number\n"
-                                           "L = 1/2 x'^2 - 1/2 k x^2\nstart x = 1\n"
-                                           "expect frequencies at x = 0 : sqrt(Ω^2 - k)\n"
-                                           "expect x at 0 = 1/(Ω - 0.99) rel 1e-3\n");
+  const Outcome test = maup({"test", "-"},
+                            "dimensionless\nparam k = 1, Ω = 0.99\ncoord x : number\n"
+                            "L = 1/2 x'^2 - 1/2 k x^2\nstart x = 1\n"
+                            "expect frequencies at x = 0 : sqrt(Ω^2 - k) rel 1e-9\n"
+                            "expect x at 0 = 1/(Ω - 0.99) rel 1e-3\n");
   CHECK(test.code == 4);
   CHECK(contains(test.out, "0 of 2 expectations hold"));
   CHECK(contains(test.out, "has no value with these parameters"));

@@ -90,7 +90,8 @@ TEST_CASE("the model of standard input, and another one behind a link, are not w
   CHECK(own.code == 2);
   CHECK(contains(own.err, "E0812"));
   CHECK(read(input) == bead);
-  for (const Outcome& outcome : {maup({"plot", model, "-o", link}), maup({"animate", model, "--still", "1s", "-o", link})}) {
+  for (const Outcome& outcome :
+       {maup({"plot", model, "-o", link}), maup({"animate", model, "--still", "1s", "-o", link})}) {
     CHECK(outcome.code == 2);
     CHECK(contains(outcome.err, "is a link to the model other.lag"));
   }
@@ -106,11 +107,12 @@ TEST_CASE("a folder that is missing and a table without a format are told before
   const Folder folder;
   const std::string model = folder.write("bead.lag", bead);
   for (const auto& writer : writers) {
-    const std::string ending = writer[0] == "report" ? ".html" : writer[0] == "reduce" ? ".lag"
-                               : writer.back() == "--plot" || writer.back() == "--roots" || writer[0] == "plot" ||
-                                       writer[0] == "animate"
-                                   ? ".svg"
-                                   : ".csv";
+    const std::string ending =
+        writer[0] == "report"   ? ".html"
+        : writer[0] == "reduce" ? ".lag"
+        : writer.back() == "--plot" || writer.back() == "--roots" || writer[0] == "plot" || writer[0] == "animate"
+            ? ".svg"
+            : ".csv";
     const Outcome outcome = write(writer, model, folder.path("no/such/result" + ending));
     CAPTURE(writer[0] + " " + writer.back() + outcome.err);
     CHECK(outcome.code == 2);

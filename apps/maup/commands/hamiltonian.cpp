@@ -170,7 +170,6 @@ Json motion_json(const CanonicalMotion& motion) {
 ExitCode integrate(const HamiltonianOptions& options, const PhaseSpace& found, Study& study, Console& console,
                    Json& document) {
   const SimulationOptions settings = simulation_options(options.run, study.diagnostics());
-  check_output_files({{"-o", options.output, FileKind::Table}}, options.model.path, study.diagnostics());
   if (study.wrong()) return ExitCode::Usage;
   const auto run = run_model(study, settings, console);
   if (!run) return ExitCode::ModelWrong;
@@ -188,6 +187,9 @@ ExitCode integrate(const HamiltonianOptions& options, const PhaseSpace& found, S
 ExitCode hamiltonian_of(const HamiltonianOptions& options, Console& console) {
   Study study = open_study(options.model);
   Json document = json_document("hamiltonian");
+  const bool readable_model = !study.wrong();
+  check_output_files({{"-o", options.output, FileKind::Table}}, options.model.path, study.diagnostics());
+  if (readable_model && study.wrong()) return finish_usage(console, study, "hamiltonian");
   put_in_run(options.run, study);
   for (const std::string& formula : options.bracket) study.ask("--bracket", formula);
   for (const std::string& formula : options.dirac_bracket) study.ask("--dirac-bracket", formula);

@@ -11,9 +11,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <maupertuis/look_alikes.hpp>
 #include <maupertuis/contact_mode.hpp>
 #include <maupertuis/degenerate.hpp>
+#include <maupertuis/look_alikes.hpp>
 #include <maupertuis/page_findings.hpp>
 #include <maupertuis/report.hpp>
 #include <maupertuis/verification.hpp>

@@ -30,7 +30,7 @@ TEST_CASE("one mistake gives one message, under the right words, with a way out"
       {"param m 1 kg", "E0111", "1", "`=`"},
       {"param m = ", "E0111", "", "end of the statement"},
       {"param m = 1 kg,", "E0111", "", "name of a parameter"},
-      {"param m = 1 kg l = 2", "E0111", "=", "end before"},
+      {"param m = 1 kg l = 2", "E0111", "l", "a comma is missing"},
       {"coord θ", "E0129", "θ", "θ : angle"},
       {"coord θ : angel", "E0129", "angel", "`angle`"},
       {"coord x : m", "E0129", "m", "[m]"},

@@ -81,7 +81,8 @@ TEST_CASE("a unit that is read as a name or as thousandths of another") {
     const Elaborated e(rod + line);
     CHECK_MESSAGE(e.messages().find(part) != std::string::npos, e.messages());
   };
-  says("point P mass m at 2 m (sin θ, -cos θ)\n", "Here `m` is the name of the model; with the unit it is written 2 [m].");
+  says("point P mass m at 2 m (sin θ, -cos θ)\n",
+       "Here `m` is the name of the model; with the unit it is written 2 [m].");
   says("point P mass m at 2 [m] (sin θ, -cos θ)\ngravity (0, -g)\n",
        "ms is a millisecond, and m s a metre times a second");
 }
