@@ -34,13 +34,14 @@ void add_constants(Elaboration& e, const Expression& x, std::map<std::string, Di
 }
 
 /// " Or …" where a formula has one constant alone, whose unit may be the mistake: k = 10 N of a spring.
-std::string doubt_about_unit(Elaboration& e, const Expression& x) {
+std::string doubt_about_unit(Elaboration& e, const Expression& x, int order) {
   std::map<std::string, Dimension> constants;
   add_constants(e, x, constants);
   if (constants.size() != 1) return {};
   const auto& [name, dimension] = *constants.begin();
   const Dimension rate = Dimension{} / dimensions::time();
   const bool milliseconds = dimension.same_as(rate) || dimension.same_as(rate * rate);  // 9.81 ms^-2
+  if (order != 0 && !milliseconds) return {};
   return fmt::format(" Or the unit of `{}`, {}, is another than was meant{}.", name, to_string(dimension),
                      milliseconds ? ": ms is a millisecond, and m s a metre times a second" : "");
 }
@@ -92,7 +93,7 @@ std::string advice_on(Elaboration& e, const Value& v, const Dimension& expected,
   const std::string advice = dimension_advice(v.dimension, expected);
   const Dimension more = v.dimension * dimensions::length(), less = v.dimension / dimensions::length();
   const bool by_a_length = more.same_as(expected) || less.same_as(expected);  // N for N/m
-  return by_a_length && v.order <= 0 ? advice + doubt_about_unit(e, x) : advice;
+  return by_a_length && v.order <= 0 ? advice + doubt_about_unit(e, x, v.order) : advice;
 }
 
 }  // namespace
