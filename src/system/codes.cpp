@@ -69,7 +69,7 @@ constexpr CodeEntry kEntries[] = {
      "are of moderate size.",
      "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nV = 1 [N] x * 10^5000\n",
      "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nV = 1 [N] x * 10^5\n"},
-    {"N0252", "an expected value that does not exist with these parameters",
+    {"N0252", "an expected frequency that does not exist with these parameters",
      "`expect frequencies : sqrt(Ω^2 - k)` says something where Ω² > k. With other values of the parameters, by --set "
      "or in a sweep, the expectation fails in `test`; everything else of the model is computed as ever.",
      "dimensionless\nparam k = 1, Ω = 0.9\ncoord x : number\nL = 1/2 x'^2 - 1/2 k x^2\nexpect frequencies at x = 0 : "

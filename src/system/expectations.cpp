@@ -47,7 +47,7 @@ std::optional<expectation::Tolerance> tolerance_of(Elaboration& e, const syntax:
 
 std::optional<expectation::Number> expected_number(Elaboration& e, const written::Number& number,
                                                    const Dimension& dimension, const std::string& what) {
-  const Value value = expected_constant_of(e, *number.value, dimension, what);
+  const Value value = constant_of(e, *number.value, dimension, what);
   if (value.poisoned) return std::nullopt;
   warn_of_degrees(e, value, dimension, *number.value);
   const expectation::DisplayUnit unit = display_unit(e, *number.value, dimension).value_or(expectation::DisplayUnit{});

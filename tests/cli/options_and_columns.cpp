@@ -232,8 +232,7 @@ TEST_CASE("an expectation that has no value with other parameters keeps nothing 
   const std::string model =
       "system saddle\ndimensionless\nparam k = 1, Ω = 1.5\ncoord x, y : number\nframe F rotation angle Ω t\n"
       "point P mass 1 at (x, y) in F\nV = 1/2 k (x^2 - y^2)\nstart x = 0.1\nrun 1\n"
-      "expect frequencies at x = 0, y = 0 : sqrt(Ω^2 - k), sqrt(Ω^2 + k) rel 1e-12\n"
-      "expect x at 0 = 1/(Ω - 0.99) rel 1e-3\n";
+      "expect frequencies at x = 0, y = 0 : sqrt(Ω^2 - k), sqrt(Ω^2 + k) rel 1e-12\n";
   CHECK(maup({"test", "-"}, model).out.find("sqrt") == std::string::npos);
   for (const char* command : {"simulate", "derive", "modes", "check"}) {
     const Outcome outcome = maup({command, "-", "--set", "Ω=0.99"}, model);
@@ -245,7 +244,7 @@ TEST_CASE("an expectation that has no value with other parameters keeps nothing 
                             "dimensionless\nparam k = 1, Ω = 0.99\ncoord x : number\n"
                             "L = 1/2 x'^2 - 1/2 k x^2\nstart x = 1\n"
                             "expect frequencies at x = 0 : sqrt(Ω^2 - k) rel 1e-9\n"
-                            "expect x at 0 = 1/(Ω - 0.99) rel 1e-3\n");
+                            "expect eigenvalues at x = 0 : (0, sqrt(Ω^2 - k)) rel 1e-9\n");
   CHECK(test.code == 4);
   CHECK(contains(test.out, "0 of 2 expectations hold"));
   CHECK(contains(test.out, "has no value with these parameters"));
