@@ -233,7 +233,7 @@ TEST_CASE("an expectation that has no value with other parameters keeps nothing 
       "system saddle\ndimensionless\nparam k = 1, Ω = 1.5\ncoord x, y : number\nframe F rotation angle Ω t\n"
       "point P mass 1 at (x, y) in F\nV = 1/2 k (x^2 - y^2)\nstart x = 0.1\nrun 1\n"
       "expect frequencies at x = 0, y = 0 : sqrt(Ω^2 - k), sqrt(Ω^2 + k) rel 1e-12\n";
-  CHECK(maup({"test", "-"}, model).out.find("sqrt") == std::string::npos);
+  CHECK(maup({"test", "-"}, model).code == 0);
   for (const char* command : {"simulate", "derive", "modes", "check"}) {
     const Outcome outcome = maup({command, "-", "--set", "Ω=0.99"}, model);
     CAPTURE(command);
