@@ -26,7 +26,8 @@ enum class StepEnding {
 struct EventRoot {
   std::size_t event = 0;
   int direction = 0;
-  double time = 0;  // s
+  double time = 0;    // s
+  double hidden = 0;  // s; at a root of higher order: by how much rounding may have moved it
 };
 
 /// One step, or the reason why there is none: then begin == end and the state is the one reached before.
@@ -35,6 +36,7 @@ struct Step {
   StepEnding ending = StepEnding::None;
   std::string reason;                 // one sentence for every ending but None
   std::optional<std::size_t> event;   // the step ended at a root of this event function
+  double hidden = 0;                  // s; by how much rounding may have moved that
   std::vector<EventRoot> events;      // all roots there, within rounding, after those that the step passed, by time
   std::vector<std::size_t> switches;  // switch functions whose root the step ended at
 };

@@ -87,7 +87,9 @@ class Recorder {
       const Step step = method_.step(bound);
       cover();
       if (step.ending == StepEnding::Interrupted) return std::nullopt;
-      if (until && step.event) out_.final = sample(method_.time());
+      // As much earlier as rounding hides: what it may hide from all of them is in the errors then.
+      if (until && step.event)
+        out_.final = sample(method_.time() - std::copysign(step.hidden, bound - plan_.run.begin));
       if (step.ending != StepEnding::None || out_.final) break;
     }
     if (!until && method_.time() == bound && !has_lost_the_motion()) out_.final = sample(bound);

@@ -221,7 +221,7 @@ Step HybridMotion::step(double bound) {
   if (sets_end_ && out.end == sets_end_->t && !pending_ && !out.event)
     return ended(StepEnding::Unending, sets_without_end());
   if (pending_) meet_together(bound);
-  if (meets_late_ && pending_) late_by_ = hidden_by_rounding(bound);
+  if (meets_late_ && pending_) late_by_ = std::max(hidden_by_rounding(bound), pending_->hidden_sets);
   if (!pending_ && (out.end >= end || outgrows_stops())) pending_ = std::make_unique<Pending>();
   // A force that jumps may let a contact or a friction go, though none of their conditions has a root.
   if (!pending_ && ((!out.switches.empty() && !goes_on(bound)) || pulls())) {
@@ -344,10 +344,11 @@ bool HybridMotion::pulls() const {
 }
 
 /// An event of the last step, with the state that the motion has there.
-void HybridMotion::record_event(const std::string& name, double at) {
+void HybridMotion::record_event(const std::string& name, double at, double hidden) {
   const double t = forwards_ ? std::min(at, t_) : std::max(at, t_);  // rounding may lead beyond the step
   add(Happening::Kind::Event, name);
   Happening& told = record_.happenings.back();
+  told.error = std::max(told.error, hidden);
   if (t == t_) return;
   told.t = t;
   if (!told.q.empty()) state(t, told.q, told.v);
@@ -355,11 +356,14 @@ void HybridMotion::record_event(const std::string& name, double at) {
 }
 
 /// An event whose function comes to 0 this way: 1 rising along the run, −1 falling, 0 touching.
-void HybridMotion::meet_event(const ModelEvent& event, int way, double t, Pending& pending) {
+void HybridMotion::meet_event(const ModelEvent& event, const EventRoot& root, Pending& pending) {
+  const int way = root.direction;
   if (event.direction != 0 && way != event.direction * (forwards_ ? 1 : -1)) return;
-  record_event(event.name, t);
+  record_event(event.name, root.time, root.hidden);
   if (event.action == ModelEvent::Action::Stop && !record_.stopped_by) record_.stopped_by = event.name;
-  if (event.action == ModelEvent::Action::Set) pending.sets.push_back(&event), pending.ways.push_back(way);
+  if (event.action != ModelEvent::Action::Set) return;
+  pending.sets.push_back(&event), pending.ways.push_back(way);
+  pending.hidden_sets = std::max(pending.hidden_sets, root.hidden);
 }
 
 /// Roots of the step: events of the model are recorded at once; what changes the mode waits for the next step.
@@ -381,7 +385,7 @@ void HybridMotion::classify(Step& step) {
         if (is_now(root)) pending->at_zero.push_back(watch.index);
         event_sides_[watch.index] = is_now(root) ? std::int8_t{0} : static_cast<std::int8_t>(root.direction);
       }
-      meet_event(model_.experiment.events[watch.index], root.direction, root.time, *pending);
+      meet_event(model_.experiment.events[watch.index], root, *pending);
       if (record_.stopped_by) step.event = 0;
     } else if (root.direction <= 0) {
       if (watch.what == Watch::What::Gap) {

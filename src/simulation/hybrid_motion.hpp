@@ -114,7 +114,7 @@ class HybridMotion final : public Method {
   void classify(Step& step);
   void tell_events_at_start(double bound);
   void forget(const ContactMode& mode);
-  void record_event(const std::string& name, double t);
+  void record_event(const std::string& name, double t, double hidden = 0);
   bool is_just_released(std::size_t contact);
   double hidden_by_rounding(double bound);
   double hides_gap(std::size_t contact, double length);
@@ -130,7 +130,7 @@ class HybridMotion final : public Method {
   const ModelEvent* turned_unseen(double bound);
   void note_sets(double bound);
   std::string sets_without_end() const;
-  void meet_event(const ModelEvent& event, int way, double t, Pending& pending);
+  void meet_event(const ModelEvent& event, const EventRoot& root, Pending& pending);
   std::optional<Step> meet_unseen(double bound);
   std::string too_short_to_tell(const ModelEvent& event) const;
   static bool is_hidden(std::int8_t before, const TaylorStepper::Outlook& outlook, std::size_t watch);

@@ -68,6 +68,7 @@ struct HybridMotion::Pending {
   std::vector<int> ways;             // [sets] in which their functions come to 0 along the run: 1 rising, −1 falling
   std::vector<std::size_t> at_zero;  // events on positions that are met here: their functions go on from 0
   double hidden = 0;                 // for how long rounding hides the roots of gaps that are met
+  double hidden_sets = 0;            // … and those of events that set the state
   bool begins = false;
 };
 

@@ -131,7 +131,7 @@ std::optional<Step> HybridMotion::meet_unseen(double bound) {
       return stopped(StepEnding::Unending, too_short_to_tell(event));
     met->at_zero.push_back(watch.index);
     event_sides_[watch.index] = 0;
-    meet_event(event, -before, t_, *met);
+    meet_event(event, {k, -before, t_}, *met);
   }
   if (!met->sets.empty()) pending_ = std::move(met);
   return std::nullopt;

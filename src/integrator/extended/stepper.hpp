@@ -67,6 +67,7 @@ class Stepper {
     std::vector<std::size_t> roots;      // switches, then events
     std::vector<int> directions;         // [roots]
     std::vector<bool> jumps;             // [roots] a switch function jumps there: it has no zero
+    std::vector<std::uint8_t> orders;    // [roots]
     std::vector<taylor::Watched> after;  // the same, as the step leaves them
   };
 
@@ -85,8 +86,8 @@ class Stepper {
   }
   bool watches() const { return !switch_state_.empty() || !event_state_.empty(); }
   bool begins_past_root(std::size_t index, const T& h, taylor::Watched& watched) const;
-  void note(Crossing& crossing, const T& x, std::size_t index, const T& together, int direction,
-            bool jump = false) const;
+  void note(Crossing& crossing, const taylor::RootOf<T>& root, std::size_t index, const T& together,
+            int direction) const;
   Crossing first_crossing(const T& h);
   void leave(const Crossing& crossing);
   double safe_length(double log2_wanted, double log2_left);

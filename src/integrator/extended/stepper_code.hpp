@@ -195,16 +195,17 @@ bool Stepper<T>::begins_past_root(std::size_t index, const T& h, taylor::Watched
 
 /// Roots that rounding does not tell apart are one crossing.
 template <class T>
-void Stepper<T>::note(Crossing& crossing, const T& x, std::size_t index, const T& together, int direction,
-                      bool jump) const {
-  if (crossing.found && x > crossing.x * (1 + together) + together) return;
-  if (x < crossing.x * (1 - together) - together)
-    crossing.roots.clear(), crossing.directions.clear(), crossing.jumps.clear();
-  crossing.x = std::min(crossing.x, x);
+void Stepper<T>::note(Crossing& crossing, const taylor::RootOf<T>& root, std::size_t index, const T& together,
+                      int direction) const {
+  if (crossing.found && root.x > crossing.x * (1 + together) + together) return;
+  if (root.x < crossing.x * (1 - together) - together)
+    crossing.roots.clear(), crossing.directions.clear(), crossing.jumps.clear(), crossing.orders.clear();
+  crossing.x = std::min(crossing.x, root.x);
   crossing.found = true;
   crossing.roots.push_back(index);
   crossing.directions.push_back(direction);
-  crossing.jumps.push_back(jump);
+  crossing.jumps.push_back(root.kind == taylor::RootKind::Jump);
+  crossing.orders.push_back(root.order);
 }
 
 template <class T>
@@ -224,7 +225,7 @@ typename Stepper<T>::Crossing Stepper<T>::first_crossing(const T& h) {
     taylor::Watched& watched = first.after[i];
     if (is_switch && watched.side == 0 && has_value(i)) continue;  // it vanishes
     if (!is_switch && !roots_->is_clear(i) && begins_past_root(i - count, h, watched))
-      note(first, T(0), i, together, watched.side);
+      note(first, {T(0), taylor::RootKind::Crossing}, i, together, watched.side);
     // Events at one instant are all told: the search goes on beyond the first root by what a polynomial does not
     // resolve.
     const T beyond = is_switch ? together : std::max(together, epsilon_to<T>(0.77));
@@ -232,7 +233,7 @@ typename Stepper<T>::Crossing Stepper<T>::first_crossing(const T& h) {
     const auto root = roots_->first(i, watched, T(0), until, !is_switch, is_switch);
     if (!root) continue;
     const bool jump = root->kind == taylor::RootKind::Jump;
-    note(first, root->x, i, together, root->kind == taylor::RootKind::Touching ? 0 : -watched.side, jump);
+    note(first, *root, i, together, root->kind == taylor::RootKind::Touching ? 0 : -watched.side);
     if (jump) watched = {root->after, false};
   }
   // A step of no length leaves the others where they were.
@@ -241,7 +242,10 @@ typename Stepper<T>::Crossing Stepper<T>::first_crossing(const T& h) {
     if (first.jumps[k]) continue;  // what lies beyond is known
     const std::size_t i = first.roots[k];
     taylor::Watched& watched = first.after[i];
-    watched = {i < count ? static_cast<std::int8_t>(-watched.side) : std::int8_t{0}, true};
+    if (i < count)
+      watched = {static_cast<std::int8_t>(-watched.side), true};
+    else
+      watched = {0, true, first.orders[k]};
   }
   return first;
 }

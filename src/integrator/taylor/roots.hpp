@@ -1,10 +1,11 @@
 #pragma once
-#include "integrator/taylor/polynomial_motion.hpp"
-#include "integrator/taylor/switches.hpp"
 #include "disks/retrace.hpp"
 #include "disks/scaled_rows.hpp"
+#include "integrator/taylor/polynomial_motion.hpp"
+#include "integrator/taylor/switches.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
@@ -23,7 +24,9 @@ template <class T>
 struct RootOf {
   T x;
   RootKind kind;
-  std::int8_t after = 0;  // of a jump: the side beyond it; 0: the function has no value there
+  std::int8_t after = 0;   // of a jump: the side beyond it; 0: the function has no value there
+  std::uint8_t order = 1;  // of the root, as far as rounding tells it
+  T hidden = T(0);         // at a root of higher order: by how much rounding may have moved it
 };
 
 /// Roots of functions along a step whose motion is a known polynomial.
@@ -179,6 +182,8 @@ class RootSearchOf {
   T value(std::size_t index, const T& x);
   T at_a_time(const T& x) const;
   T refined(std::size_t index, const Piece& piece, const T& begin, const T& root);
+  RootOf<T> crossing_at(std::size_t index, const Piece& piece, const T& begin, const T& root);
+  RootOf<T> touch_at(std::size_t index, const Piece& piece, const T& begin, const T& root);
   struct Gap {
     T end;             // where the function is analytic again
     std::int8_t side;  // that it has there; 0: it has no value any more
@@ -191,6 +196,7 @@ class RootSearchOf {
     T last, place;  // the last place that was looked at before, and this one
   };
   Beyond analytic_beyond(std::size_t index, const T& x, const T& until);
+  RootOf<T> told_by_values(std::size_t index, const T& root, const T& least);
   std::optional<RootOf<T>> change_of_sign(std::size_t index, T low, T high, std::int8_t side, const T& end);
 
   /// A step of low order is long where the motion is a polynomial, in which a function of it may still swing: its

@@ -1,4 +1,5 @@
 #pragma once
+#include "integrator/taylor/hidden_root.hpp"
 #include "integrator/taylor/roots.hpp"
 #include "integrator/taylor/switches_code.hpp"
 #include "integrator/taylor/touches_code.hpp"
@@ -274,6 +275,61 @@ T RootSearchOf<T>::refined(std::size_t index, const Piece& piece, const T& begin
   return std::clamp(x, begin, T(begin + piece.width));
 }
 
+/// Of a root of higher order with the stretch about it that rounding does not tell from zero.
+template <class T>
+RootOf<T> RootSearchOf<T>::crossing_at(std::size_t index, const Piece& piece, const T& begin, const T& root) {
+  using std::abs;
+  constexpr double narrow = 1e-9;  // of the piece
+  RootOf<T> found{refined(index, piece, begin, root), RootKind::Crossing};
+  if (hidden_by_slope(piece.polynomial, root) <= T(narrow)) return found;
+  const HiddenRoot<T> hidden = hidden_about(piece.polynomial, root);
+  if (hidden.order == 1) return found;
+  const RootOf<T> beside = told_by_values(index, found.x, T(piece.width * hidden.half_width()));
+  found.hidden = beside.hidden + abs(begin + piece.width * hidden.middle() - found.x);
+  found.order = std::max(hidden.order, beside.order);
+  return found;
+}
+
+/// Where the slope vanishes, by the same rule; a crossing where the function has the other sign beyond what rounding
+/// hides.
+template <class T>
+RootOf<T> RootSearchOf<T>::touch_at(std::size_t index, const Piece& piece, const T& begin, const T& root) {
+  const HiddenRoot<T> hidden = hidden_about(slope_of(piece.polynomial), root);
+  const bool is_double = hidden.order == 1;
+  const RootOf<T> found{T(begin + piece.width * (is_double ? root : hidden.middle())), RootKind::Touching, 0,
+                        static_cast<std::uint8_t>(hidden.order + 1),
+                        is_double ? T(0) : T(piece.width * hidden.half_width())};
+  const RootOf<T> beside = told_by_values(index, found.x, found.hidden);
+  return beside.kind == RootKind::Crossing ? beside : found;
+}
+
+/// What the values on both sides say of a root: hidden as far as they are rounding of their terms, of the order by
+/// which they grow beyond, and crossed where their signs differ there.
+template <class T>
+RootOf<T> RootSearchOf<T>::told_by_values(std::size_t index, const T& root, const T& least) {
+  using std::abs;
+  constexpr double widest = 0.03;  // of the step
+  constexpr int clear = 4;         // rounding errors
+  RootOf<T> out{root, RootKind::Touching, 0, 1, std::max(resolution_, least)};
+  const auto side_at = [&](const T& x) {
+    const T here = value(index, x);
+    const bool is_told = abs(here) > T(clear) * watching::unit<T>() * retrace_.scale(slots_[index]);
+    return is_told ? watching::sign(here) : std::int8_t{0};
+  };
+  int before = side_at(root - out.hidden), after = side_at(root + out.hidden);
+  while (before * after == 0 && out.hidden < T(widest)) {
+    out.hidden *= 2;
+    before = side_at(root - out.hidden), after = side_at(root + out.hidden);
+  }
+  if (before * after < 0) out.kind = RootKind::Crossing;
+  const T ratio = value(index, root + 4 * out.hidden) / value(index, root + 2 * out.hidden);
+  constexpr double most = 63;
+  if (abs(ratio) > 1)
+    out.order =
+        static_cast<std::uint8_t>(std::clamp(std::round(std::log2(static_cast<double>(abs(ratio)))), 1.0, most));
+  return out;
+}
+
 template <class T>
 bool RootSearchOf<T>::has_value(std::size_t index, const T& x) {
   const T here = value(index, x);
@@ -323,7 +379,12 @@ std::optional<RootOf<T>> RootSearchOf<T>::change_of_sign(std::size_t index, T lo
   }
   // A zero gets smaller on both sides, a jump does not.
   const bool is_zero = std::max(at_low, at_high) <= T(0.5) * before || std::max(at_low, at_high) == 0;
-  if (is_zero) return RootOf<T>{high, RootKind::Crossing};
+  if (is_zero) {
+    RootOf<T> found = told_by_values(index, high, T(0));
+    found.kind = RootKind::Crossing;
+    if (!(found.hidden > resolution_)) found.hidden = T(0);
+    return found;
+  }
   // The motion goes on from where the function has a value with its new sign; at a pole itself it has none.
   const auto is_beyond = [&](const T& x) {
     const T there = value(index, x);
@@ -401,7 +462,7 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watc
     const auto root = crossing(now.polynomial, watched);
     const auto closer = turns < most_nearer ? nearer(index, now, x, watched, root) : std::nullopt;
     if (watched.at_zero) touches::take_out_zero(now.polynomial, watched.order);
-    watched.at_zero = false;  // the step goes on from it, wherever it ends
+    watched.at_zero = false, watched.order = 1;  // the step goes on from it, wherever it ends
     if (closer) {
       x = closer->begin, most = closer->most;
       ++turns;
@@ -411,9 +472,13 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watc
     if (wants_touching) {
       const auto touch = touching(touches::up_to(now.polynomial, root), watched.side, root.has_value());
       const T end = root ? *root : T(1);
-      if (touch && (!root || *touch < T(0.999))) return RootOf<T>{T(x + now.width * end * *touch), RootKind::Touching};
+      if (touch && (!root || *touch < T(0.999))) return touch_at(index, now, x, T(end * *touch));
     }
-    if (root) return RootOf<T>{std::min(until, refined(index, now, x, *root)), RootKind::Crossing};
+    if (root) {
+      RootOf<T> found = crossing_at(index, now, x, *root);
+      found.x = std::min(until, found.x);
+      return found;
+    }
     x += now.width;
   }
   return std::nullopt;

@@ -13,16 +13,22 @@ std::int8_t sign(double x) { return static_cast<std::int8_t>((x > 0) - (x < 0));
 
 constexpr double unresolved = 1e-12;  // of the step
 
+void forget_roots(Crossing& crossing) {
+  crossing.roots.clear(), crossing.directions.clear(), crossing.jumps.clear();
+  crossing.hidden.clear(), crossing.orders.clear();
+}
+
 /// Roots that rounding does not tell apart are one crossing.
-void note(Crossing& crossing, double x, std::size_t index, double together, int direction, bool jump = false) {
-  if (crossing.found && x > crossing.x * (1 + together) + together) return;
-  if (x < crossing.x * (1 - together) - together)
-    crossing.roots.clear(), crossing.directions.clear(), crossing.jumps.clear();
-  crossing.x = std::min(crossing.x, x);
+void note(Crossing& crossing, const RootOf<double>& root, std::size_t index, double together, int direction) {
+  if (crossing.found && root.x > crossing.x * (1 + together) + together) return;
+  if (root.x < crossing.x * (1 - together) - together) forget_roots(crossing);
+  crossing.x = std::min(crossing.x, root.x);
   crossing.found = true;
   crossing.roots.push_back(index);
   crossing.directions.push_back(direction);
-  crossing.jumps.push_back(jump);
+  crossing.jumps.push_back(root.kind == RootKind::Jump);
+  crossing.hidden.push_back(root.hidden);
+  crossing.orders.push_back(root.order);
 }
 
 /// Switch functions, then events, as a workspace has them.
@@ -125,7 +131,7 @@ void WatchedFunctions::search(const KernelWorkspace& work, double h, double from
     if (is_switch && watched.side == 0 && !std::isnan(work.switch_function(i, 0))) continue;  // it vanishes
     if (!is_switch && !ends_step(i - count)) continue;
     if (from == 0 && !is_switch && !roots_->is_clear(i) && begins_past_root(work, i - count, h, watched))
-      note(out, 0, i, together_, watched.side);
+      note(out, {0.0, RootKind::Crossing}, i, together_, watched.side);
     // Events at one instant are all told: the search goes on beyond the first root by what a polynomial does not
     // resolve.
     const double beyond = is_switch ? together_ : std::max(together_, unresolved);
@@ -133,7 +139,7 @@ void WatchedFunctions::search(const KernelWorkspace& work, double h, double from
     const bool touches = !is_switch && tells_touches(i - count);
     if (const auto root = roots_->first(i, watched, from, until, touches, is_switch)) {
       const bool jump = root->kind == RootKind::Jump;
-      note(out, root->x, i, together_, root->kind == RootKind::Touching ? 0 : -watched.side, jump);
+      note(out, *root, i, together_, root->kind == RootKind::Touching ? 0 : -watched.side);
       if (jump) watched = {root->after, false};
     }
   }
@@ -143,7 +149,10 @@ void WatchedFunctions::search(const KernelWorkspace& work, double h, double from
     if (out.jumps[k]) continue;  // what lies beyond is known
     const std::size_t i = out.roots[k];
     Watched& watched = out.after[i];
-    watched = {i < count ? static_cast<std::int8_t>(-watched.side) : std::int8_t{0}, true};
+    if (i < count)
+      watched = {static_cast<std::int8_t>(-watched.side), true};
+    else
+      watched = {0, true, out.orders[k]};
   }
   pass(work, h, from, out);
 }
@@ -167,7 +176,7 @@ bool WatchedFunctions::turns_unread(const KernelWorkspace& work, double h, Cross
   const double from = out.x;
   out.turned.push_back(out.roots[0]);
   out.found = false;
-  out.roots.clear(), out.directions.clear(), out.jumps.clear();
+  forget_roots(out);
   search(work, h, from, out);
   return true;
 }
@@ -183,17 +192,21 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin,
     if (ends_step(event)) continue;
     const std::size_t i = count + event;
     Watched& watched = out.after[i];
-    const auto note_root = [&](double x, int direction) {
-      out.passed.push_back({std::min(x, out.x), event, direction});
+    const auto note_root = [&](double x, int direction, double hidden = 0) {
+      out.passed.push_back({std::min(x, out.x), event, direction, hidden});
     };
     if (begin == 0 && !roots_->is_clear(i) && begins_past_root(work, event, h, watched)) note_root(0, watched.side);
     for (double from = begin; from < until;) {
       const auto root = roots_->first(i, watched, from, until, tells_touches(event), false);
       if (!root) break;
       const bool touch = root->kind == RootKind::Touching;
-      note_root(root->x, touch ? 0 : -watched.side);
-      watched = {touch ? watched.side : std::int8_t{0}, true, static_cast<std::uint8_t>(touch ? 2 : 1)};
+      note_root(root->x, touch ? 0 : -watched.side, root->hidden);
+      const auto beyond = static_cast<std::int8_t>(touch ? watched.side : -watched.side);
       from = std::max(root->x, std::nextafter(from, 1.0));
+      watched = {touch ? beyond : std::int8_t{0}, true, root->order};
+      if (!(root->x + root->hidden < until)) continue;
+      from = std::max(from, root->x + root->hidden);  // what lies between is not told from zero
+      if (root->hidden > 0) watched = {beyond, false};
     }
   }
 }
@@ -220,7 +233,8 @@ void WatchedFunctions::leave(const Crossing& crossing, double length, Step& resu
   for (std::size_t i = 0; i < crossing.after.size(); ++i)
     (i < count ? switches[i] : events[i - count]) = crossing.after[i];
   for (const PassedRoot& root : crossing.passed)
-    result.events.push_back({root.event, root.direction, result.begin + root.x * length});
+    result.events.push_back(
+        {root.event, root.direction, result.begin + root.x * length, root.hidden * std::abs(length)});
   for (std::size_t k = 0; k < crossing.roots.size(); ++k) {
     const std::size_t i = crossing.roots[k];
     if (i < count) {
@@ -228,7 +242,9 @@ void WatchedFunctions::leave(const Crossing& crossing, double length, Step& resu
       continue;
     }
     if (!result.event) result.event = i - count;
-    result.events.push_back({i - count, crossing.directions[k], result.end});
+    const double hidden = crossing.hidden[k] * std::abs(length);
+    result.events.push_back({i - count, crossing.directions[k], result.end, hidden});
+    result.hidden = std::max(result.hidden, hidden);
   }
 }
 

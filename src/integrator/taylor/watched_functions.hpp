@@ -15,18 +15,21 @@ struct PassedRoot {
   double x = 0;  // fraction of the step
   std::size_t event = 0;
   int direction = 0;  // 1: rising, −1: falling, 0: touching
+  double hidden = 0;  // of the step: by how much rounding may have moved it
 };
 
 /// Where a step ends at a switch or an event.
 struct Crossing {
   double x = 1;  // fraction of the step; less than 1 without a root where the step is too long to be searched
   bool found = false;
-  std::vector<std::size_t> roots;   // switches, then events
-  std::vector<int> directions;      // [roots] 1: rising, −1: falling, 0: touching
-  std::vector<bool> jumps;          // [roots] a switch function jumps there: it has no zero
-  std::vector<Watched> after;       // the same, as the step leaves them
-  std::vector<PassedRoot> passed;   // in time order
-  std::vector<std::size_t> turned;  // switches before it that only what is watched depends on
+  std::vector<std::size_t> roots;    // switches, then events
+  std::vector<int> directions;       // [roots] 1: rising, −1: falling, 0: touching
+  std::vector<bool> jumps;           // [roots] a switch function jumps there: it has no zero
+  std::vector<double> hidden;        // [roots] of the step: by how much rounding may have moved it
+  std::vector<std::uint8_t> orders;  // [roots]
+  std::vector<Watched> after;        // the same, as the step leaves them
+  std::vector<PassedRoot> passed;    // in time order
+  std::vector<std::size_t> turned;   // switches before it that only what is watched depends on
 };
 
 /// The switch functions and events of a motion: on which sides they are, and where along a step they first leave them.

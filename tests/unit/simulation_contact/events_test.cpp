@@ -124,3 +124,51 @@ TEST_CASE("a ball between two events that double its speed: the time at which it
       "event a when x = 0 : set x' = -2 x'\nevent b when x = 1 : set x' = -2 x'\nstart x' = 1\n");
   CHECK(run(earlier, 2 - 1e-7).ok());
 }
+
+TEST_CASE("roots of higher order are met once each, with errors that hold") {
+  ModelText m(
+      "param w = 1.3 /s, l = 1 m, m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 m w^2 x^2\n"
+      "start x = -0.37 m, x' = 1 m/s\nevent third when x^3 = 0 [m^3] : record\n"
+      "event both when x^3 + x^5/l^2 = 0 [m^3] : record\nevent sine when sin(x/l) - x/l = 0 : record\n"
+      "event fifth when x^5 = 0 [m^5] : record\nevent touch when 2 (1 - cos(x/l)) - x^2/l^2 = 0 : record\n");
+  SimulationOptions options;
+  options.duration = 10;
+  const auto r = simulate(m.model, m.equations, options, m.diagnostics);
+  REQUIRE(r);
+  const double first = std::atan(0.37 * 1.3) / 1.3, half = std::acos(-1.0) / 1.3;
+  for (const std::string name : {"third", "both", "sine", "fifth", "touch"}) {
+    CAPTURE(name);
+    const bool is_third = name != "fifth" && name != "touch";
+    CHECK(count(*r, Happening::Kind::Event, name) == 4);
+    double t = first;
+    for (const Happening& h : r->happenings) {
+      if (h.name != name) continue;
+      CHECK(std::abs(h.t - t) <= h.error);
+      if (is_third) CHECK(h.error < 0.01);
+      t += half;
+    }
+  }
+}
+
+TEST_CASE("where such a root stops a run or sets its state, errors of the state hold") {
+  const std::string model =
+      "param w = 1.3 /s, l = 1 m, m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 m w^2 x^2\n"
+      "start x = -0.37 m, x' = 1 m/s\nevent e when sin(x/l) - x/l = 0 : ";
+  SimulationOptions options;
+  options.duration = 1;
+  ModelText stops(model + "stop\n");
+  const auto stopped = simulate(stops.model, stops.equations, options, stops.diagnostics);
+  REQUIRE(stopped);
+  REQUIRE(stopped->final.errors);
+  CHECK(std::abs(stopped->final.q[0]) <= stopped->final.errors->q[0]);
+  CHECK(stopped->final.errors->q[0] < 1e-4);
+  ModelText sets(model + "set x' = -x'\n");
+  const auto set = simulate(sets.model, sets.equations, options, sets.diagnostics);
+  REQUIRE(set);
+  REQUIRE(set->final.errors);
+  CHECK(count(*set, Happening::Kind::Event) == 1);
+  const double since = 1 - std::atan(0.37 * 1.3) / 1.3;
+  const double x = -std::hypot(1, 0.37 * 1.3) / 1.3 * std::sin(1.3 * since);
+  CHECK(std::abs(set->final.q[0] - x) <= set->final.errors->q[0]);
+  CHECK(set->final.errors->q[0] < 1e-4);
+}
