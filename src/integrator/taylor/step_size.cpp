@@ -183,8 +183,9 @@ double step_within_multipliers(const KernelWorkspace& work, std::size_t freedoms
   return least;
 }
 
-double step_within_integrals(const KernelWorkspace& work, std::size_t integrals, const StepControl& control, double h) {
-  constexpr double converged_integral = 1e-8;
+double step_within_integrals(const KernelWorkspace& work, std::vector<double>& sizes, const StepControl& control,
+                             double h) {
+  constexpr double converged_integral = 1e-8, rounding = 1e-13;
   const int p = control.order;
   if (p < 8) return h;
   const auto largest = [&](std::size_t i, int begin, double length) {  // of four terms
@@ -193,11 +194,15 @@ double step_within_integrals(const KernelWorkspace& work, std::size_t integrals,
     return size;
   };
   double least = h;
-  for (std::size_t i = 0; i < integrals; ++i) {
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    sizes[i] = std::max(sizes[i], std::abs(work.integrand(i, 0)));
     const auto last = [&](double length) { return largest(i, p - 3, length) * std::pow(length, p - 3); };
+    const auto converges = [&](double length) {
+      return last(length) <= std::max(converged_integral * largest(i, 0, length), rounding * sizes[i]);
+    };
     double own = least;
     int cuts = 0;
-    while (cuts < most_cuts && last(own) > converged_integral * largest(i, 0, own)) own *= cut, ++cuts;
+    while (cuts < most_cuts && !converges(own)) own *= cut, ++cuts;
     if (cuts < most_cuts) least = own;
   }
   return least;

@@ -2,6 +2,7 @@
 #include <maupertuis/kernel.hpp>
 
 #include <cstddef>
+#include <vector>
 
 namespace maupertuis::taylor {
 
@@ -25,7 +26,9 @@ double step_within_multipliers(const KernelWorkspace& work, std::size_t freedoms
                                const StepControl& control, double h);
 
 /// At most h (finite), and so short that the series of the integrals along the motion converge: a power made of sines
-/// may have a series that ends far from where that of a parabola does.
-double step_within_integrals(const KernelWorkspace& work, std::size_t integrals, const StepControl& control, double h);
+/// may have a series that ends far from where that of a parabola does. `sizes`: [integrals] the largest that their
+/// integrands have been so far, which grow here; what is rounding of them asks for nothing.
+double step_within_integrals(const KernelWorkspace& work, std::vector<double>& sizes, const StepControl& control,
+                             double h);
 
 }  // namespace maupertuis::taylor

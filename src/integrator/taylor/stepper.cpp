@@ -147,8 +147,10 @@ double TaylorStepper::Impl::choose_length(double bound) {
   double chosen = constraints.restraint * taylor::step_size(work, n, control, length);
   const double left = std::abs(remaining(bound));
   if (m > 0) chosen = taylor::step_within_multipliers(work, n, m, control, std::min(chosen, left));
-  if (const std::size_t integrals = state.integrals.size(); integrals > 0)
-    chosen = taylor::step_within_integrals(work, integrals, control, std::min(chosen, left));
+  // A motion that is a parabola asks for no step, but what is made of it may have a series that ends.
+  if (!std::isfinite(chosen) && !integrand_sizes.empty() && !is_at_rest())
+    if (const double cut = taylor::step_within_integrals(work, integrand_sizes, control, left); cut < left)
+      chosen = cut;
   length = std::isfinite(chosen) ? chosen : 0;
   end_check.note_rates(work.coordinate(1), work.coordinate(2), 1, std::min(chosen, left));
   if (!safe.is_needed()) return chosen;
@@ -275,6 +277,7 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
                              std::equal(q.begin(), q.end(), s.state.q_now.begin()) && s.watched.know_sides();
   s.state.start(t, q, v);
   s.state.t.lo = rest;
+  s.integrand_sizes.assign(s.state.integrals.size(), 0);
   s.watched.start();
   s.constraints.start();
   s.shrinking.start(t);

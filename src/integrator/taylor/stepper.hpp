@@ -92,10 +92,11 @@ struct TaylorStepper::Impl {
   taylor::EndCheck end_check;
   taylor::ConstraintRecord constraints;
   taylor::ShrinkingSteps shrinking;
-  std::vector<double> sizes;  // [4][n] by code: of q on its disk, as SafeLength::within takes them
-  double length = 0;          // the last one that the control chose
-  double longest = 0;         // so far
-  double tried = 0;           // the last one at which no place was passed
+  std::vector<double> sizes;            // [4][n] by code: of q on its disk, as SafeLength::within takes them
+  std::vector<double> integrand_sizes;  // [integrals] the largest so far
+  double length = 0;                    // the last one that the control chose
+  double longest = 0;                   // so far
+  double tried = 0;                     // the last one at which no place was passed
 
   // How the run goes.
   bool has_start_sample = false;               // before the first step it is made when it is asked for
