@@ -170,7 +170,8 @@ void constrain_quaternions(Elaboration& e);
 void start_quaternions(Elaboration& e);
 /// A number that is known before the run, of parameters and quantities alone.
 Value constant_of(Elaboration& e, const syntax::Expression& x, const Dimension& expected, const std::string& what);
-/// The same for a frequency or eigenvalue that is expected: N0252 where it has no value with these parameters, which is for `test` to tell.
+/// The same for a frequency or eigenvalue that is expected: N0252 where it has no value with these parameters, which is
+/// for `test` to tell.
 Value expected_constant_of(Elaboration& e, const syntax::Expression& x, const Dimension& expected,
                            const std::string& what);
 /// The same for a vector.

@@ -41,6 +41,15 @@ bool is_to_be_named(const Expr& e) {
   return (is_function(e.kind()) || has_switch(e.kind()) || is_other_power(e)) && is_constant(e);
 }
 
+/// sin(π/2) and the like: 0 or ±1, which frames hold as they were written.
+bool is_of_quarter_turns(const Expr& e) {
+  if (!is_function(e.kind())) return false;
+  const Expr turn = e[0];
+  if (turn.is(Kind::Pi)) return true;
+  return turn.is(Kind::Product) && turn.size() == 2 && turn[0].is_number() && turn[1].is(Kind::Pi) &&
+         (turn[0].number() * Rational(2)).is_integer();
+}
+
 /// A function of a sum with a multiple of π.
 bool turns_by_pi(const Expr& e) {
   if (!is_function(e.kind()) || !e[0].is(Kind::Sum)) return false;
@@ -60,13 +69,14 @@ class Constants {
   explicit Constants(const MechanicalSystem& system) : system_(system) {}
 
   void take(const Expr& e) {
-    keeps_pi_ = keeps_pi_ || turns_by_pi(e);
+    keeps_pi_ = keeps_pi_ || turns_by_pi(e) || is_of_quarter_turns(e);
+    if (is_of_quarter_turns(e)) return;
     if (is_to_be_named(e)) return add(e);
     for (std::size_t i = 0; i < e.size(); ++i)
       if (seen_.insert(e[i]).second) take(e[i]);
   }
 
-  /// sin(q + π/2) is cos q: no other number may stand in the place of π then.
+  /// sin(q + π/2) is cos q, and sin(π/2) is 1: no other number may stand in the place of π then.
   void leave_pi_where_angles_turn_by_it() {
     if (!keeps_pi_) return;
     const auto holds_pi = [&](const Parameter& p) { return meaning_.at(p.symbol).is(Kind::Pi); };
