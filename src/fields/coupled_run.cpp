@@ -398,7 +398,7 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
   const int order = s.element_order ? s.element_order : usual_coupled_order;
   if (refuse_too_many_conditions(equations, diagnostics)) return std::nullopt;
   if (nothing_moves(equations)) {
-    diagnostics.error("E0642", s.density_span, "nothing moves in this model",
+    diagnostics.error("E0642", s.density_span, "no equation says how this model moves",
                       "No equation of its fields and of what takes hold of them holds a derivative by t.",
                       "The rest is that of `maup modes` and `expect equilibrium at …`.");
     return std::nullopt;

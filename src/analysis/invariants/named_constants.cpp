@@ -43,7 +43,7 @@ bool is_to_be_named(const Expr& e) {
 
 /// sin(π/2) and the like: 0 or ±1, which frames hold as they were written.
 bool is_of_quarter_turns(const Expr& e) {
-  if (!is_function(e.kind())) return false;
+  if (!e.is(Kind::Sin) && !e.is(Kind::Cos) && !e.is(Kind::Tan)) return false;
   const Expr turn = e[0];
   if (turn.is(Kind::Pi)) return true;
   return turn.is(Kind::Product) && turn.size() == 2 && turn[0].is_number() && turn[1].is(Kind::Pi) &&

@@ -90,8 +90,8 @@ TEST_CASE("coefficients with sines of parameters, π and functions of numbers ar
   const Found years("coord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = -4 pi^2/sqrt(x^2 + y^2)\n");
   CHECK(years.count("Laplace-Runge-Lenz") == 2);
   CHECK(years.result.autonomous_rank == 3);
-  for (const char* slope :
-       {"sin(α)", "exp(α)", "pi", "sin(0.3)", "tan(α)", "sqrt(α + 2)", "α^(1/3)", "(1 + sqrt(5))/2", "2^α"}) {
+  for (const char* slope : {"sin(α)", "exp(α)", "pi", "sin(0.3)", "tan(α)", "sqrt(α + 2)", "α^(1/3)", "(1 + sqrt(5))/2",
+                            "2^α", "exp(pi)", "exp(pi/2)"}) {
     CAPTURE(slope);
     const Found incline("param m = 1, g = 9, α = 0.4\ncoord x : number\nT = 1/2 m x'^2\nV = -m g " +
                         std::string(slope) + " x\n");
