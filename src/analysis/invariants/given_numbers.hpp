@@ -6,7 +6,7 @@
 namespace maupertuis::invariants {
 
 /// Field numbers in which some symbols have given values.
-class GivenNumbers : public evaluation::FieldNumbers {
+class GivenNumbers final : public evaluation::FieldNumbers {
  public:
   using FieldNumbers::FieldNumbers;
   Value symbol(Expr e) const {
@@ -15,9 +15,10 @@ class GivenNumbers : public evaluation::FieldNumbers {
   }
   void give(Expr e, Value v) { given_[e.id()] = v; }
   void take_back(Expr e) { given_.erase(e.id()); }
-  bool is_given(Expr symbol) const { return given_.count(symbol.id()) > 0; }
 
  private:
+  bool is_fixed(Expr symbol) const override { return given_.count(symbol.id()) > 0; }
+
   std::unordered_map<NodeId, Value> given_;
 };
 

@@ -272,10 +272,7 @@ std::optional<MotionSampler::Sample> MotionSampler::attempt(const ParameterRoots
       return collect();
     } catch (const evaluation::Redraw& redraw) {
       if (redraw.at < parametric_.size() && parametric_[redraw.at]) return std::nullopt;
-      // A symbol with a given value is no help: then all are drawn again.
-      const auto symbol = hints_.free.find(redraw.at);
-      mended = symbol != hints_.free.end() && !numbers_->is_given(symbol->second) && mends-- > 0 &&
-               stale_->mend(*numbers_, redraw);
+      mended = mends-- > 0 && stale_->mend(*numbers_, redraw);
     }
   }
   lost_in_roots_ = unsolved < 8;

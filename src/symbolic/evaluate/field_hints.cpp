@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace maupertuis::evaluation {
 namespace {
@@ -79,33 +80,19 @@ std::vector<bool> nodes_in_pieces(const Tape& tape) {
   return in_a_piece;
 }
 
-/// For each node that asks for a sign, the symbol below it that was met last: by the smallest number of earlier such
-/// nodes.
-void find_free_symbols(const Tape& tape, const std::vector<Position>& askers, FieldHints& hints) {
-  constexpr Position none = ~Position{0};
-  std::vector<Position> rank(tape.size(), none);  // of a node below an asker: the first asker above it
+/// Which nodes ask for a sign, and of each symbol below them the first.
+void find_askers(const Tape& tape, const std::vector<Position>& askers, FieldHints& hints) {
+  std::vector<char> met(tape.size(), 0);
   for (Position k = 0; k < askers.size(); ++k) {
+    hints.asking.emplace(askers[k], tape.expression(tape.argument(askers[k], 0)));
     std::vector<Position> open{tape.argument(askers[k], 0)};
     while (!open.empty()) {
       const Position node = open.back();
       open.pop_back();
-      if (rank[node] != none) continue;
-      rank[node] = k;
+      if (std::exchange(met[node], 1)) continue;
+      if (tape.kind(node) == Kind::Symbol) hints.met_by.emplace(tape.expression(node).id(), k);
       for (const Position argument : tape.arguments(node)) open.push_back(argument);
     }
-  }
-  std::vector<Position> latest(tape.size(), none);  // the symbol of highest rank below a node
-  for (Position at = 0; at < tape.size(); ++at) {
-    if (rank[at] == none) continue;
-    if (tape.kind(at) == Kind::Symbol) latest[at] = at;
-    for (const Position argument : tape.arguments(at)) {
-      const Position candidate = latest[argument];
-      if (candidate != none && (latest[at] == none || rank[candidate] > rank[latest[at]])) latest[at] = candidate;
-    }
-  }
-  for (const Position asker : askers) {
-    const Position symbol = latest[tape.argument(asker, 0)];
-    if (symbol != none) hints.free.emplace(asker, tape.expression(symbol));
   }
 }
 
@@ -133,7 +120,7 @@ FieldHints field_hints(const Tape& tape) {
   }
   if (askers.empty()) return hints;
   hints.sign = definite_signs(tape);
-  find_free_symbols(tape, askers, hints);
+  find_askers(tape, askers, hints);
   return hints;
 }
 

@@ -2,6 +2,7 @@
 
 #include <maupertuis/functions.hpp>
 
+#include <algorithm>
 #include <optional>
 
 namespace maupertuis::evaluation {
@@ -32,12 +33,33 @@ void FieldNumbers::set_seed(std::uint64_t seed) {
 }
 
 Expr FieldNumbers::mend(const Redraw& redraw) {
-  const auto free = hints_.free.find(redraw.at);
-  if (redraw.another_prime || free == hints_.free.end()) return {};
-  ++drawn_again_[free->second.id()];
+  const Expr symbol = redraw.another_prime ? Expr() : symbol_to_draw_again(redraw);
+  if (!symbol) return {};
+  ++drawn_again_[symbol.id()];
   angles_.clear();
   units_.clear();
-  return free->second;
+  return symbol;
+}
+
+FieldNumbers::Asking& FieldNumbers::asking(Position at) {
+  const auto [it, is_new] = asking_.try_emplace(at);
+  if (!is_new) return it->second;
+  std::vector<Expr>& symbols = it->second.symbols;
+  for (const Expr& e : symbols_of({&hints_.asking.at(at), 1}))
+    if (hints_.met_by.count(e.id())) symbols.push_back(e);
+  std::stable_sort(symbols.begin(), symbols.end(),
+                   [&](const Expr& a, const Expr& b) { return hints_.met_by.at(a.id()) > hints_.met_by.at(b.id()); });
+  return it->second;
+}
+
+Expr FieldNumbers::symbol_to_draw_again(const Redraw& redraw) {
+  if (!hints_.asking.count(redraw.at)) return {};
+  Asking& node = asking(redraw.at);
+  if (node.drawn_again && node.argument == redraw.argument) std::erase(node.symbols, node.drawn_again);
+  node.argument = redraw.argument;
+  const auto first =
+      std::find_if(node.symbols.begin(), node.symbols.end(), [&](const Expr& e) { return !is_fixed(e); });
+  return node.drawn_again = first == node.symbols.end() ? Expr() : *first;
 }
 
 FieldNumbers::Value FieldNumbers::random(std::uint64_t key, std::uint64_t second) const {
@@ -147,7 +169,7 @@ FieldNumbers::Value FieldNumbers::power(const Tape& tape, Position at, const std
   if (!has_sign(base, values[base], 1)) {
     // Within a piece that is not in force here: any number will do, and the other pieces are met.
     if (stands_in_a_piece(at)) return random(mix(key_root ^ values[exponent]), values[base]);
-    throw Redraw{false, at};
+    throw Redraw{false, at, values[base]};
   }
   return field_.power(values[base], number ? exponent_of(*number) : exponent_of(tape, exponent, values));
 }

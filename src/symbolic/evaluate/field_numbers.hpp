@@ -5,6 +5,7 @@
 #include <optional>
 #include <unordered_map>
 #include <unordered_set>
+#include <vector>
 
 namespace maupertuis::evaluation {
 
@@ -12,6 +13,7 @@ namespace maupertuis::evaluation {
 struct Redraw {
   bool another_prime = false;  // a constant is to blame: another point does not help
   Position at = ~Position{0};  // the node whose argument has the wrong sign, at which the walk ended
+  std::uint64_t argument = 0;  // its value
 };
 
 /// What an evaluation over a prime field must know of an expression beside its nodes.
@@ -22,9 +24,9 @@ struct FieldHints {
   // Symbols under a root or a logarithm that stands outside of all pieces: drawn positive, since the formula has no
   // value otherwise.
   std::unordered_set<NodeId> positive;
-  std::vector<bool> in_a_piece;  // [tape] asked only where a piece of piecewise is in force
-  std::unordered_map<Position, Expr>
-      free;  // of a node with a sign to meet: the symbol that fewest earlier such nodes see
+  std::vector<bool> in_a_piece;                 // [tape] asked only where a piece of piecewise is in force
+  std::unordered_map<Position, Expr> asking;    // the arguments of nodes with a sign to meet
+  std::unordered_map<NodeId, Position> met_by;  // symbol: the first such node that sees it
 };
 FieldHints field_hints(const Tape& tape);
 /// +1, −1 where a formula has this sign at all real values of its symbols, by interval arithmetic; else 0.
@@ -55,6 +57,7 @@ class FieldNumbers {
     Value cosine, sine;
   };
 
+  virtual ~FieldNumbers() = default;
   FieldNumbers(const PrimeTriple& primes, const FieldHints& hints, std::uint64_t seed);
 
   const PrimeField& field() const { return field_; }
@@ -62,7 +65,9 @@ class FieldNumbers {
   Value random(std::uint64_t key, std::uint64_t second = 0) const;
   void set_seed(std::uint64_t seed);
   /// Another value for one symbol, such that most signs that were met before stay as they are: many roots cost a few
-  /// draws each and not 2^roots. Which symbol; an empty handle where none stands below the root.
+  /// draws each and not 2^roots. Which symbol: of those below the root the one that fewest earlier roots see; a symbol
+  /// on which the radicand has turned out not to depend (sin²ψ + cos²ψ, not simplified) is passed over from then on. An
+  /// empty handle where none is left.
   Expr mend(const Redraw& redraw);
   /// From now on x^c with c = n + f, 0 < f < 1, is x^n times a random number that depends on the values of x and f
   /// alone, whatever the sign of x. Fewer identities hold then ((x^f)² is no power of x any more), none that is false;
@@ -94,7 +99,19 @@ class FieldNumbers {
   int sign(Position argument, Value value) const;
   Value square_root(Value a) const;
 
+ protected:
+  /// Its value comes from elsewhere: to draw it again would change nothing.
+  virtual bool is_fixed(Expr) const { return false; }
+
  private:
+  /// What is known of a node with a sign to meet.
+  struct Asking {
+    std::vector<Expr> symbols;  // below it; first those that fewest earlier nodes see
+    Value argument = 0;         // when its sign was wrong last
+    Expr drawn_again;           // then
+  };
+  Asking& asking(Position at);
+  Expr symbol_to_draw_again(const Redraw& redraw);
   bool has_sign(Position argument, Value value, int sign) const;
   Value power(const Tape& tape, Position at, const std::vector<Value>& values);
   Value positive_power(Value base, std::uint64_t exponent) const;
@@ -132,6 +149,7 @@ class FieldNumbers {
   Angle turn_{};         // of the rotations of order r
   Angle root_{};         // rotation by 2π/m
   std::unordered_map<NodeId, std::uint64_t> drawn_again_;
+  std::unordered_map<Position, Asking> asking_;         // that were mended
   std::unordered_map<Position, Angle> angles_, units_;  // of arguments and of their basis elements, at this point
 };
 

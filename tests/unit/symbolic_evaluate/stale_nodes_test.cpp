@@ -5,6 +5,7 @@
 #include "symbolic/evaluate/evaluator.hpp"
 #include "symbolic/evaluate/stale_nodes.hpp"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -60,4 +61,34 @@ TEST_CASE("after a symbol was drawn again the values are those of a walk over th
   }
   CHECK(walks > 20);
   CHECK(evaluated < walks * tape.size() / 4);
+}
+
+TEST_CASE("a symbol on which a radicand does not depend is not drawn again and again") {
+  Context c;
+  const Expr x = c.symbol("x", Role::Coordinate), y = c.symbol("y", Role::Coordinate),
+             a = c.symbol("a", Role::Coordinate), cosine = apply(Kind::Cos, a), sine = apply(Kind::Sin, a);
+  // The root u comes first; then that of the length of (u, y) turned by a, the only symbol that u does not see.
+  const Expr u = pow(x + y, Rational(1, 3));
+  const Expr square = expand(pow(u * cosine - y * sine, Rational(2)) + pow(u * sine + y * cosine, Rational(2)));
+  const Expr sum = pow(square, Rational(1, 2));
+  const Tape tape({&sum, 1});
+  const FieldHints hints = field_hints(tape);
+  REQUIRE(hints.asking.size() == 2);
+  FieldNumbers numbers(random_prime_triple(hints.m, 21), hints, 22);
+  StaleNodes stale(tape);
+  std::vector<FieldNumbers::Value> values;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    numbers.set_seed(seed);
+    stale.all();
+    bool complete = false;
+    for (int walk = 0; !complete && walk < 40; ++walk) {
+      try {
+        run(tape, numbers, values, std::ref(stale));
+        complete = true;
+      } catch (const Redraw& redraw) {
+        REQUIRE(stale.mend(numbers, redraw));
+      }
+    }
+    CHECK(complete);
+  }
 }
