@@ -9,9 +9,12 @@
 #include <maupertuis/interrupt_scope.hpp>
 #include <maupertuis/vector_instructions.hpp>
 
+#include <algorithm>
 #include <csignal>
 #include <exception>
+#include <iterator>
 #include <sstream>
+#include <string_view>
 #include <vector>
 
 namespace maupertuis::app {
@@ -138,30 +141,34 @@ void add_model_options(Command& command, ModelOptions& options) {
 
 namespace {
 
+struct Entry {
+  std::string_view name;
+  void (*add)(CommandLine&);
+};
+
+constexpr Entry entries[] = {
+    {"check", add_check},     {"derive", add_derive},         {"simulate", add_simulate},
+    {"test", add_test},       {"invariants", add_invariants}, {"hamiltonian", add_hamiltonian},
+    {"compare", add_compare}, {"reduce", add_reduce},         {"modes", add_modes},
+    {"orbits", add_orbits},   {"action", add_action},         {"plot", add_plot},
+    {"animate", add_animate}, {"report", add_report},         {"fmt", add_fmt},
+    {"new", add_new},         {"explain", add_explain},       {"lsp", add_lsp},
+    {"studio", add_studio},   {"doctor", add_doctor},         {"completions", add_completions},
+    {"manual", add_manual},
+};
+
 void add_all_commands(CommandLine& line) {
-  add_check(line);
-  add_derive(line);
-  add_simulate(line);
-  add_test(line);
-  add_invariants(line);
-  add_hamiltonian(line);
-  add_compare(line);
-  add_reduce(line);
-  add_modes(line);
-  add_orbits(line);
-  add_action(line);
-  add_plot(line);
-  add_animate(line);
-  add_report(line);
-  add_fmt(line);
-  add_new(line);
-  add_explain(line);
-  add_lsp(line);
-  add_studio(line);
-  add_doctor(line);
-  add_completions(line);
-  add_manual(line);
+  for (const Entry& entry : entries) entry.add(line);
   add_later_commands(line);
+}
+
+/// The one that is asked for where it comes first, as nearly always: to declare the options of all takes a millisecond.
+void add_commands(CommandLine& line, int argc, char** argv) {
+  const std::string_view first = argc > 1 ? argv[1] : "";
+  const auto entry =
+      std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return e.name == first; });
+  if (entry == std::end(entries)) return add_all_commands(line);
+  entry->add(line);
 }
 
 }  // namespace
@@ -175,7 +182,7 @@ OptionTable option_table() {
 int run_command_line(int argc, char** argv) {
   try {
     CommandLine line;
-    add_all_commands(line);
+    add_commands(line, argc, argv);
     return static_cast<int>(line.run(argc, argv));
   } catch (const std::bad_alloc&) {
     std::fputs("maup: out of memory.\n", stderr);

@@ -150,7 +150,8 @@ std::string state_text(const State& state, const SimulationResult& result, const
                                                           : with_uncertainty(state.t, errors->t)) +
                     "\n";
   const auto line = [&](const std::string& name, double value, double error, const std::string& unit) {
-    out += fmt::format("  {} = {}\n", name, number_text(value, errors, error, unit));
+    out += std::isfinite(value) ? fmt::format("  {} = {}\n", name, number_text(value, errors, error, unit))
+                                : fmt::format("  {} has no value\n", name);
   };
   for (std::size_t i = 0; i < state.q.size(); ++i) {
     const Coordinate& c = system.coordinates[i];
