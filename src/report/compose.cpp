@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 /// From the artifacts of a study to plain data: what stands here chooses and names, html.cpp lays out.
 namespace maupertuis {
@@ -104,7 +105,7 @@ void add_model(ReportContent& content, const Model& model, const SourceText& sou
         {lay_out(input.symbol, equations.order), lay_out(input.formula, equations.order), "", ""});
 }
 
-std::vector<Formula> intermediate_rows(const std::vector<Intermediate>& intermediates, const ReadingOrder& order) {
+std::vector<Formula> intermediate_rows(std::span<const Intermediate> intermediates, const ReadingOrder& order) {
   std::vector<Formula> rows;
   for (const Intermediate& i : intermediates)
     rows.push_back({lay_out(i.symbol, order), lay_out(i.value, order), "", ""});
@@ -128,13 +129,28 @@ void add_equations(ReportContent& content, const Derivation& derivation, const R
         content.energies.push_back({step.left, lay_out(step.right, order), "", ""});
 }
 
+constexpr std::size_t most_names = 100;  // of a section: of an arm's equations in full there are thousands
+
+/// What stands in the lines of a section and is not written there.
+void tell_names_left_out(std::vector<ReportContent::Section>& sections, std::size_t names, std::string_view command) {
+  if (names == 0) return;
+  sections.back().lines.push_back(
+      {{}, {}, "", fmt::format("{} more names stand in these lines; `maup {}` writes them all.", names, command)});
+}
+
 /// Ends with Interrupted between two steps: a table of thousands of pieces stands in many of them.
 std::vector<ReportContent::Section> sections_of(const std::vector<DerivationStep>& steps, const ReadingOrder& order,
-                                                const Interrupt& interrupt) {
+                                                const Interrupt& interrupt, std::string_view command) {
   std::vector<ReportContent::Section> sections;
+  std::size_t names = 0;  // of this section
+  const auto left_out = [&] { return names > most_names ? names - most_names : 0; };
   for (const DerivationStep& step : steps) {
     interrupt.throw_if_asked();
-    if (sections.empty() || sections.back().title != step.section) sections.push_back({step.section, {}});
+    if (sections.empty() || sections.back().title != step.section) {
+      tell_names_left_out(sections, left_out(), command);
+      sections.push_back({step.section, {}});
+      names = 0;
+    }
     auto& lines = sections.back().lines;
     Formula line{step.left, {}, step.rule, step.sentence};
     if (step.right)
@@ -144,11 +160,14 @@ std::vector<ReportContent::Section> sections_of(const std::vector<DerivationStep
     // An equation reads `… = 0`, not `0 = …`.
     if (step.is_equation()) std::swap(line.left, line.right);
     lines.push_back(line);
-    for (Formula& where : intermediate_rows(step.intermediates, order)) {
+    const std::size_t shown = std::min(step.intermediates.size(), most_names - std::min(most_names, names));
+    for (Formula& where : intermediate_rows(std::span(step.intermediates).first(shown), order)) {
       where.rule = "with";
       lines.push_back(std::move(where));
     }
+    names += step.intermediates.size();
   }
+  tell_names_left_out(sections, left_out(), command);
   return sections;
 }
 
@@ -156,7 +175,7 @@ void add_phase_space(ReportContent& content, const EquationsOfMotion& equations)
   const Hamiltonian h = hamiltonian(equations);
   const auto r = routhian(equations, h);
   content.phase_space = sections_of(phase_space_lines(h, r ? &*r : nullptr, equations), h.order,
-                                    interrupt_of(*equations.system->context));
+                                    interrupt_of(*equations.system->context), "hamiltonian");
   content.phase_space_certified =
       h.value && certify(h, equations).passed() && (!r || !r->value || certify(*r, h, equations).passed());
 }
@@ -245,7 +264,8 @@ ReportContent compose_report(const Model& model, const SourceText& source, const
   add_model(content, model, source, equations, parts.simulation);
   section("equations", [&] { add_equations(content, derivation, equations.order); });
   section("derivation", [&] {
-    content.derivation = sections_of(derivation.steps, equations.order, interrupt_of(*equations.system->context));
+    content.derivation =
+        sections_of(derivation.steps, equations.order, interrupt_of(*equations.system->context), "derive --steps");
   });
   add_notes(content, model);
   section("phase-space", [&] { add_phase_space(content, equations); });

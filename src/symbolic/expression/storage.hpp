@@ -32,7 +32,8 @@ struct Context::Storage {
   std::deque<Rational> numbers;
   std::deque<Symbol> symbols;
   std::unordered_map<std::string, std::vector<NodeId>> symbols_by_name;  // [order]
-  NodeId time = 0;  // the one symbol of Role::Time, 0: not made yet
+  mutable int numbered_names = 0;  // k1 … kn are names already: who needs a fresh one goes on from there
+  NodeId time = 0;                 // the one symbol of Role::Time, 0: not made yet
 
   std::vector<NodeId> table;  // open addressing, 0: empty (node 0 is a sentinel)
   std::vector<std::unique_ptr<NodeId[]>> chunks;

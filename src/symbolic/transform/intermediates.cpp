@@ -25,7 +25,8 @@ class FreshNames {
       }
     }
     std::string name;
-    do name = "k" + std::to_string(++last_);
+    int& last = context_.storage().numbered_names;
+    do name = "k" + std::to_string(++last);
     while (!is_free(name));
     return symbol(name);
   }
@@ -36,7 +37,6 @@ class FreshNames {
 
   Context& context_;
   std::unordered_map<NodeId, std::size_t> places_;  // of the coordinates
-  int last_ = 0;
 };
 
 /// Too small to deserve a name: leaves, and products of up to four names.
