@@ -124,6 +124,10 @@ class Study {
   bool refuse_without_time();
   /// E0270 where the model has contacts or friction: for questions about the equations of one mode.
   bool refuse_modes();
+  /// E0271 where an event sets or stops the motion: for questions about one smooth motion.
+  bool refuse_acting_events();
+  /// N0272 where an event sets the state: for questions about the equations alone.
+  void tell_events_left_out();
 
  private:
   bool elaborate_model(Diagnostics& found, std::optional<Model>& model);

@@ -28,6 +28,20 @@ constexpr CodeEntry entries[] = {
      "contact z >= 0 restitution 0.8 name floor\nstart z = 1 m\n",
      "# maup hamiltonian --mode free\ncoord z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m z'^2\nV = m g z\n"
      "contact z >= 0 restitution 0.8 name floor\nstart z = 1 m\n"},
+    {"E0271", "an event acts on the motion that a question follows",
+     "The action of a motion, and the motion by canonical equations, follow from L alone; what an event sets, or where it "
+     "stops, does not. `maup simulate` and `maup orbits` carry events out.",
+     "# maup action --motion\ncoord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\n"
+     "event kick when x = 1 m : set x' = -x'\nstart x = 0 m, x' = 1 m/s\nrun 2 s\n",
+     "# maup action --motion\ncoord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\n"
+     "event kick when x = 1 m : record\nstart x = 0 m, x' = 1 m/s\nrun 2 s\n"},
+    {"N0272", "events left out of account",
+     "Equilibria, their stability and stationary paths are those of the equations of motion. An event that sets the "
+     "state may throw a motion off an equilibrium that is stable by its equations.",
+     "# maup modes\ncoord x : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"
+     "event kick when x = 0 falling : set x' = 2 x'\nstart x = 1 m\nrun 2 s\n",
+     "# maup modes\ncoord x : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"
+     "start x = 1 m\nrun 2 s\n"},
     {"N0505", "the equations of a model with contacts",
      "Without --mode the equations are those of the system while no contact is closed and no dry friction acts.",
      "# maup derive\ncoord z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m z'^2\nV = m g z\n"

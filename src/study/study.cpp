@@ -314,6 +314,43 @@ bool Study::refuse_modes() {
   return true;
 }
 
+namespace {
+
+const ModelEvent* first_event(const Model& model, std::initializer_list<ModelEvent::Action> actions) {
+  const auto& events = model.experiment.events;
+  const auto found = std::find_if(events.begin(), events.end(), [&](const ModelEvent& e) {
+    return std::find(actions.begin(), actions.end(), e.action) != actions.end();
+  });
+  return found == events.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+bool Study::refuse_acting_events() {
+  if (!model()) return false;
+  const ModelEvent* const event = first_event(*model_, {ModelEvent::Action::Set, ModelEvent::Action::Stop});
+  if (!event) return false;
+  Diagnostics found;
+  found.error(
+      "E0271", event->span,
+      fmt::format("the event `{}` acts on the motion, and this question follows one smooth motion", event->name),
+      "What an event sets, or where it stops the run, does not follow from the equations of motion.",
+      "`maup simulate` and `maup orbits` carry events out; leave the event out to ask of the equations alone.");
+  tell(found);
+  return true;
+}
+
+void Study::tell_events_left_out() {
+  if (!model()) return;
+  const ModelEvent* const event = first_event(*model_, {ModelEvent::Action::Set});
+  if (!event) return;
+  Diagnostics found;
+  found.note("N0272", event->span, fmt::format("what the event `{}` sets is left out of account here", event->name),
+             "Equilibria, their stability and stationary paths are those of the equations of motion alone.",
+             "`maup simulate` and `maup orbits` carry events out.");
+  tell(found);
+}
+
 bool moves_in_time(const MechanicalSystem& system) {
   return system.dimensionless || system.independent_dimension.same_as(dimensions::time());
 }

@@ -74,6 +74,28 @@ TEST_CASE("impacts in many digits are told with their digits") {
   CHECK(std::abs(std::stod(first.at("t").get<std::string>()) - std::sqrt(2 / 9.81)) < 1e-15);
 }
 
+TEST_CASE("what an event sets or stops is no part of one smooth motion: refused, or told to be left out") {
+  const Folder folder;
+  const std::string path = folder.write(
+      "kick.lag",
+      "dimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\nevent kick when x = 0 falling : set x' = -2 x'\n"
+      "start x = 1\nrun 10\npath from 0 at 0 to 0.5 at 1\n");
+  const auto code_of = [&](std::vector<std::string> command) {
+    command.insert(command.begin() + 1, path);
+    command.push_back("--json");
+    return json_of(maup(command)).at("diagnostics")[0].at("code").get<std::string>();
+  };
+  CHECK(code_of({"action", "--motion"}) == "E0271");
+  CHECK(code_of({"action", "--periodic"}) == "E0271");
+  CHECK(code_of({"hamiltonian", "--integrate"}) == "E0271");
+  CHECK(code_of({"action"}) == "N0272");
+  CHECK(code_of({"modes"}) == "N0272");
+  CHECK(json_of(maup({"action", path, "--path", "x = t", "--from", "0", "--to", "1", "--json"}))
+            .at("diagnostics")
+            .empty());
+  CHECK(json_of(maup({"hamiltonian", path, "--json"})).at("diagnostics").empty());
+}
+
 TEST_CASE("hamiltonian, action, compare and reduce want one mode") {
   const std::string ball = gallery + "bouncing_ball.lag";
   for (const std::vector<std::string>& command :

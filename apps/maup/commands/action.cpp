@@ -216,7 +216,13 @@ ExitCode study_action(const ActionCommand& o, Console& console) {
   if (good_text) check_ends(o, study);
   if (good_text && study.wrong()) return finish_usage(console, study, "action");
   put_in_path(o, study);
-  if (study.refuse_modes() || !study.certificate()) return finish(console, study, json_document("action"));
+  const auto along_a_motion = [&] {
+    const Experiment& experiment = study.model()->experiment;
+    return !experiment.given_path && (o.motion || o.periodic || !experiment.path);
+  };
+  if (study.refuse_modes() || (study.model() && along_a_motion() && study.refuse_acting_events()) ||
+      !study.certificate())
+    return finish(console, study, json_document("action"));
   check_search(o, study);
   if (study.wrong()) return finish_usage(console, study, "action");
 
@@ -226,6 +232,7 @@ ExitCode study_action(const ActionCommand& o, Console& console) {
                      : !o.motion && experiment.path ? find_paths(o, study)
                                                     : find_motion(o, study);
   if (!found) return finish_without(console, study, "action");
+  if (!experiment.given_path) study.tell_events_left_out();
   write_files(o, *found, study);
   return finish_with(console, study, "action", found->answer);
 }

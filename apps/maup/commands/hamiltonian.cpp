@@ -194,7 +194,8 @@ ExitCode hamiltonian_of(const HamiltonianOptions& options, Console& console) {
   for (const std::string& formula : options.bracket) study.ask("--bracket", formula);
   for (const std::string& formula : options.dirac_bracket) study.ask("--dirac-bracket", formula);
   if (!options.integrate) study.admit_singular_mass_matrix();  // then there are primary constraints
-  if (!study.model() || study.refuse_held_integrals() || study.refuse_modes() || !study.certificate())
+  if (!study.model() || study.refuse_held_integrals() || study.refuse_modes() ||
+      (options.integrate && study.refuse_acting_events()) || !study.certificate())
     return finish(console, study, document);
   const PhaseSpace found = analyse(options, study, console);
   if (study.wrong()) return finish(console, study, document);

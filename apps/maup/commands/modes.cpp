@@ -366,6 +366,7 @@ ExitCode modes(const ModesOptions& options, Console& console) {
       study.refuse_without_time() || !study.certificate())
     return finish(console, study, json_document("modes"));
   if (options.orbit) return orbit(options, study, console);
+  study.tell_events_left_out();
   const InterruptScope scope = study.interruptible();
   const auto start = consistent_start(*study.model(), *equations, study.diagnostics());
   if (!start) return finish(console, study, json_document("modes"));

@@ -117,6 +117,7 @@ class Page {
     if (has_modes) return true;
     budget_.carry_out("conserved", context_,
                       [&](const Interrupt&) { found_.invariants = page_invariants(model(), equations()); });
+    if (budget_.wanted("modes")) study_.tell_events_left_out();
     if (moves_in_time(model().system))
       budget_.carry_out("modes", context_, [&](const Interrupt& interrupt) { find_modes(interrupt); });
     return true;
