@@ -80,7 +80,7 @@ class Recorder {
   /// Nothing where the user has interrupted it.
   std::optional<CompanionRun> record(const RoundedNumbers::Draw& draw) {
     const bool until = plan_.result.ending == Ending::UntilReached || plan_.result.ending == Ending::Stopped;
-    const double bound = until ? plan_.run.end : plan_.result.final.t;
+    double bound = until ? plan_.run.end : plan_.result.final.t;
     method_.start(plan_.run.begin, draw.q, draw.v);
     cover();
     while (method_.time() != bound && !has_lost_the_motion()) {
@@ -88,9 +88,12 @@ class Recorder {
       cover();
       if (step.ending == StepEnding::Interrupted) return std::nullopt;
       // As much earlier as rounding hides: what it may hide from all of them is in the errors then.
-      if (until && step.event)
-        out_.final = sample(method_.time() - std::copysign(step.hidden, bound - plan_.run.begin));
-      if (step.ending != StepEnding::None || out_.final) break;
+      const bool met = until && step.event && !out_.final;
+      if (met) out_.final = sample(method_.time() - std::copysign(step.hidden, bound - plan_.run.begin));
+      if (step.ending != StepEnding::None) break;
+      if (out_.final && has_come_to(plan_.result.final.t)) break;
+      // It has met its end a little earlier, before the last row of the motion.
+      if (met) bound = plan_.result.final.t;
     }
     if (!until && method_.time() == bound && !has_lost_the_motion()) out_.final = sample(bound);
     out_.rows.resize(plan_.grid.size() * plan_.columns(), nothing);
@@ -104,6 +107,9 @@ class Recorder {
     return out;
   }
 
+  bool has_come_to(double t) const {
+    return plan_.run.begin <= plan_.run.end ? method_.time() >= t : method_.time() <= t;
+  }
   bool has_lost_the_motion() const { return next_row_ > last_row_ && next_request_ == requests_.size(); }
 
   void cover() {

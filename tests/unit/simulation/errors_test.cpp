@@ -175,6 +175,17 @@ TEST_CASE("equal runs have equal errors, and each row has one where that is aske
   CHECK(without.statistics.companions == 0);
 }
 
+TEST_CASE("a run that ends at a row of its output is certain there, though its neighbours end a little earlier") {
+  const SimulationResult result =
+      run("dimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\nstart x' = 1\n"
+          "run until sin(pi t) = 0 within 20\n");
+  REQUIRE(result.ending == Ending::UntilReached);
+  REQUIRE(result.final.errors);
+  CHECK(result.final.q[0] == doctest::Approx(std::sin(1)).epsilon(1e-15));
+  CHECK(result.final.errors->q[0] < 1e-14);
+  CHECK(result.uncertain.columns.empty());
+}
+
 TEST_CASE("the time of run until has an error, and so has the state there") {
   const std::string text =
       "system throw\nparam m = 1 kg, g = 9.81 m/s^2\ncoord x : length, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = m g y\n"
