@@ -267,18 +267,18 @@ std::optional<HybridMotion::Given> HybridMotion::given_in(const ContactMode& mod
   if (towards.empty()) return out;
   out.begins = begins;
   const auto program = library_->program(mode, {stops(), false, begins});
-  Slips slips(*program->slips, parameters_, t_, q_, v_);
+  Slips slips(*program->slips, parameters_, here_.t, here_.q, here_.v);
   constexpr double astray = 1e-12;
   double length = 0;
   for (std::size_t loose = 0; loose < towards.size(); ++loose) {  // the one that leads furthest
     Directions directions(slips, towards, at(loose));
-    const double reached = directions.find() ? std::min(directions.length(), std::abs(bound - t_)) : 0;
+    const double reached = directions.find() ? std::min(directions.length(), std::abs(bound - here_.t)) : 0;
     if (!(reached > length) || (loose > 0 && directions.deviation(reached) > astray)) continue;
     length = reached;
     out.values = slips.given();
   }
   if (!(length > 0)) return std::nullopt;
-  out.end = t_ + length;
+  out.end = here_.t + length;
   return out;
 }
 

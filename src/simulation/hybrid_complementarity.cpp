@@ -46,10 +46,10 @@ std::optional<ContactForceProblem> HybridMotion::force_problem(const std::vector
                                                                const ContactValues& values, double bound) {
   const ContactMode base = mode_without_contacts(list);
   TaylorStepper& stepper = *motion_in(base).stepper;
-  stepper.start(t_, q_, v_, t_rest_);
+  stepper.start(here_.t, here_.q, here_.v, here_.t_rest);
   const TaylorStepper::Outlook outlook = stepper.outlook(bound);
   if (outlook.ending != StepEnding::None) return std::nullopt;
-  const std::span<const double> drifts = functions_.drifts(t_, q_, v_);
+  const std::span<const double> drifts = here_.drifts();
   std::vector<SparseRow> normals, tangents, held;
   for (std::size_t i = base.closed.size(); i < base.friction.size(); ++i)
     if (base.friction[i] == FrictionState::Stick) held.push_back(values.tangent[i]);
@@ -67,8 +67,8 @@ std::optional<ContactForceProblem> HybridMotion::force_problem(const std::vector
     normals.push_back(values.normal[i]);
     tangents.push_back(contact.tangent);
   }
-  problem.response = functions_.response(t_, q_, v_, normals, held);
-  problem.tangent_response = functions_.response(t_, q_, v_, tangents, held);
+  problem.response = here_.response(normals, held);
+  problem.tangent_response = here_.response(tangents, held);
   return problem;
 }
 
@@ -158,14 +158,14 @@ void HybridMotion::order_by_forces(std::vector<Choice>& list, const ContactValue
 /// speed is taken out. v²/(2 |g̈|) is the height of such a flight, g̈ being what its own force takes back.
 void HybridMotion::close_lowest_flights(const std::vector<std::size_t>& touching, double bound) {
   constexpr double slow = 1e-6;  // of the fastest so far: never what is to be seen
-  const ContactValues& values = functions_.at(t_, q_, v_);
+  const ContactValues& values = here_.values();
   const auto is_slow = [&](std::size_t i) {
-    return values.rate[i] > rest_speed(i, values) && values.rate[i] <= slow * fastest_[i];
+    return values.rate[i] > sizes_.rest_speed(i, values) && values.rate[i] <= slow * sizes_.fastest(i);
   };
   if (std::none_of(touching.begin(), touching.end(), is_slow)) return;
   std::vector<Choice> list;
   for (const std::size_t i : touching)
-    if (values.rate[i] <= slow * fastest_[i]) list.push_back(choice_of_contact(i, values));
+    if (values.rate[i] <= slow * sizes_.fastest(i)) list.push_back(choice_of_contact(i, values));
   std::vector<std::size_t> pressed;
   // One that flies higher presses on nothing: the forces of the others are sought without it.
   for (bool all_are_low = false; !all_are_low;) {
@@ -178,7 +178,7 @@ void HybridMotion::close_lowest_flights(const std::vector<std::size_t>& touching
       const std::size_t i = list[k].contact;
       const double falls = forces->normal[k] * dot(problem->contacts[k].normal, problem->response.col(at(k)));
       const bool presses = forces->normal[k] > 0;
-      if (presses && is_slow(i) && values.rate[i] * values.rate[i] > 2 * falls * rest_unit * widest_[i]) continue;
+      if (presses && is_slow(i) && values.rate[i] * values.rate[i] > 2 * falls * rest_unit * sizes_.widest(i)) continue;
       low.push_back(list[k]);
       if (presses) pressed.push_back(i);
     }
@@ -186,7 +186,7 @@ void HybridMotion::close_lowest_flights(const std::vector<std::size_t>& touching
     list = std::move(low);
   }
   if (std::none_of(pressed.begin(), pressed.end(), is_slow)) return;
-  const Eigen::VectorXd v = Eigen::Map<const Eigen::VectorXd>(v_.data(), at(v_.size()));
+  const Eigen::VectorXd v = Eigen::Map<const Eigen::VectorXd>(here_.v.data(), at(here_.v.size()));
   ImpactResult closed = end_of_bounces(impact_problem(pressed, values), v);
   if (pressed.size() < touching.size()) {  // what touches beside them is not pressed through
     const ImpactResult all = simultaneous_impact(impact_problem(touching, values), closed.v, true);
@@ -196,7 +196,7 @@ void HybridMotion::close_lowest_flights(const std::vector<std::size_t>& touching
     }
   }
   book_energy(closed);
-  v_.assign(closed.v.data(), closed.v.data() + closed.v.size());
+  here_.v.assign(closed.v.data(), closed.v.data() + closed.v.size());
 }
 
 }  // namespace maupertuis

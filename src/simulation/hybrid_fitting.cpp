@@ -19,18 +19,18 @@ bool holds(const std::vector<std::size_t>& list, std::size_t x) {
 /// Whether what a condition does over the length that is judged is lost in rounding.
 bool HybridMotion::vanishes(const Watch& watch, double size, const ContactValues& values) const {
   constexpr double digits = 1e-12;
-  if (watch.what == Watch::What::Gap) return size <= digits * size_of_gap(watch.index, values);
-  if (watch.what == Watch::What::Force) return size <= digits * hardest_[watch.index];
+  if (watch.what == Watch::What::Gap) return size <= digits * sizes_.gap(watch.index, values);
+  if (watch.what == Watch::What::Force) return size <= digits * sizes_.hardest(watch.index);
   return false;
 }
 
 /// g̈ of a contact with these accelerations, in units of the sizes of its terms.
 double HybridMotion::opening_rate(std::size_t contact, std::span<const double> accelerations,
                                   const ContactValues& values) {
-  double sum = functions_.drifts(t_, q_, v_)[contact], size = std::abs(sum);
+  double sum = here_.drifts()[contact], size = std::abs(sum);
   for (const auto& [k, g] : values.normal[contact]) {
     sum += g * accelerations[k];
-    size += std::abs(g) * acceleration_[kind_[k]];
+    size += std::abs(g) * sizes_.acceleration(k);
   }
   return sum / std::max(size, std::numeric_limits<double>::min());
 }
@@ -80,7 +80,7 @@ bool HybridMotion::accelerations_go_on(std::span<const double> accelerations) co
   if (pending_->begins || !pending_->hit.empty() || !pending_->sets.empty()) return false;
   const std::vector<double> before = now_->stepper->sample(now_->stepper->time()).a;
   for (std::size_t k = 0; k < before.size(); ++k)
-    if (!(std::abs(accelerations[k] - before[k]) <= located_force * acceleration_[kind_[k]])) return false;
+    if (!(std::abs(accelerations[k] - before[k]) <= located_force * sizes_.acceleration(k))) return false;
   return true;
 }
 
@@ -129,12 +129,12 @@ bool HybridMotion::Trial::begins_at_zero(const Watch& w) const {
   switch (w.what) {
     case What::Gap: {
       // One that opens and is not negative begins as it is: next to rounding, but with the way that it has.
-      const bool opens = values.gap[w.index] > 0 && values.rate[w.index] > in.rest_speed(w.index, values);
+      const bool opens = values.gap[w.index] > 0 && values.rate[w.index] > in.sizes_.rest_speed(w.index, values);
       return !opens && holds(touching, w.index);
     }
     case What::Slip:
       return !friction_of(in.system_, w.index).in_space() &&
-             std::abs(values.slip[w.index]) <= in.rest_slip(w.index, values);
+             std::abs(values.slip[w.index]) <= in.sizes_.rest_slip(w.index, values);
     case What::Event:  // a motion that is thrown back from its zero has not passed it
       return holds(in.pending_->at_zero, w.index);
     case What::Force:
@@ -156,7 +156,7 @@ void HybridMotion::Trial::put_at_zero() {
   for (const std::size_t k : at_zero) {
     const Watch& w = watch(k);
     // A gap whose rate is rounding begins with the second power of time.
-    if (w.what == Watch::What::Gap && std::abs(values.rate[w.index]) <= in.rest_speed(w.index, values))
+    if (w.what == Watch::What::Gap && std::abs(values.rate[w.index]) <= in.sizes_.rest_speed(w.index, values))
       s.put_at_zero({&k, 1}, 2);
     if (w.what == Watch::What::Slip && in.begins_slowly(w, found.mode, values)) s.put_at_zero({&k, 1}, 2);
   }
@@ -192,9 +192,7 @@ bool HybridMotion::Trial::has_slow_slips() {
   for (const std::size_t k : at_zero) {
     const Watch& w = watch(k);
     if (w.what != Watch::What::Slip || values.fixed[w.index] != values.kinetic[w.index]) continue;
-    double acceleration = 0;
-    for (const auto& [i, x] : values.tangent[w.index]) acceleration += std::abs(x) * in.acceleration_[in.kind_[i]];
-    if (std::abs(outlook.slopes[k]) > slow * acceleration) continue;
+    if (std::abs(outlook.slopes[k]) > slow * in.sizes_.acceleration_along(values.tangent[w.index])) continue;
     motion.stepper->put_at_zero({&k, 1}, 2);
     has_some = true;
   }
@@ -220,7 +218,7 @@ bool HybridMotion::Trial::has_given_limits() {
 bool HybridMotion::Trial::has_slow_gaps() {
   const auto was_kept_closed = [&](std::size_t k) {
     const Watch& w = watch(k);
-    return w.what == Watch::What::Gap && !(std::abs(values.rate[w.index]) > in.rest_speed(w.index, values));
+    return w.what == Watch::What::Gap && !(std::abs(values.rate[w.index]) > in.sizes_.rest_speed(w.index, values));
   };
   if (std::none_of(at_zero.begin(), at_zero.end(), was_kept_closed)) return false;
   if (leniency != Leniency::Gaps && !in.accelerations_go_on(outlook.accelerations)) return false;
@@ -248,9 +246,9 @@ bool HybridMotion::Trial::has_hidden_events() {
 }
 
 void HybridMotion::Trial::begin() {
-  motion.stepper->start(in.t_, in.q_, in.v_, in.t_rest_);
+  motion.stepper->start(in.here_.t, in.here_.q, in.here_.v, in.here_.t_rest);
   put_at_zero();
-  if (motion.program->kernel.constraints() > 0) in.tell_usual_sizes(*motion.stepper);
+  if (motion.program->kernel.constraints() > 0) in.sizes_.tell(*motion.stepper);
 }
 
 /// False where there is no motion.
@@ -291,7 +289,7 @@ bool HybridMotion::Trial::keeps_gap(std::size_t k) {
     return outlook.sides[k] >= 0 && !in.presses_again(i, outlook.accelerations, values, located_force);
   if (outlook.sides[k] >= 0) return true;
   // Meeting the constraints of others may move a gap that opens through zero, by what they are known to.
-  const double rest = in.rest_speed(i, values), reached = met * in.widest_[i];
+  const double rest = in.sizes_.rest_speed(i, values), reached = met * in.sizes_.widest(i);
   const bool is_moved = -outlook.values[k] <= reached;
   if (is_moved && outlook.slopes[k] > rest) {
     motion.stepper->put_at_zero({&k, 1});
@@ -311,7 +309,7 @@ bool HybridMotion::Trial::keeps_force(std::size_t k) {
   // A body that hits a wall with an unstrained string behind it is pressed by nothing yet: beside what λ comes to,
   // rounding of the string is 0 too.
   const double comes_to = std::abs(outlook.slopes[k]) * outlook.length;
-  if (std::abs(outlook.values[k]) <= located * std::max(in.hardest_[i], comes_to)) {
+  if (std::abs(outlook.values[k]) <= located * std::max(in.sizes_.hardest(i), comes_to)) {
     // λ was located to rounding of the time alone: what it does next counts, and where it falls the contact opens
     // whatever rounding makes of its gap.
     if (outlook.slopes[k] >= 0) {
@@ -354,7 +352,7 @@ bool HybridMotion::Trial::keeps(std::size_t k) {
 }
 
 bool HybridMotion::fits(Found& found, const std::vector<std::size_t>& touching, double bound, Leniency leniency) {
-  Trial trial{*this, found, touching, leniency, motion_in(found.mode, found.given), functions_.at(t_, q_, v_)};
+  Trial trial{*this, found, touching, leniency, motion_in(found.mode, found.given), here_.values()};
   if (!trial.look(bound)) return false;
   for (std::size_t k = 0; k < trial.motion.watches().size(); ++k)
     if (!trial.keeps(k)) return false;
@@ -372,23 +370,23 @@ void HybridMotion::measure_forces(const std::vector<std::size_t>& touching, cons
   std::fill(free.mode.friction.begin(), free.mode.friction.end(), FrictionState::None);
   Trial trial{*this, free, touching, Leniency::Forces, motion_in(free.mode), values};
   if (!trial.look(bound)) return;
-  note_accelerations(free.accelerations, values);
+  sizes_.note_accelerations(free.accelerations, values);
   // At a start they may be 0, and what rests is to be measured by what they come to.
   TaylorStepper& stepper = *trial.motion.stepper;
   for (const double share : {0.5, 1.0}) {
     if (started_) break;
-    stepper.start(t_ + std::copysign(share * trial.outlook.length, bound - t_), q_, v_);
-    const TaylorStepper::Outlook later = stepper.outlook(bound + (bound - t_));
-    if (later.ending == StepEnding::None) note_accelerations(later.accelerations, values);
+    stepper.start(here_.t + std::copysign(share * trial.outlook.length, bound - here_.t), here_.q, here_.v);
+    const TaylorStepper::Outlook later = stepper.outlook(bound + (bound - here_.t));
+    if (later.ending == StepEnding::None) sizes_.note_accelerations(later.accelerations, values);
   }
-  note_slip_rates(values);
+  sizes_.note_slip_rates(values);
 }
 
 /// Frictions that the mode holds beyond their limits; nothing where it has no motion.
 std::optional<std::vector<std::size_t>> HybridMotion::beyond_limits(Found& found,
                                                                     const std::vector<std::size_t>& touching,
                                                                     double bound) {
-  Trial trial{*this, found, touching, Leniency::None, motion_in(found.mode, found.given), functions_.at(t_, q_, v_)};
+  Trial trial{*this, found, touching, Leniency::None, motion_in(found.mode, found.given), here_.values()};
   std::vector<std::size_t> out;
   if (!trial.look(bound)) return std::nullopt;
   for (std::size_t k = 0; k < trial.motion.watches().size(); ++k)

@@ -27,23 +27,23 @@ ImpactProblem HybridMotion::impact_problem(const std::vector<std::size_t>& touch
     p.tangent.push_back(values.tangent[i]);
     p.drive.push_back(values.drive[i]);
     double rest = values.slip[i];
-    for (const auto& [k, x] : values.tangent[i]) rest -= x * v_[k];
-    p.slip_drive.push_back(std::abs(rest) <= rest_slip(i, values) ? 0 : rest);
+    for (const auto& [k, x] : values.tangent[i]) rest -= x * here_.v[k];
+    p.slip_drive.push_back(std::abs(rest) <= sizes_.rest_slip(i, values) ? 0 : rest);
     p.restitution.push_back(values.restitution[i]);
     p.friction.push_back(values.kinetic[i]);
     p.static_friction.push_back(values.fixed[i]);
     p.sticking.push_back(system_.contacts[i].friction.sticking);
-    p.rest.push_back(rest_speed(i, values));
+    p.rest.push_back(sizes_.rest_speed(i, values));
   }
-  p.response = functions_.response(t_, q_, v_, p.normal);
-  p.tangent_response = functions_.response(t_, q_, v_, p.tangent);
+  p.response = here_.response(p.normal);
+  p.tangent_response = here_.response(p.tangent);
   for (const std::size_t i : touching) {
     p.second_tangent.push_back(values.second_tangent[i]);
     double rest = values.second_slip[i];
-    for (const auto& [k, x] : values.second_tangent[i]) rest -= x * v_[k];
-    p.second_drive.push_back(std::abs(rest) <= rest_slip(i, values) ? 0 : rest);
+    for (const auto& [k, x] : values.second_tangent[i]) rest -= x * here_.v[k];
+    p.second_drive.push_back(std::abs(rest) <= sizes_.rest_slip(i, values) ? 0 : rest);
   }
-  p.second_response = functions_.response(t_, q_, v_, p.second_tangent);
+  p.second_response = here_.response(p.second_tangent);
   return p;
 }
 
@@ -61,7 +61,7 @@ void HybridMotion::note_order(const ImpactProblem& p, const ImpactResult& first,
   remark(
       fmt::format("Several contacts are hit at t = {:.9g}, and the result depends on their order: q' = {} with the "
                   "fastest first, as it was done, {} with the fastest last.",
-                  t_, velocities(first.v), velocities(other.v)));
+                  here_.t, velocities(first.v), velocities(other.v)));
 }
 
 void HybridMotion::book_energy(const ImpactResult& result) {
@@ -111,7 +111,7 @@ void HybridMotion::note_bounce(std::size_t contact, double speed, double restitu
 /// series.
 std::optional<double> HybridMotion::accumulation(std::size_t contact, double speed) {
   auto& last = bounces_[contact].last;
-  last.emplace_back(t_, speed);
+  last.emplace_back(here_.t, speed);
   if (last.size() > 4) last.erase(last.begin());
   if (last.size() < 4 || !(speed < 3e-6 * bounces_[contact].fastest)) return std::nullopt;
   const double ratio = last[3].second / last[2].second, before = last[2].second / last[1].second;
@@ -121,7 +121,7 @@ std::optional<double> HybridMotion::accumulation(std::size_t contact, double spe
   cycle_.clear();  // with those that were hit since its impact before: they come to rest together
   for (std::size_t i = 0; i < bounces_.size(); ++i)
     if (!bounces_[i].last.empty() && bounces_[i].last.back().first >= last[2].first) cycle_.push_back(i);
-  return t_ + flight * ratio / (1 - ratio);
+  return here_.t + flight * ratio / (1 - ratio);
 }
 
 /// The last impact of a series without end, with the friction of all those that are left out: after it the contacts
@@ -141,10 +141,9 @@ bool HybridMotion::is_lost_in_rounding(const std::vector<std::size_t>& touching,
   constexpr double slow = 1e-6;  // of the fastest impact so far: never what is to be seen
   for (const std::size_t i : touching) {
     const double speed = -values.rate[i];
-    if (speed <= rest_speed(i, values)) continue;
-    double acceleration = 0;
-    for (const auto& [k, g] : values.normal[i]) acceleration += std::abs(g) * acceleration_[kind_[k]];
-    const bool is_low = speed * speed <= 2 * acceleration * rest_unit * widest_[i];
+    if (speed <= sizes_.rest_speed(i, values)) continue;
+    const double acceleration = sizes_.acceleration_along(values.normal[i]);
+    const bool is_low = speed * speed <= 2 * acceleration * rest_unit * sizes_.widest(i);
     if (!(values.restitution[i] < 1) || !is_low || speed > slow * bounces_[i].fastest) return false;
   }
   return true;
@@ -154,12 +153,12 @@ bool HybridMotion::is_lost_in_rounding(const std::vector<std::size_t>& touching,
 /// the rates of gaps are known to: what they leave of slips that they bring to rest is no motion.
 void HybridMotion::end_series(const std::vector<std::size_t>& touching) {
   constexpr double left = 1e-10;  // of the fastest slip
-  const ContactValues& values = functions_.at(t_, q_, v_);
+  const ContactValues& values = here_.values();
   std::vector<std::size_t> resting;
   for (const std::size_t i : touching) {
-    if (values.rate[i] > rest_speed(i, values) || values.tangent[i].empty()) continue;
+    if (values.rate[i] > sizes_.rest_speed(i, values) || values.tangent[i].empty()) continue;
     const double slip = slip_speed_at(i, values);
-    if (slip > 0 && slip <= left * fastest_slip_[i]) resting.push_back(i);
+    if (slip > 0 && slip <= left * sizes_.fastest_slip(i)) resting.push_back(i);
   }
   if (!resting.empty()) take_out_slips(resting, touching);
 }
@@ -171,10 +170,8 @@ bool HybridMotion::slips_may_stop_before(double end, const std::vector<std::size
   constexpr double slow = 1e-9, share = 4;
   for (const std::size_t i : touching) {
     if (values.tangent[i].empty() || !(-values.rate[i] > slow * bounces_[i].fastest)) continue;
-    double force = 0;
-    for (const auto& [k, x] : values.tangent[i]) force += std::abs(x) * acceleration_[kind_[k]];
-    const double slip = slip_speed_at(i, values);
-    if (slip > rest_slip(i, values) && slip <= share * force * std::abs(end - t_)) return true;
+    const double force = sizes_.acceleration_along(values.tangent[i]), slip = slip_speed_at(i, values);
+    if (slip > sizes_.rest_slip(i, values) && slip <= share * force * std::abs(end - here_.t)) return true;
   }
   return false;
 }
@@ -184,7 +181,7 @@ std::optional<double> HybridMotion::accumulation_among(std::vector<std::size_t>&
                                                        const ContactValues& values) {
   std::optional<double> end;
   for (const std::size_t i : touching)
-    if (values.rate[i] < -rest_speed(i, values))
+    if (values.rate[i] < -sizes_.rest_speed(i, values))
       if (const auto found = accumulation(i, -values.rate[i])) end = found;
   if (!end || slips_may_stop_before(*end, touching, values)) return std::nullopt;
   for (const std::size_t i : cycle_)
@@ -195,12 +192,12 @@ std::optional<double> HybridMotion::accumulation_among(std::vector<std::size_t>&
 /// What closing contacts do to the velocities. False, and why, where no impulses are found.
 bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) {
   accumulated_.reset();
-  const ContactValues& values = functions_.at(t_, q_, v_);
+  const ContactValues& values = here_.values();
   const bool closing = std::any_of(touching.begin(), touching.end(),
-                                   [&](std::size_t i) { return values.rate[i] < -rest_speed(i, values); });
+                                   [&](std::size_t i) { return values.rate[i] < -sizes_.rest_speed(i, values); });
   if (!closing) return true;
   for (const std::size_t i : touching)
-    if (values.rate[i] < -rest_speed(i, values)) note_bounce(i, -values.rate[i], values.restitution[i]);
+    if (values.rate[i] < -sizes_.rest_speed(i, values)) note_bounce(i, -values.rate[i], values.restitution[i]);
   const std::optional<double> end = accumulation_among(touching, values);
   const bool rubs =
       std::any_of(touching.begin(), touching.end(), [&](std::size_t i) { return !values.tangent[i].empty(); });
@@ -208,7 +205,7 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
   if (!end) note_compliance(p);
   const bool rests = !end && is_lost_in_rounding(touching, values);
   if (end || rests) std::fill(p.restitution.begin(), p.restitution.end(), 0.0);
-  const VectorXd v = vector_of(v_);
+  const VectorXd v = vector_of(here_.v);
   const bool at_once = system_.impact_law == ImpactLaw::Simultaneous || (rests && !rubs);
   ImpactResult result = end       ? last_impact(p, v)
                         : at_once ? impact_at_once(p, v)
@@ -221,7 +218,7 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
     result.v = more.v;
     // What rounding leaves of the bounces that have ended is no impact.
     std::copy_if(more.impulses.begin(), more.impulses.end(), std::back_inserter(result.impulses),
-                 [&](const Impulse& i) { return i.speed > rest_speed(i.contact, values); });
+                 [&](const Impulse& i) { return i.speed > sizes_.rest_speed(i.contact, values); });
     result.loss += more.loss, result.moving += more.moving;
     result.unsolved = more.unsolved;
   }
@@ -234,8 +231,9 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
         "The constraints move the contact {} through zero, and leave nothing that an impact could change: no motion "
         "obeys "
         "both.",
-        system_.contact_label(*std::find_if(touching.begin(), touching.end(),
-                                            [&](std::size_t i) { return values.rate[i] < -rest_speed(i, values); })));
+        system_.contact_label(*std::find_if(touching.begin(), touching.end(), [&](std::size_t i) {
+          return values.rate[i] < -sizes_.rest_speed(i, values);
+        })));
     return false;
   }
   if (result.rubs_at_once) {
@@ -252,8 +250,8 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
     remark(
         fmt::format("At t = {:.9g} impacts followed each other without an end; the rest of them was done at once, "
                     "without bounce and without friction.",
-                    t_));
-  v_.assign(result.v.data(), result.v.data() + result.v.size());
+                    here_.t));
+  here_.v.assign(result.v.data(), result.v.data() + result.v.size());
   // Forces after an impact are others: what came to 0 before it may press.
   if (!result.impulses.empty())
     std::erase_if(pending_->left, [](const Watch& w) { return w.what == Watch::What::Force; });

@@ -92,14 +92,14 @@ void HybridMotion::note_before(double bound) {
   settled_ = std::make_shared<Settled>();
   Settled& s = *settled_;
   s.instant.mode_before = now_->mode;
-  s.instant.before = {t_, q_, v_};
+  s.instant.before = {here_.t, here_.q, here_.v};
   TaylorStepper& stepper = *now_->stepper;
   s.instant.a_before = stepper.sample(stepper.time()).a;
   s.hit = pending_->hit;
   s.was_preload = now_->given.is_preload;
   s.events = pending_->sets;
   if (pending_->left.empty() && pending_->sets.empty()) return;
-  stepper.start(t_, q_, v_, t_rest_);
+  stepper.start(here_.t, here_.q, here_.v, here_.t_rest);
   const TaylorStepper::Outlook outlook = stepper.outlook(bound);
   // Of the two sides of what holds, the one that is met.
   const auto find = [&](Watch::What what, std::size_t index) {
@@ -133,19 +133,19 @@ void HybridMotion::note_after(double bound) {
   Settled& s = *settled_;
   ModeInstant& out = s.instant;
   out.mode_after = now_->mode;
-  out.after = {t_, q_, v_};
+  out.after = {here_.t, here_.q, here_.v};
   out.a_after = now_->stepper->outlook(bound).accelerations;
   if (changes_in_space())
     out.obstacle = fmt::format(
         "Friction in space is hit, begins or stops to slide at t = {:.9g}: neighbours are not carried through that "
         "yet.",
-        t_);
+        here_.t);
   else if (now_->given.is_preload || s.was_preload)
     out.obstacle = fmt::format(
         "Contacts hold each other with forces that the motion does not determine at t = {:.9g}: when friction gives "
         "way "
         "to a neighbour is not determined either.",
-        t_);
+        here_.t);
   else if (!s.events.empty())
     add_set_jump();
   else if (!s.impact.impulses.empty())
@@ -157,7 +157,7 @@ void HybridMotion::note_after(double bound) {
 }
 
 std::string HybridMotion::at_once_sentence() const {
-  return fmt::format("Several things happen at t = {:.9g}, and neighbours meet them one after the other.", t_);
+  return fmt::format("Several things happen at t = {:.9g}, and neighbours meet them one after the other.", here_.t);
 }
 
 /// Friction with two components of slip that is met by an impact, or does something else from here on.
@@ -182,7 +182,7 @@ void HybridMotion::add_set_jump() {
     return;
   }
   const ModelEvent& event = *s.events.front();
-  const std::size_t n = q_.size();
+  const std::size_t n = here_.q.size();
   ExprVector inputs;
   for (const Coordinate& c : system_.coordinates) inputs.push_back(c.q);
   for (const Coordinate& c : system_.coordinates) inputs.push_back(c.velocity);
@@ -192,7 +192,7 @@ void HybridMotion::add_set_jump() {
     values[inputs[i]] = s.instant.before.q[i];
     values[inputs[n + i]] = s.instant.before.v[i];
   }
-  values[inputs[2 * n]] = t_;
+  values[inputs[2 * n]] = here_.t;
   for (std::size_t i = 0; i < parameters_.size(); ++i) values[system_.parameters[i].symbol] = parameters_[i];
   MatrixXd slopes = MatrixXd::Zero(static_cast<Index>(2 * n), static_cast<Index>(2 * n + 1));
   slopes.leftCols(static_cast<Index>(2 * n)).setIdentity();
@@ -229,7 +229,7 @@ void HybridMotion::add_impact_jumps() {
           "Several contacts are hit at t = {:.9g}: neighbours hit them one after the other, and what follows depends "
           "on "
           "the order.",
-          t_);
+          here_.t);
       return;
     }
   }
@@ -253,12 +253,12 @@ void HybridMotion::add_impulses_in_order(const ImpactResult& ordered) {
     // A contact that stays closed after its last impulse does not bounce: its flights would be lost in rounding.
     const bool stays = &impulse == &ordered.impulses.back() && s.instant.mode_after.closed[c];
     const bool plastic = stays || p.restitution[k] == 0;
-    const auto slopes = derivative_->one_impulse(c, {t_, at.q, at.v, plastic});
+    const auto slopes = derivative_->one_impulse(c, {here_.t, at.q, at.v, plastic});
     if (!slopes) {
       s.instant.obstacle = fmt::format(
           "The contact {} is hit at t = {:.9g} without slip: neighbours that slide this way and that come out of the "
           "impact in ways that are no linear function of the slip.",
-          system_.contact_label(c), t_);
+          system_.contact_label(c), here_.t);
       return;
     }
     v += impulse.normal * p.response.col(static_cast<Index>(k));
@@ -269,7 +269,7 @@ void HybridMotion::add_impulses_in_order(const ImpactResult& ordered) {
     const bool rubs = system_.contacts[c].friction.present();
     const auto volume = rubs || plastic ? std::nullopt : std::optional(2 * std::log(p.restitution[k]));
     s.instant.jumps.push_back(
-        {system_.contacts[c].gap, rate, slow * fastest_[c], mode, at, slopes_of_velocities(*slopes), volume});
+        {system_.contacts[c].gap, rate, slow * sizes_.fastest(c), mode, at, slopes_of_velocities(*slopes), volume});
   }
   s.instant.jumps.back().mode = s.instant.mode_after;
   s.instant.jumps.back().after = s.instant.after;
@@ -288,15 +288,15 @@ void HybridMotion::add_impulses_at_once() {
     s.instant.obstacle = fmt::format(
         "At t = {:.9g} infinitely many impacts of several contacts come to their end, and neighbours meet them in "
         "another order.",
-        t_);
+        here_.t);
     return;
   }
   const auto k = static_cast<std::size_t>(std::find(p.contacts.begin(), p.contacts.end(), *met) - p.contacts.begin());
   const MatrixXd slopes =
-      derivative_->at_once(pressing, {t_, s.instant.before.q, s.instant.before.v, p.restitution[k] == 0});
+      derivative_->at_once(pressing, {here_.t, s.instant.before.q, s.instant.before.v, p.restitution[k] == 0});
   s.instant.jumps.push_back({system_.contacts[*met].gap, dot(p.normal[k], s.v_before_impact) + p.drive[k],
-                             slow * fastest_[*met], s.instant.mode_after, s.instant.after, slopes_of_velocities(slopes),
-                             std::nullopt});
+                             slow * sizes_.fastest(*met), s.instant.mode_after, s.instant.after,
+                             slopes_of_velocities(slopes), std::nullopt});
 }
 
 /// The state stays. Where accelerations go on, so do those of neighbours, whenever they get there.
@@ -304,16 +304,16 @@ void HybridMotion::add_change_of_forces() {
   Settled& s = *settled_;
   const ModeInstant& i = s.instant;
   if (!s.hit.empty()) {
-    s.instant.obstacle = touch_sentence(s.hit.front(), t_);
+    s.instant.obstacle = touch_sentence(s.hit.front(), here_.t);
     return;
   }
   bool goes_on = true;
-  for (std::size_t k = 0; k < q_.size(); ++k)
-    goes_on = goes_on && std::abs(i.a_before[k] - i.a_after[k]) <= same * std::max(acceleration_[kind_[k]], 1e-280);
+  for (std::size_t k = 0; k < here_.q.size(); ++k)
+    goes_on = goes_on && std::abs(i.a_before[k] - i.a_after[k]) <= same * std::max(sizes_.acceleration(k), 1e-280);
   if (goes_on) return;
   if (s.left.size() != 1) {
-    s.instant.obstacle =
-        s.left.empty() ? fmt::format("An acceleration jumps at a switch at t = {:.9g} s.", t_) : at_once_sentence();
+    s.instant.obstacle = s.left.empty() ? fmt::format("An acceleration jumps at a switch at t = {:.9g} s.", here_.t)
+                                        : at_once_sentence();
     return;
   }
   s.instant.jumps.push_back({s.left.front().function, s.left.front().rate, 0, i.mode_after, i.after, {}, std::nullopt});
@@ -371,15 +371,15 @@ double HybridMotion::hidden_by_rounding(double bound) {
 /// rounding at a root of third order. 0 at a simple one, which is known as time is. `length`: of the step.
 double HybridMotion::hides_gap(std::size_t contact, double length) {
   constexpr double slow = 1e-4, slower = 2;
-  const ContactValues& here = functions_.at(t_, q_, v_);
+  const ContactValues& here = here_.values();
   const double speed = std::abs(here.rate[contact]);
-  if (speed > slow * fastest_[contact]) return 0;
-  const double rounding = 8 * rest_unit * size_of_gap(contact, here);  // to which roots are searched
-  std::vector<double> q = q_, v = v_;
-  for (double hidden = rest_unit * std::max(std::abs(t_), length); hidden < length; hidden *= 2) {
-    const double before = forwards_ ? t_ - hidden : t_ + hidden;
+  if (speed > slow * sizes_.fastest(contact)) return 0;
+  const double rounding = 8 * rest_unit * sizes_.gap(contact, here);  // to which roots are searched
+  std::vector<double> q = here_.q, v = here_.v;
+  for (double hidden = rest_unit * std::max(std::abs(here_.t), length); hidden < length; hidden *= 2) {
+    const double before = forwards_ ? here_.t - hidden : here_.t + hidden;
     now_->stepper->state(before, q, v);
-    const ContactValues& values = functions_.at(before, q, v);
+    const ContactValues& values = here_.values_at(before, q, v);
     if (std::abs(values.gap[contact]) > rounding) return std::abs(values.rate[contact]) > slower * speed ? hidden : 0;
   }
   return length;

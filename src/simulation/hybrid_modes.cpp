@@ -105,7 +105,7 @@ HybridMotion::Choice HybridMotion::choice_of_contact(std::size_t i, const Contac
   Choice choice{i, {}};
   const Friction& f = system_.contacts[i].friction;
   const bool rubs = this->rubs(i, values);
-  const FrictionState sliding = rubs ? sliding_state(values.slip[i], rest_slip(i, values)) : FrictionState::None;
+  const FrictionState sliding = rubs ? sliding_state(values.slip[i], sizes_.rest_slip(i, values)) : FrictionState::None;
   if (!rubs)
     choice.options = {{true, FrictionState::None, 1}};
   else if (f.in_space() && !f.sticking)
@@ -128,12 +128,12 @@ std::vector<HybridMotion::Choice> HybridMotion::choices(const std::vector<std::s
                                                         const ContactValues& values) const {
   std::vector<Choice> out;
   for (const std::size_t i : touching)
-    if (!(values.rate[i] > rest_speed(i, values))) out.push_back(choice_of_contact(i, values));
+    if (!(values.rate[i] > sizes_.rest_speed(i, values))) out.push_back(choice_of_contact(i, values));
   const std::size_t contacts = system_.contacts.size();
   for (std::size_t i = contacts; i < contacts + system_.frictions.size(); ++i) {
     Choice choice{i, {}};
     const bool signs = has_multipliers(system_.frictions[i - contacts].normal);
-    const FrictionState sliding = sliding_state(values.slip[i], rest_slip(i, values));
+    const FrictionState sliding = sliding_state(values.slip[i], sizes_.rest_slip(i, values));
     for (const std::int8_t sign : {std::int8_t{1}, std::int8_t{-1}}) {
       if (sign < 0 && !signs) continue;
       if (sliding != FrictionState::None)
@@ -156,7 +156,7 @@ bool HybridMotion::may_be_several(const ContactMode& mode, const ContactValues& 
     const SparseRow summed = mode.friction[i] == FrictionState::Slide
                                  ? sliding_force(i, values)
                                  : sum_of(values.normal[i], values.tangent[i], -sign * values.kinetic[i]);
-    const Eigen::MatrixXd response = functions_.response(t_, q_, v_, {&summed, 1});
+    const Eigen::MatrixXd response = here_.response({&summed, 1});
     if (!(dot(values.normal[i], response.col(0)) > 0)) return true;
   }
   return false;
@@ -215,7 +215,7 @@ std::vector<std::pair<HybridMotion::Leniency, std::size_t>> HybridMotion::attemp
 std::optional<HybridMotion::Found> HybridMotion::search_mode(const std::vector<Choice>& list,
                                                              const std::vector<std::size_t>& touching, double bound,
                                                              std::string& reason) {
-  const ContactValues& values = functions_.at(t_, q_, v_);
+  const ContactValues& values = here_.values();
   std::vector<std::size_t> counts;
   for (const Choice& c : list) counts.push_back(c.options.size());
   Combinations tries(std::move(counts), most_choices);
@@ -287,7 +287,7 @@ void HybridMotion::order_by_limits(std::vector<Choice>& list, const std::vector<
 /// Friction at rest whose static coefficient, or limit, is more than the kinetic one: where it holds another motion
 /// fits as well, in which it slides.
 bool HybridMotion::may_hold(const Choice& c) {
-  const ContactValues& values = functions_.at(t_, q_, v_);
+  const ContactValues& values = here_.values();
   return c.options.size() > 2 && values.fixed[c.contact] > values.kinetic[c.contact];
 }
 
@@ -358,14 +358,14 @@ void HybridMotion::note_choice(const std::vector<Choice>& list, Found& found, co
       if (told_choice_ || !fits(other, touching, bound, Leniency::None)) continue;
       if (gives_way_unforced(list, other, touching, bound)) continue;
       told_choice_ = true;
-      remark(choice_sentence(label_of(held), label_of(slides), t_));
+      remark(choice_sentence(label_of(held), label_of(slides), here_.t));
     }
   released_ = released;
   if (!pairs.empty()) static_cast<void>(fits(found, touching, bound, Leniency::Gaps));  // others were begun after it
 }
 
 bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason) {
-  const ContactValues& values = functions_.at(t_, q_, v_);  // of one point throughout
+  const ContactValues& values = here_.values();  // of one point throughout
   if (!touching.empty() && !knows_compliance_) note_compliance(touching, values);
   measure_forces(touching, values, bound);
   std::vector<Choice> list = choices(touching, values);
@@ -380,9 +380,9 @@ bool HybridMotion::choose_mode(const std::vector<std::size_t>& touching, double 
   if (!found) return false;
   if (interrupted()) return true;
   note_choice(list, *found, touching, bound);
-  note_accelerations(found->accelerations, values);  // those of modes that do not fit are no measure
+  sizes_.note_accelerations(found->accelerations, values);  // those of modes that do not fit are no measure
   for (std::size_t i = 0; i < released_.size(); ++i)
-    if (released_[i] && !found->mode.closed[i]) released_at_[i] = t_;
+    if (released_[i] && !found->mode.closed[i]) released_at_[i] = here_.t;
   note_indeterminate(list, found->mode, values);
   const bool rest_ends =
       now_->given.is_preload && !found->given.is_preload && pending_->hit.empty() && pending_->sets.empty();

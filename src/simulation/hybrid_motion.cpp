@@ -26,7 +26,8 @@ HybridMotion::HybridMotion(std::shared_ptr<ModeLibrary> library, std::vector<dou
       system_(library_->system()),
       parameters_(std::move(parameters)),
       options_(options),
-      functions_(library_->contacts(), parameters_) {
+      here_(library_->contacts(), parameters_),
+      sizes_(system_) {
   parameters_.resize(system_.parameters.size());
   for (const ModelEvent& e : model_.experiment.events) of_positions_.push_back(is_of_positions(e.function));
   for (const Contact& c : system_.contacts) {
@@ -51,34 +52,14 @@ void HybridMotion::leave_mode() {
 int HybridMotion::order() const { return now_->stepper->order(); }
 
 void HybridMotion::start(double t, std::span<const double> q, std::span<const double> v) {
-  t_ = t;
-  t_rest_ = 0;
-  q_.assign(q.begin(), q.end());
-  v_.assign(v.begin(), v.end());
+  here_.t = t;
+  here_.t_rest = 0;
+  here_.q.assign(q.begin(), q.end());
+  here_.v.assign(v.begin(), v.end());
   std::fill(std::begin(carried_), std::end(carried_), 0.0);
   steps_before_ = rejected_before_ = switches_before_ = same_time_ = 0;
   residual_before_ = 0;
-  fastest_.assign(system_.contacts.size(), 0);
-  fastest_slip_.assign(system_.contacts.size() + system_.frictions.size(), 0);
-  widest_ = hardest_ = compliance_ = fastest_;
-  kind_.clear();
-  for (std::size_t i = 0; i < system_.coordinates.size(); ++i) {
-    std::size_t k = 0;
-    while (!(system_.coordinates[k].dimension == system_.coordinates[i].dimension)) ++k;
-    kind_.push_back(k);
-  }
-  gap_kind_.clear();
-  for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
-    std::size_t k = 0;
-    while (!(system_.contacts[k].dimension == system_.contacts[i].dimension)) ++k;
-    gap_kind_.push_back(k);
-  }
-  speed_.assign(kind_.size(), 0);
-  acceleration_ = place_ = speed_;
-  for (std::size_t i = 0; i < usual_q_.size(); ++i) {
-    place_[kind_[i]] = std::max(place_[kind_[i]], usual_q_[i]);
-    speed_[kind_[i]] = std::max(speed_[kind_[i]], usual_v_[i]);
-  }
+  sizes_.start();
   bounces_.assign(system_.contacts.size(), {});
   idle_.assign(system_.contacts.size(), false);
   released_.assign(system_.contacts.size(), false);
@@ -87,8 +68,6 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   left_out_remarks_ = 0;
   begins_to_slide_.assign(system_.contacts.size(), false);
   begins_towards_.assign(system_.contacts.size(), 0);
-  slip_scale_.assign(system_.contacts.size(), 0);
-  slip_rate_ = slip_scale_;
   looks_at_forces_ = 0;
   cone_residual_ = -1;
   gap_begin_ = std::numeric_limits<double>::quiet_NaN();
@@ -96,7 +75,6 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   instant_.reset();
   started_ = false;
   late_by_ = longest_step_ = 0;
-  holding_.clear();
   told_choice_ = false;
   step_start_.reset();
   counted_at_.clear();
@@ -104,7 +82,7 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   sets_end_.reset();
   event_sides_.assign(of_positions_.size(), 0);
   now_ = &motion_in(open_mode(system_));
-  now_->stepper->start(t_, q_, v_, t_rest_);
+  now_->stepper->start(here_.t, here_.q, here_.v, here_.t_rest);
   pending_ = std::make_unique<Pending>();
   pending_->begins = true;
   forwards_ = true;
@@ -209,7 +187,7 @@ Step HybridMotion::step(double bound) {
   if (const auto contact =
           violated(std::abs(out.end - out.begin) + std::numeric_limits<double>::epsilon() * std::abs(out.end))) {
     const std::string label = system_.contact_label(*contact);
-    if (!std::isfinite(functions_.at(t_, q_, v_).gap[*contact]))
+    if (!std::isfinite(here_.values().gap[*contact]))
       return ended(StepEnding::Overflow, fmt::format("The gap of the contact {} has no value here.", label));
     return ended(
         StepEnding::Paradox,
@@ -258,10 +236,10 @@ void HybridMotion::finish() {
           fmt::format("The event {} sets the state as the run ends: the last state is the one before.", event->name));
   if (system_.contacts.empty() || !started_) return;
   take_state();
-  const ContactValues& values = functions_.at(t_, q_, v_);
+  const ContactValues& values = here_.values();
   for (std::size_t i = 0; i < values.gap.size(); ++i) {
-    const bool touches = std::abs(values.gap[i]) <= rest_unit * widest_[i];
-    if (now_->mode.closed[i] || !touches || !(values.rate[i] < -rest_speed(i, values))) continue;
+    const bool touches = std::abs(values.gap[i]) <= rest_unit * sizes_.widest(i);
+    if (now_->mode.closed[i] || !touches || !(values.rate[i] < -sizes_.rest_speed(i, values))) continue;
     remark(fmt::format("The contact {} is hit as the run ends: the last state is the one before the impact.",
                        system_.contact_label(i)));
   }
@@ -288,23 +266,23 @@ void HybridMotion::tell_events_at_start(double bound) {
 
 void HybridMotion::add(Happening::Kind kind, const std::string& name, double impulse, double speed,
                        const std::string& text) {
-  const bool keeps_state = record_.happenings.size() * q_.size() < most_numbers;
-  record_.happenings.push_back({kind, t_, 0, name, impulse, speed, text, {}, {}, {}});
+  const bool keeps_state = record_.happenings.size() * here_.q.size() < most_numbers;
+  record_.happenings.push_back({kind, here_.t, 0, name, impulse, speed, text, {}, {}, {}});
   if (!keeps_state) return;
-  record_.happenings.back().q = q_;
-  record_.happenings.back().v = v_;
+  record_.happenings.back().q = here_.q;
+  record_.happenings.back().v = here_.v;
 }
 
 void HybridMotion::take_state() {
   const TaylorStepper& s = *now_->stepper;
-  t_ = s.time();
-  t_rest_ = s.time_rest();
-  q_.assign(s.q().begin(), s.q().end());
-  v_.assign(s.v().begin(), s.v().end());
+  here_.t = s.time();
+  here_.t_rest = s.time_rest();
+  here_.q.assign(s.q().begin(), s.q().end());
+  here_.v.assign(s.v().begin(), s.v().end());
   if (options_.moved_instants == 0) return;
   // The next mode begins with the state to its last digit: a companion has another one.
   constexpr double rounding = std::numeric_limits<double>::epsilon();
-  for (std::vector<double>* const part : {&q_, &v_})
+  for (std::vector<double>* const part : {&here_.q, &here_.v})
     for (double& x : *part) x *= 1 + rounding * share_of_rounding(options_.moved_instants, x);
 }
 
@@ -312,10 +290,10 @@ void HybridMotion::take_state() {
 /// first two is no hit.
 bool HybridMotion::is_just_released(std::size_t contact) {
   constexpr double short_way = 1e-6, slow = 1e-9;
-  const double since = std::abs(t_ - released_at_[contact]);
-  if (!(since * fastest_[contact] <= short_way * widest_[contact])) return false;
-  const ContactValues& values = functions_.at(t_, q_, v_);
-  if (!(std::abs(values.rate[contact]) <= slow * fastest_[contact])) return false;
+  const double since = std::abs(here_.t - released_at_[contact]);
+  if (!(since * sizes_.fastest(contact) <= short_way * sizes_.widest(contact))) return false;
+  const ContactValues& values = here_.values();
+  if (!(std::abs(values.rate[contact]) <= slow * sizes_.fastest(contact))) return false;
   // Another change of contacts may have turned it back since.
   return !presses_again(contact, now_->stepper->sample(now_->stepper->time()).a, values, located_force);
 }
@@ -337,7 +315,7 @@ bool HybridMotion::pulls() const {
   for (std::size_t i = 0, k = 0; i < now_->mode.closed.size(); ++i) {
     if (!now_->mode.closed[i]) continue;
     const double force = multipliers[first + k] + now_->given.preload(k, now_->stepper->step_start().t);
-    if (force < -digits * std::max(hardest_[i], 1e-280)) return true;
+    if (force < -digits * std::max(sizes_.hardest(i), 1e-280)) return true;
     ++k;
   }
   return false;
@@ -345,11 +323,11 @@ bool HybridMotion::pulls() const {
 
 /// An event of the last step, with the state that the motion has there.
 void HybridMotion::record_event(const std::string& name, double at, double hidden) {
-  const double t = forwards_ ? std::min(at, t_) : std::max(at, t_);  // rounding may lead beyond the step
+  const double t = forwards_ ? std::min(at, here_.t) : std::max(at, here_.t);  // rounding may lead beyond the step
   add(Happening::Kind::Event, name);
   Happening& told = record_.happenings.back();
   told.error = std::max(told.error, hidden);
-  if (t == t_) return;
+  if (t == here_.t) return;
   told.t = t;
   if (!told.q.empty()) state(t, told.q, told.v);
   told.mode = mode_text(system_, now_->mode);
@@ -373,7 +351,9 @@ void HybridMotion::classify(Step& step) {
   auto pending = std::make_unique<Pending>();
   // At one instant in the order of the model, whether they end the step or not.
   constexpr double one_instant = 4 * std::numeric_limits<double>::epsilon();
-  const auto is_now = [&](const EventRoot& root) { return std::abs(root.time - t_) <= one_instant * std::abs(t_); };
+  const auto is_now = [&](const EventRoot& root) {
+    return std::abs(root.time - here_.t) <= one_instant * std::abs(here_.t);
+  };
   const auto at_end = std::stable_partition(step.events.begin(), step.events.end(), std::not_fn(is_now));
   std::stable_sort(at_end, step.events.end(), [](const EventRoot& a, const EventRoot& b) { return a.event < b.event; });
   for (const EventRoot& root : step.events) {
@@ -407,12 +387,12 @@ std::optional<std::size_t> HybridMotion::violated(double step) {
   constexpr double digits = 1e-10;
   const TaylorStepper& s = *now_->stepper;
   if (system_.contacts.empty()) return std::nullopt;
-  const ContactValues& values = functions_.at(s.time(), s.q(), s.v());
-  note_gaps(values);
+  const ContactValues& values = here_.values_at(s.time(), s.q(), s.v());
+  sizes_.note_gaps(values);
   for (std::size_t i = 0; i < values.gap.size(); ++i) {
     double way = 0;
-    for (const auto& [k, g] : values.normal[i]) way += std::abs(g) * acceleration_[kind_[k]] * step * step;
-    if (!now_->mode.closed[i] && !(values.gap[i] >= -digits * (size_of_gap(i, values) + way))) return i;
+    for (const auto& [k, g] : values.normal[i]) way += std::abs(g) * sizes_.acceleration(k) * step * step;
+    if (!now_->mode.closed[i] && !(values.gap[i] >= -digits * (sizes_.gap(i, values) + way))) return i;
   }
   return std::nullopt;
 }
@@ -422,15 +402,15 @@ std::optional<std::size_t> HybridMotion::violated(double step) {
 std::vector<std::size_t> HybridMotion::touching(const ContactValues& values) const {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < values.gap.size(); ++i) {
-    if (!pending_->sets.empty() && values.gap[i] > digits_of_sets * size_of_gap(i, values)) continue;
+    if (!pending_->sets.empty() && values.gap[i] > digits_of_sets * sizes_.gap(i, values)) continue;
     const bool hit = std::find(pending_->hit.begin(), pending_->hit.end(), i) != pending_->hit.end();
     // What has come through zero by more than rounding, unseen, and does not come back by itself, is hit too.
-    const bool through = values.gap[i] < 0 && values.rate[i] < -rest_speed(i, values);
+    const bool through = values.gap[i] < 0 && values.rate[i] < -sizes_.rest_speed(i, values);
     // Next to zero by the sizes of its coordinates: a body that lies at their zero has no other measure.
     constexpr double next_to_zero = 1e-3 * rest_unit;
-    const bool lies =
-        !(values.rate[i] > rest_speed(i, values)) && std::abs(values.gap[i]) <= next_to_zero * size_of_gap(i, values);
-    if (hit || through || lies || now_->mode.closed[i] || std::abs(values.gap[i]) <= rest_unit * widest_[i])
+    const bool lies = !(values.rate[i] > sizes_.rest_speed(i, values)) &&
+                      std::abs(values.gap[i]) <= next_to_zero * sizes_.gap(i, values);
+    if (hit || through || lies || now_->mode.closed[i] || std::abs(values.gap[i]) <= rest_unit * sizes_.widest(i))
       out.push_back(i);
   }
   return out;
@@ -465,8 +445,8 @@ std::optional<std::size_t> HybridMotion::violated_constraint(const MotionState& 
   for (std::size_t k = 0; k < m; ++k) {
     double place = 0, speed = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      place += std::abs(a[k * n + i]) * std::max(place_[kind_[i]], std::abs(state.q[i]));
-      speed += std::abs(a[k * n + i]) * std::max(speed_[kind_[i]], std::abs(state.v[i]));
+      place += std::abs(a[k * n + i]) * std::max(sizes_.place(i), std::abs(state.q[i]));
+      speed += std::abs(a[k * n + i]) * std::max(sizes_.speed(i), std::abs(state.v[i]));
     }
     const bool position = system_.constraints[k].level == Constraint::Level::Position;
     if ((position && std::abs(values[k]) > digits * place) || std::abs(rates[k]) > digits * speed) return k;
@@ -482,10 +462,10 @@ std::vector<double> HybridMotion::energy_and_sets_at(double t, std::span<const d
 /// energy, and no impact that would do so is part of the model.
 bool HybridMotion::keeps_sticking(const std::vector<std::size_t>& touching, std::string& reason) {
   constexpr double digits = 1e-9;
-  const ContactValues& values = functions_.at(t_, q_, v_);
+  const ContactValues& values = here_.values();
   for (const std::size_t i : touching) {
-    if (!system_.contacts[i].friction.sticking || values.rate[i] > rest_speed(i, values)) continue;
-    if (slip_speed_at(i, values) <= digits * fastest_slip_[i]) continue;
+    if (!system_.contacts[i].friction.sticking || values.rate[i] > sizes_.rest_speed(i, values)) continue;
+    if (slip_speed_at(i, values) <= digits * sizes_.fastest_slip(i)) continue;
     const std::string label = system_.contact_label(i);
     if (pending_->begins && record_.happenings.empty())
       reason = fmt::format("The start slides on the contact {}, which is `sticking` and never slides.", label);
@@ -503,7 +483,7 @@ bool HybridMotion::keeps_sticking(const std::vector<std::size_t>& touching, std:
 
 /// A motion that cannot go on stays where it is, with all that was counted so far.
 Step HybridMotion::stopped(StepEnding ending, std::string reason) {
-  now_->stepper->start(t_, q_, v_, t_rest_);
+  now_->stepper->start(here_.t, here_.q, here_.v, here_.t_rest);
   return ended(ending, std::move(reason));
 }
 
@@ -522,24 +502,24 @@ std::optional<Step> HybridMotion::settle(double bound) {
   if (derivative_ && !pending_->begins) note_before(bound);
   if (!pending_->sets.empty() && !carry_out_sets(reason)) return stopped(StepEnding::SingularConstraints, reason);
   const std::size_t first = record_.happenings.size();
-  const ContactValues& values = functions_.at(t_, q_, v_);
-  note_usual_gaps(values);
+  const ContactValues& values = here_.values();
+  if (pending_->begins) sizes_.note_gaps_elsewhere(values);
   if (pending_->begins)
     for (std::size_t i = 0; i < values.gap.size(); ++i)
-      if (values.gap[i] < -rest_unit * std::max(values.gap_scale[i], widest_[i]) || !std::isfinite(values.gap[i]))
+      if (values.gap[i] < -rest_unit * std::max(values.gap_scale[i], sizes_.widest(i)) || !std::isfinite(values.gap[i]))
         return stopped(StepEnding::Paradox,
                        fmt::format("The start violates the contact {}.", system_.contact_label(i)));
-  note_sizes(values);
+  sizes_.note(here_, values);
   knows_compliance_ = false;
   begins_to_slide_.assign(system_.contacts.size(), false);
   note_beginnings();
-  std::vector<std::size_t> touch = touching(functions_.at(t_, q_, v_));
+  std::vector<std::size_t> touch = touching(here_.values());
   if (!hit(touch, reason)) return stopped(StepEnding::Paradox, reason);
   if (!pending_->begins) close_lowest_flights(touch, bound);
   if (!keeps_sticking(touch, reason)) return stopped(StepEnding::Paradox, reason);
   come_to_rest(touch, bound);
   // Cones may have a solution that slides where others hold the rest.
-  const bool rests = in_space_ && undetermined_rest(choices(touch, functions_.at(t_, q_, v_)), touch, bound);
+  const bool rests = in_space_ && undetermined_rest(choices(touch, here_.values()), touch, bound);
   if (!rests && !choose_slips(touch, bound, false, reason)) return stopped(StepEnding::Paradox, reason);
   bool gave_way = !now_->given.is_preload || !in_space_;  // a rest that was not determined
   // Constraints of the mode to come may move the next contact through zero: that is hit at the same instant.
@@ -562,6 +542,76 @@ std::optional<Step> HybridMotion::settle(double bound) {
   note_hidden(first);
   started_ = true;
   return meet_unseen(bound);
+}
+
+/// What a step shows of the sizes of the motion.
+void HybridMotion::note_step() {
+  const TaylorStepper& s = *now_->stepper;
+  take_state();
+  const ContactValues& values = here_.values();
+  sizes_.note(here_, values);
+  note_limits(values);
+  const std::vector<double>& a = s.step_start().a;
+  if (std::all_of(a.begin(), a.end(), [](double x) { return std::isfinite(x); })) sizes_.note_accelerations(a, values);
+  note_holding_forces(s.step_start());
+}
+
+void HybridMotion::note_holding_forces(const Sample& sample) {
+  const std::span<const double> multipliers(sample.multipliers);
+  const std::size_t own = equations_.system->constraints.size();
+  if (sizes_.note_holding_forces(now_->mode, multipliers.subspan(own), here_)) sizes_.tell(*now_->stepper);
+}
+
+/// A first step may be as long as the rest that it begins: it has to know of the forces that balance in it.
+void HybridMotion::note_rest_that_begins() {
+  if (!sizes_.knows_holding_forces(now_->mode)) note_holding_forces(now_->stepper->sample(here_.t));
+}
+
+/// A limit of friction below zero is none: the force would drive what it is to brake.
+void HybridMotion::note_limits(const ContactValues& values) {
+  const std::size_t contacts = system_.contacts.size();
+  for (std::size_t i = 0; i < values.kinetic.size(); ++i)
+    if (values.kinetic[i] < 0)
+      remark(i < contacts
+                 ? fmt::format("The coefficient of friction of the contact {} becomes negative: friction drives "
+                               "the motion there, which none does.",
+                               system_.contact_label(i))
+                 : fmt::format("The friction along {} has a limit or a coefficient that becomes negative: it "
+                               "drives the motion there, which no friction does.",
+                               system_.frictions[i - contacts].name));
+}
+
+/// Rounding of an acceleration a moves what rests by ε a h² in a step of length h. What that does to potentials, and
+/// the work of the forces that balance over it: twice the kinetic energy of a speed of √ε a h.
+double HybridMotion::rounding_of_energy() {
+  if (library_->sets().outputs() == 0) return 0;
+  const std::vector<double> still(here_.v.size(), 0);
+  const double base = energy_and_sets_at(here_.t, here_.q, still)[0];
+  double out = 0;
+  for (std::size_t i = 0; i < here_.q.size(); ++i) {
+    const double speed = sizes_.acceleration(i) * longest_step_;
+    std::vector<double> q = here_.q, v = still;
+    q[i] += rest_unit * speed * longest_step_;
+    v[i] = std::sqrt(rest_unit) * speed;
+    out += std::abs(energy_and_sets_at(here_.t, q, still)[0] - base) +
+           2 * std::abs(energy_and_sets_at(here_.t, here_.q, v)[0] - base);
+  }
+  return std::isfinite(out) ? out : 0;
+}
+
+void HybridMotion::note_compliance(const std::vector<std::size_t>& touching, const ContactValues& values) {
+  std::vector<SparseRow> rows;
+  for (const std::size_t i : touching) rows.push_back(values.normal[i]);
+  const Eigen::MatrixXd response = here_.response(rows);
+  for (std::size_t k = 0; k < touching.size(); ++k)
+    sizes_.note_compliance(touching[k], std::abs(dot(rows[k], response.col(at(k)))));
+}
+
+/// An impact has asked for the same: M does not depend on the velocities.
+void HybridMotion::note_compliance(const ImpactProblem& p) {
+  for (std::size_t k = 0; k < p.contacts.size(); ++k)
+    sizes_.note_compliance(p.contacts[k], std::abs(dot(p.normal[k], p.response.col(at(k)))));
+  knows_compliance_ = true;
 }
 
 }  // namespace maupertuis

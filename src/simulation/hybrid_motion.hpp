@@ -3,8 +3,10 @@
 #include "simulation/contact/contact_forces.hpp"
 #include "simulation/contact/contact_functions.hpp"
 #include "simulation/contact/impact.hpp"
+#include "simulation/hybrid_state.hpp"
 #include "simulation/method.hpp"
 #include "simulation/mode_library.hpp"
+#include "simulation/usual_sizes.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/contact_mode.hpp>
@@ -80,14 +82,14 @@ class HybridMotion final : public Method {
   /// In the context of the model; they stay as long as this.
   const EquationsOfMotion& equations_in(const ContactMode& mode);
   /// [n] The largest that q'' of the dimension of each coordinate has been, or that forces which balance would make it.
-  std::vector<double> largest_accelerations() const;
+  std::vector<double> largest_accelerations() const { return sizes_.accelerations(); }
   /// What rounding of forces that balance makes of the energy in a step; 0 where it is not known.
   double rounding_of_energy();
   /// A companion, whose difference tells the error, meets roots that rounding hides later by what it may hide of them:
   /// the roots of conditions that end a rest or a contact so slowly are found at the same place by all.
   void meet_hidden_roots_late() { meets_late_ = true; }
   /// Sizes that q and q' have elsewhere in the motion [n]: of later starts, what is much smaller is rounding.
-  void set_usual_sizes(std::span<const double> q, std::span<const double> v);
+  void set_usual_sizes(std::span<const double> q, std::span<const double> v) { sizes_.set_elsewhere(q, v); }
 
  private:
   using Watch = ModeWatch;
@@ -149,9 +151,6 @@ class HybridMotion final : public Method {
   std::optional<double> accumulation(std::size_t contact, double speed);
   std::optional<double> accumulation_among(std::vector<std::size_t>& touching, const ContactValues& values);
   bool slips_may_stop_before(double end, const std::vector<std::size_t>& touching, const ContactValues& values) const;
-  double speed_left_by_time(const SparseRow& row) const;
-  double rest_speed(std::size_t contact, const ContactValues& values) const;
-  double rest_slip(std::size_t friction, const ContactValues& values) const;
 
   // The mode after it.
   static std::vector<std::pair<Leniency, std::size_t>> attempts_with(std::size_t contacts);
@@ -233,16 +232,9 @@ class HybridMotion final : public Method {
   bool accelerations_go_on(std::span<const double> accelerations) const;
   bool begins_slowly(const Watch& slip, const ContactMode& mode, const ContactValues& values) const;
   bool vanishes(const Watch& watch, double size, const ContactValues& values) const;
-  double size_of_gap(std::size_t contact, const ContactValues& values) const;
-  void note_sizes(const ContactValues& values);
-  void note_slip_rates(const ContactValues& values);
   void note_limits(const ContactValues& values);
   void note_holding_forces(const Sample& sample);
   void note_rest_that_begins();
-  void tell_usual_sizes(TaylorStepper& stepper) const;
-  void note_gaps(const ContactValues& values);
-  void note_usual_gaps(const ContactValues& values);
-  void note_accelerations(std::span<const double> a, const ContactValues& values);
   void note_compliance(const std::vector<std::size_t>& touching, const ContactValues& values);
   void note_compliance(const ImpactProblem& problem);
   std::optional<std::size_t> violated(double step);
@@ -294,7 +286,8 @@ class HybridMotion final : public Method {
   const MechanicalSystem& system_;  // with reactions in normal forces put in
   std::vector<double> parameters_;
   TaylorOptions options_;
-  ContactFunctions functions_;
+  HybridState here_;
+  UsualSizes sizes_;
   std::optional<FunctionWorkspace> sets_, constraints_;
   std::map<std::string, std::unique_ptr<ModeMotion>> modes_;
   std::map<std::string, std::unique_ptr<EquationsOfMotion>> equations_of_modes_;  // that neighbours have asked for
@@ -304,8 +297,6 @@ class HybridMotion final : public Method {
   std::optional<Step> failed_;  // the start allows no motion
 
   double longest_step_ = 0;
-  double t_ = 0, t_rest_ = 0;  // a located instant is t_ + t_rest_
-  std::vector<double> q_, v_;
   bool forwards_ = true, started_ = false;
   bool meets_late_ = false;
   double late_by_ = 0;                        // until the pending instant is settled
@@ -313,18 +304,9 @@ class HybridMotion final : public Method {
   mutable std::optional<Sample> step_start_;  // of the last step, where it was asked for
   std::size_t steps_before_ = 0, rejected_before_ = 0, switches_before_ = 0, same_time_ = 0;
   double residual_before_ = 0;
-  // The largest so far: what is much smaller is rounding.
-  std::vector<double> fastest_, fastest_slip_;  // [contacts], [contacts + frictions] sizes of the terms of ġ and of v_t
-  std::vector<double> widest_, hardest_;        // [contacts] sizes of the terms of g; of λ
-  std::vector<double> holding_;                 // [2 contacts + frictions] normal and static forces that were measured
-  std::vector<std::size_t> kind_;               // [n] coordinates of one dimension share a number
-  std::vector<std::size_t> gap_kind_;           // [contacts] so do gaps
-  std::vector<double> place_, speed_, acceleration_;  // [kinds] |q|, |q'|, |q''|
-  std::vector<double> usual_q_, usual_v_;             // [n] or empty
-  std::vector<double> compliance_;                    // [contacts] what a force λ = 1 does to g̈, where it was needed
-  std::vector<double> counted_at_;                    // times of every ten thousandth happening
-  bool told_choice_ = false;                          // that static friction leaves one
-  bool knows_compliance_ = false;                     // of all that touch at this instant
+  std::vector<double> counted_at_;  // times of every ten thousandth happening
+  bool told_choice_ = false;        // that static friction leaves one
+  bool knows_compliance_ = false;   // of all that touch at this instant
   struct Bounces {
     std::vector<std::pair<double, double>> last;  // (t, speed) of the last impacts
     double fastest = 0;                           // impact of the series that goes on, not rounding of other speeds
@@ -349,9 +331,7 @@ class HybridMotion final : public Method {
   std::vector<bool> begins_to_slide_;   // [contacts] in space, at this instant
   std::vector<bool> just_began_;        // [contacts] in space, before this instant
   std::vector<double> begins_towards_;  // [contacts] in which direction, an angle in the plane of contact
-  std::vector<double> slip_scale_;      // [contacts] of friction in space, the largest slips so far
   std::size_t looks_at_forces_ = 0;     // where friction gave way
-  std::vector<double> slip_rate_;       // [contacts] … and how fast they change
   double cone_residual_ = 0;            // the largest so far
   double gap_begin_ = std::numeric_limits<double>::quiet_NaN();  // of a moment in which a slip began
   std::vector<double> moment_accelerations_;                     // [n] in it

@@ -34,9 +34,6 @@ inline constexpr std::size_t most_choices = 1024;
 /// a + factor b
 SparseRow sum_of(const SparseRow& a, const SparseRow& b, double factor);
 
-/// Of the sizes of terms: below, a gap or a speed is 0.
-inline constexpr double rest_unit = 64 * std::numeric_limits<double>::epsilon();
-
 /// Of the terms of g̈: what a located instant leaves of a force that falls through 0.
 inline constexpr double located_force = 1e-9;
 

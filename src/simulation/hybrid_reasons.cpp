@@ -42,7 +42,8 @@ std::string HybridMotion::why_none_fits(const std::vector<Choice>& list, const s
            "about a foot whose friction is just at its limit.";
   const auto is_at_rest = [&](std::size_t i) {
     const bool in_space = friction_of(system_, i).in_space();
-    return in_space ? slip_speed_at(i, values) <= stop_slip(i) : std::abs(values.slip[i]) <= rest_slip(i, values);
+    return in_space ? slip_speed_at(i, values) <= stop_slip(i)
+                    : std::abs(values.slip[i]) <= sizes_.rest_slip(i, values);
   };
   ContactMode rest = mode_of(list, std::vector<std::size_t>(list.size(), 0));
   std::vector<std::size_t> resting;

@@ -33,7 +33,8 @@ std::vector<std::string> HybridMotion::labels_of(std::vector<std::size_t> places
 void HybridMotion::note_end_of_rest(std::size_t first) {
   constexpr double in_plane = 4e-12, in_space = 1e-10;  // planes that touch a circular cone leave more of it open
   const double known = in_space_ ? in_space : in_plane;
-  for (std::size_t k = first; k < record_.happenings.size(); ++k) record_.happenings[k].error = known * std::abs(t_);
+  for (std::size_t k = first; k < record_.happenings.size(); ++k)
+    record_.happenings[k].error = known * std::abs(here_.t);
   remark(
       fmt::format("A rest whose forces are not determined ends where none within their limits are found any "
                   "more: that time is known to some {:.0e} of itself.",
@@ -50,16 +51,16 @@ std::string HybridMotion::label_of(std::size_t i) const {
 std::vector<bool> HybridMotion::idle_in(const ContactMode& before, const ContactMode& mode,
                                         std::span<const double> accelerations) {
   constexpr double rounding = 1e-9;
-  const ContactValues& values = functions_.at(t_, q_, v_);
+  const ContactValues& values = here_.values();
   std::vector<bool> out(mode.closed.size(), false);
   std::optional<IndependentRows> carrying;
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const bool touches = before.closed[i] || idle_[i] || std::abs(values.gap[i]) <= rest_unit * widest_[i];
-    if (mode.closed[i] || !touches || std::abs(values.rate[i]) > rest_speed(i, values)) continue;
+    const bool touches = before.closed[i] || idle_[i] || std::abs(values.gap[i]) <= rest_unit * sizes_.widest(i);
+    if (mode.closed[i] || !touches || std::abs(values.rate[i]) > sizes_.rest_speed(i, values)) continue;
     if (std::abs(opening_rate(i, accelerations, values)) > rounding) continue;
     if (!carrying) carrying = rows_that_carry(mode, values);
     IndependentRows with_this = *carrying;
-    out[i] = !with_this.add(whole_row(values.normal[i], q_.size()));
+    out[i] = !with_this.add(whole_row(values.normal[i], here_.q.size()));
   }
   return out;
 }
@@ -67,8 +68,8 @@ std::vector<bool> HybridMotion::idle_in(const ContactMode& before, const Contact
 /// ∂g/∂q of closed contacts, beside the rows of constraints and of friction that sticks.
 IndependentRows HybridMotion::rows_that_carry(const ContactMode& mode, const ContactValues& values) {
   IndependentRows out;
-  const std::size_t n = q_.size();
-  for (const SparseRow& row : functions_.constraint_rows(t_, q_, v_)) static_cast<void>(out.add(whole_row(row, n)));
+  const std::size_t n = here_.q.size();
+  for (const SparseRow& row : here_.constraint_rows()) static_cast<void>(out.add(whole_row(row, n)));
   for (std::size_t i = 0; i < mode.friction.size(); ++i) {
     const bool is_contact = i < mode.closed.size();
     if (is_contact && mode.closed[i]) static_cast<void>(out.add(whole_row(values.normal[i], n)));
@@ -113,7 +114,7 @@ void HybridMotion::record_changes(const ContactMode& before, const ContactMode& 
   }
   for (std::size_t k = record_.happenings.size(); k-- > 0;) {
     Happening& h = record_.happenings[k];
-    if (k < begin && h.t != t_) break;
+    if (k < begin && h.t != here_.t) break;
     h.mode = text;
   }
   idle_ = idle;

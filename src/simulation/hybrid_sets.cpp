@@ -18,10 +18,10 @@ bool sets_positions(const std::vector<const ModelEvent*>& events) {
 
 /// Assigns what events set, all from the values before.
 bool HybridMotion::carry_out_sets(std::string& reason) {
-  const std::vector<double> found = energy_and_sets_at(t_, q_, v_);
+  const std::vector<double> found = energy_and_sets_at(here_.t, here_.q, here_.v);
   const std::string before = pending_->sets.front()->name;
-  if (const std::string told = set_more_than_once(system_, pending_->sets, t_); !told.empty()) remark(told);
-  std::vector<double> q = q_, v = v_;
+  if (const std::string told = set_more_than_once(system_, pending_->sets, here_.t); !told.empty()) remark(told);
+  std::vector<double> q = here_.q, v = here_.v;
   std::vector<const double*> first;  // of each event in `found`
   const double* next = found.data() + 1;
   for (const ModelEvent& e : model_.experiment.events) first.push_back(next), next += e.sets.size();
@@ -29,24 +29,24 @@ bool HybridMotion::carry_out_sets(std::string& reason) {
     const double* value = first[static_cast<std::size_t>(event - model_.experiment.events.data())];
     for (const ModelEvent::Assignment& a : event->sets) (a.order == 0 ? q : v)[a.coordinate] = *value++;
   }
-  if (const auto k = violated_constraint({t_, q, v}, digits_of_sets)) {
+  if (const auto k = violated_constraint({here_.t, q, v}, digits_of_sets)) {
     reason = fmt::format("The event `{}` sets a state that violates {}.", before, system_.constraint_label(*k));
     return false;
   }
-  const ContactValues& values = functions_.at(t_, q, v);
+  const ContactValues& values = here_.values_at(here_.t, q, v);
   for (std::size_t i = 0; i < values.gap.size(); ++i)
-    if (values.gap[i] < -digits_of_sets * size_of_gap(i, values)) {
+    if (values.gap[i] < -digits_of_sets * sizes_.gap(i, values)) {
       reason =
           fmt::format("The event `{}` sets a state that violates the contact {}.", before, system_.contact_label(i));
       return false;
     }
   for (std::size_t i = 0; i < bounces_.size(); ++i)  // what is set down anew bounces anew
     for (const auto& [k, g] : values.normal[i])
-      if (q[k] != q_[k] || v[k] != v_[k]) bounces_[i].before = 0;
-  const double gained = energy_and_sets_at(t_, q, v)[0] - found[0];
+      if (q[k] != here_.q[k] || v[k] != here_.v[k]) bounces_[i].before = 0;
+  const double gained = energy_and_sets_at(here_.t, q, v)[0] - found[0];
   carried_[0] += gained;  // what a set puts in is work
   record_.books.events += gained;
-  q_ = q, v_ = v;
+  here_.q = q, here_.v = v;
   if (sets_positions(pending_->sets)) event_sides_.assign(event_sides_.size(), 0);
   return true;
 }
@@ -90,7 +90,7 @@ std::string names_of(const std::vector<ModelEvent>& events, std::vector<std::siz
 void HybridMotion::note_sets(double bound) {
   if (pending_->sets.empty()) return;
   for (const ModelEvent* event : pending_->sets)
-    sets_that_follow_.add(static_cast<std::size_t>(event - model_.experiment.events.data()), t_);
+    sets_that_follow_.add(static_cast<std::size_t>(event - model_.experiment.events.data()), here_.t);
   const auto end = sets_that_follow_.end();  // none where they have become too short: the last one stands
   if (end && (forwards_ ? end->t <= bound : end->t >= bound)) sets_end_ = end;
 }
@@ -131,7 +131,7 @@ std::optional<Step> HybridMotion::meet_unseen(double bound) {
       return stopped(StepEnding::Unending, too_short_to_tell(event));
     met->at_zero.push_back(watch.index);
     event_sides_[watch.index] = 0;
-    meet_event(event, {k, -before, t_}, *met);
+    meet_event(event, {k, -before, here_.t}, *met);
   }
   if (!met->sets.empty()) pending_ = std::move(met);
   return std::nullopt;

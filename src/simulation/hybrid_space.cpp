@@ -45,7 +45,7 @@ double HybridMotion::slip_speed_at(std::size_t i, const ContactValues& values) c
 }
 
 bool HybridMotion::slides_in_space(std::size_t i, const ContactValues& values) const {
-  return begins_to_slide_[i] || slip_speed_at(i, values) > rest_slip(i, values);
+  return begins_to_slide_[i] || slip_speed_at(i, values) > sizes_.rest_slip(i, values);
 }
 
 /// The order of steps while something slides in space: with larger ones coefficients of its direction leave the range
@@ -61,11 +61,11 @@ int HybridMotion::order_beside_stops() const {
 /// of the slip leaves open.
 double HybridMotion::stop_slip(std::size_t i) {
   constexpr double above_rounding = 100, earlier = 10;
-  const ContactValues& values = functions_.at(t_, q_, v_);
+  const ContactValues& values = here_.values();
   const int steps_order = order_beside_stops();
-  const double speed =
-      std::max({slow_slip * slip_scale_[i], above_rounding * rest_slip(i, values), std::numeric_limits<double>::min()});
-  const double coefficients_end = slip_rate_[i] * std::pow(10, -largest_exponent / (steps_order + 2));
+  const double speed = std::max({slow_slip * sizes_.slip_in_space(i), above_rounding * sizes_.rest_slip(i, values),
+                                 std::numeric_limits<double>::min()});
+  const double coefficients_end = sizes_.slip_rate(i) * std::pow(10, -largest_exponent / (steps_order + 2));
   return (meets_late_ ? earlier : 1) *
          std::max(std::pow(10, std::floor(std::log10(speed))), std::pow(10, std::ceil(std::log10(coefficients_end))));
 }
@@ -73,9 +73,9 @@ double HybridMotion::stop_slip(std::size_t i) {
 /// Whether a slip has become so fast since its mode began that the speed at which it was to stop is rounding.
 bool HybridMotion::outgrows_stops() {
   if (now_->stops.empty()) return false;
-  const ContactValues& values = functions_.at(t_, q_, v_);
+  const ContactValues& values = here_.values();
   for (std::size_t i = 0; i < now_->stops.size(); ++i)
-    if (now_->mode.friction[i] == FrictionState::Slide && now_->stops[i] < rest_slip(i, values)) return true;
+    if (now_->mode.friction[i] == FrictionState::Slide && now_->stops[i] < sizes_.rest_slip(i, values)) return true;
   return false;
 }
 
@@ -86,15 +86,15 @@ double HybridMotion::end_of_slips() {
   constexpr std::size_t many = 4000;
   double out = std::numeric_limits<double>::infinity();
   if (!in_space_ || now_->stepper->steps() < many) return out;
-  const ContactValues& values = functions_.at(t_, q_, v_);
-  const std::vector<double> a = now_->stepper->sample(t_).a;
-  const std::span<const double> drifts = functions_.drifts(t_, q_, v_);
+  const ContactValues& values = here_.values();
+  const std::vector<double> a = now_->stepper->sample(here_.t).a;
+  const std::span<const double> drifts = here_.drifts();
   const std::size_t contacts = values.gap.size(), seconds = drifts.size() - contacts;
   for (std::size_t i = 0; i < contacts; ++i) {
     if (now_->mode.friction[i] != FrictionState::Slide) continue;
     const double falls = -(values.slip[i] * (drifts[contacts + i] + product(values.tangent[i], a)) +
                            values.second_slip[i] * (drifts[seconds + i] + product(values.second_tangent[i], a)));
-    if (falls > 0) out = std::min(out, t_ + 2 * std::pow(slip_speed_at(i, values), 2) / falls);
+    if (falls > 0) out = std::min(out, here_.t + 2 * std::pow(slip_speed_at(i, values), 2) / falls);
   }
   return out;
 }
@@ -103,7 +103,7 @@ double HybridMotion::end_of_slips() {
 /// slide along d.
 SparseRow HybridMotion::sliding_force(std::size_t i, const ContactValues& values) const {
   const double speed = slip_speed_at(i, values), mu = values.kinetic[i];
-  const bool begins = begins_to_slide_[i] && !(speed > rest_slip(i, values));
+  const bool begins = begins_to_slide_[i] && !(speed > sizes_.rest_slip(i, values));
   const double along = begins ? std::cos(begins_towards_[i]) : values.slip[i] / speed;
   SparseRow out = sum_of(values.normal[i], values.tangent[i], -mu * along);
   if (values.second_tangent[i].empty()) return out;
@@ -116,10 +116,11 @@ std::vector<HybridMotion::Pressed> HybridMotion::pressed_of(const std::vector<st
                                                             const ContactValues& values) const {
   std::vector<Pressed> out;
   for (const std::size_t i : touching) {
-    if (values.rate[i] > rest_speed(i, values)) continue;
+    if (values.rate[i] > sizes_.rest_speed(i, values)) continue;
     const Friction& f = system_.contacts[i].friction;
-    const bool slides = rubs(i, values) && !f.sticking &&
-                        (f.in_space() ? slides_in_space(i, values) : std::abs(values.slip[i]) > rest_slip(i, values));
+    const bool slides =
+        rubs(i, values) && !f.sticking &&
+        (f.in_space() ? slides_in_space(i, values) : std::abs(values.slip[i]) > sizes_.rest_slip(i, values));
     out.push_back({i, slides ? std::optional(sliding_force(i, values)) : std::nullopt});
   }
   return out;
@@ -151,7 +152,7 @@ HybridMotion::Cones HybridMotion::cones_of(const std::vector<Pressed>& pressed, 
 HybridMotion::Cones HybridMotion::cones_of(const std::vector<Pressed>& pressed, const std::vector<std::size_t>& holding,
                                            const ContactMode& base, const ContactValues& values,
                                            std::span<const double> accelerations) {
-  const std::span<const double> drifts = functions_.drifts(t_, q_, v_);
+  const std::span<const double> drifts = here_.drifts();
   const std::size_t contacts = values.gap.size(), seconds = drifts.size() - contacts;
   Cones out;
   std::vector<double> free;
@@ -180,7 +181,7 @@ HybridMotion::Cones HybridMotion::cones_of(const std::vector<Pressed>& pressed, 
   }
   for (std::size_t i = contacts; i < base.friction.size(); ++i)
     if (base.friction[i] == FrictionState::Stick) out.held.push_back(values.tangent[i]);
-  out.response = functions_.response(t_, q_, v_, out.forces, out.held);
+  out.response = here_.response(out.forces, out.held);
   const auto size = at(out.rows.size());
   out.problem.response.resize(size, size);
   for (Index r = 0; r < size; ++r)
@@ -192,18 +193,18 @@ HybridMotion::Cones HybridMotion::cones_of(const std::vector<Pressed>& pressed, 
 
 /// On by a moment with these accelerations: what they leave out are third powers of it, rounding.
 void HybridMotion::move_on(double by, const VectorXd& accelerations) {
-  const double before = energy_and_sets_at(t_, q_, v_)[0];
-  for (std::size_t i = 0; i < q_.size(); ++i) {
-    q_[i] += by * (v_[i] + 0.5 * by * accelerations(at(i)));
-    v_[i] += by * accelerations(at(i));
+  const double before = energy_and_sets_at(here_.t, here_.q, here_.v)[0];
+  for (std::size_t i = 0; i < here_.q.size(); ++i) {
+    here_.q[i] += by * (here_.v[i] + 0.5 * by * accelerations(at(i)));
+    here_.v[i] += by * accelerations(at(i));
   }
   moment_accelerations_.assign(accelerations.data(), accelerations.data() + accelerations.size());
-  gap_begin_ = t_;
+  gap_begin_ = here_.t;
   just_moved_on_ = true;
-  t_ += by;
-  t_rest_ = 0;
+  here_.t += by;
+  here_.t_rest = 0;
   knows_compliance_ = false;
-  book_rubbing(energy_and_sets_at(t_, q_, v_)[0] - before);
+  book_rubbing(energy_and_sets_at(here_.t, here_.q, here_.v)[0] - before);
 }
 
 /// What a moment does to the energy is what contacts rub in it.
@@ -220,7 +221,7 @@ std::optional<TaylorStepper::Outlook> HybridMotion::outlook_without_contacts(con
 
 std::optional<TaylorStepper::Outlook> HybridMotion::outlook_in(const ContactMode& mode, double bound) {
   TaylorStepper& stepper = *motion_in(mode).stepper;
-  stepper.start(t_, q_, v_, t_rest_);
+  stepper.start(here_.t, here_.q, here_.v, here_.t_rest);
   TaylorStepper::Outlook outlook = stepper.outlook(bound);
   if (outlook.ending != StepEnding::None) return std::nullopt;
   return outlook;
@@ -230,7 +231,7 @@ std::optional<TaylorStepper::Outlook> HybridMotion::outlook_in(const ContactMode
 /// Friction alone takes part in it, whose impulse is what ends a slip, however its direction turned meanwhile and
 /// whenever in the moment it ended.
 void HybridMotion::take_out_slips(const std::vector<std::size_t>& stopping, const std::vector<std::size_t>& touching) {
-  const ContactValues values = functions_.at(t_, q_, v_);
+  const ContactValues values = here_.values();
   std::vector<SparseRow> rows;
   std::vector<double> rates;
   for (const std::size_t i : stopping) {
@@ -240,8 +241,8 @@ void HybridMotion::take_out_slips(const std::vector<std::size_t>& stopping, cons
   }
   if (rows.empty()) return;
   for (const std::size_t i : touching)
-    if (!(values.rate[i] > rest_speed(i, values))) rows.push_back(values.normal[i]), rates.push_back(0);
-  const Eigen::MatrixXd response = functions_.response(t_, q_, v_, rows);
+    if (!(values.rate[i] > sizes_.rest_speed(i, values))) rows.push_back(values.normal[i]), rates.push_back(0);
+  const Eigen::MatrixXd response = here_.response(rows);
   Eigen::MatrixXd w(at(rows.size()), at(rows.size()));
   for (std::size_t r = 0; r < rows.size(); ++r)
     for (Index c = 0; c < w.cols(); ++c) w(at(r), c) = dot(rows[r], response.col(c));
@@ -249,9 +250,9 @@ void HybridMotion::take_out_slips(const std::vector<std::size_t>& stopping, cons
   solver.setThreshold(1e-10);
   const VectorXd right = Eigen::Map<const VectorXd>(rates.data(), at(rates.size()));
   const VectorXd change = response * VectorXd(solver.compute(w).solve(right));
-  const double before = in_space_ ? energy_and_sets_at(t_, q_, v_)[0] : 0;
-  for (std::size_t i = 0; i < v_.size(); ++i) v_[i] += change(at(i));
-  if (in_space_) book_rubbing(energy_and_sets_at(t_, q_, v_)[0] - before);  // else it is below rounding
+  const double before = in_space_ ? energy_and_sets_at(here_.t, here_.q, here_.v)[0] : 0;
+  for (std::size_t i = 0; i < here_.v.size(); ++i) here_.v[i] += change(at(i));
+  if (in_space_) book_rubbing(energy_and_sets_at(here_.t, here_.q, here_.v)[0] - before);  // else it is below rounding
 }
 
 /// Whether these slips, which are slow, have all stopped after so long: by one implicit step in which friction takes
@@ -295,12 +296,12 @@ void HybridMotion::note_beginnings() {
 /// components are 0. One that grows has just begun.
 void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double bound) {
   if (!in_space_) return;
-  const ContactValues values = functions_.at(t_, q_, v_);
+  const ContactValues values = here_.values();
   const auto is_slow = [&](std::size_t i) {
     const double speed = slip_speed_at(i, values);
     return system_.contacts[i].friction.in_space() && !system_.contacts[i].friction.sticking && rubs(i, values) &&
-           !just_began_[i] && !(values.rate[i] > rest_speed(i, values)) && speed > rest_slip(i, values) &&
-           speed <= stop_slip(i) + rest_slip(i, values);
+           !just_began_[i] && !(values.rate[i] > sizes_.rest_speed(i, values)) && speed > sizes_.rest_slip(i, values) &&
+           speed <= stop_slip(i) + sizes_.rest_slip(i, values);
   };
   if (std::none_of(touching.begin(), touching.end(), is_slow)) return;
   const auto outlook = outlook_without_contacts(values, bound);
@@ -310,7 +311,7 @@ void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double
   if (!found) return;
   const VectorXd changes = cones.response * found->forces;
   const VectorXd a = Eigen::Map<const VectorXd>(outlook->accelerations.data(), changes.size()) + changes;
-  const std::vector<double> drifts(functions_.drifts(t_, q_, v_).begin(), functions_.drifts(t_, q_, v_).end());
+  const std::vector<double> drifts(here_.drifts().begin(), here_.drifts().end());
   const std::size_t contacts = values.gap.size(), seconds = drifts.size() - contacts;
   const auto time_to_stop = [&](std::size_t i) {  // 0: it does not
     const double speed = slip_speed_at(i, values);
@@ -333,22 +334,22 @@ void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double
   constexpr double together = 0.05, as_slow = 1e3, longer = 4;
   double longest = by;
   for (const std::size_t i : touching)
-    if (system_.contacts[i].friction.in_space() && rubs(i, values) && slip_speed_at(i, values) > rest_slip(i, values) &&
-        slip_speed_at(i, values) <= as_slow * stop_slip(i))
+    if (system_.contacts[i].friction.in_space() && rubs(i, values) &&
+        slip_speed_at(i, values) > sizes_.rest_slip(i, values) && slip_speed_at(i, values) <= as_slow * stop_slip(i))
       near.push_back(i), longest = std::max(longest, time_to_stop(i));
   const bool all = near.size() > 1 && all_stop(near, touching, values, outlook->accelerations, longer * longest);
   std::copy_if(near.begin(), near.end(), std::back_inserter(stopping),
                [&](std::size_t i) { return all || std::abs(time_to_stop(i) - by) <= together * by; });
   move_on(forwards_ ? by : -by, a);
   constexpr double part = 0.1;  // of the speed at which others count as stopped
-  const ContactValues after = functions_.at(t_, q_, v_);
+  const ContactValues after = here_.values();
   std::erase_if(stopping, [&](std::size_t i) {
     const bool ends = std::find(slow.begin(), slow.end(), i) != slow.end();
     return !all && !ends && slip_speed_at(i, after) > part * stop_slip(i);
   });
   take_out_slips(stopping, touching);
-  for (std::size_t i = 0; i < v_.size(); ++i)  // what rounding leaves of all that stops is no motion
-    if (std::abs(v_[i]) <= rest_unit * speed_[kind_[i]]) v_[i] = 0;
+  for (std::size_t i = 0; i < here_.v.size(); ++i)  // what rounding leaves of all that stops is no motion
+    if (std::abs(here_.v[i]) <= rest_unit * sizes_.speed(i)) here_.v[i] = 0;
 }
 
 /// Where contacts in space rest on friction: each sticks, or begins to slide against the force that the cones give.
@@ -356,10 +357,10 @@ void HybridMotion::come_to_rest(const std::vector<std::size_t>& touching, double
 bool HybridMotion::choose_slips(const std::vector<std::size_t>& touching, double bound, bool gives_way,
                                 std::string& reason) {
   if (!in_space_) return true;
-  const ContactValues values = functions_.at(t_, q_, v_);
+  const ContactValues values = here_.values();
   const auto may_begin = [&](std::size_t i) {
     const Friction& f = system_.contacts[i].friction;
-    return f.in_space() && !f.sticking && rubs(i, values) && !(values.rate[i] > rest_speed(i, values)) &&
+    return f.in_space() && !f.sticking && rubs(i, values) && !(values.rate[i] > sizes_.rest_speed(i, values)) &&
            !slides_in_space(i, values);
   };
   if (std::none_of(touching.begin(), touching.end(), may_begin)) return true;
@@ -391,7 +392,7 @@ bool HybridMotion::choose_slips(const std::vector<std::size_t>& touching, double
       slides[c] = found->forces(n) > 0 && is_at_limit &&
                   (reaches_limit(i) || slip.norm() > small * sizes.segment(n + 1, 2).norm());
       if (!slides[c] || pass == 0) continue;
-      slip_scale_[i] = std::max(slip_scale_[i], slip.norm() * outlook->length);
+      sizes_.note_slip_in_space(i, slip.norm() * outlook->length);
       begins_to_slide_[i] = true;
       begins_towards_[i] = std::atan2(-force(1), -force(0));
     }

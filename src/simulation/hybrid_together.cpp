@@ -31,7 +31,7 @@ void HybridMotion::meet_together(double bound) {
       return x.what == w.what && x.index == w.index && x.lower == w.lower;
     });
     if (is_met || !is_limit(w) || !(outlook.slopes[k] * outlook.length < -falls * size_of(k))) continue;
-    if (std::abs(outlook.values[k]) <= digits * (size_of(k) + std::abs(outlook.slopes[k] * t_)))
+    if (std::abs(outlook.values[k]) <= digits * (size_of(k) + std::abs(outlook.slopes[k] * here_.t)))
       pending_->left.push_back(w);
   }
 }
@@ -42,7 +42,7 @@ void HybridMotion::meet_together(double bound) {
 /// was not determined open.
 std::optional<HybridMotion::Found> HybridMotion::mode_that_goes_on(const std::vector<std::size_t>& touching,
                                                                    double bound) {
-  const ContactValues& values = functions_.at(t_, q_, v_);
+  const ContactValues& values = here_.values();
   const bool ends_rest = now_->given.is_preload;
   Found out{now_->mode, {}, {}};
   if (pending_->left.size() < 2 || in_space_) return std::nullopt;
@@ -68,7 +68,7 @@ void HybridMotion::open_idle(ContactMode& mode) const {
   std::vector<double> forces;
   double largest = 0;
   for (std::size_t i = 0, k = 0; i < mode.closed.size(); ++i) {
-    if (mode.closed[i]) forces.push_back(now_->given.preload(k++, t_));
+    if (mode.closed[i]) forces.push_back(now_->given.preload(k++, here_.t));
     if (mode.closed[i]) largest = std::max(largest, std::abs(forces.back()));
   }
   for (std::size_t i = 0, k = 0; i < mode.closed.size(); ++i)

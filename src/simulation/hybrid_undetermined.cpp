@@ -35,8 +35,8 @@ bool HybridMotion::is_held(std::size_t contact, const ContactMode& mode, const C
   }
   if (held.empty()) return false;
   if (contact < mode.closed.size()) held.push_back(values.normal[contact]);
-  const double alone = dot(own, functions_.response(t_, q_, v_, {&own, 1}).col(0));
-  return std::abs(dot(own, functions_.response(t_, q_, v_, {&own, 1}, held).col(0))) <= digits * std::abs(alone);
+  const double alone = dot(own, here_.response({&own, 1}).col(0));
+  return std::abs(dot(own, here_.response({&own, 1}, held).col(0))) <= digits * std::abs(alone);
 }
 
 double HybridMotion::Given::preload(std::size_t constraint, double t) const {
@@ -83,7 +83,7 @@ std::optional<std::vector<double>> HybridMotion::forces_at_rest(const ContactMod
   const ContactMode base = mode_without_holding(mode, holding);
   const auto outlook = outlook_in(base, bound);
   if (!outlook) return std::nullopt;
-  std::vector<double> of_constraints = motion_in(base).stepper->sample(t_).multipliers;
+  std::vector<double> of_constraints = motion_in(base).stepper->sample(here_.t).multipliers;
   const Cones cones = cones_of(pressed_in(mode, values), holding, base, values, outlook->accelerations);
   if (!cones.problem.response.allFinite()) return std::nullopt;  // a slip that has no direction yet
   // A rest ends early by the margin that is left. Companions leave four times of it, so that their difference tells
@@ -91,8 +91,7 @@ std::optional<std::vector<double>> HybridMotion::forces_at_rest(const ContactMod
   const auto found = resting_forces(cones.problem, (meets_late_ ? 4 : 1) * least_margin_of_rest);
   if (!found) return std::nullopt;
   const Eigen::VectorXd balanced = cones.response.cwiseAbs() * found->cwiseAbs();  // what they would do alone
-  for (std::size_t k = 0; k < kind_.size(); ++k)
-    acceleration_[kind_[k]] = std::max(acceleration_[kind_[k]], balanced(at(k)));
+  for (std::size_t k = 0; k < here_.q.size(); ++k) sizes_.note_acceleration(k, balanced(at(k)));
   return ordered_forces(mode, cones, *found, std::move(of_constraints));
 }
 
@@ -100,11 +99,10 @@ std::optional<std::vector<double>> HybridMotion::forces_at_rest(const ContactMod
 /// them behind those of constraints.
 std::vector<double> HybridMotion::ordered_forces(const ContactMode& mode, const Cones& cones,
                                                  const Eigen::VectorXd& found, std::vector<double> of_constraints) {
-  Eigen::VectorXd work = Eigen::VectorXd::Zero(at(q_.size()));
+  Eigen::VectorXd work = Eigen::VectorXd::Zero(at(here_.q.size()));
   for (std::size_t k = 0; k < cones.forces.size(); ++k)
     for (const auto& [i, x] : cones.forces[k]) work(at(i)) += x * found(at(k));
-  const Eigen::VectorXd more =
-      functions_.multipliers(t_, q_, v_, Eigen::VectorXd(cones.response * found), work, cones.held);
+  const Eigen::VectorXd more = here_.multipliers(Eigen::VectorXd(cones.response * found), work, cones.held);
   for (std::size_t k = 0; k < of_constraints.size(); ++k) of_constraints[k] += more(at(k));
   std::vector<double> out;
   for (std::size_t c = 0; c < cones.contacts.size(); ++c)
@@ -122,13 +120,13 @@ std::vector<double> HybridMotion::ordered_forces(const ContactMode& mode, const 
 
 /// Forces that hold the rest later, if it lasts until then.
 std::optional<std::vector<double>> HybridMotion::forces_later(const ContactMode& mode, double later, double bound) {
-  const double t = t_, t_rest = t_rest_;
-  const std::vector<double> q = q_;
-  t_ += later;
-  for (std::size_t i = 0; i < q_.size(); ++i) q_[i] += later * v_[i];
-  auto out = forces_at_rest(mode, functions_.at(t_, q_, v_), bound + (bound - t));
-  t_ = t, t_rest_ = t_rest, q_ = q;
-  static_cast<void>(functions_.at(t_, q_, v_));  // whoever holds its values means those of now
+  const double t = here_.t, t_rest = here_.t_rest;
+  const std::vector<double> q = here_.q;
+  here_.t += later;
+  for (std::size_t i = 0; i < here_.q.size(); ++i) here_.q[i] += later * here_.v[i];
+  auto out = forces_at_rest(mode, here_.values(), bound + (bound - t));
+  here_.t = t, here_.t_rest = t_rest, here_.q = q;
+  static_cast<void>(here_.values());  // whoever holds its values means those of now
   return out;
 }
 
@@ -153,7 +151,7 @@ std::optional<HybridMotion::Given> HybridMotion::preload_through(const ContactMo
   if (!here || !there) return std::nullopt;
   Given out;
   out.is_preload = true;
-  out.values = {t_};
+  out.values = {here_.t};
   for (std::size_t k = 0; k < here->size(); ++k) {
     std::vector<double> coefficients(preload_degree + 1, 0);
     coefficients[0] = (*here)[k];
@@ -172,11 +170,11 @@ bool HybridMotion::fits_by_given_forces(Found& found, const std::vector<std::siz
   const std::size_t holds = number_that_hold(mode);
   const bool may_share = holds >= 2 || (holds == 1 && system_.constrained());
   if (!may_share || holds > most_that_hold() || !found.given.begins.empty()) return false;
-  const ContactValues values = functions_.at(t_, q_, v_);
+  const ContactValues values = here_.values();
   if (!has_dependent_rows(mode, values)) return false;
   const auto outlook = outlook_without_contacts(values, bound);
   if (!outlook || !forces_at_rest(mode, values, bound)) return false;
-  const double ahead = rest_ahead(mode, std::copysign(outlook->length, bound - t_), bound);
+  const double ahead = rest_ahead(mode, std::copysign(outlook->length, bound - here_.t), bound);
   // A contact that presses by nothing yet has forces that begin with the power of time with which those of the system
   // do.
   for (int power = 1; power <= preload_degree; ++power) {
@@ -221,7 +219,7 @@ bool HybridMotion::has_dependent_rows(const ContactMode& mode, const ContactValu
     rows.push_back(values.tangent[i]);
     if (is_contact && !values.second_tangent[i].empty()) rows.push_back(values.second_tangent[i]);
   }
-  return are_dependent(rows, q_.size(), functions_.constraint_rows(t_, q_, v_));
+  return are_dependent(rows, here_.q.size(), here_.constraint_rows());
 }
 
 /// More contacts and frictions than the motion needs: their forces are not unique, and what friction makes of them is
@@ -240,8 +238,7 @@ void HybridMotion::note_indeterminate(const std::vector<Choice>& list, const Con
     normals.push_back(values.normal[i]);
     rubs = rubs || (f.present() && !f.sticking);
   }
-  const bool are_normals =
-      contacts.size() > 1 && are_dependent(normals, q_.size(), functions_.constraint_rows(t_, q_, v_));
+  const bool are_normals = contacts.size() > 1 && are_dependent(normals, here_.q.size(), here_.constraint_rows());
   if (are_normals) {
     remark(undetermined_contacts_sentence(labels_of(contacts), rubs));
     return;

@@ -172,6 +172,7 @@ const ContactValues& ContactFunctions::at(double t, std::span<const double> q, s
   evaluate(slips_work_, slips_out_, t, q, v);
   evaluate(rates_work_, rates_out_, t, q, v);
   ContactValues& out = values_;
+  out.t = t;
   out.gap.assign(gaps_out_.begin(), gaps_out_.begin() + static_cast<std::ptrdiff_t>(contacts_));
   out.slip.assign(slips_out_.begin(), slips_out_.begin() + static_cast<std::ptrdiff_t>(frictions_));
   set_rows(programs_->gaps, gaps_out_, 0, 0, contacts_, out.normal);

@@ -28,6 +28,7 @@ struct ContactValues {
   std::vector<SparseRow> second_tangent;  // [contacts] and its ∂v_t/∂q̇; else empty
   std::vector<double> kinetic, fixed;     // [contacts + frictions] μ and μ_s, or the limits of the force
   std::vector<double> restitution;        // [contacts]
+  double t = 0;                           // of the point
 };
 
 /// Σ |terms|, those of sums that are factors too: 2 (b − x) is known no better than 2 b − 2 x.
