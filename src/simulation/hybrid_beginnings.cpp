@@ -1,10 +1,7 @@
-#include "simulation/hybrid_parts.hpp"
-
-#include <maupertuis/kernel.hpp>
-
 #include <algorithm>
 #include <cmath>
-
+#include <maupertuis/kernel.hpp>
+#include "simulation/hybrid_slips.hpp"
 /// How slips in space begin. At the first instant v_t/|v_t| has no value, and next to it the equations are as stiff as
 /// can be: what is across to the force that pulls is braked at the rate μ N/(m |v_t|). The direction d(τ) that the slip
 /// has from its beginning on is sought as a polynomial of time, so that v_t(τ) with friction −μ N d(τ) goes along d(τ):
@@ -15,7 +12,9 @@
 /// With d = (cos φ, sin φ), φ = Σ φ_k τ^k, the coefficient v_{k+1} of the slip depends on φ_0, …, φ_k, on the last of
 /// them linearly, and what v_t has across to d vanishes order by order. In the second case the series is an asymptotic
 /// one (the origin is an irregular singular point of φ' = …/|v_t|): it is cut where its last terms are rounding.
-namespace maupertuis {
+
+namespace maupertuis::hybrid {
+
 namespace {
 
 using Eigen::Index;
@@ -255,19 +254,18 @@ class Directions {
 
 }  // namespace
 
-/// What a motion in this mode is given: the directions of slips that begin. Nothing where it has none.
-std::optional<HybridMotion::Given> HybridMotion::given_in(const ContactMode& mode, double bound) {
+std::optional<Given> SpaceSlips::directions_in(const ContactMode& mode, double bound) const {
   Given out;
-  std::vector<bool> begins(system_.contacts.size(), false);
+  std::vector<bool> begins(problem_.system.contacts.size(), false);
   std::vector<double> towards;
   for (std::size_t i = 0; i < begins.size(); ++i) {
-    begins[i] = begins_to_slide_[i] && mode.friction[i] == FrictionState::Slide && std::isfinite(begins_towards_[i]);
-    if (begins[i]) towards.push_back(begins_towards_[i]);
+    begins[i] = begins_[i] && mode.friction[i] == FrictionState::Slide && std::isfinite(towards_[i]);
+    if (begins[i]) towards.push_back(towards_[i]);
   }
   if (towards.empty()) return out;
   out.begins = begins;
-  const auto program = library_->program(mode, {stops(), false, begins});
-  Slips slips(*program->slips, parameters_, here_.t, here_.q, here_.v);
+  const auto program = problem_.library->program(mode, {stop_speeds(), false, begins});
+  Slips slips(*program->slips, problem_.parameters, here_.t, here_.q, here_.v);
   constexpr double astray = 1e-12;
   double length = 0;
   for (std::size_t loose = 0; loose < towards.size(); ++loose) {  // the one that leads furthest
@@ -282,4 +280,4 @@ std::optional<HybridMotion::Given> HybridMotion::given_in(const ContactMode& mod
   return out;
 }
 
-}  // namespace maupertuis
+}  // namespace maupertuis::hybrid

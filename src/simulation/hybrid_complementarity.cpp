@@ -1,11 +1,11 @@
-#include "simulation/contact/contact_forces.hpp"
-#include "simulation/hybrid_parts.hpp"
-
 #include <algorithm>
 #include <cmath>
-
+#include "simulation/contact/contact_forces.hpp"
+#include "simulation/hybrid_parts.hpp"
 /// Which of the modes that are possible the forces of all contacts together point to.
+
 namespace maupertuis {
+
 namespace {
 
 constexpr double small = 1e-10;  // of the largest
@@ -22,32 +22,21 @@ ContactForceProblem::Contact contact_of(const ContactValues& values, std::span<c
 }
 
 /// Puts the option that agrees with the forces first.
-void prefer(std::vector<HybridOption>& options, bool closed, FrictionState state) {
-  const auto fits = [&](const HybridOption& o) { return o.closed == closed && (!closed || o.state == state); };
+void prefer(std::vector<Choice::Option>& options, bool closed, FrictionState state) {
+  const auto fits = [&](const Choice::Option& o) { return o.closed == closed && (!closed || o.state == state); };
   const auto found = std::find_if(options.begin(), options.end(), fits);
   if (found != options.end()) std::rotate(options.begin(), found, found + 1);
 }
 
 }  // namespace
 
-/// The mode without contacts, friction of coordinates as is likeliest.
-ContactMode HybridMotion::mode_without_contacts(const std::vector<Choice>& list) const {
-  ContactMode mode = open_mode(system_);
-  for (const Choice& c : list)
-    if (c.contact >= mode.closed.size()) {
-      mode.friction[c.contact] = c.options[0].state;
-      mode.normal_sign[c.contact - mode.closed.size()] = c.options[0].normal_sign;
-    }
-  return mode;
-}
-
 /// The contacts of the list as they would move without their forces; nothing where that motion does not exist.
 std::optional<ContactForceProblem> HybridMotion::force_problem(const std::vector<Choice>& list,
                                                                const ContactValues& values, double bound) {
-  const ContactMode base = mode_without_contacts(list);
-  TaylorStepper& stepper = *motion_in(base).stepper;
+  const ContactMode base = choices_.mode_without_contacts(list);
+  TaylorStepper& stepper = *motions_.in(base).stepper;
   stepper.start(here_.t, here_.q, here_.v, here_.t_rest);
-  const TaylorStepper::Outlook outlook = stepper.outlook(bound);
+  const Outlook outlook = stepper.outlook(bound);
   if (outlook.ending != StepEnding::None) return std::nullopt;
   const std::span<const double> drifts = here_.drifts();
   std::vector<SparseRow> normals, tangents, held;
@@ -59,10 +48,10 @@ std::optional<ContactForceProblem> HybridMotion::force_problem(const std::vector
     if (i >= base.closed.size()) continue;
     problem.contacts.push_back(contact_of(values, drifts, outlook.accelerations, i));
     auto& contact = problem.contacts.back();
-    const Friction& friction = system_.contacts[i].friction;
+    const Friction& friction = problem_.system.contacts[i].friction;
     const auto slides = [&](FrictionState s) { return choice.options[0].state == s; };
     contact.sliding = slides(FrictionState::Forward) ? 1 : slides(FrictionState::Backward) ? -1 : 0;
-    if (rubs(i, values)) contact.tangent = values.tangent[i];
+    if (problem_.rubs(i, values)) contact.tangent = values.tangent[i];
     contact.friction = friction.sticking ? held_fast : contact.sliding != 0 ? values.kinetic[i] : values.fixed[i];
     normals.push_back(values.normal[i]);
     tangents.push_back(contact.tangent);
@@ -123,14 +112,14 @@ void HybridMotion::order_by_forces(std::vector<Choice>& list, const ContactValue
   auto problem = force_problem(list, values, bound);
   std::vector<double> kinetic;
   for (const Choice& c : list)
-    if (c.contact < system_.contacts.size())
-      kinetic.push_back(system_.contacts[c.contact].friction.sticking ? held_fast : values.kinetic[c.contact]);
+    if (c.contact < problem_.system.contacts.size())
+      kinetic.push_back(problem_.system.contacts[c.contact].friction.sticking ? held_fast : values.kinetic[c.contact]);
   std::vector<std::size_t> left;
   const auto forces = problem ? forces_that_hold(*problem, kinetic, left) : std::nullopt;
   if (!forces) return;
   if (!left.empty()) {
     told_choice_ = true;
-    remark(
+    journal_.remark(
         "Static friction leaves a choice: where several contacts begin to slide at once, one of some can be held, and "
         "the one that is written first is.");
   }
@@ -142,7 +131,7 @@ void HybridMotion::order_by_forces(std::vector<Choice>& list, const ContactValue
   std::vector<std::size_t> open_to_doubt;
   std::size_t k = 0;
   for (Choice& choice : list) {
-    if (choice.contact >= system_.contacts.size()) continue;
+    if (choice.contact >= problem_.system.contacts.size()) continue;
     const bool presses = forces->normal[k] > small * largest;
     prefer(choice.options, presses, forces->friction[k]);
     if (!presses && forces->acceleration[k] <= small * fastest) open_to_doubt.push_back(choice.contact);
@@ -165,7 +154,7 @@ void HybridMotion::close_lowest_flights(const std::vector<std::size_t>& touching
   if (std::none_of(touching.begin(), touching.end(), is_slow)) return;
   std::vector<Choice> list;
   for (const std::size_t i : touching)
-    if (values.rate[i] <= slow * sizes_.fastest(i)) list.push_back(choice_of_contact(i, values));
+    if (values.rate[i] <= slow * sizes_.fastest(i)) list.push_back(choices_.of_contact(i, values, *pending_));
   std::vector<std::size_t> pressed;
   // One that flies higher presses on nothing: the forces of the others are sought without it.
   for (bool all_are_low = false; !all_are_low;) {

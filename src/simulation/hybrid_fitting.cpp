@@ -1,11 +1,11 @@
-#include "simulation/hybrid_parts.hpp"
-
 #include <algorithm>
 #include <cmath>
-
+#include "simulation/hybrid_parts.hpp"
 /// Whether the motion in a mode keeps its conditions: gaps that do not close, forces that press, friction that holds or
 /// opposes.
+
 namespace maupertuis {
+
 namespace {
 
 constexpr double rounding_of_forces = 1e-13;  // of the terms of g̈
@@ -24,21 +24,9 @@ bool HybridMotion::vanishes(const Watch& watch, double size, const ContactValues
   return false;
 }
 
-/// g̈ of a contact with these accelerations, in units of the sizes of its terms.
-double HybridMotion::opening_rate(std::size_t contact, std::span<const double> accelerations,
-                                  const ContactValues& values) {
-  double sum = here_.drifts()[contact], size = std::abs(sum);
-  for (const auto& [k, g] : values.normal[contact]) {
-    sum += g * accelerations[k];
-    size += std::abs(g) * sizes_.acceleration(k);
-  }
-  return sum / std::max(size, std::numeric_limits<double>::min());
-}
-
 /// Whether these accelerations close the gap of a contact beyond so many digits of the terms of g̈.
-bool HybridMotion::presses_again(std::size_t contact, std::span<const double> accelerations,
-                                 const ContactValues& values, double digits) {
-  return opening_rate(contact, accelerations, values) < -digits;
+bool HybridMotion::presses_again(std::size_t contact, std::span<const double> accelerations, double digits) {
+  return sizes_.opening_rate(contact, accelerations, here_) < -digits;
 }
 
 /// Whether a mode has the forces of the one before at this instant: frictions that have come to their limit, with
@@ -46,7 +34,7 @@ bool HybridMotion::presses_again(std::size_t contact, std::span<const double> ac
 ///
 ///     λ_t = −μ_s N: it slides forwards        λ_t = μ_s N: it slides backwards
 bool HybridMotion::changes_no_force(const ContactMode& mode, const ContactValues& values) const {
-  const ContactMode& before = now_->mode;
+  const ContactMode& before = motions_.now().mode;
   if (pending_->left.empty() || !pending_->hit.empty() || !pending_->sets.empty()) return false;
   const auto has_left = [&](Watch::What what, std::size_t i, bool lower) {
     return std::any_of(pending_->left.begin(), pending_->left.end(),
@@ -70,15 +58,15 @@ bool HybridMotion::changes_no_force(const ContactMode& mode, const ContactValues
 /// Friction that gives way where forces go on: its slip begins with the second power of time, whatever rounding makes
 /// of the first.
 bool HybridMotion::begins_slowly(const Watch& slip, const ContactMode& mode, const ContactValues& values) const {
-  const FrictionState before = now_->mode.friction[slip.index];
-  return before == FrictionState::Stick && !friction_of(system_, slip.index).in_space() &&
+  const FrictionState before = motions_.now().mode.friction[slip.index];
+  return before == FrictionState::Stick && !friction_of(problem_.system, slip.index).in_space() &&
          changes_no_force(mode, values);
 }
 
 /// Whether these accelerations are those of the mode before, to what a located instant leaves of them.
 bool HybridMotion::accelerations_go_on(std::span<const double> accelerations) const {
   if (pending_->begins || !pending_->hit.empty() || !pending_->sets.empty()) return false;
-  const std::vector<double> before = now_->stepper->sample(now_->stepper->time()).a;
+  const std::vector<double> before = motions_.stepper().sample(motions_.stepper().time()).a;
   for (std::size_t k = 0; k < before.size(); ++k)
     if (!(std::abs(accelerations[k] - before[k]) <= located_force * sizes_.acceleration(k))) return false;
   return true;
@@ -95,7 +83,7 @@ struct HybridMotion::Trial {
   const ContactValues& values;
   std::vector<std::size_t> at_zero{};  // of the watches
   std::vector<std::size_t> jumped{};   // came to 0 here, but forces jump, and they with them
-  TaylorStepper::Outlook outlook{};
+  Outlook outlook{};
   double largest_force = 0;
 
   const Watch& watch(std::size_t k) const { return motion.watches()[k]; }
@@ -111,7 +99,7 @@ struct HybridMotion::Trial {
   bool look(double bound);
 
   bool is_squared(const Watch& w) const {
-    return w.what == Watch::What::Hold && friction_of(in.system_, w.index).in_space();
+    return w.what == Watch::What::Hold && friction_of(in.problem_.system, w.index).in_space();
   }
   bool is_rounding_of_forces(std::size_t k) const;
   bool keeps(std::size_t k);
@@ -133,7 +121,7 @@ bool HybridMotion::Trial::begins_at_zero(const Watch& w) const {
       return !opens && holds(touching, w.index);
     }
     case What::Slip:
-      return !friction_of(in.system_, w.index).in_space() &&
+      return !friction_of(in.problem_.system, w.index).in_space() &&
              std::abs(values.slip[w.index]) <= in.sizes_.rest_slip(w.index, values);
     case What::Event:  // a motion that is thrown back from its zero has not passed it
       return holds(in.pending_->at_zero, w.index);
@@ -187,7 +175,7 @@ bool HybridMotion::Trial::has_jumps() {
 /// less than that leaves open begin with the second power of time too.
 bool HybridMotion::Trial::has_slow_slips() {
   constexpr double slow = 1e-9;
-  if (!in.now_->given.is_preload || found.given.is_preload) return false;
+  if (!in.motions_.now().given.is_preload || found.given.is_preload) return false;
   bool has_some = false;
   for (const std::size_t k : at_zero) {
     const Watch& w = watch(k);
@@ -226,7 +214,7 @@ bool HybridMotion::Trial::has_slow_gaps() {
   for (const std::size_t k : at_zero) {
     if (!was_kept_closed(k)) continue;
     const Watch& w = watch(k);
-    const double opens = in.opening_rate(w.index, outlook.accelerations, values);
+    const double opens = in.sizes_.opening_rate(w.index, outlook.accelerations, in.here_);
     if (leniency == Leniency::Gaps ? opens < -rounding_of_forces : std::abs(opens) > located_force) continue;
     motion.stepper->put_at_zero({&k, 1}, 3);
     has_some = true;
@@ -286,7 +274,7 @@ bool HybridMotion::Trial::keeps_gap(std::size_t k) {
   const std::size_t i = watch(k).index;
   if (in.vanishes(watch(k), outlook.reach[k], values)) return true;
   if (in.released_[i])
-    return outlook.sides[k] >= 0 && !in.presses_again(i, outlook.accelerations, values, located_force);
+    return outlook.sides[k] >= 0 && !in.presses_again(i, outlook.accelerations, located_force);
   if (outlook.sides[k] >= 0) return true;
   // Meeting the constraints of others may move a gap that opens through zero, by what they are known to.
   const double rest = in.sizes_.rest_speed(i, values), reached = met * in.sizes_.widest(i);
@@ -327,7 +315,8 @@ bool HybridMotion::Trial::keeps_slip(std::size_t k) {
   const std::size_t i = watch(k).index;
   if (holds(at_zero, k)) return outlook.sides[k] > 0 && !in.is_held(i, found.mode, values);
   // One that begins in space has not yet the speed at which it counts as stopped.
-  if (friction_of(in.system_, i).in_space() && (in.begins_to_slide_[i] || in.just_began_[i])) return true;
+  if (friction_of(in.problem_.system, i).in_space() && (in.slips_.begins(i) || in.slips_.has_just_begun(i)))
+    return true;
   return outlook.sides[k] >= 0;
 }
 
@@ -352,7 +341,7 @@ bool HybridMotion::Trial::keeps(std::size_t k) {
 }
 
 bool HybridMotion::fits(Found& found, const std::vector<std::size_t>& touching, double bound, Leniency leniency) {
-  Trial trial{*this, found, touching, leniency, motion_in(found.mode, found.given), here_.values()};
+  Trial trial{*this, found, touching, leniency, motions_.in(found.mode, found.given), here_.values()};
   if (!trial.look(bound)) return false;
   for (std::size_t k = 0; k < trial.motion.watches().size(); ++k)
     if (!trial.keeps(k)) return false;
@@ -366,9 +355,9 @@ void HybridMotion::measure_forces(const std::vector<std::size_t>& touching, cons
   const bool gives_way = std::any_of(pending_->left.begin(), pending_->left.end(),
                                      [](const Watch& w) { return w.what == Watch::What::Hold; });
   if (started_ && !(gives_way && looks_at_forces_++ < looks)) return;
-  Found free{open_mode(system_), {}, {}};
+  Found free{open_mode(problem_.system), {}, {}};
   std::fill(free.mode.friction.begin(), free.mode.friction.end(), FrictionState::None);
-  Trial trial{*this, free, touching, Leniency::Forces, motion_in(free.mode), values};
+  Trial trial{*this, free, touching, Leniency::Forces, motions_.in(free.mode), values};
   if (!trial.look(bound)) return;
   sizes_.note_accelerations(free.accelerations, values);
   // At a start they may be 0, and what rests is to be measured by what they come to.
@@ -376,7 +365,7 @@ void HybridMotion::measure_forces(const std::vector<std::size_t>& touching, cons
   for (const double share : {0.5, 1.0}) {
     if (started_) break;
     stepper.start(here_.t + std::copysign(share * trial.outlook.length, bound - here_.t), here_.q, here_.v);
-    const TaylorStepper::Outlook later = stepper.outlook(bound + (bound - here_.t));
+    const Outlook later = stepper.outlook(bound + (bound - here_.t));
     if (later.ending == StepEnding::None) sizes_.note_accelerations(later.accelerations, values);
   }
   sizes_.note_slip_rates(values);
@@ -386,7 +375,7 @@ void HybridMotion::measure_forces(const std::vector<std::size_t>& touching, cons
 std::optional<std::vector<std::size_t>> HybridMotion::beyond_limits(Found& found,
                                                                     const std::vector<std::size_t>& touching,
                                                                     double bound) {
-  Trial trial{*this, found, touching, Leniency::None, motion_in(found.mode, found.given), here_.values()};
+  Trial trial{*this, found, touching, Leniency::None, motions_.in(found.mode, found.given), here_.values()};
   std::vector<std::size_t> out;
   if (!trial.look(bound)) return std::nullopt;
   for (std::size_t k = 0; k < trial.motion.watches().size(); ++k)

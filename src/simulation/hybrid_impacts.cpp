@@ -32,7 +32,7 @@ ImpactProblem HybridMotion::impact_problem(const std::vector<std::size_t>& touch
     p.restitution.push_back(values.restitution[i]);
     p.friction.push_back(values.kinetic[i]);
     p.static_friction.push_back(values.fixed[i]);
-    p.sticking.push_back(system_.contacts[i].friction.sticking);
+    p.sticking.push_back(problem_.system.contacts[i].friction.sticking);
     p.rest.push_back(sizes_.rest_speed(i, values));
   }
   p.response = here_.response(p.normal);
@@ -58,16 +58,16 @@ void HybridMotion::note_order(const ImpactProblem& p, const ImpactResult& first,
     for (Index i = 0; i < std::min(x.size(), shown); ++i) out += fmt::format("{}{:.6g}", i == 0 ? "" : ", ", x(i));
     return "(" + out + (x.size() > shown ? ", …)" : ")");
   };
-  remark(
+  journal_.remark(
       fmt::format("Several contacts are hit at t = {:.9g}, and the result depends on their order: q' = {} with the "
                   "fastest first, as it was done, {} with the fastest last.",
                   here_.t, velocities(first.v), velocities(other.v)));
 }
 
 void HybridMotion::book_energy(const ImpactResult& result) {
-  record_.books.impacts += result.loss;
-  record_.books.moving += result.moving;
-  carried_[0] += result.moving - result.loss;
+  journal_.books().impacts += result.loss;
+  journal_.books().moving += result.moving;
+  carried_.put_in(result.moving - result.loss);
 }
 
 void HybridMotion::record_impulses(const ImpactResult& result) {
@@ -75,7 +75,8 @@ void HybridMotion::record_impulses(const ImpactResult& result) {
   constexpr std::size_t most_told = 32;
   if (result.impulses.size() <= most_told) {
     for (const Impulse& impulse : result.impulses)
-      add(Happening::Kind::Impact, system_.contact_label(impulse.contact), impulse.normal, impulse.speed);
+      journal_.add(Happening::Kind::Impact, problem_.system.contact_label(impulse.contact), impulse.normal,
+                   impulse.speed);
     return;
   }
   // A chain of contacts whose impulses follow each other without end, each smaller: their sum for each contact.
@@ -90,8 +91,8 @@ void HybridMotion::record_impulses(const ImpactResult& result) {
   }
   for (const std::size_t contact : order) {
     const auto& [impulse, count] = sums.at(contact);
-    add(Happening::Kind::Impact, system_.contact_label(contact), impulse.normal, impulse.speed,
-        count > 1 ? fmt::format("the sum of {} impacts", count) : std::string());
+    journal_.add(Happening::Kind::Impact, problem_.system.contact_label(contact), impulse.normal, impulse.speed,
+                 count > 1 ? fmt::format("the sum of {} impacts", count) : std::string());
   }
 }
 
@@ -157,10 +158,10 @@ void HybridMotion::end_series(const std::vector<std::size_t>& touching) {
   std::vector<std::size_t> resting;
   for (const std::size_t i : touching) {
     if (values.rate[i] > sizes_.rest_speed(i, values) || values.tangent[i].empty()) continue;
-    const double slip = slip_speed_at(i, values);
+    const double slip = slip_speed(i, values);
     if (slip > 0 && slip <= left * sizes_.fastest_slip(i)) resting.push_back(i);
   }
-  if (!resting.empty()) take_out_slips(resting, touching);
+  if (!resting.empty()) space_.take_out_slips(resting, touching);
 }
 
 /// Whether a slip may come to its end during the bounces that would be left out: when it does so depends on each of
@@ -170,7 +171,7 @@ bool HybridMotion::slips_may_stop_before(double end, const std::vector<std::size
   constexpr double slow = 1e-9, share = 4;
   for (const std::size_t i : touching) {
     if (values.tangent[i].empty() || !(-values.rate[i] > slow * bounces_[i].fastest)) continue;
-    const double force = sizes_.acceleration_along(values.tangent[i]), slip = slip_speed_at(i, values);
+    const double force = sizes_.acceleration_along(values.tangent[i]), slip = slip_speed(i, values);
     if (slip > sizes_.rest_slip(i, values) && slip <= share * force * std::abs(end - here_.t)) return true;
   }
   return false;
@@ -191,7 +192,7 @@ std::optional<double> HybridMotion::accumulation_among(std::vector<std::size_t>&
 
 /// What closing contacts do to the velocities. False, and why, where no impulses are found.
 bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) {
-  accumulated_.reset();
+  end_of_bounces_.reset();
   const ContactValues& values = here_.values();
   const bool closing = std::any_of(touching.begin(), touching.end(),
                                    [&](std::size_t i) { return values.rate[i] < -sizes_.rest_speed(i, values); });
@@ -202,11 +203,11 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
   const bool rubs =
       std::any_of(touching.begin(), touching.end(), [&](std::size_t i) { return !values.tangent[i].empty(); });
   ImpactProblem p = impact_problem(end ? cycle_ : touching, values);
-  if (!end) note_compliance(p);
+  if (!end) sizes_.note_compliances(p.contacts, p.normal, p.response), sizes_.set_knows_compliances(true);
   const bool rests = !end && is_lost_in_rounding(touching, values);
   if (end || rests) std::fill(p.restitution.begin(), p.restitution.end(), 0.0);
   const VectorXd v = vector_of(here_.v);
-  const bool at_once = system_.impact_law == ImpactLaw::Simultaneous || (rests && !rubs);
+  const bool at_once = problem_.system.impact_law == ImpactLaw::Simultaneous || (rests && !rubs);
   ImpactResult result = end       ? last_impact(p, v)
                         : at_once ? impact_at_once(p, v)
                                   : sequential_impact(p, v, ImpactOrder::FastestFirst);
@@ -231,7 +232,7 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
         "The constraints move the contact {} through zero, and leave nothing that an impact could change: no motion "
         "obeys "
         "both.",
-        system_.contact_label(*std::find_if(touching.begin(), touching.end(), [&](std::size_t i) {
+        problem_.system.contact_label(*std::find_if(touching.begin(), touching.end(), [&](std::size_t i) {
           return values.rate[i] < -sizes_.rest_speed(i, values);
         })));
     return false;
@@ -241,13 +242,13 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
         "Several contacts are hit here, {} with friction among them, and `impact simultaneous` says nothing of "
         "friction: "
         "leave it out, and one contact after the other is hit, with its friction.",
-        system_.contact_label(*result.rubs_at_once));
+        problem_.system.contact_label(*result.rubs_at_once));
     return false;
   }
   note_impact(p, result, v, end.has_value());
   if (!at_once && !end) note_order(p, result, v);
   if (result.bounded)
-    remark(
+    journal_.remark(
         fmt::format("At t = {:.9g} impacts followed each other without an end; the rest of them was done at once, "
                     "without bounce and without friction.",
                     here_.t));
@@ -258,8 +259,7 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
   record_impulses(result);
   if (result.impulses.size() > 4 * p.contacts.size()) end_series(touching);
   if (end) {
-    accumulated_ = fmt::format("the end of infinitely many bounces at t = {:.12g}", *end);
-    accumulated_at_ = *end;
+    end_of_bounces_ = EndOfBounces{*end};
     for (const std::size_t i : touching) bounces_[i].last.clear();
   }
   return true;

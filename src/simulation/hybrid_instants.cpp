@@ -1,20 +1,18 @@
-#include "simulation/contact/impact_derivative.hpp"
-#include "simulation/hybrid_parts.hpp"
-
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/slip_signs.hpp>
 #include <maupertuis/transform.hpp>
-
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
 #include <set>
 #include <stdexcept>
-
+#include "simulation/contact/impact_derivative.hpp"
+#include "simulation/hybrid_parts.hpp"
 /// What neighbours and companions of a motion need of its instants: the functions whose roots they are, the derivatives
 /// of what happens there, and how far rounding hides them.
+
 namespace maupertuis {
+
 namespace {
 
 using Eigen::Index;
@@ -64,59 +62,47 @@ struct HybridMotion::Settled {
 };
 
 void HybridMotion::keep_instants() {
-  derivative_ = std::make_shared<ImpactDerivative>(equations_, parameters_);
-  for (const auto& [key, motion] : modes_) treat_events(*motion);
+  derivative_ = std::make_shared<ImpactDerivative>(problem_.equations, problem_.parameters);
+  motions_.tell_touches();
 }
 
-const ContactMode& HybridMotion::mode() const { return now_->mode; }
-bool HybridMotion::begins_to_slide() const { return !now_->given.begins.empty(); }
-const EquationsOfMotion& HybridMotion::equations_in(const ContactMode& mode) {
-  if (!system_.has_modes()) return equations_;  // events alone: also those that were found for a degenerate Lagrangian
-  std::unique_ptr<EquationsOfMotion>& slot = equations_of_modes_[key_of(mode, {stops(), false, {}})];
-  if (slot) return *slot;
-  Diagnostics unheard;  // the system passed its checks with its contacts
-  MechanicalSystem in_mode = system_in_mode(system_, mode);
-  in_mode.written = nullptr;
-  slot = std::make_unique<EquationsOfMotion>(
-      *euler_lagrange(std::make_shared<const MechanicalSystem>(std::move(in_mode)), unheard));
-  return *slot;
-}
+
 
 std::string HybridMotion::touch_sentence(std::size_t contact, double t) const {
   return fmt::format("The contact {} is only touched at t = {:.9g}: some neighbours hit it and others do not.",
-                     system_.contact_label(contact), t);
+                     problem_.system.contact_label(contact), t);
 }
 
 /// Before anything is settled. The mode before is asked once more, for the rates of what ends it.
 void HybridMotion::note_before(double bound) {
   settled_ = std::make_shared<Settled>();
   Settled& s = *settled_;
-  s.instant.mode_before = now_->mode;
+  s.instant.mode_before = motions_.now().mode;
   s.instant.before = {here_.t, here_.q, here_.v};
-  TaylorStepper& stepper = *now_->stepper;
+  TaylorStepper& stepper = motions_.stepper();
   s.instant.a_before = stepper.sample(stepper.time()).a;
   s.hit = pending_->hit;
-  s.was_preload = now_->given.is_preload;
+  s.was_preload = motions_.now().given.is_preload;
   s.events = pending_->sets;
   if (pending_->left.empty() && pending_->sets.empty()) return;
   stepper.start(here_.t, here_.q, here_.v, here_.t_rest);
-  const TaylorStepper::Outlook outlook = stepper.outlook(bound);
+  const Outlook outlook = stepper.outlook(bound);
   // Of the two sides of what holds, the one that is met.
   const auto find = [&](Watch::What what, std::size_t index) {
-    Settled::Ended found{{}, std::numeric_limits<double>::quiet_NaN()};
+    HybridMotion::Settled::Ended found{{}, std::numeric_limits<double>::quiet_NaN()};
     double least = HUGE_VAL;
-    for (std::size_t k = 0, sides = 0; k < now_->watches().size() && k < outlook.slopes.size(); ++k) {
-      if (now_->watches()[k].what != what || now_->watches()[k].index != index) continue;
+    for (std::size_t k = 0, sides = 0; k < motions_.now().watches().size() && k < outlook.slopes.size(); ++k) {
+      if (motions_.now().watches()[k].what != what || motions_.now().watches()[k].index != index) continue;
       const bool second = sides++ > 0;
       if (!(std::abs(outlook.values[k]) < least)) continue;
       least = std::abs(outlook.values[k]);
-      found = {function_of(now_->watches()[k], second), outlook.slopes[k]};
+      found = {function_of(motions_.now().watches()[k], second), outlook.slopes[k]};
     }
     return found;
   };
   for (const Watch& w : pending_->left) s.left.push_back(find(w.what, w.index));
   for (const ModelEvent* e : s.events)
-    s.sets.push_back(find(Watch::What::Event, static_cast<std::size_t>(e - model_.experiment.events.data())));
+    s.sets.push_back(find(Watch::What::Event, static_cast<std::size_t>(e - problem_.model.experiment.events.data())));
 }
 
 void HybridMotion::note_impact(const ImpactProblem& problem, const ImpactResult& result, const VectorXd& v,
@@ -132,15 +118,15 @@ void HybridMotion::note_impact(const ImpactProblem& problem, const ImpactResult&
 void HybridMotion::note_after(double bound) {
   Settled& s = *settled_;
   ModeInstant& out = s.instant;
-  out.mode_after = now_->mode;
+  out.mode_after = motions_.now().mode;
   out.after = {here_.t, here_.q, here_.v};
-  out.a_after = now_->stepper->outlook(bound).accelerations;
+  out.a_after = motions_.stepper().outlook(bound).accelerations;
   if (changes_in_space())
     out.obstacle = fmt::format(
         "Friction in space is hit, begins or stops to slide at t = {:.9g}: neighbours are not carried through that "
         "yet.",
         here_.t);
-  else if (now_->given.is_preload || s.was_preload)
+  else if (motions_.now().given.is_preload || s.was_preload)
     out.obstacle = fmt::format(
         "Contacts hold each other with forces that the motion does not determine at t = {:.9g}: when friction gives "
         "way "
@@ -164,10 +150,10 @@ std::string HybridMotion::at_once_sentence() const {
 bool HybridMotion::changes_in_space() const {
   const Settled& s = *settled_;
   for (const Impulse& i : s.impact.impulses)
-    if (system_.contacts[i.contact].friction.in_space()) return true;
+    if (problem_.system.contacts[i.contact].friction.in_space()) return true;
   for (std::size_t i = 0; i < s.instant.mode_before.friction.size(); ++i) {
-    const bool opens = i < system_.contacts.size() && !s.instant.mode_after.closed[i];
-    if (friction_of(system_, i).in_space() && !opens &&
+    const bool opens = i < problem_.system.contacts.size() && !s.instant.mode_after.closed[i];
+    if (friction_of(problem_.system, i).in_space() && !opens &&
         s.instant.mode_before.friction[i] != s.instant.mode_after.friction[i])
       return true;
   }
@@ -184,20 +170,21 @@ void HybridMotion::add_set_jump() {
   const ModelEvent& event = *s.events.front();
   const std::size_t n = here_.q.size();
   ExprVector inputs;
-  for (const Coordinate& c : system_.coordinates) inputs.push_back(c.q);
-  for (const Coordinate& c : system_.coordinates) inputs.push_back(c.velocity);
-  inputs.push_back(system_.context->time());
+  for (const Coordinate& c : problem_.system.coordinates) inputs.push_back(c.q);
+  for (const Coordinate& c : problem_.system.coordinates) inputs.push_back(c.velocity);
+  inputs.push_back(problem_.system.context->time());
   Bindings values;
   for (std::size_t i = 0; i < n; ++i) {
     values[inputs[i]] = s.instant.before.q[i];
     values[inputs[n + i]] = s.instant.before.v[i];
   }
   values[inputs[2 * n]] = here_.t;
-  for (std::size_t i = 0; i < parameters_.size(); ++i) values[system_.parameters[i].symbol] = parameters_[i];
+  for (std::size_t i = 0; i < problem_.parameters.size(); ++i)
+    values[problem_.system.parameters[i].symbol] = problem_.parameters[i];
   MatrixXd slopes = MatrixXd::Zero(static_cast<Index>(2 * n), static_cast<Index>(2 * n + 1));
   slopes.leftCols(static_cast<Index>(2 * n)).setIdentity();
   for (const ModelEvent::Assignment& a : event.sets) {
-    const Expr value = expand_time_derivatives(in_terms_of_motion(system_, {&a.value, 1})).front();
+    const Expr value = expand_time_derivatives(in_terms_of_motion(problem_.system, {&a.value, 1})).front();
     const std::vector<Expr> gradients = gradient(value, inputs);
     for (std::size_t j = 0; j < inputs.size(); ++j)
       slopes(static_cast<Index>(a.order == 0 ? a.coordinate : n + a.coordinate), static_cast<Index>(j)) =
@@ -258,7 +245,7 @@ void HybridMotion::add_impulses_in_order(const ImpactResult& ordered) {
       s.instant.obstacle = fmt::format(
           "The contact {} is hit at t = {:.9g} without slip: neighbours that slide this way and that come out of the "
           "impact in ways that are no linear function of the slip.",
-          system_.contact_label(c), here_.t);
+          problem_.system.contact_label(c), here_.t);
       return;
     }
     v += impulse.normal * p.response.col(static_cast<Index>(k));
@@ -266,10 +253,10 @@ void HybridMotion::add_impulses_in_order(const ImpactResult& ordered) {
     at.v.assign(v.data(), v.data() + v.size());
     mode.closed[c] = false;
     mode.friction[c] = FrictionState::None;
-    const bool rubs = system_.contacts[c].friction.present();
+    const bool rubs = problem_.system.contacts[c].friction.present();
     const auto volume = rubs || plastic ? std::nullopt : std::optional(2 * std::log(p.restitution[k]));
-    s.instant.jumps.push_back(
-        {system_.contacts[c].gap, rate, slow * sizes_.fastest(c), mode, at, slopes_of_velocities(*slopes), volume});
+    s.instant.jumps.push_back({problem_.system.contacts[c].gap, rate, slow * sizes_.fastest(c), mode, at,
+                               slopes_of_velocities(*slopes), volume});
   }
   s.instant.jumps.back().mode = s.instant.mode_after;
   s.instant.jumps.back().after = s.instant.after;
@@ -294,7 +281,7 @@ void HybridMotion::add_impulses_at_once() {
   const auto k = static_cast<std::size_t>(std::find(p.contacts.begin(), p.contacts.end(), *met) - p.contacts.begin());
   const MatrixXd slopes =
       derivative_->at_once(pressing, {here_.t, s.instant.before.q, s.instant.before.v, p.restitution[k] == 0});
-  s.instant.jumps.push_back({system_.contacts[*met].gap, dot(p.normal[k], s.v_before_impact) + p.drive[k],
+  s.instant.jumps.push_back({problem_.system.contacts[*met].gap, dot(p.normal[k], s.v_before_impact) + p.drive[k],
                              slow * sizes_.fastest(*met), s.instant.mode_after, s.instant.after,
                              slopes_of_velocities(slopes), std::nullopt});
 }
@@ -322,27 +309,29 @@ void HybridMotion::add_change_of_forces() {
 /// The function of a condition of the mode that it is in; `second`: the other of two sides.
 Expr HybridMotion::function_of(const Watch& watch, bool second) const {
   const std::size_t i = watch.index;
-  const ContactMode& mode = now_->mode;
+  const ContactMode& mode = motions_.now().mode;
   switch (watch.what) {
     case Watch::What::Gap:
-      return system_.contacts[i].gap;
+      return problem_.system.contacts[i].gap;
     case Watch::What::Force:
-      return system_.contacts[i].multiplier;
+      return problem_.system.contacts[i].multiplier;
     case Watch::What::Slip: {
-      const Expr slip = friction_of(system_, i).slip[0];
+      const Expr slip = friction_of(problem_.system, i).slip[0];
       return mode.friction[i] == FrictionState::Forward ? slip : -slip;
     }
     case Watch::What::Normal:
-      return normal_force(system_, mode, i + system_.contacts.size());
+      return normal_force(problem_.system, mode, i + problem_.system.contacts.size());
     case Watch::What::Hold: {
-      const Friction& f = friction_of(system_, i);
-      const Expr most = limit_of_friction(system_, f, f.static_, normal_force(system_, mode, i), second);
+      const Friction& f = friction_of(problem_.system, i);
+      const Expr most =
+          limit_of_friction(problem_.system, f, f.static_, normal_force(problem_.system, mode, i), second);
       return second ? most + f.multipliers[0] : most - f.multipliers[0];
     }
     case Watch::What::Until:
-      return library_->wanted().events[0];
+      return problem_.library->wanted().events[0];
     case Watch::What::Event:
-      return library_->wanted().events[library_->wanted().events.size() - model_.experiment.events.size() + i];
+      return problem_.library->wanted()
+          .events[problem_.library->wanted().events.size() - problem_.model.experiment.events.size() + i];
   }
   throw std::logic_error("an unknown condition of a mode; please report");
 }
@@ -352,11 +341,11 @@ Expr HybridMotion::function_of(const Watch& watch, bool second) const {
 double HybridMotion::hidden_by_rounding(double bound) {
   constexpr double simple = 1e-8, most = 5;
   if (pending_->left.empty() || !pending_->hit.empty() || !pending_->sets.empty()) return 0;
-  const TaylorStepper::Outlook outlook = now_->stepper->outlook(bound);
+  const Outlook outlook = motions_.stepper().outlook(bound);
   if (outlook.ending != StepEnding::None) return 0;
   double out = 0;
-  for (std::size_t k = 0; k < now_->watches().size(); ++k) {
-    const Watch& w = now_->watches()[k];
+  for (std::size_t k = 0; k < motions_.now().watches().size(); ++k) {
+    const Watch& w = motions_.now().watches()[k];
     if (w.what != Watch::What::Hold && w.what != Watch::What::Force) continue;
     const bool ends = std::any_of(pending_->left.begin(), pending_->left.end(), [&](const Watch& x) {
       return x.what == w.what && x.index == w.index && x.lower == w.lower;
@@ -378,24 +367,18 @@ double HybridMotion::hides_gap(std::size_t contact, double length) {
   std::vector<double> q = here_.q, v = here_.v;
   for (double hidden = rest_unit * std::max(std::abs(here_.t), length); hidden < length; hidden *= 2) {
     const double before = forwards_ ? here_.t - hidden : here_.t + hidden;
-    now_->stepper->state(before, q, v);
+    motions_.stepper().state(before, q, v);
     const ContactValues& values = here_.values_at(before, q, v);
     if (std::abs(values.gap[contact]) > rounding) return std::abs(values.rate[contact]) > slower * speed ? hidden : 0;
   }
   return length;
 }
 
-/// Companions meet such a root where the same rounding hides it: their difference does not tell that.
-void HybridMotion::note_hidden(std::size_t first) {
-  for (std::size_t k = first; k < record_.happenings.size(); ++k)
-    record_.happenings[k].error = std::max(record_.happenings[k].error, pending_->hidden);
-}
-
 /// On in the mode that ends here.
 Step HybridMotion::wait(double bound) {
   const double until = time() + (forwards_ ? late_by_ : -late_by_);
   late_by_ = 0;
-  Step out = now_->stepper->step(forwards_ ? std::min(bound, until) : std::max(bound, until));
+  Step out = motions_.stepper().step(forwards_ ? std::min(bound, until) : std::max(bound, until));
   out.events.clear();
   if (out.ending == StepEnding::None) note_step();
   return out;

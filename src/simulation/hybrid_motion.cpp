@@ -1,40 +1,37 @@
-#include "simulation/hybrid_parts.hpp"
-
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
-
+#include "simulation/hybrid_parts.hpp"
 /// Steps of a motion through modes: what a step meets waits for the next one, which settles it first.
+
 namespace maupertuis {
+
 namespace {
 
 constexpr std::size_t most_at_once = 1000;  // changes at the same time
 constexpr const char* met_backwards =
     "Backwards in time the motion meets a change of contact here: what was before an impact or a stop does not follow "
     "from what is after it.";
-constexpr std::size_t most_numbers = 2'000'000;  // of states that are kept with what happens
+constexpr const char* no_cones =
+    "The forces of contacts with friction in space were not found: their cones have no solution here, or the "
+    "iteration does not converge to it.";
 
 }  // namespace
 
 HybridMotion::HybridMotion(std::shared_ptr<ModeLibrary> library, std::vector<double> parameters,
                            const TaylorOptions& options)
-    : library_(std::move(library)),
-      model_(library_->model()),
-      equations_(library_->equations()),
-      system_(library_->system()),
-      parameters_(std::move(parameters)),
-      options_(options),
-      here_(library_->contacts(), parameters_),
-      sizes_(system_) {
-  parameters_.resize(system_.parameters.size());
-  for (const ModelEvent& e : model_.experiment.events) of_positions_.push_back(is_of_positions(e.function));
-  for (const Contact& c : system_.contacts) {
-    in_space_ = in_space_ || c.friction.in_space();
-    keeps_friction_.push_back(c.friction.present() && is_of_parameters(c.friction.kinetic) &&
-                              is_of_parameters(c.friction.static_));
-  }
+    : problem_(std::move(library), std::move(parameters), options),
+      here_(problem_.library->contacts(), problem_.parameters),
+      sizes_(problem_.system),
+      journal_(problem_, here_, sizes_),
+      functions_(problem_),
+      slips_(problem_, here_, sizes_),
+      motions_(problem_, here_, slips_),
+      choices_(problem_, sizes_, slips_),
+      cones_(problem_, here_, sizes_, slips_, choices_),
+      space_(problem_, here_, sizes_, slips_, motions_, choices_, cones_, functions_, carried_) {
+  for (const ModelEvent& e : problem_.model.experiment.events) of_positions_.push_back(is_of_positions(e.function));
 }
 
 HybridMotion::~HybridMotion() = default;
@@ -42,104 +39,82 @@ HybridMotion::~HybridMotion() = default;
 bool HybridMotion::will_jump() const { return pending_ && (!pending_->hit.empty() || !pending_->sets.empty()); }
 
 void HybridMotion::leave_mode() {
-  if (!now_) return;
-  const TaylorStepper& s = *now_->stepper;
-  for (std::size_t k = 0; k < std::size(carried_); ++k) carried_[k] += s.integral(k);
-  steps_before_ += s.steps(), rejected_before_ += s.rejected(), switches_before_ += s.switches();
-  residual_before_ = std::max(residual_before_, s.constraint_residual());
+  if (motions_.has_begun()) carried_.take(motions_.stepper());
 }
 
-int HybridMotion::order() const { return now_->stepper->order(); }
+int HybridMotion::order() const { return motions_.stepper().order(); }
 
 void HybridMotion::start(double t, std::span<const double> q, std::span<const double> v) {
   here_.t = t;
   here_.t_rest = 0;
   here_.q.assign(q.begin(), q.end());
   here_.v.assign(v.begin(), v.end());
-  std::fill(std::begin(carried_), std::end(carried_), 0.0);
-  steps_before_ = rejected_before_ = switches_before_ = same_time_ = 0;
-  residual_before_ = 0;
+  carried_ = {};
+  same_time_ = 0;
   sizes_.start();
-  bounces_.assign(system_.contacts.size(), {});
-  idle_.assign(system_.contacts.size(), false);
-  released_.assign(system_.contacts.size(), false);
-  released_at_.assign(system_.contacts.size(), std::numeric_limits<double>::quiet_NaN());
-  record_ = {};
-  left_out_remarks_ = 0;
-  begins_to_slide_.assign(system_.contacts.size(), false);
-  begins_towards_.assign(system_.contacts.size(), 0);
+  journal_.start();
+  slips_.start();
+  space_.start();
+  bounces_.assign(problem_.system.contacts.size(), {});
+  released_.assign(problem_.system.contacts.size(), false);
+  released_at_.assign(problem_.system.contacts.size(), std::numeric_limits<double>::quiet_NaN());
   looks_at_forces_ = 0;
-  cone_residual_ = -1;
-  gap_begin_ = std::numeric_limits<double>::quiet_NaN();
   settled_.reset();
   instant_.reset();
   started_ = false;
   late_by_ = longest_step_ = 0;
   told_choice_ = false;
   step_start_.reset();
-  counted_at_.clear();
   sets_that_follow_ = {};
   sets_end_.reset();
   event_sides_.assign(of_positions_.size(), 0);
-  now_ = &motion_in(open_mode(system_));
-  now_->stepper->start(here_.t, here_.q, here_.v, here_.t_rest);
-  pending_ = std::make_unique<Pending>();
+  motions_.go_on_in(open_mode(problem_.system));
+  motions_.stepper().start(here_.t, here_.q, here_.v, here_.t_rest);
+  pending_ = std::make_unique<Met>();
   pending_->begins = true;
   forwards_ = true;
   failed_ = settle(t + 1);
-  std::fill(std::begin(carried_), std::end(carried_), 0.0);  // work before the first sample
+  carried_.forget_work();  // work before the first sample
 }
 
-double HybridMotion::time() const { return now_->stepper->time(); }
-bool HybridMotion::covers(double t) const { return now_->stepper->covers(covered(t)); }
+double HybridMotion::time() const { return motions_.stepper().time(); }
+bool HybridMotion::covers(double t) const { return motions_.stepper().covers(covered(t)); }
+double HybridMotion::covered(double t) const { return space_.moment().covered(t, motions_.stepper().step_start().t); }
 
-/// Times in a moment that was left out are known from its end.
-double HybridMotion::covered(double t) const {
-  const double begin = now_->stepper->step_start().t;
-  const bool in_gap = gap_begin_ <= begin ? gap_begin_ <= t && t < begin : begin < t && t <= gap_begin_;
-  return in_gap ? begin : t;
-}
-
-void HybridMotion::move_back(double t, std::span<double> q, std::span<double> v) const {
-  const double by = t - covered(t);
-  for (std::size_t i = 0; by != 0 && i < q.size(); ++i) {
-    q[i] += by * (v[i] + 0.5 * by * moment_accelerations_[i]);
-    v[i] += by * moment_accelerations_[i];
-  }
-}
-
-std::size_t HybridMotion::steps() const { return steps_before_ + now_->stepper->steps(); }
-std::size_t HybridMotion::rejected() const { return rejected_before_ + now_->stepper->rejected(); }
-std::size_t HybridMotion::switches() const { return switches_before_ + now_->stepper->switches(); }
+std::size_t HybridMotion::steps() const { return carried_.steps + motions_.stepper().steps(); }
+std::size_t HybridMotion::rejected() const { return carried_.rejected + motions_.stepper().rejected(); }
+std::size_t HybridMotion::switches() const { return carried_.switches + motions_.stepper().switches(); }
 double HybridMotion::constraint_residual() const {
-  return std::max(residual_before_, now_->stepper->constraint_residual());
+  return std::max(carried_.residual, motions_.stepper().constraint_residual());
 }
 
-BackendUse HybridMotion::backend() const { return now_->stepper->backend(); }
+BackendUse HybridMotion::backend() const { return motions_.stepper().backend(); }
+
 void HybridMotion::state(double t, std::span<double> q, std::span<double> v) const {
-  now_->stepper->state(covered(t), q, v);
-  move_back(t, q, v);
+  motions_.stepper().state(covered(t), q, v);
+  space_.moment().move_back(t, motions_.stepper().step_start().t, q, v);
 }
 
 /// Of the multipliers those of the system's own constraints, with what is given of them.
 Sample HybridMotion::adjusted(Sample sample) const {
-  const std::size_t own = equations_.system->constraints.size();
-  if (now_->given.is_preload && sample.multipliers.size() >= own)
+  const std::size_t own = problem_.equations.system->constraints.size();
+  if (motions_.now().given.is_preload && sample.multipliers.size() >= own)
     for (std::size_t k = 0, made = sample.multipliers.size() - own; k < own; ++k)
-      sample.multipliers[k] += now_->given.preload(made + k, sample.t);
+      sample.multipliers[k] += motions_.now().given.preload(made + k, sample.t);
   sample.multipliers.resize(own);
-  for (std::size_t k = 0; k < sample.integrals.size(); ++k) sample.integrals[k] += carried_[k];
+  for (std::size_t k = 0; k < sample.integrals.size(); ++k) sample.integrals[k] += carried_.integrals[k];
   return sample;
 }
 
 Sample HybridMotion::sample(double t) const {
-  Sample out = adjusted(now_->stepper->sample(covered(t)));
-  move_back(t, out.q, out.v);
+  Sample out = adjusted(motions_.stepper().sample(covered(t)));
+  space_.moment().move_back(t, motions_.stepper().step_start().t, out.q, out.v);
   out.t = t;
   return out;
 }
+
 const Sample& HybridMotion::step_start() const {
-  if (!step_start_) step_start_ = adjusted(now_->stepper->step_start());
+  if (!step_start_) step_start_ = adjusted(motions_.stepper().step_start());
   return *step_start_;
 }
 
@@ -172,21 +147,20 @@ Step HybridMotion::step(double bound) {
   if (pending_ && late_by_ > 0) return wait(bound);
   while (pending_) {
     if (auto failed = settle(bound)) return std::move(*failed);
-    if (record_.stopped_by) return stopped_here();
+    if (journal_.record().stopped_by) return stopped_here();
   }
   if (sets_end_ && time() == sets_end_->t) return ended(StepEnding::Unending, sets_without_end());
-  const double end = now_->given.end;
+  const double end = motions_.now().given.end;
   const double until = sets_end_ ? sets_end_->t : bound;
-  Step out = now_->stepper->step(forwards_ ? std::min({until, end, end_of_slips()}) : until);
+  Step out = motions_.stepper().step(forwards_ ? std::min({until, end, slips_.latest_end(motions_.now())}) : until);
   if (out.end != out.begin) same_time_ = 0;
   longest_step_ = std::max(longest_step_, std::abs(out.end - out.begin));
-  if (!just_moved_on_) gap_begin_ = std::numeric_limits<double>::quiet_NaN();
-  just_moved_on_ = false;
+  space_.moment().end_step();
   if (out.ending != StepEnding::None) return out;
   note_step();
   if (const auto contact =
           violated(std::abs(out.end - out.begin) + std::numeric_limits<double>::epsilon() * std::abs(out.end))) {
-    const std::string label = system_.contact_label(*contact);
+    const std::string label = problem_.system.contact_label(*contact);
     if (!std::isfinite(here_.values().gap[*contact]))
       return ended(StepEnding::Overflow, fmt::format("The gap of the contact {} has no value here.", label));
     return ended(
@@ -195,95 +169,74 @@ Step HybridMotion::step(double bound) {
                     bounces_[*contact].last.empty() ? "" : ": bounces have become too small to be told apart"));
   }
   if (!out.events.empty()) classify(out);
-  if (auto unending = too_many(bound)) return std::move(*unending);
+  if (auto why = journal_.too_many(time(), bound)) return ended(StepEnding::Unending, std::move(*why));
   if (sets_end_ && out.end == sets_end_->t && !pending_ && !out.event)
     return ended(StepEnding::Unending, sets_without_end());
   if (pending_) meet_together(bound);
-  if (meets_late_ && pending_) late_by_ = std::max(hidden_by_rounding(bound), pending_->hidden_sets);
-  if (!pending_ && (out.end >= end || outgrows_stops())) pending_ = std::make_unique<Pending>();
+  if (problem_.meets_late && pending_) late_by_ = std::max(hidden_by_rounding(bound), pending_->hidden_sets);
+  if (!pending_ && (out.end >= end || slips_.outgrow_stops(motions_.now()))) pending_ = std::make_unique<Met>();
   // A force that jumps may let a contact or a friction go, though none of their conditions has a root.
   if (!pending_ && ((!out.switches.empty() && !goes_on(bound)) || pulls())) {
     take_state();
-    pending_ = std::make_unique<Pending>();
+    pending_ = std::make_unique<Met>();
   }
   return out;
 }
 
 /// Whether the motion begins with an impact.
 bool HybridMotion::hits_at_start() const {
-  return !record_.happenings.empty() && record_.happenings.front().kind == Happening::Kind::Impact &&
-         record_.happenings.front().t == time();
-}
-
-void HybridMotion::remark(const std::string& sentence) {
-  constexpr std::size_t most = 6;
-  if (std::find(record_.remarks.begin(), record_.remarks.end(), sentence) != record_.remarks.end()) return;
-  if (record_.remarks.size() < most)
-    record_.remarks.push_back(sentence);
-  else if (++left_out_remarks_; record_.remarks.size() == most)
-    record_.remarks.push_back({});
-  if (left_out_remarks_ > 0) record_.remarks.back() = fmt::format("and {} more of the like.", left_out_remarks_);
+  return !journal_.record().happenings.empty() &&
+         journal_.record().happenings.front().kind == Happening::Kind::Impact &&
+         journal_.record().happenings.front().t == time();
 }
 
 void HybridMotion::finish() {
-  if (now_) {  // an end of bounces that is told may lie beyond the end of the run
-    const double end = time();
-    std::erase_if(record_.happenings, [&](const Happening& h) { return forwards_ ? h.t > end : h.t < end; });
-  }
-  if (record_.stopped_by && pending_)
+  if (motions_.has_begun()) journal_.end_at(time(), forwards_);
+  if (journal_.record().stopped_by && pending_)
     for (const ModelEvent* event : pending_->sets)
-      remark(
+      journal_.remark(
           fmt::format("The event {} sets the state as the run ends: the last state is the one before.", event->name));
-  if (system_.contacts.empty() || !started_) return;
+  if (problem_.system.contacts.empty() || !started_) return;
   take_state();
   const ContactValues& values = here_.values();
   for (std::size_t i = 0; i < values.gap.size(); ++i) {
     const bool touches = std::abs(values.gap[i]) <= rest_unit * sizes_.widest(i);
-    if (now_->mode.closed[i] || !touches || !(values.rate[i] < -sizes_.rest_speed(i, values))) continue;
-    remark(fmt::format("The contact {} is hit as the run ends: the last state is the one before the impact.",
-                       system_.contact_label(i)));
+    if (motions_.now().mode.closed[i] || !touches || !(values.rate[i] < -sizes_.rest_speed(i, values))) continue;
+    journal_.remark(fmt::format("The contact {} is hit as the run ends: the last state is the one before the impact.",
+                                problem_.system.contact_label(i)));
   }
-  if (cone_residual_ >= 0)
-    remark(fmt::format("Forces of friction in space: in their cones to {:.1e} of the largest.", cone_residual_));
+  if (space_.cone_residual() >= 0)
+    journal_.remark(
+        fmt::format("Forces of friction in space: in their cones to {:.1e} of the largest.", space_.cone_residual()));
 }
 
 /// Events that hold as the motion begins are told, but do not act: it leaves them.
 void HybridMotion::tell_events_at_start(double bound) {
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
-  const TaylorStepper::Outlook outlook = now_->stepper->outlook(bound);
+  const Outlook outlook = motions_.stepper().outlook(bound);
   if (outlook.ending != StepEnding::None) return;
-  for (std::size_t k = 0; k < now_->watches().size(); ++k) {
-    if (now_->watches()[k].what != Watch::What::Event) continue;
-    const ModelEvent& event = model_.experiment.events[now_->watches()[k].index];
+  for (std::size_t k = 0; k < motions_.now().watches().size(); ++k) {
+    if (motions_.now().watches()[k].what != Watch::What::Event) continue;
+    const ModelEvent& event = problem_.model.experiment.events[motions_.now().watches()[k].index];
     if (!(std::abs(outlook.values[k]) <= rounding * outlook.reach[k]) || outlook.sides[k] == 0) continue;
     if (event.direction != 0 && outlook.sides[k] != event.direction * (forwards_ ? 1 : -1)) continue;
-    add(Happening::Kind::Event, event.name);
-    record_.happenings.back().mode = record_.first_mode;
+    journal_.add(Happening::Kind::Event, event.name).mode = journal_.record().first_mode;
     if (event.action != ModelEvent::Action::Record)
-      remark(fmt::format("The motion begins at the event `{}`, which acts when it is met again.", event.name));
+      journal_.remark(fmt::format("The motion begins at the event `{}`, which acts when it is met again.", event.name));
   }
 }
 
-void HybridMotion::add(Happening::Kind kind, const std::string& name, double impulse, double speed,
-                       const std::string& text) {
-  const bool keeps_state = record_.happenings.size() * here_.q.size() < most_numbers;
-  record_.happenings.push_back({kind, here_.t, 0, name, impulse, speed, text, {}, {}, {}});
-  if (!keeps_state) return;
-  record_.happenings.back().q = here_.q;
-  record_.happenings.back().v = here_.v;
-}
-
 void HybridMotion::take_state() {
-  const TaylorStepper& s = *now_->stepper;
+  const TaylorStepper& s = motions_.stepper();
   here_.t = s.time();
   here_.t_rest = s.time_rest();
   here_.q.assign(s.q().begin(), s.q().end());
   here_.v.assign(s.v().begin(), s.v().end());
-  if (options_.moved_instants == 0) return;
+  if (problem_.options.moved_instants == 0) return;
   // The next mode begins with the state to its last digit: a companion has another one.
   constexpr double rounding = std::numeric_limits<double>::epsilon();
   for (std::vector<double>* const part : {&here_.q, &here_.v})
-    for (double& x : *part) x *= 1 + rounding * share_of_rounding(options_.moved_instants, x);
+    for (double& x : *part) x *= 1 + rounding * share_of_rounding(problem_.options.moved_instants, x);
 }
 
 /// Where a contact opens since λ falls through 0 its gap begins as the third power of time: what rounding makes of its
@@ -295,26 +248,26 @@ bool HybridMotion::is_just_released(std::size_t contact) {
   const ContactValues& values = here_.values();
   if (!(std::abs(values.rate[contact]) <= slow * sizes_.fastest(contact))) return false;
   // Another change of contacts may have turned it back since.
-  return !presses_again(contact, now_->stepper->sample(now_->stepper->time()).a, values, located_force);
+  return !presses_again(contact, motions_.stepper().sample(motions_.stepper().time()).a, located_force);
 }
 
 /// Whether the conditions of the mode hold as the next step begins.
 bool HybridMotion::goes_on(double bound) {
-  const TaylorStepper::Outlook outlook = now_->stepper->outlook(bound);
+  const Outlook outlook = motions_.stepper().outlook(bound);
   if (outlook.ending != StepEnding::None) return true;  // the next step says why it cannot be made
-  for (std::size_t k = 0; k < now_->watches().size(); ++k)
-    if (now_->watches()[k].keeps_sign() && outlook.sides[k] < 0) return false;
+  for (std::size_t k = 0; k < motions_.now().watches().size(); ++k)
+    if (motions_.now().watches()[k].keeps_sign() && outlook.sides[k] < 0) return false;
   return true;
 }
 
 /// Whether a closed contact pulled as the last step began.
 bool HybridMotion::pulls() const {
   constexpr double digits = 1e-9;
-  const std::vector<double>& multipliers = now_->stepper->step_start().multipliers;
-  const std::size_t first = equations_.system->constraints.size();
-  for (std::size_t i = 0, k = 0; i < now_->mode.closed.size(); ++i) {
-    if (!now_->mode.closed[i]) continue;
-    const double force = multipliers[first + k] + now_->given.preload(k, now_->stepper->step_start().t);
+  const std::vector<double>& multipliers = motions_.stepper().step_start().multipliers;
+  const std::size_t first = problem_.equations.system->constraints.size();
+  for (std::size_t i = 0, k = 0; i < motions_.now().mode.closed.size(); ++i) {
+    if (!motions_.now().mode.closed[i]) continue;
+    const double force = multipliers[first + k] + motions_.now().given.preload(k, motions_.stepper().step_start().t);
     if (force < -digits * std::max(sizes_.hardest(i), 1e-280)) return true;
     ++k;
   }
@@ -324,21 +277,20 @@ bool HybridMotion::pulls() const {
 /// An event of the last step, with the state that the motion has there.
 void HybridMotion::record_event(const std::string& name, double at, double hidden) {
   const double t = forwards_ ? std::min(at, here_.t) : std::max(at, here_.t);  // rounding may lead beyond the step
-  add(Happening::Kind::Event, name);
-  Happening& told = record_.happenings.back();
+  Happening& told = journal_.add(Happening::Kind::Event, name);
   told.error = std::max(told.error, hidden);
   if (t == here_.t) return;
   told.t = t;
   if (!told.q.empty()) state(t, told.q, told.v);
-  told.mode = mode_text(system_, now_->mode);
+  told.mode = mode_text(problem_.system, motions_.now().mode);
 }
 
 /// An event whose function comes to 0 this way: 1 rising along the run, −1 falling, 0 touching.
-void HybridMotion::meet_event(const ModelEvent& event, const EventRoot& root, Pending& pending) {
+void HybridMotion::meet_event(const ModelEvent& event, const EventRoot& root, Met& pending) {
   const int way = root.direction;
   if (event.direction != 0 && way != event.direction * (forwards_ ? 1 : -1)) return;
   record_event(event.name, root.time, root.hidden);
-  if (event.action == ModelEvent::Action::Stop && !record_.stopped_by) record_.stopped_by = event.name;
+  if (event.action == ModelEvent::Action::Stop) journal_.stop_by(event.name);
   if (event.action != ModelEvent::Action::Set) return;
   pending.sets.push_back(&event), pending.ways.push_back(way);
   pending.hidden_sets = std::max(pending.hidden_sets, root.hidden);
@@ -348,7 +300,7 @@ void HybridMotion::meet_event(const ModelEvent& event, const EventRoot& root, Pe
 void HybridMotion::classify(Step& step) {
   take_state();
   step.event.reset();
-  auto pending = std::make_unique<Pending>();
+  auto pending = std::make_unique<Met>();
   // At one instant in the order of the model, whether they end the step or not.
   constexpr double one_instant = 4 * std::numeric_limits<double>::epsilon();
   const auto is_now = [&](const EventRoot& root) {
@@ -357,7 +309,7 @@ void HybridMotion::classify(Step& step) {
   const auto at_end = std::stable_partition(step.events.begin(), step.events.end(), std::not_fn(is_now));
   std::stable_sort(at_end, step.events.end(), [](const EventRoot& a, const EventRoot& b) { return a.event < b.event; });
   for (const EventRoot& root : step.events) {
-    const Watch& watch = now_->watches()[root.event];
+    const Watch& watch = motions_.now().watches()[root.event];
     if (watch.what == Watch::What::Until) {
       step.event = 0;
     } else if (watch.what == Watch::What::Event) {
@@ -365,8 +317,8 @@ void HybridMotion::classify(Step& step) {
         if (is_now(root)) pending->at_zero.push_back(watch.index);
         event_sides_[watch.index] = is_now(root) ? std::int8_t{0} : static_cast<std::int8_t>(root.direction);
       }
-      meet_event(model_.experiment.events[watch.index], root, *pending);
-      if (record_.stopped_by) step.event = 0;
+      meet_event(problem_.model.experiment.events[watch.index], root, *pending);
+      if (journal_.record().stopped_by) step.event = 0;
     } else if (root.direction <= 0) {
       if (watch.what == Watch::What::Gap) {
         if (is_just_released(watch.index)) continue;
@@ -385,14 +337,14 @@ void HybridMotion::classify(Step& step) {
 /// all lies at zero still, gaps are measured by what accelerations make of them in the step.
 std::optional<std::size_t> HybridMotion::violated(double step) {
   constexpr double digits = 1e-10;
-  const TaylorStepper& s = *now_->stepper;
-  if (system_.contacts.empty()) return std::nullopt;
+  const TaylorStepper& s = motions_.stepper();
+  if (problem_.system.contacts.empty()) return std::nullopt;
   const ContactValues& values = here_.values_at(s.time(), s.q(), s.v());
   sizes_.note_gaps(values);
   for (std::size_t i = 0; i < values.gap.size(); ++i) {
     double way = 0;
     for (const auto& [k, g] : values.normal[i]) way += std::abs(g) * sizes_.acceleration(k) * step * step;
-    if (!now_->mode.closed[i] && !(values.gap[i] >= -digits * (sizes_.gap(i, values) + way))) return i;
+    if (!motions_.now().mode.closed[i] && !(values.gap[i] >= -digits * (sizes_.gap(i, values) + way))) return i;
   }
   return std::nullopt;
 }
@@ -410,52 +362,11 @@ std::vector<std::size_t> HybridMotion::touching(const ContactValues& values) con
     constexpr double next_to_zero = 1e-3 * rest_unit;
     const bool lies = !(values.rate[i] > sizes_.rest_speed(i, values)) &&
                       std::abs(values.gap[i]) <= next_to_zero * sizes_.gap(i, values);
-    if (hit || through || lies || now_->mode.closed[i] || std::abs(values.gap[i]) <= rest_unit * sizes_.widest(i))
+    if (hit || through || lies || motions_.now().mode.closed[i] ||
+        std::abs(values.gap[i]) <= rest_unit * sizes_.widest(i))
       out.push_back(i);
   }
   return out;
-}
-
-namespace {
-
-/// At a point, with the parameters of the run; the workspace is made at the first call.
-std::vector<double> values_at(const FunctionKernel& kernel, std::optional<FunctionWorkspace>& work,
-                              std::span<const double> parameters, double t, std::span<const double> q,
-                              std::span<const double> v) {
-  if (!work) {
-    work.emplace(kernel);
-    work->set_parameters(parameters);
-  }
-  std::vector<double> point(q.begin(), q.end()), out(kernel.outputs());
-  point.insert(point.end(), v.begin(), v.end());
-  point.push_back(t);
-  work->evaluate(point, out);
-  return out;
-}
-
-}  // namespace
-
-/// A constraint that is off by more than these digits of the sizes that the motion has had.
-std::optional<std::size_t> HybridMotion::violated_constraint(const MotionState& state, double digits) {
-  if (!system_.constrained()) return std::nullopt;
-  const std::vector<double> found =
-      values_at(library_->constraints(), constraints_, parameters_, state.t, state.q, state.v);
-  const std::size_t n = state.q.size(), m = system_.constraints.size();
-  const double *const a = found.data(), *const values = a + m * n, *const rates = values + m;
-  for (std::size_t k = 0; k < m; ++k) {
-    double place = 0, speed = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      place += std::abs(a[k * n + i]) * std::max(sizes_.place(i), std::abs(state.q[i]));
-      speed += std::abs(a[k * n + i]) * std::max(sizes_.speed(i), std::abs(state.v[i]));
-    }
-    const bool position = system_.constraints[k].level == Constraint::Level::Position;
-    if ((position && std::abs(values[k]) > digits * place) || std::abs(rates[k]) > digits * speed) return k;
-  }
-  return std::nullopt;
-}
-
-std::vector<double> HybridMotion::energy_and_sets_at(double t, std::span<const double> q, std::span<const double> v) {
-  return values_at(library_->sets(), sets_, parameters_, t, q, v);
 }
 
 /// False, and why, where a contact that never slides has a slip: the constraint that it is would take it away, with the
@@ -464,10 +375,10 @@ bool HybridMotion::keeps_sticking(const std::vector<std::size_t>& touching, std:
   constexpr double digits = 1e-9;
   const ContactValues& values = here_.values();
   for (const std::size_t i : touching) {
-    if (!system_.contacts[i].friction.sticking || values.rate[i] > sizes_.rest_speed(i, values)) continue;
-    if (slip_speed_at(i, values) <= digits * sizes_.fastest_slip(i)) continue;
-    const std::string label = system_.contact_label(i);
-    if (pending_->begins && record_.happenings.empty())
+    if (!problem_.system.contacts[i].friction.sticking || values.rate[i] > sizes_.rest_speed(i, values)) continue;
+    if (slip_speed(i, values) <= digits * sizes_.fastest_slip(i)) continue;
+    const std::string label = problem_.system.contact_label(i);
+    if (pending_->begins && journal_.record().happenings.empty())
       reason = fmt::format("The start slides on the contact {}, which is `sticking` and never slides.", label);
     else if (!pending_->sets.empty())
       reason = fmt::format("The event `{}` sets a state that slides on the contact {}, which never slides.",
@@ -483,7 +394,7 @@ bool HybridMotion::keeps_sticking(const std::vector<std::size_t>& touching, std:
 
 /// A motion that cannot go on stays where it is, with all that was counted so far.
 Step HybridMotion::stopped(StepEnding ending, std::string reason) {
-  now_->stepper->start(here_.t, here_.q, here_.v, here_.t_rest);
+  motions_.stepper().start(here_.t, here_.q, here_.v, here_.t_rest);
   return ended(ending, std::move(reason));
 }
 
@@ -497,39 +408,39 @@ std::optional<Step> HybridMotion::settle(double bound) {
                  sets_end_
                      ? sets_without_end()
                      : fmt::format("{} changes follow each other at the same time without an end.", most_at_once));
-  if (auto unending = too_many(bound)) return unending;
+  if (auto why = journal_.too_many(time(), bound)) return ended(StepEnding::Unending, std::move(*why));
   if (!pending_->begins) leave_mode();
   if (derivative_ && !pending_->begins) note_before(bound);
   if (!pending_->sets.empty() && !carry_out_sets(reason)) return stopped(StepEnding::SingularConstraints, reason);
-  const std::size_t first = record_.happenings.size();
+  const std::size_t first = journal_.size();
   const ContactValues& values = here_.values();
   if (pending_->begins) sizes_.note_gaps_elsewhere(values);
   if (pending_->begins)
     for (std::size_t i = 0; i < values.gap.size(); ++i)
       if (values.gap[i] < -rest_unit * std::max(values.gap_scale[i], sizes_.widest(i)) || !std::isfinite(values.gap[i]))
         return stopped(StepEnding::Paradox,
-                       fmt::format("The start violates the contact {}.", system_.contact_label(i)));
+                       fmt::format("The start violates the contact {}.", problem_.system.contact_label(i)));
   sizes_.note(here_, values);
-  knows_compliance_ = false;
-  begins_to_slide_.assign(system_.contacts.size(), false);
-  note_beginnings();
+  sizes_.set_knows_compliances(false);
+  slips_.begin_instant(motions_.now(), *pending_);
   std::vector<std::size_t> touch = touching(here_.values());
   if (!hit(touch, reason)) return stopped(StepEnding::Paradox, reason);
   if (!pending_->begins) close_lowest_flights(touch, bound);
   if (!keeps_sticking(touch, reason)) return stopped(StepEnding::Paradox, reason);
-  come_to_rest(touch, bound);
+  space_.come_to_rest(touch, bound, forwards_);
   // Cones may have a solution that slides where others hold the rest.
-  const bool rests = in_space_ && undetermined_rest(choices(touch, here_.values()), touch, bound);
-  if (!rests && !choose_slips(touch, bound, false, reason)) return stopped(StepEnding::Paradox, reason);
-  bool gave_way = !now_->given.is_preload || !in_space_;  // a rest that was not determined
+  const bool rests =
+      problem_.in_space && undetermined_rest(choices_.at(touch, here_.values(), *pending_), touch, bound);
+  if (!rests && !space_.choose_slips(touch, *pending_, bound, false)) return stopped(StepEnding::Paradox, no_cones);
+  bool gave_way = !motions_.now().given.is_preload || !problem_.in_space;  // a rest that was not determined
   // Constraints of the mode to come may move the next contact through zero: that is hit at the same instant.
   for (std::size_t turn = 0; !choose_mode(touch, bound, reason); ++turn) {
     if (!met_ && !gave_way) {
       gave_way = true;
-      if (!choose_slips(touch, bound, true, reason)) return stopped(StepEnding::Paradox, reason);
+      if (!space_.choose_slips(touch, *pending_, bound, true)) return stopped(StepEnding::Paradox, no_cones);
       continue;
     }
-    if (!met_ || turn >= system_.contacts.size()) return stopped(StepEnding::Paradox, reason);
+    if (!met_ || turn >= problem_.system.contacts.size()) return stopped(StepEnding::Paradox, reason);
     touch.push_back(*met_);
     if (!hit(touch, reason)) return stopped(StepEnding::Paradox, reason);
   }
@@ -539,14 +450,14 @@ std::optional<Step> HybridMotion::settle(double bound) {
   note_rest_that_begins();
   if (pending_->begins) tell_events_at_start(bound);
   if (settled_) note_after(bound);
-  note_hidden(first);
+  journal_.note_errors(first, pending_->hidden);
   started_ = true;
   return meet_unseen(bound);
 }
 
 /// What a step shows of the sizes of the motion.
 void HybridMotion::note_step() {
-  const TaylorStepper& s = *now_->stepper;
+  const TaylorStepper& s = motions_.stepper();
   take_state();
   const ContactValues& values = here_.values();
   sizes_.note(here_, values);
@@ -558,60 +469,45 @@ void HybridMotion::note_step() {
 
 void HybridMotion::note_holding_forces(const Sample& sample) {
   const std::span<const double> multipliers(sample.multipliers);
-  const std::size_t own = equations_.system->constraints.size();
-  if (sizes_.note_holding_forces(now_->mode, multipliers.subspan(own), here_)) sizes_.tell(*now_->stepper);
+  const std::size_t own = problem_.equations.system->constraints.size();
+  if (sizes_.note_holding_forces(motions_.now().mode, multipliers.subspan(own), here_)) sizes_.tell(motions_.stepper());
 }
 
 /// A first step may be as long as the rest that it begins: it has to know of the forces that balance in it.
 void HybridMotion::note_rest_that_begins() {
-  if (!sizes_.knows_holding_forces(now_->mode)) note_holding_forces(now_->stepper->sample(here_.t));
+  if (!sizes_.knows_holding_forces(motions_.now().mode)) note_holding_forces(motions_.stepper().sample(here_.t));
 }
 
 /// A limit of friction below zero is none: the force would drive what it is to brake.
 void HybridMotion::note_limits(const ContactValues& values) {
-  const std::size_t contacts = system_.contacts.size();
+  const std::size_t contacts = problem_.system.contacts.size();
   for (std::size_t i = 0; i < values.kinetic.size(); ++i)
     if (values.kinetic[i] < 0)
-      remark(i < contacts
-                 ? fmt::format("The coefficient of friction of the contact {} becomes negative: friction drives "
-                               "the motion there, which none does.",
-                               system_.contact_label(i))
-                 : fmt::format("The friction along {} has a limit or a coefficient that becomes negative: it "
-                               "drives the motion there, which no friction does.",
-                               system_.frictions[i - contacts].name));
+      journal_.remark(
+          i < contacts ? fmt::format("The coefficient of friction of the contact {} becomes negative: friction drives "
+                                     "the motion there, which none does.",
+                                     problem_.system.contact_label(i))
+                       : fmt::format("The friction along {} has a limit or a coefficient that becomes negative: it "
+                                     "drives the motion there, which no friction does.",
+                                     problem_.system.frictions[i - contacts].name));
 }
 
 /// Rounding of an acceleration a moves what rests by ε a h² in a step of length h. What that does to potentials, and
 /// the work of the forces that balance over it: twice the kinetic energy of a speed of √ε a h.
 double HybridMotion::rounding_of_energy() {
-  if (library_->sets().outputs() == 0) return 0;
+  if (problem_.library->sets().outputs() == 0) return 0;
   const std::vector<double> still(here_.v.size(), 0);
-  const double base = energy_and_sets_at(here_.t, here_.q, still)[0];
+  const double base = functions_.energy(here_.t, here_.q, still);
   double out = 0;
   for (std::size_t i = 0; i < here_.q.size(); ++i) {
     const double speed = sizes_.acceleration(i) * longest_step_;
     std::vector<double> q = here_.q, v = still;
     q[i] += rest_unit * speed * longest_step_;
     v[i] = std::sqrt(rest_unit) * speed;
-    out += std::abs(energy_and_sets_at(here_.t, q, still)[0] - base) +
-           2 * std::abs(energy_and_sets_at(here_.t, here_.q, v)[0] - base);
+    out += std::abs(functions_.energy(here_.t, q, still) - base) +
+           2 * std::abs(functions_.energy(here_.t, here_.q, v) - base);
   }
   return std::isfinite(out) ? out : 0;
-}
-
-void HybridMotion::note_compliance(const std::vector<std::size_t>& touching, const ContactValues& values) {
-  std::vector<SparseRow> rows;
-  for (const std::size_t i : touching) rows.push_back(values.normal[i]);
-  const Eigen::MatrixXd response = here_.response(rows);
-  for (std::size_t k = 0; k < touching.size(); ++k)
-    sizes_.note_compliance(touching[k], std::abs(dot(rows[k], response.col(at(k)))));
-}
-
-/// An impact has asked for the same: M does not depend on the velocities.
-void HybridMotion::note_compliance(const ImpactProblem& p) {
-  for (std::size_t k = 0; k < p.contacts.size(); ++k)
-    sizes_.note_compliance(p.contacts[k], std::abs(dot(p.normal[k], p.response.col(at(k)))));
-  knows_compliance_ = true;
 }
 
 }  // namespace maupertuis

@@ -1,12 +1,11 @@
 #pragma once
 #include "linear_algebra/accumulation.hpp"
 #include "simulation/contact/contact_forces.hpp"
-#include "simulation/contact/contact_functions.hpp"
 #include "simulation/contact/impact.hpp"
-#include "simulation/hybrid_state.hpp"
+#include "simulation/hybrid_journal.hpp"
+#include "simulation/hybrid_space.hpp"
 #include "simulation/method.hpp"
 #include "simulation/mode_library.hpp"
-#include "simulation/usual_sizes.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/contact_mode.hpp>
@@ -25,16 +24,6 @@
 namespace maupertuis {
 
 class ImpactDerivative;
-class IndependentRows;
-
-/// What a run through modes tells besides the motion.
-struct HybridRecord {
-  std::string first_mode;
-  std::vector<Happening> happenings;
-  EnergyBooks books;                      // friction and dampers: at the end of the run
-  std::vector<std::string> remarks;       // a sentence each, each once
-  std::optional<std::string> stopped_by;  // the event that stopped the run
-};
 
 /// A motion with contacts, friction and events: Taylor's steps in one mode after the other, impacts between them
 /// (docs/theory/contacts.md). Its steps end where something happens; the next one begins in the mode after it.
@@ -65,10 +54,10 @@ class HybridMotion final : public Method {
 
   /// What the end of the run leaves unsettled is told.
   void finish();
-  const HybridRecord& record() const { return record_; }
+  const HybridRecord& record() const { return journal_.record(); }
   /// Once the motion has ended: a million of them are not copied.
-  std::vector<Happening> take_happenings() { return std::move(record_.happenings); }
-  const std::shared_ptr<ModeLibrary>& library() const { return library_; }
+  std::vector<Happening> take_happenings() { return journal_.take_happenings(); }
+  const std::shared_ptr<ModeLibrary>& library() const { return problem_.library; }
   /// Whether the next step begins with an impact, or with what an event sets: the state is another one then.
   bool will_jump() const;
   /// Why there is no motion from the start; empty where there is one.
@@ -77,62 +66,53 @@ class HybridMotion final : public Method {
   /// For neighbours (motion_through_modes.hpp): from here on each instant is kept.
   void keep_instants();
   const ModeInstant* instant() const { return instant_ ? &*instant_ : nullptr; }
-  const ContactMode& mode() const;
-  bool begins_to_slide() const;  // in space, at its beginning
+  const ContactMode& mode() const { return motions_.now().mode; }
+  bool begins_to_slide() const { return !motions_.now().given.begins.empty(); }  // in space, at its beginning
   /// In the context of the model; they stay as long as this.
-  const EquationsOfMotion& equations_in(const ContactMode& mode);
+  const EquationsOfMotion& equations_in(const ContactMode& mode) { return motions_.equations_in(mode); }
   /// [n] The largest that q'' of the dimension of each coordinate has been, or that forces which balance would make it.
   std::vector<double> largest_accelerations() const { return sizes_.accelerations(); }
   /// What rounding of forces that balance makes of the energy in a step; 0 where it is not known.
   double rounding_of_energy();
   /// A companion, whose difference tells the error, meets roots that rounding hides later by what it may hide of them:
   /// the roots of conditions that end a rest or a contact so slowly are found at the same place by all.
-  void meet_hidden_roots_late() { meets_late_ = true; }
+  void meet_hidden_roots_late() { problem_.meets_late = true; }
   /// Sizes that q and q' have elsewhere in the motion [n]: of later starts, what is much smaller is rounding.
   void set_usual_sizes(std::span<const double> q, std::span<const double> v) { sizes_.set_elsewhere(q, v); }
 
  private:
   using Watch = ModeWatch;
-  struct ModeMotion;
-  struct Pending;
-  struct Choice;
-  struct Cones;
+  using Choice = hybrid::Choice;
+  using Cones = hybrid::Cones;
+  using Given = hybrid::Given;
+  using Met = hybrid::Met;
+  using ModeMotion = hybrid::ModeMotion;
+  using Outlook = hybrid::Outlook;
   struct Found;
-  struct Given;
   struct Trial;
   struct Settled;
   enum class Leniency { None, Forces, Gaps };  // what may be violated by rounding
 
-  ModeMotion& motion_in(const ContactMode& mode);
-  ModeMotion& motion_in(const ContactMode& mode, const Given& given);
-  void forget_oldest();
-  void treat_events(ModeMotion& motion) const;
   void leave_mode();
   Sample adjusted(Sample sample) const;
   double covered(double t) const;
-  void move_back(double t, std::span<double> q, std::span<double> v) const;
 
   // What happens at an instant.
   void classify(Step& step);
   void tell_events_at_start(double bound);
-  void forget(const ContactMode& mode);
   void record_event(const std::string& name, double t, double hidden = 0);
   bool is_just_released(std::size_t contact);
   double hidden_by_rounding(double bound);
   double hides_gap(std::size_t contact, double length);
-  void note_hidden(std::size_t first);
   void meet_together(double bound);
   Step wait(double bound);
-  double opening_rate(std::size_t contact, std::span<const double> accelerations, const ContactValues& values);
-  bool presses_again(std::size_t contact, std::span<const double> accelerations, const ContactValues& values,
-                     double digits);
+  bool presses_again(std::size_t contact, std::span<const double> accelerations, double digits);
   std::optional<Step> settle(double bound);
-  std::optional<Step> too_many(double bound);
   bool carry_out_sets(std::string& reason);
   const ModelEvent* turned_unseen(double bound);
   void note_sets(double bound);
   std::string sets_without_end() const;
-  void meet_event(const ModelEvent& event, const EventRoot& root, Pending& pending);
+  void meet_event(const ModelEvent& event, const EventRoot& root, Met& pending);
   std::optional<Step> meet_unseen(double bound);
   std::string too_short_to_tell(const ModelEvent& event) const;
   static bool is_hidden(std::int8_t before, const TaylorStepper::Outlook& outlook, std::size_t watch);
@@ -160,7 +140,6 @@ class HybridMotion final : public Method {
   bool may_hold(const Choice& choice);
   bool gives_way_unforced(const std::vector<Choice>& list, const Found& found, const std::vector<std::size_t>& touching,
                           double bound);
-  bool comes_to_limit(std::size_t friction) const;
   std::vector<std::pair<std::size_t, std::size_t>> exchangeable(const std::vector<Choice>& list,
                                                                 const ContactMode& mode);
   void note_choice(const std::vector<Choice>& list, Found& found, const std::vector<std::size_t>& touching,
@@ -186,47 +165,11 @@ class HybridMotion final : public Method {
   std::optional<Given> preload_through(const ContactMode& mode, double ahead, int power, double bound);
   bool is_held(std::size_t contact, const ContactMode& mode, const ContactValues& values);
   bool has_dependent_rows(const ContactMode& mode, const ContactValues& values);
-  std::vector<Choice> choices(const std::vector<std::size_t>& touching, const ContactValues& values) const;
-  ContactMode mode_without_contacts(const std::vector<Choice>& list) const;
-  bool rubs(std::size_t contact, const ContactValues& values) const;
-  Choice choice_of_contact(std::size_t contact, const ContactValues& values) const;
   std::optional<ContactForceProblem> force_problem(const std::vector<Choice>& list, const ContactValues& values,
                                                    double bound);
   // Friction in space.
-  double slip_speed_at(std::size_t contact, const ContactValues& values) const;
-  bool slides_in_space(std::size_t contact, const ContactValues& values) const;
-  int order_beside_stops() const;
-  double stop_slip(std::size_t contact);
-  bool outgrows_stops();
-  double end_of_slips();
-  SparseRow sliding_force(std::size_t contact, const ContactValues& values) const;
-  struct Pressed {
-    std::size_t contact;
-    std::optional<SparseRow> sliding;  // what a unit of its normal force does with its friction, where it slides
-  };
-  std::vector<Pressed> pressed_of(const std::vector<std::size_t>& touching, const ContactValues& values) const;
-  std::vector<Pressed> pressed_in(const ContactMode& mode, const ContactValues& values) const;
-  Cones cones_of(const std::vector<Pressed>& pressed, const ContactValues& values,
-                 std::span<const double> accelerations);
-  Cones cones_of(const std::vector<Pressed>& pressed, const std::vector<std::size_t>& holding, const ContactMode& base,
-                 const ContactValues& values, std::span<const double> accelerations);
-  std::vector<double> stops();
-  std::vector<double> energy_and_sets_at(double t, std::span<const double> q, std::span<const double> v);
-  void move_on(double by, const Eigen::VectorXd& accelerations);
-  void book_rubbing(double gained);
-  std::optional<TaylorStepper::Outlook> outlook_without_contacts(const ContactValues& values, double bound);
-  std::optional<TaylorStepper::Outlook> outlook_in(const ContactMode& mode, double bound);
-  void take_out_slips(const std::vector<std::size_t>& stopping, const std::vector<std::size_t>& touching);
-  bool all_stop(const std::vector<std::size_t>& slow, const std::vector<std::size_t>& touching,
-                const ContactValues& values, std::span<const double> accelerations, double within);
-  void note_beginnings();
-  void come_to_rest(const std::vector<std::size_t>& touching, double bound);
-  bool choose_slips(const std::vector<std::size_t>& touching, double bound, bool gives_way, std::string& reason);
-  std::optional<Given> given_in(const ContactMode& mode, double bound);
   void close_lowest_flights(const std::vector<std::size_t>& touching, double bound);
   void order_by_forces(std::vector<Choice>& list, const ContactValues& values, double bound);
-  ContactMode mode_of(const std::vector<Choice>& list, const std::vector<std::size_t>& taken) const;
-  bool interrupted() const;
   bool fits(Found& found, const std::vector<std::size_t>& touching, double bound, Leniency leniency);
   bool changes_no_force(const ContactMode& mode, const ContactValues& values) const;
   bool accelerations_go_on(std::span<const double> accelerations) const;
@@ -235,26 +178,13 @@ class HybridMotion final : public Method {
   void note_limits(const ContactValues& values);
   void note_holding_forces(const Sample& sample);
   void note_rest_that_begins();
-  void note_compliance(const std::vector<std::size_t>& touching, const ContactValues& values);
-  void note_compliance(const ImpactProblem& problem);
   std::optional<std::size_t> violated(double step);
   bool may_be_several(const ContactMode& mode, const ContactValues& values);
   std::optional<std::string> weaker_at_rest(const std::vector<Choice>& list, const ContactValues& values) const;
   std::string why_none_fits(const std::vector<Choice>& list, const std::vector<std::size_t>& touching,
                             const ContactValues& values, bool were_many);
   bool may_be_painleve(const std::vector<Choice>& list, const ContactValues& values);
-  std::string label_of(std::size_t friction) const;
-  std::vector<std::string> labels_of(std::vector<std::size_t> places) const;
   void note_indeterminate(const std::vector<Choice>& list, const ContactMode& mode, const ContactValues& values);
-  void note_end_of_rest(std::size_t first);
-  std::vector<bool> idle_in(const ContactMode& before, const ContactMode& mode, std::span<const double> accelerations);
-  IndependentRows rows_that_carry(const ContactMode& mode, const ContactValues& values);
-  void record_contact(std::size_t i, const ContactMode& before, const ContactMode& after,
-                      const std::vector<bool>& idle);
-  void record_changes(const ContactMode& before, const ContactMode& after, std::span<const double> accelerations);
-  void add(Happening::Kind kind, const std::string& name, double impulse = 0, double speed = 0,
-           const std::string& remark = {});
-  void remark(const std::string& sentence);
   // What neighbours need.
   void note_before(double bound);
   void note_impact(const ImpactProblem& problem, const ImpactResult& result, const Eigen::VectorXd& v,
@@ -278,42 +208,33 @@ class HybridMotion final : public Method {
   bool goes_on(double bound);
   bool hits_at_start() const;
   void note_step();
-  std::optional<std::size_t> violated_constraint(const MotionState& state, double digits);
 
-  std::shared_ptr<ModeLibrary> library_;
-  const Model& model_;
-  const EquationsOfMotion& equations_;
-  const MechanicalSystem& system_;  // with reactions in normal forces put in
-  std::vector<double> parameters_;
-  TaylorOptions options_;
-  HybridState here_;
-  UsualSizes sizes_;
-  std::optional<FunctionWorkspace> sets_, constraints_;
-  std::map<std::string, std::unique_ptr<ModeMotion>> modes_;
-  std::map<std::string, std::unique_ptr<EquationsOfMotion>> equations_of_modes_;  // that neighbours have asked for
-  ModeMotion* now_ = nullptr;
-  std::size_t asked_for_ = 0;  // modes so far
-  std::unique_ptr<Pending> pending_;
+  hybrid::Problem problem_;
+  hybrid::State here_;
+  hybrid::UsualSizes sizes_;
+  hybrid::Journal journal_;
+  hybrid::StateFunctions functions_;
+  hybrid::Carried carried_;
+  hybrid::SpaceSlips slips_;
+  hybrid::ModeMotions motions_;
+  hybrid::Choices choices_;
+  hybrid::ContactCones cones_;
+  hybrid::SpaceFriction space_;
+  std::unique_ptr<Met> pending_;
   std::optional<Step> failed_;  // the start allows no motion
 
   double longest_step_ = 0;
   bool forwards_ = true, started_ = false;
-  bool meets_late_ = false;
   double late_by_ = 0;                        // until the pending instant is settled
-  double carried_[4] = {0, 0, 0, 0};          // integrals of the modes before
   mutable std::optional<Sample> step_start_;  // of the last step, where it was asked for
-  std::size_t steps_before_ = 0, rejected_before_ = 0, switches_before_ = 0, same_time_ = 0;
-  double residual_before_ = 0;
-  std::vector<double> counted_at_;  // times of every ten thousandth happening
-  bool told_choice_ = false;        // that static friction leaves one
-  bool knows_compliance_ = false;   // of all that touch at this instant
+  std::size_t same_time_ = 0;
+  bool told_choice_ = false;  // that static friction leaves one
   struct Bounces {
     std::vector<std::pair<double, double>> last;  // (t, speed) of the last impacts
     double fastest = 0;                           // impact of the series that goes on, not rounding of other speeds
     double before = 0;                            // the speed of the impact before
   };
   std::vector<Bounces> bounces_;                       // [contacts]
-  std::vector<bool> idle_;                             // [contacts] open in the mode, but others keep them closed
   std::vector<bool> released_;                         // [contacts] λ is 0 to rounding at this instant, and falls
   std::vector<double> released_at_;                    // [contacts] when that was last; not a number before
   std::vector<std::size_t> cycle_;                     // contacts that bounce together towards an end of their bounces
@@ -322,23 +243,11 @@ class HybridMotion final : public Method {
   std::vector<bool> of_positions_;                     // [events]
   std::vector<std::int8_t>
       event_sides_;  // [events] of positions: the side on which the motion is; 0: at zero, or not known
-  std::optional<std::string> accumulated_;
-  double accumulated_at_ = 0;
-  HybridRecord record_;
-  std::size_t left_out_remarks_ = 0;
-  bool in_space_ = false;               // a contact has friction in space
-  std::vector<bool> keeps_friction_;    // [contacts] its coefficients stay what they are, whatever moves
-  std::vector<bool> begins_to_slide_;   // [contacts] in space, at this instant
-  std::vector<bool> just_began_;        // [contacts] in space, before this instant
-  std::vector<double> begins_towards_;  // [contacts] in which direction, an angle in the plane of contact
-  std::size_t looks_at_forces_ = 0;     // where friction gave way
-  double cone_residual_ = 0;            // the largest so far
-  double gap_begin_ = std::numeric_limits<double>::quiet_NaN();  // of a moment in which a slip began
-  std::vector<double> moment_accelerations_;                     // [n] in it
-  bool just_moved_on_ = false;                                   // the last step follows it
-  bool finds_no_directions_ = false;                             // of slips that begin, in the mode that was tried last
-  std::optional<std::size_t> met_;  // a contact that the constraints of the mode that was tried move through zero
-  std::string no_motion_;           // why the mode that was tried last has none, if that is so
+  std::optional<hybrid::EndOfBounces> end_of_bounces_;
+  std::size_t looks_at_forces_ = 0;   // where friction gave way
+  bool finds_no_directions_ = false;  // of slips that begin, in the mode that was tried last
+  std::optional<std::size_t> met_;    // a contact that the constraints of the mode that was tried move through zero
+  std::string no_motion_;             // why the mode that was tried last has none, if that is so
   std::shared_ptr<ImpactDerivative> derivative_;  // where instants are kept
   std::shared_ptr<Settled> settled_;              // the instant that is being settled
   std::optional<ModeInstant> instant_;            // the one at the beginning of the last step

@@ -19,7 +19,7 @@ std::optional<std::string> HybridMotion::weaker_at_rest(const std::vector<Choice
         "Static friction of {} has fallen below kinetic friction here: once it slides it is held, and once it is held "
         "it "
         "slides.",
-        label_of(i));
+        problem_.label_of(i));
   }
   return std::nullopt;
 }
@@ -30,7 +30,7 @@ std::string HybridMotion::why_none_fits(const std::vector<Choice>& list, const s
   if (list.empty() && !no_motion_.empty()) return no_motion_;
   const bool rubs = std::any_of(list.begin(), list.end(), [](const Choice& c) { return c.options.size() > 2; }) ||
                     std::any_of(touching.begin(), touching.end(),
-                                [&](std::size_t i) { return system_.contacts[i].friction.present(); });
+                                [&](std::size_t i) { return problem_.system.contacts[i].friction.present(); });
   if (!rubs)
     return were_many
                ? fmt::format("None of the {} modes that were tried fits the contacts that touch here.", most_choices)
@@ -41,14 +41,14 @@ std::string HybridMotion::why_none_fits(const std::vector<Choice>& list, const s
            "turns "
            "about a foot whose friction is just at its limit.";
   const auto is_at_rest = [&](std::size_t i) {
-    const bool in_space = friction_of(system_, i).in_space();
-    return in_space ? slip_speed_at(i, values) <= stop_slip(i)
+    const bool in_space = friction_of(problem_.system, i).in_space();
+    return in_space ? slip_speed(i, values) <= slips_.stop_speed(i)
                     : std::abs(values.slip[i]) <= sizes_.rest_slip(i, values);
   };
-  ContactMode rest = mode_of(list, std::vector<std::size_t>(list.size(), 0));
+  ContactMode rest = choices_.mode_of(list, std::vector<std::size_t>(list.size(), 0));
   std::vector<std::size_t> resting;
   for (const Choice& c : list) {
-    if (!friction_of(system_, c.contact).present() || !is_at_rest(c.contact)) continue;
+    if (!friction_of(problem_.system, c.contact).present() || !is_at_rest(c.contact)) continue;
     resting.push_back(c.contact);
     rest.friction[c.contact] = FrictionState::Stick;
     if (c.contact < rest.closed.size()) rest.closed[c.contact] = true;

@@ -1,51 +1,44 @@
-#include "simulation/hybrid_parts.hpp"
-#include "simulation/sets_together.hpp"
-
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
-
+#include "simulation/hybrid_parts.hpp"
+#include "simulation/sets_together.hpp"
 /// Events that set the state.
-namespace maupertuis {
 
-bool sets_positions(const std::vector<const ModelEvent*>& events) {
-  return std::any_of(events.begin(), events.end(), [](const ModelEvent* e) {
-    return std::any_of(e->sets.begin(), e->sets.end(), [](const ModelEvent::Assignment& a) { return a.order == 0; });
-  });
-}
+namespace maupertuis {
 
 /// Assigns what events set, all from the values before.
 bool HybridMotion::carry_out_sets(std::string& reason) {
-  const std::vector<double> found = energy_and_sets_at(here_.t, here_.q, here_.v);
+  const std::vector<double> found = functions_.energy_and_sets(here_.t, here_.q, here_.v);
   const std::string before = pending_->sets.front()->name;
-  if (const std::string told = set_more_than_once(system_, pending_->sets, here_.t); !told.empty()) remark(told);
+  if (const std::string told = set_more_than_once(problem_.system, pending_->sets, here_.t); !told.empty())
+    journal_.remark(told);
   std::vector<double> q = here_.q, v = here_.v;
   std::vector<const double*> first;  // of each event in `found`
   const double* next = found.data() + 1;
-  for (const ModelEvent& e : model_.experiment.events) first.push_back(next), next += e.sets.size();
+  for (const ModelEvent& e : problem_.model.experiment.events) first.push_back(next), next += e.sets.size();
   for (const ModelEvent* event : pending_->sets) {
-    const double* value = first[static_cast<std::size_t>(event - model_.experiment.events.data())];
+    const double* value = first[static_cast<std::size_t>(event - problem_.model.experiment.events.data())];
     for (const ModelEvent::Assignment& a : event->sets) (a.order == 0 ? q : v)[a.coordinate] = *value++;
   }
-  if (const auto k = violated_constraint({here_.t, q, v}, digits_of_sets)) {
-    reason = fmt::format("The event `{}` sets a state that violates {}.", before, system_.constraint_label(*k));
+  if (const auto k = functions_.violated_constraint({here_.t, q, v}, digits_of_sets, sizes_)) {
+    reason = fmt::format("The event `{}` sets a state that violates {}.", before, problem_.system.constraint_label(*k));
     return false;
   }
   const ContactValues& values = here_.values_at(here_.t, q, v);
   for (std::size_t i = 0; i < values.gap.size(); ++i)
     if (values.gap[i] < -digits_of_sets * sizes_.gap(i, values)) {
-      reason =
-          fmt::format("The event `{}` sets a state that violates the contact {}.", before, system_.contact_label(i));
+      reason = fmt::format("The event `{}` sets a state that violates the contact {}.", before,
+                           problem_.system.contact_label(i));
       return false;
     }
   for (std::size_t i = 0; i < bounces_.size(); ++i)  // what is set down anew bounces anew
     for (const auto& [k, g] : values.normal[i])
       if (q[k] != here_.q[k] || v[k] != here_.v[k]) bounces_[i].before = 0;
-  const double gained = energy_and_sets_at(here_.t, q, v)[0] - found[0];
-  carried_[0] += gained;  // what a set puts in is work
-  record_.books.events += gained;
+  const double gained = functions_.energy_and_sets(here_.t, q, v)[0] - found[0];
+  carried_.put_in(gained);  // what a set puts in is work
+  journal_.books().events += gained;
   here_.q = q, here_.v = v;
   if (sets_positions(pending_->sets)) event_sides_.assign(event_sides_.size(), 0);
   return true;
@@ -55,13 +48,13 @@ bool HybridMotion::carry_out_sets(std::string& reason) {
 /// tells that it has left: it would be passed, and the bounces before it, shorter and shorter, accumulate here.
 const ModelEvent* HybridMotion::turned_unseen(double bound) {
   if (pending_->sets.empty() || pending_->at_zero.empty()) return nullptr;
-  const TaylorStepper::Outlook outlook = now_->stepper->outlook(bound);
+  const Outlook outlook = motions_.stepper().outlook(bound);
   if (outlook.ending != StepEnding::None) return nullptr;  // the next step says why it cannot be made
-  for (std::size_t k = 0; k < now_->watches().size(); ++k) {
-    const Watch& watch = now_->watches()[k];
+  for (std::size_t k = 0; k < motions_.now().watches().size(); ++k) {
+    const Watch& watch = motions_.now().watches()[k];
     const auto& zeros = pending_->at_zero;
     if (watch.what != Watch::What::Event || std::find(zeros.begin(), zeros.end(), watch.index) == zeros.end()) continue;
-    const ModelEvent* const event = &model_.experiment.events[watch.index];
+    const ModelEvent* const event = &problem_.model.experiment.events[watch.index];
     const auto at = std::find(pending_->sets.begin(), pending_->sets.end(), event);
     if (at == pending_->sets.end()) continue;
     const int way = pending_->ways[static_cast<std::size_t>(at - pending_->sets.begin())];
@@ -90,7 +83,7 @@ std::string names_of(const std::vector<ModelEvent>& events, std::vector<std::siz
 void HybridMotion::note_sets(double bound) {
   if (pending_->sets.empty()) return;
   for (const ModelEvent* event : pending_->sets)
-    sets_that_follow_.add(static_cast<std::size_t>(event - model_.experiment.events.data()), here_.t);
+    sets_that_follow_.add(static_cast<std::size_t>(event - problem_.model.experiment.events.data()), here_.t);
   const auto end = sets_that_follow_.end();  // none where they have become too short: the last one stands
   if (end && (forwards_ ? end->t <= bound : end->t >= bound)) sets_end_ = end;
 }
@@ -109,24 +102,24 @@ std::string HybridMotion::sets_without_end() const {
   return fmt::format(
       "{} faster and faster, infinitely often up to t = {:.12g}: `set` does not say what comes after it. A `contact` "
       "with `restitution` in place of such an event does: bounces on it end at rest.",
-      names_of(model_.experiment.events, sets_end_->kinds), sets_end_->t);
+      names_of(problem_.model.experiment.events, sets_end_->kinds), sets_end_->t);
 }
 
 /// Events on positions whose sign has changed at the instant that was settled though no root was told: so near to it
 /// that rounding hides their own. The motion meets them here, to be settled next; one that has just set the state, and
 /// is met again in no time, follows itself without an end.
 std::optional<Step> HybridMotion::meet_unseen(double bound) {
-  const std::unique_ptr<Pending> settled = std::move(pending_);
+  const std::unique_ptr<Met> settled = std::move(pending_);
   if (std::none_of(of_positions_.begin(), of_positions_.end(), [](bool x) { return x; })) return std::nullopt;
-  const TaylorStepper::Outlook outlook = now_->stepper->outlook(bound);
+  const Outlook outlook = motions_.stepper().outlook(bound);
   if (outlook.ending != StepEnding::None) return std::nullopt;  // the next step says why it cannot be made
-  auto met = std::make_unique<Pending>();
-  for (std::size_t k = 0; k < now_->watches().size(); ++k) {
-    const Watch& watch = now_->watches()[k];
+  auto met = std::make_unique<Met>();
+  for (std::size_t k = 0; k < motions_.now().watches().size(); ++k) {
+    const Watch& watch = motions_.now().watches()[k];
     if (watch.what != Watch::What::Event || !of_positions_[watch.index]) continue;
     const std::int8_t before = std::exchange(event_sides_[watch.index], outlook.sides[k]);
     if (!is_hidden(before, outlook, k)) continue;
-    const ModelEvent& event = model_.experiment.events[watch.index];
+    const ModelEvent& event = problem_.model.experiment.events[watch.index];
     if (std::find(settled->sets.begin(), settled->sets.end(), &event) != settled->sets.end())
       return stopped(StepEnding::Unending, too_short_to_tell(event));
     met->at_zero.push_back(watch.index);
@@ -138,7 +131,7 @@ std::optional<Step> HybridMotion::meet_unseen(double bound) {
 }
 
 /// Whether an event that was on the side `before` is on the other one by no more than rounding.
-bool HybridMotion::is_hidden(std::int8_t before, const TaylorStepper::Outlook& outlook, std::size_t watch) {
+bool HybridMotion::is_hidden(std::int8_t before, const Outlook& outlook, std::size_t watch) {
   constexpr double rounding = 1e-12;  // of its terms
   return before != 0 && outlook.sides[watch] == -before &&
          std::abs(outlook.values[watch]) <= rounding * outlook.reach[watch];

@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-namespace maupertuis {
+namespace maupertuis::hybrid {
 
 /// Where a motion is, and what its contacts and frictions are there.
-class HybridState {
+class State {
  public:
-  HybridState(std::shared_ptr<const ContactPrograms> contacts, std::span<const double> parameters)
+  State(std::shared_ptr<const ContactPrograms> contacts, std::span<const double> parameters)
       : functions_(std::move(contacts), parameters) {}
 
   double t = 0, t_rest = 0;  // a located instant is t + t_rest
@@ -37,4 +37,4 @@ class HybridState {
   mutable ContactFunctions functions_;  // what they were last asked for is kept
 };
 
-}  // namespace maupertuis
+}  // namespace maupertuis::hybrid

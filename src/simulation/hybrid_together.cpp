@@ -13,15 +13,16 @@ void HybridMotion::meet_together(double bound) {
   const auto is_limit = [](const Watch& w) { return w.what == Watch::What::Hold || w.what == Watch::What::Force; };
   if (!pending_->hit.empty() || !pending_->sets.empty() || !forwards_) return;
   if (std::none_of(pending_->left.begin(), pending_->left.end(), is_limit)) return;
-  const TaylorStepper::Outlook outlook = now_->stepper->outlook(bound);
+  const Outlook outlook = motions_.stepper().outlook(bound);
   if (outlook.ending != StepEnding::None) return;
   constexpr double falls = 1e-9;  // of the largest, over the length that is judged
   constexpr double left_open = 1e-10;
-  const double digits = now_->given.is_preload ? left_open : rest_unit;  // a rest that is not determined ends early
-  const auto& watches = now_->watches();
+  const double digits =
+      motions_.now().given.is_preload ? left_open : rest_unit;  // a rest that is not determined ends early
+  const auto& watches = motions_.now().watches();
   double largest[2] = {0, 0};  // of forces, and of squares, which those of friction in space are
   const auto size_of = [&](std::size_t k) -> double& {
-    return largest[watches[k].what == Watch::What::Hold && friction_of(system_, watches[k].index).in_space()];
+    return largest[watches[k].what == Watch::What::Hold && friction_of(problem_.system, watches[k].index).in_space()];
   };
   for (std::size_t k = 0; k < watches.size(); ++k)
     if (is_limit(watches[k])) size_of(k) = std::max(size_of(k), outlook.reach[k]);
@@ -43,9 +44,9 @@ void HybridMotion::meet_together(double bound) {
 std::optional<HybridMotion::Found> HybridMotion::mode_that_goes_on(const std::vector<std::size_t>& touching,
                                                                    double bound) {
   const ContactValues& values = here_.values();
-  const bool ends_rest = now_->given.is_preload;
-  Found out{now_->mode, {}, {}};
-  if (pending_->left.size() < 2 || in_space_) return std::nullopt;
+  const bool ends_rest = motions_.now().given.is_preload;
+  Found out{motions_.now().mode, {}, {}};
+  if (pending_->left.size() < 2 || problem_.in_space) return std::nullopt;
   if (ends_rest) open_idle(out.mode);
   for (const Watch& w : pending_->left) {
     if (w.what == Watch::What::Hold)
@@ -68,7 +69,7 @@ void HybridMotion::open_idle(ContactMode& mode) const {
   std::vector<double> forces;
   double largest = 0;
   for (std::size_t i = 0, k = 0; i < mode.closed.size(); ++i) {
-    if (mode.closed[i]) forces.push_back(now_->given.preload(k++, here_.t));
+    if (mode.closed[i]) forces.push_back(motions_.now().given.preload(k++, here_.t));
     if (mode.closed[i]) largest = std::max(largest, std::abs(forces.back()));
   }
   for (std::size_t i = 0, k = 0; i < mode.closed.size(); ++i)

@@ -1,15 +1,14 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
 #include "linear_algebra/independent_rows.hpp"
 #include "simulation/contact/resting_forces.hpp"
 #include "simulation/hybrid_parts.hpp"
 #include "simulation/mode_remarks.hpp"
-
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-
 /// Contacts whose forces the motion does not determine: which they are, and forces that hold a rest.
+
 namespace maupertuis {
+
 namespace {
 
 constexpr std::size_t most_in_plane = 128, most_in_space = 32;  // contacts whose forces at rest are sought
@@ -39,20 +38,12 @@ bool HybridMotion::is_held(std::size_t contact, const ContactMode& mode, const C
   return std::abs(dot(own, here_.response({&own, 1}, held).col(0))) <= digits * std::abs(alone);
 }
 
-double HybridMotion::Given::preload(std::size_t constraint, double t) const {
-  if (!is_preload) return 0;
-  constexpr auto powers = static_cast<std::size_t>(preload_degree) + 1;
-  double out = 0;
-  for (std::size_t power = powers; power-- > 0;) out = out * (t - values[0]) + values[1 + constraint * powers + power];
-  return out;
-}
-
 /// Friction of a coordinate whose limit is known without the forces of constraints.
 bool HybridMotion::may_be_given(std::size_t friction) const {
-  return friction >= system_.contacts.size() && !has_multipliers(friction_of(system_, friction).normal);
+  return friction >= problem_.system.contacts.size() && !has_multipliers(friction_of(problem_.system, friction).normal);
 }
 
-std::size_t HybridMotion::most_that_hold() const { return in_space_ ? most_in_space : most_in_plane; }
+std::size_t HybridMotion::most_that_hold() const { return problem_.in_space ? most_in_space : most_in_plane; }
 
 /// Closed contacts, and frictions of coordinates that hold.
 std::size_t HybridMotion::number_that_hold(const ContactMode& mode) const {
@@ -81,14 +72,14 @@ std::optional<std::vector<double>> HybridMotion::forces_at_rest(const ContactMod
                                                                 double bound) {
   std::vector<std::size_t> holding;
   const ContactMode base = mode_without_holding(mode, holding);
-  const auto outlook = outlook_in(base, bound);
+  const auto outlook = motions_.outlook_in(base, bound);
   if (!outlook) return std::nullopt;
-  std::vector<double> of_constraints = motion_in(base).stepper->sample(here_.t).multipliers;
-  const Cones cones = cones_of(pressed_in(mode, values), holding, base, values, outlook->accelerations);
+  std::vector<double> of_constraints = motions_.in(base).stepper->sample(here_.t).multipliers;
+  const Cones cones = cones_.of(cones_.pressed_in(mode, values), holding, base, values, outlook->accelerations);
   if (!cones.problem.response.allFinite()) return std::nullopt;  // a slip that has no direction yet
   // A rest ends early by the margin that is left. Companions leave four times of it, so that their difference tells
   // what that does where forces jump.
-  const auto found = resting_forces(cones.problem, (meets_late_ ? 4 : 1) * least_margin_of_rest);
+  const auto found = resting_forces(cones.problem, (problem_.meets_late ? 4 : 1) * least_margin_of_rest);
   if (!found) return std::nullopt;
   const Eigen::VectorXd balanced = cones.response.cwiseAbs() * found->cwiseAbs();  // what they would do alone
   for (std::size_t k = 0; k < here_.q.size(); ++k) sizes_.note_acceleration(k, balanced(at(k)));
@@ -109,7 +100,7 @@ std::vector<double> HybridMotion::ordered_forces(const ContactMode& mode, const 
     out.push_back(cones.slides[c] ? 0 : found(at(cones.first[c])));
   for (std::size_t c = 0; c < cones.contacts.size(); ++c)
     for (int k = 1; k <= cones.problem.contacts[c].tangents; ++k) out.push_back(found(at(cones.first[c]) + k));
-  const std::size_t own = system_.constraints.size();
+  const std::size_t own = problem_.system.constraints.size();
   std::size_t next = cones.forces.size() - cones.problem.limits.size(), next_held = own;
   for (std::size_t i = mode.closed.size(); i < mode.friction.size(); ++i)
     if (mode.friction[i] == FrictionState::Stick)
@@ -145,8 +136,7 @@ double HybridMotion::rest_ahead(const ContactMode& mode, double length, double b
 
 /// Forces that hold the rest now, and such as hold it `ahead`, with that power of time between them. Limits of friction
 /// are convex: where the forces of the system go with it too, their limits are kept all the way.
-std::optional<HybridMotion::Given> HybridMotion::preload_through(const ContactMode& mode, double ahead, int power,
-                                                                 double bound) {
+std::optional<Given> HybridMotion::preload_through(const ContactMode& mode, double ahead, int power, double bound) {
   const auto here = forces_later(mode, 0, bound), there = forces_later(mode, ahead, bound);
   if (!here || !there) return std::nullopt;
   Given out;
@@ -168,11 +158,11 @@ std::optional<HybridMotion::Given> HybridMotion::preload_through(const ContactMo
 bool HybridMotion::fits_by_given_forces(Found& found, const std::vector<std::size_t>& touching, double bound) {
   const ContactMode& mode = found.mode;
   const std::size_t holds = number_that_hold(mode);
-  const bool may_share = holds >= 2 || (holds == 1 && system_.constrained());
+  const bool may_share = holds >= 2 || (holds == 1 && problem_.system.constrained());
   if (!may_share || holds > most_that_hold() || !found.given.begins.empty()) return false;
   const ContactValues values = here_.values();
   if (!has_dependent_rows(mode, values)) return false;
-  const auto outlook = outlook_without_contacts(values, bound);
+  const auto outlook = motions_.outlook_in(choices_.mode_without_contacts(values), bound);
   if (!outlook || !forces_at_rest(mode, values, bound)) return false;
   const double ahead = rest_ahead(mode, std::copysign(outlook->length, bound - here_.t), bound);
   // A contact that presses by nothing yet has forces that begin with the power of time with which those of the system
@@ -195,8 +185,8 @@ std::optional<HybridMotion::Found> HybridMotion::undetermined_rest(const std::ve
   std::vector<std::size_t> taken;
   const bool are_many = list.size() > most_that_hold();
   for (const Choice& c : list) {
-    const bool is_contact = c.contact < system_.contacts.size();
-    const auto rests = std::find_if(c.options.begin(), c.options.end(), [&](const HybridOption& o) {
+    const bool is_contact = c.contact < problem_.system.contacts.size();
+    const auto rests = std::find_if(c.options.begin(), c.options.end(), [&](const Choice::Option& o) {
       return o.closed == is_contact &&
              (o.state == FrictionState::Stick || (is_contact && o.state == FrictionState::None));
     });
@@ -204,7 +194,7 @@ std::optional<HybridMotion::Found> HybridMotion::undetermined_rest(const std::ve
     const bool stays = may_stay && (!are_many || c.options.front().closed == is_contact);
     taken.push_back(stays ? static_cast<std::size_t>(rests - c.options.begin()) : 0);
   }
-  Found out{mode_of(list, taken), {}, {}};
+  Found out{choices_.mode_of(list, taken), {}, {}};
   return fits_by_given_forces(out, touching, bound) ? std::optional(out) : std::nullopt;
 }
 
@@ -231,7 +221,7 @@ void HybridMotion::note_indeterminate(const std::vector<Choice>& list, const Con
   bool rubs = false;
   for (const Choice& c : list) {
     const std::size_t i = c.contact;
-    const Friction& f = friction_of(system_, i);
+    const Friction& f = friction_of(problem_.system, i);
     if (mode.friction[i] == FrictionState::Stick && !f.sticking) holding.push_back(i);
     if (i >= values.gap.size()) continue;
     contacts.push_back(i);
@@ -240,19 +230,19 @@ void HybridMotion::note_indeterminate(const std::vector<Choice>& list, const Con
   }
   const bool are_normals = contacts.size() > 1 && are_dependent(normals, here_.q.size(), here_.constraint_rows());
   if (are_normals) {
-    remark(undetermined_contacts_sentence(labels_of(contacts), rubs));
+    journal_.remark(undetermined_contacts_sentence(problem_.labels_of(contacts), rubs));
     return;
   }
   if (holding.empty() || !has_dependent_rows(mode, values)) return;
   std::sort(holding.begin(), holding.end());
   const bool are_contacts = holding.back() < values.gap.size();
-  remark(
+  journal_.remark(
       fmt::format("Friction at {}{} holds more than the motion needs, so that it does not determine {} (statically "
                   "indeterminate). One distribution within the limits of friction is shown.",
                   !are_contacts          ? ""
                   : contacts.size() == 1 ? "the contact "
                                          : "the contacts ",
-                  list_of(labels_of(are_contacts ? contacts : holding)),
+                  list_of(problem_.labels_of(are_contacts ? contacts : holding)),
                   holding.size() > 1 || are_contacts ? "their forces" : "its force"));
 }
 

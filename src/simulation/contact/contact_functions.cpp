@@ -326,4 +326,33 @@ std::span<const double> ContactFunctions::drifts(double t, std::span<const doubl
   return drifts_out_;
 }
 
+double product(const SparseRow& row, std::span<const double> x) {
+  double sum = 0;
+  for (const auto& [k, value] : row) sum += value * x[k];
+  return sum;
+}
+
+std::vector<double> whole_row(const SparseRow& row, std::size_t n) {
+  std::vector<double> out(n, 0);
+  for (const auto& [k, x] : row) out[k] = x;
+  return out;
+}
+
+SparseRow sum_of(const SparseRow& a, const SparseRow& b, double factor) {
+  SparseRow out = a;
+  for (const auto& [k, x] : b) {
+    const auto same = std::find_if(out.begin(), out.end(), [&, k = k](const auto& e) { return e.first == k; });
+    if (same == out.end())
+      out.emplace_back(k, factor * x);
+    else
+      same->second += factor * x;
+  }
+  return out;
+}
+
+double slip_speed(std::size_t contact, const ContactValues& values) {
+  return contact < values.second_slip.size() ? std::hypot(values.slip[contact], values.second_slip[contact])
+                                             : std::abs(values.slip[contact]);
+}
+
 }  // namespace maupertuis

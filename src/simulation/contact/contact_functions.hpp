@@ -103,5 +103,12 @@ bool is_of_parameters(Expr value);
 
 inline Eigen::Index at(std::size_t i) { return static_cast<Eigen::Index>(i); }
 double dot(const SparseRow& row, const Eigen::VectorXd& x);
+double product(const SparseRow& row, std::span<const double> x);
+/// A row with its zeros.
+std::vector<double> whole_row(const SparseRow& row, std::size_t n);
+/// a + factor b
+SparseRow sum_of(const SparseRow& a, const SparseRow& b, double factor);
+/// |v_t| of a contact, in the plane or in space.
+double slip_speed(std::size_t contact, const ContactValues& values);
 
 }  // namespace maupertuis

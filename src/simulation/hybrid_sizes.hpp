@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-namespace maupertuis {
+namespace maupertuis::hybrid {
 
-class HybridState;
+class State;
 
 /// Of the sizes of terms: below, a gap or a speed is 0.
 inline constexpr double rest_unit = 64 * std::numeric_limits<double>::epsilon();
@@ -40,10 +40,12 @@ class UsualSizes {
   double speed(std::size_t coordinate) const { return speed_[kind_[coordinate]]; }
   double acceleration(std::size_t coordinate) const { return acceleration_[kind_[coordinate]]; }
   double acceleration_along(const SparseRow& row) const;
+  /// g̈ of a contact with these accelerations, in units of the sizes of its terms.
+  double opening_rate(std::size_t contact, std::span<const double> accelerations, const State& here) const;
   std::vector<double> accelerations() const;  // [n]
   void tell(TaylorStepper& stepper) const;
 
-  void note(const HybridState& here, const ContactValues& values);
+  void note(const State& here, const ContactValues& values);
   /// Gaps of one dimension have one size too.
   void note_gaps(const ContactValues& values);
   /// Of a start whose coordinates have had other sizes elsewhere: what gaps are made of then.
@@ -53,12 +55,16 @@ class UsualSizes {
   void note_slip_in_space(std::size_t contact, double size);
   /// Not while a mode is sought: the speed at which a slip stops depends on it, and with it the motion of a mode.
   void note_slip_rates(const ContactValues& values);
-  /// |g̈| of a contact by a force λ = 1 of its own.
-  void note_compliance(std::size_t contact, double compliance) { compliance_[contact] = compliance; }
+  /// |g̈| of contacts by a force λ = 1 of their own.
+  void note_compliances(const std::vector<std::size_t>& contacts, const std::vector<SparseRow>& normals,
+                        const Eigen::MatrixXd& response);
+  /// Of all that touch at this instant. An impact asks for the same: M does not depend on the velocities.
+  bool knows_compliances() const { return knows_compliances_; }
+  void set_knows_compliances(bool knows) { knows_compliances_ = knows; }
   /// Forces of closed contacts and of static friction that grow while all rests: what they balance is a measure of
   /// forces too, of each coordinate that one of them would move alone. `multipliers`: those of contacts and frictions
   /// of the mode. Whether there were such.
-  bool note_holding_forces(const ContactMode& mode, std::span<const double> multipliers, const HybridState& here);
+  bool note_holding_forces(const ContactMode& mode, std::span<const double> multipliers, const State& here);
   bool knows_holding_forces(const ContactMode& mode) const;
 
  private:
@@ -71,9 +77,10 @@ class UsualSizes {
   std::vector<double> fastest_, fastest_slip_;  // [contacts], [contacts + frictions] sizes of the terms of ġ and of v_t
   std::vector<double> widest_, hardest_;        // [contacts] sizes of the terms of g; of λ
   std::vector<double> compliance_;              // [contacts] what a force λ = 1 does to g̈, where it was needed
+  bool knows_compliances_ = false;
   std::vector<double> holding_;                 // [2 contacts + frictions] normal and static forces that were measured
-  std::vector<double> slip_scale_, slip_rate_;     // [contacts] of friction in space, and how fast they change
+  std::vector<double> slip_scale_, slip_rate_;  // [contacts] of friction in space, and how fast they change
   std::vector<double> elsewhere_q_, elsewhere_v_;  // [n] or empty
 };
 
-}  // namespace maupertuis
+}  // namespace maupertuis::hybrid

@@ -1,16 +1,16 @@
-#include "simulation/usual_sizes.hpp"
+#include "simulation/hybrid_sizes.hpp"
 
 #include "simulation/hybrid_state.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace maupertuis {
+namespace maupertuis::hybrid {
 namespace {
 
 /// The number of the first one with the same dimension.
 template <class Item>
-std::vector<std::size_t> kinds_of(const std::vector<Item>& items) {
+std::vector<std::size_t> kinds_by_dimension(const std::vector<Item>& items) {
   std::vector<std::size_t> out;
   for (const Item& item : items) {
     std::size_t k = 0;
@@ -23,7 +23,7 @@ std::vector<std::size_t> kinds_of(const std::vector<Item>& items) {
 }  // namespace
 
 UsualSizes::UsualSizes(const MechanicalSystem& system)
-    : system_(system), kind_(kinds_of(system.coordinates)), gap_kind_(kinds_of(system.contacts)) {}
+    : system_(system), kind_(kinds_by_dimension(system.coordinates)), gap_kind_(kinds_by_dimension(system.contacts)) {}
 
 void UsualSizes::set_elsewhere(std::span<const double> q, std::span<const double> v) {
   elsewhere_q_.assign(q.begin(), q.end());
@@ -65,6 +65,16 @@ double UsualSizes::rest_slip(std::size_t friction, const ContactValues& values) 
                       left_by_time(values.tangent[friction], values.t));
 }
 
+double UsualSizes::opening_rate(std::size_t contact, std::span<const double> accelerations, const State& here) const {
+  const ContactValues& values = here.values();
+  double sum = here.drifts()[contact], size = std::abs(sum);
+  for (const auto& [k, g] : values.normal[contact]) {
+    sum += g * accelerations[k];
+    size += std::abs(g) * acceleration_[kind_[k]];
+  }
+  return sum / std::max(size, std::numeric_limits<double>::min());
+}
+
 double UsualSizes::gap(std::size_t contact, const ContactValues& values) const {
   double size = widest_[contact];
   for (const auto& [k, g] : values.normal[contact]) size = std::max(size, std::abs(g) * place_[kind_[k]]);
@@ -86,7 +96,7 @@ void UsualSizes::tell(TaylorStepper& stepper) const {
   stepper.set_usual_sizes(places, speeds, accelerations());
 }
 
-void UsualSizes::note(const HybridState& here, const ContactValues& values) {
+void UsualSizes::note(const State& here, const ContactValues& values) {
   for (std::size_t i = 0; i < here.v.size(); ++i) {
     place_[kind_[i]] = std::max(place_[kind_[i]], std::abs(here.q[i]));
     speed_[kind_[i]] = std::max(speed_[kind_[i]], std::abs(here.v[i]));
@@ -138,6 +148,12 @@ void UsualSizes::note_acceleration(std::size_t coordinate, double size) {
   known = std::max(known, size);
 }
 
+void UsualSizes::note_compliances(const std::vector<std::size_t>& contacts, const std::vector<SparseRow>& normals,
+                                  const Eigen::MatrixXd& response) {
+  for (std::size_t k = 0; k < contacts.size(); ++k)
+    compliance_[contacts[k]] = std::abs(dot(normals[k], response.col(at(k))));
+}
+
 void UsualSizes::note_slip_in_space(std::size_t contact, double size) {
   slip_scale_[contact] = std::max(slip_scale_[contact], size);
 }
@@ -147,8 +163,7 @@ void UsualSizes::note_slip_rates(const ContactValues& values) {
     slip_rate_[i] = std::max(slip_rate_[i], acceleration_along(values.tangent[i]));
 }
 
-bool UsualSizes::note_holding_forces(const ContactMode& mode, std::span<const double> multipliers,
-                                     const HybridState& here) {
+bool UsualSizes::note_holding_forces(const ContactMode& mode, std::span<const double> multipliers, const State& here) {
   constexpr double grown = 2;
   const ContactValues& values = here.values();
   const std::size_t contacts = mode.closed.size();
@@ -182,4 +197,4 @@ bool UsualSizes::knows_holding_forces(const ContactMode& mode) const {
   return true;
 }
 
-}  // namespace maupertuis
+}  // namespace maupertuis::hybrid

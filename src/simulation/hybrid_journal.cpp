@@ -1,0 +1,174 @@
+#include "simulation/hybrid_journal.hpp"
+
+#include "linear_algebra/independent_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace maupertuis::hybrid {
+namespace {
+
+constexpr std::size_t most_happenings = 10'000'000;
+constexpr std::size_t many_happenings = 10'000;  // after which their rate is looked at again
+constexpr std::size_t most_numbers = 2'000'000;  // of states that are kept with what happens
+
+}  // namespace
+
+void Journal::start() {
+  record_ = {};
+  left_out_remarks_ = 0;
+  counted_at_.clear();
+  idle_.assign(problem_.system.contacts.size(), false);
+}
+
+Happening& Journal::add(Happening::Kind kind, const std::string& name, double impulse, double speed,
+                        const std::string& text) {
+  const bool keeps_state = record_.happenings.size() * here_.q.size() < most_numbers;
+  record_.happenings.push_back({kind, here_.t, 0, name, impulse, speed, text, {}, {}, {}});
+  Happening& out = record_.happenings.back();
+  if (!keeps_state) return out;
+  out.q = here_.q;
+  out.v = here_.v;
+  return out;
+}
+
+void Journal::remark(const std::string& sentence) {
+  constexpr std::size_t most = 6;
+  if (std::find(record_.remarks.begin(), record_.remarks.end(), sentence) != record_.remarks.end()) return;
+  if (record_.remarks.size() < most)
+    record_.remarks.push_back(sentence);
+  else if (++left_out_remarks_; record_.remarks.size() == most)
+    record_.remarks.push_back({});
+  if (left_out_remarks_ > 0) record_.remarks.back() = fmt::format("and {} more of the like.", left_out_remarks_);
+}
+
+void Journal::stop_by(const std::string& event) {
+  if (!record_.stopped_by) record_.stopped_by = event;
+}
+
+void Journal::note_errors(std::size_t first, double error) {
+  for (std::size_t k = first; k < record_.happenings.size(); ++k)
+    record_.happenings[k].error = std::max(record_.happenings[k].error, error);
+}
+
+/// Companions look for forces as the run itself does, so that their difference does not tell to what these were sought.
+void Journal::note_end_of_rest(std::size_t first) {
+  constexpr double in_plane = 4e-12, in_space = 1e-10;  // planes that touch a circular cone leave more of it open
+  const double known = problem_.in_space ? in_space : in_plane;
+  for (std::size_t k = first; k < record_.happenings.size(); ++k)
+    record_.happenings[k].error = known * std::abs(here_.t);
+  remark(
+      fmt::format("A rest whose forces are not determined ends where none within their limits are found any "
+                  "more: that time is known to some {:.0e} of itself.",
+                  known));
+}
+
+void Journal::end_at(double t, bool forwards) {
+  std::erase_if(record_.happenings, [&](const Happening& h) { return forwards ? h.t > t : h.t < t; });
+}
+
+/// Contacts that are open in a mode whose others keep their gaps at 0: they touch without force.
+std::vector<bool> Journal::idle_in(const ContactMode& before, const ContactMode& mode,
+                                   std::span<const double> accelerations) const {
+  constexpr double rounding = 1e-9;
+  const ContactValues& values = here_.values();
+  std::vector<bool> out(mode.closed.size(), false);
+  std::optional<IndependentRows> carrying;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const bool touches = before.closed[i] || idle_[i] || std::abs(values.gap[i]) <= rest_unit * sizes_.widest(i);
+    if (mode.closed[i] || !touches || std::abs(values.rate[i]) > sizes_.rest_speed(i, values)) continue;
+    if (std::abs(sizes_.opening_rate(i, accelerations, here_)) > rounding) continue;
+    if (!carrying) carrying = rows_that_carry(mode, values);
+    IndependentRows with_this = *carrying;
+    out[i] = !with_this.add(whole_row(values.normal[i], here_.q.size()));
+  }
+  return out;
+}
+
+/// ∂g/∂q of closed contacts, beside the rows of constraints and of friction that sticks.
+IndependentRows Journal::rows_that_carry(const ContactMode& mode, const ContactValues& values) const {
+  IndependentRows out;
+  const std::size_t n = here_.q.size();
+  for (const SparseRow& row : here_.constraint_rows()) static_cast<void>(out.add(whole_row(row, n)));
+  for (std::size_t i = 0; i < mode.friction.size(); ++i) {
+    const bool is_contact = i < mode.closed.size();
+    if (is_contact && mode.closed[i]) static_cast<void>(out.add(whole_row(values.normal[i], n)));
+    if (mode.friction[i] == FrictionState::Stick) static_cast<void>(out.add(whole_row(values.tangent[i], n)));
+  }
+  return out;
+}
+
+void Journal::begin_in(const ContactMode& before, const ContactMode& mode, std::span<const double> accelerations) {
+  record_.first_mode = mode_text(problem_.system, mode);
+  idle_ = idle_in(before, mode, accelerations);
+  tell_mode(record_.first_mode, size());
+}
+
+void Journal::change_mode(const ContactMode& before, const ContactMode& after, std::span<const double> accelerations,
+                          const std::optional<EndOfBounces>& end) {
+  const std::size_t first = size();
+  const std::vector<bool> idle = idle_in(before, after, accelerations);
+  for (std::size_t i = 0; i < after.closed.size(); ++i) change_contact(i, before, after, idle, end);
+  for (std::size_t i = 0; i < after.friction.size(); ++i) {
+    const FrictionState now = after.friction[i];
+    if (now == before.friction[i] || now == FrictionState::None) continue;
+    Happening& told =
+        add(now == FrictionState::Stick ? Happening::Kind::Stick : Happening::Kind::Slip, problem_.label_of(i));
+    const bool is_made_then = i < after.closed.size() && after.closed[i] && !before.closed[i];
+    if (end && is_made_then) told.t = end->t;
+  }
+  tell_mode(mode_text(problem_.system, after), first);
+  idle_ = idle;
+}
+
+/// A contact that carries nothing any more while others keep it closed is not lost, and what it carries again later is
+/// not made.
+void Journal::change_contact(std::size_t i, const ContactMode& before, const ContactMode& after,
+                             const std::vector<bool>& idle, const std::optional<EndOfBounces>& end) {
+  using Kind = Happening::Kind;
+  const bool touched = before.closed[i] || idle_[i], touches = after.closed[i] || idle[i];
+  const std::string label = problem_.system.contact_label(i);
+  if (touches && !touched) {
+    Happening& told = add(Kind::Made, label);
+    if (!end) return;
+    told.t = end->t;
+    told.remark = fmt::format("the end of infinitely many bounces at t = {:.12g}", end->t);
+  } else if (touched && !touches) {
+    add(Kind::Lost, label);
+  } else if (touches && after.closed[i] != before.closed[i]) {
+    add(after.closed[i] ? Kind::Loaded : Kind::Unloaded, label);
+  }
+}
+
+/// Of what was told from `first` on, and of what was told before of this instant, the mode after it.
+void Journal::tell_mode(const std::string& mode, std::size_t first) {
+  for (std::size_t k = record_.happenings.size(); k-- > 0;) {
+    Happening& h = record_.happenings[k];
+    if (k < first && h.t != here_.t) break;
+    h.mode = mode;
+  }
+}
+
+std::optional<std::string> Journal::too_many(double t, double bound) {
+  constexpr double steady = 1.05;
+  const std::size_t count = record_.happenings.size();
+  if (count > most_happenings) return fmt::format("More than {} events and changes of contact.", most_happenings);
+  if (count < many_happenings * (counted_at_.size() + 1)) return std::nullopt;
+  counted_at_.push_back(t);
+  if (counted_at_.size() < 4) return std::nullopt;
+  const auto last = [&](std::size_t k) {
+    const std::size_t i = counted_at_.size() - k;
+    return std::abs(counted_at_[i] - counted_at_[i - 1]);
+  };
+  const auto [shortest, longest] = std::minmax({last(1), last(2), last(3)});
+  const double to_come = static_cast<double>(many_happenings) * std::abs(bound - t) / longest;
+  if (!(longest < steady * shortest) || !(to_come > static_cast<double>(most_happenings))) return std::nullopt;
+  return fmt::format(
+      "{} events and changes of contact follow each other in {:.3g} units of time, and as fast "
+      "before: {:.2g} of them would come up to the end of the run, and {} are followed at most.",
+      many_happenings, longest, to_come, most_happenings);
+}
+
+}  // namespace maupertuis::hybrid
