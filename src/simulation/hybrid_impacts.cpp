@@ -1,3 +1,4 @@
+#include "simulation/contact/contact_forces.hpp"
 #include "simulation/hybrid_parts.hpp"
 
 #include <fmt/format.h>
@@ -263,6 +264,51 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
     for (const std::size_t i : touching) bounces_[i].last.clear();
   }
   return true;
+}
+
+/// A contact that opens so slowly that it would be pressed again before its gap can be told from zero is closed: its
+/// speed is taken out. v²/(2 |g̈|) is the height of such a flight, g̈ being what its own force takes back.
+void HybridMotion::close_lowest_flights(const std::vector<std::size_t>& touching, double bound) {
+  constexpr double slow = 1e-6;  // of the fastest so far: never what is to be seen
+  const ContactValues& values = here_.values();
+  const auto is_slow = [&](std::size_t i) {
+    return values.rate[i] > sizes_.rest_speed(i, values) && values.rate[i] <= slow * sizes_.fastest(i);
+  };
+  if (std::none_of(touching.begin(), touching.end(), is_slow)) return;
+  std::vector<Choice> list;
+  for (const std::size_t i : touching)
+    if (values.rate[i] <= slow * sizes_.fastest(i)) list.push_back(choices_.of_contact(i, values, *pending_));
+  std::vector<std::size_t> pressed;
+  // One that flies higher presses on nothing: the forces of the others are sought without it.
+  for (bool all_are_low = false; !all_are_low;) {
+    const auto problem = forces_.problem_of(list, values, bound);
+    const auto forces = problem ? contact_forces(*problem) : std::nullopt;
+    if (!forces) return;
+    pressed.clear();
+    std::vector<Choice> low;
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      const std::size_t i = list[k].contact;
+      const double falls = forces->normal[k] * dot(problem->contacts[k].normal, problem->response.col(at(k)));
+      const bool presses = forces->normal[k] > 0;
+      if (presses && is_slow(i) && values.rate[i] * values.rate[i] > 2 * falls * rest_unit * sizes_.widest(i)) continue;
+      low.push_back(list[k]);
+      if (presses) pressed.push_back(i);
+    }
+    all_are_low = low.size() == list.size();
+    list = std::move(low);
+  }
+  if (std::none_of(pressed.begin(), pressed.end(), is_slow)) return;
+  const Eigen::VectorXd v = Eigen::Map<const Eigen::VectorXd>(here_.v.data(), at(here_.v.size()));
+  ImpactResult closed = end_of_bounces(impact_problem(pressed, values), v);
+  if (pressed.size() < touching.size()) {  // what touches beside them is not pressed through
+    const ImpactResult all = simultaneous_impact(impact_problem(touching, values), closed.v, true);
+    if (!all.unsolved) {
+      closed.v = all.v;
+      closed.loss += all.loss, closed.moving += all.moving;
+    }
+  }
+  book_energy(closed);
+  here_.v.assign(closed.v.data(), closed.v.data() + closed.v.size());
 }
 
 }  // namespace maupertuis

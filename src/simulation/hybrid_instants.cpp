@@ -66,8 +66,6 @@ void HybridMotion::keep_instants() {
   motions_.tell_touches();
 }
 
-
-
 std::string HybridMotion::touch_sentence(std::size_t contact, double t) const {
   return fmt::format("The contact {} is only touched at t = {:.9g}: some neighbours hit it and others do not.",
                      problem_.system.contact_label(contact), t);

@@ -30,9 +30,12 @@ HybridMotion::HybridMotion(std::shared_ptr<ModeLibrary> library, std::vector<dou
       motions_(problem_, here_, slips_),
       choices_(problem_, sizes_, slips_),
       cones_(problem_, here_, sizes_, slips_, choices_),
-      space_(problem_, here_, sizes_, slips_, motions_, choices_, cones_, functions_, carried_) {
-  for (const ModelEvent& e : problem_.model.experiment.events) of_positions_.push_back(is_of_positions(e.function));
-}
+      space_(problem_, here_, sizes_, slips_, motions_, choices_, cones_, functions_, carried_),
+      events_(problem_, motions_),
+      undetermined_(problem_, here_, sizes_, motions_, cones_, choices_),
+      forces_(problem_, here_, motions_, choices_),
+      trials_(problem_, here_, sizes_, slips_, motions_, undetermined_, events_),
+      choice_(problem_, here_, sizes_, slips_, motions_, choices_, forces_, undetermined_, trials_, journal_) {}
 
 HybridMotion::~HybridMotion() = default;
 
@@ -56,18 +59,14 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
   slips_.start();
   space_.start();
   bounces_.assign(problem_.system.contacts.size(), {});
-  released_.assign(problem_.system.contacts.size(), false);
-  released_at_.assign(problem_.system.contacts.size(), std::numeric_limits<double>::quiet_NaN());
-  looks_at_forces_ = 0;
+  events_.start();
+  trials_.start();
+  choice_.start();
   settled_.reset();
   instant_.reset();
   started_ = false;
   late_by_ = longest_step_ = 0;
-  told_choice_ = false;
   step_start_.reset();
-  sets_that_follow_ = {};
-  sets_end_.reset();
-  event_sides_.assign(of_positions_.size(), 0);
   motions_.go_on_in(open_mode(problem_.system));
   motions_.stepper().start(here_.t, here_.q, here_.v, here_.t_rest);
   pending_ = std::make_unique<Met>();
@@ -78,12 +77,17 @@ void HybridMotion::start(double t, std::span<const double> q, std::span<const do
 }
 
 double HybridMotion::time() const { return motions_.stepper().time(); }
+
 bool HybridMotion::covers(double t) const { return motions_.stepper().covers(covered(t)); }
+
 double HybridMotion::covered(double t) const { return space_.moment().covered(t, motions_.stepper().step_start().t); }
 
 std::size_t HybridMotion::steps() const { return carried_.steps + motions_.stepper().steps(); }
+
 std::size_t HybridMotion::rejected() const { return carried_.rejected + motions_.stepper().rejected(); }
+
 std::size_t HybridMotion::switches() const { return carried_.switches + motions_.stepper().switches(); }
+
 double HybridMotion::constraint_residual() const {
   return std::max(carried_.residual, motions_.stepper().constraint_residual());
 }
@@ -149,9 +153,10 @@ Step HybridMotion::step(double bound) {
     if (auto failed = settle(bound)) return std::move(*failed);
     if (journal_.record().stopped_by) return stopped_here();
   }
-  if (sets_end_ && time() == sets_end_->t) return ended(StepEnding::Unending, sets_without_end());
+  if (events_.end_of_sets() && time() == events_.end_of_sets()->t)
+    return ended(StepEnding::Unending, events_.sets_without_end());
   const double end = motions_.now().given.end;
-  const double until = sets_end_ ? sets_end_->t : bound;
+  const double until = events_.end_of_sets() ? events_.end_of_sets()->t : bound;
   Step out = motions_.stepper().step(forwards_ ? std::min({until, end, slips_.latest_end(motions_.now())}) : until);
   if (out.end != out.begin) same_time_ = 0;
   longest_step_ = std::max(longest_step_, std::abs(out.end - out.begin));
@@ -170,8 +175,8 @@ Step HybridMotion::step(double bound) {
   }
   if (!out.events.empty()) classify(out);
   if (auto why = journal_.too_many(time(), bound)) return ended(StepEnding::Unending, std::move(*why));
-  if (sets_end_ && out.end == sets_end_->t && !pending_ && !out.event)
-    return ended(StepEnding::Unending, sets_without_end());
+  if (events_.end_of_sets() && out.end == events_.end_of_sets()->t && !pending_ && !out.event)
+    return ended(StepEnding::Unending, events_.sets_without_end());
   if (pending_) meet_together(bound);
   if (problem_.meets_late && pending_) late_by_ = std::max(hidden_by_rounding(bound), pending_->hidden_sets);
   if (!pending_ && (out.end >= end || slips_.outgrow_stops(motions_.now()))) pending_ = std::make_unique<Met>();
@@ -212,17 +217,11 @@ void HybridMotion::finish() {
 
 /// Events that hold as the motion begins are told, but do not act: it leaves them.
 void HybridMotion::tell_events_at_start(double bound) {
-  constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
-  const Outlook outlook = motions_.stepper().outlook(bound);
-  if (outlook.ending != StepEnding::None) return;
-  for (std::size_t k = 0; k < motions_.now().watches().size(); ++k) {
-    if (motions_.now().watches()[k].what != Watch::What::Event) continue;
-    const ModelEvent& event = problem_.model.experiment.events[motions_.now().watches()[k].index];
-    if (!(std::abs(outlook.values[k]) <= rounding * outlook.reach[k]) || outlook.sides[k] == 0) continue;
-    if (event.direction != 0 && outlook.sides[k] != event.direction * (forwards_ ? 1 : -1)) continue;
-    journal_.add(Happening::Kind::Event, event.name).mode = journal_.record().first_mode;
-    if (event.action != ModelEvent::Action::Record)
-      journal_.remark(fmt::format("The motion begins at the event `{}`, which acts when it is met again.", event.name));
+  for (const ModelEvent* const event : events_.at_start(bound, forwards_)) {
+    journal_.add(Happening::Kind::Event, event->name).mode = journal_.record().first_mode;
+    if (event->action != ModelEvent::Action::Record)
+      journal_.remark(
+          fmt::format("The motion begins at the event `{}`, which acts when it is met again.", event->name));
   }
 }
 
@@ -237,18 +236,6 @@ void HybridMotion::take_state() {
   constexpr double rounding = std::numeric_limits<double>::epsilon();
   for (std::vector<double>* const part : {&here_.q, &here_.v})
     for (double& x : *part) x *= 1 + rounding * share_of_rounding(problem_.options.moved_instants, x);
-}
-
-/// Where a contact opens since λ falls through 0 its gap begins as the third power of time: what rounding makes of its
-/// first two is no hit.
-bool HybridMotion::is_just_released(std::size_t contact) {
-  constexpr double short_way = 1e-6, slow = 1e-9;
-  const double since = std::abs(here_.t - released_at_[contact]);
-  if (!(since * sizes_.fastest(contact) <= short_way * sizes_.widest(contact))) return false;
-  const ContactValues& values = here_.values();
-  if (!(std::abs(values.rate[contact]) <= slow * sizes_.fastest(contact))) return false;
-  // Another change of contacts may have turned it back since.
-  return !presses_again(contact, motions_.stepper().sample(motions_.stepper().time()).a, located_force);
 }
 
 /// Whether the conditions of the mode hold as the next step begins.
@@ -313,15 +300,15 @@ void HybridMotion::classify(Step& step) {
     if (watch.what == Watch::What::Until) {
       step.event = 0;
     } else if (watch.what == Watch::What::Event) {
-      if (of_positions_[watch.index]) {
+      if (events_.are_of_positions(watch.index)) {
         if (is_now(root)) pending->at_zero.push_back(watch.index);
-        event_sides_[watch.index] = is_now(root) ? std::int8_t{0} : static_cast<std::int8_t>(root.direction);
+        events_.pass(watch.index, is_now(root) ? std::int8_t{0} : static_cast<std::int8_t>(root.direction));
       }
       meet_event(problem_.model.experiment.events[watch.index], root, *pending);
       if (journal_.record().stopped_by) step.event = 0;
     } else if (root.direction <= 0) {
       if (watch.what == Watch::What::Gap) {
-        if (is_just_released(watch.index)) continue;
+        if (trials_.is_just_released(watch.index)) continue;
         pending->hit.push_back(watch.index);
         pending->hidden = std::max(pending->hidden, hides_gap(watch.index, std::abs(step.end - step.begin)));
       } else
@@ -405,8 +392,8 @@ std::optional<Step> HybridMotion::settle(double bound) {
     return ended(StepEnding::Paradox, met_backwards);
   if (++same_time_ > most_at_once)
     return ended(StepEnding::Unending,
-                 sets_end_
-                     ? sets_without_end()
+                 events_.end_of_sets()
+                     ? events_.sets_without_end()
                      : fmt::format("{} changes follow each other at the same time without an end.", most_at_once));
   if (auto why = journal_.too_many(time(), bound)) return ended(StepEnding::Unending, std::move(*why));
   if (!pending_->begins) leave_mode();
@@ -428,31 +415,77 @@ std::optional<Step> HybridMotion::settle(double bound) {
   if (!pending_->begins) close_lowest_flights(touch, bound);
   if (!keeps_sticking(touch, reason)) return stopped(StepEnding::Paradox, reason);
   space_.come_to_rest(touch, bound, forwards_);
-  // Cones may have a solution that slides where others hold the rest.
-  const bool rests =
-      problem_.in_space && undetermined_rest(choices_.at(touch, here_.values(), *pending_), touch, bound);
-  if (!rests && !space_.choose_slips(touch, *pending_, bound, false)) return stopped(StepEnding::Paradox, no_cones);
-  bool gave_way = !motions_.now().given.is_preload || !problem_.in_space;  // a rest that was not determined
-  // Constraints of the mode to come may move the next contact through zero: that is hit at the same instant.
-  for (std::size_t turn = 0; !choose_mode(touch, bound, reason); ++turn) {
-    if (!met_ && !gave_way) {
-      gave_way = true;
-      if (!space_.choose_slips(touch, *pending_, bound, true)) return stopped(StepEnding::Paradox, no_cones);
-      continue;
-    }
-    if (!met_ || turn >= problem_.system.contacts.size()) return stopped(StepEnding::Paradox, reason);
-    touch.push_back(*met_);
-    if (!hit(touch, reason)) return stopped(StepEnding::Paradox, reason);
-  }
-  note_sets(bound);
-  if (const ModelEvent* const event = turned_unseen(bound))
-    return stopped(StepEnding::Unending, too_short_to_tell(*event));
+  if (!choose(touch, bound, reason)) return stopped(StepEnding::Paradox, reason);
+  events_.note_sets(*pending_, here_.t, bound, forwards_);
+  if (const ModelEvent* const event = events_.turned_unseen(*pending_, bound, forwards_))
+    return stopped(StepEnding::Unending, events_.too_short_to_tell(*event));
   note_rest_that_begins();
   if (pending_->begins) tell_events_at_start(bound);
   if (settled_) note_after(bound);
   journal_.note_errors(first, pending_->hidden);
   started_ = true;
   return meet_unseen(bound);
+}
+
+/// Events that rounding hides behind the instant that was settled are met here, to be settled next; one that has just
+/// set the state, and is met again in no time, follows itself without an end.
+std::optional<Step> HybridMotion::meet_unseen(double bound) {
+  const std::unique_ptr<Met> settled = std::move(pending_);
+  const Events::Unseen unseen = events_.unseen(*settled, here_.t, bound);
+  auto met = std::make_unique<Met>();
+  for (const auto& [number, root] : unseen.events) {
+    met->at_zero.push_back(number);
+    meet_event(problem_.model.experiment.events[number], root, *met);
+  }
+  if (unseen.follows_itself) return stopped(StepEnding::Unending, events_.too_short_to_tell(*unseen.follows_itself));
+  if (!met->sets.empty()) pending_ = std::move(met);
+  return std::nullopt;
+}
+
+/// The mode that follows, with what is hit on the way to it. False, and why, where there is none.
+bool HybridMotion::choose(std::vector<std::size_t>& touch, double bound, std::string& reason) {
+  const Instant at{*pending_, touch, bound, started_};
+  // Cones may have a solution that slides where others hold the rest.
+  const bool rests = problem_.in_space && choice_.rests_undetermined(at);
+  bool gave_way = !motions_.now().given.is_preload || !problem_.in_space;  // a rest that was not determined
+  if (!rests && !choose_slips(at, false, reason)) return false;
+  for (std::size_t turn = 0;; ++turn) {
+    const ModeChoice::Chosen chosen = choice_.choose(at);
+    if (chosen.is_interrupted) return true;
+    if (chosen.found) {
+      go_on_in(*chosen.found);
+      return true;
+    }
+    reason = chosen.reason;
+    const auto& moved = trials_.moved_through_zero();
+    if (!moved && !gave_way) {
+      gave_way = true;
+      if (!choose_slips(at, true, reason)) return false;
+      continue;
+    }
+    // Constraints of the mode to come may move the next contact through zero: that is hit at the same instant.
+    if (!moved || turn >= problem_.system.contacts.size()) return false;
+    touch.push_back(*moved);
+    if (!hit(touch, reason)) return false;
+  }
+}
+
+bool HybridMotion::choose_slips(const Instant& at, bool all_give_way, std::string& reason) {
+  if (space_.choose_slips(at.touching, at.met, at.bound, all_give_way)) return true;
+  reason = no_cones;
+  return false;
+}
+
+void HybridMotion::go_on_in(const Found& found) {
+  const bool rest_ends = motions_.now().given.is_preload && !found.given.is_preload && !pending_->changes_state();
+  const std::size_t first = journal_.size();
+  const ContactMode before = motions_.now().mode;
+  motions_.go_on_in(found.mode, found.given);
+  if (started_)
+    journal_.change_mode(before, found.mode, found.accelerations, end_of_bounces_);
+  else
+    journal_.begin_in(before, found.mode, found.accelerations);
+  if (rest_ends) journal_.note_end_of_rest(first);
 }
 
 /// What a step shows of the sizes of the motion.

@@ -1,4 +1,5 @@
-#include "simulation/hybrid_parts.hpp"
+#include "linear_algebra/combinations.hpp"
+#include "simulation/hybrid_modes.hpp"
 
 #include <fmt/format.h>
 
@@ -6,11 +7,11 @@
 #include <cmath>
 
 /// Why no mode fits at an instant.
-namespace maupertuis {
+namespace maupertuis::hybrid {
 
 /// A friction whose static limit has fallen below the kinetic one: what lets it go brakes it more than what held it.
-std::optional<std::string> HybridMotion::weaker_at_rest(const std::vector<Choice>& list,
-                                                        const ContactValues& values) const {
+std::optional<std::string> ModeChoice::weaker_at_rest(const std::vector<Choice>& list,
+                                                      const ContactValues& values) const {
   constexpr double rounding = 1e-12;
   for (const Choice& c : list) {
     const std::size_t i = c.contact;
@@ -24,22 +25,8 @@ std::optional<std::string> HybridMotion::weaker_at_rest(const std::vector<Choice
   return std::nullopt;
 }
 
-/// One sentence.
-std::string HybridMotion::why_none_fits(const std::vector<Choice>& list, const std::vector<std::size_t>& touching,
-                                        const ContactValues& values, bool were_many) {
-  if (list.empty() && !no_motion_.empty()) return no_motion_;
-  const bool rubs = std::any_of(list.begin(), list.end(), [](const Choice& c) { return c.options.size() > 2; }) ||
-                    std::any_of(touching.begin(), touching.end(),
-                                [&](std::size_t i) { return problem_.system.contacts[i].friction.present(); });
-  if (!rubs)
-    return were_many
-               ? fmt::format("None of the {} modes that were tried fits the contacts that touch here.", most_choices)
-               : "No forces keep all contacts that touch here from closing.";
-  if (auto weak = weaker_at_rest(list, values)) return *std::move(weak);
-  if (finds_no_directions_)
-    return "Slips in space begin here, and no directions were found along which all of them grow, as where a body "
-           "turns "
-           "about a foot whose friction is just at its limit.";
+/// Whether frictions at rest hold more than the rest needs.
+bool ModeChoice::is_shared(const std::vector<Choice>& list, const ContactValues& values) const {
   const auto is_at_rest = [&](std::size_t i) {
     const bool in_space = friction_of(problem_.system, i).in_space();
     return in_space ? slip_speed(i, values) <= slips_.stop_speed(i)
@@ -53,9 +40,40 @@ std::string HybridMotion::why_none_fits(const std::vector<Choice>& list, const s
     rest.friction[c.contact] = FrictionState::Stick;
     if (c.contact < rest.closed.size()) rest.closed[c.contact] = true;
   }
-  const bool is_shared =
-      std::any_of(resting.begin(), resting.end(), [&](std::size_t i) { return is_held(i, rest, values); });
-  if (is_shared)
+  return std::any_of(resting.begin(), resting.end(),
+                     [&](std::size_t i) { return undetermined_.is_held(i, rest, values); });
+}
+
+/// Whether in one of the modes that are possible more normal force makes a contact close faster.
+bool ModeChoice::may_be_painleve(const std::vector<Choice>& list, const ContactValues& values) const {
+  constexpr std::size_t most = 256;
+  std::vector<std::size_t> counts;
+  for (const Choice& c : list) counts.push_back(c.options.size());
+  Combinations tries(std::move(counts), most);
+  for (std::size_t turn = 0; turn < most; ++turn) {
+    const std::vector<std::size_t>* taken = tries.number(turn);
+    if (!taken) return false;
+    if (may_be_several(choices_.mode_of(list, *taken), values)) return true;
+  }
+  return false;
+}
+
+/// One sentence.
+std::string ModeChoice::why_none_fits(const std::vector<Choice>& list, const Instant& at, bool were_many) const {
+  if (list.empty() && !trials_.no_motion().empty()) return trials_.no_motion();
+  const ContactValues& values = here_.values();
+  const bool rubs = std::any_of(list.begin(), list.end(), [](const Choice& c) { return c.options.size() > 2; }) ||
+                    std::any_of(at.touching.begin(), at.touching.end(),
+                                [&](std::size_t i) { return problem_.system.contacts[i].friction.present(); });
+  if (!rubs)
+    return were_many
+               ? fmt::format("None of the {} modes that were tried fits the contacts that touch here.", most_choices)
+               : "No forces keep all contacts that touch here from closing.";
+  if (auto weak = weaker_at_rest(list, values)) return *std::move(weak);
+  if (finds_no_directions_)
+    return "Slips in space begin here, and no directions were found along which all of them grow, as where a body "
+           "turns about a foot whose friction is just at its limit.";
+  if (is_shared(list, values))
     return "Friction at several places holds more than the rest needs here, so that its forces are not determined "
            "(statically indeterminate), and none that keep the limits of friction were found.";
   return may_be_painleve(list, values)
@@ -64,4 +82,4 @@ std::string HybridMotion::why_none_fits(const std::vector<Choice>& list, const s
              : "No mode of the contacts and frictions that touch here keeps its own conditions, to rounding.";
 }
 
-}  // namespace maupertuis
+}  // namespace maupertuis::hybrid

@@ -1,13 +1,13 @@
+#include "simulation/hybrid_undetermined.hpp"
+
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include "linear_algebra/independent_rows.hpp"
 #include "simulation/contact/resting_forces.hpp"
-#include "simulation/hybrid_parts.hpp"
 #include "simulation/mode_remarks.hpp"
-/// Contacts whose forces the motion does not determine: which they are, and forces that hold a rest.
 
-namespace maupertuis {
+namespace maupertuis::hybrid {
 
 namespace {
 
@@ -23,8 +23,7 @@ bool are_dependent(const std::vector<SparseRow>& rows, std::size_t n, const std:
 
 }  // namespace
 
-/// Whether the others that are closed or stick leave a contact no slip.
-bool HybridMotion::is_held(std::size_t contact, const ContactMode& mode, const ContactValues& values) {
+bool UndeterminedForces::is_held(std::size_t contact, const ContactMode& mode, const ContactValues& values) const {
   constexpr double digits = 1e-12;
   const SparseRow& own = values.tangent[contact];
   std::vector<SparseRow> held;
@@ -39,14 +38,14 @@ bool HybridMotion::is_held(std::size_t contact, const ContactMode& mode, const C
 }
 
 /// Friction of a coordinate whose limit is known without the forces of constraints.
-bool HybridMotion::may_be_given(std::size_t friction) const {
+bool UndeterminedForces::may_be_given(std::size_t friction) const {
   return friction >= problem_.system.contacts.size() && !has_multipliers(friction_of(problem_.system, friction).normal);
 }
 
-std::size_t HybridMotion::most_that_hold() const { return problem_.in_space ? most_in_space : most_in_plane; }
+std::size_t UndeterminedForces::most_that_hold() const { return problem_.in_space ? most_in_space : most_in_plane; }
 
 /// Closed contacts, and frictions of coordinates that hold.
-std::size_t HybridMotion::number_that_hold(const ContactMode& mode) const {
+std::size_t UndeterminedForces::number_that_hold(const ContactMode& mode) const {
   auto out = static_cast<std::size_t>(std::count(mode.closed.begin(), mode.closed.end(), true));
   for (std::size_t i = mode.closed.size(); i < mode.friction.size(); ++i)
     out += mode.friction[i] == FrictionState::Stick && may_be_given(i);
@@ -54,7 +53,7 @@ std::size_t HybridMotion::number_that_hold(const ContactMode& mode) const {
 }
 
 /// The mode with its contacts open and without the frictions of coordinates that hold, which `holding` gets.
-ContactMode HybridMotion::mode_without_holding(const ContactMode& mode, std::vector<std::size_t>& holding) const {
+ContactMode UndeterminedForces::mode_without_holding(const ContactMode& mode, std::vector<std::size_t>& holding) const {
   ContactMode out = mode;
   std::fill(out.closed.begin(), out.closed.end(), false);
   for (std::size_t i = 0; i < out.friction.size(); ++i) {
@@ -68,8 +67,8 @@ ContactMode HybridMotion::mode_without_holding(const ContactMode& mode, std::vec
 /// Forces under which the closed contacts of a mode stay so, in the order of their multipliers in it: normal forces,
 /// then friction of those that rest, then forces of the system's own constraints. Those of contacts that slide are left
 /// to the constraints. Nothing where there are none within the limits of friction.
-std::optional<std::vector<double>> HybridMotion::forces_at_rest(const ContactMode& mode, const ContactValues& values,
-                                                                double bound) {
+std::optional<std::vector<double>> UndeterminedForces::forces_at_rest(const ContactMode& mode,
+                                                                      const ContactValues& values, double bound) {
   std::vector<std::size_t> holding;
   const ContactMode base = mode_without_holding(mode, holding);
   const auto outlook = motions_.outlook_in(base, bound);
@@ -88,8 +87,9 @@ std::optional<std::vector<double>> HybridMotion::forces_at_rest(const ContactMod
 
 /// As a mode is given them. `of_constraints`: without the forces that were found, those of frictions that hold beside
 /// them behind those of constraints.
-std::vector<double> HybridMotion::ordered_forces(const ContactMode& mode, const Cones& cones,
-                                                 const Eigen::VectorXd& found, std::vector<double> of_constraints) {
+std::vector<double> UndeterminedForces::ordered_forces(const ContactMode& mode, const Cones& cones,
+                                                       const Eigen::VectorXd& found,
+                                                       std::vector<double> of_constraints) const {
   Eigen::VectorXd work = Eigen::VectorXd::Zero(at(here_.q.size()));
   for (std::size_t k = 0; k < cones.forces.size(); ++k)
     for (const auto& [i, x] : cones.forces[k]) work(at(i)) += x * found(at(k));
@@ -110,7 +110,8 @@ std::vector<double> HybridMotion::ordered_forces(const ContactMode& mode, const 
 }
 
 /// Forces that hold the rest later, if it lasts until then.
-std::optional<std::vector<double>> HybridMotion::forces_later(const ContactMode& mode, double later, double bound) {
+std::optional<std::vector<double>> UndeterminedForces::forces_later(const ContactMode& mode, double later,
+                                                                    double bound) {
   const double t = here_.t, t_rest = here_.t_rest;
   const std::vector<double> q = here_.q;
   here_.t += later;
@@ -121,9 +122,8 @@ std::optional<std::vector<double>> HybridMotion::forces_later(const ContactMode&
   return out;
 }
 
-/// The time over which forces are found that hold the rest, `length` at most: its end to rounding where it comes
-/// earlier.
-double HybridMotion::rest_ahead(const ContactMode& mode, double length, double bound) {
+/// `length` at most: its end to rounding where it comes earlier.
+double UndeterminedForces::longest_rest(const ContactMode& mode, double length, double bound) {
   if (forces_later(mode, length, bound)) return length;
   constexpr int halvings = 45;
   double least = 0, most = length;
@@ -134,9 +134,8 @@ double HybridMotion::rest_ahead(const ContactMode& mode, double length, double b
   return least;
 }
 
-/// Forces that hold the rest now, and such as hold it `ahead`, with that power of time between them. Limits of friction
-/// are convex: where the forces of the system go with it too, their limits are kept all the way.
-std::optional<Given> HybridMotion::preload_through(const ContactMode& mode, double ahead, int power, double bound) {
+std::optional<Given> UndeterminedForces::preload_through(const ContactMode& mode, double ahead, int power,
+                                                         double bound) {
   const auto here = forces_later(mode, 0, bound), there = forces_later(mode, ahead, bound);
   if (!here || !there) return std::nullopt;
   Given out;
@@ -151,55 +150,8 @@ std::optional<Given> HybridMotion::preload_through(const ContactMode& mode, doub
   return out;
 }
 
-/// Contacts that hold each other where they rest (a ladder between rough walls, three rough feet), and frictions of
-/// coordinates that constraints tie together (two blocks on a rod), have forces that the equations do not determine:
-/// some that keep the limits of friction are given. False where the forces are determined,
-/// where none hold the rest, or where another condition of the mode is broken.
-bool HybridMotion::fits_by_given_forces(Found& found, const std::vector<std::size_t>& touching, double bound) {
-  const ContactMode& mode = found.mode;
-  const std::size_t holds = number_that_hold(mode);
-  const bool may_share = holds >= 2 || (holds == 1 && problem_.system.constrained());
-  if (!may_share || holds > most_that_hold() || !found.given.begins.empty()) return false;
-  const ContactValues values = here_.values();
-  if (!has_dependent_rows(mode, values)) return false;
-  const auto outlook = motions_.outlook_in(choices_.mode_without_contacts(values), bound);
-  if (!outlook || !forces_at_rest(mode, values, bound)) return false;
-  const double ahead = rest_ahead(mode, std::copysign(outlook->length, bound - here_.t), bound);
-  // A contact that presses by nothing yet has forces that begin with the power of time with which those of the system
-  // do.
-  for (int power = 1; power <= preload_degree; ++power) {
-    auto given = preload_through(mode, ahead, power, bound);
-    if (!given) return false;
-    found.given = std::move(*given);
-    if (fits(found, touching, bound, Leniency::None)) return true;
-  }
-  return false;
-}
-
-/// The mode in which all that may rest does, with forces that are given: before the least forces are tried, which may
-/// lie beyond the limits of friction though others do not. Of more contacts than forces are sought for, those that the
-/// forces of all point to.
-std::optional<HybridMotion::Found> HybridMotion::undetermined_rest(const std::vector<Choice>& list,
-                                                                   const std::vector<std::size_t>& touching,
-                                                                   double bound) {
-  std::vector<std::size_t> taken;
-  const bool are_many = list.size() > most_that_hold();
-  for (const Choice& c : list) {
-    const bool is_contact = c.contact < problem_.system.contacts.size();
-    const auto rests = std::find_if(c.options.begin(), c.options.end(), [&](const Choice::Option& o) {
-      return o.closed == is_contact &&
-             (o.state == FrictionState::Stick || (is_contact && o.state == FrictionState::None));
-    });
-    const bool may_stay = rests != c.options.end();  // others slide as they do
-    const bool stays = may_stay && (!are_many || c.options.front().closed == is_contact);
-    taken.push_back(stays ? static_cast<std::size_t>(rests - c.options.begin()) : 0);
-  }
-  Found out{choices_.mode_of(list, taken), {}, {}};
-  return fits_by_given_forces(out, touching, bound) ? std::optional(out) : std::nullopt;
-}
-
 /// ∂g/∂q of closed contacts with ∂v_t/∂q̇ of frictions that stick, beside the rows of constraints.
-bool HybridMotion::has_dependent_rows(const ContactMode& mode, const ContactValues& values) {
+bool UndeterminedForces::has_dependent_rows(const ContactMode& mode, const ContactValues& values) const {
   std::vector<SparseRow> rows;
   for (std::size_t i = 0; i < mode.friction.size(); ++i) {
     const bool is_contact = i < mode.closed.size();
@@ -212,10 +164,19 @@ bool HybridMotion::has_dependent_rows(const ContactMode& mode, const ContactValu
   return are_dependent(rows, here_.q.size(), here_.constraint_rows());
 }
 
-/// More contacts and frictions than the motion needs: their forces are not unique, and what friction makes of them is
-/// not either.
-void HybridMotion::note_indeterminate(const std::vector<Choice>& list, const ContactMode& mode,
-                                      const ContactValues& values) {
+std::optional<double> UndeterminedForces::rest_ahead(const ContactMode& mode, double bound) {
+  const std::size_t holds = number_that_hold(mode);
+  const bool may_share = holds >= 2 || (holds == 1 && problem_.system.constrained());
+  if (!may_share || holds > most_that_hold()) return std::nullopt;
+  const ContactValues values = here_.values();
+  if (!has_dependent_rows(mode, values)) return std::nullopt;
+  const auto outlook = motions_.outlook_in(choices_.mode_without_contacts(values), bound);
+  if (!outlook || !forces_at_rest(mode, values, bound)) return std::nullopt;
+  return longest_rest(mode, std::copysign(outlook->length, bound - here_.t), bound);
+}
+
+std::string UndeterminedForces::sentence(const std::vector<Choice>& list, const ContactMode& mode,
+                                         const ContactValues& values) const {
   std::vector<std::size_t> contacts, holding;  // that touch; all frictions that hold
   std::vector<SparseRow> normals;
   bool rubs = false;
@@ -229,21 +190,18 @@ void HybridMotion::note_indeterminate(const std::vector<Choice>& list, const Con
     rubs = rubs || (f.present() && !f.sticking);
   }
   const bool are_normals = contacts.size() > 1 && are_dependent(normals, here_.q.size(), here_.constraint_rows());
-  if (are_normals) {
-    journal_.remark(undetermined_contacts_sentence(problem_.labels_of(contacts), rubs));
-    return;
-  }
-  if (holding.empty() || !has_dependent_rows(mode, values)) return;
+  if (are_normals) return undetermined_contacts_sentence(problem_.labels_of(contacts), rubs);
+  if (holding.empty() || !has_dependent_rows(mode, values)) return {};
   std::sort(holding.begin(), holding.end());
   const bool are_contacts = holding.back() < values.gap.size();
-  journal_.remark(
-      fmt::format("Friction at {}{} holds more than the motion needs, so that it does not determine {} (statically "
-                  "indeterminate). One distribution within the limits of friction is shown.",
-                  !are_contacts          ? ""
-                  : contacts.size() == 1 ? "the contact "
-                                         : "the contacts ",
-                  list_of(problem_.labels_of(are_contacts ? contacts : holding)),
-                  holding.size() > 1 || are_contacts ? "their forces" : "its force"));
+  return fmt::format(
+      "Friction at {}{} holds more than the motion needs, so that it does not determine {} (statically "
+      "indeterminate). One distribution within the limits of friction is shown.",
+      !are_contacts          ? ""
+      : contacts.size() == 1 ? "the contact "
+                             : "the contacts ",
+      list_of(problem_.labels_of(are_contacts ? contacts : holding)),
+      holding.size() > 1 || are_contacts ? "their forces" : "its force");
 }
 
-}  // namespace maupertuis
+}  // namespace maupertuis::hybrid

@@ -1,14 +1,14 @@
+#include "simulation/hybrid_joint_forces.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include "simulation/contact/contact_forces.hpp"
-#include "simulation/hybrid_parts.hpp"
-/// Which of the modes that are possible the forces of all contacts together point to.
+#include "simulation/hybrid_cones.hpp"
 
-namespace maupertuis {
+namespace maupertuis::hybrid {
 
 namespace {
 
-constexpr double small = 1e-10;  // of the largest
+constexpr double negligible_force = 1e-10;  // of the largest
 
 ContactForceProblem::Contact contact_of(const ContactValues& values, std::span<const double> drifts,
                                         std::span<const double> accelerations, std::size_t i) {
@@ -30,9 +30,8 @@ void prefer(std::vector<Choice::Option>& options, bool closed, FrictionState sta
 
 }  // namespace
 
-/// The contacts of the list as they would move without their forces; nothing where that motion does not exist.
-std::optional<ContactForceProblem> HybridMotion::force_problem(const std::vector<Choice>& list,
-                                                               const ContactValues& values, double bound) {
+std::optional<ContactForceProblem> JointForces::problem_of(const std::vector<Choice>& list, const ContactValues& values,
+                                                           double bound) {
   const ContactMode base = choices_.mode_without_contacts(list);
   TaylorStepper& stepper = *motions_.in(base).stepper;
   stepper.start(here_.t, here_.q, here_.v, here_.t_rest);
@@ -108,21 +107,15 @@ std::optional<ContactForces> forces_that_hold(ContactForceProblem& problem, cons
 
 }  // namespace
 
-void HybridMotion::order_by_forces(std::vector<Choice>& list, const ContactValues& values, double bound) {
-  auto problem = force_problem(list, values, bound);
+bool JointForces::order(std::vector<Choice>& list, const ContactValues& values, double bound) {
+  auto problem = problem_of(list, values, bound);
   std::vector<double> kinetic;
   for (const Choice& c : list)
     if (c.contact < problem_.system.contacts.size())
       kinetic.push_back(problem_.system.contacts[c.contact].friction.sticking ? held_fast : values.kinetic[c.contact]);
   std::vector<std::size_t> left;
   const auto forces = problem ? forces_that_hold(*problem, kinetic, left) : std::nullopt;
-  if (!forces) return;
-  if (!left.empty()) {
-    told_choice_ = true;
-    journal_.remark(
-        "Static friction leaves a choice: where several contacts begin to slide at once, one of some can be held, and "
-        "the one that is written first is.");
-  }
+  if (!forces) return false;
   double largest = 0, fastest = 0;
   for (std::size_t k = 0; k < problem->contacts.size(); ++k) {
     largest = std::max(largest, forces->normal[k]);
@@ -132,60 +125,16 @@ void HybridMotion::order_by_forces(std::vector<Choice>& list, const ContactValue
   std::size_t k = 0;
   for (Choice& choice : list) {
     if (choice.contact >= problem_.system.contacts.size()) continue;
-    const bool presses = forces->normal[k] > small * largest;
+    const bool presses = forces->normal[k] > negligible_force * largest;
     prefer(choice.options, presses, forces->friction[k]);
-    if (!presses && forces->acceleration[k] <= small * fastest) open_to_doubt.push_back(choice.contact);
+    if (!presses && forces->acceleration[k] <= negligible_force * fastest) open_to_doubt.push_back(choice.contact);
     ++k;
   }
   // What is tried after the first guess begins with contacts that neither press nor open.
   std::stable_partition(list.begin(), list.end(), [&](const Choice& c) {
     return std::find(open_to_doubt.begin(), open_to_doubt.end(), c.contact) != open_to_doubt.end();
   });
+  return !left.empty();
 }
 
-/// A contact that opens so slowly that it would be pressed again before its gap can be told from zero is closed: its
-/// speed is taken out. v²/(2 |g̈|) is the height of such a flight, g̈ being what its own force takes back.
-void HybridMotion::close_lowest_flights(const std::vector<std::size_t>& touching, double bound) {
-  constexpr double slow = 1e-6;  // of the fastest so far: never what is to be seen
-  const ContactValues& values = here_.values();
-  const auto is_slow = [&](std::size_t i) {
-    return values.rate[i] > sizes_.rest_speed(i, values) && values.rate[i] <= slow * sizes_.fastest(i);
-  };
-  if (std::none_of(touching.begin(), touching.end(), is_slow)) return;
-  std::vector<Choice> list;
-  for (const std::size_t i : touching)
-    if (values.rate[i] <= slow * sizes_.fastest(i)) list.push_back(choices_.of_contact(i, values, *pending_));
-  std::vector<std::size_t> pressed;
-  // One that flies higher presses on nothing: the forces of the others are sought without it.
-  for (bool all_are_low = false; !all_are_low;) {
-    const auto problem = force_problem(list, values, bound);
-    const auto forces = problem ? contact_forces(*problem) : std::nullopt;
-    if (!forces) return;
-    pressed.clear();
-    std::vector<Choice> low;
-    for (std::size_t k = 0; k < list.size(); ++k) {
-      const std::size_t i = list[k].contact;
-      const double falls = forces->normal[k] * dot(problem->contacts[k].normal, problem->response.col(at(k)));
-      const bool presses = forces->normal[k] > 0;
-      if (presses && is_slow(i) && values.rate[i] * values.rate[i] > 2 * falls * rest_unit * sizes_.widest(i)) continue;
-      low.push_back(list[k]);
-      if (presses) pressed.push_back(i);
-    }
-    all_are_low = low.size() == list.size();
-    list = std::move(low);
-  }
-  if (std::none_of(pressed.begin(), pressed.end(), is_slow)) return;
-  const Eigen::VectorXd v = Eigen::Map<const Eigen::VectorXd>(here_.v.data(), at(here_.v.size()));
-  ImpactResult closed = end_of_bounces(impact_problem(pressed, values), v);
-  if (pressed.size() < touching.size()) {  // what touches beside them is not pressed through
-    const ImpactResult all = simultaneous_impact(impact_problem(touching, values), closed.v, true);
-    if (!all.unsolved) {
-      closed.v = all.v;
-      closed.loss += all.loss, closed.moving += all.moving;
-    }
-  }
-  book_energy(closed);
-  here_.v.assign(closed.v.data(), closed.v.data() + closed.v.size());
-}
-
-}  // namespace maupertuis
+}  // namespace maupertuis::hybrid

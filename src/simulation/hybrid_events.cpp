@@ -1,0 +1,125 @@
+#include "simulation/hybrid_events.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace maupertuis::hybrid {
+namespace {
+
+/// "The event `a` follows itself", "The events `a` and `b` follow each other".
+std::string names_of(const std::vector<ModelEvent>& events, std::vector<std::size_t> which) {
+  std::sort(which.begin(), which.end());
+  which.erase(std::unique(which.begin(), which.end()), which.end());
+  std::string out;
+  for (std::size_t k = 0; k < which.size(); ++k)
+    out += fmt::format("{}`{}`", k == 0 ? "" : k + 1 < which.size() ? ", " : " and ", events[which[k]].name);
+  return which.size() == 1 ? fmt::format("The event {} follows itself", out)
+                           : fmt::format("The events {} follow each other", out);
+}
+
+}  // namespace
+
+Events::Events(const Problem& problem, const ModeMotions& motions) : problem_(problem), motions_(motions) {
+  for (const ModelEvent& e : problem_.model.experiment.events) of_positions_.push_back(is_of_positions(e.function));
+}
+
+void Events::start() {
+  sets_that_follow_ = {};
+  sets_end_.reset();
+  sides_.assign(of_positions_.size(), 0);
+}
+
+std::size_t Events::number_of(const ModelEvent* event) const {
+  return static_cast<std::size_t>(event - problem_.model.experiment.events.data());
+}
+
+bool Events::is_hidden(std::size_t event, const Outlook& outlook, std::size_t watch) const {
+  constexpr double rounding = 1e-12;  // of its terms
+  const std::int8_t before = sides_[event];
+  return before != 0 && outlook.sides[watch] == -before &&
+         std::abs(outlook.values[watch]) <= rounding * outlook.reach[watch];
+}
+
+const ModelEvent* Events::turned_unseen(const Met& met, double bound, bool forwards) const {
+  if (met.sets.empty() || met.at_zero.empty()) return nullptr;
+  const Outlook outlook = motions_.stepper().outlook(bound);
+  if (outlook.ending != StepEnding::None) return nullptr;  // the next step says why it cannot be made
+  const std::vector<Watch>& watches = motions_.now().watches();
+  for (std::size_t k = 0; k < watches.size(); ++k) {
+    const auto& zeros = met.at_zero;
+    if (watches[k].what != Watch::What::Event || std::find(zeros.begin(), zeros.end(), watches[k].index) == zeros.end())
+      continue;
+    const ModelEvent* const event = &problem_.model.experiment.events[watches[k].index];
+    const auto at = std::find(met.sets.begin(), met.sets.end(), event);
+    if (at == met.sets.end()) continue;
+    const int way = met.ways[static_cast<std::size_t>(at - met.sets.begin())];
+    const bool turns = outlook.slopes[k] * (forwards ? way : -way) < 0;
+    if (turns && outlook.sides[k] != -way) return event;
+  }
+  return nullptr;
+}
+
+std::vector<const ModelEvent*> Events::at_start(double bound, bool forwards) const {
+  constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
+  std::vector<const ModelEvent*> out;
+  const Outlook outlook = motions_.stepper().outlook(bound);
+  if (outlook.ending != StepEnding::None) return out;
+  const std::vector<Watch>& watches = motions_.now().watches();
+  for (std::size_t k = 0; k < watches.size(); ++k) {
+    if (watches[k].what != Watch::What::Event) continue;
+    const ModelEvent& event = problem_.model.experiment.events[watches[k].index];
+    if (!(std::abs(outlook.values[k]) <= rounding * outlook.reach[k]) || outlook.sides[k] == 0) continue;
+    if (event.direction != 0 && outlook.sides[k] != event.direction * (forwards ? 1 : -1)) continue;
+    out.push_back(&event);
+  }
+  return out;
+}
+
+Events::Unseen Events::unseen(const Met& settled, double t, double bound) {
+  Unseen out;
+  if (std::none_of(of_positions_.begin(), of_positions_.end(), [](bool x) { return x; })) return out;
+  const Outlook outlook = motions_.stepper().outlook(bound);
+  if (outlook.ending != StepEnding::None) return out;  // the next step says why it cannot be made
+  const std::vector<Watch>& watches = motions_.now().watches();
+  for (std::size_t k = 0; k < watches.size(); ++k) {
+    const std::size_t number = watches[k].index;
+    if (watches[k].what != Watch::What::Event || !of_positions_[number]) continue;
+    const bool is_beyond = is_hidden(number, outlook, k);
+    const std::int8_t before = std::exchange(sides_[number], outlook.sides[k]);
+    if (!is_beyond) continue;
+    const ModelEvent& event = problem_.model.experiment.events[number];
+    if (std::find(settled.sets.begin(), settled.sets.end(), &event) != settled.sets.end()) {
+      out.follows_itself = &event;
+      return out;
+    }
+    sides_[number] = 0;
+    out.events.push_back({number, {k, -before, t}});
+  }
+  return out;
+}
+
+void Events::note_sets(const Met& met, double t, double bound, bool forwards) {
+  if (met.sets.empty()) return;
+  for (const ModelEvent* event : met.sets) sets_that_follow_.add(number_of(event), t);
+  const auto end = sets_that_follow_.end();  // none where they have become too short: the last one stands
+  if (end && (forwards ? end->t <= bound : end->t >= bound)) sets_end_ = end;
+}
+
+std::string Events::too_short_to_tell(const ModelEvent& event) const {
+  if (sets_end_) return sets_without_end();
+  return fmt::format(
+      "The event `{}` follows itself faster and faster: its returns accumulate here, and have become too short to be "
+      "told apart.",
+      event.name);
+}
+
+std::string Events::sets_without_end() const {
+  return fmt::format(
+      "{} faster and faster, infinitely often up to t = {:.12g}: `set` does not say what comes after it. A `contact` "
+      "with `restitution` in place of such an event does: bounces on it end at rest.",
+      names_of(problem_.model.experiment.events, sets_end_->kinds), sets_end_->t);
+}
+
+}  // namespace maupertuis::hybrid

@@ -1,0 +1,60 @@
+#pragma once
+#include "linear_algebra/accumulation.hpp"
+#include "simulation/hybrid_motions.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace maupertuis::hybrid {
+
+/// Events of the model that rounding hides: those whose sign has changed without a root that was told, and such as set
+/// the state faster and faster.
+class Events {
+ public:
+  Events(const Problem& problem, const ModeMotions& motions);
+  void start();
+
+  bool are_of_positions(std::size_t event) const { return of_positions_[event]; }
+  /// The motion passes an event on positions, on to this side; 0: it ends at its zero.
+  void pass(std::size_t event, std::int8_t side) { sides_[event] = side; }
+  /// Positions have been set.
+  void forget_sides() { sides_.assign(sides_.size(), 0); }
+  /// Whether the motion is beyond an event by no more than rounding, though no root was told. `watch`: of the outlook.
+  bool is_hidden(std::size_t event, const Outlook& outlook, std::size_t watch) const;
+
+  /// An event whose function turns round by what it sets, so slowly that the motion comes back to it before rounding
+  /// tells that it has left: it would be passed, and the bounces before it, shorter and shorter, accumulate here.
+  const ModelEvent* turned_unseen(const Met& met, double bound, bool forwards) const;
+  /// Events that hold as the motion begins, and leave their zero.
+  std::vector<const ModelEvent*> at_start(double bound, bool forwards) const;
+  /// Events on positions whose sign has changed at the instant that was settled though no root was told: so near to it
+  /// that rounding hides their own. The motion meets them here, to be settled next.
+  struct Unseen {
+    std::vector<std::pair<std::size_t, EventRoot>> events;
+    const ModelEvent* follows_itself = nullptr;  // it has just set the state, and is met again in no time
+  };
+  Unseen unseen(const Met& settled, double t, double bound);
+
+  /// Sets that follow each other in shorter and shorter cycles come to an end, beyond which no step goes.
+  void note_sets(const Met& met, double t, double bound, bool forwards);
+  const std::optional<Accumulation<double>::End>& end_of_sets() const { return sets_end_; }
+  /// One sentence on the end of sets that accumulate.
+  std::string sets_without_end() const;
+  /// One sentence on an event whose returns rounding hides.
+  std::string too_short_to_tell(const ModelEvent& event) const;
+
+ private:
+  std::size_t number_of(const ModelEvent* event) const;
+
+  const Problem& problem_;
+  const ModeMotions& motions_;
+  std::vector<bool> of_positions_;                     // [events]
+  std::vector<std::int8_t> sides_;                     // [events] of positions: where the motion is; 0: not known
+  Accumulation<double> sets_that_follow_;              // events that set the state
+  std::optional<Accumulation<double>::End> sets_end_;  // where these accumulate within the run
+};
+
+}  // namespace maupertuis::hybrid
