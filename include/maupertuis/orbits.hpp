@@ -171,9 +171,10 @@ struct LyapunovResult {
   std::size_t blocks = 0;
   Chaos chaos = Chaos::NotShown;
   double sum = 0;                      // of the exponents
-  std::optional<double> expected_sum;  // the mean divergence of the flow; all exponents asked for
-  // |sum − mean divergence| with the volumes of the directions at both ends taken into account, 1/s: rounding alone.
-  // There where expected_sum is.
+  // The mean divergence of the flow in (q, q̇), from that in (q, p) and the volumes that the directions at both ends
+  // have there; all exponents asked for.
+  std::optional<double> expected_sum;
+  // |sum − mean divergence|, 1/s: rounding alone. There where expected_sum is.
   std::optional<double> sum_rule_residual;
   /// Dimension of the attractor, where all exponents are there, their sum is negative for certain, and none that it
   /// rests on may be 0 within its error but the one that is 0 along a motion without a drive, and is taken as that.

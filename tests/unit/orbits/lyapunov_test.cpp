@@ -27,6 +27,25 @@ TEST_CASE("damping: both exponents are −c/2, their sum is the divergence") {
   CHECK_FALSE(r.kaplan_yorke.value_or(0) > 1);
 }
 
+TEST_CASE("where t stands in M the sum is the divergence in q and q', not the one in q and p") {
+  const auto check_sum = [](const std::string& text, double divergence) {
+    CAPTURE(text);
+    const LyapunovResult r =
+        lyapunov_of(ModelText("dimensionless\ncoord x : number\n" + text + "start x = 1\nrun 40\n"));
+    REQUIRE(r.expected_sum);
+    CHECK(r.sum == doctest::Approx(divergence).epsilon(1e-10));
+    CHECK(*r.expected_sum == doctest::Approx(divergence).epsilon(1e-10));
+    CHECK(*r.sum_rule_residual < 1e-12);
+    CHECK(r.kaplan_yorke.value_or(1) == 0);  // everything comes to x = x' = 0
+  };
+  check_sum("L = exp(0.5 t) (1/2 x'^2 - x^2)\n", -0.5);  // x'' + x'/2 + 2 x = 0
+  // Of X = x e^{t/5} there is no friction, and x shrinks beside it: X and X' keep their volume, (x, x') is e^{−2t/5} of
+  // it.
+  check_sum("let X = x exp(0.2 t)\nT = 1/2 X'^2\nV = X^2\n", -0.4);
+  // The volume in p = x' e^{−t} shrinks by friction alone, that in x' by what is left of it: x'' + x' + x = 0.
+  check_sum("L = exp(-t) (1/2 x'^2 - 1/2 x^2)\nD = exp(-t) x'^2\n", -1);
+}
+
 TEST_CASE("Hénon-Heiles at E = 1/6: pairs ±λ, two zeros, sum zero") {
   const LyapunovResult r =
       lyapunov_of(ModelText("system hh\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n"
