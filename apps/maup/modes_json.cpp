@@ -115,6 +115,7 @@ Json in_rates_json(const MechanicalSystem& system, const LinearizationInRates& r
 const char* verdict_word(Stability s) {
   switch (s) {
     case Stability::Energetic:
+    case Stability::Linear:
       return "stable";
     case Stability::Asymptotic:
       return "asymptotically stable";

@@ -27,6 +27,7 @@ struct Mode {
 
 enum class Stability {
   Energetic,   // stable: the energy, or the effective potential, has a strict minimum (Lagrange-Dirichlet, Routh)
+  Linear,      // stable: the equations are linear, the eigenvalues on the imaginary axis, without Jordan chains
   Asymptotic,  // asymptotically stable: all eigenvalues have negative real parts, but those of symmetries
   Unstable,    // an eigenvalue has a positive real part
   Undecided,   // the linearization does not decide

@@ -293,7 +293,7 @@ void add_modes(ReportContent& content, const Model& model, const EquationsOfMoti
     point.name = with_minus_signs(point_text(system, entry.equilibrium, study.translations)) +
                  (entry.side.empty() ? "" : ", on the side " + with_minus_signs(entry.side));
     point.stability = fmt::format("{}: {}", stability_word(s.verdict), s.reason);
-    point.stable = s.verdict == Stability::Energetic || s.verdict == Stability::Asymptotic;
+    point.stable = s.verdict != Stability::Unstable && s.verdict != Stability::Undecided;
     if (!entry.analysis.modes.empty()) {  // frozen coefficients of a driven system are not shown
       const auto symbolic = entry.side.empty()
                                 ? symbolic_linearization(equations, entry.linearization, study.translations)

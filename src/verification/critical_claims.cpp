@@ -139,7 +139,7 @@ class Critical {
     if (!study || study->entries.empty() || !study->kinks.empty()) return false;
     return std::all_of(study->entries.begin(), study->entries.end(), [&](const ModalEntry& entry) {
       const Stability verdict = entry.analysis.stability.verdict;
-      const bool stable = verdict == Stability::Energetic || verdict == Stability::Asymptotic;
+      const bool stable = verdict != Stability::Unstable && verdict != Stability::Undecided;
       return e_.stable ? stable : verdict == Stability::Unstable;
     });
   }

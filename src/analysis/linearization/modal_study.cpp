@@ -354,6 +354,7 @@ std::optional<ModalStudy> modal_study_of(const PointEquations& equations, const 
 std::string_view stability_word(Stability verdict) {
   switch (verdict) {
     case Stability::Energetic:
+    case Stability::Linear:
       return "stable";
     case Stability::Asymptotic:
       return "asymptotically stable";

@@ -2,6 +2,7 @@
 
 #include "analysis/linearization/dense.hpp"
 #include "analysis/linearization/folds.hpp"
+#include "analysis/linearization/linear_motion.hpp"
 #include "analysis/linearization/point_equations.hpp"
 #include "linear_algebra/products.hpp"
 
@@ -97,6 +98,12 @@ struct Verdicts {
            hessian[along] > 1e3 * none * size;
   }
 
+  /// Of a linear system nothing of higher order is left: its eigenvalues decide, with their chains.
+  bool is_linear_and_bounded() const {
+    return zeros() <= explained_zeros() && oscillates_for_certain(linearization, modes.modes) &&
+           is_linear(equations.impl());
+  }
+
   /// 1: h_E, which a Lagrangian of the first order keeps, has a strict minimum here; −1: a strict maximum; 0: neither
   /// is known. Motions near it stay on levels of h_E that close around it (Dirichlet).
   int extremum_of_kept_energy() const {
@@ -187,6 +194,12 @@ StabilityReport judge_stability(const PointEquations& equations, const Lineariza
   } else if (const int extremum = v.extremum_of_kept_energy(); extremum != 0) {
     out.verdict = Stability::Energetic;
     out.reason = fmt::format("h_E is conserved and has a strict {} here", extremum > 0 ? "minimum" : "maximum");
+  } else if (v.is_linear_and_bounded()) {
+    out.verdict = Stability::Linear;
+    out.reason = fmt::format(
+        "the equations are linear, and all {}eigenvalues are on the imaginary axis, each simple or "
+        "of modes with energies of one sign{}",
+        v.zeros() > 0 ? "other " : "", up_to_translations(translations));
   } else if (has_hessian && (hessian.values.array() < -none.array()).any()) {
     out.reason = fmt::format(
         "no eigenvalue has a positive real part, but the Hessian of the {} is not positive: gyroscopic forces hold it",

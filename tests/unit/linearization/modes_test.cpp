@@ -230,3 +230,30 @@ TEST_CASE("Where the stiffness grows without bound there is no linearization") {
     CHECK(render(m.diagnostics, m.source).empty());
   }
 }
+
+TEST_CASE("a linear system that gyroscopic forces hold is decided by its eigenvalues") {
+  const auto verdict = [](const std::string& text) {
+    Linearized m("dimensionless\n" + text);
+    return m.study().entries.front().analysis.stability.verdict;
+  };
+  const auto penning = [&](const std::string& field) {
+    return verdict("param B = " + field + ", w = 1\ncoord x, y, z : number\nT = 1/2 (x'^2 + y'^2 + z'^2)\n" +
+                   "V = 1/2 w^2 (z^2 - x^2/2 - y^2/2)\nU = -B/2 (x y' - y x')\n");
+  };
+  CHECK(penning("3") == Stability::Linear);  // B² > 2 w²
+  CHECK(penning("1.41421") == Stability::Unstable);
+  CHECK(penning("1.4142135623730951") == Stability::Undecided);  // both frequencies meet
+  // The same from forces instead of L, and in coordinates that a linear constraint ties.
+  CHECK(verdict("coord x, y : number\nL = 1/2 (x'^2 + y'^2) + 1/4 (x^2 + y^2)\nforce x = 3 y'\nforce y = -3 x'\n") ==
+        Stability::Linear);
+  CHECK(verdict("coord x, y, z : number\nL = 1/2 (x'^2 + y'^2) + 1/4 (x^2 + y^2) + 3 x y'\n"
+                "constraint z = x + 2 y\n") == Stability::Linear);
+  // Beside the linear terms others: that is not said then.
+  CHECK(verdict("coord x, y : number\nL = 1/2 (x'^2 + y'^2) + 1/4 (x^2 + y^2) + 3 x y' - x^4\n") ==
+        Stability::Undecided);
+  // Two pairs with the same frequencies: their energies have the same sign at each, and no chain is possible.
+  CHECK(verdict("coord x, y, u, v : number\nL = 1/2 (x'^2 + y'^2 + u'^2 + v'^2) + 1/4 (x^2 + y^2 + u^2 + v^2) + 3 x y'"
+                " + 3 u v'\n") == Stability::Linear);
+  // Energies of both signs at one frequency: rounding does not tell a chain from none.
+  CHECK(verdict("coord x, y : number\nL = 1/2 (x'^2 - x^2) - 1/2 (y'^2 - y^2)\n") == Stability::Undecided);
+}
