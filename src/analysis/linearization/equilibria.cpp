@@ -1,4 +1,5 @@
 #include "analysis/linearization/families.hpp"
+#include "analysis/linearization/second_names.hpp"
 #include "analysis/linearization/steady_state.hpp"
 
 #include <maupertuis/arguments.hpp>
@@ -32,9 +33,11 @@ class Search {
         search_(search),
         sizes_(typical_sizes(equations.system(), search.start)),
         translations_(equations.translations(preferred())),
+        second_names_(e_, translations_),
         families_(e_, sizes_) {}
 
   EquilibriumSearchResult all() {
+    names_as_found_ = false;
     EquilibriumSearchResult result;
     const std::vector<OperatingPoint> starts = starting_points();
     result.starts = starts.size();
@@ -183,6 +186,7 @@ class Search {
       auto solution = system.solve(from);
       if (!solution) continue;
       settle(*solution, system);
+      if (!names_as_found_) solution->point = second_names_.first_name(solution->point);
       if (search_.fixed.any()) find_all_ways(*solution, at_rest);
       if (!balances(solution->point, system)) continue;
       if (!at_rest && is_at_rest(solution->point)) continue;
@@ -320,6 +324,8 @@ class Search {
   const EquilibriumSearch& search_;
   std::vector<double> sizes_;
   std::vector<Translation> translations_;
+  SecondNames second_names_;
+  bool names_as_found_ = true;      // of a point that was asked for
   std::vector<Equilibrium> found_;  // those that stand alone
   Families families_;
 };

@@ -11,20 +11,6 @@
 namespace maupertuis {
 namespace {
 
-Bindings values_at(const PointEquations::Impl& e, const OperatingPoint& point) {
-  Bindings out;
-  for (std::size_t i = 0; i < e.system->parameters.size(); ++i) out[e.system->parameters[i].symbol] = e.parameters[i];
-  for (std::size_t i = 0; i < e.n; ++i) {
-    const Coordinate& c = e.system->coordinates[i];
-    out[c.q] = point.q[i], out[c.velocity] = point.v[i], out[c.acceleration] = point.a[i];
-  }
-  out[e.system->context->time()] = point.t;
-  for (std::size_t i = 0; i < e.system->inputs.size(); ++i) out[e.system->inputs[i].symbol] = point.inputs[i];
-  for (std::size_t i = 0; i < point.multipliers.size(); ++i)
-    out[e.system->constraints[i].multiplier] = point.multipliers[i];
-  return out;
-}
-
 /// What rounding of their terms may leave of the forces along a direction; 0 where the rows hold something else.
 double rounding_along(const PointEquations::Impl& e, const OperatingPoint& rest, const Vector& direction) {
   constexpr double operations = 8;

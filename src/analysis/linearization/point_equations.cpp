@@ -250,6 +250,20 @@ std::vector<double> PointEquations::Impl::inputs_and_rates_at(double t) {
   return out;
 }
 
+Bindings values_at(const PointEquations::Impl& e, const OperatingPoint& point) {
+  Bindings out;
+  for (std::size_t i = 0; i < e.system->parameters.size(); ++i) out[e.system->parameters[i].symbol] = e.parameters[i];
+  for (std::size_t i = 0; i < e.n; ++i) {
+    const Coordinate& c = e.system->coordinates[i];
+    out[c.q] = point.q[i], out[c.velocity] = point.v[i], out[c.acceleration] = point.a[i];
+  }
+  out[e.system->context->time()] = point.t;
+  for (std::size_t i = 0; i < e.system->inputs.size(); ++i) out[e.system->inputs[i].symbol] = point.inputs[i];
+  for (std::size_t i = 0; i < point.multipliers.size(); ++i)
+    out[e.system->constraints[i].multiplier] = point.multipliers[i];
+  return out;
+}
+
 OperatingPoint random_point(const PointEquations::Impl& e, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto numbers = [&](std::size_t count, double size) {

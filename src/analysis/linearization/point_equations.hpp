@@ -1,6 +1,7 @@
 #pragma once
 #include "analysis/linearization/matrices.hpp"
 
+#include <maupertuis/evaluate.hpp>
 #include <maupertuis/function_kernel.hpp>
 
 namespace maupertuis {
@@ -60,6 +61,9 @@ struct PointEquations::Impl {
  private:
   std::vector<double> gather(const OperatingPoint& point) const;
 };
+
+/// Every symbol that the rows of the equations hold, with its value there.
+Bindings values_at(const PointEquations::Impl& e, const OperatingPoint& point);
 
 /// A random point of moderate size: for ranks and periods.
 OperatingPoint random_point(const PointEquations::Impl& e, std::uint64_t seed);

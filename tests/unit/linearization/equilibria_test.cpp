@@ -447,3 +447,42 @@ TEST_CASE("where coordinates fail but for rounding there is no linearization") {
   for (const Mode& mode : study.entries.front().analysis.modes)
     CHECK(std::abs(mode.eigenvalue.imag()) == doctest::Approx(std::sqrt(9.81)).epsilon(1e-12));
 }
+
+TEST_CASE("a place of polar or spherical coordinates that has two names is told once, by the positive one") {
+  const auto told = [](const std::string& text) {
+    Linearized m("dimensionless\n" + text);
+    std::vector<std::vector<double>> out;
+    for (const ModalEntry& e : m.study().entries) out.push_back(e.equilibrium.point.q);
+    return out;
+  };
+  const std::string plane = "coord r : number, φ : angle\n", start = "start r = 1, φ' = 0.7\n";
+  const auto circle = told(plane + "L = 1/2 (r'^2 + r^2 φ'^2) - 1/2 r^2\n" + start);
+  REQUIRE(circle.size() == 1);
+  CHECK(near(circle[0][0], std::sqrt(0.7), 1e-12));  // r⁴ = (r² φ')²
+  CHECK(told(plane + "point P mass 1 at (r cos φ, r sin φ)\nV = 1/2 r^2\n" + start).size() == 1);
+  const auto sphere = told(
+      "coord r : number, θ, φ : angle\n"
+      "L = 1/2 (r'^2 + r^2 θ'^2 + r^2 sin^2 θ φ'^2) - 1/2 r^2\nstart r = 1, θ = pi/2, φ' = 0.7\n");
+  REQUIRE(sphere.size() == 1);
+  CHECK(sphere[0][0] > 0);
+  CHECK(near(sphere[0][1], std::acos(0.0), 1e-12));
+  CHECK(told("coord θ, φ : angle\nL = 1/2 (θ'^2 + sin^2 θ φ'^2) + cos θ\nstart θ = 1, φ' = 2\n").size() == 1);
+  // Around two centres the radii are two coordinates, of which each has a second name.
+  CHECK(told("coord r, s : number, φ, ψ : angle\nL = 1/2 (r'^2 + r^2 φ'^2 + s'^2 + s^2 ψ'^2) - 1/2 (r^2 + 2 s^2)\n"
+             "start r = 1, s = 1, φ' = 0.7, ψ' = 0.3\n")
+            .size() == 1);
+}
+
+TEST_CASE("mirror images that are other motions are told both") {
+  const auto count = [](const std::string& text) {
+    return Linearized("dimensionless\n" + text).study().entries.size();
+  };
+  CHECK(count("coord x : number\nL = 1/2 x'^2 - 1/4 (x^2 - 1)^2\nstart x = 1\n") == 3);
+  // Both halves of a double cone, by the place and by the length of r.
+  CHECK(count("coord r : number, φ : angle\npoint P mass 1 at (r cos φ, r sin φ, r)\nV = 1/2 r^2\n"
+              "start r = 1, φ' = 0.7\n") == 2);
+  CHECK(count("coord r : number, φ : angle\nL = 1/2 (2 r'^2 + r^2 φ'^2) - 1/2 r^2\nstart r = 1, φ' = 0.7\n") == 2);
+  // z = r³: as in a plane at r = 0, and yet another place.
+  CHECK(count("coord r : number, φ : angle\npoint P mass 1 at (r cos φ, r sin φ, r^3)\nV = 1/2 r^2\n"
+              "start r = 1, φ' = 0.7\n") == 2);
+}
