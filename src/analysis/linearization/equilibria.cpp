@@ -183,12 +183,12 @@ class Search {
     const SteadyState system = equations_of(at_rest);
     for (OperatingPoint from : starts) {
       if (at_rest) std::fill(from.v.begin(), from.v.end(), 0);
-      auto solution = system.solve(from);
+      auto solution = system.solve(from, !search_.fixed.any());  // values that are given are rounded
       if (!solution) continue;
       settle(*solution, system);
       if (!names_as_found_) solution->point = second_names_.first_name(solution->point);
       if (search_.fixed.any()) find_all_ways(*solution, at_rest);
-      if (!balances(solution->point, system)) continue;
+      if (!balances(*solution, system)) continue;
       if (!at_rest && is_at_rest(solution->point)) continue;
       if (!holds_for_all_times(solution->point)) continue;
       keep({solution->point, at_rest, solution->residual, solution->family, solution->along, false, {}}, system);
@@ -233,10 +233,10 @@ class Search {
 
   /// The forces balance at the very point that is told, whose angles may have been taken back by many turns; and with
   /// q̇ = 0 put into R as a number, since x'/|x'| has no value there.
-  bool balances(const OperatingPoint& point, const SteadyState& system) const {
+  bool balances(const SteadyState::Solution& solution, const SteadyState& system) const {
     constexpr double balanced = 1e-9;
-    OperatingPoint told = point;
-    return system.residual_at(told) <= balanced && e_.value(e_.balance, told).allFinite();
+    OperatingPoint told = solution.point;
+    return (solution.proved || system.residual_at(told) <= balanced) && e_.value(e_.balance, told).allFinite();
   }
 
   /// Where t stands in the equations, they must hold whatever t is.
@@ -259,9 +259,12 @@ class Search {
   }
 
   std::vector<Equilibrium> all_found() const {
-    std::vector<Equilibrium> out = found_;
-    const std::vector<Equilibrium> families = families_.representatives(model_start());
-    out.insert(out.end(), families.begin(), families.end());
+    std::vector<Equilibrium> out = families_.representatives(model_start());
+    const auto families = static_cast<std::ptrdiff_t>(out.size());
+    for (const Equilibrium& x : found_)  // unless it is the member that is told, where families cross
+      if (std::none_of(out.begin(), out.begin() + families,
+                       [&](const Equilibrium& y) { return distance(e_, sizes_, x.point, y.point) < same; }))
+        out.push_back(x);
     return out;
   }
 

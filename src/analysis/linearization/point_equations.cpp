@@ -104,6 +104,13 @@ ExprVector kept_relations(const EquationsOfMotion& equations) {
   return out;
 }
 
+ExprVector kept_in_rest(const EquationsOfMotion& equations) {
+  ExprVector out = chosen(equations, Constraint::Level::Position, false);
+  for (const ExprVector& more : {chosen(equations, Constraint::Level::Velocity, true), kept_relations(equations)})
+    out.insert(out.end(), more.begin(), more.end());
+  return out;
+}
+
 bool switches_within(Expr e) {
   const ExprVector nodes = topological_order({&e, 1});
   return std::any_of(nodes.begin(), nodes.end(), [](const Expr& node) { return has_switch(node.kind()); });
@@ -149,6 +156,8 @@ PointEquations::Impl::Impl(const EquationsOfMotion& equations, std::span<const E
     : system(equations.system),
       balance_rows(Lowering(equations).plain(equations.balance())),
       measured(measured.begin(), measured.end()),
+      kept_rows(Lowering(equations).plain(kept_in_rest(equations))),
+      momentum_rows(Lowering(equations).plain(equations.momenta)),
       n(system->coordinates.size()),
       m(system->constraints.size()),
       k(system->inputs.size()),

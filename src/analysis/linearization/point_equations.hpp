@@ -38,8 +38,9 @@ struct PointEquations::Impl {
   void set_parameters();
 
   std::shared_ptr<const MechanicalSystem> system;
-  ExprVector balance_rows, measured;  // as expressions: for what a kernel cannot tell
-  std::size_t n, m, k, holonomic;     // holonomic: how many of the m are of positions
+  ExprVector balance_rows, measured;    // as expressions: for what a kernel cannot tell
+  ExprVector kept_rows, momentum_rows;  // positions, velocities, relations; momenta
+  std::size_t n, m, k, holonomic;       // holonomic: how many of the m are of positions
   std::vector<double> parameters;
   std::vector<std::size_t> position_rows;                       // which constraints those are
   Rows balance, positions, velocities, accelerations, momenta;  // [n], [holonomic], [m - holonomic], [m], [n]

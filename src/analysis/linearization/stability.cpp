@@ -63,13 +63,14 @@ struct Verdicts {
   /// beyond it. What vanishes to rounding anyway is judged elsewhere.
   bool has_certain_signs(const SymmetricEigen& hessian) const {
     constexpr double soft = 1e-4;  // of the largest
-    if (!equilibrium.at_rest || equilibrium.family > 0 || hessian.values.size() == 0) return true;
+    const auto across = static_cast<Index>(equilibrium.family);  // along the family they vanish
+    if (!equilibrium.at_rest || hessian.values.size() <= across) return true;
     const double largest = hessian.values.cwiseAbs().maxCoeff();
     const Vector none = hessian_tolerances(hessian);
     bool certain = true;
-    for (Index i = 0; i < hessian.values.size(); ++i) {
+    for (Index i = across; i < hessian.values.size(); ++i) {
       const double value = hessian.values[i];
-      if (i > 0 && std::abs(value) > soft * largest) continue;
+      if (i > across && std::abs(value) > soft * largest) continue;
       if (std::abs(value) <= none[i]) continue;
       const Vector direction =
           product(to_eigen(linearization.positions), product(form.to_independent, hessian.vectors.col(i)));

@@ -1,12 +1,15 @@
 #include "analysis/linearization/steady_state.hpp"
 
 #include <maupertuis/interrupt_scope.hpp>
+#include <maupertuis/size_of_terms.hpp>
+#include <maupertuis/transform.hpp>
 
 #include "analysis/linearization/dense.hpp"
 #include "linear_algebra/products.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace maupertuis {
 namespace {
@@ -221,12 +224,94 @@ std::optional<OperatingPoint> SteadyState::step_towards(const OperatingPoint& so
   return out;
 }
 
+/// Of unknowns with so many the derivatives as formulas are long, and no family is told.
+constexpr std::size_t most_precise = 40;
+
+/// Rows in the unknowns, with the parameters' exact values: M = m/3 is that, and no rounding of it leaves a force.
+const PreciseRoots& SteadyState::precise() const {
+  if (precise_) return *precise_;
+  ExprMap values;
+  ExprVector rows = e_.balance_rows, of;
+  rows.insert(rows.end(), e_.kept_rows.begin(), e_.kept_rows.end());
+  Context& context = *e_.system->context;
+  const auto number = [&](double x) { return context.number(Rational::from_double(x)); };
+  for (std::size_t i = 0; i < e_.system->parameters.size(); ++i) {
+    const Parameter& p = e_.system->parameters[i];
+    values.emplace(p.symbol, p.value && p.si_value == e_.parameters[i] ? p.value : number(e_.parameters[i]));
+  }
+  ExprVector velocities(e_.n, context.number(0));
+  for (const Translation& t : translations_)
+    for (std::size_t i = 0; i < e_.n; ++i)
+      velocities[i] = velocities[i] + number(t.direction[i]) * e_.system->coordinates[t.pivot].velocity;
+  for (std::size_t i = 0; i < e_.n; ++i) {
+    values.emplace(e_.system->coordinates[i].velocity, velocities[i]);
+    values.emplace(e_.system->coordinates[i].acceleration, context.number(0));
+  }
+  for (const std::size_t k : kept_momenta_) {
+    Expr row = -number(momenta_[k]);
+    for (std::size_t i = 0; i < e_.n; ++i) row = row + number(translations_[k].direction[i]) * e_.momentum_rows[i];
+    rows.push_back(row);
+  }
+  for (const std::size_t i : free_q_) of.push_back(e_.system->coordinates[i].q);
+  for (const std::size_t k : free_rates_) of.push_back(e_.system->coordinates[translations_[k].pivot].velocity);
+  for (const Constraint& c : e_.system->constraints) of.push_back(c.multiplier);
+  precise_ = std::make_unique<PreciseRoots>(substitute(rows, values), of);
+  return *precise_;
+}
+
+/// The same to 100 digits, rounded; nothing where there is no root next to it.
+std::optional<SteadyState::Solution> SteadyState::proved(const Solution& solution) const {
+  constexpr double farthest = 0.03;  // of sizes: a root of order 12 is known that well in double
+  std::vector<double> sizes;
+  for (const std::size_t i : free_q_) sizes.push_back(sizes_[i]);
+  for (const std::size_t k : free_rates_)
+    sizes.push_back(std::max(sizes_[translations_[k].pivot], std::abs(solution.point.v[translations_[k].pivot])));
+  sizes.resize(sizes.size() + e_.m, 0);
+  const auto root = precise().near(values_at(e_, solution.point), sizes, farthest);
+  if (!root) return std::nullopt;
+  Solution out = solution;
+  place(to_eigen(*root), out.point);
+  out.residual = 0;
+  out.proved = true;
+  return out;
+}
+
+/// Where rows pass as rounding of other works, or rounding of their own terms leaves the place open.
+bool SteadyState::is_doubtful(const Solution& solution) const {
+  constexpr double known = 1e-9, operations = 8 * std::numeric_limits<double>::epsilon();
+  const Vector z = unknowns(solution.point);
+  const System s = system_at(solution.point);
+  const auto forces = static_cast<Index>(e_.n);
+  for (Index i = 0; i < forces; ++i) {
+    const double scale = scale_of(s, z, i);
+    if (scale > 0 && std::abs(s.f[i]) > arrived * scale) return true;
+  }
+  if (!terms_) {
+    ExprVector sizes;
+    for (const Expr& row : e_.balance_rows) sizes.push_back(size_of_terms(row));
+    terms_ = std::make_unique<RepeatedEvaluation>(sizes);
+  }
+  const Bindings at = values_at(e_, solution.point);
+  const std::vector<double> terms = (*terms_)([&](Expr symbol) {
+    const auto value = at.find(symbol);
+    return value == at.end() ? 0 : value->second;
+  });
+  const Equilibration by(s.j);
+  Matrix rounding = Matrix::Zero(s.j.rows(), forces);
+  for (Index i = 0; i < forces; ++i)
+    if (const double size = terms[static_cast<std::size_t>(i)]; std::isfinite(size))
+      rounding(i, i) = by.rows[i] * operations * size;
+  const Matrix moves = by.columns.asDiagonal() * least_squares(by.of(s.j), rounding, rank_of_balance).x;
+  return length(moves.cwiseAbs().rowwise().sum(), z) > known;
+}
+
 /// A kernel alone is no family: where two equilibria meet it has a dimension too, and leads nowhere. So a short way is
-/// gone along each of its directions, and Newton's method asked where the next solution is. It projects on the family,
-/// and its projections have as many dimensions as the family.
-void SteadyState::find_family(Solution& solution, const System& s, const Vector& z) const {
+/// gone along each of its directions, and Newton's method asked where the next solution is, in 100 digits. It projects
+/// on the family, and its projections have as many dimensions as the family.
+void SteadyState::find_family(Solution& solution) const {
   constexpr double step = 1e-3, followed = 0.25, felt = 1e-3;  // followed: squared
-  const Matrix derivatives = without_rounding(s, z);
+  const Vector z = unknowns(solution.point);
+  const Matrix derivatives = without_rounding(system_at(solution.point), z);
   const Equilibration by(derivatives);
   const Matrix ways = soft_ways(derivatives, by);
   const auto moving = static_cast<Index>(free_q_.size() + free_rates_.size());
@@ -235,9 +320,10 @@ void SteadyState::find_family(Solution& solution, const System& s, const Vector&
     const Vector whole = by.columns.cwiseProduct(ways.col(k));
     const double part = step / length(whole, z);
     if (!std::isfinite(part)) continue;
-    OperatingPoint moved = solution.point;
-    place(z + part * whole, moved);
-    const auto there = solve(moved, false);
+    Solution moved = solution;
+    place(z + part * whole, moved.point);
+    const auto near = solve(moved.point, false);
+    const auto there = near ? proved(*near) : std::nullopt;
     // Multipliers that constraints leave open are fitted anew at each point: they say nothing about the way.
     if (there) gone.col(k) = (unknowns(there->point) - z).head(moving).cwiseQuotient(by.columns.head(moving)) / part;
   }
@@ -291,9 +377,14 @@ std::optional<SteadyState::Solution> SteadyState::solve(const OperatingPoint& fr
     error = scaled(s, z);
   }
   if (!(error <= arrived)) return std::nullopt;
-  Solution solution{point, error, 0, {}};
-  if (with_family) find_family(solution, s, z);
-  return solution;
+  Solution solution{point, error, 0, {}, false};
+  if (!with_family) return solution;
+  const Matrix derivatives = without_rounding(s, z);
+  const bool has_ways = soft_ways(derivatives, Equilibration(derivatives)).cols() > 0;
+  if (static_cast<std::size_t>(z.size()) > most_precise || (!has_ways && !is_doubtful(solution))) return solution;
+  std::optional<Solution> out = proved(solution);
+  if (out && has_ways) find_family(*out);
+  return out;
 }
 
 }  // namespace maupertuis

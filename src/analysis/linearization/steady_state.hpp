@@ -2,6 +2,10 @@
 #include "analysis/linearization/dense.hpp"
 #include "analysis/linearization/point_equations.hpp"
 
+#include <maupertuis/precise_roots.hpp>
+#include <maupertuis/repeated_evaluation.hpp>
+
+#include <memory>
 #include <optional>
 
 namespace maupertuis {
@@ -24,8 +28,10 @@ class SteadyState {
     double residual = 0;             // largest row, divided by its derivatives times typical sizes
     std::size_t family = 0;          // ways to move on and stay a solution
     std::vector<std::size_t> along;  // the coordinates that change on them, ascending
+    bool proved = false;             // a root of 100 digits is there, and rounded to this point
   };
   /// From the positions and velocities of `from`; nothing where the iteration does not arrive within so many turns.
+  /// With the family, what double does not tell from a solution is asked of 100 digits: flat places, multiple roots.
   std::optional<Solution> solve(const OperatingPoint& from, bool with_family = true, int turns = 80) const;
   /// A step of that length (in typical sizes, at most) from a solution along its family, as far towards `target` as the
   /// directions of the family there lead. Nothing where none does.
@@ -51,13 +57,18 @@ class SteadyState {
   double largest_work(const System& s, const Vector& z) const;
   Matrix without_rounding(const System& s, const Vector& z) const;
   Matrix soft_ways(const Matrix& derivatives, const Equilibration& by) const;
-  void find_family(Solution& solution, const System& s, const Vector& z) const;
+  bool is_doubtful(const Solution& solution) const;
+  std::optional<Solution> proved(const Solution& solution) const;
+  const PreciseRoots& precise() const;
+  void find_family(Solution& solution) const;
 
   PointEquations::Impl& e_;
   const std::vector<Translation>& translations_;
   std::vector<std::size_t> free_q_, free_rates_, kept_momenta_;
   std::vector<double> momenta_, sizes_;
   Matrix by_rates_;  // [n × free rates]
+  mutable std::unique_ptr<PreciseRoots> precise_;
+  mutable std::unique_ptr<RepeatedEvaluation> terms_;  // [n] the sizes of the terms of R
 };
 
 }  // namespace maupertuis

@@ -84,3 +84,40 @@ TEST_CASE("sides of a point on which many formulas switch") {
   CHECK(seven.diagnostics.items().front().code == "E1307");
   CHECK(seven.diagnostics.items().front().reason.find("7 formulas switch there") == 0);
 }
+
+TEST_CASE("a family is one of equilibria to 100 digits: no flat place, and no neighbourhood of a multiple root") {
+  const auto study = [](const std::string& text) { return Linearized("dimensionless\n" + text).study(); };
+  const auto alone_at = [&](const std::string& text, double x) {
+    const ModalStudy found = study(text);
+    CAPTURE(text);
+    REQUIRE(found.entries.size() == 1);
+    CHECK(found.entries[0].equilibrium.family == 0);
+    CHECK(std::abs(found.entries[0].equilibrium.point.q[0] - x) < 1e-12);
+  };
+  alone_at("param a = 0.3\ncoord x : number\nL = 1/2 x'^2 - (x^4 - 4 a x^3 + 6 a^2 x^2 - 4 a^3 x + a^4)\nstart x = 1\n",
+           0.3);
+  alone_at("coord x, y : number\nL = 1/2 (x'^2 + y'^2) - (cos x - 1 + x^2/2)^3 - y^2\nstart x = 1\n", 0);  // x¹²
+  // Far from 1 the force is 10⁻⁴⁰ beside the stiffness along y.
+  alone_at("coord x, y : number\nL = 1/2 (x'^2 + y'^2) - (1 - exp(-(x - 1)^2))^2 - y^2/2\nstart x = 1, y = 0.5\n", 1);
+  alone_at("coord x, y : number\nL = 1/2 (x'^2 + y'^2) - exp(-50 x^2) - y^4\nstart x = 1, y = 1\n", 0);
+  // exp(-1/x²) has no value at its only rest, and no other place is one.
+  Linearized flat("dimensionless\ncoord x : number\nL = 1/2 x'^2 - exp(-1/x^2)\nstart x = 1\n");
+  CHECK_FALSE(modal_study(flat.at, flat.start, flat.diagnostics));
+}
+
+TEST_CASE("families that are some stay: rings, levers balanced by decimal numbers, flat pieces") {
+  const auto family = [](const std::string& text) {
+    const ModalStudy found = Linearized(text).study();
+    CAPTURE(text);
+    REQUIRE_FALSE(found.entries.empty());
+    return found.entries[0].equilibrium.family;
+  };
+  CHECK(family("dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) - (x^2 + y^2 - 1)^2\nstart x = 1\n") == 1);
+  CHECK(family("dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) - (x^2 + y^2 - 1)^4\nstart x = 1\n") == 1);
+  CHECK(family("dimensionless\ncoord x : number\nL = 1/2 x'^2 - max(x, 0)^3\nstart x = -1\n") == 1);
+  // 0.1 · 0.3 = 0.03 · 1 holds of the decimal numbers, not of their doubles; a spring in s makes θ no translation.
+  CHECK(family("param m1 = 100 g, l1 = 30 cm, m2 = 30 g, l2 = 1 m, g = 9.81 m/s^2, k = 1 N/m\n"
+               "coord θ : angle, s : length\npoint A mass m1 at l1 (cos θ, sin θ)\n"
+               "point B mass m2 at -l2 (cos θ, sin θ)\npoint C mass m2 at (0, s)\n"
+               "V = m1 g A.y + m2 g B.y + 1/2 k s^2 (2 + cos θ)\nstart θ = 0.3 rad\n") == 1);
+}
