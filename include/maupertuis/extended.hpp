@@ -24,9 +24,11 @@ struct ExtendedEvent {
   struct Assignment {
     std::size_t coordinate = 0;
     int order = 0;  // 0: q, 1: q̇
+    friend bool operator==(const Assignment&, const Assignment&) = default;
   };
   std::vector<Assignment> sets{};
-  bool of_positions = false;  // impacts do not change its function
+  std::vector<Assignment> reads{};  // the parts of the state that its function depends on
+  bool of_state = false;            // and on the time, not on accelerations or forces
 };
 
 /// A mode of contacts and frictions: which equations hold between two instants.

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +29,7 @@ struct EventRoot {
   int direction = 0;
   double time = 0;    // s
   double hidden = 0;  // s; at a root of higher order: by how much rounding may have moved it
+  std::uint8_t order = 1;
 };
 
 /// One step, or the reason why there is none: then begin == end and the state is the one reached before.

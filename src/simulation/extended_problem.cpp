@@ -94,7 +94,11 @@ class ExactPlanner {
   void watch_events(WantedFunctions& wanted) {
     for (const ModelEvent& e : model_.experiment.events) {
       wanted.events.push_back(with_reactions(equations_, {&e.function, 1}).front());
-      ExtendedEvent event{action_of(e.action), e.direction, {}, is_of_positions(e.function)};
+      ExtendedEvent event{action_of(e.action), e.direction};
+      if (const auto reads = state_read_by(e.function, system_)) {
+        event.of_state = true;
+        for (const StateRead& r : *reads) event.reads.push_back({r.coordinate, r.order});
+      }
       for (const ModelEvent::Assignment& a : e.sets) event.sets.push_back({a.coordinate, a.order});
       out_.problem.events.push_back(std::move(event));
     }

@@ -22,7 +22,31 @@ std::string names_of(const std::vector<ModelEvent>& events, std::vector<std::siz
 }  // namespace
 
 Events::Events(const Problem& problem, const ModeMotions& motions) : problem_(problem), motions_(motions) {
-  for (const ModelEvent& e : problem_.model.experiment.events) of_positions_.push_back(is_of_positions(e.function));
+  for (const ModelEvent& e : problem_.model.experiment.events) {
+    of_positions_.push_back(is_of_positions(e.function));
+    reads_.push_back(state_read_by(e.function, problem_.system));
+  }
+}
+
+void Events::leave_zeros(Met& met, const std::function<bool(const StateRead&)>& changes) const {
+  std::erase_if(met.at_zero, [&](const Zero& zero) {
+    const auto& reads = *reads_[zero.event];
+    return std::any_of(reads.begin(), reads.end(), changes);
+  });
+}
+
+void Events::leave_zeros_that_are_set(Met& met) const {
+  leave_zeros(met, [&](const StateRead& read) {
+    return std::any_of(met.sets.begin(), met.sets.end(), [&](const ModelEvent* event) {
+      return std::any_of(event->sets.begin(), event->sets.end(), [&](const ModelEvent::Assignment& a) {
+        return a.coordinate == read.coordinate && a.order == read.order;
+      });
+    });
+  });
+}
+
+void Events::leave_zeros_of_velocities(Met& met) const {
+  leave_zeros(met, [](const StateRead& read) { return read.order == 1; });
 }
 
 void Events::start() {
@@ -48,9 +72,7 @@ const ModelEvent* Events::turned_unseen(const Met& met, double bound, bool forwa
   if (outlook.ending != StepEnding::None) return nullptr;  // the next step says why it cannot be made
   const std::vector<Watch>& watches = motions_.now().watches();
   for (std::size_t k = 0; k < watches.size(); ++k) {
-    const auto& zeros = met.at_zero;
-    if (watches[k].what != Watch::What::Event || std::find(zeros.begin(), zeros.end(), watches[k].index) == zeros.end())
-      continue;
+    if (watches[k].what != Watch::What::Event || !met.zero_of(watches[k].index)) continue;
     const ModelEvent* const event = &problem_.model.experiment.events[watches[k].index];
     const auto at = std::find(met.sets.begin(), met.sets.end(), event);
     if (at == met.sets.end()) continue;

@@ -3,6 +3,7 @@
 #include "simulation/hybrid_motions.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,6 +19,11 @@ class Events {
   void start();
 
   bool are_of_positions(std::size_t event) const { return of_positions_[event]; }
+  /// Whether accelerations and forces do not stand in it.
+  bool are_of_state(std::size_t event) const { return reads_[event].has_value(); }
+  /// What sets of this instant assign, or impacts change, is no longer at the zero that was met.
+  void leave_zeros_that_are_set(Met& met) const;
+  void leave_zeros_of_velocities(Met& met) const;
   /// The motion passes an event on positions, on to this side; 0: it ends at its zero.
   void pass(std::size_t event, std::int8_t side) { sides_[event] = side; }
   /// Positions have been set.
@@ -48,10 +54,12 @@ class Events {
 
  private:
   std::size_t number_of(const ModelEvent* event) const;
+  void leave_zeros(Met& met, const std::function<bool(const StateRead&)>& changes) const;
 
   const Problem& problem_;
   const ModeMotions& motions_;
-  std::vector<bool> of_positions_;                     // [events]
+  std::vector<bool> of_positions_;                            // [events]
+  std::vector<std::optional<std::vector<StateRead>>> reads_;  // [events]
   std::vector<std::int8_t> sides_;                     // [events] of positions: where the motion is; 0: not known
   Accumulation<double> sets_that_follow_;              // events that set the state
   std::optional<Accumulation<double>::End> sets_end_;  // where these accumulate within the run

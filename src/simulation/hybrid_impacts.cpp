@@ -255,8 +255,10 @@ bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) 
                     here_.t));
   here_.v.assign(result.v.data(), result.v.data() + result.v.size());
   // Forces after an impact are others: what came to 0 before it may press.
-  if (!result.impulses.empty())
+  if (!result.impulses.empty()) {
     std::erase_if(pending_->left, [](const Watch& w) { return w.what == Watch::What::Force; });
+    events_.leave_zeros_of_velocities(*pending_);
+  }
   record_impulses(result);
   if (result.impulses.size() > 4 * p.contacts.size()) end_series(touching);
   if (end) {

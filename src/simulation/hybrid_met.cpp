@@ -4,6 +4,11 @@
 
 namespace maupertuis::hybrid {
 
+const Zero* Met::zero_of(std::size_t event) const {
+  const auto found = std::find_if(at_zero.begin(), at_zero.end(), [&](const Zero& z) { return z.event == event; });
+  return found == at_zero.end() ? nullptr : &*found;
+}
+
 bool Met::ends(const Watch& watch) const {
   return std::any_of(left.begin(), left.end(), [&](const Watch& x) {
     return x.what == watch.what && x.index == watch.index && x.lower == watch.lower;

@@ -2,25 +2,33 @@
 #include "simulation/mode_library.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace maupertuis::hybrid {
 
 using Watch = ModeWatch;
 
+/// An event that is met here, and whose function goes on from 0.
+struct Zero {
+  std::size_t event;
+  std::uint8_t order;  // of the root: 2 where the function comes to 0 and goes back
+};
+
 /// What a step has met, to be settled before the next one.
 struct Met {
   std::vector<std::size_t> hit;  // contacts whose gap came to 0
   std::vector<Watch> left;       // conditions of the mode that end here
   std::vector<const ModelEvent*> sets;
-  std::vector<int> ways;             // [sets] in which their functions come to 0 along the run: 1 rising, −1 falling
-  std::vector<std::size_t> at_zero;  // events on positions that are met here: their functions go on from 0
-  double hidden = 0;                 // for how long rounding hides the roots of gaps that are met
-  double hidden_sets = 0;            // … and those of events that set the state
+  std::vector<int> ways;      // [sets] in which their functions come to 0 along the run: 1 rising, −1 falling
+  std::vector<Zero> at_zero;  // events on the state; not those that sets and impacts of this instant change
+  double hidden = 0;          // for how long rounding hides the roots of gaps that are met
+  double hidden_sets = 0;     // … and those of events that set the state
   bool begins = false;
 
   bool changes_state() const { return !hit.empty() || !sets.empty(); }
   bool is_empty() const { return !changes_state() && left.empty(); }
+  const Zero* zero_of(std::size_t event) const;
   /// Whether a condition of the mode ends here.
   bool ends(const Watch& watch) const;
   bool ends(Watch::What what, std::size_t index) const;

@@ -13,6 +13,10 @@ constexpr std::size_t most_at_once = 1000;  // changes at the same time
 constexpr const char* met_backwards =
     "Backwards in time the motion meets a change of contact here: what was before an impact or a stop does not follow "
     "from what is after it.";
+constexpr const char* set_backwards =
+    "Backwards in time the motion meets an event that sets the state here: what was before it does not follow from "
+    "what "
+    "is after it.";
 constexpr const char* no_cones =
     "The forces of contacts with friction in space were not found: their cones have no solution here, or the "
     "iteration does not converge to it.";
@@ -300,10 +304,9 @@ void HybridMotion::classify(Step& step) {
     if (watch.what == Watch::What::Until) {
       step.event = 0;
     } else if (watch.what == Watch::What::Event) {
-      if (events_.are_of_positions(watch.index)) {
-        if (is_now(root)) pending->at_zero.push_back(watch.index);
+      if (is_now(root) && events_.are_of_state(watch.index)) pending->at_zero.push_back({watch.index, root.order});
+      if (events_.are_of_positions(watch.index))
         events_.pass(watch.index, is_now(root) ? std::int8_t{0} : static_cast<std::int8_t>(root.direction));
-      }
       meet_event(problem_.model.experiment.events[watch.index], root, *pending);
       if (journal_.record().stopped_by) step.event = 0;
     } else if (root.direction <= 0) {
@@ -316,7 +319,7 @@ void HybridMotion::classify(Step& step) {
     }
   }
   step.events.clear();
-  if (sets_positions(pending->sets)) pending->at_zero.clear();
+  events_.leave_zeros_that_are_set(*pending);
   if (!pending->hit.empty() || !pending->left.empty() || !pending->sets.empty()) pending_ = std::move(pending);
 }
 
@@ -390,6 +393,7 @@ std::optional<Step> HybridMotion::settle(double bound) {
   std::string reason;
   if (!forwards_ && (!pending_->hit.empty() || !pending_->left.empty()))
     return ended(StepEnding::Paradox, met_backwards);
+  if (!forwards_ && !pending_->sets.empty()) return ended(StepEnding::Paradox, set_backwards);
   if (++same_time_ > most_at_once)
     return ended(StepEnding::Unending,
                  events_.end_of_sets()
@@ -434,7 +438,7 @@ std::optional<Step> HybridMotion::meet_unseen(double bound) {
   const Events::Unseen unseen = events_.unseen(*settled, here_.t, bound);
   auto met = std::make_unique<Met>();
   for (const auto& [number, root] : unseen.events) {
-    met->at_zero.push_back(number);
+    met->at_zero.push_back({number, 1});
     meet_event(problem_.model.experiment.events[number], root, *met);
   }
   if (unseen.follows_itself) return stopped(StepEnding::Unending, events_.too_short_to_tell(*unseen.follows_itself));

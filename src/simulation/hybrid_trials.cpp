@@ -142,7 +142,7 @@ bool ModeTrials::Trial::begins_at_zero(const Watch& w) const {
       return !friction_of(in.problem_.system, w.index).in_space() &&
              std::abs(values.slip[w.index]) <= in.sizes_.rest_slip(w.index, values);
     case What::Event:  // a motion that is thrown back from its zero has not passed it
-      return holds(at.met.at_zero, w.index);
+      return at.met.zero_of(w.index) != nullptr;
     case What::Force:
     case What::Hold:
     case What::Normal:
@@ -161,6 +161,7 @@ void ModeTrials::Trial::put_at_zero() {
   s.put_at_zero(at_zero);
   for (const std::size_t k : at_zero) {
     const Watch& w = watch(k);
+    if (w.what == Watch::What::Event) s.put_at_zero({&k, 1}, at.met.zero_of(w.index)->order);
     // A gap whose rate is rounding begins with the second power of time.
     if (w.what == Watch::What::Gap && std::abs(values.rate[w.index]) <= in.sizes_.rest_speed(w.index, values))
       s.put_at_zero({&k, 1}, 2);

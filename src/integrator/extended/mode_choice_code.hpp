@@ -63,11 +63,20 @@ ExtendedMode Modes<T>::mode_of(const std::vector<Choice>& list, const std::vecto
 }
 
 template <class T>
-bool Modes<T>::sets_positions(const Met& met) const {
-  return std::any_of(met.sets.begin(), met.sets.end(), [this](std::size_t event) {
-    const auto& sets = problem_.events[event].sets;
-    return std::any_of(sets.begin(), sets.end(), [](const ExtendedEvent::Assignment& a) { return a.order == 0; });
-  });
+auto Modes<T>::zero_that_stays(const Met& met, std::size_t event) const -> const Zero* {
+  const auto zero = std::find_if(met.zeros.begin(), met.zeros.end(), [&](const Zero& z) { return z.event == event; });
+  if (zero == met.zeros.end()) return nullptr;
+  const auto is_set = [&](const ExtendedEvent::Assignment& read) {
+    return std::any_of(met.sets.begin(), met.sets.end(), [&](std::size_t other) {
+      const auto& sets = problem_.events[other].sets;
+      return std::find(sets.begin(), sets.end(), read) != sets.end();
+    });
+  };
+  const auto changes = [&](const ExtendedEvent::Assignment& read) {
+    return (read.order == 1 && !met.hit.empty()) || is_set(read);
+  };
+  const auto& reads = problem_.events[event].reads;
+  return std::any_of(reads.begin(), reads.end(), changes) ? nullptr : &*zero;
 }
 
 /// What is 0 here counts by what it does next: gaps that touch, slips that begin, forces that came to 0.
@@ -82,8 +91,8 @@ void Modes<T>::put_at_zero(InMode& candidate, const std::vector<std::size_t>& to
       candidate.stepper->put_at_zero(k);
     } else if (w.what == What::Force && through_modes::holds(met.left, w.what, w.index)) {
       candidate.stepper->put_at_zero(k);
-    } else if (w.what == What::Event && !sets_positions(met) && through_modes::holds(met.zeros, w.index)) {
-      candidate.stepper->put_at_zero(k);  // thrown back from it, a motion has not passed it
+    } else if (const Zero* const zero = w.what == What::Event ? zero_that_stays(met, w.index) : nullptr) {
+      candidate.stepper->put_at_zero(k, zero->order);  // thrown back from it, a motion has not passed it
     }
   }
 }

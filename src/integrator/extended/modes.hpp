@@ -18,13 +18,17 @@ template <class T>
 class Modes {
  public:
   using What = ExtendedWatch::What;
+  struct Zero {
+    std::size_t event;
+    std::uint8_t order;  // 2 where the function comes to 0 and goes back
+  };
   /// What a step has met.
   struct Met {
     std::vector<std::size_t> hit;     // contacts whose gap came to 0
     std::vector<ExtendedWatch> left;  // conditions of the mode that end here
     std::vector<std::size_t> sets;    // events
     std::vector<int> ways;            // [sets] in which their functions come to 0: 1 rising with time, −1 falling
-    std::vector<std::size_t> zeros;   // events on positions that are met here: their functions go on from 0
+    std::vector<Zero> zeros;          // events on the state that are met here: their functions go on from 0
     bool begins = false, forces_jump = false;
     bool nothing() const { return hit.empty() && left.empty() && sets.empty() && !begins && !forces_jump; }
   };
@@ -93,7 +97,9 @@ class Modes {
   bool begins_slowly(InMode& candidate, const typename Stepper<T>::Outlook& outlook, const Met& met);
   bool fits(InMode& candidate, const std::vector<std::size_t>& touching, const Met& met, bool lenient,
             std::vector<T>* accelerations);
-  bool sets_positions(const Met& met) const;
+  /// An event whose function is 0 as the motion goes on: it was met here, and neither a set nor an impact has changed
+  /// what the function depends on.
+  const Zero* zero_that_stays(const Met& met, std::size_t event) const;
   void put_at_zero(InMode& candidate, const std::vector<std::size_t>& touching, const Met& met);
   bool may_be_several(const ExtendedMode& mode) const;
   bool is_painleve(const std::vector<Choice>& list, Combinations& tries) const;

@@ -16,6 +16,11 @@ constexpr const char* met_backwards =
     "Backwards in time the motion meets a change of contact here: what was before an impact or a stop does not follow "
     "from what is after it.";
 
+constexpr const char* set_backwards =
+    "Backwards in time the motion meets an event that sets the state here: what was before it does not follow from "
+    "what "
+    "is after it.";
+
 inline std::string key_of(const ExtendedMode& mode) {
   std::string key;
   for (const bool closed : mode.closed) key += closed ? '1' : '0';
@@ -261,14 +266,14 @@ bool Modes<T>::carry_out_sets(const Met& met) {
 /// See HybridMotion::turned_unseen.
 template <class T>
 bool Modes<T>::returns_are_seen(const Met& met) {
-  if (met.sets.empty() || met.zeros.empty() || sets_positions(met)) return true;
+  if (met.sets.empty() || met.zeros.empty()) return true;
   const auto outlook = stepper().outlook(bound_);
   if (outlook.ending != StepEnding::None) return true;  // the next step says why it cannot be made
   const int forwards = t_ <= bound_ ? 1 : -1;
   for (std::size_t k = 0; k < watches().size(); ++k) {
     const ExtendedWatch& w = watches()[k];
     const auto at = std::find(met.sets.begin(), met.sets.end(), w.index);
-    if (w.what != What::Event || at == met.sets.end() || !through_modes::holds(met.zeros, w.index)) continue;
+    if (w.what != What::Event || at == met.sets.end() || !zero_that_stays(met, w.index)) continue;
     const int way = met.ways[static_cast<std::size_t>(at - met.sets.begin())];
     if (outlook.slopes[k] * way < 0 && outlook.sides[k] != -way * forwards)
       return stop(StepEnding::Unending, std::nullopt,

@@ -108,14 +108,15 @@ class Motion {
         met.left.push_back(watch);
     }
     if (met.nothing() || out_.met || out_.ending != StepEnding::None) return;
-    if (forwards || (met.hit.empty() && met.left.empty())) return modes_.settle(met);
+    const bool changes_mode = !met.hit.empty() || !met.left.empty();
+    if (forwards || (!changes_mode && met.sets.empty())) return modes_.settle(met);
     out_.ending = StepEnding::Paradox;
-    out_.reason = through_modes::met_backwards;
+    out_.reason = changes_mode ? through_modes::met_backwards : through_modes::set_backwards;
   }
 
   void meet_event(std::size_t index, int direction, typename Modes<T>::Met& met) {
     const ExtendedEvent& event = problem_.events[index];
-    if (event.of_positions) met.zeros.push_back(index);
+    if (event.of_state) met.zeros.push_back({index, static_cast<std::uint8_t>(direction == 0 ? 2 : 1)});
     if (event.direction != 0 && direction != event.direction) return;
     modes_.add({ExtendedRoot::Kind::Event, index, stepper().sample(stepper().time()), {}, {}}, stepper().time());
     out_.met = out_.met || event.action == ExtendedEvent::Action::Stop;

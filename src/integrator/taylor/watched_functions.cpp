@@ -192,15 +192,15 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin,
     if (ends_step(event)) continue;
     const std::size_t i = count + event;
     Watched& watched = out.after[i];
-    const auto note_root = [&](double x, int direction, double hidden = 0) {
-      out.passed.push_back({std::min(x, out.x), event, direction, hidden});
+    const auto note_root = [&](double x, int direction, double hidden = 0, std::uint8_t order = 1) {
+      out.passed.push_back({std::min(x, out.x), event, direction, hidden, order});
     };
     if (begin == 0 && !roots_->is_clear(i) && begins_past_root(work, event, h, watched)) note_root(0, watched.side);
     for (double from = begin; from < until;) {
       const auto root = roots_->first(i, watched, from, until, tells_touches(event), false);
       if (!root) break;
       const bool touch = root->kind == RootKind::Touching;
-      note_root(root->x, touch ? 0 : -watched.side, root->hidden);
+      note_root(root->x, touch ? 0 : -watched.side, root->hidden, root->order);
       const auto beyond = static_cast<std::int8_t>(touch ? watched.side : -watched.side);
       from = std::max(root->x, std::nextafter(from, 1.0));
       watched = {touch ? beyond : std::int8_t{0}, true, root->order};
@@ -234,7 +234,7 @@ void WatchedFunctions::leave(const Crossing& crossing, double length, Step& resu
     (i < count ? switches[i] : events[i - count]) = crossing.after[i];
   for (const PassedRoot& root : crossing.passed)
     result.events.push_back(
-        {root.event, root.direction, result.begin + root.x * length, root.hidden * std::abs(length)});
+        {root.event, root.direction, result.begin + root.x * length, root.hidden * std::abs(length), root.order});
   for (std::size_t k = 0; k < crossing.roots.size(); ++k) {
     const std::size_t i = crossing.roots[k];
     if (i < count) {
@@ -243,7 +243,7 @@ void WatchedFunctions::leave(const Crossing& crossing, double length, Step& resu
     }
     if (!result.event) result.event = i - count;
     const double hidden = crossing.hidden[k] * std::abs(length);
-    result.events.push_back({i - count, crossing.directions[k], result.end, hidden});
+    result.events.push_back({i - count, crossing.directions[k], result.end, hidden, crossing.orders[k]});
     result.hidden = std::max(result.hidden, hidden);
   }
 }

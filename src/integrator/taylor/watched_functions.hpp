@@ -16,6 +16,7 @@ struct PassedRoot {
   std::size_t event = 0;
   int direction = 0;  // 1: rising, −1: falling, 0: touching
   double hidden = 0;  // of the step: by how much rounding may have moved it
+  std::uint8_t order = 1;
 };
 
 /// Where a step ends at a switch or an event.

@@ -99,6 +99,19 @@ bool is_of_positions(Expr function) {
   });
 }
 
+std::optional<std::vector<StateRead>> state_read_by(Expr function, const MechanicalSystem& system) {
+  std::vector<StateRead> reads;
+  for (const Expr& s : symbols_of({&function, 1})) {
+    if (s.role() == Role::Multiplier) return std::nullopt;
+    if (s.role() != Role::Coordinate) continue;
+    const auto has = [&](const Coordinate& c) { return c.q == s || c.velocity == s; };
+    const auto c = std::find_if(system.coordinates.begin(), system.coordinates.end(), has);
+    if (c == system.coordinates.end()) return std::nullopt;  // an acceleration
+    reads.push_back({static_cast<std::size_t>(c - system.coordinates.begin()), s.order()});
+  }
+  return reads;
+}
+
 bool is_of_parameters(Expr value) {
   const ExprVector symbols = symbols_of({&value, 1});
   return std::all_of(symbols.begin(), symbols.end(),

@@ -98,6 +98,14 @@ class ContactFunctions {
 /// Whether impacts do not change it: no velocities, accelerations or forces stand in it.
 bool is_of_positions(Expr function);
 
+/// The coordinates (order 0) and velocities (order 1) that a function depends on.
+struct StateRead {
+  std::size_t coordinate;
+  int order;
+};
+/// Nothing where accelerations or forces stand in it as well.
+std::optional<std::vector<StateRead>> state_read_by(Expr function, const MechanicalSystem& system);
+
 /// Whether it stays what it is, whatever moves.
 bool is_of_parameters(Expr value);
 
