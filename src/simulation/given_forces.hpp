@@ -14,7 +14,7 @@ class GivenForces {
       : own_(own), in_mode_(system_in_mode(own, mode)), work_(own.coordinates.size(), own.context->number(0)) {}
 
   /// Along each closed contact, each friction that sticks and each constraint of the system a given force besides its
-  /// multiplier, a polynomial of the time since a parameter (HybridMotion::Given).
+  /// multiplier, a polynomial of the time since a parameter (hybrid::Given).
   void preload(const ContactMode& mode);
   /// Friction of contact i with a direction that is a polynomial of time. `rubbed`: what it takes.
   void direct(std::size_t i, ExprVector& rubbed);

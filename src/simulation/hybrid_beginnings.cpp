@@ -1,7 +1,11 @@
+#include "simulation/hybrid_slips.hpp"
+
+#include <maupertuis/kernel.hpp>
+
 #include <algorithm>
 #include <cmath>
-#include <maupertuis/kernel.hpp>
-#include "simulation/hybrid_slips.hpp"
+#include <limits>
+
 /// How slips in space begin. At the first instant v_t/|v_t| has no value, and next to it the equations are as stiff as
 /// can be: what is across to the force that pulls is braked at the rate μ N/(m |v_t|). The direction d(τ) that the slip
 /// has from its beginning on is sought as a polynomial of time, so that v_t(τ) with friction −μ N d(τ) goes along d(τ):
@@ -14,7 +18,6 @@
 /// one (the origin is an irregular singular point of φ' = …/|v_t|): it is cut where its last terms are rounding.
 
 namespace maupertuis::hybrid {
-
 namespace {
 
 using Eigen::Index;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace maupertuis::hybrid {
 namespace {
@@ -21,7 +23,8 @@ std::string names_of(const std::vector<ModelEvent>& events, std::vector<std::siz
 
 }  // namespace
 
-Events::Events(const Problem& problem, const ModeMotions& motions) : problem_(problem), motions_(motions) {
+Events::Events(const Problem& problem, const State& here, const ModeMotions& motions, Journal& journal)
+    : problem_(problem), here_(here), motions_(motions), journal_(journal) {
   for (const ModelEvent& e : problem_.model.experiment.events) {
     of_positions_.push_back(is_of_positions(e.function));
     reads_.push_back(state_read_by(e.function, problem_.system));
@@ -59,6 +62,27 @@ std::size_t Events::number_of(const ModelEvent* event) const {
   return static_cast<std::size_t>(event - problem_.model.experiment.events.data());
 }
 
+void Events::meet(const ModelEvent& event, const EventRoot& root, Met& met, bool forwards) {
+  const int way = root.direction;
+  if (event.direction != 0 && way != event.direction * (forwards ? 1 : -1)) return;
+  record(event.name, root, forwards);
+  if (event.action == ModelEvent::Action::Stop) journal_.stop_by(event.name);
+  if (event.action != ModelEvent::Action::Set) return;
+  met.sets.push_back(&event), met.ways.push_back(way);
+  met.hidden_sets = std::max(met.hidden_sets, root.hidden);
+}
+
+void Events::record(const std::string& name, const EventRoot& root, bool forwards) {
+  // Rounding may lead beyond the step.
+  const double t = forwards ? std::min(root.time, here_.t) : std::max(root.time, here_.t);
+  Happening& told = journal_.add(Happening::Kind::Event, name);
+  told.error = std::max(told.error, root.hidden);
+  if (t == here_.t) return;
+  told.t = t;
+  if (!told.q.empty()) motions_.state(t, told.q, told.v);
+  told.mode = mode_text(problem_.system, motions_.now().mode);
+}
+
 bool Events::is_hidden(std::size_t event, const Outlook& outlook, std::size_t watch) const {
   constexpr double rounding = 1e-12;  // of its terms
   const std::int8_t before = sides_[event];
@@ -83,23 +107,23 @@ const ModelEvent* Events::turned_unseen(const Met& met, double bound, bool forwa
   return nullptr;
 }
 
-std::vector<const ModelEvent*> Events::at_start(double bound, bool forwards) const {
+void Events::tell_at_start(double bound, bool forwards) {
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
-  std::vector<const ModelEvent*> out;
   const Outlook outlook = motions_.stepper().outlook(bound);
-  if (outlook.ending != StepEnding::None) return out;
+  if (outlook.ending != StepEnding::None) return;
   const std::vector<Watch>& watches = motions_.now().watches();
   for (std::size_t k = 0; k < watches.size(); ++k) {
     if (watches[k].what != Watch::What::Event) continue;
     const ModelEvent& event = problem_.model.experiment.events[watches[k].index];
     if (!(std::abs(outlook.values[k]) <= rounding * outlook.reach[k]) || outlook.sides[k] == 0) continue;
     if (event.direction != 0 && outlook.sides[k] != event.direction * (forwards ? 1 : -1)) continue;
-    out.push_back(&event);
+    journal_.add(Happening::Kind::Event, event.name).mode = journal_.record().first_mode;
+    if (event.action != ModelEvent::Action::Record)
+      journal_.remark(fmt::format("The motion begins at the event `{}`, which acts when it is met again.", event.name));
   }
-  return out;
 }
 
-Events::Unseen Events::unseen(const Met& settled, double t, double bound) {
+Events::Unseen Events::meet_unseen(const Met& settled, double bound, bool forwards) {
   Unseen out;
   if (std::none_of(of_positions_.begin(), of_positions_.end(), [](bool x) { return x; })) return out;
   const Outlook outlook = motions_.stepper().outlook(bound);
@@ -117,14 +141,15 @@ Events::Unseen Events::unseen(const Met& settled, double t, double bound) {
       return out;
     }
     sides_[number] = 0;
-    out.events.push_back({number, {k, -before, t}});
+    out.met.at_zero.push_back({number, 1});
+    meet(event, {k, -before, here_.t}, out.met, forwards);
   }
   return out;
 }
 
-void Events::note_sets(const Met& met, double t, double bound, bool forwards) {
+void Events::note_sets(const Met& met, double bound, bool forwards) {
   if (met.sets.empty()) return;
-  for (const ModelEvent* event : met.sets) sets_that_follow_.add(number_of(event), t);
+  for (const ModelEvent* event : met.sets) sets_that_follow_.add(number_of(event), here_.t);
   const auto end = sets_that_follow_.end();  // none where they have become too short: the last one stands
   if (end && (forwards ? end->t <= bound : end->t >= bound)) sets_end_ = end;
 }

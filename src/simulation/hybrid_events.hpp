@@ -1,5 +1,6 @@
 #pragma once
 #include "linear_algebra/accumulation.hpp"
+#include "simulation/hybrid_journal.hpp"
 #include "simulation/hybrid_motions.hpp"
 
 #include <cstdint>
@@ -11,21 +12,24 @@
 
 namespace maupertuis::hybrid {
 
-/// Events of the model that rounding hides: those whose sign has changed without a root that was told, and such as set
-/// the state faster and faster.
+/// Events of the model: those that a step meets, those that rounding hides, and such as set the state faster and
+/// faster.
 class Events {
  public:
-  Events(const Problem& problem, const ModeMotions& motions);
+  Events(const Problem& problem, const State& here, const ModeMotions& motions, Journal& journal);
   void start();
 
+  /// An event whose function comes to 0 this way: 1 rising along the run, −1 falling, 0 touching. It is recorded with
+  /// the state that the motion has there.
+  void meet(const ModelEvent& event, const EventRoot& root, Met& met, bool forwards);
   bool are_of_positions(std::size_t event) const { return of_positions_[event]; }
   /// Whether accelerations and forces do not stand in it.
   bool are_of_state(std::size_t event) const { return reads_[event].has_value(); }
   /// What sets of this instant assign, or impacts change, is no longer at the zero that was met.
   void leave_zeros_that_are_set(Met& met) const;
   void leave_zeros_of_velocities(Met& met) const;
-  /// The motion passes an event on positions, on to this side; 0: it ends at its zero.
-  void pass(std::size_t event, std::int8_t side) { sides_[event] = side; }
+  /// The motion passes an event, on to this side; 0: the step ends at its zero.
+  void pass(std::size_t event, std::int8_t side) { sides_[event] = are_of_positions(event) ? side : std::int8_t{0}; }
   /// Positions have been set.
   void forget_sides() { sides_.assign(sides_.size(), 0); }
   /// Whether the motion is beyond an event by no more than rounding, though no root was told. `watch`: of the outlook.
@@ -34,18 +38,18 @@ class Events {
   /// An event whose function turns round by what it sets, so slowly that the motion comes back to it before rounding
   /// tells that it has left: it would be passed, and the bounces before it, shorter and shorter, accumulate here.
   const ModelEvent* turned_unseen(const Met& met, double bound, bool forwards) const;
-  /// Events that hold as the motion begins, and leave their zero.
-  std::vector<const ModelEvent*> at_start(double bound, bool forwards) const;
+  /// Events that hold as the motion begins are told, but do not act: it leaves them.
+  void tell_at_start(double bound, bool forwards);
   /// Events on positions whose sign has changed at the instant that was settled though no root was told: so near to it
   /// that rounding hides their own. The motion meets them here, to be settled next.
   struct Unseen {
-    std::vector<std::pair<std::size_t, EventRoot>> events;
+    Met met;
     const ModelEvent* follows_itself = nullptr;  // it has just set the state, and is met again in no time
   };
-  Unseen unseen(const Met& settled, double t, double bound);
+  Unseen meet_unseen(const Met& settled, double bound, bool forwards);
 
   /// Sets that follow each other in shorter and shorter cycles come to an end, beyond which no step goes.
-  void note_sets(const Met& met, double t, double bound, bool forwards);
+  void note_sets(const Met& met, double bound, bool forwards);
   const std::optional<Accumulation<double>::End>& end_of_sets() const { return sets_end_; }
   /// One sentence on the end of sets that accumulate.
   std::string sets_without_end() const;
@@ -53,11 +57,14 @@ class Events {
   std::string too_short_to_tell(const ModelEvent& event) const;
 
  private:
+  void record(const std::string& name, const EventRoot& root, bool forwards);
   std::size_t number_of(const ModelEvent* event) const;
   void leave_zeros(Met& met, const std::function<bool(const StateRead&)>& changes) const;
 
   const Problem& problem_;
+  const State& here_;
   const ModeMotions& motions_;
+  Journal& journal_;
   std::vector<bool> of_positions_;                            // [events]
   std::vector<std::optional<std::vector<StateRead>>> reads_;  // [events]
   std::vector<std::int8_t> sides_;                     // [events] of positions: where the motion is; 0: not known

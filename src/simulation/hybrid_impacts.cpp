@@ -1,26 +1,125 @@
+#include "simulation/hybrid_impacts.hpp"
+
 #include "simulation/contact/contact_forces.hpp"
-#include "simulation/hybrid_parts.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
+#include <utility>
 
-/// What contacts that are hit do to the velocities, and where infinitely many bounces end.
-namespace maupertuis {
+namespace maupertuis::hybrid {
 namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
 
+constexpr double slow_flight = 1e-6;  // of the fastest so far: never what is to be seen
+
+/// Whether a contact has friction.
+bool rub(const std::vector<std::size_t>& contacts, const ContactValues& values) {
+  return std::any_of(contacts.begin(), contacts.end(), [&](std::size_t i) { return !values.tangent[i].empty(); });
+}
+
 VectorXd vector_of(std::span<const double> x) {
   return Eigen::Map<const VectorXd>(x.data(), static_cast<Index>(x.size()));
 }
 
+/// The last impact of a series without end, with the friction of all those that are left out: after it the contacts
+/// stay closed, and press as the bounces would have pressed on the average.
+ImpactResult last_impact(const ImpactProblem& p, const VectorXd& v) {
+  ImpactResult first = sequential_impact(p, v, ImpactOrder::FastestFirst);
+  if (p.contacts.size() == 1) return first;
+  ImpactResult rest = end_of_bounces(p, first.v);
+  rest.impulses.insert(rest.impulses.begin(), first.impulses.begin(), first.impulses.end());
+  rest.loss += first.loss, rest.moving += first.moving;
+  return rest;
+}
+
 }  // namespace
 
-ImpactProblem HybridMotion::impact_problem(const std::vector<std::size_t>& touching, const ContactValues& values) {
+Impacts::Outcome Impacts::hit(std::vector<std::size_t>& touching) {
+  end_of_bounces_.reset();
+  const ContactValues& values = here_.values();
+  if (std::none_of(touching.begin(), touching.end(), [&](std::size_t i) { return closes(i, values); })) return {};
+  for (const std::size_t i : touching)
+    if (closes(i, values)) note_bounce(i, -values.rate[i], values.restitution[i]);
+  const std::optional<double> end = accumulation_among(touching, values);
+  ImpactProblem p = problem_of(end ? cycle_ : touching, values);
+  if (!end) {
+    sizes_.note_compliances(p.contacts, p.normal, p.response);
+    sizes_.set_knows_compliances(true);
+  }
+  const bool rests = !end && is_lost_in_rounding(touching, values);
+  if (end || rests) std::fill(p.restitution.begin(), p.restitution.end(), 0.0);
+  VectorXd v = vector_of(here_.v);
+  const bool at_once = problem_.system.impact_law == ImpactLaw::Simultaneous || (rests && !rub(touching, values));
+  ImpactResult result = end       ? last_impact(p, v)
+                        : at_once ? impact_at_once(p, v)
+                                  : sequential_impact(p, v, ImpactOrder::FastestFirst);
+  if (end) press_all(result, touching, values);
+  if (auto why = trouble_of(result, touching, values)) return {std::move(why), std::nullopt};
+  if (!at_once && !end) tell_order(p, result, v);
+  carry_out(result, touching, p.contacts.size());
+  if (end) {
+    end_of_bounces_ = EndOfBounces{*end};
+    for (const std::size_t i : touching) bounces_[i].last.clear();
+  }
+  return {std::nullopt, Impact{std::move(p), std::move(result), std::move(v), end.has_value()}};
+}
+
+bool Impacts::closes(std::size_t i, const ContactValues& values) const {
+  return values.rate[i] < -sizes_.rest_speed(i, values);
+}
+
+/// What rests beside contacts whose bounces have ended is not pressed through.
+void Impacts::press_all(ImpactResult& result, const std::vector<std::size_t>& touching,
+                        const ContactValues& values) const {
+  ImpactProblem all = problem_of(touching, values);
+  std::fill(all.restitution.begin(), all.restitution.end(), 0.0);
+  const ImpactResult more = rub(touching, values) ? sequential_impact(all, result.v, ImpactOrder::FastestFirst)
+                                                  : simultaneous_impact(all, result.v, true);
+  result.v = more.v;
+  // What rounding leaves of the bounces that have ended is no impact.
+  std::copy_if(more.impulses.begin(), more.impulses.end(), std::back_inserter(result.impulses),
+               [&](const Impulse& i) { return i.speed > sizes_.rest_speed(i.contact, values); });
+  result.loss += more.loss, result.moving += more.moving;
+  result.unsolved = more.unsolved;
+}
+
+std::optional<std::string> Impacts::trouble_of(const ImpactResult& result, const std::vector<std::size_t>& touching,
+                                               const ContactValues& values) const {
+  if (result.unsolved) return "No impulses keep all contacts that are hit here from closing.";
+  if (!result.v.allFinite()) {
+    const auto hit = std::find_if(touching.begin(), touching.end(), [&](std::size_t i) { return closes(i, values); });
+    return fmt::format(
+        "The constraints move the contact {} through zero, and leave nothing that an impact could change: no motion "
+        "obeys both.",
+        problem_.system.contact_label(*hit));
+  }
+  if (result.rubs_at_once)
+    return fmt::format(
+        "Several contacts are hit here, {} with friction among them, and `impact simultaneous` says nothing of "
+        "friction: leave it out, and one contact after the other is hit, with its friction.",
+        problem_.system.contact_label(*result.rubs_at_once));
+  return std::nullopt;
+}
+
+/// `contacts`: their number in the impact.
+void Impacts::carry_out(const ImpactResult& result, const std::vector<std::size_t>& touching, std::size_t contacts) {
+  if (result.bounded)
+    journal_.remark(
+        fmt::format("At t = {:.9g} impacts followed each other without an end; the rest of them was done at once, "
+                    "without bounce and without friction.",
+                    here_.t));
+  here_.v.assign(result.v.data(), result.v.data() + result.v.size());
+  record_impulses(result);
+  if (result.impulses.size() > 4 * contacts) end_series(touching);
+}
+
+ImpactProblem Impacts::problem_of(const std::vector<std::size_t>& touching, const ContactValues& values) const {
   ImpactProblem p;
   p.contacts = touching;
   for (const std::size_t i : touching) {
@@ -48,7 +147,74 @@ ImpactProblem HybridMotion::impact_problem(const std::vector<std::size_t>& touch
   return p;
 }
 
-void HybridMotion::note_order(const ImpactProblem& p, const ImpactResult& first, const VectorXd& v) {
+/// A series of bounces goes on while each impact is what the one before left, give or take a thousand times. What drag
+/// slowed, or another body throws down anew, begins another one: a millionth of the old one may be all that moves.
+void Impacts::note_bounce(std::size_t contact, double speed, double restitution) {
+  constexpr double most = 1e3;
+  Bounces& bounces = bounces_[contact];
+  const double left = restitution * bounces.before;
+  const bool goes_on = most * speed >= left && speed <= most * left;
+  bounces.fastest = goes_on ? std::max(bounces.fastest, speed) : speed;
+  bounces.before = speed;
+}
+
+/// When infinitely many bounces come to their end, told from the last three of a contact; nothing while they go on. The
+/// flights are then as short as their rounding allows to tell: speeds of a millionth of the fastest impact of the
+/// series.
+std::optional<double> Impacts::accumulation(std::size_t contact, double speed) {
+  auto& last = bounces_[contact].last;
+  last.emplace_back(here_.t, speed);
+  if (last.size() > 4) last.erase(last.begin());
+  if (last.size() < 4 || !(speed < 3e-6 * bounces_[contact].fastest)) return std::nullopt;
+  const double ratio = last[3].second / last[2].second, before = last[2].second / last[1].second;
+  const double flight = last[3].first - last[2].first;
+  if (!(ratio < 0.999 && std::abs(ratio - before) < 1e-3) || !(flight < last[2].first - last[1].first))
+    return std::nullopt;
+  cycle_.clear();  // with those that were hit since its impact before: they come to rest together
+  for (std::size_t i = 0; i < bounces_.size(); ++i)
+    if (!bounces_[i].last.empty() && bounces_[i].last.back().first >= last[2].first) cycle_.push_back(i);
+  return here_.t + flight * ratio / (1 - ratio);
+}
+
+/// Where the last flights say that infinitely many bounces end; then all contacts of their cycle are touching.
+std::optional<double> Impacts::accumulation_among(std::vector<std::size_t>& touching, const ContactValues& values) {
+  std::optional<double> end;
+  for (const std::size_t i : touching)
+    if (closes(i, values))
+      if (const auto found = accumulation(i, -values.rate[i])) end = found;
+  if (!end || slips_may_stop_before(*end, touching, values)) return std::nullopt;
+  for (const std::size_t i : cycle_)
+    if (std::find(touching.begin(), touching.end(), i) == touching.end()) touching.push_back(i);
+  return end;
+}
+
+/// Whether a slip may come to its end during the bounces that would be left out: when it does so depends on each of
+/// them. Those that are left in a billionth of the fastest are left out all the same.
+bool Impacts::slips_may_stop_before(double end, const std::vector<std::size_t>& touching,
+                                    const ContactValues& values) const {
+  constexpr double slow = 1e-9, share = 4;
+  for (const std::size_t i : touching) {
+    if (values.tangent[i].empty() || !(-values.rate[i] > slow * bounces_[i].fastest)) continue;
+    const double force = sizes_.acceleration_along(values.tangent[i]), slip = slip_speed(i, values);
+    if (slip > sizes_.rest_slip(i, values) && slip <= share * force * std::abs(end - here_.t)) return true;
+  }
+  return false;
+}
+
+/// Bounces whose flights are lower than the gap is known end at once: whether all of them that close here are so low.
+/// The acceleration that brings them back is that of the run so far; a contact without loss is left alone.
+bool Impacts::is_lost_in_rounding(const std::vector<std::size_t>& touching, const ContactValues& values) const {
+  for (const std::size_t i : touching) {
+    const double speed = -values.rate[i];
+    if (speed <= sizes_.rest_speed(i, values)) continue;
+    const double acceleration = sizes_.acceleration_along(values.normal[i]);
+    const bool is_low = speed * speed <= 2 * acceleration * rest_unit * sizes_.widest(i);
+    if (!(values.restitution[i] < 1) || !is_low || speed > slow_flight * bounces_[i].fastest) return false;
+  }
+  return true;
+}
+
+void Impacts::tell_order(const ImpactProblem& p, const ImpactResult& first, const VectorXd& v) {
   if (p.contacts.size() < 2 || first.impulses.size() < 2) return;
   const ImpactResult other = sequential_impact(p, v, ImpactOrder::FastestLast);
   const double size = std::max(first.v.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff());
@@ -65,13 +231,14 @@ void HybridMotion::note_order(const ImpactProblem& p, const ImpactResult& first,
                   here_.t, velocities(first.v), velocities(other.v)));
 }
 
-void HybridMotion::book_energy(const ImpactResult& result) {
+/// What impulses take, and what contacts that move give by them.
+void Impacts::book_energy(const ImpactResult& result) {
   journal_.books().impacts += result.loss;
   journal_.books().moving += result.moving;
   carried_.put_in(result.moving - result.loss);
 }
 
-void HybridMotion::record_impulses(const ImpactResult& result) {
+void Impacts::record_impulses(const ImpactResult& result) {
   book_energy(result);
   constexpr std::size_t most_told = 32;
   if (result.impulses.size() <= most_told) {
@@ -97,63 +264,9 @@ void HybridMotion::record_impulses(const ImpactResult& result) {
   }
 }
 
-/// A series of bounces goes on while each impact is what the one before left, give or take a thousand times. What drag
-/// slowed, or another body throws down anew, begins another one: a millionth of the old one may be all that moves.
-void HybridMotion::note_bounce(std::size_t contact, double speed, double restitution) {
-  constexpr double most = 1e3;
-  Bounces& bounces = bounces_[contact];
-  const double left = restitution * bounces.before;
-  const bool goes_on = most * speed >= left && speed <= most * left;
-  bounces.fastest = goes_on ? std::max(bounces.fastest, speed) : speed;
-  bounces.before = speed;
-}
-
-/// When infinitely many bounces come to their end, told from the last three of a contact; nothing while they go on. The
-/// flights are then as short as their rounding allows to tell: speeds of a millionth of the fastest impact of the
-/// series.
-std::optional<double> HybridMotion::accumulation(std::size_t contact, double speed) {
-  auto& last = bounces_[contact].last;
-  last.emplace_back(here_.t, speed);
-  if (last.size() > 4) last.erase(last.begin());
-  if (last.size() < 4 || !(speed < 3e-6 * bounces_[contact].fastest)) return std::nullopt;
-  const double ratio = last[3].second / last[2].second, before = last[2].second / last[1].second;
-  const double flight = last[3].first - last[2].first;
-  if (!(ratio < 0.999 && std::abs(ratio - before) < 1e-3) || !(flight < last[2].first - last[1].first))
-    return std::nullopt;
-  cycle_.clear();  // with those that were hit since its impact before: they come to rest together
-  for (std::size_t i = 0; i < bounces_.size(); ++i)
-    if (!bounces_[i].last.empty() && bounces_[i].last.back().first >= last[2].first) cycle_.push_back(i);
-  return here_.t + flight * ratio / (1 - ratio);
-}
-
-/// The last impact of a series without end, with the friction of all those that are left out: after it the contacts
-/// stay closed, and press as the bounces would have pressed on the average.
-ImpactResult HybridMotion::last_impact(const ImpactProblem& p, const VectorXd& v) {
-  ImpactResult first = sequential_impact(p, v, ImpactOrder::FastestFirst);
-  if (p.contacts.size() == 1) return first;
-  ImpactResult rest = end_of_bounces(p, first.v);
-  rest.impulses.insert(rest.impulses.begin(), first.impulses.begin(), first.impulses.end());
-  rest.loss += first.loss, rest.moving += first.moving;
-  return rest;
-}
-
-/// Bounces whose flights are lower than the gap is known end at once: whether all of them that close here are so low.
-/// The acceleration that brings them back is that of the run so far; a contact without loss is left alone.
-bool HybridMotion::is_lost_in_rounding(const std::vector<std::size_t>& touching, const ContactValues& values) const {
-  constexpr double slow = 1e-6;  // of the fastest impact so far: never what is to be seen
-  for (const std::size_t i : touching) {
-    const double speed = -values.rate[i];
-    if (speed <= sizes_.rest_speed(i, values)) continue;
-    const double acceleration = sizes_.acceleration_along(values.normal[i]);
-    const bool is_low = speed * speed <= 2 * acceleration * rest_unit * sizes_.widest(i);
-    if (!(values.restitution[i] < 1) || !is_low || speed > slow * bounces_[i].fastest) return false;
-  }
-  return true;
-}
-
 /// Impacts that follow each other in one instant, each smaller, as of a disc that rolls into a corner, end below what
 /// the rates of gaps are known to: what they leave of slips that they bring to rest is no motion.
-void HybridMotion::end_series(const std::vector<std::size_t>& touching) {
+void Impacts::end_series(const std::vector<std::size_t>& touching) {
   constexpr double left = 1e-10;  // of the fastest slip
   const ContactValues& values = here_.values();
   std::vector<std::size_t> resting;
@@ -165,145 +278,21 @@ void HybridMotion::end_series(const std::vector<std::size_t>& touching) {
   if (!resting.empty()) space_.take_out_slips(resting, touching);
 }
 
-/// Whether a slip may come to its end during the bounces that would be left out: when it does so depends on each of
-/// them. Those that are left in a billionth of the fastest are left out all the same.
-bool HybridMotion::slips_may_stop_before(double end, const std::vector<std::size_t>& touching,
-                                         const ContactValues& values) const {
-  constexpr double slow = 1e-9, share = 4;
-  for (const std::size_t i : touching) {
-    if (values.tangent[i].empty() || !(-values.rate[i] > slow * bounces_[i].fastest)) continue;
-    const double force = sizes_.acceleration_along(values.tangent[i]), slip = slip_speed(i, values);
-    if (slip > sizes_.rest_slip(i, values) && slip <= share * force * std::abs(end - here_.t)) return true;
-  }
-  return false;
+bool Impacts::is_slow(std::size_t i, const ContactValues& values) const {
+  return values.rate[i] > sizes_.rest_speed(i, values) && values.rate[i] <= slow_flight * sizes_.fastest(i);
 }
 
-/// Where the last flights say that infinitely many bounces end; then all contacts of their cycle are touching.
-std::optional<double> HybridMotion::accumulation_among(std::vector<std::size_t>& touching,
-                                                       const ContactValues& values) {
-  std::optional<double> end;
-  for (const std::size_t i : touching)
-    if (values.rate[i] < -sizes_.rest_speed(i, values))
-      if (const auto found = accumulation(i, -values.rate[i])) end = found;
-  if (!end || slips_may_stop_before(*end, touching, values)) return std::nullopt;
-  for (const std::size_t i : cycle_)
-    if (std::find(touching.begin(), touching.end(), i) == touching.end()) touching.push_back(i);
-  return end;
-}
-
-/// What closing contacts do to the velocities. False, and why, where no impulses are found.
-bool HybridMotion::hit(std::vector<std::size_t>& touching, std::string& reason) {
-  end_of_bounces_.reset();
+void Impacts::close_lowest_flights(const std::vector<std::size_t>& touching, const Met& met, double bound) {
   const ContactValues& values = here_.values();
-  const bool closing = std::any_of(touching.begin(), touching.end(),
-                                   [&](std::size_t i) { return values.rate[i] < -sizes_.rest_speed(i, values); });
-  if (!closing) return true;
-  for (const std::size_t i : touching)
-    if (values.rate[i] < -sizes_.rest_speed(i, values)) note_bounce(i, -values.rate[i], values.restitution[i]);
-  const std::optional<double> end = accumulation_among(touching, values);
-  const bool rubs =
-      std::any_of(touching.begin(), touching.end(), [&](std::size_t i) { return !values.tangent[i].empty(); });
-  ImpactProblem p = impact_problem(end ? cycle_ : touching, values);
-  if (!end) sizes_.note_compliances(p.contacts, p.normal, p.response), sizes_.set_knows_compliances(true);
-  const bool rests = !end && is_lost_in_rounding(touching, values);
-  if (end || rests) std::fill(p.restitution.begin(), p.restitution.end(), 0.0);
-  const VectorXd v = vector_of(here_.v);
-  const bool at_once = problem_.system.impact_law == ImpactLaw::Simultaneous || (rests && !rubs);
-  ImpactResult result = end       ? last_impact(p, v)
-                        : at_once ? impact_at_once(p, v)
-                                  : sequential_impact(p, v, ImpactOrder::FastestFirst);
-  if (end) {  // what rests beside them is not pressed through
-    ImpactProblem all = impact_problem(touching, values);
-    std::fill(all.restitution.begin(), all.restitution.end(), 0.0);
-    const ImpactResult more =
-        rubs ? sequential_impact(all, result.v, ImpactOrder::FastestFirst) : simultaneous_impact(all, result.v, true);
-    result.v = more.v;
-    // What rounding leaves of the bounces that have ended is no impact.
-    std::copy_if(more.impulses.begin(), more.impulses.end(), std::back_inserter(result.impulses),
-                 [&](const Impulse& i) { return i.speed > sizes_.rest_speed(i.contact, values); });
-    result.loss += more.loss, result.moving += more.moving;
-    result.unsolved = more.unsolved;
-  }
-  if (result.unsolved) {
-    reason = "No impulses keep all contacts that are hit here from closing.";
-    return false;
-  }
-  if (!result.v.allFinite()) {
-    reason = fmt::format(
-        "The constraints move the contact {} through zero, and leave nothing that an impact could change: no motion "
-        "obeys "
-        "both.",
-        problem_.system.contact_label(*std::find_if(touching.begin(), touching.end(), [&](std::size_t i) {
-          return values.rate[i] < -sizes_.rest_speed(i, values);
-        })));
-    return false;
-  }
-  if (result.rubs_at_once) {
-    reason = fmt::format(
-        "Several contacts are hit here, {} with friction among them, and `impact simultaneous` says nothing of "
-        "friction: "
-        "leave it out, and one contact after the other is hit, with its friction.",
-        problem_.system.contact_label(*result.rubs_at_once));
-    return false;
-  }
-  note_impact(p, result, v, end.has_value());
-  if (!at_once && !end) note_order(p, result, v);
-  if (result.bounded)
-    journal_.remark(
-        fmt::format("At t = {:.9g} impacts followed each other without an end; the rest of them was done at once, "
-                    "without bounce and without friction.",
-                    here_.t));
-  here_.v.assign(result.v.data(), result.v.data() + result.v.size());
-  // Forces after an impact are others: what came to 0 before it may press.
-  if (!result.impulses.empty()) {
-    std::erase_if(pending_->left, [](const Watch& w) { return w.what == Watch::What::Force; });
-    events_.leave_zeros_of_velocities(*pending_);
-  }
-  record_impulses(result);
-  if (result.impulses.size() > 4 * p.contacts.size()) end_series(touching);
-  if (end) {
-    end_of_bounces_ = EndOfBounces{*end};
-    for (const std::size_t i : touching) bounces_[i].last.clear();
-  }
-  return true;
-}
-
-/// A contact that opens so slowly that it would be pressed again before its gap can be told from zero is closed: its
-/// speed is taken out. v²/(2 |g̈|) is the height of such a flight, g̈ being what its own force takes back.
-void HybridMotion::close_lowest_flights(const std::vector<std::size_t>& touching, double bound) {
-  constexpr double slow = 1e-6;  // of the fastest so far: never what is to be seen
-  const ContactValues& values = here_.values();
-  const auto is_slow = [&](std::size_t i) {
-    return values.rate[i] > sizes_.rest_speed(i, values) && values.rate[i] <= slow * sizes_.fastest(i);
+  const auto any_is_slow = [&](const std::vector<std::size_t>& list) {
+    return std::any_of(list.begin(), list.end(), [&](std::size_t i) { return is_slow(i, values); });
   };
-  if (std::none_of(touching.begin(), touching.end(), is_slow)) return;
-  std::vector<Choice> list;
-  for (const std::size_t i : touching)
-    if (values.rate[i] <= slow * sizes_.fastest(i)) list.push_back(choices_.of_contact(i, values, *pending_));
-  std::vector<std::size_t> pressed;
-  // One that flies higher presses on nothing: the forces of the others are sought without it.
-  for (bool all_are_low = false; !all_are_low;) {
-    const auto problem = forces_.problem_of(list, values, bound);
-    const auto forces = problem ? contact_forces(*problem) : std::nullopt;
-    if (!forces) return;
-    pressed.clear();
-    std::vector<Choice> low;
-    for (std::size_t k = 0; k < list.size(); ++k) {
-      const std::size_t i = list[k].contact;
-      const double falls = forces->normal[k] * dot(problem->contacts[k].normal, problem->response.col(at(k)));
-      const bool presses = forces->normal[k] > 0;
-      if (presses && is_slow(i) && values.rate[i] * values.rate[i] > 2 * falls * rest_unit * sizes_.widest(i)) continue;
-      low.push_back(list[k]);
-      if (presses) pressed.push_back(i);
-    }
-    all_are_low = low.size() == list.size();
-    list = std::move(low);
-  }
-  if (std::none_of(pressed.begin(), pressed.end(), is_slow)) return;
-  const Eigen::VectorXd v = Eigen::Map<const Eigen::VectorXd>(here_.v.data(), at(here_.v.size()));
-  ImpactResult closed = end_of_bounces(impact_problem(pressed, values), v);
+  if (!any_is_slow(touching)) return;
+  const std::vector<std::size_t> pressed = pressed_through_flights(touching, met, values, bound);
+  if (!any_is_slow(pressed)) return;
+  ImpactResult closed = end_of_bounces(problem_of(pressed, values), vector_of(here_.v));
   if (pressed.size() < touching.size()) {  // what touches beside them is not pressed through
-    const ImpactResult all = simultaneous_impact(impact_problem(touching, values), closed.v, true);
+    const ImpactResult all = simultaneous_impact(problem_of(touching, values), closed.v, true);
     if (!all.unsolved) {
       closed.v = all.v;
       closed.loss += all.loss, closed.moving += all.moving;
@@ -313,4 +302,39 @@ void HybridMotion::close_lowest_flights(const std::vector<std::size_t>& touching
   here_.v.assign(closed.v.data(), closed.v.data() + closed.v.size());
 }
 
-}  // namespace maupertuis
+/// Contacts that press though they open, so slowly that they are closed. One that flies higher presses on nothing: the
+/// forces of the others are sought without it.
+std::vector<std::size_t> Impacts::pressed_through_flights(const std::vector<std::size_t>& touching, const Met& met,
+                                                          const ContactValues& values, double bound) {
+  std::vector<Choice> list;
+  for (const std::size_t i : touching)
+    if (values.rate[i] <= slow_flight * sizes_.fastest(i)) list.push_back(choices_.of_contact(i, values, met));
+  std::vector<std::size_t> pressed;
+  for (bool all_are_low = false; !all_are_low;) {
+    const auto problem = forces_.problem_of(list, values, bound);
+    const auto forces = problem ? contact_forces(*problem) : std::nullopt;
+    if (!forces) return {};
+    pressed.clear();
+    std::vector<Choice> low;
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      const std::size_t i = list[k].contact;
+      const double falls = forces->normal[k] * dot(problem->contacts[k].normal, problem->response.col(at(k)));
+      const bool presses = forces->normal[k] > 0;
+      const double speed = values.rate[i];
+      if (presses && is_slow(i, values) && speed * speed > 2 * falls * rest_unit * sizes_.widest(i)) continue;
+      low.push_back(list[k]);
+      if (presses) pressed.push_back(i);
+    }
+    all_are_low = low.size() == list.size();
+    list = std::move(low);
+  }
+  return pressed;
+}
+
+void Impacts::begin_anew(const std::vector<double>& q, const std::vector<double>& v, const ContactValues& values) {
+  for (std::size_t i = 0; i < bounces_.size(); ++i)
+    for (const auto& [k, g] : values.normal[i])
+      if (q[k] != here_.q[k] || v[k] != here_.v[k]) bounces_[i].before = 0;
+}
+
+}  // namespace maupertuis::hybrid

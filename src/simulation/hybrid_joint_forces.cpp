@@ -1,11 +1,12 @@
 #include "simulation/hybrid_joint_forces.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include "simulation/hybrid_cones.hpp"
 
-namespace maupertuis::hybrid {
+#include <algorithm>
+#include <cmath>
+#include <utility>
 
+namespace maupertuis::hybrid {
 namespace {
 
 constexpr double negligible_force = 1e-10;  // of the largest

@@ -65,6 +65,19 @@ void Journal::note_end_of_rest(std::size_t first) {
                   known));
 }
 
+void Journal::tell_limits(const ContactValues& values) {
+  const std::size_t contacts = problem_.system.contacts.size();
+  for (std::size_t i = 0; i < values.kinetic.size(); ++i)
+    if (values.kinetic[i] < 0)
+      remark(i < contacts
+                 ? fmt::format("The coefficient of friction of the contact {} becomes negative: friction drives "
+                               "the motion there, which none does.",
+                               problem_.system.contact_label(i))
+                 : fmt::format("The friction along {} has a limit or a coefficient that becomes negative: it "
+                               "drives the motion there, which no friction does.",
+                               problem_.system.frictions[i - contacts].name));
+}
+
 void Journal::end_at(double t, bool forwards) {
   std::erase_if(record_.happenings, [&](const Happening& h) { return forwards ? h.t > t : h.t < t; });
 }

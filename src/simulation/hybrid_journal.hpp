@@ -59,6 +59,8 @@ class Journal {
   void note_errors(std::size_t first, double error);
   /// Of a rest whose forces were not determined, in what was told from `first` on.
   void note_end_of_rest(std::size_t first);
+  /// A limit of friction below zero is none: the force would drive what it is to brake.
+  void tell_limits(const ContactValues& values);
   /// Forgets what would be after the end of the run: an end of bounces that is told may lie beyond it.
   void end_at(double t, bool forwards);
   /// Events and changes that come at a steady rate, which meets more of them up to the end of the run than are

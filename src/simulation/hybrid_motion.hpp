@@ -1,19 +1,9 @@
 #pragma once
-#include "simulation/contact/impact.hpp"
-#include "simulation/hybrid_journal.hpp"
-#include "simulation/hybrid_modes.hpp"
-#include "simulation/hybrid_space.hpp"
+#include "simulation/hybrid_change.hpp"
 #include "simulation/method.hpp"
-#include "simulation/mode_library.hpp"
 
-#include <maupertuis/constraint_manifold.hpp>
-#include <maupertuis/contact_mode.hpp>
-#include <maupertuis/integrator.hpp>
-#include <maupertuis/motion_through_modes.hpp>
 #include <maupertuis/simulation.hpp>
 
-#include <limits>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,8 +11,6 @@
 #include <vector>
 
 namespace maupertuis {
-
-class ImpactDerivative;
 
 /// A motion with contacts, friction and events: Taylor's steps in one mode after the other, impacts between them
 /// (docs/theory/contacts.md). Its steps end where something happens; the next one begins in the mode after it.
@@ -35,7 +23,6 @@ class HybridMotion final : public Method {
  public:
   /// `parameters` [p].
   HybridMotion(std::shared_ptr<ModeLibrary> library, std::vector<double> parameters, const TaylorOptions& options);
-  ~HybridMotion() override;
 
   int order() const override;
   void start(double t, std::span<const double> q, std::span<const double> v) override;
@@ -58,13 +45,13 @@ class HybridMotion final : public Method {
   std::vector<Happening> take_happenings() { return journal_.take_happenings(); }
   const std::shared_ptr<ModeLibrary>& library() const { return problem_.library; }
   /// Whether the next step begins with an impact, or with what an event sets: the state is another one then.
-  bool will_jump() const;
+  bool will_jump() const { return met_ && met_->changes_state(); }
   /// Why there is no motion from the start; empty where there is one.
   std::string trouble() const { return failed_ ? failed_->reason : std::string(); }
 
   /// For neighbours (motion_through_modes.hpp): from here on each instant is kept.
   void keep_instants();
-  const ModeInstant* instant() const { return instant_ ? &*instant_ : nullptr; }
+  const ModeInstant* instant() const { return neighbours_.instant(); }
   const ContactMode& mode() const { return motions_.now().mode; }
   bool begins_to_slide() const { return !motions_.now().given.begins.empty(); }  // in space, at its beginning
   /// In the context of the model; they stay as long as this.
@@ -80,77 +67,26 @@ class HybridMotion final : public Method {
   void set_usual_sizes(std::span<const double> q, std::span<const double> v) { sizes_.set_elsewhere(q, v); }
 
  private:
-  using Watch = ModeWatch;
-  using Met = hybrid::Met;
-  using ModeMotion = hybrid::ModeMotion;
-  using Outlook = hybrid::Outlook;
-  struct Settled;
+  Sample with_carried(Sample sample) const;
 
-  void leave_mode();
-  Sample adjusted(Sample sample) const;
-  double covered(double t) const;
-
-  // What happens at an instant.
-  void classify(Step& step);
-  void tell_events_at_start(double bound);
-  void record_event(const std::string& name, double t, double hidden = 0);
-  double hidden_by_rounding(double bound);
-  double hides_gap(std::size_t contact, double length);
-  void meet_together(double bound);
+  // A step.
+  std::optional<Step> refused_backwards(double bound);
   Step wait(double bound);
-  std::optional<Step> settle(double bound);
-  bool carry_out_sets(std::string& reason);
-  void meet_event(const ModelEvent& event, const EventRoot& root, Met& pending);
-  std::optional<Step> meet_unseen(double bound);
-  std::vector<std::size_t> touching(const ContactValues& values) const;
-  bool keeps_sticking(const std::vector<std::size_t>& touching, std::string& reason);
-  bool is_lost_in_rounding(const std::vector<std::size_t>& touching, const ContactValues& values) const;
-  bool hit(std::vector<std::size_t>& touching, std::string& reason);
-  void end_series(const std::vector<std::size_t>& touching);
-  static ImpactResult last_impact(const ImpactProblem& problem, const Eigen::VectorXd& v);
-  ImpactProblem impact_problem(const std::vector<std::size_t>& touching, const ContactValues& values);
-  void note_order(const ImpactProblem& problem, const ImpactResult& first, const Eigen::VectorXd& v);
-  /// What impulses take, and what contacts that move give by them.
-  void book_energy(const ImpactResult& result);
-  void record_impulses(const ImpactResult& result);
-  void note_bounce(std::size_t contact, double speed, double restitution);
-  std::optional<double> accumulation(std::size_t contact, double speed);
-  std::optional<double> accumulation_among(std::vector<std::size_t>& touching, const ContactValues& values);
-  bool slips_may_stop_before(double end, const std::vector<std::size_t>& touching, const ContactValues& values) const;
-
-  // The mode after it.
-  bool choose(std::vector<std::size_t>& touch, double bound, std::string& reason);
-  bool choose_slips(const hybrid::Instant& at, bool all_give_way, std::string& reason);
-  void go_on_in(const hybrid::Found& found);
-  // Friction in space.
-  void close_lowest_flights(const std::vector<std::size_t>& touching, double bound);
-  void note_limits(const ContactValues& values);
+  Step step_in_mode(double bound);
+  Step end_step(Step step, double bound);
+  void classify(Step& step);
+  void end_condition(const ModeWatch& watch, double length, hybrid::Met& met) const;
+  void take_state();
+  void note_step();
   void note_holding_forces(const Sample& sample);
-  void note_rest_that_begins();
-  std::optional<std::size_t> violated(double step);
-  // What neighbours need.
-  void note_before(double bound);
-  void note_impact(const ImpactProblem& problem, const ImpactResult& result, const Eigen::VectorXd& v,
-                   bool ends_bounces);
-  void note_after(double bound);
-  void add_set_jump();
-  void add_impact_jumps();
-  void add_impulses_in_order(const ImpactResult& ordered);
-  void add_impulses_at_once();
-  void add_change_of_forces();
-  bool changes_in_space() const;
-  std::string at_once_sentence() const;
-  std::string touch_sentence(std::size_t contact, double t) const;
-  Expr function_of(const Watch& watch, bool second) const;
+
+  // What it has met.
+  std::optional<Step> settle(double bound);
+  std::optional<std::string> too_many_at_once();
 
   Step ended(StepEnding ending, std::string reason) const;
   Step stopped(StepEnding ending, std::string reason);
-  Step stopped_here() const;
-  void take_state();
-  bool pulls() const;
-  bool goes_on(double bound);
-  bool hits_at_start() const;
-  void note_step();
+  Step went_through(std::size_t contact) const;
 
   hybrid::Problem problem_;
   hybrid::State here_;
@@ -160,33 +96,16 @@ class HybridMotion final : public Method {
   hybrid::Carried carried_;
   hybrid::SpaceSlips slips_;
   hybrid::ModeMotions motions_;
-  hybrid::Choices choices_;
-  hybrid::ContactCones cones_;
-  hybrid::SpaceFriction space_;
   hybrid::Events events_;
-  hybrid::UndeterminedForces undetermined_;
-  hybrid::JointForces forces_;
-  hybrid::ModeTrials trials_;
-  hybrid::ModeChoice choice_;
-  std::unique_ptr<Met> pending_;
-  std::optional<Step> failed_;  // the start allows no motion
-
+  hybrid::Neighbours neighbours_;
+  hybrid::ModeChange change_;
+  std::unique_ptr<hybrid::Met> met_;  // of the last step, to be settled
+  std::optional<Step> failed_;        // the start allows no motion
+  bool forwards_ = true;
   double longest_step_ = 0;
-  bool forwards_ = true, started_ = false;
-  double late_by_ = 0;                        // until the pending instant is settled
+  double late_by_ = 0;                        // until what was met is settled
+  std::size_t same_time_ = 0;                 // changes so far at this instant
   mutable std::optional<Sample> step_start_;  // of the last step, where it was asked for
-  std::size_t same_time_ = 0;
-  struct Bounces {
-    std::vector<std::pair<double, double>> last;  // (t, speed) of the last impacts
-    double fastest = 0;                           // impact of the series that goes on, not rounding of other speeds
-    double before = 0;                            // the speed of the impact before
-  };
-  std::vector<Bounces> bounces_;    // [contacts]
-  std::vector<std::size_t> cycle_;  // contacts that bounce together towards an end of their bounces
-  std::optional<hybrid::EndOfBounces> end_of_bounces_;
-  std::shared_ptr<ImpactDerivative> derivative_;  // where instants are kept
-  std::shared_ptr<Settled> settled_;              // the instant that is being settled
-  std::optional<ModeInstant> instant_;            // the one at the beginning of the last step
 };
 
 }  // namespace maupertuis

@@ -69,6 +69,32 @@ std::unique_ptr<ModeMotion> ModeMotions::made(const ContactMode& mode, const Giv
   return out;
 }
 
+bool ModeMotions::covers(double t) const { return stepper().covers(covered(t)); }
+
+void ModeMotions::state(double t, std::span<double> q, std::span<double> v) const {
+  stepper().state(covered(t), q, v);
+  passed_moment_.move_back(t, stepper().step_start().t, q, v);
+}
+
+/// Of the multipliers those of the system's own constraints, with what is given of them.
+Sample ModeMotions::with_given(Sample sample) const {
+  const std::size_t own = problem_.equations.system->constraints.size();
+  if (now_->given.is_preload && sample.multipliers.size() >= own)
+    for (std::size_t k = 0, made = sample.multipliers.size() - own; k < own; ++k)
+      sample.multipliers[k] += now_->given.preload(made + k, sample.t);
+  sample.multipliers.resize(own);
+  return sample;
+}
+
+Sample ModeMotions::sample(double t) const {
+  Sample out = with_given(stepper().sample(covered(t)));
+  passed_moment_.move_back(t, stepper().step_start().t, out.q, out.v);
+  out.t = t;
+  return out;
+}
+
+Sample ModeMotions::step_start() const { return with_given(stepper().step_start()); }
+
 void ModeMotions::forget(const ContactMode& mode) {
   std::erase_if(modes_, [&](const auto& entry) { return entry.second->mode == mode && entry.second.get() != now_; });
 }

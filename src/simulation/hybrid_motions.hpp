@@ -1,4 +1,5 @@
 #pragma once
+#include "simulation/hybrid_carried.hpp"
 #include "simulation/hybrid_slips.hpp"
 
 #include <map>
@@ -31,6 +32,14 @@ class ModeMotions {
   TaylorStepper& stepper() const { return *now_->stepper; }
   void go_on_in(const ContactMode& mode, const Given& given = {}) { now_ = &in(mode, given); }
 
+  /// The motion that goes on, in its last step and in a moment that was passed over before that.
+  bool covers(double t) const;
+  void state(double t, std::span<double> q, std::span<double> v) const;
+  /// With what is given of multipliers; of integrals those of its mode alone.
+  Sample sample(double t) const;
+  Sample step_start() const;
+  PassedMoment& passed_moment() { return passed_moment_; }
+
   /// It stays until others are asked for. Of what is given there is another motion each time.
   ModeMotion& in(const ContactMode& mode, const Given& given = {});
   /// What the motion in a mode does from here; nothing where there is none.
@@ -46,6 +55,8 @@ class ModeMotions {
   std::unique_ptr<ModeMotion> made(const ContactMode& mode, const Given& given, const ModeDetails& details) const;
   void treat_events(ModeMotion& motion) const;
   void forget_oldest();
+  double covered(double t) const { return passed_moment_.covered(t, stepper().step_start().t); }
+  Sample with_given(Sample sample) const;
 
   const Problem& problem_;
   const State& here_;
@@ -53,6 +64,7 @@ class ModeMotions {
   std::map<std::string, std::unique_ptr<ModeMotion>> modes_;
   std::map<std::string, std::unique_ptr<EquationsOfMotion>> equations_;  // that neighbours have asked for
   ModeMotion* now_ = nullptr;
+  PassedMoment passed_moment_;
   std::size_t asked_for_ = 0;  // modes so far
   bool tells_touches_ = false;
 };

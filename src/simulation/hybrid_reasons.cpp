@@ -1,10 +1,12 @@
-#include "linear_algebra/combinations.hpp"
 #include "simulation/hybrid_modes.hpp"
+
+#include "linear_algebra/combinations.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 /// Why no mode fits at an instant.
 namespace maupertuis::hybrid {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 namespace maupertuis::hybrid {
 namespace {
@@ -47,11 +48,6 @@ struct SpaceFriction::Stopping {
   std::vector<std::size_t> contacts;
   bool all = false;  // one implicit step stops all that are slow
 };
-
-void SpaceFriction::start() {
-  moment_.forget();
-  cone_residual_ = -1;
-}
 
 bool SpaceFriction::is_slow(std::size_t i, const ContactValues& values) const {
   const Friction& f = problem_.system.contacts[i].friction;
@@ -164,7 +160,7 @@ bool SpaceFriction::all_stop(const std::vector<std::size_t>& slow, const std::ve
 /// On by a moment with these accelerations: what they leave out are third powers of it, rounding.
 void SpaceFriction::move_on(double by, const VectorXd& accelerations) {
   const double before = functions_.energy(here_);
-  moment_.begin(here_.t, {accelerations.data(), accelerations.data() + accelerations.size()});
+  motions_.passed_moment().begin(here_.t, {accelerations.data(), accelerations.data() + accelerations.size()});
   for (std::size_t i = 0; i < here_.q.size(); ++i) {
     here_.q[i] += by * (here_.v[i] + 0.5 * by * accelerations(at(i)));
     here_.v[i] += by * accelerations(at(i));

@@ -25,7 +25,7 @@ class SpaceFriction {
         cones_(cones),
         functions_(functions),
         carried_(carried) {}
-  void start();
+  void start() { cone_residual_ = -1; }
 
   /// A slip that is slow and falls comes to rest after v_t²/(−v_t·v̇_t): the motion moves on to there, where both
   /// components are 0. One that grows has just begun.
@@ -38,8 +38,6 @@ class SpaceFriction {
   /// `all_give_way`: no forces hold the rest any more. False where the cones have no solution that is found.
   bool choose_slips(const std::vector<std::size_t>& touching, const Met& met, double bound, bool all_give_way);
 
-  PassedMoment& moment() { return moment_; }
-  const PassedMoment& moment() const { return moment_; }
   /// How far from the conditions of their cones forces were, of the largest; negative where none were sought.
   double cone_residual() const { return cone_residual_; }
 
@@ -64,7 +62,6 @@ class SpaceFriction {
   const ContactCones& cones_;
   StateFunctions& functions_;
   Carried& carried_;
-  PassedMoment moment_;
   double cone_residual_ = -1;  // the largest so far
 };
 

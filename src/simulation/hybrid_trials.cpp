@@ -1,13 +1,15 @@
 #include "simulation/hybrid_trials.hpp"
+
 #include <algorithm>
 #include <cmath>
-namespace maupertuis::hybrid {
+#include <limits>
 
+namespace maupertuis::hybrid {
 namespace {
 
-/// Of the terms of g̈: what a located instant leaves of a force that falls through 0.
-constexpr double located_force = 1e-9;
-constexpr double rounding_of_forces = 1e-13;  // of the terms of g̈
+// Of the terms of g̈.
+constexpr double located_force = 1e-9;  // what a located instant leaves of a force that falls through 0
+constexpr double rounding_of_forces = 1e-13;
 
 bool holds(const std::vector<std::size_t>& list, std::size_t x) {
   return std::find(list.begin(), list.end(), x) != list.end();
@@ -49,14 +51,13 @@ bool ModeTrials::presses_again(std::size_t contact, std::span<const double> acce
 bool ModeTrials::changes_no_force(const ContactMode& mode, const Met& met, const ContactValues& values) const {
   const ContactMode& before = motions_.now().mode;
   if (met.left.empty() || met.changes_state()) return false;
-  const auto has_left = [&](Watch::What what, std::size_t i, bool lower) { return met.ends({what, i, lower}); };
   const auto opens = [&](std::size_t i) {
-    return i < mode.closed.size() && before.closed[i] && !mode.closed[i] && has_left(Watch::What::Force, i, false);
+    return i < mode.closed.size() && before.closed[i] && !mode.closed[i] && met.ends({Watch::What::Force, i, false});
   };
   const auto gives_way = [&](std::size_t i) {
     const bool forwards = mode.friction[i] == FrictionState::Forward;
     return before.friction[i] == FrictionState::Stick && (forwards || mode.friction[i] == FrictionState::Backward) &&
-           has_left(Watch::What::Hold, i, forwards) && values.fixed[i] == values.kinetic[i];
+           met.ends({Watch::What::Hold, i, forwards}) && values.fixed[i] == values.kinetic[i];
   };
   for (std::size_t i = 0; i < mode.closed.size(); ++i)
     if (mode.closed[i] != before.closed[i] && !opens(i)) return false;

@@ -1,14 +1,16 @@
 #include "simulation/hybrid_undetermined.hpp"
 
-#include <fmt/format.h>
-#include <algorithm>
-#include <cmath>
 #include "linear_algebra/independent_rows.hpp"
 #include "simulation/contact/resting_forces.hpp"
 #include "simulation/mode_remarks.hpp"
 
-namespace maupertuis::hybrid {
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace maupertuis::hybrid {
 namespace {
 
 constexpr std::size_t most_in_plane = 128, most_in_space = 32;  // contacts whose forces at rest are sought

@@ -3,7 +3,7 @@
 #include "linear_algebra/independent_rows.hpp"
 
 /// The mode after an instant: which are possible, whether one keeps its conditions, and which static friction gives way
-/// (hybrid_modes.cpp and hybrid_fitting.cpp of simulation, over T).
+/// (hybrid_modes.cpp and hybrid_trials.cpp of simulation, over T).
 namespace maupertuis::extended {
 
 template <class T>
@@ -275,7 +275,7 @@ std::optional<std::vector<std::size_t>> Modes<T>::beyond_limits(InMode& candidat
 }
 
 /// Of frictions at rest those give way first that are at their limit, or beyond it where all rest; of the latter the
-/// one that is written last, so that the first one is held where one can be (HybridMotion::order_by_limits).
+/// one that is written last, so that the first one is held where one can be (ModeChoice::order_by_limits).
 template <class T>
 void Modes<T>::order_by_limits(std::vector<Choice>& list, const std::vector<std::size_t>& touching, const Met& met) {
   std::vector<std::size_t> at_limit;
@@ -293,7 +293,7 @@ void Modes<T>::order_by_limits(std::vector<Choice>& list, const std::vector<std:
 }
 
 /// Whether friction begins to slide in this mode that would hold below its own limit beside all else as it is there:
-/// the one that has to give way is another (HybridMotion::gives_way_unforced).
+/// the one that has to give way is another (ModeChoice::gives_way_unforced).
 template <class T>
 bool Modes<T>::gives_way_unforced(const std::vector<Choice>& list, const ExtendedMode& mode,
                                   const std::vector<std::size_t>& touching, const Met& met) {

@@ -263,7 +263,7 @@ bool Modes<T>::carry_out_sets(const Met& met) {
   return true;
 }
 
-/// See HybridMotion::turned_unseen.
+/// See Events::turned_unseen of simulation.
 template <class T>
 bool Modes<T>::returns_are_seen(const Met& met) {
   if (met.sets.empty() || met.zeros.empty()) return true;

@@ -1,18 +1,21 @@
-#include <fmt/format.h>
-#include <algorithm>
-#include <cmath>
+#include "simulation/hybrid_neighbours.hpp"
+
+#include "simulation/contact/impact_derivative.hpp"
+
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/slip_signs.hpp>
 #include <maupertuis/transform.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <set>
 #include <stdexcept>
-#include "simulation/contact/impact_derivative.hpp"
-#include "simulation/hybrid_parts.hpp"
-/// What neighbours and companions of a motion need of its instants: the functions whose roots they are, the derivatives
-/// of what happens there, and how far rounding hides them.
+#include <utility>
 
-namespace maupertuis {
-
+namespace maupertuis::hybrid {
 namespace {
 
 using Eigen::Index;
@@ -20,8 +23,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Of the largest speed of a contact: one that closes more slowly only touches.
-constexpr double slow = 1e-9;
-constexpr double same = 1e-9;
+constexpr double slowest_hit = 1e-9;
+constexpr double same_to = 1e-9;
 
 std::vector<double> rows_of(const MatrixXd& m) {
   std::vector<double> out;
@@ -40,114 +43,112 @@ std::vector<double> slopes_of_velocities(const MatrixXd& velocities) {
 }
 
 bool equal(const VectorXd& a, const VectorXd& b) {
-  return (a - b).cwiseAbs().maxCoeff() <= same * std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
+  return (a - b).cwiseAbs().maxCoeff() <= same_to * std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
 }
 
 }  // namespace
 
-/// What is kept while an instant is settled.
-struct HybridMotion::Settled {
-  ModeInstant instant;
-  std::vector<std::size_t> hit;
-  struct Ended {
-    Expr function;  // of the mode before
-    double rate = 0;
-  };
-  std::vector<Ended> left, sets;  // as in Pending
-  std::vector<const ModelEvent*> events;
-  std::optional<ImpactProblem> problem;
-  ImpactResult impact;
-  VectorXd v_before_impact;
-  bool ends_bounces = false, was_preload = false;
+struct Neighbours::Ended {
+  Expr function;  // of the mode before
+  double rate = 0;
 };
 
-void HybridMotion::keep_instants() {
-  derivative_ = std::make_shared<ImpactDerivative>(problem_.equations, problem_.parameters);
-  motions_.tell_touches();
+/// What is kept while an instant is settled.
+struct Neighbours::Settled {
+  ModeInstant instant;
+  std::vector<std::size_t> hit;
+  std::vector<Ended> left, sets;  // as in Met
+  std::vector<const ModelEvent*> events;
+  Impact impact;  // without impulses where nothing is hit
+  bool was_preload = false;
+};
+
+Neighbours::Neighbours(const Problem& problem, const State& here, const UsualSizes& sizes, const ModeMotions& motions)
+    : problem_(problem), here_(here), sizes_(sizes), motions_(motions) {}
+
+Neighbours::~Neighbours() = default;
+
+void Neighbours::start() {
+  settled_.reset();
+  instant_.reset();
 }
 
-std::string HybridMotion::touch_sentence(std::size_t contact, double t) const {
-  return fmt::format("The contact {} is only touched at t = {:.9g}: some neighbours hit it and others do not.",
-                     problem_.system.contact_label(contact), t);
-}
+void Neighbours::keep() { derivative_ = std::make_unique<ImpactDerivative>(problem_.equations, problem_.parameters); }
 
-/// Before anything is settled. The mode before is asked once more, for the rates of what ends it.
-void HybridMotion::note_before(double bound) {
-  settled_ = std::make_shared<Settled>();
+void Neighbours::note_before(const Met& met, double bound) {
+  settled_ = std::make_unique<Settled>();
   Settled& s = *settled_;
+  TaylorStepper& stepper = motions_.stepper();
   s.instant.mode_before = motions_.now().mode;
   s.instant.before = {here_.t, here_.q, here_.v};
-  TaylorStepper& stepper = motions_.stepper();
   s.instant.a_before = stepper.sample(stepper.time()).a;
-  s.hit = pending_->hit;
+  s.hit = met.hit;
   s.was_preload = motions_.now().given.is_preload;
-  s.events = pending_->sets;
-  if (pending_->left.empty() && pending_->sets.empty()) return;
+  s.events = met.sets;
+  if (met.left.empty() && met.sets.empty()) return;
   stepper.start(here_.t, here_.q, here_.v, here_.t_rest);
   const Outlook outlook = stepper.outlook(bound);
-  // Of the two sides of what holds, the one that is met.
-  const auto find = [&](Watch::What what, std::size_t index) {
-    HybridMotion::Settled::Ended found{{}, std::numeric_limits<double>::quiet_NaN()};
-    double least = HUGE_VAL;
-    for (std::size_t k = 0, sides = 0; k < motions_.now().watches().size() && k < outlook.slopes.size(); ++k) {
-      if (motions_.now().watches()[k].what != what || motions_.now().watches()[k].index != index) continue;
-      const bool second = sides++ > 0;
-      if (!(std::abs(outlook.values[k]) < least)) continue;
-      least = std::abs(outlook.values[k]);
-      found = {function_of(motions_.now().watches()[k], second), outlook.slopes[k]};
-    }
-    return found;
-  };
-  for (const Watch& w : pending_->left) s.left.push_back(find(w.what, w.index));
+  for (const Watch& w : met.left) s.left.push_back(ended_by(w.what, w.index, outlook));
   for (const ModelEvent* e : s.events)
-    s.sets.push_back(find(Watch::What::Event, static_cast<std::size_t>(e - problem_.model.experiment.events.data())));
+    s.sets.push_back(
+        ended_by(Watch::What::Event, static_cast<std::size_t>(e - problem_.model.experiment.events.data()), outlook));
 }
 
-void HybridMotion::note_impact(const ImpactProblem& problem, const ImpactResult& result, const VectorXd& v,
-                               bool ends_bounces) {
+/// Of the two sides of what holds, the one that is met.
+Neighbours::Ended Neighbours::ended_by(Watch::What what, std::size_t index, const Outlook& outlook) const {
+  Ended out{{}, std::numeric_limits<double>::quiet_NaN()};
+  const std::vector<Watch>& watches = motions_.now().watches();
+  double least = HUGE_VAL;
+  for (std::size_t k = 0, sides = 0; k < watches.size() && k < outlook.slopes.size(); ++k) {
+    if (watches[k].what != what || watches[k].index != index) continue;
+    const bool second = sides++ > 0;
+    if (!(std::abs(outlook.values[k]) < least)) continue;
+    least = std::abs(outlook.values[k]);
+    out = {function_of(watches[k], second), outlook.slopes[k]};
+  }
+  return out;
+}
+
+void Neighbours::note_impact(Impact impact) {
+  if (settled_) settled_->impact = std::move(impact);
+}
+
+void Neighbours::note_after(double bound) {
   if (!settled_) return;
-  settled_->problem = problem;
-  settled_->impact = result;
-  settled_->v_before_impact = v;
-  settled_->ends_bounces = ends_bounces;
-}
-
-/// Once the mode after it is known.
-void HybridMotion::note_after(double bound) {
-  Settled& s = *settled_;
-  ModeInstant& out = s.instant;
+  ModeInstant& out = settled_->instant;
   out.mode_after = motions_.now().mode;
   out.after = {here_.t, here_.q, here_.v};
   out.a_after = motions_.stepper().outlook(bound).accelerations;
+  add_jumps();
+  instant_ = std::move(out);
+  settled_.reset();
+}
+
+void Neighbours::add_jumps() {
+  Settled& s = *settled_;
   if (changes_in_space())
-    out.obstacle = fmt::format(
+    s.instant.obstacle = fmt::format(
         "Friction in space is hit, begins or stops to slide at t = {:.9g}: neighbours are not carried through that "
         "yet.",
         here_.t);
   else if (motions_.now().given.is_preload || s.was_preload)
-    out.obstacle = fmt::format(
+    s.instant.obstacle = fmt::format(
         "Contacts hold each other with forces that the motion does not determine at t = {:.9g}: when friction gives "
         "way "
         "to a neighbour is not determined either.",
         here_.t);
   else if (!s.events.empty())
     add_set_jump();
-  else if (!s.impact.impulses.empty())
+  else if (!s.impact.result.impulses.empty())
     add_impact_jumps();
   else
     add_change_of_forces();
-  instant_ = std::move(out);
-  settled_.reset();
-}
-
-std::string HybridMotion::at_once_sentence() const {
-  return fmt::format("Several things happen at t = {:.9g}, and neighbours meet them one after the other.", here_.t);
 }
 
 /// Friction with two components of slip that is met by an impact, or does something else from here on.
-bool HybridMotion::changes_in_space() const {
+bool Neighbours::changes_in_space() const {
   const Settled& s = *settled_;
-  for (const Impulse& i : s.impact.impulses)
+  for (const Impulse& i : s.impact.result.impulses)
     if (problem_.system.contacts[i.contact].friction.in_space()) return true;
   for (std::size_t i = 0; i < s.instant.mode_before.friction.size(); ++i) {
     const bool opens = i < problem_.system.contacts.size() && !s.instant.mode_after.closed[i];
@@ -159,9 +160,9 @@ bool HybridMotion::changes_in_space() const {
 }
 
 /// An event that sets the state.
-void HybridMotion::add_set_jump() {
+void Neighbours::add_set_jump() {
   Settled& s = *settled_;
-  if (s.events.size() > 1 || !s.hit.empty() || !s.left.empty() || !s.impact.impulses.empty()) {
+  if (s.events.size() > 1 || !s.hit.empty() || !s.left.empty() || !s.impact.result.impulses.empty()) {
     s.instant.obstacle = at_once_sentence();
     return;
   }
@@ -193,23 +194,24 @@ void HybridMotion::add_set_jump() {
 }
 
 /// One impulse after the other, each with the gap of its contact; or all at once where they share the impact.
-void HybridMotion::add_impact_jumps() {
+void Neighbours::add_impact_jumps() {
   Settled& s = *settled_;
-  const ImpactProblem& p = *s.problem;
+  const ImpactProblem& p = s.impact.problem;
   std::set<std::size_t> open_before;  // those that are hit, or would be hit in another order
-  for (const Impulse& i : s.impact.impulses)
+  for (const Impulse& i : s.impact.result.impulses)
     if (!s.instant.mode_before.closed[i.contact]) open_before.insert(i.contact);
   for (std::size_t k = 0; k < p.contacts.size(); ++k)
-    if (!s.instant.mode_before.closed[p.contacts[k]] && dot(p.normal[k], s.v_before_impact) + p.drive[k] < -p.rest[k])
+    if (!s.instant.mode_before.closed[p.contacts[k]] && dot(p.normal[k], s.impact.v_before) + p.drive[k] < -p.rest[k])
       open_before.insert(p.contacts[k]);
   if (!s.left.empty()) {
     s.instant.obstacle = at_once_sentence();
     return;
   }
-  const ImpactResult ordered = sequential_impact(p, s.v_before_impact, ImpactOrder::FastestFirst);
+  const ImpactResult ordered = sequential_impact(p, s.impact.v_before, ImpactOrder::FastestFirst);
   if (open_before.size() > 1) {
-    const ImpactResult other = sequential_impact(p, s.v_before_impact, ImpactOrder::FastestLast);
-    if (s.ends_bounces || s.impact.bounded || !equal(ordered.v, other.v) || !equal(ordered.v, s.impact.v)) {
+    const ImpactResult other = sequential_impact(p, s.impact.v_before, ImpactOrder::FastestLast);
+    if (s.impact.ends_bounces || s.impact.result.bounded || !equal(ordered.v, other.v) ||
+        !equal(ordered.v, s.impact.result.v)) {
       s.instant.obstacle = fmt::format(
           "Several contacts are hit at t = {:.9g}: neighbours hit them one after the other, and what follows depends "
           "on "
@@ -218,19 +220,19 @@ void HybridMotion::add_impact_jumps() {
       return;
     }
   }
-  if (equal(ordered.v, s.impact.v))
+  if (equal(ordered.v, s.impact.result.v))
     add_impulses_in_order(ordered);
   else
     add_impulses_at_once();
 }
 
 /// Where the impact that is looked at changes the contacts: those that were hit are open between impulses.
-void HybridMotion::add_impulses_in_order(const ImpactResult& ordered) {
+void Neighbours::add_impulses_in_order(const ImpactResult& ordered) {
   Settled& s = *settled_;
-  const ImpactProblem& p = *s.problem;
+  const ImpactProblem& p = s.impact.problem;
   MotionState at = s.instant.before;
   ContactMode mode = s.instant.mode_before;
-  VectorXd v = s.v_before_impact;
+  VectorXd v = s.impact.v_before;
   for (const Impulse& impulse : ordered.impulses) {
     const std::size_t c = impulse.contact;
     const auto k = static_cast<std::size_t>(std::find(p.contacts.begin(), p.contacts.end(), c) - p.contacts.begin());
@@ -253,23 +255,23 @@ void HybridMotion::add_impulses_in_order(const ImpactResult& ordered) {
     mode.friction[c] = FrictionState::None;
     const bool rubs = problem_.system.contacts[c].friction.present();
     const auto volume = rubs || plastic ? std::nullopt : std::optional(2 * std::log(p.restitution[k]));
-    s.instant.jumps.push_back({problem_.system.contacts[c].gap, rate, slow * sizes_.fastest(c), mode, at,
+    s.instant.jumps.push_back({problem_.system.contacts[c].gap, rate, slowest_hit * sizes_.fastest(c), mode, at,
                                slopes_of_velocities(*slopes), volume});
   }
   s.instant.jumps.back().mode = s.instant.mode_after;
   s.instant.jumps.back().after = s.instant.after;
 }
 
-void HybridMotion::add_impulses_at_once() {
+void Neighbours::add_impulses_at_once() {
   Settled& s = *settled_;
-  const ImpactProblem& p = *s.problem;
+  const ImpactProblem& p = s.impact.problem;
   std::vector<std::size_t> pressing;
   std::optional<std::size_t> met;  // the contact that was open before
-  for (const Impulse& i : s.impact.impulses) {
+  for (const Impulse& i : s.impact.result.impulses) {
     pressing.push_back(i.contact);
     if (!s.instant.mode_before.closed[i.contact]) met = i.contact;
   }
-  if (s.ends_bounces || s.impact.bounded || !met) {
+  if (s.impact.ends_bounces || s.impact.result.bounded || !met) {
     s.instant.obstacle = fmt::format(
         "At t = {:.9g} infinitely many impacts of several contacts come to their end, and neighbours meet them in "
         "another order.",
@@ -279,22 +281,22 @@ void HybridMotion::add_impulses_at_once() {
   const auto k = static_cast<std::size_t>(std::find(p.contacts.begin(), p.contacts.end(), *met) - p.contacts.begin());
   const MatrixXd slopes =
       derivative_->at_once(pressing, {here_.t, s.instant.before.q, s.instant.before.v, p.restitution[k] == 0});
-  s.instant.jumps.push_back({problem_.system.contacts[*met].gap, dot(p.normal[k], s.v_before_impact) + p.drive[k],
-                             slow * sizes_.fastest(*met), s.instant.mode_after, s.instant.after,
+  s.instant.jumps.push_back({problem_.system.contacts[*met].gap, dot(p.normal[k], s.impact.v_before) + p.drive[k],
+                             slowest_hit * sizes_.fastest(*met), s.instant.mode_after, s.instant.after,
                              slopes_of_velocities(slopes), std::nullopt});
 }
 
 /// The state stays. Where accelerations go on, so do those of neighbours, whenever they get there.
-void HybridMotion::add_change_of_forces() {
+void Neighbours::add_change_of_forces() {
   Settled& s = *settled_;
   const ModeInstant& i = s.instant;
   if (!s.hit.empty()) {
-    s.instant.obstacle = touch_sentence(s.hit.front(), here_.t);
+    s.instant.obstacle = touch_sentence(s.hit.front());
     return;
   }
   bool goes_on = true;
   for (std::size_t k = 0; k < here_.q.size(); ++k)
-    goes_on = goes_on && std::abs(i.a_before[k] - i.a_after[k]) <= same * std::max(sizes_.acceleration(k), 1e-280);
+    goes_on = goes_on && std::abs(i.a_before[k] - i.a_after[k]) <= same_to * std::max(sizes_.acceleration(k), 1e-280);
   if (goes_on) return;
   if (s.left.size() != 1) {
     s.instant.obstacle = s.left.empty() ? fmt::format("An acceleration jumps at a switch at t = {:.9g} s.", here_.t)
@@ -305,7 +307,7 @@ void HybridMotion::add_change_of_forces() {
 }
 
 /// The function of a condition of the mode that it is in; `second`: the other of two sides.
-Expr HybridMotion::function_of(const Watch& watch, bool second) const {
+Expr Neighbours::function_of(const Watch& watch, bool second) const {
   const std::size_t i = watch.index;
   const ContactMode& mode = motions_.now().mode;
   switch (watch.what) {
@@ -334,52 +336,13 @@ Expr HybridMotion::function_of(const Watch& watch, bool second) const {
   throw std::logic_error("an unknown condition of a mode; please report");
 }
 
-/// How far rounding may hide the time at which a force comes to its limit: |f/ḟ| where f is as small as it is told from
-/// 0, a third of the whole at a triple root, a fifth at one of five. 0 where the root is a simple one.
-double HybridMotion::hidden_by_rounding(double bound) {
-  constexpr double simple = 1e-8, most = 5;
-  if (pending_->left.empty() || !pending_->hit.empty() || !pending_->sets.empty()) return 0;
-  const Outlook outlook = motions_.stepper().outlook(bound);
-  if (outlook.ending != StepEnding::None) return 0;
-  double out = 0;
-  for (std::size_t k = 0; k < motions_.now().watches().size(); ++k) {
-    const Watch& w = motions_.now().watches()[k];
-    if (w.what != Watch::What::Hold && w.what != Watch::What::Force) continue;
-    const bool ends = std::any_of(pending_->left.begin(), pending_->left.end(), [&](const Watch& x) {
-      return x.what == w.what && x.index == w.index && x.lower == w.lower;
-    });
-    const double hidden = std::abs(outlook.values[k] / outlook.slopes[k]);
-    if (ends && hidden > simple * outlook.length && hidden < outlook.length) out = std::max(out, most * hidden);
-  }
-  return out;
+std::string Neighbours::at_once_sentence() const {
+  return fmt::format("Several things happen at t = {:.9g}, and neighbours meet them one after the other.", here_.t);
 }
 
-/// For how long before its root a gap is not told from 0, where it closes ever more slowly: the third root of its
-/// rounding at a root of third order. 0 at a simple one, which is known as time is. `length`: of the step.
-double HybridMotion::hides_gap(std::size_t contact, double length) {
-  constexpr double slow = 1e-4, slower = 2;
-  const ContactValues& here = here_.values();
-  const double speed = std::abs(here.rate[contact]);
-  if (speed > slow * sizes_.fastest(contact)) return 0;
-  const double rounding = 8 * rest_unit * sizes_.gap(contact, here);  // to which roots are searched
-  std::vector<double> q = here_.q, v = here_.v;
-  for (double hidden = rest_unit * std::max(std::abs(here_.t), length); hidden < length; hidden *= 2) {
-    const double before = forwards_ ? here_.t - hidden : here_.t + hidden;
-    motions_.stepper().state(before, q, v);
-    const ContactValues& values = here_.values_at(before, q, v);
-    if (std::abs(values.gap[contact]) > rounding) return std::abs(values.rate[contact]) > slower * speed ? hidden : 0;
-  }
-  return length;
+std::string Neighbours::touch_sentence(std::size_t contact) const {
+  return fmt::format("The contact {} is only touched at t = {:.9g}: some neighbours hit it and others do not.",
+                     problem_.system.contact_label(contact), here_.t);
 }
 
-/// On in the mode that ends here.
-Step HybridMotion::wait(double bound) {
-  const double until = time() + (forwards_ ? late_by_ : -late_by_);
-  late_by_ = 0;
-  Step out = motions_.stepper().step(forwards_ ? std::min(bound, until) : std::max(bound, until));
-  out.events.clear();
-  if (out.ending == StepEnding::None) note_step();
-  return out;
-}
-
-}  // namespace maupertuis
+}  // namespace maupertuis::hybrid
