@@ -243,6 +243,15 @@ constexpr std::array entries{
               "V = m g z\ncontact z >= 0 restitution e name floor\nstart z = -1 cm\nrun 2 s\n",
               "# maup simulate\ncoord z : length\nparam m = 1 kg, g = 9.81 m/s^2, e = 0.8\nT = 1/2 m z'^2\n"
               "V = m g z\ncontact z >= 0 restitution e name floor\nstart z = 1 cm\nrun 2 s\n"},
+    CodeEntry{"E0735", "the motion from this start is not the only one",
+              "Where a force grows as a power below 1 of the displacement, q'' = q^(1/2), it has no finite derivative, "
+              "and a rest there does not determine what follows: q = 0 for ever obeys the equation, and so does q = "
+              "(t - T)^4/144 from any time T on (Norton's dome). A force of that kind that draws back, q'' = -q^(1/2), "
+              "keeps the rest.",
+              "# maup simulate\ndimensionless\nparam g = 1\ncoord s : number\nT = 1/2 s'^2\nV = -2/3 g s^(3/2)\n"
+              "start s = 0\nrun 1\n",
+              "# maup simulate\ndimensionless\nparam g = 1\ncoord s : number\nT = 1/2 s'^2\nV = -2/3 g s^(3/2)\n"
+              "start s = 1e-6\nrun 1\n"},
     CodeEntry{"W0734", "the energy drifts far beyond the errors of the steps",
               "Nothing in the equations of motion changes it so. Where an energy jumps, a force acts that no "
               "derivative shows, and the motion goes through as if there were none. Most jumps are "

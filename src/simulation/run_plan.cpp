@@ -1,5 +1,7 @@
 #include "simulation/run_plan.hpp"
 
+#include "simulation/unique_start.hpp"
+
 #include <maupertuis/reactions.hpp>
 #include <maupertuis/transform.hpp>
 
@@ -151,7 +153,9 @@ class Planner {
 
 std::optional<RunPlan> plan_run(const Model& model, const EquationsOfMotion& equations,
                                 const SimulationOptions& options, Diagnostics& diagnostics) {
-  return Planner(model, equations, options, diagnostics).plan();
+  auto out = Planner(model, equations, options, diagnostics).plan();
+  if (out && !start_has_one_motion(model, equations, *out, diagnostics)) return std::nullopt;
+  return out;
 }
 
 bool requests_lie_ahead(const MechanicalSystem& system, const RunPlan& plan, const SimulationOptions& options,

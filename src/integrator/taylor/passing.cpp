@@ -218,7 +218,7 @@ void TaylorStepper::Impl::pass(const Collocation& c, double bound, Step& result)
 }
 
 bool TaylorStepper::Impl::passes(double h, double bound, Place place, Step& result) {
-  if (!(h > 0 && h < std::abs(remaining(bound))) || control.order < nodes) return false;
+  if (!(h > 0 && h <= std::abs(remaining(bound))) || control.order < nodes) return false;
   Collocation c(*this, std::copysign(h, remaining(bound)), place);
   const bool found = c.converges() && c.is_smooth();
   watched.set_sides(probe);
@@ -227,12 +227,13 @@ bool TaylorStepper::Impl::passes(double h, double bound, Place place, Step& resu
 }
 
 /// Where there is no series: from small shares of the longest step, or of the run, downward. Such a step looks at
-/// points alone, and must be too short for anything to happen between them. At a singular configuration of the
-/// constraints not even q̈ is there.
+/// points alone, and must be too short for anything to happen between them, unless everything rests for ever. At a
+/// singular configuration of the constraints not even q̈ is there.
 bool TaylorStepper::Impl::passes_from_here(double bound, Step& result) {
   const double* const half_a = work.coordinate(2);
   const bool has_accelerations = std::all_of(half_a, half_a + n, [](double a) { return std::isfinite(a); });
   const Place place = m > 0 && !has_accelerations ? Place::OfConstraints : Place::OfFormulas;
+  if (m == 0 && rests_for_ever() && passes(std::abs(remaining(bound)), bound, place, result)) return true;
   const double whole = longest > 0 ? longest : std::abs(remaining(bound));
   for (double share = 1e-5; share > 1e-11; share *= 0.2)
     if (passes(share * whole, bound, place, result)) return true;

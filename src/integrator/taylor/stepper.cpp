@@ -133,6 +133,15 @@ bool TaylorStepper::Impl::is_at_rest() const {
   return true;
 }
 
+/// Whether no velocity and no acceleration is there, and no formula asks for the time: then q for ever is a motion,
+/// also where a force has no derivative, as −√q at 0.
+bool TaylorStepper::Impl::rests_for_ever() const {
+  if (work.program().time != no_slot) return false;
+  const double *const v = work.coordinate(1), *const half_a = work.coordinate(2);
+  return std::all_of(v, v + n, [](double x) { return x == 0; }) &&
+         std::all_of(half_a, half_a + n, [](double x) { return x == 0; });
+}
+
 /// Whether all forces balance over a step of length h, all velocities are rounding, and no formula asks for the time:
 /// then nothing ever moves, whatever rounding makes of the coefficients.
 bool TaylorStepper::Impl::stays(double h) const {

@@ -45,6 +45,7 @@ struct TaylorStepper::Impl {
   bool switches_have_values(double bound, Step& result);
   double choose_length(double bound);
   bool is_at_rest() const;
+  bool rests_for_ever() const;
   bool stays(double h) const;
   bool make_step(double bound, double h, Step& result);
   void advance(double bound, double h, const taylor::Crossing& crossing, Step& result);
