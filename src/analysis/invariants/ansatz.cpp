@@ -138,7 +138,7 @@ namespace {
 /// How rich a basis of charges is.
 struct Richness {
   int time_degree;
-  enum { Constant, Affine, Functions, Pairs } displacements;  // of what the η are combinations
+  enum { Constant, Affine, Functions, Pairs, Quadratic } displacements;  // of what the η are combinations
 };
 
 /// Where M is constant, no richer η than affine ones belong to symmetries.
@@ -147,7 +147,10 @@ Monomials displacement_functions(const Ansatz& a, Richness r) {
   if (r.displacements == Richness::Affine || a.constant_mass) return a.atoms.coordinates;
   const Monomials& functions = a.atoms.functions;
   Monomials out = joined({a.atoms.coordinates, functions, a.atoms.products});
-  return r.displacements == Richness::Pairs ? joined({out, products(functions, functions)}) : out;
+  if (r.displacements >= Richness::Pairs) out = joined({out, products(functions, functions)});
+  // x² − y² and x y: an isometry of the half-plane (dx² + dy²)/y²
+  return r.displacements == Richness::Quadratic ? joined({out, products(a.atoms.coordinates, a.atoms.coordinates)})
+                                                : out;
 }
 
 Monomials gauge_functions(const Ansatz& a, Richness r) {
@@ -157,7 +160,7 @@ Monomials gauge_functions(const Ansatz& a, Richness r) {
   Monomials out = joined({atoms.coordinates, products(atoms.coordinates, atoms.coordinates), atoms.functions,
                           products(atoms.functions, atoms.coordinates), atoms.products});
   // cos φ/sin θ: what the field of a monopole takes in spherical coordinates
-  return r.displacements == Richness::Pairs && !a.constant_mass
+  return r.displacements >= Richness::Pairs && !a.constant_mass
              ? joined({out, products(atoms.functions, atoms.functions)})
              : out;
 }
@@ -212,10 +215,12 @@ Basis charges(Ansatz& a, const MotionRows& rows, Richness r, std::size_t largest
 }  // namespace
 
 Basis noether_basis(Ansatz& a, const MotionRows& rows, std::size_t largest, std::uint64_t seed) {
-  const int richest = a.momenta.size() <= 3 ? 3 : 2;
+  const bool few = a.momenta.size() <= 3;
+  const int richest = few ? 3 : 2;
   using R = Richness;
-  for (const Richness r : {R{richest, R::Pairs}, R{1, R::Pairs}, R{1, R::Functions}, R{0, R::Functions},
-                           R{1, R::Affine}, R{0, R::Affine}, R{0, R::Constant}}) {
+  for (const Richness r :
+       {R{richest, few ? R::Quadratic : R::Pairs}, R{richest, R::Pairs}, R{1, R::Pairs}, R{1, R::Functions},
+        R{0, R::Functions}, R{1, R::Affine}, R{0, R::Affine}, R{0, R::Constant}}) {
     Basis basis = charges(a, rows, r, largest, seed);
     if (!basis.monomials.empty() && basis.monomials.size() <= largest) return basis;
   }

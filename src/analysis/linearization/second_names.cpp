@@ -13,7 +13,7 @@ constexpr std::uint64_t first_seed = 5021;
 constexpr int compared_places = 3;
 constexpr double rounding_of_names = 1e-9;  // of the largest value
 
-bool equal(const Vector& a, const Vector& b) {
+bool agree_to_rounding(const Vector& a, const Vector& b) {
   if (a.size() == 0) return true;
   return (a - b).lpNorm<Eigen::Infinity>() <= rounding_of_names * a.lpNorm<Eigen::Infinity>();
 }
@@ -52,9 +52,9 @@ bool SecondNames::keeps_equations(const Name& name) const {
     if (!forces.allFinite()) continue;
     forces[static_cast<Index>(name.reversed)] *= -1;
     if (name.mirrored) forces[static_cast<Index>(*name.mirrored)] *= -1;
-    if (!equal(e_.value(e_.balance, here), forces)) return false;
+    if (!agree_to_rounding(e_.value(e_.balance, here), forces)) return false;
     for (auto* rows : {&e_.positions, &e_.velocities, &e_.relations})
-      if (!equal(e_.value(*rows, here), e_.value(*rows, there))) return false;
+      if (!agree_to_rounding(e_.value(*rows, here), e_.value(*rows, there))) return false;
     ++compared;
   }
   return compared == compared_places;
@@ -68,7 +68,7 @@ bool SecondNames::keeps_places(const Name& name) const {
     OperatingPoint there = renamed(here, name);
     for (std::size_t i = 0; i < e_.n; ++i) there.q[i] += std::numbers::pi * name.turned[i];
     const std::vector<double> from = evaluate(places, values_at(e_, here)), to = evaluate(places, values_at(e_, there));
-    if (!equal(to_eigen(from), to_eigen(to))) return false;
+    if (!agree_to_rounding(to_eigen(from), to_eigen(to))) return false;
   }
   return true;
 }

@@ -241,6 +241,12 @@ TEST_CASE("a time that cancels is no explicit time: the bead on a turning hoop")
   CHECK(f.result.completely_integrable);
 }
 
+TEST_CASE("the half-plane of constant curvature has three isometries, of which one is quadratic in x and y") {
+  const Found half("coord x, y : number\nL = 1/2 (x'^2 + y'^2)/y^2\n");
+  CHECK(half.result.noether_symmetries == 4);  // with the translation in time
+  CHECK(half.result.symmetry_bound == 4);
+}
+
 TEST_CASE("helical symmetry") {
   const Found f(
       "param m = 1, b = 1, h = 2\ncoord x, y, z : number\nT = 1/2 m (x'^2 + y'^2 + z'^2)\n"
