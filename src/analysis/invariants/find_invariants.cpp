@@ -9,6 +9,7 @@
 #include "analysis/invariants/balance.hpp"
 #include "analysis/invariants/completeness.hpp"
 #include "analysis/invariants/drift.hpp"
+#include "analysis/invariants/linear_fit.hpp"
 #include "analysis/invariants/named_constants.hpp"
 #include "analysis/invariants/naming.hpp"
 #include "analysis/invariants/search.hpp"
@@ -230,14 +231,39 @@ class Finder {
                            ? std::vector<bool>()
                            : independent_functions_of_state(rows_, solvable_, autonomous, options_.seed + 8);
     std::size_t next = 0;
-    std::vector<ConservedFunction> kept;
+    std::vector<ConservedFunction> kept, left_out;
     for (ConservedFunction& i : result_.integrals) {
       const bool is_new = i.independent || (!i.explicit_time && marks[next]);
       next += i.explicit_time ? 0 : 1;
       const bool stays = i.kind == IntegralKind::Noether || !i.name.empty();
-      if (is_new || stays) kept.push_back(std::move(i));
+      (is_new || stays ? kept : left_out).push_back(std::move(i));
     }
+    if (hamiltonian_) keep_what_brackets_give(kept, left_out);
     result_.integrals = std::move(kept);
+  }
+
+  /// The second component of a vector is the bracket of the first with an angular momentum (Poincaré's vector of
+  /// a charge about a monopole).
+  void keep_what_brackets_give(std::vector<ConservedFunction>& kept, std::vector<ConservedFunction>& left_out) const {
+    constexpr std::size_t many = 10, most_coordinates = 3;
+    if (kept.size() > many || left_out.size() > many || rows_.system->coordinates.size() > most_coordinates) return;
+    const PoissonAlgebra poisson(rows_, solvable_);
+    const auto is_given = [&](const ConservedFunction& i, std::size_t with) {
+      for (std::size_t j = 0; j < with; ++j) {
+        const Expr bracket = poisson.bracket(kept[j].value, kept[with].value);
+        if (zero_test(bracket).verdict == Verdict::Zero) continue;
+        if (fit_constants(rows_, {{{i.value, bracket}}, 1}, options_.seed + 9)) return true;
+      }
+      return false;
+    };
+    for (std::size_t with = 1; with < kept.size(); ++with)
+      for (auto i = left_out.begin(); i != left_out.end();)
+        if (is_given(*i, with)) {
+          kept.push_back(std::move(*i));
+          i = left_out.erase(i);
+        } else {
+          ++i;
+        }
   }
 
   void put_shown_first() {

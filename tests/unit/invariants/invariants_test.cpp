@@ -241,6 +241,17 @@ TEST_CASE("a time that cancels is no explicit time: the bead on a turning hoop")
   CHECK(f.result.completely_integrable);
 }
 
+TEST_CASE("Poincaré's vector of a charge about a monopole has three components, and two relations") {
+  const Found f(
+      "param k = 1, g = 0.7\ncoord x, y, z : number\nlet r = sqrt(x^2 + y^2 + z^2)\n"
+      "L = 1/2 (x'^2 + y'^2 + z'^2) + g z/r (x y' - y x')/(x^2 + y^2) + k/r - g^2/(2 r^2)\n");
+  CHECK(f.result.integrals.size() == 7);
+  CHECK(f.result.shown == 7);
+  CHECK(f.result.rank == 5);
+  CHECK(f.result.relations.size() == 2);
+  for (const PoissonBracket& b : f.result.brackets) CHECK(b.value.value);  // none is a further function
+}
+
 TEST_CASE("the half-plane of constant curvature has three isometries, of which one is quadratic in x and y") {
   const Found half("coord x, y : number\nL = 1/2 (x'^2 + y'^2)/y^2\n");
   CHECK(half.result.noether_symmetries == 4);  // with the translation in time
