@@ -172,3 +172,38 @@ TEST_CASE("where such a root stops a run or sets its state, errors of the state 
   CHECK(std::abs(set->final.q[0] - x) <= set->final.errors->q[0]);
   CHECK(set->final.errors->q[0] < 1e-4);
 }
+
+TEST_CASE("an event that sets what its function does not depend on is met once, at roots of every order") {
+  const auto at = [](const std::string& events, double until) {
+    return run_text("dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2)\nstart x = 0.5, x' = 1\n" + events,
+                    until);
+  };
+  // cos t rises through zero at 3π/2 + 2πk: five times up to 30.
+  CHECK(at("event e when cos(t) = 0 rising : set y = y + 1\n", 30).final.q[1] == 5);
+  CHECK(at("event e when sin(pi t) = 0 : set y = y + 1\n", 9.5).final.q[1] == 9);
+  const auto orders =
+      at("event square when (x-1)^2 = 0 : set y = y + 1\nevent absolute when abs(x-2) = 0 : set y = y + 10\n"
+         "event cube when (x-3)^3 = 0 rising : set y = y + 100\n",
+         30);
+  CHECK(orders.final.q[1] == 111);
+  // What stands in the function is set: it is elsewhere then, and comes again.
+  CHECK(at("event back when x - 1 = 0 rising : set x = 0, y = y + 1\n", 5).final.q[1] == 5);
+}
+
+TEST_CASE("an event on a velocity goes on from zero where no impact and no set changes it") {
+  const auto r = run_text(
+      "dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) - 1/2 x^2\nstart x = 0.5\n"
+      "event zero when x = 0 rising : set y = y + 1\nevent turn when x' = 0 : set y = y + 100\n",
+      100);
+  CHECK(r.final.q[1] == 3116);  // 16 times at 3π/2 + 2πk, 31 times at πk
+}
+
+TEST_CASE("backwards in time an event that sets the state ends the run") {
+  const auto r = run_text(
+      "dimensionless\ncoord x : number\nL = 1/2 x'^2\nevent kick when t = 2 : set x' = x' + 1\nstart at 5, x' = 1\n",
+      0);
+  CHECK(r.ending == Ending::Paradox);
+  CHECK(r.reason.find("set") != std::string::npos);
+  CHECK(r.final.t == doctest::Approx(2));
+  CHECK(r.final.v[0] == 1);
+}
