@@ -199,11 +199,11 @@ TEST_CASE("an event on a velocity goes on from zero where no impact and no set c
 }
 
 TEST_CASE("backwards in time an event that sets the state ends the run") {
-  const auto r = run_text(
-      "dimensionless\ncoord x : number\nL = 1/2 x'^2\nevent kick when t = 2 : set x' = x' + 1\nstart at 5, x' = 1\n",
-      0);
+  ModelText m(
+      "dimensionless\ncoord x : number\nL = 1/2 x'^2\nevent kick when t = 2 : set x' = x' + 1\nstart at 5, x' = 1\n");
+  const auto r = run(m, -5);
   CHECK(r.ending == Ending::Paradox);
-  CHECK(r.reason.find("set") != std::string::npos);
+  CHECK(r.reason.find("sets the state") != std::string::npos);
   CHECK(r.final.t == doctest::Approx(2));
   CHECK(r.final.v[0] == 1);
 }
