@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <maupertuis/print.hpp>
+#include <maupertuis/uncertainty.hpp>
 
 #include <algorithm>
 #include <array>
@@ -123,6 +124,12 @@ std::vector<Complex> rates_of(const Mode& m, const ModalEntry& entry) {
   return out;
 }
 
+/// As many digits as rounding leaves beside the other eigenvalues, at most nine.
+std::string certain_digits(double value, double error) {
+  constexpr double nine_digits = 5e-10;
+  return error > nine_digits * std::abs(value) ? with_uncertainty(value, error) : fmt::format("{:.9g}", value);
+}
+
 std::string modes_table(const MechanicalSystem& system, const ModalEntry& entry) {
   const ModalAnalysis& analysis = entry.analysis;
   const bool damped =
@@ -141,10 +148,10 @@ std::string modes_table(const MechanicalSystem& system, const ModalEntry& entry)
     const bool oscillates = m.kind == Mode::Kind::Oscillation;
     std::vector<std::string> row{fmt::format("{}", i + 1),
                                  kind_text(m) + (m.multiplicity > 1 ? fmt::format(", {}-fold", m.multiplicity) : ""),
-                                 oscillates                   ? fmt::format("{:.9g}", m.frequency())
+                                 oscillates                   ? certain_digits(m.frequency(), m.error)
                                  : m.kind == Mode::Kind::Zero ? "0"
                                                               : "",
-                                 oscillates ? fmt::format("{:.9g}", m.frequency() / turn) : ""};
+                                 oscillates ? certain_digits(m.frequency() / turn, m.error / turn) : ""};
     if (damped)
       row.insert(row.end(), {number(m.eigenvalue.real()),
                              oscillates && m.eigenvalue.real() != 0 ? fmt::format("{:.4g}", m.damping_ratio()) : ""});

@@ -29,8 +29,8 @@ constexpr CodeEntry entries[] = {
      "# maup hamiltonian --mode free\ncoord z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m z'^2\nV = m g z\n"
      "contact z >= 0 restitution 0.8 name floor\nstart z = 1 m\n"},
     {"E0271", "an event acts on the motion that a question follows",
-     "The action of a motion, and the motion by canonical equations, follow from L alone; what an event sets, or where it "
-     "stops, does not. `maup simulate` and `maup orbits` carry events out.",
+     "The action of a motion, and the motion by canonical equations, follow from L alone; what an event sets, or where "
+     "it stops, does not. `maup simulate` and `maup orbits` carry events out.",
      "# maup action --motion\ncoord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\n"
      "event kick when x = 1 m : set x' = -x'\nstart x = 0 m, x' = 1 m/s\nrun 2 s\n",
      "# maup action --motion\ncoord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\n"
