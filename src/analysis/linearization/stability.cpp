@@ -62,7 +62,7 @@ struct Verdicts {
   /// Whether the soft ones among these eigenvalues have signs that the error of the place leaves, or one is negative
   /// beyond it. What vanishes to rounding anyway is judged elsewhere.
   bool has_certain_signs(const SymmetricEigen& hessian) const {
-    constexpr double soft = 1e-4;  // of the largest
+    constexpr double soft = 1e-4;                                // of the largest
     const auto across = static_cast<Index>(equilibrium.family);  // along the family they vanish
     if (!equilibrium.at_rest || hessian.values.size() <= across) return true;
     const double largest = hessian.values.cwiseAbs().maxCoeff();
