@@ -3,12 +3,13 @@
 #include <cmath>
 
 namespace maupertuis::hybrid {
-namespace {
 
-using Eigen::Index;
-using Eigen::VectorXd;
-
-}  // namespace
+Eigen::MatrixXd along_rows(const std::vector<SparseRow>& rows, const Eigen::MatrixXd& response) {
+  Eigen::MatrixXd out(at(rows.size()), response.cols());
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    for (Eigen::Index c = 0; c < response.cols(); ++c) out(at(r), c) = dot(rows[r], response.col(c));
+  return out;
+}
 
 std::vector<Pressed> ContactCones::pressed_of(const std::vector<std::size_t>& touching,
                                               const ContactValues& values) const {
@@ -76,12 +77,8 @@ Cones ContactCones::of(const std::vector<Pressed>& pressed, const std::vector<st
   for (std::size_t i = contacts; i < base.friction.size(); ++i)
     if (base.friction[i] == FrictionState::Stick) out.held.push_back(values.tangent[i]);
   out.response = here_.response(out.forces, out.held);
-  const auto size = at(out.rows.size());
-  out.problem.response.resize(size, size);
-  for (Index r = 0; r < size; ++r)
-    for (Index c = 0; c < size; ++c)
-      out.problem.response(r, c) = dot(out.rows[static_cast<std::size_t>(r)], out.response.col(c));
-  out.problem.free = Eigen::Map<const VectorXd>(free.data(), size);
+  out.problem.response = along_rows(out.rows, out.response);
+  out.problem.free = Eigen::Map<const Eigen::VectorXd>(free.data(), at(free.size()));
   return out;
 }
 

@@ -28,6 +28,9 @@ struct Cones {
   ConeProblem problem;
 };
 
+/// What forces of which `response` [n × columns] is made do along rows [rows × columns].
+Eigen::MatrixXd along_rows(const std::vector<SparseRow>& rows, const Eigen::MatrixXd& response);
+
 /// The cones of the contacts that press at a place.
 class ContactCones {
  public:

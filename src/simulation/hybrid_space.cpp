@@ -184,13 +184,10 @@ void SpaceFriction::take_out_slips(const std::vector<std::size_t>& stopping, con
   for (const std::size_t i : touching)
     if (!(values.rate[i] > sizes_.rest_speed(i, values))) rows.push_back(values.normal[i]), rates.push_back(0);
   const Eigen::MatrixXd response = here_.response(rows);
-  Eigen::MatrixXd w(at(rows.size()), at(rows.size()));
-  for (std::size_t r = 0; r < rows.size(); ++r)
-    for (Index c = 0; c < w.cols(); ++c) w(at(r), c) = dot(rows[r], response.col(c));
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
   solver.setThreshold(1e-10);
   const VectorXd right = Eigen::Map<const VectorXd>(rates.data(), at(rates.size()));
-  const VectorXd change = response * VectorXd(solver.compute(w).solve(right));
+  const VectorXd change = response * VectorXd(solver.compute(along_rows(rows, response)).solve(right));
   const double before = problem_.in_space ? functions_.energy(here_) : 0;
   for (std::size_t i = 0; i < here_.v.size(); ++i) here_.v[i] += change(at(i));
   if (problem_.in_space) carried_.rub(functions_.energy(here_) - before);  // else it is below rounding
