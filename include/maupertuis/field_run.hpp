@@ -31,8 +31,8 @@ struct FieldCharge {
 /// (docs/theory/fields.md).
 struct FieldRunResult {
   struct Value {
-    double value = 0, error = 0;  // SI; the error is estimated from a second mesh of half the cells
-    double order = 0;  // the power of the width of cells by which it converges, from a third; 0: not measured
+    double value = 0, error = 0;  // SI; estimated from a run that is off by less
+    double order = 0;  // the power of the width of cells by which it converges, by half the cells; 0: not measured
   };
   std::vector<Value> answers;   // to the questions, in their order
   Trajectory trajectory;        // fields and velocities at the borders of cells, or at as many parts of them
@@ -80,7 +80,8 @@ struct FieldRunOptions {
   bool trajectory = false;           // keep rows
   int least_values = 0;              // along a direction of a row: more than the borders of cells where those are few
   std::vector<double> moments = {};  // s; rows at these times beside the others
-  bool errors = true;                // a second run on a mesh of half the cells
+  bool errors = true;                // further runs, on other meshes
+  bool orders = false;               // one more, for FieldRunResult::Value::order
   /// Whose charges are followed, without coordinates and bodies, dissipation and forces inside; null: none.
   const FieldCurrents* currents = nullptr;
   Interrupt interrupt;

@@ -44,27 +44,12 @@ double swing(const std::vector<Look>& one, const std::vector<Look>& other, std::
   return out;
 }
 
-/// Of an answer at a border: its place and those four cells beside it, or those two cells beside it. A third mesh has
-/// borders at one of the two.
-enum class Among { All, Own, Beside };
-
 /// The largest swing of an answer at its place and beside it.
-double difference(const OneRun& one, const OneRun& other, std::size_t question, Among among = Among::All) {
+double difference(const OneRun& one, const OneRun& other, std::size_t question) {
   const std::vector<Look>&a = one.looks[question], &b = other.looks[question];
-  const std::size_t places = a[0].values.size();
   double out = 0;
-  for (std::size_t k = 0; k < places; ++k) {
-    const bool own = k == 0 || k == 1 || k == 4;  // the place, and four cells beside it
-    if (among == Among::All || own == (among == Among::Own)) out = std::max(out, swing(a, b, k));
-  }
+  for (std::size_t k = 0; k < a[0].values.size(); ++k) out = std::max(out, swing(a, b, k));
   return out;
-}
-
-/// `between` of two meshes, or more where a third and the second swing further apart than belongs to that; at most ten
-/// times, as the third may not follow the wave at all.
-double seen_by_coarser(double swing, double between, double gain) {
-  constexpr double beyond = 1.5, most = 10;
-  return std::clamp(swing / (beyond * gain), between, most * between);
 }
 
 /// Three quarters of the cells, where meshes are of few: half of them may share a symmetry with the motion (a cell that
@@ -86,13 +71,80 @@ double widening(const Cells& cells, const Cells& other) {
   return out;
 }
 
-/// By three meshes, each of `ratio` times the cells of the one before; where the last two differ by more than rounding.
-double measured_order(const OneRun& coarser, const OneRun& coarse, const OneRun& fine, double rounding, double ratio,
-                      std::size_t question) {
+/// Each step rounds a value several times: 2.5 of these units were seen on 1000 cells.
+double rounding_of(const OneRun& run) { return 4 * 2.2e-16 * std::sqrt(static_cast<double>(run.steps) + 1); }
+
+/// How a mesh is sharpened: so many times fewer cells, of an order so much higher.
+struct Sharpening {
+  int fewer_cells = 1, orders = 2;
+};
+
+/// Two orders, since of one more a motion that is even or odd in each cell may have nothing. Waves on many cells, which
+/// are resolved there or nowhere, have less work on fewer cells of higher order.
+Sharpening sharpening_of(const FieldMethod& method, const Cells& cells) {
+  constexpr int many = 64, very_many = 256;
+  const int least = *std::min_element(cells.begin(), cells.end());
+  if (!method.is_wave() || least < many) return {};
+  return {least < very_many ? 2 : 4, 4};
+}
+
+/// By how much an answer is off where a sharper run, which is off by up to a fifth of that itself, says something else.
+/// At single places both may agree by chance, so that a sixteenth of the differences within a cell counts as well, but
+/// at the borders of cells, which are off by far less than what lies between; all of them where the mesh follows slopes
+/// just so; and up to twice them what rounding may have done.
+double error_of(const OneRun& sharp, const OneRun& fine, const FieldQuestion& asked, std::size_t question,
+                bool at_border, double tail) {
+  constexpr double own = 5.0 / 4, by_chance = 1.0 / 16, of_tails = 8;
+  const bool barely = fine.follows[question] == SteepeningWatch::Follows::Barely;
+  const double at_place = std::abs(sharp.answers[question] - fine.answers[question]),
+               near = difference(sharp, fine, question), felt = rounding_of(fine) / 2 * fine.felt[question],
+               rounded = asked.total ? felt : std::min(felt, 2 * near),
+               beside = barely      ? near
+                        : at_border ? 0
+                                    : by_chance * near;
+  return std::max(own * at_place + std::max(beside, rounded), std::min(of_tails * near, tail * fine.sizes[question]));
+}
+
+/// The power of the width of cells by which answers converge, where half the cells are off by more than rounding.
+double measured_order(const OneRun& half, const OneRun& sharp, const OneRun& fine, double ratio, std::size_t question) {
   constexpr double clear = 10;
-  const double first = std::abs(coarser.answers[question] - coarse.answers[question]),
-               second = std::abs(coarse.answers[question] - fine.answers[question]);
-  return second > clear * rounding && first > second ? std::log(first / second) / std::log(ratio) : 0;
+  const double wide = difference(half, sharp, question), narrow = difference(fine, sharp, question);
+  const bool beyond_rounding = narrow > clear * rounding_of(fine) * std::abs(fine.answers[question]);
+  return beyond_rounding && wide > narrow ? std::log(wide / narrow) / std::log(ratio) : 0;
+}
+
+std::vector<AnswerError> errors_by_sharper_run(const OneRun& fine, const FieldEquations& equations, FieldMethod& method,
+                                               const Cells& cells, const std::vector<FieldQuestion>& questions,
+                                               const FieldRunOptions& options, double tail, Diagnostics& diagnostics) {
+  std::vector<AnswerError> out(questions.size());
+  const Sharpening by = sharpening_of(method, cells);
+  FieldMethod sharper = method.sharper(by.orders);
+  const auto sharp =
+      run_on(equations, sharper, divided(cells, by.fewer_cells), questions, options, {}, false, diagnostics);
+  if (!sharp) return out;
+  std::optional<OneRun> wide;
+  Diagnostics unheard;  // without half the cells no order is told
+  const Cells half = divided(cells, 2);
+  if (options.orders && half != cells) wide = run_on(equations, method, half, questions, options, {}, false, unheard);
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    if (fine.follows[i] == SteepeningWatch::Follows::Not) continue;
+    const bool at_border = FieldMethod::stands_on_borders(equations, questions[i], cells);
+    out[i].size = error_of(*sharp, fine, questions[i], i, at_border, tail);
+    if (wide) out[i].order = measured_order(*wide, *sharp, fine, widening(cells, half), i);
+  }
+  return out;
+}
+
+/// The power of the ratio of cells that the error of an answer falls by, from what the start, the slopes and (by
+/// collocation) a third mesh let come about.
+double gain_of(const OneRun& fine, const OneRun& coarse, const std::optional<OneRun>& coarser, const Rough& start,
+               double by_order, double ratio, std::size_t question) {
+  double gain = start.how == Rough::Breaks ? 2 : by_order;
+  if (fine.follows[question] == SteepeningWatch::Follows::Barely) gain = 2;
+  if (start.jump && *start.jump > 1) gain = std::min(gain, (std::pow(ratio, *start.jump) + 1) / 2);
+  if (!coarser) return gain;
+  const double seen = difference(*coarser, coarse, question) / difference(coarse, fine, question);
+  return std::isfinite(seen) ? std::min(gain, std::max(seen, 2.0)) : gain;
 }
 
 }  // namespace
@@ -126,59 +178,41 @@ Rough roughness_of(const FieldEquations& equations, const FieldMethod& method, c
 
 std::vector<AnswerError> errors_of(const OneRun& fine, const FieldEquations& equations, FieldMethod& method,
                                    const Cells& cells, const std::vector<FieldQuestion>& questions,
-                                   const FieldRunOptions& options, Rough start, Diagnostics& diagnostics) {
+                                   const FieldRunOptions& options, const Rough& start, Diagnostics& diagnostics) {
   std::vector<AnswerError> out(questions.size());
-  const Cells half = divided(cells, 2), quarter = divided(cells, 4);
-  if (!options.errors || questions.empty() || half == cells || fine.passes_by) return out;
-  const auto coarse = run_on(equations, method, half, questions, options, {}, false, diagnostics);
+  if (!options.errors || questions.empty() || fine.passes_by) return out;
+  if (start.smooth())
+    return errors_by_sharper_run(fine, equations, method, cells, questions, options, start.tail, diagnostics);
+  const Cells half = divided(cells, 2);
+  if (half == cells) return out;
+  const auto run = [&](const Cells& other, Diagnostics& told) {
+    return run_on(equations, method, other, questions, options, {}, false, told);
+  };
+  Diagnostics unheard;  // without a third there is a broader estimate
+  const auto coarse = run(half, diagnostics);
   if (!coarse) return out;
-  std::optional<OneRun> coarser;
-  Diagnostics ignored;  // without the third there is a broader estimate
-  constexpr int least_of_wave = 8;
-  const bool smooth_wave = method.is_wave() && start.how == Rough::No && !start.jump &&
-                           *std::min_element(cells.begin(), cells.end()) >= least_of_wave;
-  if (smooth_wave || (!method.is_wave() && cells[0] >= 4))
-    coarser = run_on(equations, method, quarter, questions, options, {}, false, ignored);
-  std::optional<OneRun> finer;
+  std::optional<OneRun> coarser, finer, near;
+  if (!method.is_wave() && cells[0] >= 4) coarser = run(divided(cells, 4), unheard);
   if (start.how != Rough::No) {
     Cells twice = cells;
     for (int& n : twice) n *= 2;
-    finer = run_on(equations, method, twice, questions, options, {}, false, diagnostics);
+    finer = run(twice, diagnostics);
     if (!finer) return out;
   }
-  std::optional<OneRun> near;
   const std::optional<Cells> between_both = start.how == Rough::No ? cells_between(cells) : std::nullopt;
-  if (between_both) near = run_on(equations, method, *between_both, questions, options, {}, false, ignored);
+  if (between_both) near = run(*between_both, unheard);
   const double ratio = widening(cells, half);
-  // Each step rounds a value several times: 2.5 of these units were seen on 1000 cells.
-  const double rounding = 4 * 2.2e-16 * std::sqrt(static_cast<double>(fine.steps) + 1);
   for (std::size_t i = 0; i < questions.size(); ++i) {
     if (fine.follows[i] == SteepeningWatch::Follows::Not && start.how == Rough::No) continue;
-    double gain = start.how == Rough::Breaks ? 2 : std::pow(ratio, method.power(equations, questions[i], half));
-    if (fine.follows[i] == SteepeningWatch::Follows::Barely) gain = 2;
-    if (start.jump && *start.jump > 1) gain = std::min(gain, (std::pow(ratio, *start.jump) + 1) / 2);
-    if (!method.is_wave()) {
-      const double seen = coarser ? difference(*coarser, *coarse, i) / difference(*coarse, fine, i) : 2;
-      gain = std::isfinite(seen) ? std::min(gain, std::max(seen, 2.0)) : gain;
-    }
-    double between = difference(*coarse, fine, i);
-    const bool alike = method.looks_alike(equations, questions[i]);
-    const bool aligned = !alike || method.stands_on_borders(equations, questions[i], quarter);
-    const double felt = rounding * std::max(fine.felt[i], 1e-300);
-    if (coarser && aligned) out[i].order = measured_order(*coarser, *coarse, fine, felt, ratio, i);
-    if (smooth_wave && coarser && gain > 2) {
-      const Among among = !alike ? Among::All : aligned ? Among::Own : Among::Beside;
-      between = seen_by_coarser(difference(*coarser, *coarse, i, among), between, gain);
-    }
-    const double tail = std::min(2 * between, start.tail * fine.sizes[i]),
-                 missed = finer ? 2 * difference(*finer, fine, i) : 0;
-    double error = std::max({missed, between / (gain - 1), tail});
+    const double power = std::pow(ratio, method.power(equations, questions[i], half));
+    const double gain = gain_of(fine, *coarse, coarser, start, power, ratio, i), apart = difference(*coarse, fine, i);
+    double error = std::max({finer ? 2 * difference(*finer, fine, i) : 0, apart / (gain - 1),
+                             std::min(2 * apart, start.tail * fine.sizes[i])});
     if (near) {
       const double rate = std::log(gain) / std::log(ratio), gained = std::pow(widening(cells, *between_both), rate);
-      const bool meets = alike && method.stands_on_borders(equations, questions[i], *between_both);
-      error = std::max(error, difference(*near, fine, i, meets ? Among::Own : Among::All) / (gained - 1));
+      error = std::max(error, difference(*near, fine, i) / (gained - 1));
     }
-    out[i].size = error + felt;
+    out[i].size = error + rounding_of(fine) * std::max(fine.felt[i], 1e-300);
   }
   return out;
 }

@@ -19,6 +19,7 @@ struct Rough {
   enum { No, Coarse, Breaks } how = No;
   std::optional<int> jump;
   double tail = 0;  // as in SideFit
+  bool smooth() const { return how == No && !jump; }
 };
 Rough roughness_of(const FieldEquations& equations, const FieldMethod& method, const Cells& cells,
                    const FieldRunOptions& options, Diagnostics& diagnostics);
@@ -28,16 +29,17 @@ Cells divided(const Cells& cells, int parts);
 
 /// The other meshes, and how far off the answers on the first are.
 ///
-/// Meshes and their steps are off by a power of the width of a cell, but never by less than rounding. Where a third
-/// mesh shows that the difference falls more slowly, by that; of waves, which go through zero together at some moments
-/// on two meshes, by what the third and the second differ where that is more, up to four times; where the start breaks,
-/// by the first power; where it does not fit a side, by that of the derivative that jumps, and twice the difference
-/// counts. Where slopes are about as steep as the mesh can follow the difference itself counts, and beyond there is no
-/// estimate. Where the mesh follows the start in part alone, a mesh of twice the cells tells what both others miss.
-/// Meshes of few cells may share a symmetry with the motion; there a third between both counts too, by the same power.
-/// Tails of pulses that do not fit a side are jumps too, as far as they reach.
+/// Of a smooth start by a run that is off by far less, on elements of higher order: by the difference to it. Tails of
+/// pulses that do not fit a side are jumps too, as far as they reach.
+///
+/// Where the start breaks, where the mesh follows it in part, or where it does not fit a side, no order of elements
+/// helps. Half the cells tell the error then, by the first power of their width where the start breaks, by that of the
+/// derivative that jumps where it does not fit a side, and twice the difference counts; where slopes are about as steep
+/// as the mesh can follow, the difference itself; beyond there is no estimate. Where the mesh follows the start in part
+/// alone, a mesh of twice the cells tells what both others miss. Meshes of few cells may share a symmetry with the
+/// motion; there a third between both counts too, by the same power.
 std::vector<AnswerError> errors_of(const OneRun& fine, const FieldEquations& equations, FieldMethod& method,
                                    const Cells& cells, const std::vector<FieldQuestion>& questions,
-                                   const FieldRunOptions& options, Rough start, Diagnostics& diagnostics);
+                                   const FieldRunOptions& options, const Rough& start, Diagnostics& diagnostics);
 
 }  // namespace maupertuis

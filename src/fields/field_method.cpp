@@ -32,6 +32,13 @@ std::optional<FieldMethod> FieldMethod::of(const FieldEquations& equations, Diag
   return out.waves_ || out.stiff_ ? std::optional(std::move(out)) : std::nullopt;
 }
 
+FieldMethod FieldMethod::sharper(int orders) const {
+  FieldMethod out = *this;
+  out.order_ += orders;
+  out.part_ = 0.75;
+  return out;
+}
+
 std::string FieldMethod::name() const {
   return waves_ ? fmt::format("Taylor steps of order {}", kOrder)
                 : fmt::format("steps of {}'s collocation of order {}", stiff_->damps ? "Radau" : "Gauss",
@@ -44,7 +51,7 @@ std::unique_ptr<FieldMotion> FieldMethod::mesh(const FieldEquations& equations, 
   if (stiff_) return std::make_unique<CollocationMotion>(equations, *stiff_, cells, order_, stages);
   if (cells.size() == 2) return std::make_unique<PlaneMesh>(equations, *waves_, cells[0], cells[1], order_);
   auto out = std::make_unique<FieldMesh>(equations, *waves_, cells[0], order_);
-  if (!first) out->lengthen_steps(2);
+  if (!first) out->lengthen_steps(part_ > 0 ? part_ : 2);
   return out;
 }
 
@@ -62,6 +69,7 @@ double FieldMethod::longest_step(FieldMotion& mesh, double duration, double ever
   }
   auto& motion = dynamic_cast<CollocationMotion&>(mesh);
   motion.watch(interrupt);
+  if (part_ > 0) return part_ * step_;
   if (step_ > 0) return step_ * std::round(motion.width_of_cell() / width_);
   width_ = motion.width_of_cell();
   return step_ = motion.choose_step(std::min(every, duration), duration, goal, interrupt);

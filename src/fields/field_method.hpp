@@ -19,6 +19,9 @@ class FieldMethod {
   /// Nothing, and the diagnostics, where there is none for this density.
   static std::optional<FieldMethod> of(const FieldEquations& equations, Diagnostics& diagnostics);
 
+  /// A method that is off by less: elements of an order higher by so many, steps of three quarters.
+  FieldMethod sharper(int orders) const;
+
   bool is_wave() const { return waves_.has_value(); }
   int order() const { return order_; }  // of the elements
   bool conserves() const { return waves_ ? waves_->conserves : stiff_->conserves; }
@@ -36,17 +39,21 @@ class FieldMethod {
   /// Of a varied field: whether its slopes are continuous, and its rates follow from its values.
   bool is_smooth(std::size_t field) const { return stiff_ && stiff_->smooth[field]; }
   bool is_first_order(std::size_t field) const { return stiff_ && stiff_->first_order[field]; }
-  /// Waves: `alike`, at places that lie in elements as the place itself does, where that is a border of elements of
-  /// both meshes, which are off there by far less than between. `half`: the cells of the coarser.
-  void look_beside(double width, bool alike, Cells half) { width_ = width, alike_ = alike, half_ = std::move(half); }
+  void look_beside(double width) { width_ = width; }
+  /// Waves, whose errors are told by a coarser mesh of the cells `half`: answers are looked at before their moments
+  /// too. `alike`: at places that lie in elements as the place itself does, where that is a border of elements of both
+  /// meshes, which are off there by far less than between.
+  void compare_with(Cells half, bool alike) { half_ = std::move(half), alike_ = alike; }
   bool looks_alike() const { return alike_; }
   /// Whether that is done for a question.
   bool looks_alike(const FieldEquations& equations, const FieldQuestion& question) const {
     return alike_ && stands_on_borders(equations, question, half_);
   }
-  /// Waves: answers are looked at before their moments too, the first time by this step of the first mesh, then by 2,
-  /// 4, 8 … of them up to so many as it has nodes, which is about how long a wave takes through the domain.
-  void look_before(double step, double nodes) { before_ = step, nodes_ = nodes; }
+  /// The first time that answers are looked at before their moments: by this step of the first mesh, then by 2, 4, 8 …
+  /// of them up to so many as it has nodes, which is about how long a wave takes through the domain.
+  void look_before(double step, double nodes) {
+    if (!half_.empty()) before_ = step, nodes_ = nodes;
+  }
   /// The moment of an answer, then those before it.
   std::vector<double> looks_at(double time, double begin) const;
   /// Moments at which steps end, since what is given at the sides has other branches from there on.
@@ -64,7 +71,9 @@ class FieldMethod {
   std::optional<PointForm> waves_;
   std::optional<DensityForm> stiff_;
   int order_ = 0;
-  double step_ = 0, width_ = 0;  // of the first mesh by collocation
+  double step_ = 0;  // of the first mesh by collocation
+  double width_ = 0;
+  double part_ = 0;  // of the step of the first mesh, of a sharper method; 0: as the mesh says
   double before_ = 0, nodes_ = 0;
   bool alike_ = false;
   Cells half_;

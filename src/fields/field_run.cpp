@@ -10,7 +10,7 @@
 
 #include <chrono>
 
-/// The run of a field, and of meshes of half and a quarter of the cells that tell how far off it is.
+/// The run of a field, and of other meshes that tell how far off it is.
 namespace maupertuis {
 namespace {
 
@@ -42,7 +42,8 @@ std::optional<FieldRunResult> run_fields(const FieldEquations& equations, const 
   const Rough start = roughness_of(equations, *method, cells, options, diagnostics);
   if (method->is_wave()) {
     const std::vector<double> borders = even_borders(equations, cells).front();
-    method->look_beside(borders[1] - borders[0], !start.jump, divided(cells, 2));
+    method->look_beside(borders[1] - borders[0]);
+    if (!start.smooth()) method->compare_with(divided(cells, 2), !start.jump);
   }
   std::vector<std::vector<double>> rows;
   if (options.trajectory) rows = places_of_rows(equations, cells, options.least_values);

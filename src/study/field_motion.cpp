@@ -34,7 +34,7 @@ std::optional<FieldRunResult> Study::field_motion(const SimulationOptions& setti
   options.duration = settings.duration ? *settings.duration : number(model.experiment.duration);
   options.every = settings.output_every ? *settings.output_every : number(model.experiment.output_every);
   options.trajectory = kept.rows;
-  options.errors = kept.errors;
+  options.errors = options.orders = kept.errors;
   options.moments = kept.moments;
   options.currents = kept.currents;
   if (kept.pictured) refine_for_pictures(options, s.space.size() == 1);
