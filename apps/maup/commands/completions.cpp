@@ -2,6 +2,7 @@
 
 #include "codes.hpp"
 #include "command.hpp"
+#include "command_line.hpp"
 #include "json.hpp"
 #include "starters.hpp"
 
@@ -42,12 +43,12 @@ ExitCode completions_of(const std::string& shell, const OptionTable& table, Cons
 
 void add_completions(CommandLine& line) {
   const auto shell = std::make_shared<std::string>();
-  Command& command = line.add(
-      "completions", "What makes Tab complete commands and options in a shell",
-      "  source <(maup completions bash)        # for this session; in ~/.bashrc for all\n"
-      "  maup completions zsh > ~/.zfunc/_maup  # a folder of fpath\n"
-      "  maup completions fish > ~/.config/fish/completions/maup.fish\n",
-      [&line, shell](Console& console) { return completions_of(*shell, with_known_words(line.table()), console); });
+  Command& command =
+      line.add("completions", "What makes Tab complete commands and options in a shell",
+               "  source <(maup completions bash)        # for this session; in ~/.bashrc for all\n"
+               "  maup completions zsh > ~/.zfunc/_maup  # a folder of fpath\n"
+               "  maup completions fish > ~/.config/fish/completions/maup.fish\n",
+               [shell](Console& console) { return completions_of(*shell, with_known_words(option_table()), console); });
   command.add_option("SHELL", *shell, "bash, zsh or fish")->required()->one_of({"bash", "zsh", "fish"});
 }
 
@@ -56,7 +57,7 @@ void add_manual(CommandLine& line) {
            "  maup manual | man -l -\n"
            "  maup manual > ~/.local/share/man/man1/maup.1\n"
            "  maup manual | mandoc -T html > maup.html\n",
-           [&line](Console& console) { return print_text("manual", manual_page(line.table()), console); });
+           [](Console& console) { return print_text("manual", manual_page(option_table()), console); });
 }
 
 }  // namespace maupertuis::app
