@@ -33,8 +33,8 @@ struct DegenerateAnalysis {
 
 /// The Lagrangian constraint algorithm (Gotay and Nester) for the equations of a system, near `center`, which binds
 /// every symbol of coordinates and velocities; parameters have the values of the model. `with_gauges`: the gauge
-/// statements count as constraints. `start`: what is free, and which equations a run solves, are chosen so that they
-/// are regular there, too. Cost: see constraint_algorithm.
+/// statements count as constraints. `start`: of constraints that branch its branch is taken, and what is free, and
+/// which equations a run solves, are chosen so that they are regular there, too. Cost: see constraint_algorithm.
 DegenerateAnalysis analyse_degenerate(const EquationsOfMotion& equations, const Bindings& center, bool with_gauges,
                                       bool hold_parameters = true, const Bindings* start = nullptr);
 
@@ -42,6 +42,8 @@ DegenerateAnalysis analyse_degenerate(const EquationsOfMotion& equations, const 
 Bindings generic_state(const Model& model);
 /// The start as it is written, 0 where nothing is: not yet on the constraints.
 Bindings written_start(const Model& model);
+/// The start on the constraints where the analysis of the equations found it there, else as it is written.
+Bindings start_on_constraints(const Model& model, const EquationsOfMotion& equations);
 
 /// Equations that determine all accelerations: some rows of Lagrange's are replaced by the derivatives of the
 /// constraints that were found, on which they hold by themselves. In their place stands that the multipliers of these

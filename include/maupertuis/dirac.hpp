@@ -24,6 +24,7 @@ struct GaugeGenerator {
 struct DiracAnalysis {
   ConstraintChain::Outcome outcome = ConstraintChain::Outcome::Closed;
   std::vector<PhaseConstraint> constraints;  // primary first; those of the model among the secondary ones
+  std::vector<BranchChoice> branches;
   std::size_t first_class = 0, second_class = 0;
   std::size_t primary_first_class = 0;        // the free functions of the total Hamiltonian
   std::size_t physical_dimension = 0;         // of phase space: 2n − 2F − S
@@ -34,10 +35,11 @@ struct DiracAnalysis {
 };
 
 /// The algorithm of Dirac and Bergmann for a singular Legendre transform, near `center`, which binds q, parameters and
-/// t; momenta are taken near those of its velocities. Holonomic constraints of the model count as constraints. Nothing
-/// where H is not known, where forces, dissipation or velocity constraints act, which have no place in H.
+/// t; momenta are taken near those of its velocities. Of constraints that branch the branch of `start` is taken, a
+/// state (q, q̇). Holonomic constraints of the model count as constraints. Nothing where H is not known, where forces,
+/// dissipation or velocity constraints act, which have no place in H.
 std::optional<DiracAnalysis> dirac_analysis(const Hamiltonian& hamiltonian, const EquationsOfMotion& equations,
-                                            const Bindings& center);
+                                            const Bindings& center, const Bindings& start);
 
 /// {A, B}_D = {A, B} − {A, χ_i} C⁻¹_ij {χ_j, B} over the second-class set; velocities as in poisson_bracket.
 std::optional<ReadableForm> dirac_bracket(Expr a, Expr b, const Hamiltonian& hamiltonian,

@@ -180,6 +180,22 @@ constexpr std::array entries{
         "L = b x y' - 1/2 k (x^2 + y^2) + 1/2 M max(x/l - 1, 0)^2 x'^2\nstart x = 1 m\n",
         "# maup check\nparam b = 3 kg/s, k = 2 N/m, l = 3 m, K = 5 N/m\ncoord x, y : length\n"
         "L = b x y' - 1/2 k (x^2 + y^2) - 1/2 K max(x - l, 0)^2\nstart x = 1 m\n"},
+    CodeEntry{
+        "N0634", "constraints of a degenerate Lagrangian that branch",
+        "A product of functions of the state vanishes where any of its factors does, and each of these branches has "
+        "constraints, free functions and motions of its own. The branch on which the start lies is taken; where it "
+        "lies on none, the one that was found next to it. What is told and run holds on this branch.",
+        "# maup check\ndimensionless\ncoord x, y, u : number\n"
+        "L = 1/2 (x'^2 + y'^2) + u x y\nstart x = 1, x' = 0.3\n",
+        "# maup check\ndimensionless\ncoord x, y, u : number\n"
+        "L = 1/2 (x'^2 + y'^2) + u y\nstart x = 1, x' = 0.3\n"},
+    CodeEntry{
+        "E0635", "constraints of a degenerate Lagrangian that are not regular",
+        "The start fulfils the constraints, but their gradients vanish there or depend on each other: beside it no "
+        "state was found that fulfils them, and ranks at the start alone say nothing of the states around it. Powers, "
+        "products, and sums of squares are written as what their zeros are; other double zeros are not recognized.",
+        "# maup check\ndimensionless\ncoord x, y, u : number\nL = 1/2 x'^2 + u (cosh(y) - 1)\nstart x = 1\n",
+        "# maup check\ndimensionless\ncoord x, y, u : number\nL = 1/2 x'^2 + u sinh(y)\nstart x = 1\n"},
     CodeEntry{"N0628", "parameters with special values",
               "Ranks are taken at the values of the parameters. With these the class of the system is another one than "
               "for values nearby: a freedom, or a free function, more or less.",

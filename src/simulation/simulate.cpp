@@ -475,6 +475,7 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   SimulationResult result = run.carry_out();
   if (options.errors != ErrorEstimates::None && result.ending != Ending::Interrupted)
     add_errors(result, probe, model, equations, options, *plan, observables, wanted, hybrid, run.between());
+  if (equations.degenerate) forget_drift_of_nothing(result, equations);
   warn_of_drift(result, options, diagnostics);
   if (run.turned_stiff()) note_stiffness(result, model.system, stiff_tolerance(options), diagnostics);
   if (options.method == StepMethod::Automatic || options.method == StepMethod::Taylor ||

@@ -89,6 +89,12 @@ std::string joined(const std::vector<std::string>& names) {
 
 }  // namespace
 
+void forget_drift_of_nothing(SimulationResult& result, const EquationsOfMotion& equations) {
+  const auto& where = equations.degenerate->chain.where;
+  result.statistics.energy_vanishes = where && where->vanishes(equations.energy_function) == Verdict::Zero;
+  if (result.statistics.energy_vanishes) result.statistics.energy_drift = 0;
+}
+
 void in_terms_of_system(SimulationResult& result, const EquationsOfMotion& equations, Diagnostics& diagnostics) {
   const std::size_t multipliers = equations.multipliers.size();
   for (State* state : {&result.start, &result.final}) without_rests(*state, multipliers);
@@ -98,9 +104,6 @@ void in_terms_of_system(SimulationResult& result, const EquationsOfMotion& equat
         "The equations that determine the motion of this degenerate Lagrangian, some of its rows and the derivatives "
         "of "
         "its constraints, are singular near here or jump. They were chosen once, and the motion itself may go on.";
-  const auto& where = equations.degenerate->chain.where;
-  result.statistics.energy_vanishes = where && where->vanishes(equations.energy_function) == Verdict::Zero;
-  if (result.statistics.energy_vanishes) result.statistics.energy_drift = 0;  // nothing but rounding by itself
   if (equations.degenerate->free.empty()) return;
   result.undetermined = undetermined_names(equations);
   if (result.undetermined.empty()) return;

@@ -4,6 +4,9 @@
 
 namespace maupertuis {
 
+/// Where h_E vanishes at every state its values along a run are rounding, and no drift.
+void forget_drift_of_nothing(SimulationResult& result, const EquationsOfMotion& equations);
+
 /// The result of a run of determined equations as one of the system itself: without the multipliers that stand for
 /// what remains of replaced rows, and without what depends on the free functions, which a run had to choose (N0630).
 void in_terms_of_system(SimulationResult& result, const EquationsOfMotion& equations, Diagnostics& diagnostics);

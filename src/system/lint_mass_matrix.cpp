@@ -60,12 +60,16 @@ struct Findings {
   Row massless;           // not 0 for coordinates without kinetic energy, where the constraints tie them
 };
 
-Findings examine(const Subject& s, const MassMatrix& matrix, const Manifold& manifold, const Bindings& changed) {
+/// `whole`: only where L has a value, too. Beyond it its derivatives may go on: 1/(1 - x²) of √(1 - x²) is negative
+/// there.
+Findings examine_where(bool whole, const Subject& s, const MassMatrix& matrix, const Manifold& manifold,
+                       const Bindings& changed) {
   Findings out;
   for (int attempt = 0, good = 0; attempt < 9 && good < 2; ++attempt) {
     Bindings point = sample(s, attempt);
     for (const auto& [symbol, value] : changed) point[symbol] = value;
     if (!manifold.reach(point)) continue;
+    if (whole && !std::isfinite(evaluate(s.lagrangian, point))) continue;
     const Matrix m = matrix.at(point), a = manifold.rows(point);
     if (m.empty()) continue;
     ++good;
@@ -80,6 +84,11 @@ Findings examine(const Subject& s, const MassMatrix& matrix, const Manifold& man
     return out;
   }
   return out;
+}
+
+Findings examine(const Subject& s, const MassMatrix& matrix, const Manifold& manifold, const Bindings& changed) {
+  const Findings inside = examine_where(true, s, matrix, manifold, changed);
+  return inside.defined ? inside : examine_where(false, s, matrix, manifold, changed);
 }
 
 /// A parameter whose value 0 alone makes M singular.

@@ -18,7 +18,7 @@ struct PhaseSpaceOf {
 
   PhaseSpaceOf(const Model& model, const EquationsOfMotion& equations, ExpectationResult& result)
       : h(hamiltonian(equations)), center(generic_state(model)) {
-    analysis = dirac_analysis(h, equations, center);
+    analysis = dirac_analysis(h, equations, center, start_on_constraints(model, equations));
     if (analysis && analysis->outcome != ConstraintChain::Outcome::Closed) analysis.reset();
     if (analysis) return;
     result.actual = "no constraints of phase space";

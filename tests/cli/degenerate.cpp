@@ -322,3 +322,35 @@ TEST_CASE("an energy function that vanishes at every state has no drift") {
   CHECK(contains(run.out, "h_E = 0 at every state"));
   CHECK_FALSE(contains(run.out, "drift"));
 }
+
+TEST_CASE("where h_E vanishes at every state no drift of it is told") {
+  const std::string optics = "dimensionless\ncoord x, y : number\nL = sqrt(x'^2 + y'^2)/y\ngauge x = t\n";
+  const Outcome circle = maup({"simulate", "-"}, optics + "start x = 0, y = 2, x' = 1\nrun 1.5\n");
+  CHECK(circle.code == 0);
+  CHECK(contains(circle.out, "y = 1.32287565553229"));  // y² = 4 − x²
+  CHECK(contains(circle.out, "h_E = 0 at every state"));
+  CHECK_FALSE(contains(circle.err, "W0734"));
+}
+
+TEST_CASE("one function is free where two were told, and a gauge for it excludes no motion") {
+  const std::string chain =
+      "dimensionless\ncoord x, y, z : number\nL = 1/2 ((y' - exp(x))^2 + (z' - y)^2)\nstart x = 1\n";
+  const auto free = maup({"check", "-"}, chain);
+  CHECK(contains(free.err, "one function of time is free"));
+  CHECK(contains(free.err, "Every state of a motion has y' - exp(x) = 0 and y - z' = 0"));
+  const auto chosen = maup({"simulate", "-", "--duration", "1"}, chain + "gauge z = sin(t) + t^2\n");
+  CHECK_MESSAGE(chosen.code == 0, chosen.err);
+  CHECK(contains(chosen.out, "y = 2.54030230586813"));  // cos 1 + 2
+}
+
+TEST_CASE("a branch of the constraints is named on both sides, and what is told holds on it") {
+  const std::string pushed = "dimensionless\ncoord x, y, z : number\nL = 1/2 (x' + y z)^2 + 1/2 y^2\nrun 1\n";
+  const Outcome moving = maup({"simulate", "-", "--start", "x'=1", "--start", "z=0"}, pushed);
+  CHECK(moving.code == 0);
+  CHECK(contains(moving.err, "N0634"));
+  CHECK_FALSE(contains(moving.out, "h_E = 0 at every state"));
+  CHECK(contains(moving.out, "z = 0\n"));
+  const Outcome phase = maup({"hamiltonian", "-", "--start", "x'=1"}, pushed);
+  CHECK(contains(phase.out, "Branches"));
+  CHECK_FALSE(contains(phase.out, "conjecture"));
+}

@@ -89,7 +89,8 @@ std::optional<DegenerateAnalysis> count_of_lagrange(Study& study) {
   const DegenerateAnalysis* found = study.degenerate();
   if (!found) return std::nullopt;
   if (found->gauges == 0) return *found;
-  return analyse_degenerate(*study.equations(), generic_state(*study.model()), false);
+  const Bindings start = start_on_constraints(*study.model(), *study.equations());
+  return analyse_degenerate(*study.equations(), generic_state(*study.model()), false, true, &start);
 }
 
 PhaseSpace analyse(const HamiltonianOptions& options, Study& study, const Console& console) {
@@ -102,7 +103,8 @@ PhaseSpace analyse(const HamiltonianOptions& options, Study& study, const Consol
   const std::vector<std::size_t> replaced = coordinates_named(options.routhian, study);
   found.routhian = routhian(equations, found.hamiltonian, replaced.empty() ? nullptr : &replaced);
   if (found.hamiltonian.legendre.has(LegendreKind::Singular))
-    found.dirac = dirac_analysis(found.hamiltonian, equations, generic_state(*study.model()));
+    found.dirac = dirac_analysis(found.hamiltonian, equations, generic_state(*study.model()),
+                                 start_on_constraints(*study.model(), equations));
   found.brackets = brackets_of(options, found.hamiltonian, found.dirac, study);
   console.at("proofs");
   found.certificate = certify(found.hamiltonian, equations);

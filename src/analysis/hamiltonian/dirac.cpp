@@ -53,13 +53,18 @@ LinearCondition PhaseSpaceAlgebra::rate(Expr constraint) const {
   return row;
 }
 
-ConstraintProblem PhaseSpaceAlgebra::problem(const Bindings& center, const ExprVector& momentum_values) const {
+ConstraintProblem PhaseSpaceAlgebra::problem(const Bindings& center, const Bindings& start,
+                                             const ExprVector& momentum_values) const {
   ConstraintProblem out;
   out.states = states;
   out.order = order;
-  out.center = center;
-  const std::vector<double> p = evaluate(momentum_values, center);
-  for (std::size_t i = 0; i < momenta.size(); ++i) out.center[momenta[i]] = p[i];
+  const auto with_momenta = [&](Bindings state) {
+    const std::vector<double> p = evaluate(momentum_values, state);
+    for (std::size_t i = 0; i < momenta.size(); ++i) state[momenta[i]] = p[i];
+    return state;
+  };
+  out.center = with_momenta(center);
+  out.start = with_momenta(start);
   for (const ExprVector* list : {&primary, &of_model})
     for (const Expr& c : *list) {
       out.relations.push_back(c);
@@ -86,6 +91,7 @@ class Classes {
     std::vector<LinearCondition> rows(count);
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t j = 0; j < count; ++j) rows[i].coefficients.push_back(between(i, j));
+    rows = with_zeros_of(where_, std::move(rows));
     out_.second_class_set = count == 0 ? std::vector<std::size_t>{} : independent_conditions(rows, where_.points());
     out_.second_class = out_.second_class_set.size();
     out_.first_class = count - out_.second_class;
@@ -193,14 +199,15 @@ class Generators {
 }  // namespace
 
 std::optional<DiracAnalysis> dirac_analysis(const Hamiltonian& h, const EquationsOfMotion& equations,
-                                            const Bindings& center) {
+                                            const Bindings& center, const Bindings& start) {
   const PhaseSpaceAlgebra algebra(h, equations);
   if (!algebra.energy || algebra.primary.empty()) return std::nullopt;
   const ExprVector momenta = MotionTerms(*equations.system)(equations.momenta);
-  const ConstraintProblem problem = algebra.problem(center, momenta);
+  const ConstraintProblem problem = algebra.problem(center, start, momenta);
   const ConstraintChain chain = constraint_algorithm(problem);
   DiracAnalysis out;
   out.outcome = chain.outcome;
+  out.branches = chain.branches;
   for (const Expr& c : algebra.primary) out.constraints.push_back({c, 0});
   for (const Expr& c : algebra.of_model) out.constraints.push_back({c, 1});
   for (const FoundConstraint& c : chain.constraints) out.constraints.push_back({c.value, c.generation});

@@ -1,5 +1,6 @@
 #include <maupertuis/dirac.hpp>
 #include <maupertuis/print.hpp>
+#include <maupertuis/transform.hpp>
 
 #include <fmt/format.h>
 
@@ -28,6 +29,9 @@ class DiracLines {
   std::vector<DerivationStep> write(const DegenerateAnalysis* of_lagrange) {
     for (const PhaseConstraint& c : found_.constraints)
       if (c.generation > 0) formula(title(c.generation), "dφ/dt = 0 of those before", layouts::number("0"), c.value);
+    for (const BranchChoice& b : found_.branches)
+      sentence("Branches", fmt::format("{} = 0 has several branches: this is {} = 0{}.", to_plain(b.product, h_.order),
+                                       to_plain(b.kept, h_.order), b.at_start ? ", where the start is" : ""));
     if (found_.outcome != ConstraintChain::Outcome::Closed) {
       sentence("Classes", found_.outcome == ConstraintChain::Outcome::Contradiction
                               ? "The last constraint cannot be fulfilled: there is no motion."
@@ -38,7 +42,7 @@ class DiracLines {
       return std::move(lines_);
     }
     classes();
-    if (of_lagrange) counts(*of_lagrange);
+    if (of_lagrange && of_lagrange->closed()) counts(*of_lagrange);
     generators();
     return std::move(lines_);
   }
@@ -96,14 +100,29 @@ class DiracLines {
     return context.sum(terms);
   }
 
+  /// Whether the constraints, with p = ∂L/∂q' in them, hold on Lagrange's side too.
+  bool on_one_branch(const DegenerateAnalysis& lagrange) const {
+    const ExprVector momenta = MotionTerms(*h_.system)(h_.momentum_values);
+    ExprMap values;
+    for (std::size_t i = 0; i < momenta.size(); ++i) values.emplace(h_.momenta[i], expand_time_derivatives(momenta[i]));
+    return std::all_of(found_.constraints.begin(), found_.constraints.end(), [&](const PhaseConstraint& c) {
+      return lagrange.chain.where->vanishes(substitute(c.value, values)) != Verdict::Nonzero;
+    });
+  }
+
   void counts(const DegenerateAnalysis& lagrange) {
-    if (!lagrange.closed()) return;
     const std::string section = "Classes";
     const std::string who =
         h_.system->gauges.empty() ? "Lagrange's equations" : "Lagrange's equations without the gauge";
     if (lagrange.motions == found_.physical_dimension) {
       sentence(section, fmt::format("{} count alike: {} out a motion.", who,
                                     plural(lagrange.motions, "number singles", "numbers single")));
+      return;
+    }
+    if (!on_one_branch(lagrange)) {
+      sentence(section,
+               "Lagrange's equations were looked at on another branch of the constraints: the two counts are "
+               "not those of one set of motions.");
       return;
     }
     sentence(section,

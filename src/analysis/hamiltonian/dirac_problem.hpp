@@ -26,7 +26,8 @@ struct PhaseSpaceAlgebra {
 
   Expr bracket(Expr a, Expr b) const;
   LinearCondition rate(Expr constraint) const;
-  ConstraintProblem problem(const Bindings& center, const ExprVector& momentum_values) const;
+  /// Both states with velocities.
+  ConstraintProblem problem(const Bindings& center, const Bindings& start, const ExprVector& momentum_values) const;
 };
 
 }  // namespace maupertuis::phase_space

@@ -35,13 +35,13 @@ std::optional<Bindings> settled(const EquationsOfMotion& equations, const Degene
     out[equations.system->coordinates[i].q] = state.q[i];
     out[equations.system->coordinates[i].velocity] = state.v[i];
   }
-  const std::size_t rank = independent_conditions(analysis.chain.conditions, {out}).size();
+  const std::size_t rank = independent_conditions(analysis.chain.on_manifold, {out}).size();
   return rank == analysis.chain.rank ? std::optional(out) : std::nullopt;
 }
 
 /// Unknowns that may be any function of time; where the others would not be determined at the start, other ones.
 std::vector<std::size_t> open_at_start(const DegenerateAnalysis& analysis) {
-  const auto& all = analysis.chain.conditions;
+  const auto& all = analysis.chain.on_manifold;
   std::vector<std::size_t> open = open_unknowns(all, analysis.chain.where->points());
   if (!analysis.start || open.empty()) return open;
   std::vector<LinearCondition> bound = all;
@@ -96,7 +96,7 @@ class Orbits {
 
  private:
   std::optional<Accelerations> accelerations() const {
-    const auto& all = analysis_.chain.conditions;
+    const auto& all = analysis_.chain.on_manifold;
     const auto& points = analysis_.chain.where->points();
     const std::vector<std::size_t> rows = independent_conditions(all, points), open = open_at_start(analysis_);
     std::vector<std::size_t> bound;
@@ -149,7 +149,8 @@ class Orbits {
     std::vector<LinearCondition> rows;
     for (const StateDirection& known : found_) rows.push_back({known, context_.number(0)});
     rows.push_back({direction, context_.number(0)});
-    if (independent_conditions(rows, analysis_.chain.where->points()).size() == rows.size())
+    const PointsWhere& where = *analysis_.chain.where;
+    if (independent_conditions(with_zeros_of(where, std::move(rows)), where.points()).size() == found_.size() + 1)
       found_.push_back(std::move(direction));
   }
 
@@ -191,6 +192,7 @@ DegenerateAnalysis analyse_degenerate(const EquationsOfMotion& equations, const 
   }
   ConstraintProblem problem = lagrange_problem(equations, with_gauges);
   problem.center = center;
+  if (start) problem.start = *start;
   problem.hold_parameters = hold_parameters;
   DegenerateAnalysis out;
   out.states = problem.states;

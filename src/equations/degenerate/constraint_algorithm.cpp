@@ -3,12 +3,14 @@
 #include <maupertuis/switches.hpp>
 #include <maupertuis/transform.hpp>
 
+#include "equations/degenerate/branches.hpp"
 #include "equations/degenerate/real_part.hpp"
 #include "equations/row_reduction.hpp"
 #include "linear_algebra/dense.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 namespace maupertuis {
 namespace {
@@ -50,9 +52,7 @@ Matrix scaled_rows(Matrix m) {
 
 class Algorithm {
  public:
-  explicit Algorithm(const ConstraintProblem& problem) : problem_(problem), relations_(problem.relations) {
-    out_.conditions = problem.conditions;
-  }
+  explicit Algorithm(const ConstraintProblem& problem) : problem_(problem) { out_.conditions = problem.conditions; }
 
   ConstraintChain run() {
     find_points();
@@ -65,26 +65,74 @@ class Algorithm {
   }
 
  private:
+  /// What a row that depends on others leaves, and its zeros.
+  struct Left {
+    Expr value;
+    bool follows = false;
+    ExprVector parts;
+    bool branches() const { return parts.size() == 1 && parts.front().is(Kind::Product); }
+  };
+
   /// One generation: the conditions on states that the rows leave. False where there is no new one.
   bool next(int generation) {
-    const std::size_t before = out_.constraints.size();
-    const std::vector<std::size_t> chosen = independent_conditions(out_.conditions, points_->points());
-    std::vector<std::pair<Expr, bool>> left;
-    for (std::size_t r = 0; r < out_.conditions.size(); ++r)
-      if (std::find(chosen.begin(), chosen.end(), r) == chosen.end()) left.push_back(remainder(r, chosen));
+    std::vector<Left> left = what_rows_leave();
     if (out_.outcome != ConstraintChain::Outcome::Closed) return true;
-    for (const auto& [value, follows] : left) {
-      if (value.is_zero()) continue;
-      if (points_->vanishes(value) != Verdict::Nonzero) {
-        if (!vanishes_everywhere(value)) return true;
+    // Of u y = 0 and x² + y² = 0 the second says which factor vanishes.
+    std::stable_partition(left.begin(), left.end(), [](const Left& l) { return !l.branches(); });
+    for (const Left& l : left) {
+      if (points_->vanishes(l.value) != Verdict::Nonzero) {
+        if (!vanishes_everywhere(l.value)) return true;
         continue;
       }
-      for (const Expr& part : real_parts(value, problem_.order, problem_.states)) add(part, generation, follows);
+      // Branches that were taken meanwhile may lie where it does not vanish.
+      const ExprVector parts = l.parts.empty() ? zeros_of(l.value, constraint_values()) : l.parts;
+      for (const Expr& part : parts) add(part, generation, l.follows);
       if (out_.outcome != ConstraintChain::Outcome::Closed) return true;
     }
-    for (std::size_t k = before; k < out_.constraints.size(); ++k)
-      out_.conditions.push_back(problem_.derivative(out_.constraints[k].value));
-    return out_.constraints.size() > before;
+    bool any = false;
+    for (const FoundConstraint& c : out_.constraints) {
+      if (std::find(derived_.begin(), derived_.end(), c.value) != derived_.end()) continue;
+      any = true;
+      derived_.push_back(c.value);
+      out_.conditions.push_back(problem_.derivative(c.value));
+    }
+    return any;
+  }
+
+  std::vector<Left> what_rows_leave() {
+    weak_ = with_zeros_of(*points_, out_.conditions);
+    const std::vector<std::size_t> chosen = independent_conditions(weak_, points_->points());
+    std::vector<Left> left;
+    for (std::size_t r = 0; r < weak_.size(); ++r) {
+      if (std::find(chosen.begin(), chosen.end(), r) != chosen.end()) continue;
+      auto [value, follows] = remainder(r, chosen);
+      if (value.is_zero()) continue;
+      left.push_back({value, follows, {}});
+      if (points_->vanishes(value) == Verdict::Nonzero) left.back().parts = zeros_of(value, constraint_values());
+    }
+    return left;
+  }
+
+  /// As regular equations: of the value as it stands, or with what is known put in where only so it branches.
+  ExprVector zeros_of(Expr value, const ExprVector& known) const {
+    const ExprVector parts = parts_of(value);
+    if (parts.size() > 1 || !parts.front().is(Kind::Sum)) return parts;
+    const Expr reduced = expand_time_derivatives(with_known_states(parts.front(), known, problem_.states));
+    if (reduced == parts.front() || vanishes_identically(reduced)) return parts;
+    const ExprVector other = parts_of(reduced);
+    return other.size() > 1 || other.front().is(Kind::Product) ? other : parts;
+  }
+
+  const ExprVector& parts_of(Expr value) const {
+    const auto [place, is_new] = parts_.try_emplace(value);
+    if (is_new) place->second = real_parts(value, problem_.order, problem_.states);
+    return place->second;
+  }
+
+  ExprVector constraint_values() const {
+    ExprVector out;
+    for (const FoundConstraint& c : out_.constraints) out.push_back(c.value);
+    return out;
   }
 
   void add(Expr value, int generation, bool follows) {
@@ -94,22 +142,77 @@ class Algorithm {
       out_.outcome = ConstraintChain::Outcome::Contradiction;
       return;
     }
-    relations_.push_back(value);
     find_points();
-    keep_what_vanishes();
+    take_branches();
   }
 
-  /// Of a product the factors that vanish at the states near the start: r²(θ' − z) = 0 means θ' = z where r is not 0.
-  void keep_what_vanishes() {
-    const Expr product = relations_.back();
-    if (!product.is(Kind::Product) || points_->points().empty()) return;
-    Expr kept = product.context().number(1);
-    for (std::size_t i = 0; i < product.size(); ++i)
-      if (points_->vanishes(product[i]) != Verdict::Nonzero) kept = kept * product[i];
-    if (kept == product || kept.is_one()) return;
-    relations_.back() = kept;
-    out_.constraints.back().value = kept;
+  /// Of each product one factor, also where it is a product by what came after it alone.
+  void take_branches() {
+    for (std::size_t k = 0; k < out_.constraints.size();) k = take_branch(k) ? 0 : k + 1;
+  }
+
+  /// False where constraint k is regular as it stands.
+  bool take_branch(std::size_t k) {
+    ExprVector others = constraint_values();
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+    const FoundConstraint whole = out_.constraints[k];
+    ExprVector parts = zeros_of(whole.value, others);
+    if (parts.size() == 1 && !parts.front().is(Kind::Product)) return false;
+    if (parts.size() == 1) parts = zeros_of(branch_of(parts.front()), others);
+    const auto place = out_.constraints.begin() + static_cast<std::ptrdiff_t>(k);
+    std::vector<FoundConstraint> written;
+    for (const Expr& part : parts) written.push_back({part, whole.generation, whole.follows});
+    out_.constraints.insert(out_.constraints.erase(place), written.begin(), written.end());
     find_points();
+    return true;
+  }
+
+  /// The factor that vanishes at the start, else the one that vanishes at the states near it, and rather one that is a
+  /// branch: r²(θ' − z) = 0 means θ' = z.
+  Expr branch_of(Expr product) {
+    const ExprVector factors = vanishing_factors(product, problem_.states);
+    ExprVector branches, at_start, branches_at_start;
+    for (const Expr& f : factors) {
+      const bool is_branch = keeps_rank(f);
+      if (is_branch) branches.push_back(f);
+      if (!problem_.start || !is_zero_at(f, problem_.states, *problem_.start)) continue;
+      at_start.push_back(f);
+      if (is_branch) branches_at_start.push_back(f);
+    }
+    const Expr kept = nearest(!branches_at_start.empty() ? branches_at_start
+                              : !at_start.empty()        ? at_start
+                              : !branches.empty()        ? branches
+                                                         : factors);
+    const auto has_other = [&](const ExprVector& list) {
+      return std::any_of(list.begin(), list.end(), [&](const Expr& f) { return f != kept; });
+    };
+    if (has_other(branches)) out_.branches.push_back({product, kept, !at_start.empty(), has_other(branches_at_start)});
+    return kept;
+  }
+
+  /// Whether the conditions of the problem determine as much where the factor vanishes as elsewhere: at r = 0 of plane
+  /// polar coordinates they do not, and that is no branch of the motions.
+  bool keeps_rank(Expr factor) const {
+    ZeroTestOptions options;
+    options.hold_parameters = problem_.hold_parameters;
+    const auto rank_on = [&](const ExprVector& relations) -> std::optional<std::size_t> {
+      const PointsWhere where(relations, problem_.states, problem_.center, options);
+      if (where.points().empty()) return std::nullopt;
+      return independent_conditions(with_zeros_of(where, problem_.conditions), where.points()).size();
+    };
+    const auto there = rank_on({factor});
+    return there && *there >= rank_on({}).value_or(0);
+  }
+
+  /// The first that vanishes at all states near the start, else at one of them, else at none.
+  Expr nearest(const ExprVector& factors) const {
+    const auto& points = points_->points();
+    for (const Expr& f : factors)
+      if (!points.empty() && points_->vanishes(f) != Verdict::Nonzero) return f;
+    for (const Expr& f : factors)
+      for (const Bindings& point : points)
+        if (is_zero_at(f, problem_.states, point)) return f;
+    return factors.front();
   }
 
   bool has_state(Expr value) const {
@@ -120,16 +223,16 @@ class Algorithm {
 
   /// Row r as a combination of the chosen ones: what is left of its right side, and whether r has no unknown at all.
   std::pair<Expr, bool> remainder(std::size_t r, const std::vector<std::size_t>& chosen) {
-    const LinearCondition& row = out_.conditions[r];
+    const LinearCondition& row = weak_[r];
     const std::vector<std::size_t> part = taking_part(r, chosen);
     if (part.empty()) {
-      for (const Expr& coefficient : row.coefficients)
+      for (const Expr& coefficient : out_.conditions[r].coefficients)
         if (!vanishes_everywhere(coefficient)) break;
       return {row.rest, row.is_derivative};
     }
     const std::vector<std::size_t> columns = pivots(part);
     if (columns.size() < part.size()) {  // independent at different points alone
-      const ExprVector& entries = out_.conditions[part.front()].coefficients;
+      const ExprVector& entries = weak_[part.front()].coefficients;
       out_.outcome = ConstraintChain::Outcome::Varies;
       out_.varying = *std::find_if(entries.begin(), entries.end(), [](const Expr& e) { return !e.is_zero(); });
       return {row.rest, false};
@@ -137,14 +240,14 @@ class Algorithm {
     Context& context = row.rest.context();
     ExprMatrix system{part.size(), part.size() + 1, {}};  // Σ_k c_k B_kj = r_j
     for (const std::size_t j : columns) {
-      for (const std::size_t k : part) system.entries.push_back(out_.conditions[k].coefficients[j]);
+      for (const std::size_t k : part) system.entries.push_back(weak_[k].coefficients[j]);
       system.entries.push_back(row.coefficients[j]);
     }
     const auto weights = solve_linear(system);
     if (!weights) throw std::logic_error("rows that are independent at points have no solution; please report");
     const auto less_combination = [&](const std::function<Expr(const LinearCondition&)>& entry) {
       ExprVector terms{entry(row)};
-      for (std::size_t k = 0; k < part.size(); ++k) terms.push_back(-((*weights)[k] * entry(out_.conditions[part[k]])));
+      for (std::size_t k = 0; k < part.size(); ++k) terms.push_back(-((*weights)[k] * entry(weak_[part[k]])));
       return context.sum(terms);
     };
     for (std::size_t j = 0; j < row.coefficients.size(); ++j) {
@@ -170,7 +273,7 @@ class Algorithm {
 
   /// With the formulas that are in force where g has this sign, in the constraints as well.
   bool vanishes_on_side(Expr e, Expr g, bool above) const {
-    ExprVector all = relations_;
+    ExprVector all = relations();
     all.push_back(e);
     all = on_side(all, g, above);
     const Expr there = all.back();
@@ -186,7 +289,7 @@ class Algorithm {
   std::vector<std::size_t> taking_part(std::size_t r, const std::vector<std::size_t>& chosen) const {
     std::vector<bool> takes(chosen.size(), false);
     for (const Bindings& point : points_->points()) {
-      const Matrix m = scaled_rows(coefficients_at(out_.conditions, point));
+      const Matrix m = scaled_rows(coefficients_at(weak_, point));
       if (chosen.empty() || m.row(static_cast<Index>(r)).isZero()) continue;
       Matrix basis(m.cols(), static_cast<Index>(chosen.size()));
       for (std::size_t k = 0; k < chosen.size(); ++k)
@@ -205,7 +308,7 @@ class Algorithm {
   std::vector<std::size_t> pivots(const std::vector<std::size_t>& rows) const {
     std::vector<std::size_t> out;
     for (const Bindings& point : points_->points()) {
-      const Matrix all = scaled_rows(coefficients_at(out_.conditions, point));
+      const Matrix all = scaled_rows(coefficients_at(weak_, point));
       Matrix m(all.cols(), static_cast<Index>(rows.size()));
       for (std::size_t k = 0; k < rows.size(); ++k)
         m.col(static_cast<Index>(k)) = all.row(static_cast<Index>(rows[k])).transpose();
@@ -225,26 +328,53 @@ class Algorithm {
       given.push_back(c.rest);
       given.insert(given.end(), c.coefficients.begin(), c.coefficients.end());
     }
-    points_ = std::make_shared<const PointsWhere>(relations_, problem_.states, problem_.center, options, given);
-    if (points_->points().empty()) out_.outcome = ConstraintChain::Outcome::Unreached;
+    points_ = std::make_shared<const PointsWhere>(relations(), problem_.states, problem_.center, options, given);
+    using Outcome = ConstraintChain::Outcome;
+    if (points_->points().empty())
+      out_.outcome = Outcome::Unreached;
+    else if (out_.outcome == Outcome::Unreached)  // a product was, and the branch that was taken is not
+      out_.outcome = Outcome::Closed;
   }
 
   void finish() {
     out_.where = points_;
     std::vector<LinearCondition> gradients;
-    for (const Expr& relation : relations_) gradients.push_back({gradient(relation, problem_.states), relation});
+    for (const Expr& relation : relations()) gradients.push_back({gradient(relation, problem_.states), relation});
     const std::size_t bound = gradients.empty() ? 0 : independent_conditions(gradients, points_->points()).size();
     out_.manifold_dimension = problem_.states.size() - bound;
-    out_.rank = independent_conditions(out_.conditions, points_->points()).size();
+    out_.on_manifold = with_zeros_of(*points_, out_.conditions);
+    out_.rank = independent_conditions(out_.on_manifold, points_->points()).size();
+  }
+
+  ExprVector relations() const {
+    ExprVector out = problem_.relations;
+    for (const FoundConstraint& c : out_.constraints) out.push_back(c.value);
+    return out;
   }
 
   const ConstraintProblem& problem_;
-  ExprVector relations_;
+  std::vector<LinearCondition> weak_;  // the conditions, with 0 for what vanishes at the points
+  mutable std::unordered_map<Expr, ExprVector, ExprHash> parts_;
+  ExprVector derived_;  // constraints whose derivatives are among the conditions
   std::shared_ptr<const PointsWhere> points_;
   ConstraintChain out_;
 };
 
 }  // namespace
+
+std::vector<LinearCondition> with_zeros_of(const PointsWhere& where, std::vector<LinearCondition> conditions) {
+  std::unordered_map<Expr, bool, ExprHash> known;  // rows and their derivatives share many
+  const auto vanishes = [&](Expr e) {
+    const auto [place, is_new] = known.emplace(e, false);
+    // What a switch holds at 0 on its one side is no zero of the manifold.
+    if (is_new) place->second = where.vanishes(e) == Verdict::Zero && switches_of({&e, 1}).empty();
+    return place->second;
+  };
+  for (LinearCondition& c : conditions)
+    for (Expr& e : c.coefficients)
+      if (!e.is_number() && vanishes(e)) e = e.context().number(0);
+  return conditions;
+}
 
 std::vector<std::size_t> independent_conditions(const std::vector<LinearCondition>& conditions,
                                                 const std::vector<Bindings>& points) {

@@ -110,13 +110,15 @@ Choice choose_rows(const EquationsOfMotion& equations, const DegenerateAnalysis&
   const std::vector<LinearCondition> given(all.begin() + static_cast<std::ptrdiff_t>(n),
                                            all.begin() + static_cast<std::ptrdiff_t>(n + m));
   const std::vector<LinearCondition> lagrange(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(n));
-  const auto& points = analysis.chain.where->points();
+  const PointsWhere& where = *analysis.chain.where;
+  const auto& points = where.points();
   std::vector<LinearCondition> safe = given;  // then those of what is held
   std::vector<Held> kept;
   for (const Held& h : held) {
     std::vector<LinearCondition> with_it = safe;
     with_it.push_back(row_of(h, *equations.system, m));
-    const bool everywhere = last_adds_at_all(with_it, points) && last_adds_at_all(with_it, with_rest(points));
+    const bool everywhere =
+        last_adds_at_all(with_zeros_of(where, with_it), points) && last_adds_at_all(with_it, with_rest(points));
     if (!everywhere && h.level == Constraint::Level::Velocity) continue;
     safe = std::move(with_it);
     kept.push_back(h);
@@ -134,8 +136,8 @@ Choice choose_rows(const EquationsOfMotion& equations, const DegenerateAnalysis&
     Tried out;
     out.choice.keeps_row.assign(n, false);
     std::vector<LinearCondition> taken;
-    for (const std::size_t r :
-         by_size ? independent_by_size(rows, first_row, *analysis.start) : independent_conditions(rows, points)) {
+    for (const std::size_t r : by_size ? independent_by_size(rows, first_row, *analysis.start)
+                                       : independent_conditions(with_zeros_of(where, rows), points)) {
       taken.push_back(rows[r]);
       if (r >= first_held && r < first_held + kept.size())
         out.choice.held.push_back(kept[r - first_held]);

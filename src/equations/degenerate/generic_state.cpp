@@ -41,6 +41,11 @@ Bindings written_start(const Model& model) {
   return out;
 }
 
+Bindings start_on_constraints(const Model& model, const EquationsOfMotion& equations) {
+  const DegenerateAnalysis* found = equations.degenerate.get();
+  return found && found->start ? *found->start : written_start(model);
+}
+
 Bindings generic_state(const Model& model) {
   const MechanicalSystem& system = model.system;
   const Expr whole = system.lagrangian();

@@ -25,7 +25,11 @@ class Messages {
  public:
   Messages(const Model& model, const EquationsOfMotion& equations, const DegenerateAnalysis& analysis,
            Diagnostics& diagnostics)
-      : model_(model), equations_(equations), analysis_(analysis), diagnostics_(diagnostics) {}
+      : model_(model),
+        equations_(equations),
+        analysis_(analysis),
+        diagnostics_(diagnostics),
+        start_(written_start(model)) {}
 
   bool tell() {
     using Outcome = ConstraintChain::Outcome;
@@ -37,6 +41,7 @@ class Messages {
       degenerate();
     else
       free_functions();
+    branches();
     special_values();
     return true;
   }
@@ -74,8 +79,27 @@ class Messages {
     return false;
   }
 
+  bool start_fulfils_all() const {
+    MotionState state;
+    for (const Coordinate& c : system().coordinates)
+      state.q.push_back(start_.at(c.q)), state.v.push_back(start_.at(c.velocity));
+    state.t = start_.at(system().context->time());
+    return !analysis_.chain.constraints.empty() && StateRelations(equations_, analysis_).hold(state);
+  }
+
+  bool not_regular(const std::vector<std::string>& lines) {
+    diagnostics_.error(
+        "E0635", place(), "the start fulfils " + joined(lines) + ", which are not regular there",
+        "Their gradients vanish or depend on each other at it, as that of x² = 0 does at x = 0: no state "
+        "beside it was found by which ranks could be told.",
+        "Write the term of L so that its derivative has a simple zero, x in the place of x²; or start "
+        "on one branch, away from the others.");
+    return false;
+  }
+
   bool unreached() {
     const std::vector<std::string> lines = constraint_lines(analysis_, equations_.order, false);
+    if (start_fulfils_all()) return not_regular(lines);
     diagnostics_.error("E0624", place(),
                        lines.empty() ? std::string("no state near the start lies where this Lagrangian is defined")
                                      : "no state near the start fulfils " + joined(lines),
@@ -110,7 +134,7 @@ class Messages {
   bool gauges() {
     if (analysis_.gauges == 0) return true;
     Bindings center = generic_state(model_);
-    const DegenerateAnalysis open = analyse_degenerate(equations_, center, false);
+    const DegenerateAnalysis open = analyse_degenerate(equations_, center, false, true, &start_);
     const Gauge& first = system().gauges.front();
     if (open.closed() && open.free.empty()) {
       diagnostics_.error("E0625", first.span, "there is nothing for a gauge to fix",
@@ -150,7 +174,7 @@ class Messages {
     for (const std::size_t k : chosen) fewer->gauges.push_back(system().gauges[k]);
     EquationsOfMotion equations = equations_;
     equations.system = std::move(fewer);
-    return analyse_degenerate(equations, generic_state(model_), true);
+    return analyse_degenerate(equations, generic_state(model_), true, true, &start_);
   }
 
   bool excludes_motions(const std::vector<std::size_t>& gauges, const DegenerateAnalysis& open) const {
@@ -229,6 +253,21 @@ class Messages {
                          asked, "If a mass was forgotten, give it; else this is as it should be.");
   }
 
+  /// N0634: what is told and run is so on one branch.
+  void branches() {
+    for (const BranchChoice& b : analysis_.chain.branches) {
+      const std::string kept = to_plain(b.kept, equations_.order) + " = 0";
+      diagnostics_.note(
+          "N0634", place(),
+          fmt::format("{} = 0 has several branches, and this is {}", to_plain(b.product, equations_.order), kept),
+          b.start_meets ? "The start lies where branches meet: motions may go on along another one, which is not told."
+          : b.at_start  ? "The start lies on it. On the others a motion obeys other equations, which are not told."
+                        : "It is the one that was found next to the start. On the others a motion obeys other "
+                          "equations, which are not told.",
+          "A start on another branch is a question about that branch.");
+    }
+  }
+
   void free_functions() {
     if (analysis_.free.empty()) return;
     std::vector<std::string> names;
@@ -247,14 +286,14 @@ class Messages {
   /// Whether the class is that of general values of the parameters, and if not, which of them is special.
   void special_values() {
     const Bindings center = generic_state(model_);
-    const DegenerateAnalysis general = analyse_degenerate(equations_, center, analysis_.gauges > 0, false);
+    const DegenerateAnalysis general = analyse_degenerate(equations_, center, analysis_.gauges > 0, false, &start_);
     if (!general.closed() || same_class(general)) return;
     std::vector<std::string> special;
     for (const Parameter& p : system().parameters) {
       if (!p.used || p.si_value == 0 || system().parameters.size() > most_parameters) continue;
       Bindings moved = center;
       moved[p.symbol] *= 1.0078125;
-      const DegenerateAnalysis other = analyse_degenerate(equations_, moved, analysis_.gauges > 0);
+      const DegenerateAnalysis other = analyse_degenerate(equations_, moved, analysis_.gauges > 0, true, &start_);
       if (other.closed() && !same_class(other)) special.push_back(fmt::format("{} = {:g}", p.name, p.si_value));
     }
     diagnostics_.note("N0628", place(),
@@ -277,6 +316,7 @@ class Messages {
   const EquationsOfMotion& equations_;
   const DegenerateAnalysis& analysis_;
   Diagnostics& diagnostics_;
+  Bindings start_;
 };
 
 }  // namespace

@@ -1,9 +1,11 @@
 #include "equations/degenerate/real_part.hpp"
 
+#include <maupertuis/evaluate.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 namespace maupertuis {
 namespace {
@@ -22,16 +24,43 @@ bool has_any(Expr e, const ExprVector& symbols) {
   return false;
 }
 
-Expr base_of(Expr factor) { return factor.is(Kind::Power) && factor[1].is_number() ? factor[0] : factor; }
+/// exp(2 x) is the second power of exp(x).
+Expr base_of(Expr factor) {
+  if (factor.is(Kind::Exp)) return apply(Kind::Exp, split_coefficient(factor[0]).rest);
+  return factor.is(Kind::Power) && factor[1].is_number() ? factor[0] : factor;
+}
 Rational exponent_of(Expr factor) {
+  if (factor.is(Kind::Exp)) return split_coefficient(factor[0]).coefficient;
   return factor.is(Kind::Power) && factor[1].is_number() ? factor[1].number() : Rational(1);
+}
+
+using Powers = std::vector<std::pair<Expr, Rational>>;
+
+/// A term times a power of a base, which a factor of it may be a power of, too.
+Expr times_power(Expr term, Expr base, const Rational& power) {
+  Rational whole = power;
+  Expr others = term.context().number(1);
+  for (const Expr& factor : parts_of(term, Kind::Product))
+    if (base_of(factor) == base)
+      whole = whole + exponent_of(factor);
+    else
+      others = others * factor;
+  return others * (base.is(Kind::Exp) ? apply(Kind::Exp, whole * base[0]) : pow(base, whole));
+}
+
+Expr times_powers(Expr e, const Powers& powers, int sign) {
+  std::vector<Expr> out;
+  for (Expr term : parts_of(e, Kind::Sum)) {
+    for (const auto& [base, power] : powers) term = times_power(term, base, Rational(sign) * power);
+    out.push_back(term);
+  }
+  return e.context().sum(out);
 }
 
 /// e times what stands below its terms' bars, so that no term has a negative power.
 Expr without_bars(Expr e) {
-  std::vector<std::pair<Expr, Rational>> bars;
-  const std::vector<Expr> terms = parts_of(e, Kind::Sum);
-  for (const Expr& term : terms)
+  Powers bars;
+  for (const Expr& term : parts_of(e, Kind::Sum))
     for (const Expr& factor : parts_of(term, Kind::Product)) {
       const Rational power = -exponent_of(factor);
       if (power.sign() <= 0) continue;
@@ -42,19 +71,13 @@ Expr without_bars(Expr e) {
       else
         known->second = std::max(known->second, power);
     }
-  if (bars.empty()) return e;
-  std::vector<Expr> raised;
-  for (Expr term : terms) {
-    for (const auto& [bar, power] : bars) term = term * pow(bar, power);
-    raised.push_back(term);
-  }
-  return e.context().sum(raised);
+  return times_powers(e, bars, 1);
 }
 
 /// The factors that all terms have in common, as they stand in the first: r² of r² θ' − r² z.
-Expr common_factor(Expr e) {
+Powers common_powers(Expr e) {
   const std::vector<Expr> terms = parts_of(e, Kind::Sum);
-  Expr out = e.context().number(1);
+  Powers out;
   if (terms.size() < 2) return out;
   for (const Expr& factor : parts_of(terms.front(), Kind::Product)) {
     if (factor.is_number()) continue;
@@ -65,7 +88,7 @@ Expr common_factor(Expr e) {
         if (base_of(other) == base_of(factor)) here = exponent_of(other);
       least = std::min(least, here);
     }
-    if (least.sign() > 0) out = out * pow(base_of(factor), least);
+    if (least.sign() > 0) out.emplace_back(base_of(factor), least);
   }
   return out;
 }
@@ -102,25 +125,76 @@ ExprVector squares_in(Expr e, const ExprVector& states) {
   return out;
 }
 
+Expr readable_whole(Expr e, const ReadingOrder& order) {
+  const ReadableForm form = readable(e, order);
+  return form.intermediates.empty() ? form.value : e;
+}
+
+struct Square {
+  Rational factor;
+  Expr base;
+};
+
+/// a s² + b s + c with a number a is a (s + b/(2a))² and a rest without s.
+std::optional<std::pair<Square, Expr>> completed_square(Expr e, Expr s) {
+  const Expr slope = differentiate(e, s), curvature = differentiate(slope, s);
+  if (!curvature.is_number() || curvature.is_zero()) return std::nullopt;
+  const ExprMap at_zero{{s, e.context().number(0)}};
+  const Rational a = curvature.number() / Rational(2);
+  const Expr b = substitute(slope, at_zero), c = substitute(e, at_zero);
+  return std::pair(Square{a, s + b / (Rational(2) * a)}, c - b * b / (Rational(4) * a));
+}
+
+/// x² − 2 x y + 3 y² as (x − y)² + 2 y²; empty where squares of states are not all that is in it.
+std::vector<Square> completed_squares(Expr e, const ExprVector& states, const ReadingOrder& order) {
+  std::vector<Square> out;
+  Expr left = e;
+  while (!vanishes_identically(left)) {
+    std::optional<std::pair<Square, Expr>> next;
+    for (const Expr& s : states)
+      if (!next && has_any(left, {s})) next = completed_square(left, s);
+    if (!next) return {};
+    out.push_back(next->first);
+    left = readable_whole(next->second, order);
+  }
+  return out;
+}
+
+std::optional<Rational> root_of(const Rational& x, Context& context) {
+  const Expr root = sqrt(context.number(x));
+  return root.is_number() ? std::optional(root.number()) : std::nullopt;
+}
+
+/// The zeros of a sum that is quadratic: of squares of one sign the bases, of a difference of two its two factors.
+ExprVector quadratic_parts(Expr e, const ExprVector& states, const ReadingOrder& order) {
+  const std::vector<Square> squares = completed_squares(e, states, order);
+  if (squares.empty()) return {};
+  const int sign = squares.front().factor.sign();
+  ExprVector bases;
+  for (const Square& square : squares)
+    if (square.factor.sign() == sign) bases.push_back(square.base);
+  if (bases.size() == squares.size()) return bases;
+  if (squares.size() != 2) return {};
+  const auto root = root_of(-squares[1].factor / squares[0].factor, e.context());
+  if (!root) return {};
+  return {readable_whole(squares[0].base - *root * squares[1].base, order) *
+          readable_whole(squares[0].base + *root * squares[1].base, order)};
+}
+
 }  // namespace
 
 ExprVector real_parts(Expr e, const ReadingOrder& order, const ExprVector& states) {
   Context& context = e.context();
-  const ReadableForm first = readable(expand_time_derivatives(e), order);
-  Expr form = without_bars(first.intermediates.empty() ? first.value : e);
-  const ReadableForm second = readable(form, order);
-  if (second.intermediates.empty()) form = second.value;
+  const Expr form = readable_whole(without_bars(readable_whole(expand_time_derivatives(e), order)), order);
   std::vector<Expr> factors = parts_of(form, Kind::Product);
-  if (const Expr common = common_factor(form); !common.is_one()) {
-    std::vector<Expr> terms;
-    for (const Expr& term : parts_of(form, Kind::Sum)) terms.push_back(term / common);
-    factors = parts_of(common, Kind::Product);
-    factors.push_back(context.sum(terms));
+  if (const Powers common = common_powers(form); !common.empty()) {
+    factors.assign(1, times_powers(form, common, -1));
+    for (const auto& [base, power] : common) factors.push_back(base);
   }
   Expr product = context.number(1);
   for (const Expr& factor : factors) {
     if (!has_any(factor, states) || factor.is(Kind::Exp) || exponent_of(factor).sign() < 0) continue;
-    product = product * base_of(factor);
+    product = product * without_common_number(base_of(factor));
   }
   if (product.is_one()) return {form.is_number() ? context.number(1) : form};  // nothing in it can vanish
   if (const ExprVector squares = squares_in(product, states); !squares.empty()) {
@@ -128,6 +202,14 @@ ExprVector real_parts(Expr e, const ReadingOrder& order, const ExprVector& state
     for (const Expr& base : squares)
       for (const Expr& part : real_parts(base, order, states)) out.push_back(part);
     return out;
+  }
+  if (product.is(Kind::Sum)) {
+    const ExprVector parts = quadratic_parts(product, states, order);
+    if (parts.size() == 1 && parts.front().is(Kind::Product)) return parts;
+    ExprVector out;
+    for (const Expr& base : parts)
+      for (const Expr& part : real_parts(base, order, states)) out.push_back(part);
+    if (!out.empty()) return out;
   }
   return {without_common_number(product)};
 }

@@ -6,6 +6,7 @@
 #include <maupertuis/degenerate.hpp>
 #include <maupertuis/print.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -39,6 +40,13 @@ TEST_CASE("zeros are written as regular equations") {
   CHECK(parts(m, x / y) == Strings{"x"});
   CHECK(parts(m, -x - y) == Strings{"x + y"});
   CHECK(parts(m, x.context().number(-1)) == Strings{"1"});
+  // exp(2 x) − exp(x) y, and quadratic forms written out.
+  const Expr growth = apply(Kind::Exp, x);
+  CHECK(parts(m, apply(Kind::Exp, Rational(2) * x) - growth * y).front() == parts(m, growth - y).front());
+  CHECK(parts(m, x * x - Rational(2) * x + Rational(1)).front() == "1 - x");
+  CHECK(parts(m, x * x - Rational(2) * x * y + Rational(3) * y * y) == Strings{"x - y", "y"});
+  CHECK(parts(m, x * x + y * y - Rational(1)).size() == 1);  // a circle
+  CHECK(parts(m, x * x - y * y).front().find("(x + y)") != std::string::npos);
 }
 
 TEST_CASE("a regular Lagrangian asks nothing, a massless joint is where its springs hold it") {
@@ -167,4 +175,53 @@ TEST_CASE("what vanishes near the start alone is no ground for a constraint") {
   CHECK(outcome(first_order + " + exp(-1000 (x - 5)^2) x'^2/2") == Outcome::Varies);   // 1e-6949 at the start
   CHECK(outcome("x'^2/2 + max(x - 3, 0)^2 y'^2/2 - (x - y)^2/2") == Outcome::Varies);  // a mass beyond
   CHECK(outcome("x'^2/2 + max(x - 3, 0)^2 y") == Outcome::Varies);                     // a constraint beyond
+}
+
+TEST_CASE("coefficients that vanish on the constraints alone take no part in ranks") {
+  // Henneaux and Teitelboim, 1.6.3: y' = f(x), z' = y; z is free and gives the others.
+  for (const char* f : {"exp(x)", "tan(x)", "exp(x^2)", "x sin(x)", "sinh(x)", "x^2"}) {
+    CAPTURE(f);
+    const ModelText m("dimensionless\ncoord x, y, z : number\nL = ((y' - " + std::string(f) +
+                      ")^2 + (z' - y)^2)/2\nstart x = 1\n");
+    const DegenerateAnalysis a = analysis_of(m);
+    REQUIRE(a.closed());
+    CHECK(a.free.size() == 1);
+    CHECK(a.motions == 0);
+    CHECK(a.chain.manifold_dimension == 4);
+  }
+}
+
+namespace {
+
+/// "x = 0, x' = 0; free 0, motions 2", on the branch of the start.
+std::string branch_at(const std::string& text) {
+  const ModelText m("dimensionless\n" + text);
+  const Bindings start = written_start(m.model);
+  const DegenerateAnalysis a = analyse_degenerate(m.equations, generic_state(m.model), true, true, &start);
+  REQUIRE(a.closed());
+  Strings lines = constraint_lines(a, m.equations.order, true);
+  std::sort(lines.begin(), lines.end());
+  std::string out;
+  for (const std::string& line : lines) out += (out.empty() ? "" : ", ") + line;
+  return out + "; free " + std::to_string(a.free.size()) + ", motions " + std::to_string(a.motions);
+}
+
+}  // namespace
+
+TEST_CASE("of constraints that branch the branch of the start is taken") {
+  const std::string crossing = "coord x, y, u : number\nL = (x'^2 + y'^2)/2 + u x y\n";
+  CHECK(branch_at(crossing + "start x = 0, x' = 0, y = 1, y' = 0.3\n") ==
+        "u = 0, u' = 0, x = 0, x' = 0; free 0, motions 2");
+  CHECK(branch_at(crossing + "start x = 1, x' = 0.3, y = 0\n") == "u = 0, u' = 0, y = 0, y' = 0; free 0, motions 2");
+  // (x' + y z)² + y²: at rest z is free, in motion it is 0.
+  const std::string pushed = "coord x, y, z : number\nL = (x' + y z)^2/2 + y^2/2\n";
+  CHECK(branch_at(pushed + "start x' = 0, z = 1\n") == "x' = 0, y = 0, y' = 0; free 1, motions 1");
+  CHECK(branch_at(pushed + "start x' = 1, z = 0\n") == "y = 0, y' = 0, z = 0, z' = 0; free 0, motions 2");
+}
+
+TEST_CASE("squares are no regular constraints, and their zeros are") {
+  // x² + y² = 0 asks for x = y = 0, where u y = 0 asks nothing of u.
+  CHECK(branch_at("coord x, y, u : number\nL = x'^2/2 + u (x^2 + y^2)\nstart u = 0.7\n") ==
+        "x = 0, x' = 0, y = 0, y' = 0; free 1, motions 0");
+  CHECK(branch_at("coord x, y : number\nL = y (x' - 1)^2\nstart x' = 1, y = 1\n") == "1 - x' = 0; free 1, motions 1");
 }

@@ -4,6 +4,8 @@
 #include <maupertuis/dirac.hpp>
 #include <maupertuis/print.hpp>
 
+#include <array>
+
 using namespace maupertuis;
 
 namespace {
@@ -14,7 +16,9 @@ struct Degenerate {
   std::optional<DiracAnalysis> dirac;
 
   explicit Degenerate(const std::string& text)
-      : m("dimensionless\n" + text), h(hamiltonian(m.equations)), dirac(dirac_analysis(h, m.equations, near())) {
+      : m("dimensionless\n" + text),
+        h(hamiltonian(m.equations)),
+        dirac(dirac_analysis(h, m.equations, near(), written_start(m.model))) {
     REQUIRE(dirac);
     REQUIRE(dirac->outcome == ConstraintChain::Outcome::Closed);
   }
@@ -81,4 +85,29 @@ TEST_CASE("each free multiplier has its gauge transformation") {
   CHECK(to_plain(g.changes[1][0], space.h.order) == to_plain(g.changes[2][1], space.h.order));
   CHECK(g.changes[0][0].is_zero());
   CHECK(g.changes[2][0].is_zero());
+}
+
+TEST_CASE("brackets that vanish on the constraints alone are of the first class") {
+  const auto counts = [](const std::string& text) {
+    const Degenerate space(text);
+    const DiracAnalysis& d = *space.dirac;
+    return std::array{d.first_class, d.second_class, d.physical_dimension};
+  };
+  using Counts = std::array<std::size_t, 3>;
+  // {x p_x + y p_y, p_x} = p_x.
+  CHECK(counts("coord x, y : number\nL = (x' y - x y')^2/2\nstart x = 1, y = 0.5, x' = 0.3\n") == Counts{2, 0, 0});
+  // The rotations of a triplet: two of G = x × p are independent, and {G_1, G_2} = G_3 is a combination of them.
+  CHECK(counts("coord x, y, z, a, b, c : number\n"
+               "L = ((x' + b z - c y)^2 + (y' + c x - a z)^2 + (z' + a y - b x)^2)/2 - (x^2 + y^2 + z^2)^2/4\n"
+               "start x = 1, y = 0.3, z = 0.2\n") == Counts{5, 0, 2});
+  CHECK(counts("coord x, y, z : number\nL = ((y' - exp(x))^2 + (z' - y)^2)/2\nstart x = 1\n") == Counts{3, 0, 0});
+}
+
+TEST_CASE("phase space lies on the branch of the start, as Lagrange's states do") {
+  const std::string pushed = "coord x, y, z : number\nL = (x' + y z)^2/2 + y^2/2\n";
+  const Degenerate resting(pushed + "start x' = 0, z = 1\n"), moving(pushed + "start x' = 1, z = 0\n");
+  CHECK(resting.vanishes(resting.h.momenta[0]));
+  CHECK_FALSE(moving.vanishes(moving.h.momenta[0]));
+  CHECK(moving.vanishes(moving.m.q(2)));
+  CHECK(moving.dirac->physical_dimension == 2);
 }

@@ -86,6 +86,10 @@ TEST_CASE("under constraints the mass matrix may be singular, but not on what th
   CHECK(codes("param m = 1 kg\ncoord x, y : length\nT = 1/2 m (x'^2 - y'^2)\n") == "W0410");
   CHECK(codes("param m = 1 kg\ncoord x, y : length\nT = 1/2 m (x'^2 - y'^2)\nconstraint x = 2 y\n") == "");
   CHECK(codes("param m = 1 kg\ncoord x, y : length\nT = 1/2 m (x'^2 - y'^2)\nconstraint 2 x = y\n") == "W0410");
+  // ∂²L/∂x'² = 1/(1 - x^2) is negative where y is no real number.
+  const std::string half_circle = "dimensionless\ncoord x : number\nlet y = -sqrt(1 - x^2)\nL = (x'^2 ";
+  CHECK(codes(half_circle + "+ y'^2)/2 - y\nstart x = 0.6\n") == "");
+  CHECK(codes(half_circle + "- 2 y'^2)/2 - y\nstart x = 0.9\n") == "W0410");
   // The null direction turns with the state.
   CHECK(codes("param I = 1 kg m^2\nbody sat inertia diag(I, I, I) rotation quaternion\n") == "");
   CHECK(codes("param m = 1 kg\nbody sat mass m rotation quaternion\n") == "E0407");
