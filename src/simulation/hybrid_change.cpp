@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace maupertuis::hybrid {
@@ -95,6 +97,9 @@ std::optional<std::string> ModeChange::trouble_of_sets(Met& met) {
     journal_.remark(told);
   std::vector<double> q = here_.q, v = here_.v;
   assign(met.sets, problem_.model.experiment.events, found.data() + 1, q, v);
+  const auto is_finite = [](double x) { return std::isfinite(x); };
+  if (!std::all_of(q.begin(), q.end(), is_finite) || !std::all_of(v.begin(), v.end(), is_finite))
+    return fmt::format("The event `{}` sets a state without a value: a formula of it has none here.", first);
   if (const auto k = functions_.violated_constraint({here_.t, q, v}, digits_of_sets, sizes_))
     return fmt::format("The event `{}` sets a state that violates {}.", first, problem_.system.constraint_label(*k));
   const ContactValues& values = here_.values_at(here_.t, q, v);
@@ -117,7 +122,7 @@ std::optional<std::string> ModeChange::trouble_of_hit(Met& met, std::vector<std:
   // Forces after an impact are others: what came to 0 before it may press.
   if (!outcome.impact->result.impulses.empty()) {
     std::erase_if(met.left, [](const Watch& w) { return w.what == Watch::What::Force; });
-    events_.leave_zeros_of_velocities(met);
+    events_.mark_zeros_of_velocities(met);
   }
   neighbours_.note_impact(std::move(*outcome.impact));
   return std::nullopt;

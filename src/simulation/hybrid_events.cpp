@@ -21,6 +21,8 @@ std::string names_of(const std::vector<ModelEvent>& events, std::vector<std::siz
                            : fmt::format("The events {} follow each other", out);
 }
 
+bool is_unmoved(const Zero* zero) { return zero && !zero->moved; }
+
 }  // namespace
 
 Events::Events(const Problem& problem, const State& here, const ModeMotions& motions, Journal& journal)
@@ -31,15 +33,14 @@ Events::Events(const Problem& problem, const State& here, const ModeMotions& mot
   }
 }
 
-void Events::leave_zeros(Met& met, const std::function<bool(const StateRead&)>& changes) const {
-  std::erase_if(met.at_zero, [&](const Zero& zero) {
-    const auto& reads = *reads_[zero.event];
-    return std::any_of(reads.begin(), reads.end(), changes);
-  });
+void Events::mark_zeros(Met& met, const std::function<bool(const StateRead&)>& changes) const {
+  for (Zero& zero : met.at_zero)
+    if (const auto& reads = reads_[zero.event])
+      zero.moved = zero.moved || std::any_of(reads->begin(), reads->end(), changes);
 }
 
-void Events::leave_zeros_that_are_set(Met& met) const {
-  leave_zeros(met, [&](const StateRead& read) {
+void Events::mark_zeros_that_are_set(Met& met) const {
+  mark_zeros(met, [&](const StateRead& read) {
     return std::any_of(met.sets.begin(), met.sets.end(), [&](const ModelEvent* event) {
       return std::any_of(event->sets.begin(), event->sets.end(), [&](const ModelEvent::Assignment& a) {
         return a.coordinate == read.coordinate && a.order == read.order;
@@ -48,8 +49,14 @@ void Events::leave_zeros_that_are_set(Met& met) const {
   });
 }
 
-void Events::leave_zeros_of_velocities(Met& met) const {
-  leave_zeros(met, [](const StateRead& read) { return read.order == 1; });
+void Events::mark_zeros_of_velocities(Met& met) const {
+  mark_zeros(met, [](const StateRead& read) { return read.order == 1; });
+}
+
+bool Events::is_rounding(const Outlook& outlook, std::size_t watch) const {
+  constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
+  const double by_time = std::abs(here_.t) * std::abs(outlook.slopes[watch]);
+  return std::abs(outlook.values[watch]) <= rounding * (outlook.reach[watch] + by_time);
 }
 
 void Events::start() {
@@ -96,7 +103,7 @@ const ModelEvent* Events::turned_unseen(const Met& met, double bound, bool forwa
   if (outlook.ending != StepEnding::None) return nullptr;  // the next step says why it cannot be made
   const std::vector<Watch>& watches = motions_.now().watches();
   for (std::size_t k = 0; k < watches.size(); ++k) {
-    if (watches[k].what != Watch::What::Event || !met.zero_of(watches[k].index)) continue;
+    if (watches[k].what != Watch::What::Event || !is_unmoved(met.zero_of(watches[k].index))) continue;
     const ModelEvent* const event = &problem_.model.experiment.events[watches[k].index];
     const auto at = std::find(met.sets.begin(), met.sets.end(), event);
     if (at == met.sets.end()) continue;

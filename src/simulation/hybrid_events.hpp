@@ -25,15 +25,17 @@ class Events {
   bool are_of_positions(std::size_t event) const { return of_positions_[event]; }
   /// Whether accelerations and forces do not stand in it.
   bool are_of_state(std::size_t event) const { return reads_[event].has_value(); }
-  /// What sets of this instant assign, or impacts change, is no longer at the zero that was met.
-  void leave_zeros_that_are_set(Met& met) const;
-  void leave_zeros_of_velocities(Met& met) const;
+  /// Zeros of functions that depend on what sets of this instant assign, or on velocities that impacts change.
+  void mark_zeros_that_are_set(Met& met) const;
+  void mark_zeros_of_velocities(Met& met) const;
   /// The motion passes an event, on to this side; 0: the step ends at its zero.
   void pass(std::size_t event, std::int8_t side) { sides_[event] = are_of_positions(event) ? side : std::int8_t{0}; }
   /// Positions have been set.
   void forget_sides() { sides_.assign(sides_.size(), 0); }
   /// Whether the motion is beyond an event by no more than rounding, though no root was told. `watch`: of the outlook.
   bool is_hidden(std::size_t event, const Outlook& outlook, std::size_t watch) const;
+  /// Whether a function is 0 by what rounding of the instant and of its own terms leaves of it.
+  bool is_rounding(const Outlook& outlook, std::size_t watch) const;
 
   /// An event whose function turns round by what it sets, so slowly that the motion comes back to it before rounding
   /// tells that it has left: it would be passed, and the bounces before it, shorter and shorter, accumulate here.
@@ -59,7 +61,7 @@ class Events {
  private:
   void record(const std::string& name, const EventRoot& root, bool forwards);
   std::size_t number_of(const ModelEvent* event) const;
-  void leave_zeros(Met& met, const std::function<bool(const StateRead&)>& changes) const;
+  void mark_zeros(Met& met, const std::function<bool(const StateRead&)>& changes) const;
 
   const Problem& problem_;
   const State& here_;

@@ -9,10 +9,11 @@ namespace maupertuis::hybrid {
 
 using Watch = ModeWatch;
 
-/// An event that is met here, and whose function goes on from 0.
+/// An event that is met here: its function goes on from 0.
 struct Zero {
   std::size_t event;
   std::uint8_t order;  // of the root: 2 where the function comes to 0 and goes back
+  bool moved = false;  // by what is set or hit here, or by forces: then its value tells whether it is still 0
 };
 
 /// What a step has met, to be settled before the next one.
@@ -20,10 +21,10 @@ struct Met {
   std::vector<std::size_t> hit;  // contacts whose gap came to 0
   std::vector<Watch> left;       // conditions of the mode that end here
   std::vector<const ModelEvent*> sets;
-  std::vector<int> ways;      // [sets] in which their functions come to 0 along the run: 1 rising, −1 falling
-  std::vector<Zero> at_zero;  // events on the state; not those that sets and impacts of this instant change
-  double hidden = 0;          // for how long rounding hides the roots of gaps that are met
-  double hidden_sets = 0;     // … and those of events that set the state
+  std::vector<int> ways;  // [sets] in which their functions come to 0 along the run: 1 rising, −1 falling
+  std::vector<Zero> at_zero;
+  double hidden = 0;       // for how long rounding hides the roots of gaps that are met
+  double hidden_sets = 0;  // … and those of events that set the state
   bool begins = false;
 
   bool changes_state() const { return !hit.empty() || !sets.empty(); }

@@ -20,8 +20,7 @@ namespace {
 constexpr std::size_t most_at_once = 1000;  // changes at the same time
 constexpr const char* set_backwards =
     "Backwards in time the motion meets an event that sets the state here: what was before it does not follow from "
-    "what "
-    "is after it.";
+    "what is after it.";
 constexpr const char* met_backwards =
     "Backwards in time the motion meets a change of contact here: what was before an impact or a stop does not follow "
     "from what is after it.";
@@ -212,7 +211,7 @@ void HybridMotion::classify(Step& step) {
       step.event = 0;
     } else if (watch.what == Watch::What::Event) {
       const bool is_at_zero = is_now(root, here_.t);
-      if (is_at_zero && events_.are_of_state(watch.index)) met->at_zero.push_back({watch.index, root.order});
+      if (is_at_zero) met->at_zero.push_back({watch.index, root.order, !events_.are_of_state(watch.index)});
       events_.pass(watch.index, is_at_zero ? std::int8_t{0} : static_cast<std::int8_t>(root.direction));
       events_.meet(problem_.model.experiment.events[watch.index], root, *met, forwards_);
       if (journal_.record().stopped_by) step.event = 0;
@@ -221,7 +220,7 @@ void HybridMotion::classify(Step& step) {
     }
   }
   step.events.clear();
-  events_.leave_zeros_that_are_set(*met);
+  events_.mark_zeros_that_are_set(*met);
   if (!met->is_empty()) met_ = std::move(met);
 }
 

@@ -142,8 +142,10 @@ bool ModeTrials::Trial::begins_at_zero(const Watch& w) const {
     case What::Slip:
       return !friction_of(in.problem_.system, w.index).in_space() &&
              std::abs(values.slip[w.index]) <= in.sizes_.rest_slip(w.index, values);
-    case What::Event:  // a motion that is thrown back from its zero has not passed it
-      return at.met.zero_of(w.index) != nullptr;
+    case What::Event: {  // a motion that is thrown back from its zero has not passed it
+      const Zero* const zero = at.met.zero_of(w.index);
+      return zero && !zero->moved;
+    }
     case What::Force:
     case What::Hold:
     case What::Normal:
@@ -243,11 +245,15 @@ bool ModeTrials::Trial::has_slow_gaps() {
 }
 
 /// An event that is beyond its zero by rounding alone goes on from there: its slope tells whether the motion passes it.
+/// So does one that is met here, where it is still 0 after what was set or hit.
 bool ModeTrials::Trial::has_hidden_events() {
   bool has_some = false;
   for (std::size_t k = 0; k < motion.watches().size(); ++k) {
-    if (watch(k).what != Watch::What::Event || !in.events_.is_hidden(watch(k).index, outlook, k)) continue;
-    motion.stepper->put_at_zero({&k, 1});
+    if (watch(k).what != Watch::What::Event) continue;
+    const Zero* const zero = at.met.zero_of(watch(k).index);
+    const bool stays = zero && zero->moved && in.events_.is_rounding(outlook, k);
+    if (!stays && !in.events_.is_hidden(watch(k).index, outlook, k)) continue;
+    motion.stepper->put_at_zero({&k, 1}, stays ? zero->order : std::uint8_t{1});
     has_some = true;
   }
   return has_some;

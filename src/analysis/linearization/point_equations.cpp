@@ -273,6 +273,16 @@ Bindings values_at(const PointEquations::Impl& e, const OperatingPoint& point) {
   return out;
 }
 
+ExprMap exact_parameters(const PointEquations::Impl& e) {
+  ExprMap out;
+  for (std::size_t i = 0; i < e.system->parameters.size(); ++i) {
+    const Parameter& p = e.system->parameters[i];
+    const bool is_written = p.value && p.si_value == e.parameters[i];
+    out.emplace(p.symbol, is_written ? p.value : e.system->context->number(Rational::from_double(e.parameters[i])));
+  }
+  return out;
+}
+
 OperatingPoint random_point(const PointEquations::Impl& e, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto numbers = [&](std::size_t count, double size) {

@@ -66,6 +66,9 @@ struct PointEquations::Impl {
 /// Every symbol that the rows of the equations hold, with its value there.
 Bindings values_at(const PointEquations::Impl& e, const OperatingPoint& point);
 
+/// The parameters as exact numbers: M = m/3 is that, and no rounding of it leaves a force.
+ExprMap exact_parameters(const PointEquations::Impl& e);
+
 /// A random point of moderate size: for ranks and periods.
 OperatingPoint random_point(const PointEquations::Impl& e, std::uint64_t seed);
 

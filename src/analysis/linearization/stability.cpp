@@ -206,7 +206,10 @@ StabilityReport judge_stability(const PointEquations& equations, const Lineariza
         "no eigenvalue has a positive real part, but the Hessian of the {} is not positive: gyroscopic forces hold it",
         potential);
   } else if (has_hessian || v.zeros() > v.explained_zeros()) {
-    out.reason = "an eigenvalue vanishes that no symmetry explains: terms of higher order decide";
+    out.reason =
+        "an eigenvalue vanishes, or is rounding beside the largest, and no symmetry explains it: smaller terms decide, "
+        "or "
+        "those of higher order";
   } else {
     out.reason = "eigenvalues lie on the imaginary axis, and no energy decides";
   }

@@ -227,18 +227,14 @@ std::optional<OperatingPoint> SteadyState::step_towards(const OperatingPoint& so
 /// Of unknowns with so many the derivatives as formulas are long, and no family is told.
 constexpr std::size_t most_precise = 40;
 
-/// Rows in the unknowns, with the parameters' exact values: M = m/3 is that, and no rounding of it leaves a force.
+/// Rows in the unknowns, with the parameters' exact values.
 const PreciseRoots& SteadyState::precise() const {
   if (precise_) return *precise_;
-  ExprMap values;
+  ExprMap values = exact_parameters(e_);
   ExprVector rows = e_.balance_rows, of;
   rows.insert(rows.end(), e_.kept_rows.begin(), e_.kept_rows.end());
   Context& context = *e_.system->context;
   const auto number = [&](double x) { return context.number(Rational::from_double(x)); };
-  for (std::size_t i = 0; i < e_.system->parameters.size(); ++i) {
-    const Parameter& p = e_.system->parameters[i];
-    values.emplace(p.symbol, p.value && p.si_value == e_.parameters[i] ? p.value : number(e_.parameters[i]));
-  }
   ExprVector velocities(e_.n, context.number(0));
   for (const Translation& t : translations_)
     for (std::size_t i = 0; i < e_.n; ++i)

@@ -13,6 +13,7 @@ namespace {
 
 constexpr int points_sampled = 3, points_tried = 40;
 constexpr double no_change = 1e-9;
+constexpr int most_parts = 12;                   // of a fraction that an entry may be
 constexpr double rounding_of_stiffness = 1e-12;  // of the largest at a point
 
 /// Rows at one random point, each divided by its length, columns by typical sizes; no rows where one has no value
@@ -103,12 +104,37 @@ std::vector<std::size_t> reduce_to_pivots(Matrix& basis, const std::vector<bool>
 void clean(Matrix& basis) {
   for (Index i = 0; i < basis.size(); ++i) {
     double& x = basis.data()[i];
-    for (int q = 1; q <= 12; ++q)
+    for (int q = 1; q <= most_parts; ++q)
       if (std::abs(x * q - std::round(x * q)) < 1e-9) {
         x = std::round(x * q) / q;
         break;
       }
   }
+}
+
+/// Whether the derivative of all rows along a direction of small fractions is 0, exactly: beside a stiffness that is
+/// 1e14 times larger another one is rounding. Other directions (a radius of 0.3 in them) are known by their numbers
+/// alone.
+bool keeps_rows(const PointEquations::Impl& e, const Vector& direction) {
+  Context& context = *e.system->context;
+  ExprVector ways, along;
+  std::vector<Expr> weights;
+  for (Index i = 0; i < direction.size(); ++i) {
+    if (direction[i] == 0) continue;
+    int q = 1;
+    while (q <= most_parts && direction[i] * q != std::round(direction[i] * q)) ++q;
+    if (q > most_parts) return true;
+    ways.push_back(e.system->coordinates[static_cast<std::size_t>(i)].q);
+    weights.push_back(context.number(Rational(static_cast<std::int64_t>(direction[i] * q), q)));
+  }
+  for (const ExprVector* rows : {&e.balance_rows, &e.kept_rows})
+    for (const Expr& row : *rows) {
+      const std::vector<Expr> slopes = gradient(row, ways);
+      Expr sum = context.number(0);
+      for (std::size_t k = 0; k < slopes.size(); ++k) sum = sum + weights[k] * slopes[k];
+      if (!sum.is_zero()) along.push_back(sum);
+    }
+  return along.empty() || zero_test(substitute(along, exact_parameters(e))).verdict != Verdict::Nonzero;
 }
 
 /// d·R vanishes in every uniform motion along the translations: no force acts along d. What constraints of velocities
@@ -155,6 +181,7 @@ std::vector<Translation> PointEquations::translations(const std::vector<bool>& p
   std::vector<Translation> out;
   for (Index k = 0; k < basis.cols(); ++k) {
     const Vector d = basis.col(k);
+    if (!keeps_rows(*impl_, d)) continue;
     out.push_back({to_list(d), pivots[static_cast<std::size_t>(k)], is_conserved(*impl_, d, held)});
   }
   std::sort(out.begin(), out.end(), [](const Translation& x, const Translation& y) { return x.pivot < y.pivot; });

@@ -65,7 +65,7 @@ ExtendedMode Modes<T>::mode_of(const std::vector<Choice>& list, const std::vecto
 template <class T>
 auto Modes<T>::zero_that_stays(const Met& met, std::size_t event) const -> const Zero* {
   const auto zero = std::find_if(met.zeros.begin(), met.zeros.end(), [&](const Zero& z) { return z.event == event; });
-  if (zero == met.zeros.end()) return nullptr;
+  if (zero == met.zeros.end() || !problem_.events[event].of_state) return nullptr;
   const auto is_set = [&](const ExtendedEvent::Assignment& read) {
     return std::any_of(met.sets.begin(), met.sets.end(), [&](std::size_t other) {
       const auto& sets = problem_.events[other].sets;
@@ -77,6 +77,24 @@ auto Modes<T>::zero_that_stays(const Met& met, std::size_t event) const -> const
   };
   const auto& reads = problem_.events[event].reads;
   return std::any_of(reads.begin(), reads.end(), changes) ? nullptr : &*zero;
+}
+
+template <class T>
+bool Modes<T>::go_on_from_zero(InMode& candidate, const typename Stepper<T>::Outlook& outlook, const Met& met) {
+  if (outlook.ending != StepEnding::None) return false;  // the next step says why
+  // Roots are located within the tolerance of the run.
+  const T rounding = std::max(T(64) * epsilon<T>(), exp2_of<T>(log2_tolerance_ + 6));
+  bool any = false;
+  for (std::size_t k = 0; k < candidate.program.watches.size(); ++k) {
+    const ExtendedWatch& w = candidate.program.watches[k];
+    const auto is_it = [&](const Zero& z) { return w.what == What::Event && z.event == w.index; };
+    const auto zero = std::find_if(met.zeros.begin(), met.zeros.end(), is_it);
+    if (zero == met.zeros.end() || zero_that_stays(met, w.index)) continue;
+    if (abs(outlook.values[k]) > rounding * (outlook.reach[k] + abs(t_ * outlook.slopes[k]))) continue;
+    candidate.stepper->put_at_zero(k, zero->order);
+    any = true;
+  }
+  return any;
 }
 
 /// What is 0 here counts by what it does next: gaps that touch, slips that begin, forces that came to 0.
@@ -123,7 +141,8 @@ bool Modes<T>::fits(InMode& candidate, const std::vector<std::size_t>& touching,
   candidate.stepper->set_usual_sizes(of_coordinates(place_), of_coordinates(speed_), of_coordinates(acceleration_));
   typename Stepper<T>::Outlook outlook = candidate.stepper->outlook(bound_);
   if (outlook.ending != StepEnding::None) return false;
-  if (begins_slowly(candidate, outlook, met)) outlook = candidate.stepper->outlook(bound_);
+  const bool slips = begins_slowly(candidate, outlook, met), events = go_on_from_zero(candidate, outlook, met);
+  if (slips || events) outlook = candidate.stepper->outlook(bound_);
   const auto is_force = [](const ExtendedWatch& w) { return w.what == What::Force || w.what == What::Hold; };
   T largest = T(0);
   const auto& watches = candidate.program.watches;

@@ -28,7 +28,7 @@ class Modes {
     std::vector<ExtendedWatch> left;  // conditions of the mode that end here
     std::vector<std::size_t> sets;    // events
     std::vector<int> ways;            // [sets] in which their functions come to 0: 1 rising with time, −1 falling
-    std::vector<Zero> zeros;          // events on the state that are met here: their functions go on from 0
+    std::vector<Zero> zeros;          // events that are met here
     bool begins = false, forces_jump = false;
     bool nothing() const { return hit.empty() && left.empty() && sets.empty() && !begins && !forces_jump; }
   };
@@ -100,6 +100,9 @@ class Modes {
   /// An event whose function is 0 as the motion goes on: it was met here, and neither a set nor an impact has changed
   /// what the function depends on.
   const Zero* zero_that_stays(const Met& met, std::size_t event) const;
+  /// Those that a set, an impact or a force may have changed, and that are 0 to rounding still, go on from there too.
+  /// True where there are some.
+  bool go_on_from_zero(InMode& candidate, const typename Stepper<T>::Outlook& outlook, const Met& met);
   void put_at_zero(InMode& candidate, const std::vector<std::size_t>& touching, const Met& met);
   bool may_be_several(const ExtendedMode& mode) const;
   bool is_painleve(const std::vector<Choice>& list, Combinations& tries) const;

@@ -248,6 +248,10 @@ bool Modes<T>::carry_out_sets(const Met& met) {
     for (const ExtendedEvent::Assignment& a : problem_.events[event].sets)
       (a.order == 0 ? q : v)[a.coordinate] = base_.observable(at++);
   }
+  const auto is_finite = [](const T& x) { return isfinite(x); };
+  if (!std::all_of(q.begin(), q.end(), is_finite) || !std::all_of(v.begin(), v.end(), is_finite))
+    return stop(StepEnding::Overflow, std::nullopt,
+                "An event sets a state without a value: a formula of it has none here.");
   q_ = std::move(q), v_ = std::move(v);
   if (!evaluate()) return stop(StepEnding::Overflow, std::nullopt, "The state that an event sets has no forces.");
   constexpr double digits = 1e-9;
@@ -429,6 +433,7 @@ void Modes<T>::settle(const Met& given) {
   if (!any()) {
     stepper().start(t_, q_, v_);
     put_at_zero(*now_, {}, met);
+    if (!met.zeros.empty()) go_on_from_zero(*now_, stepper().outlook(bound_), met);
     returns_are_seen(met);
     return;
   }

@@ -116,7 +116,7 @@ class Motion {
 
   void meet_event(std::size_t index, int direction, typename Modes<T>::Met& met) {
     const ExtendedEvent& event = problem_.events[index];
-    if (event.of_state) met.zeros.push_back({index, static_cast<std::uint8_t>(direction == 0 ? 2 : 1)});
+    met.zeros.push_back({index, static_cast<std::uint8_t>(direction == 0 ? 2 : 1)});
     if (event.direction != 0 && direction != event.direction) return;
     modes_.add({ExtendedRoot::Kind::Event, index, stepper().sample(stepper().time()), {}, {}}, stepper().time());
     out_.met = out_.met || event.action == ExtendedEvent::Action::Stop;

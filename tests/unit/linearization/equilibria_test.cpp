@@ -196,6 +196,18 @@ TEST_CASE("A spring is a spring however slowly it swings, and a translation is o
       "system pair\nparam m = 1 kg, k = 1e12 N/m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\n"
       "V = 1/2 k (x - y)^2\nstart y = 1 m\n");
   CHECK(pair.study().translations.size() == 1);
+  for (const std::string held : {"1e12", "1e14", "1e18"}) {  // the pair, on a spring that is rounding beside the other
+    CAPTURE(held);
+    Linearized ground("dimensionless\nparam K = " + held +
+                      "\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) - 1/2 K (x - y)^2 - 1/2 x^2\nstart y = 1\n");
+    const ModalStudy study = ground.study();
+    CHECK(study.translations.empty());
+    REQUIRE(study.entries.size() == 1);
+    CHECK(study.entries[0].equilibrium.point.q == std::vector<double>{0, 0});
+    const Mode& soft = study.entries[0].analysis.modes.at(0);
+    const bool is_told = std::abs(soft.frequency() - std::sqrt(0.5)) <= soft.error;
+    CHECK((is_told || study.entries[0].analysis.stability.verdict == Stability::Undecided));
+  }
 }
 
 TEST_CASE("What has no equilibrium says so") {

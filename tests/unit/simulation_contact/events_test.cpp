@@ -198,6 +198,41 @@ TEST_CASE("an event on a velocity goes on from zero where no impact and no set c
   CHECK(r.final.q[1] == 3116);  // 16 times at 3π/2 + 2πk, 31 times at πk
 }
 
+TEST_CASE("an event that is still at its zero after what it sets, or whose forces are, is met once") {
+  const auto kicks = [](const std::string& event, double until) {
+    return run_text("dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) - 1/2 x^2\nstart x = 0.5\n" + event,
+                    until)
+        .final.q[1];
+  };
+  CHECK(kicks("event e when x = 0 rising : set x = -x, y = y + 1\n", 100) == 16);
+  CHECK(kicks("event e when x = 0 rising : set x = x/3, y = y + 1\n", 100) == 16);
+  CHECK(kicks("event e when x'' = 0 rising : set y = y + 1\n", 100) == 16);       // x falls through 0
+  CHECK(kicks("event e when x = 0 rising : set x = -1e-6, y = y + 1\n", 6) > 1);  // it is below, and comes again
+  // 0.5 cos t comes to each place 32 times; where it does is known to 1e-8 for a square, to 1e-5 for a cube.
+  CHECK(kicks("event square when (x - pi/10)^2 = 0 : set y = y + 1\n"
+              "event cube when (x - pi/11)^3 = 0 : set y = y + 100\n"
+              "event kept_square when (x - pi/13)^2 = 0 : set x = x, y = y + 10000\n"
+              "event kept_cube when (x - pi/14)^3 = 0 : set x = x, y = y + 1000000\n",
+              100) == 32323232);
+  const auto rod = run_text(
+      "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y, n : length\npoint P mass m at (x, y)\nT += 1/2 m n'^2\n"
+      "gravity (0, -g)\nconstraint x^2 + y^2 = l^2 name rod\n"
+      "event turn when λ_rod = 0 [N/m] : set n = n + 1 [m]\nstart x = 1 m, y = 0 m, y' = 3 m/s\n",
+      5);
+  CHECK(rod.final.q[2] == doctest::Approx(count(rod, Happening::Kind::Event, "turn")));
+  CHECK(count(rod, Happening::Kind::Event, "turn") == 8);  // twice in each of the four upper parts of the way
+}
+
+TEST_CASE("an event that sets no number ends the run") {
+  ModelText m(
+      "dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2)\nevent e when x = 1 : set y = log(y)\nstart x' = 1\n");
+  const auto r = run(m, 5);
+  CHECK_FALSE(r.ok());
+  CHECK(r.reason.find("The event `e` sets a state without a value") == 0);
+  CHECK(r.final.t == doctest::Approx(1));
+  CHECK(r.final.q == std::vector<double>{1, 0});
+}
+
 TEST_CASE("backwards in time an event that sets the state ends the run") {
   ModelText m(
       "dimensionless\ncoord x : number\nL = 1/2 x'^2\nevent kick when t = 2 : set x' = x' + 1\nstart at 5, x' = 1\n");
