@@ -13,7 +13,7 @@ function(maup_instruction_sets directory)
   foreach(set baseline avx2 avx512)
     file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${directory}/*_${set}.cpp)
     string(TOUPPER COMPILES_${set} compiles)
-    set(flags -O3)
+    set(flags "$<$<CONFIG:Release,RelWithDebInfo>:-O3>")  # a build under sanitizers waits for the compiler
     if(${compiles})
       list(APPEND flags ${${set}_flags})
     endif()
