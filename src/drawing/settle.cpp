@@ -66,6 +66,11 @@ class Settler {
   void include(const double* place, std::size_t frame, double reach = 0);
   void include_solid(const Outline& o, std::size_t frame, const double* pose);
   void place(Outline& o);
+  struct Link;
+  struct LinkAxes;
+  Link link_of(const std::vector<double>& positions) const;
+  LinkAxes shape_dashpot(Outline& o, const Link& link) const;
+  LinkAxes shape_link(Outline& o, const Link& link) const;
   void place_link(Outline& o);
   void place_axis(Outline& o);
   bool spins(const Drawing::Element& e) const;
@@ -213,69 +218,83 @@ std::size_t seed_of(const std::vector<double>& directions) {
   return static_cast<std::size_t>(std::min_element(worst.begin(), worst.end()) - worst.begin());
 }
 
+/// Two places in each frame, seen as a link.
+struct Settler::Link {
+  std::vector<double> lengths, along;  // [frames], [frames × d] unit vectors
+  double shortest = HUGE_VAL, longest = 0, mean = 0;
+};
+
+/// The lengths of its axes; 0 along it: as long as it is at the time.
+struct Settler::LinkAxes {
+  double first = 1, thick = 1;
+};
+
+Settler::Link Settler::link_of(const std::vector<double>& positions) const {
+  const std::size_t frames = positions.size() / (2 * d_);
+  Link link;
+  link.lengths.resize(frames), link.along.resize(frames * d_);
+  double sum = 0;
+  for (std::size_t f = 0; f < frames; ++f) {
+    const double *a = &positions[2 * f * d_], *b = a + d_;
+    const double length = link.lengths[f] = distance(a, b, d_);
+    for (std::size_t k = 0; k < d_; ++k) link.along[f * d_ + k] = length > 0 ? (b[k] - a[k]) / length : k == 0;
+    if (!std::isfinite(length)) continue;
+    link.shortest = std::min(link.shortest, length);
+    link.longest = std::max(link.longest, length);
+    sum += length;
+  }
+  link.mean = frames > 0 && sum > 0 ? sum / static_cast<double>(frames) : extent_;
+  return link;
+}
+
+/// A dashpot that does not reach as far as its ends move has a picture that stretches.
+Settler::LinkAxes Settler::shape_dashpot(Outline& o, const Link& link) const {
+  const double thick = std::min(dashpot_size * extent_, 0.15 * link.mean);
+  const bool plate = o.fitting == Fitting::Plate;
+  if (link.longest > 1.7 * link.shortest) {
+    o.element.shape = plate ? shapes::plate(drawing_.dimension, 0.45) : shapes::cup(drawing_.dimension, 0.35, 0.7);
+    return {0, thick};
+  }
+  const double shortest = link.shortest, end = 0.85 * shortest, rod = link.longest - end + 0.06 * shortest;
+  const double begin = std::max(0.1 * shortest, shortest - rod - 0.08 * shortest);
+  o.element.shape = plate ? shapes::plate(drawing_.dimension, rod) : shapes::cup(drawing_.dimension, begin, end);
+  return {1, thick};
+}
+
+Settler::LinkAxes Settler::shape_link(Outline& o, const Link& link) const {
+  if (o.fitting == Fitting::Anchor) return {anchor_size * extent_, anchor_size * extent_};
+  if (o.fitting != Fitting::Spring) return shape_dashpot(o, link);
+  const double thick = std::min(coil_size * extent_, 0.2 * link.mean);
+  const int windings = static_cast<int>(std::lround(std::clamp(0.8 * link.mean / (1.6 * thick), 5.0, 24.0)));
+  o.element.shape = shapes::spring(drawing_.dimension, windings, 0.45 * thick / link.mean);
+  return {0, thick};
+}
+
 /// From two places a frame to an origin and the tips of axes.
 void Settler::place_link(Outline& o) {
   std::vector<double>& positions = o.element.positions;
-  const std::size_t frames = positions.size() / (2 * d_);
-  double shortest = HUGE_VAL, longest = 0, sum = 0;
-  std::vector<double> lengths(frames), along(frames * d_);
-  for (std::size_t f = 0; f < frames; ++f) {
-    const double *a = &positions[2 * f * d_], *b = a + d_;
-    lengths[f] = distance(a, b, d_);
-    for (std::size_t k = 0; k < d_; ++k) along[f * d_ + k] = lengths[f] > 0 ? (b[k] - a[k]) / lengths[f] : k == 0;
-    if (!std::isfinite(lengths[f])) continue;
-    shortest = std::min(shortest, lengths[f]);
-    longest = std::max(longest, lengths[f]);
-    sum += lengths[f];
-  }
-  const double mean = frames > 0 && sum > 0 ? sum / static_cast<double>(frames) : extent_;
-  double first = 1, thick = 1;  // the lengths of the axes
-  if (o.fitting == Fitting::Spring) {
-    thick = std::min(coil_size * extent_, 0.2 * mean);
-    const int windings = static_cast<int>(std::lround(std::clamp(0.8 * mean / (1.6 * thick), 5.0, 24.0)));
-    o.element.shape = shapes::spring(drawing_.dimension, windings, 0.45 * thick / mean);
-  } else if (o.fitting == Fitting::Anchor) {
-    first = thick = anchor_size * extent_;
-  } else {
-    thick = std::min(dashpot_size * extent_, 0.15 * mean);
-    if (longest > 1.7 * shortest) {  // no dashpot reaches that far: its picture stretches
-      o.element.shape = o.fitting == Fitting::Plate ? shapes::plate(drawing_.dimension, 0.45)
-                                                    : shapes::cup(drawing_.dimension, 0.35, 0.7);
-      first = 0;
-    }
-    const double end = 0.85 * shortest, rod = longest - end + 0.06 * shortest;
-    if (first > 0)
-      o.element.shape =
-          o.fitting == Fitting::Plate
-              ? shapes::plate(drawing_.dimension, rod)
-              : shapes::cup(drawing_.dimension, std::max(0.1 * shortest, shortest - rod - 0.08 * shortest), end);
-  }
+  const Link link = link_of(positions);
+  const auto [first, thick] = shape_link(o, link);
   if (o.aside != 0) shapes::add_bars_to_middle(o.element.shape, d_, o.aside, o.fitting == Fitting::Spring);
   std::vector<double> mean_direction(d_, 0);
-  for (std::size_t i = 0; i < along.size(); ++i) mean_direction[i % d_] += along[i];
-  const std::size_t seed = d_ == 3 ? seed_of(along) : 0;
+  for (std::size_t i = 0; i < link.along.size(); ++i) mean_direction[i % d_] += link.along[i];
+  const std::size_t seed = d_ == 3 ? seed_of(link.along) : 0;
   std::vector<double> poses;
-  for (std::size_t f = 0; f < frames; ++f) {
+  for (std::size_t f = 0; f < link.lengths.size(); ++f) {
     double* a = &positions[2 * f * d_];
-    const double* e = &along[f * d_];
-    if (o.aside != 0) {  // its neighbour is as thick
-      const auto sides = d_ == 2 ? std::array<double, 6>{-e[1], e[0]} : across(e, seed);
+    const double* e = &link.along[f * d_];
+    const auto sides = d_ == 2 ? std::array<double, 6>{-e[1], e[0]} : across(e, seed);
+    if (o.aside != 0)  // its neighbour is as thick
       for (std::size_t k = 0; k < d_; ++k) a[k] += o.aside * thick * sides[k];
-    }
     poses.insert(poses.end(), a, a + d_);
     if (o.fitting == Fitting::Anchor) {  // along the wall, then away from it
       const auto [x, y] = away_from_wall(mean_direction);
       poses.insert(poses.end(), {a[0] + first * y, a[1] - first * x, a[0] + thick * x, a[1] + thick * y});
       continue;
     }
-    const double reach = o.fitting == Fitting::Spring || first == 0 ? lengths[f] : first;
+    const double reach = first == 0 ? link.lengths[f] : first;
     for (std::size_t k = 0; k < d_; ++k) poses.push_back(a[k] + reach * e[k]);
-    if (d_ == 2)
-      poses.insert(poses.end(), {a[0] - thick * e[1], a[1] + thick * e[0]});
-    else {
-      const auto sides = across(e, seed);
-      for (std::size_t s = 0; s < 6; ++s) poses.push_back(a[s % 3] + thick * sides[s]);
-    }
+    for (std::size_t s = 0; s < (d_ == 2 ? 2 : 6); ++s) poses.push_back(a[s % d_] + thick * sides[s]);
   }
   positions = std::move(poses);
 }

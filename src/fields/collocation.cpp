@@ -308,38 +308,59 @@ bool CollocationMotion::step_or_halves(double h, int halvings) {
   return step_or_halves(h / 2, halvings - 1) && step_or_halves(h / 2, halvings - 1);
 }
 
-bool CollocationMotion::one_step(double h) {
+/// Rates at the stages: the polynomial of the step before goes on, where its length was the same.
+void CollocationMotion::predict_stages(double h) {
   const std::size_t s = tableau_.stages, n = mesh_.size();
-  if (slow_ && !form_.linear) refresh_matrices(state_.c, stage_v_.back(), state_.t);
-  const auto predict = [&] {
-    const std::vector<std::vector<double>> before = stage_v_;
-    for (std::size_t i = 0; i < s; ++i) {
+  const bool goes_on = have_stages_ && std::abs(h - last_h_) < 1e-6 * std::abs(h);
+  const std::vector<std::vector<double>> before = stage_v_;
+  for (std::size_t i = 0; i < s; ++i) {
+    stage_v_[i] = have_stages_ ? before.back() : rates_;
+    if (goes_on) {
       std::fill(stage_v_[i].begin(), stage_v_[i].end(), 0);
-      if (have_stages_ && std::abs(h - last_h_) < 1e-6 * std::abs(h)) {
-        for (std::size_t j = 0; j < s; ++j)
-          for (std::size_t k = 0; k < n; ++k) stage_v_[i][k] += tableau_.continuation[i * s + j] * before[j][k];
-      } else if (have_stages_) {
-        stage_v_[i] = before.back();
-      } else {
-        stage_v_[i] = rates_;
-      }
-      for (const Held& held : held_)
-        if (!held.force) impose(held, 1, state_.t + tableau_.c[i] * h, stage_v_[i]);
+      for (std::size_t j = 0; j < s; ++j)
+        for (std::size_t k = 0; k < n; ++k) stage_v_[i][k] += tableau_.continuation[i * s + j] * before[j][k];
     }
-  };
-  predict();
-  bool solved = newton(h);
-  if (!solved && trouble_.empty() && !form_.linear) {  // once more, with matrices of this moment
-    refresh_matrices(state_.c, rates_, state_.t);
-    have_stages_ = false;
-    predict();
-    solved = newton(h);
+    for (const Held& held : held_)
+      if (!held.force) impose(held, 1, state_.t + tableau_.c[i] * h, stage_v_[i]);
   }
-  if (!solved) {
+}
+
+bool CollocationMotion::find_stages(double h) {
+  if (slow_ && !form_.linear) refresh_matrices(state_.c, stage_v_.back(), state_.t);
+  predict_stages(h);
+  if (newton(h)) return true;
+  if (!trouble_.empty() || form_.linear) return false;
+  refresh_matrices(state_.c, rates_, state_.t);  // once more, with matrices of this moment
+  have_stages_ = false;
+  predict_stages(h);
+  return newton(h);
+}
+
+bool CollocationMotion::one_step(double h) {
+  if (!find_stages(h)) {
     if (trouble_.empty()) trouble_ = "stuck";
     return false;
   }
-  const auto add = [](double& to, double& lost, double change) {  // with what the addition loses
+  add_stages(h);
+  state_.t += h, t_ = state_.t;
+  for (const Held& held : held_)
+    if (!held.force) impose(held, 0, t_, state_.c);
+  if (all_first_order_) {  // p is a function of c: no error gathers between them
+    mesh_.set(state_.c.data(), rates_.data(), t_);
+    mesh_.momenta(state_.p.data());
+    std::fill(state_.p_lost.begin(), state_.p_lost.end(), 0);
+  }
+  have_stages_ = true, last_h_ = h, rates_known_ = false;
+  note_size();
+  if (std::all_of(state_.c.begin(), state_.c.end(), [](double value) { return std::isfinite(value); })) return true;
+  trouble_ = "overflow";
+  return false;
+}
+
+/// Δc and Δp of the step, each with what the addition before lost.
+void CollocationMotion::add_stages(double h) {
+  const std::size_t s = tableau_.stages, n = mesh_.size();
+  const auto add = [](double& to, double& lost, double change) {
     const double all = change + lost, sum = to + all;
     lost = all - (sum - to);
     to = sum;
@@ -356,22 +377,6 @@ bool CollocationMotion::one_step(double h) {
     add(state_.c[k], state_.c_lost[k], h * sum);
     add(state_.p[k], state_.p_lost[k], gained[k]);
   }
-  state_.t += h, t_ = state_.t;
-  for (const Held& held : held_)
-    if (!held.force) impose(held, 0, t_, state_.c);
-  if (all_first_order_) {  // p is a function of c: no error gathers between them
-    mesh_.set(state_.c.data(), rates_.data(), t_);
-    mesh_.momenta(state_.p.data());
-    std::fill(state_.p_lost.begin(), state_.p_lost.end(), 0);
-  }
-  have_stages_ = true, last_h_ = h, rates_known_ = false;
-  note_size();
-  for (const double value : state_.c)
-    if (!std::isfinite(value)) {
-      trouble_ = "overflow";
-      return false;
-    }
-  return true;
 }
 
 /// The size of each field lately: a wave that stands goes through zero as a whole, and what rounding left of its former

@@ -64,10 +64,16 @@ class CollocationMotion final : public FieldMotion {
   bool take_conditions();
   void start_field(std::size_t field, bool rate, std::vector<double>& to);
   void find_null_vectors();
+  void fix_constants();
+  /// Whether the product is no more than this part of the largest entry, but for coefficients that are held.
+  bool vanishes(const MeshMatrix<double>& matrix, const std::vector<double>& v, double rounding) const;
   const Factors* factors_for(double h);
   void refresh_matrices(const std::vector<double>& c, const std::vector<double>& v, double t);
   bool newton(double h);
+  void predict_stages(double h);
+  bool find_stages(double h);
   bool one_step(double h);
+  void add_stages(double h);
   bool step_or_halves(double h, int halvings);
   void residuals(double h);
   double correct(double h, const Factors& factors);

@@ -3,9 +3,37 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 
 /// The rates that belong to a state of a field: from momenta where a field has mass, from ω where it is of first order.
 namespace maupertuis {
+
+namespace {
+
+double largest_entry(const MeshMatrix<double>& matrix) {
+  double out = 0;
+  for (const double value : matrix.values) out = std::max(out, std::abs(value));
+  return out;
+}
+
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+/// v without its part along each of these unit vectors, one after the other.
+void take_out(const std::vector<std::vector<double>>& units, std::vector<double>& v) {
+  for (const std::vector<double>& unit : units) {
+    const double part = dot(unit, v);
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] -= part * unit[i];
+  }
+}
+
+void make_unit(std::vector<double>& v) {
+  const double length = std::sqrt(dot(v, v));
+  for (double& x : v) x /= length;
+}
+
+}  // namespace
 
 /// Where all fields are of first order: the null vectors of ω = G. A constant that ℒ does not see (a potential is given
 /// by its derivatives) is fixed at the left end, which the other equations allow; what else ω does not move is a shape
@@ -13,68 +41,58 @@ namespace maupertuis {
 void CollocationMotion::find_null_vectors() {
   null_.clear();
   if (!all_first_order_) return;
-  const std::size_t n = mesh_.size();
-  const auto largest = [](const MeshMatrix<double>& matrix) {
-    double out = 0;
-    for (const double value : matrix.values) out = std::max(out, std::abs(value));
-    return out;
-  };
-  const double size_g = largest(matrices_.g), size_k = largest(matrices_.k);
-  constexpr double rounding = 1e-10;
-  const auto vanishes = [&](const MeshMatrix<double>& matrix, const std::vector<double>& v, double size) {
-    std::vector<double> product(n, 0);
-    matrix.add_product(v.data(), product.data());
-    for (std::size_t i = 0; i < n; ++i)
-      if (!is_held_[i] && !(std::abs(product[i]) <= rounding * size)) return false;
-    return true;
-  };
-  for (std::size_t f = 0; f < form_.smooth.size(); ++f) {
-    const std::vector<double> constant = mesh_.constant(f);
-    bool free = true;
-    for (std::size_t i = 0; i < n; ++i) free = free && !(is_held_[i] && constant[i] != 0);
-    if (!free || !vanishes(matrices_.g, constant, size_g) || !vanishes(matrices_.k, constant, size_k)) continue;
-    is_held_[mesh_.side_coefficients(f, BoundaryCondition::Side::Left, false).front()] = true;
-    fixed_.push_back(f);
-  }
+  fix_constants();
   // (G + ε)⁻¹ makes what ω does not move large: its real part is ε, so that it exists.
-  const double epsilon = 1e-9 * size_g;
+  const double size = largest_entry(matrices_.g), epsilon = 1e-9 * size;
   MeshMatrix<double> shifted(mesh_.pattern());
   mesh_.pattern()->for_each([&](std::size_t i, std::size_t j, std::size_t k) {
-    shifted.values[k] = (is_held_[i] || is_held_[j] ? 0 : matrices_.g.values[k]) + (i != j        ? 0
-                                                                                    : is_held_[i] ? size_g
-                                                                                                  : epsilon);
+    if (!is_held_[i] && !is_held_[j]) shifted.values[k] = matrices_.g.values[k];
+    if (i == j) shifted.values[k] += is_held_[i] ? size : epsilon;
   });
   if (!shifted.factor()) return;
   std::uint64_t seed = 1;
   constexpr int most = 4, rounds = 4;
+  constexpr double rounding = 1e-11;
   for (int k = 0; k < most; ++k) {
-    std::vector<double> v(n);
-    for (std::size_t i = 0; i < n; ++i) {
+    std::vector<double> v(mesh_.size());
+    for (std::size_t i = 0; i < v.size(); ++i) {
       seed = seed * 6364136223846793005ull + 1442695040888963407ull;
       v[i] = is_held_[i] ? 0 : static_cast<double>(seed >> 33) / 4e9 - 0.5;
     }
     for (int round = 0; round < rounds; ++round) {
       shifted.solve(v.data());
-      for (const std::vector<double>& other : null_) {
-        double part = 0;
-        for (std::size_t i = 0; i < n; ++i) part += other[i] * v[i];
-        for (std::size_t i = 0; i < n; ++i) v[i] -= part * other[i];
-      }
-      double square = 0;
-      for (const double x : v) square += x * x;
-      for (double& x : v) x /= std::sqrt(square);
+      take_out(null_, v);
+      make_unit(v);
     }
-    constexpr double small = 1e-11;  // rounding
-    std::vector<double> product(n, 0);
-    matrices_.g.add_product(v.data(), product.data());
-    for (std::size_t i = 0; i < n; ++i)
-      if (!is_held_[i] && std::abs(product[i]) > small * size_g) return;
+    if (!vanishes(matrices_.g, v, rounding)) return;
     if (!mesh_.is_rough(v, fixed_)) {
       trouble_ = "ends";
       return;
     }
     null_.push_back(std::move(v));
   }
+}
+
+void CollocationMotion::fix_constants() {
+  constexpr double rounding = 1e-10;
+  for (std::size_t f = 0; f < form_.smooth.size(); ++f) {
+    const std::vector<double> constant = mesh_.constant(f);
+    bool free = true;
+    for (std::size_t i = 0; i < mesh_.size(); ++i) free = free && !(is_held_[i] && constant[i] != 0);
+    if (!free || !vanishes(matrices_.g, constant, rounding) || !vanishes(matrices_.k, constant, rounding)) continue;
+    is_held_[mesh_.side_coefficients(f, BoundaryCondition::Side::Left, false).front()] = true;
+    fixed_.push_back(f);
+  }
+}
+
+bool CollocationMotion::vanishes(const MeshMatrix<double>& matrix, const std::vector<double>& v,
+                                 double rounding) const {
+  const double size = largest_entry(matrix);
+  std::vector<double> product(v.size(), 0);
+  matrix.add_product(v.data(), product.data());
+  for (std::size_t i = 0; i < v.size(); ++i)
+    if (!is_held_[i] && !(std::abs(product[i]) <= rounding * size)) return false;
+  return true;
 }
 
 const CollocationMotion::RateMatrix& CollocationMotion::rate_matrix() const {
@@ -122,11 +140,7 @@ void CollocationMotion::find_rates() const {
     for (std::size_t i = 0; i < n; ++i)
       r[i] = is_held_[i] ? 0 : is_first_order_[i] ? change_of_p[i] - f[i] : (p[i] - state_.p[i]) - state_.p_lost[i];
     matrix.factored.solve(r.data());
-    for (const std::vector<double>& v : null_) {
-      double part = 0;
-      for (std::size_t i = 0; i < n; ++i) part += v[i] * r[i];
-      for (std::size_t i = 0; i < n; ++i) r[i] -= part * v[i];
-    }
+    take_out(null_, r);
     double change = 0, size = 1e-300;
     for (std::size_t i = 0; i < n; ++i) {
       rates_[i] -= r[i];

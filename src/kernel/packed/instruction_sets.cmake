@@ -1,7 +1,8 @@
 # The engine, compiled for the instruction sets that it knows; the processor decides at run time. Multiplications and
 # additions may be fused there: the reference rules are the ones that are the same everywhere.
 set(engines ${CMAKE_CURRENT_LIST_DIR})
-set(hot "$<$<CONFIG:Release,RelWithDebInfo>:-O3>")  # a build under sanitizers waits for the compiler, not for them
+# A build under sanitizers waits for the compiler, not for the engine.
+set(hot "$<$<CONFIG:Release,RelWithDebInfo>:-O3>")
 # A vector of 512 bits is no type of any interface, so that its passing does not matter (-Wno-psabi).
 set_source_files_properties(${engines}/engine_baseline.cpp PROPERTIES COMPILE_OPTIONS "-ffp-contract=fast;-Wno-psabi")
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <unordered_set>
+#include <vector>
 
 namespace maupertuis::evaluation {
 namespace {
@@ -67,6 +69,115 @@ double angle_degree(const Tape& tape, Position argument) {
   return degree * denominator;
 }
 
+/// What a tape's nodes are as quotients of polynomials, one after the other.
+class DegreeCount {
+ public:
+  DegreeCount(const Tape& tape, bool free_roots) : tape_(tape), free_roots_(free_roots), nodes_(tape.size()) {
+    for (Position at = 0; at < tape.size(); ++at) nodes_[at] = node(at);
+    for (const Position root : tape.roots()) {
+      result_.degree = std::max({result_.degree, nodes_[root].up, nodes_[root].down});
+      result_.height = std::max(result_.height, nodes_[root].height);
+    }
+  }
+  const Complexity& result() const { return result_; }
+
+ private:
+  Fraction node(Position at);
+  Fraction of_power(Position at);
+
+  /// A function with two pieces.
+  Fraction switched(Fraction f) {
+    ++result_.switches;
+    return f;
+  }
+  std::vector<Fraction> arguments(Position at) const {
+    std::vector<Fraction> out;
+    for (const Position a : tape_.arguments(at)) out.push_back(nodes_[a]);
+    return out;
+  }
+
+  const Tape& tape_;
+  bool free_roots_;
+  std::vector<Fraction> nodes_;
+  std::unordered_set<Position> bases_of_symbolic_powers_, bases_of_roots_;
+  Complexity result_;
+};
+
+Fraction DegreeCount::of_power(Position at) {
+  const Position base = tape_.arguments(at)[0];
+  const Expr exponent = tape_.expression(tape_.arguments(at)[1]);
+  if (!exponent.is_number()) {
+    bases_of_symbolic_powers_.insert(base);
+    result_.claimable &= bases_of_symbolic_powers_.size() == 1;
+    return {1, 1, 0};
+  }
+  const bool is_root = !exponent.number().is_integer();
+  const double n = exponent.number().to_double();
+  if (is_root && free_roots_) return product(power(nodes_[base], std::floor(n)), {1, 0, 1});
+  if (is_root && bases_of_roots_.insert(base).second) ++result_.radicals;
+  return power(nodes_[base], n);
+}
+
+Fraction DegreeCount::node(Position at) {
+  constexpr Fraction random_number{1, 0, 0};
+  switch (tape_.kind(at)) {
+    case Kind::Number:
+      return {0, 0, bits(tape_.expression(at).number())};
+    case Kind::Sum:
+    case Kind::Piecewise:
+      return sum(arguments(at));
+    case Kind::Min:
+    case Kind::Max:
+      return switched(sum(arguments(at)));
+    case Kind::Product: {
+      const std::vector<Fraction> factors = arguments(at);
+      return std::accumulate(factors.begin() + 1, factors.end(), factors.front(), product);
+    }
+    case Kind::Power:
+      return of_power(at);
+    // A Laurent monomial of the group elements: `error_bound` counts exponents of both signs.
+    case Kind::Sin:
+    case Kind::Cos:
+    case Kind::Sinh:
+    case Kind::Cosh:
+    case Kind::Exp:
+      return {angle_degree(tape_, tape_.arguments(at)[0]), 0, 1};
+    case Kind::Tan:
+    case Kind::Tanh: {
+      const double d = angle_degree(tape_, tape_.arguments(at)[0]);
+      return {d, d, 1};
+    }
+    case Kind::Asin:
+    case Kind::Acos:
+    case Kind::Atan:
+    case Kind::Atan2:
+    case Kind::Acosh:
+      ++result_.radicals;
+      return random_number;
+    case Kind::Pi:
+    case Kind::Symbol:
+    case Kind::Log:
+    case Kind::Asinh:
+    case Kind::Atanh:
+    case Kind::Erf:
+    case Kind::LambertW:
+      return random_number;
+    case Kind::TimeDerivative:
+      return derivative(arguments(at)[0]);
+    case Kind::Abs:
+      return switched(arguments(at)[0]);
+    case Kind::Sign:
+    case Kind::Step:
+    case Kind::Less:
+    case Kind::LessEqual:
+      return switched({});
+    case Kind::And:
+    case Kind::Or:
+      return {};  // their comparisons count
+  }
+  return {};
+}
+
 constexpr int largest_number_of_points = 4096;
 constexpr double largest_degree = 1099511627776.0;  // 2^40
 constexpr double log2_of_primes = 33;               // random_prime_triple draws from more than 2^33
@@ -93,101 +204,6 @@ double error_bound(const Complexity& c, int points, double smallest_group) {
   return std::max(one_prime * one_prime, 1e-300);
 }
 
-Complexity complexity(const Tape& tape, bool free_roots) {
-  Complexity result;
-  std::vector<Fraction> f(tape.size()), terms;
-  std::unordered_set<Position> bases_of_symbolic_powers, bases_of_roots;
-  for (Position at = 0; at < tape.size(); ++at) {
-    const auto arguments = tape.arguments(at);
-    switch (tape.kind(at)) {
-      case Kind::Number:
-        f[at].height = bits(tape.expression(at).number());
-        break;
-      case Kind::Sum:
-      case Kind::Min:
-      case Kind::Max:
-      case Kind::Piecewise:
-        terms.clear();
-        for (const Position a : arguments) terms.push_back(f[a]);
-        f[at] = sum(terms);
-        if (tape.kind(at) == Kind::Min || tape.kind(at) == Kind::Max) ++result.switches;
-        break;
-      case Kind::Product:
-        f[at] = f[arguments[0]];
-        for (std::size_t i = 1; i < arguments.size(); ++i) f[at] = product(f[at], f[arguments[i]]);
-        break;
-      case Kind::Power: {
-        const Expr exponent = tape.expression(arguments[1]);
-        if (!exponent.is_number()) {
-          f[at] = {1, 1, 0};
-          bases_of_symbolic_powers.insert(arguments[0]);
-          result.claimable &= bases_of_symbolic_powers.size() == 1;
-          break;
-        }
-        if (free_roots && !exponent.number().is_integer()) {
-          f[at] = product(power(f[arguments[0]], std::floor(exponent.number().to_double())), {1, 0, 1});
-          break;
-        }
-        f[at] = power(f[arguments[0]], exponent.number().to_double());
-        if (!exponent.number().is_integer() && bases_of_roots.insert(arguments[0]).second) ++result.radicals;
-        break;
-      }
-      case Kind::Sin:
-      case Kind::Cos:
-      case Kind::Tan:
-      case Kind::Sinh:
-      case Kind::Cosh:
-      case Kind::Tanh:
-      case Kind::Exp: {
-        // A Laurent monomial of the group elements: `error_bound` counts exponents of both signs.
-        const bool quotient = tape.kind(at) == Kind::Tan || tape.kind(at) == Kind::Tanh;
-        const double d = angle_degree(tape, arguments[0]);
-        f[at] = {d, quotient ? d : 0, 1};
-        break;
-      }
-      case Kind::Asin:
-      case Kind::Acos:
-      case Kind::Atan:
-      case Kind::Atan2:
-      case Kind::Acosh:
-        ++result.radicals;
-        f[at] = {1, 0, 0};
-        break;
-      // A random number of its own.
-      case Kind::Pi:
-      case Kind::Symbol:
-      case Kind::Log:
-      case Kind::Asinh:
-      case Kind::Atanh:
-      case Kind::Erf:
-      case Kind::LambertW:
-        f[at] = {1, 0, 0};
-        break;
-      case Kind::TimeDerivative:
-        f[at] = derivative(f[arguments[0]]);
-        break;
-      case Kind::Abs:
-        ++result.switches;
-        f[at] = f[arguments[0]];
-        break;
-      case Kind::Sign:
-      case Kind::Step:
-        ++result.switches;
-        break;
-      case Kind::Less:
-      case Kind::LessEqual:
-        ++result.switches;
-        break;
-      case Kind::And:
-      case Kind::Or:
-        break;  // their comparisons count
-    }
-  }
-  for (const Position root : tape.roots()) {
-    result.degree = std::max(result.degree, std::max(f[root].up, f[root].down));
-    result.height = std::max(result.height, f[root].height);
-  }
-  return result;
-}
+Complexity complexity(const Tape& tape, bool free_roots) { return DegreeCount(tape, free_roots).result(); }
 
 }  // namespace maupertuis::evaluation

@@ -1,5 +1,6 @@
 // A Chromium with the page of the studio in it, over the local server or from a static folder; and what every test
 // checks.
+import {AsyncLocalStorage} from 'node:async_hooks';
 import {spawn} from 'node:child_process';
 import {cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, existsSync, statSync} from 'node:fs';
 import {createServer} from 'node:http';
@@ -15,11 +16,21 @@ const axeSource = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 
 export let failures = 0,
   checks = 0;
+const here = new AsyncLocalStorage(); // the case that runs: several do at a time
 export function check(what, good, detail = '') {
   ++checks;
   if (good) return;
   ++failures;
-  console.error(`FAILED: ${what}`, detail);
+  const within = here.getStore();
+  if (within) ++within.failures;
+  console.error(`FAILED: ${within ? `${within.name}: ` : ''}${what}`, detail);
+}
+
+/** How many checks fail in it. */
+export async function inCase(name, run) {
+  const within = {name, failures: 0};
+  await here.run(within, run);
+  return within.failures;
 }
 
 /** `maup studio` over a folder of its own; `address()` is good once, as its token is. */
@@ -104,17 +115,18 @@ export async function openBrowser(variant) {
       acceptDownloads: true,
     });
     context.setDefaultTimeout(120_000); // what does not come at all: a machine may be busy
-    const page = await context.newPage();
+    const page = await context.newPage(),
+      checkHere = AsyncLocalStorage.bind(check); // events are told outside of the case
     page.on('console', message =>
-      check(
+      checkHere(
         'nothing is said on the console',
         allow.some(one => message.text().includes(one)),
         message.text(),
       ),
     );
-    page.on('pageerror', error => check('no error escapes', false, error.stack));
+    page.on('pageerror', error => checkHere('no error escapes', false, error.stack));
     page.on('request', request =>
-      check(
+      checkHere(
         'no request leaves the page',
         /^(data|blob):/.test(request.url()) || request.url().startsWith(url ?? variant.base),
         request.url(),
