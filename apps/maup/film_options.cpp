@@ -90,8 +90,6 @@ Film read_options(const AnimateOptions& o, Diagnostics& diagnostics) {
   if (o.speed && !(*o.speed > 0 && std::isfinite(*o.speed)))
     wrong_option(diagnostics, fmt::format("--speed {:g} is no speed.", *o.speed),
                  "Write how many seconds of motion a second of the film shows, such as 0.5.");
-  if (!o.view.empty() && is_page(o))
-    wrong_option(diagnostics, "--view is not for pages.", "On a page the reader turns the drawing.");
   return film;
 }
 

@@ -127,6 +127,8 @@ ExitCode animate(AnimateOptions o, Console& console) {
   const SimulationOptions settings = simulation_options(o.run, study.diagnostics(), study.tree());
   Diagnostics& diagnostics = study.diagnostics();
   Film film = read_options(o, diagnostics);
+  if (!o.view.empty() && is_page(o))
+    diagnostics.error("E0809", {}, "--view is not for pages.", {}, "On a page the reader turns the drawing.");
   check_files_and_tools(o, diagnostics);
   if (readable_model && study.wrong()) return finish_usage(console, study, "animate");
   put_in_run(o.run, study);
