@@ -17,6 +17,17 @@ install(FILES
   ${CMAKE_CURRENT_BINARY_DIR}/maupertuis-config-version.cmake
   DESTINATION ${package_dir} COMPONENT dev)
 
+# For builds without CMake: pkg-config --cflags --libs maupertuis.
+file(RELATIVE_PATH prefix_from_pkgconfig /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+string(REGEX REPLACE "/$" "" prefix_from_pkgconfig ${prefix_from_pkgconfig})
+get_property(private_libraries GLOBAL PROPERTY MAUP_LIBRARIES)
+list(REMOVE_DUPLICATES private_libraries)
+list(TRANSFORM private_libraries REPLACE "^Threads::Threads$" "-pthread")
+list(TRANSFORM private_libraries REPLACE "^([^/-].*)$" "-l\\1")
+list(JOIN private_libraries " " private_libraries)
+configure_file(cmake/maupertuis.pc.in maupertuis.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/maupertuis.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
+
 # Packages have these as Debian wants them.
 install(FILES LICENSE CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT sources)
 install(FILES README.md ARCHITECTURE.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)

@@ -128,8 +128,10 @@ void choose_frames(const AnimateOptions& o, const Drawing& drawing, Film& film, 
   const double count = std::floor((to - from) / film.speed * film.fps * (1 + 1e-12)) + 1;
   const double most = ending_of(o) == ".svg" ? most_frames_of_svg : most_frames;
   if (count > most) {
+    const std::string counted =
+        count < 1e9 ? fmt::format("{:.0f}", count) : fmt::format("some 10^{:.0f}", std::log10(count));
     diagnostics.error(
-        "E0842", {}, fmt::format("{} would have {:.0f} frames.", o.output, count),
+        "E0842", {}, fmt::format("{} would have {} frames.", o.output, counted),
         fmt::format("More than {:.0f} are not made of this kind.", most),
         "Show less of the motion (--from, --to), show it faster (--speed), or with fewer frames a second (--fps).");
     return;

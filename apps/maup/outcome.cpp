@@ -33,7 +33,8 @@ bool print_checked(Console& console, Study& study, Json& document) {
   const Saving saving;
   const bool numbers = check_numbers(document, study.diagnostics());
   if (console.json()) {
-    document["ok"] = !study.wrong() && !interrupt_flag();
+    const bool ended_well = !document.contains("ended") || document["ended"].value("ok", true);
+    document["ok"] = !study.wrong() && !interrupt_flag() && ended_well;
     if (interrupt_flag()) document["interrupted"] = true;
     document["diagnostics"] = to_json(study.diagnostics(), study.texts());
     console.print_document(document);

@@ -43,8 +43,8 @@ struct EnsembleStart {
 };
 
 struct EnsembleOptions {
-  double tolerance = 0;                     // relative, per step; 0: rounding level of double
-  int order = 0;                            // of the polynomial of q̇; 0: from the tolerance
+  double tolerance = 0;                     // relative, per step, less than 1; 0: rounding level of double
+  int order = 0;                            // of the polynomial of q̇, at most 100; 0: from the tolerance
   std::size_t maximum_steps = 100'000'000;  // of one trajectory
   int width = 0;                            // motions side by side: 1, 2, 4, 8, 16; 0: what suits the processor
   int threads = 0;                          // 0: as many as the machine runs at once
@@ -109,7 +109,7 @@ void check_ensemble_start(const EnsembleStart& start, std::size_t coordinates, s
 /// A trajectory with a number that is infinite or undefined, or with a start off the constraints (trouble_of_start),
 /// ends where it starts, with StepEnding::Refused and the reason.
 /// Throws std::invalid_argument, which names the list, where sizes are not those of the comments of EnsembleStart,
-/// times do not ascend, or the width is none of those above.
+/// times do not ascend, or a number is none that its comment allows.
 EnsembleResult advance_ensemble(const Kernel& kernel, const EnsembleStart& start, const EnsembleOptions& options = {});
 
 }  // namespace maupertuis

@@ -25,8 +25,8 @@
 namespace maupertuis {
 
 struct TaylorOptions {
-  double tolerance = 0;  // relative, per step; 0: rounding level of double
-  int order = 0;         // of the polynomial of q̇; 0: from the tolerance
+  double tolerance = 0;  // relative, per step, less than 1; 0: rounding level of double
+  int order = 0;         // of the polynomial of q̇, 2 to 100 (1 is taken for 2); 0: from the tolerance
   std::size_t maximum_steps = 100'000'000;
   const StopFlag* interrupt = nullptr;   // looked at once a step
   Backend backend = Backend::Automatic;  // what carries out the expansions
@@ -59,7 +59,8 @@ std::string trouble_of_start(const Kernel& kernel, std::span<const double> param
 /// with compensation. Every zero of a switch function ends a step at its located root, and so do events.
 class TaylorStepper {
  public:
-  /// Parameters in the order of the kernel. Lists of another length, here and below: std::invalid_argument.
+  /// Parameters in the order of the kernel. Lists of another length, numbers that are none, indices beyond the end and
+  /// steps before start(), here and below: std::invalid_argument.
   TaylorStepper(const Kernel& kernel, std::span<const double> parameters, const TaylorOptions& options);
   ~TaylorStepper();
   TaylorStepper(TaylorStepper&&) noexcept;

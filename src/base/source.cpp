@@ -7,7 +7,8 @@ namespace maupertuis {
 
 SourceText::SourceText(std::string name, std::string text, SourceId id)
     : name_(std::move(name)), text_(std::move(text)), id_(id) {
-  starts_.push_back(0);
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // no column of the first line
+  starts_.push_back(text_.starts_with(byte_order_mark) ? static_cast<std::uint32_t>(byte_order_mark.size()) : 0);
   for (std::size_t i = 0; i < text_.size(); ++i)
     if (text_[i] == '\n') starts_.push_back(static_cast<std::uint32_t>(i + 1));
 }
@@ -20,7 +21,7 @@ std::string_view SourceText::slice(Span span) const {
 
 LineColumn SourceText::locate(std::uint32_t offset) const {
   const auto after = std::upper_bound(starts_.begin(), starts_.end(), offset);
-  const auto line = static_cast<std::uint32_t>(after - starts_.begin());
+  const auto line = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(after - starts_.begin()));
   const std::uint32_t begin = starts_[line - 1];
   const std::size_t end = std::min<std::size_t>(offset, text_.size());
   std::uint32_t column = 1;

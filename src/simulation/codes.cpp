@@ -141,7 +141,7 @@ constexpr std::array entries{
     CodeEntry{"E0721", "the variational method needs the length of its step",
               "The steps of a variational integrator are all alike, which is why it keeps momenta and the symplectic "
               "form; its "
-              "length is given with --step.",
+              "length is given with --step. It must be positive, and not so short that a run has not as many.",
               "# maup simulate --method variational\ncoord θ : angle\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\n"
               "T = 1/2 m l^2 θ'^2\nV = -m g l cos θ\nstart θ = 60 deg\nrun 10 s\n",
               "# maup simulate --method variational --step 10ms\ncoord θ : angle\n"
@@ -149,8 +149,8 @@ constexpr std::array entries{
               "run 10 s\n"},
     CodeEntry{
         "E0722", "there is no variational step of this order",
-        "Steps on s Gauss nodes have order 2s, on s Lobatto nodes 2s - 2 (under constraints). Orders from 2 to 12 are "
-        "offered; an odd number counts as the next even one.",
+        "Steps on s Gauss nodes have order 2s, on s Lobatto nodes 2s - 2 (under constraints). Even orders from 2 to "
+        "12 are offered.",
         "# maup simulate --method variational --step 10ms --order 20\ncoord θ : angle\n"
         "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\nT = 1/2 m l^2 θ'^2\nV = -m g l cos θ\nstart θ = 60 deg\nrun 10 s\n",
         "# maup simulate --method variational --step 10ms --order 4\ncoord θ : angle\n"

@@ -50,11 +50,11 @@ std::unique_ptr<Method> variational_method(const EquationsOfMotion& equations, c
         "Its conservation laws hold because all steps are alike; a step that a tolerance changes would lose them.",
         "Give a positive time, some twentieth of the shortest period: --step 10ms.");
   }
-  if (options.order < 2 || options.order > 12) {
+  if (options.order < 2 || options.order > 12 || options.order % 2 != 0) {
     diagnostics.error(
         "E0722", std::nullopt, fmt::format("there is no variational step of order {}", options.order),
         "The orders of steps on Gauss and Lobatto nodes are even; beyond 12 rounding is all that is left.",
-        "Choose an order from 2 to 12.");
+        "Choose 2, 4, 6, 8, 10 or 12.");
   }
   if (diagnostics.has_errors()) return nullptr;
   return method_of(

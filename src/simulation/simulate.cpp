@@ -76,6 +76,18 @@ std::unique_ptr<HybridMotion> hybrid_method(const Model& model, const EquationsO
                                         parameter_values(model.system), taylor_options(options));
 }
 
+/// Steps of one length: whether a run has so many. Those that are too many by a little are made, up to its last.
+bool reaches_the_end(const SimulationOptions& options, const RunPlan& plan, Diagnostics& diagnostics) {
+  constexpr double hopeless = 100;
+  const double duration = std::abs(plan.end - plan.begin), most = static_cast<double>(options.maximum_steps);
+  if (options.method != StepMethod::Variational || !(duration / options.step > hopeless * most)) return true;
+  diagnostics.error("E0721", std::nullopt, fmt::format("steps of {:g} s are too short for this run", options.step),
+                    fmt::format("Some 10^{:.0f} of them lie within its {:g} s, and a run has {:.0g}.",
+                                std::log10(duration) - std::log10(options.step), duration, most),
+                    "Give a longer one, some twentieth of the shortest period.");
+  return false;
+}
+
 std::unique_ptr<Method> first_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
                                      const SimulationOptions& options, Diagnostics& diagnostics) {
   if (options.method == StepMethod::Stiff) return stiff_method(equations, wanted, stiff_options(options), diagnostics);
@@ -446,6 +458,7 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   const auto plan = plan_run(model, equations, options, diagnostics);
   if (!plan || !requests_lie_ahead(model.system, *plan, options, diagnostics)) return std::nullopt;
 
+  if (!reaches_the_end(options, *plan, diagnostics)) return std::nullopt;
   if (!start_keeps_contacts(model, plan->begin, plan->q, diagnostics)) return std::nullopt;
 
   const auto begin = Clock::now();

@@ -60,7 +60,8 @@ constexpr CodeEntry kEntries[] = {
      "The statement was understood up to the marked place. The message says what may stand there; "
      "docs/manual/grammar.ebnf "
      "has the whole grammar.",
-     "system s\nparam m 1 kg\n", "system s\nparam m = 1 kg\n"},
+     "param m 1 kg\ncoord x : length\nT = 1/2 m x'^2\n",
+     "param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n"},
     {"E0112", "a reserved word as a name",
      "Words that separate the parts of statements (mass, at, in, length, angle, name, …), functions, t for the time "
      "and pi "
@@ -72,15 +73,18 @@ constexpr CodeEntry kEntries[] = {
      "Circular and hyperbolic functions may stand without brackets before one name: sin θ, cos 2θ, cos P.x. Everything "
      "else "
      "takes brackets, so that there is no doubt where the argument ends: sqrt(x), sin(-θ), cos(2 θ + φ).",
-     "system s\ncoord x : number\nV = sin -x\n", "system s\ncoord x : number\nV = sin(-x)\n"},
+     "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = sin -x\n",
+     "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = sin(-x)\n"},
     {"E0114", "a power after a function without brackets",
      "cos θ^2 is read as (cos θ)^2 by some and as cos(θ^2) by others. Write cos^2 θ or cos(θ^2).",
-     "system s\ncoord x : number\nV = cos x^2\n", "system s\ncoord x : number\nV = cos^2 x\n"},
+     "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = cos x^2\n",
+     "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = cos^2 x\n"},
     {"E0115", "an exponent before the argument that is not a whole number",
      "sin^2 θ is (sin θ)^2. But sin^-1 θ is the inverse function for some and 1/sin θ for others: write asin(θ) or "
      "1/sin(θ). "
      "Other exponents stand after the brackets: sin(θ)^n.",
-     "system s\ncoord x : number\nV = sin^-1 x\n", "system s\ncoord x : number\nV = asin(x)\n"},
+     "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = sin^-1 x\n",
+     "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = asin(x)\n"},
     {"E0116", "a wrong number of arguments",
      "Most functions take one argument; atan2, cross take two, min and max two or more; dot takes two vectors, or one "
      "expression whose time derivative it is. inertia diag takes three moments, full six.",
@@ -96,40 +100,46 @@ constexpr CodeEntry kEntries[] = {
      "Inside formulas a unit stands in square brackets directly after a number, 3 [J], so that m the mass is never "
      "taken for "
      "m the metre. Names have their unit from their declaration.",
-     "system s\nparam k = 2 N\nlet a = k [m]\n", "system s\nparam k = 2 N\nlet a = k 1 [m]\n"},
+     "param m = 1 kg, F = 2 N\ncoord x : length\nT = 1/2 m x'^2\nlet work = F [m]\n",
+     "param m = 1 kg, F = 2 N\ncoord x : length\nT = 1/2 m x'^2\nlet work = F 1 [m]\n"},
     {"E0120", "an energy whose letter is a name of the model",
      "A model that declares T, V, U, L or D itself means that name everywhere. The energies are then given by their "
      "long "
      "names: kinetic, potential, generalized_potential, lagrangian, dissipation.",
-     "system s\nparam V = 12 V\ncoord x : number\nV = x^2\n",
-     "system s\nparam V = 12 V\ncoord x : number\npotential = x^2\n"},
+     "param m = 1 kg, k = 2 N/m, V = 3 m/s\ncoord x : length\nstart x' = V\nT = 1/2 m x'^2\nV = 1/2 k x^2\n",
+     "param m = 1 kg, k = 2 N/m, V = 3 m/s\ncoord x : length\nstart x' = V\nT = 1/2 m x'^2\npotential = 1/2 k x^2\n"},
     {"E0121", "a coordinate written as a function of time",
      "A coordinate depends on time by itself: θ, not θ(t). In this language θ(t) would be the product of θ and t. A "
      "field at a place that moves with the time has a speed in it, `w(v t)`; without units `w(1 t)`.",
-     "system s\ncoord x : number\nV = x(t)^2\n", "system s\ncoord x : number\nV = x^2\n"},
+     "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = x(t)^2\n",
+     "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = x^2\n"},
     {"E0122", "an unknown word before a bracket",
      "Before a bracket stands a function of the language or a name of the model, which then is a factor. Functions "
      "cannot be "
      "defined; give the expression a name with `let`.",
-     "system s\ncoord x : number\nV = sine(x)\n", "system s\ncoord x : number\nV = sin(x)\n"},
+     "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = sine(x)\n",
+     "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = sin(x)\n"},
     {"E0123", "two numbers side by side",
      "A product needs no sign between factors, but two numbers in a row are more often a slip than a product. Write "
      "2*3, and "
      "long numbers without blanks: 10000.",
-     "system s\nlet a = 2 3\n", "system s\nlet a = 2*3\n"},
+     "dimensionless\ncoord x : number\nlet a = 2 3\nT = 1/2 a x'^2\n",
+     "dimensionless\ncoord x : number\nlet a = 2*3\nT = 1/2 a x'^2\n"},
     {"E0124", "two systems in one file",
      "A file describes one system, and the statement `system` names it. Put the second one into a file of its own.",
      "system a\nsystem b\n", "system a\n"},
     {"E0125", "a prime that belongs to nothing",
      "The prime is the time derivative of a name, of a field of a point or body, or of a bracket: θ', P.x', (l θ)'.",
-     "system s\ncoord x : number\nV = exp(x)'\n", "system s\ncoord x : number\nV = (exp(x))'\n"},
+     "dimensionless\ncoord x : number\nT = 1/2 exp(x)'^2\n",
+     "dimensionless\ncoord x : number\nT = 1/2 ((exp(x))')^2\n"},
     {"E0126", "brackets with nothing or too much in them",
      "Brackets hold one expression, or the two or three components of a vector.", "system s\ngravity (0, 0, 0, 1)\n",
      "system s\ngravity (0, 0, 1)\n"},
     {"E0127", "a part of the statement is missing or given twice",
      "A point needs `at`, a spring `stiffness`, `run until` needs `within`, an expected value its tolerance (± or "
      "rel). Each part stands once.",
-     "system s\nparam m = 1 kg\npoint P mass m\n", "system s\nparam m = 1 kg\npoint P mass m at (0, 0)\n"},
+     "param m = 1 kg\ncoord x : length\npoint P mass m\n",
+     "param m = 1 kg\ncoord x : length\npoint P mass m at (x, 0)\n"},
     {"E0128", "a condition that is none, or a chain of comparisons",
      "Conditions stand in piecewise( ): comparisons with < <= > >=, joined by `and` and `or`. 0 < x < 1 is written 0 < "
      "x and x < 1.",
@@ -138,14 +148,16 @@ constexpr CodeEntry kEntries[] = {
     {"E0129", "a coordinate without a kind",
      "After the names of coordinates stands their kind: angle, length, charge, number, or any unit in brackets. Names "
      "before a colon share it.",
-     "system s\ncoord x : metre\n", "system s\ncoord x : length\n"},
+     "param m = 1 kg\ncoord x : metre\nT = 1/2 m x'^2\n",
+     "param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n"},
     {"W0101", "a name after a quotient of names",
      "Products without a sign bind as division does, from left to right: a/b c is (a/b) c. Who writes a/b c often "
      "means a/(b c).",
      "system s\nparam a = 1, b = 2, c = 3\nlet d = a/b c\n", "system s\nparam a = 1, b = 2, c = 3\nlet d = a/(b c)\n"},
     {"W0102", "a number after a function without brackets",
      "sin θ/2 is half the sine of θ. The sine of half the angle is sin(θ/2). Write 1/2 sin θ if the first is meant.",
-     "system s\ncoord x : angle\nV = sin x/2\n", "system s\ncoord x : angle\nV = 1/2 sin x\n"},
+     "dimensionless\ncoord x : angle\nT = 1/2 x'^2\nV = sin x/2\n",
+     "dimensionless\ncoord x : angle\nT = 1/2 x'^2\nV = 1/2 sin x\n"},
     {"W0103", "an angle after a function without brackets",
      "cos θ1 - θ2 subtracts an angle from a cosine; the cosine of the difference is cos(θ1 - θ2).",
      "system s\ncoord x, y : angle\nV = cos x - y\n", "system s\ncoord x, y : angle\nV = cos(x - y)\n"},

@@ -187,7 +187,8 @@ class Continuity {
     SwitchSampler sampler;
   };
 
-  /// Samples of functions and parts on each switch; the first that `wrong` finds is reported, one a switch.
+  /// Samples of functions and parts on each switch; the first that `wrong` finds is reported, one a switch. Who reads
+  /// of twenty has read enough: the others, thousands of a table, are not looked for.
   template <class Wrong>
   void examine(const ExprVector& functions, const std::vector<Part>& parts, Wrong wrong) {
     const ExprVector switches = switches_in(functions);
@@ -197,7 +198,8 @@ class Continuity {
     const ExprVector values = in_numbers(all), places = in_numbers(switches);
     const SwitchUses uses(values);
     std::optional<Decided> decided;
-    for (std::size_t k = 0; k < switches.size(); ++k) {
+    constexpr std::size_t most_told = 20;
+    for (std::size_t k = 0, told = 0; k < switches.size() && told < most_told; ++k) {
       decide(uses.terms_with(places[k]), decided);
       if (decided->rows.empty()) continue;  // times a factor that is 0 for these parameters
       const Slopes::Formulas slopes = slope_formulas(places[k]);
@@ -214,7 +216,9 @@ class Continuity {
       for (SwitchSample& x : samples) take(std::move(x));
       if (found.empty())
         for (SwitchSample& x : where_the_zero_test_points(decided->sampler, places[k], met)) take(std::move(x));
-      if (!found.empty()) report(switches[k], found, functions.size(), parts);
+      if (found.empty()) continue;
+      report(switches[k], found, functions.size(), parts);
+      ++told;
     }
   }
 

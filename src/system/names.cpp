@@ -211,8 +211,11 @@ void unknown_name_of(Elaboration& e, const std::string& text, Span span, bool in
   if (!e.unknown_names.insert(text).second) return;  // told at its first use
   if (text == "t") return unknown_time(e, span);
   if (text == "energy") return unknown_energy(e, span);
-  std::vector<std::string> names = e.table.names();
-  if (names.size() > 2000) names.resize(2000);
+  // Who has more of them reads no proposals for each, and every proposal looks at all names.
+  constexpr std::size_t most_proposals = 200, most_names = 2000;
+  std::vector<std::string> names;
+  if (e.unknown_names.size() <= most_proposals) names = e.table.names();
+  if (names.size() > most_names) names.resize(most_names);
   if (const std::string twin = twin_of(text, names); !twin.empty()) {
     const std::string foreign = foreign_letter(twin).empty() ? foreign_letter(text) : foreign_letter(twin);
     e.diagnostics.error(

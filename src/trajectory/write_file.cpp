@@ -47,7 +47,8 @@ std::string reason_of(int error, const Target& target) {
       return "it is a folder";
     case EACCES:
     case EPERM:
-      return fmt::format("no permission to write in the folder {}", target.folder);
+      return target.folder == "." ? "no permission to write in this folder"
+                                  : fmt::format("no permission to write in the folder {}", target.folder);
     case EROFS:
       return "the disk is read-only";
     case ENOSPC:

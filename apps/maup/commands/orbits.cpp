@@ -1,3 +1,4 @@
+#include "interrupt.hpp"
 #include "orbits_options.hpp"
 #include "orbits_text.hpp"
 #include "outcome.hpp"
@@ -47,13 +48,15 @@ std::optional<Findings> find_floquet(const Options& o, Study& study) {
   return Findings{{"floquet", floquet_text(*result, system), floquet_json(*result, system)}, {}, {}};
 }
 
-std::optional<Findings> find_section(const Options& o, Study& study) {
+std::optional<Findings> find_section(const Options& o, Study& study, const Console& console) {
   const auto result =
       poincare_section(*study.model(), *study.equations(), section_options(o.orbits, study), study.diagnostics());
   if (!result) return {};
+  const Saving saving;  // of crossings there may be very many
   const MechanicalSystem& system = study.model()->system;
   const std::string what = section_text(o.orbits);
-  return Findings{{"section", section_text(*result, what, system), section_json(*result, what, system)},
+  return Findings{{"section", section_text(*result, what, system),
+                   console.json() ? section_json(*result, what, system) : Json()},
                   section_rows(*result, system),
                   section_picture(*result, what, system)};
 }
@@ -77,7 +80,7 @@ ExitCode study_orbits(const Options& o, Console& console) {
   put_in_section(o.orbits, study);
   if (study.refuse_held_integrals() || study.refuse_without_time() || !study.certificate())
     return finish(console, study, json_document("orbits"));
-  const auto found = o.orbits.has_section() ? find_section(o, study)
+  const auto found = o.orbits.has_section() ? find_section(o, study, console)
                      : o.orbits.floquet     ? find_floquet(o, study)
                                             : find_lyapunov(o, study);
   if (!found) return finish_without(console, study, "orbits");

@@ -1,6 +1,7 @@
 #include "analysis/hamiltonian/legendre.hpp"
 #include "analysis/hamiltonian/readable_choice.hpp"
 
+#include <maupertuis/arguments.hpp>
 #include <maupertuis/integral_symbol.hpp>
 
 #include <algorithm>
@@ -156,6 +157,7 @@ ReadableForm phase_space::shown_bracket(Expr bracket, const ReadingOrder& order)
 }
 
 std::optional<ReadableForm> poisson_bracket(Expr a, Expr b, const Hamiltonian& h) {
+  check_argument(a && b, "poisson_bracket: one of the two has no formula");
   const Expr both[] = {in_phase_space(a, h), in_phase_space(b, h)};
   if (!both[0] || !both[1]) return std::nullopt;
   ExprVector positions;

@@ -2,6 +2,7 @@
 #include "analysis/linearization/ordered_schur.hpp"
 #include "linear_algebra/products.hpp"
 
+#include <maupertuis/arguments.hpp>
 #include <maupertuis/regulator.hpp>
 
 #include <fmt/format.h>
@@ -101,6 +102,9 @@ bool has_lapack() {
 
 std::optional<Regulator> linear_quadratic_regulator(const Linearization& l, const RealMatrix& weights,
                                                     const RealMatrix& prices, Diagnostics& diagnostics) {
+  const auto fits = [](const RealMatrix& m) { return m.entries.size() == m.rows * m.columns; };
+  check_argument(fits(weights), "linear_quadratic_regulator: `weights` has another number of entries than it says");
+  check_argument(fits(prices), "linear_quadratic_regulator: `prices` has another number of entries than it says");
   const Matrix q = to_eigen(weights), r = to_eigen(prices);
   Matrix a = to_eigen(l.a), b = to_eigen(l.b);
   if (b.cols() == 0) {

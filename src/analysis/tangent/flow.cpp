@@ -406,6 +406,7 @@ std::optional<TangentStop> TangentFlow::along(const TangentPoint& start, std::sp
 
 std::optional<TangentStop> TangentFlow::advance(TangentPoint& point, double t) {
   check_point(point, freedoms());
+  check_argument(std::isfinite(t), "TangentFlow::advance: t is no time");
   if (modes_) return modes_->advance(point, t);
   std::vector<TangentPoint> points;
   if (auto stop = along(point, {&t, 1}, points)) return stop;

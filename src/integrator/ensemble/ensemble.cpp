@@ -16,6 +16,9 @@ void check(const Kernel& kernel, const EnsembleStart& start, const EnsembleOptio
   check_ensemble_start(start, kernel.freedoms(), kernel.parameters());
   check_argument(start.step_factors.empty() || start.step_factors.size() == start.q.size() / kernel.freedoms(),
                  "advance_ensemble: start.step_factors has another length than there are trajectories");
+  check_argument(
+      std::all_of(start.step_factors.begin(), start.step_factors.end(), [](double f) { return f > 0 && f <= 1; }),
+      "advance_ensemble: one of start.step_factors is not in (0, 1]");
   check_argument(options.energy_terms <= kernel.observables(),
                  "advance_ensemble: options.energy_terms is more than the kernel has observables");
   check_argument(options.width >= 0 && options.width <= 16 && (options.width & (options.width - 1)) == 0,
@@ -113,6 +116,8 @@ void check_ensemble_start(const EnsembleStart& start, std::size_t coordinates, s
                  "advance_ensemble: start.begin has neither one time nor one a trajectory");
   check_argument(one_or_each(start.end.size()),
                  "advance_ensemble: start.end has neither one time nor one a trajectory");
+  check_argument(std::none_of(start.times.begin(), start.times.end(), [](double t) { return std::isnan(t); }),
+                 "advance_ensemble: one of start.times is no time");
   check_argument(std::is_sorted(start.times.begin(), start.times.end()), "advance_ensemble: start.times do not ascend");
 }
 

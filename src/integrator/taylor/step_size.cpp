@@ -2,6 +2,7 @@
 
 #include "integrator/taylor/end_check.hpp"
 
+#include <maupertuis/arguments.hpp>
 #include <maupertuis/integrator.hpp>
 
 #include <algorithm>
@@ -124,6 +125,8 @@ bool is_felt(const KernelWorkspace& work, std::size_t freedoms, std::size_t cons
   return !moves_mass;
 }
 
+constexpr int largest_order = 100;
+
 /// The nearest number of 12 bits (T. J. Dekker, 1971). Its square and fourth power, which sum up the polynomials, are
 /// exact then; rounded they would err the same way in all steps of an oscillator, which are equal, and its energy would
 /// drift with the time instead of its root.
@@ -136,6 +139,9 @@ double with_few_bits(double h) {
 }  // namespace
 
 StepControl step_control(double tolerance, int order) {
+  check_argument(tolerance >= 0 && tolerance < 1, "Taylor's steps: the tolerance is not from 0 to less than 1");
+  check_argument(order == 0 || (order >= 1 && order <= largest_order),
+                 "Taylor's steps: the order is not from 1 to 100");
   if (order > 0) return {std::max(order, 2), std::exp(log_of_last_term(tolerance) / std::max(order, 2))};
   return {taylor_order(tolerance), std::exp(log_of_factor(tolerance))};
 }

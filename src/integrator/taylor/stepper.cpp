@@ -185,6 +185,18 @@ bool TaylorStepper::Impl::accelerations_grow() const {
   return !(acceleration * small * longest <= speed);
 }
 
+std::string TaylorStepper::Impl::why_steps_shrink() const {
+  const int usual = taylor_order(options.tolerance);
+  if (2 * control.order < usual)
+    return fmt::format(
+        "The steps go on shrinking, so that their number would have no bound: of order {} they are too "
+        "short for this tolerance, for which {} is usual.",
+        control.order, usual);
+  return "The steps go on shrinking, so that their number would have no bound: near here a force or a switch "
+         "oscillates "
+         "without end, or a coordinate grows beyond all bounds.";
+}
+
 /// Whether a step is to be made at all.
 bool TaylorStepper::Impl::may_go_on(double bound, Step& result) {
   if (options.interrupt && options.interrupt->load(std::memory_order_relaxed))
@@ -192,9 +204,7 @@ bool TaylorStepper::Impl::may_go_on(double bound, Step& result) {
   else if (steps >= options.maximum_steps)
     end(result, StepEnding::TooManySteps, "The run used up its steps.");
   else if (shrinking.come_to_a_stop(steps, state.t.hi, remaining(bound)))
-    end(result, StepEnding::StepUnderflow,
-        "The steps go on shrinking, so that their number would have no bound: near here a force or a switch oscillates "
-        "without end, or a coordinate grows beyond all bounds.");
+    end(result, StepEnding::StepUnderflow, why_steps_shrink());
   else if (shrinking.never_arrives(steps, remaining(bound)))
     end(result, StepEnding::TooManySteps,
         fmt::format("Steps of this motion are about {:.2g} s long: some 10^{:.0f} of them were left, and a run has "
@@ -271,7 +281,9 @@ bool TaylorStepper::Impl::make_step(double bound, double h, Step& result) {
 // ----------------------------------------------------------------------------------------------------- interface
 
 TaylorStepper::TaylorStepper(const Kernel& kernel, std::span<const double> parameters, const TaylorOptions& options)
-    : impl_(std::make_unique<Impl>(kernel, parameters, options)) {}
+    : impl_((check_argument(parameters.size() == kernel.parameters(),
+                            "TaylorStepper: `parameters` has another length than the kernel has parameters"),
+             std::make_unique<Impl>(kernel, parameters, options))) {}
 TaylorStepper::~TaylorStepper() = default;
 TaylorStepper::TaylorStepper(TaylorStepper&&) noexcept = default;
 
@@ -281,6 +293,8 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   Impl& s = *impl_;
   check_argument(q.size() == s.n, "TaylorStepper::start: q has another length than the kernel has coordinates");
   check_argument(v.size() == s.n, "TaylorStepper::start: v has another length than the kernel has coordinates");
+  check_argument(std::isfinite(t), "TaylorStepper::start: t is no time");
+  s.has_started = true;
   // After an impact a motion goes on from where it has come to.
   const bool is_same_place = s.steps > 0 && s.state.t.hi == t && s.state.t.lo == rest &&
                              std::equal(q.begin(), q.end(), s.state.q_now.begin()) && s.watched.know_sides();
@@ -307,7 +321,10 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
 }
 
 void TaylorStepper::put_at_zero(std::span<const std::size_t> events, std::uint8_t order) {
-  for (const std::size_t i : events) impl_->watched.put_at_zero(i, order);
+  for (const std::size_t i : events) {
+    check_argument(i < impl_->kernel.events(), "TaylorStepper::put_at_zero: the kernel has no such event");
+    impl_->watched.put_at_zero(i, order);
+  }
 }
 
 void TaylorStepper::treat_events(std::span<const EventTreatment> treatments) {
@@ -349,7 +366,11 @@ TaylorStepper::Outlook TaylorStepper::outlook(double bound) {
   return out;
 }
 
-Step TaylorStepper::step(double bound) { return impl_->step(bound); }
+Step TaylorStepper::step(double bound) {
+  check_argument(impl_->has_started, "TaylorStepper::step: the motion has no start");
+  check_argument(!std::isnan(bound), "TaylorStepper::step: `bound` is no time");
+  return impl_->step(bound);
+}
 
 double TaylorStepper::time() const { return impl_->state.t.hi; }
 double TaylorStepper::time_rest() const { return impl_->state.t.lo; }
@@ -360,7 +381,10 @@ std::span<const double> TaylorStepper::q() const {
   return s.q_unwound;
 }
 std::span<const double> TaylorStepper::v() const { return impl_->state.v_now; }
-double TaylorStepper::integral(std::size_t index) const { return impl_->state.integrals[index].hi; }
+double TaylorStepper::integral(std::size_t index) const {
+  check_argument(index < impl_->state.integrals.size(), "TaylorStepper::integral: the kernel has no such integral");
+  return impl_->state.integrals[index].hi;
+}
 std::size_t TaylorStepper::steps() const { return impl_->steps; }
 std::size_t TaylorStepper::rejected() const { return impl_->rejected; }
 std::size_t TaylorStepper::switches() const { return impl_->switches; }

@@ -38,6 +38,7 @@ struct TaylorStepper::Impl {
 
   // A step (stepper.cpp).
   Step step(double bound);
+  std::string why_steps_shrink() const;
   bool may_go_on(double bound, Step& result);
   bool expand(double bound, Step& result);
   bool decide_sides(double bound, Step& result);
@@ -100,8 +101,9 @@ struct TaylorStepper::Impl {
   double tried = 0;                     // the last one at which no place was passed
 
   // How the run goes.
-  bool has_start_sample = false;               // before the first step it is made when it is asked for
-  bool first = true;                           // no step made yet
+  bool has_start_sample = false;  // before the first step it is made when it is asked for
+  bool first = true;              // no step made yet
+  bool has_started = false;
   bool expanded = false;                       // the workspace holds the motion through the present state already
   bool noisy = false;                          // halving did not mend the last steps, see equations_hold()
   int attempts = 0;                            // at the present step that were taken back

@@ -53,7 +53,7 @@ struct VariationalStepper::Impl {
   Sample sample(double t) const;
   Sample sample_at(const Phase& phase, const std::vector<Compensated>& sums) const;
   Step ended(StepEnding ending, std::string reason) const {
-    return {now.t, now.t, ending, std::move(reason), {}, {}, {}};
+    return {now.t, now.t, ending, std::move(reason), {}, {}, {}, {}};
   }
 
   MotionFunctions functions;

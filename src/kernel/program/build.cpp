@@ -1,9 +1,11 @@
 #include "kernel/program/lowering.hpp"
-#include "machine_code/processor.hpp"
 #include "kernel/program/program.hpp"
 #include "kernel/program/winding.hpp"
+#include "machine_code/processor.hpp"
 
 #include <maupertuis/arguments.hpp>
+
+#include <algorithm>
 
 namespace maupertuis {
 namespace {
@@ -60,6 +62,10 @@ Kernel build_kernel(const KernelSource& source) {
                  "build_kernel: the source has another number of residuals than of coordinates");
   check_argument(source.multipliers.size() == source.constraints.size(),
                  "build_kernel: the source has another number of multipliers than of constraints");
+  for (const auto* list : {&source.coordinates, &source.parameters, &source.residual, &source.multipliers,
+                           &source.observables, &source.events, &source.integrands})
+    check_argument(std::all_of(list->begin(), list->end(), [](const Expr& e) { return static_cast<bool>(e); }),
+                   "build_kernel: an expression of the source is empty");
   auto program = std::make_shared<Program>();
   Lowering lowering(source);
   const Outputs outputs = lower_outputs(lowering, source);

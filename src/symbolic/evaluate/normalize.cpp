@@ -4,6 +4,7 @@
 
 #include <array>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace maupertuis::evaluation {
 namespace {
@@ -30,12 +31,13 @@ bool is_flat(Expr e, bool inside_sum = false) {
 
 bool is_sine(Expr e) { return e.is(Kind::Sin) || e.is(Kind::Cos); }
 
-/// A product of sines and cosines, or a power of one: sin x cos x, cos² x.
-bool multiplies_sines(Expr e) {
+/// A product of sines and cosines, or a power of one, somewhere in it: sin x cos x, cos² x.
+bool multiplies_sines(Expr e, std::unordered_set<NodeId>& seen) {
+  if (!seen.insert(e.id()).second) return false;
   if (e.is(Kind::Power)) return is_sine(e[0]);
   std::size_t sines = 0;
   for (std::size_t i = 0; i < e.size(); ++i) {
-    if (multiplies_sines(e[i])) return true;
+    if (multiplies_sines(e[i], seen)) return true;
     sines += is_sine(e[i]);
   }
   return e.is(Kind::Product) && sines > 1;
@@ -46,7 +48,8 @@ bool multiplies_sines(Expr e) {
 Expr flat(Expr e) {
   Expr expanded = is_flat(e) ? e : expand(e, argument_budget);
   if (!expanded) return e;
-  if (multiplies_sines(expanded))
+  std::unordered_set<NodeId> seen;  // of nested sums the same one may stand at very many places
+  if (multiplies_sines(expanded, seen))
     if (const Expr sums = fourier_form(expanded, argument_budget)) return sums;
   return expanded;
 }

@@ -99,6 +99,43 @@ TEST_CASE("lists that do not fit are told by name") {
   wrong(start, "start.end");
   start.end = end, start.parameters = std::span(run.parameters).first(1);
   wrong(start, "start.parameters");
+  const std::vector<double> factors{1, 0}, unordered{0.5, std::nan("")};
+  start.parameters = run.parameters, start.step_factors = factors;
+  wrong(start, "start.step_factors");
+  start.step_factors = {}, start.times = unordered;
+  wrong(start, "start.times");
+}
+
+TEST_CASE("numbers that are none, and indices beyond the end, are told") {
+  const ModelText m(pendulum);
+  const Run run(m);
+  const std::vector<double> q{0.6, -0.8}, v{0, 0};
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const auto throws = [](const auto& call, const char* what) {
+    CHECK_THROWS_WITH_AS(call(), doctest::Contains(what), std::invalid_argument);
+  };
   TaylorStepper stepper(run.motion.kernel, run.parameters, {});
-  CHECK_THROWS_AS(stepper.start(0, q, std::span(v).first(1)), std::invalid_argument);
+  throws([&] { stepper.step(1); }, "has no start");
+  throws([&] { stepper.start(0, q, std::span(v).first(1)); }, "v has another length");
+  throws([&] { stepper.start(none, q, v); }, "t is no time");
+  stepper.start(0, q, v);
+  throws([&] { stepper.step(none); }, "`bound` is no time");
+  throws([&] { stepper.integral(7); }, "no such integral");
+  const std::vector<std::size_t> events{5};
+  throws([&] { stepper.put_at_zero(events); }, "no such event");
+  const auto stepper_of = [&](std::span<const double> parameters, double tolerance, int order) {
+    TaylorOptions options;
+    options.tolerance = tolerance, options.order = order;
+    return [&run, parameters, options] { TaylorStepper(run.motion.kernel, parameters, options); };
+  };
+  throws(stepper_of(std::span(run.parameters).first(1), 0, 0), "`parameters` has another length");
+  for (const double tolerance : {none, -1.0, 1.0, std::numeric_limits<double>::infinity()})
+    throws(stepper_of(run.parameters, tolerance, 0), "the tolerance");
+  for (const int order : {-1, 101, 100'000}) throws(stepper_of(run.parameters, 0, order), "the order");
+  EnsembleStart start;
+  const std::vector<double> end{1};
+  start.q = q, start.v = v, start.parameters = run.parameters, start.end = end;
+  EnsembleOptions options;
+  options.tolerance = none;
+  throws([&] { advance_ensemble(run.motion.kernel, start, options); }, "the tolerance");
 }
