@@ -19,6 +19,7 @@ constexpr double turn = 2 * std::numbers::pi;
 constexpr double same = 1e-6;           // of typical sizes: closer points are one
 constexpr double box = 10;              // of typical sizes: equilibria further from the start are not meant
 constexpr double straight_snap = 1e-7;  // a coordinate so near to a plain value is tried there
+constexpr double proved_snap = 1e-11;   // one that is known to 100 digits, or as the limit of a series
 
 double wrapped(double angle) {
   const double x = std::remainder(angle, turn);
@@ -189,6 +190,7 @@ class Search {
       if (!names_as_found_) solution->point = second_names_.first_name(solution->point);
       if (search_.fixed.any()) find_all_ways(*solution, at_rest);
       if (!balances(*solution, system)) continue;
+      if (search_.fixed.any() && system.is_unbalanced(solution->point)) continue;
       if (!at_rest && is_at_rest(solution->point)) continue;
       if (!holds_for_all_times(solution->point)) continue;
       keep({solution->point, at_rest, solution->residual, solution->family, solution->along, false, {}}, system);
@@ -223,7 +225,8 @@ class Search {
       if (held(i)) continue;
       const double step = e_.system->coordinates[i].kind == "angle" ? std::numbers::pi / 12 : HUGE_VAL;
       const double nearest = std::isfinite(step) ? step * std::round(plain.q[i] / step) : 0;
-      if (std::abs(plain.q[i] - nearest) < straight_snap * sizes_[i]) plain.q[i] = nearest;
+      const double snap = solution.proved ? proved_snap : straight_snap;
+      if (std::abs(plain.q[i] - nearest) < snap * sizes_[i]) plain.q[i] = nearest;
     }
     const double residual = system.residual_at(plain);
     if (!(residual <= std::max(solution.residual, 1e-14))) return;

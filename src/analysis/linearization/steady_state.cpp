@@ -17,6 +17,7 @@ namespace {
 constexpr double arrived = 1e-9;  // of what is left, by the sizes of coordinates
 constexpr double rank_of_balance = 1e-11;
 constexpr double rounding_of_work = 1e-14;
+constexpr double next_to = 0.03;  // of sizes: a root of order 12 is known that well in double
 
 }  // namespace
 
@@ -255,9 +256,8 @@ const PreciseRoots& SteadyState::precise() const {
   return *precise_;
 }
 
-/// The same to 100 digits, rounded; nothing where there is no root next to it.
-std::optional<SteadyState::Solution> SteadyState::proved(const Solution& solution) const {
-  constexpr double farthest = 0.03;  // of sizes: a root of order 12 is known that well in double
+/// The same to 100 digits, rounded; nothing where there is no root within so many sizes.
+std::optional<SteadyState::Solution> SteadyState::proved(const Solution& solution, double farthest) const {
   std::vector<double> sizes;
   for (const std::size_t i : free_q_) sizes.push_back(sizes_[i]);
   for (const std::size_t k : free_rates_)
@@ -272,6 +272,36 @@ std::optional<SteadyState::Solution> SteadyState::proved(const Solution& solutio
   return out;
 }
 
+/// [n] the sizes of the terms of R; infinite where one has no value.
+Vector SteadyState::sizes_of_terms(const OperatingPoint& point) const {
+  if (!terms_) {
+    ExprVector sizes;
+    for (const Expr& row : e_.balance_rows) sizes.push_back(size_of_terms(row));
+    terms_ = std::make_unique<RepeatedEvaluation>(sizes);
+  }
+  const Bindings at = values_at(e_, point);
+  return to_eigen((*terms_)([&](Expr symbol) {
+    const auto value = at.find(symbol);
+    return value == at.end() ? 0 : value->second;
+  }));
+}
+
+bool SteadyState::is_unbalanced(const OperatingPoint& point) const {
+  constexpr double rounding = 64 * std::numeric_limits<double>::epsilon(), rounded_to = 1e-11;  // of sizes: zeros
+  const System s = system_at(point);
+  const Vector z = unknowns(point).cwiseAbs(), terms = sizes_of_terms(point);
+  for (Index i = 0; i < terms.size(); ++i) {
+    double size = terms[i];
+    for (Index j = 0; j < z.size(); ++j) {
+      const bool is_position = static_cast<std::size_t>(j) < free_q_.size();
+      const double least = is_position ? rounded_to * sizes_[free_q_[static_cast<std::size_t>(j)]] : 0;
+      size += std::abs(s.j(i, j)) * std::max(z[j], least);
+    }
+    if (std::isfinite(size) && !(std::abs(s.f[i]) <= rounding * size)) return true;
+  }
+  return false;
+}
+
 /// Where rows pass as rounding of other works, or rounding of their own terms leaves the place open.
 bool SteadyState::is_doubtful(const Solution& solution) const {
   constexpr double known = 1e-9, operations = 8 * std::numeric_limits<double>::epsilon();
@@ -282,21 +312,11 @@ bool SteadyState::is_doubtful(const Solution& solution) const {
     const double scale = scale_of(s, z, i);
     if (scale > 0 && std::abs(s.f[i]) > arrived * scale) return true;
   }
-  if (!terms_) {
-    ExprVector sizes;
-    for (const Expr& row : e_.balance_rows) sizes.push_back(size_of_terms(row));
-    terms_ = std::make_unique<RepeatedEvaluation>(sizes);
-  }
-  const Bindings at = values_at(e_, solution.point);
-  const std::vector<double> terms = (*terms_)([&](Expr symbol) {
-    const auto value = at.find(symbol);
-    return value == at.end() ? 0 : value->second;
-  });
+  const Vector terms = sizes_of_terms(solution.point);
   const Equilibration by(s.j);
   Matrix rounding = Matrix::Zero(s.j.rows(), forces);
   for (Index i = 0; i < forces; ++i)
-    if (const double size = terms[static_cast<std::size_t>(i)]; std::isfinite(size))
-      rounding(i, i) = by.rows[i] * operations * size;
+    if (std::isfinite(terms[i])) rounding(i, i) = by.rows[i] * operations * terms[i];
   const Matrix moves = by.columns.asDiagonal() * least_squares(by.of(s.j), rounding, rank_of_balance).x;
   return length(moves.cwiseAbs().rowwise().sum(), z) > known;
 }
@@ -319,7 +339,7 @@ void SteadyState::find_family(Solution& solution) const {
     Solution moved = solution;
     place(z + part * whole, moved.point);
     const auto near = solve(moved.point, false);
-    const auto there = near ? proved(*near) : std::nullopt;
+    const auto there = near ? proved(*near, next_to) : std::nullopt;
     // Multipliers that constraints leave open are fitted anew at each point: they say nothing about the way.
     if (there) gone.col(k) = (unknowns(there->point) - z).head(moving).cwiseQuotient(by.columns.head(moving)) / part;
   }
@@ -372,14 +392,27 @@ std::optional<SteadyState::Solution> SteadyState::solve(const OperatingPoint& fr
     s = there;
     error = scaled(s, z);
   }
-  if (!(error <= arrived)) return std::nullopt;
-  Solution solution{point, error, 0, {}, false};
-  if (!with_family) return solution;
+  return accepted({point, error, 0, {}, false}, s, z, with_family);
+}
+
+/// Where a way is so soft that double takes its derivative for none, Newton's method has not gone along it, and what is
+/// left of the forces compares with nothing: then the root of 100 digits decides, wherever it is.
+std::optional<SteadyState::Solution> SteadyState::accepted(const Solution& solution, const System& s, const Vector& z,
+                                                           bool with_family) const {
+  constexpr double anywhere = 1e9;
+  const bool has_arrived = solution.residual <= arrived;
+  const bool is_open =
+      s.j.allFinite() && least_squares(Equilibration(s.j).of(s.j), s.f, rank_of_balance).rank < z.size();
+  if (!has_arrived && !is_open) return std::nullopt;
+  if (!with_family || static_cast<std::size_t>(z.size()) > most_precise)
+    return has_arrived && !(is_open && is_unbalanced(solution.point)) ? std::optional(solution) : std::nullopt;
   const Matrix derivatives = without_rounding(s, z);
   const bool has_ways = soft_ways(derivatives, Equilibration(derivatives)).cols() > 0;
-  if (static_cast<std::size_t>(z.size()) > most_precise || (!has_ways && !is_doubtful(solution))) return solution;
-  std::optional<Solution> out = proved(solution);
-  if (out && has_ways) find_family(*out);
+  if (has_arrived && !has_ways && !is_doubtful(solution)) return solution;
+  std::optional<Solution> out = has_arrived ? proved(solution, next_to) : std::nullopt;
+  if (!out && is_open) out = proved(solution, anywhere);
+  if (!out || (is_open && is_unbalanced(out->point))) return std::nullopt;
+  if (has_ways) find_family(*out);
   return out;
 }
 

@@ -39,6 +39,9 @@ class SteadyState {
                                              double step) const;
   /// The residual there, all unknowns as they are, with the multipliers that fit best.
   double residual_at(OperatingPoint& point) const;
+  /// Whether a force is left that is no rounding of its own terms, or of the unknowns: 39 N of gravity are none beside
+  /// the stiffness of a bar.
+  bool is_unbalanced(const OperatingPoint& point) const;
 
  private:
   struct System {
@@ -58,7 +61,9 @@ class SteadyState {
   Matrix without_rounding(const System& s, const Vector& z) const;
   Matrix soft_ways(const Matrix& derivatives, const Equilibration& by) const;
   bool is_doubtful(const Solution& solution) const;
-  std::optional<Solution> proved(const Solution& solution) const;
+  std::optional<Solution> proved(const Solution& solution, double farthest) const;
+  Vector sizes_of_terms(const OperatingPoint& point) const;
+  std::optional<Solution> accepted(const Solution& solution, const System& s, const Vector& z, bool with_family) const;
   const PreciseRoots& precise() const;
   void find_family(Solution& solution) const;
 

@@ -121,3 +121,53 @@ TEST_CASE("families that are some stay: rings, levers balanced by decimal number
                "point B mass m2 at -l2 (cos θ, sin θ)\npoint C mass m2 at (0, s)\n"
                "V = m1 g A.y + m2 g B.y + 1/2 k s^2 (2 + cos θ)\nstart θ = 0.3 rad\n") == 1);
 }
+
+namespace {
+
+/// m1 on a stiff link beside m2 on a ground spring of 0.05 N/m, both under a constant pull a.
+std::string on_a_soft_spring(const std::string& k, const std::string& a, const std::string& start = "x = 0 m") {
+  return "param m1 = 1 kg, m2 = 3 kg, k = " + k + " N/m, kg = 0.05 N/m, a = " + a +
+         " m/s^2\ncoord x, y : length\nL = 1/2 m1 x'^2 + 1/2 m2 y'^2 - m1 a x - m2 a y - 1/2 k (x - y)^2 - "
+         "1/2 kg y^2\nstart " +
+         start + "\n";
+}
+
+}  // namespace
+
+TEST_CASE("a rest on a soft spring beside a stiff link is where the forces balance, however stiff the link") {
+  for (const char* k : {"1e8", "1e10", "2e11", "1e14", "1e18"}) {
+    CAPTURE(k);
+    const ModalStudy study = Linearized(on_a_soft_spring(k, "9.81")).study();
+    REQUIRE(study.entries.size() == 1);
+    const std::vector<double>& q = study.entries.front().equilibrium.point.q;
+    CHECK(near(q[0], -4 * 9.81 / 0.05 - 9.81 / std::stod(k), 1e-15));
+    CHECK(near(q[1], -4 * 9.81 / 0.05, 1e-15));
+  }
+  // Where it hangs by 10 nm is no 0.
+  const ModalStudy small = Linearized(on_a_soft_spring("2e11", "1.25e-10")).study();
+  REQUIRE(small.entries.size() == 1);
+  CHECK(near(small.entries.front().equilibrium.point.q[1], -1e-8, 1e-12));
+}
+
+TEST_CASE("39 N that nothing balances are no rest beside the stiffness of a link") {
+  for (const char* given : {"x = 0 m, y = 0 m", "x = 0 m, y = -4.905e-11 m"}) {
+    Linearized wrong(on_a_soft_spring("2e11", "9.81", given));
+    std::vector<StartValue> values;
+    for (const std::size_t i : {0, 1}) values.push_back({i, 0, wrong.number(wrong.start.q[i]), {}, {}});
+    CHECK_FALSE(modal_study_at(wrong.at, wrong.start, values, wrong.diagnostics));
+    values.pop_back();
+    CHECK_FALSE(modal_study_at(wrong.at, wrong.start, values, wrong.diagnostics));
+  }
+  const ModalEntry right = Linearized(on_a_soft_spring("2e11", "9.81", "x = -784.8 m, y = -784.8 m")).here();
+  CHECK(right.analysis.stability.verdict == Stability::Energetic);
+}
+
+TEST_CASE("a family along which a pendulum stands upright stays one") {
+  const ModalStudy study = Linearized(
+                               "dimensionless\ncoord x, y : number, θ : angle\nL = 1/2 (x'^2 + y'^2 + θ'^2) + cos(θ) - "
+                               "1/4 (x^2 + y^2 - 1)^2\nstart x = 1, θ = 3\n")
+                               .study();
+  std::size_t upright = 0;
+  for (const ModalEntry& e : study.entries) upright += e.equilibrium.family == 1 && e.equilibrium.point.q[2] > 3;
+  CHECK(upright == 1);
+}
