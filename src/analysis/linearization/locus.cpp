@@ -12,7 +12,7 @@
 namespace maupertuis {
 namespace {
 
-constexpr double longest_step = 1.0 / 3;  // of typical sizes
+constexpr double longest_step = 1.0 / 3, short_step = 0.1, one_place = 1e-5;  // of typical sizes
 
 class Tracer {
  public:
@@ -76,36 +76,53 @@ class Tracer {
   double distance(const Equilibrium& x, const Equilibrium& y) const {
     if (x.at_rest != y.at_rest) return HUGE_VAL;
     double out = 0;
-    for (std::size_t i = 0; i < x.point.q.size(); ++i) {
-      double dq = x.point.q[i] - y.point.q[i];
-      if (equations_.periodic()[i]) dq = std::remainder(dq, 2 * std::numbers::pi);
-      out = std::max(out, std::abs(dq) / sizes_[i]);
-    }
+    for (std::size_t i = 0; i < x.point.q.size(); ++i) out = std::max(out, std::abs(along(i, x, y)) / sizes_[i]);
     return out;
   }
 
-  /// Nearest pairs of branch ends and new points first; what is left over begins branches, or ends them.
+  struct Arrival {
+    std::size_t branch = 0, point = 0;
+    double surprise = 0;
+  };
+  /// How far a point is from the straight line on which the branch went there.
+  double surprise(const LocusBranch& branch, const Equilibrium& there) const {
+    const LocusPoint& last = branch.points.back();
+    if (branch.points.size() < 2) return distance(last.equilibrium, there);
+    const LocusPoint& before = branch.points.end()[-2];
+    const Step line[] = {{before.parameter, before.equilibrium}, {last.parameter, last.equilibrium}};
+    return distance(on_line(line[0], line[1], locus_.values.back()), there);
+  }
+  /// One curve alone goes through it.
+  static bool is_regular(const LocusPoint& x) { return x.stability.verdict != Stability::Undecided; }
+
+  /// Where two branches cross they have one point, and each goes on from it; where one ends on another, Newton's method
+  /// slips along that. What no branch arrives at begins one.
   void join(std::vector<LocusPoint> points) {
-    struct Pair {
-      double distance;
-      std::size_t branch, point;
-    };
-    std::vector<Pair> pairs;
-    for (const std::size_t b : open_)
-      for (std::size_t p = 0; p < points.size(); ++p)
-        if (const double d = distance(locus_.branches[b].points.back().equilibrium, points[p].equilibrium);
-            d <= longest_step)
-          pairs.push_back({d, b, p});
-    std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) { return x.distance < y.distance; });
-    std::vector<std::size_t> still_open;
-    std::vector<bool> placed(points.size(), false);
-    for (const Pair& pair : pairs) {
-      if (placed[pair.point] || std::find(still_open.begin(), still_open.end(), pair.branch) != still_open.end())
+    std::vector<std::size_t> still_open, unclear;
+    std::vector<Arrival> arrivals;
+    for (const std::size_t b : open_) {
+      if (!is_followed(locus_.branches[b].points.back().equilibrium)) {
+        unclear.push_back(b);
         continue;
-      placed[pair.point] = true;
-      locus_.branches[pair.branch].points.push_back(points[pair.point]);
-      still_open.push_back(pair.branch);
+      }
+      const auto there = continued(locus_.branches[b]);
+      if (!there) continue;
+      const auto same = std::find_if(points.begin(), points.end(),
+                                     [&](const LocusPoint& p) { return distance(p.equilibrium, *there) <= one_place; });
+      arrivals.push_back({b, static_cast<std::size_t>(same - points.begin()), surprise(locus_.branches[b], *there)});
+      if (same == points.end()) points.push_back(judged(locus_.values.back(), *there));
     }
+    std::vector<bool> placed(points.size(), false);
+    for (const Arrival& x : arrivals) {
+      placed[x.point] = true;
+      if (is_regular(points[x.point]) && std::any_of(arrivals.begin(), arrivals.end(), [&](const Arrival& y) {
+            return y.point == x.point && std::pair(y.surprise, y.branch) < std::pair(x.surprise, x.branch);
+          }))
+        continue;
+      locus_.branches[x.branch].points.push_back(points[x.point]);
+      still_open.push_back(x.branch);
+    }
+    join_nearest(unclear, points, placed, still_open);
     for (std::size_t p = 0; p < points.size(); ++p) {
       if (placed[p]) continue;
       still_open.push_back(locus_.branches.size());
@@ -115,26 +132,105 @@ class Tracer {
     open_ = std::move(still_open);
   }
 
+  /// A member of a family, or a motion that keeps the momenta of the start, is no curve that one could follow.
+  static bool is_followed(const Equilibrium& x) { return x.at_rest && x.family == 0; }
+
+  /// Nearest pairs of branch ends and new points first.
+  void join_nearest(const std::vector<std::size_t>& branches, const std::vector<LocusPoint>& points,
+                    std::vector<bool>& placed, std::vector<std::size_t>& still_open) {
+    struct Pair {
+      double distance;
+      std::size_t branch, point;
+    };
+    std::vector<Pair> pairs;
+    for (const std::size_t b : branches)
+      for (std::size_t p = 0; p < points.size(); ++p)
+        if (const double d = distance(locus_.branches[b].points.back().equilibrium, points[p].equilibrium);
+            d <= longest_step && !placed[p])
+          pairs.push_back({d, b, p});
+    std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) { return x.distance < y.distance; });
+    for (const Pair& pair : pairs) {
+      if (placed[pair.point] || std::find(still_open.begin(), still_open.end(), pair.branch) != still_open.end())
+        continue;
+      placed[pair.point] = true;
+      locus_.branches[pair.branch].points.push_back(points[pair.point]);
+      still_open.push_back(pair.branch);
+    }
+  }
+
+  /// The next point of a branch, in steps that are halved where they are long, or lead nowhere: at the end of a branch,
+  /// where it turns back, all of them do.
+  std::optional<Equilibrium> continued(const LocusBranch& branch) {
+    constexpr double least = 1.0 / 4096;  // of a step of the sweep
+    const double to = locus_.values.back();
+    Step last{branch.points.back().parameter, branch.points.back().equilibrium};
+    std::optional<Step> before;
+    if (branch.points.size() > 1) before = {branch.points.end()[-2].parameter, branch.points.end()[-2].equilibrium};
+    for (double length = to - last.parameter; last.parameter != to;) {
+      const bool is_last = std::abs(length) >= std::abs(to - last.parameter);
+      const double value = is_last ? to : last.parameter + length;
+      set_parameter(value);
+      const auto next = near(before ? on_line(*before, last, value) : last.equilibrium);
+      if (!next || distance(*next, last.equilibrium) > short_step) {
+        length /= 2;
+        if (std::abs(length) < least * std::abs(step())) break;
+        continue;
+      }
+      before = last;
+      last = {value, *next};
+      length *= 2;
+    }
+    set_parameter(to);
+    return last.parameter == to ? std::optional(last.equilibrium) : std::nullopt;
+  }
+
+  struct Step {
+    double parameter = 0;
+    Equilibrium equilibrium;
+  };
+  /// On the straight line through two points of a branch.
+  Equilibrium on_line(const Step& a, const Step& b, double value) const {
+    Equilibrium out = b.equilibrium;
+    const double part = (value - b.parameter) / (b.parameter - a.parameter);
+    for (std::size_t i = 0; i < out.point.q.size(); ++i)
+      out.point.q[i] += part * along(i, a.equilibrium, b.equilibrium);
+    return out;
+  }
+  double along(std::size_t i, const Equilibrium& x, const Equilibrium& y) const {
+    const double dq = y.point.q[i] - x.point.q[i];
+    return equations_.periodic()[i] ? std::remainder(dq, 2 * std::numbers::pi) : dq;
+  }
+
   // ---------------------------------------------------------------------------------------------------- changes of
   // verdict
 
   /// The equilibrium of a branch near a guess, at any value of the parameter.
   std::optional<LocusPoint> follow(double value, const Equilibrium& guess) {
     set_parameter(value);
+    const auto x = near(guess);
+    return x ? std::optional(judged(value, *x)) : std::nullopt;
+  }
+
+  std::optional<Equilibrium> near(const Equilibrium& guess) const {
     EquilibriumSearch search;
     search.start = {guess.point.t, guess.point.q, start_.v};
     search.steady = !guess.at_rest;
     for (const Equilibrium& x : equilibrium_near(equations_, search))
-      if (x.at_rest == guess.at_rest && !x.coordinates_fail && distance(x, guess) <= longest_step)
-        return judged(value, x);
+      if (x.at_rest == guess.at_rest && !x.coordinates_fail && distance(x, guess) <= longest_step) return x;
     return std::nullopt;
   }
 
   void find_changes() {
     for (std::size_t b = 0; b < locus_.branches.size(); ++b) {
       const auto points = locus_.branches[b].points;
-      for (std::size_t i = 1; i < points.size(); ++i)
-        if (points[i].stability.verdict != points[i - 1].stability.verdict) bisect(b, points[i - 1], points[i]);
+      for (std::size_t i = 1; i < points.size(); ++i) {
+        const Stability before = points[i - 1].stability.verdict, here = points[i].stability.verdict;
+        const bool stands_on_it = here == Stability::Undecided && i + 1 < points.size() &&
+                                  points[i + 1].stability.verdict != Stability::Undecided &&
+                                  before != Stability::Undecided;
+        const LocusPoint& after = points[stands_on_it ? ++i : i];
+        if (after.stability.verdict != before) bisect(b, stands_on_it ? points[i - 2] : points[i - 1], after);
+      }
     }
     std::stable_sort(locus_.changes.begin(), locus_.changes.end(),
                      [](const auto& x, const auto& y) { return x.parameter < y.parameter; });
@@ -146,7 +242,8 @@ class Tracer {
     for (int k = 0; k < 60; ++k) {
       const double middle = low.parameter + (high.parameter - low.parameter) / 2;
       if (middle == low.parameter || middle == high.parameter) break;
-      const auto point = follow(middle, low.equilibrium);
+      const Step ends[] = {{low.parameter, low.equilibrium}, {high.parameter, high.equilibrium}};
+      const auto point = follow(middle, on_line(ends[0], ends[1], middle));
       if (!point) break;
       (point->stability.verdict == before ? low : high) = *point;
     }

@@ -44,6 +44,64 @@ TEST_CASE("The bead on the hoop: a pitchfork at Ω = √(g/R), by bisection to r
   CHECK(m.at.parameter(index_of(*m.system, "Ω")) == 8);  // as before
 }
 
+namespace {
+
+Locus swept(Linearized& m, const std::string& name, double from, double to, std::size_t steps) {
+  return parameter_locus(m.at, m.start, index_of(*m.system, name), from, to, steps);
+}
+const char* const crossing = "dimensionless\nparam r = 0\ncoord x : number\nL = 1/2 x'^2 + 1/2 r x^2 - 1/3 x^3\n";
+
+}  // namespace
+
+TEST_CASE("two branches that cross change their verdicts where they cross, on the grid or between its values") {
+  for (const auto& [from, steps] : {std::pair(-1.03, 21), std::pair(-1.0, 21), std::pair(-0.77, 10)}) {
+    CAPTURE(from);
+    Linearized m(crossing);
+    const Locus locus = swept(m, "r", from, 1, static_cast<std::size_t>(steps));
+    CHECK(locus.branches.size() == 2);
+    REQUIRE(locus.changes.size() == 2);
+    for (const StabilityChange& c : locus.changes) {
+      CHECK(std::abs(c.parameter) < 1e-6);
+      CHECK((c.before == Stability::Energetic) == (c.after == Stability::Unstable));
+    }
+    for (const LocusBranch& b : locus.branches) CHECK(b.points.size() == static_cast<std::size_t>(steps));
+  }
+}
+
+TEST_CASE("a branch that moves fast is one, however coarse the grid") {
+  Linearized turned("dimensionless\nparam α = 0\ncoord θ : angle\nL = 1/2 θ'^2 + cos(θ - α)\n");
+  const Locus two = swept(turned, "α", 0, 7, 15);
+  CHECK(two.branches.size() == 2);
+  CHECK(two.changes.empty());
+  // Two rods under a load: each buckled shape is one branch from P = (3 - √5)/2 on.
+  Linearized rods(
+      "dimensionless\nparam P = 0.5\ncoord a, b : angle\nT = 1/2 (a'^2 + b'^2)\n"
+      "V = 1/2 a^2 + 1/2 (b - a)^2 - P (2 - cos a - cos b)\n");
+  const Locus buckled = swept(rods, "P", 0, 1, 11);
+  CHECK(buckled.branches.size() == 3);
+  REQUIRE(buckled.changes.size() == 1);
+  CHECK(near(buckled.changes[0].parameter, (3 - std::sqrt(5)) / 2, 1e-7));
+  // From the other end: they end on the straight one.
+  const Locus back = swept(rods, "P", 1, 0, 11);
+  CHECK(back.branches.size() == 3);
+  REQUIRE(back.changes.size() == 1);
+  CHECK(near(back.changes[0].parameter, (3 - std::sqrt(5)) / 2, 1e-7));
+}
+
+TEST_CASE("with an imperfection the branch that goes on stays stable, and the others begin at a fold") {
+  Linearized m(
+      "dimensionless\nparam Ω = 0.5\ncoord θ : angle\nL = 1/2 θ'^2 + 1/2 Ω^2 sin(θ)^2 + cos(θ) + 0.01 sin(θ)\n"
+      "D = 0.05 θ'^2\n");
+  const Locus locus = swept(m, "Ω", 0.5, 2, 16);
+  CHECK(locus.changes.empty());
+  const auto goes_on = std::find_if(locus.branches.begin(), locus.branches.end(), [](const LocusBranch& b) {
+    return b.points.size() == 16 && std::abs(b.points.front().equilibrium.point.q[0]) < 0.1;
+  });
+  REQUIRE(goes_on != locus.branches.end());
+  CHECK(goes_on->points.back().equilibrium.point.q[0] > 1.3);
+  for (const LocusPoint& x : goes_on->points) CHECK(x.stability.verdict == Stability::Asymptotic);
+}
+
 TEST_CASE("A symmetry of one value of the parameter explains nothing at the others") {
   Linearized m(R"(dimensionless
 param k = 0
