@@ -54,6 +54,7 @@ Json mode_json(const MechanicalSystem& system, const Mode& m) {
               {"natural_frequency", m.natural_frequency()},
               {"damping_ratio", m.damping_ratio()},
               {"multiplicity", m.multiplicity},
+              {"chain", m.chain},
               {"shape", std::move(shape)}};
   if (m.kind == Mode::Kind::Zero) {
     out["zeros"] = m.zeros;

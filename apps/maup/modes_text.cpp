@@ -106,6 +106,11 @@ std::string kind_text(const Mode& m) {
   return "";
 }
 
+/// Of a Jordan chain neighbours move as t e^{λt}.
+std::string fold_text(const Mode& m) {
+  return (m.multiplicity > 1 ? fmt::format(", {}-fold", m.multiplicity) : "") + (m.chain > 1 ? ", defective" : "");
+}
+
 /// δσ of a mode ξ e^{λ t}: from its positions and from its velocities λ ξ.
 std::vector<Complex> rates_of(const Mode& m, const ModalEntry& entry) {
   std::vector<Complex> states;
@@ -146,8 +151,7 @@ std::string modes_table(const MechanicalSystem& system, const ModalEntry& entry)
   for (std::size_t i = 0; i < analysis.modes.size(); ++i) {
     const Mode& m = analysis.modes[i];
     const bool oscillates = m.kind == Mode::Kind::Oscillation;
-    std::vector<std::string> row{fmt::format("{}", i + 1),
-                                 kind_text(m) + (m.multiplicity > 1 ? fmt::format(", {}-fold", m.multiplicity) : ""),
+    std::vector<std::string> row{fmt::format("{}", i + 1), kind_text(m) + fold_text(m),
                                  oscillates                   ? certain_digits(m.frequency(), m.error)
                                  : m.kind == Mode::Kind::Zero ? "0"
                                                               : "",

@@ -12,9 +12,11 @@ namespace maupertuis {
 struct Mode {
   enum class Kind { Zero, Oscillation, Decay, Growth } kind = Kind::Oscillation;  // the last two: λ real
   std::complex<double> eigenvalue;  // rad/s; 0 exactly where it vanishes up to rounding
-  double error = 0;                 // rounding errors of the eigenvalue, by its condition number
+  double error = 0;                 // rounding errors of the eigenvalue, by its condition number; 0 where it is 0 by a
+                                    // symmetry, else what a Zero may be instead
   std::size_t zeros = 0;            // Zero: how many eigenvalues it stands for, 1 or 2
-  std::size_t multiplicity = 1;     // of the eigenvalue among the modes, within rounding
+  std::size_t multiplicity = 1;     // of the eigenvalue, within rounding
+  std::size_t chain = 1;            // eigenvalues with this one shape; above 1: a Jordan chain, t e^{λt} is a motion
   std::vector<std::complex<double>>
       shape;          // [n] all coordinates; unit modal mass shapeᴴ M shape = 1, largest part real and positive
   std::string cause;  // Zero: what it is, "translation along x"; empty where no symmetry explains it

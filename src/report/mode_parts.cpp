@@ -126,8 +126,9 @@ std::vector<Formula> formulas_of(const Linearization& l) {
 ReportContent::ModeRow row_of(const MechanicalSystem& system, const Mode& m) {
   const std::string rate = system.dimensionless ? "" : "rad/s", hertz = system.dimensionless ? "" : "Hz",
                     second = system.dimensionless ? "" : "s";
-  const std::string fold =
-      m.multiplicity > 1 && m.kind != Mode::Kind::Zero ? fmt::format(", {}-fold", m.multiplicity) : "";
+  const std::string fold = m.multiplicity > 1 && m.kind != Mode::Kind::Zero
+                               ? fmt::format(", {}-fold{}", m.multiplicity, m.chain > 1 ? ", defective" : "")
+                               : "";
   switch (m.kind) {
     case Mode::Kind::Zero:
       return {m.cause.empty() ? "zero mode" : "zero mode: " + m.cause, "0", "0", "", ""};

@@ -30,8 +30,8 @@ std::vector<Frequency> frequencies(const ModalAnalysis& analysis, bool squared) 
     const double w = m.kind == Mode::Kind::Growth ? m.eigenvalue.real() : m.frequency();
     if (m.kind == Mode::Kind::Zero) zeros += m.zeros;
     const double error = squared ? (2 * std::abs(w) + m.error) * m.error : m.error;
-    if (m.kind == Mode::Kind::Oscillation) out.push_back({squared ? w * w : w, error});
-    if (m.kind == Mode::Kind::Growth && squared) out.push_back({-w * w, error});
+    if (m.kind == Mode::Kind::Oscillation) out.insert(out.end(), m.chain, {squared ? w * w : w, error});
+    if (m.kind == Mode::Kind::Growth && squared) out.insert(out.end(), m.chain, {-w * w, error});
   }
   out.insert(out.end(), (zeros + 1) / 2, Frequency{});
   std::sort(out.begin(), out.end(), [](const Frequency& a, const Frequency& b) { return a.value < b.value; });

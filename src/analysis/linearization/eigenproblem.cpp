@@ -57,6 +57,7 @@ EigenSystem eigen_system(const Matrix& a) {
     zeros += split.kernel;
   }
   out.zeros = static_cast<std::size_t>(zeros);
+  out.zero_error = out.chained > 0 ? std::sqrt(tolerance * norm) : tolerance;
   const Index rest = n - zeros;
   if (rest == 0) return out;
   const GeneralEigen system = general_eigen(t.bottomRightCorner(rest, rest));

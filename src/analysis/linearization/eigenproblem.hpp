@@ -13,6 +13,7 @@ struct EigenSystem {
   std::size_t zeros = 0;    // how often 0 is an eigenvalue
   Matrix kernel;            // [n × d] orthonormal: the eigenvectors of 0
   std::size_t chained = 0;  // kernel vectors that begin a Jordan chain: A x = (kernel vector) has a solution
+  double zero_error = 0;    // what they may be instead: the root of the rounding of chains
   ComplexVector values;     // [n − zeros] the others
   ComplexMatrix vectors;    // [n × (n − zeros)] unit columns
   Vector errors;            // [n − zeros] n ε ‖A‖ times the condition of the eigenvalue

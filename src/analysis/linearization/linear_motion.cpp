@@ -64,6 +64,7 @@ bool oscillates_for_certain(const Linearization& l, const std::vector<Mode>& mod
   if (to_eigen(l.circulatory).norm() > rounding * to_eigen(l.stiffness).norm()) return false;
   for (const Mode& mode : modes) {
     if (mode.kind == Mode::Kind::Zero) continue;
+    if (mode.chain > 1) return false;
     if (mode.kind != Mode::Kind::Oscillation || std::abs(mode.eigenvalue.real()) > 4 * mode.error) return false;
     if (std::abs(mode.eigenvalue) <= 4 * mode.error) return false;  // may vanish: two that meet there are a chain
     std::vector<std::size_t> same;

@@ -1,5 +1,6 @@
 #include "analysis/linearization/dense.hpp"
 #include "analysis/linearization/eigenproblem.hpp"
+#include "analysis/linearization/modes_in_digits.hpp"
 #include "analysis/linearization/point_equations.hpp"
 #include "analysis/linearization/stability.hpp"
 #include "linear_algebra/products.hpp"
@@ -44,11 +45,52 @@ class Analysis {
       quadratic_modes();
     else
       state_modes();
+    if (equilibrium_ && is_in_doubt())
+      if (const auto precise = modes_in_digits(equations_, *equilibrium_)) take(*precise);
+    if (!out_.symmetric) join_chains();
     finish();
     return std::move(out_);
   }
 
  private:
+  /// Double does not tell an eigenvalue from its neighbours, or from zero.
+  bool is_in_doubt() const {
+    constexpr double certain = 1e-9;
+    std::size_t zeros = 0, explained = equilibrium_->family;
+    for (const Translation& t : translations_) explained += 1 + t.conserved;
+    for (const Mode& m : out_.modes) {
+      zeros += m.zeros;
+      if (m.kind != Mode::Kind::Zero && m.error > certain * std::abs(m.eigenvalue)) return true;
+    }
+    return zeros > explained;
+  }
+
+  void take(const std::vector<PreciseMode>& modes) {
+    out_.modes.clear();
+    for (const PreciseMode& m : modes) {
+      const auto shapes = static_cast<Index>(m.shapes.size());
+      if (m.eigenvalue == 0.0) {
+        Matrix kernel(mass_.rows(), shapes);
+        for (Index k = 0; k < shapes; ++k)
+          for (Index i = 0; i < kernel.rows(); ++i)
+            kernel(i, k) = m.shapes[static_cast<std::size_t>(k)][static_cast<std::size_t>(i)].real();
+        add_zero_shapes(kernel, m.multiplicity, m.multiplicity - m.shapes.size(), m.error);
+        continue;
+      }
+      for (std::size_t k = 0; k < m.shapes.size(); ++k) {
+        Mode one = mode(kind_of(m.eigenvalue), m.eigenvalue, m.error);
+        if (k == 0) one.chain += m.multiplicity - m.shapes.size();
+        const ComplexVector shape =
+            Eigen::Map<const ComplexVector>(m.shapes[k].data(), static_cast<Index>(m.shapes[k].size()));
+        add(std::move(one), shape);
+      }
+    }
+  }
+
+  static Mode::Kind kind_of(Complex value) {
+    return value.imag() > 0 ? Mode::Kind::Oscillation : value.real() > 0 ? Mode::Kind::Growth : Mode::Kind::Decay;
+  }
+
   // K̂ y = ω² y in coordinates with unit mass.
   void symmetric_modes() {
     out_.symmetric = true;
@@ -75,23 +117,26 @@ class Analysis {
     }
     Matrix kernel(squares.size(), static_cast<Index>(zeros.size()));
     for (std::size_t k = 0; k < zeros.size(); ++k) kernel.col(static_cast<Index>(k)) = parts.vectors.col(zeros[k]);
-    add_zeros(kernel, 2 * zeros.size(), zeros.size());
+    double error = 0;
+    for (const Index i : zeros) error = std::max(error, std::sqrt(errors[i]));
+    add_zeros(kernel, 2 * zeros.size(), zeros.size(), error);
   }
 
   /// Each uncoupled part for itself: slow motions beside fast ones are not rounding of them.
   void quadratic_modes() {
     const Index f = form_.k.rows();
-    Zeros zeros{Matrix(f, 0), Matrix(f, 0), 0};
+    Zeros zeros{Matrix(f, 0), Matrix(f, 0), 0, 0};
     for (const std::vector<Index>& part : uncoupled_parts(form_.k.cwiseAbs() + form_.c.cwiseAbs()))
       quadratic_modes_of(part, zeros);
     Matrix kernel(f, zeros.chained.cols() + zeros.single.cols());
     kernel << zeros.chained, zeros.single;
-    add_zeros(kernel, zeros.count, static_cast<std::size_t>(zeros.chained.cols()));
+    add_zeros(kernel, zeros.count, static_cast<std::size_t>(zeros.chained.cols()), zeros.error);
   }
 
   struct Zeros {
     Matrix chained, single;  // [f × …] in y: those that begin a Jordan chain, and the others
     std::size_t count = 0;
+    double error = 0;
   };
 
   /// (λ² + λ Ĉ + K̂) y = 0 as ẋ = A x with x = (y, ẏ/s), time in units of 1/s.
@@ -117,6 +162,7 @@ class Analysis {
       add_pair(s * z, s * system.errors[i], to_coordinates(shape));
     }
     zeros.count += system.zeros;
+    if (system.zeros > 0) zeros.error = std::max(zeros.error, s * system.zero_error);
     for (Index i = 0; i < system.kernel.cols(); ++i) {
       Matrix& of = static_cast<std::size_t>(i) < system.chained ? zeros.chained : zeros.single;
       of.conservativeResize(Eigen::NoChange, of.cols() + 1);
@@ -140,7 +186,7 @@ class Analysis {
       out_.residual = std::max(out_.residual, ((balanced / s).cast<Complex>() * x - system.values[i] * x).norm());
       add_pair(s * system.values[i], s * system.errors[i], positions.cast<Complex>() * x);
     }
-    add_zero_shapes(product(positions, system.kernel), system.zeros, system.chained);
+    add_zero_shapes(product(positions, system.kernel), system.zeros, system.chained, s * system.zero_error);
   }
 
   /// Powers of two that bring rows and columns of A to like sizes (Parlett and Reinsch 1969).
@@ -170,10 +216,7 @@ class Analysis {
   void add_pair(Complex value, double error, const ComplexVector& shape) {
     if (value.imag() < 0) return;
     if (equations_.energy_never_grows() && negligible_damping() && std::abs(value.real()) <= error) value.real(0);
-    const auto kind = value.imag() > 0   ? Mode::Kind::Oscillation
-                      : value.real() > 0 ? Mode::Kind::Growth
-                                         : Mode::Kind::Decay;
-    add(mode(kind, value, error), shape);
+    add(mode(kind_of(value), value, error), shape);
   }
   bool negligible_damping() const {
     return l_.second_order() && negligible(to_eigen(l_.damping), to_eigen(l_.gyroscopic));
@@ -209,12 +252,12 @@ class Analysis {
 
   // ------------------------------------------------------------------------------------------------------- zero modes
 
-  void add_zeros(const Matrix& kernel_y, std::size_t zeros, std::size_t chained) {
-    add_zero_shapes(product(product(to_eigen(l_.positions), form_.to_independent), kernel_y), zeros, chained);
+  void add_zeros(const Matrix& kernel_y, std::size_t zeros, std::size_t chained, double error) {
+    add_zero_shapes(product(product(to_eigen(l_.positions), form_.to_independent), kernel_y), zeros, chained, error);
   }
 
-  /// Where symmetries span the kernel, each of them is a mode of its own.
-  void add_zero_shapes(const Matrix& kernel, std::size_t zeros, std::size_t chained) {
+  /// Where symmetries span the kernel, each of them is a mode of its own. The others may be as large as `error`.
+  void add_zero_shapes(const Matrix& kernel, std::size_t zeros, std::size_t chained, double error) {
     const Index d = kernel.cols();
     Matrix shapes = kernel;
     std::vector<std::string> causes(static_cast<std::size_t>(d));
@@ -236,6 +279,7 @@ class Analysis {
       zero.zeros = k + 1 == d ? left : std::min<std::size_t>(left, static_cast<std::size_t>(k) < chained ? 2 : 1);
       left -= std::min(left, zero.zeros);
       zero.cause = causes[static_cast<std::size_t>(k)];
+      if (zero.cause.empty()) zero.error = error;
       add(std::move(zero), shapes.col(k).cast<Complex>());
     }
   }
@@ -267,13 +311,42 @@ class Analysis {
 
   // ----------------------------------------------------------------------------------------------------------- the end
 
+  /// Eigenvalues that are one within their errors, and whose shapes are one as well, are a Jordan chain: their mean is
+  /// known better than each.
+  void join_chains() {
+    std::vector<Mode> left;
+    for (const Mode& m : out_.modes) {
+      const auto same = std::find_if(left.begin(), left.end(), [&](const Mode& x) {
+        return x.kind == m.kind && m.kind != Mode::Kind::Zero &&
+               std::abs(x.eigenvalue - m.eigenvalue) <= x.error + m.error && are_parallel(x.shape, m.shape);
+      });
+      if (same == left.end()) {
+        left.push_back(m);
+        continue;
+      }
+      const auto count = static_cast<double>(same->chain);
+      same->eigenvalue = (count * same->eigenvalue + m.eigenvalue) / (count + 1);
+      constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+      if (std::abs(same->eigenvalue.real()) <= rounding * std::abs(same->eigenvalue)) same->eigenvalue.real(0);
+      same->error = std::max(same->error, m.error);
+      same->chain += m.chain;
+    }
+    out_.modes = std::move(left);
+  }
+
+  bool are_parallel(const std::vector<Complex>& x, const std::vector<Complex>& y) const {
+    constexpr double rounding = 1e-6;
+    const auto size = static_cast<Index>(x.size());
+    const Eigen::Map<const ComplexVector> a(x.data(), size), b(y.data(), size);
+    return (a - b * (b.dot(a) / b.squaredNorm())).norm() <= rounding * a.norm();
+  }
+
   void finish() {
     for (const Mode& m : out_.modes) {
-      if (m.kind == Mode::Kind::Zero)
-        out_.eigenvalues.insert(out_.eigenvalues.end(), m.zeros, 0.0);
-      else
-        out_.eigenvalues.push_back(m.eigenvalue);
-      if (m.kind == Mode::Kind::Oscillation) out_.eigenvalues.push_back(std::conj(m.eigenvalue));
+      const std::size_t count = m.kind == Mode::Kind::Zero ? m.zeros : m.chain;
+      out_.eigenvalues.insert(out_.eigenvalues.end(), count, m.eigenvalue);
+      if (m.kind == Mode::Kind::Oscillation)
+        out_.eigenvalues.insert(out_.eigenvalues.end(), count, std::conj(m.eigenvalue));
     }
     std::sort(out_.eigenvalues.begin(), out_.eigenvalues.end(), [](const Complex& x, const Complex& y) {
       return x.real() != y.real() ? x.real() < y.real() : x.imag() < y.imag();
@@ -284,11 +357,11 @@ class Analysis {
       if (x.frequency() != y.frequency()) return x.frequency() < y.frequency();
       return x.eigenvalue.real() > y.eigenvalue.real();
     });
-    for (Mode& m : out_.modes)
-      m.multiplicity =
-          static_cast<std::size_t>(std::count_if(out_.modes.begin(), out_.modes.end(), [&](const Mode& other) {
-            return std::abs(m.eigenvalue - other.eigenvalue) <= m.error + other.error;
-          }));
+    for (Mode& m : out_.modes) {
+      m.multiplicity = 0;
+      for (const Mode& other : out_.modes)
+        if (std::abs(m.eigenvalue - other.eigenvalue) <= m.error + other.error) m.multiplicity += other.chain;
+    }
     out_.stability = judge_stability(equations_, l_, form_, translations_, out_, equilibrium_);
   }
 

@@ -2,6 +2,7 @@
 
 #include "analysis/linearization/dense.hpp"
 #include "analysis/linearization/folds.hpp"
+#include "analysis/linearization/friction_sign.hpp"
 #include "analysis/linearization/linear_motion.hpp"
 #include "analysis/linearization/point_equations.hpp"
 #include "linear_algebra/products.hpp"
@@ -81,11 +82,30 @@ struct Verdicts {
     return certain || hessian.values[0] < -soft * largest;
   }
 
-  /// [eigenvalues of the Hessian] what rounding leaves of each.
+  /// [eigenvalues of the Hessian] what rounding leaves of each. Rates belong to effective potentials alone.
   Vector hessian_tolerances(const SymmetricEigen& hessian) const {
     const double unit = 16 * static_cast<double>(form.k.rows()) * std::numeric_limits<double>::epsilon();
-    return unit * (hessian.norms.array() + form.c.squaredNorm()).matrix();
+    const double rates = translations.empty() ? 0 : form.c.squaredNorm();
+    return unit * (hessian.norms.array() + rates).matrix();
   }
+
+  /// Without first-order terms the Hessian has the squares of the frequencies: these may be known in more digits.
+  bool oscillates_in_all_ways() const {
+    return modes.symmetric && translations.empty() &&
+           std::all_of(modes.modes.begin(), modes.modes.end(),
+                       [](const Mode& m) { return m.kind == Mode::Kind::Oscillation && m.frequency() > 4 * m.error; });
+  }
+
+  /// The oscillation that neither grows nor decays by itself, and whose neighbours grow like t: a Jordan chain.
+  const Mode* chain_on_axis() const {
+    for (const Mode& m : modes.modes)
+      if (m.kind == Mode::Kind::Oscillation && m.chain > 1 && std::abs(m.eigenvalue.real()) <= 4 * m.error) return &m;
+    return nullptr;
+  }
+  /// In 100 digits.
+  static bool is_proved(const Mode& chain) { return chain.error <= 1e-12 * chain.frequency(); }
+  /// Of a linear system nothing of higher order is left.
+  bool grows_for_certain(const Mode& chain) const { return is_proved(chain) && is_linear(equations.impl()); }
 
   /// At rest on a family of equilibria the Hessian vanishes along it, and V is the same on all of it: where it is
   /// positive across, motions of little energy stay near the family (as near a minimum, with the family in the place of
@@ -167,7 +187,7 @@ StabilityReport judge_stability(const PointEquations& equations, const Lineariza
   out.effective = !translations.empty();
   const bool has_hessian = !out.hessian.empty();
   const Vector none = v.hessian_tolerances(hessian);
-  const bool strict_minimum = has_hessian ? (hessian.values.array() > none.array()).all()
+  const bool strict_minimum = has_hessian ? (hessian.values.array() > none.array()).all() || v.oscillates_in_all_ways()
                                           : form.valid && form.potential &&
                                                 equations.energy_never_grows_near(equilibrium->point) &&
                                                 v.all_conserved() && form.translations.cols() == form.k.rows();
@@ -201,6 +221,12 @@ StabilityReport judge_stability(const PointEquations& equations, const Lineariza
         "the equations are linear, and all {}eigenvalues are on the imaginary axis, each simple or "
         "of modes with energies of one sign{}",
         v.zeros() > 0 ? "other " : "", up_to_translations(translations));
+  } else if (const Mode* chain = v.chain_on_axis()) {
+    const bool grows = v.grows_for_certain(*chain);
+    if (grows) out.verdict = Stability::Unstable;
+    out.reason =
+        fmt::format("{} oscillations have one frequency and one shape{}: their neighbours grow like t{}", chain->chain,
+                    v.is_proved(*chain) ? "" : " within rounding", grows ? "" : " to first order");
   } else if (has_hessian && (hessian.values.array() < -none.array()).any()) {
     out.reason = fmt::format(
         "no eigenvalue has a positive real part, but the Hessian of the {} is not positive: gyroscopic forces hold it",
@@ -213,6 +239,8 @@ StabilityReport judge_stability(const PointEquations& equations, const Lineariza
   } else {
     out.reason = "eigenvalues lie on the imaginary axis, and no energy decides";
   }
+  if (out.verdict == Stability::Energetic && !friction_never_gives(equations.impl()))
+    out.reason += ", as far as looked at: that friction nowhere gives energy is not proved";
   return out;
 }
 

@@ -242,7 +242,9 @@ TEST_CASE("a linear system that gyroscopic forces hold is decided by its eigenva
   };
   CHECK(penning("3") == Stability::Linear);  // B² > 2 w²
   CHECK(penning("1.41421") == Stability::Unstable);
-  CHECK(penning("1.4142135623730951") == Stability::Undecided);  // both frequencies meet
+  CHECK(penning("1.4142135623730951") == Stability::Linear);  // the next numbers of 17 digits about the limit √2
+  CHECK(penning("1.4142135623730950") == Stability::Unstable);
+  CHECK(penning("sqrt(2)") == Stability::Unstable);  // both frequencies meet in a Jordan chain
   // The same from forces instead of L, and in coordinates that a linear constraint ties.
   CHECK(verdict("coord x, y : number\nL = 1/2 (x'^2 + y'^2) + 1/4 (x^2 + y^2)\nforce x = 3 y'\nforce y = -3 x'\n") ==
         Stability::Linear);

@@ -1,0 +1,115 @@
+// Eigenvalues that double does not tell from zero or from their neighbours, and what proves that friction takes energy.
+#include "support.hpp"
+
+using namespace maupertuis;
+
+namespace {
+
+ModalAnalysis first_of(const std::string& text) {
+  const ModalStudy study = Linearized(text).study();
+  REQUIRE(study.entries.size() >= 1);
+  return study.entries.front().analysis;
+}
+
+std::string damper(const char* c, const char* k) {
+  return std::string("dimensionless\nparam c = ") + c + ", k = " + k +
+         "\ncoord x : number\nL = 1/2 x'^2 - 1/2 k x^2\nD = 1/2 c x'^2\nstart x = 1\n";
+}
+
+}  // namespace
+
+TEST_CASE("a slow creep behind a strong damper is no zero") {
+  for (const auto& [c, k, slow] : {std::tuple("1e6", "1e-6", -1e-12), std::tuple("1e3", "1e-14", -1e-17)}) {
+    const ModalAnalysis creep = first_of(damper(c, k));
+    REQUIRE(creep.modes.size() == 2);
+    CHECK(near(creep.modes[0].eigenvalue.real(), slow, 1e-12));
+    CHECK(creep.stability.verdict == Stability::Asymptotic);
+  }
+  CHECK(first_of(damper("1e6", "-1e-6")).stability.verdict == Stability::Unstable);
+}
+
+TEST_CASE("two oscillators joined by a damper") {
+  const ModalAnalysis joined = first_of(
+      "dimensionless\nparam c = 1e6, k = 1e-6\ncoord x, y : number\nL = 1/2 x'^2 + 1/2 y'^2 - 1/2 k x^2 - 1/2 y^2\n"
+      "D = 1/2 c (x' - y')^2\nstart x = 1\n");
+  CHECK(joined.stability.verdict == Stability::Asymptotic);
+  REQUIRE(frequencies(joined).size() == 1);
+  // Both move as one of mass 2 on the sum of the springs, to second order in 1/c: no digit of that is in double.
+  CHECK(near(frequencies(joined)[0], std::sqrt(1.000001 / 2), 1e-9));
+  CHECK(near(joined.modes[0].eigenvalue.real(), -1e-12, 1e-5));
+}
+
+TEST_CASE("the drift of a light charge in a trap") {
+  const ModalAnalysis drift = first_of(
+      "dimensionless\nparam m = 1e-18\ncoord x, y : number\n"
+      "L = 1/2 m (x'^2 + y'^2) + 1/2 (x y' - y x') - 1/2 (x^2 + y^2)\nstart x = 1\n");
+  CHECK(drift.stability.verdict == Stability::Energetic);
+  REQUIRE(frequencies(drift).size() == 2);
+  CHECK(near(frequencies(drift)[0], 1, 1e-15));
+  CHECK(near(frequencies(drift)[1], 1e18, 1e-15));
+}
+
+TEST_CASE("frequencies of a stiff link on a soft spring have all their digits") {
+  const ModalAnalysis link = first_of(
+      "param m1 = 1 kg, m2 = 3 kg, k = 2e11 N/m, kg = 0.05 N/m\ncoord x, y : length\n"
+      "L = 1/2 m1 x'^2 + 1/2 m2 y'^2 - 1/2 k (x - y)^2 - 1/2 kg y^2\nstart x = 0 m\n");
+  REQUIRE(frequencies(link).size() == 2);
+  // λ² − (k/m1 + k/m2 + kg/m2) λ + k kg/(m1 m2) = 0: the small root is kg/(m1 + m2) to 13 digits.
+  CHECK(near(frequencies(link)[0], std::sqrt(0.05 / 4), 1e-12));
+  CHECK(link.modes.front().error <= 1e-15);
+  CHECK(link.stability.verdict == Stability::Energetic);
+}
+
+TEST_CASE("a zero that no symmetry explains says how large it may be") {
+  const ModalAnalysis flat =
+      first_of("dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) - 1/4 x^4 - 1/2 y^2\nstart x = 0\n");
+  REQUIRE(flat.modes.front().kind == Mode::Kind::Zero);
+  CHECK(flat.modes.front().error > 0);
+  CHECK(flat.modes.front().error < 1e-7);
+  const ModalAnalysis free = first_of("dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) - 1/2 y^2\n");
+  REQUIRE(free.modes.front().kind == Mode::Kind::Zero);
+  CHECK(free.modes.front().error == 0);
+}
+
+TEST_CASE("two oscillations of one shape are a Jordan chain, and grow like t") {
+  // z = x + i y = e^{−it} (a + b t).
+  const std::string turning =
+      "dimensionless\nparam k = -1\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) + (x y' - y x') - 1/2 k (x^2 + y^2)\n";
+  const ModalAnalysis chain = first_of(turning);
+  REQUIRE(chain.modes.size() == 1);
+  CHECK(chain.modes[0].chain == 2);
+  CHECK(chain.modes[0].multiplicity == 2);
+  CHECK(near(chain.modes[0].frequency(), 1, 1e-15));
+  CHECK(chain.eigenvalues.size() == 4);
+  CHECK(chain.stability.verdict == Stability::Unstable);
+  CHECK(chain.stability.reason.find("grow like t") != std::string::npos);
+  // With terms of higher order they decide.
+  CHECK(first_of(turning.substr(0, turning.size() - 1) + " - x^4\n").stability.verdict == Stability::Undecided);
+  // Equal frequencies with two shapes are none.
+  const ModalAnalysis two = first_of("dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) - 1/2 (x^2 + y^2)\n");
+  REQUIRE(two.modes.size() == 2);
+  CHECK(two.modes[0].chain == 1);
+  CHECK(two.modes[0].multiplicity == 2);
+  // At the limit of aperiodic motion the decay is one.
+  const ModalAnalysis limit =
+      first_of("dimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\nD = x'^2\nstart x = 1\n");
+  REQUIRE(limit.modes.size() == 1);
+  CHECK(limit.modes[0].chain == 2);
+  CHECK(limit.stability.verdict == Stability::Asymptotic);
+}
+
+TEST_CASE("of friction that is looked at in single states alone no proof is told") {
+  const auto reason = [](const std::string& d) {
+    const ModalAnalysis a = first_of(
+        "dimensionless\nparam ε = 1e-8, c = 0.1\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) - 1/2 (x^2 + y^2)\nD = " +
+        d + "\nstart x = 1\n");
+    CHECK(a.stability.verdict == Stability::Energetic);
+    return a.stability.reason;
+  };
+  const auto says = [](const std::string& text) { return text.find("as far as looked at") != std::string::npos; };
+  CHECK(says(reason("1/2 ((y - x)^2 - ε (x^2 + y^2)) (x'^2 + y'^2)")));  // gives energy in a narrow wedge
+  CHECK_FALSE(says(reason("1/2 (y - x)^2 (x'^2 + y'^2)")));
+  CHECK_FALSE(says(reason("1/2 c (x' - y')^2")));
+  CHECK_FALSE(says(reason("1/2 c (x'^2 - 2 x' y' + y'^2)")));
+  CHECK_FALSE(says(reason("c abs(x')^3 + c abs(y')^3")));
+}
