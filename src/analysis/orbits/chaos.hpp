@@ -7,16 +7,37 @@
 
 namespace maupertuis::orbits {
 
+/// The linear span of states, each less the first.
+class StateSpan {
+ public:
+  void add(const Eigen::VectorXd& x);
+  /// Root mean squares along the principal directions, each component in units of its rounding.
+  Eigen::VectorXd in_roundings() const;
+
+ private:
+  Eigen::VectorXd first_, magnitudes_;  // the largest of each component
+  Eigen::MatrixXd rows_;                // of the first `filled_` the singular values are those of all states
+  Eigen::Index filled_ = 0;
+  std::size_t states_ = 0;
+};
+
 /// What is seen of a motion while its exponents are averaged.
 class VisitedStates {
  public:
   /// `sizes` [2n] of the motion.
   VisitedStates(const MechanicalSystem& system, const Eigen::VectorXd& sizes) : system_(system), sizes_(sizes) {}
 
-  void add(const MotionState& state);
+  /// `growth`: the logarithm of the factor by which neighbours, and rounding with them, have grown so far.
+  void add(const MotionState& state, double growth);
+  /// A state before the average begins.
+  void add_of_transient(const MotionState& state, double growth);
 
-  /// How many dimensions of the state space the motion fills, flat ones counted: to a millionth of its size.
-  std::size_t dimensions() const;
+  /// How many dimensions of the state space the motion fills at most, flat ones counted: those along which the states
+  /// differ by more than the rounding of each component. None where it rests.
+  std::size_t most_dimensions() const;
+  /// How many it fills for certain, three that is enough: along these states differed by more than rounding can have
+  /// grown to.
+  std::size_t certain_dimensions() const;
   /// The logarithm of the factor by which the largest state of the second half exceeds that of the first; angles
   /// without bound are no large states.
   double growth_of_second_half() const;
@@ -27,9 +48,13 @@ class VisitedStates {
   bool keeps_moving(double duration) const;
 
  private:
+  std::size_t certain_now() const;
+
   const MechanicalSystem& system_;
   Eigen::VectorXd sizes_, first_, ways_, lowest_, highest_;
-  Eigen::MatrixXd moments_;      // Σ x xᵀ of the states seen from the first, in units of the sizes
+  StateSpan averaged_, whole_;  // whole_: with the transient, before rounding has grown
+  double growth_ = 0;           // the largest so far
+  std::size_t certain_ = 0, seen_ = 0;
   std::vector<double> largest_;  // [states] component of each
   std::vector<double> speeds_;   // [states] the largest velocity of each, in units of the sizes
 };

@@ -194,14 +194,20 @@ class LyapunovRun {
   bool warm_up() {
     const double begin = point_.state.t;
     const auto count = static_cast<std::uint64_t>(std::ceil(transient_ / out_.interval));
-    for (std::uint64_t k = 1; k <= count; ++k)
-      if (!carry(begin + transient_ * static_cast<double>(k) / static_cast<double>(count))) return tell_stop();
+    grown_ = Vector::Zero(directions_.cols());
+    visited_.emplace(*equations_.system, sizes_);
+    visited_->add_of_transient(point_.state, 0);
+    for (std::uint64_t k = 1; k <= count; ++k) {
+      const auto logs = carry(begin + transient_ * static_cast<double>(k) / static_cast<double>(count));
+      if (!logs) return tell_stop();
+      grown_ += *logs;
+      visited_->add_of_transient(point_.state, grown_.maxCoeff());
+    }
     begin_ = point_.state.t;
     averaging_ = true;
     before_ = point_.state;
     frame_before_ = directions_;
-    visited_.emplace(*equations_.system, sizes_);
-    visited_->add(before_);
+    visited_->add(before_, grown_.maxCoeff());
     return true;
   }
 
@@ -210,7 +216,8 @@ class LyapunovRun {
     const auto logs = carry(begin_ + out_.interval * static_cast<double>(logs_.size() + 1));
     if (logs) {
       logs_.push_back(*logs);
-      visited_->add(point_.state);
+      grown_ += *logs;
+      visited_->add(point_.state, grown_.maxCoeff());
       frame_after_ = directions_;
       add_divergence(before);
       return true;
@@ -373,6 +380,7 @@ class LyapunovRun {
   MotionState before_;                                    // where the average begins
   Matrix frame_before_, frame_after_;                     // the directions there, and at the end
   std::vector<Vector> logs_;                              // of each interval
+  Vector grown_;                                          // their sums, from the beginning of the transient
   std::optional<orbits::DivergenceIntegral> divergence_;  // of all exponents
   std::optional<double> volume_ = 0;  // its integral over the intervals; nothing where there is none
   std::optional<orbits::VisitedStates> visited_;

@@ -134,6 +134,30 @@ TEST_CASE("regular motions: no chaos, and errors that cover the log t / t of nei
   for (const char* run : {"16", "500"}) regular(pendulums + run + "\n", Chaos::NotShown);
 }
 
+TEST_CASE("chaos of any size beside an oscillation: dimensions do not depend on scales") {
+  // The motion of Hénon and Heiles, 1/σ large, and z = cos t, in coordinates that mix the two.
+  const auto beside = [](const std::string& sigma, const std::string& run) {
+    return lyapunov_of(ModelText("dimensionless\nparam σ = " + sigma +
+                                 "\ncoord a, b, c : number\nlet z = (a + b + c)/3, x = a - b, y = b - c\n"
+                                 "L = 1/2 (z'^2 + x'^2 + y'^2) - 1/2 (x^2 + y^2) - σ*(x^2 y - 1/3 y^3) - 1/2*z^2\n"
+                                 "start a = 1, b = 1, c = 1 + 0.1/σ, a' = 0.5/σ, c' = -0.05/σ\nrun " +
+                                 run + "\n"));
+  };
+  for (const char* sigma : {"1e2", "1e6", "1e8", "1e10"}) {
+    CAPTURE(sigma);
+    const LyapunovResult r = beside(sigma, "2000");
+    CHECK(r.exponents[0] > 3 * r.errors[0]);
+    CHECK(r.chaos == Chaos::Shown);
+    CHECK(beside(sigma, "100").chaos == Chaos::NotShown);
+  }
+  // The oscillation y on the ridge x = 0: what is beside the plane of y is rounding, which grows to 1e-8.
+  const LyapunovResult ridge =
+      lyapunov_of(ModelText("dimensionless\ncoord p, q : number\nlet x = (3 p - 4 q)/5, y = (4 p + 3 q)/5\n"
+                            "L = 1/2 (p'^2 + q'^2) + 0.045 x^2 - 50 y^2\nstart p = 0.56, q = 0.42\nrun 60\n"));
+  CHECK(ridge.exponents[0] == doctest::Approx(0.3).epsilon(0.01));
+  CHECK(ridge.chaos == Chaos::NotShown);
+}
+
 TEST_CASE("linear motions part exponentially and are not chaotic") {
   CHECK(lyapunov_of(ModelText(one + "V = -1/2 x^2\nstart x = 1\nrun 50\n")).chaos == Chaos::Excluded);
   const LyapunovResult overflows = lyapunov_of(ModelText(one + "V = -1/2 x^2\nstart x = 1\nrun 5000\n"));
