@@ -4,6 +4,7 @@
 #include "quantity.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -147,6 +148,9 @@ std::string floquet_text(const FloquetResult& r, const MechanicalSystem& system)
   const std::string at = m.start.t == 0 ? "" : fmt::format("t = {}, ", seconds(m.start.t, system));
   out += orbit_line("start", at + state_line(m.start, system));
   if (const std::string turns = turns_text(m, system); !turns.empty()) out += orbit_line("advances", turns);
+  if (!m.other_sign.empty())
+    out +=
+        orbit_line("comes back as", fmt::format("−q of {}, the same orientation as q", fmt::join(m.other_sign, ", ")));
   out += orbit_line("closed to", fmt::format("{:.2g} of its size, after {} correction{} that moved the start by {:.2g}",
                                              m.closure, m.iterations, m.iterations == 1 ? "" : "s", m.moved));
   return out + neighbours_text(r);
@@ -161,6 +165,7 @@ Json floquet_json(const FloquetResult& r, const MechanicalSystem& system) {
               {"rests", m.rests}};
   out["turns"] = Json::object();
   for (std::size_t i = 0; i < m.turns.size(); ++i) out["turns"][system.coordinates[i].name] = m.turns[i];
+  out["other_sign"] = m.other_sign;
   out["closure"] = m.closure;
   out["moved"] = m.moved;
   out["iterations"] = m.iterations;

@@ -32,15 +32,17 @@ enum class OrbitalStability {
   Undecided,  // none lies clearly outside, and what the geometry asks of dΦ_T contradicts that all lie inside or on it
 };
 
-/// A motion that repeats: Φ_T(x) = x, angles up to whole turns.
+/// A motion that repeats: Φ_T(x) = x, angles up to whole turns, quaternions up to their sign: q and −q are one
+/// orientation.
 struct PeriodicMotion {
   MotionState start;       // on the orbit
   double period = 0;       // s
   std::vector<int> turns;  // [n] by how many turns each coordinate advances; 0 for those that are no angles
-  bool driven = false;     // t stands in the equations: the period is that of the drive, or a multiple
-  bool rests = false;      // an equilibrium of a driven system: it stays where it is at all times
-  double moved = 0;        // how far Newton's method moved the start, relative to the size of the orbit
-  double closure = 0;      // |Φ_T(x) − x| relative to that size
+  std::vector<std::string> other_sign;  // bodies and frames whose quaternion comes back as −q
+  bool driven = false;                  // t stands in the equations: the period is that of the drive, or a multiple
+  bool rests = false;                   // an equilibrium of a driven system: it stays where it is at all times
+  double moved = 0;                     // how far Newton's method moved the start, relative to the size of the orbit
+  double closure = 0;                   // |Φ_T(x) − x| relative to that size
   int iterations = 0;
 };
 
@@ -170,7 +172,7 @@ struct LyapunovResult {
   double duration = 0, interval = 0;  // s
   std::size_t blocks = 0;
   Chaos chaos = Chaos::NotShown;
-  double sum = 0;                      // of the exponents
+  double sum = 0;  // of the exponents
   // The mean divergence of the flow in (q, q̇), from that in (q, p) and the volumes that the directions at both ends
   // have there; all exponents asked for.
   std::optional<double> expected_sum;

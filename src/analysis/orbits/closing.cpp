@@ -6,9 +6,12 @@
 #include "linear_algebra/dense.hpp"
 #include "linear_algebra/products.hpp"
 
+#include <maupertuis/quaternion_coordinates.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -25,6 +28,7 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 using Index = Eigen::Index;
+using Quaternion = std::array<std::size_t, 4>;
 
 constexpr int most_iterations = 40;
 constexpr double converged = 1e-9;  // closure that counts as closed where rounding lets nothing better
@@ -191,6 +195,8 @@ class Closer {
   bool find_angles() {
     for (std::size_t i = 0; i < n_; ++i)
       is_angle_.push_back(system_.coordinates[i].kind == "angle" && repeats_in_angle(system_, motion_, seen_, i));
+    for (const Quaternion& four : quaternion_coordinates(system_))
+      if (repeats_with_other_sign(system_, motion_, seen_, four)) quaternions_.push_back(four);
     return true;
   }
 
@@ -212,7 +218,32 @@ class Closer {
     return f;
   }
 
-  /// Φ_T(x) − x without whole turns, in units of the sizes.
+  /// Of each quaternion, whether −q is nearer to where it began than q: the same orientation.
+  bool has_other_sign(const Quaternion& four, const MotionState& from, const MotionState& to) const {
+    double product = 0;
+    for (const std::size_t i : four) product += from.q[i] * to.q[i];
+    return product < 0;
+  }
+
+  /// What came back with the other sign of a quaternion, and its directions, as the one with the sign of the beginning.
+  void take_sign_of(const MotionState& from, TangentPoint& point) {
+    const std::size_t width = point.width();
+    out_.motion.other_sign.clear();
+    for (const Quaternion& four : quaternions_) {
+      if (!has_other_sign(four, from, point.state)) continue;
+      const std::string& name = system_.coordinates[four[0]].name;
+      out_.motion.other_sign.push_back(name.substr(0, name.rfind('.')));
+      for (const std::size_t i : four) {
+        point.state.q[i] = -point.state.q[i], point.state.v[i] = -point.state.v[i];
+        for (std::size_t k = 0; k < point.directions.size(); k += width) {
+          point.directions[k + i] = -point.directions[k + i];
+          point.directions[k + n_ + i] = -point.directions[k + n_ + i];
+        }
+      }
+    }
+  }
+
+  /// Φ_T(x) − x without whole turns and signs of quaternions, in units of the sizes.
   Vector gap(const MotionState& from, const MotionState& to, std::vector<int>* turns = nullptr) const {
     Vector out = state_vector(to) - state_vector(from);
     if (turns) turns->assign(n_, 0);
@@ -222,6 +253,10 @@ class Closer {
       out[static_cast<Index>(i)] -= full * 2 * std::numbers::pi;
       if (turns) (*turns)[i] = static_cast<int>(full);
     }
+    for (const Quaternion& four : quaternions_)
+      if (has_other_sign(four, from, to))
+        for (const std::size_t i : four)
+          out[static_cast<Index>(i)] -= 2 * to.q[i], out[static_cast<Index>(n_ + i)] -= 2 * to.v[i];
     for (Index i = 0; i < out.size(); ++i) out[i] /= out_.sizes[static_cast<std::size_t>(i)];
     return out;
   }
@@ -348,7 +383,10 @@ class Closer {
       if (!on_constraints()) return false;
     }
     out_.log_volume = flow_.log_volume_of_jumps();
-    if (!stop) return true;
+    if (!stop) {
+      take_sign_of(out_.begin.state, out_.end);
+      return true;
+    }
     if (stop->ending == StepEnding::None) return refuse_jump(*stop, *diagnostics_);
     if (out_.motion.iterations > 0 && stop->ending != StepEnding::Interrupted) return refuse_corrected(*stop);
     return refuse_end(stop->t, stop->reason, *diagnostics_);
@@ -472,6 +510,7 @@ class Closer {
   std::vector<double> returns_;  // s after the start: periods to begin with
   Survey seen_;
   std::vector<bool> is_angle_;
+  std::vector<Quaternion> quaternions_;  // at whose −q the equations are the same
   std::optional<ConstraintManifold> manifold_;
   std::optional<tangent::PointFunctions> energy_;  // where it is conserved
   double energy_of_start_ = 0;                     // J

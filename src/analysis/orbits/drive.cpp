@@ -121,8 +121,9 @@ AccelerationsAt accelerations_at(KernelWorkspace& work, const Kernel& kernel, co
   return out;
 }
 
+/// `signs` [n]: what the accelerations at the moved state are multiplied by before they are compared.
 bool repeats(const MechanicalSystem& system, const MotionKernel& motion, const Survey& seen,
-             const std::function<void(MotionState&)>& move) {
+             const std::function<void(MotionState&)>& move, const std::vector<double>& signs) {
   KernelWorkspace work(motion.kernel, 1);
   work.set_parameters(motion.parameters);
   const double duration = seen.states.back().t - seen.states.front().t;
@@ -139,7 +140,7 @@ bool repeats(const MechanicalSystem& system, const MotionKernel& motion, const S
       if (a.empty()) continue;
       for (std::size_t i = 0; i < n; ++i) {
         largest[i] = std::max(largest[i], std::abs(a[i]));
-        difference[i] = std::max(difference[i], std::abs(a[i] - b[i]));
+        difference[i] = std::max(difference[i], std::abs(a[i] - signs[i] * b[i]));
       }
     }
   for (std::size_t i = 0; i < n; ++i)
@@ -206,14 +207,29 @@ bool stands_in_waves_alone(const EquationsOfMotion& equations) {
 
 bool repeats_in_time(const MechanicalSystem& system, const MotionKernel& motion, const Survey& seen, double period,
                      int periods) {
+  const std::vector<double> same(system.coordinates.size(), 1.0);
   for (int k = 1; k <= periods; ++k)
-    if (!repeats(system, motion, seen, [period, k](MotionState& s) { s.t += k * period; })) return false;
+    if (!repeats(
+            system, motion, seen, [period, k](MotionState& s) { s.t += k * period; }, same))
+      return false;
   return true;
 }
 
 bool repeats_in_angle(const MechanicalSystem& system, const MotionKernel& motion, const Survey& seen,
                       std::size_t coordinate) {
-  return repeats(system, motion, seen, [coordinate](MotionState& s) { s.q[coordinate] += 2 * std::numbers::pi; });
+  return repeats(
+      system, motion, seen, [coordinate](MotionState& s) { s.q[coordinate] += 2 * std::numbers::pi; },
+      std::vector<double>(system.coordinates.size(), 1.0));
+}
+
+bool repeats_with_other_sign(const MechanicalSystem& system, const MotionKernel& motion, const Survey& seen,
+                             const std::array<std::size_t, 4>& quaternion) {
+  std::vector<double> signs(system.coordinates.size(), 1.0);
+  for (const std::size_t i : quaternion) signs[i] = -1;
+  const auto turn = [&quaternion](MotionState& s) {
+    for (const std::size_t i : quaternion) s.q[i] = -s.q[i], s.v[i] = -s.v[i];
+  };
+  return repeats(system, motion, seen, turn, signs);
 }
 
 }  // namespace maupertuis::orbits

@@ -5,6 +5,7 @@
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/motion_kernel.hpp>
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -33,5 +34,9 @@ bool repeats_in_time(const MechanicalSystem& system, const MotionKernel& motion,
 bool stands_in_waves_alone(const EquationsOfMotion& equations);
 bool repeats_in_angle(const MechanicalSystem& system, const MotionKernel& motion, const Survey& seen,
                       std::size_t coordinate);
+
+/// Whether the equations are the same at −q as at q, as they are for a body that nothing but its orientation acts on.
+bool repeats_with_other_sign(const MechanicalSystem& system, const MotionKernel& motion, const Survey& seen,
+                             const std::array<std::size_t, 4>& quaternion);
 
 }  // namespace maupertuis::orbits

@@ -1,8 +1,10 @@
 #include "analysis/orbits/survey.hpp"
 
 #include <maupertuis/integrator.hpp>
+#include <maupertuis/quaternion_coordinates.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -49,6 +51,26 @@ std::vector<double> sizes_of(const MechanicalSystem& system, const std::vector<M
     sizes[n + i] = !rests ? size_at_rest(r.speed) : duration > 0 ? sizes[i] / duration : size_at_rest(r.speed);
   }
   return sizes;
+}
+
+/// A quaternion is one place on the sphere: its components share a size, and those that stay at 0 but for rounding are
+/// measured by the others.
+void share_sizes_of_quaternions(const MechanicalSystem& system, const std::vector<MotionState>& states,
+                                std::vector<double>& sizes) {
+  const std::size_t n = system.coordinates.size();
+  const double duration = std::abs(states.back().t - states.front().t);
+  for (const std::array<std::size_t, 4>& four : quaternion_coordinates(system)) {
+    double extent = 0, speed = 0;
+    for (const std::size_t i : four) {
+      const Range r = range_of(states, i);
+      extent = std::max(extent, (r.high - r.low) / 2), speed = std::max(speed, r.speed);
+    }
+    const bool rests = 2 * extent <= rounding_of_rest && speed * duration <= rounding_of_rest;
+    for (const std::size_t i : four) {
+      sizes[i] = rests ? 1 : extent;
+      sizes[n + i] = !rests ? speed : duration > 0 ? 1 / duration : 1;
+    }
+  }
 }
 
 /// Closed contacts hold a place and its rate, friction that sticks a rate.
@@ -104,6 +126,7 @@ Survey survey_by(Stepper stepper, const MechanicalSystem& system, const MotionSt
   out.steps = stepper.steps();
   out.rests = true;
   out.sizes = sizes_of(system, out.states, out.rests);
+  share_sizes_of_quaternions(system, out.states, out.sizes);
   return out;
 }
 

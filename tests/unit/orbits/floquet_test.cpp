@@ -365,3 +365,27 @@ TEST_CASE("the divergence is integrated as finely as it changes, also where the 
   CHECK(*neighbours[0]->integrated_divergence == doctest::Approx(-0.05 * std::numbers::pi).epsilon(1e-12));
   CHECK(study->entries[0].analysis.stability.verdict == Stability::Asymptotic);
 }
+
+TEST_CASE("a body's orientation comes back with q or −q: the period is that of the body") {
+  const auto spinning = [](const std::string& inertia, const std::string& rate, const std::string& more = "") {
+    return floquet_of(ModelText("system s\nbody B mass 1 kg inertia diag(" + inertia +
+                                ") kg m^2 rotation quaternion\n" + more + "start B.ω = (" + rate +
+                                ") rad/s\nrun 30 s\n"));
+  };
+  const FloquetResult about_axis = spinning("2, 3, 4", "0, 0, 1");
+  CHECK(about_axis.motion.period == doctest::Approx(2 * std::numbers::pi).epsilon(1e-12));
+  CHECK(about_axis.motion.other_sign == std::vector<std::string>{"B"});
+  // Neighbours nutate with √((C − A)(C − B)/(AB)) = 1/√3 in the body.
+  const double cosine = std::cos(2 * std::numbers::pi / std::sqrt(3.0));
+  const auto nutates = [&](const std::complex<double>& mu) { return std::abs(mu.real() - cosine) < 1e-9; };
+  CHECK(std::count_if(about_axis.multipliers.begin(), about_axis.multipliers.end(), nutates) == 2);
+  CHECK(*about_axis.symplectic_residual < 1e-11);
+  // Of a spherical body every motion is a rotation about ω.
+  const FloquetResult spherical = spinning("1, 1, 1", "0.6, 0, 0.8");
+  CHECK(spherical.motion.period == doctest::Approx(2 * std::numbers::pi).epsilon(1e-12));
+  CHECK(spherical.motion.other_sign.size() == 1);
+  // V = −w of q = (w, …) tells q from −q: half the angle is a pendulum that runs over the top.
+  const FloquetResult tells = spinning("1, 1, 1", "0, 0, 5", "V = -1 [J] B.qw\n");
+  CHECK(tells.motion.other_sign.empty());
+  CHECK(tells.motion.period == doctest::Approx(4 / 2.5 * std::comp_ellint_1(1 / 2.5)).epsilon(1e-12));
+}
