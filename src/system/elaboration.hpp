@@ -60,6 +60,8 @@ struct Elaboration {
 
 // ---------------------------------------------------------------------------------------------------- expressions
 
+/// Whether the words behind this number are names of a model without units: there no word can be a unit.
+bool has_words_of_no_unit(Elaboration& e, const syntax::Expression& quantity);
 /// The meaning of a formula. Mistakes are reported; the value is poisoned then.
 Value evaluate_formula(Elaboration& e, const syntax::Expression& x, const Place& place = {});
 /// The same, where one number of `expected` dimension must stand; `what` names the place: "a mass".

@@ -18,6 +18,7 @@ std::optional<expectation::DisplayUnit> display_unit(Elaboration& e, const Expre
                                                      const Dimension& dimension) {
   const Expression& q = unsigned_quantity(value);
   if (q.kind != Expression::Kind::Quantity || !q.unit || !all_units(*q.unit)) return std::nullopt;
+  if (has_words_of_no_unit(e, q)) return std::nullopt;
   const std::optional<Unit> unit = unit_of(e, *q.unit);
   if (!unit || !unit->dimension.same_as(dimension)) return std::nullopt;
   return expectation::DisplayUnit{written_unit(e.texts, *q.unit),

@@ -133,6 +133,7 @@ void note_written_unit(Elaboration& e, StartValue& s, const Expression& value, c
   const Expression* x = &value;
   while (x->kind == Expression::Kind::Unary) x = x->arguments[0].get();
   if (x->kind != Expression::Kind::Quantity || !x->unit || x->unit->factors.empty() || !all_units(*x->unit)) return;
+  if (has_words_of_no_unit(e, *x)) return;
   const std::optional<Unit> unit = unit_of(e, *x->unit);
   if (!unit || !unit->dimension.same_as(expected)) return;  // its words are names of the model
   s.unit = written_unit(e.texts, *x->unit);

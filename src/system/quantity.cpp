@@ -75,6 +75,14 @@ std::optional<bool> words_are_names(Elaboration& e, const Expression& x, const P
   return names_fit;
 }
 
+}  // namespace
+
+bool has_words_of_no_unit(Elaboration& e, const Expression& quantity) {
+  return e.dimensionless && !quantity.unit_bracketed && dimension_of_names(e, *quantity.unit);
+}
+
+namespace {
+
 /// The one for this quantity, however it was written: 500 g is 0.5 kg.
 std::optional<Expr> known_constant(Elaboration& e, Expr value, const Dimension& dimension) {
   for (const Parameter& p : e.system().parameters)

@@ -30,7 +30,7 @@ void check_orbits_usage(const Options& o, Diagnostics& diagnostics) {
   check_orbits_options(o.orbits, diagnostics);
   if (o.duration && !parse_time(*o.duration))
     diagnostics.error("E0809", {}, fmt::format("--duration \"{}\" is no time.", *o.duration), {},
-                      "Write a number with a unit of time, such as 3s or 250ms.");
+                      "Write a number with a unit of time, such as 3s or 250ms, or a part of π, such as \"2 pi/3 s\".");
   if (o.orbits.floquet + o.orbits.lyapunov + o.orbits.has_section() != 1)
     diagnostics.error("E0809", {}, "maup orbits does one thing at a time.", {},
                       "Give --floquet, --section \"x = 0 rising\", --strobe 2s or --lyapunov.");

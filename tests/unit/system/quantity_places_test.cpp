@@ -100,6 +100,16 @@ TEST_CASE("without units a number before names is a product, t among them") {
       "dimensionless\nparam m = 2\ncoord x : number\nT = 1/2 m x'^2\nforce x = 3 m + t\nforce x = 2 t\n");
   REQUIRE_MESSAGE(e.model.has_value(), e.messages());
   CHECK(value(e.system().forces[1].components[0], e.at({0}, {0}, 5)) == Approx(10));
+  // In starts, runs and expectations too, where the words might be units.
+  const Elaborated places(
+      "dimensionless\nparam m = 2, s = 3\ncoord x, y : number\nL = 1/2 m (x'^2 + y'^2)\nstart x = 1/s, y = 2 m\n"
+      "run 2 s\nexpect x at 2 s = 1/s ± 1 m\n");
+  REQUIRE_MESSAGE(places.model.has_value(), places.messages());
+  const auto start = [&](std::size_t i) {
+    return value(places.model->experiment.start[i].value, places.at({0, 0}, {0, 0}));
+  };
+  CHECK(start(0) == Approx(1.0 / 3));
+  CHECK(start(1) == Approx(4));
 }
 
 TEST_CASE("numbers with π and powers are quantities") {
