@@ -121,6 +121,21 @@ TEST_CASE("orbits --floquet: the time of a start that is not the model's") {
   CHECK(contains(riding.out, "0, of 2 directions that contacts and friction hold"));
 }
 
+TEST_CASE("orbits: times that are parts of π, and sections of an angle that turns") {
+  const Folder folder;
+  const std::string rotor = folder.write(
+      "rotor.lag", "system rotor\ndimensionless\ncoord a, b : angle\nL = 1/2 (a'^2 + b'^2)\nstart a' = 3\nrun 10\n");
+  for (const auto& [text, time] : {std::pair("pi", "3.14159265"), std::pair("2 pi/3 s", "2.09439510"),
+                                   std::pair("-2*pi/-3", "2.09439510"), std::pair("0.5 π ms", "0.00157079632")}) {
+    const Outcome strobe = maup({"orbits", rotor, "--strobe", text, "--crossings", "1", "--json"});
+    CAPTURE(strobe.out);
+    CHECK(contains(strobe.out, time));
+  }
+  CHECK(contains(maup({"orbits", rotor, "--section", "a = 1 rising", "--crossings", "9"}).out, "9 crossings"));
+  const Outcome none = maup({"orbits", rotor, "--section", "2 a = 1 falling", "--longest", "10s"});
+  CHECK(contains(none.err, "sin(a) = 0"));
+}
+
 TEST_CASE("orbits: what cannot be had, and wrong usage") {
   const Folder folder;
   const std::string model = folder.write("hh.lag", henon_heiles);
@@ -138,6 +153,8 @@ TEST_CASE("orbits: what cannot be had, and wrong usage") {
   CHECK(code_of(never) == "E1405");
   CHECK(code_of(refused({"--section", "x' = 0", "--starts", "4"})) == "E1407");
   CHECK(code_of(refused({"--strobe", "0s"})) == "E1406");
+  for (const char* no_time : {"pi kg", "pi/0", "2 pi/", "pie", "-pi"})
+    CHECK(maup({"orbits", model, "--strobe", no_time}).code == 2);
   CHECK(code_of(refused({"--floquet", "--start", "x'=0", "--start", "y=0"})) == "E1402");
   CHECK(code_of(refused({"--floquet", "--period", "1e-300s"})) == "E1406");  // it moves, and not in so short a time
   const Outcome unknown = refused({"--section", "z = 0"});

@@ -20,18 +20,67 @@ namespace {
 constexpr double runs_before_giving_up = 1e4;
 constexpr double longest_without_a_run = 1e6;  // s
 
+/// What is followed to its zeros. Of an angle a section means its place: sin(θ − c) vanishes there in every turn, and
+/// where the cosine is positive it is this place and not the opposite one.
+struct SectionFunction {
+  Expr value;   // empty: a strobe
+  Expr cosine;  // empty: no angle
+
+  std::vector<Expr> parts() const {
+    std::vector<Expr> out;
+    for (const Expr& part : {value, cosine})
+      if (part) out.push_back(part);
+    return out;
+  }
+};
+
+/// Whether the equations see no whole turns of this coordinate.
+bool turns_unseen(const Model& model, const EquationsOfMotion& equations, std::size_t coordinate,
+                  const StopFlag* interrupt) {
+  if (equations.system->coordinates[coordinate].kind != "angle") return false;
+  Diagnostics silent;
+  const auto start = consistent_start(model, equations, silent);
+  if (!start) return false;  // told later
+  constexpr double part = 0.01;
+  const double length = part * orbits::length_of_run(model, {}, silent).value_or(1);
+  const MotionKernel motion = free_motion_kernel(equations);
+  const orbits::Survey seen = orbits::survey(model, equations, motion, start->state, length, interrupt);
+  return orbits::repeats_in_angle(*equations.system, motion, seen, coordinate);
+}
+
+/// θ − c, −θ + c, θ1 + θ2 − c of angles whose turns the equations do not see are places on a circle.
+SectionFunction section_function(const Model& model, const EquationsOfMotion& equations,
+                                 const SectionOptions& options) {
+  const Expr section = options.section;
+  if (!section) return {};
+  const MechanicalSystem& system = *equations.system;
+  const Expr value = in_terms_of_motion(system, {&section, 1}).front();
+  ExprMap at_zero;
+  for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
+    const Expr slope = differentiate(value, system.coordinates[i].q);
+    if (slope.is_zero()) continue;
+    const bool counts_turns = slope.is_number() && abs(slope.number()) == Rational(1);
+    if (!counts_turns || !turns_unseen(model, equations, i, options.interrupt)) return {section, {}};
+    at_zero.emplace(system.coordinates[i].q, system.context->number(Rational(0)));
+  }
+  const bool moves_otherwise = system.context->depends_on_time(substitute(value, at_zero).id());
+  if (at_zero.empty() || moves_otherwise) return {section, {}};
+  return {sin(value), cos(value)};
+}
+
 class SectionRun {
  public:
   SectionRun(const Model& model, const EquationsOfMotion& equations, const SectionOptions& options,
-             Diagnostics& diagnostics)
+             const SectionFunction& function, Diagnostics& diagnostics)
       : model_(model),
         system_(*equations.system),
         equations_(equations),
         options_(options),
+        function_(function),
         diagnostics_(diagnostics),
         motion_(free_motion_kernel(equations, events())),
         stepper_(stepper()) {
-    if (options_.section) section_.emplace(system_, std::span(&options_.section, 1));
+    if (options_.section) section_.emplace(system_, function.parts());
   }
 
   std::optional<SectionResult> carry_out() {
@@ -51,14 +100,14 @@ class SectionRun {
 
  private:
   std::vector<Expr> events() const {
-    return options_.section ? std::vector<Expr>{options_.section} : std::vector<Expr>{};
+    return options_.section ? std::vector<Expr>{function_.value} : std::vector<Expr>{};
   }
 
   std::unique_ptr<orbits::AnyMotion> stepper() const {
     const TaylorOptions options{.tolerance = options_.tolerance, .interrupt = options_.interrupt};
     if (!jumps_on_its_way(model_))
       return orbits::any_motion(TaylorStepper(motion_.kernel, motion_.parameters, options));
-    return orbits::any_motion(MotionThroughModes(model_, equations_, options_.section, options));
+    return orbits::any_motion(MotionThroughModes(model_, equations_, function_.value, options));
   }
 
   bool sound() {
@@ -115,7 +164,7 @@ class SectionRun {
 
   /// The coordinate that the section leaves most free.
   std::size_t least_fixed(const MotionState& s) const {
-    const Eigen::MatrixXd slope = section_->slopes(s);
+    const Eigen::MatrixXd slope = tangent::PointFunctions(system_, {&options_.section, 1}).slopes(s);
     std::size_t best = 0;
     for (std::size_t i = 1; i < s.q.size(); ++i)
       if (std::abs(slope(0, static_cast<Eigen::Index>(i))) < std::abs(slope(0, static_cast<Eigen::Index>(best))))
@@ -125,7 +174,7 @@ class SectionRun {
 
   /// A state of the model's own motion on the section, and the sizes of that motion until there.
   std::optional<std::pair<MotionState, std::vector<double>>> first_crossing(const MotionState& start) {
-    SectionRun alone(model_, equations_, with_one_crossing(), diagnostics_);
+    SectionRun alone(model_, equations_, with_one_crossing(), function_, diagnostics_);
     alone.limit_ = limit_;
     alone.follow(0, start);
     if (!alone.crossed()) return std::nullopt;
@@ -152,8 +201,20 @@ class SectionRun {
     if (!first.ended.empty()) return orbits::refuse_end(first.reached, first.ended, diagnostics_);
     diagnostics_.error("E1405", {}, fmt::format("the motion never crosses the section in {:.6g} s", limit_),
                        "The function of the section keeps its sign, or passes zero in the other direction alone.",
-                       "Choose another section, direction or start; --longest sets how long to wait.");
+                       turns_help() + "Choose another section, direction or start; --longest sets how long to wait.");
     return false;
+  }
+
+  /// A coordinate that turns may pass the same place in another turn; where it is no angle whose turns the equations do
+  /// not see, the section means one of them.
+  std::string turns_help() const {
+    if (function_.cosine) return {};
+    const Eigen::MatrixXd slope = tangent::PointFunctions(system_, {&options_.section, 1}).slopes(out_.orbits[0].start);
+    for (std::size_t i = 0; i < system_.coordinates.size(); ++i)
+      if (system_.coordinates[i].kind == "angle" && slope(0, static_cast<Eigen::Index>(i)) != 0)
+        return fmt::format("For a place in every turn write a function that repeats with it, such as sin({}) = 0. ",
+                           system_.coordinates[i].name);
+    return {};
   }
 
   void follow(std::size_t index, const MotionState& start) {
@@ -202,15 +263,17 @@ class SectionRun {
       const bool rising = middle_ < 0;  // the sign up to the root, which is the first in the step
       const bool wanted =
           options_.direction == SectionDirection::Both || rising == (options_.direction == SectionDirection::Rising);
-      if (hit && wanted) record(index, k++, orbit);
+      if (hit && wanted && !opposite()) record(index, k++, orbit);
     }
   }
 
-  double value_at(double t) {
+  MotionState state_at(double t) const {
     MotionState s{t, std::vector<double>(system_.coordinates.size()), std::vector<double>(system_.coordinates.size())};
     stepper_->state(t, s.q, s.v);
-    return section_->values(s)[0];
+    return s;
   }
+  double value_at(double t) const { return section_->values(state_at(t))[0]; }
+  bool opposite() const { return function_.cosine && section_->values(state_at(stepper_->time()))[1] < 0; }
 
   void record(std::size_t index, std::size_t number, SectionOrbit& orbit) {
     const Sample sample = stepper_->sample(stepper_->time());
@@ -228,6 +291,7 @@ class SectionRun {
   const MechanicalSystem& system_;
   const EquationsOfMotion& equations_;
   const SectionOptions& options_;
+  const SectionFunction& function_;
   Diagnostics& diagnostics_;
   MotionKernel motion_;
   std::unique_ptr<orbits::AnyMotion> stepper_;
@@ -245,7 +309,8 @@ std::optional<SectionResult> poincare_section(const Model& model, const Equation
   if (equations.determined)
     return poincare_section(with_determined_system(model, equations), *equations.determined, options, diagnostics);
   if (jumps_on_its_way(model) && !can_go_through_modes(equations, diagnostics)) return std::nullopt;
-  return SectionRun(model, equations, options, diagnostics).carry_out();
+  const SectionFunction function = section_function(model, equations, options);
+  return SectionRun(model, equations, options, function, diagnostics).carry_out();
 }
 
 }  // namespace maupertuis

@@ -129,3 +129,32 @@ TEST_CASE("sections that are not there are told") {
              [](const ModelText& m, SectionOptions& o) { o.section = m.q(0) - m.system->context->number(2); }) ==
         "E1408");
 }
+
+TEST_CASE("of an angle a section is a place in every turn, where the equations do not see turns") {
+  const auto times = [](const ModelText& m, const Expr& section, SectionDirection direction) {
+    SectionOptions options;
+    options.section = section;
+    options.direction = direction;
+    options.crossings = 20;
+    std::vector<double> out;
+    for (const Crossing& c : section_of(m, options).crossings) out.push_back(c.state.t);
+    REQUIRE(out.size() == 20);
+    return out;
+  };
+  const std::string rotors = "dimensionless\ncoord a, b : angle\nL = 1/2 (a'^2 + b'^2)";
+  const ModelText free(rotors + "\nstart a = 0.5, a' = 2.3, b' = 0.3\nrun 100\n");
+  const Expr one = free.model.system.context->number(Rational(1));
+  const double turn = 2 * std::numbers::pi;
+  const auto rising = times(free, free.q(0) - one, SectionDirection::Rising);
+  const auto backwards = times(free, one - free.q(0), SectionDirection::Falling);
+  const auto relative = times(free, free.q(0) - free.q(1) - one, SectionDirection::Both);
+  const ModelText spring(rotors + " - 1/2 a^2 - 1/2 b^2\nstart a' = 20\nrun 100\n");
+  const auto untwisted = times(spring, spring.q(0), SectionDirection::Rising);
+  for (std::size_t k = 0; k < 20; ++k) {
+    const auto number = static_cast<double>(k);
+    CHECK(rising[k] == doctest::Approx((0.5 + turn * number) / 2.3).epsilon(1e-13));
+    CHECK(backwards[k] == doctest::Approx(rising[k]).epsilon(1e-13));
+    CHECK(relative[k] == doctest::Approx((0.5 + turn * number) / 2).epsilon(1e-13));
+    CHECK(untwisted[k] == doctest::Approx(turn * (number + 1)).epsilon(1e-13));
+  }
+}
