@@ -92,10 +92,18 @@ class Finder {
           "point symmetries: not searched, the poorest basis has more than {} functions", options_.largest_basis));
       return true;
     }
+    return search_charges(basis);
+  }
+
+  bool search_charges(const Basis& basis) {
     const SearchResult found = conserved_combinations(rows_, ansatz_.generators, basis, {}, work(), options_.seed + 3);
     if (found.singular) return singular();
     result_.basis.push_back(basis.description + fmt::format(": {} functions", basis.monomials.size()) +
                             reservation(found));
+    if (!found.sampled && !ansatz_.atoms.time.empty()) {  // the rates of waves are roots; others need none
+      ansatz_.atoms.time.clear();
+      return find_charges();
+    }
     result_.noether_symmetries = hamiltonian_ ? found.dimension : 0;
     result_.too_long += found.too_long;
     for (const Combination& c : found.found) take(c.value, hamiltonian_ ? IntegralKind::Noether : IntegralKind::Direct);

@@ -38,7 +38,7 @@ class Search {
         basis_(basis),
         known_(known),
         of_rates_(of_rates),
-        sampler_(rows, with_known(generators.values(), known), true, seed),
+        sampler_(rows, with_known(needed(generators, basis), known), true, seed),
         field_(sampler_.field()) {}
 
   SearchResult carry_out(std::size_t work) {
@@ -62,6 +62,15 @@ class Search {
   }
 
  private:
+  /// The generators that stand in the basis, and 1 in the places of the others: roots that only these hold need not
+  /// exist.
+  static std::vector<Expr> needed(const Generators& generators, const Basis& basis) {
+    std::vector<Expr> out(generators.values().size(), generators.context().number(1));
+    for (const Monomial& m : basis.monomials)
+      for (const Factor& f : m) out[f.generator] = generators.values()[f.generator];
+    return out;
+  }
+
   static std::vector<Expr> with_known(std::vector<Expr> functions, const std::vector<Expr>& known) {
     functions.insert(functions.end(), known.begin(), known.end());
     return functions;
