@@ -350,7 +350,11 @@ std::optional<Invariants> find_invariants(const Model& model, const EquationsOfM
   if (named->related) {  // as it is written: sin² α + cos² α = 1 may be needed
     auto as_written = Finder(model, equations, without_drift, diagnostics).carry_out();
     const auto size = [](const Invariants& i) { return std::make_pair(i.autonomous_rank, i.noether_symmetries); };
-    if (as_written && size(*as_written) > size(*found)) found = std::move(as_written);
+    const auto seen = [](const Invariants& i) { return i.integrals.size() + i.too_long; };
+    if (as_written && size(*as_written) > size(*found))
+      found = std::move(as_written);
+    else if (as_written && seen(*as_written) > seen(*found))  // for these numbers alone: their coefficients hold roots
+      found->too_long += seen(*as_written) - seen(*found);
   }
   if (options.drift) measure_drift(*found, model, equations, diagnostics);
   return found;

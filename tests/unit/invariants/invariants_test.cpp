@@ -419,3 +419,16 @@ TEST_CASE("energies of oscillators whose rates are roots that are not met at ran
     CHECK(std::none_of(f.result.basis.begin(), f.result.basis.end(), untold));
   }
 }
+
+TEST_CASE("an integral whose coefficients hold roots of numbers is told to be there, where it cannot be written") {
+  // Hénon's integral of Toda's lattice: 24 √3 y'³ − 72 √3 x'² y' − … is conserved for √3 alone.
+  const std::string toda =
+      "coord x, y : number\nL = 1/2 (x'^2 + y'^2) - 1/24 (exp(2 x + 2 ROOT y) + exp(2 x - 2 ROOT y) + exp(-4 x))\n";
+  const auto with = [&](const std::string& root) {
+    std::string text = toda;
+    for (std::size_t at; (at = text.find("ROOT")) != std::string::npos;) text.replace(at, 4, root);
+    return text;
+  };
+  CHECK(Found(with("sqrt(3)"), 3).result.too_long == 1);
+  CHECK(Found(with("sqrt(5)"), 3).result.too_long == 0);
+}
