@@ -62,7 +62,8 @@ void check_orbits_options(const OrbitsOptions& o, Diagnostics& diagnostics) {
         std::pair("--interval", &o.interval), std::pair("--transient", &o.transient)})
     if (*text && !parse_time(**text))
       diagnostics.error("E0809", {}, fmt::format("{} \"{}\" is no time.", option, **text), {},
-                        "Write a number with a unit of time, such as 3s or 250ms, or a part of π, such as \"2 pi/3 s\".");
+                        "Write a number with a unit of time, such as 3s or 250ms, or a part of π, "
+                        "such as \"2 pi/3 s\".");
   if (const auto interval = time_of(o.interval); interval && !(*interval > 0))
     diagnostics.error("E0809", {}, fmt::format("--interval \"{}\" is no time that passes.", *o.interval),
                       "Directions are orthogonalized each time that it has passed.", "Write one such as 0.5s.");

@@ -6,8 +6,8 @@
 
 namespace maupertuis::app {
 
-/// A time of the command line in seconds: "3s", "250 ms", "-2 min"; a bare number is in seconds. Also a part of π of these,
-/// "pi", "2 pi/3 ms". Nothing otherwise.
+/// A time of the command line in seconds: "3s", "250 ms", "-2 min"; a bare number is in seconds. Also a part of π of
+/// these, "pi", "2 pi/3 ms". Nothing otherwise.
 std::optional<double> parse_time(const std::string& text);
 /// The same, exactly.
 std::optional<Rational> parse_exact_time(const std::string& text);
