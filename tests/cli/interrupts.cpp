@@ -45,7 +45,7 @@ TEST_CASE("every command ends soon after the signal") {
   const std::vector<std::vector<std::string>> commands{
       {"simulate", model, "--duration", "100000000s", "--every", "1000s"},
       {"simulate", model, "--duration", "100000000s", "--precision", "quad"},
-      {"simulate", model, "--duration", "100000000s", "--method", "variational", "--step", "1ms"},
+      {"simulate", model, "--duration", "100000000s", "--method", "variational", "--step", "100ms"},
       {"plot", model, "--duration", "100000000s", "--every", "1000s", "-o", folder.path("motion.svg")},
       {"report", model, "--duration", "100000000s", "--every", "1000s", "--budget", "none", "-o",
        folder.path("page.html")},
