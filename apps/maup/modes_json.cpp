@@ -197,6 +197,7 @@ Json locus_document(const MechanicalSystem& system, const Locus& locus) {
   Json document = json_document("modes");
   document["system"] = system.name;
   document["parameter"] = system.parameters[locus.parameter].name;
+  document["without_points"] = values_without_points(locus);
   document["branches"] = Json::array();
   for (const LocusBranch& b : locus.branches) {
     Json branch = Json::array();

@@ -413,6 +413,10 @@ std::string locus_text(const MechanicalSystem& system, const Locus& locus) {
   for (const StabilityChange& c : locus.changes)
     out += fmt::format("  branch {} at {} = {}: {} → {}\n", c.branch + 1, p.name, value(c.parameter),
                        stability_word(c.before), stability_word(c.after));
+  if (const std::vector<double> without = values_without_points(locus); !without.empty())
+    out +=
+        fmt::format("  no point was found at {} = {}{}\n", p.name, value(without.front()),
+                    without.size() == 1 ? "" : fmt::format(" … {}, {} values", value(without.back()), without.size()));
   return out;
 }
 

@@ -41,6 +41,9 @@ struct Locus {
 Locus parameter_locus(PointEquations& equations, const MotionState& start, std::size_t parameter, double from,
                       double to, std::size_t steps);
 
+/// Values of the sweep at which no branch has a point: there is none, or the equations hold no longer.
+std::vector<double> values_without_points(const Locus& locus);
+
 /// A row for each point: the parameter, the branch, the verdict, coordinates and rates, then real and imaginary parts
 /// of the eigenvalues.
 std::string to_csv(const MechanicalSystem& system, const Locus& locus);

@@ -33,6 +33,13 @@ TEST_CASE("modes of a pendulum: formulas, frequency, verdict") {
   CHECK(contains(one.out, "stable: the Hessian of the potential is positive definite"));
 }
 
+TEST_CASE("values of a sweep without points are told") {
+  const Outcome told = maup({"modes", "-", "--sweep", "l = -1 .. 1 m steps 3"}, pendulum);
+  CHECK_MESSAGE(told.code == 0, told.err);
+  CHECK(contains(told.out, "no point was found at l = 0\n"));
+  CHECK_FALSE(contains(maup({"modes", "-", "--sweep", "l = 1 .. 2 m steps 3"}, pendulum).out, "no point was found"));
+}
+
 TEST_CASE("mirror images are said once") {
   const auto times = [](const std::string& text, const std::string& part) {
     std::size_t count = 0;

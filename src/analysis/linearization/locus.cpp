@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <optional>
+#include <set>
 
 namespace maupertuis {
 namespace {
@@ -298,6 +300,16 @@ Locus parameter_locus(PointEquations& equations, const MotionState& start, std::
   const double own = equations.parameter(parameter);
   Locus out = Tracer(equations, start, parameter).trace(from, to, steps);
   equations.set_parameter(parameter, own);
+  return out;
+}
+
+std::vector<double> values_without_points(const Locus& locus) {
+  std::set<double> seen;
+  for (const LocusBranch& b : locus.branches)
+    for (const LocusPoint& x : b.points) seen.insert(x.parameter);
+  std::vector<double> out;
+  std::copy_if(locus.values.begin(), locus.values.end(), std::back_inserter(out),
+               [&](double value) { return seen.count(value) == 0; });
   return out;
 }
 
