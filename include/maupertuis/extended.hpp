@@ -135,6 +135,11 @@ struct ExtendedMotion {
 /// Cost: steps × order² × instructions of the kernel, each some 50 ns (113 bits) to 250 ns (448 bits).
 ExtendedMotion run_extended(const ExtendedProblem& problem, Mantissa mantissa, const ExtendedOptions& options);
 
+/// What this build calculates with in the place of it: a module for browsers, which is to be small, has the two widest
+/// alone.
+Mantissa compiled_mantissa(Mantissa mantissa);
+int bits_of(Mantissa mantissa);
+
 /// The rounding unit of a type, as the logarithm of base 2.
 double log2_rounding(Mantissa mantissa);
 

@@ -22,8 +22,9 @@ struct PreciseMode {
 };
 
 /// At a root of the rows at rest next to `at`, which binds every symbol, found in 100 digits too. Eigenvalues nearer
-/// than 10⁻²² of the largest are one. Nothing where M is singular, where the steps to the root do not end below 10⁻⁴⁰
-/// of `sizes` [n], or a value is none. Cost: all derivatives as formulas, O(n³) operations in 100 digits.
+/// than 10⁻²² of their size are one, where ∂R/∂q is singular nearer than 10⁻²² of the largest. Nothing where M is
+/// singular, where the steps to the root do not end below 10⁻⁴⁰ of `sizes` [n], or a value is none. Cost: all
+/// derivatives as formulas, O(n³) operations in 100 digits.
 std::optional<std::vector<PreciseMode>> precise_modes(const RowsOfMotion& motion, const Bindings& at,
                                                       std::span<const double> sizes);
 

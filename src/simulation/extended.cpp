@@ -20,14 +20,16 @@ namespace {
 
 struct Level {
   Mantissa mantissa, check;
-  int bits, check_bits, digits;
+  int digits;
   double log2_tolerance;
+
+  int bits() const { return bits_of(compiled_mantissa(mantissa)); }
+  int check_bits() const { return bits_of(compiled_mantissa(check)); }
 };
 
 Level level_of(Precision precision) {
-  if (precision == Precision::Quad)
-    return {Mantissa::Bits113, Mantissa::Bits192, 113, 192, 33, log2_rounding(Mantissa::Bits113)};
-  return {Mantissa::Bits384, Mantissa::Bits448, 384, 448, 100, -105 * std::log2(10.0)};
+  if (precision == Precision::Quad) return {Mantissa::Bits113, Mantissa::Bits192, 33, log2_rounding(Mantissa::Bits113)};
+  return {Mantissa::Bits384, Mantissa::Bits448, 100, -105 * std::log2(10.0)};
 }
 
 bool has_method(const Model& model, const ExtendedSimulationOptions& options, Diagnostics& diagnostics) {
@@ -83,7 +85,7 @@ class ExtendedRun {
     if (options_.progress) settings_.progress = [this](double fraction) { options_.progress(0.28 * fraction); };
     const ExtendedMotion rough = run_extended(plan_.problem, level_.mantissa, settings_);
     out_.statistics = {
-        rough.steps, 0, rough.switches, rough.order, 0, level_.bits, level_.check_bits, seconds_since(begin), 0, 0,
+        rough.steps, 0, rough.switches, rough.order, 0, level_.bits(), level_.check_bits(), seconds_since(begin), 0, 0,
         0,           0};
     tell_ending(rough);
     out_.at.resize(options_.at.size());
@@ -136,7 +138,7 @@ class ExtendedRun {
     std::vector<Expr> out = plan_.numbers;
     std::mt19937_64 random(1744);
     const std::size_t n = system_.coordinates.size(), p = plan_.problem.kernel.parameters();
-    const Expr one = system_.context->number(1), unit = pow(system_.context->number(2), Rational(1 - level_.bits));
+    const Expr one = system_.context->number(1), unit = pow(system_.context->number(2), Rational(1 - level_.bits()));
     const auto nudge = [&](Expr& number) {
       const Rational* const exact = number.number_or_null();
       if (exact && *exact == Rational::from_double(exact->to_double())) return;
@@ -207,7 +209,7 @@ class ExtendedRun {
 
   void compare(const ExtendedMotion& rough, const ExtendedMotion& companion, const ExtendedMotion& fine) {
     tell_other_ending(rough, companion, "the companion of another order that tells the digits");
-    tell_other_ending(rough, fine, fmt::format("the check in {} bits that tells the digits", level_.check_bits));
+    tell_other_ending(rough, fine, fmt::format("the check in {} bits that tells the digits", level_.check_bits()));
     if (out_.ending == Ending::Interrupted) keep_without_digits(rough);
     for (std::size_t i = 0; i < rough.at.size(); ++i)
       if (const ExtendedState told = agreed({rough.at[i], companion.at[i], fine.at[i]}); told.reached)

@@ -1,6 +1,7 @@
 #include "analysis/linearization/point_equations.hpp"
 
 #include "analysis/linearization/free_of_time.hpp"
+#include "analysis/linearization/turns.hpp"
 
 #include <maupertuis/contact_mode.hpp>
 #include <maupertuis/degenerate.hpp>
@@ -324,7 +325,7 @@ namespace {
 constexpr std::uint64_t states_of_friction = 32;  // at which its power is looked at
 constexpr int compared_states = 3;
 
-/// Whether R and the constraints are the same 2π further.
+/// Whether R and the constraints are the same 2π further, as numbers tell it.
 bool repeats(PointEquations::Impl& e, std::size_t i) {
   for (int s = 0; s < compared_states; ++s) {
     OperatingPoint here = random_point(e, 1744 + static_cast<std::uint64_t>(s)), there = here;
@@ -345,8 +346,8 @@ PointEquations::PointEquations(const EquationsOfMotion& equations, std::span<con
   const ExpressionLock lock(*equations.system->context);
   impl_ = std::make_unique<Impl>(equations, outputs);
   for (std::size_t i = 0; i < impl_->n; ++i)
-    impl_->is_periodic[i] =
-        impl_->system->coordinates[i].kind == "angle" || impl_->system->dimensionless ? repeats(*impl_, i) : false;
+    impl_->is_periodic[i] = (impl_->system->coordinates[i].kind == "angle" || impl_->system->dimensionless) &&
+                            repeats(*impl_, i) && repeats_each_turn(*impl_, i);
 }
 PointEquations::~PointEquations() = default;
 PointEquations::PointEquations(PointEquations&&) noexcept = default;

@@ -12,33 +12,46 @@ namespace maupertuis {
 
 using extended::Real;
 
-ExtendedMotion run_extended(const ExtendedProblem& problem, Mantissa mantissa, const ExtendedOptions& options) {
-  switch (mantissa) {
-    case Mantissa::Bits113:
-      return extended::run_motion<Real<113>>(problem, options);
-    case Mantissa::Bits192:
-      return extended::run_motion<Real<192>>(problem, options);
-    case Mantissa::Bits384:
-      return extended::run_motion<Real<384>>(problem, options);
-    case Mantissa::Bits448:
-      break;
-  }
-  return extended::run_motion<Real<448>>(problem, options);
+namespace {
+
+#ifdef __EMSCRIPTEN__
+constexpr bool has_narrow = false;
+#else
+constexpr bool has_narrow = true;
+#endif
+
+}  // namespace
+
+Mantissa compiled_mantissa(Mantissa mantissa) {
+  if (has_narrow) return mantissa;
+  return mantissa == Mantissa::Bits113 || mantissa == Mantissa::Bits384 ? Mantissa::Bits384 : Mantissa::Bits448;
 }
 
-double log2_rounding(Mantissa mantissa) {
+ExtendedMotion run_extended(const ExtendedProblem& problem, Mantissa mantissa, const ExtendedOptions& options) {
+  const Mantissa compiled = compiled_mantissa(mantissa);
+  if constexpr (has_narrow) {
+    if (compiled == Mantissa::Bits113) return extended::run_motion<Real<113>>(problem, options);
+    if (compiled == Mantissa::Bits192) return extended::run_motion<Real<192>>(problem, options);
+  }
+  return compiled == Mantissa::Bits384 ? extended::run_motion<Real<384>>(problem, options)
+                                       : extended::run_motion<Real<448>>(problem, options);
+}
+
+int bits_of(Mantissa mantissa) {
   switch (mantissa) {
     case Mantissa::Bits113:
-      return -112;
+      return 113;
     case Mantissa::Bits192:
-      return -191;
+      return 192;
     case Mantissa::Bits384:
-      return -383;
+      return 384;
     case Mantissa::Bits448:
       break;
   }
-  return -447;
+  return 448;
 }
+
+double log2_rounding(Mantissa mantissa) { return 1 - bits_of(mantissa); }
 
 namespace {
 

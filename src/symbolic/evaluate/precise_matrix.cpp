@@ -5,7 +5,7 @@
 namespace maupertuis::evaluation {
 namespace {
 
-const Real100 least_pivot_of_size_one("1e-40"), deflated("1e-98");
+const Real100 deflated("1e-98");
 
 Complex100 square_root(const Complex100& z) {
   const Real100 size = size_of(z);
@@ -72,11 +72,14 @@ void turn(PreciseMatrix& a, std::size_t low, std::size_t high, const Complex100&
 }  // namespace
 
 Reduction::Reduction(PreciseMatrix matrix, std::size_t unknowns)
+    : Reduction(matrix, unknowns, matrix, Real100("1e-40")) {}
+
+Reduction::Reduction(PreciseMatrix matrix, std::size_t unknowns, PreciseMatrix sizes, const Real100& least)
     : a_(std::move(matrix)), unknowns_(unknowns), column_sizes_(unknowns, Real100(1)) {
-  equilibrate();
+  equilibrate(std::move(sizes));
   std::vector<bool> taken_rows(a_.rows), taken(unknowns_);
   while (pivots_.size() < std::min(a_.rows, unknowns_)) {
-    Real100 largest = least_pivot_of_size_one;
+    Real100 largest = least;
     std::optional<std::pair<std::size_t, std::size_t>> next;
     for (std::size_t i = 0; i < a_.rows; ++i)
       for (std::size_t j = 0; !taken_rows[i] && j < unknowns_; ++j)
@@ -88,17 +91,17 @@ Reduction::Reduction(PreciseMatrix matrix, std::size_t unknowns)
   }
 }
 
-void Reduction::equilibrate() {
+void Reduction::equilibrate(PreciseMatrix sizes) {
   for (std::size_t j = 0; j < unknowns_; ++j) {
     Real100 size = 0;
-    for (std::size_t i = 0; i < a_.rows; ++i) size = std::max(size, size_of(a_.at(i, j)));
+    for (std::size_t i = 0; i < a_.rows; ++i) size = std::max(size, size_of(sizes.at(i, j)));
     if (!(size > 0)) continue;
     column_sizes_[j] = size;
-    for (std::size_t i = 0; i < a_.rows; ++i) a_.at(i, j) /= Complex100(size);
+    for (std::size_t i = 0; i < a_.rows; ++i) a_.at(i, j) /= Complex100(size), sizes.at(i, j) /= Complex100(size);
   }
   for (std::size_t i = 0; i < a_.rows; ++i) {
     Real100 size = 0;
-    for (std::size_t j = 0; j < unknowns_; ++j) size = std::max(size, size_of(a_.at(i, j)));
+    for (std::size_t j = 0; j < unknowns_; ++j) size = std::max(size, size_of(sizes.at(i, j)));
     for (std::size_t j = 0; size > 0 && j < a_.columns; ++j) a_.at(i, j) /= Complex100(size);
   }
 }
@@ -143,9 +146,8 @@ std::optional<std::vector<Complex100>> eigenvalues(PreciseMatrix a) {
     const std::size_t high = left - 1;
     std::size_t low = high;
     for (; low > 0; --low) {
-      Real100 beside = size_of(a.at(low, low)) + size_of(a.at(low - 1, low - 1));
-      if (beside == 0) beside = norm;
-      if (size_of(a.at(low, low - 1)) <= deflated * beside) break;
+      // Of the whole matrix: below its rounding nothing beside small entries becomes smaller.
+      if (size_of(a.at(low, low - 1)) <= deflated * norm) break;
     }
     if (low == high) {
       out.push_back(a.at(high, high));

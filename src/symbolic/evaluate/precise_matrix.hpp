@@ -21,10 +21,13 @@ struct PreciseMatrix {
 };
 
 /// Gauss and Jordan with the largest pivots among the first `unknowns` columns, of rows and columns of size 1: what is
-/// below 10⁻⁴⁰ is no pivot.
+/// not above `least` is no pivot.
 class Reduction {
  public:
   Reduction(PreciseMatrix matrix, std::size_t unknowns);
+  /// `sizes`: of the terms whose sums the entries are, with which rows and columns are made of size 1: entries that
+  /// cancel make no row small.
+  Reduction(PreciseMatrix matrix, std::size_t unknowns, PreciseMatrix sizes, const Real100& least);
   std::size_t rank() const { return pivots_.size(); }
   /// x with A x = column k of what stands behind A; 0 where no pivot is.
   std::vector<Complex100> solution(std::size_t k) const;
@@ -32,7 +35,7 @@ class Reduction {
   std::vector<std::vector<Complex100>> kernel() const;
 
  private:
-  void equilibrate();
+  void equilibrate(PreciseMatrix sizes);
   void eliminate(std::size_t row, std::size_t column);
 
   PreciseMatrix a_;

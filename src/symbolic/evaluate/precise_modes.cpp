@@ -15,7 +15,8 @@ using evaluation::PreciseMatrix;
 using evaluation::Real100;
 using evaluation::size_of;
 
-const Real100 one_value("1e-22"), no_part("1e-40");  // of the largest eigenvalue
+const Real100 one_value("1e-22"), no_part("1e-40");  // of an eigenvalue
+const Real100 lost("1e-60");                         // of the largest one: what is left of a chain of zeros is more
 
 /// R, then its derivatives by q, q̇, q̈, by rows; evaluated at any q.
 class RowsInDigits {
@@ -104,9 +105,11 @@ struct Cluster {
   std::size_t count = 0;
   Complex100 mean() const { return sum / Complex100(Real100(count)); }
 };
-std::vector<Cluster> clusters(const std::vector<Complex100>& values, const Real100& same) {
+/// `smallest`: sizes below it count as that.
+std::vector<Cluster> clusters(const std::vector<Complex100>& values, const Real100& smallest) {
   std::vector<Cluster> out;
   for (const Complex100& z : values) {
+    const Real100 same = one_value * std::max(size_of(z), smallest);
     const auto near =
         std::find_if(out.begin(), out.end(), [&](const Cluster& c) { return size_of(c.mean() - z) <= same; });
     Cluster& cluster = near == out.end() ? out.emplace_back() : *near;
@@ -116,15 +119,19 @@ std::vector<Cluster> clusters(const std::vector<Complex100>& values, const Real1
   return out;
 }
 
-/// z² M + z C + K; a sum whose terms cancel to 50 digits is 0.
-PreciseMatrix pencil(const Complex100& z, const PreciseMatrix& m, const PreciseMatrix& c, const PreciseMatrix& k) {
+/// z² M + z C + K and the sizes of its terms; a sum whose terms cancel to 50 digits is 0.
+struct Pencil {
+  PreciseMatrix sums, sizes;
+};
+Pencil pencil(const Complex100& z, const PreciseMatrix& m, const PreciseMatrix& c, const PreciseMatrix& k) {
   static const Real100 rounding("1e-50");
-  PreciseMatrix out(k.rows, k.columns);
-  for (std::size_t i = 0; i < out.entries.size(); ++i) {
+  Pencil out{PreciseMatrix(k.rows, k.columns), PreciseMatrix(k.rows, k.columns)};
+  for (std::size_t i = 0; i < k.entries.size(); ++i) {
     const Complex100 terms[] = {z * z * m.entries[i], z * c.entries[i], k.entries[i]};
     const Complex100 sum = terms[0] + terms[1] + terms[2];
     const Real100 size = size_of(terms[0]) + size_of(terms[1]) + size_of(terms[2]);
-    if (size_of(sum) > rounding * size) out.entries[i] = sum;
+    out.sizes.entries[i] = Complex100(size);
+    if (size_of(sum) > rounding * size) out.sums.entries[i] = sum;
   }
   return out;
 }
@@ -151,17 +158,24 @@ std::optional<std::vector<PreciseMode>> precise_modes(const RowsOfMotion& motion
   if (!values) return std::nullopt;
   Real100 largest = 0;
   for (const Complex100& z : *values) largest = std::max(largest, size_of(z));
+  // Where ∂R/∂q is regular no eigenvalue is zero, and each has its digits, however small it is beside the largest. Else
+  // a chain of zeros of four is known to 25 digits alone.
+  const bool has_zeros = evaluation::Reduction(k, n).rank() < n;
+  const Real100 smallest = has_zeros ? largest : lost * largest;
   std::vector<PreciseMode> out;
-  for (const Cluster& cluster : clusters(*values, one_value * largest)) {
+  for (const Cluster& cluster : clusters(*values, smallest)) {
     Complex100 z = cluster.mean();
-    const bool is_zero = size_of(z) <= one_value * largest;
-    if (is_zero || abs(z.real()) <= no_part * largest) z.real(0);
-    if (is_zero || abs(z.imag()) <= no_part * largest) z.imag(0);
+    const bool is_zero = has_zeros && size_of(z) <= one_value * largest;
+    const Real100 part = no_part * std::max(size_of(z), smallest);
+    if (is_zero || abs(z.real()) <= part) z.real(0);
+    if (is_zero || abs(z.imag()) <= part) z.imag(0);
     if (z.imag() < 0) continue;
     PreciseMode mode{{static_cast<double>(z.real()), static_cast<double>(z.imag())}, 0, cluster.count, {}};
     mode.error = is_zero ? static_cast<double>(one_value * largest)
                          : std::numeric_limits<double>::epsilon() * std::abs(mode.eigenvalue);
-    for (const auto& x : evaluation::Reduction(pencil(z, m, c, k), n).kernel()) mode.shapes.push_back(rounded_shape(x));
+    Pencil here = pencil(z, m, c, k);
+    for (const auto& x : evaluation::Reduction(std::move(here.sums), n, std::move(here.sizes), one_value).kernel())
+      mode.shapes.push_back(rounded_shape(x));
     if (mode.shapes.empty()) return std::nullopt;
     out.push_back(std::move(mode));
   }

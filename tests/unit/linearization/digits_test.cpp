@@ -28,6 +28,40 @@ TEST_CASE("a slow creep behind a strong damper is no zero") {
   CHECK(first_of(damper("1e6", "-1e-6")).stability.verdict == Stability::Unstable);
 }
 
+TEST_CASE("eigenvalues are told however small they are beside the largest") {
+  const ModalAnalysis slow = first_of(
+      "dimensionless\nparam m = 2e-12, c = 7e5, k = -7\ncoord x : number\nL = 1/2 m x'^2 - 1/2 k x^2\n"
+      "D = 1/2 c x'^2\nstart x = 1\n");
+  CHECK(slow.stability.verdict == Stability::Unstable);
+  REQUIRE(slow.modes.size() == 2);
+  CHECK(near(slow.modes[0].eigenvalue.real(), 1e-5, 1e-12));
+  const ModalAnalysis beside = first_of(
+      "dimensionless\nparam m = 1e-12, c = 1e6, k = 1e-6\ncoord x, y : number\n"
+      "L = 1/2 m x'^2 + 1/2 y'^2 - 1/2 k x^2 - 1/2 y^2\nD = 1/2 c x'^2\nstart x = 1\n");
+  REQUIRE(beside.modes.size() == 3);
+  for (const Mode& mode : beside.modes) CHECK(mode.multiplicity == 1);
+  REQUIRE(frequencies(beside).size() == 1);
+  CHECK(near(frequencies(beside)[0], 1, 1e-15));
+  const ModalAnalysis bound = first_of(  // to a strongly damped light mass, by a soft spring
+      "dimensionless\nparam M = 1e-9, c = 1e9, K = 1e-9\ncoord x, z : number\n"
+      "L = 1/2 x'^2 + 1/2 M z'^2 - 1/2 x^2 - 1/2 K (z - x)^2\nD = 1/2 c z'^2\nstart x = 1\n");
+  REQUIRE(bound.modes.size() == 3);
+  CHECK(bound.stability.verdict == Stability::Energetic);
+  CHECK(near(bound.modes[0].eigenvalue.real(), -1e-18, 1e-8));
+  CHECK(near(std::abs(bound.modes[2].eigenvalue.imag()), 1 + 0.5e-9, 1e-15));
+  // Roots of the characteristic polynomial of fourth degree, computed in 60 digits elsewhere.
+  const ModalAnalysis coupled = first_of(
+      "dimensionless\nparam m1 = 2e-17, k1 = 6e7, m2 = 1e-3, C = 100, B = 80, k2 = 0.01\ncoord y, z : number\n"
+      "L = 1/2 m1 y'^2 - 1/2 k1 y^2 + 1/2 m2 z'^2 - 1/2 k2 z^2 + B z y'\nD = 1/2 C (z' - y')^2\nstart y = 1\n");
+  std::vector<double> decays;
+  for (const Mode& mode : coupled.modes) decays.push_back(mode.eigenvalue.real());
+  std::sort(decays.begin(), decays.end());
+  REQUIRE(decays.size() == 4);
+  CHECK(near(decays[1], -556107.1172471269, 1e-14));
+  CHECK(near(decays[2], -107892.88265293596, 1e-14));
+  CHECK(near(decays[3], -0.00010000000009400001, 1e-14));
+}
+
 TEST_CASE("two oscillators joined by a damper") {
   const ModalAnalysis joined = first_of(
       "dimensionless\nparam c = 1e6, k = 1e-6\ncoord x, y : number\nL = 1/2 x'^2 + 1/2 y'^2 - 1/2 k x^2 - 1/2 y^2\n"
