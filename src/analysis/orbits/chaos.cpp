@@ -117,6 +117,16 @@ double VisitedStates::oscillations(double duration) const {
   return most;
 }
 
+double VisitedStates::share_at_rest(const Eigen::VectorXd& direction) const {
+  double share = 0;
+  for (Eigen::Index i = 0; i < ways_.size(); ++i) {
+    const double place = std::max(std::abs(lowest_[i]), std::abs(highest_[i]));
+    if (highest_[i] - lowest_[i] <= rest * place)
+      share += direction[i] * direction[i] + direction[ways_.size() + i] * direction[ways_.size() + i];
+  }
+  return share;
+}
+
 bool VisitedStates::keeps_moving(double duration) const {
   const auto middle = speeds_.begin() + static_cast<std::ptrdiff_t>(speeds_.size() / 2);
   const double before = *std::max_element(speeds_.begin(), middle), after = *std::max_element(middle, speeds_.end());
@@ -131,6 +141,9 @@ Chaos chaos_of(const GrowthOfNeighbours& growth, const VisitedStates& states, do
   const bool exponential = growth.whole > std::max(growth.certain, highest_power * growth.log_of_time) &&
                            growth.second_half > least_share * growth.whole &&
                            growth.second_half > highest_power * std::numbers::ln2;
+  // Neighbours of a rest that is unstable part from it, however the other coordinates move.
+  constexpr double nearly_all = 0.99;
+  if (growth.share_at_rest > nearly_all) return Chaos::NotShown;
   if (!exponential || leaves_no_room(states.certain_dimensions())) return Chaos::NotShown;
   if (!(states.oscillations(duration) > least_oscillations)) return Chaos::NotShown;
   return states.growth_of_second_half() > 0.5 * growth.second_half ? Chaos::RunsAway : Chaos::Shown;

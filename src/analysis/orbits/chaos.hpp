@@ -44,6 +44,8 @@ class VisitedStates {
   /// The most oscillations of a coordinate in this time: its way over twice the range that was seen, of angles a turn
   /// at most.
   double oscillations(double duration) const;
+  /// Which part of a unit vector in units of the sizes [2n] lies along coordinates that have not moved.
+  double share_at_rest(const Eigen::VectorXd& direction) const;
   /// Whether it goes to and fro, and on as fast as it began: it neither comes to rest nor creeps.
   bool keeps_moving(double duration) const;
 
@@ -64,6 +66,7 @@ struct GrowthOfNeighbours {
   double whole = 0, second_half = 0;  // over the run
   double log_of_time = 0;             // the logarithm of the growth of t over the run: a power p gives p times that
   double certain = 0;                 // what must be exceeded, by the errors of the exponent
+  double share_at_rest = 0;           // of their direction, along coordinates that have not moved
 };
 
 /// What growth says where a state has d directions and t stands in the equations, or not. The neighbours of a regular
