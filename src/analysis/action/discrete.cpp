@@ -26,6 +26,23 @@ Mesh even_mesh(std::shared_ptr<const Rule> rule, double start, double end, Index
   return out;
 }
 
+Mesh mesh_with_breaks(std::shared_ptr<const Rule> rule, double start, double end, Index elements,
+                      const std::vector<double>& inner) {
+  if (inner.empty()) return even_mesh(std::move(rule), start, end, elements);
+  Mesh out{std::move(rule), start, end - start, Pace::Even, false, {}, {}};
+  double from = 0;
+  for (std::size_t k = 0; k <= inner.size(); ++k) {
+    const double to = k < inner.size() ? (inner[k] - start) / out.whole : 1, length = to - from;
+    const auto parts = std::max<Index>(1, std::lround(length * static_cast<double>(elements)));
+    for (Index part = 0; part < parts; ++part) {
+      out.begins.push_back(from + length * static_cast<double>(part) / static_cast<double>(parts));
+      out.lengths.push_back(length / static_cast<double>(parts));
+    }
+    from = to;
+  }
+  return out;
+}
+
 Place place_of(const Mesh& mesh, Index e, Index g) {
   const Rule& rule = mesh.rule_of(e);
   const double s = mesh.parameter(e, rule.points[g]), rate = mesh.rate(s),

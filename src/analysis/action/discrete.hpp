@@ -42,6 +42,10 @@ struct Mesh {
 Mesh even_mesh(std::shared_ptr<const Rule> rule, double start, double end, Index elements, bool closed = false,
                Pace pace = Pace::Even);
 
+/// About as many elements, of equal length between breaks at the times `inner`, in order, strictly between the ends.
+Mesh mesh_with_breaks(std::shared_ptr<const Rule> rule, double start, double end, Index elements,
+                      const std::vector<double>& inner);
+
 /// A path by its values at the nodes, with the multipliers of the integral constraints.
 struct Trial {
   Mesh mesh;

@@ -39,18 +39,21 @@ std::vector<Expr> kinks_of(const EquationsOfMotion& equations) {
   return out;
 }
 
+std::vector<double> kink_values(const std::vector<Expr>& kinks, const MotionState& s, const MechanicalSystem& system) {
+  Bindings at = parameter_bindings(system);
+  at[system.context->time()] = s.t;
+  for (std::size_t i = 0; i < system.coordinates.size(); ++i)
+    at[system.coordinates[i].q] = s.q[i], at[system.coordinates[i].velocity] = s.v[i];
+  return evaluate(kinks, at);
+}
+
 std::optional<KinkPassed> kink_passed(const ActionPath& path, const std::vector<Expr>& kinks,
                                       const MechanicalSystem& system) {
   const int looks = looks_an_element * static_cast<int>(path.elements());
   std::vector<std::vector<double>> along(kinks.size());
   const auto time_of = [&](int k) { return path.start + (path.end - path.start) * k / looks; };
   for (int k = 0; k <= looks && !kinks.empty(); ++k) {
-    const MotionState s = path.at(k == looks ? path.end : time_of(k));
-    Bindings at = parameter_bindings(system);
-    at[system.context->time()] = s.t;
-    for (std::size_t i = 0; i < system.coordinates.size(); ++i)
-      at[system.coordinates[i].q] = s.q[i], at[system.coordinates[i].velocity] = s.v[i];
-    const std::vector<double> g = evaluate(kinks, at);
+    const std::vector<double> g = kink_values(kinks, path.at(k == looks ? path.end : time_of(k)), system);
     for (std::size_t j = 0; j < kinks.size(); ++j) along[j].push_back(g[j]);
   }
   std::optional<KinkPassed> first;

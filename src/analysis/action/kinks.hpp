@@ -9,6 +9,9 @@ namespace maupertuis::action {
 /// Δ(∂L/∂g) (∇g·ξ)²/|ġ| at each passage, which none of the counts knows.
 std::vector<Expr> kinks_of(const EquationsOfMotion& equations);
 
+/// The differences g that change sign there, at a state.
+std::vector<double> kink_values(const std::vector<Expr>& kinks, const MotionState& s, const MechanicalSystem& system);
+
 /// A kink that the path passes or touches.
 struct KinkPassed {
   double t = 0;

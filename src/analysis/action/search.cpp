@@ -329,8 +329,8 @@ std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOf
     std::sort(search.found_.begin(), search.found_.end(),
               [](const auto& a, const auto& b) { return a.first.action < b.first.action; });
     if (search.found_.size() > options.paths) {
-      out.bound = fmt::format("{} paths were found, of which the {} with the smallest action are shown.",
-                              search.found_.size(), options.paths);
+      out.bound = fmt::format("{} paths were found, of which the {} with the smallest action are shown. {}",
+                              search.found_.size(), options.paths, search.bound_);
       search.found_.resize(options.paths);
     }
     for (const auto& [refined, name] : search.found_) {

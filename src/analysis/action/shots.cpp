@@ -1,5 +1,7 @@
 #include "analysis/action/shots.hpp"
 
+#include "analysis/action/kinks.hpp"
+
 #include <maupertuis/integrator.hpp>
 #include <maupertuis/motion_kernel.hpp>
 
@@ -66,17 +68,24 @@ class Shooter {
     while (arrived && stepper_.time() != ends_.end) arrived = stepper_.step(ends_.end).ending == StepEnding::None;
     const double arrival = stepper_.q()[0] - to_;
     // A motion that ends on the way and is far off by then has escaped to that side.
-    if (!arrived && std::abs(arrival) > escaped * problem_.least(&ends_)[0])
-      return {speed, std::copysign(HUGE_VAL, arrival)};
+    if (!arrived && is_far_off(arrival)) return {speed, std::copysign(HUGE_VAL, arrival)};
     if (!arrived) return {speed, std::nullopt};
     return {speed, std::isfinite(arrival) ? std::optional(arrival) : std::nullopt};
+  }
+
+  bool is_far_off(double arrival) const { return std::abs(arrival) > escaped * problem_.least(&ends_)[0]; }
+
+  /// Beside a motion that ended on the way, one that came as far within the time: there rounding tells the two apart.
+  bool both_escaped(const Shot& a, const Shot& b) const {
+    return (std::isinf(*a.arrival) || std::isinf(*b.arrival)) && is_far_off(*a.arrival) && is_far_off(*b.arrival);
   }
 
   void between(const Shot& a, const Shot& b, int halvings) {
     if (!a.arrival || !b.arrival) return;
     const bool crosses = (*a.arrival < 0) != (*b.arrival < 0);
     const double apart = std::abs(*a.arrival - *b.arrival);
-    const bool passed_by = !crosses && std::min(std::abs(*a.arrival), std::abs(*b.arrival)) > far * apart;
+    const bool passed_by =
+        !crosses && (std::min(std::abs(*a.arrival), std::abs(*b.arrival)) > far * apart || both_escaped(a, b));
     if (halvings > 0 && out_.count < most_shots && !passed_by && apart > coarse * problem_.typical[0]) {
       const Shot middle = shoot((a.speed + b.speed) / 2);
       between(a, middle, halvings - 1);
@@ -86,7 +95,9 @@ class Shooter {
   }
 
   void keep(Shot a, Shot b) {
-    for (int turn = 0; turn < 60 && std::abs(b.speed - a.speed) > near_zero_of_root * out_.fastest; ++turn) {
+    // Kinks have their places in the mesh from the shot alone: Newton's method does not move them.
+    const double enough = problem_.kinks.empty() ? near_zero_of_root * out_.fastest : 0;
+    for (int turn = 0; turn < 60 && std::abs(b.speed - a.speed) > enough; ++turn) {
       const Shot middle = shoot((a.speed + b.speed) / 2);
       if (!middle.arrival) return;
       ((*middle.arrival < 0) == (*a.arrival < 0) ? a : b) = middle;
@@ -94,16 +105,9 @@ class Shooter {
     out_.arrivals.push_back(path_of((a.speed + b.speed) / 2));
   }
 
-  /// The motion itself at the nodes of a mesh with an element for every two steps.
+  /// The motion itself at the nodes of a mesh with about an element a step, whose breaks include the kinks passed.
   Trial path_of(double speed) {
-    stepper_.start(ends_.start, {&from_, 1}, {&speed, 1});
-    std::size_t steps = 0;
-    while (stepper_.time() != ends_.end && stepper_.step(ends_.end).ending == StepEnding::None) ++steps;
-    Trial out{
-        even_mesh(problem_.rule, ends_.start, ends_.end, std::clamp<Index>(static_cast<Index>(steps), 4, 80), false),
-        {},
-        Vector::Zero(0),
-        Vector::Zero(1)};
+    Trial out{mesh_along(speed), {}, Vector::Zero(0), Vector::Zero(1)};
     out.q = Matrix::Constant(1, out.mesh.nodes(), from_);
     stepper_.start(ends_.start, {&from_, 1}, {&speed, 1});
     Index k = 1;
@@ -114,6 +118,31 @@ class Shooter {
       }
     for (; k < out.q.cols(); ++k) out.q(0, k) = to_;
     out.q(0, out.q.cols() - 1) = to_;
+    return out;
+  }
+
+  Mesh mesh_along(double speed) {
+    stepper_.start(ends_.start, {&from_, 1}, {&speed, 1});
+    std::size_t steps = 0;
+    std::vector<double> passed;  // steps end where the motion passes a kink
+    std::vector<bool> before;
+    for (double t = ends_.start; t != ends_.end && stepper_.step(ends_.end).ending == StepEnding::None; ++steps) {
+      const std::vector<bool> sides = sides_of_kinks(t + (stepper_.time() - t) / 2);
+      if (steps > 0 && sides != before) passed.push_back(t);
+      before = sides;
+      t = stepper_.time();
+    }
+    const Index elements = std::clamp<Index>(static_cast<Index>(steps), 4, 80);
+    return mesh_with_breaks(problem_.rule, ends_.start, ends_.end, elements, passed);
+  }
+
+  /// On which side of each kink the motion is, at a time within the last step.
+  std::vector<bool> sides_of_kinks(double t) {
+    if (problem_.kinks.empty()) return {};
+    double q = 0, v = 0;
+    stepper_.state(t, {&q, 1}, {&v, 1});
+    std::vector<bool> out;
+    for (const double g : kink_values(problem_.kinks, {t, {q}, {v}}, *problem_.equations.system)) out.push_back(g > 0);
     return out;
   }
 

@@ -107,6 +107,33 @@ V = -cos θ
   CHECK(indices == std::vector<std::size_t>{0, 0, 1, 1, 2});
 }
 
+TEST_CASE("paths of several arcs through a kink: S = -T^3/(24 n^2), none of the first is lost") {
+  const ModelText m("system v\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - abs(x)\n");
+  Diagnostics diagnostics;
+  const auto found = stationary_paths(m.model, m.equations, fixed_ends({0}, 0, {0}, 10), {}, diagnostics);
+  REQUIRE(found);
+  REQUIRE(found->paths.size() == 8);
+  for (std::size_t i = 0; i < 8; ++i) {
+    const double arcs = static_cast<double>(i / 2 + 1);  // each up first, and down first
+    CHECK(std::abs(found->paths[i].action + 1000 / (24 * arcs * arcs)) < 1e-12);
+    CHECK(std::abs(found->paths[i].start_velocity[0]) == doctest::Approx(5 / arcs).epsilon(1e-12));
+  }
+  CHECK(found->bound.find("8 with the smallest action are shown. ") != std::string::npos);
+  CHECK(found->bound.find("tell apart no more than these") != std::string::npos);
+}
+
+TEST_CASE("shots of a catenary that all escape to one side are not halved: no more than twice the even ones") {
+  const ModelText m("system c\ndimensionless\nindependent x : number\ncoord y : number\nL = y sqrt(1 + y'^2)\n");
+  const PathSearch found = paths_of(m, fixed_ends({1}, -0.5, {1}, 0.5));
+  REQUIRE(found.paths.size() == 2);
+  // y = c cosh(x/c) with c cosh(1/(2c)) = 1, both roots: S = (c² sinh(1/c) + c)/2
+  for (const auto& [path, c] : {std::pair{0, 0.848337938094979}, std::pair{1, 0.2350949902345327}})
+    CHECK(found.paths[static_cast<std::size_t>(path)].action ==
+          doctest::Approx((c * c * std::sinh(1 / c) + c) / 2).epsilon(1e-12));
+  CHECK(std::stoi(found.bound) > 400);
+  CHECK(std::stoi(found.bound) < 802);
+}
+
 TEST_CASE("a path through a kink gets no index, and the search says what it may miss") {
   const ModelText m("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = abs(x)\n");
   Diagnostics told;
