@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 
 namespace maupertuis {
 namespace {
@@ -113,6 +114,26 @@ void RunClaims::find_end(std::vector<ExpectationResult>& results) {
   }
 }
 
+/// The run evaluates all formulas at all times: each of both is asked for once, however many lines name it, and no more
+/// values are taken than it has room for.
+std::vector<RunClaims::Cell> RunClaims::ask_once(std::span<const Value> values, Probe& probe,
+                                                 std::vector<double>& times) const {
+  constexpr std::size_t room = 1'000'000;  // formulas times times
+  std::unordered_map<Expr, std::size_t, ExprHash> columns;
+  std::unordered_map<double, std::size_t> rows;
+  std::vector<Cell> out;
+  times.clear();
+  for (const Value& v : values) {
+    if (!out.empty() && (columns.size() + 1) * (rows.size() + 1) > room) break;
+    const auto [column, is_new_formula] = columns.emplace(v.subject, probe.expressions.size());
+    if (is_new_formula) probe.expressions.push_back(with_momenta(v.subject, equations_));
+    const auto [row, is_new_time] = rows.emplace(v.time, times.size());
+    if (is_new_time) times.push_back(v.time);
+    out.push_back({row->second, column->second});
+  }
+  return out;
+}
+
 /// Quantities that are watched all along the run, and its energy, belong to the way forwards.
 void RunClaims::run_direction(bool forwards, std::vector<ExpectationResult>& results) {
   const double begin = number(model_.experiment.start_time);
@@ -122,27 +143,34 @@ void RunClaims::run_direction(bool forwards, std::vector<ExpectationResult>& res
   const bool whole_run = forwards && watches_whole_run();
   if (values.empty() && !whole_run) return;
 
+  std::span<const Value> left(values);
+  left = left.subspan(run_once(left, whole_run, diagnostics_, results));
+  Diagnostics unheard;  // the first run said it
+  while (!left.empty()) left = left.subspan(run_once(left, false, unheard, results));
+}
+
+/// Returns how many of the values, from the first on, were asked of this run: at least one, if there is one.
+std::size_t RunClaims::run_once(std::span<const Value> values, bool whole_run, Diagnostics& diagnostics,
+                                std::vector<ExpectationResult>& results) {
   SimulationOptions options = options_;
   if (!whole_run) options.duration = 0.0;  // as far as the times asked for
-  options.at.clear();
   Probe probe;
-  for (const Value& v : values) {
-    probe.expressions.push_back(with_momenta(v.subject, equations_));
-    options.at.push_back(v.time);
-  }
-  if (forwards && !drifts_.empty()) {
+  const std::vector<Cell> cells = ask_once(values, probe, options.at);
+  const std::size_t columns_of_values = probe.expressions.size();
+  if (whole_run && !drifts_.empty()) {
     for (const Drift& d : drifts_) probe.expressions.push_back(with_momenta(d.expectation->subject, equations_));
     const std::vector<double> along = samples();
     options.at.insert(options.at.end(), along.begin(), along.end());
   }
-  const auto run = simulate(model_, equations_, options, diagnostics_, &probe);
-  judge_values(values, options.at, run, probe, results);
-  if (!forwards) return;
+  const auto run = simulate(model_, equations_, options, diagnostics, &probe);
+  for (std::size_t i = 0; i < cells.size(); ++i) judge_value_at(values[i], cells[i], run, probe, results);
+  if (!whole_run) return cells.size();
   for (std::size_t i = 0; i < drifts_.size(); ++i)
-    judge_drift(drifts_[i], values.size() + i, run, probe, results[drifts_[i].line]);
+    judge_drift(drifts_[i], columns_of_values + i, run, probe, results[drifts_[i].line]);
   for (const Energy& e : energies_) judge_energy(e, run, results[e.line]);
   for (const Event& e : events_) judge_event(e, run, results[e.line]);
   for (const EventCount& e : counts_) judge_count(e, run, results[e.line]);
+  return cells.size();
 }
 
 /// Times along the run: within each step as many as its polynomials need to show their extremes, so that what repeats
@@ -164,21 +192,16 @@ std::vector<double> RunClaims::samples() const {
   return times;
 }
 
-void RunClaims::judge_values(const std::vector<Value>& values, const std::vector<double>& times,
-                             const std::optional<SimulationResult>& run, const Probe& probe,
-                             std::vector<ExpectationResult>& results) const {
-  for (std::size_t column = 0; column < values.size(); ++column) {
-    ExpectationResult& result = results[values[column].line];
-    const auto row =
-        static_cast<std::size_t>(std::find(times.begin(), times.end(), values[column].time) - times.begin());
-    if (!run)
-      result.message = kNoStart;
-    else if (probe.values[row].empty())
-      result.message = ended_before(run->reason);
-    else
-      judge_value(*values[column].expected, probe.values[row][column],
-                  probe.errors.empty() ? 0 : probe.errors[row][column], result);
-  }
+void RunClaims::judge_value_at(const Value& value, const Cell& cell, const std::optional<SimulationResult>& run,
+                               const Probe& probe, std::vector<ExpectationResult>& results) const {
+  ExpectationResult& result = results[value.line];
+  if (!run)
+    result.message = kNoStart;
+  else if (probe.values[cell.row].empty())
+    result.message = ended_before(run->reason);
+  else
+    judge_value(*value.expected, probe.values[cell.row][cell.column],
+                probe.errors.empty() ? 0 : probe.errors[cell.row][cell.column], result);
 }
 
 /// `uncertainty`: by how much `actual` may be off; 0 where nobody asked.

@@ -5,6 +5,7 @@
 #include <maupertuis/verification.hpp>
 
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace maupertuis {
@@ -44,6 +45,10 @@ class RunClaims {
     Expr subject;
     double time;
   };
+  /// Where a run has the answer to a line: at which of the times asked, in which of the formulas.
+  struct Cell {
+    std::size_t row, column;
+  };
   struct End {
     std::size_t line;
     const expectation::Number* expected;
@@ -73,9 +78,11 @@ class RunClaims {
   void find_end(std::vector<ExpectationResult>& results);
   void run_direction(bool forwards, std::vector<ExpectationResult>& results);
   std::vector<double> samples() const;
-  void judge_values(const std::vector<Value>& values, const std::vector<double>& times,
-                    const std::optional<SimulationResult>& run, const Probe& probe,
-                    std::vector<ExpectationResult>& results) const;
+  std::size_t run_once(std::span<const Value> values, bool whole_run, Diagnostics& diagnostics,
+                       std::vector<ExpectationResult>& results);
+  std::vector<Cell> ask_once(std::span<const Value> values, Probe& probe, std::vector<double>& times) const;
+  void judge_value_at(const Value& value, const Cell& cell, const std::optional<SimulationResult>& run,
+                      const Probe& probe, std::vector<ExpectationResult>& results) const;
   void judge_value(const expectation::Number& expected, double actual, double uncertainty,
                    ExpectationResult& result) const;
   void judge_drift(const Drift& drift, std::size_t column, const std::optional<SimulationResult>& run,

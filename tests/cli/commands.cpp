@@ -3,7 +3,11 @@
 
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
+
+#include <cmath>
 
 using namespace cli_test;
 
@@ -108,4 +112,23 @@ TEST_CASE("files of a run") {
   const Outcome wrong = maup({"plot", model, "--y", "w"});
   CHECK(wrong.code == 2);
   CHECK(contains(wrong.err, "E0201"));  // the option is read as a formula
+}
+
+TEST_CASE("memory for expectations grows with their number alone") {
+  const Folder folder;
+  const std::string oscillator = "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\nstart x = 1\nrun 1\n";
+  std::string same = oscillator, different = oscillator;
+  for (int k = 1; k <= 4000; ++k) {
+    same += "expect x at 1 = 0.5403023058681398 rel 1e-9\n";
+    const double t = k / 4000.0, value = k == 4000 ? 1 : k * std::cos(t);  // the last one is false
+    different += fmt::format("expect {} x at {:.17g} = {:.17g} rel 1e-9\n", k, t, value);
+  }
+  // The one took 1.2 GB, the other as much: a table of all formulas at all times, once for each companion of the run.
+  const std::string limited = "ulimit -v 700000; \"$MAUP\" test ";
+  const Outcome of_same = shell(limited + folder.write("same.lag", same));
+  CHECK(of_same.code == 0);
+  CHECK(contains(of_same.out, "4000 of 4000 expectations hold"));
+  const Outcome of_different = shell(limited + folder.write("different.lag", different));
+  CHECK(of_different.code == 4);
+  CHECK(contains(of_different.out, "3999 of 4000 expectations hold"));
 }

@@ -51,6 +51,30 @@ claim sin θ φ'' = -2 cos θ θ' φ'
   }
 }
 
+TEST_CASE("lines that share times and formulas each get their own value, on both sides of the start") {
+  const std::string oscillator =
+      "system o\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\nstart x = 1\n"
+      "run 4\n";
+  const Verification v = verify_text(oscillator + R"(
+expect x at 1 = 0.5403023058681398 ± 1e-12
+expect x' at 2 = -0.9092974268256817 ± 1e-12
+expect x at 2 = -0.4161468365471424 ± 1e-12
+expect energy conserved rel 1e-13
+expect x at -1 = 0.5403023058681398 ± 1e-12
+expect x' at 1 = -0.8414709848078965 ± 1e-12
+expect x at 1 = -0.4161468365471424 ± 1e-12
+expect x at -2 = -0.4161468365471424 ± 1e-12
+expect x' at -1 = 0.8414709848078965 ± 1e-12
+expect conserved x^2 + x'^2 rel 1e-13
+expect x at 1 = 0.5403023058681398 ± 1e-12
+)");
+  REQUIRE(v.results.size() == 11);
+  for (std::size_t i = 0; i < v.results.size(); ++i) {
+    INFO(v.results[i].text, ": ", v.results[i].message, " ", v.results[i].actual);
+    CHECK(v.results[i].passed == (i != 6));
+  }
+}
+
 TEST_CASE("numbers with units are what they are, however they are written") {
   const Verification v = verify_text(R"(system fall
 param m = 1 kg, k = 2 N/m
