@@ -32,12 +32,14 @@ struct Locus {
   std::vector<LocusBranch> branches;      // in order of appearance
   std::vector<StabilityChange> changes;   // ascending by parameter
   std::vector<Translation> translations;  // of the model's own value
+  bool interrupted = false;               // values may be missing at the end, and changes anywhere
 };
 
 /// Equilibria and steady motions at equally spaced values of a parameter, joined to branches: at each value Newton's
 /// method begins at the points of the value before and at the starts of `find_equilibria`. What one step of the sweep
 /// carries further than a third of a typical size begins a branch of its own. The parameter has its own value again
-/// afterwards. Cost: that of a search, times `steps`. Precondition: steps ≥ 2.
+/// afterwards. Cost: that of a search, times `steps`. Throws Interrupted before there is a point.
+/// Precondition: steps ≥ 2.
 Locus parameter_locus(PointEquations& equations, const MotionState& start, std::size_t parameter, double from,
                       double to, std::size_t steps);
 

@@ -30,6 +30,7 @@ PageModes page_modes(const Model& model, const EquationsOfMotion& equations, con
     };
     out.locus =
         parameter_locus(at_points, start->state, sweep->parameter, value(sweep->from), value(sweep->to), sweep->steps);
+    if (out.locus->interrupted) throw Interrupted();
   }
   return out;
 }

@@ -17,6 +17,7 @@ namespace {
 constexpr double soon = 20, moment = 0.25;
 
 const char* const star_in_a_galaxy = PROJECT_DIR "/models/henon_heiles.lag";
+const char* const hoop = PROJECT_DIR "/models/bead_on_hoop.lag";
 const char* const driven = PROJECT_DIR "/models/double_pendulum.lag";
 
 /// A chain of pendulums: its equations are far longer than its text.
@@ -90,6 +91,12 @@ TEST_CASE("what was found until then is printed and called partial") {
   CHECK(document["interrupted"] == true);
   CHECK(document["ok"] == false);
   CHECK(document["section"]["crossings"].size() > 0);
+
+  const Outcome sweep = interrupted({"modes", hoop, "--sweep", "Ω = 0 .. 12 rad/s steps 1000000"}, SIGINT, moment);
+  check_end(sweep);
+  CHECK(contains(sweep.out, "Ω = 0 … "));
+  CHECK(contains(sweep.out, "further values are missing"));
+  CHECK(contains(sweep.err, "what stands here is not the whole of it."));
 
   const std::string fine = folder.write("fine.lag", std::string(pendulum) + "expect freedoms = 1\n"),
                     endless =

@@ -1,5 +1,6 @@
 #include "analysis/linearization/point_equations.hpp"
 
+#include <maupertuis/interrupt.hpp>
 #include <maupertuis/locus.hpp>
 
 #include <fmt/format.h>
@@ -23,20 +24,32 @@ class Tracer {
     locus_.parameter = parameter;
   }
 
+  /// Interrupted, what there is after the first value.
   Locus trace(double from, double to, std::size_t steps) {
-    for (std::size_t i = 0; i < steps; ++i) {
-      const double value = from + (to - from) * static_cast<double>(i) / static_cast<double>(steps - 1);
-      locus_.values.push_back(value);
-      set_parameter(value);
-      note_translations(i == 0);
-      join(points_at(value));
+    std::size_t whole = 0;  // values whose points are joined
+    try {
+      for (; whole < steps; ++whole)
+        add_value(from + (to - from) * static_cast<double>(whole) / static_cast<double>(steps - 1));
+      find_changes();
+      join_births();
+    } catch (const Interrupted&) {
+      if (whole == 0) throw;
+      locus_.values.resize(whole);
+      locus_.interrupted = true;
     }
-    find_changes();
-    join_births();
+    std::stable_sort(locus_.changes.begin(), locus_.changes.end(),
+                     [](const auto& x, const auto& y) { return x.parameter < y.parameter; });
     return std::move(locus_);
   }
 
  private:
+  void add_value(double value) {
+    locus_.values.push_back(value);
+    set_parameter(value);
+    note_translations(locus_.values.size() == 1);
+    join(points_at(value));
+  }
+
   /// A force that vanishes at one value leaves symmetries there that the others do not have.
   void set_parameter(double value) {
     equations_.set_parameter(parameter_, value);
@@ -234,8 +247,6 @@ class Tracer {
         if (after.stability.verdict != before) bisect(b, stands_on_it ? points[i - 2] : points[i - 1], after);
       }
     }
-    std::stable_sort(locus_.changes.begin(), locus_.changes.end(),
-                     [](const auto& x, const auto& y) { return x.parameter < y.parameter; });
   }
 
   /// A value of the sweep can stand on the change itself, with a verdict of its own: the ends decide.

@@ -53,9 +53,7 @@ class LyapunovRun {
     if (!plan() || !choose_directions() || !warm_up()) return std::nullopt;
     if (takes_all() && !flow_.through_modes()) divergence_.emplace(equations_, geometry_);
     if (flow_.through_modes() && !geometry_.symplectic()) volume_.reset();
-    for (std::uint64_t k = 0; k < intervals_ && interval(); ++k) {
-      if (options_.progress) options_.progress((k + 1.0) / static_cast<double>(intervals_));
-    }
+    for (std::uint64_t k = 0; k < intervals_ && interval(); ++k) tell_progress();
     if (logs_.empty()) return std::nullopt;  // told
     average();
     return std::move(out_);
@@ -191,6 +189,12 @@ class LyapunovRun {
     return orbits::refuse_end(stop_.t, stop_.reason, diagnostics_);
   }
 
+  /// Of the transient and the average.
+  void tell_progress() {
+    const double all = std::ceil(transient_ / out_.interval) + static_cast<double>(intervals_);
+    if (options_.progress) options_.progress(static_cast<double>(early_.size() + logs_.size()) / all);
+  }
+
   bool warm_up() {
     const double begin = point_.state.t;
     const auto count = static_cast<std::uint64_t>(std::ceil(transient_ / out_.interval));
@@ -199,15 +203,39 @@ class LyapunovRun {
     visited_->add_of_transient(point_.state, 0);
     for (std::uint64_t k = 1; k <= count; ++k) {
       const auto logs = carry(begin + transient_ * static_cast<double>(k) / static_cast<double>(count));
-      if (!logs) return tell_stop();
+      if (!logs) return takes_transient(begin, transient_ / static_cast<double>(count)) || tell_stop();
       grown_ += *logs;
       visited_->add_of_transient(point_.state, grown_.maxCoeff());
+      early_.push_back({point_.state, *logs});
+      tell_progress();
     }
     begin_ = point_.state.t;
     averaging_ = true;
     before_ = point_.state;
     frame_before_ = directions_;
     visited_->add(before_, grown_.maxCoeff());
+    return true;
+  }
+
+  /// Where the transient is interrupted, its own average is what there is: but for the first tenth, as of a run that
+  /// was to be no longer. False where there is none yet.
+  bool takes_transient(double begin, double interval) {
+    constexpr std::size_t fewest = 20, part_left_out = 10;
+    if (stop_.ending != StepEnding::Interrupted || early_.size() < fewest) return false;
+    const std::size_t left_out = early_.size() / part_left_out;
+    visited_.emplace(*equations_.system, sizes_);
+    grown_.setZero();
+    for (std::size_t k = 0; k < early_.size(); ++k) {
+      grown_ += early_[k].logs;
+      if (k + 1 < left_out) visited_->add_of_transient(early_[k].state, grown_.maxCoeff());
+      if (k + 1 >= left_out) visited_->add(early_[k].state, grown_.maxCoeff());
+      if (k >= left_out) logs_.push_back(early_[k].logs);
+    }
+    out_.interval = interval;
+    transient_ = early_[left_out - 1].state.t - begin;
+    intervals_ = 0;
+    volume_.reset();  // it is integrated along the average alone
+    out_.ended = "The run was interrupted before its transient was over: this is an average over the transient.";
     return true;
   }
 
@@ -368,6 +396,12 @@ class LyapunovRun {
     return 0.5 * Eigen::PartialPivLU<Matrix>(form).matrixLU().diagonal().cwiseAbs().array().log().sum();
   }
 
+  /// The end of an interval, and what directions have grown by in it.
+  struct Carried {
+    MotionState state;
+    Vector logs;
+  };
+
   const Model& model_;
   const EquationsOfMotion& equations_;
   const LyapunovOptions& options_;
@@ -382,6 +416,7 @@ class LyapunovRun {
   MotionState before_;                                    // where the average begins
   Matrix frame_before_, frame_after_;                     // the directions there, and at the end
   std::vector<Vector> logs_;                              // of each interval
+  std::vector<Carried> early_;                            // over the intervals of the transient
   Vector grown_;                                          // their sums, from the beginning of the transient
   std::optional<orbits::DivergenceIntegral> divergence_;  // of all exponents
   std::optional<double> volume_ = 0;  // its integral over the intervals; nothing where there is none

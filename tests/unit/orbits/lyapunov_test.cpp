@@ -164,6 +164,14 @@ TEST_CASE("linear motions part exponentially and are not chaotic") {
   CHECK_FALSE(overflows.ended.empty());
   CHECK_FALSE(overflows.sum_rule_residual);
   CHECK(overflows.exponents[0] == doctest::Approx(1).epsilon(1e-10));
+  // Beside oscillations, a place on a hill where nothing moves.
+  const std::string hill = "dimensionless\ncoord x, y, a : number\nT = 1/2 (x'^2 + y'^2 + a'^2)\n";
+  for (const char* rest : {"V = 1/2 x^2 + y^2 - 1/2 a^2\nstart x = 1, y = 0.3\nrun 300\n",
+                           "V = 1/2 x^2 + y^2 + cos a\nstart x = 1, y = 0.3\nrun 300\n"}) {
+    const LyapunovResult r = lyapunov_of(ModelText(hill + rest));
+    CHECK(r.exponents[0] == doctest::Approx(1).epsilon(0.01));
+    CHECK(r.chaos == Chaos::NotShown);
+  }
   // A fast oscillation, and a slow fall from a hill that it is on.
   const LyapunovResult falls =
       lyapunov_of(ModelText("dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = -0.02205 x^2 + 50 y^2\n"
@@ -193,4 +201,38 @@ TEST_CASE("exponents that cannot be had are told") {
   CHECK(code(one + "V = 1/2 x^2\nstart x = 1\n", backwards) == "E1406");
   CHECK(code(one + "V = abs(x)\nstart x = 1\nrun 10\n") == "E1403");
   CHECK(code(one + "V = -1/x\nstart x = 1\nrun 100\n") == "E1408");
+}
+
+TEST_CASE("an interrupted transient has averages of its own, but for its first tenth") {
+  const ModelText m(one + "V = -1/2 x^2\nstart x = 1e-9\n");
+  StopFlag stop(false);
+  std::size_t told = 0, at = 0;
+  LyapunovOptions options;
+  options.duration = 30;
+  options.transient = 10;
+  options.interval = 0.1;
+  options.interrupt = &stop;
+  options.progress = [&](double fraction) {
+    CHECK(fraction == doctest::Approx(static_cast<double>(++told) / 400));
+    stop = told == at;
+  };
+  at = 80;  // of 100
+  const LyapunovResult r = lyapunov_of(m, options);
+  CHECK(r.ended.find("before its transient was over") != std::string::npos);
+  CHECK(r.duration == doctest::Approx(7.2));
+  CHECK(r.times.back() == doctest::Approx(7.2));
+  REQUIRE(r.exponents.size() == 2);
+  CHECK(std::abs(r.exponents[0] - 1) < 0.1);
+  CHECK(std::abs(r.exponents[1] + 1) < 0.1);
+  CHECK(std::abs(r.sum) < 1e-12);
+  CHECK_FALSE(r.expected_sum);
+  // Later the average is the one that was asked for, so far; of a few intervals there is none.
+  stop = false, told = 0, at = 300;
+  const LyapunovResult later = lyapunov_of(m, options);
+  CHECK(later.duration == doctest::Approx(20));
+  CHECK(later.ended.find("transient") == std::string::npos);
+  CHECK(later.expected_sum == 0);
+  stop = false, told = 0, at = 10;
+  Diagnostics unheard;
+  CHECK_FALSE(lyapunov_exponents(m.model, m.equations, options, unheard));
 }
