@@ -2,7 +2,7 @@
 //   node run.mjs server MAUP PAGE [CASE…]      over `maup studio`
 //   node run.mjs static FOLDER [CASE…]         from a static folder with the core as WebAssembly
 // STUDIO_PICTURES names a folder for screenshots. Cases wait for most of their time, for a person who types or for what
-// the page does after a while: STUDIO_BROWSERS of them (3) run at a time, each with a server and a browser of its own.
+// the page does after a while: STUDIO_BROWSERS of them (2) run at a time, each with a server and a browser of its own.
 import {resolve} from 'node:path';
 import {answers} from './answers.mjs';
 import {carriers} from './carriers.mjs';
@@ -17,7 +17,7 @@ const wanted = words.slice(kind === 'server' ? 2 : 1),
   picture = pictures(process.env.STUDIO_PICTURES),
   all = Object.entries({...cases, ...texts, ...answers, ...carriers, ...kinds, ...lessons}),
   left = all.filter(([name]) => wanted.length === 0 || wanted.includes(name)),
-  browsers = Math.min(Number(process.env.STUDIO_BROWSERS ?? 3), left.length);
+  browsers = Math.min(Number(process.env.STUDIO_BROWSERS ?? 2), left.length);
 
 async function one(name, run, browser, variant) {
   const begin = Date.now();
