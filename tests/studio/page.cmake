@@ -4,10 +4,10 @@ add_test(NAME studio_page_build COMMAND ${PROJECT_SOURCE_DIR}/scripts/studio)
 set_tests_properties(studio_page_build PROPERTIES LABELS studio TIMEOUT 300 FIXTURES_SETUP studio_page)
 set(page ${PROJECT_SOURCE_DIR}/tests/studio/page/run.mjs)
 add_test(NAME studio_page COMMAND node ${page} server ${PROJECT_BINARY_DIR}/bin/maup ${PROJECT_SOURCE_DIR}/build/studio)
-set_tests_properties(studio_page PROPERTIES LABELS studio TIMEOUT 900
+set_tests_properties(studio_page PROPERTIES LABELS studio TIMEOUT 1500
   FIXTURES_REQUIRED studio_page RESOURCE_LOCK browser PROCESSORS 2 COST 250)  # two browsers
 if(EXISTS ${PROJECT_SOURCE_DIR}/build-wasm/bin/maup_worker.js)
   add_test(NAME studio_page_static COMMAND node ${page} static ${PROJECT_SOURCE_DIR}/build/studio_static)
-  set_tests_properties(studio_page_static PROPERTIES LABELS studio TIMEOUT 900
+  set_tests_properties(studio_page_static PROPERTIES LABELS studio TIMEOUT 1500
     FIXTURES_REQUIRED studio_page RESOURCE_LOCK browser PROCESSORS 2 COST 250)  # two browsers
 endif()
