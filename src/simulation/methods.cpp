@@ -1,5 +1,7 @@
 #include "simulation/methods.hpp"
 
+#include "simulation/motion_kernel.hpp"
+
 #include <fmt/format.h>
 #include <maupertuis/motion_kernel.hpp>
 
@@ -106,6 +108,57 @@ std::unique_ptr<Method> stiff_method_from(const Sample& state, double length, co
   StiffStepper stepper = stiff_stepper(equations, wanted, options);
   if (!stepper.fast_parts_die_out(state.t, state.q, state.v, length)) return nullptr;
   return method_of(std::move(stepper));
+}
+
+namespace {
+
+std::unique_ptr<Method> taylor_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
+                                      const SimulationOptions& options) {
+  // Code of few coordinates finds the energy with all else; of many, at each step, it would be a fifth of a run.
+  constexpr std::size_t few = 8, observed_steps = 4;
+  const Kernel kernel = motion_kernel(equations, wanted);
+  TaylorOptions of_steps = taylor_options(options);
+  if (kernel.freedoms() > few && kernel.switches().empty()) of_steps.observed_steps = observed_steps;
+  return method_of(TaylorStepper(kernel, parameter_values(*equations.system), of_steps));
+}
+
+/// Steps of one length: whether a run has so many. Those that are too many by a little are made, up to its last.
+bool has_as_many_steps(const VariationalOptions& options, double duration, Diagnostics& diagnostics) {
+  constexpr double hopeless = 100;
+  const double length = std::abs(duration), most = static_cast<double>(options.maximum_steps);
+  if (!(options.step > 0) || !(length / options.step > hopeless * most)) return true;
+  diagnostics.error("E0721", std::nullopt, fmt::format("steps of {:g} s are too short for this run", options.step),
+                    fmt::format("Some 10^{:.0f} of them lie within its {:g} s, and a run has {:.0g}.",
+                                std::log10(length) - std::log10(options.step), length, most),
+                    "Give a longer one, some twentieth of the shortest period.");
+  return false;
+}
+
+}  // namespace
+
+double stiff_tolerance(const SimulationOptions& options) {
+  return options.tolerance != 0 ? options.tolerance : StiffOptions{}.tolerance;
+}
+
+StiffOptions stiff_options(const SimulationOptions& options) {
+  StiffOptions out;
+  out.tolerance = stiff_tolerance(options);
+  out.maximum_steps = options.maximum_steps;
+  out.interrupt = options.interrupt;
+  return out;
+}
+
+std::unique_ptr<Method> method_of_run(const EquationsOfMotion& equations, const WantedFunctions& wanted,
+                                      const SimulationOptions& options, double duration, Diagnostics& diagnostics) {
+  if (options.method == StepMethod::Stiff) return stiff_method(equations, wanted, stiff_options(options), diagnostics);
+  if (options.method != StepMethod::Variational) return taylor_method(equations, wanted, options);
+  VariationalOptions out;
+  out.step = options.step;
+  if (options.order != 0) out.order = options.order;
+  out.maximum_steps = options.maximum_steps;
+  out.interrupt = options.interrupt;
+  if (!has_as_many_steps(out, duration, diagnostics)) return nullptr;
+  return variational_method(equations, wanted, out, diagnostics);
 }
 
 }  // namespace maupertuis

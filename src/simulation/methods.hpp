@@ -10,7 +10,7 @@
 
 #include <memory>
 
-/// The methods beside Taylor's, from the equations of a system.
+/// The methods of runs without contacts, friction and events, from the equations of a system.
 namespace maupertuis {
 
 /// The options with a method: where none is asked for that of the model's `method`, or Automatic. Its step and order go
@@ -44,5 +44,12 @@ std::unique_ptr<Method> stiff_method(const EquationsOfMotion& equations, const W
 std::unique_ptr<Method> stiff_method_from(const Sample& state, double length, const EquationsOfMotion& equations,
                                           const WantedFunctions& wanted, const StiffOptions& options,
                                           Diagnostics& diagnostics);
+double stiff_tolerance(const SimulationOptions& options);
+StiffOptions stiff_options(const SimulationOptions& options);
+
+/// The method that the options name, Taylor's where it is Automatic. Nothing, with a diagnostic, as above, and for a
+/// length of variational steps of which a run of this duration has far too many (E0721).
+std::unique_ptr<Method> method_of_run(const EquationsOfMotion& equations, const WantedFunctions& wanted,
+                                      const SimulationOptions& options, double duration, Diagnostics& diagnostics);
 
 }  // namespace maupertuis

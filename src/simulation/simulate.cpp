@@ -39,28 +39,6 @@
 namespace maupertuis {
 namespace {
 
-std::unique_ptr<Method> taylor_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
-                                      const SimulationOptions& options) {
-  // Code of few coordinates finds the energy with all else; of many, at each step, it would be a fifth of a run.
-  constexpr std::size_t few = 8, observed_steps = 4;
-  const Kernel kernel = motion_kernel(equations, wanted);
-  TaylorOptions of_steps = taylor_options(options);
-  if (kernel.freedoms() > few && kernel.switches().empty()) of_steps.observed_steps = observed_steps;
-  return method_of(TaylorStepper(kernel, parameter_values(*equations.system), of_steps));
-}
-
-double stiff_tolerance(const SimulationOptions& options) {
-  return options.tolerance != 0 ? options.tolerance : StiffOptions{}.tolerance;
-}
-
-StiffOptions stiff_options(const SimulationOptions& options) {
-  StiffOptions out;
-  out.tolerance = stiff_tolerance(options);
-  out.maximum_steps = options.maximum_steps;
-  out.interrupt = options.interrupt;
-  return out;
-}
-
 /// Contacts, friction and events go through modes, by Taylor's steps.
 std::unique_ptr<HybridMotion> hybrid_method(const Model& model, const EquationsOfMotion& equations,
                                             const WantedFunctions& wanted, const SimulationOptions& options,
@@ -74,30 +52,6 @@ std::unique_ptr<HybridMotion> hybrid_method(const Model& model, const EquationsO
   if (!can_go_through_modes(equations, diagnostics)) return nullptr;
   return std::make_unique<HybridMotion>(std::make_shared<ModeLibrary>(model, equations, wanted),
                                         parameter_values(model.system), taylor_options(options));
-}
-
-/// Steps of one length: whether a run has so many. Those that are too many by a little are made, up to its last.
-bool reaches_the_end(const SimulationOptions& options, const RunPlan& plan, Diagnostics& diagnostics) {
-  constexpr double hopeless = 100;
-  const double duration = std::abs(plan.end - plan.begin), most = static_cast<double>(options.maximum_steps);
-  if (options.method != StepMethod::Variational || !(duration / options.step > hopeless * most)) return true;
-  diagnostics.error("E0721", std::nullopt, fmt::format("steps of {:g} s are too short for this run", options.step),
-                    fmt::format("Some 10^{:.0f} of them lie within its {:g} s, and a run has {:.0g}.",
-                                std::log10(duration) - std::log10(options.step), duration, most),
-                    "Give a longer one, some twentieth of the shortest period.");
-  return false;
-}
-
-std::unique_ptr<Method> first_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
-                                     const SimulationOptions& options, Diagnostics& diagnostics) {
-  if (options.method == StepMethod::Stiff) return stiff_method(equations, wanted, stiff_options(options), diagnostics);
-  if (options.method != StepMethod::Variational) return taylor_method(equations, wanted, options);
-  VariationalOptions out;
-  out.step = options.step;
-  if (options.order != 0) out.order = options.order;
-  out.maximum_steps = options.maximum_steps;
-  out.interrupt = options.interrupt;
-  return variational_method(equations, wanted, out, diagnostics);
 }
 
 std::string_view word_of(StepMethod method) {
@@ -458,7 +412,6 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   const auto plan = plan_run(model, equations, options, diagnostics);
   if (!plan || !requests_lie_ahead(model.system, *plan, options, diagnostics)) return std::nullopt;
 
-  if (!reaches_the_end(options, *plan, diagnostics)) return std::nullopt;
   if (!start_keeps_contacts(model, plan->begin, plan->q, diagnostics)) return std::nullopt;
 
   const auto begin = Clock::now();
@@ -472,8 +425,9 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   std::unique_ptr<HybridMotion> through_modes;
   if (is_hybrid) through_modes = hybrid_method(model, equations, wanted, options, diagnostics);
   HybridMotion* const hybrid = through_modes.get();
-  std::unique_ptr<Method> method = is_hybrid ? std::unique_ptr<Method>(std::move(through_modes))
-                                             : first_method(equations, wanted, options, diagnostics);
+  std::unique_ptr<Method> method =
+      is_hybrid ? std::unique_ptr<Method>(std::move(through_modes))
+                : method_of_run(equations, wanted, options, plan->end - plan->begin, diagnostics);
   if (!method) return std::nullopt;
   Run::StiffFrom stiff;
   if (!is_hybrid && options.method == StepMethod::Automatic)

@@ -188,7 +188,7 @@ class Continuity {
   };
 
   /// Samples of functions and parts on each switch; the first that `wrong` finds is reported, one a switch. Who reads
-  /// of twenty has read enough: the others, thousands of a table, are not looked for.
+  /// of twenty has read enough: the others, thousands of a table, are counted alone.
   template <class Wrong>
   void examine(const ExprVector& functions, const std::vector<Part>& parts, Wrong wrong) {
     const ExprVector switches = switches_in(functions);
@@ -217,8 +217,8 @@ class Continuity {
       if (found.empty())
         for (SwitchSample& x : where_the_zero_test_points(decided->sampler, places[k], met)) take(std::move(x));
       if (found.empty()) continue;
-      report(switches[k], found, functions.size(), parts);
-      ++told;
+      const Span place = report(switches[k], found, functions.size(), parts);
+      if (++told == most_told && k + 1 < switches.size()) leave_unlooked(switches.size() - k - 1, place);
     }
   }
 
@@ -301,7 +301,8 @@ class Continuity {
   }
 
   /// The sample whose numbers are nearest to 0 and ±1 is the one that a reader can check.
-  void report(Expr g, std::vector<SwitchSample>& found, std::size_t first_part, const std::vector<Part>& parts) {
+  /// Returns where it was told.
+  Span report(Expr g, std::vector<SwitchSample>& found, std::size_t first_part, const std::vector<Part>& parts) {
     const auto size = [](const SwitchSample& x) {
       double sum = 0;
       for (const auto& [symbol, value] : x.at) sum += value == 0 ? 0 : std::abs(std::log(std::abs(value)));
@@ -314,10 +315,10 @@ class Continuity {
         if (std::abs(x.jump[first_part + k]) > std::abs(x.jump[first_part + worst])) worst = k;
       if (std::abs(x.jump[first_part + worst]) > 0) return report_energy(g, found, first_part + worst, parts[worst], x);
     }
-    report_momentum(g, found.front(), parts);
+    return report_momentum(g, found.front(), parts);
   }
 
-  void report_energy(Expr g, const std::vector<SwitchSample>& found, std::size_t column, const Part& part,
+  Span report_energy(Expr g, const std::vector<SwitchSample>& found, std::size_t column, const Part& part,
                      const SwitchSample& x) {
     const double jump = std::abs(x.jump[column]);
     const bool same = std::all_of(found.begin(), found.end(), [&](const SwitchSample& y) {
@@ -339,9 +340,15 @@ class Continuity {
             : "A jump gives an impulse, a force without bound for no time, which the equations of motion do not "
               "contain: a motion would pass it as if nothing were there.",
         "Let the pieces meet there, or give the step a width: 1/2 (1 + tanh(u/d)) for step(u). Forces may jump.");
+    return part.term->span;
   }
 
-  void report_momentum(Expr g, const SwitchSample& x, const std::vector<Part>& parts) {
+  void leave_unlooked(std::size_t count, Span place) {
+    s_.diagnostics.error("E0430", place, fmt::format("{} more switches are not looked at", count),
+                         "Enough of those that were jump.", "Mend these first.");
+  }
+
+  Span report_momentum(Expr g, const SwitchSample& x, const std::vector<Part>& parts) {
     std::size_t i = 0;
     for (std::size_t k = 0; k < s_.freedoms(); ++k)
       if (std::abs(x.jump[k + 1]) > std::abs(x.jump[i + 1])) i = k;
@@ -350,8 +357,9 @@ class Continuity {
       return on_side({&p.value, 1}, g, true) != on_side({&p.value, 1}, g, false);
     };
     const auto part = std::find_if(parts.begin(), parts.end(), has);
+    const Span place_of_part = part == parts.end() ? parts.front().term->span : part->term->span;
     s_.diagnostics.error(
-        "E0432", part == parts.end() ? parts.front().term->span : part->term->span,
+        "E0432", place_of_part,
         fmt::format("the momentum ∂L/∂{}' jumps by {} where {}", c.name,
                     with_unit(std::abs(x.jump[i + 1]),
                               s_.system.lagrangian_dimension * s_.system.independent_dimension / c.dimension),
@@ -359,6 +367,7 @@ class Continuity {
         "A momentum changes by forces alone: it is the velocity that would have to jump, which the equations of motion "
         "do not contain.",
         "Let ∂L/∂q' pass the switch without a jump, for example sqrt(v^2 + d^2) for abs(v).");
+    return place_of_part;
   }
 
   bool position_jumps(const ExprVector& functions, const std::string& what, Span span) {

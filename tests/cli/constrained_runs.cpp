@@ -41,6 +41,10 @@ TEST_CASE("simulate: each method, and what each refuses") {
   const Outcome no_step = maup({"simulate", model, "--method", "variational"});
   CHECK(no_step.code != 0);
   CHECK(contains(no_step.err, "E0721"));
+  CHECK(contains(no_step.err, "needs the length of its step"));
+  const Outcome short_step = maup({"simulate", model, "--method", "variational", "--step", "1e-300s"});
+  CHECK(contains(short_step.err, "E0721"));
+  CHECK(contains(short_step.err, "too short for this run"));
   const Outcome stray = maup({"simulate", model, "--step", "10ms"});
   CHECK(stray.code == 2);
   CHECK(contains(stray.err, "--method variational"));

@@ -1,13 +1,11 @@
 #include "analysis/linearization/friction_sign.hpp"
 
-#include "analysis/linearization/dense.hpp"
 #include "analysis/linearization/point_equations.hpp"
 
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/transform.hpp>
 
-#include <algorithm>
-#include <cmath>
+#include <utility>
 
 namespace maupertuis {
 namespace {
@@ -28,21 +26,34 @@ bool is_never_negative(Expr e) {
   return e.is(Kind::Pi) || e.is(Kind::Abs) || e.is(Kind::Exp) || e.is(Kind::Cosh);
 }
 
-bool is_constant_form(Expr power, const ExprVector& velocities) {
-  const auto n = static_cast<Index>(velocities.size());
-  Matrix form(n, n);
-  const std::vector<Expr> slopes = gradient(power, velocities);
-  for (Index i = 0; i < n; ++i) {
-    const std::vector<Expr> row = gradient(slopes[static_cast<std::size_t>(i)], velocities);
-    for (Index j = 0; j < n; ++j) {
-      const Expr& entry = row[static_cast<std::size_t>(j)];
-      if (!symbols_of({&entry, 1}).empty()) return false;
-      form(i, j) = evaluate(entry, {});
+/// Of a symmetric matrix of numbers, by exact elimination: no pivot is negative, and a row whose pivot is 0 is 0.
+bool has_no_negative_eigenvalue(std::vector<std::vector<Rational>> a) {
+  const Rational zero(0);
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    if (a[k][k] < zero) return false;
+    for (std::size_t i = k + 1; i < a.size(); ++i) {
+      if (a[k][k] == zero && a[i][k] != zero) return false;
+      if (a[i][k] == zero) continue;
+      const Rational part = a[i][k] / a[k][k];
+      for (std::size_t j = k; j < a.size(); ++j) a[i][j] = a[i][j] - part * a[k][j];
     }
   }
-  constexpr double rounding = 1e-14;
-  const Vector values = symmetric_eigen(form).values;
-  return values.minCoeff() >= -rounding * values.cwiseAbs().maxCoeff();
+  return true;
+}
+
+/// ½ q̇ᵀ A q̇ and nothing beside it, with numbers in A.
+bool is_constant_form(Expr power, const ExprVector& velocities) {
+  const std::vector<Expr> slopes = gradient(power, velocities);
+  std::vector<std::vector<Rational>> form(velocities.size());
+  Expr rest = power * Rational(2);
+  for (std::size_t i = 0; i < velocities.size(); ++i) {
+    rest = rest - velocities[i] * slopes[i];  // Euler: 0 for the second degree
+    for (const Expr& entry : gradient(slopes[i], velocities)) {
+      if (!entry.is_number()) return false;
+      form[i].push_back(entry.number());
+    }
+  }
+  return zero_test({&rest, 1}).verdict == Verdict::Zero && has_no_negative_eigenvalue(std::move(form));
 }
 
 /// q̇·∂D/∂q̇ = k D (Euler), for the degrees of dry, viscous and quadratic friction.

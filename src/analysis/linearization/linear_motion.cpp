@@ -43,6 +43,19 @@ bool is_definite(const ComplexShapes& form) {
   return values.minCoeff() > clearly * largest || values.maxCoeff() < -clearly * largest;
 }
 
+/// K symmetric and C skew, exactly: what is rounding beside the other entries may feed the motion all the same.
+bool feeds_nothing(const PointEquations::Impl& e) {
+  ExprVector q, v, must_vanish;
+  for (const Coordinate& c : e.system->coordinates) q.push_back(c.q), v.push_back(c.velocity);
+  std::vector<std::vector<Expr>> stiffness, damping;
+  for (const Expr& row : e.balance_rows) stiffness.push_back(gradient(row, q)), damping.push_back(gradient(row, v));
+  for (std::size_t i = 0; i < q.size(); ++i)
+    for (std::size_t j = 0; j <= i; ++j)
+      for (const Expr& x : {stiffness[i][j] - stiffness[j][i], damping[i][j] + damping[j][i]})
+        if (!x.is_zero()) must_vanish.push_back(x);
+  return must_vanish.empty() || zero_test(substitute(must_vanish, exact_parameters(e))).verdict == Verdict::Zero;
+}
+
 }  // namespace
 
 bool is_linear(const PointEquations::Impl& e) {
@@ -56,12 +69,13 @@ bool is_linear(const PointEquations::Impl& e) {
   return std::all_of(rows.begin(), rows.end(), [&](Expr row) { return is_linear_in(row, unknowns); });
 }
 
-bool oscillates_for_certain(const Linearization& l, const std::vector<Mode>& modes) {
+bool oscillates_for_certain(const PointEquations::Impl& e, const Linearization& l, const std::vector<Mode>& modes) {
   if (!l.second_order() || l.independent.empty()) return false;
   const Matrix m = to_eigen(l.mass), g = to_eigen(l.gyroscopic);
   constexpr double rounding = 1e-14;
   if (to_eigen(l.damping).norm() > rounding * g.norm()) return false;
   if (to_eigen(l.circulatory).norm() > rounding * to_eigen(l.stiffness).norm()) return false;
+  if (e.m > 0 ? !e.has_energy : !feeds_nothing(e)) return false;
   for (const Mode& mode : modes) {
     if (mode.kind == Mode::Kind::Zero) continue;
     if (mode.chain > 1) return false;

@@ -16,7 +16,9 @@ bool is_linear(const PointEquations::Impl& equations);
 ///
 ///     φᴴ (2ω M − i G) φ,       the sign of the energy of these modes,
 ///
-/// is definite on their shapes (Krein; Gelfand and Lidskii).
-bool oscillates_for_certain(const Linearization& linearization, const std::vector<Mode>& modes);
+/// is definite on their shapes (Krein; Gelfand and Lidskii). That K is symmetric and C skew is proved without
+/// constraints, or follows from forces with a potential. Precondition: is_linear.
+bool oscillates_for_certain(const PointEquations::Impl& equations, const Linearization& linearization,
+                            const std::vector<Mode>& modes);
 
 }  // namespace maupertuis

@@ -190,6 +190,7 @@ PointEquations::Impl::Impl(const EquationsOfMotion& equations, std::span<const E
   is_autonomous = free_of_time(all, *system);
   has_energy = is_autonomous && holonomic == m && has_potential(lowering.plain(equations.generalized_forces), *system);
   is_periodic.assign(n, false);
+  turns_by_parameters.assign(n, false);
 }
 
 /// v·∂D/∂v; not a number where D has no value.
@@ -339,15 +340,24 @@ bool repeats(PointEquations::Impl& e, std::size_t i) {
   return true;
 }
 
+/// Numbers first: they refute most.
+void find_turns_by_parameters(PointEquations::Impl& e) {
+  for (std::size_t i = 0; i < e.n; ++i)
+    if (e.turns_by_parameters[i]) e.is_periodic[i] = repeats(e, i) && repeats_each_turn(e, i, exact_parameters(e));
+}
+
 }  // namespace
 
 PointEquations::PointEquations(const EquationsOfMotion& equations, std::span<const Expr> outputs) {
   check_one_mode(*equations.system, "PointEquations");
   const ExpressionLock lock(*equations.system->context);
   impl_ = std::make_unique<Impl>(equations, outputs);
-  for (std::size_t i = 0; i < impl_->n; ++i)
-    impl_->is_periodic[i] = (impl_->system->coordinates[i].kind == "angle" || impl_->system->dimensionless) &&
-                            repeats(*impl_, i) && repeats_each_turn(*impl_, i);
+  for (std::size_t i = 0; i < impl_->n; ++i) {
+    if (impl_->system->coordinates[i].kind != "angle" && !impl_->system->dimensionless) continue;
+    impl_->is_periodic[i] = repeats(*impl_, i) && repeats_each_turn(*impl_, i, {});
+    impl_->turns_by_parameters[i] = !impl_->is_periodic[i];
+  }
+  find_turns_by_parameters(*impl_);
 }
 PointEquations::~PointEquations() = default;
 PointEquations::PointEquations(PointEquations&&) noexcept = default;
@@ -385,8 +395,10 @@ const std::vector<bool>& PointEquations::periodic() const { return impl_->is_per
 double PointEquations::parameter(std::size_t index) const { return impl_->parameters[index]; }
 
 void PointEquations::set_parameter(std::size_t index, double value) {
+  const ExpressionLock lock(*impl_->system->context);
   impl_->parameters[index] = value;
   impl_->set_parameters();
+  find_turns_by_parameters(*impl_);
 }
 
 std::vector<double> PointEquations::inputs_at(double t) const {

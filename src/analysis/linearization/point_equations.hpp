@@ -56,8 +56,9 @@ struct PointEquations::Impl {
   FunctionWorkspace friction;  // [n] ∂D/∂q̇
   Rows energy_slopes;          // [n] ∂h_E/∂q, where L is of the first order and keeps h_E(q); else none
   bool is_autonomous = true;
-  bool has_energy = false;        // that no force changes while inputs are held, but for friction
-  std::vector<bool> is_periodic;  // [n]
+  bool has_energy = false;                // that no force changes while inputs are held, but for friction
+  std::vector<bool> is_periodic;          // [n]
+  std::vector<bool> turns_by_parameters;  // [n] whether a turn changes nothing depends on values of parameters
 
  private:
   std::vector<double> gather(const OperatingPoint& point) const;

@@ -121,8 +121,8 @@ struct Verdicts {
 
   /// Of a linear system nothing of higher order is left: its eigenvalues decide, with their chains.
   bool is_linear_and_bounded() const {
-    return zeros() <= explained_zeros() && oscillates_for_certain(linearization, modes.modes) &&
-           is_linear(equations.impl());
+    return zeros() <= explained_zeros() && is_linear(equations.impl()) &&
+           oscillates_for_certain(equations.impl(), linearization, modes.modes);
   }
 
   /// 1: h_E, which a Lagrangian of the first order keeps, has a strict minimum here; −1: a strict maximum; 0: neither
@@ -234,8 +234,7 @@ StabilityReport judge_stability(const PointEquations& equations, const Lineariza
   } else if (has_hessian || v.zeros() > v.explained_zeros()) {
     out.reason =
         "an eigenvalue vanishes, or is rounding beside the largest, and no symmetry explains it: smaller terms decide, "
-        "or "
-        "those of higher order";
+        "or those of higher order";
   } else {
     out.reason = "eigenvalues lie on the imaginary axis, and no energy decides";
   }

@@ -34,10 +34,10 @@ TurnedNodes turned_nodes(const ExprVector& rows, Expr q) {
 
 }  // namespace
 
-bool repeats_each_turn(const PointEquations::Impl& e, std::size_t coordinate) {
+bool repeats_each_turn(const PointEquations::Impl& e, std::size_t coordinate, const ExprMap& values) {
   ExprVector rows = e.balance_rows;
   rows.insert(rows.end(), e.kept_rows.begin(), e.kept_rows.end());
-  rows = substitute(rows, exact_parameters(e));
+  rows = substitute(rows, values);
   const TurnedNodes nodes = turned_nodes(rows, e.system->coordinates[coordinate].q);
   const ExprVector here = substitute(rows, nodes.here), there = substitute(rows, nodes.there);
   for (std::size_t i = 0; i < rows.size(); ++i)

@@ -2,19 +2,16 @@
 
 #include "analysis/orbits/drive.hpp"
 #include "analysis/orbits/messages.hpp"
+#include "analysis/orbits/same_places.hpp"
 #include "analysis/tangent/point_functions.hpp"
 #include "linear_algebra/dense.hpp"
 #include "linear_algebra/products.hpp"
 
-#include <maupertuis/quaternion_coordinates.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <utility>
 
 /// Newton's method on Φ_T(x) − x = 0. With the derivative M of the return map in the directions that the constraints
@@ -28,7 +25,6 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 using Index = Eigen::Index;
-using Quaternion = std::array<std::size_t, 4>;
 
 constexpr int most_iterations = 40;
 constexpr double converged = 1e-9;  // closure that counts as closed where rounding lets nothing better
@@ -39,15 +35,6 @@ constexpr double near_return = 0.02, any_return = 0.25;  // distances from the s
 constexpr std::size_t most_returns = 8;
 constexpr int most_parts = 100;                        // of a period that may be the true one
 constexpr int some_periods = 64, many_periods = 4096;  // after which the equations of a drive are looked at
-
-Vector state_vector(const MotionState& s) {
-  Vector out(static_cast<Index>(2 * s.q.size()));
-  for (std::size_t i = 0; i < s.q.size(); ++i) {
-    out[static_cast<Index>(i)] = s.q[i];
-    out[static_cast<Index>(s.q.size() + i)] = s.v[i];
-  }
-  return out;
-}
 
 class Closer {
  public:
@@ -69,7 +56,9 @@ class Closer {
     out_.motion.driven = depends_on_time(equations_);
     out_.through_modes = flow_.through_modes();
     out_.keeps_energy = keeps_energy(model_, equations_);
-    if (!first_period() || !follow() || !leave_impacts() || !find_angles() || !guess()) return std::nullopt;
+    if (!first_period() || !follow() || !leave_impacts()) return std::nullopt;
+    places_.emplace(system_, motion_, seen_);
+    if (!guess()) return std::nullopt;
     if (!out_.motion.driven && out_.keeps_energy) {
       energy_.emplace(system_, std::span(&equations_.energy_function, 1));
       energy_of_start_ = energy_->values(at_)[0];
@@ -192,14 +181,6 @@ class Closer {
     return false;
   }
 
-  bool find_angles() {
-    for (std::size_t i = 0; i < n_; ++i)
-      is_angle_.push_back(system_.coordinates[i].kind == "angle" && repeats_in_angle(system_, motion_, seen_, i));
-    for (const Quaternion& four : quaternion_coordinates(system_))
-      if (repeats_with_other_sign(system_, motion_, seen_, four)) quaternions_.push_back(four);
-    return true;
-  }
-
   /// (q̇, q̈); empty where there is no acceleration.
   Vector flow_at(const MotionState& s) {
     const auto a = flow_.accelerations(s);
@@ -218,47 +199,10 @@ class Closer {
     return f;
   }
 
-  /// Of each quaternion, whether −q is nearer to where it began than q: the same orientation.
-  bool has_other_sign(const Quaternion& four, const MotionState& from, const MotionState& to) const {
-    double product = 0;
-    for (const std::size_t i : four) product += from.q[i] * to.q[i];
-    return product < 0;
-  }
-
-  /// What came back with the other sign of a quaternion, and its directions, as the one with the sign of the beginning.
-  void take_sign_of(const MotionState& from, TangentPoint& point) {
-    const std::size_t width = point.width();
-    out_.motion.other_sign.clear();
-    for (const Quaternion& four : quaternions_) {
-      if (!has_other_sign(four, from, point.state)) continue;
-      const std::string& name = system_.coordinates[four[0]].name;
-      out_.motion.other_sign.push_back(name.substr(0, name.rfind('.')));
-      for (const std::size_t i : four) {
-        point.state.q[i] = -point.state.q[i], point.state.v[i] = -point.state.v[i];
-        for (std::size_t k = 0; k < point.directions.size(); k += width) {
-          point.directions[k + i] = -point.directions[k + i];
-          point.directions[k + n_ + i] = -point.directions[k + n_ + i];
-        }
-      }
-    }
-  }
-
   /// Φ_T(x) − x without whole turns and signs of quaternions, in units of the sizes.
   Vector gap(const MotionState& from, const MotionState& to, std::vector<int>* turns = nullptr) const {
-    Vector out = state_vector(to) - state_vector(from);
-    if (turns) turns->assign(n_, 0);
-    for (std::size_t i = 0; i < n_; ++i) {
-      if (!is_angle_[i]) continue;
-      const double full = std::round(out[static_cast<Index>(i)] / (2 * std::numbers::pi));
-      out[static_cast<Index>(i)] -= full * 2 * std::numbers::pi;
-      if (turns) (*turns)[i] = static_cast<int>(full);
-    }
-    for (const Quaternion& four : quaternions_)
-      if (has_other_sign(four, from, to))
-        for (const std::size_t i : four)
-          out[static_cast<Index>(i)] -= 2 * to.q[i], out[static_cast<Index>(n_ + i)] -= 2 * to.v[i];
-    for (Index i = 0; i < out.size(); ++i) out[i] /= out_.sizes[static_cast<std::size_t>(i)];
-    return out;
+    return places_->gap(from, to, turns)
+        .cwiseQuotient(Eigen::Map<const Vector>(out_.sizes.data(), static_cast<Index>(out_.sizes.size())));
   }
 
   /// A time at which the distance from the start has a minimum, and how small it is: the squares of the distances of
@@ -384,7 +328,7 @@ class Closer {
     }
     out_.log_volume = flow_.log_volume_of_jumps();
     if (!stop) {
-      take_sign_of(out_.begin.state, out_.end);
+      out_.motion.other_sign = places_->take_sign_of(out_.begin.state, out_.end);
       return true;
     }
     if (stop->ending == StepEnding::None) return refuse_jump(*stop, *diagnostics_);
@@ -509,8 +453,7 @@ class Closer {
   const int compared_ = stands_in_waves_alone(equations_) ? some_periods : many_periods;
   std::vector<double> returns_;  // s after the start: periods to begin with
   Survey seen_;
-  std::vector<bool> is_angle_;
-  std::vector<Quaternion> quaternions_;  // at whose −q the equations are the same
+  std::optional<orbits::SamePlaces> places_;
   std::optional<ConstraintManifold> manifold_;
   std::optional<tangent::PointFunctions> energy_;  // where it is conserved
   double energy_of_start_ = 0;                     // J

@@ -147,3 +147,41 @@ TEST_CASE("of friction that is looked at in single states alone no proof is told
   CHECK_FALSE(says(reason("1/2 c (x'^2 - 2 x' y' + y'^2)")));
   CHECK_FALSE(says(reason("c abs(x')^3 + c abs(y')^3")));
 }
+
+TEST_CASE("friction that gives a little is not proved to take") {
+  const auto told = [](const std::string& dissipation) {
+    return first_of("dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) - 1/2 (x^2 + 2 y^2)\nD = " +
+                    dissipation + "\nstart x = 1\n")
+        .stability;
+  };
+  const std::string doubt = "as far as looked at";
+  for (const char* gives : {"-1e-15 x'^2 + 0.1 y'^2", "1/2 ((x' + y')^2 - 1e-16 x'^2)"}) {
+    CAPTURE(gives);
+    const StabilityReport report = told(gives);
+    const bool doubts = report.verdict != Stability::Energetic || report.reason.find(doubt) != std::string::npos;
+    CHECK(doubts);
+  }
+  for (const char* takes : {"1/2 (x' + y')^2", "1/2 (x' - 3 y')^2 + 1e-15 x'^2"}) {
+    CAPTURE(takes);
+    CHECK(told(takes).reason.find(doubt) == std::string::npos);
+  }
+}
+
+TEST_CASE("forces without a potential, or along velocities, may feed a motion, however small they are") {
+  const auto is_stable = [](const std::string& c, const std::string& forces) {
+    const Stability verdict =
+        first_of("dimensionless\nparam c = " + c +
+                 "\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) + 3 (x y' - y x') + 1/2 (x^2 + y^2)\n" + forces +
+                 "start x = 1\n")
+            .stability.verdict;
+    return verdict == Stability::Energetic || verdict == Stability::Linear;
+  };
+  const std::string circulatory = "force x = c y\nforce y = -c x\n", driving = "force x = c x'\n";
+  for (const char* c : {"1e-14", "1e-25", "1e-300"}) {
+    CAPTURE(c);
+    CHECK_FALSE(is_stable(c, circulatory));
+    CHECK_FALSE(is_stable(c, driving));
+  }
+  CHECK(is_stable("0", circulatory));
+  CHECK(is_stable("0.1", "force x = c y\nforce y = c x\n"));
+}

@@ -208,3 +208,13 @@ TEST_CASE("a jump far from everything that is tried is found by solving for its 
   CHECK(
       Elaborated("dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = max(x, 1e9) + abs(y - 3e8)\n").fine());
 }
+
+TEST_CASE("of a table that jumps everywhere twenty places are told, and how many are left") {
+  const auto table = [](int pieces) {
+    std::string text = "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = piecewise(";
+    for (int i = 0; i < pieces; ++i) text += "x < " + std::to_string(i) + " : " + std::to_string(2 * i) + ", ";
+    return Elaborated(text + "else : -1)\n");
+  };
+  CHECK(table(20).messages().find("not looked at") == std::string::npos);
+  CHECK(table(25).messages().find("5 more switches are not looked at") != std::string::npos);
+}
