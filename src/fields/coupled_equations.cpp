@@ -387,6 +387,22 @@ Expr beside_path(const FieldEquations& equations, Expr b, Expr place) {
   return substitute(b, changed) + s.density * shift;
 }
 
+/// B^x(η), what the variation η of the fields takes along x. Internal friction does virtual work along δφ_x and δφ_xx,
+/// as stresses do.
+Expr flux_along(const FieldEquations& equations) {
+  const FieldSystem& s = equations.with_variations;
+  Expr out = equations.boundary_terms.front();
+  for (std::size_t a = 0; s.dissipation && a < equations.varied.size(); ++a) {
+    const auto friction = [&](int order) {
+      return differentiate(s.dissipation, s.jet_symbol({equations.varied[a], {order}, 1}));
+    };
+    const Expr eta = s.jet_symbol({equations.variation_of(a), {0}, 0}),
+               slope = s.jet_symbol({equations.variation_of(a), {1}, 0});
+    out = out - friction(1) * eta - friction(2) * slope + s.total_derivative(friction(2), 0) * eta;
+  }
+  return out;
+}
+
 /// −R η of the bodies and B(η) of the density on each side, against −(the row) η, for any η and η_x at the place.
 CertificateCheck interface_identity(const FieldEquations& equations) {
   CertificateCheck check;
@@ -405,16 +421,7 @@ CertificateCheck interface_identity(const FieldEquations& equations) {
   for (const InterfaceCondition& c : equations.interfaces)
     if (std::none_of(places.begin(), places.end(), [&](const auto& p) { return p.first == c.place; }))
       places.push_back({c.place, c.end});
-  Expr b_along = equations.boundary_terms.front();
-  if (s.dissipation)  // internal friction does virtual work along δφ_x and δφ_xx, as stresses do
-    for (std::size_t a = 0; a < equations.varied.size(); ++a) {
-      const auto friction = [&](int order) {
-        return differentiate(s.dissipation, s.jet_symbol({equations.varied[a], {order}, 1}));
-      };
-      const Expr eta = s.jet_symbol({equations.variation_of(a), {0}, 0}),
-                 slope = s.jet_symbol({equations.variation_of(a), {1}, 0});
-      b_along = b_along - friction(1) * eta - friction(2) * slope + s.total_derivative(friction(2), 0) * eta;
-    }
+  const Expr b_along = flux_along(equations);
   for (const auto& [place, end] : places) {
     const double at = number_of(equations, place, values);
     // A place that moves leaves B^x − X' B^t on each side of its path.

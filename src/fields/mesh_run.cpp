@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <span>
 
@@ -142,105 +143,183 @@ std::vector<std::vector<Look>> looks_of(const FieldMethod& method, const std::ve
   return out;
 }
 
+/// A run on one mesh: from stop to stop, at each of which it notes what is asked there.
+class MeshRun {
+ public:
+  MeshRun(const FieldEquations& equations, FieldMethod& method, const Cells& cells,
+          const std::vector<FieldQuestion>& questions, const FieldRunOptions& options,
+          const std::vector<std::vector<double>>& rows, bool first, Diagnostics& diagnostics)
+      : equations_(equations),
+        method_(method),
+        cells_(cells),
+        questions_(questions),
+        options_(options),
+        rows_(rows),
+        first_(first),
+        diagnostics_(diagnostics),
+        owner_(method.mesh(equations, cells, first)),
+        mesh_(*owner_),
+        end_(options.begin + options.duration),
+        every_(options.every > 0 ? options.every : options.duration / 100) {}
+
+  std::optional<OneRun> run() {
+    if (!begin()) return std::nullopt;
+    plan_stops();
+    if (!measure_start()) return std::nullopt;
+    for (const double stop : stops_) {
+      const bool moved = stop > mesh_.time();
+      if (!move_to(stop)) return std::nullopt;
+      note(stop, moved);
+    }
+    finish();
+    return std::move(out_);
+  }
+
+ private:
+  bool begin();
+  void plan_stops();
+  bool measure_start();
+  bool move_to(double stop);
+  void note(double stop, bool moved);
+  void answer(double stop, SteepeningWatch::Follows follows);
+  void finish();
+
+  const FieldEquations& equations_;
+  FieldMethod& method_;
+  const Cells& cells_;
+  const std::vector<FieldQuestion>& questions_;
+  const FieldRunOptions& options_;
+  const std::vector<std::vector<double>>& rows_;
+  const bool first_;
+  Diagnostics& diagnostics_;
+  const std::unique_ptr<FieldMotion> owner_;
+  FieldMotion& mesh_;
+  const double end_, every_;
+  OneRun out_;
+  std::vector<double> stops_, of_rows_;  // sorted
+  double start_energy_ = 0, size_of_energy_ = 0;
+  double measured_ = 0;  // when charges were last
+  std::optional<SteepeningWatch> slopes_;
+  std::optional<ChargeMeter> meter_;
+  std::optional<Outlook> outlook_;
+};
+
+bool MeshRun::begin() {
+  mesh_.begin_at(options_.begin);
+  const std::vector<double>& switching = method_.switching();
+  if (mesh_.trouble().empty()) mesh_.follow_branches(options_.begin, switching.empty() ? end_ : switching.front());
+  if (mesh_.trouble().empty()) mesh_.start();
+  if (mesh_.trouble().empty())
+    out_.h = method_.longest_step(mesh_, options_.duration, every_, options_.interrupt, out_.omega);
+  if (!mesh_.trouble().empty()) return refuse_mesh(mesh_, equations_, diagnostics_), false;
+  if (!first_) return true;
+  warn_of_clashes(mesh_, equations_, diagnostics_), tell_what_is_fixed(mesh_, equations_, diagnostics_);
+  if (method_.is_wave() && options_.errors) method_.look_before(out_.h, cells_[0] * method_.order());
+  out_.passes_by = warn_of_short_action(equations_, switching, std::min(out_.h, every_), options_, diagnostics_);
+  return true;
+}
+
+void MeshRun::plan_stops() {
+  out_.looks = looks_of(method_, questions_, options_.begin);
+  for (const FieldQuestion& q : questions_) stops_.push_back(q.time);
+  stops_.push_back(end_);
+  for (const double t : options_.moments)
+    if (first_ && t >= options_.begin && t <= end_) stops_.push_back(t);
+  // Where rows bound the steps, those of the other meshes are twice as long, so that their difference tells of steps
+  // too.
+  const double apart = first_ ? every_ : 2 * every_;
+  for (double t = options_.begin; (first_ || method_.is_wave()) && t < end_; t += apart) stops_.push_back(t);
+  std::sort(stops_.begin(), stops_.end());
+  of_rows_ = stops_;
+  const std::vector<double>& switching = method_.switching();
+  stops_.insert(stops_.end(), switching.begin(), switching.end());
+  for (const auto& looks : out_.looks)
+    for (const Look& look : looks) stops_.push_back(look.time);
+  std::sort(stops_.begin(), stops_.end());
+}
+
+bool MeshRun::measure_start() {
+  start_energy_ = out_.energy = mesh_.energy(size_of_energy_);
+  if (!std::isfinite(start_energy_)) return refuse_infinite_density(equations_, diagnostics_), false;
+  out_.answers.assign(questions_.size(), std::nan(""));
+  out_.sizes.assign(questions_.size(), 0), out_.felt = out_.sizes;
+  out_.follows.assign(questions_.size(), SteepeningWatch::Follows::Well);
+  measured_ = options_.begin;
+  if (!first_) return true;
+  if (SteepeningWatch::may_steepen(equations_)) slopes_.emplace(equations_, cells_, method_.order());
+  if (options_.currents) meter_.emplace(mesh_, equations_, *options_.currents);
+  if (meter_ && meter_->idle()) meter_.reset();
+  if (meter_) meter_->note_flux(mesh_), meter_->measure(mesh_);
+  outlook_.emplace(options_);
+  return true;
+}
+
+bool MeshRun::move_to(double stop) {
+  const double way = stop - mesh_.time();
+  const auto steps = static_cast<std::uint64_t>(std::max(std::ceil(way / out_.h - 1e-9), 1.0));
+  for (std::uint64_t k = 0; way > 0 && k < steps; ++k) {
+    options_.interrupt.throw_if_asked();
+    if (!mesh_.step(way / static_cast<double>(steps))) return refuse_mesh(mesh_, equations_, diagnostics_), false;
+    ++out_.steps;
+    const double done = (mesh_.time() - options_.begin) / options_.duration;
+    if (outlook_) outlook_->after_steps(out_.steps, done);
+    if (first_ && options_.progress) options_.progress(done);
+    if (meter_) meter_->note_flux(mesh_);
+  }
+  const std::vector<double>& switching = method_.switching();
+  const auto now = std::lower_bound(switching.begin(), switching.end(), stop);
+  if (now != switching.end() && *now == stop)
+    mesh_.follow_branches(stop, now + 1 == switching.end() ? end_ : *(now + 1));
+  return true;
+}
+
+void MeshRun::note(double stop, bool moved) {
+  constexpr int measurements = 20;
+  const double apart = options_.duration / measurements * (1 - 1e-9);
+  const bool asked = std::any_of(questions_.begin(), questions_.end(), [&](const auto& q) { return q.time == stop; });
+  const bool due = (moved && stop - measured_ >= apart) || stop == end_;
+  auto follows = SteepeningWatch::Follows::Well;
+  if (slopes_ && (due || asked || stop == options_.begin)) follows = slopes_->look(mesh_);
+  if (due && moved && meter_) meter_->measure(mesh_);
+  if (due) measured_ = stop;
+  double size = 0;
+  if (moved || stop == options_.begin)
+    out_.energy = mesh_.energy(size), size_of_energy_ = std::max(size_of_energy_, size);
+  out_.drift = std::max(out_.drift, std::abs(out_.energy - start_energy_));
+  answer(stop, follows);
+  if (!rows_.empty() && std::binary_search(of_rows_.begin(), of_rows_.end(), stop) &&
+      (out_.trajectory.times.empty() || mesh_.time() > out_.trajectory.times.back()))
+    mesh_.add_row(out_.trajectory, rows_);
+}
+
+void MeshRun::answer(double stop, SteepeningWatch::Follows follows) {
+  for (std::size_t i = 0; i < questions_.size(); ++i) {
+    const FieldQuestion& question = questions_[i];
+    for (Look& look : out_.looks[i])
+      if (look.time == stop) look.values = look_around(mesh_, method_, equations_, question);
+    if (question.time != stop) continue;
+    out_.answers[i] = mesh_.answer(question);
+    out_.follows[i] = follows;
+    if (!first_) continue;
+    if (method_.is_wave()) out_.sizes[i] = size_along(mesh_, question, method_.width() * cells_[0]);
+    out_.felt[i] = felt_rounding(mesh_, method_, equations_, question, cells_, out_.omega);
+  }
+}
+
+void MeshRun::finish() {
+  if (slopes_) slopes_->warn(diagnostics_);
+  if (meter_) out_.charges = meter_->finish();
+  out_.steps += mesh_.further_steps();
+  if (size_of_energy_ > 0) out_.drift /= size_of_energy_;
+  if (first_) out_.at_end = ranges_of(mesh_, equations_, places_of_rows(equations_, cells_, 0));
+}
+
 }  // namespace
 
 std::optional<OneRun> run_on(const FieldEquations& equations, FieldMethod& method, const Cells& cells,
                              const std::vector<FieldQuestion>& questions, const FieldRunOptions& options,
                              const std::vector<std::vector<double>>& rows, bool first, Diagnostics& diagnostics) {
-  const auto owner = method.mesh(equations, cells, first);
-  FieldMotion& mesh = *owner;
-  OneRun out;
-  double longest = options.duration;
-  const double end = options.begin + options.duration;
-  mesh.begin_at(options.begin);
-  const std::vector<double>& switching = method.switching();
-  if (mesh.trouble().empty()) mesh.follow_branches(options.begin, switching.empty() ? end : switching.front());
-  if (mesh.trouble().empty()) mesh.start();
-  const double every = options.every > 0 ? options.every : options.duration / 100;
-  if (mesh.trouble().empty())
-    longest = method.longest_step(mesh, options.duration, every, options.interrupt, out.omega);
-  if (!mesh.trouble().empty()) return refuse_mesh(mesh, equations, diagnostics), std::nullopt;
-  if (first) warn_of_clashes(mesh, equations, diagnostics), tell_what_is_fixed(mesh, equations, diagnostics);
-  if (first && method.is_wave() && options.errors) method.look_before(longest, cells[0] * method.order());
-  out.looks = looks_of(method, questions, options.begin);
-  std::vector<double> stops;
-  for (const FieldQuestion& q : questions) stops.push_back(q.time);
-  stops.push_back(end);
-  for (const double t : options.moments)
-    if (first && t >= options.begin && t <= end) stops.push_back(t);
-  if (first) out.passes_by = warn_of_short_action(equations, switching, std::min(longest, every), options, diagnostics);
-  // Where rows bound the steps, those of the other meshes are twice as long, so that their difference tells of steps
-  // too.
-  const double apart = first ? every : 2 * every;
-  for (double t = options.begin; (first || method.is_wave()) && t < end; t += apart) stops.push_back(t);
-  std::sort(stops.begin(), stops.end());
-  const std::vector<double> of_rows = stops;
-  stops.insert(stops.end(), switching.begin(), switching.end());
-  for (const auto& looks : out.looks)
-    for (const Look& look : looks) stops.push_back(look.time);
-  std::sort(stops.begin(), stops.end());
-  double size = 0;
-  const double start = mesh.energy(size);
-  if (!std::isfinite(start)) return refuse_infinite_density(equations, diagnostics), std::nullopt;
-  out.energy = start;
-  out.answers.assign(questions.size(), std::nan(""));
-  out.sizes.assign(questions.size(), 0), out.felt = out.sizes;
-  out.follows.assign(questions.size(), SteepeningWatch::Follows::Well);
-  std::optional<SteepeningWatch> slopes;
-  if (first && SteepeningWatch::may_steepen(equations)) slopes.emplace(equations, cells, method.order());
-  std::optional<ChargeMeter> meter;
-  if (first && options.currents) meter.emplace(mesh, equations, *options.currents);
-  if (meter && meter->idle()) meter.reset();
-  if (meter) meter->note_flux(mesh), meter->measure(mesh);
-  constexpr int measurements = 20;
-  const double apart_in_run = options.duration / measurements * (1 - 1e-9);
-  double measured = options.begin;
-  std::optional<Outlook> outlook;
-  if (first) outlook.emplace(options);
-  for (const double stop : stops) {
-    const double way = stop - mesh.time();
-    const auto steps = static_cast<std::uint64_t>(std::ceil(way / longest - 1e-9));
-    for (std::uint64_t k = 0; way > 0 && k < std::max<std::uint64_t>(steps, 1); ++k) {
-      options.interrupt.throw_if_asked();
-      if (!mesh.step(way / static_cast<double>(std::max<std::uint64_t>(steps, 1))))
-        return refuse_mesh(mesh, equations, diagnostics), std::nullopt;
-      ++out.steps;
-      if (outlook) outlook->after_steps(out.steps, (mesh.time() - options.begin) / options.duration);
-      if (first && options.progress) options.progress((mesh.time() - options.begin) / options.duration);
-      if (meter) meter->note_flux(mesh);
-    }
-    if (const auto now = std::lower_bound(switching.begin(), switching.end(), stop);
-        now != switching.end() && *now == stop)
-      mesh.follow_branches(stop, now + 1 == switching.end() ? end : *(now + 1));
-    const bool asked = std::any_of(questions.begin(), questions.end(), [&](const auto& q) { return q.time == stop; });
-    const bool due = (way > 0 && stop - measured >= apart_in_run) || stop == end;
-    auto follows = SteepeningWatch::Follows::Well;
-    if (slopes && (due || asked || stop == options.begin)) follows = slopes->look(mesh);
-    if (due && way > 0 && meter) meter->measure(mesh);
-    if (due) measured = stop;
-    double now = 0;
-    if (way > 0 || stop == options.begin) out.energy = mesh.energy(now), size = std::max(size, now);
-    out.drift = std::max(out.drift, std::abs(out.energy - start));
-    for (std::size_t i = 0; i < questions.size(); ++i)
-      for (Look& look : out.looks[i])
-        if (look.time == stop) look.values = look_around(mesh, method, equations, questions[i]);
-    for (std::size_t i = 0; i < questions.size(); ++i)
-      if (questions[i].time == stop) {
-        out.answers[i] = mesh.answer(questions[i]);
-        if (first && method.is_wave()) out.sizes[i] = size_along(mesh, questions[i], method.width() * cells[0]);
-        if (first) out.felt[i] = felt_rounding(mesh, method, equations, questions[i], cells, out.omega);
-        out.follows[i] = follows;
-      }
-    if (!rows.empty() && std::binary_search(of_rows.begin(), of_rows.end(), stop) &&
-        (out.trajectory.times.empty() || mesh.time() > out.trajectory.times.back()))
-      mesh.add_row(out.trajectory, rows);
-  }
-  if (slopes) slopes->warn(diagnostics);
-  if (meter) out.charges = meter->finish();
-  out.h = longest, out.steps += mesh.further_steps();
-  if (size > 0) out.drift /= size;
-  if (first) out.at_end = ranges_of(mesh, equations, places_of_rows(equations, cells, 0));
-  return out;
+  return MeshRun(equations, method, cells, questions, options, rows, first, diagnostics).run();
 }
 
 }  // namespace maupertuis

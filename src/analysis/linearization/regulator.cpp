@@ -82,6 +82,32 @@ bool check_reach(const Matrix& a, const Matrix& b, const Matrix& q, Diagnostics&
   return true;
 }
 
+/// That there are inputs, free from instant to instant, and LAPACK to regulate them with.
+bool check_inputs(const Linearization& l, Diagnostics& diagnostics) {
+  if (l.b.columns == 0) {
+    diagnostics.error("E1310", std::nullopt, "the model has no inputs to regulate with",
+                      "A regulator moves inputs, u = u₀ − F x.",
+                      "Declare one: `input u : [N] = 0`, and use it in a force.");
+    return false;
+  }
+  const auto acts = [](const RealMatrix& m) {
+    return std::any_of(m.entries.begin(), m.entries.end(), [](double x) { return x != 0; });
+  };
+  if (acts(l.b_rate) || acts(l.b_acceleration)) {
+    diagnostics.error(
+        "E1316", std::nullopt, "an input acts by its rate, and is no free choice from instant to instant",
+        "The system moves by ẋ = A x + B u + B₁ u' + B₂ u'': where u jumps, so do velocities or positions.",
+        "Make the input a coordinate that a force moves: the force is the input then.");
+    return false;
+  }
+  if (!has_lapack()) {
+    diagnostics.error("E1315", std::nullopt, "this build has no LAPACK, which the regulator needs", "",
+                      "`maup doctor` tells what this installation can do.");
+    return false;
+  }
+  return true;
+}
+
 /// Units of the states in which A and Q are of like size, by the diagonal of what they drive: D⁻¹ A D, D Q D.
 Vector units_of_states(const Matrix& a, const Matrix& q) {
   Vector d = Vector::Ones(a.rows());
@@ -107,27 +133,7 @@ std::optional<Regulator> linear_quadratic_regulator(const Linearization& l, cons
   check_argument(fits(prices), "linear_quadratic_regulator: `prices` has another number of entries than it says");
   const Matrix q = to_eigen(weights), r = to_eigen(prices);
   Matrix a = to_eigen(l.a), b = to_eigen(l.b);
-  if (b.cols() == 0) {
-    diagnostics.error("E1310", std::nullopt, "the model has no inputs to regulate with",
-                      "A regulator moves inputs, u = u₀ − F x.",
-                      "Declare one: `input u : [N] = 0`, and use it in a force.");
-    return std::nullopt;
-  }
-  const auto acts = [](const RealMatrix& m) {
-    return std::any_of(m.entries.begin(), m.entries.end(), [](double x) { return x != 0; });
-  };
-  if (acts(l.b_rate) || acts(l.b_acceleration)) {
-    diagnostics.error(
-        "E1316", std::nullopt, "an input acts by its rate, and is no free choice from instant to instant",
-        "The system moves by ẋ = A x + B u + B₁ u' + B₂ u'': where u jumps, so do velocities or positions.",
-        "Make the input a coordinate that a force moves: the force is the input then.");
-    return std::nullopt;
-  }
-  if (!has_lapack()) {
-    diagnostics.error("E1315", std::nullopt, "this build has no LAPACK, which the regulator needs", "",
-                      "`maup doctor` tells what this installation can do.");
-    return std::nullopt;
-  }
+  if (!check_inputs(l, diagnostics)) return std::nullopt;
   if (!check_weights(q, r, a.rows(), b.cols(), diagnostics) || !check_reach(a, b, q, diagnostics)) return std::nullopt;
 
   const Index s = a.rows();

@@ -149,62 +149,84 @@ struct Verdicts {
     for (const Translation& t : translations) out += t.conserved;
     return out;
   }
+
+  bool is_strict_minimum(const SymmetricEigen& hessian) const {
+    if (hessian.values.size() > 0)
+      return (hessian.values.array() > hessian_tolerances(hessian).array()).all() || oscillates_in_all_ways();
+    return form.valid && form.potential && equations.energy_never_grows_near(equilibrium.point) && all_conserved() &&
+           form.translations.cols() == form.k.rows();
+  }
+
+  std::string why_undecided(const SymmetricEigen& hessian, const Vector& none, std::string_view potential) const {
+    const bool has_hessian = hessian.values.size() > 0;
+    if (has_hessian && (hessian.values.array() < -none.array()).any())
+      return fmt::format(
+          "no eigenvalue has a positive real part, but the Hessian of the {} is not positive: gyroscopic forces hold "
+          "it",
+          potential);
+    if (has_hessian || zeros() > explained_zeros())
+      return "an eigenvalue vanishes, or is rounding beside the largest, and no symmetry explains it: smaller terms "
+             "decide, or those of higher order";
+    return "eigenvalues lie on the imaginary axis, and no energy decides";
+  }
 };
 
 std::string_view up_to_translations(const std::vector<Translation>& translations) {
   return translations.empty() ? "" : ", up to the translations that are symmetries";
 }
 
-}  // namespace
+/// Real parts of eigenvalues, without zeros.
+struct RealParts {
+  double growth = 0;        // the largest
+  double margin = 0;        // the largest beyond its error
+  double decay = HUGE_VAL;  // the smallest decay beyond its error
+};
 
-StabilityReport judge_stability(const PointEquations& equations, const Linearization& linearization,
-                                const MassNormalForm& form, const std::vector<Translation>& translations,
-                                const ModalAnalysis& modes, const Equilibrium* equilibrium) {
-  StabilityReport out;
-  double margin = 0, decay = HUGE_VAL;  // largest growth beyond its error; smallest decay beyond its error
+RealParts real_parts_of(const ModalAnalysis& modes) {
+  RealParts out;
   for (const Mode& m : modes.modes) {
     if (m.kind == Mode::Kind::Zero) continue;
-    out.growth_rate = std::max(out.growth_rate, m.eigenvalue.real());
-    margin = std::max(margin, m.eigenvalue.real() - 4 * m.error);
-    decay = std::min(decay, -m.eigenvalue.real() - 4 * m.error);
+    out.growth = std::max(out.growth, m.eigenvalue.real());
+    out.margin = std::max(out.margin, m.eigenvalue.real() - 4 * m.error);
+    out.decay = std::min(out.decay, -m.eigenvalue.real() - 4 * m.error);
   }
-  if (!equilibrium) {
-    out.reason =
-        "a point of a motion is no state of rest: these are the eigenvalues of the coefficients at that instant";
-    return out;
-  }
-  if (linearization.independent.empty() && linearization.independent_velocities.empty()) {
-    out.reason = "the constraints leave nothing that could move, to first order";
-    return out;
-  }
-  if (!equations.autonomous()) {
-    out.reason = "the coefficients change with time: Floquet multipliers decide where they are periodic";
-    return out;
-  }
-  const Verdicts v{equations, linearization, form, translations, modes, *equilibrium};
+  return out;
+}
+
+/// Why nothing can be judged here; empty where it can.
+std::string_view why_not_judged(const PointEquations& equations, const Linearization& linearization,
+                                const Equilibrium* equilibrium) {
+  if (!equilibrium)
+    return "a point of a motion is no state of rest: these are the eigenvalues of the coefficients at that instant";
+  if (linearization.independent.empty() && linearization.independent_velocities.empty())
+    return "the constraints leave nothing that could move, to first order";
+  if (!equations.autonomous())
+    return "the coefficients change with time: Floquet multipliers decide where they are periodic";
+  return {};
+}
+
+/// The first rule that applies, in the order of docs/theory/linearization.md, Stability.
+void apply_rules(const Verdicts& v, const RealParts& real_parts, StabilityReport& out) {
   const SymmetricEigen hessian = v.hessian();
   out.hessian = to_list(hessian.values);
-  out.effective = !translations.empty();
+  out.effective = !v.translations.empty();
   const bool has_hessian = !out.hessian.empty();
   const Vector none = v.hessian_tolerances(hessian);
-  const bool strict_minimum = has_hessian ? (hessian.values.array() > none.array()).all() || v.oscillates_in_all_ways()
-                                          : form.valid && form.potential &&
-                                                equations.energy_never_grows_near(equilibrium->point) &&
-                                                v.all_conserved() && form.translations.cols() == form.k.rows();
-  const std::string_view potential = equilibrium->at_rest && translations.empty() ? "potential" : "effective potential";
+  const std::string_view potential =
+      v.equilibrium.at_rest && v.translations.empty() ? "potential" : "effective potential";
+  const std::string_view other = v.zeros() > 0 ? "other " : "", up_to = up_to_translations(v.translations);
   if (!v.has_certain_signs(hessian)) {
     out.reason = fmt::format(
         "the Hessian of the {} vanishes within the error of the place, as where equilibria "
         "come together: terms of higher order decide",
         potential);
-  } else if (margin > 0) {
+  } else if (real_parts.margin > 0) {
     out.verdict = Stability::Unstable;
     out.reason = "an eigenvalue has a positive real part";
-  } else if (decay > 0 && decay < HUGE_VAL && v.zeros() <= v.explained_zeros()) {
+  } else if (real_parts.decay > 0 && real_parts.decay < HUGE_VAL && v.zeros() <= v.explained_zeros()) {
     out.verdict = Stability::Asymptotic;
-    out.reason = fmt::format("all {}eigenvalues have negative real parts{}", v.zeros() > 0 ? "other " : "",
-                             up_to_translations(translations));
-  } else if (strict_minimum) {
+    out.reason = fmt::format("all {}eigenvalues have negative real parts{}", other, up_to);
+  } else if (v.is_strict_minimum(hessian)) {
     out.verdict = Stability::Energetic;
     out.reason = has_hessian ? fmt::format("the Hessian of the {} is positive definite", potential)
                              : "only translations are left";
@@ -220,24 +242,29 @@ StabilityReport judge_stability(const PointEquations& equations, const Lineariza
     out.reason = fmt::format(
         "the equations are linear, and all {}eigenvalues are on the imaginary axis, each simple or "
         "of modes with energies of one sign{}",
-        v.zeros() > 0 ? "other " : "", up_to_translations(translations));
+        other, up_to);
   } else if (const Mode* chain = v.chain_on_axis()) {
     const bool grows = v.grows_for_certain(*chain);
     if (grows) out.verdict = Stability::Unstable;
     out.reason =
         fmt::format("{} oscillations have one frequency and one shape{}: their neighbours grow like t{}", chain->chain,
                     v.is_proved(*chain) ? "" : " within rounding", grows ? "" : " to first order");
-  } else if (has_hessian && (hessian.values.array() < -none.array()).any()) {
-    out.reason = fmt::format(
-        "no eigenvalue has a positive real part, but the Hessian of the {} is not positive: gyroscopic forces hold it",
-        potential);
-  } else if (has_hessian || v.zeros() > v.explained_zeros()) {
-    out.reason =
-        "an eigenvalue vanishes, or is rounding beside the largest, and no symmetry explains it: smaller terms decide, "
-        "or those of higher order";
   } else {
-    out.reason = "eigenvalues lie on the imaginary axis, and no energy decides";
+    out.reason = v.why_undecided(hessian, none, potential);
   }
+}
+
+}  // namespace
+
+StabilityReport judge_stability(const PointEquations& equations, const Linearization& linearization,
+                                const MassNormalForm& form, const std::vector<Translation>& translations,
+                                const ModalAnalysis& modes, const Equilibrium* equilibrium) {
+  StabilityReport out;
+  const RealParts real_parts = real_parts_of(modes);
+  out.growth_rate = real_parts.growth;
+  out.reason = why_not_judged(equations, linearization, equilibrium);
+  if (!out.reason.empty()) return out;
+  apply_rules({equations, linearization, form, translations, modes, *equilibrium}, real_parts, out);
   if (out.verdict == Stability::Energetic && !friction_never_gives(equations.impl()))
     out.reason += ", as far as looked at: that friction nowhere gives energy is not proved";
   return out;
