@@ -61,15 +61,27 @@ struct Fingerprint {
   double first = 0, second = 0;
 };
 
+/// Whether a state has values for everything in it. It has none for a field or its x without a place, which is refused
+/// later.
+bool has_values(Expr value, const Bindings& state) {
+  const std::vector<Expr> symbols = symbols_of({&value, 1});
+  return std::all_of(symbols.begin(), symbols.end(), [&](Expr s) { return state.count(s) > 0; });
+}
+
 /// In order of size, so that equal constraints are neighbours.
 std::vector<Fingerprint> fingerprints(Elaboration& e) {
-  ExprVector values;
-  for (const Constraint& c : e.system().constraints) values.push_back(c.value);
-  const std::vector<double> first = maupertuis::evaluate(values, scattered_state(e, 0.37));
-  const std::vector<double> second = maupertuis::evaluate(values, scattered_state(e, 0.71));
+  const Bindings states[] = {scattered_state(e, 0.37), scattered_state(e, 0.71)};
   std::vector<Fingerprint> out;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (std::isfinite(first[i]) && std::isfinite(second[i])) out.push_back({i, first[i], second[i]});
+  ExprVector values;
+  for (std::size_t i = 0; i < e.system().constraints.size(); ++i)
+    if (const Expr value = e.system().constraints[i].value; has_values(value, states[0]))
+      out.push_back({i}), values.push_back(value);
+  const std::vector<double> first = maupertuis::evaluate(values, states[0]);
+  const std::vector<double> second = maupertuis::evaluate(values, states[1]);
+  for (std::size_t k = 0; k < out.size(); ++k) out[k].first = first[k], out[k].second = second[k];
+  out.erase(std::remove_if(out.begin(), out.end(),
+                           [](const Fingerprint& f) { return !std::isfinite(f.first) || !std::isfinite(f.second); }),
+            out.end());
   std::stable_sort(out.begin(), out.end(),
                    [](const Fingerprint& a, const Fingerprint& b) { return std::abs(a.first) < std::abs(b.first); });
   return out;

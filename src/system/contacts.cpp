@@ -319,8 +319,8 @@ void elaborate_event(Elaboration& e, const syntax::EventStatement& s, Span span)
     Place place;
     place.inline_constants = true;
     const Value v = scalar_of(e, *item.value, expected, fmt::format("`{}`", e.texts.slice(item.variable->span)), place);
-    complete = complete && !v.poisoned;
-    if (!v.poisoned)
+    complete = complete && !v.poisoned && !refuse_without_place(e, v.scalar(), *item.value);
+    if (complete)
       event.sets.push_back(
           {variable->coordinate, variable->order, expand_time_derivatives(v.scalar()), item.value->span});
   }

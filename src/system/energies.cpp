@@ -55,6 +55,8 @@ bool refuse_motion(Elaboration& e, const Value& v, const syntax::GravityStatemen
 void gravity(Elaboration& e, const syntax::GravityStatement& g, Span span) {
   const Value v = vector_of(e, *g.vector, dimensions::acceleration(), "gravity");
   if (v.poisoned || refuse_motion(e, v, g)) return;
+  for (const Expr& part : v.parts)
+    if (refuse_without_place(e, part, *g.vector)) return;
   MechanicalSystem& s = e.system();
   s.gravity = v.parts;
   const auto weigh = [&](Expr mass, const ExprVector& position, const std::string& name) {

@@ -95,6 +95,7 @@ Value known_before_the_run(Elaboration& e, const Value& v, const Expression& x, 
   if (v.poisoned) return v;
   for (const Expr& part : v.parts) {
     if (!e.context.depends_on_time(part.id())) {
+      if (refuse_without_place(e, part, x)) return Value::poison();
       if (!exists(e, part, x, what, existence)) return Value::poison();
       continue;
     }
@@ -211,7 +212,10 @@ Expr condition(Elaboration& e, const Expression& left_side, const Expression& ri
   place.inline_constants = true;
   const Value right =
       scalar_of(e, right_side, left.dimension, fmt::format("`{}`", e.texts.slice(left_side.span)), place);
-  return right.poisoned ? Expr() : left.scalar() - right.scalar();
+  if (right.poisoned || refuse_without_place(e, left.scalar(), left_side) ||
+      refuse_without_place(e, right.scalar(), right_side))
+    return {};
+  return left.scalar() - right.scalar();
 }
 
 namespace {

@@ -281,6 +281,10 @@ void check_places(Elaboration& e) {
                               f.span.begin <= p.span.begin && p.span.end <= f.span.end);
     refuse_held_place(e, *p.end, p.jet, p.span, is_force);
   }
+  for (const Point& p : system.points)
+    for (const Expr& c : p.position) refuse_loose_fields(e, c, p.span, "the place of a point");
+  for (const Body& b : system.bodies)
+    for (const Expr& c : b.position) refuse_loose_fields(e, c, b.span, "the place of a body");
   check_terms(e, system.kinetic, "T"), check_terms(e, system.potential, "V");
   check_terms(e, system.generalized_potential, "U"), check_terms(e, system.dissipation, "D");
   check_terms(e, system.lagrangian_extra, "L");
