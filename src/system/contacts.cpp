@@ -248,7 +248,7 @@ std::optional<std::size_t> rubbed_coordinate(Elaboration& e, const syntax::Expre
 void friction(Elaboration& e, const FrictionStatement& s, Span span) {
   const auto along = rubbed_coordinate(e, *s.coordinate);
   if (!along) return;
-  const Coordinate& c = e.system().coordinates[*along];
+  const Coordinate c = e.system().coordinates[*along];  // a copy: u(l) in the limit may be a new coordinate
   const Dimension force = e.dimension(dimensions::energy()) / c.dimension;
   Friction f;
   f.name = c.name;
@@ -319,7 +319,8 @@ void elaborate_event(Elaboration& e, const syntax::EventStatement& s, Span span)
     Place place;
     place.inline_constants = true;
     const Value v = scalar_of(e, *item.value, expected, fmt::format("`{}`", e.texts.slice(item.variable->span)), place);
-    complete = complete && !v.poisoned && !refuse_without_place(e, v.scalar(), *item.value);
+    complete = complete && !v.poisoned && !refuse_without_place(e, v.scalar(), *item.value) &&
+               !refuse_acceleration(e, v, *item.value, "what an event sets");
     if (complete)
       event.sets.push_back(
           {variable->coordinate, variable->order, expand_time_derivatives(v.scalar()), item.value->span});

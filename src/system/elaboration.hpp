@@ -275,6 +275,9 @@ void check_statement_counts(Elaboration& e);
 void warn_unused(Elaboration& e);
 /// Replaces the symbols of definitions everywhere and keeps the system as written beside it.
 void expand_definitions(Model& model);
+/// p_x of events, `run until`, sections and normal forces becomes ∂L/∂x'. After definitions, which may hold x', are
+/// expanded.
+void replace_momenta(Model& model);
 /// Calls `visit` on every expression of an experiment, and `starts` first on each list of values of a state.
 void visit_experiment(Experiment& x, const std::function<void(Expr&)>& visit,
                       const std::function<void(std::vector<StartValue>&)>& starts);

@@ -1,7 +1,10 @@
+#include <maupertuis/momentum.hpp>
 #include <maupertuis/system_expressions.hpp>
+#include <maupertuis/transform.hpp>
 
 #include "system/elaboration.hpp"
 
+#include <algorithm>
 #include <functional>
 
 /// Formulas are elaborated with the symbols of definitions in them (`I φ'^2`). What is computed with has their values
@@ -111,6 +114,26 @@ void for_each_expression(Experiment& x, const std::function<void(Expr&)>& visit)
 }
 
 }  // namespace
+
+void replace_momenta(Model& model) {
+  const MechanicalSystem& s = model.system;
+  ExprVector read;
+  const auto visit_conditions = [&](const std::function<void(Expr&)>& visit) {
+    Experiment& x = model.experiment;
+    for (ModelEvent& event : x.events) visit(event.function);
+    for (Expr* e : {&x.until, &x.section})
+      if (*e) visit(*e);
+    for (Friction& f : model.system.frictions)
+      if (f.normal) visit(f.normal);
+  };
+  visit_conditions([&](Expr& e) { read.push_back(e); });
+  const std::vector<Expr> symbols = symbols_of(read);
+  ExprMap momenta;
+  for (std::size_t i = 0; i < s.coordinates.size(); ++i)
+    if (const Expr p = momentum_symbol(s, i); std::find(symbols.begin(), symbols.end(), p) != symbols.end())
+      momenta.emplace(p, differentiate(expand_time_derivatives(s.lagrangian()), s.coordinates[i].velocity));
+  if (!momenta.empty()) visit_conditions([&](Expr& e) { e = substitute(e, momenta); });
+}
 
 void expand_definitions(Model& model) {
   const ExprMap values = model.system.definition_values();

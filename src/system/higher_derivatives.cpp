@@ -18,8 +18,10 @@ bool stands_in(Expr symbol, Expr e) {
   return std::find(symbols.begin(), symbols.end(), symbol) != symbols.end();
 }
 
+/// Where q'' stands: in L = …, in L += …, or in an L that is claimed beside masses and springs.
 Span place_of_lagrangian(const MechanicalSystem& s) {
-  return s.lagrangian_given ? s.lagrangian_given->span : s.lagrangian_extra.front().span;
+  if (s.lagrangian_given) return s.lagrangian_given->span;
+  return s.lagrangian_extra.empty() ? s.claims.front().span : s.lagrangian_extra.front().span;
 }
 
 /// E0259 where the model has something that takes the state to be (q, q').

@@ -1,6 +1,9 @@
 // The fuzzer sees what it is made to see: a fuzzer that reports nothing proves nothing.
 #include "command_line.hpp"
 #include "minimize.hpp"
+#include "worlds.hpp"
+
+#include <maupertuis/study.hpp>
 
 #include <doctest/doctest.h>
 
@@ -139,4 +142,24 @@ TEST_CASE("the drawn inputs use every rule's words, every command and every opti
       if (!row.positional) CHECK_MESSAGE(options.count(row.names.back()), row.names.back());
   }
   CHECK(drawn.input(17).model == drawn.input(17).model);
+}
+
+TEST_CASE("the worlds are models without a mistake, and most of what is drawn in them is read") {
+  for (const std::string& text : sound_worlds()) {
+    CAPTURE(text);
+    maupertuis::Study study(maupertuis::SourceText("world.lag", text));
+    CHECK(study.model());
+    CHECK(!study.diagnostics().has_errors());
+  }
+  int read = 0;
+  constexpr int drawn = 300;
+  for (int i = 0; i < drawn; ++i) {
+    Random random(1, static_cast<std::uint64_t>(i));
+    maupertuis::Study study(maupertuis::SourceText("world.lag", model_of_a_world(random)));
+    study.model();
+    bool grammar = false;
+    for (const maupertuis::Diagnostic& d : study.diagnostics().items()) grammar = grammar || d.code < "E0200";
+    read += !grammar;
+  }
+  CHECK(read > drawn * 3 / 4);
 }

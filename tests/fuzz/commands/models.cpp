@@ -1,5 +1,7 @@
-// Models: small ones that hold together, sentences of the grammar, and stored models with changes.
+// Models: small ones that hold together, sentences of the grammar, worlds with odd statements, and stored models with
+// changes.
 #include "input.hpp"
+#include "worlds.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -157,6 +159,7 @@ std::string Generator::model(Random& random) const {
   const std::size_t way = random.below(10);
   if (way == 0) return with_short_runs(grammar_.sentence("model", {"x", "y", "A", "m"}, random));
   if (way <= 3) return changed(from_grammar(random), random);
+  if (way == 4) return model_of_a_world(random);
   return with_short_runs(changed(random.of(stored_), random));
 }
 

@@ -69,6 +69,7 @@ TEST_CASE("fields without a place are refused in every statement about a run") {
 TEST_CASE("values at places stand in all of them") {
   for (const char* statements :
        {"constraint u(0) = q", "V = u(1) q", "force q = u(0.5)", "contact u(1) >= q",
+        "friction q coefficient 0.1 normal u(0)", "friction q limit u(0)^2 static 2 u(1)^2",
         "event e when u(0) = q : set q' = u(1)\nrun 1", "run until u(0) = q within 3", "start u = x (1 - x)\nrun 1"}) {
     CAPTURE(statements);
     CHECK(codes_beside_string(statements).empty());
