@@ -3,9 +3,11 @@
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/evaluate.hpp>
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace maupertuis {
 
@@ -65,6 +67,9 @@ class AlongMotion {
   std::optional<MotionState> start_;
   mutable bool looked_for_accelerations_ = false;  // at first use
   mutable std::optional<ExprMap> accelerations_;
+  struct Manifold;
+  Manifold& manifold(const ExprVector& relations, const ExprVector& unknowns, const Bindings& center) const;
+  mutable std::vector<std::shared_ptr<Manifold>> manifolds_;  // on which formulas were tested, the last ones
 };
 
 }  // namespace maupertuis

@@ -51,6 +51,23 @@ ZeroTest zero_test(std::span<const Expr> differences, const ZeroTestOptions& opt
 ZeroTest zero_test_where(std::span<const Expr> differences, std::span<const Expr> relations,
                          std::span<const Expr> unknowns, const Bindings& center, const ZeroTestOptions& options = {});
 
+/// The same for many differences, of which each costs some evaluations: the points are drawn once, when they are first
+/// needed. For one thread at a time.
+class ZeroTestWhere {
+ public:
+  ZeroTestWhere(std::span<const Expr> relations, std::span<const Expr> unknowns, const Bindings& center,
+                const ZeroTestOptions& options = {});
+  ~ZeroTestWhere();
+  ZeroTestWhere(ZeroTestWhere&&) noexcept;
+  ZeroTestWhere& operator=(ZeroTestWhere&&) noexcept;
+
+  ZeroTest operator()(std::span<const Expr> differences);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
 /// The points of zero_test_where, for many questions: random points near `center` on relations, to 100 digits, where
 /// the rank of the relations is as large as it gets, and where all of `defined` have values. Cost: the symbolic rows of
 /// the relations, and some hundred evaluations of them.

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 namespace maupertuis {
@@ -143,8 +144,9 @@ class OwnUnits {
 /// point is found nothing is said.
 class OnConstraints {
  public:
-  OnConstraints(Expr formula, const ExprVector& relations, const ExprVector& unknowns)
-      : formula_(formula), relations_(relations), unknowns_(unknowns) {}
+  using Test = std::function<ZeroTest(Expr, const ExprVector& relations, const ExprVector& unknowns, const Bindings&)>;
+  OnConstraints(Expr formula, const ExprVector& relations, const ExprVector& unknowns, Test test_on)
+      : formula_(formula), relations_(relations), unknowns_(unknowns), test_on_(std::move(test_on)) {}
 
   void near(const Bindings& center) { take(relations_, unknowns_, center); }
 
@@ -167,7 +169,7 @@ class OnConstraints {
  private:
   void take(const ExprVector& relations, const ExprVector& unknowns, const Bindings& center) {
     if (all_.verdict == Verdict::Nonzero) return;
-    ZeroTest here = zero_test_where({&formula_, 1}, relations, unknowns, center);
+    ZeroTest here = test_on_(formula_, relations, unknowns, center);
     if (here.verdict == Verdict::Undecided && all_.verdict == Verdict::Zero) return;
     if (here.verdict == Verdict::Zero && all_.verdict == Verdict::Zero) here.points += all_.points;
     all_ = std::move(here);
@@ -175,6 +177,7 @@ class OnConstraints {
 
   Expr formula_;
   const ExprVector &relations_, &unknowns_;
+  Test test_on_;
   ZeroTest all_;
 };
 
@@ -237,13 +240,34 @@ ZeroTest AlongMotion::vanishes(Expr e) const {
   return by_values.verdict == Verdict::Zero ? by_values : test;
 }
 
+struct AlongMotion::Manifold {
+  ExprVector relations, unknowns;
+  Bindings center;
+  ZeroTestWhere test;
+};
+
+/// A search for integrals tests hundreds of formulas on the same relations: their points are found once.
+AlongMotion::Manifold& AlongMotion::manifold(const ExprVector& relations, const ExprVector& unknowns,
+                                             const Bindings& center) const {
+  constexpr std::size_t most = 16;
+  for (const auto& known : manifolds_)
+    if (known->relations == relations && known->unknowns == unknowns && known->center == center) return *known;
+  if (manifolds_.size() == most) manifolds_.erase(manifolds_.begin());
+  manifolds_.push_back(
+      std::make_shared<Manifold>(Manifold{relations, unknowns, center, ZeroTestWhere(relations, unknowns, center)}));
+  return *manifolds_.back();
+}
+
 ZeroTest AlongMotion::as_formula(Expr plain) const {
   if (!constrained() || plain.is_zero()) return vanish_for_given_signs(*equations_.system, {&plain, 1});
   const Where where = relations_for(plain);
   const OwnUnits units(where.relations, where.unknowns, where.center);
   const ExprVector relations = units.of(where.relations), formula = units.of({&plain, 1});
   const Bindings center = units.of(where.center);
-  OnConstraints test(formula.front(), relations, where.unknowns);
+  OnConstraints test(formula.front(), relations, where.unknowns,
+                     [&](Expr e, const ExprVector& on, const ExprVector& by, const Bindings& near) {
+                       return manifold(on, by, near).test({&e, 1});
+                     });
   test.near(center);
   for (int turn = 0; turn < far_centers; ++turn) test.near(far_center(center, *equations_.system, turn));
   ExprVector functions = relations;

@@ -258,7 +258,9 @@ void friction(Elaboration& e, const FrictionStatement& s, Span span) {
     const Value most = scalar_of(e, *s.limit, force, fmt::format("the greatest friction along {}", c.name));
     const Value holds =
         s.static_friction ? scalar_of(e, *s.static_friction, force, "the greatest static friction") : most;
-    if (most.poisoned || holds.poisoned) return;
+    if (most.poisoned || holds.poisoned || refuse_acceleration(e, most, *s.limit, "a limit of friction") ||
+        (s.static_friction && refuse_acceleration(e, holds, *s.static_friction, "a limit of friction")))
+      return;
     f.kinetic = most.scalar(), f.static_ = holds.scalar();
     const std::optional<double> size = constant_value(e, f.kinetic);
     if (size && *size < 0) {
@@ -274,7 +276,9 @@ void friction(Elaboration& e, const FrictionStatement& s, Span span) {
     Place along_motion;
     along_motion.reactions = true;
     const Value normal = scalar_of(e, *s.normal, force, "the normal force", along_motion);
-    if (!kinetic || !static_ || normal.poisoned || refuse_force_of_contact(e, normal.scalar(), *s.normal)) return;
+    if (!kinetic || !static_ || normal.poisoned || refuse_acceleration(e, normal, *s.normal, "a normal force") ||
+        refuse_force_of_contact(e, normal.scalar(), *s.normal))
+      return;
     f.kinetic = *kinetic, f.static_ = *static_, f.normal = normal.scalar();
   }
   if (s.static_friction && refuse_order_of_coefficients(e, f.kinetic, f.static_, *s.static_friction)) return;

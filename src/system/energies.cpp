@@ -285,7 +285,9 @@ Expr total(const MechanicalSystem& s, Which which) {
   return s.lagrangian();
 }
 
-int order_of(Which which) { return which == Which::V ? 0 : 1; }
+int order_of(Elaboration& e, Which which) {
+  return which == Which::V ? 0 : which == Which::L && !e.higher.empty() ? 2 : 1;
+}
 
 }  // namespace
 
@@ -314,7 +316,7 @@ void elaborate_energy(Elaboration& e, Which which, Declaration& d) {
   d.value = poisoned ? Value::poison()
                      : Value::of(total(e.system(), which),
                                  which == Which::L ? e.system().lagrangian_dimension : e.dimension(dimension_of(which)),
-                                 order_of(which));
+                                 order_of(e, which));
 }
 
 }  // namespace maupertuis::elaboration

@@ -80,11 +80,41 @@ class Sums {
   std::unique_ptr<Tape> tape_;
 };
 
+/// Formulas that are evaluated at many points.
+class Formulas {
+ public:
+  explicit Formulas(std::span<const Expr> formulas) : tape_(formulas) {}
+
+  std::vector<double> at(const Bindings& values) const {
+    const auto lookup = [&](Expr s) { return values.at(s); };
+    evaluation::RealNumbers<double> numbers(lookup);
+    std::vector<double> nodes, out;
+    evaluation::run(tape_, numbers, nodes);
+    for (const evaluation::Position root : tape_.roots()) out.push_back(nodes[root]);
+    return out;
+  }
+
+ private:
+  Tape tape_;
+};
+
+/// A point that was drawn on the relations; nothing where Newton's method led to none.
+struct Drawn {
+  std::optional<Precise> point;
+  Bindings rounded;
+  Index rank = 0;  // of the relations there
+};
+
 class OnRelations {
  public:
-  OnRelations(std::span<const Expr> relations, std::span<const Expr> unknowns, const Bindings& center)
-      : relations_(relations), unknowns_(unknowns.begin(), unknowns.end()), center_(center) {
-    jacobian_ = rows_of(relations);
+  OnRelations(std::span<const Expr> relations, std::span<const Expr> unknowns, const Bindings& center,
+              const ZeroTestOptions& options)
+      : relations_(relations),
+        unknowns_(unknowns.begin(), unknowns.end()),
+        center_(center),
+        options_(options),
+        random_(options.seed),
+        jacobian_(rows_of(relations)) {
     for (const Expr& relation : relations) relation_levels_.push_back(level_of({&relation, 1}));
     for (const Expr& unknown : unknowns_) unknown_levels_.push_back(level_of({&unknown, 1}));
     rows_ = static_cast<Index>(relations.size());
@@ -93,6 +123,7 @@ class OnRelations {
       reach_[static_cast<Index>(i)] = own_size(center.at(unknowns_[i]));
   }
 
+  /// The gradients of the functions by the unknowns, one after the other.
   std::vector<Expr> rows_of(std::span<const Expr> functions) const {
     std::vector<Expr> rows;
     for (const Expr& f : functions)
@@ -101,10 +132,24 @@ class OnRelations {
   }
 
   /// How much each function changes when the unknowns change by their own size; `rows` of the functions' gradients.
-  Vector changes(const std::vector<Expr>& rows, const Bindings& at) const {
-    return matrix(rows, at).cwiseAbs() * reach_;
+  Vector changes(const Formulas& rows, const Bindings& at) const { return matrix(rows, at).cwiseAbs() * reach_; }
+
+  const ZeroTestOptions& options() const { return options_; }
+
+  /// The same of each attempt however often it is asked for.
+  const Drawn& drawn(std::size_t attempt) {
+    while (drawn_.size() <= attempt) {
+      Drawn next{point(), {}, 0};
+      if (next.point) {
+        for (const auto& [symbol, x] : *next.point) next.rounded.emplace(symbol, static_cast<double>(x));
+        next.rank = rank(next.rounded);
+      }
+      drawn_.push_back(std::move(next));
+    }
+    return drawn_[attempt];
   }
 
+ private:
   /// The number of relations that are independent there, by the unknowns of the highest level, of their own sizes.
   Index rank(const Bindings& at) const {
     if (rows_ == 0 || unknown_levels_.empty()) return 0;
@@ -118,17 +163,16 @@ class OnRelations {
   }
 
   /// A point on the relations to 100 digits, or nothing.
-  std::optional<Precise> point(std::mt19937_64& random, bool hold_parameters) {
+  std::optional<Precise> point() {
     Bindings at = center_;
     for (auto& [symbol, value] : at) {
-      const double by = spread(symbol, value) * uniform(random);
-      if (!hold_parameters || is_variable(symbol)) value += by;
+      const double by = spread(symbol, value) * uniform(random_);
+      if (!options_.hold_parameters || is_variable(symbol)) value += by;
     }
     if (!approach(at)) return std::nullopt;
     return refine(at);
   }
 
- private:
   static double uniform(std::mt19937_64& random) { return 2 * std::generate_canonical<double, 53>(random) - 1; }
   bool is_variable(Expr symbol) const {
     return symbol.role() == Role::Time || std::find(unknowns_.begin(), unknowns_.end(), symbol) != unknowns_.end();
@@ -139,11 +183,11 @@ class OnRelations {
   }
   static double own_size(double value) { return std::abs(value) > 1e-12 ? std::abs(value) : 1; }
 
-  Matrix matrix(const std::vector<Expr>& rows, const Bindings& at) const {
-    const std::vector<double> numbers = evaluate(rows, at);
+  Matrix matrix(const Formulas& rows, const Bindings& at) const {
+    const std::vector<double> numbers = rows.at(at);
     using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     const auto columns = static_cast<Index>(unknowns_.size());
-    return Eigen::Map<const ByRows>(numbers.data(), static_cast<Index>(rows.size()) / columns, columns);
+    return Eigen::Map<const ByRows>(numbers.data(), static_cast<Index>(numbers.size()) / columns, columns);
   }
   Matrix jacobian(const Bindings& at) const { return matrix(jacobian_, at); }
 
@@ -250,8 +294,11 @@ class OnRelations {
 
   Sums relations_;
   std::vector<Expr> unknowns_;
-  const Bindings& center_;
-  std::vector<Expr> jacobian_;
+  Bindings center_;
+  ZeroTestOptions options_;
+  std::mt19937_64 random_;
+  Formulas jacobian_;
+  std::vector<Drawn> drawn_;
   std::vector<int> relation_levels_, unknown_levels_;
   Index rows_ = 0;
   Vector reach_;
@@ -269,13 +316,11 @@ struct Judged {
 
 /// What is 0 is measured by its terms and by what the unknowns' own sizes change in it. Nothing where a value is not
 /// finite.
-std::optional<Judged> judge(const Precise& point, const Sums& sums, const std::vector<Expr>& rows,
-                            const OnRelations& manifold) {
+std::optional<Judged> judge(const Drawn& drawn, const Sums& sums, const Formulas& rows, const OnRelations& manifold) {
   std::vector<Real100> value, size;
-  sums.evaluate<Real100>([&](Expr s) { return point.at(s); }, value, size);
+  sums.evaluate<Real100>([&](Expr s) { return drawn.point->at(s); }, value, size);
   if (!std::all_of(value.begin(), value.end(), [](const Real100& v) { return isfinite(v); })) return std::nullopt;
-  Judged out;
-  for (const auto& [symbol, x] : point) out.point.emplace(symbol, static_cast<double>(x));
+  Judged out{drawn.rounded, std::nullopt};
   const Vector change = manifold.changes(rows, out.point);
   if (!change.allFinite()) return std::nullopt;
   for (std::size_t i = 0; i < value.size() && !out.difference; ++i)
@@ -287,19 +332,17 @@ std::optional<Judged> judge(const Precise& point, const Sums& sums, const std::v
 /// Points where the rank of the relations is as large as it gets: where coordinates fail (Euler angles at θ = 0) the
 /// relations hold for accelerations that no motion has. `judge` gives nothing for a point that does not count.
 template <class Judge>
-auto regular_points(OnRelations& manifold, const ZeroTestOptions& options, Judge judge) {
-  std::mt19937_64 random(options.seed);
+auto regular_points(OnRelations& manifold, Judge judge) {
   Index rank = 0;
-  std::vector<typename std::invoke_result_t<Judge, const Precise&>::value_type> regular;
-  const auto wanted = static_cast<std::size_t>(options.points);
-  for (int attempt = 0; attempt < options.points * attempts_per_point && regular.size() < wanted; ++attempt) {
-    const auto point = manifold.point(random, options.hold_parameters);
-    if (!point) continue;
-    auto judged = judge(*point);
-    const Index here = judged ? manifold.rank(judged->point) : 0;
-    if (!judged || here < rank) continue;
-    if (here > rank) regular.clear();
-    rank = here;
+  std::vector<typename std::invoke_result_t<Judge, const Drawn&>::value_type> regular;
+  const auto wanted = static_cast<std::size_t>(manifold.options().points);
+  for (std::size_t attempt = 0; attempt < wanted * attempts_per_point && regular.size() < wanted; ++attempt) {
+    const Drawn& drawn = manifold.drawn(attempt);
+    if (!drawn.point || drawn.rank < rank) continue;
+    auto judged = judge(drawn);
+    if (!judged) continue;
+    if (drawn.rank > rank) regular.clear();
+    rank = drawn.rank;
     regular.push_back(std::move(*judged));
   }
   return regular;
@@ -307,13 +350,23 @@ auto regular_points(OnRelations& manifold, const ZeroTestOptions& options, Judge
 
 }  // namespace
 
-ZeroTest zero_test_where(std::span<const Expr> differences, std::span<const Expr> relations,
-                         std::span<const Expr> unknowns, const Bindings& center, const ZeroTestOptions& options) {
-  OnRelations manifold(relations, unknowns, center);
+struct ZeroTestWhere::Impl {
+  OnRelations manifold;
+};
+
+ZeroTestWhere::ZeroTestWhere(std::span<const Expr> relations, std::span<const Expr> unknowns, const Bindings& center,
+                             const ZeroTestOptions& options)
+    : impl_(new Impl{OnRelations(relations, unknowns, center, options)}) {}
+ZeroTestWhere::~ZeroTestWhere() = default;
+ZeroTestWhere::ZeroTestWhere(ZeroTestWhere&&) noexcept = default;
+ZeroTestWhere& ZeroTestWhere::operator=(ZeroTestWhere&&) noexcept = default;
+
+ZeroTest ZeroTestWhere::operator()(std::span<const Expr> differences) {
+  OnRelations& manifold = impl_->manifold;
   const Sums sums(differences);
-  const std::vector<Expr> rows = manifold.rows_of(differences);
+  const Formulas rows(manifold.rows_of(differences));
   const std::vector<Judged> regular =
-      regular_points(manifold, options, [&](const Precise& point) { return judge(point, sums, rows, manifold); });
+      regular_points(manifold, [&](const Drawn& drawn) { return judge(drawn, sums, rows, manifold); });
   ZeroTest test;
   test.points = static_cast<int>(regular.size());
   for (const Judged& judged : regular) {
@@ -324,40 +377,36 @@ ZeroTest zero_test_where(std::span<const Expr> differences, std::span<const Expr
     test.witness = judged.point;
     return test;
   }
-  if (regular.size() == static_cast<std::size_t>(options.points))
+  if (regular.size() == static_cast<std::size_t>(manifold.options().points))
     test.verdict = Verdict::Zero;
   else
     test.reason = "no point was found at which the constraints hold";
   return test;
 }
 
+ZeroTest zero_test_where(std::span<const Expr> differences, std::span<const Expr> relations,
+                         std::span<const Expr> unknowns, const Bindings& center, const ZeroTestOptions& options) {
+  return ZeroTestWhere(relations, unknowns, center, options)(differences);
+}
+
 // --------------------------------------------------------------------------------------------------------- the points
 
 struct PointsWhere::Impl {
-  struct Point {
-    Bindings point;
-    Precise precise;
-  };
-  Bindings center;
   OnRelations manifold;
-  std::vector<Point> points;
+  std::vector<Drawn> points;
   std::vector<Bindings> rounded;
-
-  Impl(std::span<const Expr> relations, std::span<const Expr> unknowns, const Bindings& near)
-      : center(near), manifold(relations, unknowns, center) {}
 };
 
 PointsWhere::PointsWhere(std::span<const Expr> relations, std::span<const Expr> unknowns, const Bindings& center,
                          const ZeroTestOptions& options, std::span<const Expr> defined)
-    : impl_(std::make_unique<Impl>(relations, unknowns, center)) {
-  impl_->points = regular_points(impl_->manifold, options, [&](const Precise& precise) -> std::optional<Impl::Point> {
-    Impl::Point out{{}, precise};
-    for (const auto& [symbol, x] : precise) out.point.emplace(symbol, static_cast<double>(x));
-    const std::vector<double> values = evaluate(defined, out.point);
+    : impl_(new Impl{OnRelations(relations, unknowns, center, options), {}, {}}) {
+  const Formulas formulas(defined);
+  impl_->points = regular_points(impl_->manifold, [&](const Drawn& drawn) -> std::optional<Drawn> {
+    const std::vector<double> values = formulas.at(drawn.rounded);
     if (!std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); })) return std::nullopt;
-    return std::optional(std::move(out));
+    return drawn;
   });
-  for (const Impl::Point& p : impl_->points) impl_->rounded.push_back(p.point);
+  for (const Drawn& p : impl_->points) impl_->rounded.push_back(p.rounded);
 }
 PointsWhere::~PointsWhere() = default;
 PointsWhere::PointsWhere(PointsWhere&&) noexcept = default;
@@ -366,10 +415,10 @@ const std::vector<Bindings>& PointsWhere::points() const { return impl_->rounded
 
 Verdict PointsWhere::vanishes(Expr e) const {
   const Sums sums({&e, 1});
-  const std::vector<Expr> rows = impl_->manifold.rows_of({&e, 1});
+  const Formulas rows(impl_->manifold.rows_of({&e, 1}));
   bool judged_any = false;
-  for (const Impl::Point& p : impl_->points) {
-    const std::optional<Judged> judged = judge(p.precise, sums, rows, impl_->manifold);
+  for (const Drawn& p : impl_->points) {
+    const std::optional<Judged> judged = judge(p, sums, rows, impl_->manifold);
     if (!judged) continue;
     if (judged->difference) return Verdict::Nonzero;
     judged_any = true;
