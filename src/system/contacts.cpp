@@ -244,6 +244,14 @@ std::optional<std::size_t> rubbed_coordinate(Elaboration& e, const syntax::Expre
   return of ? std::optional(of->coordinate) : std::nullopt;
 }
 
+/// q'' itself; a reaction, which follows from accelerations, may be a normal force.
+bool knows_acceleration(Expr value) {
+  const Expr plain = expand_time_derivatives(value);
+  const std::vector<Expr> symbols = symbols_of({&plain, 1});
+  return std::any_of(symbols.begin(), symbols.end(),
+                     [](const Expr& s) { return s.role() == Role::Coordinate && s.order() >= 2; });
+}
+
 /// friction x coefficient μ static μs normal m g,   friction θ limit M static Ms
 void friction(Elaboration& e, const FrictionStatement& s, Span span) {
   const auto along = rubbed_coordinate(e, *s.coordinate);
@@ -276,8 +284,8 @@ void friction(Elaboration& e, const FrictionStatement& s, Span span) {
     Place along_motion;
     along_motion.reactions = true;
     const Value normal = scalar_of(e, *s.normal, force, "the normal force", along_motion);
-    if (!kinetic || !static_ || normal.poisoned || refuse_acceleration(e, normal, *s.normal, "a normal force") ||
-        refuse_force_of_contact(e, normal.scalar(), *s.normal))
+    if (!kinetic || !static_ || normal.poisoned || refuse_force_of_contact(e, normal.scalar(), *s.normal) ||
+        (knows_acceleration(normal.scalar()) && refuse_acceleration(e, normal, *s.normal, "a normal force")))
       return;
     f.kinetic = *kinetic, f.static_ = *static_, f.normal = normal.scalar();
   }

@@ -26,6 +26,9 @@ TEST_CASE("accelerations are no part of what an event sets or what friction take
   CHECK(codes_of(oscillator + "friction q limit 1 + q''\n") == "E0401 ");
   CHECK(codes_of(oscillator + "friction q limit 1 static 2 + q''\n") == "E0401 ");
   CHECK(codes_of(oscillator + "friction q coefficient 0.1 normal q''\n") == "E0401 ");
+  CHECK(codes_of("dimensionless\ncoord q, z : number\nT = 1/2 (q'^2 + z'^2)\nconstraint z = 0 name rail\n"
+                 "friction q coefficient 0.1 normal reaction(rail)\n")
+            .empty());
   CHECK(codes_of("dimensionless\ncoord y : number\nL = 1/2 y''^2\nD = (y L)^2\n") == "E0401 ");
   CHECK(codes_of("dimensionless\ncoord y : number\nL = 1/2 y'^2\nD = (y L)^2\n").empty());
 }
