@@ -288,9 +288,10 @@ void Impacts::close_lowest_flights(const std::vector<std::size_t>& touching, con
     return std::any_of(list.begin(), list.end(), [&](std::size_t i) { return is_slow(i, values); });
   };
   if (!any_is_slow(touching)) return;
-  const std::vector<std::size_t> pressed = pressed_through_flights(touching, met, values, bound);
+  const auto [pressed, flight] = pressed_through_flights(touching, met, values, bound);
   if (!any_is_slow(pressed)) return;
-  ImpactResult closed = end_of_bounces(problem_of(pressed, values), vector_of(here_.v));
+  if (flight > 0) end_of_bounces_ = EndOfBounces{here_.t + flight};
+  ImpactResult closed = end_of_flights(problem_of(pressed, values), vector_of(here_.v));
   if (pressed.size() < touching.size()) {  // what touches beside them is not pressed through
     const ImpactResult all = simultaneous_impact(problem_of(touching, values), closed.v, true);
     if (!all.unsolved) {
@@ -303,18 +304,19 @@ void Impacts::close_lowest_flights(const std::vector<std::size_t>& touching, con
 }
 
 /// Contacts that press though they open, so slowly that they are closed. One that flies higher presses on nothing: the
-/// forces of the others are sought without it.
-std::vector<std::size_t> Impacts::pressed_through_flights(const std::vector<std::size_t>& touching, const Met& met,
-                                                          const ContactValues& values, double bound) {
+/// forces of the others are sought without it. And how long their flights would last, 2 ġ/a for the first and e of the
+/// one before for each that follows.
+Impacts::LowFlights Impacts::pressed_through_flights(const std::vector<std::size_t>& touching, const Met& met,
+                                                     const ContactValues& values, double bound) {
   std::vector<Choice> list;
   for (const std::size_t i : touching)
     if (values.rate[i] <= slow_flight * sizes_.fastest(i)) list.push_back(choices_.of_contact(i, values, met));
-  std::vector<std::size_t> pressed;
+  LowFlights out;
   for (bool all_are_low = false; !all_are_low;) {
     const auto problem = forces_.problem_of(list, values, bound);
     const auto forces = problem ? contact_forces(*problem) : std::nullopt;
     if (!forces) return {};
-    pressed.clear();
+    out = {};
     std::vector<Choice> low;
     for (std::size_t k = 0; k < list.size(); ++k) {
       const std::size_t i = list[k].contact;
@@ -323,12 +325,15 @@ std::vector<std::size_t> Impacts::pressed_through_flights(const std::vector<std:
       const double speed = values.rate[i];
       if (presses && is_slow(i, values) && speed * speed > 2 * falls * rest_unit * sizes_.widest(i)) continue;
       low.push_back(list[k]);
-      if (presses) pressed.push_back(i);
+      if (!presses) continue;
+      out.contacts.push_back(i);
+      if (const double e = values.restitution[i]; is_slow(i, values) && e > 0 && e < 1)
+        out.duration = std::max(out.duration, 2 * speed / (falls * (1 - e)));
     }
     all_are_low = low.size() == list.size();
     list = std::move(low);
   }
-  return pressed;
+  return out;
 }
 
 void Impacts::begin_anew(const std::vector<double>& q, const std::vector<double>& v, const ContactValues& values) {

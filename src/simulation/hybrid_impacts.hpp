@@ -59,8 +59,12 @@ class Impacts {
 
   bool closes(std::size_t contact, const ContactValues& values) const;
   bool is_slow(std::size_t contact, const ContactValues& values) const;
-  std::vector<std::size_t> pressed_through_flights(const std::vector<std::size_t>& touching, const Met& met,
-                                                   const ContactValues& values, double bound);
+  struct LowFlights {
+    std::vector<std::size_t> contacts;
+    double duration = 0;  // of all that would follow
+  };
+  LowFlights pressed_through_flights(const std::vector<std::size_t>& touching, const Met& met,
+                                     const ContactValues& values, double bound);
   ImpactProblem problem_of(const std::vector<std::size_t>& touching, const ContactValues& values) const;
   void note_bounce(std::size_t contact, double speed, double restitution);
   std::optional<double> accumulation(std::size_t contact, double speed);

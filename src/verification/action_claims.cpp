@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace maupertuis {
@@ -56,7 +57,7 @@ std::string ActionClaims::among_others(int number) const {
 void ActionClaims::decide(const expectation::Action& e, ExpectationResult& result) {
   const StationaryPath* stationary = path(e.path, result);
   if (!stationary) return;
-  judge(e.expected, stationary->action,
+  judge(e.expected, stationary->action, stationary->action_error,
         fmt::format("error about {:.1g}{}", stationary->action_error, among_others(e.path)), result);
 }
 
@@ -68,7 +69,10 @@ void ActionClaims::decide(const expectation::PathAt& e, ExpectationResult& resul
     result.message = "The path does not reach there.";
     return;
   }
-  judge(e.expected, value_on(stationary->path, t, e.subject, model_.system),
+  const auto value_at = [&](double when) { return value_on(stationary->path, when, e.subject, model_.system); };
+  const double size = std::max(
+      {std::abs(value_at(stationary->path.start)), std::abs(value_at(t)), std::abs(value_at(stationary->path.end))});
+  judge(e.expected, value_at(t), stationary->path_error * size,
         fmt::format("error about {:.1g} of the size{}", stationary->path_error, among_others(e.path)), result);
 }
 
@@ -84,7 +88,7 @@ void ActionClaims::decide(const expectation::ActionAlong& e, ExpectationResult& 
     result.message = first_trouble(told);
     return;
   }
-  judge(e.expected, found->action, fmt::format("error about {:.1g}", found->action_error), result);
+  judge(e.expected, found->action, found->action_error, fmt::format("error about {:.1g}", found->action_error), result);
 }
 
 void ActionClaims::decide(const expectation::MorseIndex& e, ExpectationResult& result) {
@@ -97,10 +101,17 @@ void ActionClaims::decide(const expectation::MorseIndex& e, ExpectationResult& r
   result.message = p->second.index ? "by inertia and by Jacobi fields" : p->second.reason;
 }
 
-void ActionClaims::judge(const expectation::Number& expected, double actual, const std::string& ground,
+/// `error`: by how much `actual` may be off. A hundred times what is allowed proves nothing, as of values of a run.
+void ActionClaims::judge(const expectation::Number& expected, double actual, double error, const std::string& ground,
                          ExpectationResult& result) const {
   judge_number(expected, model_.system, actual, result);
   result.message += "; " + ground;
+  constexpr double most = 100;
+  const double allowed = allowed_difference(expected.tolerance, model_.system, number(model_, expected.value));
+  if (result.passed && error > most * allowed) {
+    result.passed = false;
+    result.message += ", far more than the tolerance: it proves nothing";
+  }
 }
 
 }  // namespace maupertuis

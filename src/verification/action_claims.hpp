@@ -24,7 +24,7 @@ class ActionClaims {
   const StationaryPath* path(int number, ExpectationResult& result);
   /// "; of 3 paths, number 2 by the action"
   std::string among_others(int number) const;
-  void judge(const expectation::Number& expected, double actual, const std::string& ground,
+  void judge(const expectation::Number& expected, double actual, double error, const std::string& ground,
              ExpectationResult& result) const;
 
   const Model& model_;

@@ -103,6 +103,13 @@ constexpr CodeEntry entries[] = {
      "path from 1 m at 0 to -1 m at 2 s\n",
      "# maup action\nparam m = 1 kg, F = 2 N, d = 1 cm\ncoord x : length\nT = 1/2 m x'^2\nV = F sqrt(x^2 + d^2)\n"
      "path from 1 m at 0 to -1 m at 2 s\n"},
+    {"W1203", "a path that its own motion leaves",
+     "A stationary path is checked by the motion from its own states, whose steps pass over nothing. Where the two "
+     "differ by more than their errors, something narrower than the elements of the path acts on it, a barrier, a "
+     "pulse; or the motion is as sensitive as that. S is told no better than the two agree.",
+     "# maup action\ndimensionless\ncoord x : number\nL = 1/2 x'^2 + 1e6 exp(-((t - 0.5137)*1e6)^2)\n"
+     "path from 0 at 0 to 1 at 1\n",
+     "# maup action\ndimensionless\ncoord x : number\nL = 1/2 x'^2 + exp(-(t - 0.5137)^2)\npath from 0 at 0 to 1 at 1\n"},
     {"W1201", "two counts of a Morse index disagree",
      "The index is counted by the negative inertia of the discretized second variation and by the zeros of Jacobi "
      "fields. Where they "

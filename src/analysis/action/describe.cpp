@@ -89,6 +89,31 @@ std::string no_index_at(const KinkPassed& kink, const Problem& problem) {
       where.empty() ? "" : ", " + where + ",", place(kink.t, problem.model.system));
 }
 
+/// W1203 where the motion from the path's own states does something else than the path: the polynomials of its elements
+/// do not see what is narrower than they are. S is then not better known than by the two.
+void compare_with_motion(StationaryPath& p, Diagnostics& diagnostics) {
+  constexpr double usual = 1e-9, beyond = 1e4;  // of sizes; of the errors of the path and of S
+  const MotionCheck& c = p.check;
+  if (!c.done || c.from != p.path.start || c.to != p.path.end) return;
+  const double off = std::abs(c.action - p.action);
+  const bool elsewhere = c.missed > usual && c.missed > beyond * p.path_error;
+  const bool other_action =
+      off > usual * std::max(std::abs(c.action), std::abs(p.action)) && off > beyond * p.action_error;
+  if (!elsewhere && !other_action) return;
+  p.action_error = std::max(p.action_error, off);
+  p.path_error = std::max(p.path_error, c.missed);
+  p.second.index.reset();
+  p.second.reason = "The motion from the path's own states leaves it: the counts are of another curve.";
+  diagnostics.warning(
+      "W1203", {},
+      fmt::format("the motion from its own states is off this path by {:.1g} of its size, and its S by {:.1g}",
+                  c.missed, off),
+      "The motion is followed by steps that pass over nothing; the path is polynomials between points. Something "
+      "narrower than the distance of these points acts on it, or it is as sensitive as that.",
+      "Trust S and the path no further than that; a path that passes the narrow place in two parts, or a larger width, "
+      "shows it.");
+}
+
 }  // namespace
 
 StationaryPath describe(Problem& problem, const Refined& refined, const ActionEnds& ends, const SingularEnds& singular,
@@ -123,6 +148,7 @@ StationaryPath describe(Problem& problem, const Refined& refined, const ActionEn
     diagnostics.warning("W1201", {}, "the two counts of a Morse index disagree", out.second.reason,
                         "No index is given for this path. Please report the model.");
   if (options.variations) out.second.variations = test_variations(problem, refined.coarse, fixed, least);
+  if (!(out.check.missed > largest_miss)) compare_with_motion(out, diagnostics);  // else it is left out
   return out;
 }
 

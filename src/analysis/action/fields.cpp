@@ -155,24 +155,31 @@ class Neighbours {
 };
 
 /// ∫ L dt along the motions themselves.
+/// Motions and their ∫ L dt, as the velocity of a further coordinate, S'' = L: so the steps keep to what L does as they
+/// do for forces, and nothing narrow in it is passed over.
 class ActionAlong {
  public:
   ActionAlong(const EquationsOfMotion& weighted, Expr lagrangian, const StopFlag* interrupt = nullptr)
       : kernel_(kernel_of(weighted, lagrangian)),
         stepper_(kernel_, parameter_values(*weighted.system), {.maximum_steps = 100'000, .interrupt = interrupt}) {}
 
-  std::span<const double> q() const { return stepper_.q(); }  // where the motion is
+  std::span<const double> q() const { return stepper_.q().first(stepper_.q().size() - 1); }  // where the motion is
   std::optional<double> over(const MotionState& from, double to) {
-    stepper_.start(from.t, from.q, from.v);
+    std::vector<double> q = from.q, v = from.v;
+    q.push_back(0), v.push_back(0);
+    stepper_.start(from.t, q, v);
     while (stepper_.time() != to)
       if (stepper_.step(to).ending != StepEnding::None) return std::nullopt;
-    return stepper_.sample(to).integrals.front();
+    return stepper_.v().back();
   }
 
  private:
   static Kernel kernel_of(const EquationsOfMotion& weighted, Expr lagrangian) {
     KernelSource source = motion_source(weighted);
-    source.integrands = in_terms_of_motion(*weighted.system, {&lagrangian, 1});
+    Context& context = *weighted.system->context;
+    source.coordinates.push_back(context.symbol("∫∫ L", Role::Coordinate));
+    source.residual.push_back(context.symbol("∫∫ L", Role::Coordinate, 2) -
+                              in_terms_of_motion(*weighted.system, {&lagrangian, 1}).front());
     return build_kernel(source);
   }
   Kernel kernel_;

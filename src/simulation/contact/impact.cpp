@@ -238,27 +238,74 @@ ImpactResult impact_at_once(const ImpactProblem& p, const VectorXd& v) {
   return out;
 }
 
-ImpactResult end_of_bounces(const ImpactProblem& p, const VectorXd& v) {
+namespace {
+
+/// Friction of a contact that slides on through its impulse: Λ_t = Λ (along, second), opposite to the slip.
+struct Sliding {
+  double along = 0, second = 0;
+};
+
+Sliding sliding_of(const ImpactProblem& p, std::size_t i, const VectorXd& v) {
+  if (!has_friction(p, i) || p.sticking[i]) return {};
+  const double slip = dot(p.tangent[i], v) + p.slip_drive[i],
+               second = is_in_space(p, i) ? dot(p.second_tangent[i], v) + p.second_drive[i] : 0;
+  const double size = std::hypot(slip, second);
+  const double changed = p.friction[i] * std::abs(rate(p, i, v)) * dot(p.tangent[i], p.tangent_response.col(at(i))) /
+                         dot(p.normal[i], p.response.col(at(i)));
+  if (!(size > changed)) return {};  // it would not slide on
+  return {-p.friction[i] * slip / size, -p.friction[i] * second / size};
+}
+
+/// What the velocities change by an impulse 1 with its friction.
+VectorXd response_of(const ImpactProblem& p, std::size_t i, const Sliding& sliding) {
+  VectorXd out = p.response.col(at(i));
+  if (sliding.along != 0) out += sliding.along * p.tangent_response.col(at(i));
+  if (sliding.second != 0) out += sliding.second * p.second_response.col(at(i));
+  return out;
+}
+
+/// ġ⁺ = 0 by impulses with these parts of friction.
+ImpactResult closed_with(const ImpactProblem& p, const VectorXd& v, const std::vector<Sliding>& sliding) {
   ImpactResult out;
   out.v = v;
   const std::size_t count = p.contacts.size();
-  Eigen::MatrixXd w(at(count), at(count));
+  Eigen::MatrixXd w(at(count), at(count)), responses(v.size(), at(count));
   VectorXd q(at(count));
+  for (std::size_t b = 0; b < count; ++b) responses.col(at(b)) = response_of(p, b, sliding[b]);
   for (std::size_t a = 0; a < count; ++a) {
-    for (std::size_t b = 0; b < count; ++b) w(at(a), at(b)) = dot(p.normal[a], p.response.col(at(b)));
+    for (std::size_t b = 0; b < count; ++b) w(at(a), at(b)) = dot(p.normal[a], responses.col(at(b)));
     q(at(a)) = -rate(p, a, v);
   }
   const VectorXd impulses = least_solution(w, q);
-  std::vector<std::size_t> all;
-  for (std::size_t a = 0; a < count; ++a) out.v += impulses(at(a)) * p.response.col(at(a)), all.push_back(a);
+  out.v += responses * impulses;
+  std::vector<std::size_t> all(count);
+  std::iota(all.begin(), all.end(), std::size_t{0});
   polish(p, all, std::vector<double>(count), out.v);
   for (std::size_t a = 0; a < count; ++a) {
-    const double before = rate(p, a, v), after = rate(p, a, out.v);
-    out.moving -= impulses(at(a)) * p.drive[a];
-    out.loss -= 0.5 * impulses(at(a)) * (before + after);
-    if (before < -p.rest[a]) out.impulses.push_back(without_friction(p.contacts[a], impulses(at(a)), before, after));
+    const double before = rate(p, a, v), after = rate(p, a, out.v), impulse = impulses(at(a));
+    out.moving -= impulse * p.drive[a];
+    out.loss -= 0.5 * impulse * (before + after);
+    const auto rubs = [&](const SparseRow& tangent, double drive, double part) {
+      out.moving -= impulse * part * drive;
+      out.loss -= 0.5 * impulse * part * (dot(tangent, v) + dot(tangent, out.v) + 2 * drive);
+    };
+    if (sliding[a].along != 0) rubs(p.tangent[a], p.slip_drive[a], sliding[a].along);
+    if (sliding[a].second != 0) rubs(p.second_tangent[a], p.second_drive[a], sliding[a].second);
+    if (before < -p.rest[a]) out.impulses.push_back(without_friction(p.contacts[a], impulse, before, after));
   }
   return out;
+}
+
+}  // namespace
+
+ImpactResult end_of_bounces(const ImpactProblem& p, const VectorXd& v) {
+  return closed_with(p, v, std::vector<Sliding>(p.contacts.size()));
+}
+
+ImpactResult end_of_flights(const ImpactProblem& p, const VectorXd& v) {
+  std::vector<Sliding> sliding;
+  for (std::size_t i = 0; i < p.contacts.size(); ++i) sliding.push_back(sliding_of(p, i, v));
+  return closed_with(p, v, sliding);
 }
 
 PlaneImpulse frictional_impulse(double w_nn, double w_nt, double w_tt, double v_n, double v_t, double friction,

@@ -63,6 +63,10 @@ ImpactResult impact_at_once(const ImpactProblem& problem, const Eigen::VectorXd&
 
 /// ġ⁺ = 0 at all contacts: what infinitely many bounces between them end in.
 ImpactResult end_of_bounces(const ImpactProblem& problem, const Eigen::VectorXd& v);
+/// ġ⁺ = 0 at contacts that open so slowly that they are kept closed. From now on they press as their bounces would have
+/// pressed on the average, that is already while they would fly: the impulse −ġ/w that takes out ġ is negative, and
+/// takes with it what friction would do too early, on contacts that slide on.
+ImpactResult end_of_flights(const ImpactProblem& problem, const Eigen::VectorXd& v);
 
 /// Normal and tangential impulse at one contact in the plane: w = [W_nn, W_nt, W_tt] gives what they change in
 /// (v_n, v_t). Sliding, sticking and reversal follow each other while the normal impulse grows (Stronge). v_n < 0.

@@ -102,3 +102,30 @@ TEST_CASE("a path along which L vanishes is one as others are") {
   for (const std::size_t i : {0, 1})
     CHECK(found.paths[0].start_velocity[i] == doctest::Approx(1 / std::sin(2.0)).epsilon(1e-11));
 }
+
+TEST_CASE("what is narrower than the elements of a path is told by the motion from its states") {
+  // A pulse in t alone leaves the straight line stationary, and adds w A √π to S; the barrier in x bends the path.
+  for (const char* narrow : {"1e6*exp(-((t - 0.5137)*1e6)^2)", "1e4*exp(-((x - 0.5137)*1e4)^2)"}) {
+    CAPTURE(narrow);
+    const ModelText m(std::string("system n\ndimensionless\ncoord x : number\nL = 1/2 x'^2 + ") + narrow + "\n");
+    Diagnostics told;
+    const auto found = stationary_paths(m.model, m.equations, fixed_ends({0}, 0, {1}, 1), {}, told);
+    REQUIRE(found);
+    REQUIRE(!found->paths.empty());
+    REQUIRE(told.items().size() == 1);
+    CHECK(told.items().front().code == "W1203");
+    const StationaryPath& p = found->paths.front();
+    const double right = narrow[2] == '6' ? 0.5 + std::sqrt(pi) : 0.5348097215;
+    CHECK(std::abs(p.action - right) <= 1.01 * p.action_error);
+    CHECK(!p.second.index);
+  }
+}
+
+TEST_CASE("the integral of L along the motion of a path is that of a pulse in time") {
+  // ∫ L dt of the check sees the pulse whole.
+  const ModelText m("system n\ndimensionless\ncoord x : number\nL = 1/2 x'^2 + 1e6*exp(-((t - 0.5137)*1e6)^2)\n");
+  Diagnostics told;
+  const auto found = stationary_paths(m.model, m.equations, fixed_ends({0}, 0, {1}, 1), {}, told);
+  REQUIRE(found);
+  CHECK(found->paths.front().check.action == doctest::Approx(0.5 + std::sqrt(pi)).epsilon(1e-11));
+}

@@ -4,6 +4,8 @@
 
 #include "run_text.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -194,4 +196,31 @@ TEST_CASE("cards that lean on each other stay where they are, for any time") {
     CHECK(r.final.q == begins.final.q);
     for (const double v : r.final.v) CHECK(v == 0);
   }
+}
+
+TEST_CASE("bounces that are too low to be followed rub as much as they would have") {
+  // Gravity over the whole time is the impulse of all bounces and of the rest: x' = 50 − μ g t once it rests.
+  for (const double e : {0.01, 0.003, 1e-3, 1e-4}) {
+    CAPTURE(e);
+    const SimulationResult r =
+        run_text(fmt::format("dimensionless\nparam g = 10\ncoord x, z : number\nT = 1/2 (x'^2 + z'^2)\nV = g z\n"
+                             "contact z >= 0 restitution {} friction 0.3 slip x' name floor\nstart z = 5, x' = 50\n",
+                             e),
+                 3);
+    CHECK(r.final.v[0] == doctest::Approx(41).epsilon(1e-14));
+    CHECK(r.final.q[0] == doctest::Approx(138).epsilon(1e-14));
+    const auto made = std::find_if(r.happenings.begin(), r.happenings.end(),
+                                   [](const Happening& h) { return h.kind == Happening::Kind::Made; });
+    REQUIRE(made != r.happenings.end());
+    CHECK(std::abs(made->t - (1 + 2 * e / (1 - e))) < 1e-12 + made->error);
+  }
+}
+
+TEST_CASE("in space, where the slip is oblique, too") {
+  const SimulationResult r = run_text(
+      "dimensionless\nparam g = 10\ncoord x, y, z : number\npoint P mass 1 at (x, y, z)\ngravity (0, 0, -g)\n"
+      "contact z >= 0 restitution 0.003 friction 0.3 slip (x', y') name floor\nstart z = 5, x' = 30, y' = 40\n",
+      3);
+  CHECK(r.final.v[0] == doctest::Approx(41 * 0.6).epsilon(1e-14));
+  CHECK(r.final.v[1] == doctest::Approx(41 * 0.8).epsilon(1e-14));
 }
