@@ -1,6 +1,7 @@
 #include <maupertuis/degenerate.hpp>
 #include <maupertuis/expression_lock.hpp>
 #include <maupertuis/simulation.hpp>
+#include <maupertuis/rounded_value.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <fmt/format.h>
@@ -82,7 +83,7 @@ class Start {
     return out;
   }
 
-  double value_of(Expr e) const { return evaluate(in_terms_of_motion(system_, {&e, 1}).front(), bindings_); }
+  double value_of(Expr e) const { return rounded_value(in_terms_of_motion(system_, {&e, 1}).front(), bindings_); }
 
   bool read() {
     state_.q.assign(n_, 0);

@@ -1,5 +1,6 @@
 #include "simulation/energy_balance.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -26,6 +27,15 @@ void EnergyBalance::after_step(const Method& method, const Step& step) {
   if (moved && method.step_start().observables.size() >= terms_) add(method.step_start());
 }
 
+/// Of a Lagrangian of the first order no term knows a velocity, and h_E may be one term, which does not change: then
+/// each counts that is no constant.
+double EnergyBalance::change_of_term(std::size_t i, double value) const {
+  if (of_places_.empty() || !of_places_[i]) return std::abs(value);
+  const bool no_velocity = std::find(of_places_.begin(), of_places_.end(), false) == of_places_.end();
+  if (!no_velocity) return std::abs(value - first_terms_[i]);
+  return value != first_terms_[i] ? std::abs(value) : 0;
+}
+
 void EnergyBalance::add(const Sample& sample) {
   double energy = 0, scale = 0;
   for (std::size_t i = 0; i < terms_; ++i) {
@@ -45,8 +55,7 @@ void EnergyBalance::add(const Sample& sample) {
   }
   begun_ = true;
   double change = 0;
-  for (std::size_t i = 0; i < terms_; ++i)
-    change += std::abs(sample.observables[i] - (!of_places_.empty() && of_places_[i] ? first_terms_[i] : 0));
+  for (std::size_t i = 0; i < terms_; ++i) change += change_of_term(i, sample.observables[i]);
   largest_change_ = std::max(largest_change_, change);
   largest_scale_ = std::max(largest_scale_, scale);
   largest_error_ = std::max(largest_error_, std::abs(energy - first_ - work_before_ - work_of(sample)));

@@ -34,6 +34,7 @@ class EnergyBalance {
 
  private:
   double energy_of(const Sample& sample) const;
+  double change_of_term(std::size_t i, double value) const;
   static double work_of(const Sample& sample) { return sample.integrals.empty() ? 0 : sample.integrals[0]; }
 
   std::size_t terms_;

@@ -1,5 +1,6 @@
 #include "simulation/literals.hpp"
 
+#include <maupertuis/simulation.hpp>
 #include <maupertuis/system_expressions.hpp>
 #include <maupertuis/transform.hpp>
 
@@ -44,7 +45,7 @@ void for_each_formula(Model& model, WantedFunctions& wanted, const std::function
 /// −0.3 is the parameter of 0.3 with its sign: feet at both stay in a line.
 std::unique_ptr<const ModelOfLiterals> with_literals_as_parameters(const Model& model, const WantedFunctions& wanted) {
   constexpr std::size_t most_contacts = 64;
-  if (!model.system.has_modes() || model.system.contacts.size() > most_contacts) return nullptr;
+  if (!goes_through_modes(model) || model.system.contacts.size() > most_contacts) return nullptr;
   ModelOfLiterals out{model, {}, wanted};
   MechanicalSystem& system = out.model.system;
   system.written = nullptr;

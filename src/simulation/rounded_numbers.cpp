@@ -4,6 +4,7 @@
 #include "simulation/motion_kernel.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/rounded_value.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <cmath>
@@ -73,7 +74,7 @@ void RoundedNumbers::take_start(const Model& model, const RunPlan& plan) {
   for (const StartValue& start : model.experiment.start) {
     StartNumber& number = (start.order == 0 ? q_ : v_)[start.coordinate];
     const Expr formula = in_terms_of_motion(system, {&start.value, 1}).front();
-    if (moved && evaluate(formula, bindings) != number.value) continue;  // brought onto the constraints
+    if (moved && rounded_value(formula, bindings) != number.value) continue;  // brought onto the constraints
     number.given = true;
     number.rounded = is_rounded(substitute(formula, values), number.value);
     if (number.rounded && !moved) number.formula = formula;
@@ -88,7 +89,7 @@ RoundedNumbers::Draw RoundedNumbers::draw(std::uint64_t seed) const {
   for (std::size_t i = 0; i < symbols_.size(); ++i) bindings.emplace(symbols_[i], out.parameters[i]);
   const auto start = [&](const StartNumber& number) {
     if (!number.rounded) return number.value;
-    return nudge(number.formula ? evaluate(number.formula, bindings) : number.value);
+    return nudge(number.formula ? rounded_value(number.formula, bindings) : number.value);
   };
   for (const StartNumber& q : q_) out.q.push_back(start(q));
   for (const StartNumber& v : v_) out.v.push_back(start(v));

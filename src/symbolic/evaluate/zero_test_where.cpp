@@ -1,4 +1,5 @@
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/repeated_evaluation.hpp>
 #include <maupertuis/transform.hpp>
 
 #include "linear_algebra/dense.hpp"
@@ -80,24 +81,6 @@ class Sums {
   std::unique_ptr<Tape> tape_;
 };
 
-/// Formulas that are evaluated at many points.
-class Formulas {
- public:
-  explicit Formulas(std::span<const Expr> formulas) : tape_(formulas) {}
-
-  std::vector<double> at(const Bindings& values) const {
-    const auto lookup = [&](Expr s) { return values.at(s); };
-    evaluation::RealNumbers<double> numbers(lookup);
-    std::vector<double> nodes, out;
-    evaluation::run(tape_, numbers, nodes);
-    for (const evaluation::Position root : tape_.roots()) out.push_back(nodes[root]);
-    return out;
-  }
-
- private:
-  Tape tape_;
-};
-
 /// A point that was drawn on the relations; nothing where Newton's method led to none.
 struct Drawn {
   std::optional<Precise> point;
@@ -132,7 +115,7 @@ class OnRelations {
   }
 
   /// How much each function changes when the unknowns change by their own size; `rows` of the functions' gradients.
-  Vector changes(const Formulas& rows, const Bindings& at) const { return matrix(rows, at).cwiseAbs() * reach_; }
+  Vector changes(const RepeatedEvaluation& rows, const Bindings& at) const { return matrix(rows, at).cwiseAbs() * reach_; }
 
   const ZeroTestOptions& options() const { return options_; }
 
@@ -183,8 +166,8 @@ class OnRelations {
   }
   static double own_size(double value) { return std::abs(value) > 1e-12 ? std::abs(value) : 1; }
 
-  Matrix matrix(const Formulas& rows, const Bindings& at) const {
-    const std::vector<double> numbers = rows.at(at);
+  Matrix matrix(const RepeatedEvaluation& rows, const Bindings& at) const {
+    const std::vector<double> numbers = rows([&](Expr s) { return at.at(s); });
     using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     const auto columns = static_cast<Index>(unknowns_.size());
     return Eigen::Map<const ByRows>(numbers.data(), static_cast<Index>(numbers.size()) / columns, columns);
@@ -297,7 +280,7 @@ class OnRelations {
   Bindings center_;
   ZeroTestOptions options_;
   std::mt19937_64 random_;
-  Formulas jacobian_;
+  RepeatedEvaluation jacobian_;
   std::vector<Drawn> drawn_;
   std::vector<int> relation_levels_, unknown_levels_;
   Index rows_ = 0;
@@ -316,7 +299,7 @@ struct Judged {
 
 /// What is 0 is measured by its terms and by what the unknowns' own sizes change in it. Nothing where a value is not
 /// finite.
-std::optional<Judged> judge(const Drawn& drawn, const Sums& sums, const Formulas& rows, const OnRelations& manifold) {
+std::optional<Judged> judge(const Drawn& drawn, const Sums& sums, const RepeatedEvaluation& rows, const OnRelations& manifold) {
   std::vector<Real100> value, size;
   sums.evaluate<Real100>([&](Expr s) { return drawn.point->at(s); }, value, size);
   if (!std::all_of(value.begin(), value.end(), [](const Real100& v) { return isfinite(v); })) return std::nullopt;
@@ -364,7 +347,7 @@ ZeroTestWhere& ZeroTestWhere::operator=(ZeroTestWhere&&) noexcept = default;
 ZeroTest ZeroTestWhere::operator()(std::span<const Expr> differences) {
   OnRelations& manifold = impl_->manifold;
   const Sums sums(differences);
-  const Formulas rows(manifold.rows_of(differences));
+  const RepeatedEvaluation rows(manifold.rows_of(differences));
   const std::vector<Judged> regular =
       regular_points(manifold, [&](const Drawn& drawn) { return judge(drawn, sums, rows, manifold); });
   ZeroTest test;
@@ -400,9 +383,9 @@ struct PointsWhere::Impl {
 PointsWhere::PointsWhere(std::span<const Expr> relations, std::span<const Expr> unknowns, const Bindings& center,
                          const ZeroTestOptions& options, std::span<const Expr> defined)
     : impl_(new Impl{OnRelations(relations, unknowns, center, options), {}, {}}) {
-  const Formulas formulas(defined);
+  const RepeatedEvaluation formulas(defined);
   impl_->points = regular_points(impl_->manifold, [&](const Drawn& drawn) -> std::optional<Drawn> {
-    const std::vector<double> values = formulas.at(drawn.rounded);
+    const std::vector<double> values = formulas([&](Expr s) { return drawn.rounded.at(s); });
     if (!std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); })) return std::nullopt;
     return drawn;
   });
@@ -415,7 +398,7 @@ const std::vector<Bindings>& PointsWhere::points() const { return impl_->rounded
 
 Verdict PointsWhere::vanishes(Expr e) const {
   const Sums sums({&e, 1});
-  const Formulas rows(impl_->manifold.rows_of({&e, 1}));
+  const RepeatedEvaluation rows(impl_->manifold.rows_of({&e, 1}));
   bool judged_any = false;
   for (const Drawn& p : impl_->points) {
     const std::optional<Judged> judged = judge(p, sums, rows, impl_->manifold);
