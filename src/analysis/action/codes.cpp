@@ -109,7 +109,8 @@ constexpr CodeEntry entries[] = {
      "pulse; or the motion is as sensitive as that. S is told no better than the two agree.",
      "# maup action\ndimensionless\ncoord x : number\nL = 1/2 x'^2 + 1e6 exp(-((t - 0.5137)*1e6)^2)\n"
      "path from 0 at 0 to 1 at 1\n",
-     "# maup action\ndimensionless\ncoord x : number\nL = 1/2 x'^2 + exp(-(t - 0.5137)^2)\npath from 0 at 0 to 1 at 1\n"},
+     "# maup action\ndimensionless\ncoord x : number\nL = 1/2 x'^2 + exp(-(t - 0.5137)^2)\n"
+     "path from 0 at 0 to 1 at 1\n"},
     {"W1201", "two counts of a Morse index disagree",
      "The index is counted by the negative inertia of the discretized second variation and by the zeros of Jacobi "
      "fields. Where they "

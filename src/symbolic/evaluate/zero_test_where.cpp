@@ -115,7 +115,9 @@ class OnRelations {
   }
 
   /// How much each function changes when the unknowns change by their own size; `rows` of the functions' gradients.
-  Vector changes(const RepeatedEvaluation& rows, const Bindings& at) const { return matrix(rows, at).cwiseAbs() * reach_; }
+  Vector changes(const RepeatedEvaluation& rows, const Bindings& at) const {
+    return matrix(rows, at).cwiseAbs() * reach_;
+  }
 
   const ZeroTestOptions& options() const { return options_; }
 
@@ -299,7 +301,8 @@ struct Judged {
 
 /// What is 0 is measured by its terms and by what the unknowns' own sizes change in it. Nothing where a value is not
 /// finite.
-std::optional<Judged> judge(const Drawn& drawn, const Sums& sums, const RepeatedEvaluation& rows, const OnRelations& manifold) {
+std::optional<Judged> judge(const Drawn& drawn, const Sums& sums, const RepeatedEvaluation& rows,
+                            const OnRelations& manifold) {
   std::vector<Real100> value, size;
   sums.evaluate<Real100>([&](Expr s) { return drawn.point->at(s); }, value, size);
   if (!std::all_of(value.begin(), value.end(), [](const Real100& v) { return isfinite(v); })) return std::nullopt;
