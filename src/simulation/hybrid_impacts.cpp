@@ -167,9 +167,10 @@ std::optional<double> Impacts::accumulation(std::size_t contact, double speed) {
   if (last.size() > 4) last.erase(last.begin());
   if (last.size() < 4 || !(speed < 3e-6 * bounces_[contact].fastest)) return std::nullopt;
   const double ratio = last[3].second / last[2].second, before = last[2].second / last[1].second;
-  const double flight = last[3].first - last[2].first;
-  if (!(ratio < 0.999 && std::abs(ratio - before) < 1e-3) || !(flight < last[2].first - last[1].first))
-    return std::nullopt;
+  const double flight = last[3].first - last[2].first, flight_before = last[2].first - last[1].first;
+  constexpr double slowest = 0.999;
+  // Flights of a spring last as long however low they are: speeds alone come to no end.
+  if (!(ratio < slowest && std::abs(ratio - before) < 1e-3) || !(flight < slowest * flight_before)) return std::nullopt;
   cycle_.clear();  // with those that were hit since its impact before: they come to rest together
   for (std::size_t i = 0; i < bounces_.size(); ++i)
     if (!bounces_[i].last.empty() && bounces_[i].last.back().first >= last[2].first) cycle_.push_back(i);
@@ -201,14 +202,23 @@ bool Impacts::slips_may_stop_before(double end, const std::vector<std::size_t>& 
   return false;
 }
 
-/// Bounces whose flights are lower than the gap is known end at once: whether all of them that close here are so low.
-/// The acceleration that brings them back is that of the run so far; a contact without loss is left alone.
+/// How high a contact flies that leaves with this speed: by the acceleration of the run so far; or as long as it flew
+/// before, since the force of a spring vanishes where it is at rest, and its flights last however low they are.
+double Impacts::height_of_flight(std::size_t contact, double speed, const ContactValues& values) const {
+  const double acceleration = sizes_.acceleration_along(values.normal[contact]);
+  const double by_force = speed * speed / (2 * acceleration);
+  const auto& last = bounces_[contact].last;
+  if (last.size() < 2) return by_force;
+  return std::max(by_force, speed * (last.back().first - last[last.size() - 2].first) / 4);
+}
+
+/// Bounces whose flights are lower than the gap is known end at once: whether all of them that close here are so low. A
+/// contact without loss is left alone.
 bool Impacts::is_lost_in_rounding(const std::vector<std::size_t>& touching, const ContactValues& values) const {
   for (const std::size_t i : touching) {
     const double speed = -values.rate[i];
     if (speed <= sizes_.rest_speed(i, values)) continue;
-    const double acceleration = sizes_.acceleration_along(values.normal[i]);
-    const bool is_low = speed * speed <= 2 * acceleration * rest_unit * sizes_.widest(i);
+    const bool is_low = height_of_flight(i, speed, values) <= rest_unit * sizes_.widest(i);
     if (!(values.restitution[i] < 1) || !is_low || speed > slow_flight * bounces_[i].fastest) return false;
   }
   return true;

@@ -70,6 +70,7 @@ class Impacts {
   std::optional<double> accumulation(std::size_t contact, double speed);
   std::optional<double> accumulation_among(std::vector<std::size_t>& touching, const ContactValues& values);
   bool slips_may_stop_before(double end, const std::vector<std::size_t>& touching, const ContactValues& values) const;
+  double height_of_flight(std::size_t contact, double speed, const ContactValues& values) const;
   bool is_lost_in_rounding(const std::vector<std::size_t>& touching, const ContactValues& values) const;
   void press_all(ImpactResult& result, const std::vector<std::size_t>& touching, const ContactValues& values) const;
   std::optional<std::string> trouble_of(const ImpactResult& result, const std::vector<std::size_t>& touching,

@@ -311,8 +311,9 @@ std::optional<T> Modes<T>::end_of_bounces(std::size_t c, const T& speed) {
   if (last.size() > 4) last.erase(last.begin());
   if (last.size() < 4) return std::nullopt;
   const T ratio = last[3].speed / last[2].speed, before = last[2].speed / last[1].speed;
-  const T flight = last[3].t - last[2].t;
-  const bool is_series = ratio < T(0.999) && abs(ratio - before) < T(1e-3) && flight < last[2].t - last[1].t;
+  const T flight = last[3].t - last[2].t, slowest = T(0.999);  // flights of a spring do not shorten
+  const bool is_series =
+      ratio < slowest && abs(ratio - before) < T(1e-3) && flight < slowest * (last[2].t - last[1].t);
   const bool is_low =
       speed * flight <= T(1e6) * epsilon<T>() * widest_[problem_.contacts.gap_kind[c]] && speed < T(1e-6) * fastest_[c];
   if (!is_series || !is_low) return std::nullopt;

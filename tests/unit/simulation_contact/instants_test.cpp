@@ -224,3 +224,17 @@ TEST_CASE("in space, where the slip is oblique, too") {
   CHECK(r.final.v[0] == doctest::Approx(41 * 0.6).epsilon(1e-14));
   CHECK(r.final.v[1] == doctest::Approx(41 * 0.8).epsilon(1e-14));
 }
+
+TEST_CASE("a spring brings back to a wall at its rest as long as there is a speed, each half period") {
+  const double pi = 3.14159265358979323846;
+  const std::string text =
+      "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2*x^2\ncontact x <= 0 restitution 0.5 name wall\n"
+      "start x = -1\n";
+  const SimulationResult r = run_text(text, 110);
+  REQUIRE(count(r, Happening::Kind::Impact) == 35);
+  for (std::size_t k = 0; k < 35; ++k)
+    CHECK(std::abs(r.happenings[k].t - pi * (0.5 + static_cast<double>(k))) < 1e-9);
+  const ExtendedResult quad = in_quad(text + "run 110\n");
+  CHECK(std::count_if(quad.happenings.begin(), quad.happenings.end(),
+                      [](const auto& h) { return h.kind == Happening::Kind::Impact; }) == 35);
+}
