@@ -3,6 +3,8 @@
 #include "outcome.hpp"
 #include "quantity.hpp"
 
+#include <maupertuis/higher_order.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -83,10 +85,13 @@ std::string check_text(const StationaryPath& p, const MechanicalSystem& system) 
 std::string list(const std::vector<double>& values, const MechanicalSystem& system, const char* prefix,
                  const char* suffix) {
   std::string out;
-  for (std::size_t i = 0; i < values.size(); ++i)
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::string name = written_name(system, i);
+    if (name.empty()) continue;
     out += fmt::format(
-        "{}{}{}{} {}", out.empty() ? "" : ", ", prefix, system.coordinates[i].name, suffix,
+        "{}{}{}{} {}", out.empty() ? "" : ", ", prefix, name, suffix,
         std::isfinite(values[i]) ? fmt::format("= {:.9g}", values[i]) : "without a value, since L is infinite there");
+  }
   return out;
 }
 
@@ -115,7 +120,12 @@ std::string path_text(const StationaryPath& p, const MechanicalSystem& system) {
 std::string ends_text(const ActionEnds& ends, const MechanicalSystem& system) {
   const auto at = [&](const std::vector<std::optional<double>>& q) {
     std::string out;
-    for (const auto& x : q) out += (out.empty() ? "" : ", ") + (x ? brief(*x) : std::string("free"));
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      const std::string name = written_name(system, i);
+      if (name.empty()) continue;
+      const std::string value = q[i] ? brief(*q[i]) : "free";
+      out += (out.empty() ? "" : ", ") + (system.higher.empty() ? value : name + " = " + value);
+    }
     return "(" + out + ")";
   };
   return fmt::format("from {} at {} to {} at {}", at(ends.from), moment(ends.start, system), at(ends.to),

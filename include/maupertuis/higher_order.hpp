@@ -18,6 +18,9 @@ struct HigherOrderForm {
   Expr power;                       // dh_E/dt along the motion: −∂L/∂t − q'·∂D/∂q' + Q·q'
 };
 
+/// What a reader calls a coordinate of L*: "q'" the v of q'', and "" Ostrogradsky's p, which no text names.
+std::string written_name(const MechanicalSystem& system, std::size_t coordinate);
+
 /// Precondition: system.higher is not empty. Cost: two total time derivatives of the gradient of L.
 HigherOrderForm higher_order_form(const EquationsOfMotion& equations);
 

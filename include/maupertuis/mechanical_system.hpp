@@ -310,7 +310,8 @@ struct MethodChoice {
 /// path from (0, 1) at 0 to (2, free) at 1: between what ends `maup action` looks for stationary paths.
 struct PathEnds {
   std::vector<Expr> from, to;  // [n] parameters and numbers only, SI; empty handle: that coordinate is free there
-  Expr start, end;             // of the independent variable, SI; start < end
+  std::vector<Expr> from_rates, to_rates;  // [n] the same of q', which an end says where q'' stands in L
+  Expr start, end;                         // of the independent variable, SI; start < end
   Span span;
 };
 

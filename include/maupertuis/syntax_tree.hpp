@@ -459,6 +459,7 @@ struct IndependentStatement {
 struct PathStatement {
   struct End {
     std::vector<ExpressionPtr> configuration;  // in the order of the coordinates; null where `free` stands
+    std::vector<ExpressionPtr> names;          // (x = 0, x' = 1): of what each value is; empty where none is named
     ExpressionPtr at;
     Span span;  // of the configuration
   } from, to;

@@ -231,8 +231,11 @@ class Dumper {
   void operator()(const PathStatement& s) {
     head("path");
     for (const auto& [label, end] : {std::pair{"from", &s.from}, std::pair{"to", &s.to}}) {
-      for (const ExpressionPtr& component : end->configuration)
+      for (std::size_t i = 0; i < end->configuration.size(); ++i) {
+        const ExpressionPtr& component = end->configuration[i];
+        if (!end->names.empty()) child("of", end->names[i]);
         component ? child(label, component) : word(label, "free");
+      }
       child("at", end->at);
     }
   }

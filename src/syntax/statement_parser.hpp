@@ -107,6 +107,9 @@ class StatementParser : private ExpressionParser {
   SweepStatement sweep_values();
   PathStatement path_ends();
   PathStatement::End path_end();
+  bool opens_named_components() const;
+  void named_components(PathStatement::End& end);
+  ExpressionPtr component();
   std::vector<ExpressionPtr> components();
   std::vector<ExpressionPtr> with_unit_after(std::vector<ExpressionPtr> numbers);
   bool opens_components() const;

@@ -72,11 +72,14 @@ PathStatement StatementParser::path_ends() {
   return path;
 }
 
-// (0, free) at 1 s,   0 at 1 s
+// (0, free) at 1 s,   0 at 1 s,   (x = 0, x' = 1) at 1 s
 PathStatement::End StatementParser::path_end() {
   PathStatement::End end;
   const Span first = peek().span;
-  end.configuration = components();
+  if (opens_named_components())
+    named_components(end);
+  else
+    end.configuration = components();
   end.span = cover(first, previous().span);
   if (!accept("at")) missing_clause("at", "path", kPathExample);
   end.at = quantity();
@@ -95,19 +98,37 @@ bool StatementParser::opens_components() const {
   return false;
 }
 
+// Whether the bracket that opens here holds `x = …`.
+bool StatementParser::opens_named_components() const {
+  std::size_t i = 1;
+  while (index_ + i < end_ && (peek(i).kind == Token::Kind::Name || peek(i).is("'") || peek(i).is("."))) ++i;
+  return peek().is("(") && i > 1 && peek(i).is("=");
+}
+
+// (x = 0, x' = free)
+void StatementParser::named_components(PathStatement::End& end) {
+  next();
+  do {
+    end.names.push_back(variable());
+    expect("=", fmt::format("`{}`", text_of(*end.names.back())));
+    end.configuration.push_back(component());
+  } while (accept(","));
+  if (!peek().is(")")) fail_expected("`,` or `)`");
+  next();
+}
+
+// A value, or nothing where `free` stands.
+ExpressionPtr StatementParser::component() {
+  const bool free = peek().is("free") && !context_.declarations.contains("free") && accept("free");
+  return free ? nullptr : quantity();
+}
+
 // One value a coordinate, `free` where none is asked for; a unit after the bracket is that of all: (1, 2) m.
 std::vector<ExpressionPtr> StatementParser::components() {
   std::vector<ExpressionPtr> out;
-  const auto component = [&] {
-    const bool free = peek().is("free") && !context_.declarations.contains("free") && accept("free");
-    out.push_back(free ? nullptr : quantity());
-  };
-  if (!opens_components()) {
-    component();
-    return out;
-  }
+  if (!opens_components()) return {component()};
   next();
-  do component();
+  do out.push_back(component());
   while (accept(","));
   if (!peek().is(")")) fail_expected("`,` or `)`");
   next();

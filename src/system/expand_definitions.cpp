@@ -81,7 +81,7 @@ void visit_experiment(Experiment& x, const std::function<void(Expr&)>& visit,
   };
   for (auto* list : {&x.start, &x.at}) of_expectation.starts(*list);
   if (x.path) {
-    for (ExprVector* end : {&x.path->from, &x.path->to})
+    for (ExprVector* end : {&x.path->from, &x.path->to, &x.path->from_rates, &x.path->to_rates})
       for (Expr& component : *end) present(component);
     for (Expr* e : {&x.path->start, &x.path->end}) visit(*e);
   }

@@ -38,15 +38,12 @@ bool refuse_beside_higher(Elaboration& e) {
                      : !s.rates.empty()                ? "rates"
                      : !s.bodies.empty() || masses     ? "particles or bodies"
                      : sets                            ? "an event that sets values"
-                     : x.path                          ? "a path between two ends"
                                                        : nullptr;
   if (!what) return false;
   e.diagnostics.error("E0259", place_of_lagrangian(s),
                       fmt::format("an acceleration stands in the Lagrangian of a model with {}", what),
                       "With q'' in L a state is (q, q', q'', q'''), and nothing says yet how the two go together.",
-                      x.path ? "Between two ends such a curve is a field at rest: `field v(x)` with its boundary and "
-                               "density, `expect equilibrium` and `maup modes`."
-                             : "Write the Lagrangian without q'', or leave the other out.");
+                      "Write the Lagrangian without q'', or leave the other out.");
   return true;
 }
 
@@ -184,6 +181,37 @@ void extend_start(Elaboration& e, std::vector<StartValue>& start) {
   }
 }
 
+/// v = q' at the ends of the path, as they say it, and p free: L* does not hold p', so that no end asks anything of it.
+void extend_ends(const MechanicalSystem& s, PathEnds& path) {
+  for (const HigherDerivative& h : s.higher) {
+    path.from.push_back(path.from_rates[h.coordinate]), path.from.emplace_back();
+    path.to.push_back(path.to_rates[h.coordinate]), path.to.emplace_back();
+  }
+}
+
+/// The same of a path that is given: v is its slope, and p what p₁ is along it.
+void extend_path(const MechanicalSystem& s, PathFormulas& path) {
+  ExprMap along;
+  for (std::size_t i = 0; i < path.q.size(); ++i) {
+    Expr value = path.q[i];
+    for (int order = 0; order <= 3; ++order) {
+      along.emplace(s.context->symbol(s.coordinates[i].name, Role::Coordinate, order), value);
+      value = expand_time_derivatives(total_time_derivative(value));
+    }
+  }
+  for (const HigherDerivative& h : s.higher) {
+    path.q.push_back(along.at(s.coordinates[h.coordinate].velocity));
+    path.q.push_back(substitute(h.velocity_momentum, along));
+  }
+}
+
+void extend_paths(const MechanicalSystem& s, Experiment& x) {
+  if (x.path) extend_ends(s, *x.path);
+  if (x.given_path) extend_path(s, *x.given_path);
+  for (Expectation& one : x.expectations)
+    if (auto* along = std::get_if<expectation::ActionAlong>(&one.kind)) extend_path(s, along->along);
+}
+
 }  // namespace
 
 void replace_higher_derivatives(Elaboration& e) {
@@ -198,6 +226,7 @@ void replace_higher_derivatives(Elaboration& e) {
   visit_experiment(
       e.experiment(), [&](Expr& x) { x = replace.formula(x); },
       [&](std::vector<StartValue>& start) { extend_start(e, start); });
+  extend_paths(s, e.experiment());
 }
 
 }  // namespace maupertuis::elaboration

@@ -123,19 +123,55 @@ bool check_count(Elaboration& e, std::size_t count, Span span, const char* what)
   return false;
 }
 
-bool configuration(Elaboration& e, const syntax::PathStatement::End& end, const char* which, std::vector<Expr>& out) {
-  if (!check_count(e, end.configuration.size(), end.span, which)) return false;
+/// What a value of an end is about: q, or q' where q'' stands in L.
+struct EndQuantity {
+  std::size_t coordinate = 0;
+  int order = 0;
+};
+
+/// E0241 beside anything but a coordinate, or its rate where its acceleration stands in L.
+std::optional<EndQuantity> quantity_of_end(Elaboration& e, const syntax::Expression& x) {
+  const auto& list = e.system().coordinates;
+  std::optional<std::size_t> found = quaternion_component(e, x);
+  for (std::size_t i = 0; i < list.size() && !found; ++i)
+    if (x.kind == syntax::Expression::Kind::Name && list[i].name == x.text) found = i;
+  if (found && (x.primes == 0 || (x.primes == 1 && e.higher.count(*found)))) return EndQuantity{*found, x.primes};
+  e.diagnostics.error("E0241", x.span,
+                      found ? fmt::format("`{}` is not for an end of a path to choose", e.texts.slice(x.span))
+                            : fmt::format("`{}` is no coordinate", e.texts.slice(x.span)),
+                      fmt::format("The ends of a path say values of the coordinates, {}; rates only of those whose "
+                                  "second derivatives stand in L, of which an equation of the fourth order asks four.",
+                                  names_of_coordinates(e.system())),
+                      "");
+  return std::nullopt;
+}
+
+/// What is given of an end: all coordinates by their order, or some by their names.
+bool configuration(Elaboration& e, const syntax::PathStatement::End& end, const char* which, ExprVector& values,
+                   ExprVector& rates) {
+  const bool named = !end.names.empty();
+  if (!named && !check_count(e, end.configuration.size(), end.span, which)) return false;
+  values.resize(e.system().coordinates.size());
+  rates.resize(values.size());
   bool good = true;
   for (std::size_t i = 0; i < end.configuration.size(); ++i) {
-    const Coordinate& c = e.system().coordinates[i];
-    out.emplace_back();
-    if (!end.configuration[i]) continue;
+    const auto of = named ? quantity_of_end(e, *end.names[i]) : EndQuantity{i, 0};
+    good = good && of;
+    if (!of || !end.configuration[i]) continue;
+    const Coordinate& c = e.system().coordinates[of->coordinate];
+    const Dimension dimension = of->order == 0 ? c.dimension : c.dimension / e.time();
     const syntax::Expression& x = *end.configuration[i];
-    const Value v = constant_of(e, x, c.dimension, fmt::format("`{}` at the end of a path", c.name));
+    const Value v =
+        constant_of(e, x, dimension, fmt::format("`{}{}` at the end of a path", c.name, of->order == 0 ? "" : "'"));
     good = good && !v.poisoned;
     if (v.poisoned) continue;
-    warn_of_degrees(e, v, c.dimension, x);
-    out.back() = v.scalar();
+    warn_of_degrees(e, v, dimension, x);
+    Expr& place = (of->order == 0 ? values : rates)[of->coordinate];
+    if (place)
+      e.diagnostics.error("E0208", end.names[i]->span,
+                          fmt::format("`{}` has two values at this end", e.texts.slice(end.names[i]->span)), "",
+                          "Keep one of them.");
+    place = v.scalar();
   }
   return good;
 }
@@ -157,8 +193,8 @@ void elaborate_path(Elaboration& e, const syntax::PathStatement& s, Span span) {
   if (e.experiment().path) return;  // given twice, which was told
   PathEnds out;
   out.span = span;
-  const bool from = configuration(e, s.from, "the beginning of the path", out.from);
-  const bool to = configuration(e, s.to, "the end of the path", out.to);
+  const bool from = configuration(e, s.from, "the beginning of the path", out.from, out.from_rates);
+  const bool to = configuration(e, s.to, "the end of the path", out.to, out.to_rates);
   const Value begin = constant_of(e, *s.from.at, e.time(), in_words(e, "the time of an end of a path"));
   const Value end = constant_of(e, *s.to.at, e.time(), in_words(e, "the time of an end of a path"));
   if (!in_order(e, begin, end, s.to.at->span) || !from || !to) return;
@@ -315,11 +351,25 @@ Expected meaning_of(Elaboration& e, const written::MorseIndex& x, Span line) {
   return expectation::MorseIndex{x.path, v.scalar()};
 }
 
+/// Whether all that is differentiated twice and more are coordinates whose q'' stands in L: a path knows these.
+bool only_higher_accelerate(const Elaboration& e, Expr subject) {
+  const Expr expanded = expand_time_derivatives(subject);
+  const auto& list = e.model.system.coordinates;
+  for (const Expr& symbol : symbols_of({&expanded, 1})) {
+    if (symbol.role() != Role::Coordinate || symbol.order() < 2) continue;
+    for (std::size_t i = 0; i < list.size(); ++i)
+      if (list[i].name == symbol.name() && !e.higher.count(i)) return false;
+  }
+  return true;
+}
+
 Expected meaning_of(Elaboration& e, const written::PathAt& x, Span line) {
   const auto subject = number_of(e, *x.subject, Place{}, "an expectation");
   const Value at = constant_of(e, *x.time, e.time(), in_words(e, "the time of an expectation"));
   if (!subject || at.poisoned || refuse_without_path(e, line)) return std::nullopt;
-  if (refuse_acceleration(e, *subject, *x.subject, "what is expected of a path")) return std::nullopt;
+  if (!only_higher_accelerate(e, subject->scalar()) &&
+      refuse_acceleration(e, *subject, *x.subject, "what is expected of a path"))
+    return std::nullopt;
   const Dimension dimension = subject->fits_any ? Dimension{} : subject->dimension;
   const auto expected = expected_number(e, x.expected, dimension, fmt::format("`{}`", e.texts.slice(x.subject->span)));
   if (!expected) return std::nullopt;

@@ -6,6 +6,8 @@
 #include "outcome.hpp"
 #include "quantity.hpp"
 
+#include <maupertuis/higher_order.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -50,11 +52,14 @@ double value_of(Expr e, const MechanicalSystem& system) {
 /// (0, free) at t = 2 s
 std::string end_text(const std::vector<Expr>& configuration, Expr at, const MechanicalSystem& system) {
   std::vector<std::string> values;
-  for (std::size_t i = 0; i < configuration.size(); ++i)
-    values.push_back(!configuration[i] ? "free"
-                     : system.dimensionless
-                         ? brief(value_of(configuration[i], system))
-                         : in_unit_of(brief(value_of(configuration[i], system)), system.coordinates[i].dimension));
+  for (std::size_t i = 0; i < configuration.size(); ++i) {
+    const std::string name = written_name(system, i), named = system.higher.empty() ? "" : name + " = ";
+    if (name.empty()) continue;
+    const std::string number = configuration[i] ? brief(value_of(configuration[i], system)) : "free";
+    values.push_back(named + (!configuration[i] || system.dimensionless
+                                  ? number
+                                  : in_unit_of(number, system.coordinates[i].dimension)));
+  }
   return fmt::format("({}) at {}", joined_names(values), system.moment(brief(value_of(at, system))));
 }
 

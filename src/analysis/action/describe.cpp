@@ -54,15 +54,21 @@ void combine(const Inertia& inertia, const FieldStudy& fields, bool only_fixed, 
                              *out.by_inertia, *out.by_fields);
 }
 
+std::string no_index_without_convexity(const Problem& problem) {
+  const bool higher = problem.functional.orders().higher();
+  if (problem.equations.degenerate && !higher)
+    return "L is degenerate: M = ∂²L/∂q'∂q' is singular along the path, and there is no Morse index.";
+  return fmt::format(
+      "M = {} is not positive definite along the path: neighbours that oscillate fast lower the action without end, "
+      "and there is no Morse index.",
+      higher ? "∂²L/∂q''∂q''" : "∂²L/∂q'∂q'");
+}
+
 void fill_second(Problem& problem, const Refined& refined, const FixedEnds& fixed, const Vector& least,
                  const SingularEnds& singular, const ActionOptions& options, StationaryPath& out) {
   const Trial& trial = refined.coarse;
   if (!convex_along(problem.functional, trial)) {
-    out.second.reason =
-        problem.equations.degenerate
-            ? "L is degenerate: M = ∂²L/∂q'∂q' is singular along the path, and there is no Morse index."
-            : "M = ∂²L/∂q'∂q' is not positive definite along the path: neighbours that oscillate fast lower the action "
-              "without end, and there is no Morse index.";
+    out.second.reason = no_index_without_convexity(problem);
     if (problem.functional.integrals() == 0 && !singular.any() && !has_free_functions(problem.equations))
       out.check =
           carried_along(problem.equations, problem.equations.lagrangian_expanded, trial, least, options.interrupt);
@@ -76,8 +82,7 @@ void fill_second(Problem& problem, const Refined& refined, const FixedEnds& fixe
                            fixed, singular.start, singular.end, least, options.interrupt);
   else
     fields.reason = fields.check.reason = "The equations of L + λ G could not be made.";
-  const auto all = [](const std::vector<bool>& b) { return std::find(b.begin(), b.end(), false) == b.end(); };
-  combine(inertia, fields, !trial.mesh.closed && all(fixed.from) && all(fixed.to), out.second);
+  combine(inertia, fields, all_fixed(problem.functional, trial, fixed), out.second);
   out.check = fields.check;
 }
 

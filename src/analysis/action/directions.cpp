@@ -39,6 +39,13 @@ struct Node {
 
 }  // namespace
 
+bool all_fixed(const Functional& functional, const Trial& trial, const FixedEnds& fixed) {
+  const std::vector<Index>& list = functional.orders().configurations;
+  return !trial.mesh.closed && std::all_of(list.begin(), list.end(), [&](Index i) {
+    return fixed.from[static_cast<std::size_t>(i)] && fixed.to[static_cast<std::size_t>(i)];
+  });
+}
+
 Matrix null_basis(const Matrix& rows, Index n) {
   Matrix scaled = rows;
   for (Index i = 0; i < scaled.rows(); ++i)

@@ -13,6 +13,9 @@ struct FixedEnds {
   std::vector<bool> from, to;  // [n]
 };
 
+/// Whether no end leaves a configuration free: Ostrogradsky's p is none.
+bool all_fixed(const Functional& functional, const Trial& trial, const FixedEnds& fixed);
+
 /// The directions in which each node may move: those of free components that keep φ = 0, in units of `scale`.
 struct Directions {
   std::vector<Matrix> basis;  // [nodes] n × d

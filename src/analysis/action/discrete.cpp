@@ -173,10 +173,31 @@ struct Assembler {
       if (order > 0) add_gradient(e, phi, dphi, w);
       if (order == 2) add_hessian(hessian, kinetic, displacement, phi, dphi, w);
     }
-    if (order < 2) return;
-    out.hessians.push_back(hessian.total());
+    const bool second = order == 2;
+    Matrix bordered = second ? hessian.total() : Matrix();
+    for (std::size_t k = 0; k < functional.orders().momenta.size(); ++k) join_at_nodes(e, k, nodes, bordered);
+    if (!second) return;
+    out.hessians.push_back(std::move(bordered));
     out.kinetic.push_back(kinetic.total());
     out.displacement.push_back(displacement.total());
+  }
+
+  /// −p v of L* = L + p (q' − v), summed at the nodes and not at Gauss's points: then q' = v holds at each of them, and
+  /// no p that changes from node to node is all but unseen.
+  void join_at_nodes(Index e, std::size_t k, const Matrix& nodes, Matrix& hessian) {
+    const OrderOfCoordinates& orders = functional.orders();
+    const Index v = orders.rates_of_others[k], p = orders.momenta[k], n = nodes.rows();
+    const Matrix more =
+        trial.mesh.lengths[static_cast<std::size_t>(e)] * trial.mesh.whole / 2 * trial.mesh.rule->lumping;
+    const Vector by_p = more * nodes.row(v).transpose(), by_v = more * nodes.row(p).transpose();
+    action.add(nodes.row(p).dot(by_p));
+    for (Index j = 0; order > 0 && j < by_p.size(); ++j) {
+      const Index first = trial.mesh.node(e, j) * n;
+      out.gradient[first + p] += by_p[j];
+      out.gradient[first + v] += by_v[j];
+      for (Index l = 0; order == 2 && l < by_p.size(); ++l)
+        hessian(j * n + p, l * n + v) += more(j, l), hessian(l * n + v, j * n + p) += more(j, l);
+    }
   }
 
   void add_gradient(Index e, const Vector& phi, const Vector& dphi, double w) {

@@ -67,6 +67,7 @@ class Neighbours {
 
   /// An orthonormal basis of the configurations next to this one, in scaled coordinates [n × d].
   Matrix tangent(const MotionState& s) {
+    if (functional_.orders().higher()) return Matrix::Identity(n_, n_)(Eigen::all, functional_.orders().configurations);
     Vector values;
     Matrix rows;
     functional_.constraints_at(s.t, Eigen::Map<const Vector>(s.q.data(), n_), values, rows);
@@ -122,9 +123,27 @@ class Neighbours {
     const Index d = transfer.rows() / 2 - k_;
     functional_.evaluate(from.t, from.q.data(), from.v.data(), trial_.multipliers, 2, density_);
     const Matrix z = scale_.asDiagonal() * basis;
-    const Matrix mass = quadratic_form(z, density_.hessian.bottomRightCorner(n_, n_)) / length;
+    const Matrix mass = functional_.orders().higher()
+                            ? free_flight(length)
+                            : Matrix(quadratic_form(z, density_.hessian.bottomRightCorner(n_, n_)) / length);
     const Matrix turn = product(transfer.block(0, d + k_, d, d), mass) - Matrix::Identity(d, d);
     return turn.norm() < longest_turn;
+  }
+
+  /// The inverse of what B is where L is ½ M v'² alone, with q' = v, p₁' = 0, p₂' = −p₁: v' = M⁻¹ p₂.
+  Matrix free_flight(double t) const {
+    const OrderOfCoordinates& orders = functional_.orders();
+    const std::vector<Index>&all = orders.configurations, &tops = orders.tops;
+    const Matrix inverse = Matrix(density_.hessian.bottomRightCorner(n_, n_)(tops, tops)).partialPivLu().inverse();
+    Matrix q = Matrix::Zero(static_cast<Index>(all.size()), static_cast<Index>(tops.size())), v = q;
+    for (const auto& [place, top] : orders.rates) q(place, top) = 1;
+    for (std::size_t i = 0; i < tops.size(); ++i)
+      v(std::find(all.begin(), all.end(), tops[i]) - all.begin(), static_cast<Index>(i)) = 1;
+    // v = M⁻¹ ∫ (p₂ − p₁ t), q = ∫ v.
+    const auto part = [&](const Matrix& a, const Matrix& c) { return product_transposed(product(a, inverse), c); };
+    const Matrix b = t * part(v, v) + t * t / 2 * (part(q, v) - part(v, q)) - t * t * t / 6 * part(q, q);
+    const Vector unit = scale_(all).cwiseInverse();
+    return Matrix(unit.asDiagonal() * b * unit.asDiagonal()).partialPivLu().inverse();
   }
 
   const Vector& scale() const { return scale_; }
@@ -140,6 +159,10 @@ class Neighbours {
     }
     mass = mass.cwiseMax(1e-12 * mass.maxCoeff());
     scale_ = (stretch * mass.cwiseInverse()).cwiseSqrt();
+    const OrderOfCoordinates& orders = functional_.orders();
+    for (const auto& [place, top] : orders.rates)
+      scale_[orders.configurations[static_cast<std::size_t>(place)]] =
+          stretch * scale_[orders.tops[static_cast<std::size_t>(top)]];
     integral_scale_ = functional_.wanted().cwiseAbs().cwiseMax(1e-300) * 0.1;
   }
 
@@ -199,8 +222,8 @@ class Study {
         whole_(std::abs(breaks_.back() - breaks_.front())),
         neighbours_(functional, weighted, trial, states, backward_, whole_ / static_cast<double>(breaks_.size() - 1),
                     interrupt),
-        action_(weighted, lagrangian),
-        size_(even_scale(trial, least).col(0)) {}
+        action_(solvable_equations(weighted), lagrangian),
+        size_(scale_of_found(trial, least, functional.orders()).col(0)) {}
 
   FieldStudy run() {
     MotionState from = neighbours_.state(breaks_.front());
@@ -342,10 +365,7 @@ class Study {
     out_.check.done = out_.check.reason.empty();
     out_.check.from = std::min(breaks_.front(), breaks_.back());
     out_.check.to = std::max(breaks_.front(), breaks_.back());
-    const bool all_fixed = !trial_.mesh.closed &&
-                           std::all_of(fixed_.from.begin(), fixed_.from.end(), [](bool b) { return b; }) &&
-                           std::all_of(fixed_.to.begin(), fixed_.to.end(), [](bool b) { return b; });
-    if (!all_fixed && out_.at_end == 0) out_.concavity = concavity();
+    if (!all_fixed(functional_, trial_, fixed_) && out_.at_end == 0) out_.concavity = concavity();
   }
 
   /// Directions of an end that stay free, in the coordinates of the frame there [(d + k) × free].
@@ -429,7 +449,7 @@ MotionCheck carried_along(const EquationsOfMotion& weighted, Expr lagrangian, co
                           const StopFlag* interrupt) {
   MotionCheck out;
   const ActionPath path = to_path(trial);
-  const Vector size = even_scale(trial, least).col(0);
+  const Vector size = scale_of_found(trial, least, OrderOfCoordinates(*weighted.system)).col(0);
   const std::vector<double> breaks = breaks_of(trial, false, false);
   ActionAlong motion(solvable_equations(weighted), lagrangian, interrupt);
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {

@@ -35,9 +35,28 @@ Expr auxiliary(Context& context, const char* name, Index i) {
 
 }  // namespace
 
+OrderOfCoordinates::OrderOfCoordinates(const MechanicalSystem& system) {
+  const auto place_in = [](const std::vector<Index>& list, Index i) {
+    return static_cast<Index>(std::find(list.begin(), list.end(), i) - list.begin());
+  };
+  for (const HigherDerivative& h : system.higher) {
+    bases.push_back(static_cast<Index>(h.coordinate));
+    rates_of_others.push_back(static_cast<Index>(h.rate));
+    momenta.push_back(static_cast<Index>(h.momentum));
+  }
+  for (Index i = 0; i < static_cast<Index>(system.coordinates.size()); ++i) {
+    if (std::count(momenta.begin(), momenta.end(), i) > 0) continue;
+    configurations.push_back(i);
+    if (std::count(bases.begin(), bases.end(), i) == 0) tops.push_back(i);
+  }
+  for (std::size_t k = 0; k < bases.size(); ++k)
+    rates.emplace_back(place_in(configurations, bases[k]), place_in(tops, rates_of_others[k]));
+}
+
 Functional::Functional(const EquationsOfMotion& equations)
     : n_(static_cast<Index>(equations.system->coordinates.size())),
       k_(static_cast<Index>(equations.system->integral_constraints.size())),
+      orders_(*equations.system),
       parameters_(parameter_values(*equations.system)) {
   build_density(equations);
   build_constraints(equations);

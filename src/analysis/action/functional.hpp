@@ -5,6 +5,7 @@
 #include <cmath>
 #include <eigen3/Eigen/Core>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace maupertuis::action {
@@ -46,6 +47,19 @@ class ExactSum {
   double sum_ = 0, rest_ = 0;
 };
 
+/// Where q'' stands in L, coordinates are (q, v, p) of L* = L(q, v, v') + p (q' − v). Of others all are `tops`.
+struct OrderOfCoordinates {
+  explicit OrderOfCoordinates(const MechanicalSystem& system);
+
+  std::vector<Index> configurations;           // all but p: what the ends of a path fix, and δq of Jacobi fields
+  std::vector<Index> tops;                     // the v, and coordinates without q'': those with a velocity term in L*
+  std::vector<std::pair<Index, Index>> rates;  // (q, v): places among the configurations and the tops
+  std::vector<Index> bases, rates_of_others;   // the q of the v, and the v
+  std::vector<Index> momenta;                  // the p
+
+  bool higher() const { return !momenta.empty(); }
+};
+
 /// The functions of an action problem in numbers, with exact derivatives.
 class Functional {
  public:
@@ -54,6 +68,7 @@ class Functional {
   Index freedoms() const { return n_; }
   Index integrals() const { return k_; }
   Index constraints() const { return r_; }
+  const OrderOfCoordinates& orders() const { return orders_; }
   const Vector& wanted() const { return wanted_; }  // [k] the values of ∫ G
   bool explicit_time() const { return explicit_time_; }
 
@@ -80,6 +95,7 @@ class Functional {
   void prepare(Order& order, const FunctionSource& source);
 
   Index n_ = 0, k_ = 0, r_ = 0;
+  OrderOfCoordinates orders_;
   bool explicit_time_ = false;
   Vector wanted_;
   std::vector<double> parameters_, in_, constraint_in_;

@@ -39,11 +39,24 @@ Matrix in_own_units(const Matrix& all) {
   return unit.asDiagonal() * all * unit.asDiagonal();
 }
 
+/// The same where p (q' − v) borders the matrix: diagonals of p and q are rounding there, and units are found by turns,
+/// until the largest entry of each row is 1 (Ruiz).
+Matrix in_balanced_units(const Matrix& all) {
+  constexpr int turns = 24;
+  Matrix out = all;
+  for (int turn = 0; turn < turns; ++turn) {
+    const Vector largest = out.cwiseAbs().rowwise().maxCoeff();
+    const Vector unit = (largest.array() > 0).select(largest.cwiseSqrt().cwiseInverse(), 1.0);
+    out = Matrix(unit.asDiagonal() * out * unit.asDiagonal());
+  }
+  return out;
+}
+
 /// Negative eigenvalues of a symmetric matrix whose rows couple to near ones only, but for the last `border` ones: by
 /// elimination in pieces.
-Index negatives_of(const Matrix& given, Index border) {
+Index negatives_of(const Matrix& in_units, Index border) {
   constexpr Index whole = 600, piece = 96;
-  Matrix all = in_own_units(given);
+  Matrix all = in_units;
   Index out = 0, first = 0;
   for (; all.rows() - first > whole + border; first += piece) {
     std::vector<Index> coupled;
@@ -66,6 +79,7 @@ class Counter {
   Counter(Functional& functional, const Trial& trial, const FixedEnds& fixed, const Matrix& scale)
       : trial_(trial),
         k_(functional.integrals()),
+        higher_(functional.orders().higher()),
         a_(assemble(functional, trial, 2)),
         directions_(directions_of(functional, trial, fixed, scale, a_.gradient)) {
     for (Index c = 0; c < k_; ++c) columns_.push_back(directions_.reduce(a_.integral_gradients.col(c)));
@@ -85,7 +99,7 @@ class Counter {
     Matrix rest = Matrix::Zero(breaks_ + k_, breaks_ + k_);
     Index out = 0;
     for (Index e = 0; e < trial_.mesh.elements(); ++e) out += add_element(e, shift, rest);
-    return out + negatives_of(rest, k_) - k_;
+    return out + negatives_of(higher_ ? in_balanced_units(rest) : in_own_units(rest), k_) - k_;
   }
 
  private:
@@ -163,6 +177,7 @@ class Counter {
 
   const Trial& trial_;
   Index k_;
+  bool higher_;
   Assembly a_;
   Directions directions_;
   std::vector<Vector> columns_;
@@ -176,11 +191,15 @@ class Counter {
 Inertia inertia_of(Functional& functional, const Trial& trial, const FixedEnds& fixed, const Vector& least) {
   const Counter counter(functional, trial, fixed, even_scale(trial, least));
   Inertia out;
-  const Index inside = counter.below(-zero_level), with_zero = counter.below(zero_level);
+  // p (q' − v) borders the matrix as integral constraints do: each p at a node takes one negative eigenvalue of it
+  // away.
+  const Index border = static_cast<Index>(functional.orders().momenta.size()) * trial.mesh.nodes();
+  const auto below = [&](double shift) { return counter.below(shift) - border; };
+  const Index inside = below(-zero_level), with_zero = below(zero_level);
   out.negative = static_cast<std::size_t>(std::max<Index>(0, inside));
   out.nullity = static_cast<std::size_t>(std::max<Index>(0, with_zero - inside));
   for (double width = 1e-8; width < 0.5; width *= 10) {
-    if (counter.below(-width) != inside || counter.below(width) != with_zero) break;
+    if (below(-width) != inside || below(width) != with_zero) break;
     out.nearest = width;
   }
   return out;
@@ -199,10 +218,12 @@ bool convex_along(Functional& functional, const Trial& trial) {
       functional.evaluate(at.t, q.data(), v.data(), trial.multipliers, 2, density);
       if (!density.finite) return false;
       functional.constraints_at(at.t, q, values, rows);
-      const Matrix mass = density.hessian.bottomRightCorner(n, n);
+      const std::vector<Index>& tops = functional.orders().tops;
+      const Matrix mass = density.hessian.bottomRightCorner(n, n)(tops, tops);
+      rows = Matrix(rows(Eigen::all, tops));
       const Vector size =
           mass.diagonal().cwiseAbs().cwiseMax(1e-12 * mass.diagonal().cwiseAbs().maxCoeff()).cwiseSqrt().cwiseInverse();
-      const Matrix z = null_basis(rows * size.asDiagonal(), n);
+      const Matrix z = null_basis(rows * size.asDiagonal(), size.size());
       const Matrix reduced = quadratic_form(z, size.asDiagonal() * mass * size.asDiagonal());
       if (reduced.rows() == 0) continue;
       const Eigen::SelfAdjointEigenSolver<Matrix> eigen(reduced, Eigen::EigenvaluesOnly);

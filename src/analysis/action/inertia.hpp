@@ -16,7 +16,7 @@ struct Inertia {
 /// left. Precondition: the trial is stationary.
 Inertia inertia_of(Functional& functional, const Trial& trial, const FixedEnds& fixed, const Vector& least);
 
-/// Whether M is positive definite on the directions that φ = 0 allows, at the nodes.
+/// Whether M, of L with q'' that by q'', is positive definite on the directions that φ = 0 allows, at the nodes.
 bool convex_along(Functional& functional, const Trial& trial);
 
 }  // namespace maupertuis::action

@@ -22,7 +22,7 @@ struct Iteration {
   Functional& functional;
   Trial& trial;
   const FixedEnds& fixed;
-  const Matrix& scale;
+  Matrix scale;
   Eigen::SparseLU<Sparse> lu;
   Directions directions;
   Vector step;         // [n nodes]
@@ -47,7 +47,20 @@ struct Iteration {
     if (lu.info() != Eigen::Success) return false;
     Vector gradient = a.gradient;
     if (functional.constraints() > 0) gradient += hessian_times(a, directions.normal);
-    return solve(gradient, a.integrals + a.integral_gradients.transpose() * directions.normal, directions.normal);
+    if (!solve(gradient, a.integrals + a.integral_gradients.transpose() * directions.normal, directions.normal))
+      return false;
+    widen_scale();
+    return true;
+  }
+
+  /// v and p of L with q'' follow from q, so that they are as large as a step makes them, whatever they were before.
+  void widen_scale() {
+    const Eigen::Map<const Matrix> moved(step.data(), scale.rows(), scale.cols());
+    for (const std::vector<Index>* rows : {&functional.orders().rates_of_others, &functional.orders().momenta})
+      for (const Index i : *rows) {
+        const double largest = (trial.q.row(i) + moved.row(i)).cwiseAbs().maxCoeff();
+        scale.row(i) = scale.row(i).cwiseMax(largest);
+      }
   }
 
   /// The Hessian of S + Σ μ φ times a vector over all nodes.
@@ -114,6 +127,12 @@ Matrix even_scale(const Trial& trial, const Vector& least) {
   Vector size = trial.q.rowwise().maxCoeff() - trial.q.rowwise().minCoeff();
   size = size.cwiseMax(least);
   return size.replicate(1, trial.q.cols());
+}
+
+Matrix scale_of_found(const Trial& trial, const Vector& least, const OrderOfCoordinates& orders) {
+  Matrix out = even_scale(trial, least);
+  for (const Index p : orders.momenta) out.row(p) = out.row(p).cwiseMax(trial.q.row(p).cwiseAbs().maxCoeff());
+  return out;
 }
 
 Matrix path_scale(const Trial& trial, const Vector& least) {

@@ -25,6 +25,8 @@ NewtonResult solve_stationarity(Functional& functional, Trial& trial, const Fixe
 
 /// How large each coordinate of a path is: its range, but not less than `least` [n]. The same at all nodes.
 Matrix even_scale(const Trial& trial, const Vector& least);
+/// The same of a path that was found: Ostrogradsky's p, of which no end gives a size, by its largest value.
+Matrix scale_of_found(const Trial& trial, const Vector& least, const OrderOfCoordinates& orders);
 /// The same, but next to an end where L is infinite the distance from that end: there a small change is a large one.
 Matrix path_scale(const Trial& trial, const Vector& least);
 

@@ -16,6 +16,9 @@ namespace maupertuis::action {
 namespace {
 
 constexpr Index degree = 10;
+/// Of (q, v, p), an odd one: of an even degree q ∝ P_n − 1 vanishes at both ends of an element and has no slope at its
+/// inner nodes, so that they cannot be eliminated from the second variation.
+constexpr Index degree_of_higher = 11;
 constexpr Index fewest_elements = 6, most_first_elements = 80;
 
 bool vanish(const ExprVector& expressions) {
@@ -86,7 +89,7 @@ Problem::Problem(const Model& m, const EquationsOfMotion& e)
     : model(m),
       equations(e),
       functional(e),
-      rule(std::make_shared<const Rule>(degree)),
+      rule(std::make_shared<const Rule>(functional.orders().higher() ? degree_of_higher : degree)),
       kinks(kinks_of(e)),
       typical(Vector::Ones(functional.freedoms())) {
   const MechanicalSystem& system = *e.system;
@@ -137,7 +140,7 @@ Index Problem::first_elements(const Trial& trial) const {
 }
 
 SingularEnds Problem::singular_ends(const ActionEnds& ends) {
-  if (ends.closed) return {};
+  if (ends.closed || functional.orders().higher()) return {};
   Density density;
   const auto infinite = [&](const std::vector<std::optional<double>>& at, double t) {
     Vector q(n()), v(n());

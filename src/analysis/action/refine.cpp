@@ -40,7 +40,8 @@ class Refiner {
     const Assembly fine = assemble(functional_, trial_, 0);
     out.action = fine.action;
     out.action_error = std::abs(fine.action - coarse) + rounding_of_action(functional_, trial_);
-    out.path_error = ((trial_.q - guess.q).cwiseQuotient(even_scale(trial_, least_))).lpNorm<Eigen::Infinity>();
+    out.path_error = ((trial_.q - guess.q).cwiseQuotient(scale_of_found(trial_, least_, functional_.orders())))
+                         .lpNorm<Eigen::Infinity>();
     out.correction = correction_;
     if (!(out.action_error <= worst_error * size_of_action(functional_, trial_))) return std::nullopt;
     out.fine = std::move(trial_);
@@ -58,7 +59,7 @@ class Refiner {
     double before = HUGE_VAL;
     for (int round = 0; round < most_rounds; ++round) {
       std::vector<bool> which(static_cast<std::size_t>(trial_.mesh.elements()), false);
-      const Matrix size = even_scale(trial_, least_);
+      const Matrix size = scale_of_found(trial_, least_, functional_.orders());
       double worst = 0;
       for (Index e = 0; e < trial_.mesh.elements(); ++e) {
         const double here = tail(trial_, e, size);

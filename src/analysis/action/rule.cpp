@@ -1,6 +1,7 @@
 #include "analysis/action/rule.hpp"
 
 #include "linear_algebra/dense.hpp"
+#include "linear_algebra/products.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -85,6 +86,8 @@ Rule::Rule(Index p, Flat flat) : degree(p), anchor(flat == Flat::AtEnd ? p : 0),
     for (Index k = 0; k <= p; ++k) basis(i, k) = static_cast<double>(legendre_polynomial(k, nodes[i]).first);
   }
   legendre = basis.partialPivLu().inverse();
+  lumping = quadratic_form(value, Matrix(weights.asDiagonal()));
+  for (Index i = 0; i <= p; ++i) lumping(i, i) -= 2 / (static_cast<double>(p * (p + 1)) * basis(i, p) * basis(i, p));
 }
 
 /// Π over j ≠ i (ξ − ξ_j)/(ξ_i − ξ_j) at a point that is no node.

@@ -21,6 +21,7 @@ struct Rule {
   Matrix value, slope;     // [p + 2 × p + 1] nodes → values, derivatives at the points
   Matrix node_slope;       // [p + 1 × p + 1] nodes → derivatives at the nodes
   Matrix legendre;         // [p + 1 × p + 1] nodes → coefficients of Legendre polynomials
+  Matrix lumping;  // [p + 1 × p + 1] ∫ ℓ_i ℓ_j less what the sum over the nodes (Gauss-Lobatto) makes of it
 
   /// Weights of the nodes for the value (derivative) at ξ.
   Vector value_at(double xi) const;

@@ -23,13 +23,13 @@ constexpr double budget = 2e9;
 constexpr std::size_t starts_at_infinity =
     3;  // where L is infinite at an end: what the first do not reach the others do not
 
-bool same(const Trial& a, const Trial& b, const Vector& least) {
+bool same(const Trial& a, const Trial& b, const Vector& least, const OrderOfCoordinates& orders) {
   const ActionPath p = to_path(a), q = to_path(b);
   const double begin = p.start, whole = p.end - p.start;
   for (int k = 0; k < compared_places; ++k) {
     const double t = begin + whole * (k + 0.5) / compared_places;
     const MotionState s = p.at(t), r = q.at(t);
-    for (Index i = 0; i < least.size(); ++i) {
+    for (const Index i : orders.configurations) {
       const auto at = static_cast<std::size_t>(i);
       if (std::abs(s.q[at] - r.q[at]) > same_path * std::max(least[i], std::abs(s.q[at]))) return false;
     }
@@ -123,8 +123,9 @@ class Search {
   }
 
   bool known(const Trial& trial) const {
-    return std::any_of(found_.begin(), found_.end(),
-                       [&](const auto& f) { return same(f.first.coarse, trial, least_); });
+    return std::any_of(found_.begin(), found_.end(), [&](const auto& f) {
+      return same(f.first.coarse, trial, least_, problem_.functional.orders());
+    });
   }
 
   void from_bent_lines() {

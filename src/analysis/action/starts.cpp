@@ -56,15 +56,24 @@ std::vector<Start> starts_between(Problem& problem, const ActionEnds& ends) {
   const Trial line =
       line_on(even_mesh(problem.rule, ends.start, ends.end, problem.first_elements(rough), false, singular.pace()));
   std::vector<Start> out{{"the straight line", line}};
+  const OrderOfCoordinates& orders = problem.functional.orders();
   const auto bend = [&](Trial& trial, Index i, int k, double by) {
-    for (Index node = 1; node + 1 < trial.q.cols(); ++node)
-      trial.q(i, node) +=
-          by * size[i] *
-          std::sin(k * std::numbers::pi * (trial.mesh.time(node) - ends.start) / (ends.end - ends.start));
+    const double turn = k * std::numbers::pi / (ends.end - ends.start);
+    for (Index node = 1; node + 1 < trial.q.cols(); ++node) {
+      const double angle = turn * (trial.mesh.time(node) - ends.start);
+      trial.q(i, node) += by * size[i] * std::sin(angle);
+      for (std::size_t r = 0; r < orders.bases.size(); ++r)
+        if (orders.bases[r] == i) trial.q(orders.rates_of_others[r], node) += by * size[i] * turn * std::cos(angle);
+    }
+  };
+  const auto bends = [&](Index i) {  // v and p of L with q'' follow from q
+    const std::vector<Index>&v = orders.rates_of_others, &p = orders.momenta;
+    return std::count(v.begin(), v.end(), i) + std::count(p.begin(), p.end(), i) == 0;
   };
   for (int k = 1; k <= bend_waves; ++k)
     for (const double by : {0.5, -0.5, 1.5, -1.5})
       for (Index i = 0; i < problem.n(); ++i) {
+        if (!bends(i)) continue;
         Start s{fmt::format("the line bent by {:g} sin({}π τ) in {}", by * size[i], k == 1 ? "" : std::to_string(k),
                             problem.equations.system->coordinates[static_cast<std::size_t>(i)].name),
                 line};
@@ -77,7 +86,7 @@ std::vector<Start> starts_between(Problem& problem, const ActionEnds& ends) {
     for (int r = 0; r < random_starts; ++r) {
       Start s{fmt::format("the line bent at random (number {}{})", r + 1, side < 0 ? ", the other way" : ""), line};
       for (Index i = 0; i < problem.n(); ++i)
-        for (int k = 1; k <= random_waves; ++k)
+        for (int k = 1; k <= random_waves && bends(i); ++k)
           bend(s.trial, i, k, side * 3 * (2 * std::generate_canonical<double, 53>(random) - 1) / k);
       out.push_back(std::move(s));
     }

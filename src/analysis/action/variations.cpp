@@ -49,6 +49,27 @@ std::vector<std::pair<std::string, std::vector<double>>> waves_of(const Trial& t
   return out;
 }
 
+/// The same of a coordinate whose q'' stands in L, with its rate: both vanish at the ends.
+struct WaveWithRate {
+  std::string name;
+  std::vector<double> value, rate;
+};
+std::vector<WaveWithRate> clamped_waves_of(const Trial& trial) {
+  constexpr double pi = std::numbers::pi;
+  std::vector<WaveWithRate> out;
+  for (int k = 1; k <= waves; ++k) {
+    WaveWithRate wave{k == 1 ? "sin²(π τ)" : fmt::format("sin(π τ) sin({}π τ)", k), {}, {}};
+    for (Index node = 0; node < trial.mesh.nodes(); ++node) {
+      const double s = (trial.mesh.time(node) - trial.mesh.start) / trial.mesh.whole;
+      const double once = std::sin(pi * s), more = std::sin(k * pi * s);
+      wave.value.push_back(once * more);
+      wave.rate.push_back(pi * (std::cos(pi * s) * more + k * once * std::cos(k * pi * s)) / trial.mesh.whole);
+    }
+    out.push_back(std::move(wave));
+  }
+  return out;
+}
+
 class Neighbourhood {
  public:
   Neighbourhood(Problem& problem, const Trial& trial, const FixedEnds& fixed, const Vector& least)
@@ -67,7 +88,10 @@ class Neighbourhood {
   std::vector<Shape> shapes() const {
     std::vector<Shape> out;
     const MechanicalSystem& system = *problem_.equations.system;
-    for (Index i = 0; i < trial_.q.rows(); ++i) {
+    add_clamped_shapes(out);
+    const OrderOfCoordinates& orders = problem_.functional.orders();
+    for (const Index i : orders.tops) {
+      if (std::count(orders.rates_of_others.begin(), orders.rates_of_others.end(), i) > 0) continue;
       const auto at = static_cast<std::size_t>(i);
       for (const auto& [name, values] : waves_of(trial_, !fixed_.from[at], !fixed_.to[at])) {
         Matrix xi = Matrix::Zero(trial_.q.rows(), trial_.q.cols());
@@ -125,6 +149,22 @@ class Neighbourhood {
   }
 
  private:
+  /// Where q'' stands in L: ξ of q with v moved by ξ', so that q' = v stays and S* is S.
+  void add_clamped_shapes(std::vector<Shape>& out) const {
+    const OrderOfCoordinates& orders = problem_.functional.orders();
+    for (std::size_t k = 0; k < orders.bases.size(); ++k)
+      for (const WaveWithRate& wave : clamped_waves_of(trial_)) {
+        const auto row = [&](const std::vector<double>& values) -> Eigen::RowVectorXd {
+          return scale_(orders.bases[k], 0) * Eigen::Map<const Vector>(values.data(), trial_.q.cols()).transpose();
+        };
+        Matrix xi = Matrix::Zero(trial_.q.rows(), trial_.q.cols());
+        xi.row(orders.bases[k]) = row(wave.value);
+        xi.row(orders.rates_of_others[k]) = row(wave.rate);
+        const auto base = static_cast<std::size_t>(orders.bases[k]);
+        out.push_back({problem_.equations.system->coordinates[base].name + ": " + wave.name, std::move(xi)});
+      }
+  }
+
   /// Directions alone, also of an integral constraint's path: the rest of ξ is taken off node by node.
   void allow(Matrix& xi) const {
     for (Index k = 0; k < xi.cols(); ++k) {

@@ -6,6 +6,14 @@
 #include <utility>
 
 namespace maupertuis {
+
+std::string written_name(const MechanicalSystem& system, std::size_t coordinate) {
+  for (const HigherDerivative& h : system.higher) {
+    if (h.momentum == coordinate) return {};
+    if (h.rate == coordinate) return system.coordinates[h.coordinate].name + "'";
+  }
+  return system.coordinates[coordinate].name;
+}
 namespace {
 
 const HigherDerivative* higher_of(const MechanicalSystem& system, std::size_t coordinate) {
