@@ -173,7 +173,8 @@ constexpr CodeEntry kEntries[] = {
      "# maup derive\nfield u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N\n"
      "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\n"},
     {"N0640", "field equations without the time",
-     "The density holds no velocity: its equations are those of a field at rest.",
+     "The density holds no velocity: its equations are those of a field at rest, or of one that follows at once what "
+     "it carries.",
      "# maup derive\nfield u(x) : length on x = 0 m .. 1 m\nparam T0 = 1 N\ndensity = -1/2 T0 u_x^2\n",
      "# maup derive\nfield u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N\n"
      "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\n"},

@@ -9,6 +9,7 @@
 #include "fields/field_elements.hpp"
 #include "fields/field_sides.hpp"
 #include "fields/plane_modes.hpp"
+#include "fields/resting_fields.hpp"
 #include "fields/semi_discrete.hpp"
 #include "fields/small_motions.hpp"
 #include "linear_algebra/dense.hpp"
@@ -540,7 +541,7 @@ FieldModes field_modes(const FieldEquations& equations, std::size_t count, Diagn
     diagnostics.warning("W0653", s.density_span, "these are the modes without the friction of the bodies",
                         "Friction damps the motions, and shifts frequencies and shapes.",
                         "`maup simulate` shows the decay.");
-  if (rest && !entries.have_inertia()) {
+  if (rest && nothing_moves(equations)) {
     out.equilibrium = rest->values;
     return out;
   }

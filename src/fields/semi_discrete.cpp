@@ -98,8 +98,9 @@ std::optional<SemiDiscrete> SemiDiscrete::make(const Model& model, const FieldEq
   if (!out.add_lagrangian(diagnostics) || !out.add_given_slopes(diagnostics)) return std::nullopt;
   out.add_force_densities();
   out.add_end_forces();
-  if (!out.set_start(diagnostics) || !out.set_moving_places(diagnostics) || !out.replace_places(diagnostics))
-    return std::nullopt;
+  if (!out.set_start(diagnostics)) return std::nullopt;
+  out.follow_at_once();
+  if (!out.set_moving_places(diagnostics) || !out.replace_places(diagnostics)) return std::nullopt;
   return out;
 }
 

@@ -45,7 +45,8 @@ class SemiDiscrete {
   bool start_clashes() const { return clashes_; }
   /// Names of events that end a run: a place that moves left the domain.
   const std::vector<std::string>& departures() const { return departures_; }
-  /// The value at a place that moves, by the symbol of its coordinate, in the coordinates and t.
+  /// Values at places that move, and those of elements without mass, by the symbols of their coordinates, in the
+  /// coordinates that are left and t.
   const ExprMap& moving() const { return moving_; }
 
  private:
@@ -72,6 +73,8 @@ class SemiDiscrete {
   bool refuse_starts_of_places(Diagnostics& diagnostics) const;
   bool replace_places(Diagnostics& diagnostics);
   bool has_slopes(std::size_t field) const;
+  void follow_at_once();
+  void put_in_place(const std::vector<std::size_t>& which, const ExprMap& values);
   bool set_moving_places(Diagnostics& diagnostics);
   bool refuse_turning(const PlaceCoordinate& place, Diagnostics& diagnostics) const;
   bool refuse_contact(const PlaceCoordinate& place, Diagnostics& diagnostics) const;

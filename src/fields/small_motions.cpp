@@ -193,7 +193,9 @@ bool solve_conservative(const SmallMotions& motions, std::size_t count, std::vec
     const Eigen::VectorXd& mu = solver.eigenvalues();  // ascending
     out.clear(), shapes.clear();
     const Eigen::MatrixXd vectors = product(motions.from_free, transposed_product(inverse, solver.eigenvectors()));
-    for (Eigen::Index i = mu.size(); i-- > 0 && out.size() < count;) {
+    // What has no mass follows the rest at once: its μ is 0 but for rounding.
+    constexpr double massless = 1e-9;
+    for (Eigen::Index i = mu.size(); i-- > 0 && out.size() < count && mu(i) > massless * mu.tail(1)(0);) {
       const double square = 1 / mu(i) - shift, rounding = 1e-12 / mu(i);
       out.push_back(square > rounding ? std::sqrt(square) : std::abs(square) <= rounding ? 0 : -std::sqrt(-square));
       shapes.push_back(vectors.col(i));

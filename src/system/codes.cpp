@@ -157,8 +157,8 @@ constexpr CodeEntry kEntries[] = {
     {"E0241", "a path with too few or too many values",
      "`path from (0, 1) at 0 to (2, free) at 1` and `expect action of (…)` give every coordinate its value, in the "
      "order of their declaration; "
-     "`maup action --path \"x = 4 t, y = 3 t\"` names them, as `path from (x = 0, x' = 1) at 0 to …` does. `free` stands "
-     "at an end where a coordinate may have any value. Rates stand there where second derivatives are in L.",
+     "`maup action --path \"x = 4 t, y = 3 t\"` names them, as `path from (x = 0, x' = 1) at 0 to …` does. `free` "
+     "stands at an end where a coordinate may have any value. Rates stand there where second derivatives are in L.",
      "dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2)\npath from (0, 0) at 0 to 1 at 1\n",
      "dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2)\npath from (0, 0) at 0 to (1, free) at 1\n"},
     {"E0242", "a path that ends before it begins", "An action is an integral from an earlier time to a later one.",
