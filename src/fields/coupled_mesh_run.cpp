@@ -29,11 +29,40 @@ bool add_probes(const SemiDiscrete& mesh, const FieldQuestion& question, double 
   return true;
 }
 
-std::vector<double> times_of(const std::vector<FieldQuestion>& questions) {
+/// Moments at which a mass is looked at beside its own: in parts of the time since the beginning.
+constexpr double before_moments[] = {1.0 / 64, 2.0 / 64, 3.0 / 64, 5.0 / 64, 8.0 / 64, 13.0 / 64};
+
+/// The moment of a question, and those before it where it is about masses alone.
+std::vector<double> moments_of(const SemiDiscrete& mesh, const FieldQuestion& question) {
+  std::vector<double> out{question.time};
+  if (mesh.model().system.has_modes() || !mesh.stands_on_masses(question)) return out;
+  for (const double part : before_moments) out.push_back(question.time - part * (question.time - mesh.begin()));
+  return out;
+}
+
+std::vector<double> times_of(const SemiDiscrete& mesh, const std::vector<FieldQuestion>& questions) {
   std::vector<double> out;
   for (const FieldQuestion& q : questions)
-    if (std::find(out.begin(), out.end(), q.time) == out.end()) out.push_back(q.time);
+    for (const double t : moments_of(mesh, q))
+      if (std::find(out.begin(), out.end(), t) == out.end()) out.push_back(t);
   return out;
+}
+
+/// What the probes say of a question: its answer, and the same beside it, at other places or at other moments.
+void read_probes(const Probe& probe, const std::vector<double>& times, const std::vector<double>& moments,
+                 std::size_t first, std::size_t end, double& answer, std::vector<double>& near) {
+  for (std::size_t k = 0; k < times.size() && k < probe.values.size(); ++k) {
+    const auto moment = std::find(moments.begin(), moments.end(), times[k]);
+    if (moment == moments.end() || end > probe.values[k].size()) continue;
+    const auto values = probe.values[k].begin();
+    if (moment != moments.begin()) {
+      near.push_back(values[static_cast<std::ptrdiff_t>(first)]);
+      continue;
+    }
+    answer = values[static_cast<std::ptrdiff_t>(first)];
+    if (moments.size() == 1)
+      near.assign(values + static_cast<std::ptrdiff_t>(first + 1), values + static_cast<std::ptrdiff_t>(end));
+  }
 }
 
 /// h_E of a state.
@@ -61,7 +90,7 @@ std::optional<CoupledRun> run_once(const SemiDiscrete& mesh, const std::vector<F
   const auto equations = euler_lagrange(system, diagnostics);
   if (!equations) return std::nullopt;
   SimulationOptions settings;
-  settings.at = times_of(questions);
+  settings.at = times_of(mesh, questions);
   if (settings.at.empty()) settings.at.push_back(options.begin + options.duration);
   if (options.duration > 0) settings.duration = options.duration;
   if (options.every > 0) settings.output_every = options.every;
@@ -84,13 +113,8 @@ std::optional<CoupledRun> run_once(const SemiDiscrete& mesh, const std::vector<F
   CoupledRun out{std::move(*result), {}, {}, 0};
   out.answers.assign(questions.size(), std::nan("")), out.near.resize(questions.size());
   for (std::size_t i = 0; i < questions.size(); ++i)
-    for (std::size_t k = 0; k < settings.at.size() && k < probe.values.size(); ++k)
-      if (settings.at[k] == questions[i].time && of_question[i + 1] <= probe.values[k].size()) {
-        const auto values = probe.values[k].begin();
-        out.answers[i] = values[static_cast<std::ptrdiff_t>(of_question[i])];
-        out.near[i].assign(values + static_cast<std::ptrdiff_t>(of_question[i] + 1),
-                           values + static_cast<std::ptrdiff_t>(of_question[i + 1]));
-      }
+    read_probes(probe, settings.at, moments_of(mesh, questions[i]), of_question[i], of_question[i + 1], out.answers[i],
+                out.near[i]);
   out.energy = energy_at(*equations, out.result.final);
   return out;
 }

@@ -513,6 +513,23 @@ ExprMap SemiDiscrete::beside_attached(double shift) const {
   return out;
 }
 
+bool SemiDiscrete::stands_on_masses(const FieldQuestion& question) const {
+  if (question.total || !equations_->bodies) return false;
+  const EquationsOfMotion& bodies = *equations_->bodies;
+  const std::vector<Expr> asked = symbols_of({&question.value, 1});
+  const auto holds = [&](const Expr& e) { return std::find(asked.begin(), asked.end(), e) != asked.end(); };
+  for (const PlaceValue& place : equations_->model->places)
+    if (holds(place.symbol)) return false;
+  bool any = false;
+  for (const PlaceCoordinate& p : equations_->model->attached) {
+    const Coordinate& c = bodies.system->coordinates[p.coordinate];
+    if (!holds(c.q) && !holds(c.velocity)) continue;
+    if (p.moves || differentiate(bodies.lagrangian_expanded, c.velocity).is_zero()) return false;
+    any = true;
+  }
+  return any;
+}
+
 Expr SemiDiscrete::discretised(const FieldQuestion& question, Diagnostics& diagnostics, double shift) const {
   const FieldSystem& s = equations_->system();
   if (question.total) return integral(question.value);

@@ -34,9 +34,13 @@ class SemiDiscrete {
   Expr discretised(const FieldQuestion& question, Diagnostics& diagnostics, double shift = 0) const;
   /// u or u' of a field at x, in the coordinates.
   Expr value_at(std::size_t varied_index, int by_time, int by_space, double x) const;
+  /// Whether a question is about places with a mass alone, which short waves of the field move by far less than what is
+  /// beside them.
+  bool stands_on_masses(const FieldQuestion& question) const;
   std::size_t degrees_of_freedom() const { return dofs_; }
   std::size_t elements() const { return mesh_.borders.size() - 1; }
   int order() const { return mesh_.degree; }
+  double begin() const;  // of the run, s
   bool forced() const { return forced_; }
   /// Whether the density of all fields that bodies take hold of along a path holds second derivatives.
   bool bends() const;
@@ -90,7 +94,6 @@ class SemiDiscrete {
   Expr integral(Expr density) const;
   void generalized_force(std::size_t a, std::size_t dof, Expr force, Span span);
   double number(Expr e) const;
-  double begin() const;  // of the run, s
 
   Model model_;
   const FieldEquations* equations_;
