@@ -73,9 +73,12 @@ const PlaceCoordinate* find_attached(Elaboration& e, const FieldJet& jet, Expr p
 bool refuse_as_coordinate(Elaboration& e, const Expression& x, const FieldJet& jet) {
   const FieldSystem& s = fields_of(e);
   if (s.space.size() != 1) {
-    e.diagnostics.error("E0505", x.span, "not supported yet: bodies on a field of several space variables",
-                        "What couples fields with coordinates are values at places of a field of one space variable.",
-                        "");
+    e.diagnostics.error(
+        "E0505", x.span, "not supported yet: bodies on a field of several space variables",
+        "A membrane holds no point: under a force at one it gives way without bound, as ln r. A plate "
+        "does, but what couples fields with coordinates are values at places of one space variable.",
+        "Spread it over a small piece of the density, m/(4 b^2) in a mass per area, with `piecewise(x < a "
+        "- b : 0, x < a + b : 1, else : 0)` times the same of y: modes have elements that end there.");
     return true;
   }
   if (s.fields[jet.field].given) {
