@@ -157,12 +157,14 @@ std::optional<Followed> follow(Problem& problem, const MotionState& start, doubl
   return out;
 }
 
-ActionEnds ends_of_trial(const Trial& trial) {
+/// Where q'' stands in L, p is no part of an end.
+ActionEnds ends_of_trial(const Trial& trial, const OrderOfCoordinates& orders) {
   ActionEnds out;
   for (Index i = 0; i < trial.q.rows(); ++i) {
     out.from.emplace_back(trial.q(i, 0));
     out.to.emplace_back(trial.q(i, trial.q.cols() - 1));
   }
+  for (const Index p : orders.momenta) out.from[static_cast<std::size_t>(p)] = out.to[static_cast<std::size_t>(p)] = {};
   out.start = trial.mesh.start;
   out.end = trial.mesh.t(1);
   return out;
@@ -230,7 +232,8 @@ std::optional<MotionAction> action_of_motion(const Model& model, const Equations
   const auto refined = as_refined(problem, *followed, diagnostics);
   if (!refined) return std::nullopt;
   MotionAction out;
-  out.path = describe(problem, *refined, ends_of_trial(followed->trial), {}, options, diagnostics);
+  out.path = describe(problem, *refined, ends_of_trial(followed->trial, problem.functional.orders()), {}, options,
+                      diagnostics);
   if (interrupted(options, diagnostics)) return std::nullopt;
   out.path.found_from = "the model's start";
   out.path.start_velocity = start->state.v;
@@ -261,7 +264,7 @@ std::optional<PeriodicAction> action_of_orbit(const Model& model, const Equation
   for (Index i = 0; i < problem.n(); ++i)
     trial.advance[i] = found->motion.turns[static_cast<std::size_t>(i)] * 6.283185307179586476925;
   trial.q.conservativeResize(Eigen::NoChange, trial.mesh.nodes());
-  ActionEnds ends = ends_of_trial(trial);
+  ActionEnds ends = ends_of_trial(trial, problem.functional.orders());
   ends.closed = true;
   const auto refined = as_refined(problem, *followed, diagnostics);
   if (!refined) return std::nullopt;

@@ -12,7 +12,7 @@ using namespace maupertuis;
 
 namespace {
 
-StationaryPath only_path(const std::string& text) {
+ModelText with_motion(const std::string& text) {
   ModelText m("system paths\ndimensionless\n" + text);
   auto analysis =
       std::make_shared<const DegenerateAnalysis>(analyse_degenerate(m.equations, generic_state(m.model), true));
@@ -20,6 +20,11 @@ StationaryPath only_path(const std::string& text) {
   REQUIRE(determined);
   m.equations.degenerate = analysis;
   m.equations.determined = std::make_shared<const EquationsOfMotion>(std::move(*determined));
+  return m;
+}
+
+StationaryPath only_path(const std::string& text) {
+  const ModelText m = with_motion(text);
   REQUIRE(m.model.experiment.path);
   const PathSearch found = paths_of(m, ends_of(m.model));
   REQUIRE(found.paths.size() == 1);
@@ -134,6 +139,23 @@ TEST_CASE("an oscillator of Pais and Uhlenbeck between two states, with its conj
     for (std::size_t k = 0; k < expected.size(); ++k)
       CHECK(p.second.conjugate[k].t == doctest::Approx(expected[k]).epsilon(1e-9));
   }
+}
+
+TEST_CASE("the action along a motion with q'' in L has the index of its conjugate points") {
+  // q = 1 + t/5 + cos 2t; neighbours that leave with its q and q' meet it at 2t = 2π and at 2t = tan t
+  const ModelText m =
+      with_motion("coord q : number\nL = 1/2 q''^2 - 2 q'^2\nstart q = 2, q' = 0.2, q'' = -4, q''' = 0\nrun 5\n");
+  Diagnostics diagnostics;
+  const auto found = action_of_motion(m.model, m.equations, {}, diagnostics);
+  REQUIRE_MESSAGE(found, render(diagnostics, m.source));
+  const double S = 2 * std::sin(20) - 0.4 + 0.8 * (1 - std::cos(10));
+  CHECK(found->path.action == doctest::Approx(S).epsilon(1e-12));
+  const SecondVariation& second = found->path.second;
+  REQUIRE(second.index);
+  CHECK(*second.index == 2);
+  REQUIRE(second.conjugate.size() == 2);
+  CHECK(second.conjugate[0].t == doctest::Approx(pi).epsilon(1e-10));
+  CHECK(second.conjugate[1].t == doctest::Approx(8.986818915818128 / 2).epsilon(1e-10));
 }
 
 TEST_CASE("a column loses its minimum at Euler's load, whatever holds its ends") {
