@@ -33,10 +33,12 @@ struct ExtendedEvent {
 
 /// A mode of contacts and frictions: which equations hold between two instants.
 struct ExtendedMode {
-  enum class Friction : std::int8_t { None, Stick, Forward, Backward };
+  enum class Friction : std::int8_t { None, Stick, Forward, Backward, Slide };  // Slide: in space
   std::vector<bool> closed;              // [contacts]
   std::vector<Friction> friction;        // [contacts + frictions]
   std::vector<std::int8_t> normal_sign;  // [frictions] of normal forces made of multipliers
+  std::vector<bool> begins;              // [contacts] a slip in space begins, along a direction that is given
+  std::vector<double> stops;             // [contacts] the speed at which a slip in space counts as stopped
 };
 
 /// What an event function of the kernel of a mode means, as ModeWatch of simulation.
@@ -48,21 +50,27 @@ struct ExtendedWatch {
 struct ExtendedProgram {
   Kernel kernel;                       // its first observables are those of ExtendedProblem::kernel
   std::vector<ExtendedWatch> watches;  // [events of the kernel]
+  std::optional<Kernel> slips{};       // where slips begin: the motion with their components as events, two a contact
 };
 
-/// Contacts and frictions in the plane. What they are at a point are observables of ExtendedProblem::kernel, whose last
-/// events are the gaps.
+/// Contacts and frictions. What they are at a point are observables of ExtendedProblem::kernel, whose last events are
+/// the gaps.
 struct ExtendedContacts {
   std::size_t count = 0;       // of contacts
   std::size_t first = 0;       // observables for each contact: ∂g/∂t, restitution, ∂g/∂q [2 + n]
   std::size_t first_slip = 0;  // for each friction, those of contacts first: v_t, μ, μ_s, ∂v_t/∂q̇ [3 + n]
+  std::size_t first_second_slip = 0;  // for each friction in space: the second component of v_t, ∂/∂q̇ of it [1 + n]
   struct Friction {
     bool present = false, sticking = false;  // sticking: it never slides
     bool has_sign = false;                   // its normal force is made of multipliers
+    bool in_space = false;                   // v_t has two components
   };
   std::vector<std::size_t> kind{}, gap_kind{};  // [n], [contacts]: of one dimension share a number, and their sizes
   std::vector<Friction> frictions{};            // [contacts + frictions]
   bool simultaneous = false;                    // impacts of several contacts are shared by complementarity
+  /// Of the polynomials of time that are the directions of slips in space that begin. Of each such contact the kernel
+  /// of a mode has parameters after those of the model: t_0, the coefficients of one component, those of the other.
+  int direction_degree = 0;
   std::function<ExtendedProgram(const ExtendedMode&)> program{};  // called by one thread
 };
 

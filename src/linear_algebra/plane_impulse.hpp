@@ -1,9 +1,11 @@
 #pragma once
+#include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
-/// The impulse of one contact in the plane: for double, for numbers of more digits, and for numbers with their change
-/// along a direction.
+/// The impulse of one contact in the plane, and how a slip in space leaves 0 in it: for double, for numbers of more
+/// digits, and for numbers with their change along a direction.
 namespace maupertuis {
 
 /// A number, and its change along one direction. Comparisons are those of the numbers.
@@ -124,6 +126,32 @@ ImpulseOf<Number> impulse_in_plane(ImpulseCourse<Number> c, Number restitution) 
     c.v_t = 0;
   }
   return {c.p, c.p_t};
+}
+
+/// Where friction −μ d does not hold a slip of 0 in space it leaves along d, |d| = 1, with W_tn − μ W_tt d = c d and
+/// c > 0: d = (μ W_tt + c)⁻¹ W_tn. As |d| falls with c there is one such c, to which Newton's steps for 1/|d| rise from
+/// 0 (J. J. Moré and D. C. Sorensen, SIAM J. Sci. Stat. Comput. 4 (1983) 553). `tt`: [W_xx, W_xy, W_yy].
+template <class Number>
+std::array<Number, 2> direction_of_leaving(const std::array<Number, 2>& tn, const std::array<Number, 3>& tt,
+                                           const Number& friction) {
+  using std::sqrt;
+  const auto length = [](const std::array<Number, 2>& x) { return Number(sqrt(Number(x[0] * x[0] + x[1] * x[1]))); };
+  std::array<Number, 2> d = tn;
+  Number c = 16 * std::numeric_limits<Number>::epsilon() * friction * (tt[0] + tt[2]);
+  constexpr int most_turns = 200;
+  for (int turn = 0; turn < most_turns && friction > 0; ++turn) {
+    const Number xx = friction * tt[0] + c, xy = friction * tt[1], yy = friction * tt[2] + c, det = xx * yy - xy * xy;
+    const auto solved = [&](const std::array<Number, 2>& b) {
+      return std::array<Number, 2>{Number((yy * b[0] - xy * b[1]) / det), Number((xx * b[1] - xy * b[0]) / det)};
+    };
+    d = solved(tn);
+    const std::array<Number, 2> e = solved(d);
+    const Number size = length(d), next = c + size * size / (d[0] * e[0] + d[1] * e[1]) * (size - 1);
+    if (!(next > c)) break;
+    c = next;
+  }
+  const Number size = length(d);
+  return {Number(d[0] / size), Number(d[1] / size)};
 }
 
 }  // namespace maupertuis

@@ -162,8 +162,7 @@ constexpr std::array entries{
     CodeEntry{"E0725", "this method calculates in double alone",
               "--precision quad and --precision 100 run Taylor's method, whose order grows with the number of digits. "
               "The stiff and the "
-              "variational method have bounded orders. Contacts with friction in space are not carried through in many "
-              "digits: the forces in their cones are found by an iteration in double.",
+              "variational method have bounded orders.",
               "# maup simulate --precision quad --method stiff\ncoord θ : angle\n"
               "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\nT = 1/2 m l^2 θ'^2\nV = -m g l cos θ\nstart θ = 60 deg\n"
               "run 1 s\n",

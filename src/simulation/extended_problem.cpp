@@ -144,26 +144,37 @@ class ExactPlanner {
       for (const Expr& slope : gradient(c.gap, q)) wanted.observables.push_back(slope);
     }
     out.first_slip = wanted.observables.size();
+    ExprVector second_slips;
     for (std::size_t i = 0; i < out.count + system_.frictions.size(); ++i) {
       const Friction& f = friction_of(library_->system(), i);
       const bool rubs = f.present();
-      out.frictions.push_back({rubs, f.sticking, i >= out.count && has_multipliers(f.normal)});
+      out.frictions.push_back({rubs, f.sticking, i >= out.count && has_multipliers(f.normal), f.in_space()});
       const Expr slip = rubs ? expand_time_derivatives(f.slip[0]) : number(0);
       wanted.observables.push_back(slip);
       wanted.observables.push_back(rubs ? f.kinetic : number(0));
       wanted.observables.push_back(rubs ? f.static_ : number(0));
       for (const Expr& slope : gradient(slip, v)) wanted.observables.push_back(slope);
+      if (f.in_space()) second_slips.push_back(expand_time_derivatives(f.slip[1]));
     }
-    out.program = [library = library_](const ExtendedMode& mode) { return program_of(*library, mode); };
+    out.first_second_slip = wanted.observables.size();
+    for (const Expr& slip : second_slips) {
+      wanted.observables.push_back(slip);
+      for (const Expr& slope : gradient(slip, v)) wanted.observables.push_back(slope);
+    }
+    out.direction_degree = options_.precision == Precision::Quad ? 32 : 48;
+    out.program = [library = library_, degree = out.direction_degree](const ExtendedMode& mode) {
+      return program_of(*library, mode, degree);
+    };
   }
 
-  static ExtendedProgram program_of(ModeLibrary& library, const ExtendedMode& mode) {
+  static ExtendedProgram program_of(ModeLibrary& library, const ExtendedMode& mode, int direction_degree) {
     ContactMode same;
     same.closed = mode.closed;
     for (const ExtendedMode::Friction f : mode.friction) same.friction.push_back(state_of(f));
     same.normal_sign = mode.normal_sign;
-    const std::shared_ptr<const ModeProgram> found = library.program(same, {});
-    ExtendedProgram out{found->kernel, {}};
+    const std::shared_ptr<const ModeProgram> found =
+        library.program(same, {mode.stops, false, mode.begins, direction_degree});
+    ExtendedProgram out{found->kernel, {}, found->slips};
     for (const ModeWatch& w : found->watches) out.watches.push_back({what_of(w.what), w.index});
     return out;
   }
@@ -176,6 +187,8 @@ class ExactPlanner {
         return FrictionState::Forward;
       case ExtendedMode::Friction::Backward:
         return FrictionState::Backward;
+      case ExtendedMode::Friction::Slide:
+        return FrictionState::Slide;
       case ExtendedMode::Friction::None:
         break;
     }
@@ -308,13 +321,6 @@ Kernel kernel_of_numbers(const std::vector<Expr>& numbers) {
 
 bool goes_in_many_digits(const Model& model, const EquationsOfMotion& equations, Diagnostics& diagnostics) {
   if (!goes_through_modes(model)) return true;
-  for (const Contact& c : model.system.contacts) {
-    if (!c.friction.in_space()) continue;
-    diagnostics.error("E0725", c.span, "friction in space is not carried through in many digits",
-                      "Its forces lie in circular cones, and the iteration that finds them calculates in double.",
-                      "Leave --precision out, or ask one mode: --mode \"…\".");
-    return false;
-  }
   return can_go_through_modes(equations, diagnostics);
 }
 

@@ -57,11 +57,11 @@ void GivenForces::with_given_multipliers() {
   for (AppliedForce& force : in_mode_.forces) force.components = substitute(force.components, all_);
 }
 
-void GivenForces::direct(std::size_t i, ExprVector& rubbed) {
+void GivenForces::direct(std::size_t i, int degree, ExprVector& rubbed) {
   const Friction& f = own_.contacts[i].friction;
   const Expr since = own_.context->time() - parameter(), most = f.kinetic * own_.contacts[i].multiplier;
   for (std::size_t k = 0; k < f.slip.size(); ++k) {
-    const Expr direction = polynomial(direction_degree, since);
+    const Expr direction = polynomial(degree, since);
     add(-(most * direction), [&](const Coordinate& c) { return differentiate(f.slip[k], c.velocity); });
     all_[f.multipliers[k]] = -(most * direction);
     rubbed.push_back(most * direction * f.slip[k]);

@@ -16,8 +16,8 @@ class GivenForces {
   /// Along each closed contact, each friction that sticks and each constraint of the system a given force besides its
   /// multiplier, a polynomial of the time since a parameter (hybrid::Given).
   void preload(const ContactMode& mode);
-  /// Friction of contact i with a direction that is a polynomial of time. `rubbed`: what it takes.
-  void direct(std::size_t i, ExprVector& rubbed);
+  /// Friction of contact i with a direction that is a polynomial of time, of that degree. `rubbed`: what it takes.
+  void direct(std::size_t i, int degree, ExprVector& rubbed);
 
   /// The system that moves.
   MechanicalSystem system();

@@ -161,6 +161,7 @@ std::string key_of(const ContactMode& mode, const ModeDetails& details) {
   if (details.preloaded) key += " preloaded";
   if (!details.begins.empty()) key += " begins ";
   for (const bool begins : details.begins) key += begins ? '1' : '0';
+  if (!details.begins.empty()) key += fmt::format(" by {}", details.direction_degree);
   return key;
 }
 
@@ -216,7 +217,7 @@ ModeProgram ModeLibrary::derived(const ContactMode& mode, const ModeDetails& det
     if (details.preloaded) given.preload(mode);
     for (std::size_t i = 0; i < details.begins.size(); ++i) {
       if (!details.begins[i]) continue;
-      given.direct(i, rubbed);
+      given.direct(i, details.direction_degree, rubbed);
       slips.insert(slips.end(), own.contacts[i].friction.slip.begin(), own.contacts[i].friction.slip.end());
     }
     for (const auto& [multiplier, force] : given.all()) forces[multiplier] = force;

@@ -25,7 +25,7 @@ struct ModeWatch {
   bool touches_count() const { return !keeps_sign() || what == What::Slip; }
 };
 
-/// The degree to which the direction of a slip that begins is known.
+/// The degree to which the direction of a slip that begins is known in double.
 inline constexpr int direction_degree = 20;
 
 /// The degree in time of forces that are given at a rest which does not determine them.
@@ -43,6 +43,7 @@ struct ModeDetails {
   /// v_t/|v_t|. Of each such contact parameters after those of the model: t_0, then the coefficients of one component
   /// of d, then those of the other.
   std::vector<bool> begins;
+  int direction_degree = maupertuis::direction_degree;
 };
 
 /// The motion in one mode as a program: its events are what is watched, its integrands the work on h_E, what friction

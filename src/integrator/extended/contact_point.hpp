@@ -38,6 +38,7 @@ struct ContactPoint {
       normal.push_back(row_at(at + 2));
       rate.push_back(drive.back() + along<T>(normal.back(), v));
     }
+    std::size_t second = all.first_second_slip;
     for (std::size_t f = 0; f < all.frictions.size(); ++f) {
       const std::size_t at = all.first_slip + f * (3 + n);
       slip.push_back(here.observable(at));
@@ -45,13 +46,24 @@ struct ContactPoint {
       fixed.push_back(here.observable(at + 2));
       tangent.push_back(row_at(at + 3));
       slip_drive.push_back(slip.back() - along<T>(tangent.back(), v));
+      second_slip.push_back(T(0)), second_drive.push_back(T(0));
+      second_tangent.emplace_back();
+      if (!all.frictions[f].in_space) continue;
+      second_slip.back() = here.observable(second);
+      second_tangent.back() = row_at(second + 1);
+      second_drive.back() = second_slip.back() - along<T>(second_tangent.back(), v);
+      second += 1 + n;
     }
   }
+
+  T slip_speed(std::size_t f) const { return sqrt(T(slip[f] * slip[f] + second_slip[f] * second_slip[f])); }
 
   std::vector<T> gap, gap_scale, rate, drive, restitution;  // [contacts]
   std::vector<std::vector<T>> normal;                       // [contacts][n]
   std::vector<T> slip, slip_drive, friction, fixed;         // [contacts + frictions]
   std::vector<std::vector<T>> tangent;                      // [contacts + frictions][n]
+  std::vector<T> second_slip, second_drive;                 // [contacts + frictions] in space
+  std::vector<std::vector<T>> second_tangent;               // [contacts + frictions][n], empty in the plane
 };
 
 /// x of [M Aᵀ; A 0] (x, ·) = (row, 0): what an impulse along a row changes in q̇.

@@ -1,5 +1,6 @@
 #pragma once
 #include "integrator/extended/contact_point.hpp"
+#include "integrator/extended/space_impulse.hpp"
 #include "linear_algebra/combinations.hpp"
 #include "linear_algebra/plane_impulse.hpp"
 
@@ -32,6 +33,10 @@ class Impact {
         row.slip_drive = point.slip_drive[c], row.sticking = friction.sticking;
         row.friction = point.friction[c], row.fixed = point.fixed[c];
       }
+      if (row.rubs && friction.in_space) {
+        row.second_tangent = point.second_tangent[c], row.second_response = responses.of(point.second_tangent[c]);
+        row.second_drive = point.second_drive[c];
+      }
       rows_.push_back(std::move(row));
     }
   }
@@ -53,7 +58,9 @@ class Impact {
       }
       if (!next) return out;
       if (out.size() >= most * rows_.size()) return std::nullopt;
-      out.push_back(strike(*next, v));
+      const auto blow = strike(*next, v);
+      if (!blow) return std::nullopt;
+      out.push_back(*blow);
     }
   }
 
@@ -85,13 +92,48 @@ class Impact {
  private:
   struct Row {
     T drive = T(0), restitution = T(0), slip_drive = T(0), friction = T(0), fixed = T(0);
-    std::vector<T> normal, response;           // ∂g/∂q; what a unit of impulse changes in q̇
-    std::vector<T> tangent, tangent_response;  // the same for ∂v_t/∂q̇, where it rubs
+    std::vector<T> normal, response;                 // ∂g/∂q; what a unit of impulse changes in q̇
+    std::vector<T> tangent, tangent_response;        // the same for ∂v_t/∂q̇, where it rubs
+    std::vector<T> second_tangent, second_response;  // of the second component, in space
+    T second_drive = T(0);
     bool rubs = false, sticking = false;
   };
 
-  Blow strike(std::size_t k, std::vector<T>& v) const {
+  /// Normal impulse, and those along the two directions in the plane of contact.
+  static std::optional<std::array<T, 3>> impulses_in_space(const Row& row, std::span<const T> v) {
+    const std::vector<T>* const rows[] = {&row.normal, &row.tangent, &row.second_tangent};
+    const std::vector<T>* const responses[] = {&row.response, &row.tangent_response, &row.second_response};
+    const T drives[] = {row.drive, row.slip_drive, row.second_drive};
+    std::array<std::array<T, 3>, 3> w;
+    std::array<T, 3> before;
+    for (std::size_t i = 0; i < 3; ++i) {
+      before[i] = drives[i] + along<T>(*rows[i], v);
+      for (std::size_t j = 0; j < 3; ++j) w[i][j] = along<T>(*rows[i], *responses[j]);
+    }
+    if (!row.sticking) return SpaceImpact<T>(w, before, row.friction, row.fixed, row.restitution).follow();
+    // What never slides takes the slip at once.
+    std::vector<T> matrix, wanted{T(-(1 + row.restitution) * before[0]), T(-before[1]), T(-before[2])};
+    for (const auto& line : w) matrix.insert(matrix.end(), line.begin(), line.end());
+    LinearSolver<T> solver;
+    solver.factor(matrix, 3, epsilon_to<T>(0.9));
+    solver.solve(wanted);
+    return std::array<T, 3>{wanted[0], wanted[1], wanted[2]};
+  }
+
+  std::optional<Blow> strike_in_space(std::size_t k, std::vector<T>& v) const {
     const Row& row = rows_[k];
+    const T before = rate(k, v);
+    const auto found = impulses_in_space(row, v);
+    if (!found) return std::nullopt;
+    for (std::size_t i = 0; i < n_; ++i)
+      v[i] +=
+          (*found)[0] * row.response[i] + (*found)[1] * row.tangent_response[i] + (*found)[2] * row.second_response[i];
+    return Blow{contacts_[k], (*found)[0], T(-before)};
+  }
+
+  std::optional<Blow> strike(std::size_t k, std::vector<T>& v) const {
+    const Row& row = rows_[k];
+    if (!row.second_tangent.empty()) return strike_in_space(k, v);
     const T before = rate(k, v), w_nn = along<T>(row.normal, row.response);
     ImpulseOf<T> found{(1 + row.restitution) * -before / w_nn, T(0)};
     if (row.rubs) {
@@ -106,7 +148,7 @@ class Impact {
       v[i] += found.normal * row.response[i];
       if (row.rubs) v[i] += found.tangential * row.tangent_response[i];
     }
-    return {contacts_[k], found.normal, T(-before)};
+    return Blow{contacts_[k], found.normal, T(-before)};
   }
 
   /// The impulses of a set (0: in it), and whether they press and no other contact closes more than it may.

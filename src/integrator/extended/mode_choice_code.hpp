@@ -1,5 +1,6 @@
 #pragma once
 #include "integrator/extended/modes_code.hpp"
+#include "integrator/extended/space_code.hpp"
 #include "linear_algebra/independent_rows.hpp"
 
 /// The mode after an instant: which are possible, whether one keeps its conditions, and which static friction gives way
@@ -15,12 +16,14 @@ typename Modes<T>::Choice Modes<T>::choice_of_contact(std::size_t c, const Met& 
     out.options = {{true, Slides::None, 1}};
   else if (friction.sticking)
     out.options = {{true, Slides::Stick, 1}};
+  else if (friction.in_space)
+    out = choice_in_space(c);
   else if (abs(slip) > rest_slip(c))
     out.options = {{true, slip > 0 ? Slides::Forward : Slides::Backward, 1}};
   else
     out.options = {{true, Slides::Stick, 1}, {true, Slides::Forward, 1}, {true, Slides::Backward, 1}};
   const bool lets_go = through_modes::holds(met.left, What::Force, c);
-  out.options.insert(lets_go ? out.options.begin() : out.options.end(), {false, Slides::None, 1});
+  out.options.insert(lets_go ? out.options.begin() : out.options.end(), Option{});
   return out;
 }
 
@@ -58,6 +61,12 @@ ExtendedMode Modes<T>::mode_of(const std::vector<Choice>& list, const std::vecto
     else
       mode.normal_sign[list[k].index - contacts] = option.sign;
     mode.friction[list[k].index] = option.friction;
+    if (option.friction != Slides::Slide) continue;
+    mode.stops.resize(contacts, 0.0);
+    mode.stops[list[k].index] = static_cast<double>(stop_speed(list[k].index));
+    if (!option.begins) continue;
+    mode.begins.resize(contacts, false);
+    mode.begins[list[k].index] = true;
   }
   return mode;
 }
@@ -105,7 +114,8 @@ void Modes<T>::put_at_zero(InMode& candidate, const std::vector<std::size_t>& to
     if (w.what == What::Gap && through_modes::holds(touching, w.index)) {
       const bool opens = point_->rate[w.index] > rest_rate(w.index);
       candidate.stepper->put_at_zero(k, opens ? 1 : released_[w.index] ? 3 : 2);
-    } else if (w.what == What::Slip && !(abs(point_->slip[w.index]) > rest_slip(w.index))) {
+    } else if (w.what == What::Slip && !problem_.contacts.frictions[w.index].in_space &&
+               !(abs(point_->slip[w.index]) > rest_slip(w.index))) {
       candidate.stepper->put_at_zero(k);
     } else if (w.what == What::Force && through_modes::holds(met.left, w.what, w.index)) {
       candidate.stepper->put_at_zero(k);
@@ -122,7 +132,9 @@ bool Modes<T>::begins_slowly(InMode& candidate, const typename Stepper<T>::Outlo
   bool any = false;
   for (std::size_t k = 0; k < candidate.program.watches.size(); ++k) {
     const ExtendedWatch& w = candidate.program.watches[k];
-    if (w.what != What::Slip || abs(point_->slip[w.index]) > rest_slip(w.index)) continue;
+    if (w.what != What::Slip || problem_.contacts.frictions[w.index].in_space ||
+        abs(point_->slip[w.index]) > rest_slip(w.index))
+      continue;
     // Of a force that has come to its limit the rounding of time is left.
     const T digits = epsilon_to<T>(through_modes::holds(met.left, What::Hold, w.index) ? 0.6 : 0.85);
     if (abs(outlook.slopes[k]) > digits * size_along(point_->tangent[w.index], acceleration_)) continue;
@@ -136,6 +148,7 @@ bool Modes<T>::begins_slowly(InMode& candidate, const typename Stepper<T>::Outlo
 template <class T>
 bool Modes<T>::fits(InMode& candidate, const std::vector<std::size_t>& touching, const Met& met, bool lenient,
                     std::vector<T>* accelerations) {
+  if (!candidate.stepper) return false;
   candidate.stepper->start(t_, q_, v_);
   put_at_zero(candidate, touching, met);
   candidate.stepper->set_usual_sizes(of_coordinates(place_), of_coordinates(speed_), of_coordinates(acceleration_));
@@ -144,13 +157,20 @@ bool Modes<T>::fits(InMode& candidate, const std::vector<std::size_t>& touching,
   const bool slips = begins_slowly(candidate, outlook, met), events = go_on_from_zero(candidate, outlook, met);
   if (slips || events) outlook = candidate.stepper->outlook(bound_);
   const auto is_force = [](const ExtendedWatch& w) { return w.what == What::Force || w.what == What::Hold; };
+  // The limit of friction in space is a difference of squares.
+  const auto is_squared = [&](const ExtendedWatch& w) {
+    return w.what == What::Hold && problem_.contacts.frictions[w.index].in_space;
+  };
   T largest = T(0);
   const auto& watches = candidate.program.watches;
   for (std::size_t k = 0; k < watches.size(); ++k)
-    if (is_force(watches[k])) largest = std::max(largest, T(abs(outlook.values[k])));
+    if (is_force(watches[k]))
+      largest =
+          std::max(largest, is_squared(watches[k]) ? T(sqrt(T(abs(outlook.values[k])))) : T(abs(outlook.values[k])));
   for (std::size_t k = 0; k < watches.size(); ++k) {
     const ExtendedWatch& w = watches[k];
     if (!through_modes::keeps_sign(w)) continue;
+    const T size = is_squared(w) ? T(largest * largest) : largest;
     // What is lost in rounding of the motion: a gap that stays, a force that is none.
     const T lost = epsilon_to<T>(0.77);
     if (w.what == What::Gap && outlook.reach[k] <= lost * size_of_gap(w.index)) continue;
@@ -165,14 +185,18 @@ bool Modes<T>::fits(InMode& candidate, const std::vector<std::size_t>& touching,
       return false;
     }
     const bool is_met = w.what == What::Hold && through_modes::holds(met.left, What::Hold, w.index);
-    if (is_met && abs(outlook.values[k]) <= epsilon_to<T>(0.6) * largest) {
+    if (is_met && abs(outlook.values[k]) <= epsilon_to<T>(0.6) * size) {
       if (outlook.slopes[k] >= 0) continue;
+      return false;
+    }
+    if (w.what == What::Slip && problem_.contacts.frictions[w.index].in_space) {
+      if (keeps_slip_in_space(candidate, w.index, outlook.sides[k])) continue;
       return false;
     }
     const bool must_move = w.what == What::Slip && !(abs(point_->slip[w.index]) > rest_slip(w.index));
     const bool must_press = w.what == What::Force && !lenient;
     if (outlook.sides[k] > 0 || (outlook.sides[k] == 0 && !must_move && !must_press)) continue;
-    if (!lenient || !is_force(w) || abs(outlook.values[k]) > epsilon_to<T>(0.8) * largest) return false;
+    if (!lenient || !is_force(w) || abs(outlook.values[k]) > epsilon_to<T>(0.8) * size) return false;
   }
   *accelerations = outlook.accelerations;
   return true;
@@ -183,10 +207,16 @@ template <class T>
 bool Modes<T>::may_be_several(const ExtendedMode& mode) const {
   const Responses<T> responses(base_);
   for (std::size_t c = 0; c < mode.closed.size(); ++c) {
-    if (!mode.closed[c] || (mode.friction[c] != Slides::Forward && mode.friction[c] != Slides::Backward)) continue;
+    if (!mode.closed[c] || mode.friction[c] == Slides::None || mode.friction[c] == Slides::Stick) continue;
+    if (!mode.begins.empty() && mode.begins[c]) continue;
     std::vector<T> force = point_->normal[c];
-    const T factor = mode.friction[c] == Slides::Forward ? T(-point_->friction[c]) : point_->friction[c];
-    for (std::size_t i = 0; i < force.size(); ++i) force[i] += factor * point_->tangent[c][i];
+    const bool slides = mode.friction[c] == Slides::Slide;
+    const T speed = point_->slip_speed(c);
+    const T factor = mode.friction[c] == Slides::Backward ? point_->friction[c] : T(-point_->friction[c]);
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      force[i] += factor * (slides ? T(point_->slip[c] / speed) : T(1)) * point_->tangent[c][i];
+      if (slides) force[i] += factor * (point_->second_slip[c] / speed) * point_->second_tangent[c][i];
+    }
     if (!(along<T>(point_->normal[c], responses.of(force)) > 0)) return true;
   }
   return false;
@@ -228,6 +258,7 @@ bool Modes<T>::holds_undetermined(const ExtendedMode& mode) const {
     if (f < all.count) rows.add(point_->normal[f]);
     if (mode.friction[f] != ExtendedMode::Friction::Stick) continue;
     rows.add(point_->tangent[f]);
+    if (all.frictions[f].in_space) rows.add(point_->second_tangent[f]);
     holds = holds || !all.frictions[f].sticking;
   }
   return holds && rows.are_dependent();
@@ -256,6 +287,7 @@ void Modes<T>::note_choice(const std::vector<Choice>& list, const ExtendedMode& 
   };
   for (const Choice& slides : list)
     for (const Choice& held : list) {
+      if (problem_.contacts.frictions[held.index].in_space) continue;
       if (out_.choice || slides.options.size() < 3 || held.options.size() < 3 || !begins(slides) ||
           mode.friction[held.index] != Slides::Stick || (is_left(slides) && !is_left(held)) ||
           !(may_hold(held) || may_hold(slides)))
@@ -274,7 +306,8 @@ void Modes<T>::note_choice(const std::vector<Choice>& list, const ExtendedMode& 
 /// At rest, with a static limit beyond the kinetic one: where it holds another motion fits as well, in which it slides.
 template <class T>
 bool Modes<T>::may_hold(const Choice& c) const {
-  return c.options.size() > 2 && point_->fixed[c.index] > point_->friction[c.index];
+  return c.options.size() > 2 && !problem_.contacts.frictions[c.index].in_space &&
+         point_->fixed[c.index] > point_->friction[c.index];
 }
 
 /// Frictions that a mode holds beyond their limits; nothing where it has no motion.
@@ -282,6 +315,7 @@ template <class T>
 std::optional<std::vector<std::size_t>> Modes<T>::beyond_limits(InMode& candidate,
                                                                 const std::vector<std::size_t>& touching,
                                                                 const Met& met) {
+  if (!candidate.stepper) return std::nullopt;
   candidate.stepper->start(t_, q_, v_);
   put_at_zero(candidate, touching, met);
   const auto outlook = candidate.stepper->outlook(bound_);

@@ -1,5 +1,6 @@
 #pragma once
 #include "integrator/extended/impact_code.hpp"
+#include "integrator/extended/slip_directions.hpp"
 #include "integrator/extended/stepper.hpp"
 #include "linear_algebra/combinations.hpp"
 
@@ -30,7 +31,10 @@ class Modes {
     std::vector<int> ways;            // [sets] in which their functions come to 0: 1 rising with time, −1 falling
     std::vector<Zero> zeros;          // events that are met here
     bool begins = false, forces_jump = false;
-    bool nothing() const { return hit.empty() && left.empty() && sets.empty() && !begins && !forces_jump; }
+    bool slips_go_on = false;  // what held for their beginning does no more
+    bool nothing() const {
+      return hit.empty() && left.empty() && sets.empty() && !begins && !forces_jump && !slips_go_on;
+    }
   };
 
   /// What happens is added to `out`, and why the motion cannot go on.
@@ -49,6 +53,11 @@ class Modes {
   void add(ExtendedRoot root, const T& t);
   bool any() const { return !problem_.contacts.frictions.empty(); }
   bool has_forces() const;
+  /// Where the present mode ends, if that is before the bound of the run.
+  T end_of_mode() const;
+  /// Whether directions of slips that begin hold no longer, or slips have left the speeds at which they were to stop
+  /// far behind.
+  bool slips_go_on() const;
 
   std::size_t steps() const { return steps_before_ + now_->stepper->steps(); }
   std::size_t switches() const { return switches_before_ + now_->stepper->switches(); }
@@ -57,12 +66,14 @@ class Modes {
   struct InMode {
     ExtendedMode mode;
     ExtendedProgram program;
-    std::unique_ptr<Stepper<T>> stepper;
+    std::unique_ptr<Stepper<T>> stepper;  // none where slips begin along directions that are not found
+    std::optional<T> end{};               // until when these directions hold
   };
   struct Option {
     bool closed = false;
     ExtendedMode::Friction friction = ExtendedMode::Friction::None;
     std::int8_t sign = 1;
+    bool begins = false;  // a slip in space
   };
   struct Choice {
     std::size_t index;  // of the contact, or contacts + friction of a coordinate
@@ -71,6 +82,7 @@ class Modes {
   using Slides = ExtendedMode::Friction;
 
   InMode& in_mode(const ExtendedMode& mode);
+  void begin_slips(InMode& made);
   ExtendedMode open_mode() const;
   bool evaluate();
   void note_point();
@@ -86,6 +98,13 @@ class Modes {
   bool returns_are_seen(const Met& met);
   void tell_events_at_start();
   bool hit(const std::vector<std::size_t>& touching, Met& met);
+  bool rubs_in_space(std::size_t friction) const;
+  T stop_speed(std::size_t contact) const;
+  void note_slips();
+  void come_to_rest(const std::vector<std::size_t>& touching, Met& met);
+  void take_out_slips(const std::vector<std::size_t>& stopping, const std::vector<std::size_t>& touching);
+  Choice choice_in_space(std::size_t contact) const;
+  bool keeps_slip_in_space(const InMode& candidate, std::size_t contact, std::int8_t side) const;
   bool keeps_sticking(const std::vector<std::size_t>& touching, const Met& met);
   std::optional<T> end_of_bounces(std::size_t contact, const T& speed);
   class Rows;
@@ -141,6 +160,13 @@ class Modes {
   std::size_t looks_at_forces_ = 0;                 // where friction gave way
   std::vector<T> widest_, fastest_, fastest_slip_;  // [contacts], [contacts], [contacts + frictions]
   std::vector<bool> released_;                      // [contacts] λ has fallen to 0 here
+  std::vector<T> slip_in_space_;                    // [contacts] the fastest so far
+  std::vector<bool> just_began_;                    // [contacts] slips in space that began before this instant
+  struct Moment {                                   // passed by the end of a slip, with these accelerations
+    T t;
+    std::vector<T> q, v, a;
+  };
+  std::optional<Moment> moment_;
   struct Bounce {
     T t, speed;
   };

@@ -26,6 +26,8 @@ inline std::string key_of(const ExtendedMode& mode) {
   for (const bool closed : mode.closed) key += closed ? '1' : '0';
   for (const auto friction : mode.friction) key += static_cast<char>('a' + static_cast<int>(friction));
   for (const std::int8_t sign : mode.normal_sign) key += sign < 0 ? '-' : '+';
+  for (const bool begins : mode.begins) key += begins ? 'b' : '.';
+  for (const double stop : mode.stops) key += " " + std::to_string(std::log2(stop));
   return key;
 }
 
@@ -79,9 +81,12 @@ ExtendedMode Modes<T>::open_mode() const {
 /// Without contacts and friction the kernel of the problem is that of the motion.
 template <class T>
 typename Modes<T>::InMode& Modes<T>::in_mode(const ExtendedMode& mode) {
-  std::unique_ptr<InMode>& slot = modes_[through_modes::key_of(mode)];
-  if (slot) return *slot;
-  ExtendedProgram program{problem_.kernel, {}};
+  const bool slips_begin = !mode.begins.empty();  // along directions that depend on the state
+  std::string key = through_modes::key_of(mode);
+  if (slips_begin && modes_.contains(key) && modes_[key].get() == now_) key += " again";
+  std::unique_ptr<InMode>& slot = modes_[key];
+  if (slot && !slips_begin) return *slot;
+  ExtendedProgram program{problem_.kernel, {}, {}};
   if (any()) {
     program = problem_.contacts.program(mode);
   } else {
@@ -89,7 +94,10 @@ typename Modes<T>::InMode& Modes<T>::in_mode(const ExtendedMode& mode) {
     for (std::size_t i = 0; i < problem_.events.size(); ++i) program.watches.push_back({What::Event, i});
   }
   auto made = std::make_unique<InMode>(InMode{mode, std::move(program), nullptr});
-  made->stepper = std::make_unique<Stepper<T>>(made->program.kernel, parameters_, options_, log2_tolerance_);
+  if (slips_begin)
+    begin_slips(*made);
+  else
+    made->stepper = std::make_unique<Stepper<T>>(made->program.kernel, parameters_, options_, log2_tolerance_);
   slot = std::move(made);
   return *slot;
 }
@@ -102,6 +110,9 @@ void Modes<T>::start(const T& t, std::vector<T> q, std::vector<T> v, const T& bo
   place_.assign(n, T(0)), speed_ = acceleration_ = place_;
   widest_.assign(contacts, T(0)), fastest_.assign(contacts, T(0));
   fastest_slip_.assign(problem_.contacts.frictions.size(), T(0));
+  slip_in_space_.assign(contacts, T(0));
+  just_began_.assign(contacts, false);
+  moment_.reset();
   bounces_.assign(contacts, {});
   ended_.assign(contacts, std::nullopt);
   stepper().start(t_, q_, v_);
@@ -182,6 +193,7 @@ void Modes<T>::note_point() {
   }
   for (std::size_t f = 0; f < p.slip.size(); ++f)
     fastest_slip_[f] = std::max(fastest_slip_[f], T(abs(p.slip_drive[f]) + size_along(p.tangent[f], speed_)));
+  note_slips();
 }
 
 template <class T>
@@ -376,7 +388,7 @@ bool Modes<T>::keeps_sticking(const std::vector<std::size_t>& touching, const Me
   constexpr double digits = 1e-9;
   for (const std::size_t c : touching) {
     if (!problem_.contacts.frictions[c].sticking || point_->rate[c] > rest_rate(c)) continue;
-    if (abs(point_->slip[c]) <= T(digits) * fastest_slip_[c]) continue;
+    if (point_->slip_speed(c) <= T(digits) * fastest_slip_[c]) continue;
     return stop(StepEnding::Paradox, c,
                 met.begins          ? "the start slides on it, and it is `sticking` and never slides."
                 : !met.sets.empty() ? "an event sets a state that slides on it, and it is `sticking` and never slides."
@@ -424,6 +436,8 @@ void Modes<T>::record_changes(const ExtendedMode& before, const ExtendedMode& af
 template <class T>
 void Modes<T>::settle(const Met& given) {
   Met met = given;
+  const std::vector<bool>& began = now_->mode.begins;
+  just_began_ = began.empty() ? std::vector<bool>(problem_.contacts.count, false) : began;
   if (++same_time_ > through_modes::most_at_once) {
     stop(StepEnding::Unending, std::nullopt, "A thousand changes follow each other at the same time without an end.");
     return;
@@ -439,8 +453,14 @@ void Modes<T>::settle(const Met& given) {
     return;
   }
   const std::vector<std::size_t> touches = touching(met);
-  if (!hit(touches, met) || !keeps_sticking(touches, met) || !choose(touches, met) || !returns_are_seen(met))
-    stepper().start(t_, q_, v_);
+  moment_.reset();
+  const auto settles = [&] {
+    if (!hit(touches, met)) return false;
+    come_to_rest(touches, met);
+    return keeps_sticking(touches, met) && choose(touches, met) && returns_are_seen(met);
+  };
+  if (!settles()) stepper().start(t_, q_, v_);
+  if (moment_) stepper().come_from(moment_->t, moment_->q, moment_->v, moment_->a);
 }
 
 }  // namespace maupertuis::extended

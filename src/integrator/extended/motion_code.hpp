@@ -75,7 +75,7 @@ class Motion {
   bool advance() {
     if (out_.ending != StepEnding::None) return false;
     const std::size_t switches = modes_.switches();
-    const auto outcome = stepper().step(numbers_.end);
+    const auto outcome = stepper().step(modes_.end_of_mode());
     out_.ending = outcome.ending;
     out_.reason = outcome.reason;
     if (outcome.ending == StepEnding::None) {
@@ -92,10 +92,12 @@ class Motion {
   void meet(const std::vector<typename Stepper<T>::Root>& roots, bool switched) {
     using What = ExtendedWatch::What;
     const bool forwards = numbers_.begin <= numbers_.end;
-    if (roots.empty() && !switched) return;
+    const bool slips_go_on = modes_.slips_go_on();
+    if (roots.empty() && !switched && !slips_go_on) return;
     record_covered();
     typename Modes<T>::Met met;
     met.forces_jump = switched && modes_.has_forces();
+    met.slips_go_on = slips_go_on;
     for (const auto& root : roots) {
       const ExtendedWatch& watch = modes_.watches()[root.event];
       if (watch.what == What::Until)

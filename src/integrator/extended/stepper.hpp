@@ -22,6 +22,8 @@ class Stepper {
 
   int order() const { return control_.order; }
   void start(const T& t, std::vector<T> q, std::vector<T> v);
+  /// After start(): the motion has come from an earlier time with these accelerations, so that it covers that too.
+  void come_from(const T& t, const std::vector<T>& q, const std::vector<T>& v, const std::vector<T>& accelerations);
   /// [n] each: what rounding of q, q̇ and q̈ is measured by beside what they are here.
   void set_usual_sizes(std::vector<T> q, std::vector<T> v, std::vector<T> a);
   /// An event at the end of the step: 1 rising, −1 falling, 0 where it comes to zero and goes back.

@@ -49,6 +49,13 @@ void Stepper<T>::start(const T& t, std::vector<T> q, std::vector<T> v) {
 }
 
 template <class T>
+void Stepper<T>::come_from(const T& t, const std::vector<T>& q, const std::vector<T>& v,
+                           const std::vector<T>& accelerations) {
+  begin_ = t, q_begin_ = q, v_begin_ = v;
+  for (std::size_t i = 0; i < n_; ++i) polynomial_[2 * n_ + i] = accelerations[i] / 2;
+}
+
+template <class T>
 void Stepper<T>::set_usual_sizes(std::vector<T> q, std::vector<T> v, std::vector<T> a) {
   work_.set_usual_accelerations(a);
   probe_.set_usual_accelerations(a);

@@ -29,6 +29,10 @@ class Workspace {
   void set_usual_accelerations(std::span<const T> a) { usual_accelerations_.assign(a.begin(), a.end()); }
 
   KernelStatus expand(const T& t, std::span<const T> q, std::span<const T> v) { return run(t, q, v, order_); }
+  /// Coefficients up to `order` alone.
+  KernelStatus expand_to(int order, const T& t, std::span<const T> q, std::span<const T> v) {
+    return run(t, q, v, order);
+  }
   KernelStatus evaluate(const T& t, std::span<const T> q, std::span<const T> v) { return run(t, q, v, 1); }
 
   const Program& program() const { return program_; }

@@ -1,5 +1,7 @@
 #include "simulation/contact/space_impulse.hpp"
 
+#include "linear_algebra/plane_impulse.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -70,12 +72,9 @@ class Course {
     hold_ = -tangential.fullPivLu().solve(w);
     holds_ = impact_.sticking || hold_.norm() <= impact_.static_friction;
     if (holds_) return;
-    leaves_ = w / w.norm();
-    constexpr int turns = 400;
-    for (int turn = 0; turn < turns; ++turn) {  // as the direction of a small slip turns
-      const Vector2d next = w - impact_.friction * (tangential * leaves_);
-      leaves_ = (leaves_ + 0.25 * next / std::max(next.norm(), 1e-300)).normalized();
-    }
+    const auto along = direction_of_leaving<double>(
+        {w(0), w(1)}, {tangential(0, 0), tangential(0, 1), tangential(1, 1)}, impact_.friction);
+    leaves_ = {along[0], along[1]};
   }
 
   /// No step goes through a slip of 0, where the force turns round: at most half of the way there.

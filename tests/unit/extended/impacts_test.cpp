@@ -102,18 +102,6 @@ TEST_CASE("sixty reflections in a stadium: a hundred digits agree with all that 
   CHECK(fine[59].q[0].digits > 50);
 }
 
-TEST_CASE("friction in space is refused in many digits") {
-  Diagnostics diagnostics;
-  const ModelText rubs(
-      "dimensionless\ncoord x, y, z : number\nT = 1/2 (x'^2 + y'^2 + z'^2)\nV = z\n"
-      "contact z >= 0 friction 0.3 slip (x', y') name floor\nstart x' = 1\n");
-  ExtendedSimulationOptions options;
-  options.duration = 1;
-  CHECK_FALSE(simulate_extended(rubs.model, rubs.equations, options, diagnostics));
-  REQUIRE_FALSE(diagnostics.items().empty());
-  CHECK(diagnostics.items().front().code == "E0725");
-}
-
 TEST_CASE("backwards from a contact that opens at the start there is no motion in many digits either") {
   ExtendedSimulationOptions options;
   options.duration = -1;

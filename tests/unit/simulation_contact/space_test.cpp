@@ -382,6 +382,28 @@ TEST_CASE("an impulse in space is that of the plane where nothing leaves the pla
   }
 }
 
+TEST_CASE("a slip that friction hardly fails to hold in an impact leaves 0 along the friction that it feels") {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (const double share : {0.999, 0.9, 0.3}) {  // of the coefficient that would hold it
+    for (int turn = 0; turn < 20; ++turn) {
+      Eigen::Matrix3d root;
+      for (int i = 0; i < 9; ++i) root(i / 3, i % 3) = number(random);
+      SpaceImpact impact;
+      impact.response = root * root.transpose() + 0.5 * Eigen::Matrix3d::Identity();
+      impact.velocity = {-1, 0, 0};
+      const Eigen::Vector2d hold =
+          impact.response.block<2, 2>(1, 1).fullPivLu().solve(impact.response.block<2, 1>(1, 0));
+      impact.friction = impact.static_friction = share * hold.norm();
+      impact.restitution = 0.5;
+      const Eigen::Vector3d p = impulse_in_space(impact), after = impact.velocity + impact.response * p;
+      const Eigen::Vector2d friction = p.tail<2>(), slip = after.tail<2>();
+      CHECK(friction.norm() == doctest::Approx(impact.friction * p(0)).epsilon(1e-10));
+      CHECK(slip.dot(friction) == doctest::Approx(-slip.norm() * friction.norm()).epsilon(1e-10));
+    }
+  }
+}
+
 TEST_CASE("forces in cones keep Coulomb's law, redundant contacts too") {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> number(-1, 1);
