@@ -21,6 +21,8 @@ std::string names_of(const std::vector<ModelEvent>& events, std::vector<std::siz
                            : fmt::format("The events {} follow each other", out);
 }
 
+constexpr double rounding_of_zeros = 64 * std::numeric_limits<double>::epsilon();
+
 bool is_unmoved(const Zero* zero) { return zero && !zero->moved; }
 
 }  // namespace
@@ -54,15 +56,15 @@ void Events::mark_zeros_of_velocities(Met& met) const {
 }
 
 bool Events::is_rounding(const Outlook& outlook, std::size_t watch) const {
-  constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
   const double by_time = std::abs(here_.t) * std::abs(outlook.slopes[watch]);
-  return std::abs(outlook.values[watch]) <= rounding * (outlook.reach[watch] + by_time);
+  return std::abs(outlook.values[watch]) <= rounding_of_zeros * (outlook.reach[watch] + by_time);
 }
 
 void Events::start() {
   sets_that_follow_ = {};
   sets_end_.reset();
   sides_.assign(of_positions_.size(), 0);
+  stays_.assign(of_positions_.size(), 0);
 }
 
 std::size_t Events::number_of(const ModelEvent* event) const {
@@ -77,6 +79,24 @@ void Events::meet(const ModelEvent& event, const EventRoot& root, Met& met, bool
   if (event.action != ModelEvent::Action::Set) return;
   met.sets.push_back(&event), met.ways.push_back(way);
   met.hidden_sets = std::max(met.hidden_sets, root.hidden);
+}
+
+void Events::meet_with_sets(Met& met, double bound, bool forwards) {
+  constexpr double one_instant = 4 * std::numeric_limits<double>::epsilon();
+  if (met.sets.empty()) return;
+  const Outlook outlook = motions_.stepper().outlook(bound);
+  if (outlook.ending != StepEnding::None) return;
+  const std::vector<Watch>& watches = motions_.now().watches();
+  for (std::size_t k = 0; k < watches.size(); ++k) {
+    const std::size_t number = watches[k].index;
+    if (watches[k].what != Watch::What::Event || met.zero_of(number)) continue;
+    if (stays_[number] > 0 && remains(k, stays_[number], 1, bound)) continue;
+    const double value = outlook.values[k], rate = forwards ? outlook.slopes[k] : -outlook.slopes[k];
+    if (!(std::abs(value) <= one_instant * (outlook.reach[k] + std::abs(here_.t * rate)) && value * rate < 0)) continue;
+    met.at_zero.push_back({number, 1, !are_of_state(number)});
+    pass(number, 0);
+    meet(problem_.model.experiment.events[number], {k, rate > 0 ? 1 : -1, here_.t}, met, forwards);
+  }
 }
 
 void Events::record(const std::string& name, const EventRoot& root, bool forwards) {
@@ -114,6 +134,48 @@ const ModelEvent* Events::turned_unseen(const Met& met, double bound, bool forwa
   return nullptr;
 }
 
+void Events::measure_zeros(const Met& met, double bound) {
+  left_.assign(of_positions_.size(), 0);
+  if (met.sets.empty() || met.at_zero.empty()) return;
+  const Outlook outlook = motions_.stepper().outlook(bound);
+  if (outlook.ending != StepEnding::None) return;
+  const std::vector<Watch>& watches = motions_.now().watches();
+  for (std::size_t k = 0; k < watches.size(); ++k)
+    if (watches[k].what == Watch::What::Event && met.zero_of(watches[k].index))
+      left_[watches[k].index] = rounding_of_zeros * (outlook.reach[k] + std::abs(here_.t * outlook.slopes[k]));
+}
+
+bool Events::remains(std::size_t watch, double left, std::uint8_t order, double bound) const {
+  TaylorStepper& stepper = motions_.stepper();
+  Outlook outlook = stepper.outlook(bound);
+  if (outlook.ending != StepEnding::None || !(std::abs(outlook.values[watch]) <= left)) return false;
+  stepper.put_at_zero({&watch, 1}, order);  // else the size of its terms is taken for what it comes to
+  outlook = stepper.outlook(bound);
+  return outlook.ending == StepEnding::None && outlook.reach[watch] <= left;
+}
+
+void Events::note_stays(const Met& met, double bound) {
+  if (met.sets.empty() || met.at_zero.empty()) return;
+  const std::vector<Watch>& watches = motions_.now().watches();
+  for (std::size_t k = 0; k < watches.size(); ++k) {
+    const std::size_t event = watches[k].index;
+    if (watches[k].what != Watch::What::Event || !met.zero_of(event)) continue;
+    const std::uint8_t order = met.zero_of(event)->order;
+    stays_[event] = left_[event] > 0 && remains(k, left_[event], order, bound) ? left_[event] : 0;
+  }
+}
+
+bool Events::stays_at_zero(const EventRoot& root, double length, double bound) {
+  double& left = stays_[motions_.now().watches()[root.event].index];
+  if (!(left > 0)) return false;
+  const Outlook outlook = motions_.stepper().outlook(bound);
+  if (outlook.ending != StepEnding::None) return false;
+  const bool begins_to_leave = root.direction != 0 && std::abs(outlook.values[root.event]) <= left &&
+                               std::abs(outlook.slopes[root.event] * length) <= left;
+  if (!begins_to_leave && !remains(root.event, left, root.order, bound)) left = 0;
+  return left > 0;
+}
+
 void Events::tell_at_start(double bound, bool forwards) {
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
   const Outlook outlook = motions_.stepper().outlook(bound);
@@ -139,6 +201,7 @@ Events::Unseen Events::meet_unseen(const Met& settled, double bound, bool forwar
   for (std::size_t k = 0; k < watches.size(); ++k) {
     const std::size_t number = watches[k].index;
     if (watches[k].what != Watch::What::Event || !of_positions_[number]) continue;
+    if (stays_[number] > 0 && remains(k, stays_[number], 1, bound)) continue;
     const bool is_beyond = is_hidden(number, outlook, k);
     const std::int8_t before = std::exchange(sides_[number], outlook.sides[k]);
     if (!is_beyond) continue;

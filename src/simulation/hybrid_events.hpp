@@ -25,6 +25,9 @@ class Events {
   bool are_of_positions(std::size_t event) const { return of_positions_[event]; }
   /// Whether accelerations and forces do not stand in it.
   bool are_of_state(std::size_t event) const { return reads_[event].has_value(); }
+  /// Events whose functions come to 0 at an instant at which others set the state, but for rounding, are met with them:
+  /// what is set may throw the motion back from their zeros.
+  void meet_with_sets(Met& met, double bound, bool forwards);
   /// Zeros of functions that depend on what sets of this instant assign, or on velocities that impacts change.
   void mark_zeros_that_are_set(Met& met) const;
   void mark_zeros_of_velocities(Met& met) const;
@@ -40,6 +43,14 @@ class Events {
   /// An event whose function turns round by what it sets, so slowly that the motion comes back to it before rounding
   /// tells that it has left: it would be passed, and the bounces before it, shorter and shorter, accumulate here.
   const ModelEvent* turned_unseen(const Met& met, double bound, bool forwards) const;
+  /// What rounding leaves of the zeros at which the state is about to be set.
+  void measure_zeros(const Met& met, double bound);
+  /// After the sets: functions that stay at 0 to that have no root that rounding does not make, as long as they stay.
+  void note_stays(const Met& met, double bound);
+  /// Whether a root, met in a step of that length, is made by what rounding leaves of a function that stays at 0 since
+  /// it was set: as long as it stays, and as it begins to leave. Any other is met as it is.
+  bool stays_at_zero(const EventRoot& root, double length, double bound);
+
   /// Events that hold as the motion begins are told, but do not act: it leaves them.
   void tell_at_start(double bound, bool forwards);
   /// Events on positions whose sign has changed at the instant that was settled though no root was told: so near to it
@@ -61,6 +72,8 @@ class Events {
  private:
   void record(const std::string& name, const EventRoot& root, bool forwards);
   std::size_t number_of(const ModelEvent* event) const;
+  /// Whether a function is 0 here, with a zero of that order, and comes to no more than `left` over the next step.
+  bool remains(std::size_t watch, double left, std::uint8_t order, double bound) const;
   void mark_zeros(Met& met, const std::function<bool(const StateRead&)>& changes) const;
 
   const Problem& problem_;
@@ -69,7 +82,9 @@ class Events {
   Journal& journal_;
   std::vector<bool> of_positions_;                            // [events]
   std::vector<std::optional<std::vector<StateRead>>> reads_;  // [events]
-  std::vector<std::int8_t> sides_;                     // [events] of positions: where the motion is; 0: not known
+  std::vector<double> left_;                                  // [events] of zeros of this instant, by rounding
+  std::vector<double> stays_;       // [events] the same of functions that stay at 0 since they were set; 0: of others
+  std::vector<std::int8_t> sides_;  // [events] of positions: where the motion is; 0: not known
   Accumulation<double> sets_that_follow_;              // events that set the state
   std::optional<Accumulation<double>::End> sets_end_;  // where these accumulate within the run
 };

@@ -182,7 +182,7 @@ Step HybridMotion::went_through(std::size_t contact) const {
 
 /// What ends a step waits for the next one.
 Step HybridMotion::end_step(Step out, double bound) {
-  if (!out.events.empty()) classify(out);
+  if (!out.events.empty()) classify(out, bound);
   if (auto why = journal_.too_many(time(), bound)) return ended(StepEnding::Unending, std::move(*why));
   const auto& last = events_.end_of_sets();
   if (last && out.end == last->t && !met_ && !out.event) return ended(StepEnding::Unending, events_.sets_without_end());
@@ -200,7 +200,7 @@ Step HybridMotion::end_step(Step out, double bound) {
 }
 
 /// Roots of the step: events of the model are recorded at once; what changes the mode waits for the next step.
-void HybridMotion::classify(Step& step) {
+void HybridMotion::classify(Step& step, double bound) {
   take_state();
   step.event.reset();
   auto met = std::make_unique<Met>();
@@ -210,6 +210,7 @@ void HybridMotion::classify(Step& step) {
     if (watch.what == Watch::What::Until) {
       step.event = 0;
     } else if (watch.what == Watch::What::Event) {
+      if (events_.stays_at_zero(root, step.end - step.begin, bound)) continue;
       const bool is_at_zero = is_now(root, here_.t);
       if (is_at_zero) met->at_zero.push_back({watch.index, root.order, !events_.are_of_state(watch.index)});
       events_.pass(watch.index, is_at_zero ? std::int8_t{0} : static_cast<std::int8_t>(root.direction));
@@ -220,6 +221,8 @@ void HybridMotion::classify(Step& step) {
     }
   }
   step.events.clear();
+  events_.meet_with_sets(*met, bound, forwards_);
+  if (journal_.record().stopped_by) step.event = 0;
   events_.mark_zeros_that_are_set(*met);
   if (!met->is_empty()) met_ = std::move(met);
 }
@@ -277,8 +280,10 @@ std::optional<Step> HybridMotion::settle(double bound) {
   if (!met_->begins) carried_.take(motions_.stepper());
   if (!met_->begins && neighbours_.are_kept()) neighbours_.note_before(*met_, bound);
   const std::size_t first = journal_.size();
+  events_.measure_zeros(*met_, bound);
   if (auto trouble = change_.settle(*met_, bound, forwards_)) return stopped(trouble->ending, trouble->reason);
   events_.note_sets(*met_, bound, forwards_);
+  events_.note_stays(*met_, bound);
   if (const ModelEvent* const event = events_.turned_unseen(*met_, bound, forwards_))
     return stopped(StepEnding::Unending, events_.too_short_to_tell(*event));
   // A first step may be as long as the rest that it begins: it has to know of the forces that balance in it.

@@ -74,7 +74,7 @@ class HybridMotion final : public Method {
   Step wait(double bound);
   Step step_in_mode(double bound);
   Step end_step(Step step, double bound);
-  void classify(Step& step);
+  void classify(Step& step, double bound);
   void end_condition(const ModeWatch& watch, double length, hybrid::Met& met) const;
   void take_state();
   void note_step();

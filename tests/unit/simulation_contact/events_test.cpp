@@ -242,3 +242,33 @@ TEST_CASE("backwards in time an event that sets the state ends the run") {
   CHECK(r.final.t == doctest::Approx(2));
   CHECK(r.final.v[0] == 1);
 }
+
+TEST_CASE("what a set leaves at the zero of an event fires again when it has left it, and not by its rounding") {
+  const auto oscillator = [](const std::string& place, const std::string& more, double end) {
+    return run_text("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 (x - " + place + ")^2\n" +
+                        "event zero when x = " + place + " : set x' = 0\nevent seen when x = " + place + " : record\n" +
+                        more,
+                    end);
+  };
+  const double half = std::acos(-1.0);
+  for (const std::string place : {"0", "1/4"}) {
+    for (const char* start : {"1.25", "-0.45, x' = 1/7"}) {
+      const auto rests = oscillator(place, std::string("start x = ") + start + "\n", 100);
+      CHECK(count(rests, Happening::Kind::Event, "zero") == 1);
+      CHECK(count(rests, Happening::Kind::Event, "seen") == 1);
+      CHECK(std::abs(rests.final.q[0] - (place == "0" ? 0 : 0.25)) < 1e-15);
+    }
+    // Pulled down from its rest for 2 s, u = cos τ − 1, then up, u = 2 + A cos(τ + φ), through u = 0: there it stops.
+    const auto leaves =
+        oscillator(place, "force x = -step(t - 10) + 3 step(t - 12)\nstart x = 1 + " + place + "\n", 18);
+    REQUIRE(leaves.happenings.size() == 4);
+    const double u = std::cos(2.0) - 1, speed = -std::sin(2.0), size = std::hypot(u - 2, speed);
+    const double back = 2 * half - std::acos(-2 / size) - std::atan2(-speed, u - 2);
+    const double times[] = {half / 2, half / 2, 12 + back, 12 + back};
+    for (std::size_t k = 0; k < 4; ++k) {
+      CHECK(leaves.happenings[k].t == doctest::Approx(times[k]).epsilon(1e-14));
+      CHECK(leaves.happenings[k].name == (k % 2 == 0 ? "zero" : "seen"));
+      CHECK(leaves.happenings[k].error < 1e-13);
+    }
+  }
+}
