@@ -105,6 +105,7 @@ class TaylorStepper {
   std::span<const double> q() const;  // [n]
   std::span<const double> v() const;  // [n]
   double integral(std::size_t index) const;
+  double event_at_begin(std::size_t event) const;  // its function where the last step began; right after that step
   std::size_t steps() const;
   std::size_t rejected() const;  // steps so far that were taken back, since the equations did not hold at their ends
   std::size_t switches() const;  // located crossings so far

@@ -259,6 +259,14 @@ constexpr std::array entries{
               "V = piecewise((x^2 + x - 1)^2 < 1e-8 : 0.3, else : 0)\nstart x = 0, x' = 1\nrun 2\n",
               "# maup simulate\ndimensionless\ncoord x : number\nT = 1/2 x'^2\n"
               "V = 0.3 exp(-((x^2 + x - 1)/0.01)^2)\nstart x = 0, x' = 1\nrun 2\n"},
+    CodeEntry{"W0736", "an event has no value along the motion",
+              "An event is met where its function comes to 0. Where the function is no real number, as a root or a "
+              "logarithm of what is negative, it is never met. It is looked at where steps begin and where the run "
+              "ends.",
+              "# maup simulate\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\n"
+              "event turns when sqrt(x - 2) = 0 : record\nstart x = 1\nrun 10\n",
+              "# maup simulate\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\n"
+              "event turns when x - 2 = 0 : record\nstart x = 1\nrun 10\n"},
 };
 
 }  // namespace

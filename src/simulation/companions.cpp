@@ -248,7 +248,7 @@ Companions one_after_the_other(const CompanionPlan& plan, const WantedFunctions&
     auto run = recorder.record(draw);
     if (!run) return interrupted();
     last_row = recorder.last_row();
-    if (through_modes) run->happenings = through_modes->take_happenings();
+    if (through_modes) through_modes->finish(), run->happenings = through_modes->take_happenings();
     if (name == "variational" && k == 0) with_longer_steps = run->rows;
     if (name == "variational" && k == 1) out.between = differences(run->rows, with_longer_steps);
     take_in(out, std::move(*run), plan);

@@ -65,6 +65,7 @@ void Events::start() {
   sets_end_.reset();
   sides_.assign(of_positions_.size(), 0);
   stays_.assign(of_positions_.size(), 0);
+  without_value_.assign(of_positions_.size(), {});
 }
 
 std::size_t Events::number_of(const ModelEvent* event) const {
@@ -189,6 +190,57 @@ void Events::tell_at_start(double bound, bool forwards) {
     journal_.add(Happening::Kind::Event, event.name).mode = journal_.record().first_mode;
     if (event.action != ModelEvent::Action::Record)
       journal_.remark(fmt::format("The motion begins at the event `{}`, which acts when it is met again.", event.name));
+  }
+}
+
+void Events::tell_at_end(double length, bool forwards) {
+  constexpr double at_end = 8 * std::numeric_limits<double>::epsilon();
+  const std::size_t first = journal_.size();
+  const auto is_told = [&](const std::string& name) {
+    const std::vector<Happening>& told = journal_.record().happenings;
+    constexpr double one_instant = 4 * std::numeric_limits<double>::epsilon();
+    return std::any_of(told.begin(), told.begin() + static_cast<std::ptrdiff_t>(first), [&](const Happening& h) {
+      return h.kind == Happening::Kind::Event && h.name == name &&
+             std::abs(h.t - here_.t) <= one_instant * std::abs(here_.t);
+    });
+  };
+  const Outlook outlook = motions_.stepper().outlook(here_.t + (forwards ? length : -length));
+  if (outlook.ending != StepEnding::None) return;
+  const std::vector<Watch>& watches = motions_.now().watches();
+  for (std::size_t k = 0; k < watches.size(); ++k) {
+    if (watches[k].what != Watch::What::Event) continue;
+    const ModelEvent& event = problem_.model.experiment.events[watches[k].index];
+    const double rate = forwards ? outlook.slopes[k] : -outlook.slopes[k];
+    const double rounding = at_end * (outlook.reach[k] + std::abs(here_.t * rate));
+    const bool comes_to_zero = outlook.values[k] * rate <= 0 && rate != 0 && std::abs(outlook.values[k]) <= rounding;
+    const bool stays = stays_[watches[k].index] > 0 && remains(k, stays_[watches[k].index], 1, here_.t + length);
+    const int way = event.direction * (forwards ? 1 : -1);
+    if (!comes_to_zero || stays || (way != 0 && way * rate < 0) || is_told(event.name)) continue;
+    const double hidden =
+        std::abs(outlook.values[k] / rate) + std::numeric_limits<double>::epsilon() * std::abs(here_.t);
+    record(event.name, {k, rate > 0 ? 1 : -1, here_.t, hidden}, forwards);
+    if (event.action != ModelEvent::Action::Record)
+      journal_.remark(fmt::format(
+          "The event `{}` is met as the run ends: the last state is the one before what it does.", event.name));
+  }
+}
+
+void Events::look_for_values(double t) {
+  const std::vector<Watch>& watches = motions_.now().watches();
+  for (std::size_t k = 0; k < watches.size(); ++k) {
+    if (watches[k].what != Watch::What::Event) continue;
+    HybridRecord::WithoutValue& out = without_value_[watches[k].index];
+    ++out.of;
+    if (!std::isnan(motions_.stepper().event_at_begin(k))) continue;
+    if (out.times++ == 0) out.first = t;
+  }
+}
+
+void Events::tell_without_value() {
+  for (std::size_t event = 0; event < without_value_.size(); ++event) {
+    if (without_value_[event].times == 0) continue;
+    without_value_[event].event = event;
+    journal_.note_without_value(without_value_[event]);
   }
 }
 

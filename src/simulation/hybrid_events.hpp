@@ -61,6 +61,13 @@ class Events {
   };
   Unseen meet_unseen(const Met& settled, double bound, bool forwards);
 
+  /// Events whose functions come to 0 as the run ends, but for rounding, are met there.
+  void tell_at_end(double length, bool forwards);
+  /// The functions where a step began, right after it: whether they are numbers.
+  void look_for_values(double t);
+  /// Events whose functions were none.
+  void tell_without_value();
+
   /// Sets that follow each other in shorter and shorter cycles come to an end, beyond which no step goes.
   void note_sets(const Met& met, double bound, bool forwards);
   const std::optional<Accumulation<double>::End>& end_of_sets() const { return sets_end_; }
@@ -82,6 +89,7 @@ class Events {
   Journal& journal_;
   std::vector<bool> of_positions_;                            // [events]
   std::vector<std::optional<std::vector<StateRead>>> reads_;  // [events]
+  std::vector<HybridRecord::WithoutValue> without_value_;     // [events]
   std::vector<double> left_;                                  // [events] of zeros of this instant, by rounding
   std::vector<double> stays_;       // [events] the same of functions that stay at 0 since they were set; 0: of others
   std::vector<std::int8_t> sides_;  // [events] of positions: where the motion is; 0: not known

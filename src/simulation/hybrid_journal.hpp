@@ -16,6 +16,12 @@ class IndependentRows;
 
 /// What a run through modes tells besides the motion.
 struct HybridRecord {
+  /// An event whose function is no number where some steps begin, or where the run ends.
+  struct WithoutValue {
+    std::size_t event = 0, times = 0, of = 0;
+    double first = 0;  // s
+  };
+  std::vector<WithoutValue> without_value;
   std::string first_mode;
   std::vector<Happening> happenings;
   EnergyBooks books;                      // friction and dampers: at the end of the run
@@ -39,6 +45,7 @@ class Journal {
       : problem_(problem), here_(here), sizes_(sizes) {}
   void start();
 
+  void note_without_value(const HybridRecord::WithoutValue& event) { record_.without_value.push_back(event); }
   const HybridRecord& record() const { return record_; }
   EnergyBooks& books() { return record_.books; }
   std::vector<Happening> take_happenings() { return std::move(record_.happenings); }

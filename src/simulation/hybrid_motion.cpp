@@ -165,6 +165,7 @@ Step HybridMotion::step_in_mode(double bound) {
   longest_step_ = std::max(longest_step_, length);
   motions_.passed_moment().end_step();
   if (out.ending != StepEnding::None) return out;
+  events_.look_for_values(out.begin);
   note_step();
   const double way = length + std::numeric_limits<double>::epsilon() * std::abs(out.end);
   if (const auto contact = violated_contact(now, way, here_, sizes_)) return went_through(*contact);
@@ -323,6 +324,12 @@ Step HybridMotion::stopped(StepEnding ending, std::string reason) {
 
 void HybridMotion::finish() {
   if (motions_.has_begun()) journal_.end_at(time(), forwards_);
+  if (motions_.has_begun() && !failed_ && !met_) {
+    take_state();
+    if (!journal_.record().stopped_by) events_.tell_at_end(longest_step_, forwards_);
+    events_.look_for_values(time());
+  }
+  events_.tell_without_value();
   if (journal_.record().stopped_by && met_)
     for (const ModelEvent* event : met_->sets)
       journal_.remark(

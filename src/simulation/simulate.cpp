@@ -406,6 +406,19 @@ void warn_of_drift(const SimulationResult& result, const EquationsOfMotion& equa
       "jump.");
 }
 
+void warn_of_values(const HybridRecord& record, const Model& model, Diagnostics& diagnostics) {
+  for (const HybridRecord::WithoutValue& w : record.without_value) {
+    const ModelEvent& event = model.experiment.events[w.event];
+    const std::string where = w.times == w.of ? std::string("all along the motion")
+                                              : fmt::format("at {} of {} steps, first at {}", w.times, w.of,
+                                                            model.system.moment(fmt::format("{:.6g}", w.first)));
+    diagnostics.warning("W0736", event.span, fmt::format("the event `{}` has no value {}", event.name, where),
+                        "Its function is no real number there, a root or a logarithm of what is negative: it is never "
+                        "met as long as that lasts.",
+                        "Write a condition that has a value everywhere, as x^2 = a in place of x = sqrt(a).");
+  }
+}
+
 }  // namespace
 
 std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMotion& equations,
@@ -454,6 +467,7 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
     add_errors(result, probe, model, equations, options, *plan, observables, wanted, hybrid, run.between());
   if (equations.degenerate) forget_drift_of_nothing(result, equations);
   warn_of_drift(result, equations, options, diagnostics);
+  if (hybrid) warn_of_values(hybrid->record(), model, diagnostics);
   if (run.turned_stiff()) note_stiffness(result, model.system, stiff_tolerance(options), diagnostics);
   if (options.method == StepMethod::Automatic || options.method == StepMethod::Taylor ||
       options.backend == Backend::Compiled)

@@ -58,6 +58,11 @@ class Modes {
   /// Whether directions of slips that begin hold no longer, or slips have left the speeds at which they were to stop
   /// far behind.
   bool slips_go_on() const;
+  /// Whether the root of an event is made by what rounding leaves of a function that stays at 0 since it was set
+  /// (Events::stays_at_zero of simulation).
+  bool stays_at_zero(const ExtendedWatch& watch, const typename Stepper<T>::Root& root);
+  /// Events whose functions come to 0 as the run ends, but for rounding, are met there.
+  void tell_at_end(const T& begin);
 
   std::size_t steps() const { return steps_before_ + now_->stepper->steps(); }
   std::size_t switches() const { return switches_before_ + now_->stepper->switches(); }
@@ -97,6 +102,9 @@ class Modes {
   bool carry_out_sets(const Met& met);
   bool returns_are_seen(const Met& met);
   void tell_events_at_start();
+  T rounding_of_zero(const typename Stepper<T>::Outlook& outlook, std::size_t watch) const;
+  void measure_zeros(const Met& met);
+  void note_stays(const Met& met);
   bool hit(const std::vector<std::size_t>& touching, Met& met);
   bool rubs_in_space(std::size_t friction) const;
   T stop_speed(std::size_t contact) const;
@@ -167,6 +175,7 @@ class Modes {
     std::vector<T> q, v, a;
   };
   std::optional<Moment> moment_;
+  std::vector<T> left_, stays_;  // [events] by rounding of zeros of this instant; of functions that stay at 0, else 0
   struct Bounce {
     T t, speed;
   };

@@ -113,6 +113,7 @@ void Modes<T>::start(const T& t, std::vector<T> q, std::vector<T> v, const T& bo
   slip_in_space_.assign(contacts, T(0));
   just_began_.assign(contacts, false);
   moment_.reset();
+  stays_.assign(problem_.events.size(), T(0));
   bounces_.assign(contacts, {});
   ended_.assign(contacts, std::nullopt);
   stepper().start(t_, q_, v_);
@@ -314,6 +315,72 @@ void Modes<T>::tell_events_at_start() {
   }
 }
 
+/// What rounding leaves of a function that is 0 where it was located.
+template <class T>
+T Modes<T>::rounding_of_zero(const typename Stepper<T>::Outlook& outlook, std::size_t k) const {
+  const T rounding = std::max(T(through_modes::roundings * epsilon<T>()), exp2_of<T>(log2_tolerance_ + 6));
+  return rounding * (outlook.reach[k] + abs(t_ * outlook.slopes[k]));
+}
+
+template <class T>
+void Modes<T>::measure_zeros(const Met& met) {
+  left_.assign(problem_.events.size(), T(0));
+  if (met.sets.empty()) return;
+  const auto outlook = stepper().outlook(bound_);
+  if (outlook.ending != StepEnding::None) return;
+  for (std::size_t k = 0; k < watches().size(); ++k)
+    if (watches()[k].what == What::Event) left_[watches()[k].index] = rounding_of_zero(outlook, k);
+}
+
+/// After the sets: functions that stay at 0 to rounding have no root that it does not make, as long as they stay.
+template <class T>
+void Modes<T>::note_stays(const Met& met) {
+  if (met.sets.empty() || out_.ending != StepEnding::None) return;
+  const auto outlook = stepper().outlook(bound_);
+  if (outlook.ending != StepEnding::None) return;  // the next step says why
+  for (const Zero& zero : met.zeros)
+    for (std::size_t k = 0; k < watches().size(); ++k)
+      if (watches()[k].what == What::Event && watches()[k].index == zero.event)
+        stays_[zero.event] = outlook.reach[k] <= left_[zero.event] ? left_[zero.event] : T(0);
+}
+
+template <class T>
+bool Modes<T>::stays_at_zero(const ExtendedWatch& watch, const typename Stepper<T>::Root& root) {
+  T& left = stays_[watch.index];
+  if (!(left > 0)) return false;
+  const T length = stepper().length();
+  const auto outlook = stepper().outlook(bound_);
+  if (outlook.ending != StepEnding::None) return false;
+  const bool begins_to_leave = root.direction != 0 && abs(outlook.slopes[root.event] * length) <= left;
+  if (!begins_to_leave && outlook.reach[root.event] > left) left = T(0);
+  return left > 0;
+}
+
+template <class T>
+void Modes<T>::tell_at_end(const T& begin) {
+  const auto outlook = stepper().outlook(T(bound_ + (bound_ - begin)));
+  if (outlook.ending != StepEnding::None) return;
+  const int forwards = begin <= bound_ ? 1 : -1;
+  const T apart = std::max(epsilon_to<T>(0.9), exp2_of<T>(log2_tolerance_ + 6)) * abs(t_);
+  const auto is_told = [&](std::size_t event) {
+    for (std::size_t i = 0; i < out_.roots.size(); ++i)
+      if (out_.roots[i].kind == ExtendedRoot::Kind::Event && out_.roots[i].index == event &&
+          abs(t_ - times_[i]) <= apart)
+        return true;
+    return false;
+  };
+  for (std::size_t k = 0; k < watches().size(); ++k) {
+    const ExtendedWatch& w = watches()[k];
+    if (w.what != What::Event) continue;
+    const T rate = outlook.slopes[k] * forwards, value = outlook.values[k];
+    const bool comes_to_zero = value * rate <= 0 && rate != 0 && abs(value) <= rounding_of_zero(outlook, k);
+    const bool stays = stays_[w.index] > 0 && outlook.reach[k] <= stays_[w.index];
+    const int wanted = problem_.events[w.index].direction * forwards;
+    if (comes_to_zero && !stays && !(wanted != 0 && wanted * rate < 0) && !is_told(w.index))
+      record(ExtendedRoot::Kind::Event, w.index);
+  }
+}
+
 /// When infinitely many bounces come to their end, from the last of them, once the heights of the flights are rounding:
 /// the flights shorten as the speeds do.
 template <class T>
@@ -444,12 +511,14 @@ void Modes<T>::settle(const Met& given) {
   }
   if (!evaluate()) return;  // the next step says why
   steps_before_ += stepper().steps(), switches_before_ += stepper().switches();
+  measure_zeros(met);
   if (!carry_out_sets(met)) return;
   if (!any()) {
     stepper().start(t_, q_, v_);
     put_at_zero(*now_, {}, met);
     if (!met.zeros.empty()) go_on_from_zero(*now_, stepper().outlook(bound_), met);
     returns_are_seen(met);
+    note_stays(met);
     return;
   }
   const std::vector<std::size_t> touches = touching(met);
@@ -460,6 +529,7 @@ void Modes<T>::settle(const Met& given) {
     return keeps_sticking(touches, met) && choose(touches, met) && returns_are_seen(met);
   };
   if (!settles()) stepper().start(t_, q_, v_);
+  note_stays(met);
   if (moment_) stepper().come_from(moment_->t, moment_->q, moment_->v, moment_->a);
 }
 

@@ -54,6 +54,8 @@ class Motion {
     begin();
     while (stepper().time() != numbers_.end && advance()) record_covered();
     record_covered();
+    if (out_.ending == StepEnding::None && !out_.met && numbers_.end != numbers_.begin)
+      modes_.tell_at_end(numbers_.begin);
     out_.final = stepper().sample(stepper().time());
     if (problem_.rows > 0 && (out_.rows.empty() || out_.rows.back().t != out_.final.t)) out_.rows.push_back(out_.final);
     out_.steps = modes_.steps();
@@ -103,7 +105,7 @@ class Motion {
       if (watch.what == What::Until)
         out_.met = true;
       else if (watch.what == What::Event)
-        meet_event(watch.index, root.direction * (forwards ? 1 : -1), met);
+        meet_event(root, watch, root.direction * (forwards ? 1 : -1), met);
       else if (watch.what == What::Gap && root.direction < 0)
         met.hit.push_back(watch.index);
       else if (watch.what != What::Gap && (root.direction < 0 || (root.direction == 0 && watch.what == What::Slip)))
@@ -116,7 +118,10 @@ class Motion {
     out_.reason = changes_mode ? through_modes::met_backwards : through_modes::set_backwards;
   }
 
-  void meet_event(std::size_t index, int direction, typename Modes<T>::Met& met) {
+  void meet_event(const typename Stepper<T>::Root& root, const ExtendedWatch& watch, int direction,
+                  typename Modes<T>::Met& met) {
+    if (modes_.stays_at_zero(watch, root)) return;
+    const std::size_t index = watch.index;
     const ExtendedEvent& event = problem_.events[index];
     met.zeros.push_back({index, static_cast<std::uint8_t>(direction == 0 ? 2 : 1)});
     if (event.direction != 0 && direction != event.direction) return;

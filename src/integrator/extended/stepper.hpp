@@ -54,6 +54,7 @@ class Stepper {
   std::span<const T> q() const { return q_; }
   std::span<const T> v() const { return v_; }
   const T& time() const { return t_; }
+  T length() const { return t_ - begin_; }  // of the last step
   std::size_t steps() const { return steps_; }
   std::size_t switches() const { return switches_; }
   std::size_t rejected() const { return rejected_; }

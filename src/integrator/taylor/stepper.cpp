@@ -385,6 +385,7 @@ double TaylorStepper::integral(std::size_t index) const {
   check_argument(index < impl_->state.integrals.size(), "TaylorStepper::integral: the kernel has no such integral");
   return impl_->state.integrals[index].hi;
 }
+double TaylorStepper::event_at_begin(std::size_t event) const { return impl_->work.event(event, 0); }
 std::size_t TaylorStepper::steps() const { return impl_->steps; }
 std::size_t TaylorStepper::rejected() const { return impl_->rejected; }
 std::size_t TaylorStepper::switches() const { return impl_->switches; }

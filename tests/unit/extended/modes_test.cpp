@@ -227,3 +227,26 @@ TEST_CASE("what rests on friction rests in many digits too, while a force that b
       2);
   CHECK(r.happenings.empty());
 }
+
+TEST_CASE("a function that stays at 0 since it was set has no root, and one that comes to 0 at the end has") {
+  const Decimal pi = 4 * atan(Decimal(1));
+  const std::string oscillator =
+      "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\nevent zero when x = 0 : set x' = 0\n";
+  for (const Precision precision : {Precision::Quad, Precision::Digits100}) {
+    ExtendedSimulationOptions options;
+    options.precision = precision, options.duration = 30;
+    const ExtendedResult rests = run(ModelText(oscillator + "start x = 11/10, x' = 1/7\n"), options);
+    CHECK(rests.remarks.empty());
+    REQUIRE(rests.happenings.size() == 1);
+    check_digits(rests.happenings[0].t, pi / 2 + atan(1 / Decimal("7.7")), precision == Precision::Quad ? 31 : 95);
+
+    options.duration = 3;
+    const ExtendedResult ends =
+        run(ModelText("dimensionless\ncoord x : number\nT = 1/2 x'^2\nevent tick when sin(pi t) = 0 : record\n"
+                      "event mid when x = 3 rising : record\nevent down when x = 3 falling : record\nstart x' = 1\n"),
+            options);
+    CHECK(ends.remarks.empty());
+    REQUIRE(ends.happenings.size() == 5);
+    check_digits(ends.happenings.back().t, 3, 31);
+  }
+}

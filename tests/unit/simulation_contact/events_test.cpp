@@ -272,3 +272,45 @@ TEST_CASE("what a set leaves at the zero of an event fires again when it has lef
     }
   }
 }
+
+TEST_CASE("an event that is met as the run ends is told there, with the state before what it does") {
+  const std::string free = "dimensionless\ncoord x : number\nT = 1/2 x'^2\nstart x' = 1\n";
+  for (const double end : {1.0, 3.0, 7.0, 1e3}) {
+    const std::string at = fmt::format("{}", end);
+    const auto r = run_text(free + "event tick when sin(pi t) = 0 : record\nevent mid when x = " + at +
+                                " rising : record\nevent down when x = " + at +
+                                " falling : record\nevent hit when x = " + at + " : set x' = 0\n",
+                            end);
+    CHECK(count(r, Happening::Kind::Event, "tick") == static_cast<std::size_t>(end) + 1);
+    CHECK(count(r, Happening::Kind::Event, "mid") == 1);
+    CHECK(count(r, Happening::Kind::Event, "down") == 0);
+    CHECK(count(r, Happening::Kind::Event, "hit") == 1);
+    CHECK(r.final.v[0] == 1);
+    for (const Happening& h : r.happenings) CHECK(h.error <= 1e-14 * end);
+  }
+  // Not before the end by more than rounding.
+  const auto early = run_text(free + "event late when x = 3 + 1e-13 : record\n", 3);
+  CHECK(early.happenings.empty());
+}
+
+TEST_CASE("an event whose function is no number is said, once") {
+  const auto warnings = [](const std::string& condition) {
+    ModelText m("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\nevent e when " + condition +
+                " : record\nstart x = 1\n");
+    Diagnostics diagnostics;
+    SimulationOptions options;
+    options.duration = 10;
+    REQUIRE(simulate(m.model, m.equations, options, diagnostics));
+    std::vector<std::string> out;
+    for (const Diagnostic& d : diagnostics.items())
+      if (d.code == "W0736") out.push_back(d.message);
+    return out;
+  };
+  const auto never = warnings("log(-1 - x^2) = 0");
+  REQUIRE(never.size() == 1);
+  CHECK(never[0] == "the event `e` has no value all along the motion");
+  const auto partly = warnings("sqrt(x) = 0.5");
+  REQUIRE(partly.size() == 1);
+  CHECK(partly[0].find("has no value at ") != std::string::npos);
+  CHECK(warnings("x = 0.5").empty());
+}
