@@ -209,7 +209,7 @@ class Collector {
     const double value = evaluate(square, parameter_bindings(system_));
     const Expr reduced = expand(square, term_budget);
     if (!reduced || reduced.is_zero() || !(std::abs(value) > 0)) return;
-    const Expr rate = sqrt(value > 0 ? reduced : -reduced);
+    const Expr rate = rate_of(value > 0 ? reduced : -reduced);
     if (value > 0) {
       add_once(atoms_.time, generators_.add(cos(rate * t)));
       add_once(atoms_.time, generators_.add(sin(rate * t)));
@@ -219,10 +219,24 @@ class Collector {
     }
   }
 
+  /// √square, so that rates in a ratio of whole numbers are multiples of one root: 2 √(k/m) beside √(k/m), not √(4 k/m),
+  /// whose sine would count as a function of its own.
+  Expr rate_of(Expr square) {
+    const Rational factor = square.is(Kind::Product) && square[0].is_number() ? square[0].number() : Rational(1);
+    if (const auto root = exact_root(abs(factor), 2)) return sqrt(square / abs(factor)) * *root;
+    for (const Expr& earlier : rates_) {
+      const Expr ratio = expand(square / (earlier * earlier), term_budget);
+      if (!ratio || !ratio.is_number() || ratio.number().sign() < 0) continue;
+      if (const auto root = exact_root(ratio.number(), 2)) return earlier * *root;
+    }
+    return rates_.emplace_back(sqrt(square));
+  }
+
   const EquationsOfMotion& equations_;
   const MechanicalSystem& system_;
   Generators& generators_;
   Atoms atoms_;
+  std::vector<Expr> rates_;  // roots of linear equations that hold a root of a number
 };
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <maupertuis/invariants.hpp>
 #include <maupertuis/print.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -162,6 +164,18 @@ TEST_CASE("the isotropic oscillator in space: Fradkin's tensor") {
   CHECK(f.text("Fradkin tensor, xy") == "1/2 m x' y' + 1/2 k x y");
   CHECK(f.result.noether_symmetries == 12);
   CHECK(f.result.autonomous_rank == 5);
+}
+
+TEST_CASE("oscillators whose rates are in a ratio of whole numbers: each symmetry counts once") {
+  // The energy, and two charges of each oscillator: four in all for p cos wt + m w q sin wt and its partner.
+  for (const auto& [x, y] : {std::pair{1, 4}, {4, 9}, {2, 8}, {8, 2}, {2, 3}}) {
+    CAPTURE(x);
+    CAPTURE(y);
+    const Found f("param m = 1, k = 1\ncoord x, y : number\nT = 1/2 m (x'^2 + y'^2)\n" +
+                  fmt::format("V = 1/2 k ({} x^2 + {} y^2)\n", x, y));
+    CHECK(f.result.noether_symmetries == 5);
+    CHECK(f.result.symmetry_bound == 5);
+  }
 }
 
 TEST_CASE("the double pendulum: energy alone; without gravity its angular momentum too") {
