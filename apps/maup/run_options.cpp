@@ -4,6 +4,7 @@
 
 #include "interrupt.hpp"
 #include "quantity.hpp"
+#include "time_options.hpp"
 
 #include <fmt/format.h>
 
@@ -118,6 +119,13 @@ const Statement* statement_of(const syntax::SyntaxTree* tree) {
   return nullptr;
 }
 
+void refuse_units_that_are_names(const RunOptions& options, const syntax::SyntaxTree* tree, Diagnostics& diagnostics) {
+  for (const auto& [option, text] : {std::pair("--duration", options.duration), std::pair("--every", options.every),
+                                     std::pair("--step", options.step)})
+    if (text) refuse_unit_that_is_a_name(option, *text, tree, diagnostics);
+  for (const std::string& text : options.at) refuse_unit_that_is_a_name("--at", text, tree, diagnostics);
+}
+
 }  // namespace
 
 SimulationOptions simulation_options(const RunOptions& options, Diagnostics& diagnostics,
@@ -135,6 +143,7 @@ SimulationOptions simulation_options(const RunOptions& options, Diagnostics& dia
   if (options.no_errors) out.errors = ErrorEstimates::None;
   const auto* written = statement_of<syntax::MethodStatement>(tree);
   const StepMethod method = out.method ? *out.method : method_named(written ? written->word.text : "auto");
+  refuse_units_that_are_names(options, tree, diagnostics);
   const bool fixed_steps = method == StepMethod::Variational;
   if (options.step && !fixed_steps)
     diagnostics.error("E0809", {}, "--step belongs to --method variational.",
@@ -161,8 +170,10 @@ std::string precision_of(const syntax::SyntaxTree* tree) {
   return written ? written->word.text : "double";
 }
 
-ExtendedSimulationOptions extended_options(const RunOptions& options, Precision precision, Diagnostics& diagnostics) {
+ExtendedSimulationOptions extended_options(const RunOptions& options, Precision precision, Diagnostics& diagnostics,
+                                           const syntax::SyntaxTree* tree) {
   ExtendedSimulationOptions out;
+  refuse_units_that_are_names(options, tree, diagnostics);
   out.precision = precision;
   out.tolerance = tolerance_option(options, diagnostics);
   out.method = method_option(options);

@@ -33,7 +33,8 @@ void add_errors_option(Command& command, RunOptions& options);
 void add_span_options(Command& command, RunOptions& options);
 
 /// The options in numbers, with the flag of Ctrl-C. A wrong value is a diagnostic (E0809). `tree`: of the model whose
-/// `method` a step or an order without --method belongs to; may be null.
+/// `method` a step or an order without --method belongs to, and whose parameters may have the names of units; may be
+/// null.
 SimulationOptions simulation_options(const RunOptions& options, Diagnostics& diagnostics,
                                      const syntax::SyntaxTree* tree = nullptr);
 
@@ -41,7 +42,8 @@ SimulationOptions simulation_options(const RunOptions& options, Diagnostics& dia
 std::string precision_of(const syntax::SyntaxTree* tree);
 
 /// The same for a run in many digits: times exactly as written.
-ExtendedSimulationOptions extended_options(const RunOptions& options, Precision precision, Diagnostics& diagnostics);
+ExtendedSimulationOptions extended_options(const RunOptions& options, Precision precision, Diagnostics& diagnostics,
+                                           const syntax::SyntaxTree* tree = nullptr);
 
 /// Says --until and --within beside the model; nothing without them.
 void put_in_run(const RunOptions& options, Study& study);

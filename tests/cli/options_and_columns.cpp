@@ -228,6 +228,31 @@ TEST_CASE("numbers and texts of options that mean nothing are told in words") {
   for (const char* command : {"simulate", "plot", "derive", "modes"}) CHECK(maup({command, broken}).code == 1);
 }
 
+TEST_CASE("a unit of an option that is a parameter of the model, too, is refused where both give a time") {
+  const Folder folder;
+  const std::string bare = folder.write("bare.lag",
+                                        "system bare\ndimensionless\nparam s = 5\ncoord x : number\n"
+                                        "T = 1/2 x'^2\nV = 1/2 s x^2\nstart x = 1\nrun 3 s\n");
+  CHECK(contains(maup({"simulate", bare}).out, "t = 15"));  // 3 * s
+  for (const std::vector<std::string>& line : {std::vector<std::string>{"simulate", bare, "--duration", "3s"},
+                                               {"simulate", bare, "--at", "1,2 s"},
+                                               {"simulate", bare, "--precision", "quad", "--duration", "3s"},
+                                               {"orbits", bare, "--floquet", "--period", "2 s"},
+                                               {"orbits", bare, "--lyapunov", "--duration", "3 s"}}) {
+    const Outcome refused = maup(line);
+    CHECK(refused.code == 2);
+    CHECK_MESSAGE(contains(refused.err, "`s` is a unit and also a parameter of this model."), refused.err);
+  }
+  CHECK(contains(maup({"simulate", bare, "--duration", "3"}).out, "t = 3"));
+  CHECK(contains(maup({"simulate", bare, "--duration", "3000ms"}).out, "t = 3"));
+
+  const std::string text = "system of_units\ncoord x : length\nparam m = 1 kg, k = 1 N/m, s = 5";
+  const std::string rest = "\nT = 1/2 m x'^2\nV = 1/2 k x^2\nstart x = 1 m\nrun 3 [s]\n";
+  CHECK(maup({"simulate", folder.write("number.lag", text + rest), "--duration", "3s"}).code == 0);
+  const Outcome refused = maup({"simulate", folder.write("time.lag", text + " s" + rest), "--duration", "3s"});
+  CHECK_MESSAGE(contains(refused.err, "`s` is a unit and also a parameter of this model."), refused.err);
+}
+
 TEST_CASE("an expectation that has no value with other parameters keeps nothing from being computed") {
   const std::string model =
       "system saddle\ndimensionless\nparam k = 1, Ω = 1.5\ncoord x, y : number\nframe F rotation angle Ω t\n"

@@ -26,11 +26,9 @@ struct Findings {
   PlotOptions picture;
 };
 
-void check_orbits_usage(const Options& o, Diagnostics& diagnostics) {
-  check_orbits_options(o.orbits, diagnostics);
-  if (o.duration && !parse_time(*o.duration))
-    diagnostics.error("E0809", {}, fmt::format("--duration \"{}\" is no time.", *o.duration), {},
-                      "Write a number with a unit of time, such as 3s or 250ms, or a part of π, such as \"2 pi/3 s\".");
+void check_orbits_usage(const Options& o, const syntax::SyntaxTree* tree, Diagnostics& diagnostics) {
+  check_orbits_options(o.orbits, tree, diagnostics);
+  check_time_option("--duration", o.duration, tree, diagnostics);
   if (o.orbits.floquet + o.orbits.lyapunov + o.orbits.has_section() != 1)
     diagnostics.error("E0809", {}, "maup orbits does one thing at a time.", {},
                       "Give --floquet, --section \"x = 0 rising\", --strobe 2s or --lyapunov.");
@@ -55,10 +53,10 @@ std::optional<Findings> find_section(const Options& o, Study& study, const Conso
   const Saving saving;  // of crossings there may be very many
   const MechanicalSystem& system = study.model()->system;
   const std::string what = section_text(o.orbits);
-  return Findings{{"section", section_text(*result, what, system),
-                   console.json() ? section_json(*result, what, system) : Json()},
-                  section_rows(*result, system),
-                  section_picture(*result, what, system)};
+  return Findings{
+      {"section", section_text(*result, what, system), console.json() ? section_json(*result, what, system) : Json()},
+      section_rows(*result, system),
+      section_picture(*result, what, system)};
 }
 
 std::optional<Findings> find_lyapunov(const Options& o, Study& study) {
@@ -75,7 +73,7 @@ std::optional<Findings> find_lyapunov(const Options& o, Study& study) {
 ExitCode study_orbits(const Options& o, Console& console) {
   Study study = open_study(o.model);
   const bool readable_model = !study.wrong();
-  check_orbits_usage(o, study.diagnostics());
+  check_orbits_usage(o, study.tree(), study.diagnostics());
   if (readable_model && study.wrong()) return finish_usage(console, study, "orbits");
   put_in_section(o.orbits, study);
   if (study.refuse_held_integrals() || study.refuse_without_time() || !study.certificate())

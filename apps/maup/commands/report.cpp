@@ -319,7 +319,7 @@ ExitCode report(const ReportOptions& options, Console& console) {
   Json document = json_document("report");
   const bool readable_model = !study.wrong();
   const SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
-  check_orbits_options(options.orbits, study.diagnostics());
+  check_orbits_options(options.orbits, study.tree(), study.diagnostics());
   check_sections(options.sections, study.diagnostics());
   const auto seconds = budget_seconds(options.budget, study.diagnostics());
   if (options.output != "-")

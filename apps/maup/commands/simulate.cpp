@@ -279,7 +279,7 @@ ExitCode simulate_extended_model(const SimulateOptions& options, const std::stri
   const bool readable_model = !study.wrong();
   check_extended_files(options, study.diagnostics());
   const Precision precision = digits == "quad" ? Precision::Quad : Precision::Digits100;
-  ExtendedSimulationOptions settings = extended_options(options.run, precision, study.diagnostics());
+  ExtendedSimulationOptions settings = extended_options(options.run, precision, study.diagnostics(), study.tree());
   settings.rows = !options.output.empty();
   if (readable_model && study.wrong()) {
     finish(console, study, json_document("simulate"));
