@@ -2,6 +2,8 @@
 #include <maupertuis/modes.hpp>
 
 #include <cstddef>
+#include <functional>
+#include <optional>
 #include <vector>
 
 /// Equilibria and their eigenvalues as functions of one parameter: bifurcation diagrams and root loci.
@@ -11,8 +13,16 @@ struct LocusPoint {
   double parameter = 0;  // SI
   Equilibrium equilibrium;
   StabilityReport stability;
-  std::vector<std::complex<double>> eigenvalues;  // ascending by real, then imaginary part
+  std::vector<std::complex<double>> eigenvalues;  // ascending by real, then imaginary part; driven: exponents
 };
+
+/// What the neighbours of an equilibrium do when the parameter has a value, in the place of eigenvalues of coefficients
+/// that are frozen at an instant: `driven_neighbours` of orbits.hpp. Nothing: not known.
+struct NeighboursInTime {
+  StabilityReport stability;
+  std::vector<std::complex<double>> exponents;  // log μ / T of the Floquet multipliers, 1/s
+};
+using NeighboursAt = std::function<std::optional<NeighboursInTime>(double value, const Equilibrium&)>;
 
 /// Equilibria that belong together, in the order of the parameter.
 struct LocusBranch {
@@ -38,10 +48,10 @@ struct Locus {
 /// Equilibria and steady motions at equally spaced values of a parameter, joined to branches: at each value Newton's
 /// method begins at the points of the value before and at the starts of `find_equilibria`. What one step of the sweep
 /// carries further than a third of a typical size begins a branch of its own. The parameter has its own value again
-/// afterwards. Cost: that of a search, times `steps`. Throws Interrupted before there is a point.
-/// Precondition: steps ≥ 2.
+/// afterwards. Where t stands in the equations, `driven` judges the points. Cost: that of a search, times `steps`.
+/// Throws Interrupted before there is a point. Precondition: steps ≥ 2.
 Locus parameter_locus(PointEquations& equations, const MotionState& start, std::size_t parameter, double from,
-                      double to, std::size_t steps);
+                      double to, std::size_t steps, const NeighboursAt& driven = {});
 
 /// Values of the sweep at which no branch has a point: there is none, or the equations hold no longer.
 std::vector<double> values_without_points(const Locus& locus);

@@ -1,5 +1,6 @@
 #pragma once
 #include <maupertuis/diagnostic.hpp>
+#include <maupertuis/locus.hpp>
 #include <maupertuis/modes.hpp>
 #include <maupertuis/simulation.hpp>
 #include <maupertuis/stop_flag.hpp>
@@ -89,6 +90,12 @@ std::optional<FloquetResult> floquet(const Model& model, const EquationsOfMotion
 std::vector<std::optional<FloquetResult>> settle_driven(ModalStudy& study, const PointEquations& points,
                                                         const Model& model, const EquationsOfMotion& equations,
                                                         const StopFlag* interrupt);
+
+/// The same for the points of a locus over the values of a parameter (its index): a run over one period of the drive
+/// each. Nothing of a point where the drive does not repeat. Throws Interrupted. The model and its equations outlive
+/// it.
+NeighboursAt driven_neighbours(const Model& model, const EquationsOfMotion& equations, std::size_t parameter,
+                               const StopFlag* interrupt);
 
 // --------------------------------------------------------------------------------------------------- Poincaré sections
 

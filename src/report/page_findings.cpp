@@ -28,8 +28,8 @@ PageModes page_modes(const Model& model, const EquationsOfMotion& equations, con
     const auto value = [&](Expr e) {
       return evaluate(in_terms_of_motion(model.system, {&e, 1}).front(), parameter_bindings(model.system));
     };
-    out.locus =
-        parameter_locus(at_points, start->state, sweep->parameter, value(sweep->from), value(sweep->to), sweep->steps);
+    out.locus = parameter_locus(at_points, start->state, sweep->parameter, value(sweep->from), value(sweep->to),
+                                sweep->steps, driven_neighbours(model, equations, sweep->parameter, interrupt));
     if (out.locus->interrupted) throw Interrupted();
   }
   return out;

@@ -191,7 +191,8 @@ ExitCode locus(const ModesOptions& options, Study& study, PointEquations& equati
     return evaluate(in_terms_of_motion(system, {&e, 1}).front(), parameter_bindings(system));
   };
   const Locus result =
-      parameter_locus(equations, start, sweep->parameter, value(sweep->from), value(sweep->to), sweep->steps);
+      parameter_locus(equations, start, sweep->parameter, value(sweep->from), value(sweep->to), sweep->steps,
+                      driven_neighbours(*study.model(), *study.equations(), sweep->parameter, &interrupt_flag()));
   const bool written = write_locus(options, system, result, study.diagnostics());
   if (!console.json()) console.print(locus_text(system, result));
   const ExitCode code = finish(console, study, locus_document(system, result));

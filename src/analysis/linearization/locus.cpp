@@ -19,8 +19,12 @@ constexpr double longest_step = 1.0 / 3, short_step = 0.1, one_place = 1e-5;  //
 
 class Tracer {
  public:
-  Tracer(PointEquations& equations, const MotionState& start, std::size_t parameter)
-      : equations_(equations), start_(start), parameter_(parameter), sizes_(typical_sizes(equations.system(), start)) {
+  Tracer(PointEquations& equations, const MotionState& start, std::size_t parameter, const NeighboursAt& driven)
+      : equations_(equations),
+        start_(start),
+        parameter_(parameter),
+        driven_(driven),
+        sizes_(typical_sizes(equations.system(), start)) {
     locus_.parameter = parameter;
   }
 
@@ -72,7 +76,12 @@ class Tracer {
     return true;
   }
 
+  bool in_time() const { return driven_ && !equations_.autonomous(); }
+
   LocusPoint judged(double value, const Equilibrium& x) const {
+    if (in_time())
+      if (auto neighbours = driven_(value, x))
+        return {value, x, std::move(neighbours->stability), std::move(neighbours->exponents)};
     const Linearization l = linearize(equations_, x.point).linearization;
     const ModalAnalysis analysis = modal_analysis(equations_, l, symmetries_, &x);
     return {value, x, analysis.stability, analysis.eigenvalues};
@@ -240,7 +249,8 @@ class Tracer {
       const auto points = locus_.branches[b].points;
       for (std::size_t i = 1; i < points.size(); ++i) {
         const Stability before = points[i - 1].stability.verdict, here = points[i].stability.verdict;
-        const bool stands_on_it = here == Stability::Undecided && i + 1 < points.size() &&
+        // Of a driven system that verdict is one of a whole range: all multipliers lie on the unit circle.
+        const bool stands_on_it = !in_time() && here == Stability::Undecided && i + 1 < points.size() &&
                                   points[i + 1].stability.verdict != Stability::Undecided &&
                                   before != Stability::Undecided;
         const LocusPoint& after = points[stands_on_it ? ++i : i];
@@ -298,6 +308,7 @@ class Tracer {
   PointEquations& equations_;
   const MotionState& start_;
   std::size_t parameter_;
+  const NeighboursAt& driven_;
   std::vector<double> sizes_;
   std::vector<Translation> symmetries_;  // at the present value
   std::vector<std::size_t> open_;        // branches that have a point at the last value
@@ -307,9 +318,9 @@ class Tracer {
 }  // namespace
 
 Locus parameter_locus(PointEquations& equations, const MotionState& start, std::size_t parameter, double from,
-                      double to, std::size_t steps) {
+                      double to, std::size_t steps, const NeighboursAt& driven) {
   const double own = equations.parameter(parameter);
-  Locus out = Tracer(equations, start, parameter).trace(from, to, steps);
+  Locus out = Tracer(equations, start, parameter, driven).trace(from, to, steps);
   equations.set_parameter(parameter, own);
   return out;
 }

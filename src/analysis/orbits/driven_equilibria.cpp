@@ -1,6 +1,10 @@
+#include <maupertuis/degenerate.hpp>
+#include <maupertuis/interrupt.hpp>
 #include <maupertuis/orbits.hpp>
 
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace maupertuis {
 namespace {
@@ -25,6 +29,46 @@ StabilityReport report_of(const FloquetResult& neighbours) {
   return out;
 }
 
+/// Of a point that rests at all times; nothing where the drive does not repeat, which is no mistake here.
+std::optional<FloquetResult> floquet_at_rest(const Model& model, const EquationsOfMotion& equations,
+                                             const OperatingPoint& at, const StopFlag* interrupt) {
+  Diagnostics unheard;
+  auto found = floquet(model, equations, {std::nullopt, interrupt, MotionState{at.t, at.q, at.v}}, unheard);
+  return found && found->motion.rests ? std::move(found) : std::nullopt;
+}
+
+std::vector<std::complex<double>> exponents(const FloquetResult& neighbours) {
+  std::vector<std::complex<double>> out;
+  for (const std::complex<double>& mu : neighbours.multipliers)
+    if (mu != 0.0) out.push_back(std::log(mu) / neighbours.motion.period);
+  std::sort(out.begin(), out.end(),
+            [](auto a, auto b) { return std::pair(a.real(), a.imag()) < std::pair(b.real(), b.imag()); });
+  return out;
+}
+
+/// A model and equations whose parameter can be given values.
+struct Tuned {
+  Model model;
+  EquationsOfMotion equations;
+
+  Tuned(const Model& given, const EquationsOfMotion& solvable)
+      : model(with_system_of(given, solvable)), equations(solvable) {}
+
+  void set(std::size_t parameter, double value) {
+    Parameter& p = model.system.parameters[parameter];
+    p.value = model.system.context->number(Rational::from_double(value));
+    p.si_value = value;
+    equations.system = std::make_shared<const MechanicalSystem>(model.system);
+  }
+
+ private:
+  static Model with_system_of(const Model& given, const EquationsOfMotion& solvable) {
+    Model out = given;
+    out.system = *solvable.system;
+    return out;
+  }
+};
+
 }  // namespace
 
 std::vector<std::optional<FloquetResult>> settle_driven(ModalStudy& study, const PointEquations& points,
@@ -33,17 +77,25 @@ std::vector<std::optional<FloquetResult>> settle_driven(ModalStudy& study, const
   std::vector<std::optional<FloquetResult>> out;
   if (points.autonomous()) return out;
   for (ModalEntry& entry : study.entries) {
-    const OperatingPoint& at = entry.equilibrium.point;
-    Diagnostics unheard;  // a drive without a period is no mistake here: the entry stays undecided
-    std::optional<FloquetResult> found =
-        floquet(model, equations, {std::nullopt, interrupt, MotionState{at.t, at.q, at.v}}, unheard);
+    std::optional<FloquetResult> found = floquet_at_rest(model, equations, entry.equilibrium.point, interrupt);
     entry.analysis.modes.clear();
     entry.analysis.eigenvalues.clear();
-    if (found && !found->motion.rests) found.reset();
     if (found) entry.analysis.stability = report_of(*found);
     out.push_back(std::move(found));
   }
   return out;
+}
+
+NeighboursAt driven_neighbours(const Model& model, const EquationsOfMotion& equations, std::size_t parameter,
+                               const StopFlag* interrupt) {
+  const auto tuned = std::make_shared<Tuned>(model, solvable_equations(equations));
+  return [tuned, parameter, interrupt](double value, const Equilibrium& x) -> std::optional<NeighboursInTime> {
+    tuned->set(parameter, value);
+    const auto found = floquet_at_rest(tuned->model, tuned->equations, x.point, interrupt);
+    Interrupt(interrupt).throw_if_asked();
+    if (!found) return std::nullopt;
+    return NeighboursInTime{report_of(*found), exponents(*found)};
+  };
 }
 
 }  // namespace maupertuis

@@ -1,5 +1,7 @@
 #include "support.hpp"
 
+#include <maupertuis/interrupt.hpp>
+
 #include "analysis/orbits/verdict.hpp"
 
 // Periods and multipliers that are known: elliptic integrals, Hill's determinant, Liouville, published digits.
@@ -218,6 +220,41 @@ TEST_CASE("equilibria of a driven system are judged by multipliers, not by froze
   const std::string friction = "D = 0.1 [N m s] θ'^2\n";
   CHECK(verdicts(100, friction) == std::vector{Stability::Asymptotic, Stability::Asymptotic});
   CHECK(verdicts(40, friction) == std::vector{Stability::Asymptotic, Stability::Unstable});
+}
+
+TEST_CASE("along a sweep a driven system is judged by multipliers: the tongue of Mathieu's equation about a = 1") {
+  const ModelText m(
+      "dimensionless\nparam a = 1, ε = 0.5, c = 0\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 (a + ε cos(2 t)) x^2\n"
+      "D = 1/2 c x'^2\n");
+  const auto sweep = [&](std::size_t parameter, double from, double to, std::size_t steps, const StopFlag* flag) {
+    PointEquations points(m.equations);
+    return parameter_locus(points, {0, {0.0}, {0.0}}, parameter, from, to, steps,
+                           driven_neighbours(m.model, m.equations, parameter, flag));
+  };
+  // McLachlan 1947, §2.151, with q = ε/2: a₁ and b₁ = a₁(−q).
+  const auto border = [](double q) {
+    return 1 + q - q * q / 8 - std::pow(q, 3) / 64 - std::pow(q, 4) / 1536 + 11 * std::pow(q, 5) / 36864;
+  };
+  const Locus tongue = sweep(0, 0.5, 1.5, 9, nullptr);
+  REQUIRE(tongue.branches.size() == 1);
+  REQUIRE(tongue.changes.size() == 2);
+  CHECK(tongue.changes[0].parameter == doctest::Approx(border(-0.25)).epsilon(1e-7));
+  CHECK(tongue.changes[1].parameter == doctest::Approx(border(0.25)).epsilon(1e-7));
+  CHECK(tongue.changes[0].after == Stability::Unstable);
+  for (const LocusPoint& x : tongue.branches[0].points) {  // the exponents of a Lagrangian are opposite in pairs
+    REQUIRE(x.eigenvalues.size() == 2);
+    CHECK(std::abs(x.eigenvalues[0].real() + x.eigenvalues[1].real()) < 1e-12);
+  }
+  // One value of the sweep inside a range that is not decided has borders on both sides.
+  const Locus gap = sweep(0, 1.2, -0.3, 3, nullptr);
+  CHECK(gap.changes.size() == 2);
+  // At a = 1 damping c wins where it is above ε/2, nearly.
+  const Locus damped = sweep(2, 0.01, 0.5, 5, nullptr);
+  REQUIRE(damped.changes.size() == 1);
+  CHECK(damped.changes[0].after == Stability::Asymptotic);
+  CHECK(damped.changes[0].parameter == doctest::Approx(0.25).epsilon(0.02));
+  const StopFlag stop(true);
+  CHECK_THROWS_AS(sweep(0, 0.5, 1.5, 9, &stop), Interrupted);
 }
 
 TEST_CASE("a bead on a turning hoop has no drive: its equation has no t") {
