@@ -9,8 +9,9 @@ namespace maupertuis {
 namespace {
 
 constexpr int turns_from_nearby = 8;  // Newton's method begins a tenth of a typical size away, or is not on the family
-constexpr int most_steps_along = 2000;  // of all walks together: each asks for the directions of the family anew
-constexpr int most_tried = 3;           // members of one family that a new one is linked with, the nearest first
+constexpr int most_steps_along = 2000;    // of all walks together: each asks for the directions of the family anew
+constexpr int most_precise_steps = 5000;  // of all walks together: some tenths of a millisecond each
+constexpr int most_tried = 3;             // members of one family that a new one is linked with, the nearest first
 
 double along(const PointEquations::Impl& e, std::size_t i, double from, double to) {
   return e.is_periodic[i] ? std::remainder(to - from, 2 * std::acos(-1.0)) : to - from;
@@ -68,7 +69,16 @@ bool Families::linked(const Equilibrium& x, const Equilibrium& y, const SteadySt
   return walks(x, y, system, straight) || walks(x, y, system, along_family);
 }
 
-bool Families::walks(const Equilibrium& x, const Equilibrium& y, const SteadyState& system, const Walk& walk) const {
+std::optional<OperatingPoint> Families::next_to(const OperatingPoint& from, double farthest,
+                                                const SteadyState& system) {
+  if (const auto found = system.solve(from, false, turns_from_nearby)) return found->point;
+  if (precise_steps_ == most_precise_steps) return std::nullopt;
+  ++precise_steps_;
+  const auto found = system.precise_root(from, farthest);
+  return found ? std::optional(found->point) : std::nullopt;
+}
+
+bool Families::walks(const Equilibrium& x, const Equilibrium& y, const SteadyState& system, const Walk& walk) {
   constexpr double same = 1e-6, longest = 0.1;  // of typical sizes
   constexpr double most_steps = 200;            // since where V falls off for ever some lie as far out as one likes
   OperatingPoint at = x.point;
@@ -76,11 +86,11 @@ bool Families::walks(const Equilibrium& x, const Equilibrium& y, const SteadySta
   const double step = std::max(std::min(left / 4, longest), left / most_steps);
   for (int turns = static_cast<int>(4 * left / std::max(step, same)); left > std::max(step, same); --turns) {
     const auto from = turns > 0 ? walk.beside(at, step / left) : std::nullopt;
-    const auto next = from ? system.solve(*from, false, turns_from_nearby) : std::nullopt;
-    if (!next || walk.distance(at, next->point) > 2 * step) return false;
-    const double now = walk.distance(next->point, y.point);
+    const auto next = from ? next_to(*from, 2 * step, system) : std::nullopt;
+    if (!next || walk.distance(at, *next) > 2 * step) return false;
+    const double now = walk.distance(*next, y.point);
     if (!(now < left - walk.least * step)) return false;
-    at = next->point;
+    at = *next;
     left = now;
   }
   return true;

@@ -42,13 +42,15 @@ class Families {
 
   double chord(const OperatingPoint& x, const OperatingPoint& y) const;
   bool linked(const Equilibrium& x, const Equilibrium& y, const SteadyState& system);
-  bool walks(const Equilibrium& x, const Equilibrium& y, const SteadyState& system, const Walk& walk) const;
+  bool walks(const Equilibrium& x, const Equilibrium& y, const SteadyState& system, const Walk& walk);
+  /// By Newton's method in double, or where that does not arrive soon in 100 digits.
+  std::optional<OperatingPoint> next_to(const OperatingPoint& from, double farthest, const SteadyState& system);
   std::size_t leader(std::size_t member) const;
 
   const PointEquations::Impl& e_;
   std::vector<double> sizes_;
   std::vector<Equilibrium> members_;
-  int steps_along_ = 0;
+  int steps_along_ = 0, precise_steps_ = 0;
   std::vector<std::size_t> above_;  // [members] towards the leader of the family, itself for the leader
 };
 

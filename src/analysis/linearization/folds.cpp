@@ -43,7 +43,8 @@ Along look(PointEquations::Impl& e, OperatingPoint point, const Vector& directio
 }  // namespace
 
 Curvature curvature_at_rest(PointEquations::Impl& e, const OperatingPoint& rest, const Vector& direction) {
-  constexpr double nearest = 1e-13, farthest = 1e-3;  // of the sizes of coordinates
+  constexpr double nearest = 1e-13, farthest = 1e-3,  // of the sizes of coordinates
+      most_change = 1e3;
   const std::vector<double> sizes = typical_sizes(*e.system, {rest.t, rest.q, rest.v});
   double longest = 0;
   for (std::size_t i = 0; i < e.n; ++i)
@@ -57,7 +58,8 @@ Curvature curvature_at_rest(PointEquations::Impl& e, const OperatingPoint& rest,
       for (std::size_t i = 0; i < e.n; ++i) near.q[i] += way * length / longest * direction[static_cast<Index>(i)];
       const Along there = look(e, near, direction);
       if (!(std::abs(there.force) <= rounding)) break;
-      if (!(there.stiffness * stiffness > 0)) return Curvature::Undecided;
+      const double ratio = there.stiffness / stiffness;  // of (r² − 1)⁶ never negative, and anything at all
+      if (!(ratio > 0 && ratio < most_change)) return Curvature::Undecided;
     }
   return sign;
 }

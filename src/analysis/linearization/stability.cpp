@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace maupertuis {
 namespace {
@@ -63,15 +64,15 @@ struct Verdicts {
   /// Whether the soft ones among these eigenvalues have signs that the error of the place leaves, or one is negative
   /// beyond it. What vanishes to rounding anyway is judged elsewhere.
   bool has_certain_signs(const SymmetricEigen& hessian) const {
-    constexpr double soft = 1e-4;                                // of the largest
-    const auto across = static_cast<Index>(equilibrium.family);  // along the family they vanish
-    if (!equilibrium.at_rest || hessian.values.size() <= across) return true;
+    constexpr double soft = 1e-4;  // of the largest
+    const std::vector<Index> across = across_family(hessian.values);
+    if (!equilibrium.at_rest || across.empty()) return true;
     const double largest = hessian.values.cwiseAbs().maxCoeff();
     const Vector none = hessian_tolerances(hessian);
     bool certain = true;
-    for (Index i = across; i < hessian.values.size(); ++i) {
+    for (const Index i : across) {
       const double value = hessian.values[i];
-      if (i > across && std::abs(value) > soft * largest) continue;
+      if (i != across.front() && std::abs(value) > soft * largest) continue;
       if (std::abs(value) <= none[i]) continue;
       const Vector direction =
           product(to_eigen(linearization.positions), product(form.to_independent, hessian.vectors.col(i)));
@@ -79,7 +80,16 @@ struct Verdicts {
       if (found == Curvature::Negative) return true;
       certain = certain && found != Curvature::Undecided;
     }
-    return certain || hessian.values[0] < -soft * largest;
+    return certain || (hessian.values[0] < -soft * largest && across.front() != 0);
+  }
+
+  /// The eigenvalues but those that vanish along the family, the softest first.
+  std::vector<Index> across_family(const Vector& values) const {
+    std::vector<Index> out(static_cast<std::size_t>(values.size()));
+    std::iota(out.begin(), out.end(), Index{0});
+    std::sort(out.begin(), out.end(), [&](Index i, Index j) { return std::abs(values[i]) < std::abs(values[j]); });
+    out.erase(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(std::min(out.size(), equilibrium.family)));
+    return out;
   }
 
   /// [eigenvalues of the Hessian] what rounding leaves of each. Rates belong to effective potentials alone.

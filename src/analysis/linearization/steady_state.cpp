@@ -272,6 +272,15 @@ std::optional<SteadyState::Solution> SteadyState::proved(const Solution& solutio
   return out;
 }
 
+std::optional<SteadyState::Solution> SteadyState::precise_root(const OperatingPoint& from, double farthest) const {
+  interrupt_of(*e_.system->context).throw_if_asked();
+  if (static_cast<std::size_t>(unknowns(from).size()) > most_precise) return std::nullopt;
+  Solution guess;
+  guess.point = from;
+  fit_multipliers(guess.point);
+  return proved(guess, farthest);
+}
+
 /// [n] the sizes of the terms of R; infinite where one has no value.
 Vector SteadyState::sizes_of_terms(const OperatingPoint& point) const {
   if (!terms_) {

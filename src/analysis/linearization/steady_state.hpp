@@ -33,6 +33,9 @@ class SteadyState {
   /// From the positions and velocities of `from`; nothing where the iteration does not arrive within so many turns.
   /// With the family, what double does not tell from a solution is asked of 100 digits: flat places, multiple roots.
   std::optional<Solution> solve(const OperatingPoint& from, bool with_family = true, int turns = 80) const;
+  /// The root of 100 digits within so many typical sizes: at multiple roots Newton's method in double comes nearer by a
+  /// constant factor a turn, and stops far from them. Nothing where there is none, or of more than 40 unknowns.
+  std::optional<Solution> precise_root(const OperatingPoint& from, double farthest) const;
   /// A step of that length (in typical sizes, at most) from a solution along its family, as far towards `target` as the
   /// directions of the family there lead. Nothing where none does.
   std::optional<OperatingPoint> step_towards(const OperatingPoint& solution, const OperatingPoint& target,

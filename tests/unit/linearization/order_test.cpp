@@ -65,6 +65,29 @@ TEST_CASE("A ring of equilibria is one family, and two rings are two") {
   CHECK(near(found[3], 2, 1e-9));
 }
 
+TEST_CASE("A ring at the bottom of a high power is one family, and no accident of rounding makes it stable or not") {
+  // V = (r² − 1)ᵖ: the hill or the bottom in the middle, and the ring. Its Hessian vanishes for p > 2.
+  for (const char* power : {"3", "4", "5", "6"}) {
+    CAPTURE(power);
+    Linearized m(in_the_plane((std::string("(s - 1)^") + power).c_str(), "x = 1.1 m, y = 0.1 m"));
+    const ModalStudy study = m.study();
+    REQUIRE(study.entries.size() == 2);
+    CHECK(near(radii(study)[0], 1, 1e-9));
+    CHECK(study.entries[0].equilibrium.family == 1);
+    CHECK(study.entries[0].analysis.stability.verdict == Stability::Undecided);
+    CHECK(radii(study)[1] < 1e-9);
+    CHECK(study.entries[1].equilibrium.family == 0);
+  }
+  // Two rings of high powers are two.
+  Linearized two(in_the_plane("(s - 1)^4 (s - 4)^4", "x = 1.9 m, y = 0 m"));
+  std::vector<double> found = radii(two.study());
+  std::sort(found.begin(), found.end());
+  REQUIRE(found.size() == 4);
+  CHECK(near(found[1], 1, 1e-9));
+  CHECK(near(found[2], std::sqrt(2.5), 1e-9));
+  CHECK(near(found[3], 2, 1e-9));
+}
+
 TEST_CASE("A family whose members lie as far apart as one likes is one, and found soon") {
   // At rest at y = 0, wherever z is; searches that slide down y²/(2 z) end anywhere.
   Linearized trough(
