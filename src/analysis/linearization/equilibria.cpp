@@ -193,8 +193,9 @@ class Search {
       if (search_.fixed.any() && system.is_unbalanced(solution->point)) continue;
       if (!at_rest && is_at_rest(solution->point)) continue;
       if (!holds_for_all_times(solution->point)) continue;
-      keep({solution->point, at_rest, solution->residual, solution->family, solution->along, false, {}}, system);
+      keep({solution->point, at_rest, solution->residual, solution->family, solution->along, false, {}});
     }
+    families_.link(at_rest, system);
   }
 
   /// How it can be moved on and stay a solution, whatever was given: a family is one of the equations.
@@ -254,8 +255,8 @@ class Search {
     return true;
   }
 
-  void keep(const Equilibrium& candidate, const SteadyState& system) {
-    if (candidate.family > 0) return families_.add(candidate, system);
+  void keep(const Equilibrium& candidate) {
+    if (candidate.family > 0) return families_.add(candidate);
     for (const Equilibrium& other : found_)
       if (distance(e_, sizes_, candidate.point, other.point) < same) return;
     found_.push_back(candidate);

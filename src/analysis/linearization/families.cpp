@@ -11,7 +11,7 @@ namespace {
 constexpr int turns_from_nearby = 8;  // Newton's method begins a tenth of a typical size away, or is not on the family
 constexpr int most_steps_along = 2000;    // of all walks together: each asks for the directions of the family anew
 constexpr int most_precise_steps = 5000;  // of all walks together: some tenths of a millisecond each
-constexpr int most_tried = 3;             // members of one family that a new one is linked with, the nearest first
+constexpr int most_tried = 3;             // pairs of members that two families are linked by, the nearest first
 
 double along(const PointEquations::Impl& e, std::size_t i, double from, double to) {
   return e.is_periodic[i] ? std::remainder(to - from, 2 * std::acos(-1.0)) : to - from;
@@ -101,21 +101,30 @@ std::size_t Families::leader(std::size_t member) const {
   return member;
 }
 
-void Families::add(Equilibrium candidate, const SteadyState& system) {
-  std::vector<std::size_t> near;
-  for (std::size_t i = 0; i < members_.size(); ++i)
-    if (members_[i].at_rest == candidate.at_rest && members_[i].family == candidate.family) near.push_back(i);
-  std::sort(near.begin(), near.end(), [&](std::size_t i, std::size_t j) {
-    return distance(e_, sizes_, members_[i].point, candidate.point) <
-           distance(e_, sizes_, members_[j].point, candidate.point);
-  });
-  const std::size_t own = members_.size();
-  above_.push_back(own);
-  std::map<std::size_t, int> tried;  // of each family
-  for (const std::size_t i : near)
-    if (leader(i) != leader(own) && ++tried[leader(i)] <= most_tried && linked(members_[i], candidate, system))
-      above_[leader(own)] = leader(i);
+void Families::add(Equilibrium candidate) {
+  above_.push_back(members_.size());
   members_.push_back(std::move(candidate));
+}
+
+/// Near pairs first: most are neighbours on one curve, some steps apart, and what is left then are few.
+void Families::link(bool at_rest, const SteadyState& system) {
+  struct Pair {
+    double distance;
+    std::size_t one, other;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < members_.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (members_[i].at_rest == at_rest && members_[j].at_rest == at_rest && members_[i].family == members_[j].family)
+        pairs.push_back({distance(e_, sizes_, members_[i].point, members_[j].point), j, i});
+  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) { return x.distance < y.distance; });
+  std::map<std::pair<std::size_t, std::size_t>, int> tried;  // of two families
+  for (const Pair& pair : pairs) {
+    const std::size_t one = leader(pair.one), other = leader(pair.other), first = std::min(one, other),
+                      second = std::max(one, other);
+    if (first == second || ++tried[{first, second}] > most_tried) continue;
+    if (linked(members_[pair.one], members_[pair.other], system)) above_[second] = first;
+  }
 }
 
 std::vector<Equilibrium> Families::representatives(const OperatingPoint& start) const {

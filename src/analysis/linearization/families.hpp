@@ -27,8 +27,10 @@ class Families {
   Families(const PointEquations::Impl& equations, std::vector<double> sizes)
       : e_(equations), sizes_(std::move(sizes)) {}
 
-  /// `candidate` was found as a solution of `system` and has candidate.family > 0.
-  void add(Equilibrium candidate, const SteadyState& system);
+  /// `candidate` has candidate.family > 0.
+  void add(Equilibrium candidate);
+  /// Joins what belongs together among the members that are `at_rest` or not, solutions of `system`.
+  void link(bool at_rest, const SteadyState& system);
   /// Of each family the member nearest to `start`, with the coordinates along which any member can be moved.
   std::vector<Equilibrium> representatives(const OperatingPoint& start) const;
 

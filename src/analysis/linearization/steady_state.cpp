@@ -215,9 +215,15 @@ std::optional<OperatingPoint> SteadyState::step_towards(const OperatingPoint& so
   const Equilibration by(derivatives);
   const Matrix ways = soft_ways(derivatives, by);
   const auto moving = static_cast<Index>(free_q_.size() + free_rates_.size());
-  const Vector there = (unknowns(target) - z).head(moving).cwiseQuotient(by.columns.head(moving));
-  const Vector parts = ways.topRows(moving).transpose() * there;
-  const Vector way = by.columns.cwiseProduct(ways * parts);
+  if (ways.cols() == 0) return std::nullopt;
+  // As near to the target as the directions lead in typical sizes: those of the equilibrated derivatives can be of any
+  // ratio, on a ring next to an axis, and a way that is near in them leads back.
+  Vector sizes = Vector::Ones(moving);
+  for (std::size_t i = 0; i < free_q_.size(); ++i) sizes[static_cast<Index>(i)] = sizes_[free_q_[i]];
+  const Matrix moves = by.columns.asDiagonal() * ways;
+  const Matrix sized = sizes.cwiseInverse().asDiagonal() * moves.topRows(moving);
+  const Matrix there = (unknowns(target) - z).head(moving).cwiseQuotient(sizes);
+  const Vector way = moves * least_squares(sized, there, rank_of_balance).x.col(0);
   const double far = length(way, z);
   if (!(far > 0) || !std::isfinite(far)) return std::nullopt;
   OperatingPoint out = solution;
