@@ -189,7 +189,7 @@ class Search {
       settle(*solution, system);
       if (!names_as_found_) solution->point = second_names_.first_name(solution->point);
       if (search_.fixed.any()) find_all_ways(*solution, at_rest);
-      if (!balances(*solution, system)) continue;
+      if (!balances(*solution, system) || is_edge(solution->point)) continue;
       if (search_.fixed.any() && system.is_unbalanced(solution->point)) continue;
       if (!at_rest && is_at_rest(solution->point)) continue;
       if (!holds_for_all_times(solution->point)) continue;
@@ -236,11 +236,37 @@ class Search {
   }
 
   /// The forces balance at the very point that is told, whose angles may have been taken back by many turns; and with
-  /// q̇ = 0 put into R as a number, since x'/|x'| has no value there.
+  /// q̇ = 0 put into R as a number, since x'/|x'| has no value there. So has the energy a value: −1/x balances forces
+  /// where x < 0, but −log x is no potential there.
   bool balances(const SteadyState::Solution& solution, const SteadyState& system) const {
     constexpr double balanced = 1e-9;
     OperatingPoint told = solution.point;
-    return (solution.proved || system.residual_at(told) <= balanced) && e_.value(e_.balance, told).allFinite();
+    return (solution.proved || system.residual_at(told) <= balanced) && e_.value(e_.balance, told).allFinite() &&
+           std::isfinite(e_.energy_at(told));
+  }
+
+  /// Whether forces have no value beside the point, as those of x^1.5 for x < 0, and are not smaller there than half
+  /// the way to that edge further: derivatives that grow without bound let any force pass as rounding of the place, and
+  /// what vanishes at the edge alone does not rest there, since nothing is known beyond.
+  bool is_edge(const OperatingPoint& point) const {
+    constexpr double beside = 1e-6, much_less = 1e-3;  // of sizes; of forces
+    const auto works = [&](const Vector& forces) {
+      return forces.cwiseAbs().dot(Eigen::Map<const Vector>(sizes_.data(), forces.size()));
+    };
+    const double here = works(e_.value(e_.balance, point));
+    for (std::size_t i = 0; i < e_.n; ++i) {
+      const auto at = [&](double way) {
+        OperatingPoint moved = point;
+        moved.q[i] += way;
+        return works(e_.value(e_.balance, moved));
+      };
+      const auto has_value = [&](double way) { return std::isfinite(at(way)) && std::isfinite(at(-way)); };
+      double way = beside * sizes_[i];
+      if (has_value(way)) continue;
+      while (way > 0 && !has_value(way)) way /= 4;
+      if (way == 0 || !(here <= much_less * std::max(at(way / 2), at(-way / 2)))) return true;
+    }
+    return false;
   }
 
   /// Where t stands in the equations, they must hold whatever t is.

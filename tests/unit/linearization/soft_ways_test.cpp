@@ -105,6 +105,31 @@ TEST_CASE("a family is one of equilibria to 100 digits: no flat place, and no ne
   CHECK_FALSE(modal_study(flat.at, flat.start, flat.diagnostics));
 }
 
+TEST_CASE("at the edge of where equations have values nothing rests, and steep derivatives there make no rest") {
+  const auto places = [](const std::string& potential) {
+    Linearized m("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = " + potential + "\nstart x = 1\n");
+    EquilibriumSearch search;
+    search.start = m.start;
+    std::vector<double> out;
+    for (const Equilibrium& x : find_equilibria(m.at, search).found) out.push_back(x.point.q[0]);
+    return out;
+  };
+  CHECK(places("x^1.5 + x").empty());             // the force at 0 is −1, beside a stiffness of 10¹² at 10⁻²⁶
+  CHECK(places("x^1.5").empty());                 // it vanishes at 0 alone, beyond which there is none
+  CHECK(places("x^2 log(x) - x^2").size() == 1);  // at √e, not at 0
+  CHECK(places("-x - log(x)").empty());           // −1/x balances at −1, where the logarithm has no value
+  // A rest next to the edge is one: 3/2 √x = a.
+  for (const double a : {1.0, 1e-2, 1e-4, 1e-5}) {
+    CAPTURE(a);
+    const std::vector<double> found = places("x^1.5 - " + std::to_string(a) + " x");
+    REQUIRE(found.size() == 1);
+    CHECK(found[0] == doctest::Approx(4 * a * a / 9).epsilon(1e-9));
+  }
+  const std::vector<double> between = places("abs(x)^1.5");  // values on both sides
+  REQUIRE(between.size() == 1);
+  CHECK(std::abs(between[0]) < 1e-12);
+}
+
 TEST_CASE("families that are some stay: rings, levers balanced by decimal numbers, flat pieces") {
   const auto family = [](const std::string& text) {
     const ModalStudy found = Linearized(text).study();
