@@ -91,6 +91,7 @@ struct EquilibriumSearch {
   bool steady = true;                   // steady motions as well
   std::size_t starts = 0;               // 0: chosen from n
   std::vector<OperatingPoint> guesses;  // further starts, tried first
+  bool everywhere = false;              // as many starts again, up to ten typical sizes away
 };
 
 /// A configuration of rest, or a motion in which only translations that are symmetries go on, at constant rates.

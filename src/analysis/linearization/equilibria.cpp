@@ -127,6 +127,7 @@ class Search {
     out.push_back(zero);
     add_corners(out, zero);
     add_scattered(out, first);
+    if (search_.everywhere) add_far_ones(out, first);
     return out;
   }
 
@@ -158,6 +159,22 @@ class Search {
         const bool angle = e_.system->coordinates[i].kind == "angle";
         const double x = angle ? uniform(-std::numbers::pi, std::numbers::pi) : sizes_[i] * uniform(-1.5, 2.5);
         if (!held(i)) point.q[i] = x;
+      }
+      out.push_back(point);
+    }
+  }
+
+  /// As many again up to where a search looks: lengths of any order from a typical size on, of both signs.
+  void add_far_ones(std::vector<OperatingPoint>& out, const OperatingPoint& first) const {
+    std::mt19937_64 random(1788);
+    const auto uniform = [&] { return 2 * std::generate_canonical<double, 53>(random) - 1; };
+    const std::size_t count = count_of_starts();
+    for (std::size_t s = 0; s < count; ++s) {
+      OperatingPoint point = first;
+      for (std::size_t i = 0; i < e_.n; ++i) {
+        const double x = uniform();
+        const bool angle = e_.system->coordinates[i].kind == "angle";
+        if (!held(i)) point.q[i] += angle ? turn * x : std::copysign(sizes_[i] * std::pow(box, std::abs(x)), x);
       }
       out.push_back(point);
     }

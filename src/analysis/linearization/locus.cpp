@@ -33,7 +33,9 @@ class Tracer {
     std::size_t whole = 0;  // values whose points are joined
     try {
       for (; whole < steps; ++whole)
-        add_value(from + (to - from) * static_cast<double>(whole) / static_cast<double>(steps - 1));
+        add_value(from + (to - from) * static_cast<double>(whole) / static_cast<double>(steps - 1),
+                  whole == 0 || whole == steps / 2 || whole == steps - 1);
+      follow_back();
       find_changes();
       join_births();
     } catch (const Interrupted&) {
@@ -47,11 +49,11 @@ class Tracer {
   }
 
  private:
-  void add_value(double value) {
+  void add_value(double value, bool everywhere) {
     locus_.values.push_back(value);
     set_parameter(value);
     note_translations(locus_.values.size() == 1);
-    join(points_at(value));
+    join(points_at(value, everywhere));
   }
 
   /// A force that vanishes at one value leaves symmetries there that the others do not have.
@@ -87,9 +89,10 @@ class Tracer {
     return {value, x, analysis.stability, analysis.eigenvalues};
   }
 
-  std::vector<LocusPoint> points_at(double value) {
+  std::vector<LocusPoint> points_at(double value, bool everywhere) {
     EquilibriumSearch search;
     search.start = start_;
+    search.everywhere = everywhere;
     for (const std::size_t b : open_) search.guesses.push_back(locus_.branches[b].points.back().equilibrium.point);
     std::vector<LocusPoint> out;
     for (const Equilibrium& x : find_equilibria(equations_, search).found)
@@ -129,7 +132,7 @@ class Tracer {
         unclear.push_back(b);
         continue;
       }
-      const auto there = continued(locus_.branches[b]);
+      const auto there = continued(locus_.branches[b].points);
       if (!there) continue;
       const auto same = std::find_if(points.begin(), points.end(),
                                      [&](const LocusPoint& p) { return distance(p.equilibrium, *there) <= one_place; });
@@ -182,14 +185,40 @@ class Tracer {
     }
   }
 
-  /// The next point of a branch, in steps that are halved where they are long, or lead nowhere: at the end of a branch,
-  /// where it turns back, all of them do.
-  std::optional<Equilibrium> continued(const LocusBranch& branch) {
+  /// A search can miss a branch at some values, one that begins far from the start for instance: from where it was met
+  /// first it is followed to the values before.
+  void follow_back() {
+    for (LocusBranch& branch : locus_.branches) {
+      auto k = std::find(locus_.values.begin(), locus_.values.end(), branch.points.front().parameter);
+      while (k != locus_.values.begin() && is_followed(branch.points.front().equilibrium)) {
+        const auto before = follow_back(branch, *--k);
+        if (!before) break;
+        branch.points.insert(branch.points.begin(), *before);
+      }
+    }
+  }
+  /// Nothing where it does not come from there, or other branches pass.
+  std::optional<LocusPoint> follow_back(const LocusBranch& branch, double value) {
+    const std::vector<LocusPoint> backwards(branch.points.rbegin(), branch.points.rend());
+    const auto there = continued(backwards, value);
+    const auto is_there = [&](const LocusPoint& p) {
+      return p.parameter == value && distance(p.equilibrium, *there) <= one_place;
+    };
+    const auto passes = [&](const LocusBranch& b) { return std::any_of(b.points.begin(), b.points.end(), is_there); };
+    if (!there || std::any_of(locus_.branches.begin(), locus_.branches.end(), passes)) return std::nullopt;
+    return judged(value, *there);
+  }
+
+  std::optional<Equilibrium> continued(const std::vector<LocusPoint>& points) {
+    return continued(points, locus_.values.back());
+  }
+  /// The point at a value next to the last of a branch, in steps that are halved where they are long, or lead nowhere:
+  /// at the end of a branch, where it turns back, all of them do.
+  std::optional<Equilibrium> continued(const std::vector<LocusPoint>& points, double to) {
     constexpr double least = 1.0 / 4096;  // of a step of the sweep
-    const double to = locus_.values.back();
-    Step last{branch.points.back().parameter, branch.points.back().equilibrium};
+    Step last{points.back().parameter, points.back().equilibrium};
     std::optional<Step> before;
-    if (branch.points.size() > 1) before = {branch.points.end()[-2].parameter, branch.points.end()[-2].equilibrium};
+    if (points.size() > 1) before = {points.end()[-2].parameter, points.end()[-2].equilibrium};
     for (double length = to - last.parameter; last.parameter != to;) {
       const bool is_last = std::abs(length) >= std::abs(to - last.parameter);
       const double value = is_last ? to : last.parameter + length;
@@ -259,18 +288,27 @@ class Tracer {
     }
   }
 
-  /// A value of the sweep can stand on the change itself, with a verdict of its own: the ends decide.
+  /// A value of the sweep can stand on the change itself, with a verdict of its own: the ends decide. Where the branch
+  /// is lost on the way the place is not known, and none is told.
   void bisect(std::size_t branch, LocusPoint low, LocusPoint high) {
     const Stability before = low.stability.verdict, after = high.stability.verdict;
     for (int k = 0; k < 60; ++k) {
       const double middle = low.parameter + (high.parameter - low.parameter) / 2;
       if (middle == low.parameter || middle == high.parameter) break;
-      const Step ends[] = {{low.parameter, low.equilibrium}, {high.parameter, high.equilibrium}};
-      const auto point = follow(middle, on_line(ends[0], ends[1], middle));
-      if (!point) break;
+      const auto point = between(low, high, middle);
+      if (!point) return;
       (point->stability.verdict == before ? low : high) = *point;
     }
     locus_.changes.push_back({(low.parameter + high.parameter) / 2, branch, before, after});
+  }
+
+  /// Next to the straight line, or by short steps from one of the ends.
+  std::optional<LocusPoint> between(const LocusPoint& low, const LocusPoint& high, double middle) {
+    const Step ends[] = {{low.parameter, low.equilibrium}, {high.parameter, high.equilibrium}};
+    if (auto point = follow(middle, on_line(ends[0], ends[1], middle))) return point;
+    for (const LocusPoint* end : {&low, &high})
+      if (const auto there = continued({*end}, middle)) return judged(middle, *there);
+    return std::nullopt;
   }
 
   /// A branch that begins in the step in which another changes its verdict, beside it, grows out of it there.

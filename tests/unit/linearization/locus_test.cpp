@@ -53,6 +53,27 @@ const char* const crossing = "dimensionless\nparam r = 0\ncoord x : number\nL = 
 
 }  // namespace
 
+TEST_CASE("a subcritical branch far from the start is met, followed both ways, and its changes are no accidents") {
+  // V' = x (a − u + u²), u = x²/100: at u = (1 ± √(1 − 4 a))/2, up to ten typical sizes away, for a < 1/4.
+  const char* const subcritical =
+      "dimensionless\nparam a = 1\ncoord x : number\nL = 1/2 x'^2 - 1/2 a x^2 + x^4/400 - x^6/60000\n";
+  for (const auto& [from, to] : {std::pair(1.0, -0.5), std::pair(-0.5, 1.0)}) {
+    CAPTURE(from);
+    Linearized m(subcritical);
+    const Locus locus = swept(m, "a", from, to, 16);
+    REQUIRE(locus.branches.size() == 5);  // rest, two stable and two unstable ones
+    std::size_t outer = 0;
+    for (const LocusBranch& b : locus.branches)
+      for (const LocusPoint& p : b.points) {
+        const double x = p.equilibrium.point.q[0], u = x * x / 100;
+        CHECK(std::abs(x * (p.parameter - u + u * u)) < 1e-9);
+        outer += x * x > 50;
+      }
+    CHECK(outer == 16);  // a = −0.5, −0.4 … 0.2, on both sides
+    for (const StabilityChange& c : locus.changes) CHECK(std::abs(c.parameter) < 1e-12);
+  }
+}
+
 TEST_CASE("two branches that cross change their verdicts where they cross, on the grid or between its values") {
   for (const auto& [from, steps] : {std::pair(-1.03, 21), std::pair(-1.0, 21), std::pair(-0.77, 10)}) {
     CAPTURE(from);
