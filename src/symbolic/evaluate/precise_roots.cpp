@@ -15,7 +15,7 @@ using Reals = std::vector<Real100>;
 using PreciseValue = evaluation::Interval<Real100>;
 
 constexpr int most_newton_turns = 500;
-constexpr double geometric = 0.97, left_of_series = 1e-12;
+constexpr double least_factor = 0.4, geometric = 0.97, left_of_series = 1e-30, least_of_series = 1e-12;
 const Real100 no_step("1e-60"), soft_pivot("1e-7"), no_pivot("1e-80"), no_residual("1e-70");
 const Real100 underflow("1e-900");  // intervals are never narrower than 1e-1000: what they hold then is no rounding
 
@@ -75,18 +75,22 @@ Eliminated eliminated(PreciseSystem s, const Real100& least_pivot) {
   return out;
 }
 
-/// What is left of the way in units of the step, where steps shrink by one factor; 0: they do not.
+/// What is left of the way in units of the step, where steps shrink by one factor, 1 − 1/m at a root of order m; 0:
+/// they do not. Steps that shrink faster and faster are no series: they may come to a place where roots part, or
+/// vanish.
 double rest_of_series(double step, double before, double before_that) {
   if (!(step < before && before < before_that)) return 0;
   const double factor = step / before;
-  return factor < geometric && std::abs(factor - before / before_that) < 0.01 ? factor / (1 - factor) : 0;
+  const bool is_one = factor > least_factor && factor < geometric && std::abs(factor - before / before_that) < 0.01;
+  return is_one ? factor / (1 - factor) : 0;
 }
 
 }  // namespace
 
 struct PreciseRoots::Impl {
   std::vector<Expr> unknowns;
-  evaluation::Tape tape;  // of the functions, then of their derivatives by rows
+  evaluation::Tape tape;      // of the functions, then of their derivatives by rows
+  std::vector<bool> depends;  // [functions] on any of the unknowns
 
   static std::vector<Expr> with_slopes(std::span<const Expr> functions, const std::vector<Expr>& unknowns) {
     std::vector<Expr> out(functions.begin(), functions.end());
@@ -95,7 +99,12 @@ struct PreciseRoots::Impl {
     return out;
   }
   Impl(std::span<const Expr> functions, std::span<const Expr> by)
-      : unknowns(by.begin(), by.end()), tape(with_slopes(functions, unknowns)) {}
+      : unknowns(by.begin(), by.end()), tape(with_slopes(functions, unknowns)) {
+    for (const Expr& f : functions) {
+      const std::vector<Expr> slopes = gradient(f, unknowns);
+      depends.push_back(std::any_of(slopes.begin(), slopes.end(), [](const Expr& e) { return !e.is_zero(); }));
+    }
+  }
 
   template <class Number>
   std::vector<Number> nodes_at(const Bindings& others, const Reals& at) const {
@@ -164,6 +173,7 @@ class PreciseRoots::Way {
       const double now = largest_of_parts(next->x), rest = rest_of_series(now, before, before_that);
       for (std::size_t j = 0; rest > 0 && j < at_.size(); ++j) at_[j] += by_[j] * next->x[j] * Real100(rest);
       if (Real100(now) < no_step || (rest > 0 && rest * now < left_of_series)) return true;
+      if (rest > 0 && rest * now < least_of_series && all_are_rounding()) return true;
       before_that = rest > 0 ? HUGE_VAL : before;
       before = rest > 0 ? HUGE_VAL : now;
     }
@@ -172,6 +182,15 @@ class PreciseRoots::Way {
   bool leaves_no_residual() {
     const auto next = move();
     return next && next->residual < no_residual;
+  }
+  /// (x − 1)² + 10⁻³⁰ at 1: no step leads on, and it is no root. A function of none of the unknowns is not looked at.
+  bool leaves_no_values_on_summits() const {
+    const std::vector<bool> rounding = functions_.rounding_at(start_, at_);
+    auto system = functions_.system_at(start_, at_, by_, rounding);
+    for (std::size_t i = 0; system && i < system->rows; ++i)
+      if (largest_of_row(*system, i) == 0 && functions_.depends[i] && !rounding[i] && system->right(i) != 0)
+        return false;
+    return system.has_value();
   }
   std::vector<double> place() const {
     std::vector<double> out;
@@ -187,6 +206,13 @@ class PreciseRoots::Way {
     Eliminated out = eliminated(std::move(*system), least_pivot_);
     for (std::size_t j = 0; j < at_.size(); ++j) at_[j] += by_[j] * out.x[j];
     return out;
+  }
+  /// No function can be told from 0: of (x − a)¹², multiplied out, as soon as x − a is below 10⁻⁸.
+  bool all_are_rounding() const {
+    const std::vector<bool> rounding = functions_.rounding_at(start_, at_);
+    const std::size_t count = rounding.size() / (at_.size() + 1);
+    return std::all_of(rounding.begin(), rounding.begin() + static_cast<std::ptrdiff_t>(count),
+                       [](bool is_rounding) { return is_rounding; });
   }
   double largest_of_parts(const Reals& moves) const {
     Real100 out = 0;
@@ -215,7 +241,7 @@ std::optional<std::vector<double>> PreciseRoots::near(const Bindings& start, std
   Way across(*impl_, start, sizes, soft_pivot);
   if (across.arrives(farthest) && across.leaves_no_residual()) return across.place();
   Way whole(*impl_, start, sizes, no_pivot);
-  return whole.arrives(farthest) ? std::optional(whole.place()) : std::nullopt;
+  return whole.arrives(farthest) && whole.leaves_no_values_on_summits() ? std::optional(whole.place()) : std::nullopt;
 }
 
 }  // namespace maupertuis

@@ -130,6 +130,42 @@ TEST_CASE("at the edge of where equations have values nothing rests, and steep d
   CHECK(std::abs(between[0]) < 1e-12);
 }
 
+TEST_CASE("a second term that is 10⁻¹⁸ of the first or less decides where rests are") {
+  const auto places = [](const std::string& coordinates, const std::string& potential, const std::string& start) {
+    Linearized m("dimensionless\ncoord " + coordinates + " : number\nT = 1/2 x'^2" +
+                 (coordinates == "x" ? "" : " + 1/2 y'^2") + "\nV = " + potential + "\nstart " + start + "\n");
+    EquilibriumSearch search;
+    search.start = m.start;
+    std::vector<std::vector<double>> out;
+    for (const Equilibrium& x : find_equilibria(m.at, search).found) {
+      CHECK(x.family == 0);
+      out.push_back(x.point.q);
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+  };
+  using Places = std::vector<std::vector<double>>;
+  for (const char* small : {"1e-18", "1e-22", "1e-25"}) {  // along the trough x = y²: at the middle and at both ends
+    CAPTURE(small);
+    const Places found = places("x, y", "(x - y^2)^2 + " + std::string(small) + " (y^2 - 1)^2", "x = 0.3");
+    REQUIRE(found.size() == 3);
+    CHECK(std::hypot(found[0][0], found[0][1]) < 1e-9);
+    for (const std::size_t end : {1, 2}) CHECK(std::hypot(found[end][0] - 1, std::abs(found[end][1]) - 1) < 1e-9);
+  }
+  for (const char* small : {"1e-18", "1e-30"}) {  // on the ring: below and above
+    CAPTURE(small);
+    const Places found = places("x, y", "(x^2 + y^2 - 1)^2 + " + std::string(small) + " x", "x = 0");
+    REQUIRE(found.size() == 3);
+    for (const std::size_t k : {0, 2}) CHECK(std::hypot(std::abs(found[k][0]) - 1, found[k][1]) < 1e-9);
+  }
+  // (x − 1)² + c has no root, however small c.
+  for (const char* small : {"1e-16", "1e-25", "1e-50"}) {
+    CAPTURE(small);
+    CHECK(places("x", "1/3 (x - 1)^3 + " + std::string(small) + " x", "x = 0.5").empty());
+  }
+  CHECK(places("x", "1/3 (x - 1)^3", "x = 0.5").size() == 1);
+}
+
 TEST_CASE("families that are some stay: rings, levers balanced by decimal numbers, flat pieces") {
   const auto family = [](const std::string& text) {
     const ModalStudy found = Linearized(text).study();
