@@ -69,7 +69,14 @@ void VisitedStates::add(const MotionState& state, double growth) {
     first_ = x;
     ways_ = Eigen::VectorXd::Zero(n);
     lowest_ = highest_ = x.head(n);
+    slowest_ = fastest_ = x.tail(n);
+    variation_ = Eigen::VectorXd::Zero(2 * n);
+    last_ = x;
   }
+  variation_ += (x - last_).cwiseAbs();
+  last_ = x;
+  slowest_ = slowest_.cwiseMin(x.tail(n));
+  fastest_ = fastest_.cwiseMax(x.tail(n));
   ways_ += x.tail(n).cwiseAbs();
   speeds_.push_back(x.tail(n).cwiseQuotient(sizes_.tail(n)).lpNorm<Eigen::Infinity>());
   lowest_ = lowest_.cwiseMin(x.head(n));
@@ -117,12 +124,24 @@ double VisitedStates::oscillations(double duration) const {
   return most;
 }
 
-double VisitedStates::share_at_rest(const Eigen::VectorXd& direction) const {
+/// On the stable manifold of a saddle coordinate and velocity come in without turning round more than once. A particle
+/// that drifts goes on too, but its velocity comes back.
+bool VisitedStates::comes_back(Eigen::Index component) const {
+  constexpr double to_and_fro = 2;  // ranges
+  const auto n = lowest_.size();
+  const double range =
+      component < n ? highest_[component] - lowest_[component] : fastest_[component - n] - slowest_[component - n];
+  return variation_[component] > to_and_fro * range;
+}
+
+double VisitedStates::share_without_return(const Eigen::VectorXd& direction) const {
   double share = 0;
-  for (Eigen::Index i = 0; i < ways_.size(); ++i) {
+  const auto n = ways_.size();
+  for (Eigen::Index i = 0; i < n; ++i) {
     const double place = std::max(std::abs(lowest_[i]), std::abs(highest_[i]));
-    if (highest_[i] - lowest_[i] <= rest * place)
-      share += direction[i] * direction[i] + direction[ways_.size() + i] * direction[ways_.size() + i];
+    const bool rests = highest_[i] - lowest_[i] <= rest * place;
+    if (rests || !(comes_back(i) || comes_back(n + i)))
+      share += direction[i] * direction[i] + direction[n + i] * direction[n + i];
   }
   return share;
 }
@@ -141,12 +160,13 @@ Chaos chaos_of(const GrowthOfNeighbours& growth, const VisitedStates& states, do
   const bool exponential = growth.whole > std::max(growth.certain, highest_power * growth.log_of_time) &&
                            growth.second_half > least_share * growth.whole &&
                            growth.second_half > highest_power * std::numbers::ln2;
-  // Neighbours of a rest that is unstable part from it, however the other coordinates move.
-  constexpr double nearly_all = 0.99;
-  if (growth.share_at_rest > nearly_all) return Chaos::NotShown;
   if (!exponential || leaves_no_room(states.certain_dimensions())) return Chaos::NotShown;
   if (!(states.oscillations(duration) > least_oscillations)) return Chaos::NotShown;
-  return states.growth_of_second_half() > 0.5 * growth.second_half ? Chaos::RunsAway : Chaos::Shown;
+  if (states.growth_of_second_half() > 0.5 * growth.second_half) return Chaos::RunsAway;
+  // Neighbours of a rest that is unstable part from it, and from what comes to it, however the other coordinates move:
+  // chaos needs motions that come back.
+  constexpr double nearly_all = 0.99;
+  return growth.share_without_return > nearly_all ? Chaos::NotShown : Chaos::Shown;
 }
 
 }  // namespace maupertuis::orbits

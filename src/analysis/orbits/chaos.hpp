@@ -44,18 +44,22 @@ class VisitedStates {
   /// The most oscillations of a coordinate in this time: its way over twice the range that was seen, of angles a turn
   /// at most.
   double oscillations(double duration) const;
-  /// Which part of a unit vector in units of the sizes [2n] lies along coordinates that have not moved.
-  double share_at_rest(const Eigen::VectorXd& direction) const;
+  /// Which part of a unit vector in units of the sizes [2n] lies along coordinates that have not moved, or gone one way
+  /// and at most once back, with their velocities.
+  double share_without_return(const Eigen::VectorXd& direction) const;
   /// Whether it goes to and fro, and on as fast as it began: it neither comes to rest nor creeps.
   bool keeps_moving(double duration) const;
 
  private:
   std::size_t certain_now() const;
+  bool comes_back(Eigen::Index component) const;
 
   const MechanicalSystem& system_;
-  Eigen::VectorXd sizes_, first_, ways_, lowest_, highest_;
-  StateSpan averaged_, whole_;  // whole_: with the transient, before rounding has grown
-  double growth_ = 0;           // the largest so far
+  Eigen::VectorXd sizes_, first_, last_, ways_, lowest_, highest_;
+  Eigen::VectorXd slowest_, fastest_;  // [n] velocities
+  Eigen::VectorXd variation_;          // [2n] Σ |change| from state to state
+  StateSpan averaged_, whole_;         // whole_: with the transient, before rounding has grown
+  double growth_ = 0;                  // the largest so far
   std::size_t certain_ = 0, seen_ = 0;
   std::vector<double> largest_;  // [states] component of each
   std::vector<double> speeds_;   // [states] the largest velocity of each, in units of the sizes
@@ -66,7 +70,7 @@ struct GrowthOfNeighbours {
   double whole = 0, second_half = 0;  // over the run
   double log_of_time = 0;             // the logarithm of the growth of t over the run: a power p gives p times that
   double certain = 0;                 // what must be exceeded, by the errors of the exponent
-  double share_at_rest = 0;           // of their direction, along coordinates that have not moved
+  double share_without_return = 0;    // of their direction, along coordinates that do not come back
 };
 
 /// What growth says where a state has d directions and t stands in the equations, or not. The neighbours of a regular

@@ -315,7 +315,7 @@ class LyapunovRun {
     constexpr double clearly = 3;  // errors
     out_.chaos = orbits::chaos_of(
         {whole, second_half, log_growth_of_time(), clearly * out_.errors.front() * out_.duration,
-         visited_->share_at_rest(directions_.col(0))},
+         visited_->share_without_return(directions_.col(0))},
         *visited_, out_.duration, out_.dimension, orbits::depends_on_time(equations_), !flow_.through_modes());
   }
 

@@ -180,6 +180,18 @@ TEST_CASE("linear motions part exponentially and are not chaotic") {
   CHECK(falls.chaos == Chaos::RunsAway);
 }
 
+TEST_CASE("what comes to a slow saddle beside oscillations is not chaotic: nothing comes back") {
+  // On the stable manifold, x = exp(−t √0.001), until rounding leads away from it.
+  for (const char* run : {"400", "700", "1000"}) {
+    const LyapunovResult r = lyapunov_of(
+        ModelText("dimensionless\ncoord x, y, z : number\nT = 1/2 (x'^2 + y'^2 + z'^2)\n"
+                  "V = -0.0005 x^2 + 1/2 y^2 + z^2\nstart x = 1, x' = -0.03162277660168379332, y = 1, z = 1\nrun " +
+                  std::string(run) + "\n"));
+    CHECK(r.exponents[0] == doctest::Approx(std::sqrt(1e-3)).epsilon(0.02));
+    CHECK(r.chaos == Chaos::NotShown);
+  }
+}
+
 TEST_CASE("the dimension of a limit cycle is 1") {
   const LyapunovResult cycle =
       lyapunov_of(ModelText(one + "V = 1/2 x^2\nforce x = (1 - x^2) x'\nstart x = 2\nrun 500\n"));
