@@ -32,6 +32,7 @@ std::vector<std::vector<int>> powers_up_to(std::size_t count, int degree) {
 
 Expr expression(const Coefficient& c, const std::vector<Expr>& parameters, Context& context) {
   std::vector<Expr> factors{context.number(c.number)};
+  if (c.root) factors.push_back(c.root);
   for (std::size_t i = 0; i < c.exponents.size(); ++i)
     if (!c.exponents[i].is_zero()) factors.push_back(pow(parameters[i], c.exponents[i]));
   if (c.numerator) factors.push_back(c.numerator);
@@ -134,11 +135,18 @@ std::optional<Coefficient> ParameterFit::fit_monomial(const std::vector<int>& ex
     if (!point || field.multiply(number, monomial(exponents, point->roots)) != point->values[vector][entry])
       return std::nullopt;
   }
-  const auto rational = rational_of(number, field);
-  if (!rational) return std::nullopt;
   Coefficient c = with_powers(exponents);
-  c.number = *rational;
-  return c;
+  if (const auto rational = rational_of(number, field)) {
+    c.number = *rational;
+    return c;
+  }
+  for (const NumberRoot& r : roots_)
+    if (const auto rational = rational_of(field.multiply(number, field.inverse(r.image)), field)) {
+      c.number = *rational;
+      c.root = r.root;
+      return c;
+    }
+  return std::nullopt;
 }
 
 /// c·D − N = 0 at random points, N and D with unknown coefficients.

@@ -7,14 +7,21 @@
 
 namespace maupertuis::invariants {
 
-/// number · Π parameters^exponents · numerator/denominator: a coefficient as a function of the parameters.
+/// number · root · Π parameters^exponents · numerator/denominator: a coefficient as a function of the parameters.
 struct Coefficient {
   Rational number = 1;
+  Expr root;                        // √3; empty: 1
   std::vector<Rational> exponents;  // [parameters], halves
   Expr numerator, denominator;      // polynomials of parameters; empty: 1
   bool is_monomial() const { return !numerator; }
 };
 Expr expression(const Coefficient& c, const std::vector<Expr>& parameters, Context& context);
+
+/// A root of a number, with its image in the field.
+struct NumberRoot {
+  Expr root;
+  Value image = 0;
+};
 
 /// Finds functions of the parameters from their values over a prime field.
 ///
@@ -25,7 +32,9 @@ class ParameterFit {
  public:
   /// The coefficients of all vectors at these parameters; nothing where no points were found.
   using Solver = std::function<std::optional<std::vector<std::vector<Value>>>(const ParameterRoots&)>;
-  ParameterFit(MotionSampler& sampler, Solver solver) : sampler_(sampler), solver_(std::move(solver)) {}
+  /// `roots`: numbers in homogeneous coefficients may be multiples of one of them.
+  ParameterFit(MotionSampler& sampler, Solver solver, std::vector<NumberRoot> roots = {})
+      : sampler_(sampler), solver_(std::move(solver)), roots_(std::move(roots)) {}
 
   /// Entry `entry` of vector `vector`, or nothing where it is too long.
   std::optional<Coefficient> find(std::size_t vector, std::size_t entry);
@@ -51,6 +60,7 @@ class ParameterFit {
 
   MotionSampler& sampler_;
   Solver solver_;
+  std::vector<NumberRoot> roots_;
   std::optional<Point> base_;
   std::vector<Point> scaled_;  // [parameters] the root of one multiplied by factors_
   std::vector<int> factors_;   // [parameters] 2, or another square modulo p where roots have no value then

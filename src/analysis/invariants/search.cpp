@@ -38,7 +38,8 @@ class Search {
         basis_(basis),
         known_(known),
         of_rates_(of_rates),
-        sampler_(rows, with_known(needed(generators, basis), known), true, seed),
+        roots_(roots_of_numbers(needed(generators, basis))),
+        sampler_(rows, with_known(with_known(needed(generators, basis), known), roots_), true, seed),
         field_(sampler_.field()) {}
 
   SearchResult carry_out(std::size_t work) {
@@ -68,6 +69,23 @@ class Search {
     std::vector<Expr> out(generators.values().size(), generators.context().number(1));
     for (const Monomial& m : basis.monomials)
       for (const Factor& f : m) out[f.generator] = generators.values()[f.generator];
+    return out;
+  }
+
+  static std::vector<Expr> roots_of_numbers(const std::vector<Expr>& functions) {
+    std::vector<Expr> out;
+    for (const Expr& node : topological_order(functions))
+      if (node.is(Kind::Power) && node[0].is_number() && node[1].is_number() &&
+          (node[1].number() * Rational(2)).is_integer() && !node[1].number().is_integer())
+        out.push_back(node);
+    return out;
+  }
+
+  /// Their images are the same at all samples.
+  std::vector<NumberRoot> images_of_roots() const {
+    std::vector<NumberRoot> out;
+    const std::size_t first = generators_.values().size() + known_.size();
+    for (std::size_t k = 0; k < roots_.size(); ++k) out.push_back({roots_[k], samples_.front().values[first + k]});
     return out;
   }
 
@@ -140,7 +158,8 @@ class Search {
 
   void write_in_parameters(const std::vector<NullVector>& vectors, SearchResult& result) {
     if (vectors.empty()) return;
-    ParameterFit fit(sampler_, [&](const ParameterRoots& roots) { return entries_at(roots, vectors); });
+    ParameterFit fit(
+        sampler_, [&](const ParameterRoots& roots) { return entries_at(roots, vectors); }, images_of_roots());
     if (!fit.prepare()) {
       result.too_long = vectors.size();
       return;
@@ -215,6 +234,7 @@ class Search {
   const Basis& basis_;
   const std::vector<Expr>& known_;
   bool of_rates_;
+  std::vector<Expr> roots_;  // of numbers, √3 in exp(√3 x)
   MotionSampler sampler_;
   const PrimeField& field_;
   std::vector<MotionSampler::Sample> samples_;

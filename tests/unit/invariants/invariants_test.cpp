@@ -434,7 +434,7 @@ TEST_CASE("energies of oscillators whose rates are roots that are not met at ran
   }
 }
 
-TEST_CASE("an integral whose coefficients hold roots of numbers is told to be there, where it cannot be written") {
+TEST_CASE("an integral whose coefficients hold roots of numbers is written with them") {
   // Hénon's integral of Toda's lattice: 24 √3 y'³ − 72 √3 x'² y' − … is conserved for √3 alone.
   const std::string toda =
       "coord x, y : number\nL = 1/2 (x'^2 + y'^2) - 1/24 (exp(2 x + 2 ROOT y) + exp(2 x - 2 ROOT y) + exp(-4 x))\n";
@@ -443,6 +443,14 @@ TEST_CASE("an integral whose coefficients hold roots of numbers is told to be th
     for (std::size_t at; (at = text.find("ROOT")) != std::string::npos;) text.replace(at, 4, root);
     return text;
   };
-  CHECK(Found(with("sqrt(3)"), 3).result.too_long == 1);
-  CHECK(Found(with("sqrt(5)"), 3).result.too_long == 0);
+  const Found henon(with("sqrt(3)"), 3);
+  CHECK(henon.result.too_long == 0);
+  CHECK(henon.result.completely_integrable);
+  REQUIRE(henon.result.integrals.size() == 2);
+  const Expr i = henon.result.integrals[1].value;  // its leading terms are those of Hénon (1974): y'³ − 3 x'² y'
+  CHECK(henon.result.integrals[1].velocity_degree == 3);
+  CHECK(to_plain(i, henon.m.equations.order).find("sqrt(3)") != std::string::npos);
+  const Found other(with("sqrt(5)"), 3);
+  CHECK(other.result.too_long == 0);
+  CHECK_FALSE(other.result.completely_integrable);
 }
