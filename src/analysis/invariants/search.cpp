@@ -72,12 +72,17 @@ class Search {
     return out;
   }
 
+  /// Also √2 of √(2 k/m).
   static std::vector<Expr> roots_of_numbers(const std::vector<Expr>& functions) {
     std::vector<Expr> out;
-    for (const Expr& node : topological_order(functions))
-      if (node.is(Kind::Power) && node[0].is_number() && node[1].is_number() &&
-          (node[1].number() * Rational(2)).is_integer() && !node[1].number().is_integer())
-        out.push_back(node);
+    for (const Expr& node : topological_order(functions)) {
+      if (!node.is(Kind::Power) || !node[1].is_number()) continue;
+      if (!(node[1].number() * Rational(2)).is_integer() || node[1].number().is_integer()) continue;
+      const Expr number = node[0].is(Kind::Product) ? node[0][0] : node[0];
+      if (!number.is_number() || number.number().sign() <= 0) continue;
+      const Expr root = sqrt(number);
+      if (!root.is_number() && std::find(out.begin(), out.end(), root) == out.end()) out.push_back(root);
+    }
     return out;
   }
 
