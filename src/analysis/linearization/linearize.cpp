@@ -200,6 +200,20 @@ void keep_to(const Matrix& relations, const Vector& sizes, Linearization& out) {
 
 namespace {
 
+/// −(what the rows of forces and of accelerations of constraints change by) of ξ, ξ̇ and inputs [n + m × f + g + k]: the
+/// right sides of accelerations and multipliers.
+Matrix moved_sides(const Pieces& p, const Matrix& xi, const Matrix& rate_w, const Matrix& rate_q) {
+  const Index n = xi.rows(), m = p.accelerations.by_q.rows(), f = xi.cols(), g = rate_w.cols(),
+              k = p.balance.by_inputs.cols();
+  Matrix out = Matrix::Zero(n + m, f + g + k);
+  out.topLeftCorner(n, f) = negated_product(p.balance.by_q, xi) - product(p.balance.by_v, rate_q);
+  out.block(0, f, n, g) = negated_product(p.balance.by_v, rate_w);
+  out.topRightCorner(n, k) = -p.balance.by_inputs;
+  out.bottomLeftCorner(m, f) = negated_product(p.accelerations.by_q, xi) - product(p.accelerations.by_v, rate_q);
+  out.block(n, f, m, g) = negated_product(p.accelerations.by_v, rate_w);
+  return out;
+}
+
 void check_operating_point(const OperatingPoint& point, std::size_t n, std::size_t m, std::size_t k) {
   check_argument(point.q.size() == n && point.v.size() == n && point.a.size() == n,
                  "linearize: q, v or a of the point has another length than the system has coordinates");
@@ -235,15 +249,10 @@ LinearizationResult linearize(const PointEquations& equations, const OperatingPo
   const Matrix rate_w = null_basis(p.rates.by_v, at_velocities);  // ξ̇ by velocities [n × g]
   const Matrix rate_q =
       spread(p.rates.by_v, at_velocities, negated_product(p.rates.by_q, xi));  // ξ̇ by positions [n × f]
-  const auto n = static_cast<Index>(e.n), m = static_cast<Index>(e.m), k = static_cast<Index>(3 * e.k);
+  const auto n = static_cast<Index>(e.n), k = static_cast<Index>(3 * e.k);
   const Index f = xi.cols(), g = rate_w.cols();
 
-  Matrix right = Matrix::Zero(n + m, f + g + k);
-  right.topLeftCorner(n, f) = negated_product(p.balance.by_q, xi) - product(p.balance.by_v, rate_q);
-  right.block(0, f, n, g) = negated_product(p.balance.by_v, rate_w);
-  right.topRightCorner(n, k) = -p.balance.by_inputs;
-  right.bottomLeftCorner(m, f) = negated_product(p.accelerations.by_q, xi) - product(p.accelerations.by_v, rate_q);
-  right.block(n, f, m, g) = negated_product(p.accelerations.by_v, rate_w);
+  const Matrix right = moved_sides(p, xi, rate_w, rate_q);
   const BorderedSolution solved = solve_bordered(p.balance.by_a, p.balance.by_multipliers, p.accelerations.by_a, right);
   if (solved.singular ||
       is_made_by_rounding(e, point, turning,
