@@ -153,6 +153,9 @@ void elaborate_event(Elaboration& e, const syntax::EventStatement& s, Span span)
 Expr with_inputs_as_formulas(const MechanicalSystem& s, Expr value);
 /// left − right of a condition along the motion; an empty handle after a mistake.
 Expr condition(Elaboration& e, const syntax::Expression& left, const syntax::Expression& right, const char* what);
+/// E0401, E0289 where a formula has no value at an instant of the motion: it holds a third derivative that is none of
+/// the state, or a field without a place.
+bool refuse_along_motion(Elaboration& e, const Value& v, const syntax::Expression& x);
 /// The coordinate or velocity that `x` names; nothing, and a message, if it is none.
 std::optional<StartValue> start_variable(Elaboration& e, const syntax::Expression& x);
 /// The name of a constraint or of a release; false, and a message, if it is none.

@@ -141,7 +141,7 @@ Expected meaning_of(Elaboration& e, const written::ValueAt& x, Span) {
     if (time.poisoned) return std::nullopt;
     at = time.scalar();
   }
-  if (!subject || refuse_without_place(e, subject->scalar(), *x.subject)) return std::nullopt;
+  if (!subject || refuse_along_motion(e, *subject, *x.subject)) return std::nullopt;
   const auto expected = number_beside(e, *subject, *x.subject, x.expected);
   return expected ? Expected(expectation::ValueAt{subject->scalar(), at, *expected}) : std::nullopt;
 }
@@ -149,7 +149,7 @@ Expected meaning_of(Elaboration& e, const written::ValueAt& x, Span) {
 /// θ at until = 0.5 rad ± 1e-9
 Expected meaning_of(Elaboration& e, const written::ValueAtUntil& x, Span line) {
   const std::optional<Value> subject = number(e, *x.subject, along_motion());
-  if (refuse_without_until(e, line) || !subject) return std::nullopt;
+  if (refuse_without_until(e, line) || !subject || refuse_along_motion(e, *subject, *x.subject)) return std::nullopt;
   const auto expected = number_beside(e, *subject, *x.subject, x.expected);
   return expected ? Expected(expectation::ValueAtUntil{subject->scalar(), *expected}) : std::nullopt;
 }

@@ -198,6 +198,11 @@ void start(Elaboration& e, const syntax::StartStatement& s) {
 
 }  // namespace
 
+bool refuse_along_motion(Elaboration& e, const Value& v, const Expression& x) {
+  if (v.order > 2 && e.higher.empty() && refuse_acceleration(e, v, x, "a value along the motion")) return true;
+  return std::any_of(v.parts.begin(), v.parts.end(), [&](Expr part) { return refuse_without_place(e, part, x); });
+}
+
 Expr condition(Elaboration& e, const Expression& left_side, const Expression& right_side, const char* what) {
   Place along_motion;
   along_motion.reactions = true;
@@ -212,9 +217,7 @@ Expr condition(Elaboration& e, const Expression& left_side, const Expression& ri
   place.inline_constants = true;
   const Value right =
       scalar_of(e, right_side, left.dimension, fmt::format("`{}`", e.texts.slice(left_side.span)), place);
-  if (right.poisoned || refuse_without_place(e, left.scalar(), left_side) ||
-      refuse_without_place(e, right.scalar(), right_side))
-    return {};
+  if (right.poisoned || refuse_along_motion(e, left, left_side) || refuse_along_motion(e, right, right_side)) return {};
   return left.scalar() - right.scalar();
 }
 
@@ -371,7 +374,7 @@ void override_experiment(Elaboration& e) {
     Place along_motion;
     along_motion.reactions = true;
     if (const auto v = number_of(e, *formula, along_motion, "a formula that is asked for");
-        v && !refuse_without_place(e, v->scalar(), *formula))
+        v && !refuse_along_motion(e, *v, *formula))
       e.experiment().asked.push_back({v->scalar(), v->dimension, formula->span});
   }
   override_given_path(e);

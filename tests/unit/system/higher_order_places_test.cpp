@@ -33,6 +33,16 @@ TEST_CASE("accelerations are no part of what an event sets or what friction take
   CHECK(codes_of("dimensionless\ncoord y : number\nL = 1/2 y'^2\nD = (y L)^2\n").empty());
 }
 
+TEST_CASE("third derivatives are no part of what is asked along the motion, by rates neither") {
+  const std::string sleigh =
+      "dimensionless\ncoord x, ψ : number\nT = 1/2 (x'^2 + ψ'^2)\nrates v = x' cos(ψ), ω = ψ'\nrun 1\n";
+  for (const char* asked : {"event e when v'' = 1 : record", "event e when 1 = v'' : record", "expect v'' at 1 = 0 ± 1",
+                            "let a = v'\nexpect a' at 1 = 0 ± 1"})
+    CHECK(codes_of(sleigh + asked + "\n") == "E0401 ");
+  CHECK(codes_of(sleigh + "event e when v' = 1 : record\nexpect v' at 1 = 0 ± 1\n").empty());
+  CHECK(codes_of("dimensionless\ncoord y : number\nL = 1/2 y''^2\nrun 1\nevent e when y''' = 1 : record\n").empty());
+}
+
 TEST_CASE("an acceleration in the Lagrangian that masses contradict is told at its place") {
   CHECK(codes_of("dimensionless\ncoord y : number\nL = 1/2 y''^2 - y\npoint R mass 1 at (1, 0)\n") == "E0259 ");
 }
