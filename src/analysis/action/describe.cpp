@@ -94,16 +94,24 @@ std::string no_index_at(const KinkPassed& kink, const Problem& problem) {
       where.empty() ? "" : ", " + where + ",", place(kink.t, problem.model.system));
 }
 
+/// The terms of S; of a path at rest those of one that crosses its size in its time.
+double size_that_counts(Functional& functional, const Trial& trial, const Vector& least) {
+  const Vector size = even_scale(trial, least).col(0), v = size / std::abs(trial.mesh.whole);
+  const MotionState first = to_path(trial).at(trial.mesh.start);
+  const double crossing =
+      functional.sensitivity(first.t, first.q.data(), v.data(), trial.multipliers).terms * std::abs(trial.mesh.whole);
+  return std::max(size_of_action(functional, trial), std::isfinite(crossing) ? crossing : 0);
+}
+
 /// W1203 where the motion from the path's own states does something else than the path: the polynomials of its elements
 /// do not see what is narrower than they are. S is then not better known than by the two.
-void compare_with_motion(StationaryPath& p, Diagnostics& diagnostics) {
+void compare_with_motion(StationaryPath& p, double usual_action, Diagnostics& diagnostics) {
   constexpr double usual = 1e-9, beyond = 1e4;  // of sizes; of the errors of the path and of S
   const MotionCheck& c = p.check;
   if (!c.done || c.from != p.path.start || c.to != p.path.end) return;
   const double off = std::abs(c.action - p.action);
   const bool elsewhere = c.missed > usual && c.missed > beyond * p.path_error;
-  const bool other_action =
-      off > usual * std::max(std::abs(c.action), std::abs(p.action)) && off > beyond * p.action_error;
+  const bool other_action = off > usual * usual_action && off > beyond * p.action_error;
   if (!elsewhere && !other_action) return;
   p.action_error = std::max(p.action_error, off);
   p.path_error = std::max(p.path_error, c.missed);
@@ -153,7 +161,8 @@ StationaryPath describe(Problem& problem, const Refined& refined, const ActionEn
     diagnostics.warning("W1201", {}, "the two counts of a Morse index disagree", out.second.reason,
                         "No index is given for this path. Please report the model.");
   if (options.variations) out.second.variations = test_variations(problem, refined.coarse, fixed, least);
-  if (!(out.check.missed > largest_miss)) compare_with_motion(out, diagnostics);  // else it is left out
+  if (!(out.check.missed > largest_miss))  // else it is left out
+    compare_with_motion(out, size_that_counts(problem.functional, fine, least), diagnostics);
   return out;
 }
 
