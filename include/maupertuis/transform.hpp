@@ -44,8 +44,11 @@ Expr expand(Expr e, std::size_t term_budget = 20000);
 /// sinh u/cosh³ u, log(1 + exp(u)), written so that they are finite where exp(u) is not. They differ from the given
 /// ones by less than 1e-60 of their largest value (1e-130 where coefficients are near 1), and have switches at |u| =
 /// 300. `value_of` tells what does not move, as parameters; without it sums that hold such are left as they are.
+/// Exponentials of more than `largest_exponent` do not arise on the way: for series in double, whose coefficients grow
+/// with the order, 400.
 /// Cost: O(nodes).
-std::vector<Expr> without_overflow(std::span<const Expr> roots, const std::function<double(Expr)>& value_of = {});
+std::vector<Expr> without_overflow(std::span<const Expr> roots, const std::function<double(Expr)>& value_of = {},
+                                   double largest_exponent = 600);
 
 struct ReadingPlaces;
 

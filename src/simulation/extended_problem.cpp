@@ -50,6 +50,7 @@ class ExactPlanner {
   /// Observables: the energy, the points, the reactions, the conditions of the start with their derivatives.
   void choose_functions(const Observables& all) {
     WantedFunctions wanted;
+    wanted.has_wide_range = true;
     const auto energies = all.expressions.begin() + static_cast<std::ptrdiff_t>(all.energy_terms);
     wanted.observables.push_back(context_.sum(std::vector<Expr>(all.expressions.begin(), energies)));
     wanted.observables.insert(wanted.observables.end(), energies, all.expressions.end());

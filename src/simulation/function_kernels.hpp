@@ -9,6 +9,7 @@ namespace maupertuis {
 /// What a run wants to know of a motion besides the motion: in q, q', q'', λ, t, inputs and parameters.
 struct WantedFunctions {
   std::vector<Expr> observables, events, integrands;
+  bool has_wide_range = false;  // of numbers, beyond that of double
 };
 
 /// The equations of a system as functions at points, for methods that do not expand the motion in powers of time.

@@ -32,10 +32,13 @@ KernelSource motion_source(const EquationsOfMotion& equations, const WantedFunct
   KernelSource source = motion_source(equations);
   const Bindings parameters = parameter_bindings(system);
   const auto value_of = [&](Expr e) { return evaluate(e, parameters); };
-  source.residual = without_overflow(source.residual, value_of);
-  source.observables = without_overflow(in_terms_of_motion(system, wanted.observables), value_of);
-  source.events = in_terms_of_motion(system, wanted.events);
-  source.integrands = without_overflow(in_terms_of_motion(system, wanted.integrands), value_of);
+  const auto finite = [&](std::span<const Expr> formulas) {
+    return without_overflow(formulas, value_of, wanted.has_wide_range ? 600 : 400);
+  };
+  source.residual = finite(source.residual);
+  source.observables = finite(in_terms_of_motion(system, wanted.observables));
+  source.events = finite(in_terms_of_motion(system, wanted.events));
+  source.integrands = finite(in_terms_of_motion(system, wanted.integrands));
   return source;
 }
 

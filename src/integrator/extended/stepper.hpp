@@ -67,6 +67,7 @@ class Stepper {
   struct Crossing {
     T x = T(1);  // fraction of the step
     bool found = false;
+    bool is_lost = false;                // see taylor::Crossing
     std::vector<std::size_t> roots;      // switches, then events
     std::vector<int> directions;         // [roots]
     std::vector<bool> jumps;             // [roots] a switch function jumps there: it has no zero

@@ -209,6 +209,7 @@ void Stepper<T>::note(Crossing& crossing, const taylor::RootOf<T>& root, std::si
     crossing.roots.clear(), crossing.directions.clear(), crossing.jumps.clear(), crossing.orders.clear();
   crossing.x = std::min(crossing.x, root.x);
   crossing.found = true;
+  crossing.is_lost = false;
   crossing.roots.push_back(index);
   crossing.directions.push_back(direction);
   crossing.jumps.push_back(root.kind == taylor::RootKind::Jump);
@@ -238,6 +239,8 @@ typename Stepper<T>::Crossing Stepper<T>::first_crossing(const T& h) {
     const T beyond = is_switch ? together : std::max(together, epsilon_to<T>(0.77));
     const T until = std::min(roots_->window(), T(first.x * (1 + together) + beyond));
     const auto root = roots_->first(i, watched, T(0), until, !is_switch, is_switch);
+    if (!root && roots_->lost() && *roots_->lost() < first.x)
+      first = {*roots_->lost(), false, true, {}, {}, {}, {}, std::move(first.after)};
     if (!root) continue;
     const bool jump = root->kind == taylor::RootKind::Jump;
     note(first, *root, i, together, root->kind == taylor::RootKind::Touching ? 0 : -watched.side);
@@ -273,6 +276,7 @@ std::optional<typename Stepper<T>::Outcome> Stepper<T>::advance(const T& bound, 
   if (crossing.found && stuck_ >= 100)
     return Outcome{StepEnding::Sliding,
                    "Switches follow each other in no time: the motion has come to slide along a switch."};
+  if (crossing.is_lost && crossing.x == 0) return Outcome{StepEnding::Overflow, taylor::no_series_of_watched};
   const T tau = h * crossing.x;
   state_after(tau, q_, v_);
   t_ = reaches && !crossing.found && crossing.x == 1 ? bound : T(begin_ + tau);

@@ -1,3 +1,4 @@
+#include "integrator/taylor/passed_stretch.hpp"
 #include "integrator/taylor/stepper.hpp"
 
 #include <algorithm>
@@ -62,10 +63,14 @@ class TaylorStepper::Impl::Collocation {
   /// q̈ at the nodes, until it is that of the polynomial through it.
   bool converges();
   bool is_smooth();
+  /// Whether nothing happens between all these points but at the place itself.
+  bool is_smooth_between();
+  /// [order + 2][count] coefficients in time of the state, of `count` unknowns: coordinates, then multipliers.
+  std::vector<double> rows(int order, std::size_t count) const;
 
   const double h;
-  std::vector<Nodes> acceleration, integrand;  // coefficients
-  std::vector<std::int8_t> sides;              // at the last point that was asked for
+  std::vector<Nodes> acceleration, multiplier, integrand;  // coefficients
+  std::vector<std::int8_t> sides;                          // at the last point that was asked for
 
  private:
   bool ask_beside(double x);
@@ -75,6 +80,8 @@ class TaylorStepper::Impl::Collocation {
   /// rounding errors across the branch on which the motion goes; the projection takes them out at the end, where the
   /// branches are apart.
   double smooth() const { return place_ == Place::OfConstraints ? 1e-6 : 2e-13; }
+  double momentum(std::size_t j) const;
+  double length_from(double x, double least, taylor::PassedStretch& between);
 
   Impl& s_;
   Place place_;
@@ -84,6 +91,7 @@ class TaylorStepper::Impl::Collocation {
 TaylorStepper::Impl::Collocation::Collocation(Impl& stepper, double length, Place place)
     : h(length),
       acceleration(stepper.n, Nodes{}),
+      multiplier(stepper.m, Nodes{}),
       integrand(stepper.state.integrals.size(), Nodes{}),
       s_(stepper),
       place_(place) {
@@ -149,7 +157,7 @@ bool TaylorStepper::Impl::Collocation::converges() {
   const auto cardinal = cardinal_polynomials(at);
   double before = std::numeric_limits<double>::infinity();
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-    std::vector<Nodes> now(s_.n, Nodes{}), integrand_now(integrand.size(), Nodes{});
+    std::vector<Nodes> now(s_.n, Nodes{}), multiplier_now(s_.m, Nodes{}), integrand_now(integrand.size(), Nodes{});
     double change = 0;
     for (int j = 0; j < nodes; ++j) {
       if (!ask_beside(at[j])) return false;
@@ -160,10 +168,14 @@ bool TaylorStepper::Impl::Collocation::converges() {
           change = std::max(change, moved / size_[i]);
         for (int k = 0; k < nodes; ++k) now[i][k] += a * cardinal[j][k];
       }
-      for (std::size_t i = 0; i < integrand.size(); ++i)
-        for (int k = 0; k < nodes; ++k) integrand_now[i][k] += s_.probe.integrand(i, 0) * cardinal[j][k];
+      for (int k = 0; k < nodes; ++k) {
+        for (std::size_t i = 0; i < s_.m; ++i) multiplier_now[i][k] += s_.probe.multiplier(i) * cardinal[j][k];
+        for (std::size_t i = 0; i < integrand.size(); ++i)
+          integrand_now[i][k] += s_.probe.integrand(i, 0) * cardinal[j][k];
+      }
     }
     acceleration = std::move(now);
+    multiplier = std::move(multiplier_now);
     integrand = std::move(integrand_now);
     if (change <= settled || (change <= smooth() / 2 && change > before / 2)) return true;
     if (sweep >= enough_to_settle && change >= before && change > smooth()) return false;  // the force jumps there
@@ -182,22 +194,62 @@ bool TaylorStepper::Impl::Collocation::is_smooth() {
   return true;
 }
 
+std::vector<double> TaylorStepper::Impl::Collocation::rows(int order, std::size_t count) const {
+  std::vector<double> out((static_cast<std::size_t>(order) + 2) * count, 0.0);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i < s_.n) out[i] = s_.state.q_now[i], out[count + i] = s_.state.v_now[i];
+    const Nodes& second = i < s_.n ? acceleration[i] : multiplier[i - s_.n];
+    for (int k = 0; k < nodes && k + 2 <= order + 1; ++k)
+      out[static_cast<std::size_t>(k + 2) * count + i] = second[k] / (std::pow(h, k) * (k + 1) * (k + 2));
+  }
+  return out;
+}
+
+/// Of row j, with the mass matrix of the point that was asked for last.
+double TaylorStepper::Impl::Collocation::momentum(std::size_t j) const {
+  double sum = 0;
+  for (std::size_t k = 0; k < s_.n; ++k) sum += std::abs(s_.probe.mass(j, k)) * size_[k];
+  return sum;
+}
+
+/// The part of the step from x on over which the formulas are smooth; 0: not even over `least`. Negative: the equations
+/// do not hold at x, so that there is something between the nodes.
+double TaylorStepper::Impl::Collocation::length_from(double x, double least, taylor::PassedStretch& between) {
+  if (!ask_beside(x)) return 0;
+  if (s_.safe.is_needed() && s_.safe.wants_momenta(size_)) s_.safe.set_momenta(size_, s_.probe);
+  between.look_at(h * x, s_.probe.constants());
+  // A multiplier is told as well as the equations beside its place tell it.
+  const double share_of_terms = place_ == Place::OfConstraints ? 1e-6 : 1e-12;
+  for (std::size_t j = 0; j < s_.n; ++j)
+    if (!between.holds(j, smooth() * momentum(j) / std::abs(h), share_of_terms)) return -1;
+  return between.length(std::abs(h) * (1 - x), std::abs(h) * least) / std::abs(h);
+}
+
+/// From piece to piece; formulas may have no series in a small part about the place, as sin x/x at 0.
+bool TaylorStepper::Impl::Collocation::is_smooth_between() {
+  const double least = std::max(1e-8, 16 * epsilon * std::abs(s_.state.t.hi / h));  // of the step
+  const double most_of_gap = place_ == Place::OfConstraints ? 0 : 64 * least;
+  constexpr int most_pieces = 2000;
+  taylor::PassedStretch between(s_.work.program(), s_.control.order, s_.safe, s_.state.t.hi, s_.state.t.lo,
+                                rows(s_.control.order, s_.n + s_.m));
+  double x = 0, gap = 0;
+  for (int piece = 0; x < 1 && piece < most_pieces; ++piece) {
+    const double length = length_from(x, std::min(least, 1 - x), between);
+    if (length < 0 || (length == 0 && gap >= most_of_gap)) return false;
+    if (length == 0) gap += least;
+    x += length > 0 ? length : least;
+  }
+  return x >= 1;
+}
+
 /// Makes the step that was found.
 void TaylorStepper::Impl::pass(const Collocation& c, double bound, Step& result) {
   last.keep_state(state);
   watched.set_sides(probe);
-  const std::size_t stride = n;
-  std::vector<double> rows((static_cast<std::size_t>(control.order) + 2) * stride, 0.0);
-  const auto power = [&](int k) { return std::pow(c.h, k); };
-  for (std::size_t i = 0; i < n; ++i) {
-    rows[i] = state.q_now[i], rows[stride + i] = state.v_now[i];
-    for (int k = 0; k < nodes && k + 2 <= control.order + 1; ++k)
-      rows[static_cast<std::size_t>(k + 2) * stride + i] = c.acceleration[i][k] / (power(k) * (k + 1) * (k + 2));
-  }
-  last.dense.copy(rows.data(), stride);
+  last.dense.copy(c.rows(control.order, n).data(), n);
   for (int k = 0; k <= control.order + 1; ++k)
     for (std::size_t i = 0; i < state.integrals.size(); ++i)
-      last.dense.integrand(k)[i] = k < nodes ? c.integrand[i][k] / power(k) : 0;
+      last.dense.integrand(k)[i] = k < nodes ? c.integrand[i][k] / std::pow(c.h, k) : 0;
   last.start_sample = last.sample(last.begin.hi, probe);
   has_start_sample = true;
   const bool reaches_bound = c.h == remaining(bound);
@@ -220,7 +272,8 @@ void TaylorStepper::Impl::pass(const Collocation& c, double bound, Step& result)
 bool TaylorStepper::Impl::passes(double h, double bound, Place place, Step& result) {
   if (!(h > 0 && h <= std::abs(remaining(bound))) || control.order < nodes) return false;
   Collocation c(*this, std::copysign(h, remaining(bound)), place);
-  const bool found = c.converges() && c.is_smooth();
+  const bool found = c.converges() && c.is_smooth() && (rests_for_ever() || c.is_smooth_between());
+  safe.set_constants(work.constants());
   watched.set_sides(probe);
   if (found) pass(c, bound, result);
   return found;

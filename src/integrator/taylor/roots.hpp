@@ -112,6 +112,9 @@ class RootSearchOf {
   /// The part of the step, from its beginning, in which roots can be searched: 1, or less where the functions that come
   /// near zero would be many.
   const T& window() const { return window_; }
+  /// Where first() came to a stretch in which the function has values, but no series, as cosh u beyond the range of
+  /// numbers: it ended there, without knowing of roots.
+  const std::optional<T>& lost() const { return lost_; }
   /// Whether a function stays clear of zero within the window.
   bool is_clear(std::size_t index) const { return clear_[index] != 0; }
   std::int8_t side_of_clear(std::size_t index) const { return clear_[index]; }
@@ -188,6 +191,7 @@ class RootSearchOf {
     T end;             // where the function is analytic again
     std::int8_t side;  // that it has there; 0: it has no value any more
     std::optional<RootOf<T>> root;
+    bool is_point = true;  // or the function has no values in it
   };
   Gap gap(std::size_t index, const T& x, const T& until, std::int8_t side);
   bool has_value(std::size_t index, const T& x);
@@ -220,6 +224,7 @@ class RootSearchOf {
   bool expanded_ = false;  // the rows are those of the place
   Time t_;
   T h_ = T(1), resolution_ = T(0), window_ = T(1);
+  std::optional<T> lost_;
   T origin_ = T(0);                                               // where the search begins
   double last_radius_ = std::numeric_limits<double>::infinity();  // of the disk of the piece before, in time
   double last_window_ = 0;                                        // in time; 0: there was none

@@ -415,6 +415,8 @@ typename RootSearchOf<T>::Gap RootSearchOf<T>::gap(std::size_t index, const T& x
       result.root = RootOf<T>{result.end, RootKind::Jump, result.side};
     return result;
   }
+  constexpr double point = 1e-6;  // of the step
+  result.is_point = result.end - x <= std::max(T(point), T(1024 * resolution_));
   result.side = sign_at(result.end);
   if (side != 0 && result.side != 0 && result.side != side)
     result.root = change_of_sign(index, x, result.end, side, result.end);
@@ -432,6 +434,7 @@ bool stays_clear(const ScaledPolynomialOf<T>& polynomial, std::int8_t side) {
 template <class T>
 std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watched, const T& from, const T& until,
                                                 bool wants_touching, bool wants_jumps) {
+  lost_.reset();
   if (is_clear(index)) {
     const bool wrong = watched.side == -clear_[index] && wants_jumps;
     watched = {clear_[index], false};
@@ -446,6 +449,7 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watc
                              : piece(index, x, std::min(most, T(until - x)));
     if (now.width == 0) {
       const Gap beyond = gap(index, x, until, watched.side);
+      if (!beyond.is_point) return lost_ = x, std::nullopt;
       watched.at_zero = false;
       if (beyond.root && (beyond.root->kind == RootKind::Crossing || wants_jumps)) return beyond.root;
       watched = {beyond.side, false};

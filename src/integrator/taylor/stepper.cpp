@@ -111,7 +111,10 @@ double TaylorStepper::Impl::moved(double tau, double h) const {
     age = std::min(age, slowest + std::abs(tau));
   }
   const double rounding = 0.5 * std::numeric_limits<double>::epsilon() * age;
-  const double to = tau + rounding * share_of_rounding(options.moved_instants, state.t.hi + tau);
+  const double share = share_of_rounding(options.moved_instants, state.t.hi + tau);
+  double to = tau + rounding * share;
+  // From the beginning of a run τ is no finer than the time itself, to which the root was rounded.
+  if (to == tau) to = std::nextafter(tau, std::copysign(HUGE_VAL, share));
   return std::abs(tau) > 2 * rounding && std::abs(to) <= std::abs(h) ? to : tau;
 }
 
@@ -265,6 +268,10 @@ bool TaylorStepper::Impl::make_step(double bound, double h, Step& result) {
   if (crossing.found && stuck >= 100) {
     end(result, StepEnding::Sliding,
         "Switches follow each other in no time: the motion has come to slide along a switch.");
+    return true;
+  }
+  if (crossing.is_lost && crossing.x == 0) {
+    end(result, StepEnding::Overflow, taylor::no_series_of_watched);
     return true;
   }
   advance(bound, h, crossing, result);

@@ -1,6 +1,7 @@
 #include "integrator/taylor/watched_functions.hpp"
 
 #include "disks/unread_switches.hpp"
+#include "integrator/taylor/switches_code.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,12 +19,20 @@ void forget_roots(Crossing& crossing) {
   crossing.hidden.clear(), crossing.orders.clear();
 }
 
+void end_where_lost(double x, Crossing& crossing) {
+  forget_roots(crossing);
+  crossing.found = false;
+  crossing.is_lost = true;
+  crossing.x = x;
+}
+
 /// Roots that rounding does not tell apart are one crossing.
 void note(Crossing& crossing, const RootOf<double>& root, std::size_t index, double together, int direction) {
   if (crossing.found && root.x > crossing.x * (1 + together) + together) return;
   if (root.x < crossing.x * (1 - together) - together) forget_roots(crossing);
   crossing.x = std::min(crossing.x, root.x);
   crossing.found = true;
+  crossing.is_lost = false;
   crossing.roots.push_back(index);
   crossing.directions.push_back(direction);
   crossing.jumps.push_back(root.kind == RootKind::Jump);
@@ -141,6 +150,8 @@ void WatchedFunctions::search(const KernelWorkspace& work, double h, double from
       const bool jump = root->kind == RootKind::Jump;
       note(out, *root, i, together_, root->kind == RootKind::Touching ? 0 : -watched.side);
       if (jump) watched = {root->after, false};
+    } else if (roots_->lost() && *roots_->lost() < out.x) {
+      end_where_lost(*roots_->lost(), out);
     }
   }
   // A step of no length leaves the others where they were.
@@ -198,6 +209,7 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin,
     if (begin == 0 && !roots_->is_clear(i) && begins_past_root(work, event, h, watched)) note_root(0, watched.side);
     for (double from = begin; from < until;) {
       const auto root = roots_->first(i, watched, from, until, tells_touches(event), false);
+      if (roots_->lost()) return end_where_lost(0, out);
       if (!root) break;
       const bool touch = root->kind == RootKind::Touching;
       note_root(root->x, touch ? 0 : -watched.side, root->hidden, root->order);

@@ -23,6 +23,7 @@ struct PassedRoot {
 struct Crossing {
   double x = 1;  // fraction of the step; less than 1 without a root where the step is too long to be searched
   bool found = false;
+  bool is_lost = false;              // from x on nothing is known of the roots of a function, and x is no root
   std::vector<std::size_t> roots;    // switches, then events
   std::vector<int> directions;       // [roots] 1: rising, −1: falling, 0: touching
   std::vector<bool> jumps;           // [roots] a switch function jumps there: it has no zero

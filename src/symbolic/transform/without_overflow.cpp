@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 /// 1/(1 + exp(u)), sinh u/cosh³ u, log(1 + exp(u)): finite where exp(u) is not. Beyond |u| = 300 each is a constant,
@@ -15,11 +16,11 @@
 ///            −300     0      300   u                                              −300  300   u
 ///
 /// A side where the quotient grows keeps its u. Of cosh³ u and (1 + exp(u))⁶ the powers must not overflow either: u
-/// stays at ±600/3 and ±600/6 there.
+/// stays at ±600/3 and ±600/6 there; or nearer, where the series of exp(600) would leave the range of numbers.
 namespace maupertuis {
 namespace {
 
-constexpr double bound = 300, most = 600;  // of u; of exponents, exp(709) being the largest in double
+constexpr double bound = 300;  // of u
 /// Coefficients beside exponentials lie between its inverse and it: exp(300) outweighs them by 70 digits.
 constexpr double largest_coefficient = 1e60;
 constexpr double largest_shift = 50;  // of one exponent against another
@@ -36,6 +37,8 @@ struct Growth {
 /// The exponents of a quotient as multiples of one of them, u.
 class Exponents {
  public:
+  explicit Exponents(double largest_exponent) : most_(largest_exponent) {}
+
   /// False where an exponential is no power of exp(u).
   bool take(Expr exponential) {
     const Expr e = exponential[0];
@@ -57,7 +60,7 @@ class Exponents {
   void pass_through(double n) { largest_ = std::max(largest_, std::abs(n)); }
 
   Expr u() const { return u_; }
-  double limit() const { return std::floor(std::min(bound, most / largest_)); }
+  double limit() const { return std::floor(std::min(bound, most_ / largest_)); }
 
   /// The exponentials with w in place of u.
   ExprMap with(Expr w) const {
@@ -86,21 +89,25 @@ class Exponents {
     return std::nullopt;
   }
 
+  double most_;
   Expr u_;
   double largest_ = 1;
   std::unordered_map<Expr, double, ExprHash> multiples_;
 };
 
-using ValueOf = std::function<double(Expr)>;
+struct Numbers {
+  const std::function<double(Expr)>& value_of;
+  double largest_exponent;
+};
 
 /// A sum of exponentials times what does not move, and of what does not move; or one exponential.
 class Quotient {
  public:
-  explicit Quotient(const ValueOf& value_of) : value_of_(value_of) {}
+  explicit Quotient(const Numbers& numbers) : value_of_(numbers.value_of), exponents_(numbers.largest_exponent) {}
 
   /// The factors of a product, or a power alone.
-  static std::optional<Quotient> of(Expr node, const ValueOf& value_of) {
-    Quotient out(value_of);
+  static std::optional<Quotient> of(Expr node, const Numbers& numbers) {
+    Quotient out(numbers);
     const auto factors = node.is(Kind::Product) ? arguments(node) : std::vector<Expr>{node};
     Growth above, below;  // of what is multiplied, and of what divides
     for (const Expr& factor : factors) {
@@ -120,8 +127,8 @@ class Quotient {
   }
 
   /// Of a logarithm of a sum.
-  static std::optional<Quotient> of_logarithm(Expr argument, const ValueOf& value_of) {
-    Quotient out(value_of);
+  static std::optional<Quotient> of_logarithm(Expr argument, const Numbers& numbers) {
+    Quotient out(numbers);
     const auto growth = out.growth_of(argument);
     if (!growth || !out.exponents_.u()) return std::nullopt;
     out.total_ = *growth;
@@ -154,7 +161,8 @@ class Quotient {
     if (is_exponential(base)) return exponents_.take(base) ? std::optional(exponents_.growth(base)) : std::nullopt;
     if (!base.is(Kind::Sum)) return holds_exponentials(base) ? std::nullopt : std::optional(Growth{});
     if (!holds_exponentials(base)) return Growth{};
-    Growth out{-most, -most};
+    constexpr double none = -std::numeric_limits<double>::infinity();
+    Growth out{none, none};
     for (const Expr& term : arguments(base)) {
       const auto growth = growth_of_term(term);
       if (!growth) return std::nullopt;
@@ -190,16 +198,16 @@ class Quotient {
     return std::any_of(nodes.begin(), nodes.end(), [](const Expr& n) { return is_exponential(n) && moves(n); });
   }
 
-  const ValueOf& value_of_;
+  const std::function<double(Expr)>& value_of_;
   Exponents exponents_;
   Growth total_;
   bool overflows_up_ = false, overflows_down_ = false;
 };
 
 /// log D(u) = log D(w) + (growth of D) · (u − w), where both sides are kept.
-Expr logarithm(Expr node, const ValueOf& value_of) {
+Expr logarithm(Expr node, const Numbers& numbers) {
   const auto quotient =
-      node[0].is(Kind::Sum) || node[0].is(Kind::Cosh) ? Quotient::of_logarithm(node[0], value_of) : std::nullopt;
+      node[0].is(Kind::Sum) || node[0].is(Kind::Cosh) ? Quotient::of_logarithm(node[0], numbers) : std::nullopt;
   if (!quotient || (quotient->total().up <= 0 && quotient->total().down <= 0)) return node;
   Context& c = node.context();
   const Growth growth = quotient->total();
@@ -212,8 +220,8 @@ Expr logarithm(Expr node, const ValueOf& value_of) {
   return out;
 }
 
-Expr quotient(Expr node, const ValueOf& value_of) {
-  const auto quotient = Quotient::of(node, value_of);
+Expr quotient(Expr node, const Numbers& numbers) {
+  const auto quotient = Quotient::of(node, numbers);
   if (!quotient) return node;
   const Expr w = quotient->kept();
   return w == quotient->exponents().u() ? node : substitute(node, quotient->exponents().with(w));
@@ -221,7 +229,9 @@ Expr quotient(Expr node, const ValueOf& value_of) {
 
 }  // namespace
 
-std::vector<Expr> without_overflow(std::span<const Expr> roots, const ValueOf& value_of) {
+std::vector<Expr> without_overflow(std::span<const Expr> roots, const std::function<double(Expr)>& value_of,
+                                   double largest_exponent) {
+  const Numbers numbers{value_of, largest_exponent};
   const std::vector<Expr> nodes = topological_order(roots);
   std::vector<Expr> out(roots.begin(), roots.end());
   if (std::none_of(nodes.begin(), nodes.end(), [](const Expr& e) { return is_exponential(e) && moves(e); })) return out;
@@ -233,9 +243,9 @@ std::vector<Expr> without_overflow(std::span<const Expr> roots, const ValueOf& v
   for (const Expr& node : nodes) {
     Expr value = node;
     if (node.is(Kind::Log))
-      value = logarithm(node, value_of);
+      value = logarithm(node, numbers);
     else if (node.is(Kind::Product) || node.is(Kind::Power))
-      value = quotient(node, value_of);
+      value = quotient(node, numbers);
     if (value == node) value = rebuild(node, replaced);
     if (value != node) done.emplace(node, value);
   }

@@ -210,6 +210,29 @@ run 10 s
   CHECK(r.trajectory.rows() > 100);
 }
 
+TEST_CASE(
+    "an event whose function leaves the range of numbers ends the run with that reason, or is met in another form") {
+  const auto until_peak = [](const std::string& condition) {
+    return run(ModelText("dimensionless\ncoord x : number\nT = 1/2 x'^2\nevent c when " + condition +
+                         " : set x' = 2\nstart x = 0, x' = 1\nrun 100\n"));
+  };
+  const SimulationResult lost = until_peak("cosh((x - 50.3)*1e4) = 2");
+  CHECK_FALSE(lost.ok());
+  CHECK(lost.reason.find("has no series here") != std::string::npos);
+  const SimulationResult met = until_peak("sech((x - 50.3)*1e4) = 0.5");
+  CHECK(met.ok());
+  CHECK(met.final.q[0] == doctest::Approx(200 - 50.3 + std::acosh(2.0) / 1e4).epsilon(1e-14));
+}
+
+TEST_CASE("a narrow pulse has a series also where its cosh is large") {
+  const ModelText m(
+      "dimensionless\ncoord x : number\nT = 1/2 x'^2\nforce x = 1e5*sech(1e5*(t - 5.5))^2\nstart x = 0\nrun 10\n");
+  const SimulationResult r = run(m);
+  CHECK(r.ok());
+  CHECK(r.final.v[0] == doctest::Approx(2).epsilon(1e-9));
+  CHECK(r.final.q[0] == doctest::Approx(9).epsilon(1e-9));
+}
+
 TEST_CASE("requests: out of order, beyond the run, not on its way") {
   const ModelText m(oscillator);
   SimulationOptions options;

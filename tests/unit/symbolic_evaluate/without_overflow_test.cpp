@@ -100,3 +100,10 @@ TEST_CASE_FIXTURE(Line, "a parameter before an exponential counts by its value")
   CHECK(evaluate(finite, {{x, 400}, {a, 3}}) > 0);
   CHECK(evaluate(finite, {{x, 100}, {a, 3}}) == doctest::Approx(std::exp(-100.0) / 9).epsilon(1e-12));
 }
+
+TEST_CASE_FIXTURE(Line, "series in double leave room for their coefficients") {
+  const Expr pulse = power(apply(Kind::Cosh, x), -2), finite = without_overflow({&pulse, 1}, {}, 400).front();
+  CHECK(value(finite, 190) == doctest::Approx(4 * std::exp(-380.0)).epsilon(1e-12));
+  CHECK(value(finite, 5000) == doctest::Approx(4 * std::exp(-400.0)).epsilon(1e-12));
+  CHECK(value(rewritten(pulse), 290) == doctest::Approx(4 * std::exp(-580.0)).epsilon(1e-12));
+}
