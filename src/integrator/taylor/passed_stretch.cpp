@@ -44,13 +44,11 @@ void PassedStretch::look_at(double s, const double* constants) {
   rows_.begin(coefficients());
 }
 
-bool PassedStretch::holds(std::size_t j, double size, double share_of_terms) {
+bool PassedStretch::holds(std::size_t j, double size) {
   constexpr double roundings = 64 * std::numeric_limits<double>::epsilon();
   const Slot slot = program_.residual[j];
   if (slot == no_slot) return true;
-  const double terms = retrace_.scale(slot);
-  return std::abs(retrace_.row(0)[slot]) <=
-         size + share_of_terms * terms + roundings * (terms + rows_.residual_rounding(j, 1));
+  return std::abs(retrace_.row(0)[slot]) <= size + roundings * (retrace_.scale(slot) + rows_.residual_rounding(j, 1));
 }
 
 bool PassedStretch::are_clear(double length) {

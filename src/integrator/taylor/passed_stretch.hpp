@@ -22,8 +22,8 @@ class PassedStretch {
 
   /// Goes to t + s, where the program has these constants.
   void look_at(double s, const double* constants);
-  /// Whether R_j vanishes there, but for its rounding and a share of `size`, or of its terms.
-  bool holds(std::size_t j, double size, double share_of_terms);
+  /// Whether R_j vanishes there, but for its rounding and `size`.
+  bool holds(std::size_t j, double size);
   /// From there on: how far, up to `most` (> 0), the formulas are what their series say, and no switch function and no
   /// event comes to zero. 0: not even over `least`.
   double length(double most, double least);

@@ -81,6 +81,8 @@ class TaylorStepper::Impl::Collocation {
   /// branches are apart.
   double smooth() const { return place_ == Place::OfConstraints ? 1e-6 : 2e-13; }
   double momentum(std::size_t j) const;
+  bool agrees(double x) const;
+  bool holds(double x, taylor::PassedStretch& between) const;
   double length_from(double x, double least, taylor::PassedStretch& between);
 
   Impl& s_;
@@ -187,10 +189,24 @@ bool TaylorStepper::Impl::Collocation::converges() {
 bool TaylorStepper::Impl::Collocation::is_smooth() {
   for (int k = 1; k <= looks; ++k) {
     const double x = static_cast<double>(k) / looks;
-    if (!ask_beside(x)) return false;
-    for (std::size_t i = 0; i < s_.n; ++i)
-      if (!(std::abs(h * (s_.probe.acceleration(i) - value(acceleration[i], x))) <= smooth() * size_[i])) return false;
+    if (!ask_beside(x) || !agrees(x)) return false;
   }
+  return true;
+}
+
+/// Whether q̈ of the point that was asked for is that of the polynomial.
+bool TaylorStepper::Impl::Collocation::agrees(double x) const {
+  for (std::size_t i = 0; i < s_.n; ++i)
+    if (!(std::abs(h * (s_.probe.acceleration(i) - value(acceleration[i], x))) <= smooth() * size_[i])) return false;
+  return true;
+}
+
+/// Whether the motion fulfils the equations there: by q̈, where multipliers may have a pole, or by the residual, where
+/// rounding hides what a formula is. What a multiplier alone feels is told by the events that read it.
+bool TaylorStepper::Impl::Collocation::holds(double x, taylor::PassedStretch& between) const {
+  if (agrees(x)) return true;
+  for (std::size_t j = 0; j < s_.n; ++j)
+    if (!between.holds(j, smooth() * momentum(j) / std::abs(h))) return false;
   return true;
 }
 
@@ -218,10 +234,7 @@ double TaylorStepper::Impl::Collocation::length_from(double x, double least, tay
   if (!ask_beside(x)) return 0;
   if (s_.safe.is_needed() && s_.safe.wants_momenta(size_)) s_.safe.set_momenta(size_, s_.probe);
   between.look_at(h * x, s_.probe.constants());
-  // A multiplier is told as well as the equations beside its place tell it.
-  const double share_of_terms = place_ == Place::OfConstraints ? 1e-6 : 1e-12;
-  for (std::size_t j = 0; j < s_.n; ++j)
-    if (!between.holds(j, smooth() * momentum(j) / std::abs(h), share_of_terms)) return -1;
+  if (!holds(x, between)) return -1;
   return between.length(std::abs(h) * (1 - x), std::abs(h) * least) / std::abs(h);
 }
 

@@ -102,7 +102,7 @@ bool TaylorStepper::Impl::switches_have_values(double bound, Step& result) {
 
 /// Within the step; one that is not longer than the rounding stays as it is. Where nothing asks for the time, roots are
 /// known to the rounding of coordinates.
-double TaylorStepper::Impl::moved(double tau, double h) const {
+double TaylorStepper::Impl::moved(double tau, double h, bool meets_events_alone) const {
   double age = std::abs(state.t.hi + tau);
   if (work.program().time == no_slot) {
     double slowest = 0;
@@ -112,9 +112,11 @@ double TaylorStepper::Impl::moved(double tau, double h) const {
   }
   const double rounding = 0.5 * std::numeric_limits<double>::epsilon() * age;
   const double share = share_of_rounding(options.moved_instants, state.t.hi + tau);
-  double to = tau + rounding * share;
-  // From the beginning of a run τ is no finer than the time itself, to which the root was rounded.
-  if (to == tau) to = std::nextafter(tau, std::copysign(HUGE_VAL, share));
+  // From the beginning of a run τ is no finer than the time itself, to which the root was rounded. Beyond a switch the
+  // motion may have no values on the side from which it came.
+  const double by_share = tau + rounding * share;
+  const double to =
+      by_share == tau && meets_events_alone ? std::nextafter(tau, std::copysign(HUGE_VAL, share)) : by_share;
   return std::abs(tau) > 2 * rounding && std::abs(to) <= std::abs(h) ? to : tau;
 }
 
@@ -122,7 +124,10 @@ double TaylorStepper::Impl::moved(double tau, double h) const {
 void TaylorStepper::Impl::advance(double bound, double h, const taylor::Crossing& crossing, Step& result) {
   const bool reaches_bound = !crossing.found && crossing.x == 1 && h == remaining(bound);
   double tau = h * crossing.x;
-  if (crossing.found && options.moved_instants != 0) tau = moved(tau, h);
+  if (crossing.found && options.moved_instants != 0) {
+    const auto is_event = [&](std::size_t i) { return i >= watched.switches.size(); };
+    tau = moved(tau, h, std::all_of(crossing.roots.begin(), crossing.roots.end(), is_event));
+  }
   state.move(last.dense, last.begin, tau);
   if (reaches_bound) state.arrive(bound);
   result.end = state.t.hi;

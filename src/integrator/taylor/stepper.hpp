@@ -50,7 +50,7 @@ struct TaylorStepper::Impl {
   bool stays(double h) const;
   bool make_step(double bound, double h, Step& result);
   void advance(double bound, double h, const taylor::Crossing& crossing, Step& result);
-  double moved(double tau, double h) const;
+  double moved(double tau, double h, bool meets_events_alone) const;
   bool accelerations_grow() const;
   void end(Step& result, StepEnding ending, std::string reason) const;
   bool fail(Step& result, KernelStatus status);
