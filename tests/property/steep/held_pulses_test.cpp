@@ -90,9 +90,11 @@ HeldPulse::HeldPulse(unsigned long long number) {
   held = static_cast<Held>(random() % held_by.size());
   bell = &bells[random() % bells.size()];
   const double l = by_ratio(0.1, 10), w = by_ratio(1e-5, 0.1), t0 = by_ratio(1, 3000), flight = by_ratio(0.3, 20);
-  level = fmt::format("{:.4g}", l), width = fmt::format("{:.4g}", w), time = binary(t0);
+  level = fmt::format("{:.4g}", l), width = fmt::format("{:.4g}", w);
   force = fmt::format("{:.4g}", l * std::max(3.0, 2 * flight / w));
-  duration = binary(t0 + flight);
+  const double before = w * static_cast<double>(bell->place(Quad(l) / Quad(std::stod(force))));  // of the peak
+  time = binary(t0 + before);
+  duration = binary(t0 + before + flight);
 }
 
 std::string HeldPulse::text() const {
