@@ -94,29 +94,35 @@ std::string no_index_at(const KinkPassed& kink, const Problem& problem) {
       where.empty() ? "" : ", " + where + ",", place(kink.t, problem.model.system));
 }
 
-/// The terms of S; of a path at rest those of one that crosses its size in its time.
-double size_that_counts(Functional& functional, const Trial& trial, const Vector& least) {
+/// What S may differ by for nothing: rounding of its terms, of a path at rest of those of one that crosses its size in
+/// its time; and p·δq at the ends of the stretches, where the motion misses the path.
+double harmless_difference(const StationaryPath& p, Functional& functional, const Trial& trial, const Vector& least) {
+  constexpr double usual = 1e-9;  // of the terms
   const Vector size = even_scale(trial, least).col(0), v = size / std::abs(trial.mesh.whole);
-  const MotionState first = to_path(trial).at(trial.mesh.start);
+  const MotionState first = p.path.at(p.path.start);
   const double crossing =
       functional.sensitivity(first.t, first.q.data(), v.data(), trial.multipliers).terms * std::abs(trial.mesh.whole);
-  return std::max(size_of_action(functional, trial), std::isfinite(crossing) ? crossing : 0);
+  double by_misses = 0;
+  for (const std::vector<double>* momenta : {&p.start_momentum, &p.end_momentum})
+    for (std::size_t i = 0; i < momenta->size(); ++i)
+      if (std::isfinite((*momenta)[i]))
+        by_misses += std::abs((*momenta)[i]) * size[static_cast<Index>(i)] * p.check.missed * p.check.stretches;
+  return usual * std::max(size_of_action(functional, trial), std::isfinite(crossing) ? crossing : 0) + by_misses;
 }
 
 /// W1203 where the motion from the path's own states does something else than the path: the polynomials of its elements
 /// do not see what is narrower than they are. S is then not better known than by the two.
-void compare_with_motion(StationaryPath& p, double usual_action, Diagnostics& diagnostics) {
-  constexpr double usual = 1e-9, beyond = 1e4;  // of sizes; of the errors of the path and of S
+void compare_with_motion(StationaryPath& p, double harmless, Diagnostics& diagnostics) {
+  constexpr double usual = 1e-9, beyond = 1e4;  // of the size; of the errors of the path and of S
   const MotionCheck& c = p.check;
   if (!c.done || c.from != p.path.start || c.to != p.path.end) return;
   const double off = std::abs(c.action - p.action);
   const bool elsewhere = c.missed > usual && c.missed > beyond * p.path_error;
-  const bool other_action = off > usual * usual_action && off > beyond * p.action_error;
+  const bool other_action = off > harmless && off > beyond * p.action_error;
   if (!elsewhere && !other_action) return;
   p.action_error = std::max(p.action_error, off);
   p.path_error = std::max(p.path_error, c.missed);
-  p.second.index.reset();
-  p.second.reason = "The motion from the path's own states leaves it: the counts are of another curve.";
+  if (elsewhere) p.second = {}, p.second.reason = "The motion from the path's own states leaves it.";
   diagnostics.warning(
       "W1203", {},
       fmt::format("the motion from its own states is off this path by {:.1g} of its size, and its S by {:.1g}",
@@ -162,7 +168,7 @@ StationaryPath describe(Problem& problem, const Refined& refined, const ActionEn
                         "No index is given for this path. Please report the model.");
   if (options.variations) out.second.variations = test_variations(problem, refined.coarse, fixed, least);
   if (!(out.check.missed > largest_miss))  // else it is left out
-    compare_with_motion(out, size_that_counts(problem.functional, fine, least), diagnostics);
+    compare_with_motion(out, harmless_difference(out, problem.functional, fine, least), diagnostics);
   return out;
 }
 

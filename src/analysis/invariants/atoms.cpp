@@ -222,7 +222,9 @@ class Collector {
   /// √square, so that rates in a ratio of whole numbers are multiples of one root: 2 √(k/m) beside √(k/m), not √(4
   /// k/m), whose sine would count as a function of its own.
   Expr rate_of(Expr square) {
-    const Rational factor = square.is(Kind::Product) && square[0].is_number() ? square[0].number() : Rational(1);
+    const Rational factor = square.is_number()                                  ? square.number()
+                            : square.is(Kind::Product) && square[0].is_number() ? square[0].number()
+                                                                                : Rational(1);
     if (const auto root = exact_root(abs(factor), 2)) return sqrt(square / abs(factor)) * *root;
     for (const Expr& earlier : rates_) {
       const Expr ratio = expand(square / (earlier * earlier), term_budget);

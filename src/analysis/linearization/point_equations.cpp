@@ -188,6 +188,8 @@ PointEquations::Impl::Impl(const EquationsOfMotion& equations, std::span<const E
   ExprVector all = lowering.plain(equations.balance());
   for (const Constraint& c : system->constraints) all.push_back(lowering.plain({&c.value, 1}).front());
   is_autonomous = free_of_time(all, *system);
+  const std::vector<Expr> symbols = symbols_of(all);
+  if (std::find(symbols.begin(), symbols.end(), system->context->time()) != symbols.end()) rows_in_time = all;
   has_energy = is_autonomous && holonomic == m && has_potential(lowering.plain(equations.generalized_forces), *system);
   is_periodic.assign(n, false);
   turns_by_parameters.assign(n, false);
@@ -399,6 +401,8 @@ void PointEquations::set_parameter(std::size_t index, double value) {
   impl_->parameters[index] = value;
   impl_->set_parameters();
   find_turns_by_parameters(*impl_);
+  if (!impl_->rows_in_time.empty())  // a drive whose amplitude is 0 is none
+    impl_->is_autonomous = free_of_time(substitute(impl_->rows_in_time, exact_parameters(*impl_)), *impl_->system);
 }
 
 std::vector<double> PointEquations::inputs_at(double t) const {

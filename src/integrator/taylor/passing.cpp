@@ -81,7 +81,7 @@ class TaylorStepper::Impl::Collocation {
   /// branches are apart.
   double smooth() const { return place_ == Place::OfConstraints ? 1e-6 : 2e-13; }
   double momentum(std::size_t j) const;
-  bool agrees(double x) const;
+  bool agrees(double x, double by) const;
   bool holds(double x, taylor::PassedStretch& between) const;
   double length_from(double x, double least, taylor::PassedStretch& between);
 
@@ -189,24 +189,26 @@ bool TaylorStepper::Impl::Collocation::converges() {
 bool TaylorStepper::Impl::Collocation::is_smooth() {
   for (int k = 1; k <= looks; ++k) {
     const double x = static_cast<double>(k) / looks;
-    if (!ask_beside(x) || !agrees(x)) return false;
+    if (!ask_beside(x) || !agrees(x, smooth())) return false;
   }
   return true;
 }
 
-/// Whether q̈ of the point that was asked for is that of the polynomial.
-bool TaylorStepper::Impl::Collocation::agrees(double x) const {
+/// Whether q̈ of the point that was asked for is that of the polynomial, but for `by` of what moves.
+bool TaylorStepper::Impl::Collocation::agrees(double x, double by) const {
   for (std::size_t i = 0; i < s_.n; ++i)
-    if (!(std::abs(h * (s_.probe.acceleration(i) - value(acceleration[i], x))) <= smooth() * size_[i])) return false;
+    if (!(std::abs(h * (s_.probe.acceleration(i) - value(acceleration[i], x))) <= by * size_[i])) return false;
   return true;
 }
 
 /// Whether the motion fulfils the equations there: by q̈, where multipliers may have a pole, or by the residual, where
-/// rounding hides what a formula is. What a multiplier alone feels is told by the events that read it.
+/// rounding hides what a formula is. What a multiplier alone feels is told by the events that read it. Beside a root,
+/// as x^(1/5), a polynomial is off more than at the points that were looked at.
 bool TaylorStepper::Impl::Collocation::holds(double x, taylor::PassedStretch& between) const {
-  if (agrees(x)) return true;
+  const double beside_points = place_ == Place::OfConstraints ? 1 : 64, by = beside_points * smooth();
+  if (agrees(x, by)) return true;
   for (std::size_t j = 0; j < s_.n; ++j)
-    if (!between.holds(j, smooth() * momentum(j) / std::abs(h))) return false;
+    if (!between.holds(j, by * momentum(j) / std::abs(h))) return false;
   return true;
 }
 
@@ -247,8 +249,10 @@ bool TaylorStepper::Impl::Collocation::is_smooth_between() {
                                 rows(s_.control.order, s_.n + s_.m));
   double x = 0, gap = 0;
   for (int piece = 0; x < 1 && piece < most_pieces; ++piece) {
-    const double length = length_from(x, std::min(least, 1 - x), between);
-    if (length < 0 || (length == 0 && gap >= most_of_gap)) return false;
+    double length = length_from(x, std::min(least, 1 - x), between);
+    if (length < 0 && x > 0) return false;
+    length = std::max(length, 0.0);  // where the step begins is the place itself, where a root bends most
+    if (length == 0 && gap >= most_of_gap) return false;
     if (length == 0) gap += least;
     x += length > 0 ? length : least;
   }

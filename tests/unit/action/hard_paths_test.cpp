@@ -117,7 +117,7 @@ TEST_CASE("what is narrower than the elements of a path is told by the motion fr
     const StationaryPath& p = found->paths.front();
     const double right = narrow[2] == '6' ? 0.5 + std::sqrt(pi) : 0.5348097215;
     CHECK(std::abs(p.action - right) <= 1.01 * p.action_error);
-    CHECK(!p.second.index);
+    CHECK(p.second.index.has_value() == (narrow[2] == '6'));  // of the barrier the counts are of another curve
   }
 }
 

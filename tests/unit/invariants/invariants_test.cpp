@@ -175,6 +175,9 @@ TEST_CASE("oscillators whose rates are in a ratio of whole numbers: each symmetr
                   fmt::format("V = 1/2 k ({} x^2 + {} y^2)\n", x, y));
     CHECK(f.result.noether_symmetries == 5);
     CHECK(f.result.symmetry_bound == 5);
+    const Found plain("dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n" +
+                      fmt::format("V = 1/2 ({} x^2 + {} y^2)\n", x, y));
+    CHECK(plain.result.noether_symmetries == 5);
     CHECK(f.result.too_long == 0);
   }
 }

@@ -257,6 +257,31 @@ TEST_CASE("along a sweep a driven system is judged by multipliers: the tongue of
   CHECK_THROWS_AS(sweep(0, 0.5, 1.5, 9, &stop), Interrupted);
 }
 
+TEST_CASE("where a sweep takes the drive away the system is judged without it, and where it begins with it") {
+  // Off resonance, damped: stable with and without the drive, also where the model itself has none.
+  for (const char* strength : {"0", "0.3"}) {
+    CAPTURE(strength);
+    const ModelText m(std::string("dimensionless\nparam e = ") + strength +
+                      "\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 (0.7 + e cos t) x^2\nD = 1/2*0.1 x'^2\n");
+    PointEquations points(m.equations);
+    const Locus locus =
+        parameter_locus(points, {0, {0.0}, {0.0}}, 0, 0, 0.2, 3, driven_neighbours(m.model, m.equations, 0, nullptr));
+    REQUIRE(locus.branches.size() == 1);
+    CHECK(locus.changes.empty());
+    for (const LocusPoint& x : locus.branches[0].points) CHECK(x.stability.verdict == Stability::Asymptotic);
+  }
+  // In the tongue about ω² = 1/4 the drive makes it unstable, though the model has none.
+  const ModelText m(
+      "dimensionless\nparam e = 0\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 (0.25 + e cos t) x^2\nD = 1/2*0.1 x'^2\n");
+  PointEquations points(m.equations);
+  const Locus locus =
+      parameter_locus(points, {0, {0.0}, {0.0}}, 0, 0, 0.4, 5, driven_neighbours(m.model, m.equations, 0, nullptr));
+  REQUIRE(locus.changes.size() == 1);
+  CHECK(locus.changes[0].before == Stability::Asymptotic);
+  CHECK(locus.changes[0].after == Stability::Unstable);
+  CHECK(locus.changes[0].parameter == doctest::Approx(0.1).epsilon(0.03));  // e = 2 ω c, nearly
+}
+
 TEST_CASE("a bead on a turning hoop has no drive: its equation has no t") {
   const std::string hoop =
       "param m = 1 kg, R = 0.5 m, g = 9.81 m/s^2, Ω = 3 rad/s\ncoord θ : angle\n"

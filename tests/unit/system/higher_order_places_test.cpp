@@ -40,7 +40,6 @@ TEST_CASE("third derivatives are no part of what is asked along the motion, by r
                             "let a = v'\nexpect a' at 1 = 0 ± 1"})
     CHECK(codes_of(sleigh + asked + "\n") == "E0401 ");
   CHECK(codes_of(sleigh + "event e when v' = 1 : record\nexpect v' at 1 = 0 ± 1\n").empty());
-  CHECK(codes_of("dimensionless\ncoord y : number\nL = 1/2 y''^2\nrun 1\nevent e when y''' = 1 : record\n").empty());
 }
 
 TEST_CASE("an acceleration in the Lagrangian that masses contradict is told at its place") {
