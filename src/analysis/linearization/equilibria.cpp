@@ -288,7 +288,7 @@ class Search {
 
   /// Where t stands in the equations, they must hold whatever t is.
   bool holds_for_all_times(const OperatingPoint& point) const {
-    if (e_.is_autonomous) return true;
+    if (e_.is_autonomous()) return true;
     const SteadyState system = equations_of(true);
     for (const double t : {0.1234, 0.777, 1.9, 3.4, 7.7, 23.1}) {
       OperatingPoint later = point;

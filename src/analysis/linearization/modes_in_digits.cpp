@@ -10,7 +10,7 @@ namespace maupertuis {
 std::optional<std::vector<PreciseMode>> modes_in_digits(const PointEquations& equations, const Equilibrium& rest) {
   constexpr std::size_t most_coordinates = 12;  // the time goes with the third power, the formulas with the second
   const PointEquations::Impl& e = equations.impl();
-  if (!rest.at_rest || !e.is_autonomous || e.m > 0 || e.n > most_coordinates || rest.point.turning.rows > 0)
+  if (!rest.at_rest || !e.is_autonomous() || e.m > 0 || e.n > most_coordinates || rest.point.turning.rows > 0)
     return std::nullopt;
   if (!switches_of(e.balance_rows).empty()) return std::nullopt;
   RowsOfMotion motion;

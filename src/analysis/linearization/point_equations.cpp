@@ -187,12 +187,23 @@ PointEquations::Impl::Impl(const EquationsOfMotion& equations, std::span<const E
   const Lowering lowering(equations);
   ExprVector all = lowering.plain(equations.balance());
   for (const Constraint& c : system->constraints) all.push_back(lowering.plain({&c.value, 1}).front());
-  is_autonomous = free_of_time(all, *system);
+  const bool is_free_of_time = free_of_time(all, *system);
+  known_autonomous = is_free_of_time;
   const std::vector<Expr> symbols = symbols_of(all);
   if (std::find(symbols.begin(), symbols.end(), system->context->time()) != symbols.end()) rows_in_time = all;
-  has_energy = is_autonomous && holonomic == m && has_potential(lowering.plain(equations.generalized_forces), *system);
+  has_energy =
+      is_free_of_time && holonomic == m && has_potential(lowering.plain(equations.generalized_forces), *system);
   is_periodic.assign(n, false);
   turns_by_parameters.assign(n, false);
+}
+
+/// A drive whose amplitude is 0 is none.
+bool PointEquations::Impl::is_autonomous() const {
+  if (!known_autonomous) {
+    const ExpressionLock lock(*system->context);
+    known_autonomous = free_of_time(substitute(rows_in_time, exact_parameters(*this)), *system);
+  }
+  return *known_autonomous;
 }
 
 /// v·∂D/∂v; not a number where D has no value.
@@ -365,7 +376,7 @@ PointEquations::~PointEquations() = default;
 PointEquations::PointEquations(PointEquations&&) noexcept = default;
 
 const MechanicalSystem& PointEquations::system() const { return *impl_->system; }
-bool PointEquations::autonomous() const { return impl_->is_autonomous; }
+bool PointEquations::autonomous() const { return impl_->is_autonomous(); }
 bool PointEquations::energy_never_grows() const {
   if (!impl_->has_energy) return false;
   for (std::uint64_t s = 0; s < states_of_friction; ++s)
@@ -401,8 +412,7 @@ void PointEquations::set_parameter(std::size_t index, double value) {
   impl_->parameters[index] = value;
   impl_->set_parameters();
   find_turns_by_parameters(*impl_);
-  if (!impl_->rows_in_time.empty())  // a drive whose amplitude is 0 is none
-    impl_->is_autonomous = free_of_time(substitute(impl_->rows_in_time, exact_parameters(*impl_)), *impl_->system);
+  if (!impl_->rows_in_time.empty()) impl_->known_autonomous.reset();
 }
 
 std::vector<double> PointEquations::inputs_at(double t) const {

@@ -55,11 +55,13 @@ struct PointEquations::Impl {
   FunctionWorkspace energy_workspace;
   FunctionWorkspace friction;  // [n] ∂D/∂q̇
   Rows energy_slopes;          // [n] ∂h_E/∂q, where L is of the first order and keeps h_E(q); else none
-  bool is_autonomous = true;
+  bool is_autonomous() const;
   ExprVector rows_in_time;        // all rows, where the time stands in them, perhaps times a parameter that is 0
   bool has_energy = false;        // that no force changes while inputs are held, but for friction
   std::vector<bool> is_periodic;  // [n]
   std::vector<bool> turns_by_parameters;  // [n] whether a turn changes nothing depends on values of parameters
+
+  mutable std::optional<bool> known_autonomous;  // at these values of parameters; looked for when it is asked
 
  private:
   std::vector<double> gather(const OperatingPoint& point) const;
