@@ -42,6 +42,7 @@ struct Locus {
   std::vector<LocusBranch> branches;      // in order of appearance
   std::vector<StabilityChange> changes;   // ascending by parameter
   std::vector<Translation> translations;  // of the model's own value
+  bool driven = false;                    // points were judged over a period: verdicts may change between two values
   bool interrupted = false;               // values may be missing at the end, and changes anywhere
 };
 

@@ -80,10 +80,12 @@ class Tracer {
 
   bool in_time() const { return driven_ && !equations_.autonomous(); }
 
-  LocusPoint judged(double value, const Equilibrium& x) const {
+  LocusPoint judged(double value, const Equilibrium& x) {
     if (in_time())
-      if (auto neighbours = driven_(value, x))
+      if (auto neighbours = driven_(value, x)) {
+        locus_.driven = true;
         return {value, x, std::move(neighbours->stability), std::move(neighbours->exponents)};
+      }
     const Linearization l = linearize(equations_, x.point).linearization;
     const ModalAnalysis analysis = modal_analysis(equations_, l, symmetries_, &x);
     return {value, x, analysis.stability, analysis.eigenvalues};

@@ -237,6 +237,7 @@ TEST_CASE("along a sweep a driven system is judged by multipliers: the tongue of
   };
   const Locus tongue = sweep(0, 0.5, 1.5, 9, nullptr);
   REQUIRE(tongue.branches.size() == 1);
+  CHECK(tongue.driven);
   REQUIRE(tongue.changes.size() == 2);
   CHECK(tongue.changes[0].parameter == doctest::Approx(border(-0.25)).epsilon(1e-7));
   CHECK(tongue.changes[1].parameter == doctest::Approx(border(0.25)).epsilon(1e-7));
