@@ -419,9 +419,8 @@ std::string locus_text(const MechanicalSystem& system, const Locus& locus) {
                     without.size() == 1 ? "" : fmt::format(" … {}, {} values", value(without.back()), without.size()));
   if (locus.driven)
     out +=
-        "  judged over a period of the drive at each value: ranges of stability narrower than the step between them "
-        "are "
-        "not looked for\n";
+        "  judged over a period of the drive at each value: what is narrower than the step between two is not looked "
+        "for\n";
   if (locus.interrupted)
     out += "  interrupted         further values are missing, and places where a verdict changes\n";
   return out;

@@ -57,14 +57,6 @@ void add_orbits_options(Command& command, OrbitsOptions& options) {
   time("--transient", options.transient, "Time before the average begins (default: a tenth of the duration)");
 }
 
-void check_time_option(const char* option, const std::optional<std::string>& text, const syntax::SyntaxTree* tree,
-                       Diagnostics& diagnostics) {
-  if (text && !parse_time(*text))
-    diagnostics.error("E0809", {}, fmt::format("{} \"{}\" is no time.", option, *text), {},
-                      "Write a number with a unit of time, such as 3s or 250ms, or a part of π, such as \"2 pi/3 s\".");
-  if (text) refuse_unit_that_is_a_name(option, *text, tree, diagnostics);
-}
-
 void check_orbits_options(const OrbitsOptions& o, const syntax::SyntaxTree* tree, Diagnostics& diagnostics) {
   for (const auto& [option, text] :
        {std::pair("--period", &o.period), std::pair("--strobe", &o.strobe), std::pair("--longest", &o.longest),

@@ -23,9 +23,6 @@ struct OrbitsOptions {
 void add_orbits_options(Command& command, OrbitsOptions& options);
 /// Times that are none or have two meanings, --section beside --strobe (E0809). `tree`: of the model; may be null.
 void check_orbits_options(const OrbitsOptions& options, const syntax::SyntaxTree* tree, Diagnostics& diagnostics);
-/// The same of one option that is a time or a part of π of one.
-void check_time_option(const char* option, const std::optional<std::string>& text, const syntax::SyntaxTree* tree,
-                       Diagnostics& diagnostics);
 
 FloquetOptions floquet_options(const OrbitsOptions& options);
 LyapunovOptions lyapunov_options(const OrbitsOptions& options);

@@ -2,10 +2,11 @@
 
 #include "quantity.hpp"
 
+#include <maupertuis/units.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <maupertuis/units.hpp>
 #include <variant>
 
 namespace maupertuis::app {
@@ -52,6 +53,14 @@ void refuse_unit_that_is_a_name(const std::string& option, const std::string& te
       fmt::format("As a unit it says {} seconds; in the text of the model it would be a multiple of the parameter.",
                   brief(*seconds)),
       fmt::format("Write {} {} for the unit; for a multiple of the parameter its value.", option, brief(*seconds)));
+}
+
+void check_time_option(const char* option, const std::optional<std::string>& text, const syntax::SyntaxTree* tree,
+                       Diagnostics& diagnostics) {
+  if (text && !parse_time(*text))
+    diagnostics.error("E0809", {}, fmt::format("{} \"{}\" is no time.", option, *text), {},
+                      "Write a number with a unit of time, such as 3s or 250ms, or a part of π, such as \"2 pi/3 s\".");
+  if (text) refuse_unit_that_is_a_name(option, *text, tree, diagnostics);
 }
 
 }  // namespace maupertuis::app

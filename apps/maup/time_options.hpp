@@ -1,8 +1,8 @@
 #pragma once
 #include <maupertuis/diagnostic.hpp>
-#include <maupertuis/rational.hpp>
 #include <maupertuis/syntax_tree.hpp>
 
+#include <optional>
 #include <string>
 
 namespace maupertuis::app {
@@ -12,5 +12,8 @@ namespace maupertuis::app {
 /// null.
 void refuse_unit_that_is_a_name(const std::string& option, const std::string& text, const syntax::SyntaxTree* tree,
                                 Diagnostics& diagnostics);
+/// The same of an option that is a time, or a part of π of one; E0809 where it is none.
+void check_time_option(const char* option, const std::optional<std::string>& text, const syntax::SyntaxTree* tree,
+                       Diagnostics& diagnostics);
 
 }  // namespace maupertuis::app

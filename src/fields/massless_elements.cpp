@@ -94,6 +94,12 @@ void SemiDiscrete::follow_at_once() {
     for (const auto& c : row)
       if (c) of_fields.push_back(*c);
   const Expr lagrangian = expand_time_derivatives(equations_->system().expanded(system.lagrangian()));
+  const std::vector<Expr> in_lagrangian = symbols_of({&lagrangian, 1});
+  const auto massless = std::count_if(of_fields.begin(), of_fields.end(), [&](std::size_t i) {
+    const Expr velocity = system.coordinates[i].velocity;
+    return std::find(in_lagrangian.begin(), in_lagrangian.end(), velocity) == in_lagrangian.end();
+  });
+  massless_left_ = massless > 0;
   const std::vector<std::size_t> which = massless_coordinates(system, of_fields, lagrangian);
   if (which.empty() || which.size() == system.coordinates.size()) return;
   const auto rows = rows_of(system, which, lagrangian, numbers_);
@@ -114,6 +120,7 @@ void SemiDiscrete::follow_at_once() {
     values[system.coordinates[which[i]].q] = system.context->sum(terms);
   }
   put_in_place(which, values);
+  massless_left_ = static_cast<std::size_t>(massless) > which.size();
 }
 
 /// Their forces do their work on the coordinates that are left; their starts are no choice.

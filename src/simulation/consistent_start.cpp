@@ -1,7 +1,7 @@
 #include <maupertuis/degenerate.hpp>
 #include <maupertuis/expression_lock.hpp>
-#include <maupertuis/simulation.hpp>
 #include <maupertuis/rounded_value.hpp>
+#include <maupertuis/simulation.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <fmt/format.h>

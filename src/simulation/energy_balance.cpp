@@ -1,6 +1,5 @@
 #include "simulation/energy_balance.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -31,8 +30,7 @@ void EnergyBalance::after_step(const Method& method, const Step& step) {
 /// each counts that is no constant.
 double EnergyBalance::change_of_term(std::size_t i, double value) const {
   if (of_places_.empty() || !of_places_[i]) return std::abs(value);
-  const bool no_velocity = std::find(of_places_.begin(), of_places_.end(), false) == of_places_.end();
-  if (!no_velocity) return std::abs(value - first_terms_[i]);
+  if (knows_velocity_) return std::abs(value - first_terms_[i]);
   return value != first_terms_[i] ? std::abs(value) : 0;
 }
 

@@ -17,7 +17,10 @@ class EnergyBalance {
   /// `terms`: so many first observables add up to h_E. `jumps`: its formula jumps at switches in time.
   /// `of_places`: [terms] it knows no velocity; empty where nobody says.
   EnergyBalance(std::size_t terms, bool jumps, std::vector<bool> of_places = {})
-      : terms_(terms), jumps_(jumps), of_places_(std::move(of_places)) {}
+      : terms_(terms),
+        jumps_(jumps),
+        of_places_(std::move(of_places)),
+        knows_velocity_(std::find(of_places_.begin(), of_places_.end(), false) != of_places_.end()) {}
 
   void before_step(const Method& method);
   void after_step(const Method& method, const Step& step);
@@ -40,6 +43,7 @@ class EnergyBalance {
   std::size_t terms_;
   bool jumps_, at_switch_ = false;  // the last step ended there
   std::vector<bool> of_places_;
+  bool knows_velocity_;  // some term does
   std::vector<double> first_terms_;
   std::optional<Sample> on_switch_;
   bool begun_ = false, overflows_ = false;

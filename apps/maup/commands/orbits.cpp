@@ -4,6 +4,7 @@
 #include "outcome.hpp"
 #include "output_files.hpp"
 #include "quantity.hpp"
+#include "time_options.hpp"
 
 #include <fmt/format.h>
 

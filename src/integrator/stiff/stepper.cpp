@@ -45,7 +45,7 @@ struct StiffStepper::Impl {
   bool stands_still(double bound);
   bool jumps_within(double h);
   bool fast_parts_die_out(double length);
-  Step ended(StepEnding ending, std::string reason) const { return {t, t, ending, std::move(reason), {}, {}, {}}; }
+  Step ended(StepEnding ending, std::string reason) const { return {t, t, ending, std::move(reason), {}, 0, {}, {}}; }
   Sample sample(double time) const;
   void state_at(double time, std::span<double> out) const;
 

@@ -205,7 +205,7 @@ bool TaylorStepper::Impl::Collocation::agrees(double x, double by) const {
 /// rounding hides what a formula is. What a multiplier alone feels is told by the events that read it. Beside a root,
 /// as x^(1/5), a polynomial is off more than at the points that were looked at.
 bool TaylorStepper::Impl::Collocation::holds(double x, taylor::PassedStretch& between) const {
-  const double beside_points = place_ == Place::OfConstraints ? 1 : 64, by = beside_points * smooth();
+  const double beside_points = place_ == Place::OfConstraints ? 1 : 16, by = beside_points * smooth();
   if (agrees(x, by)) return true;
   for (std::size_t j = 0; j < s_.n; ++j)
     if (!between.holds(j, by * momentum(j) / std::abs(h))) return false;

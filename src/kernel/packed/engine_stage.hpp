@@ -211,7 +211,6 @@ const Pack* run_quotient(const Stage& s, const Pack* pack) {
 
 const Pack* run_square_root(const Stage& s, const Pack* pack) {
   const Order& order = s.order_of(pack->lag);
-  const Convolution& c = s.t.convolutions[pack->first_convolution];
   bring(s, *pack, pack->a);
   Vector u = load(s.cells(pack->a) + order.offset);
   const double* const y = s.cells(pack->y);

@@ -145,7 +145,7 @@ ReportContent content(bool space) {
                   "1.25 J",
                   "3.2e-15"}};
   c.statistics = {{"steps", "96"}, {"energy drift", "3.2e-15"}};
-  c.expectations = {{4, "expect θ at 1 s = 0.5 rad ± 1e-9", false, true, "0.5 rad", "", "", "", false, "", ""}};
+  c.expectations = {{4, "expect θ at 1 s = 0.5 rad ± 1e-9", false, true, "0.5 rad", "", "", "", false, "", "", ""}};
   c.trajectory = trajectory();
   c.pictures = {{"Coordinates", plot_of({"x", "θ"})},
                 {"Velocities", plot_of({"x'", "θ'"})},

@@ -44,7 +44,7 @@ TEST_CASE("what users write is text on the page") {
   ReportContent content;
   content.title = content.source = content.model_text = content.file = "<script>alert(1)</script>";
   content.messages = {{Severity::Warning, "W0001", "<b>", "<i>", "<u>", 1, "<pre>"}};
-  content.expectations = {{1, "expect <x>", false, false, "<y>", "", "", "", false, "<z>", "<q>"}};
+  content.expectations = {{1, "expect <x>", false, false, "<y>", "", "", "", false, "<z>", "<q>", ""}};
   const std::string page = report_html(content);
   CHECK_FALSE(has(page, "<script>alert"));
   for (const char* tag : {"<b><", "<i>", "<u>", "<x>", "<y>", "<z>", "<q>"}) CHECK_FALSE(has(page, tag));

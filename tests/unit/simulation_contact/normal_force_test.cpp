@@ -38,7 +38,7 @@ TEST_CASE("a block on a wedge that slides, by a gap that is no distance") {
       "0)\n"
       "point P mass m at (x, y)\ngravity (0, -g)\n";
   const std::string rest = " friction μ slip (x' - X') cos α + y' sin α name face\nstart x = 2 m, y = 2 [m] * tan(α)\n";
-  for (const std::string& gap : {"contact y >= (x - X) tan α", "contact 3 y cos α - 3 (x - X) sin α >= 0"}) {
+  for (const std::string gap : {"contact y >= (x - X) tan α", "contact 3 y cos α - 3 (x - X) sin α >= 0"}) {
     ModelText model(wedge + gap + rest);
     const auto r = run(model, 0.4);
     CHECK(model.diagnostics.items().empty());
