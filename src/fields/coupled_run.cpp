@@ -193,6 +193,10 @@ FieldRunResult result_of(const CoupledRun& fine, const SemiDiscrete& mesh, const
   out.method = run.statistics.method == "stiff" ? "implicit steps (Radau)"
                                                 : fmt::format("Taylor steps of order {}", run.statistics.order);
   if (!run.ok()) out.trouble = run.reason;
+  if (!run.ok() && run.statistics.steps == 0 && mesh.has_massless_elements())
+    out.trouble =
+        "Elements of the field have no inertia, and do not follow what they carry by forces that are linear in them: "
+        "nothing tells how they move. Give them their mass, 1/2 ρ u'^2.";
   out.final_coordinates = final_coordinates(mesh, p.model.system, run.final);
   const std::vector<std::string>& departures = mesh.departures();
   for (const Happening& h : run.happenings)

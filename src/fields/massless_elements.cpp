@@ -94,12 +94,6 @@ void SemiDiscrete::follow_at_once() {
     for (const auto& c : row)
       if (c) of_fields.push_back(*c);
   const Expr lagrangian = expand_time_derivatives(equations_->system().expanded(system.lagrangian()));
-  const std::vector<Expr> in_lagrangian = symbols_of({&lagrangian, 1});
-  const auto massless = std::count_if(of_fields.begin(), of_fields.end(), [&](std::size_t i) {
-    const Expr velocity = system.coordinates[i].velocity;
-    return std::find(in_lagrangian.begin(), in_lagrangian.end(), velocity) == in_lagrangian.end();
-  });
-  massless_left_ = massless > 0;
   const std::vector<std::size_t> which = massless_coordinates(system, of_fields, lagrangian);
   if (which.empty() || which.size() == system.coordinates.size()) return;
   const auto rows = rows_of(system, which, lagrangian, numbers_);
@@ -120,7 +114,21 @@ void SemiDiscrete::follow_at_once() {
     values[system.coordinates[which[i]].q] = system.context->sum(terms);
   }
   put_in_place(which, values);
-  massless_left_ = static_cast<std::size_t>(massless) > which.size();
+}
+
+bool SemiDiscrete::has_massless_elements() const {
+  const MechanicalSystem& system = model_.system;
+  const Expr lagrangian = expand_time_derivatives(equations_->system().expanded(system.lagrangian()));
+  const auto is_massless = [&](std::size_t i) {
+    const Expr velocity = system.coordinates[i].velocity,
+               mass = differentiate(differentiate(lagrangian, velocity), velocity);
+    const std::vector<Expr> symbols = symbols_of({&mass, 1});
+    return std::all_of(symbols.begin(), symbols.end(), [&](const Expr& s) { return numbers_.count(s) > 0; }) &&
+           evaluate(mass, numbers_) == 0;
+  };
+  return std::any_of(coordinates_.begin(), coordinates_.end(), [&](const auto& row) {
+    return std::any_of(row.begin(), row.end(), [&](const auto& c) { return c && is_massless(*c); });
+  });
 }
 
 /// Their forces do their work on the coordinates that are left; their starts are no choice.

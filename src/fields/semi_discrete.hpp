@@ -49,8 +49,8 @@ class SemiDiscrete {
   bool start_clashes() const { return clashes_; }
   /// Names of events that end a run: a place that moves left the domain.
   const std::vector<std::string>& departures() const { return departures_; }
-  /// Whether elements have no inertia and no linear stiffness by which they would follow what they carry.
-  bool has_massless_elements() const { return massless_left_; }
+  /// Whether elements are left that have no inertia: they do not follow what they carry by linear forces.
+  bool has_massless_elements() const;
   /// Values at places that move, and those of elements without mass, by the symbols of their coordinates, in the
   /// coordinates that are left and t.
   const ExprMap& moving() const { return moving_; }
@@ -108,7 +108,7 @@ class SemiDiscrete {
   ExprMap moving_;                                                    // coordinates that are functions of others and t
   std::vector<std::string> departures_;
   std::size_t dofs_ = 0;
-  bool forced_ = false, clashes_ = false, massless_left_ = false;
+  bool forced_ = false, clashes_ = false;
 };
 
 }  // namespace maupertuis

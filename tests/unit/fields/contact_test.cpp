@@ -224,3 +224,21 @@ TEST_CASE("impacts on a field without a mass are refused, modes say what they le
   CHECK(!loose.field_equations());
   CHECK(codes_of(loose) == "E0299 ");
 }
+
+TEST_CASE("a string without mass that is not linear says what is missing") {
+  // By its density, or by a parameter that is 0.
+  for (const char* density :
+       {"density = -10 (sqrt(1 + u_x^2) - 1)", "param r = 0\ndensity = 1/2 r u'^2 - 10 (sqrt(1 + u_x^2) - 1)"}) {
+    CAPTURE(density);
+    Study study(
+        SourceText("string.lag", std::string("dimensionless\nfield u(x) : number on x = 0 .. 1 cells 4 order 3\n"
+                                             "boundary u = 0\n") +
+                                     density + "\nT = 0.1 u(1/2)'^2\nstart u = 0.3 min(x, 1 - x)\n"));
+    REQUIRE(study.field_equations());
+    FieldRunOptions options;
+    options.duration = 1;
+    const auto run = run_coupled(*study.model(), *study.field_equations(), {}, options, study.diagnostics());
+    REQUIRE(run);
+    CHECK(run->trouble.find("no inertia") != std::string::npos);
+  }
+}
