@@ -13,4 +13,14 @@ Eigen::MatrixXd columns_of_q(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& 
   return qr.householderQ() * Eigen::MatrixXd::Identity(qr.rows(), columns);
 }
 
+Eigen::MatrixXd columns_of_q(const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>& factors,
+                             Eigen::Index columns) {
+  return factors.householderQ() * Eigen::MatrixXd::Identity(factors.rows(), columns);
+}
+
+Eigen::MatrixXd null_space(const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>& factors) {
+  const Eigen::MatrixXd z = factors.matrixZ();
+  return factors.colsPermutation() * Eigen::MatrixXd(z.transpose().rightCols(z.cols() - factors.rank()));
+}
+
 }  // namespace maupertuis

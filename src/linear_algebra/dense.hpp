@@ -45,5 +45,9 @@ namespace maupertuis {
 /// The first columns of the orthogonal factor Q.
 Eigen::MatrixXd columns_of_q(const Eigen::HouseholderQR<Eigen::MatrixXd>& qr, Eigen::Index columns);
 Eigen::MatrixXd columns_of_q(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr, Eigen::Index columns);
+Eigen::MatrixXd columns_of_q(const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>& factors,
+                             Eigen::Index columns);
+/// Orthonormal columns that span the null space, as many as the matrix has columns beyond its rank.
+Eigen::MatrixXd null_space(const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>& factors);
 
 }  // namespace maupertuis

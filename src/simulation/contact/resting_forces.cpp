@@ -2,6 +2,7 @@
 
 #include "linear_algebra/least_distance.hpp"
 #include "linear_algebra/non_negative_least_squares.hpp"
+#include "linear_algebra/products.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,8 +29,8 @@ class UndeterminedRest {
     solver_.setThreshold(dependent);
     solver_.compute(p.response);
     least_ = solver_.solve(VectorXd(-p.free));
-    const MatrixXd basis = solver_.householderQ() * MatrixXd::Identity(n, solver_.rank());
-    few_rows_ = {basis.transpose() * p.response, -(basis.transpose() * p.free)};
+    const MatrixXd basis = columns_of_q(solver_, solver_.rank());
+    few_rows_ = {transposed_product(basis, p.response), -(basis.transpose() * p.free)};
   }
 
   /// Whether nothing accelerates under some forces, be they in their cones or not.
@@ -55,7 +56,6 @@ class UndeterminedRest {
     double limit;    // μ, or that limit
     VectorXd along;  // [tangents] u; empty: λ_n ≥ 0
   };
-  MatrixXd null_space() const;
   void begin_planes();
   void touch(std::size_t contact, const VectorXd& along) {
     planes_.push_back({first_[contact], first_[contact] + 1, p_.contacts[contact].friction, along});
@@ -173,12 +173,12 @@ std::optional<VectorXd> UndeterminedRest::shortest_in_cones(double margin) const
     return z.dot(point) - 0.5 * point.squaredNorm() - right.dot(y);
   };
   Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver;
-  VectorXd y = solver.compute(rows * rows.transpose()).solve(right);
+  VectorXd y = solver.compute(product_transposed(rows, rows)).solve(right);
   Projection now = project(p_, rows.transpose() * y, 1 - margin);
   for (int turn = 0; turn < most_turns; ++turn) {
     const VectorXd off = rows * now.point - right;
     if (off.norm() <= rounding_of_forces * right.norm()) return now.point;
-    VectorXd by = solver.compute(MatrixXd(rows * now.slope * rows.transpose())).solve(VectorXd(-off));
+    VectorXd by = solver.compute(product_transposed(product(rows, now.slope), rows)).solve(VectorXd(-off));
     const double here = value(rows.transpose() * y, now.point, y), falls = off.dot(by);
     if (!(falls < 0)) return std::nullopt;
     for (int halving = 0; halving < most_halvings; ++halving, by *= 0.5) {
@@ -191,13 +191,8 @@ std::optional<VectorXd> UndeterminedRest::shortest_in_cones(double margin) const
   return std::nullopt;
 }
 
-MatrixXd UndeterminedRest::null_space() const {
-  const MatrixXd z = solver_.matrixZ();
-  return solver_.colsPermutation() * MatrixXd(z.transpose().rightCols(z.cols() - solver_.rank()));
-}
-
 void UndeterminedRest::begin_planes() {
-  free_ = null_space();
+  free_ = null_space(solver_);
   for (std::size_t c = 0; c < first_.size(); ++c) {
     const Index tangents = p_.contacts[c].tangents;
     touch(c, VectorXd());

@@ -9,10 +9,16 @@ namespace maupertuis {
 namespace {
 
 using Eigen::Matrix2d;
+using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using Eigen::VectorXd;
 
 constexpr double accurate = 1e-13;
+
+VectorXd solved(const MatrixXd& matrix, const VectorXd& right) {
+  return Eigen::FullPivLU<MatrixXd>(matrix).solve(right);
+}
 
 /// What changes with the normal impulse.
 struct State {
@@ -69,7 +75,7 @@ class Course {
     const Vector2d w = impact_.response.block<2, 1>(1, 0);
     const Matrix2d tangential = impact_.response.block<2, 2>(1, 1);
     state_.velocity.tail<2>().setZero();
-    hold_ = -tangential.fullPivLu().solve(w);
+    hold_ = -solved(tangential, w);
     holds_ = impact_.sticking || hold_.norm() <= impact_.static_friction;
     if (holds_) return;
     const auto along = direction_of_leaving<double>(
@@ -135,7 +141,7 @@ Vector3d impulse_in_space(const SpaceImpact& impact) {
   if (impact.sticking) {  // what never slides takes the slip at once
     Vector3d wanted = -impact.velocity;
     wanted(0) *= 1 + impact.restitution;
-    return impact.response.fullPivLu().solve(wanted);
+    return solved(impact.response, wanted);
   }
   return Course(impact).follow();
 }
