@@ -57,6 +57,19 @@ void ExpressionParser::expect_end() {
   fail("E0111", token.span, fmt::format("the statement should end before {}", describe(token)), "", std::move(help));
 }
 
+std::string ExpressionParser::item_text(std::size_t ahead) const {
+  int depth = 0;
+  std::size_t last = index_ + ahead;
+  if (last >= end_) return "…";
+  for (std::size_t i = last; i < end_; ++i) {
+    const Token& token = context_.list.tokens[i];
+    if (depth == 0 && token.is(",")) break;
+    depth += token.is("(") || token.is("[") ? 1 : token.is(")") || token.is("]") ? -1 : 0;
+    last = i;
+  }
+  return text_of(cover(peek(ahead).span, context_.list.tokens[last].span));
+}
+
 std::string ExpressionParser::describe(const Token& token) {
   switch (token.kind) {
     case Token::Kind::End:

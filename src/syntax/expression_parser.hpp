@@ -79,6 +79,8 @@ class ExpressionParser {
   /// Tells who wants to know that this was read as a unit.
   void note(const UnitExpression& unit) const;
 
+  /// What is written from the token `ahead` to the next comma outside brackets, or to the end of the statement.
+  std::string item_text(std::size_t ahead = 0) const;
   std::string text_of(Span span) const { return std::string(context_.source.slice(span)); }
   std::string text_of(const Expression& expression) const { return text_of(expression.span); }
 

@@ -121,7 +121,9 @@ StatementBody StatementParser::point_statement() {
     else if (accept("in"))
       point.in = used_name("the name of a frame");
     else
-      missing_clause("mass, at or in", "point", "point P mass m at (x, y)");
+      missing_clause(
+          "mass, at or in", "point",
+          peek().is("=") ? fmt::format("point {} at {}", point.name.text, item_text(1)) : "point P mass m at (x, y)");
   }
   if (!point.at) missing_clause("at", "point", "point P mass m at (x, y)");
   return point;

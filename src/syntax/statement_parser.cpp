@@ -212,9 +212,24 @@ void StatementParser::skip_item(std::size_t first) {
   }
 }
 
+// A title in one word: "Foucault's pendulum" as foucaults_pendulum.
+static std::string word_of(std::string_view title) {
+  std::string out;
+  for (const char c : title) {
+    if (std::isalnum(static_cast<unsigned char>(c))) out += static_cast<char>(std::tolower(c));
+    if (c == ' ' && !out.empty() && out.back() != '_') out += '_';
+  }
+  while (!out.empty() && out.back() == '_') out.pop_back();
+  return out.empty() || std::isdigit(static_cast<unsigned char>(out.front())) ? "my_system" : out;
+}
+
 StatementBody StatementParser::system_statement() {
   next();
   SystemStatement system;
+  if (peek().kind == Token::Kind::String)
+    fail_expected("the name of the system",
+                  fmt::format("Its name is one word and stands before the title: system {} \"{}\".",
+                              word_of(peek().text), peek().text));
   system.name = new_name("the name of the system");
   if (peek().kind == Token::Kind::String) system.title = next().text;
   if (peek().kind == Token::Kind::Name && !peek().is("source"))
@@ -273,6 +288,21 @@ void StatementParser::coordinate_without_kind(const Name& name) {
        fmt::format("Write {0} : angle, {0} : length, {0} : charge, {0} : number or {0} : [unit].", name.text));
 }
 
+// What people write in the place of the colon: a unit, (t), a value.
+void StatementParser::coordinate_without_colon(const Name& name) {
+  std::string help = fmt::format("Write for example {} : angle.", name.text);
+  if (peek().is("(")) {
+    help = fmt::format("Coordinates are functions of the time as they stand: write {0} : length, or {0} : angle.",
+                       name.text);
+  } else if (peek().is("=")) {
+    help = fmt::format("Its value at the start is a statement of its own: write coord {0} : length, and start {0} {1}.",
+                       name.text, item_text());
+  } else if (peek().is("[")) {
+    help = fmt::format("A unit follows a colon: write {} : {}.", name.text, item_text());
+  }
+  fail_expected("`:` and the kind of the coordinate", std::move(help));
+}
+
 static bool is_word_of_angles(std::string_view word) {
   constexpr std::string_view all[] = {"degrees", "degree", "deg", "radians", "radian", "rad"};
   return std::find(std::begin(all), std::end(all), word) != std::end(all);
@@ -311,12 +341,7 @@ StatementBody StatementParser::coord_statement() {
     coord.items.push_back(std::move(item));
     if (peek().is(",")) return;
     if (at_end()) coordinate_without_kind(coord.items.back().name);
-    if (!peek().is(":"))
-      fail_expected("`:` and the kind of the coordinate",
-                    peek().is("(") ? fmt::format("Coordinates are functions of the time as they stand: write {0} : "
-                                                 "length, or {0} : angle.",
-                                                 coord.items.back().name.text)
-                                   : "Write for example θ : angle.");
+    if (!peek().is(":")) coordinate_without_colon(coord.items.back().name);
     next();
     CoordStatement::Item& last = coord.items.back();
     kind_of(last.name, "coordinate", last.kind, last.unit);

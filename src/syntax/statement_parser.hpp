@@ -37,6 +37,7 @@ class StatementParser : private ExpressionParser {
   [[noreturn]] void unknown_statement();
   std::string help_for_equation() const;
   [[noreturn]] void coordinate_without_kind(const Name& name);
+  [[noreturn]] void coordinate_without_colon(const Name& name);
   void kind_of(const Name& name, const char* what, Name& kind, std::optional<UnitExpression>& unit);
   Statement complete(StatementBody body, std::size_t first) const;
 

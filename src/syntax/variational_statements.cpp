@@ -16,6 +16,10 @@ StatementBody StatementParser::constraint_statement() {
   if (at_end())
     fail_expected("`=` after the left side of the constraint",
                   fmt::format("Write constraint {} = 0.", text_of(*constraint.left)));
+  if (peek().is(":"))
+    fail_expected("`=` after the left side of the constraint",
+                  fmt::format("Its name stands at the end: write constraint {} name {}.", item_text(1),
+                              text_of(*constraint.left)));
   expect("=", "the left side of the constraint");
   constraint.right = quantity();
   if (accept("name")) constraint.name = new_name("the name of the constraint");

@@ -71,8 +71,23 @@ bool is_bare_number(const Expression& x) {
          std::all_of(x.arguments.begin(), x.arguments.end(), [](const auto& a) { return is_bare_number(*a); });
 }
 
-/// A bare number in a place for a quantity, or a mass or length that is missing, is most often a parameter whose unit
-/// was left out.
+/// A quantity whose unit is often left out where its parameter is declared.
+struct Unmarked {
+  Dimension dimension;
+  const char *quantity, *unit;
+};
+
+const Unmarked* missing_factor(const Dimension& found, const Dimension& expected) {
+  static const Unmarked all[] = {{dimensions::mass(), "a mass", "kg"},
+                                 {dimensions::length(), "a length", "m"},
+                                 {dimensions::acceleration(), "an acceleration", "m/s^2"}};
+  const auto here = std::find_if(std::begin(all), std::end(all),
+                                 [&](const Unmarked& u) { return (found * u.dimension).same_as(expected); });
+  return here == std::end(all) ? nullptr : here;
+}
+
+/// A bare number in a place for a quantity, or a factor that is missing, is most often a parameter whose unit was left
+/// out.
 std::string advice_on(Elaboration& e, const Value& v, const Dimension& expected, const Expression& x) {
   if (std::string words = advice_on_words(e, x, expected); !words.empty()) return words;
   if (is_bare_number(x)) {
@@ -83,13 +98,13 @@ std::string advice_on(Elaboration& e, const Value& v, const Dimension& expected,
   }
   if (x.kind == Expression::Kind::Quantity || x.kind == Expression::Kind::Number) return "";
   if (std::string unit = unit_that_is_a_name(e, v, expected, x); !unit.empty()) return unit;
-  const bool bare = v.dimension.same_as(Dimension{}), mass = (v.dimension * dimensions::mass()).same_as(expected),
-             length = (v.dimension * dimensions::length()).same_as(expected);
-  const std::string name = bare || mass || length ? bare_name(e, x) : std::string();
+  const bool bare = v.dimension.same_as(Dimension{});
+  const Unmarked* missing = bare ? nullptr : missing_factor(v.dimension, expected);
+  const std::string name = bare || missing ? bare_name(e, x) : std::string();
   if (!name.empty() && bare) return fmt::format("Give `{}` its unit where it is declared, if it has one.", name);
   if (!name.empty())
-    return fmt::format("Give `{}` its unit where it is declared, such as {}; or a {} is missing as a factor.", name,
-                       mass ? "kg" : "m", mass ? "mass" : "length");
+    return fmt::format("Give `{}` its unit where it is declared, such as {}; or {} is missing as a factor.", name,
+                       missing->unit, missing->quantity);
   const std::string advice = dimension_advice(v.dimension, expected);
   const Dimension more = v.dimension * dimensions::length(), less = v.dimension / dimensions::length();
   const bool by_a_length = more.same_as(expected) || less.same_as(expected);  // N for N/m
