@@ -160,17 +160,20 @@ StatementBody StatementParser::gravity_statement() {
 
 /// E0111 for `spring on x …` and `damper x coefficient …`: what acts on a coordinate is a part of an energy.
 void StatementParser::refuse_coordinate(const char* what, const char* part_of, const char* instead) {
+  const Token& named = peek().is("on") ? peek(1) : peek();
+  const std::string q = named.kind == Token::Kind::Name ? std::string(named.text) : "x";
   const bool clause = peek(1).is("stiffness") || peek(1).is("length") || peek(1).is("coefficient");
   if (!peek().is("on") && !(peek().kind == Token::Kind::Name && clause)) return;
   fail("E0111", peek().span, fmt::format("a {} acts between two points", what),
        fmt::format("What acts on a coordinate is a part of {}.", part_of),
-       fmt::format("Write for example {}; or name the points at both ends, {} A - B.", instead, what));
+       fmt::format("Write for example {}; or name the points at both ends, {} A - B.",
+                   fmt::format(fmt::runtime(instead), q), what));
 }
 
 StatementBody StatementParser::spring_statement() {
   next();
   SpringStatement spring;
-  refuse_coordinate("spring", "the potential energy", "V += 1/2 k x^2, of an angle torsion spring θ stiffness k");
+  refuse_coordinate("spring", "the potential energy", "V += 1/2 k {0}^2, of an angle torsion spring {0} stiffness k");
   spring.from = operand("a point");
   if (!peek().is("-")) fail_expected("`-` after the first end of the spring", "Write spring A - B stiffness k.");
   next();
@@ -190,7 +193,7 @@ StatementBody StatementParser::spring_statement() {
 StatementBody StatementParser::damper_statement() {
   next();
   DamperStatement damper;
-  refuse_coordinate("damper", "the dissipation function", "D += 1/2 c x'^2");
+  refuse_coordinate("damper", "the dissipation function", "D += 1/2 c {0}'^2");
   damper.from = operand("a point");
   if (!peek().is("-")) fail_expected("`-` after the first end of the damper", "Write damper A - B coefficient c.");
   next();

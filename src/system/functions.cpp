@@ -55,13 +55,32 @@ bool refuse_vector(Elaboration& e, const Value& v, const Expression& x, const Ex
   return true;
 }
 
-/// `cos ω t` is (cos ω) t: the argument is no angle, and the product was meant.
-std::string help_for_bare(Elaboration& e, const Expression& x) {
-  const std::string argument(e.texts.slice(x.arguments[0]->span));
-  return x.bare ? fmt::format(
-                      "Without brackets {0} takes `{1}` alone: put the whole argument in brackets, such as {0}({1} t).",
-                      x.text, argument)
-                : "Divide it by a quantity of the same dimension.";
+/// The number or the parameter without a unit that a product begins with: 10 of 10 t, ω of ω (t − t0).
+const Expression* bare_factor(Elaboration& e, const Expression& x) {
+  using Kind = Expression::Kind;
+  if (x.kind == Kind::Number) return &x;
+  if (x.kind == Kind::Name && x.primes == 0) {
+    const Value v = evaluate_formula(e, x);  // it was evaluated before: no new message can come of it
+    return !v.poisoned && v.order < 0 && v.dimension.same_as(Dimension{}) ? &x : nullptr;
+  }
+  const bool leads = (x.kind == Kind::Binary && x.op != syntax::Operator::Power) || x.kind == Kind::Unary;
+  return leads ? bare_factor(e, *x.arguments[0]) : nullptr;
+}
+
+/// `cos ω t` is (cos ω) t: the argument is no angle, and the product was meant. In sin(10 t) the number has a unit.
+std::string help_for_argument(Elaboration& e, const Function& f, const Expression& x, const Dimension& found) {
+  const Expression& argument = *x.arguments[0];
+  if (x.bare)
+    return fmt::format(
+        "Without brackets {0} takes `{1}` alone: put the whole argument in brackets, such as {0}({1} t).", x.text,
+        e.texts.slice(argument.span));
+  const Expression* factor = bare_factor(e, argument);
+  if (!factor) return "Divide it by a quantity of the same dimension.";
+  const Dimension one = f.angles == Angles::Argument ? dimensions::angle() : Dimension{};
+  const std::string unit = to_string(one / found);
+  return factor->kind == Expression::Kind::Number
+             ? fmt::format("The number has a unit: write {} [{}].", e.texts.slice(factor->span), unit)
+             : fmt::format("Give `{}` its unit where it is declared, such as {}.", factor->text, unit);
 }
 
 /// param α = 30 and sin α: no unit says that α is an angle, and 30 radians are nearly five turns.
@@ -84,7 +103,7 @@ Value elementary(Elaboration& e, const Function& f, const Expression& x, const V
     e.diagnostics.error(
         "E0303", x.arguments[0]->span, fmt::format("the argument of {} is {}", x.text, describe(a.dimension)),
         f.angles == Angles::Argument ? "Its argument is an angle or a bare number." : "Its argument is a bare number.",
-        help_for_bare(e, x));
+        help_for_argument(e, f, x, a.dimension));
     return Value::poison();
   }
   if (f.angles == Angles::Argument && a.hertz)
