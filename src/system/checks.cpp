@@ -105,6 +105,12 @@ std::string advice_on(Elaboration& e, const Value& v, const Dimension& expected,
   if (!name.empty())
     return fmt::format("Give `{}` its unit where it is declared, such as {}; or {} is missing as a factor.", name,
                        missing->unit, missing->quantity);
+  std::map<std::string, Dimension> constants;
+  add_constants(e, x, constants);
+  const Expression* number = bare || constants.empty() ? bare_factor(e, x) : nullptr;  // 500 of 500 sin ωt
+  if (number && e.texts.slice(number->span) != "1")
+    return fmt::format("The number has a unit: write {} [{}].", e.texts.slice(number->span),
+                       to_string(expected / v.dimension));
   const std::string advice = dimension_advice(v.dimension, expected);
   const Dimension more = v.dimension * dimensions::length(), less = v.dimension / dimensions::length();
   const bool by_a_length = more.same_as(expected) || less.same_as(expected);  // N for N/m
@@ -112,6 +118,17 @@ std::string advice_on(Elaboration& e, const Value& v, const Dimension& expected,
 }
 
 }  // namespace
+
+const Expression* bare_factor(Elaboration& e, const Expression& x) {
+  using Kind = Expression::Kind;
+  if (x.kind == Kind::Number) return &x;
+  if (x.kind == Kind::Name && x.primes == 0) {
+    const Value v = evaluate_formula(e, x);  // it was evaluated before: no new message can come of it
+    return !v.poisoned && v.order < 0 && v.dimension.same_as(Dimension{}) ? &x : nullptr;
+  }
+  const bool leads = (x.kind == Kind::Binary && x.op != syntax::Operator::Power) || x.kind == Kind::Unary;
+  return leads ? bare_factor(e, *x.arguments[0]) : nullptr;
+}
 
 std::string dimension_advice(const Dimension& found, const Dimension& expected) {
   using namespace dimensions;

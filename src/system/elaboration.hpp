@@ -106,6 +106,8 @@ bool check_dimension(Elaboration& e, const Value& v, const Dimension& expected, 
                      const syntax::Expression& x);
 /// What most often lies behind a wrong dimension: "A velocity is missing as a factor."; empty if nothing is near.
 std::string dimension_advice(const Dimension& found, const Dimension& expected);
+/// The number or the parameter without a unit that a product begins with: 10 of 10 t, ω of ω (t − t0); null if none.
+const syntax::Expression* bare_factor(Elaboration& e, const syntax::Expression& x);
 /// The value of an expression of parameters and definitions; nothing if time, coordinates or inputs are in it.
 std::optional<double> constant_value(const Elaboration& e, Expr value);
 /// False, and a message, if the values of the parameters make it infinite or undefined.

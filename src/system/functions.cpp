@@ -55,18 +55,6 @@ bool refuse_vector(Elaboration& e, const Value& v, const Expression& x, const Ex
   return true;
 }
 
-/// The number or the parameter without a unit that a product begins with: 10 of 10 t, ω of ω (t − t0).
-const Expression* bare_factor(Elaboration& e, const Expression& x) {
-  using Kind = Expression::Kind;
-  if (x.kind == Kind::Number) return &x;
-  if (x.kind == Kind::Name && x.primes == 0) {
-    const Value v = evaluate_formula(e, x);  // it was evaluated before: no new message can come of it
-    return !v.poisoned && v.order < 0 && v.dimension.same_as(Dimension{}) ? &x : nullptr;
-  }
-  const bool leads = (x.kind == Kind::Binary && x.op != syntax::Operator::Power) || x.kind == Kind::Unary;
-  return leads ? bare_factor(e, *x.arguments[0]) : nullptr;
-}
-
 /// `cos ω t` is (cos ω) t: the argument is no angle, and the product was meant. In sin(10 t) the number has a unit.
 std::string help_for_argument(Elaboration& e, const Function& f, const Expression& x, const Dimension& found) {
   const Expression& argument = *x.arguments[0];
