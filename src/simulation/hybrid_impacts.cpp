@@ -62,7 +62,7 @@ Impacts::Outcome Impacts::hit(std::vector<std::size_t>& touching) {
   if (end) press_all(result, touching, values);
   if (auto why = trouble_of(result, touching, values)) return {std::move(why), std::nullopt};
   if (!at_once && !end) tell_order(p, result, v);
-  carry_out(result, touching, p.contacts.size());
+  carry_out(result, touching, p.contacts.size(), end || rests);
   if (end) {
     end_of_bounces_ = EndOfBounces{*end};
     for (const std::size_t i : touching) bounces_[i].last.clear();
@@ -107,15 +107,16 @@ std::optional<std::string> Impacts::trouble_of(const ImpactResult& result, const
   return std::nullopt;
 }
 
-/// `contacts`: their number in the impact.
-void Impacts::carry_out(const ImpactResult& result, const std::vector<std::size_t>& touching, std::size_t contacts) {
+/// `contacts`: their number in the impact. `last`: of a series of bounces, those that would follow are left out.
+void Impacts::carry_out(const ImpactResult& result, const std::vector<std::size_t>& touching, std::size_t contacts,
+                        bool last) {
   if (result.bounded)
     journal_.remark(
         fmt::format("At t = {:.9g} impacts followed each other without an end; the rest of them was done at once, "
                     "without bounce and without friction.",
                     here_.t));
   here_.v.assign(result.v.data(), result.v.data() + result.v.size());
-  record_impulses(result);
+  record_impulses(result, last);
   if (result.impulses.size() > 4 * contacts) end_series(touching);
 }
 
@@ -248,13 +249,14 @@ void Impacts::book_energy(const ImpactResult& result) {
   carried_.put_in(result.moving - result.loss);
 }
 
-void Impacts::record_impulses(const ImpactResult& result) {
+void Impacts::record_impulses(const ImpactResult& result, bool last) {
   book_energy(result);
   constexpr std::size_t most_told = 32;
   if (result.impulses.size() <= most_told) {
     for (const Impulse& impulse : result.impulses)
       journal_.add(Happening::Kind::Impact, problem_.system.contact_label(impulse.contact), impulse.normal,
-                   impulse.speed);
+                   impulse.speed,
+                   last && bounces(impulse.contact) ? "without bounce, those after it are left out" : "");
     return;
   }
   // A chain of contacts whose impulses follow each other without end, each smaller: their sum for each contact.

@@ -75,10 +75,11 @@ class Impacts {
   void press_all(ImpactResult& result, const std::vector<std::size_t>& touching, const ContactValues& values) const;
   std::optional<std::string> trouble_of(const ImpactResult& result, const std::vector<std::size_t>& touching,
                                         const ContactValues& values) const;
-  void carry_out(const ImpactResult& result, const std::vector<std::size_t>& touching, std::size_t contacts);
+  void carry_out(const ImpactResult& result, const std::vector<std::size_t>& touching, std::size_t contacts, bool last);
+  bool bounces(std::size_t contact) const { return here_.values().restitution[contact] > 0; }
   void tell_order(const ImpactProblem& problem, const ImpactResult& first, const Eigen::VectorXd& v);
   void book_energy(const ImpactResult& result);
-  void record_impulses(const ImpactResult& result);
+  void record_impulses(const ImpactResult& result, bool last);
   void end_series(const std::vector<std::size_t>& touching);
 
   const Problem& problem_;

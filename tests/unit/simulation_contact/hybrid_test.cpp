@@ -344,6 +344,15 @@ TEST_CASE("infinitely many bounces end at √(2 h/g) (1 + e)/(1 − e)") {
   const auto r = run(m, 6);
   REQUIRE(count(r, Happening::Kind::Made) == 1);
   CHECK(r.happenings.back().t == doctest::Approx(3 * std::sqrt(2.0)).epsilon(1e-10));
+
+  // Each impulse is (1 + e) times the speed, but for the last: it is done without bounce, and says so.
+  const std::size_t last = r.happenings.size() - 2;
+  for (std::size_t k = 0; k < last; ++k) {
+    CHECK(r.happenings[k].impulse == doctest::Approx(1.5 * r.happenings[k].speed).epsilon(1e-13));
+    CHECK(r.happenings[k].remark.empty());
+  }
+  CHECK(r.happenings[last].impulse == doctest::Approx(r.happenings[last].speed).epsilon(1e-13));
+  CHECK(r.happenings[last].remark == "without bounce, those after it are left out");
 }
 
 TEST_CASE("bounces go on while they are to be seen, however fast something else flies") {
