@@ -48,10 +48,11 @@ StatementBody StatementParser::field_statement() {
   next();
   FieldDeclaration field;
   field_items(field);
+  const std::string variable = field.items.front().variables.front().text;
   if (accept("on")) {
     do {
       FieldDeclaration::Range range;
-      range.variable = used_name("a space variable");
+      range.variable = used_name("a space variable", fmt::format("Write on {} = {}.", variable, item_text()));
       expect("=", "the space variable");
       const ExpressionPtr from = quantity();
       expect("..", "the first end");
@@ -94,7 +95,10 @@ StatementBody StatementParser::density_statement() {
   density.dissipation = accept("dissipation");
   density.name_span = next().span;
   density.adds = accept("+=");
-  if (!density.adds) expect("=", "`density`");
+  if (!density.adds && !accept("=")) {
+    const bool named = peek(1).is("=");  // density L = …
+    fail_expected("`=` after `density`", fmt::format("Write density = {}.", item_text(named ? 2 : 0)));
+  }
   density.value = formula();
   return field_clause(density.dissipation ? "dissipation density" : "density", {std::move(density)});
 }
