@@ -217,6 +217,13 @@ Json locus_document(const MechanicalSystem& system, const Locus& locus) {
                                    {"branch", c.branch},
                                    {"before", verdict_word(c.before)},
                                    {"after", verdict_word(c.after)}});
+  document["folds"] = Json::array();
+  for (const Fold& f : locus.folds) {
+    Json fold = point_json(system, f.equilibrium.point);
+    fold["value"] = f.parameter;
+    fold["branches"] = f.branches;
+    document["folds"].push_back(std::move(fold));
+  }
   return document;
 }
 

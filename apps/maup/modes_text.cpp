@@ -393,6 +393,11 @@ std::string verdicts_text(const LocusBranch& branch) {
   return out;
 }
 
+std::string branches_that_end(const Fold& fold) {
+  return fold.branches.size() == 1 ? fmt::format("branch {} ends", fold.branches.front() + 1)
+                                   : fmt::format("branches {} and {} meet", fold.branches[0] + 1, fold.branches[1] + 1);
+}
+
 }  // namespace
 
 std::string locus_text(const MechanicalSystem& system, const Locus& locus) {
@@ -413,14 +418,18 @@ std::string locus_text(const MechanicalSystem& system, const Locus& locus) {
   for (const StabilityChange& c : locus.changes)
     out += fmt::format("  branch {} at {} = {}: {} → {}\n", c.branch + 1, p.name, value(c.parameter),
                        stability_word(c.before), stability_word(c.after));
+  for (const Fold& f : locus.folds)
+    out += fmt::format("  {} in a fold at {} = {}: {}\n", branches_that_end(f), p.name, value(f.parameter),
+                       point_text(system, f.equilibrium, locus.translations));
   if (const std::vector<double> without = values_without_points(locus); !without.empty())
     out +=
         fmt::format("  no point was found at {} = {}{}\n", p.name, value(without.front()),
                     without.size() == 1 ? "" : fmt::format(" … {}, {} values", value(without.back()), without.size()));
   if (locus.driven)
     out +=
-        "  judged over a period of the drive at each value: what is narrower than the step between two is not looked "
-        "for\n";
+        "  judged over a period of the drive at each value, and where a multiplier comes nearest to 1 or -1 between "
+        "two: "
+        "other windows narrower than the step are not looked for\n";
   if (locus.interrupted)
     out += "  interrupted         further values are missing, and places where a verdict changes\n";
   return out;

@@ -14,6 +14,7 @@ struct LocusPoint {
   Equilibrium equilibrium;
   StabilityReport stability;
   std::vector<std::complex<double>> eigenvalues;  // ascending by real, then imaginary part; driven: exponents
+  std::vector<double> passes;                     // driven: as of NeighboursInTime
 };
 
 /// What the neighbours of an equilibrium do when the parameter has a value, in the place of eigenvalues of coefficients
@@ -21,6 +22,7 @@ struct LocusPoint {
 struct NeighboursInTime {
   StabilityReport stability;
   std::vector<std::complex<double>> exponents;  // log μ / T of the Floquet multipliers, 1/s
+  std::vector<double> passes;  // Π (1 − μ) and Π (1 + μ): smooth in the parameter, 0 where a multiplier passes 1 or −1
 };
 using NeighboursAt = std::function<std::optional<NeighboursInTime>(double value, const Equilibrium&)>;
 
@@ -36,21 +38,33 @@ struct StabilityChange {
   Stability before = Stability::Undecided, after = Stability::Undecided;
 };
 
+/// Where branches of rests turn back into each other (a fold, limit point, saddle-node): a parameter on one side of it
+/// has two rests, on the other none.
+struct Fold {
+  double parameter = 0;  // SI
+  Equilibrium equilibrium;
+  std::vector<std::size_t> branches;  // one or two that end there: of the other no point may have been found
+};
+
 struct Locus {
   std::size_t parameter = 0;              // index in MechanicalSystem::parameters
   std::vector<double> values;             // SI
   std::vector<LocusBranch> branches;      // in order of appearance
   std::vector<StabilityChange> changes;   // ascending by parameter
+  std::vector<Fold> folds;                // ascending by parameter; of rests that are judged at an instant
   std::vector<Translation> translations;  // of the model's own value
-  bool driven = false;                    // points were judged over a period: verdicts may change between two values
+  bool driven = false;                    // points were judged over a period
   bool interrupted = false;               // values may be missing at the end, and changes anywhere
 };
 
 /// Equilibria and steady motions at equally spaced values of a parameter, joined to branches: at each value Newton's
 /// method begins at the points of the value before and at the starts of `find_equilibria`. What one step of the sweep
-/// carries further than a third of a typical size begins a branch of its own. The parameter has its own value again
-/// afterwards. Where t stands in the equations, `driven` judges the points. Cost: that of a search, times `steps`.
-/// Throws Interrupted before there is a point. Precondition: steps ≥ 2.
+/// carries further than a third of a typical size begins a branch of its own. Where a branch ends between two values it
+/// is followed to its fold, which is the last of its points then. The parameter has its own value again afterwards.
+/// Where t stands in the equations, `driven` judges the points, and between two values also where a
+/// multiplier comes nearest to 1 or −1: a point of a window narrower than the step that opens there is among those of
+/// the branch. Cost: that of a search, times `steps`. Throws Interrupted before there is a point. Precondition: steps
+/// ≥ 2.
 Locus parameter_locus(PointEquations& equations, const MotionState& start, std::size_t parameter, double from,
                       double to, std::size_t steps, const NeighboursAt& driven = {});
 

@@ -47,23 +47,26 @@ void add_branch(Diagram& diagram, const LocusBranch& branch, std::size_t i) {
   }
 }
 
+/// A place that several branches share has one mark.
+void add_mark(Diagram& diagram, const Parameter& p, double value, double y, const std::string& unit) {
+  const bool told = std::any_of(diagram.marks.begin(), diagram.marks.end(), [&](const Diagram::Mark& m) {
+    return std::abs(m.x - value) <= 1e-9 * std::abs(m.x) && std::abs(m.y - y) <= 1e-9;
+  });
+  if (!told)
+    diagram.marks.push_back({value, y, fmt::format("{} = {:.6g}{}{}", p.name, value, unit.empty() ? "" : " ", unit)});
+}
+
 void add_marks(Diagram& diagram, const MechanicalSystem& system, const Locus& locus, std::size_t i) {
+  const Parameter& p = system.parameters[locus.parameter];
+  const std::string unit = unit_text(system, p.dimension);
   for (const StabilityChange& change : locus.changes) {
     const auto& points = locus.branches[change.branch].points;
     const auto nearest = std::min_element(points.begin(), points.end(), [&](const LocusPoint& x, const LocusPoint& y) {
       return std::abs(x.parameter - change.parameter) < std::abs(y.parameter - change.parameter);
     });
-    const Parameter& p = system.parameters[locus.parameter];
-    const std::string unit = unit_text(system, p.dimension);
-    const double y = coordinate_at(*nearest, i);
-    const bool told = std::any_of(diagram.marks.begin(), diagram.marks.end(), [&](const Diagram::Mark& m) {
-      return std::abs(m.x - change.parameter) <= 1e-9 * std::abs(m.x) && std::abs(m.y - y) <= 1e-9;
-    });
-    if (!told)
-      diagram.marks.push_back(
-          {change.parameter, y,
-           fmt::format("{} = {:.6g}{}{}", p.name, change.parameter, unit.empty() ? "" : " ", unit)});
+    add_mark(diagram, p, change.parameter, coordinate_at(*nearest, i), unit);
   }
+  for (const Fold& fold : locus.folds) add_mark(diagram, p, fold.parameter, fold.equilibrium.point.q[i], unit);
 }
 
 void add_legend(Diagram& diagram) {

@@ -40,6 +40,18 @@ TEST_CASE("values of a sweep without points are told") {
   CHECK_FALSE(contains(maup({"modes", "-", "--sweep", "l = 1 .. 2 m steps 3"}, pendulum).out, "no point was found"));
 }
 
+TEST_CASE("a sweep tells the fold in which branches end") {
+  const std::string node = "dimensionless\nparam a = 1\ncoord x : number\nL = 1/2 x'^2 + a x - (x - 2)^3/3\n";
+  const Outcome told = maup({"modes", "-", "--sweep", "a = 1 .. -0.9 steps 9"}, node);
+  CHECK_MESSAGE(told.code == 0, told.err);
+  CHECK(contains(told.out, "branches 1 and 2 meet in a fold at a = "));
+  CHECK(contains(told.out, ": x = 2\n"));
+  const Json json = Json::parse(maup({"modes", "-", "--sweep", "a = 1 .. -0.9 steps 9", "--json"}, node).out);
+  REQUIRE(json.at("folds").size() == 1);
+  CHECK(std::abs(json.at("folds")[0].at("value").get<double>()) < 1e-12);
+  CHECK(json.at("folds")[0].at("branches") == Json::array({0, 1}));
+}
+
 TEST_CASE("mirror images are said once") {
   const auto times = [](const std::string& text, const std::string& part) {
     std::size_t count = 0;

@@ -1,4 +1,5 @@
 #include "analysis/linearization/point_equations.hpp"
+#include "analysis/linearization/turning_point.hpp"
 
 #include <maupertuis/interrupt.hpp>
 #include <maupertuis/locus.hpp>
@@ -16,6 +17,19 @@ namespace maupertuis {
 namespace {
 
 constexpr double longest_step = 1.0 / 3, short_step = 0.1, one_place = 1e-5;  // of typical sizes
+
+/// The vertex of the parabola through three points (x, y), the middle one not above the others.
+struct Parabola {
+  double at = 0, least = 0;
+
+  Parabola(std::pair<double, double> a, std::pair<double, double> b, std::pair<double, double> c) {
+    const double left = (b.second - a.second) / (b.first - a.first),
+                 right = (c.second - b.second) / (c.first - b.first), bend = (right - left) / (c.first - a.first),
+                 slope = left + bend * (b.first - a.first);
+    at = bend > 0 ? b.first - slope / (2 * bend) : b.first;
+    least = bend > 0 ? b.second - slope * slope / (4 * bend) : b.second;
+  }
+};
 
 class Tracer {
  public:
@@ -36,14 +50,18 @@ class Tracer {
         add_value(from + (to - from) * static_cast<double>(whole) / static_cast<double>(steps - 1),
                   whole == 0 || whole == steps / 2 || whole == steps - 1);
       follow_back();
+      look_between();
       find_changes();
       join_births();
+      find_folds();
     } catch (const Interrupted&) {
       if (whole == 0) throw;
       locus_.values.resize(whole);
       locus_.interrupted = true;
     }
     std::stable_sort(locus_.changes.begin(), locus_.changes.end(),
+                     [](const auto& x, const auto& y) { return x.parameter < y.parameter; });
+    std::stable_sort(locus_.folds.begin(), locus_.folds.end(),
                      [](const auto& x, const auto& y) { return x.parameter < y.parameter; });
     return std::move(locus_);
   }
@@ -84,11 +102,12 @@ class Tracer {
     if (in_time())
       if (auto neighbours = driven_(value, x)) {
         locus_.driven = true;
-        return {value, x, std::move(neighbours->stability), std::move(neighbours->exponents)};
+        return {value, x, std::move(neighbours->stability), std::move(neighbours->exponents),
+                std::move(neighbours->passes)};
       }
     const Linearization l = linearize(equations_, x.point).linearization;
     const ModalAnalysis analysis = modal_analysis(equations_, l, symmetries_, &x);
-    return {value, x, analysis.stability, analysis.eigenvalues};
+    return {value, x, analysis.stability, analysis.eigenvalues, {}};
   }
 
   std::vector<LocusPoint> points_at(double value, bool everywhere) {
@@ -275,6 +294,60 @@ class Tracer {
     return std::nullopt;
   }
 
+  /// Of a driven system a verdict may hold in a window narrower than the step: it opens where a multiplier comes
+  /// nearest to 1 or −1.
+  void look_between() {
+    for (LocusBranch& branch : locus_.branches) {
+      std::vector<LocusPoint> found;
+      for (std::size_t i = 1; i + 1 < branch.points.size(); ++i)
+        for (std::size_t which = 0; which < branch.points[i].passes.size(); ++which)
+          if (const auto window = window_beside(&branch.points[i - 1], which)) found.push_back(*window);
+      for (LocusPoint& x : found) {
+        const auto after = std::find_if(branch.points.begin(), branch.points.end(),
+                                        [&](const LocusPoint& y) { return (y.parameter - x.parameter) * step() > 0; });
+        branch.points.insert(after, std::move(x));
+      }
+    }
+  }
+
+  /// Three neighbours of one verdict, the middle one nearest to a pass: the minimum of the distance between the outer
+  /// ones, by parabolas and golden sections in turn, until the verdict is another or it is clear that it never is.
+  std::optional<LocusPoint> window_beside(const LocusPoint* points, std::size_t which) {
+    constexpr int most = 60;
+    constexpr double far = 0.5;                               // of the distance at the middle
+    constexpr double short_way = 1.0 / 8, narrowest = 1e-10;  // of the step: there it is a parabola; there is none
+    LocusPoint low = points[0], middle = points[1], high = points[2];
+    for (const LocusPoint* p : {&low, &high})
+      if (p->passes.size() <= which || p->stability.verdict != middle.stability.verdict) return std::nullopt;
+    const double side = std::copysign(1.0, middle.passes[which]);
+    const auto off = [&](const LocusPoint& p) { return side * p.passes[which]; };
+    if (!(off(middle) <= off(low) && off(middle) <= off(high))) return std::nullopt;
+    for (int k = 0; k < most; ++k) {
+      const Parabola through({low.parameter, off(low)}, {middle.parameter, off(middle)}, {high.parameter, off(high)});
+      const double width = std::abs((high.parameter - low.parameter) / step());
+      if (width < narrowest || (width < short_way && through.least > far * off(middle))) return std::nullopt;
+      const double at = k % 2 == 0 ? through.at : golden(low.parameter, middle.parameter, high.parameter);
+      const bool above = (at - middle.parameter) * step() > 0;
+      if (at == middle.parameter) continue;
+      const auto here = above ? between(middle, high, at) : between(low, middle, at);
+      if (!here || here->passes.size() <= which) return std::nullopt;
+      if (here->stability.verdict != middle.stability.verdict) return here;
+      if (off(*here) <= off(middle)) {
+        (above ? low : high) = middle;
+        middle = *here;
+      } else {
+        (above ? high : low) = *here;
+      }
+    }
+    return std::nullopt;
+  }
+
+  static double golden(double low, double middle, double high) {
+    constexpr double part = 0.3819660112501051;
+    const double longer = std::abs(high - middle) > std::abs(middle - low) ? high : low;
+    return middle + part * (longer - middle);
+  }
+
   void find_changes() {
     for (std::size_t b = 0; b < locus_.branches.size(); ++b) {
       const auto points = locus_.branches[b].points;
@@ -323,6 +396,51 @@ class Tracer {
         if (is_before(last.parameter, change.parameter)) attach(b, change, last, false);
       }
     }
+  }
+
+  // ------------------------------------------------------------------------------------------------------------ folds
+
+  /// A branch that begins or ends between two values of the sweep, and out of no other one, turns back there.
+  void find_folds() {
+    for (std::size_t b = 0; b < locus_.branches.size(); ++b)
+      for (const bool front : {true, false}) {
+        const auto& points = locus_.branches[b].points;
+        const LocusPoint end = front ? points.front() : points.back();
+        const auto beyond = value_next_to(end.parameter, front);
+        if (in_time() || !beyond || !is_followed(end.equilibrium)) continue;
+        if (const auto turn = turn_beyond(end, *beyond)) add_fold(b, front, end, *turn);
+      }
+  }
+
+  /// The value of the sweep before or after that of a point; nothing beyond its ends, and of points between.
+  std::optional<double> value_next_to(double value, bool before) const {
+    const auto k = std::find(locus_.values.begin(), locus_.values.end(), value);
+    if (k == locus_.values.end() || (before ? k == locus_.values.begin() : k + 1 == locus_.values.end()))
+      return std::nullopt;
+    return before ? *(k - 1) : *(k + 1);
+  }
+
+  std::optional<TurningPoint> turn_beyond(const LocusPoint& end, double beyond) {
+    set_parameter(end.parameter);
+    return turning_point(equations_.impl(),
+                         {end.equilibrium.point, parameter_, end.parameter, beyond, sizes_, symmetries_});
+  }
+
+  void add_fold(std::size_t b, bool front, const LocusPoint& end, const TurningPoint& turn) {
+    Equilibrium x = end.equilibrium;
+    x.point = turn.rest;
+    const auto is_known = [&](const Fold& f) {
+      return std::abs(f.parameter - turn.value) <= one_place * std::abs(step()) &&
+             distance(f.equilibrium, x) <= one_place;
+    };
+    auto fold = std::find_if(locus_.folds.begin(), locus_.folds.end(), is_known);
+    if (fold == locus_.folds.end()) fold = locus_.folds.insert(fold, {turn.value, x, {}});
+    fold->branches.push_back(b);
+    set_parameter(fold->parameter);
+    LocusPoint last = judged(fold->parameter, fold->equilibrium);
+    last.stability = end.stability;
+    auto& points = locus_.branches[b].points;
+    points.insert(front ? points.begin() : points.end(), last);
   }
 
   double step() const { return locus_.values[1] - locus_.values[0]; }

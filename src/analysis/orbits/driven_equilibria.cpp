@@ -46,6 +46,13 @@ std::vector<std::complex<double>> exponents(const FloquetResult& neighbours) {
   return out;
 }
 
+/// Π (1 − μ) and Π (1 + μ).
+std::vector<double> passes(const FloquetResult& neighbours) {
+  std::complex<double> one = 1, minus_one = 1;
+  for (const std::complex<double>& mu : neighbours.multipliers) one *= 1.0 - mu, minus_one *= 1.0 + mu;
+  return {one.real(), minus_one.real()};
+}
+
 /// A model and equations whose parameter can be given values.
 struct Tuned {
   Model model;
@@ -94,7 +101,7 @@ NeighboursAt driven_neighbours(const Model& model, const EquationsOfMotion& equa
     const auto found = floquet_at_rest(tuned->model, tuned->equations, x.point, interrupt);
     Interrupt(interrupt).throw_if_asked();
     if (!found) return std::nullopt;
-    return NeighboursInTime{report_of(*found), exponents(*found)};
+    return NeighboursInTime{report_of(*found), exponents(*found), passes(*found)};
   };
 }
 

@@ -67,7 +67,7 @@ TEST_CASE("a subcritical branch far from the start is met, followed both ways, a
       for (const LocusPoint& p : b.points) {
         const double x = p.equilibrium.point.q[0], u = x * x / 100;
         CHECK(std::abs(x * (p.parameter - u + u * u)) < 1e-9);
-        outer += x * x > 50;
+        outer += x * x > 60;
       }
     CHECK(outer == 16);  // a = −0.5, −0.4 … 0.2, on both sides
     for (const StabilityChange& c : locus.changes) CHECK(std::abs(c.parameter) < 1e-12);
@@ -121,6 +121,86 @@ TEST_CASE("with an imperfection the branch that goes on stays stable, and the ot
   REQUIRE(goes_on != locus.branches.end());
   CHECK(goes_on->points.back().equilibrium.point.q[0] > 1.3);
   for (const LocusPoint& x : goes_on->points) CHECK(x.stability.verdict == Stability::Asymptotic);
+}
+
+namespace {
+
+/// The folds of a sweep, forwards and back: each of two branches that end there.
+std::vector<Fold> folds_of(const std::string& text, const std::string& name, double from, double to,
+                           std::size_t steps) {
+  std::vector<Fold> out;
+  for (const bool back : {false, true}) {
+    Linearized m(text);
+    Locus locus = back ? swept(m, name, to, from, steps) : swept(m, name, from, to, steps);
+    for (const Fold& f : locus.folds) {
+      REQUIRE(f.branches.size() == 2);
+      for (const std::size_t b : f.branches) {
+        const auto& points = locus.branches[b].points;
+        CHECK((points.front().parameter == f.parameter || points.back().parameter == f.parameter));
+      }
+    }
+    if (!back) {
+      out = locus.folds;
+      continue;
+    }
+    REQUIRE(locus.folds.size() == out.size());
+    for (std::size_t k = 0; k < out.size(); ++k) CHECK(near(out[k].parameter, locus.folds[k].parameter, 1e-12));
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("a branch that ends between two values of the sweep ends in a fold") {
+  // x'' = μ − x²
+  const auto node =
+      folds_of("dimensionless\nparam μ = 1\ncoord x : number\nL = 1/2 x'^2 + μ x - x^3/3\n", "μ", 1, -0.9, 9);
+  REQUIRE(node.size() == 1);
+  CHECK(std::abs(node[0].parameter) < 1e-13);
+  CHECK(std::abs(node[0].equilibrium.point.q[0]) < 1e-9);
+
+  // A tilted double well: f = ±2/√27 at x = ∓1/√3.
+  const auto well =
+      folds_of("dimensionless\nparam f = 0\ncoord x : number\nL = 1/2 x'^2 - 1/4 x^4 + 1/2 x^2 + f x\nD = 0.1 x'^2\n",
+               "f", -1, 1, 12);
+  REQUIRE(well.size() == 2);
+  for (const int k : {0, 1}) {
+    CHECK(near(well[static_cast<std::size_t>(k)].parameter, (2 * k - 1) * 2 / std::sqrt(27), 1e-13));
+    CHECK(near(well[static_cast<std::size_t>(k)].equilibrium.point.q[0], (1 - 2 * k) / std::sqrt(3), 1e-9));
+  }
+
+  // A column with a hinge, bent by e to begin with: x − tan x = e, P cos x = 1.
+  const double e = 0.05, x = -0.512039814;
+  const auto column = folds_of(
+      "dimensionless\nparam P = 1\ncoord x : angle\nT = 1/2 x'^2\nV = 1/2 (x - 0.05)^2 + P cos(x)\n", "P", 0.5, 2, 11);
+  REQUIRE(column.size() == 1);
+  const double at = column[0].equilibrium.point.q[0];
+  CHECK(near(at, x, 1e-6));
+  CHECK(near(at - std::tan(at), e, 1e-9));
+  CHECK(near(column[0].parameter * std::cos(at), 1, 1e-12));
+
+  // A bead on a turning hoop whose axis leans: (κ cos α)^(2/3) + (κ sin α)^(2/3) = 1 with κ = g/(R Ω²), in an angle and
+  // on a constraint.
+  const double α = 0.1, sum = std::pow(std::cos(α), 2.0 / 3) + std::pow(std::sin(α), 2.0 / 3);
+  for (const char* text :
+       {"dimensionless\nparam Ω = 1\ncoord θ : angle\nL = 1/2 θ'^2 + 1/2 Ω^2 sin(θ)^2 + cos(θ - 0.1)\n",
+        "dimensionless\nparam Ω = 1\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) + 1/2 Ω^2 x^2 - y cos(0.1) + x "
+        "sin(0.1)\nconstraint x^2 + y^2 = 1\nstart x = 0.1, y = -1\n"}) {
+    CAPTURE(text);
+    const auto hoop_folds = folds_of(text, "Ω", 0.7, 2, 8);
+    REQUIRE(!hoop_folds.empty());
+    CHECK(near(hoop_folds.front().parameter, std::pow(sum, 0.75), 1e-12));
+  }
+}
+
+TEST_CASE("a branch that grows out of another one, and one that runs away, have no fold") {
+  for (const char* text : {"dimensionless\nparam r = 0\ncoord x : number\nL = 1/2 x'^2 + 1/2 r x^2 - 1/4 x^4\n",
+                           "dimensionless\nparam r = 0\ncoord x : number\nL = 1/2 x'^2 + 1/2 r x^2 + 1/4 x^4\n",
+                           "dimensionless\nparam r = 0\ncoord x : number\nL = 1/2 x'^2 - 1/2 r x^2 + x\n"}) {
+    CAPTURE(text);
+    Linearized m(text);
+    CHECK(swept(m, "r", -1.03, 1, 21).folds.empty());
+  }
 }
 
 TEST_CASE("A symmetry of one value of the parameter explains nothing at the others") {

@@ -249,6 +249,17 @@ TEST_CASE("along a sweep a driven system is judged by multipliers: the tongue of
   // One value of the sweep inside a range that is not decided has borders on both sides.
   const Locus gap = sweep(0, 1.2, -0.3, 3, nullptr);
   CHECK(gap.changes.size() == 2);
+  // Narrower than the step: the tongue about a = 4, 4 − q²/12 … 4 + 5 q²/12 (§2.151), and that about a = 9, 0.0005
+  // wide.
+  const Locus narrow = sweep(0, 2.5, 11.5, 10, nullptr);
+  REQUIRE(narrow.changes.size() == 4);
+  const double q2 = 0.25 * 0.25, q4 = q2 * q2;
+  CHECK(narrow.changes[0].parameter == doctest::Approx(4 - q2 / 12 + 5 * q4 / 13824).epsilon(1e-7));
+  CHECK(narrow.changes[1].parameter == doctest::Approx(4 + 5 * q2 / 12 - 763 * q4 / 13824).epsilon(1e-6));
+  for (const int side : {0, 1})
+    CHECK(narrow.changes[static_cast<std::size_t>(2 + side)].parameter ==
+          doctest::Approx(9 + q2 / 16 + (2 * side - 1) * 0.25 * q2 / 64 + 13 * q4 / 20480).epsilon(1e-7));
+  CHECK(sweep(0, 4.2, 8.7, 6, nullptr).changes.empty());
   // At a = 1 damping c wins where it is above ε/2, nearly.
   const Locus damped = sweep(2, 0.01, 0.5, 5, nullptr);
   REQUIRE(damped.changes.size() == 1);
