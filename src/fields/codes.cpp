@@ -41,9 +41,9 @@ constexpr CodeEntry kEntries[] = {
      "# maup simulate\nfield u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T = 1 N, l = 1 m\n"
      "density = 1/2 ρ u'^2 - 1/2 T u_x^2\nstart u = l log(x/l + 2)\nrun 1 s\n"},
     {"W0646", "a start of a field that does not fit its boundary condition",
-     "At an end the field has the value of the condition from the beginning on. Another value beside it is a jump, "
-     "which "
-     "runs into the domain and which no mesh resolves.",
+     "At an end the field has the value of the condition from the beginning on, and its rate: with u = A sin(w t) the "
+     "end moves off at once, u' = A w. Another value or rate beside it is a jump, of u or of u', which runs into the "
+     "domain and which no mesh resolves.",
      "# maup simulate\nfield u(x) : length on x = 0 m .. 1 m boundary u = 0\nparam ρ = 1 kg/m, T = 1 N, l = 1 m\n"
      "density = 1/2 ρ u'^2 - 1/2 T u_x^2\nstart u = l\nrun 1 s\n",
      "# maup simulate\nfield u(x) : length on x = 0 m .. 1 m boundary u = 0\nparam ρ = 1 kg/m, T = 1 N, l = 1 m\n"

@@ -5,6 +5,7 @@
 #include "fields/breaks.hpp"
 #include "fields/coupled_errors.hpp"
 #include "fields/density_form.hpp"
+#include "fields/field_run_messages.hpp"
 #include "fields/resolution.hpp"
 #include "fields/resting_fields.hpp"
 #include "fields/steepening.hpp"
@@ -158,12 +159,7 @@ std::optional<SemiDiscrete> mesh_for(const CoupledProblem& p, Diagnostics& diagn
   if (!mesh || refuse_unresolved(p.equations, {mesh->borders()}, mesh->order(), {p.options.begin, p.options.duration},
                                  diagnostics))
     return std::nullopt;
-  const auto& start = p.equations.model->start;
-  if (mesh->start_clashes())
-    diagnostics.warning("W0646", start.empty() ? s.density_span : start.front().span,
-                        "the start does not fit the condition at an end",
-                        "The condition is followed, so that a jump runs into the field, which no mesh resolves.",
-                        "Give a start that has the value of the condition there.");
+  warn_of_clashes(mesh->start_clashes(), p.equations, diagnostics);
   return mesh;
 }
 

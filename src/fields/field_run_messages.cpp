@@ -97,14 +97,20 @@ std::string both_numbers(double value, double other) {
 
 }  // namespace
 
-void warn_of_clashes(const FieldMotion& mesh, const FieldEquations& equations, Diagnostics& diagnostics) {
+void warn_of_clashes(const std::vector<FieldMotion::StartClash>& clashes, const FieldEquations& equations,
+                     Diagnostics& diagnostics) {
   const FieldSystem& s = equations.system();
-  for (const FieldMotion::StartClash& c : mesh.start_clashes())
-    diagnostics.warning("W0646", equations.model->start.empty() ? s.density_span : equations.model->start.front().span,
-                        fmt::format("the start does not fit the condition at the {}: {} = {} (SI units)",
-                                    side_name(c.side, s), jet_name(c, equations), both_numbers(c.start, c.condition)),
-                        "The condition is followed, so that a jump runs into the field, which no mesh resolves.",
-                        "Give a start that has the value of the condition there.");
+  for (const FieldMotion::StartClash& c : clashes) {
+    const std::string name = jet_name(c, equations);
+    diagnostics.warning(
+        "W0646", equations.model->start.empty() ? s.density_span : equations.model->start.front().span,
+        fmt::format("the start does not fit the condition at the {}: {} = {} (SI units)", side_name(c.side, s), name,
+                    both_numbers(c.start, c.condition)),
+        fmt::format("The condition is followed, so that a jump of {} runs into the field, which no mesh "
+                    "resolves.",
+                    name),
+        fmt::format("Give a start whose {} is that of the condition there.", name));
+  }
 }
 
 bool warn_of_short_action(const FieldEquations& equations, const std::vector<double>& switching, double step,

@@ -20,7 +20,8 @@ bool refuse_too_many_rows(const FieldEquations& equations, const FieldRunOptions
 /// What a mesh of more than a gigabyte takes is said before it is made.
 void announce_memory(const FieldRunOptions& options, double bytes);
 /// W0646: the end of the mesh is put to its condition, and what the start says beside it runs in as a wave.
-void warn_of_clashes(const FieldMotion& mesh, const FieldEquations& equations, Diagnostics& diagnostics);
+void warn_of_clashes(const std::vector<FieldMotion::StartClash>& clashes, const FieldEquations& equations,
+                     Diagnostics& diagnostics);
 /// W0650: what acts for less than a step; whether there is such.
 bool warn_of_short_action(const FieldEquations& equations, const std::vector<double>& switching, double step,
                           const FieldRunOptions& options, Diagnostics& diagnostics);

@@ -213,7 +213,7 @@ bool MeshRun::begin() {
     out_.h = method_.longest_step(mesh_, options_.duration, every_, options_.interrupt, out_.omega);
   if (!mesh_.trouble().empty()) return refuse_mesh(mesh_, equations_, diagnostics_), false;
   if (!first_) return true;
-  warn_of_clashes(mesh_, equations_, diagnostics_), tell_what_is_fixed(mesh_, equations_, diagnostics_);
+  warn_of_clashes(mesh_.start_clashes(), equations_, diagnostics_), tell_what_is_fixed(mesh_, equations_, diagnostics_);
   if (method_.is_wave() && options_.errors) method_.look_before(out_.h, cells_[0] * method_.order());
   out_.passes_by = warn_of_short_action(equations_, switching, std::min(out_.h, every_), options_, diagnostics_);
   return true;

@@ -441,17 +441,29 @@ std::vector<double> projected(const ElementSpace& space, const std::vector<doubl
   return out;
 }
 
+/// A field without any velocity in its equation is at rest at every moment: nothing runs into it.
+bool has_waves(const FieldEquations& equations, std::size_t varied) {
+  const std::vector<Expr> symbols = symbols_of({&equations.residuals[varied], 1});
+  return std::any_of(symbols.begin(), symbols.end(), [&](const Expr& symbol) {
+    const auto jet = equations.system().jet_of(symbol);
+    return jet && jet->time > 0;
+  });
+}
+
 }  // namespace
 
 bool SemiDiscrete::set_start(Diagnostics& diagnostics) {
   const FieldSystem& s = equations_->system();
   Bindings at_start = numbers_;
   at_start[s.context->time()] = begin();
-  for (std::size_t a = 0; a < spaces_.size(); ++a)
+  for (std::size_t a = 0; a < spaces_.size(); ++a) {
+    const bool waves = has_waves(*equations_, a);
     for (int order = 0; order < 2; ++order) {
       Expr start = s.context->number(0);
+      bool given_at_all = false;
       for (const FieldStart& one : equations_->model->start)
-        if (one.field == equations_->varied[a] && one.order == order) start = s.expanded(one.value);
+        if (one.field == equations_->varied[a] && one.order == order)
+          start = s.expanded(one.value), given_at_all = true;
       const Expr root[] = {start};
       const RepeatedEvaluation at(root);
       std::vector<double> function;
@@ -477,8 +489,9 @@ bool SemiDiscrete::set_start(Diagnostics& diagnostics) {
           given[j] = evaluate(order ? total_time_derivative(values_[a][j]) : values_[a][j], at_start);
       for (const bool right : {false, true}) {
         const auto& g = given[spaces_[a].value_at_border(right ? mesh_.borders.size() - 1 : 0)];
-        if (g && std::abs(*g - (right ? function.back() : function.front())) > 1e-9 * std::max(size, std::abs(*g)))
-          clashes_ = true;
+        const double value = right ? function.back() : function.front();
+        if (waves && g && std::abs(*g - value) > 1e-9 * std::max(size, std::abs(*g)))
+          clashes_.push_back({a, 0, order, right ? Side::Right : Side::Left, value, *g});
       }
       const std::vector<double> c = projected(spaces_[a], function, given);
       for (std::size_t j = 0; j < c.size(); ++j)
@@ -487,9 +500,13 @@ bool SemiDiscrete::set_start(Diagnostics& diagnostics) {
           v.coordinate = *coordinates_[a][j];
           v.order = order;
           v.value = constant(c[j]);
+          // Of elements without waves it is no choice, and gives way to what the coordinates that they carry start
+          // with.
+          if (!waves && !given_at_all) v.span = model_.system.coordinates[v.coordinate].span;
           model_.experiment.start.push_back(std::move(v));
         }
     }
+  }
   return true;
 }
 

@@ -3,6 +3,7 @@
 #include <maupertuis/repeated_evaluation.hpp>
 
 #include "fields/field_elements.hpp"
+#include "fields/field_motion.hpp"
 
 #include <optional>
 #include <set>
@@ -45,8 +46,7 @@ class SemiDiscrete {
   /// Whether the density of all fields that bodies take hold of along a path holds second derivatives.
   bool bends() const;
   const std::vector<double>& borders() const { return mesh_.borders; }
-  /// Where a start does not fit what is given at an end.
-  bool start_clashes() const { return clashes_; }
+  const std::vector<FieldMotion::StartClash>& start_clashes() const { return clashes_; }
   /// Names of events that end a run: a place that moves left the domain.
   const std::vector<std::string>& departures() const { return departures_; }
   /// Whether elements are left that have no inertia: they do not follow what they carry by linear forces.
@@ -108,7 +108,8 @@ class SemiDiscrete {
   ExprMap moving_;                                                    // coordinates that are functions of others and t
   std::vector<std::string> departures_;
   std::size_t dofs_ = 0;
-  bool forced_ = false, clashes_ = false;
+  bool forced_ = false;
+  std::vector<FieldMotion::StartClash> clashes_;
 };
 
 }  // namespace maupertuis

@@ -63,6 +63,26 @@ TEST_CASE("two numbers that differ in late digits are told by what they differ b
   CHECK(holds(text, "u = -2, off by -1e-08"));
 }
 
+TEST_CASE("a start beside a moving end: which rate is meant, and nothing of a field without waves") {
+  const std::string moving =
+      message_of("boundary left : u = 1/10 sin(3 t)\ndensity = 1/2 u'^2 - 1/2 u_x^2\nstart u = 0\n", true);
+  CHECK(holds(moving, "W0646"));
+  CHECK(holds(moving, "u' = 0 beside 0.3"));
+  CHECK(holds(moving, "a jump of u' runs into the field"));
+  CHECK(holds(moving, "a start whose u' is that"));
+  // A massless string follows its mass at once: its start is that of the mass, of which alone it is asked.
+  for (const char* start : {"start u = x/5\n", "start u = 1/10\n"}) {
+    Study study(SourceText("field.lag", line + "boundary u = 0\ndensity = -1/2 u_x^2\nT = 1/2 u(1/2)'^2\n" + start));
+    REQUIRE(study.field_equations());
+    FieldRunOptions options;
+    options.duration = 1, options.errors = false;
+    Diagnostics none;
+    const auto run = run_coupled(*study.model(), *study.field_equations(), {}, options, none);
+    REQUIRE(run);
+    CHECK(none.items().empty());
+  }
+}
+
 TEST_CASE("where the field stands still in a mode, its coordinate is 1") {
   Study study(SourceText("field.lag",
                          "param ρ = 0.1 kg/m, T0 = 20 N, l = 1 m, m = 0.2 kg, b = 0.3 m, g = 9.81 m/s^2\n"
