@@ -28,7 +28,8 @@ constexpr CodeEntry entries[] = {
      "continuation from a "
      "short duration. Where all of that fails the end is most likely not reachable: outside of what L allows (a square "
      "root of a negative "
-     "number), or conjugate to the start, where paths come together only at some points. It is no proof that there is "
+     "number), or conjugate to the start, where paths come together only at some points. At an end that is free ∂L/∂q' "
+     "has to vanish: where it is the same on all paths, and not 0, none is stationary. It is no proof that there is "
      "none.",
      "# maup action\nparam m = 1 kg, k = 4 N/m\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"
      "path from 0 at 0 to 1 m at pi/2 s\n",

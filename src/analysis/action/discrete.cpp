@@ -205,6 +205,8 @@ struct Assembler {
     for (Index j = 0; j < phi.size(); ++j) {
       const Index first = trial.mesh.node(e, j) * n;
       out.gradient.segment(first, n) += w * (phi[j] * density.gradient.head(n) + dphi[j] * density.gradient.tail(n));
+      out.gradient_terms.segment(first, n) += w * (std::abs(phi[j]) * density.gradient.head(n).cwiseAbs() +
+                                                   std::abs(dphi[j]) * density.gradient.tail(n).cwiseAbs());
       if (functional.integrals() > 0)
         out.integral_gradients.middleRows(first, n) +=
             w * (phi[j] * density.integral_gradients.topRows(n) + dphi[j] * density.integral_gradients.bottomRows(n));
@@ -220,7 +222,17 @@ struct Assembler {
     hessian.add(qv.transpose(), dphi, phi, w);
     hessian.add(vv, dphi, dphi, w);
     kinetic.add(norm_of(vv).asDiagonal(), dphi, dphi, w);
-    displacement.add(norm_of(vv).asDiagonal(), phi, phi, w / (trial.mesh.whole * trial.mesh.whole));
+    displacement.add(norm_of_displacement(vv).asDiagonal(), phi, phi, w);
+  }
+
+  /// |M| ξ²/T², and |M| ξ²/T⁴ of a q whose q'' stands in L: a shift of it, which has no v, would have no size else.
+  Vector norm_of_displacement(const Matrix& vv) const {
+    const OrderOfCoordinates& orders = functional.orders();
+    const double square = trial.mesh.whole * trial.mesh.whole;
+    Vector out = norm_of(vv) / square;
+    for (std::size_t k = 0; k < orders.bases.size(); ++k)
+      out[orders.bases[k]] = out[orders.rates_of_others[k]] / square;
+    return out;
   }
 };
 
@@ -230,7 +242,7 @@ Assembly assemble(Functional& functional, const Trial& trial, int order) {
   Assembler a{functional, trial, order, {}, {}};
   const Index unknowns = trial.q.size(), k = functional.integrals();
   a.out.integrals = Vector::Zero(k);
-  a.out.gradient = Vector::Zero(order > 0 ? unknowns : 0);
+  a.out.gradient = a.out.gradient_terms = Vector::Zero(order > 0 ? unknowns : 0);
   a.out.integral_gradients = Matrix::Zero(order > 0 ? unknowns : 0, k);
   for (Index e = 0; e < trial.mesh.elements() && a.out.finite; ++e) a.element(e);
   a.out.action = a.action.value();

@@ -73,11 +73,12 @@ struct Assembly {
   double action = 0;
   Vector integrals;                  // [k]
   Vector gradient;                   // [n nodes] of S + Σ λ ∫ G
+  Vector gradient_terms;             // [n nodes] the absolute values of what the gradient is the sum of
   Matrix integral_gradients;         // [n nodes × k]
   std::vector<Matrix> hessians;      // [elements] each [n (degree + 1)]², node by node
   std::vector<Matrix> kinetic;       // order 2: the same for ∫ ξ' |M| ξ' dt: by what eigenvalues are measured
   std::vector<Matrix> displacement;  // order 2: the same for ∫ ξ |M| ξ dt/T², T the whole: what a translation, which
-                                     // has no ξ', is measured by
+                                     // has no ξ', is measured by; of a q with q'' in L over T⁴
 };
 
 /// order as of Functional::evaluate.

@@ -11,12 +11,15 @@ namespace {
 constexpr double converged_to = 1e-12;   // of a correction: the next one would be at rounding
 constexpr double rounding_level = 1e-9;  // a correction that does not shrink any more, below which it is rounding
 constexpr double balanced = 2e-14;       // of the gradient against its terms: nothing is left but rounding
+constexpr double only_rounding = 4e-15;  // of the gradient against what it is the sum of: S tells nothing more
 constexpr double shift =
     1e-12;  // of the kinetic norm: a direction in which S does not change gets no step from rounding alone
 constexpr double short_step = 1e-3;   // of the scale: a correction that short is judged by the gradient as well
 constexpr double much_better = 1e-2;  // of the gradient that was left
 constexpr double least_damping = 1e-4;
-constexpr double longest_step = 3;  // in units of the scale
+constexpr double longest_step = 3;  // in units of the scale, to begin with
+constexpr double as_linear = 0.9,
+                 wider = 4;  // a step after which so much of its share is gone allows one so much longer
 
 struct Iteration {
   Functional& functional;
@@ -30,16 +33,20 @@ struct Iteration {
   Vector reduced;      // the unknowns of the step
   Vector row_sizes;    // of the matrix: what a gradient is measured against
   double imbalance = 0;
+  bool is_rounding = false;  // the gradient, of plain paths: a large p that is all but constant leaves nothing else
 
   Index k() const { return functional.integrals(); }
 
   bool factor_and_solve() {
     const Assembly a = assemble(functional, trial, 2);
+    is_rounding = false;
     if (!a.finite) return false;
     directions = directions_of(functional, trial, fixed, scale, a.gradient);
     Assembly shifted = a;
     for (std::size_t e = 0; e < a.hessians.size(); ++e) shifted.hessians[e] += shift * a.kinetic[e];
     const Sparse matrix = reduced_matrix(functional, trial, shifted, directions);
+    const bool plain = functional.constraints() == 0 && k() == 0 && !functional.orders().higher();
+    is_rounding = plain && is_rounding_of(a);
     row_sizes = Vector::Zero(matrix.rows());
     for (int c = 0; c < matrix.outerSize(); ++c)
       for (Sparse::InnerIterator entry(matrix, c); entry; ++entry) row_sizes[entry.row()] += std::abs(entry.value());
@@ -50,6 +57,16 @@ struct Iteration {
     if (!solve(gradient, a.integrals + a.integral_gradients.transpose() * directions.normal, directions.normal))
       return false;
     widen_scale();
+    return true;
+  }
+
+  bool is_rounding_of(const Assembly& a) const {
+    for (Index node = 0; node < directions.nodes(); ++node) {
+      const Matrix& z = directions.basis[static_cast<std::size_t>(node)];
+      const Vector left = z.transpose() * a.gradient.segment(node * z.rows(), z.rows()),
+                   terms = z.cwiseAbs().transpose() * a.gradient_terms.segment(node * z.rows(), z.rows());
+      if ((left.cwiseAbs().array() > only_rounding * terms.array()).any()) return false;
+    }
     return true;
   }
 
@@ -154,10 +171,10 @@ NewtonResult solve_stationarity(Functional& functional, Trial& trial, const Fixe
                                 const NewtonOptions& options) {
   NewtonResult out;
   Iteration it{functional, trial, fixed, scale, {}, {}, {}, {}, {}, {}, 0};
-  double damping = 1, before = HUGE_VAL;
+  double damping = 1, before = HUGE_VAL, longest = longest_step;
   for (out.iterations = 0; out.iterations < options.most_iterations; ++out.iterations) {
     if (options.interrupt && options.interrupt->load()) return out;
-    if (!it.factor_and_solve()) return out;
+    if (!it.factor_and_solve()) return out.converged = it.is_rounding, out;
     const Vector step = it.step, multipliers = it.multipliers;
     const double length = it.length(), norm = it.norm(), imbalance = it.imbalance;
     const Matrix q = trial.q;
@@ -173,11 +190,17 @@ NewtonResult solve_stationarity(Functional& functional, Trial& trial, const Fixe
       out.correction = it.imbalance;
       return out.converged = true, out;
     }
+    // Where p hardly depends on q', as at speeds near that of light, any path looks stationary to S in 16 digits: the
+    // motion that is carried along it is what tells.
+    if (it.is_rounding && length > rounding_level) {
+      out.correction = 0;
+      return out.converged = true, out;
+    }
     if (length <= converged_to) {
       move(1);
       return out.converged = true, out;
     }
-    damping = std::min({1.0, 4 * damping, longest_step / length});
+    damping = std::min({1.0, 4 * damping, longest / length});
     for (;; damping /= 2) {
       if (damping < least_damping) return out;
       move(damping);
@@ -187,6 +210,7 @@ NewtonResult solve_stationarity(Functional& functional, Trial& trial, const Fixe
       // that does not shrink.
       if (damping == 1 && length < short_step && it.imbalance <= much_better * imbalance) break;
     }
+    if (it.norm() <= (1 - as_linear * damping) * norm) longest *= wider;
     before = damping == 1 ? length : HUGE_VAL;
   }
   return out;

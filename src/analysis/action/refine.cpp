@@ -7,7 +7,8 @@
 namespace maupertuis::action {
 namespace {
 
-constexpr double resolved = 1e-12;    // of the last coefficients, relative to the size of the coordinate
+constexpr double resolved = 1e-12;  // of the last coefficients, relative to the size of the coordinate
+constexpr double smooth = 1e-6;     // of them: above it a layer is narrower than the element, which halving shows late
 constexpr double worst_error = 1e-6;  // of the terms of L: a path that finer elements change by more is none
 constexpr double nearly = 1e-3;       // of the size: a correction on the way, with which finer elements may begin
 constexpr int most_rounds = 12;
@@ -66,7 +67,8 @@ class Refiner {
         worst = std::max(worst, here);
         which[static_cast<std::size_t>(e)] = here > resolved;
       }
-      if (worst <= resolved || worst > 0.7 * before || trial_.mesh.elements() > most_elements) return true;
+      if (worst <= resolved || (worst > 0.7 * before && worst < smooth) || trial_.mesh.elements() > most_elements)
+        return true;
       before = worst;
       trial_ = halved(trial_, which);
       // A path that S barely holds in its place, as a kink far from both ends, may come to rest on finer elements only.

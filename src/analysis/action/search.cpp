@@ -3,7 +3,10 @@
 #include "analysis/action/starts.hpp"
 #include "linear_algebra/dense.hpp"
 
+#include <maupertuis/evaluate.hpp>
+#include <maupertuis/size_of_terms.hpp>
 #include <maupertuis/switch_text.hpp>
+#include <maupertuis/transform.hpp>
 
 #include <fmt/format.h>
 
@@ -234,6 +237,38 @@ void refuse_beyond_numbers(double speed, const Problem& problem, const ActionEnd
                         ", or nearer in the coordinates, or choose units in which the numbers are moderate.");
 }
 
+/// A free end asks for p = ∂L/∂q' = 0 there, in vain where p is the same along all paths, and not 0.
+bool refuse_given_momentum(const Problem& problem, const ActionEnds& ends, Diagnostics& diagnostics) {
+  const MechanicalSystem& system = problem.model.system;
+  if (system.constrained() || problem.functional.integrals() > 0 || problem.functional.orders().higher()) return false;
+  constexpr double rounding = 1e-12;  // of the terms of p
+  Bindings at = parameter_bindings(system);
+  for (const bool first : {true, false})
+    for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
+      if ((first ? ends.from : ends.to)[i]) continue;
+      const Coordinate& c = system.coordinates[i];
+      const Expr p = differentiate(problem.equations.lagrangian_expanded, c.velocity);
+      const std::vector<Expr> symbols = symbols_of({&p, 1});
+      at[system.context->time()] = first ? ends.start : ends.end;
+      if (!std::all_of(symbols.begin(), symbols.end(), [&](const Expr& s) { return at.count(s) > 0; })) continue;
+      const double value = evaluate(p, at);
+      if (!(std::abs(value) > rounding * evaluate(size_of_terms(p), at)) || !std::isfinite(value)) continue;
+      const auto span =
+          problem.model.experiment.path ? std::optional(problem.model.experiment.path->span) : std::nullopt;
+      diagnostics.error("E1204", span,
+                        fmt::format("no path is stationary: {} is free at the {}, and ∂L/∂{}' = {:.6g} there on all of "
+                                    "them",
+                                    c.name, first ? "beginning" : "end", c.name, value),
+                        fmt::format("A shift of that end changes S by p·δq, so that p = ∂L/∂{}' has to vanish at it; "
+                                    "here it does not depend on the path.",
+                                    c.name),
+                        "Fix the end, or leave out of L what is linear in this rate: a total derivative by " +
+                            system.independent + " changes no motion.");
+      return true;
+    }
+  return false;
+}
+
 /// What was tried in vain.
 struct Vain {
   std::size_t starts = 0, left_out = 0;
@@ -256,6 +291,9 @@ void refuse_no_path(const Vain& search, Problem& problem, const ActionEnds& ends
   if (search.reached > 0 && search.reached < 1)
     reason +=
         fmt::format(" From the path of a short duration it could be followed to {:.3g} of this one.", search.reached);
+  const auto is_free = [](const std::optional<double>& x) { return !x; };
+  if (std::any_of(ends.from.begin(), ends.from.end(), is_free) || std::any_of(ends.to.begin(), ends.to.end(), is_free))
+    reason += " Where an end is free ∂L/∂q' has to vanish as well, which L may not allow.";
   if (search.singular.any()) reason += " L is infinite at an end: an end just beside it may be reached.";
   diagnostics.error("E1204", span,
                     fmt::format("no stationary path from {} to {} was found", place(ends.start, problem.model.system),
@@ -313,6 +351,7 @@ std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOf
   if (!has_action(equations, diagnostics)) return std::nullopt;
   Problem problem(model, equations);
   if (!check_ends(problem, ends, diagnostics)) return std::nullopt;
+  if (refuse_given_momentum(problem, ends, diagnostics)) return std::nullopt;
   PathSearch out;
   out.ends = ends;
   std::size_t left_out = 0;

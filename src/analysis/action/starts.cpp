@@ -33,12 +33,29 @@ Vector reach(const Problem& problem, const Vector& from, const Vector& to) {
   return (to - from).cwiseAbs().cwiseMax(problem.typical);
 }
 
+/// Where L is infinite at the other end, which free components begin as, the whole line would lie there: they begin
+/// some way off it, on the side on which L has a value.
+Vector off_the_other_end(Problem& problem, Vector at, const std::vector<std::optional<double>>& fixed, double t) {
+  const Vector none = Vector::Zero(problem.functional.integrals()), rest = Vector::Zero(problem.n());
+  Density density;
+  for (const double side : {1.0, -1.0}) {
+    Vector off = at;
+    for (Index i = 0; i < at.size(); ++i)
+      if (!fixed[static_cast<std::size_t>(i)]) off[i] += side * problem.typical[i];
+    problem.functional.evaluate(t, off.data(), rest.data(), none, 0, density);
+    if (density.finite) return off;
+  }
+  return at;
+}
+
 }  // namespace
 
 std::vector<Start> starts_between(Problem& problem, const ActionEnds& ends) {
-  const Vector from = end_value(problem, ends.from, ends.to), to = end_value(problem, ends.to, ends.from);
-  const Vector size = reach(problem, from, to);
   const SingularEnds singular = problem.singular_ends(ends);
+  Vector from = end_value(problem, ends.from, ends.to), to = end_value(problem, ends.to, ends.from);
+  if (singular.start) to = off_the_other_end(problem, to, ends.to, ends.end);
+  if (singular.end) from = off_the_other_end(problem, from, ends.from, ends.start);
+  const Vector size = reach(problem, from, to);
   const auto line_on = [&](const Mesh& mesh) {
     Trial out{mesh, Matrix(problem.n(), mesh.nodes()), Vector::Zero(problem.functional.integrals()),
               Vector::Zero(problem.n())};

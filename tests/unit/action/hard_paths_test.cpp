@@ -129,3 +129,47 @@ TEST_CASE("the integral of L along the motion of a path is that of a pulse in ti
   REQUIRE(found);
   CHECK(found->paths.front().check.action == doctest::Approx(0.5 + std::sqrt(pi)).epsilon(1e-11));
 }
+
+TEST_CASE("layers at the ends of a path that is all but 0 between them") {
+  const ModelText m("dimensionless\nparam ω = 100\ncoord x : number\nL = 1/2 x'^2 + 1/2 ω^2 x^2\n");
+  for (const double to : {1.0, 0.0, -0.5}) {
+    CAPTURE(to);
+    const PathSearch found = paths_of(m, fixed_ends({1}, 0, {to}, 10));
+    REQUIRE(found.paths.size() == 1);
+    const StationaryPath& p = found.paths[0];
+    CHECK(p.action == doctest::Approx(50 * (1 + to * to)).epsilon(1e-12));  // ½ ω (x₀² + x₁²), but for exp(−1000)
+    CHECK(kind_of(p.second) == "minimum");
+    CHECK(p.path.at(0.03).q[0] == doctest::Approx(std::exp(-3.0)).epsilon(1e-9));
+    CHECK(p.start_momentum[0] == doctest::Approx(-100).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("a path so steep that its length hardly knows of its way") {
+  const ModelText m("dimensionless\ncoord x : number\nL = sqrt(1 + x'^2)\n");
+  for (const double far : {1e3, 1e5, 1e7, 1e9}) {
+    CAPTURE(far);
+    const PathSearch found = paths_of(m, fixed_ends({0}, 0, {far}, 1));
+    REQUIRE(found.paths.size() == 1);
+    CHECK(found.paths[0].action == doctest::Approx(std::hypot(1, far)).epsilon(1e-14));
+    CHECK(found.paths[0].path.at(0.3).q[0] == doctest::Approx(0.3 * far).epsilon(1e-9));
+    CHECK(found.paths[0].check.missed < 1e-9);
+  }
+}
+
+TEST_CASE("no path is stationary where p is the same along all of them, and its end is free") {
+  ActionEnds ends = fixed_ends({1, 0}, 0, {2, 0}, 1);
+  ends.to[1].reset();
+  const ModelText linear("dimensionless\nparam b = 3\ncoord x, q : number\nL = 1/2 x'^2 + b t q' + b q\n");
+  Diagnostics diagnostics;
+  CHECK_FALSE(stationary_paths(linear.model, linear.equations, ends, {}, diagnostics));
+  REQUIRE(diagnostics.items().size() == 1);
+  CHECK(diagnostics.items().front().code == "E1204");
+  CHECK(diagnostics.items().front().message.find("q is free at the end, and ∂L/∂q' = 3") != std::string::npos);
+  // With a velocity in p there is one: p = x' + 3 = 0.
+  const ModelText drift("dimensionless\ncoord x : number\nL = 1/2 x'^2 + 3 x'\n");
+  ActionEnds open = fixed_ends({1}, 0, {0}, 2);
+  open.to[0].reset();
+  const PathSearch found = paths_of(drift, open);
+  REQUIRE(found.paths.size() == 1);
+  CHECK(found.paths[0].action == doctest::Approx(-9).epsilon(1e-12));
+}

@@ -95,6 +95,20 @@ TEST_CASE("a static beam under its own weight, whatever holds its ends") {
   }
 }
 
+TEST_CASE("shifts and turns of a free beam leave its energy as it is: each counts once") {
+  const auto nullity = [](const std::string& left, const std::string& right) {
+    const StationaryPath p = only_path("independent x : number\ncoord w : number\nL = 1/2 w''^2\npath from (" + left +
+                                       ") at 0 to (" + right + ") at 3\n");
+    REQUIRE(p.second.index);
+    CHECK(*p.second.index == 0);
+    return p.second.nullity;
+  };
+  CHECK(nullity("w = free, w' = 0", "w = free, w' = 0") == 1);
+  CHECK(nullity("w = free, w' = free", "w = free, w' = free") == 2);
+  CHECK(nullity("w = free, w' = 0", "w = free, w' = free") == 1);
+  CHECK(nullity("w = 0, w' = 0", "w = free, w' = free") == 0);
+}
+
 TEST_CASE("the spline between two slopes has the least square of its curvature") {
   const double D = 0.7, v0 = 1.2, v1 = -2.1, T = 1.9;
   const StationaryPath p = only_path(

@@ -114,6 +114,18 @@ L = 1/2 x'^2 - 1/2 x^2
   CHECK(code_of_search(m, fixed_ends({0.4}, 0, {0.7}, pi)) == "E1204");
 }
 
+TEST_CASE("the brachistochrone from rest to a vertical line, which it meets at a right angle") {
+  const ModelText m(brachistochrone);
+  ActionEnds ends = fixed_ends({0}, 0, {0}, pi);
+  ends.to[0].reset();
+  const PathSearch found = paths_of(m, ends);
+  REQUIRE(found.paths.size() == 1);
+  const StationaryPath& p = found.paths[0];
+  CHECK(p.action == doctest::Approx(pi / std::sqrt(9.81)).epsilon(1e-10));  // half the arch of a wheel of radius 1
+  CHECK(p.path.at(pi).q[0] == doctest::Approx(2).epsilon(1e-8));
+  CHECK(kind_of(p.second) == "minimum");
+}
+
 TEST_CASE("the brachistochrone, from a point of the cycloid") {
   const ModelText m(brachistochrone);
   // The cycloid x = a − sin a, y = 1 − cos a is run through in a time proportional to a.
@@ -178,7 +190,7 @@ coord x, y, z : number
 T = 1/2 m (x'^2 + y'^2 + z'^2)
 expect action of (4 t + 7, 3 t + 5, 2 t + 1) from 0 to 10 = 435 ± 1e-10
 expect action of (4 t + 7 + 1/1000 t (t - 10) sin t, 3 t + 5 + 1/1000 t (t - 10) cos t, 2 t + 1 + )"
-                             R"(1/1000 t (t - 10) t^2) from 0 to 10 = 436.29121428571428571 ± 1e-10
+                    R"(1/1000 t (t - 10) t^2) from 0 to 10 = 436.29121428571428571 ± 1e-10
 )");
   Diagnostics diagnostics;
   const double wanted[] = {435, 436.29121428571428571};
