@@ -45,11 +45,11 @@ struct Iteration {
     Assembly shifted = a;
     for (std::size_t e = 0; e < a.hessians.size(); ++e) shifted.hessians[e] += shift * a.kinetic[e];
     const Sparse matrix = reduced_matrix(functional, trial, shifted, directions);
-    const bool plain = functional.constraints() == 0 && k() == 0 && !functional.orders().higher();
-    is_rounding = plain && is_rounding_of(a);
     row_sizes = Vector::Zero(matrix.rows());
     for (int c = 0; c < matrix.outerSize(); ++c)
       for (Sparse::InnerIterator entry(matrix, c); entry; ++entry) row_sizes[entry.row()] += std::abs(entry.value());
+    const bool plain = functional.constraints() == 0 && k() == 0 && !functional.orders().higher();
+    is_rounding = plain && is_rounding_of(a);
     lu.compute(matrix);
     if (lu.info() != Eigen::Success) return false;
     Vector gradient = a.gradient;
@@ -60,12 +60,14 @@ struct Iteration {
     return true;
   }
 
+  /// Of p in its sum, or of the nodes in p.
   bool is_rounding_of(const Assembly& a) const {
     for (Index node = 0; node < directions.nodes(); ++node) {
       const Matrix& z = directions.basis[static_cast<std::size_t>(node)];
       const Vector left = z.transpose() * a.gradient.segment(node * z.rows(), z.rows()),
-                   terms = z.cwiseAbs().transpose() * a.gradient_terms.segment(node * z.rows(), z.rows());
-      if ((left.cwiseAbs().array() > only_rounding * terms.array()).any()) return false;
+                   terms = z.cwiseAbs().transpose() * a.gradient_terms.segment(node * z.rows(), z.rows()),
+                   rows = row_sizes.segment(directions.first[static_cast<std::size_t>(node)], z.cols());
+      if ((left.cwiseAbs().array() > only_rounding * terms.array() + balanced * rows.array()).any()) return false;
     }
     return true;
   }

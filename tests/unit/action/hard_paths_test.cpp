@@ -154,6 +154,11 @@ TEST_CASE("a path so steep that its length hardly knows of its way") {
     CHECK(found.paths[0].path.at(0.3).q[0] == doctest::Approx(0.3 * far).epsilon(1e-9));
     CHECK(found.paths[0].check.missed < 1e-9);
   }
+  const ModelText beside("dimensionless\ncoord x, y : number\nL = sqrt(1 + x'^2 + y'^2)\n");
+  const PathSearch found = paths_of(beside, fixed_ends({0, 0}, 0, {1e8, 1}, 1));
+  REQUIRE(!found.paths.empty());
+  CHECK(found.paths[0].action == doctest::Approx(1e8).epsilon(1e-14));
+  CHECK(found.paths[0].path.at(0.3).q[1] == doctest::Approx(0.3).epsilon(1e-9));
 }
 
 TEST_CASE("no path is stationary where p is the same along all of them, and its end is free") {
