@@ -46,6 +46,14 @@ std::vector<double> differences(const std::vector<double>& a, const std::vector<
   return out;
 }
 
+/// Times with so few binary digits are meant as they are: 3 s, 0.25 s.
+bool is_short(double t) {
+  constexpr int bits = 40;
+  int exponent = 0;
+  const double whole = std::ldexp(std::frexp(t, &exponent), bits);
+  return whole == std::nearbyint(whole);
+}
+
 /// Indices of the times asked for, in the order of the run.
 std::vector<std::size_t> order_of_requests(const CompanionPlan& plan) {
   const std::vector<double>& at = plan.options.at;
@@ -56,6 +64,12 @@ std::vector<std::size_t> order_of_requests(const CompanionPlan& plan) {
                    [&](std::size_t a, std::size_t b) { return backwards ? at[a] > at[b] : at[a] < at[b]; });
   return out;
 }
+
+}  // namespace
+
+double CompanionPlan::looked_at(double t) const { return is_short(t) ? t : std::nextafter(t, run.begin); }
+
+namespace {
 
 Companions interrupted() {
   Companions out;
@@ -81,6 +95,7 @@ class Recorder {
   std::optional<CompanionRun> record(const RoundedNumbers::Draw& draw) {
     const bool until = plan_.result.ending == Ending::UntilReached || plan_.result.ending == Ending::Stopped;
     double bound = until ? plan_.run.end : plan_.result.final.t;
+    parameters_ = draw.parameters;
     method_.start(plan_.run.begin, draw.q, draw.v);
     cover();
     while (method_.time() != bound && !has_lost_the_motion()) {
@@ -89,13 +104,13 @@ class Recorder {
       if (step.ending == StepEnding::Interrupted) return std::nullopt;
       // As much earlier as rounding hides: what it may hide from all of them is in the errors then.
       const bool met = until && step.event && !out_.final;
-      if (met) out_.final = sample(method_.time() - std::copysign(step.hidden, bound - plan_.run.begin));
+      if (met) out_.final = closely(method_.time() - std::copysign(step.hidden, bound - plan_.run.begin));
       if (step.ending != StepEnding::None) break;
       if (out_.final && has_come_to(plan_.result.final.t)) break;
       // It has met its end a little earlier, before the last row of the motion.
       if (met) bound = plan_.result.final.t;
     }
-    if (!until && method_.time() == bound && !has_lost_the_motion()) out_.final = sample(bound);
+    if (!until && method_.time() == bound && !has_lost_the_motion()) out_.final = closely(plan_.looked_at(bound));
     out_.rows.resize(plan_.grid.size() * plan_.columns(), nothing);
     return std::move(out_);
   }
@@ -104,6 +119,12 @@ class Recorder {
   Sample sample(double t) const {
     Sample out = method_.sample(t);
     leave_out_undetermined(out, plan_.observables);
+    return out;
+  }
+
+  Sample closely(double t) const {
+    Sample out = sample(t);
+    plan_.close.put_into(out, parameters_);
     return out;
   }
 
@@ -117,7 +138,7 @@ class Recorder {
       add_row(plan_.time(next_row_));
     for (; next_request_ < requests_.size() && method_.covers(plan_.options.at[requests_[next_request_]]);
          ++next_request_)
-      out_.at[requests_[next_request_]] = sample(plan_.options.at[requests_[next_request_]]);
+      out_.at[requests_[next_request_]] = closely(plan_.looked_at(plan_.options.at[requests_[next_request_]]));
   }
 
   void add_row(double t) {
@@ -135,6 +156,7 @@ class Recorder {
   std::size_t next_row_ = 0, next_request_ = 0;
   std::size_t last_row_;
   std::optional<LostCompanion> lost_;
+  std::vector<double> parameters_;
   CompanionRun out_;
 };
 
@@ -282,7 +304,8 @@ class SideBySide {
     }
     for (std::size_t g = 0; g < plan.grid.size(); ++g) times_.push_back(plan.time(g));
     for (std::size_t i = 0; i < plan.options.at.size(); ++i)
-      if (!plan.result.at[i].q.empty()) times_.push_back(plan.options.at[i]);
+      if (!plan.result.at[i].q.empty()) times_.push_back(plan.looked_at(plan.options.at[i]));
+    times_.push_back(plan.looked_at(plan.result.final.t));
     std::sort(times_.begin(), times_.end());
     times_.erase(std::unique(times_.begin(), times_.end()), times_.end());
   }
@@ -380,13 +403,12 @@ class SideBySide {
     }
     out.at.resize(plan_.options.at.size());
     for (std::size_t r = 0; r < plan_.options.at.size(); ++r) {
-      const double t = plan_.options.at[r];
+      const double t = plan_.looked_at(plan_.options.at[r]);
       const bool reached = !plan_.result.at[r].q.empty();
-      if (reached && std::binary_search(part_.begin(), part_.end(), t))
-        out.at[r] = sample(t, found.q_of(k, index_of(t)), found.v_of(k, index_of(t)));
+      if (reached && std::binary_search(part_.begin(), part_.end(), t)) out.at[r] = closely(found, k, t);
     }
     if (to == plan_.result.final.t && found.endings[k].ok())
-      out.final = sample(plan_.result.final.t, found.q_of(k), found.v_of(k));
+      out.final = closely(found, k, plan_.looked_at(plan_.result.final.t));
   }
 
   /// Where energy is conserved, motions that have parted do not come together again (Liouville's theorem); where there
@@ -411,6 +433,13 @@ class SideBySide {
     const bool known = std::isfinite(q[0]) && point_.evaluate(t, q, v) == KernelStatus::Ok;
     for (std::size_t i = 0; i < kernel_.observables(); ++i)
       out.observables.push_back(known ? point_.observable(i) : nothing);
+    for (std::size_t i = 0; i < q.size(); ++i) out.a.push_back(known ? point_.acceleration(i) : nothing);
+    return out;
+  }
+
+  Sample closely(const EnsembleResult& found, std::size_t k, double t) {
+    Sample out = sample(t, found.q_of(k, index_of(t)), found.v_of(k, index_of(t)));
+    plan_.close.put_into(out, draws_[k].parameters);
     return out;
   }
 

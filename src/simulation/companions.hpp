@@ -1,4 +1,5 @@
 #pragma once
+#include "simulation/close_observables.hpp"
 #include "simulation/method.hpp"
 #include "simulation/mode_library.hpp"
 #include "simulation/observables.hpp"
@@ -16,6 +17,12 @@ struct StatesBetween {
   std::vector<double> times, values;  // [times], [times × 2n]: q, q'
 };
 
+/// How far observables [observables] may be off by the rounding of their formulas alone.
+struct Roundings {
+  std::vector<std::vector<double>> at;  // [options.at]; empty where the run did not come to
+  std::vector<double> final;
+};
+
 /// What a companion is to follow: the run, and where it is looked at.
 struct CompanionPlan {
   const Model& model;
@@ -23,6 +30,8 @@ struct CompanionPlan {
   const SimulationOptions& options;
   const RunPlan& run;
   const Observables& observables;
+  const CloseObservables& close;
+  const Roundings& roundings;
   const SimulationResult& result;  // of the run that counts
   const StatesBetween& between;
   std::vector<std::size_t> grid;         // what is compared, in the order of the run: row i of the trajectory, or
@@ -40,6 +49,9 @@ struct CompanionPlan {
     return is_row(g) ? result.trajectory.at(grid[g], c)
                      : between.values[(grid[g] - result.trajectory.rows()) * 2 * run.q.size() + c];
   }
+  /// Where companions are asked for the state at t: where t is no short number in binary, 1000.1 s, it was rounded as
+  /// any other number, and each looks one unit in the last place before it.
+  double looked_at(double t) const;
   std::size_t columns() const { return whole_rows ? result.trajectory.columns.size() : 2 * run.q.size(); }
 };
 

@@ -37,8 +37,10 @@ class Teller {
   void tell(Probe* probe) {
     for (std::size_t i = 0; i < result_.at.size(); ++i)
       if (!result_.at[i].q.empty())
-        tell_state(result_.at[i], [i](const CompanionRun& run) { return sample_or_null(run.at[i]); });
-    tell_state(result_.final, [](const CompanionRun& run) { return run.final ? &*run.final : nullptr; });
+        tell_state(result_.at[i], plan_.roundings.at[i],
+                   [i](const CompanionRun& run) { return sample_or_null(run.at[i]); });
+    tell_state(result_.final, plan_.roundings.final,
+               [](const CompanionRun& run) { return run.final ? &*run.final : nullptr; });
     if (result_.ending == Ending::UntilReached || result_.ending == Ending::Stopped)
       result_.final.errors->t =
           error_of(result_.final.t, [](const CompanionRun& run) { return run.final ? run.final->t : infinity; });
@@ -205,7 +207,7 @@ class Teller {
   // ---------------------------------------------------------------------------------------------------------- states
 
   template <class SampleOf>
-  void tell_state(State& state, SampleOf sample_of) {
+  void tell_state(State& state, const std::vector<double>& roundings, SampleOf sample_of) {
     StateErrors out;
     const bool at_start = state.t == plan_.run.begin;
     for (std::size_t i = 0; i < 2 * n_; ++i) {
@@ -227,8 +229,8 @@ class Teller {
     const std::size_t first = plan_.observables.energy_terms + plan_.observables.points;
     const std::vector<double> balanced = rounding_of_balance(state.reactions);
     for (std::size_t i = 0; i < state.reactions.size(); ++i)
-      out.reactions.push_back(
-          std::max(observable_error(state.reactions[i], first + i, state.t, sample_of), balanced[i]));
+      out.reactions.push_back(std::max(
+          {observable_error(state.reactions[i], first + i, state.t, sample_of), balanced[i], roundings[first + i]}));
     state.errors = std::move(out);
   }
 
@@ -263,8 +265,10 @@ class Teller {
     const std::size_t first = plan_.observables.expressions.size() - plan_.observables.probes;
     for (std::size_t i = 0; i < probe.values.size(); ++i)
       for (std::size_t k = 0; k < probe.values[i].size(); ++k)
-        probe.errors[i].push_back(observable_error(probe.values[i][k], first + k, plan_.options.at[i],
-                                                   [i](const CompanionRun& run) { return sample_or_null(run.at[i]); }));
+        probe.errors[i].push_back(
+            std::max(plan_.roundings.at[i][first + k],
+                     observable_error(probe.values[i][k], first + k, plan_.options.at[i],
+                                      [i](const CompanionRun& run) { return sample_or_null(run.at[i]); })));
   }
 
   /// A row that is not in the grid is the last one, of an event or an early end, whose companions are the ends; or it
@@ -272,6 +276,7 @@ class Teller {
   void tell_rows() {
     Trajectory& rows = result_.trajectory;
     const std::size_t forces = 2 * n_ + plan_.observables.points, count = plan_.observables.reactions.size();
+    const RoundingOfRows rounding(plan_.equations, plan_.observables);
     std::size_t g = 0;
     const auto of_ends = [&](double value, std::size_t column) {
       return difference(value, [&](const CompanionRun& run) {
@@ -284,11 +289,14 @@ class Teller {
       const bool in_grid = g < plan_.grid.size() && plan_.grid[g] == row;
       const std::vector<double> balanced =
           rounding_of_balance(std::span(rows.values).subspan(row * columns_ + forces, count));
+      const std::vector<double> of_formulas =
+          rounding.errors(rows.times[row], std::span(rows.values).subspan(row * columns_, columns_));
       for (std::size_t c = 0; c < columns_; ++c) {
         const double value = rows.at(row, c);
         double e = in_grid ? errors_[g * columns_ + c] : row + 1 == rows.rows() ? of_ends(value, c) : around(g, c);
         const bool exact = row == 0 && e == 0 && is_given(c);
         if (!exact) e = with_rounding(e, value);
+        if (c >= 2 * n_) e = std::max(e, of_formulas[c - 2 * n_]);
         if (c >= forces && c - forces < count) e = std::max(e, balanced[c - forces]);
         if (c < 2 * n_ && is_lost_at(c, rows.times[row])) e = infinity;
         rows.errors.push_back(std::isfinite(value) ? e : std::numeric_limits<double>::quiet_NaN());

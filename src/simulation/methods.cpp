@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <maupertuis/motion_kernel.hpp>
+#include <maupertuis/rounded_value.hpp>
 
 #include <cmath>
 
@@ -24,7 +25,7 @@ SimulationOptions with_method_of(const Model& model, SimulationOptions options) 
     if (options.order == 0) options.order = choice.order;
     if (options.step == 0 && choice.step)
       options.step =
-          evaluate(in_terms_of_motion(model.system, {&choice.step, 1}).front(), parameter_bindings(model.system));
+          rounded_value(in_terms_of_motion(model.system, {&choice.step, 1}).front(), parameter_bindings(model.system));
   }
   options.method = options.method.value_or(choice.method);
   return options;

@@ -4,6 +4,7 @@
 #include "simulation/motion_kernel.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/rounded_constants.hpp>
 #include <maupertuis/rounded_value.hpp>
 #include <maupertuis/transform.hpp>
 
@@ -23,6 +24,9 @@ class Nudge {
     return value == 0 ? value : std::nextafter(value, direction * std::numeric_limits<double>::infinity());
   }
 
+  /// In [1, 2), of all digits.
+  double factor() { return 1 + std::ldexp(static_cast<double>(random_() >> 12), -52); }
+
  private:
   std::mt19937_64 random_;
 };
@@ -30,36 +34,24 @@ class Nudge {
 }  // namespace
 
 RoundedNumbers::RoundedNumbers(const Model& model, const EquationsOfMotion& equations, const RunPlan& plan,
-                               const WantedFunctions& wanted) {
+                               const WantedFunctions& wanted)
+    : has_modes_(goes_through_modes(model)) {
   for (const Parameter& p : equations.system->parameters) {
     parameters_.push_back({p.si_value, is_rounded(p.value, p.si_value)});
     symbols_.push_back(p.symbol);
   }
-  if (!goes_through_modes(model)) {  // else each mode has a kernel of its own
+  if (!has_modes_) {  // else each mode has a kernel of its own
     KernelSource source =
         motion_source(equations, {wanted.observables, plan.until ? wanted.events : std::vector<Expr>{}, {}});
-    take_literals(source);
-    kernel_ = build_kernel(source);
+    Context& context = *equations.system->context;
+    const Expr factor = context.symbol("factor of equations", Role::Parameter);
+    if (source.residual.size() > 1 && source.constraints.empty())  // else λ would have it, too
+      for (Expr& row : source.residual) row = factor * row;
+    source.parameters.push_back(factor);
+    source.parameters.push_back(context.symbol("rounding of constants", Role::Parameter));
+    kernel_ = with_rounded_constants(build_kernel(source), source.parameters.size() - 1);
   }
   take_start(model, plan);
-}
-
-void RoundedNumbers::take_literals(KernelSource& source) {
-  std::vector<Expr> roots = source.residual;
-  for (const auto* list : {&source.observables, &source.events}) roots.insert(roots.end(), list->begin(), list->end());
-  for (const KernelConstraint& c : source.constraints) roots.push_back(c.value);
-  ExprMap symbols;
-  for (const Expr& literal : rounded_literals(roots)) {
-    const bool pi = literal.is(Kind::Pi);
-    const Expr symbol =
-        literal.context().symbol("literal " + (pi ? "π" : literal.number().to_string()), Role::Parameter);
-    symbols.emplace(literal, symbol);
-    source.parameters.push_back(symbol);
-    parameters_.push_back({pi ? 3.14159265358979323846 : literal.number().to_double(), true});
-  }
-  if (symbols.empty()) return;
-  for (auto* list : {&source.residual, &source.observables, &source.events}) *list = substitute(*list, symbols);
-  for (KernelConstraint& c : source.constraints) c.value = substitute(c.value, symbols);
 }
 
 void RoundedNumbers::take_start(const Model& model, const RunPlan& plan) {
@@ -87,6 +79,7 @@ RoundedNumbers::Draw RoundedNumbers::draw(std::uint64_t seed) const {
   for (const Value& p : parameters_) out.parameters.push_back(p.rounded ? nudge(p.value) : p.value);
   Bindings bindings;
   for (std::size_t i = 0; i < symbols_.size(); ++i) bindings.emplace(symbols_[i], out.parameters[i]);
+  if (!has_modes_) out.parameters.insert(out.parameters.end(), {nudge.factor(), static_cast<double>(seed)});
   const auto start = [&](const StartNumber& number) {
     if (!number.rounded) return number.value;
     return nudge(number.formula ? rounded_value(number.formula, bindings) : number.value);

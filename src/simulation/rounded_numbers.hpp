@@ -9,14 +9,15 @@
 
 namespace maupertuis {
 
-/// The numbers of a motion and which of them double does not hold exactly: parameters, start values, and literals of
-/// the formulas (9.81, 1/3, π), which are parameters of a kernel of their own. A companion run takes each of those one
+/// The numbers of a motion and which of them double does not hold exactly: parameters, start values, and the constants
+/// that its kernel makes of literals and parameters (9.81, 1/3, π, 1 + 1e-8). A companion run takes each of those one
 /// unit in the last place higher or lower, at random: so the motion shows what its numbers were rounded by. 1/2 and 2
-/// are exact and stay.
+/// are exact and stay. Its equations have a factor of their own besides, so that sums of the mass matrix are rounded
+/// otherwise too: of 1 + e and 1, whose difference is all that counts.
 class RoundedNumbers {
  public:
-  /// Of a model with modes its literals are parameters already (literals.hpp), or stay. The kernel has neither
-  /// integrands nor, unless the run ends at one, events. Cost: that of build_kernel.
+  /// Of a model with modes its literals are parameters already (literals.hpp), or stay, and there is no kernel. The
+  /// kernel has neither integrands nor, unless the run ends at one, events. Cost: that of build_kernel.
   RoundedNumbers(const Model& model, const EquationsOfMotion& equations, const RunPlan& plan,
                  const WantedFunctions& wanted);
 
@@ -43,10 +44,10 @@ class RoundedNumbers {
     bool rounded = false, given = false;
     Expr formula;  // in parameters, where the value follows from them
   };
-  void take_literals(KernelSource& source);
   void take_start(const Model& model, const RunPlan& plan);
 
-  std::vector<Value> parameters_;   // [parameters of the system + literals]
+  bool has_modes_;
+  std::vector<Value> parameters_;   // of the system
   std::vector<Expr> symbols_;       // of those of the system
   std::vector<StartNumber> q_, v_;  // [n]
   Kernel kernel_{nullptr};

@@ -3,6 +3,7 @@
 #include "simulation/unique_start.hpp"
 
 #include <maupertuis/reactions.hpp>
+#include <maupertuis/rounded_value.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <fmt/format.h>
@@ -34,7 +35,7 @@ class Planner {
  private:
   double value_of(Expr e, double otherwise) const {
     if (!e) return otherwise;
-    return evaluate(in_terms_of_motion(model_.system, {&e, 1}).front(), bindings_);
+    return rounded_value(in_terms_of_motion(model_.system, {&e, 1}).front(), bindings_);
   }
 
   bool plan_start() {

@@ -67,11 +67,14 @@ class Run {
 
   /// `stiff` may be empty.
   Run(const Model& model, const SimulationOptions& options, const RunPlan& plan, const Observables& observables,
-      std::unique_ptr<Method> method, StiffFrom stiff, Probe* probe, bool energy_jumps, HybridMotion* hybrid)
+      const CloseObservables& close, std::unique_ptr<Method> method, StiffFrom stiff, Probe* probe, bool energy_jumps,
+      HybridMotion* hybrid)
       : model_(model),
         options_(options),
         plan_(plan),
         observables_(observables),
+        close_(close),
+        parameters_(parameter_values(model.system)),
         probe_(probe),
         method_(std::move(method)),
         stiff_(std::move(stiff)),
@@ -99,6 +102,7 @@ class Run {
 
   bool turned_stiff() const { return turned_stiff_; }
   const StatesBetween& between() const { return between_; }
+  const Roundings& roundings() const { return roundings_; }
   const BackendUse& backend() const { return backend_; }
 
  private:
@@ -119,6 +123,7 @@ class Run {
       return backwards ? options_.at[a] > options_.at[b] : options_.at[a] < options_.at[b];
     });
     answers_.resize(options_.at.size());
+    roundings_.at.resize(options_.at.size());
     for (std::size_t i = 0; i < answers_.size(); ++i) answers_[i].t = options_.at[i];  // also where it is not reached
     if (probe_) probe_->values.assign(options_.at.size(), {});
   }
@@ -183,7 +188,8 @@ class Run {
       add_state_between(between[between_.times.size()]);
     while (next_request_ < requests_.size() && method_->covers(options_.at[requests_[next_request_]])) {
       const std::size_t index = requests_[next_request_++];
-      const Sample found = sample(options_.at[index]);
+      Sample found = sample(options_.at[index]);
+      roundings_.at[index] = close_.put_into(found, parameters_);
       answers_[index] = state_of(found);
       if (probe_)
         probe_->values[index].assign(found.observables.end() - static_cast<std::ptrdiff_t>(observables_.probes),
@@ -255,9 +261,10 @@ class Run {
   }
 
   void finish() {
-    const Sample last = sample(method_->time());
+    Sample last = sample(method_->time());
     balance_.add(last);
     if (result_.trajectory.times.empty() || result_.trajectory.times.back() != last.t) add_row(last);
+    roundings_.final = close_.put_into(last, parameters_);
     result_.final = state_of(last);
     result_.at.assign(answers_.begin(), answers_.end());
     if (result_.ending == Ending::Finished && plan_.until) {
@@ -295,6 +302,8 @@ class Run {
   const SimulationOptions& options_;
   const RunPlan& plan_;
   const Observables& observables_;
+  const CloseObservables& close_;
+  std::vector<double> parameters_;
   Probe* probe_;
   std::unique_ptr<Method> method_;
   StiffFrom stiff_;
@@ -310,6 +319,7 @@ class Run {
   std::vector<State> answers_;
   std::size_t next_output_ = 0, next_request_ = 0;
   StatesBetween between_;
+  Roundings roundings_;
   std::size_t rows_since_output_ = 0;                // since the last output time
   bool left_out_ = false;                            // a row, since the last one
   static constexpr std::size_t most_jumps = 10'000;  // that have rows of their own
@@ -349,7 +359,8 @@ void warn_of_backend(const BackendUse& use, Backend wanted, Diagnostics& diagnos
 /// The errors, as companion runs tell them.
 void add_errors(SimulationResult& result, Probe* probe, const Model& model, const EquationsOfMotion& equations,
                 const SimulationOptions& options, const RunPlan& plan, const Observables& observables,
-                const WantedFunctions& wanted, const HybridMotion* hybrid, const StatesBetween& between) {
+                const CloseObservables& close, const Roundings& roundings, const WantedFunctions& wanted,
+                const HybridMotion* hybrid, const StatesBetween& between) {
   const auto begin = Clock::now();
   const auto of_literals = hybrid ? with_literals_as_parameters(model, wanted) : nullptr;
   const RoundedNumbers numbers(of_literals ? of_literals->model : model,
@@ -360,6 +371,8 @@ void add_errors(SimulationResult& result, Probe* probe, const Model& model, cons
       options,
       plan,
       observables,
+      close,
+      roundings,
       result,
       between,
       comparison_grid(result.trajectory, between, plan, options.errors),
@@ -459,12 +472,14 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
     };
   const bool energy_jumps =
       across_switches(*equations.system, equations.energy_function, equations.order).jump.has_value();
-  Run run(model, options, *plan, observables, std::move(method), std::move(stiff), probe, energy_jumps, hybrid);
+  const CloseObservables close(equations, observables);
+  Run run(model, options, *plan, observables, close, std::move(method), std::move(stiff), probe, energy_jumps, hybrid);
   const double compile_seconds = seconds_since(begin);
 
   SimulationResult result = run.carry_out();
   if (options.errors != ErrorEstimates::None && result.ending != Ending::Interrupted)
-    add_errors(result, probe, model, equations, options, *plan, observables, wanted, hybrid, run.between());
+    add_errors(result, probe, model, equations, options, *plan, observables, close, run.roundings(), wanted, hybrid,
+               run.between());
   if (equations.degenerate) forget_drift_of_nothing(result, equations);
   warn_of_drift(result, equations, options, diagnostics);
   if (hybrid) warn_of_values(hybrid->record(), model, diagnostics);

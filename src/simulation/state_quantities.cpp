@@ -12,21 +12,22 @@ StateQuantities::StateQuantities(const MechanicalSystem& system, const ExprVecto
   for (const Coordinate& c : system.coordinates) symbols_.push_back(c.q);
   for (const Coordinate& c : system.coordinates) symbols_.push_back(c.velocity);
   const ExprVector plain = expand_time_derivatives(in_terms_of_motion(system, quantities));
-  wanted_ = plain;
+  close_.emplace(plain);
   for (const Expr& quantity : plain)
-    for (const Expr& slope : gradient(quantity, symbols_)) wanted_.push_back(slope);
+    for (const Expr& slope : gradient(quantity, symbols_)) slopes_.push_back(slope);
 }
 
-std::vector<double> StateQuantities::at(double t, const double* state, const double* errors) {
+std::vector<double> StateQuantities::at(double t, const double* state, const double* errors, Digits digits) {
   bindings_[system_.context->time()] = t;
   for (std::size_t i = 0; i < symbols_.size(); ++i) bindings_[symbols_[i]] = state[i];
-  const std::vector<double> found = evaluate(wanted_, bindings_);
-  std::vector<double> out(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count_));
+  const auto value_of = [&](Expr symbol) { return bindings_.at(symbol); };
+  const CloseEvaluation::Values found = digits == Digits::All ? (*close_)(value_of) : close_->in_double(value_of);
+  std::vector<double> out = found.values;
+  const std::vector<double> slopes = errors ? evaluate(slopes_, bindings_) : std::vector<double>();
   for (std::size_t k = 0; errors && k < count_; ++k) {
-    double error = 0;
+    double error = std::isfinite(found.errors[k]) ? found.errors[k] : 0;
     for (std::size_t i = 0; i < symbols_.size(); ++i)
-      if (const double slope = found[count_ + k * symbols_.size() + i]; slope != 0)
-        error += std::abs(slope) * errors[i];
+      if (const double slope = slopes[k * symbols_.size() + i]; slope != 0) error += std::abs(slope) * errors[i];
     out.push_back(error);
   }
   return out;
@@ -40,7 +41,7 @@ void StateQuantities::put_into(State& state) {
   };
   const std::vector<double> numbers = together(state.q, state.v);
   const std::vector<double> errors = state.errors ? together(state.errors->q, state.errors->v) : std::vector<double>();
-  const std::vector<double> found = at(state.t, numbers.data(), errors.empty() ? nullptr : errors.data());
+  const std::vector<double> found = at(state.t, numbers.data(), errors.empty() ? nullptr : errors.data(), Digits::All);
   const auto end_of_values = found.begin() + static_cast<std::ptrdiff_t>(count_);
   state.quantities.insert(state.quantities.end(), found.begin(), end_of_values);
   if (state.errors) state.errors->quantities.insert(state.errors->quantities.end(), end_of_values, found.end());
@@ -58,7 +59,7 @@ void StateQuantities::put_into(Trajectory& rows, const std::vector<Trajectory::C
   for (std::size_t row = 0; row < rows.rows(); ++row) {
     const std::size_t begin = row * all.columns.size();
     const std::vector<double> found =
-        at(rows.times[row], &all.values[begin], all.errors.empty() ? nullptr : &all.errors[begin]);
+        at(rows.times[row], &all.values[begin], all.errors.empty() ? nullptr : &all.errors[begin], Digits::OfDouble);
     const auto copy = [&](std::vector<double>& to, const std::vector<double>& from, std::size_t first) {
       const auto start = from.begin() + static_cast<std::ptrdiff_t>(row * width);
       to.insert(to.end(), start, start + static_cast<std::ptrdiff_t>(width));

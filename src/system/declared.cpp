@@ -1,6 +1,8 @@
 #include "system/elaboration.hpp"
 #include "system/unit_expression.hpp"
 
+#include <maupertuis/rounded_value.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -62,7 +64,7 @@ Expr add_parameter(Elaboration& e, const Declaration& d, const std::string& name
   p.name = name;
   p.symbol = e.context.symbol(name, Role::Parameter);
   p.value = value;
-  p.si_value = maupertuis::evaluate(value, Bindings{});
+  p.si_value = rounded_value(value, Bindings{});
   p.dimension = dimension;
   p.unit = unit.text;
   p.unit_factor = unit.factor;
@@ -180,7 +182,7 @@ void elaborate_definition(Elaboration& e, Declaration& d) {
         d.value = Value::poison();
         return;
       }
-      e.values[definition.symbol] = maupertuis::evaluate(definition.formula, e.values);
+      e.values[definition.symbol] = rounded_value(substitute(definition.formula, e.exact_values), Bindings{});
       e.exact_values[definition.symbol] = substitute(definition.formula, e.exact_values);
       e.exact_definitions[definition.symbol] = definition.value;
       d.value.parts = {definition.symbol};

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <maupertuis/print.hpp>
+#include <maupertuis/rounded_value.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -100,7 +101,7 @@ Expr anonymous_constant(Elaboration& e, const std::string& name, Expr value, con
   p.name = name;
   p.symbol = symbol;
   p.value = value;
-  p.si_value = maupertuis::evaluate(value, Bindings{});
+  p.si_value = rounded_value(value, Bindings{});
   p.dimension = unit.dimension;
   p.unit = written;
   p.used = true;

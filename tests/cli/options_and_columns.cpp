@@ -234,10 +234,15 @@ TEST_CASE("a unit of an option that is a parameter of the model, too, is refused
                                         "system bare\ndimensionless\nparam s = 5\ncoord x : number\n"
                                         "T = 1/2 x'^2\nV = 1/2 s x^2\nstart x = 1\nrun 3 s\n");
   CHECK(contains(maup({"simulate", bare}).out, "t = 15"));  // 3 * s
+  const std::string plain = folder.write("plain.lag",
+                                         "system plain\ndimensionless\ncoord x : number\nT = 1/2 x'^2\n"
+                                         "V = 5/2 x^2\nstart x = 1\nrun 3\n");
   for (const std::vector<std::string>& line : {std::vector<std::string>{"simulate", bare, "--duration", "3s"},
                                                {"simulate", bare, "--at", "1,2 s"},
                                                {"simulate", bare, "--precision", "quad", "--duration", "3s"},
                                                {"orbits", bare, "--floquet", "--period", "2 s"},
+                                               {"compare", bare, plain, "--duration", "3s"},
+                                               {"compare", plain, bare, "--duration", "3s"},
                                                {"orbits", bare, "--lyapunov", "--duration", "3 s"}}) {
     const Outcome refused = maup(line);
     CHECK(refused.code == 2);

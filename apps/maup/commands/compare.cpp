@@ -4,6 +4,7 @@
 #include "outcome.hpp"
 #include "quantity.hpp"
 #include "run_options.hpp"
+#include "time_options.hpp"
 
 #include <fmt/format.h>
 
@@ -208,7 +209,9 @@ ExitCode compare_models(const CompareOptions& options, Console& console) {
   Study a = open_study(options.a), b = open_study(options.b);
   Diagnostics of_map;
   const SourceText map_text("--map", options.map);
-  SimulationOptions settings = simulation_options(options.run, of_map);
+  const SimulationOptions settings = simulation_options(options.run, of_map, a.tree());
+  if (!of_map.has_errors() && options.run.duration)
+    refuse_unit_that_is_a_name("--duration", *options.run.duration, b.tree(), of_map);
   const auto end = [&](Json document, ExitCode code) {
     return finish_all(console, a, b, of_map, map_text, std::move(document), code);
   };

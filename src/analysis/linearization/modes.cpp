@@ -62,7 +62,7 @@ class Analysis {
       zeros += m.zeros;
       if (m.kind != Mode::Kind::Zero && m.error > certain * std::abs(m.eigenvalue)) return true;
     }
-    return zeros > explained;
+    return zeros > explained || is_lost_in_entries(equations_, l_.point);
   }
 
   void take(const std::vector<PreciseMode>& modes) {

@@ -8,4 +8,9 @@ namespace maupertuis {
 /// coordinates, switches in the equations, or a singular M.
 std::optional<std::vector<PreciseMode>> modes_in_digits(const PointEquations& equations, const Equilibrium& rest);
 
+/// Whether rounding of the formulas themselves makes more of an entry of M, D or K at a point than that of numbers as
+/// large as their largest: of 10¹⁰ (cos b − 1 + b²/2) at b = 0.001 double knows three digits. Of no more coordinates
+/// than modes_in_digits takes.
+bool is_lost_in_entries(const PointEquations& equations, const OperatingPoint& point);
+
 }  // namespace maupertuis

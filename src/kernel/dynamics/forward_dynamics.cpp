@@ -1,6 +1,7 @@
 #include <maupertuis/forward_dynamics.hpp>
 
 #include "kernel/dynamics/written_dynamics.hpp"
+#include "kernel/extended/close_constants.hpp"
 #include "kernel/reference/reference.hpp"
 #include "kernel/reference/sampled_states.hpp"
 #include "kernel/sparse/graph_product.hpp"
@@ -156,7 +157,7 @@ double ForwardDynamics::Impl::number(const dynamics::NumberSource& source) const
 void ForwardDynamics::Impl::compute_constants() {
   if (!stale) return;
   stale = false;
-  for (std::size_t i = 0; i < constants.size(); ++i) constants[i] = constant(i);
+  extended::compute_close_constants(program, parameters, sides, constants);
   full.set_parameters(parameters);
   full.set_branches(sides);
   if (system) plan();

@@ -1,3 +1,4 @@
+#include "kernel/extended/close_constants.hpp"
 #include "kernel/lanes/lanes.hpp"
 #include "kernel/reference/reference.hpp"
 
@@ -53,7 +54,7 @@ int LaneWorkspace::order() const { return impl_->order; }
 void LaneWorkspace::set_parameters(int lane, std::span<const double> values) {
   MAUP_REQUIRE(values.size() == impl_->program.parameters && lane >= 0 && lane < width());
   std::vector<double> constants(impl_->program.constants.size());
-  reference::compute_constants(impl_->program, values, {}, std::span(constants));
+  extended::compute_close_constants(impl_->program, values, {}, constants);
   for (std::size_t i = 0; i < constants.size(); ++i) impl_->constants[i * impl_->width + lane] = constants[i];
 }
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -110,10 +111,11 @@ struct Program {
   /// Unknowns of each stage: the accelerations, then the multipliers. A multiplier is the second derivative of a
   /// coordinate of its own that stands nowhere else, so that it is found, corrected and differentiated like a q̈.
   std::size_t freedoms = 0, unknowns = 0, parameters = 0;
-  std::vector<Slot> residual;           // [unknowns] R, then −A q̈ + b of the constraints
-  std::vector<Slot> constraint_values;  // [m]; no_slot: level 1
-  std::vector<Slot> constraint_rates;   // [m]
-  std::vector<Slot> switch_slots;       // [switches]
+  std::optional<std::uint32_t> rounding;  // the parameter that says which way constants are rounded; none: to nearest
+  std::vector<Slot> residual;             // [unknowns] R, then −A q̈ + b of the constraints
+  std::vector<Slot> constraint_values;    // [m]; no_slot: level 1
+  std::vector<Slot> constraint_rates;     // [m]
+  std::vector<Slot> switch_slots;         // [switches]
   std::vector<Slot> events, observables, integrands;
 
   Winding winding;

@@ -1,5 +1,7 @@
 #include "kernel/workspace/expansion.hpp"
 
+#include "kernel/extended/close_constants.hpp"
+
 namespace maupertuis::workspace {
 
 Expansion::Expansion(const Kernel& k, int p)
@@ -57,7 +59,7 @@ void Expansion::bind() {
 
 bool Expansion::compute_constants() {
   if (!stale) return false;
-  reference::compute_constants(memory, parameters, sides);
+  extended::compute_close_constants(program, parameters, sides, memory.constants);
   for (std::size_t i = 0; i < lane_coefficients.size(); ++i)
     lane_coefficients[i] = memory.constants[packed.coefficients[i]];
   stale = false;

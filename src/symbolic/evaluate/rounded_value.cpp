@@ -6,18 +6,25 @@
 
 namespace maupertuis {
 
-double rounded_value(Expr e, const Bindings& bindings) {
+std::vector<double> rounded_values(std::span<const Expr> roots, const std::function<double(Expr)>& value_of) {
   using evaluation::Real100;
-  const evaluation::Tape tape({&e, 1});
-  const auto value_of = [&](Expr symbol) {
-    const auto found = bindings.find(symbol);
-    MAUP_REQUIRE(found != bindings.end() && "every symbol must be bound");
-    return Real100(found->second);
-  };
-  evaluation::RealNumbers<Real100> numbers(value_of);
+  const evaluation::Tape tape(roots);
+  evaluation::RealNumbers<Real100> numbers([&](Expr symbol) { return Real100(value_of(symbol)); });
   std::vector<Real100> values;
   evaluation::run(tape, numbers, values);
-  return static_cast<double>(values[tape.roots().front()]);
+  std::vector<double> out;
+  for (const evaluation::Position root : tape.roots()) out.push_back(static_cast<double>(values[root]));
+  return out;
+}
+
+double rounded_value(Expr e, const Bindings& bindings) {
+  return rounded_values({&e, 1},
+                        [&](Expr symbol) {
+                          const auto found = bindings.find(symbol);
+                          MAUP_REQUIRE(found != bindings.end() && "every symbol must be bound");
+                          return found->second;
+                        })
+      .front();
 }
 
 }  // namespace maupertuis

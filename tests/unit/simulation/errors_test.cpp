@@ -79,6 +79,65 @@ TEST_CASE("what is rounded counts, what is exact does not: companions move 0.3 a
   CHECK(run(literal).final.errors->q[0] > 1e-13);
 }
 
+TEST_CASE("constants of forces keep their digits where they cancel, and so do parameters") {
+  // a = 10¹⁰ (cos b − 1 + b²/2) at b = 1/1024, by its series
+  const long double b = 1 / 1024.0L, s = b * b, a = 1e10L * s * s / 24 * (1 - s / 30 * (1 - s / 56));
+  const std::string head = "dimensionless\nparam b = 1/1024, c = cos(1/1024) - 1 + 1/2097152\ncoord x : number\n",
+                    rest = "\nstart x = 0\nrun 1\n";
+  for (const std::string force : {"(cos(1/1024) - 1 + 1/2097152)", "(cos(b) - 1 + b^2/2)", "c"}) {
+    CAPTURE(force);
+    const SimulationResult r = run(head + "L = x'^2/2 + 1e10 x " + force + rest);
+    CHECK(std::abs(r.final.q[0] - static_cast<double>(a / 2)) <= r.final.errors->q[0]);
+    CHECK(r.final.errors->q[0] < 1e-14 * r.final.q[0]);
+  }
+}
+
+TEST_CASE("the rounding of constants is told: a mass matrix that is nearly singular") {
+  // In u = x + y and y: u'' + x = 0, e y'' + … ; its determinant e is the difference of 1 + e and 1.
+  const std::string text =
+      "dimensionless\nparam e = 1e-8\ncoord x, y : number\nL = (x' + y')^2/2 + e y'^2/2 - x^2/2 - e y^2/2\n"
+      "start x = 1, y = 0.5\nrun 3\n";
+  const SimulationResult r = run(text);
+  REQUIRE(r.final.errors);
+  CHECK(std::abs(r.final.q[0] + 0.596188683092) <= r.final.errors->q[0]);  // with --precision 100
+  CHECK(r.final.errors->q[0] < 1e-2);
+}
+
+TEST_CASE("a time that is no double moves the state: told in the errors at 10.1, at none that is") {
+  const std::string text = "dimensionless\ncoord x : number\nL = x'^2/2 - 1e8 x^2/2\nstart x = 1\nrun 10.1\n";
+  const SimulationResult r = run(text, at({10.1, 10}));
+  const long double phase = 1e4L * 10.1L;
+  for (const State* s : {&r.final, &r.at[0]}) {
+    CHECK(std::abs(s->q[0] - static_cast<double>(std::cos(phase))) <= s->errors->q[0]);
+    CHECK(s->errors->q[0] >= 0.5 * 1.8e-15 * std::abs(s->v[0]));  // half a unit in the last place of 10.1
+  }
+  CHECK(r.final.errors->q[0] < 1e-10);
+}
+
+TEST_CASE("a probe whose terms cancel has its digits") {
+  const ModelText m(
+      "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ : angle\npoint P mass m at l (sin θ, 1 - cos θ)\n"
+      "gravity (0, -g)\nstart θ = 1e-7 rad\nrun 1 s\n");
+  Diagnostics diagnostics;
+  Probe probe{{m.model.system.points[0].position[1]}, {}, {}};
+  SimulationOptions options = at({0, 1});
+  options.errors = ErrorEstimates::Rows;
+  const auto r = simulate(m.model, m.equations, options, diagnostics, &probe);
+  REQUIRE(r);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double θ = r->at[i].q[0], right = θ * θ / 2 * (1 - θ * θ / 12);
+    CHECK(std::abs(probe.values[i][0] - right) <= 4 * epsilon * right);
+    CHECK(probe.errors[i][0] < 1e-14 * right);
+  }
+  // In the rows the same formula is in double, and its rounding is told.
+  const std::size_t height = *r->trajectory.column("P.y"), last = r->trajectory.rows() - 1;
+  for (const std::size_t row : {std::size_t{0}, last / 3, last}) {
+    const double θ = r->trajectory.at(row, 0), right = θ * θ / 2;
+    CHECK(std::abs(r->trajectory.at(row, height) - right) <= r->trajectory.error(row, height));
+    CHECK(r->trajectory.error(row, height) < 1e-14);
+  }
+}
+
 TEST_CASE("zero by symmetry and given starts are exact") {
   const std::string text =
       "system two\nparam m = 1 kg, k = 2 N/m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = 1/2 k (x^2 + y^2)\n"
