@@ -144,6 +144,15 @@ TEST_CASE("modes of a sweep: the bead leaves the lowest point at √(g/R)") {
   CHECK(contains(without.err, "E1320"));
 }
 
+TEST_CASE("modes: a stiffness that is a small difference of constants has its digits") {
+  const Folder folder;
+  const std::string model =
+      folder.write("soft.lag",
+                   "system soft\ndimensionless\nparam b = 0.001\ncoord x, y : number\n"
+                   "L = x'^2/2 + y'^2/2 - 1e10 (cos(b) - 1 + b^2/2) (x - y)^2/2 - x^2/2\nstart x = 0.1\nrun 1\n");
+  CHECK(contains(maup({"modes", model}).out, "0.0204081612"));  // in double 0.0204000
+}
+
 TEST_CASE("modes: what cannot be answered says why") {
   const Outcome nowhere = maup({"modes", "-", "--at", "θ=1"}, pendulum);
   CHECK(nowhere.code == 1);
