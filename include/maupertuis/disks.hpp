@@ -70,6 +70,8 @@ class Disks {
   /// operands hand on, and a derivative divides by `length`, over which its operand is known. Cost: some 10 operations
   /// an instruction for each length.
   double residual_rounding(std::size_t j, double length);
+  /// The same of a slot that is bounded.
+  double rounding(std::uint32_t slot, double length);
   /// [slots] of polynomials in t; very large for all else.
   std::span<const int> degrees() const;
   std::size_t residuals() const;

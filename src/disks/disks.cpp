@@ -51,6 +51,10 @@ double Disks::residual_rounding(std::size_t j, double length) {
   return parts_->roundings.of(slot, parts_->one.coefficients(), length);
 }
 
+double Disks::rounding(std::uint32_t slot, double length) {
+  return parts_->roundings.of(slot, parts_->one.coefficients(), length);
+}
+
 bool Disks::residual_has_tails() const { return parts_->plan.residual_has_tails; }
 bool Disks::needs_larger_disk() const { return !parts_->plan.derived.empty(); }
 bool Disks::has_bases() const { return !parts_->plan.bases.empty(); }

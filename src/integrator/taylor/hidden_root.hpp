@@ -64,7 +64,7 @@ HiddenRoot<T> hidden_about(const ScaledPolynomialOf<T>& polynomial, const T& roo
     p[done] = abs(p[done]) * power;
     if (done > 0) largest = std::max(largest, p[done]);
   }
-  for (std::size_t k = 1; k < p.size(); k += 2)
+  for (std::size_t k = 1; largest > 0 && k < p.size(); k += 2)
     if (p[k] >= T(weighs) * largest) out.order = static_cast<std::uint8_t>(k);
   return out;
 }

@@ -109,6 +109,10 @@ class RootSearchOf {
   }
   /// Whether all functions but one are on their sides there, clear of zero.
   bool keeps_sides(std::span<const Watched> watched, std::size_t except);
+  /// Functions that are not told from zero at x, the root of another function, which is known to rounding. [slots]
+  std::vector<bool> vanishing_at(const T& x);
+  /// Such a zero: its order, and by how much rounding may have moved it.
+  RootOf<T> zero_at(std::size_t index, const T& x) { return told_by_values(index, x, T(0)); }
   /// The part of the step, from its beginning, in which roots can be searched: 1, or less where the functions that come
   /// near zero would be many.
   const T& window() const { return window_; }
@@ -182,11 +186,21 @@ class RootSearchOf {
   std::optional<Nearer> nearer(std::size_t index, const Piece& piece, const T& x, const Watched& watched,
                                const std::optional<T>& root);
   T rounding_at(std::size_t index, const T& x);
+  T rounding_of_formula(std::size_t index);
+  std::int8_t told_side(std::size_t index, const T& x);
+  bool is_flat_zero(std::size_t index, const ScaledPolynomialOf<T>& polynomial, const T& x);
+  T sign_change(std::size_t index, T low, T high);
+  struct Lowest {
+    T x;
+    bool is_crossed;  // the function is on the other side beyond x
+  };
+  Lowest lowest_about(std::size_t index, std::int8_t side, const T& x, T step);
   T value(std::size_t index, const T& x);
   T at_a_time(const T& x) const;
   T refined(std::size_t index, const Piece& piece, const T& begin, const T& root);
   RootOf<T> crossing_at(std::size_t index, const Piece& piece, const T& begin, const T& root);
-  RootOf<T> touch_at(std::size_t index, const Piece& piece, const T& begin, const T& root);
+  std::optional<RootOf<T>> touch_at(std::size_t index, const Piece& piece, const T& begin, const T& root,
+                                    std::int8_t side);
   struct Gap {
     T end;             // where the function is analytic again
     std::int8_t side;  // that it has there; 0: it has no value any more

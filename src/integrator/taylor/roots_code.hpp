@@ -81,17 +81,32 @@ T RootSearchOf<T>::value(std::size_t index, const T& x) {
   return retrace_.row(0)[slots_[index]];
 }
 
+/// Those that are 0 but for rounding of their terms, and those that come to 0 within what rounding leaves of x: |x|
+/// where x changes its sign has terms of 1e-17, and a slope.
+template <class T>
+std::vector<bool> RootSearchOf<T>::vanishing_at(const T& x) {
+  using std::abs;
+  std::vector<bool> out(slots_.size(), false);
+  if (near_.empty()) return out;
+  std::vector<T> beside(slots_.size(), T(0));
+  value(near_[0], T(x - resolution_));  // of all that come near zero
+  for (const std::size_t i : near_) beside[i] = retrace_.row(0)[slots_[i]];
+  value(near_[0], x);
+  for (const std::size_t i : near_) {
+    const T here = retrace_.row(0)[slots_[i]];
+    out[i] = !(abs(here) > std::max(T(watching::unit<T>() * retrace_.scale(slots_[i])), T(abs(here - beside[i]))));
+  }
+  return out;
+}
+
 template <class T>
 bool RootSearchOf<T>::keeps_sides(std::span<const Watched> watched, std::size_t except) {
-  using std::abs;
   if (window_ < 1) return false;
-  value(except, origin_);  // of all that come near zero
+  const std::vector<bool> vanishes = vanishing_at(origin_);
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     if (i == except) continue;
-    const T here = retrace_.row(0)[slots_[i]];
-    const bool is_told = is_clear(i) || abs(here) > watching::unit<T>() * retrace_.scale(slots_[i]);
-    const std::int8_t side = is_clear(i) ? clear_[i] : watching::sign(here);
-    if (!is_told || side != watched[i].side) return false;
+    const std::int8_t side = is_clear(i) ? clear_[i] : watching::sign(retrace_.row(0)[slots_[i]]);
+    if (vanishes[i] || side != watched[i].side) return false;
   }
   return true;
 }
@@ -205,12 +220,13 @@ typename RootSearchOf<T>::Piece RootSearchOf<T>::up_to(Piece piece, const T& wid
   return piece;
 }
 
-/// What rounding of the motion makes of the function there: no expansion knows it better.
+/// What rounding of the motion, and of the formula's own values, makes of the function there: no expansion knows it
+/// better.
 template <class T>
 T RootSearchOf<T>::rounding_at(std::size_t index, const T& x) {
   using std::abs;
   const T here = value(index, x);
-  T out = T(0);
+  T out = rounding_of_formula(index);
   for (const bool by_turns : {false, true}) {
     retrace_.evaluate_beside(T(h_ * x), watching::unit<T>(), by_turns);
     out = std::max(out, T(abs(retrace_.row(0)[slots_[index]] - here)));
@@ -218,28 +234,44 @@ T RootSearchOf<T>::rounding_at(std::size_t index, const T& x) {
   return out;
 }
 
-/// Where to go on with smaller terms; nothing where nothing is hidden, no place is nearer, or what is hidden is the
-/// rounding of the motion itself, as of (t − 1)² in the place of x.
+/// Where the values are those of the last place that was asked for.
+template <class T>
+T RootSearchOf<T>::rounding_of_formula(std::size_t index) {
+  using std::abs;
+  const double length = static_cast<double>(abs(h_));
+  all_disks_.begin(rows_.of(retrace_.row(0), retrace_.stride(), retrace_.order(), std::ilogb(length)));
+  return T(all_disks_.rounding(slots_[index], length)) * std::numeric_limits<T>::epsilon();
+}
+
+/// Where to go on with smaller terms: at the first place that is not told from zero, or here, over less, where the
+/// length of the piece hides what it begins with. Nothing where nothing is hidden, no place is nearer, or what is
+/// hidden is the rounding of the motion itself, as of (t − 1)² in the place of x.
 template <class T>
 std::optional<typename RootSearchOf<T>::Nearer> RootSearchOf<T>::nearer(std::size_t index, const Piece& piece,
                                                                         const T& x, const Watched& watched,
                                                                         const std::optional<T>& root) {
   using std::abs, std::pow;
   constexpr double alone =
-      1e-9;  // of its place: so near to a root the polynomial is clear of zero if it is a simple one
+      1e-9;                  // of its place: so near to a root the polynomial is clear of zero if it is a simple one
+  constexpr int beyond = 8;  // distances, of which a root of order k is about k away
+  constexpr double shorter = 0.25;
   if (watched.side == 0) return std::nullopt;
-  const auto place = first_unclear(piece.polynomial, watched, root ? T(*root * T(1 - alone)) : T(1));
-  if (!place || !(*place * piece.width > resolution_)) return std::nullopt;
+  const bool begins_hidden = !watched.at_zero && piece.polynomial.begins_at_zero();
+  const auto place = begins_hidden ? std::optional<T>(T(0))
+                                   : first_unclear(piece.polynomial, watched, root ? T(*root * T(1 - alone)) : T(1));
+  if (!place) return std::nullopt;
+  const bool is_here = !(*place * piece.width > resolution_);
+  if (is_here && watched.at_zero) return std::nullopt;
   std::vector<T> p = piece.polynomial.p;  // about the place
-  for (std::size_t done = 0; done < p.size(); ++done)
+  for (std::size_t done = 0; !is_here && done < p.size(); ++done)
     for (std::size_t k = p.size() - 1; k-- > done;) p[k] += *place * p[k + 1];
   T distance = T(1);
   for (std::size_t k = 1; k < p.size(); ++k)
     if (p[k] != 0) distance = std::min(distance, T(pow(T(abs(p[0] / p[k])), T(1) / T(k))));
-  const T most = T(4 * distance) * piece.width;
-  if (!(most > 16 * resolution_)) return std::nullopt;
+  const T most = T(beyond * distance) * piece.width;
+  if (!(most > 16 * resolution_) || (is_here && !(most < T(shorter) * piece.width))) return std::nullopt;
   constexpr double better = 1000;  // what is worth it: a touch is not told from a miss by a few roundings
-  const T begin = x + piece.width * *place;
+  const T begin = is_here ? x : T(x + piece.width * *place);
   if (!(piece.polynomial.error_up_to(*place) > T(better) * rounding_at(index, begin))) return std::nullopt;
   return Nearer{begin, most};
 }
@@ -275,7 +307,8 @@ T RootSearchOf<T>::refined(std::size_t index, const Piece& piece, const T& begin
   return std::clamp(x, begin, T(begin + piece.width));
 }
 
-/// Of a root of higher order with the stretch about it that rounding does not tell from zero.
+/// Of a root of higher order with the stretch about it that rounding does not tell from zero, in the middle of its
+/// change of sign.
 template <class T>
 RootOf<T> RootSearchOf<T>::crossing_at(std::size_t index, const Piece& piece, const T& begin, const T& root) {
   using std::abs;
@@ -284,23 +317,93 @@ RootOf<T> RootSearchOf<T>::crossing_at(std::size_t index, const Piece& piece, co
   if (hidden_by_slope(piece.polynomial, root) <= T(narrow)) return found;
   const HiddenRoot<T> hidden = hidden_about(piece.polynomial, root);
   if (hidden.order == 1) return found;
-  const RootOf<T> beside = told_by_values(index, found.x, T(piece.width * hidden.half_width()));
-  found.hidden = beside.hidden + abs(begin + piece.width * hidden.middle() - found.x);
+  RootOf<T> beside = told_by_values(index, found.x, T(piece.width * hidden.half_width()));
+  if (beside.kind == RootKind::Crossing) {
+    found.x = sign_change(index, T(found.x - beside.hidden), T(found.x + beside.hidden));
+    beside = told_by_values(index, found.x, T(0));
+    found.hidden = beside.hidden;
+  } else {
+    found.hidden = beside.hidden + abs(begin + piece.width * hidden.middle() - found.x);
+  }
   found.order = std::max(hidden.order, beside.order);
   return found;
 }
 
-/// Where the slope vanishes, by the same rule; a crossing where the function has the other sign beyond what rounding
-/// hides.
+/// Halved to the last digit.
 template <class T>
-RootOf<T> RootSearchOf<T>::touch_at(std::size_t index, const Piece& piece, const T& begin, const T& root) {
+T RootSearchOf<T>::sign_change(std::size_t index, T low, T high) {
+  const std::int8_t side = watching::sign(value(index, low));
+  for (int turn = 0; turn < 2 * std::numeric_limits<T>::digits; ++turn) {
+    const T middle = T(0.5) * (low + high);
+    if (!(low < middle && middle < high)) break;
+    (watching::sign(value(index, middle)) == side ? low : high) = middle;
+  }
+  return high;
+}
+
+/// The side of the function there, 0 where rounding hides it.
+template <class T>
+std::int8_t RootSearchOf<T>::told_side(std::size_t index, const T& x) {
+  using std::abs;
+  constexpr int clear = 4;  // rounding errors
+  const T here = value(index, x), terms = watching::unit<T>() * retrace_.scale(slots_[index]);
+  const bool is_told = abs(here) > T(clear) * terms && abs(here) > T(clear) * rounding_at(index, x);
+  return is_told ? watching::sign(here) : std::int8_t{0};
+}
+
+/// Down from x, by steps that double until it goes up again, and from there by the golden section.
+template <class T>
+typename RootSearchOf<T>::Lowest RootSearchOf<T>::lowest_about(std::size_t index, std::int8_t side, const T& x,
+                                                               T step) {
+  const auto height = [&](const T& at) { return side * value(index, at); };
+  const T golden = T(0.381966011250105151795413165634);
+  T middle = x, at_middle = height(middle);
+  const bool goes_left = height(x - step) < height(x + step);
+  if (goes_left) step = -step;
+  T low = middle - step, high = middle + step;
+  for (int turn = 0; turn < 60; ++turn) {
+    const T there = height(high);
+    if (there < 0 && told_side(index, high) == -side) return {middle, true};
+    if (!(there < at_middle)) break;
+    low = middle, middle = high, at_middle = there, step *= 2, high = middle + step;
+  }
+  for (int turn = 0; turn < 2 * std::numeric_limits<T>::digits; ++turn) {
+    using std::abs;
+    if (!(abs(high - low) > resolution_)) break;
+    const bool is_far = abs(high - middle) > abs(middle - low);
+    const T next = middle + golden * ((is_far ? high : low) - middle), there = height(next);
+    if (there < 0 && told_side(index, next) == -side) return {middle, true};
+    if (there < at_middle) {
+      (is_far ? low : high) = middle;
+      middle = next, at_middle = there;
+    } else {
+      (is_far ? high : low) = next;
+    }
+  }
+  return {middle, false};
+}
+
+/// Where the slope vanishes, by the same rule, unless the values tell it better: those of (x − 1)⁸ do, whose
+/// polynomial is not told from zero over a hundredth of its piece. Nothing where they stay clear of zero, or lead
+/// through it, which the search for crossings finds.
+template <class T>
+std::optional<RootOf<T>> RootSearchOf<T>::touch_at(std::size_t index, const Piece& piece, const T& begin, const T& root,
+                                                   std::int8_t side) {
   const HiddenRoot<T> hidden = hidden_about(slope_of(piece.polynomial), root);
-  const bool is_double = hidden.order == 1;
-  const RootOf<T> found{T(begin + piece.width * (is_double ? root : hidden.middle())), RootKind::Touching, 0,
-                        static_cast<std::uint8_t>(hidden.order + 1),
-                        is_double ? T(0) : T(piece.width * hidden.half_width())};
-  const RootOf<T> beside = told_by_values(index, found.x, found.hidden);
-  return beside.kind == RootKind::Crossing ? beside : found;
+  RootOf<T> found{T(begin + piece.width * root), RootKind::Touching, 0, 2, T(0)};
+  if (hidden.order > 1 || told_side(index, found.x) != 0) {
+    constexpr double first = 1e-3;  // of the piece: over less, values next to zero differ by rounding
+    const T step = std::max(resolution_, T(piece.width * std::max(T(first), hidden.half_width())));
+    const Lowest lowest = lowest_about(index, side, T(begin + piece.width * hidden.middle()), step);
+    if (lowest.is_crossed || told_side(index, lowest.x) == side) return std::nullopt;
+    found.x = lowest.x;
+  }
+  const RootOf<T> beside = told_by_values(index, found.x, T(0));
+  if (beside.kind == RootKind::Crossing) return beside;
+  if (beside.order <= 2) return found;
+  found.order = static_cast<std::uint8_t>(beside.order + beside.order % 2);
+  found.hidden = beside.hidden;
+  return found;
 }
 
 /// What the values on both sides say of a root: hidden as far as they are rounding of their terms, of the order by
@@ -309,13 +412,8 @@ template <class T>
 RootOf<T> RootSearchOf<T>::told_by_values(std::size_t index, const T& root, const T& least) {
   using std::abs;
   constexpr double widest = 0.03;  // of the step
-  constexpr int clear = 4;         // rounding errors
   RootOf<T> out{root, RootKind::Touching, 0, 1, std::max(resolution_, least)};
-  const auto side_at = [&](const T& x) {
-    const T here = value(index, x);
-    const bool is_told = abs(here) > T(clear) * watching::unit<T>() * retrace_.scale(slots_[index]);
-    return is_told ? watching::sign(here) : std::int8_t{0};
-  };
+  const auto side_at = [&](const T& x) { return told_side(index, x); };
   int before = side_at(root - out.hidden), after = side_at(root + out.hidden);
   while (before * after == 0 && out.hidden < T(widest)) {
     out.hidden *= 2;
@@ -423,6 +521,17 @@ typename RootSearchOf<T>::Gap RootSearchOf<T>::gap(std::size_t index, const T& x
   return result;
 }
 
+/// Whether it is nothing but what rounding of its own values leaves of a function that vanishes, as of max(x, c) − c
+/// where x < c.
+template <class T>
+bool RootSearchOf<T>::is_flat_zero(std::size_t index, const ScaledPolynomialOf<T>& polynomial, const T& x) {
+  using std::abs;
+  constexpr double small = 1e-3;  // of its terms: none that is worth a look is larger
+  if (!(abs(polynomial.p[0]) <= T(small) * polynomial.scale) || polynomial.leading() != 0) return false;
+  value(index, x);
+  return abs(polynomial.p[0]) <= 4 * rounding_of_formula(index);
+}
+
 /// Whether its first term outweighs all others, with their rounding.
 template <class T>
 bool stays_clear(const ScaledPolynomialOf<T>& polynomial, std::int8_t side) {
@@ -445,8 +554,8 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watc
   T x = from, most = window_;  // most: of the piece to come
   int turns = 0;               // nearer to one place
   while (x < until) {
-    Piece now = x == origin_ ? up_to(piece(index, x, T(window_ - x)), T(until - x))
-                             : piece(index, x, std::min(most, T(until - x)));
+    Piece now = x == origin_ && turns == 0 ? up_to(piece(index, x, T(window_ - x)), T(until - x))
+                                           : piece(index, x, std::min(most, T(until - x)));
     if (now.width == 0) {
       const Gap beyond = gap(index, x, until, watched.side);
       if (!beyond.is_point) return lost_ = x, std::nullopt;
@@ -456,12 +565,20 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watc
       x = beyond.end;
       continue;
     }
-    if (watched.side == 0)
-      watched.side = watched.at_zero ? now.polynomial.direction(watched.order) : watching::sign(now.polynomial.p[0]);
+    if (watched.side == 0) {
+      const bool is_zero = watched.at_zero || now.polynomial.begins_at_zero();  // it may vanish, but for rounding
+      watched.side = is_zero ? now.polynomial.direction(watched.order) : watching::sign(now.polynomial.p[0]);
+    }
+    if (is_flat_zero(index, now.polynomial, x)) watched = {0, false};
     if (!watched.at_zero && stays_clear(now.polynomial, watched.side)) {
       turns = 0, most = window_;
       x += now.width;
       continue;
+    }
+    if (turns > 0) {  // its terms are small: rounding within them is not
+      value(index, x);
+      const T floor = rounding_of_formula(index) / watching::unit<T>();
+      now.polynomial.scale += floor, now.polynomial.reach += floor;
     }
     const auto root = crossing(now.polynomial, watched);
     const auto closer = turns < most_nearer ? nearer(index, now, x, watched, root) : std::nullopt;
@@ -476,7 +593,11 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watc
     if (wants_touching) {
       const auto touch = touching(touches::up_to(now.polynomial, root), watched.side, root.has_value());
       const T end = root ? *root : T(1);
-      if (touch && (!root || *touch < T(0.999))) return touch_at(index, now, x, T(end * *touch));
+      if (touch && (!root || *touch < T(0.999)))
+        if (auto found = touch_at(index, now, x, T(end * *touch), watched.side)) {
+          if (found->x > until + std::max(resolution_, found->hidden)) return std::nullopt;  // in the next step
+          return found;
+        }
     }
     if (root) {
       RootOf<T> found = crossing_at(index, now, x, *root);

@@ -24,6 +24,8 @@ struct Watched {
   std::int8_t side = 0;    // sign before the next crossing; 0: vanishes identically (switch), not known (event)
   bool at_zero = false;    // the step begins at a zero that was located
   std::uint8_t order = 1;  // of that zero, where it is known from elsewhere: lower powers are rounding
+  bool is_open = false;  // an event comes to that zero from `side` where a switch changes: what follows tells its kind
+  double hidden = 0;     // of such a zero, in time: by how much rounding may have moved it
 };
 
 /// The polynomial of a watched function over a step of length h, in x = τ/h.

@@ -53,18 +53,33 @@ struct ExpansionOfWatched {
   std::size_t stride() const { return work.row_stride(); }
 };
 
-/// The side that an event function has as the step begins. True if it is not the one that it had as the last step
-/// ended: then a root lies between them, within rounding.
-bool begins_past_root(const KernelWorkspace& work, std::size_t index, double h, Watched& watched) {
-  const std::int8_t before = watched.side;
+/// An event that has come from `side` to this zero at a switch. One that was 0 all along leaves it there, unmet.
+Watched left_open(std::int8_t side, const RootOf<double>& zero, double h) {
+  const double hidden = zero.order > 2 ? zero.hidden * std::abs(h) : 0;
+  return {side, true, zero.order, side != 0, hidden};
+}
+
+/// What an event function does at a zero that was left open as it came to a switch: 1 or −1 where it goes on to the
+/// other side, or stays at zero; 0 where it goes back. `watched.side`: where it goes, from here on.
+int way_through(const Watched& before, std::int8_t after) { return after == before.side ? 0 : -before.side; }
+
+/// The root that an event function has as the step begins: its direction; nothing where there is none. `watched`
+/// becomes what it is there. A root lies there where its side is not the one that it had as the last step ended, within
+/// rounding, or where its zero was left open.
+std::optional<int> root_at_begin(const KernelWorkspace& work, std::size_t index, double h, Watched& watched) {
+  const Watched before = watched;
+  watched.is_open = false;
   const double here = work.event(index, 0);
   watched.at_zero = watched.at_zero || watching::is_zero(here, work.event_scale(index));
   watched.side = sign(here);
-  if (!watched.at_zero && (before == 0 || watched.side != -before)) return false;
+  if (!watched.at_zero && (before.side == 0 || watched.side != -before.side)) return std::nullopt;
   const auto polynomial = judged(event_polynomial(work, index, h));
   if (watched.at_zero) watched.side = polynomial.direction(watched.order);
+  if (before.is_open) return way_through(before, watched.side);
   constexpr double close = 1e-6;  // beyond, the sign has changed by a jump
-  return before != 0 && watched.side == -before && std::abs(polynomial.p[0]) <= close * polynomial.reach;
+  const bool is_past = before.side != 0 && watched.side == -before.side;
+  if (!is_past || !(std::abs(polynomial.p[0]) <= close * polynomial.reach)) return std::nullopt;
+  return watched.side;
 }
 
 }  // namespace
@@ -130,21 +145,23 @@ Crossing WatchedFunctions::first_crossing(const KernelWorkspace& work, const Com
   return out;
 }
 
-/// The first roots beyond `from`.
-void WatchedFunctions::search(const KernelWorkspace& work, double h, double from, Crossing& out) {
-  out.x = roots_->window();
+/// The first roots in (from, limit].
+void WatchedFunctions::search_part(const KernelWorkspace& work, double h, double from, double limit, Crossing& out) {
   const std::size_t count = switches.size();
   for (std::size_t i = 0; i < out.after.size(); ++i) {
     const bool is_switch = i < count;
     Watched& watched = out.after[i];
     if (is_switch && watched.side == 0 && !std::isnan(work.switch_function(i, 0))) continue;  // it vanishes
     if (!is_switch && !ends_step(i - count)) continue;
-    if (from == 0 && !is_switch && !roots_->is_clear(i) && begins_past_root(work, i - count, h, watched))
-      note(out, {0.0, RootKind::Crossing}, i, together_, watched.side);
+    if (from == 0 && !is_switch && !roots_->is_clear(i)) {
+      const double hidden = watched.hidden / std::abs(h);
+      if (const auto way = root_at_begin(work, i - count, h, watched))
+        note(out, {0.0, RootKind::Crossing, 0, watched.order, hidden}, i, together_, *way);
+    }
     // Events at one instant are all told: the search goes on beyond the first root by what a polynomial does not
     // resolve.
     const double beyond = is_switch ? together_ : std::max(together_, unresolved);
-    const double until = std::min(roots_->window(), out.x * (1 + together_) + beyond);
+    const double until = std::min({roots_->window(), limit, out.x * (1 + together_) + beyond});
     const bool touches = !is_switch && tells_touches(i - count);
     if (const auto root = roots_->first(i, watched, from, until, touches, is_switch)) {
       const bool jump = root->kind == RootKind::Jump;
@@ -154,6 +171,22 @@ void WatchedFunctions::search(const KernelWorkspace& work, double h, double from
       end_where_lost(*roots_->lost(), out);
     }
   }
+}
+
+/// The first roots beyond `from`. Where those of the step before came early in a step as long as this one, part by
+/// part: else each function would be followed to the end of a rest as long as the run, for a root at its beginning.
+void WatchedFunctions::search(const KernelWorkspace& work, double h, double from, Crossing& out) {
+  constexpr double grows = 4, early = 1.0 / 16;
+  out.x = roots_->window();
+  const std::size_t count = switches.size();
+  double part = grows * last_found_ / std::abs(h);
+  if (!(part > 0 && part < early)) part = 1;
+  for (double begin = from, limit = from + part;; begin = limit, part *= grows, limit += part) {
+    search_part(work, h, begin, limit, out);
+    if (out.found || out.is_lost || !(limit < roots_->window())) break;
+  }
+  last_found_ = out.found ? (out.x - from) * std::abs(h) : 0;
+  if (ends_at_switch(out)) leave_open(h, out);
   // A step of no length leaves the others where they were.
   for (std::size_t i = 0; i < count && out.x == 0; ++i) out.after[i].at_zero = switches[i].at_zero;
   for (std::size_t k = 0; k < out.roots.size(); ++k) {
@@ -168,6 +201,31 @@ void WatchedFunctions::search(const KernelWorkspace& work, double h, double from
   pass(work, h, from, out);
 }
 
+bool WatchedFunctions::ends_at_switch(const Crossing& crossing) const {
+  if (!crossing.found || !(crossing.x > 0 && crossing.x < 1)) return false;
+  for (std::size_t k = 0; k < crossing.roots.size(); ++k)
+    if (crossing.roots[k] < switches.size() && !crossing.jumps[k]) return true;
+  return false;
+}
+
+/// Events that end the step and come to zero where a switch changes, as |x| at x = 0: their formulas are others beyond
+/// it, and tell what they do there.
+void WatchedFunctions::leave_open(double h, Crossing& out) {
+  const std::size_t count = switches.size();
+  const std::vector<bool> vanishes = roots_->vanishing_at(out.x);
+  for (std::size_t event = 0; event < events.size(); ++event) {
+    const std::size_t i = count + event;
+    if (!ends_step(event) || !tells_touches(event)) continue;
+    const auto at = std::find(out.roots.begin(), out.roots.end(), i);
+    if (at == out.roots.end() && !vanishes[i]) continue;
+    out.after[i] = left_open(out.after[i].side, roots_->zero_at(i, out.x), h);
+    if (at == out.roots.end()) continue;
+    const auto k = at - out.roots.begin();
+    out.roots.erase(at), out.directions.erase(out.directions.begin() + k), out.jumps.erase(out.jumps.begin() + k);
+    out.hidden.erase(out.hidden.begin() + k), out.orders.erase(out.orders.begin() + k);
+  }
+}
+
 /// A switch alone that nothing of the motion reads, within the step.
 bool WatchedFunctions::is_unread(const Crossing& crossing) const {
   return crossing.roots.size() == 1 && crossing.roots[0] < switches.size() && is_unread_[crossing.roots[0]] &&
@@ -180,6 +238,7 @@ bool WatchedFunctions::is_unread(const Crossing& crossing) const {
 bool WatchedFunctions::turns_unread(const KernelWorkspace& work, double h, Crossing& out) {
   constexpr std::size_t most = 100;
   if (!is_unread(out) || out.turned.size() >= most) return false;
+  if (std::any_of(out.after.begin(), out.after.end(), [](const Watched& w) { return w.is_open; })) return false;
   sides_.clear();
   for (std::size_t i = 0; i < switches.size(); ++i) sides_.push_back(out.after[i].side);
   roots_->go_on(out.x, sides_);
@@ -192,13 +251,15 @@ bool WatchedFunctions::turns_unread(const KernelWorkspace& work, double h, Cross
   return true;
 }
 
-/// Roots of events that do not end the step, up to its end: each search goes on from the root before.
+/// Roots of events that do not end the step, up to its end: each search goes on from the root before. One at a switch
+/// is left open.
 void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin, Crossing& out) {
   const std::size_t count = switches.size();
-  const bool may_go_on = is_unread(out);
+  const bool may_go_on = is_unread(out), at_switch = ends_at_switch(out);
   // Those of its last instant are told with what ends it there.
   const double last = out.x * (1 + together_) + std::max(together_, unresolved);
   const double until = std::min(roots_->window(), out.found && !may_go_on ? last : out.x);
+  std::vector<bool> vanishes;  // as the step ends
   for (std::size_t event = 0; event < events.size(); ++event) {
     if (ends_step(event)) continue;
     const std::size_t i = count + event;
@@ -206,11 +267,22 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin,
     const auto note_root = [&](double x, int direction, double hidden = 0, std::uint8_t order = 1) {
       out.passed.push_back({std::min(x, out.x), event, direction, hidden, order});
     };
-    if (begin == 0 && !roots_->is_clear(i) && begins_past_root(work, event, h, watched)) note_root(0, watched.side);
+    const auto is_at_switch = [&](const RootOf<double>& root) {
+      return at_switch && root.x + root.hidden >= out.x * (1 - together_) - together_;
+    };
+    if (begin == 0 && !roots_->is_clear(i)) {
+      const double hidden = watched.hidden / std::abs(h);
+      if (const auto way = root_at_begin(work, event, h, watched); way && (*way != 0 || tells_touches(event)))
+        note_root(0, *way, hidden, watched.order);
+    }
     for (double from = begin; from < until;) {
       const auto root = roots_->first(i, watched, from, until, tells_touches(event), false);
       if (roots_->lost()) return end_where_lost(0, out);
       if (!root) break;
+      if (is_at_switch(*root)) {
+        watched = left_open(watched.side, *root, h);
+        break;
+      }
       const bool touch = root->kind == RootKind::Touching;
       note_root(root->x, touch ? 0 : -watched.side, root->hidden, root->order);
       const auto beyond = static_cast<std::int8_t>(touch ? watched.side : -watched.side);
@@ -220,6 +292,9 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin,
       from = std::max(from, root->x + root->hidden);  // what lies between is not told from zero
       if (root->hidden > 0) watched = {beyond, false};
     }
+    if (!at_switch || watched.is_open || watched.at_zero || roots_->is_clear(i)) continue;
+    if (vanishes.empty()) vanishes = roots_->vanishing_at(out.x);
+    if (vanishes[i]) watched = left_open(watched.side, roots_->zero_at(i, out.x), h);
   }
 }
 
@@ -231,6 +306,10 @@ std::vector<WatchedFunctions::Side> WatchedFunctions::sides_of_events(const Kern
     const double here = work.event(i, 0);
     if (!events[i].at_zero && std::abs(here) > clear * work.event_scale(i)) {
       out.push_back({sign(here), work.event_scale(i)});
+      continue;
+    }
+    if (events[i].is_open) {  // it is on its way
+      out.push_back({events[i].side, work.event_scale(i)});
       continue;
     }
     const auto polynomial = judged(event_polynomial(work, i, h));

@@ -75,16 +75,20 @@ class WatchedFunctions {
 
  private:
   void copy_sides(KernelWorkspace& work) const;
+  void search_part(const KernelWorkspace& work, double h, double from, double limit, Crossing& out);
   void search(const KernelWorkspace& work, double h, double from, Crossing& out);
   void pass(const KernelWorkspace& work, double h, double begin, Crossing& out);
+  void leave_open(double h, Crossing& out);
+  bool ends_at_switch(const Crossing& crossing) const;
   bool is_unread(const Crossing& crossing) const;
   bool turns_unread(const KernelWorkspace& work, double h, Crossing& out);
 
-  std::optional<RootSearch> roots_;                        // where something is watched
-  std::vector<bool> is_unread_;                            // [switches] nothing of the motion depends on the side
-  bool follow_places_ = false;                             // no switch reads velocities
-  double together_ = 0;                                    // of the step: what rounding does not tell apart
-  mutable std::vector<std::int8_t> sides_;                 // scratch
+  std::optional<RootSearch> roots_;         // where something is watched
+  std::vector<bool> is_unread_;             // [switches] nothing of the motion depends on the side
+  bool follow_places_ = false;              // no switch reads velocities
+  double last_found_ = 0;                   // how far the last root was searched for, in time; 0: to the end
+  double together_ = 0;                     // of the step: what rounding does not tell apart
+  mutable std::vector<std::int8_t> sides_;  // scratch
   std::vector<TaylorStepper::EventTreatment> treatments_;  // [events], or none: all end the step
 };
 

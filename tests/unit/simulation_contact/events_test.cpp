@@ -5,6 +5,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
 
 using namespace maupertuis;
 
@@ -313,4 +317,103 @@ TEST_CASE("an event whose function is no number is said, once") {
   REQUIRE(partly.size() == 1);
   CHECK(partly[0].find("has no value at ") != std::string::npos);
   CHECK(warnings("x = 0.5").empty());
+}
+
+namespace {
+
+/// A unit oscillator x = cos t, y = sin t, and one recorded event.
+std::vector<double> instants_of(const std::string& condition, double end = 10) {
+  const auto r = run_text(
+      "dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) - 1/2 (x^2 + y^2)\n"
+      "start x = 1, y' = 1\nevent e when " +
+          condition + " : record\n",
+      end);
+  std::vector<double> out;
+  for (const Happening& h : r.happenings)
+    if (h.t > 0) out.push_back(h.t);
+  return out;
+}
+
+void check_instants(const std::string& condition, const std::vector<double>& expected, double digits = 1e-13) {
+  CAPTURE(condition);
+  const std::vector<double> found = instants_of(condition);
+  REQUIRE(found.size() == expected.size());
+  for (std::size_t k = 0; k < found.size(); ++k) CHECK(std::abs(found[k] - expected[k]) <= digits);
+}
+
+const double half_turn = std::acos(-1.0);
+
+}  // namespace
+
+TEST_CASE("an event that comes to zero where a switch within it changes is met once") {
+  const std::vector<double> zeros = {0.5 * half_turn, 1.5 * half_turn, 2.5 * half_turn};
+  for (const char* touch : {"abs(x) = 0", "abs(sin(x)) = 0", "sqrt(x^2) = 0", "max(x, -x) = 0", "abs(x) + x^2 = 0",
+                            "abs(x)^3 = 0", "x*abs(x) = 0", "min(x, 2 x) = 0"})
+    check_instants(touch, zeros);
+  check_instants("abs(x) = 0 rising", {});  // it comes to zero and goes back
+  check_instants("x*abs(x) = 0 falling", {zeros[0], zeros[2]});
+  check_instants("abs(x) - 1e-9 = 0", {zeros[0] - 1e-9, zeros[0] + 1e-9, zeros[1] - 1e-9, zeros[1] + 1e-9,
+                                       zeros[2] - 1e-9, zeros[2] + 1e-9});
+  check_instants("min(x, y) = 0", {0.5 * half_turn, 2 * half_turn, 2.5 * half_turn});
+  check_instants("abs(x)*abs(y) = 0",
+                 {0.5 * half_turn, half_turn, 1.5 * half_turn, 2 * half_turn, 2.5 * half_turn, 3 * half_turn});
+  // One that stays at zero is met as it arrives there.
+  check_instants("max(x, 0.2) = 0.2", {std::acos(0.2), 2 * half_turn + std::acos(0.2)});
+  check_instants("abs(x) = x", {1.5 * half_turn});
+}
+
+TEST_CASE("roots of even order are met once each") {
+  const std::vector<double> zeros = {0.5 * half_turn, 1.5 * half_turn, 2.5 * half_turn};
+  for (const char* power : {"x^2 = 0", "x^4 = 0", "x^6 = 0", "sin(x)^4 = 0"}) check_instants(power, zeros);
+  check_instants("(1 - cos(x))^2 = 0", zeros, 1e-7);
+  // What rounding leaves of x at its largest hides the time.
+  for (const char* power : {"(x^2 - 1)^2 = 0", "(x^2 - 1)^3 = 0", "(x^2 - 1)^4 = 0"})
+    check_instants(power, {half_turn, 2 * half_turn, 3 * half_turn}, 1e-6);
+}
+
+TEST_CASE("events of oscillators of all sizes: as many as there are, when they are") {
+  std::uint64_t state = 1;
+  const auto draw = [&](double low, double high) {
+    state = state * 6364136223846793005U + 1442695040888963407U;
+    return low + (high - low) * std::ldexp(static_cast<double>(state >> 11U), -53);
+  };
+  for (int k = 0; k < 60; ++k) {
+    const double w = std::pow(10, draw(-3, 3)), size = std::pow(10, draw(-6, 6)), phase = draw(0, 2 * half_turn);
+    const double end = draw(0.3, 8) * 2 * half_turn / w,
+                 share = draw(0, 1) < 0.5 ? draw(-0.95, 0.95) : draw(-1e-9, 1e-9);
+    const double at = share * size;
+    // All t at which cos(w t + phase) = share, and whether it rises there.
+    std::vector<std::pair<double, bool>> roots;
+    for (int turn = -1; turn < 12; ++turn)
+      for (const int side : {1, -1}) {
+        const double t = (side * std::acos(share) + 2 * half_turn * turn - phase) / w;
+        if (t > 0 && t < end) roots.push_back({t, side < 0});
+      }
+    std::sort(roots.begin(), roots.end());
+    const auto text = [&](const std::string& name, const std::string& condition) {
+      return fmt::format(fmt::runtime("event " + name + " when " + condition + " : record\n"), fmt::arg("at", at),
+                         fmt::arg("size", size));
+    };
+    ModelText m(fmt::format("dimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 ({:.17g})^2 x^2\n"
+                            "start x = {:.17g}, x' = {:.17g}\n",
+                            w, size * std::cos(phase), -size * w * std::sin(phase)) +
+                text("all", "x = {at:.17g}") + text("upward", "x = {at:.17g} rising") +
+                text("touching", "abs(x - ({at:.17g})) = 0") + text("square", "((x - ({at:.17g}))/{size:.17g})^2 = 0") +
+                text("fourth", "((x - ({at:.17g}))/{size:.17g})^4 = 0") +
+                text("fifth", "((x - ({at:.17g}))/{size:.17g})^5 = 0") +
+                text("stays", "max(x, {at:.17g}) = {at:.17g}") + text("zero", "x*abs(x) = 0"));
+    const auto r = run(m, end);
+    CAPTURE(k);
+    for (const std::string name : {"all", "upward", "touching", "square", "fourth", "fifth", "stays"}) {
+      CAPTURE(name);
+      std::vector<double> expected, found;
+      for (const auto& [t, rises] : roots)
+        if ((name != "upward" || rises) && (name != "stays" || !rises)) expected.push_back(t);
+      for (const Happening& h : r.happenings)
+        if (h.name == name) found.push_back(h.t);
+      CHECK(found.size() == expected.size());
+      for (std::size_t i = 0; i < std::min(found.size(), expected.size()); ++i)
+        CHECK(std::abs(found[i] - expected[i]) * w <= 1e-9);
+    }
+  }
 }
