@@ -174,13 +174,14 @@ void WatchedFunctions::search_part(const KernelWorkspace& work, double h, double
 }
 
 /// The first roots beyond `from`. Where those of the step before came early in a step as long as this one, part by
-/// part: else each function would be followed to the end of a rest as long as the run, for a root at its beginning.
+/// part: else each function would be followed to the end of a rest as long as the run, for a root at its beginning. A
+/// part is not so short that a function which begins at its zero is not told from zero at its end.
 void WatchedFunctions::search(const KernelWorkspace& work, double h, double from, Crossing& out) {
-  constexpr double grows = 4, early = 1.0 / 16;
+  constexpr double grows = 4, early = 1.0 / 16, shortest = 1e-6;
   out.x = roots_->window();
   const std::size_t count = switches.size();
   double part = grows * last_found_ / std::abs(h);
-  if (!(part > 0 && part < early)) part = 1;
+  if (!(part > shortest && part < early)) part = 1;
   for (double begin = from, limit = from + part;; begin = limit, part *= grows, limit += part) {
     search_part(work, h, begin, limit, out);
     if (out.found || out.is_lost || !(limit < roots_->window())) break;
