@@ -152,7 +152,10 @@ std::optional<std::string> ModeChange::trouble_of_mode(Met& met, std::vector<std
   if (!rests && !space_.choose_slips(touching, met, bound, false)) return std::string(no_cones);
   for (std::size_t turn = 0;; ++turn) {
     ModeChoice::Chosen chosen = choice_.choose(at);
-    if (chosen.found && !chosen.is_interrupted) go_on_in(*chosen.found, met);
+    if (chosen.found && chosen.is_interrupted)  // trials may have moved the stepper of this mode
+      motions_.stepper().start(here_.t, here_.q, here_.v, here_.t_rest);
+    else if (chosen.found)
+      go_on_in(*chosen.found, met);
     if (chosen.found) break;
     const auto& moved = trials_.moved_through_zero();
     if (!moved && !gave_way) {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 using namespace maupertuis;
@@ -353,6 +354,21 @@ TEST_CASE("infinitely many bounces end at √(2 h/g) (1 + e)/(1 − e)") {
   }
   CHECK(r.happenings[last].impulse == doctest::Approx(r.happenings[last].speed).epsilon(1e-13));
   CHECK(r.happenings[last].remark == "without bounce, those after it are left out");
+}
+
+TEST_CASE("a run that is interrupted before its first step stays at its start") {
+  for (const char* start : {"start z = 1", "start z = 0", "start z = 0, z' = -1"}) {
+    ModelText m(std::string("dimensionless\ncoord z : number\nT = 1/2 z'^2\nV = z\n"
+                            "contact z >= 0 restitution 0.5 name floor\n") +
+                start + "\n");
+    const std::atomic<bool> stop = true;
+    maupertuis::SimulationOptions options;
+    options.interrupt = &stop;
+    const auto r = run(m, 6, options);
+    CHECK(r.ending == Ending::Interrupted);
+    CHECK(r.final.t == 0);
+    CHECK(r.final.q[0] == (std::string(start) == "start z = 1" ? 1 : 0));
+  }
 }
 
 TEST_CASE("bounces go on while they are to be seen, however fast something else flies") {
