@@ -31,6 +31,7 @@ bool refuse_beside_higher(Elaboration& e) {
   const bool sets =
       std::any_of(x.events.begin(), x.events.end(), [](const ModelEvent& event) { return !event.sets.empty(); });
   const bool masses = std::any_of(s.points.begin(), s.points.end(), [](const Point& p) { return bool(p.mass); });
+  const bool is_claim = !s.lagrangian_given && s.lagrangian_extra.empty();  // springs give what L is then
   const char* what = !s.constraints.empty()            ? "constraints"
                      : s.has_modes()                   ? "contacts or dry friction"
                      : !s.integral_constraints.empty() ? "an integral of its path that is held"
@@ -38,6 +39,7 @@ bool refuse_beside_higher(Elaboration& e) {
                      : !s.rates.empty()                ? "rates"
                      : !s.bodies.empty() || masses     ? "particles or bodies"
                      : sets                            ? "an event that sets values"
+                     : is_claim                        ? "springs"
                                                        : nullptr;
   if (!what) return false;
   e.diagnostics.error("E0259", place_of_lagrangian(s),
