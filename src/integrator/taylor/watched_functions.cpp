@@ -210,7 +210,8 @@ bool WatchedFunctions::ends_at_switch(const Crossing& crossing) const {
 }
 
 /// Events that end the step and come to zero where a switch changes, as |x| at x = 0: their formulas are others beyond
-/// it, and tell what they do there.
+/// it, and tell what they do there. A zero that the step begins at, and that rounding does not tell from the switch,
+/// was met: the next step begins at it as well.
 void WatchedFunctions::leave_open(double h, Crossing& out) {
   const std::size_t count = switches.size();
   const std::vector<bool> vanishes = roots_->vanishing_at(out.x);
@@ -219,7 +220,9 @@ void WatchedFunctions::leave_open(double h, Crossing& out) {
     if (!ends_step(event) || !tells_touches(event)) continue;
     const auto at = std::find(out.roots.begin(), out.roots.end(), i);
     if (at == out.roots.end() && !vanishes[i]) continue;
-    out.after[i] = left_open(out.after[i].side, roots_->zero_at(i, out.x), h);
+    const RootOf<double> zero = roots_->zero_at(i, out.x);
+    const bool was_met = events[event].at_zero && !events[event].is_open && zero.hidden >= out.x;
+    out.after[i] = was_met ? Watched{0, true, zero.order} : left_open(out.after[i].side, zero, h);
     if (at == out.roots.end()) continue;
     const auto k = at - out.roots.begin();
     out.roots.erase(at), out.directions.erase(out.directions.begin() + k), out.jumps.erase(out.jumps.begin() + k);

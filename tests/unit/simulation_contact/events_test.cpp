@@ -89,6 +89,26 @@ std::string wedge(double x0, double y0, double a, double b, double give_back_a, 
 
 }  // namespace
 
+TEST_CASE("a set at a kink through which the motion goes on happens once at each zero") {
+  for (const char* zero : {"x = 0", "x abs(x) = 0", "abs(x) = 0", "max(x, 2 x) = 0"})
+    for (const char* way : {"", "falling "}) {
+      if (std::string(zero) == "abs(x) = 0" && *way) continue;  // it falls nowhere: it goes back
+      CAPTURE(zero);
+      CAPTURE(way);
+      ModelText m(std::string("dimensionless\ncoord x, y : number\nT = 1/2 x'^2 + 1/2 y'^2\nV = 4.5 x^2\n"
+                              "start x = 1, y' = 1\nevent e when ") +
+                  zero + " " + way + ": set y' = 0.5 y'\n");
+      const auto r = run(m, 10);
+      CHECK(r.ending == Ending::Finished);
+      const double pi = std::acos(-1.0), half = pi / 3;  // 10 of them: zeros at half/2 + k half
+      const int zeros = *way ? 5 : 10;
+      REQUIRE(count(r, Happening::Kind::Event) == zeros);
+      for (int k = 0; k < zeros; ++k)
+        CHECK(r.happenings[k].t == doctest::Approx((k * (*way ? 2 : 1) + 0.5) * half).epsilon(1e-7));
+      CHECK(r.final.v[1] == doctest::Approx(std::pow(0.5, zeros)).epsilon(1e-14));
+    }
+}
+
 TEST_CASE("sets in a corner that follow each other infinitely often end the run: none is passed") {
   const double degree = std::acos(-1.0) / 180;
   std::size_t in_turns = 0;
