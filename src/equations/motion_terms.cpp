@@ -15,9 +15,9 @@ MotionTerms::MotionTerms(const MechanicalSystem& system)
   for (const Definition& d : system.definitions)
     if (d.symbol) replacements_.emplace(d.symbol, d.value);
   for (const Input& input : system.inputs) {
-    // Residuals and powers hold u and u'; certificates go no further than u''.
+    // Residuals and powers hold u and u', and u''' where a place moves with u'; certificates go one further.
     Expr symbol = input.symbol, formula = input.formula;
-    for (int order = 0; order <= 2; ++order) {
+    for (int order = 0; order <= 4; ++order) {
       replacements_.emplace(symbol, formula);
       symbol = system.context->time_derivative(symbol);
       formula = total_time_derivative(formula);

@@ -118,6 +118,13 @@ bool Events::is_hidden(std::size_t event, const Outlook& outlook, std::size_t wa
          std::abs(outlook.values[watch]) <= rounding * outlook.reach[watch];
 }
 
+/// A change of sign of even order is one at a switch, as of x |x|. On which side of it rounding has left the motion,
+/// and so the sign, says nothing of where it goes.
+static bool is_at_switch(const Met& met, std::size_t event) {
+  const auto zero = met.zero_of(event);
+  return zero && zero->order % 2 == 0;
+}
+
 const ModelEvent* Events::turned_unseen(const Met& met, double bound, bool forwards) const {
   if (met.sets.empty() || met.at_zero.empty()) return nullptr;
   const Outlook outlook = motions_.stepper().outlook(bound);
@@ -129,6 +136,7 @@ const ModelEvent* Events::turned_unseen(const Met& met, double bound, bool forwa
     const auto at = std::find(met.sets.begin(), met.sets.end(), event);
     if (at == met.sets.end()) continue;
     const int way = met.ways[static_cast<std::size_t>(at - met.sets.begin())];
+    if (way != 0 && is_at_switch(met, watches[k].index)) continue;
     const bool turns = outlook.slopes[k] * (forwards ? way : -way) < 0;
     if (turns && outlook.sides[k] != -way) return event;
   }
@@ -256,7 +264,8 @@ Events::Unseen Events::meet_unseen(const Met& settled, double bound, bool forwar
     if (stays_[number] > 0 && remains(k, stays_[number], 1, bound)) continue;
     const bool is_beyond = is_hidden(number, outlook, k);
     const std::int8_t before = std::exchange(sides_[number], outlook.sides[k]);
-    if (!is_beyond) continue;
+    if (is_beyond && is_at_switch(settled, number)) sides_[number] = before;
+    if (!is_beyond || is_at_switch(settled, number)) continue;
     const ModelEvent& event = problem_.model.experiment.events[number];
     if (std::find(settled.sets.begin(), settled.sets.end(), &event) != settled.sets.end()) {
       out.follows_itself = &event;

@@ -286,8 +286,14 @@ void check_places(Elaboration& e) {
   }
   for (const Point& p : system.points)
     for (const Expr& c : p.position) refuse_loose_fields(e, c, p.span, "the place of a point");
-  for (const Body& b : system.bodies)
+  for (const Body& b : system.bodies) {
     for (const Expr& c : b.position) refuse_loose_fields(e, c, b.span, "the place of a body");
+    Expr all = e.number(0);  // its entries share their symbols: one message
+    for (const Expr& c : b.rotation.entries)
+      if (c) all = all + c;
+    refuse_loose_fields(e, all, b.span, "the rotation of a body");
+  }
+  if (e.diagnostics.has_errors()) return;  // T and V hold what stands in places
   check_terms(e, system.kinetic, "T"), check_terms(e, system.potential, "V");
   check_terms(e, system.generalized_potential, "U"), check_terms(e, system.dissipation, "D");
   check_terms(e, system.lagrangian_extra, "L");

@@ -68,7 +68,7 @@ Bindings sample(const Subject& s, int attempt) {
     b[multiplier_of_integral(s.system, k)] = 0.5 + scattered(k, attempt);
   for (const Input& u : s.system.inputs) {
     b[u.symbol] = 0.5;
-    b[context.symbol(u.name, Role::Input, 1)] = 0.25;
+    for (int order = 1; order <= 4; ++order) b[context.symbol(u.name, Role::Input, order)] = std::ldexp(0.5, -order);
   }
   return b;
 }

@@ -11,8 +11,10 @@ constexpr double resolved = 1e-12;  // of the last coefficients, relative to the
 constexpr double smooth = 1e-6;     // of them: above it a layer is narrower than the element, which halving shows late
 constexpr double worst_error = 1e-6;  // of the terms of L: a path that finer elements change by more is none
 constexpr double nearly = 1e-3;       // of the size: a correction on the way, with which finer elements may begin
+constexpr Index most_layers = 4;      // elements with one
 constexpr int most_rounds = 12;
 constexpr Index most_elements = 400;
+constexpr Index most_about_layers = 100;  // a layer that so many do not resolve is a jump: no path has it
 
 /// The last two coefficients of an element, the largest relative one.
 double tail(const Trial& trial, Index e, const Matrix& scale) {
@@ -27,8 +29,13 @@ double tail(const Trial& trial, Index e, const Matrix& scale) {
 class Refiner {
  public:
   Refiner(Functional& functional, Trial trial, const FixedEnds& fixed, const Vector& least,
-          const NewtonOptions& options)
-      : functional_(functional), trial_(std::move(trial)), fixed_(fixed), least_(least), options_(options) {}
+          const NewtonOptions& options, bool may_have_layers)
+      : functional_(functional),
+        trial_(std::move(trial)),
+        fixed_(fixed),
+        least_(least),
+        options_(options),
+        may_have_layers_(may_have_layers) {}
 
   std::optional<Refined> run() {
     if (!resolve()) return std::nullopt;
@@ -62,12 +69,16 @@ class Refiner {
       std::vector<bool> which(static_cast<std::size_t>(trial_.mesh.elements()), false);
       const Matrix size = scale_of_found(trial_, least_, functional_.orders());
       double worst = 0;
+      Index rough = 0;
       for (Index e = 0; e < trial_.mesh.elements(); ++e) {
         const double here = tail(trial_, e, size);
         worst = std::max(worst, here);
+        if (here > smooth) ++rough;
         which[static_cast<std::size_t>(e)] = here > resolved;
       }
-      if (worst <= resolved || (worst > 0.7 * before && worst < smooth) || trial_.mesh.elements() > most_elements)
+      const bool is_layer =
+          may_have_layers_ && rough > 0 && rough <= most_layers && trial_.mesh.elements() < most_about_layers;
+      if (worst <= resolved || (worst > 0.7 * before && !is_layer) || trial_.mesh.elements() > most_elements)
         return true;
       before = worst;
       trial_ = halved(trial_, which);
@@ -82,14 +93,15 @@ class Refiner {
   const FixedEnds& fixed_;
   const Vector& least_;
   const NewtonOptions& options_;
+  bool may_have_layers_;
   double correction_ = 0;
 };
 
 }  // namespace
 
 std::optional<Refined> refine(Functional& functional, Trial trial, const FixedEnds& fixed, const Vector& least,
-                              const NewtonOptions& options) {
-  return Refiner(functional, std::move(trial), fixed, least, options).run();
+                              const NewtonOptions& options, bool may_have_layers) {
+  return Refiner(functional, std::move(trial), fixed, least, options, may_have_layers).run();
 }
 
 }  // namespace maupertuis::action

@@ -22,8 +22,9 @@ struct SingularEnds {
 
 /// Halves the elements whose polynomials have not converged, and solves again, until all have. Nothing where Newton's
 /// method fails on a finer mesh: then there was no path, only one of the coarse equations. `least` [n]: sizes below
-/// which a coordinate is not resolved further.
+/// which a coordinate is not resolved further. `may_have_layers`: elements that do not converge yet may hold a layer of
+/// a path, not a jump, as paths of a degenerate L have none; then they are halved on (to 100 elements).
 std::optional<Refined> refine(Functional& functional, Trial trial, const FixedEnds& fixed, const Vector& least,
-                              const NewtonOptions& options);
+                              const NewtonOptions& options, bool may_have_layers);
 
 }  // namespace maupertuis::action

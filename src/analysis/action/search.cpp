@@ -108,7 +108,8 @@ class Search {
     work_ += first.iterations * static_cast<double>(trial.q.cols()) * (400 + 40 * d * d * d + 60 * d * d);
     if (!first.converged) return count_failure();
     if (known(trial)) return;
-    auto refined = refine(problem_.functional, std::move(trial), fixed_, least_, {40, options_.interrupt});
+    auto refined = refine(problem_.functional, std::move(trial), fixed_, least_, {40, options_.interrupt},
+                          !problem_.equations.degenerate);
     if (!refined) return count_failure();
     if (!known(refined->coarse)) found_.emplace_back(std::move(*refined), name);
   }

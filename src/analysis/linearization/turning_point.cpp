@@ -182,6 +182,8 @@ class RestCurve {
       (at.tangent[size_ - 1] > 0 ? low : high) = (low + high) / 2;
     }
     if (std::abs(at.tangent[size_ - 1]) > level) return std::nullopt;
+    for (Index i = 0; i < n_; ++i)
+      if (std::abs(at.z[i]) < converged) at.z[i] = 0;
     return TurningPoint{value_of(at.z), rest_of(at.z)};
   }
 

@@ -109,6 +109,21 @@ TEST_CASE("a set at a kink through which the motion goes on happens once at each
     }
 }
 
+TEST_CASE("a motion that is thrown back from a kink is met once at each return") {
+  for (const double start : {1.0, 0.9, 0.77, 1.3})
+    for (const char* zero : {"x = 0", "x abs(x) = 0"}) {
+      CAPTURE(start);
+      CAPTURE(zero);
+      ModelText m(
+          fmt::format("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 4.5 x^2\nstart x = {}\n"
+                      "event e when {} : set x' = -x'\n",
+                      start, zero));
+      const auto r = run(m, 100);
+      CHECK(r.ending == Ending::Finished);
+      CHECK(count(r, Happening::Kind::Event) == 95);  // at π/6 + k π/3
+    }
+}
+
 TEST_CASE("sets in a corner that follow each other infinitely often end the run: none is passed") {
   const double degree = std::acos(-1.0) / 180;
   std::size_t in_turns = 0;

@@ -1,8 +1,9 @@
 #include <doctest/doctest.h>
 
+#include "../under_sanitizers.hpp"
 #include "support.hpp"
 
-#include <chrono>
+#include <ctime>
 
 using namespace maupertuis;
 using namespace maupertuis::syntax;
@@ -131,7 +132,7 @@ TEST_CASE("texts that are no models") {
 }
 
 TEST_CASE("size, depth and length are bounded, and so is the time") {
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();  // of the processor: other work on the machine is no fault
   const auto repeat = [](std::size_t n, const std::string& part) {
     std::string all;
     for (std::size_t i = 0; i < n; ++i) all += part;
@@ -157,5 +158,5 @@ TEST_CASE("size, depth and length are bounded, and so is the time") {
   CHECK(Parsed(repeat(200'000, "bad\n")).diagnostics.has_errors());
   CHECK(Parsed(repeat(2'000'000, "a ")).codes() == "E0101");
   CHECK(Parsed("gravity " + repeat(20'000, "(1,") + "\n").codes() == "E0106");
-  CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(60));
+  CHECK((std::clock() - begin) / CLOCKS_PER_SEC < (under_sanitizers ? 600 : 60));
 }
