@@ -38,18 +38,30 @@ std::vector<bool> constants_of(const Program& program, const std::vector<const s
   return out;
 }
 
+/// Switches whose sides are among these constants. [switches]
+std::vector<bool> switches_in(const Program& program, const std::vector<const std::vector<Slot>*>& roots) {
+  std::vector<bool> out(program.switch_slots.size(), false);
+  const std::vector<bool> read = constants_of(program, roots);
+  for (std::size_t c = 0; c < read.size(); ++c) {
+    const Constant& constant = program.constants[c];
+    if (read[c] && constant.kind == Kind::Sign && constant.arguments == 0) out[constant.index] = true;
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<bool> switches_of_events_alone(const Program& program) {
-  std::vector<bool> out(program.switch_slots.size(), true);
-  const std::vector<bool> read =
-      constants_of(program, {&program.residual, &program.constraint_values, &program.constraint_rates,
-                             &program.observables, &program.integrands});
-  for (std::size_t c = 0; c < read.size(); ++c) {
-    const Constant& constant = program.constants[c];
-    if (read[c] && constant.kind == Kind::Sign && constant.arguments == 0) out[constant.index] = false;
-  }
+  std::vector<bool> out = switches_in(program, {&program.residual, &program.constraint_values,
+                                                &program.constraint_rates, &program.observables, &program.integrands});
+  out.flip();
   return out;
+}
+
+std::vector<bool> switches_read_by(const Program& program, Slot slot) {
+  const std::vector<Slot> slots{slot};
+  const bool reads_unknowns = program.lags[slot] >= 2;
+  return reads_unknowns ? switches_in(program, {&slots, &program.residual}) : switches_in(program, {&slots});
 }
 
 }  // namespace maupertuis

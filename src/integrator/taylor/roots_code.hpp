@@ -383,6 +383,18 @@ typename RootSearchOf<T>::Lowest RootSearchOf<T>::lowest_about(std::size_t index
   return {middle, false};
 }
 
+/// Whether a function that is lowest at x does not come to zero there: its value is more than rounding, and more than
+/// what it changes by within the places that rounding does not tell from x, as (x − 1)⁴ does by a multiple.
+template <class T>
+bool RootSearchOf<T>::stays_clear_of_zero(std::size_t index, std::int8_t side, const T& x) {
+  using std::abs;
+  constexpr int beside = 8;  // roundings of the place
+  if (told_side(index, x) != side) return false;
+  const T here = value(index, x), left = value(index, T(x - beside * resolution_)),
+          right = value(index, T(x + beside * resolution_));
+  return abs(here) > std::max(abs(left - here), abs(right - here));
+}
+
 /// Where the slope vanishes, by the same rule, unless the values tell it better: those of (x − 1)⁸ do, whose
 /// polynomial is not told from zero over a hundredth of its piece. Nothing where they stay clear of zero, or lead
 /// through it, which the search for crossings finds.
@@ -395,7 +407,7 @@ std::optional<RootOf<T>> RootSearchOf<T>::touch_at(std::size_t index, const Piec
     constexpr double first = 1e-3;  // of the piece: over less, values next to zero differ by rounding
     const T step = std::max(resolution_, T(piece.width * std::max(T(first), hidden.half_width())));
     const Lowest lowest = lowest_about(index, side, T(begin + piece.width * hidden.middle()), step);
-    if (lowest.is_crossed || told_side(index, lowest.x) == side) return std::nullopt;
+    if (lowest.is_crossed || stays_clear_of_zero(index, side, lowest.x)) return std::nullopt;
     found.x = lowest.x;
   }
   const RootOf<T> beside = told_by_values(index, found.x, T(0));
@@ -551,9 +563,10 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watc
   }
   last_radius_ = std::numeric_limits<double>::infinity();
   constexpr int most_nearer = 32;
-  T x = from, most = window_;  // most: of the piece to come
-  int turns = 0;               // nearer to one place
-  while (x < until) {
+  constexpr double wide = 1e-6;      // of the step: over less any function that comes to zero is rounding
+  T x = from, most = window_;        // most: of the piece to come
+  int turns = 0;                     // nearer to one place
+  while (until - x > resolution_) {  // over less no piece tells anything; the step to come does
     Piece now = x == origin_ && turns == 0 ? up_to(piece(index, x, T(window_ - x)), T(until - x))
                                            : piece(index, x, std::min(most, T(until - x)));
     if (now.width == 0) {
@@ -569,7 +582,7 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watc
       const bool is_zero = watched.at_zero || now.polynomial.begins_at_zero();  // it may vanish, but for rounding
       watched.side = is_zero ? now.polynomial.direction(watched.order) : watching::sign(now.polynomial.p[0]);
     }
-    if (is_flat_zero(index, now.polynomial, x)) watched = {0, false};
+    if (now.width > T(wide) && is_flat_zero(index, now.polynomial, x)) watched = {0, false};
     if (!watched.at_zero && stays_clear(now.polynomial, watched.side)) {
       turns = 0, most = window_;
       x += now.width;

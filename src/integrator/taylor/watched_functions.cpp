@@ -19,6 +19,15 @@ void forget_roots(Crossing& crossing) {
   crossing.hidden.clear(), crossing.orders.clear();
 }
 
+void forget_root(Crossing& crossing, std::size_t index) {
+  const auto at = std::find(crossing.roots.begin(), crossing.roots.end(), index);
+  if (at == crossing.roots.end()) return;
+  const auto k = at - crossing.roots.begin();
+  crossing.roots.erase(at);
+  crossing.directions.erase(crossing.directions.begin() + k), crossing.jumps.erase(crossing.jumps.begin() + k);
+  crossing.hidden.erase(crossing.hidden.begin() + k), crossing.orders.erase(crossing.orders.begin() + k);
+}
+
 void end_where_lost(double x, Crossing& crossing) {
   forget_roots(crossing);
   crossing.found = false;
@@ -187,7 +196,8 @@ void WatchedFunctions::search(const KernelWorkspace& work, double h, double from
     if (out.found || out.is_lost || !(limit < roots_->window())) break;
   }
   last_found_ = out.found ? (out.x - from) * std::abs(h) : 0;
-  if (ends_at_switch(out)) leave_open(h, out);
+  stay_at_zeros(out);
+  if (ends_at_switch(out) && !ends_by_event(work.program(), out)) leave_open(work.program(), h, out);
   // A step of no length leaves the others where they were.
   for (std::size_t i = 0; i < count && out.x == 0; ++i) out.after[i].at_zero = switches[i].at_zero;
   for (std::size_t k = 0; k < out.roots.size(); ++k) {
@@ -202,6 +212,7 @@ void WatchedFunctions::search(const KernelWorkspace& work, double h, double from
   pass(work, h, from, out);
 }
 
+/// Where the step comes to switches, and goes on beyond them: the events that read these have another formula there.
 bool WatchedFunctions::ends_at_switch(const Crossing& crossing) const {
   if (!crossing.found || !(crossing.x > 0 && crossing.x < 1)) return false;
   for (std::size_t k = 0; k < crossing.roots.size(); ++k)
@@ -209,24 +220,51 @@ bool WatchedFunctions::ends_at_switch(const Crossing& crossing) const {
   return false;
 }
 
+bool WatchedFunctions::has_kink(const Program& program, std::size_t event, const Crossing& crossing) {
+  reads_.resize(events.size());
+  if (reads_[event].empty()) reads_[event] = switches_read_by(program, program.events[event]);
+  return std::any_of(crossing.roots.begin(), crossing.roots.end(),
+                     [&](std::size_t i) { return i < switches.size() && reads_[event][i]; });
+}
+
+/// Whether an event ends the step that is none at a kink. What it changes, an impact, decides where the motion goes
+/// from there: nothing is left open for the next step.
+bool WatchedFunctions::ends_by_event(const Program& program, const Crossing& crossing) {
+  const std::size_t count = switches.size();
+  return std::any_of(crossing.roots.begin(), crossing.roots.end(), [&](std::size_t i) {
+    return i >= count && !(tells_touches(i - count) && has_kink(program, i - count, crossing));
+  });
+}
+
 /// Events that end the step and come to zero where a switch changes, as |x| at x = 0: their formulas are others beyond
 /// it, and tell what they do there. A zero that the step begins at, and that rounding does not tell from the switch,
 /// was met: the next step begins at it as well.
-void WatchedFunctions::leave_open(double h, Crossing& out) {
+void WatchedFunctions::leave_open(const Program& program, double h, Crossing& out) {
   const std::size_t count = switches.size();
   const std::vector<bool> vanishes = roots_->vanishing_at(out.x);
   for (std::size_t event = 0; event < events.size(); ++event) {
     const std::size_t i = count + event;
-    if (!ends_step(event) || !tells_touches(event)) continue;
-    const auto at = std::find(out.roots.begin(), out.roots.end(), i);
-    if (at == out.roots.end() && !vanishes[i]) continue;
+    if (!ends_step(event) || !tells_touches(event) || !has_kink(program, event, out)) continue;
+    if (stays_at_zero(event, out)) continue;
+    if (!vanishes[i] && std::find(out.roots.begin(), out.roots.end(), i) == out.roots.end()) continue;
     const RootOf<double> zero = roots_->zero_at(i, out.x);
     const bool was_met = events[event].at_zero && !events[event].is_open && zero.hidden >= out.x;
     out.after[i] = was_met ? Watched{0, true, zero.order} : left_open(out.after[i].side, zero, h);
-    if (at == out.roots.end()) continue;
-    const auto k = at - out.roots.begin();
-    out.roots.erase(at), out.directions.erase(out.directions.begin() + k), out.jumps.erase(out.jumps.begin() + k);
-    out.hidden.erase(out.hidden.begin() + k), out.orders.erase(out.orders.begin() + k);
+    forget_root(out, i);
+  }
+}
+
+/// Whether the step begins at a zero of the event, and comes to a switch before rounding tells it from there: what was
+/// met at that zero is not met again, and the next step begins at it as well.
+bool WatchedFunctions::stays_at_zero(std::size_t event, const Crossing& crossing) const {
+  return ends_at_switch(crossing) && crossing.x <= together_ && events[event].at_zero && !events[event].is_open;
+}
+
+void WatchedFunctions::stay_at_zeros(Crossing& out) const {
+  for (std::size_t event = 0; event < events.size(); ++event) {
+    if (!stays_at_zero(event, out)) continue;
+    forget_root(out, switches.size() + event);
+    out.after[switches.size() + event] = {0, true, events[event].order};
   }
 }
 
@@ -255,24 +293,28 @@ bool WatchedFunctions::turns_unread(const KernelWorkspace& work, double h, Cross
   return true;
 }
 
-/// Roots of events that do not end the step, up to its end: each search goes on from the root before. One at a switch
-/// is left open.
+/// Roots of events that do not end the step, up to its end: each search goes on from the root before. One at a kink, at
+/// which nothing else ends the step, is left open.
 void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin, Crossing& out) {
   const std::size_t count = switches.size();
   const bool may_go_on = is_unread(out), at_switch = ends_at_switch(out);
+  const bool leaves_open = at_switch && !ends_by_event(work.program(), out);
   // Those of its last instant are told with what ends it there.
   const double last = out.x * (1 + together_) + std::max(together_, unresolved);
   const double until = std::min(roots_->window(), out.found && !may_go_on ? last : out.x);
   std::vector<bool> vanishes;  // as the step ends
   for (std::size_t event = 0; event < events.size(); ++event) {
-    if (ends_step(event)) continue;
+    if (ends_step(event) || stays_at_zero(event, out)) continue;
     const std::size_t i = count + event;
     Watched& watched = out.after[i];
+    bool is_told_at_end = false;
     const auto note_root = [&](double x, int direction, double hidden = 0, std::uint8_t order = 1) {
       out.passed.push_back({std::min(x, out.x), event, direction, hidden, order});
+      is_told_at_end = x + hidden >= out.x * (1 - together_) - together_;
     };
-    const auto is_at_switch = [&](const RootOf<double>& root) {
-      return at_switch && root.x + root.hidden >= out.x * (1 - together_) - together_;
+    const auto is_left_open = [&](const RootOf<double>& root) {
+      return leaves_open && root.x + root.hidden >= out.x * (1 - together_) - together_ &&
+             has_kink(work.program(), event, out);
     };
     if (begin == 0 && !roots_->is_clear(i)) {
       const double hidden = watched.hidden / std::abs(h);
@@ -283,7 +325,7 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin,
       const auto root = roots_->first(i, watched, from, until, tells_touches(event), false);
       if (roots_->lost()) return end_where_lost(0, out);
       if (!root) break;
-      if (is_at_switch(*root)) {
+      if (is_left_open(*root)) {
         watched = left_open(watched.side, *root, h);
         break;
       }
@@ -296,9 +338,14 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin,
       from = std::max(from, root->x + root->hidden);  // what lies between is not told from zero
       if (root->hidden > 0) watched = {beyond, false};
     }
-    if (!at_switch || watched.is_open || watched.at_zero || roots_->is_clear(i)) continue;
+    if (!at_switch || is_told_at_end || watched.is_open || watched.at_zero || roots_->is_clear(i)) continue;
     if (vanishes.empty()) vanishes = roots_->vanishing_at(out.x);
-    if (vanishes[i]) watched = left_open(watched.side, roots_->zero_at(i, out.x), h);
+    if (!vanishes[i] || !has_kink(work.program(), event, out)) continue;
+    const RootOf<double> zero = roots_->zero_at(i, out.x);
+    if (leaves_open)
+      watched = left_open(watched.side, zero, h);
+    else
+      note_root(out.x, zero.kind == RootKind::Crossing ? -watched.side : 0, zero.hidden, zero.order);
   }
 }
 

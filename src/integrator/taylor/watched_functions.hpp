@@ -78,13 +78,18 @@ class WatchedFunctions {
   void search_part(const KernelWorkspace& work, double h, double from, double limit, Crossing& out);
   void search(const KernelWorkspace& work, double h, double from, Crossing& out);
   void pass(const KernelWorkspace& work, double h, double begin, Crossing& out);
-  void leave_open(double h, Crossing& out);
+  void leave_open(const Program& program, double h, Crossing& out);
   bool ends_at_switch(const Crossing& crossing) const;
+  bool stays_at_zero(std::size_t event, const Crossing& crossing) const;
+  void stay_at_zeros(Crossing& out) const;
+  bool ends_by_event(const Program& program, const Crossing& crossing);
+  bool has_kink(const Program& program, std::size_t event, const Crossing& crossing);
   bool is_unread(const Crossing& crossing) const;
   bool turns_unread(const KernelWorkspace& work, double h, Crossing& out);
 
   std::optional<RootSearch> roots_;         // where something is watched
   std::vector<bool> is_unread_;             // [switches] nothing of the motion depends on the side
+  std::vector<std::vector<bool>> reads_;    // [events][switches] that its formula depends on; empty: not asked for yet
   bool follow_places_ = false;              // no switch reads velocities
   double last_found_ = 0;                   // how far the last root was searched for, in time; 0: to the end
   double together_ = 0;                     // of the step: what rounding does not tell apart

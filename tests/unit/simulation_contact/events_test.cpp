@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -107,6 +108,54 @@ TEST_CASE("a set at a kink through which the motion goes on happens once at each
         CHECK(r.happenings[k].t == doctest::Approx((k * (*way ? 2 : 1) + 0.5) * half).epsilon(1e-7));
       CHECK(r.final.v[1] == doctest::Approx(std::pow(0.5, zeros)).epsilon(1e-14));
     }
+}
+
+TEST_CASE("events at a kink and beside it are told where an impact ends the step") {
+  for (const char* kink : {"abs(x) = 0", "sqrt(x^2) = 0", "min(x, -x) = 0", "min(x, x^2) = 0", "x abs(x) = 0",
+                           "x + abs(x) = 0", "max(x, -x) = 0"}) {
+    CAPTURE(kink);
+    ModelText m(std::string("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 9.81 x\nstart x = 1\n"
+                            "contact x >= 0 restitution 0.5 name floor\nevent a when x = 0 : record\nevent b when ") +
+                kink + " : record\n");
+    const auto r = run(m, 1);
+    const double fall = std::sqrt(2 / 9.81);
+    REQUIRE(count(r, Happening::Kind::Event) == 4);
+    REQUIRE(count(r, Happening::Kind::Impact) == 2);
+    for (std::size_t k = 0; k < r.happenings.size(); ++k)
+      CHECK(r.happenings[k].t == doctest::Approx(k < 3 ? fall : 2 * fall).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("events at several kinks of one step, beside a wall, are all told") {
+  ModelText m(
+      "dimensionless\ncoord x, y : number\nT = 1/2 x'^2 + 1/2 y'^2\nV = 1/2 x^2 + 1/2 y^2\n"
+      "contact x <= 1/2 restitution 0.5 name wall\nstart x = -1, y = sqrt(3)\n"
+      "event c when abs(x - 1/2) = 0 : record\nevent d when abs(y) = 0 : record\nevent e when y = 0 : record\n"
+      "event f when min(x + 1/2, y) = 0 : record\n");
+  const auto r = run(m, 9);
+  std::map<std::string, std::vector<double>> told;
+  for (const Happening& h : r.happenings)
+    if (h.kind == Happening::Kind::Event) told[h.name].push_back(h.t);
+  const double pi = std::acos(-1.0);
+  const std::vector<double> of_y{pi / 2, 3 * pi / 2, 5 * pi / 2};
+  REQUIRE(told["d"].size() == 3);
+  REQUIRE(told["e"].size() == 3);
+  for (std::size_t k = 0; k < 3; ++k) {
+    CHECK(told["d"][k] == doctest::Approx(of_y[k]).epsilon(1e-13));
+    CHECK(told["e"][k] == doctest::Approx(of_y[k]).epsilon(1e-13));
+  }
+  CHECK(told["c"].size() == 2);
+  CHECK(told["f"].size() == 4);
+}
+
+TEST_CASE("a set at a kink leaves the event beside it") {
+  ModelText m(
+      "dimensionless\ncoord x, y : number\nT = 1/2 x'^2 + 1/2 y'^2\nV = 1/2 x^2 + 1/2 y^2\nstart x = -1, y = 1\n"
+      "event c when abs(y) = 0 : set y' = y'\nevent e when y = 0 : record\n");
+  const auto r = run(m, 9);
+  REQUIRE(count(r, Happening::Kind::Event) == 6);
+  for (std::size_t k = 0; k < 6; ++k)
+    CHECK(r.happenings[k].t == doctest::Approx((static_cast<double>(k / 2) + 0.5) * std::acos(-1.0)).epsilon(1e-13));
 }
 
 TEST_CASE("a motion that is thrown back from a kink is met once at each return") {
