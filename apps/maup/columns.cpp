@@ -1,6 +1,7 @@
 #include "columns.hpp"
 
 #include <maupertuis/along_motion.hpp>
+#include <maupertuis/close_evaluation.hpp>
 #include <maupertuis/degenerate.hpp>
 #include <maupertuis/momentum.hpp>
 #include <maupertuis/simulation.hpp>
@@ -83,7 +84,8 @@ class FormulaColumn {
     return !has_free_functions(equations) || equations.degenerate->is_determined(asked_);
   }
 
-  /// The values of all rows; errors too, where there are any.
+  /// The values of all rows; errors too, where there are any: those of the state, and what rounding makes of the
+  /// formula.
   void append_to(const Trajectory& shown, std::vector<double>& values, std::vector<double>& errors) {
     const Trajectory& rows = shown.of_one_choice ? *shown.of_one_choice : shown;
     find_sources(rows);
@@ -91,15 +93,17 @@ class FormulaColumn {
     const std::vector<Expr> slopes = rows.errors.empty() ? std::vector<Expr>() : gradient(value_, symbols_);
     roots.insert(roots.end(), slopes.begin(), slopes.end());
     Bindings at = parameter_bindings(system_);
+    const CloseEvaluation formula({&value_, 1});
     for (std::size_t row = 0; row < rows.rows(); ++row) {
       at[system_.context->time()] = rows.times[row];
       for (std::size_t i = 0; i < symbols_.size(); ++i) at[symbols_[i]] = rows.at(row, columns_[i]);
       const std::vector<double> found = evaluate(roots, at);
       values.push_back(found[0]);
-      double error = 0;
+      if (rows.errors.empty()) continue;
+      double error = formula.in_double([&](Expr symbol) { return at.at(symbol); }).errors[0];
       for (std::size_t i = 0; i < slopes.size(); ++i)
         if (found[i + 1] != 0) error += std::abs(found[i + 1]) * rows.error(row, columns_[i]);
-      if (!rows.errors.empty()) errors.push_back(error);
+      errors.push_back(error);
     }
   }
 

@@ -27,7 +27,8 @@ std::vector<Expr> without_definitions(const MechanicalSystem& system, std::span<
   return substitute(expressions, replacements);
 }
 
-/// How many rates of an input the forces take: both where L depends on it, since d/dt meets it there.
+/// How many rates of an input the forces take: two at least where L depends on it, since d/dt meets it there, and more
+/// where L depends on its rates, as with a point that moves with one.
 int rates_of(const Input& input, const ExprVector& inside_lagrangian, const ExprVector& inside_residual) {
   const auto highest = [&](const ExprVector& symbols) {
     int order = -1;
@@ -35,7 +36,7 @@ int rates_of(const Input& input, const ExprVector& inside_lagrangian, const Expr
       if (s.role() == Role::Input && s.name() == input.symbol.name()) order = std::max(order, s.order());
     return order;
   };
-  return highest(inside_lagrangian) >= 0 ? 2 : std::max(0, highest(inside_residual));
+  return std::max(highest(inside_lagrangian) >= 0 ? 2 : 0, highest(inside_residual));
 }
 
 }  // namespace

@@ -213,6 +213,7 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& written, const SourceTe
     e.model.fields = e.fields;
   }
   if (!e.fields || e.fields->coupled) expand_definitions(e.model), replace_momenta(e.model);
+  take_roots_off_conditions(e.experiment());
   set_normal_forces(e.system(), diagnostics);
   if (diagnostics.has_errors()) return std::nullopt;
   return std::move(e.model);

@@ -283,6 +283,9 @@ void expand_definitions(Model& model);
 /// p_x of events, `run until`, sections and normal forces becomes ∂L/∂x'. After definitions, which may hold x', are
 /// expanded.
 void replace_momenta(Model& model);
+/// A root has no series where it vanishes: the condition `norm(P) = 0` becomes `norm(P)^2 = 0`, `acos(x) = 0` x = 1.
+/// Those that rise or fall stay as they are. After definitions, which may be roots, are expanded.
+void take_roots_off_conditions(Experiment& x);
 /// Calls `visit` on every expression of an experiment, and `starts` first on each list of values of a state.
 void visit_experiment(Experiment& x, const std::function<void(Expr&)>& visit,
                       const std::function<void(std::vector<StartValue>&)>& starts);

@@ -135,6 +135,24 @@ void replace_momenta(Model& model) {
   if (!momenta.empty()) visit_conditions([&](Expr& e) { e = substitute(e, momenta); });
 }
 
+namespace {
+
+/// An expression that vanishes where f does, and has a series there: g for g^r with r = 1/2, 3/2, …, g − 1 for acos g.
+Expr without_root(Expr f) {
+  if (f.is(maupertuis::Kind::Product) && f.size() == 2 && f[0].is_number()) return without_root(f[1]);
+  if (f.is(maupertuis::Kind::Acos)) return f[0] - Rational(1);
+  const Rational* exponent = f.is(maupertuis::Kind::Power) ? f[1].number_or_null() : nullptr;
+  return exponent && exponent->sign() > 0 && !exponent->is_integer() ? f[0] : f;
+}
+
+}  // namespace
+
+void take_roots_off_conditions(Experiment& x) {
+  for (ModelEvent& event : x.events)
+    if (event.direction == 0) event.function = without_root(event.function);
+  if (x.until) x.until = without_root(x.until);
+}
+
 void expand_definitions(Model& model) {
   const ExprMap values = model.system.definition_values();
   ExprVector all;

@@ -563,10 +563,11 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watc
   }
   last_radius_ = std::numeric_limits<double>::infinity();
   constexpr int most_nearer = 32;
-  constexpr double wide = 1e-6;      // of the step: over less any function that comes to zero is rounding
-  T x = from, most = window_;        // most: of the piece to come
-  int turns = 0;                     // nearer to one place
-  while (until - x > resolution_) {  // over less no piece tells anything; the step to come does
+  constexpr double wide = 1e-6;  // of the step: over less any function that comes to zero is rounding
+  T x = from, most = window_;    // most: of the piece to come
+  int turns = 0;                 // nearer to one place
+  // Over what rounding does not tell from the end no further piece tells anything; the step to come does.
+  while (x < until && (x == origin_ || until - x > resolution_)) {
     Piece now = x == origin_ && turns == 0 ? up_to(piece(index, x, T(window_ - x)), T(until - x))
                                            : piece(index, x, std::min(most, T(until - x)));
     if (now.width == 0) {

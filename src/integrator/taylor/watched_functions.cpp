@@ -244,9 +244,9 @@ void WatchedFunctions::leave_open(const Program& program, double h, Crossing& ou
   const std::vector<bool> vanishes = roots_->vanishing_at(out.x);
   for (std::size_t event = 0; event < events.size(); ++event) {
     const std::size_t i = count + event;
-    if (!ends_step(event) || !tells_touches(event) || !has_kink(program, event, out)) continue;
-    if (stays_at_zero(event, out)) continue;
-    if (!vanishes[i] && std::find(out.roots.begin(), out.roots.end(), i) == out.roots.end()) continue;
+    if (!ends_step(event) || !tells_touches(event) || stays_at_zero(event, out)) continue;
+    const bool is_told = std::find(out.roots.begin(), out.roots.end(), i) != out.roots.end();
+    if (is_told ? !has_kink(program, event, out) : !vanishes[i]) continue;
     const RootOf<double> zero = roots_->zero_at(i, out.x);
     const bool was_met = events[event].at_zero && !events[event].is_open && zero.hidden >= out.x;
     out.after[i] = was_met ? Watched{0, true, zero.order} : left_open(out.after[i].side, zero, h);
@@ -340,7 +340,7 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin,
     }
     if (!at_switch || is_told_at_end || watched.is_open || watched.at_zero || roots_->is_clear(i)) continue;
     if (vanishes.empty()) vanishes = roots_->vanishing_at(out.x);
-    if (!vanishes[i] || !has_kink(work.program(), event, out)) continue;
+    if (!vanishes[i]) continue;
     const RootOf<double> zero = roots_->zero_at(i, out.x);
     if (leaves_open)
       watched = left_open(watched.side, zero, h);
