@@ -132,6 +132,24 @@ TEST_CASE("formulas on both axes of a picture; with errors of their own") {
   for (const auto& row : rows) CHECK(row[3] == doctest::Approx(2 * row[4]));
 }
 
+TEST_CASE("the errors of columns hold what rounding makes of their formulas") {
+  const std::string still =
+      "dimensionless\ncoord y, x : number\nL = 1/2 y'^2 + 1/2 x'^2\nstart y = 0.03, x = 1\nrun 1\n";
+  const Folder folder;
+  const std::string file = folder.path("m.csv");
+  const auto outcome =
+      maup({"simulate", "-", "-o", file, "--errors", "--columns", "1e5 (1 - cos(1e-4 y)), x"}, still);
+  REQUIRE_MESSAGE(outcome.code == 0, outcome.err);
+  const double right = 2e5 * std::pow(std::sin(0.5e-4 * 0.03), 2);
+  for (const auto& row : numbers(read(file))) {
+    REQUIRE(row.size() == 5);
+    CHECK(std::abs(row[1] - right) <= row[3]);
+    CHECK(row[3] > 1e-12);
+    CHECK(row[3] < 1e-9);
+    CHECK(row[4] < 1e-15);
+  }
+}
+
 TEST_CASE("forces of constraints in formulas") {
   const std::string rod =
       "system rod\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\ngravity (0, "

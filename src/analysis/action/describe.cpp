@@ -67,12 +67,16 @@ std::string no_index_without_convexity(const Problem& problem) {
 void fill_second(Problem& problem, const Refined& refined, const FixedEnds& fixed, const Vector& least,
                  const SingularEnds& singular, const ActionOptions& options, StationaryPath& out) {
   const Trial& trial = refined.coarse;
-  if (!convex_along(problem.functional, trial)) {
-    out.second.reason = no_index_without_convexity(problem);
-    if (problem.functional.integrals() == 0 && !singular.any() && !has_free_functions(problem.equations))
+  const bool can_be_carried =
+      problem.functional.integrals() == 0 && !singular.any() && !has_free_functions(problem.equations);
+  const auto carry_alone = [&] {
+    if (can_be_carried)
       out.check =
           carried_along(problem.equations, problem.equations.lagrangian_expanded, trial, least, options.interrupt);
-    return;
+  };
+  if (!convex_along(problem.functional, trial)) {
+    out.second.reason = no_index_without_convexity(problem);
+    return carry_alone();
   }
   const Inertia inertia = inertia_of(problem.functional, trial, fixed, least);
   const auto weighted = weighted_equations(problem.equations, trial.multipliers);
@@ -84,6 +88,7 @@ void fill_second(Problem& problem, const Refined& refined, const FixedEnds& fixe
     fields.reason = fields.check.reason = "The equations of L + λ G could not be made.";
   combine(inertia, fields, all_fixed(problem.functional, trial, fixed), out.second);
   out.check = fields.check;
+  if (!out.check.done) carry_alone();  // neighbours may be lost where the motion itself is not
 }
 
 std::string no_index_at(const KinkPassed& kink, const Problem& problem) {

@@ -114,6 +114,19 @@ L = 1/2 x'^2 - 1/2 x^2
   CHECK(code_of_search(m, fixed_ends({0.4}, 0, {0.7}, pi)) == "E1204");
 }
 
+TEST_CASE("a straight line that passes the origin of polar coordinates at less than half a turn is a path, more is none") {
+  ModelText m("dimensionless\ncoord r, φ : number\nL = 1/2 (r'^2 + r^2 φ'^2)\n");
+  for (const double angle : {3.0, 3.14}) {
+    Diagnostics diagnostics;
+    const auto found = stationary_paths(m.model, m.equations, fixed_ends({1, 0}, 0, {1, angle}, 1), {}, diagnostics);
+    REQUIRE(found);
+    REQUIRE(found->paths.size() == 1);
+    CHECK(found->paths[0].action == doctest::Approx(2 * std::pow(std::sin(angle / 2), 2)).epsilon(1e-12));
+  }
+  for (const double angle : {3.15, 4.0, 7.0})
+    CHECK(code_of_search(m, fixed_ends({1, 0}, 0, {1, angle}, 1)) == "E1204");
+}
+
 TEST_CASE("the brachistochrone from rest to a vertical line, which it meets at a right angle") {
   const ModelText m(brachistochrone);
   ActionEnds ends = fixed_ends({0}, 0, {0}, pi);

@@ -446,6 +446,33 @@ TEST_CASE("an event that comes to zero where a switch within it changes is met o
   check_instants("abs(x) = x", {1.5 * half_turn});
 }
 
+TEST_CASE("an event whose formula has a root, without a series where it vanishes, is met") {
+  const std::vector<double> zeros = {0.5 * half_turn, 1.5 * half_turn, 2.5 * half_turn};
+  // x = cos t, y = sin t.
+  for (const char* root : {"sqrt(abs(x)) = 0", "sqrt(4 x^2 + x^4) = 0", "3 (x^2)^(3/2) = 0", "abs(x)^(1/3) = 0"})
+    check_instants(root, zeros);
+  check_instants("sqrt(1 - x^2) = 0", {half_turn, 2 * half_turn, 3 * half_turn});
+  check_instants("acos(x) = 0", {2 * half_turn});
+  check_instants("sqrt(x) = 0", zeros);  // it has no value beyond
+  check_instants("sqrt(x^2 + y^2) = 0", {});
+  check_instants("sqrt(x^2) = 0.5", {half_turn / 3, 2 * half_turn / 3, 4 * half_turn / 3, 5 * half_turn / 3,
+                                     7 * half_turn / 3, 8 * half_turn / 3});
+}
+
+TEST_CASE("sets at events that touch zero, beside one another") {
+  const auto counts = [](const std::string& events, double end) {
+    const auto r = run_text("dimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\nstart x = 1\n" + events, end);
+    std::map<std::string, int> out;
+    for (const Happening& h : r.happenings) ++out[h.name];
+    return out;
+  };
+  const auto both = counts(
+      "event a when piecewise(x > 0: x, else: 2 x) = 0 : set x' = x'\nevent b when x^3 = 0 : set x' = x'\n"
+      "event c when abs(x) = 0 : record\nevent d when max(x, -5) = 0 : set x' = x'\n",
+      10.2 * half_turn);
+  CHECK(both == std::map<std::string, int>{{"a", 10}, {"b", 10}, {"c", 10}, {"d", 10}});
+}
+
 TEST_CASE("roots of even order are met once each") {
   const std::vector<double> zeros = {0.5 * half_turn, 1.5 * half_turn, 2.5 * half_turn};
   for (const char* power : {"x^2 = 0", "x^4 = 0", "x^6 = 0", "sin(x)^4 = 0"}) check_instants(power, zeros);
