@@ -2,7 +2,7 @@
 #include "integrator/extended/constraint_error.hpp"
 #include "integrator/extended/step_size.hpp"
 #include "integrator/taylor/end_check.hpp"
-#include "integrator/taylor/roots.hpp"
+#include "integrator/taylor/met_roots.hpp"
 #include "integrator/taylor/safe_length.hpp"
 
 #include <maupertuis/extended.hpp>
@@ -64,16 +64,7 @@ class Stepper {
 
  private:
   using Polynomial = taylor::ScaledPolynomialOf<T>;
-  struct Crossing {
-    T x = T(1);  // fraction of the step
-    bool found = false;
-    bool is_lost = false;                // see taylor::Crossing
-    std::vector<std::size_t> roots;      // switches, then events
-    std::vector<int> directions;         // [roots]
-    std::vector<bool> jumps;             // [roots] a switch function jumps there: it has no zero
-    std::vector<std::uint8_t> orders;    // [roots]
-    std::vector<taylor::Watched> after;  // the same, as the step leaves them
-  };
+  using Crossing = taylor::MetRoots<T>;
 
   std::optional<Outcome> expand(const T& bound);
   std::optional<Outcome> project();
@@ -89,9 +80,6 @@ class Stepper {
     return here == here;
   }
   bool watches() const { return !switch_state_.empty() || !event_state_.empty(); }
-  bool begins_past_root(std::size_t index, const T& h, taylor::Watched& watched) const;
-  void note(Crossing& crossing, const taylor::RootOf<T>& root, std::size_t index, const T& together,
-            int direction) const;
   Crossing first_crossing(const T& h);
   void leave(const Crossing& crossing);
   double safe_length(double log2_wanted, double log2_left);
@@ -121,6 +109,7 @@ class Stepper {
   ScaledRows<T> rows_;
   std::vector<double> rough_constants_;
   std::vector<double> rates_;  // [n] largest |q̇| and h |q̈| so far
+  taylor::Kinks<T> kinks_;
   std::optional<taylor::RootSearchOf<T>> roots_;
   int stuck_ = 0;  // crossings in a row that did not move time
 };

@@ -1,5 +1,6 @@
 #pragma once
 #include "integrator/extended/stepper.hpp"
+#include "integrator/taylor/met_roots_code.hpp"
 #include "integrator/taylor/reasons.hpp"
 #include "integrator/taylor/roots_code.hpp"
 #include "kernel/extended/workspace_code.hpp"
@@ -18,7 +19,8 @@ Stepper<T>::Stepper(const Kernel& kernel, std::span<const T> parameters, const E
       n_(kernel.freedoms()),
       switch_state_(kernel.switches().size()),
       event_state_(kernel.events()),
-      safe_(work_.program(), control_.order, 1e4 * std::exp2(log2_tolerance)) {
+      safe_(work_.program(), control_.order, 1e4 * std::exp2(log2_tolerance)),
+      kinks_(work_.program(), kernel.switches().size(), kernel.events()) {
   if (watches()) {
     std::vector<Slot> slots = work_.program().switch_slots;
     slots.insert(slots.end(), work_.program().events.begin(), work_.program().events.end());
@@ -190,32 +192,6 @@ std::optional<typename Stepper<T>::Outcome> Stepper<T>::without_value() {
   return std::nullopt;
 }
 
-/// See TaylorStepper::Impl::begins_past_root.
-template <class T>
-bool Stepper<T>::begins_past_root(std::size_t index, const T& h, taylor::Watched& watched) const {
-  const Polynomial polynomial = taylor::judged(taylor::event_polynomial(work_, index, h));
-  const std::int8_t before = watched.side;
-  watched.at_zero = watched.at_zero || polynomial.begins_at_zero();
-  watched.side = watched.at_zero ? polynomial.direction(watched.order) : taylor::watching::sign(polynomial.p[0]);
-  return before != 0 && watched.side == -before && abs(polynomial.p[0]) <= T(1e-6) * polynomial.reach;
-}
-
-/// Roots that rounding does not tell apart are one crossing.
-template <class T>
-void Stepper<T>::note(Crossing& crossing, const taylor::RootOf<T>& root, std::size_t index, const T& together,
-                      int direction) const {
-  if (crossing.found && root.x > crossing.x * (1 + together) + together) return;
-  if (root.x < crossing.x * (1 - together) - together)
-    crossing.roots.clear(), crossing.directions.clear(), crossing.jumps.clear(), crossing.orders.clear();
-  crossing.x = std::min(crossing.x, root.x);
-  crossing.found = true;
-  crossing.is_lost = false;
-  crossing.roots.push_back(index);
-  crossing.directions.push_back(direction);
-  crossing.jumps.push_back(root.kind == taylor::RootKind::Jump);
-  crossing.orders.push_back(root.order);
-}
-
 template <class T>
 typename Stepper<T>::Crossing Stepper<T>::first_crossing(const T& h) {
   Crossing first;
@@ -232,30 +208,30 @@ typename Stepper<T>::Crossing Stepper<T>::first_crossing(const T& h) {
     const bool is_switch = i < count;
     taylor::Watched& watched = first.after[i];
     if (is_switch && watched.side == 0 && has_value(i)) continue;  // it vanishes
-    if (!is_switch && !roots_->is_clear(i) && begins_past_root(i - count, h, watched))
-      note(first, {T(0), taylor::RootKind::Crossing}, i, together, watched.side);
+    if (!is_switch && !roots_->is_clear(i))
+      if (const auto way = taylor::root_at_begin(work_, i - count, h, watched))
+        first.note({T(0), taylor::RootKind::Crossing, 0, watched.order}, i, together, *way);
     // Events at one instant are all told: the search goes on beyond the first root by what a polynomial does not
     // resolve.
     const T beyond = is_switch ? together : std::max(together, epsilon_to<T>(0.77));
     const T until = std::min(roots_->window(), T(first.x * (1 + together) + beyond));
     const auto root = roots_->first(i, watched, T(0), until, !is_switch, is_switch);
-    if (!root && roots_->lost() && *roots_->lost() < first.x)
-      first = {*roots_->lost(), false, true, {}, {}, {}, {}, std::move(first.after)};
+    if (!root && roots_->lost() && *roots_->lost() < first.x) first.end_where_lost(*roots_->lost());
     if (!root) continue;
     const bool jump = root->kind == taylor::RootKind::Jump;
-    note(first, *root, i, together, root->kind == taylor::RootKind::Touching ? 0 : -watched.side);
+    first.note(*root, i, together, root->kind == taylor::RootKind::Touching ? 0 : -watched.side);
     if (jump) watched = {root->after, false};
   }
+  kinks_.leave_open(*roots_, event_state_, h, together, first);
   // A step of no length leaves the others where they were.
   for (std::size_t i = 0; i < count && first.x == 0; ++i) first.after[i].at_zero = switch_state_[i].at_zero;
-  for (std::size_t k = 0; k < first.roots.size(); ++k) {
-    if (first.jumps[k]) continue;  // what lies beyond is known
-    const std::size_t i = first.roots[k];
-    taylor::Watched& watched = first.after[i];
-    if (i < count)
+  for (const taylor::MetRoot<T>& root : first.roots) {
+    if (root.is_jump) continue;  // what lies beyond is known
+    taylor::Watched& watched = first.after[root.index];
+    if (root.index < count)
       watched = {static_cast<std::int8_t>(-watched.side), true};
     else
-      watched = {0, true, first.orders[k]};
+      watched = {0, true, root.order};
   }
   return first;
 }
@@ -266,7 +242,7 @@ void Stepper<T>::leave(const Crossing& crossing) {
   const std::size_t count = switch_state_.size();
   for (std::size_t i = 0; i < crossing.after.size(); ++i)
     (i < count ? switch_state_[i] : event_state_[i - count]) = crossing.after[i];
-  for (const std::size_t i : crossing.roots) switches_ += i < count;
+  for (const taylor::MetRoot<T>& root : crossing.roots) switches_ += root.index < count;
 }
 
 /// Nothing: the equations do not hold at the end.
@@ -286,9 +262,8 @@ std::optional<typename Stepper<T>::Outcome> Stepper<T>::advance(const T& bound, 
   first_ = false;
   ++steps_;
   Outcome out;
-  for (std::size_t k = 0; k < crossing.roots.size(); ++k)
-    if (crossing.roots[k] >= switch_state_.size())
-      out.events.push_back({crossing.roots[k] - switch_state_.size(), crossing.directions[k]});
+  for (const taylor::MetRoot<T>& root : crossing.roots)
+    if (root.index >= switch_state_.size()) out.events.push_back({root.index - switch_state_.size(), root.direction});
   return out;
 }
 
@@ -389,8 +364,9 @@ typename Stepper<T>::Outlook Stepper<T>::outlook(const T& bound) {
   for (std::size_t i = 0; i < event_state_.size(); ++i) {
     const Polynomial polynomial = taylor::judged(taylor::event_polynomial(work_, i, h));
     const bool at_zero = event_state_[i].at_zero || polynomial.begins_at_zero();
-    out.sides.push_back(at_zero ? polynomial.direction(event_state_[i].order)
-                                : taylor::watching::sign(polynomial.p[0]));
+    const std::int8_t side =
+        at_zero ? polynomial.direction(event_state_[i].order) : taylor::watching::sign(polynomial.p[0]);
+    out.sides.push_back(event_state_[i].is_open ? event_state_[i].side : side);  // it is on its way
     out.reach.push_back(polynomial.reach);
     out.values.push_back(work_.event(i, 0));
     out.slopes.push_back(work_.event(i, 1));

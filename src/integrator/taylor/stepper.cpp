@@ -125,7 +125,7 @@ void TaylorStepper::Impl::advance(double bound, double h, const taylor::Crossing
   const bool reaches_bound = !crossing.found && crossing.x == 1 && h == remaining(bound);
   double tau = h * crossing.x;
   if (crossing.found && options.moved_instants != 0) {
-    const auto is_event = [&](std::size_t i) { return i >= watched.switches.size(); };
+    const auto is_event = [&](const taylor::MetRoot<double>& root) { return root.index >= watched.switches.size(); };
     tau = moved(tau, h, std::all_of(crossing.roots.begin(), crossing.roots.end(), is_event));
   }
   state.move(last.dense, last.begin, tau);

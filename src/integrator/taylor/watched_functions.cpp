@@ -1,7 +1,7 @@
 #include "integrator/taylor/watched_functions.hpp"
 
 #include "disks/unread_switches.hpp"
-#include "integrator/taylor/switches_code.hpp"
+#include "integrator/taylor/met_roots_code.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,41 +13,6 @@ namespace {
 std::int8_t sign(double x) { return static_cast<std::int8_t>((x > 0) - (x < 0)); }
 
 constexpr double unresolved = 1e-12;  // of the step
-
-void forget_roots(Crossing& crossing) {
-  crossing.roots.clear(), crossing.directions.clear(), crossing.jumps.clear();
-  crossing.hidden.clear(), crossing.orders.clear();
-}
-
-void forget_root(Crossing& crossing, std::size_t index) {
-  const auto at = std::find(crossing.roots.begin(), crossing.roots.end(), index);
-  if (at == crossing.roots.end()) return;
-  const auto k = at - crossing.roots.begin();
-  crossing.roots.erase(at);
-  crossing.directions.erase(crossing.directions.begin() + k), crossing.jumps.erase(crossing.jumps.begin() + k);
-  crossing.hidden.erase(crossing.hidden.begin() + k), crossing.orders.erase(crossing.orders.begin() + k);
-}
-
-void end_where_lost(double x, Crossing& crossing) {
-  forget_roots(crossing);
-  crossing.found = false;
-  crossing.is_lost = true;
-  crossing.x = x;
-}
-
-/// Roots that rounding does not tell apart are one crossing.
-void note(Crossing& crossing, const RootOf<double>& root, std::size_t index, double together, int direction) {
-  if (crossing.found && root.x > crossing.x * (1 + together) + together) return;
-  if (root.x < crossing.x * (1 - together) - together) forget_roots(crossing);
-  crossing.x = std::min(crossing.x, root.x);
-  crossing.found = true;
-  crossing.is_lost = false;
-  crossing.roots.push_back(index);
-  crossing.directions.push_back(direction);
-  crossing.jumps.push_back(root.kind == RootKind::Jump);
-  crossing.hidden.push_back(root.hidden);
-  crossing.orders.push_back(root.order);
-}
 
 /// Switch functions, then events, as a workspace has them.
 struct ExpansionOfWatched {
@@ -62,39 +27,12 @@ struct ExpansionOfWatched {
   std::size_t stride() const { return work.row_stride(); }
 };
 
-/// An event that has come from `side` to this zero at a switch. One that was 0 all along leaves it there, unmet.
-Watched left_open(std::int8_t side, const RootOf<double>& zero, double h) {
-  const double hidden = zero.order > 2 ? zero.hidden * std::abs(h) : 0;
-  return {side, true, zero.order, side != 0, hidden};
-}
-
-/// What an event function does at a zero that was left open as it came to a switch: 1 or −1 where it goes on to the
-/// other side, or stays at zero; 0 where it goes back. `watched.side`: where it goes, from here on.
-int way_through(const Watched& before, std::int8_t after) { return after == before.side ? 0 : -before.side; }
-
-/// The root that an event function has as the step begins: its direction; nothing where there is none. `watched`
-/// becomes what it is there. A root lies there where its side is not the one that it had as the last step ended, within
-/// rounding, or where its zero was left open.
-std::optional<int> root_at_begin(const KernelWorkspace& work, std::size_t index, double h, Watched& watched) {
-  const Watched before = watched;
-  watched.is_open = false;
-  const double here = work.event(index, 0);
-  watched.at_zero = watched.at_zero || watching::is_zero(here, work.event_scale(index));
-  watched.side = sign(here);
-  if (!watched.at_zero && (before.side == 0 || watched.side != -before.side)) return std::nullopt;
-  const auto polynomial = judged(event_polynomial(work, index, h));
-  if (watched.at_zero) watched.side = polynomial.direction(watched.order);
-  if (before.is_open) return way_through(before, watched.side);
-  constexpr double close = 1e-6;  // beyond, the sign has changed by a jump
-  const bool is_past = before.side != 0 && watched.side == -before.side;
-  if (!is_past || !(std::abs(polynomial.p[0]) <= close * polynomial.reach)) return std::nullopt;
-  return watched.side;
-}
-
 }  // namespace
 
 WatchedFunctions::WatchedFunctions(const Kernel& kernel, const KernelWorkspace& work)
-    : switches(kernel.switches().size()), events(kernel.events()) {
+    : switches(kernel.switches().size()),
+      events(kernel.events()),
+      kinks_(work.program(), kernel.switches().size(), kernel.events()) {
   if (empty()) return;
   std::vector<Slot> slots = work.program().switch_slots;
   slots.insert(slots.end(), work.program().events.begin(), work.program().events.end());
@@ -165,7 +103,7 @@ void WatchedFunctions::search_part(const KernelWorkspace& work, double h, double
     if (from == 0 && !is_switch && !roots_->is_clear(i)) {
       const double hidden = watched.hidden / std::abs(h);
       if (const auto way = root_at_begin(work, i - count, h, watched))
-        note(out, {0.0, RootKind::Crossing, 0, watched.order, hidden}, i, together_, *way);
+        out.note({0.0, RootKind::Crossing, 0, watched.order, hidden}, i, together_, *way);
     }
     // Events at one instant are all told: the search goes on beyond the first root by what a polynomial does not
     // resolve.
@@ -174,10 +112,10 @@ void WatchedFunctions::search_part(const KernelWorkspace& work, double h, double
     const bool touches = !is_switch && tells_touches(i - count);
     if (const auto root = roots_->first(i, watched, from, until, touches, is_switch)) {
       const bool jump = root->kind == RootKind::Jump;
-      note(out, *root, i, together_, root->kind == RootKind::Touching ? 0 : -watched.side);
+      out.note(*root, i, together_, root->kind == RootKind::Touching ? 0 : -watched.side);
       if (jump) watched = {root->after, false};
     } else if (roots_->lost() && *roots_->lost() < out.x) {
-      end_where_lost(*roots_->lost(), out);
+      out.end_where_lost(*roots_->lost());
     }
   }
 }
@@ -196,82 +134,24 @@ void WatchedFunctions::search(const KernelWorkspace& work, double h, double from
     if (out.found || out.is_lost || !(limit < roots_->window())) break;
   }
   last_found_ = out.found ? (out.x - from) * std::abs(h) : 0;
-  stay_at_zeros(out);
-  if (ends_at_switch(out) && !ends_by_event(work.program(), out)) leave_open(work.program(), h, out);
+  kinks_.leave_open(*roots_, events, h, together_, out);
   // A step of no length leaves the others where they were.
   for (std::size_t i = 0; i < count && out.x == 0; ++i) out.after[i].at_zero = switches[i].at_zero;
-  for (std::size_t k = 0; k < out.roots.size(); ++k) {
-    if (out.jumps[k]) continue;  // what lies beyond is known
-    const std::size_t i = out.roots[k];
-    Watched& watched = out.after[i];
-    if (i < count)
+  for (const MetRoot<double>& root : out.roots) {
+    if (root.is_jump) continue;  // what lies beyond is known
+    Watched& watched = out.after[root.index];
+    if (root.index < count)
       watched = {static_cast<std::int8_t>(-watched.side), true};
     else
-      watched = {0, true, out.orders[k]};
+      watched = {0, true, root.order};
   }
   pass(work, h, from, out);
 }
 
-/// Where the step comes to switches, and goes on beyond them: the events that read these have another formula there.
-bool WatchedFunctions::ends_at_switch(const Crossing& crossing) const {
-  if (!crossing.found || !(crossing.x > 0 && crossing.x < 1)) return false;
-  for (std::size_t k = 0; k < crossing.roots.size(); ++k)
-    if (crossing.roots[k] < switches.size() && !crossing.jumps[k]) return true;
-  return false;
-}
-
-bool WatchedFunctions::has_kink(const Program& program, std::size_t event, const Crossing& crossing) {
-  reads_.resize(events.size());
-  if (reads_[event].empty()) reads_[event] = switches_read_by(program, program.events[event]);
-  return std::any_of(crossing.roots.begin(), crossing.roots.end(),
-                     [&](std::size_t i) { return i < switches.size() && reads_[event][i]; });
-}
-
-/// Whether an event ends the step that is none at a kink. What it changes, an impact, decides where the motion goes
-/// from there: nothing is left open for the next step.
-bool WatchedFunctions::ends_by_event(const Program& program, const Crossing& crossing) {
-  const std::size_t count = switches.size();
-  return std::any_of(crossing.roots.begin(), crossing.roots.end(), [&](std::size_t i) {
-    return i >= count && !(tells_touches(i - count) && has_kink(program, i - count, crossing));
-  });
-}
-
-/// Events that end the step and come to zero where a switch changes, as |x| at x = 0: their formulas are others beyond
-/// it, and tell what they do there. A zero that the step begins at, and that rounding does not tell from the switch,
-/// was met: the next step begins at it as well.
-void WatchedFunctions::leave_open(const Program& program, double h, Crossing& out) {
-  const std::size_t count = switches.size();
-  const std::vector<bool> vanishes = roots_->vanishing_at(out.x);
-  for (std::size_t event = 0; event < events.size(); ++event) {
-    const std::size_t i = count + event;
-    if (!ends_step(event) || !tells_touches(event) || stays_at_zero(event, out)) continue;
-    const bool is_told = std::find(out.roots.begin(), out.roots.end(), i) != out.roots.end();
-    if (is_told ? !has_kink(program, event, out) : !vanishes[i]) continue;
-    const RootOf<double> zero = roots_->zero_at(i, out.x);
-    const bool was_met = events[event].at_zero && !events[event].is_open && zero.hidden >= out.x;
-    out.after[i] = was_met ? Watched{0, true, zero.order} : left_open(out.after[i].side, zero, h);
-    forget_root(out, i);
-  }
-}
-
-/// Whether the step begins at a zero of the event, and comes to a switch before rounding tells it from there: what was
-/// met at that zero is not met again, and the next step begins at it as well.
-bool WatchedFunctions::stays_at_zero(std::size_t event, const Crossing& crossing) const {
-  return ends_at_switch(crossing) && crossing.x <= together_ && events[event].at_zero && !events[event].is_open;
-}
-
-void WatchedFunctions::stay_at_zeros(Crossing& out) const {
-  for (std::size_t event = 0; event < events.size(); ++event) {
-    if (!stays_at_zero(event, out)) continue;
-    forget_root(out, switches.size() + event);
-    out.after[switches.size() + event] = {0, true, events[event].order};
-  }
-}
-
 /// A switch alone that nothing of the motion reads, within the step.
 bool WatchedFunctions::is_unread(const Crossing& crossing) const {
-  return crossing.roots.size() == 1 && crossing.roots[0] < switches.size() && is_unread_[crossing.roots[0]] &&
-         !crossing.jumps[0] && crossing.x > 0 && crossing.x < 1;
+  return crossing.roots.size() == 1 && crossing.roots[0].index < switches.size() &&
+         is_unread_[crossing.roots[0].index] && !crossing.roots[0].is_jump && crossing.x > 0 && crossing.x < 1;
 }
 
 /// Where a step comes to a switch that only what is watched depends on, the motion goes on as it is: the other side is
@@ -284,11 +164,11 @@ bool WatchedFunctions::turns_unread(const KernelWorkspace& work, double h, Cross
   sides_.clear();
   for (std::size_t i = 0; i < switches.size(); ++i) sides_.push_back(out.after[i].side);
   roots_->go_on(out.x, sides_);
-  if (!roots_->keeps_sides(out.after, out.roots[0])) return false;
+  if (!roots_->keeps_sides(out.after, out.roots[0].index)) return false;
   const double from = out.x;
-  out.turned.push_back(out.roots[0]);
+  out.turned.push_back(out.roots[0].index);
   out.found = false;
-  forget_roots(out);
+  out.roots.clear();
   search(work, h, from, out);
   return true;
 }
@@ -297,14 +177,14 @@ bool WatchedFunctions::turns_unread(const KernelWorkspace& work, double h, Cross
 /// which nothing else ends the step, is left open.
 void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin, Crossing& out) {
   const std::size_t count = switches.size();
-  const bool may_go_on = is_unread(out), at_switch = ends_at_switch(out);
-  const bool leaves_open = at_switch && !ends_by_event(work.program(), out);
+  const bool may_go_on = is_unread(out), at_switch = kinks_.ends_at_switch(out);
+  const bool leaves_open = at_switch && !kinks_.ends_by_event(out);
   // Those of its last instant are told with what ends it there.
   const double last = out.x * (1 + together_) + std::max(together_, unresolved);
   const double until = std::min(roots_->window(), out.found && !may_go_on ? last : out.x);
   std::vector<bool> vanishes;  // as the step ends
   for (std::size_t event = 0; event < events.size(); ++event) {
-    if (ends_step(event) || stays_at_zero(event, out)) continue;
+    if (ends_step(event) || kinks_.stays_at_zero(events[event], out, together_)) continue;
     const std::size_t i = count + event;
     Watched& watched = out.after[i];
     bool is_told_at_end = false;
@@ -313,8 +193,7 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin,
       is_told_at_end = x + hidden >= out.x * (1 - together_) - together_;
     };
     const auto is_left_open = [&](const RootOf<double>& root) {
-      return leaves_open && root.x + root.hidden >= out.x * (1 - together_) - together_ &&
-             has_kink(work.program(), event, out);
+      return leaves_open && root.x + root.hidden >= out.x * (1 - together_) - together_ && kinks_.has_kink(event, out);
     };
     if (begin == 0 && !roots_->is_clear(i)) {
       const double hidden = watched.hidden / std::abs(h);
@@ -323,7 +202,7 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin,
     }
     for (double from = begin; from < until;) {
       const auto root = roots_->first(i, watched, from, until, tells_touches(event), false);
-      if (roots_->lost()) return end_where_lost(0, out);
+      if (roots_->lost()) return out.end_where_lost(0);
       if (!root) break;
       if (is_left_open(*root)) {
         watched = left_open(watched.side, *root, h);
@@ -377,15 +256,15 @@ void WatchedFunctions::leave(const Crossing& crossing, double length, Step& resu
   for (const PassedRoot& root : crossing.passed)
     result.events.push_back(
         {root.event, root.direction, result.begin + root.x * length, root.hidden * std::abs(length), root.order});
-  for (std::size_t k = 0; k < crossing.roots.size(); ++k) {
-    const std::size_t i = crossing.roots[k];
-    if (i < count) {
-      result.switches.push_back(i);
+  for (const MetRoot<double>& root : crossing.roots) {
+    if (root.index < count) {
+      result.switches.push_back(root.index);
       continue;
     }
-    if (!result.event) result.event = i - count;
-    const double hidden = crossing.hidden[k] * std::abs(length);
-    result.events.push_back({i - count, crossing.directions[k], result.end, hidden, crossing.orders[k]});
+    const std::size_t event = root.index - count;
+    if (!result.event) result.event = event;
+    const double hidden = root.hidden * std::abs(length);
+    result.events.push_back({event, root.direction, result.end, hidden, root.order});
     result.hidden = std::max(result.hidden, hidden);
   }
 }

@@ -1,6 +1,6 @@
 #pragma once
+#include "integrator/taylor/met_roots.hpp"
 #include "integrator/taylor/motion_state.hpp"
-#include "integrator/taylor/roots.hpp"
 #include "integrator/taylor/switches.hpp"
 
 #include <maupertuis/integrator.hpp>
@@ -19,19 +19,10 @@ struct PassedRoot {
   std::uint8_t order = 1;
 };
 
-/// Where a step ends at a switch or an event.
-struct Crossing {
-  double x = 1;  // fraction of the step; less than 1 without a root where the step is too long to be searched
-  bool found = false;
-  bool is_lost = false;              // from x on nothing is known of the roots of a function, and x is no root
-  std::vector<std::size_t> roots;    // switches, then events
-  std::vector<int> directions;       // [roots] 1: rising, −1: falling, 0: touching
-  std::vector<bool> jumps;           // [roots] a switch function jumps there: it has no zero
-  std::vector<double> hidden;        // [roots] of the step: by how much rounding may have moved it
-  std::vector<std::uint8_t> orders;  // [roots]
-  std::vector<Watched> after;        // the same, as the step leaves them
-  std::vector<PassedRoot> passed;    // in time order
-  std::vector<std::size_t> turned;   // switches before it that only what is watched depends on
+/// Where a step ends, and what it passes on the way.
+struct Crossing : MetRoots<double> {
+  std::vector<PassedRoot> passed;   // in time order
+  std::vector<std::size_t> turned;  // switches before it that only what is watched depends on
 };
 
 /// The switch functions and events of a motion: on which sides they are, and where along a step they first leave them.
@@ -51,9 +42,7 @@ class WatchedFunctions {
   /// functions do.
   void choose_first_sides(KernelWorkspace& work, const MotionState& state);
   /// How each event is treated, see TaylorStepper::EventTreatment.
-  void treat(std::span<const TaylorStepper::EventTreatment> treatments) {
-    treatments_.assign(treatments.begin(), treatments.end());
-  }
+  void treat(std::span<const TaylorStepper::EventTreatment> treatments) { kinks_.treat(treatments); }
   /// The first roots of the step of length h that the workspace holds. Switches may change at jumps too, events not.
   Crossing first_crossing(const KernelWorkspace& work, const Compensated& t, double h);
   /// An event that begins at a zero of this order: its side is the one that the motion goes to.
@@ -68,8 +57,8 @@ class WatchedFunctions {
   /// The sides that a step leaves behind; how many switches changed, and which events were met, go to the result.
   /// length: of the step before it was shortened.
   void leave(const Crossing& crossing, double length, Step& result);
-  bool ends_step(std::size_t event) const { return treatments_.empty() || treatments_[event].ends_step; }
-  bool tells_touches(std::size_t event) const { return treatments_.empty() || treatments_[event].touches; }
+  bool ends_step(std::size_t event) const { return kinks_.ends_step(event); }
+  bool tells_touches(std::size_t event) const { return kinks_.tells_touches(event); }
 
   std::vector<Watched> switches, events;
 
@@ -78,23 +67,16 @@ class WatchedFunctions {
   void search_part(const KernelWorkspace& work, double h, double from, double limit, Crossing& out);
   void search(const KernelWorkspace& work, double h, double from, Crossing& out);
   void pass(const KernelWorkspace& work, double h, double begin, Crossing& out);
-  void leave_open(const Program& program, double h, Crossing& out);
-  bool ends_at_switch(const Crossing& crossing) const;
-  bool stays_at_zero(std::size_t event, const Crossing& crossing) const;
-  void stay_at_zeros(Crossing& out) const;
-  bool ends_by_event(const Program& program, const Crossing& crossing);
-  bool has_kink(const Program& program, std::size_t event, const Crossing& crossing);
   bool is_unread(const Crossing& crossing) const;
   bool turns_unread(const KernelWorkspace& work, double h, Crossing& out);
 
+  Kinks<double> kinks_;
   std::optional<RootSearch> roots_;         // where something is watched
   std::vector<bool> is_unread_;             // [switches] nothing of the motion depends on the side
-  std::vector<std::vector<bool>> reads_;    // [events][switches] that its formula depends on; empty: not asked for yet
   bool follow_places_ = false;              // no switch reads velocities
   double last_found_ = 0;                   // how far the last root was searched for, in time; 0: to the end
   double together_ = 0;                     // of the step: what rounding does not tell apart
   mutable std::vector<std::int8_t> sides_;  // scratch
-  std::vector<TaylorStepper::EventTreatment> treatments_;  // [events], or none: all end the step
 };
 
 }  // namespace maupertuis::taylor

@@ -83,6 +83,28 @@ TEST_CASE("events of an oscillator are told at π/6 + 2 π k, one stops the run"
   check_digits(stopped.final.t, pi / 2, 90);
 }
 
+TEST_CASE("events at kinks of their formulas are met once each") {
+  const Decimal pi = 4 * atan(Decimal(1));
+  const auto check = [&](const std::string& condition, const std::vector<Decimal>& expected) {
+    ExtendedSimulationOptions options;  // 113 bits
+    options.duration = 10;
+    const ExtendedResult r =
+        run(ModelText("dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) - 1/2 (x^2 + y^2)\n"
+                      "start x = 1, y' = 1\nevent e when " +
+                      condition + " : record\n"),
+            options);
+    CAPTURE(condition);
+    REQUIRE(r.happenings.size() == expected.size());
+    for (std::size_t k = 0; k < expected.size(); ++k) check_digits(r.happenings[k].t, expected[k], 15);
+  };
+  const std::vector<Decimal> zeros = {pi / 2, 3 * pi / 2, 5 * pi / 2};
+  for (const char* kink : {"abs(x) = 0", "x*abs(x) = 0", "abs(x) + x^2 = 0", "min(x, 2 x) = 0", "sqrt(abs(x)) = 0"})
+    check(kink, zeros);
+  check("x*abs(x) = 0 falling", {zeros[0], zeros[2]});
+  check("max(x, y) = 0.5", {5 * pi / 6, 5 * pi / 3, 17 * pi / 6});
+  check("abs(x) = x", {zeros[1]});
+}
+
 TEST_CASE("sixty reflections in a stadium: a hundred digits agree with all that quad claims, and lie on the wall") {
   const std::string text =
       "dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n"
