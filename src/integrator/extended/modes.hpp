@@ -21,7 +21,7 @@ class Modes {
   using What = ExtendedWatch::What;
   struct Zero {
     std::size_t event;
-    std::uint8_t order;  // 2 where the function comes to 0 and goes back
+    std::uint8_t order;  // of the root
   };
   /// What a step has met.
   struct Met {

@@ -290,8 +290,10 @@ bool Modes<T>::returns_are_seen(const Met& met) {
   for (std::size_t k = 0; k < watches().size(); ++k) {
     const ExtendedWatch& w = watches()[k];
     const auto at = std::find(met.sets.begin(), met.sets.end(), w.index);
-    if (w.what != What::Event || at == met.sets.end() || !zero_that_stays(met, w.index)) continue;
+    const Zero* const zero = zero_that_stays(met, w.index);
+    if (w.what != What::Event || at == met.sets.end() || !zero) continue;
     const int way = met.ways[static_cast<std::size_t>(at - met.sets.begin())];
+    if (way != 0 && zero->order % 2 == 0) continue;  // at a switch: see is_at_switch of simulation
     if (outlook.slopes[k] * way < 0 && outlook.sides[k] != -way * forwards)
       return stop(StepEnding::Unending, std::nullopt,
                   "An event follows itself faster and faster: its returns accumulate here, and have become too short "

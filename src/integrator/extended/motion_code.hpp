@@ -123,7 +123,7 @@ class Motion {
     if (modes_.stays_at_zero(watch, root)) return;
     const std::size_t index = watch.index;
     const ExtendedEvent& event = problem_.events[index];
-    met.zeros.push_back({index, static_cast<std::uint8_t>(direction == 0 ? 2 : 1)});
+    met.zeros.push_back({index, root.order});
     if (event.direction != 0 && direction != event.direction) return;
     modes_.add({ExtendedRoot::Kind::Event, index, stepper().sample(stepper().time()), {}, {}}, stepper().time());
     out_.met = out_.met || event.action == ExtendedEvent::Action::Stop;

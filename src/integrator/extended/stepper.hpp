@@ -30,6 +30,7 @@ class Stepper {
   struct Root {
     std::size_t event;
     int direction;
+    std::uint8_t order;  // of the zero, as far as rounding tells it
   };
   struct Outcome {
     StepEnding ending = StepEnding::None;

@@ -222,7 +222,8 @@ typename Stepper<T>::Crossing Stepper<T>::first_crossing(const T& h) {
     first.note(*root, i, together, root->kind == taylor::RootKind::Touching ? 0 : -watched.side);
     if (jump) watched = {root->after, false};
   }
-  kinks_.leave_open(*roots_, event_state_, h, together, first);
+  const T located = std::max(together, epsilon_to<T>(0.77));  // roots are, within the tolerance of the run
+  kinks_.leave_open(*roots_, event_state_, h, located, first);
   // A step of no length leaves the others where they were.
   for (std::size_t i = 0; i < count && first.x == 0; ++i) first.after[i].at_zero = switch_state_[i].at_zero;
   for (const taylor::MetRoot<T>& root : first.roots) {
@@ -263,7 +264,8 @@ std::optional<typename Stepper<T>::Outcome> Stepper<T>::advance(const T& bound, 
   ++steps_;
   Outcome out;
   for (const taylor::MetRoot<T>& root : crossing.roots)
-    if (root.index >= switch_state_.size()) out.events.push_back({root.index - switch_state_.size(), root.direction});
+    if (root.index >= switch_state_.size())
+      out.events.push_back({root.index - switch_state_.size(), root.direction, root.order});
   return out;
 }
 

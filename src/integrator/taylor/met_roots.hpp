@@ -67,7 +67,7 @@ class Kinks {
   /// Whether the step begins at a zero of an event, and comes to a switch before rounding tells it from there: what was
   /// met at that zero is not met again, and the next step begins at it as well.
   bool stays_at_zero(const Watched& event, const MetRoots<T>& met, const T& together) const {
-    return ends_at_switch(met) && met.x <= together && event.at_zero && !event.is_open;
+    return comes_to_switch(met) && met.x <= together && event.at_zero && !event.is_open;
   }
   /// What happens at the switch that ends a step of length h is taken out of `met` and left open where the next step
   /// has to tell it. before: the events as the step began.
@@ -75,6 +75,7 @@ class Kinks {
                   MetRoots<T>& met);
 
  private:
+  bool comes_to_switch(const MetRoots<T>& met) const;
   void stay_at_zeros(std::span<const Watched> before, const T& together, MetRoots<T>& met) const;
 
   const Program* program_;

@@ -38,7 +38,11 @@ bool MetRoots<T>::holds(std::size_t index) const {
 
 template <class T>
 bool Kinks<T>::ends_at_switch(const MetRoots<T>& met) const {
-  if (!met.found || !(met.x > 0 && met.x < 1)) return false;
+  return met.x > 0 && met.x < 1 && comes_to_switch(met);
+}
+
+template <class T>
+bool Kinks<T>::comes_to_switch(const MetRoots<T>& met) const {
   return std::any_of(met.roots.begin(), met.roots.end(),
                      [&](const MetRoot<T>& root) { return root.index < switches_ && !root.is_jump; });
 }

@@ -158,6 +158,28 @@ TEST_CASE("an event that sets the speed to a third at each fall through 0") {
   check_digits(r.final.q[0], sin(Decimal(7) - 3 * pi / 2) / 9, 95);
 }
 
+TEST_CASE("sets at zeros of every kind happen once at each, at kinks too") {
+  const auto count = [](const std::string& condition, const std::string& set) {
+    ExtendedSimulationOptions options;  // 113 bits
+    options.duration = 5;
+    CAPTURE(condition);
+    CAPTURE(set);
+    const ExtendedResult r =
+        run(ModelText("dimensionless\ncoord x, y : number\nT = 1/2 x'^2 + 1/2 y'^2\nV = 9/2 x^2 + 1/2 y^2\n"
+                      "start x = 0.0709, x' = 0.4342, y' = 0.3\nevent e when " +
+                      condition + " : set " + set + "\n"),
+            options);
+    CHECK(r.ok());
+    return r.happenings.size();
+  };
+  for (const char* set : {"x' = -x'", "x' = 1.01 x'", "y' = 0.9 y'"}) {
+    // x = r cos(3 t − φ): zeros π/3 apart, whether it goes on or is thrown back.
+    for (const char* zero : {"abs(x) = 0", "x*abs(x) = 0", "abs(sin(3 x)) = 0", "x^3 = 0", "x^2 = 0"})
+      CHECK(count(zero, set) == 4);
+    CHECK(count("abs(sin(3 t)) = 0", set) == 5);  // with t = 0
+  }
+}
+
 TEST_CASE("what an event sets is refused where it breaks a constraint") {
   ExtendedSimulationOptions options;
   options.duration = 2;

@@ -471,6 +471,8 @@ TEST_CASE("sets at events that touch zero, beside one another") {
       "event c when abs(x) = 0 : record\nevent d when max(x, -5) = 0 : set x' = x'\n",
       10.2 * half_turn);
   CHECK(both == std::map<std::string, int>{{"a", 10}, {"b", 10}, {"c", 10}, {"d", 10}});
+  // A kink in time, which the motion does not turn back from; the start is told.
+  CHECK(counts("event e when abs(sin(3 t)) = 0 : set x' = -x'\n", 5.5 * half_turn).at("e") == 17);
 }
 
 TEST_CASE("roots of even order are met once each") {
