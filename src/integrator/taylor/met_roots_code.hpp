@@ -83,7 +83,7 @@ void Kinks<T>::leave_open(RootSearchOf<T>& search, std::span<const Watched> befo
   for (std::size_t event = 0; event < before.size(); ++event) {
     const std::size_t i = switches_ + event;
     if (!ends_step(event) || !tells_touches(event) || stays_at_zero(before[event], met, together)) continue;
-    if (met.holds(i) ? !has_kink(event, met) : !vanishes[i]) continue;
+    if (!met.holds(i) && !vanishes[i]) continue;
     const RootOf<T> zero = search.zero_at(i, met.x);
     const bool was_met = before[event].at_zero && !before[event].is_open && zero.hidden >= met.x;
     met.after[i] = was_met ? Watched{0, true, zero.order} : left_open(met.after[i].side, zero, h);

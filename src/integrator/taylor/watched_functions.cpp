@@ -173,7 +173,7 @@ bool WatchedFunctions::turns_unread(const KernelWorkspace& work, double h, Cross
   return true;
 }
 
-/// Roots of events that do not end the step, up to its end: each search goes on from the root before. One at a kink, at
+/// Roots of events that do not end the step, up to its end: each search goes on from the root before. One at a switch, at
 /// which nothing else ends the step, is left open.
 void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin, Crossing& out) {
   const std::size_t count = switches.size();
@@ -193,7 +193,7 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin,
       is_told_at_end = x + hidden >= out.x * (1 - together_) - together_;
     };
     const auto is_left_open = [&](const RootOf<double>& root) {
-      return leaves_open && root.x + root.hidden >= out.x * (1 - together_) - together_ && kinks_.has_kink(event, out);
+      return leaves_open && root.x + root.hidden >= out.x * (1 - together_) - together_;
     };
     if (begin == 0 && !roots_->is_clear(i)) {
       const double hidden = watched.hidden / std::abs(h);

@@ -459,6 +459,31 @@ TEST_CASE("an event whose formula has a root, without a series where it vanishes
                                      7 * half_turn / 3, 8 * half_turn / 3});
 }
 
+TEST_CASE("an event at the place where forces switch is met once at each passage") {
+  const auto check = [&](const std::string& system, const std::string& condition, const std::vector<double>& expected,
+                         double end) {
+    CAPTURE(system);
+    const auto found = [&] {
+      const auto r =
+          run_text("dimensionless\ncoord x : number\n" + system + "event e when " + condition + " : record\n", end);
+      std::vector<double> out;
+      for (const Happening& h : r.happenings) out.push_back(h.t);
+      return out;
+    }();
+    REQUIRE(found.size() == expected.size());
+    for (std::size_t k = 0; k < found.size(); ++k) CHECK(std::abs(found[k] - expected[k]) < 1e-13);
+  };
+  const double fall = std::sqrt(2.0), quarter = half_turn / 2;
+  check("L = 1/2 x'^2 - abs(x)\nstart x = 1\n", "x = 0", {fall, 3 * fall, 5 * fall, 7 * fall}, 10);
+  check("L = 1/2 x'^2 - abs(x)\nstart x = 1\n", "x = 0 falling", {fall, 5 * fall}, 10);
+  // A spring four times as stiff on one side.
+  check("L = 1/2 x'^2 - 1/2 x^2 - 3/2 max(x, 0)^2\nstart x = 1\n", "x = 0",
+        {quarter / 2, 2.5 * quarter, 3.5 * quarter, 5.5 * quarter}, 10);
+  // x' changes its sign, and with it the damper's force.
+  check("L = 1/2 x'^2 - 1/2 x^2\nforce x = -1/10 sign(x')\nstart x = 1\n", "x' = 0",
+        {0, half_turn, 2 * half_turn, 3 * half_turn}, 10);
+}
+
 TEST_CASE("sets at events that touch zero, beside one another") {
   const auto counts = [](const std::string& events, double end) {
     const auto r = run_text("dimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\nstart x = 1\n" + events, end);
