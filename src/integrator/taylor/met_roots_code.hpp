@@ -98,6 +98,23 @@ Watched left_open(std::int8_t side, const RootOf<T>& zero, const T& h) {
   return {side, true, zero.order, side != 0, hidden};
 }
 
+template <class T>
+LeavesZero leaves_zero(const ScaledPolynomialOf<T>& polynomial, std::uint8_t order) {
+  using std::abs, std::pow;
+  const T epsilon = std::numeric_limits<T>::epsilon();
+  for (T x = std::max(T(pow(epsilon, T(0.77))), T(4 * pow(epsilon, T(1) / order))); x < 1; x *= 2) {
+    T sum = T(0), largest = T(0), power = x;
+    LeavesZero out{0, 0};
+    for (std::size_t k = 1; k < polynomial.p.size(); ++k, power *= x) {
+      const T term = polynomial.p[k] * power;
+      sum += term;
+      if (abs(term) > largest) largest = abs(term), out = {watching::sign(term), static_cast<std::uint8_t>(k)};
+    }
+    if (abs(sum) > watching::unit<T>() * polynomial.scale && watching::sign(sum) == out.side) return out;
+  }
+  return {polynomial.direction(order), order};
+}
+
 template <class Work, class T>
 std::optional<int> root_at_begin(const Work& work, std::size_t event, const std::type_identity_t<T>& h,
                                  Watched& watched) {
@@ -108,8 +125,13 @@ std::optional<int> root_at_begin(const Work& work, std::size_t event, const std:
   watched.at_zero = watched.at_zero || watching::is_zero(here, T(work.event_scale(event)));
   watched.side = watching::sign(here);
   if (!watched.at_zero && (before.side == 0 || watched.side != -before.side)) return std::nullopt;
-  const ScaledPolynomialOf<T> polynomial = judged(event_polynomial(work, event, h));
-  if (watched.at_zero) watched.side = polynomial.direction(watched.order);
+  const ScaledPolynomialOf<T> whole = event_polynomial(work, event, h), polynomial = judged(whole);
+  if (watched.at_zero && (before.is_open || watched.order > 1)) {
+    const LeavesZero leaves = leaves_zero(whole, watched.order);
+    watched.side = leaves.side, watched.order = leaves.order;
+  } else if (watched.at_zero) {
+    watched.side = polynomial.direction(watched.order);
+  }
   // What comes from one side to a zero that was left open goes back to it, or on to the other, or stays at zero.
   if (before.is_open) return watched.side == before.side ? 0 : -before.side;
   constexpr double close = 1e-6;  // beyond, the sign has changed by a jump
