@@ -264,9 +264,9 @@ constexpr std::array entries{
               "logarithm of what is negative, it is never met. It is looked at where steps begin and where the run "
               "ends.",
               "# maup simulate\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\n"
-              "event turns when sqrt(x - 2) = 0 : record\nstart x = 1\nrun 10\n",
+              "event turns when sqrt(x - 2) = 0.1 : record\nstart x = 1\nrun 10\n",
               "# maup simulate\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\n"
-              "event turns when x - 2 = 0 : record\nstart x = 1\nrun 10\n"},
+              "event turns when x = 2.01 : record\nstart x = 1\nrun 10\n"},
 };
 
 }  // namespace

@@ -190,6 +190,7 @@ class RootSearchOf {
   std::int8_t told_side(std::size_t index, const T& x);
   bool is_flat_zero(std::size_t index, const ScaledPolynomialOf<T>& polynomial, const T& x);
   T sign_change(std::size_t index, T low, T high);
+  void add_rounding_within(std::size_t index, const T& x, ScaledPolynomialOf<T>& polynomial);
   bool stays_clear_of_zero(std::size_t index, std::int8_t side, const T& x);
   struct Lowest {
     T x;

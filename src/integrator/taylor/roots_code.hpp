@@ -544,6 +544,14 @@ bool RootSearchOf<T>::is_flat_zero(std::size_t index, const ScaledPolynomialOf<T
   return abs(polynomial.p[0]) <= 4 * rounding_of_formula(index);
 }
 
+/// Rounding of the values within a formula, as of 3 + x in log(3 + x), whose own terms are small where it vanishes.
+template <class T>
+void RootSearchOf<T>::add_rounding_within(std::size_t index, const T& x, ScaledPolynomialOf<T>& polynomial) {
+  value(index, x);
+  const T floor = rounding_of_formula(index) / watching::unit<T>();
+  polynomial.scale += floor, polynomial.reach += floor;
+}
+
 /// Whether its first term outweighs all others, with their rounding.
 template <class T>
 bool stays_clear(const ScaledPolynomialOf<T>& polynomial, std::int8_t side) {
@@ -589,11 +597,7 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watc
       x += now.width;
       continue;
     }
-    if (turns > 0) {  // its terms are small: rounding within them is not
-      value(index, x);
-      const T floor = rounding_of_formula(index) / watching::unit<T>();
-      now.polynomial.scale += floor, now.polynomial.reach += floor;
-    }
+    add_rounding_within(index, x, now.polynomial);
     const auto root = crossing(now.polynomial, watched);
     const auto closer = turns < most_nearer ? nearer(index, now, x, watched, root) : std::nullopt;
     if (watched.at_zero) touches::take_out_zero(now.polynomial, watched.order);

@@ -484,6 +484,25 @@ TEST_CASE("an event at the place where forces switch is met once at each passage
         {0, half_turn, 2 * half_turn, 3 * half_turn}, 10);
 }
 
+TEST_CASE("a double root within a function whose argument rounds is met once, at its place") {
+  // x + 1 touches 0 at half a turn.
+  for (const char* touch : {"log(2 + x) = 0", "tan(x + 1) = 0", "tanh(x + 1) = 0", "sinh(x + 1) = 0", "exp(x + 1) = 1",
+                            "erf(x + 1) = 0", "lambert_w(x + 1) = 0"})
+    check_instants(touch, {half_turn, 3 * half_turn}, 1e-9);
+}
+
+TEST_CASE("an event whose formula changes at its own zero goes on by the formula beyond") {
+  const auto angle = [](double x) { return std::acos(x); };  // x = cos t
+  const double c = angle(-0.3);
+  // A double zero on one side, a simple one on the other.
+  check_instants("piecewise(x < -0.3 : (x + 0.3)^2, else : x*(x + 0.3)) = 0",
+                 {half_turn / 2, c, 2 * half_turn - c, 1.5 * half_turn, 2.5 * half_turn, 2 * half_turn + c});
+  check_instants("piecewise(x < -0.3 : (x + 0.3)^2, else : x + 0.3) = 0",
+                 {c, 2 * half_turn - c, 2 * half_turn + c});
+  check_instants("max(x + 0.3, -(x + 0.3)^2) = 0", {c, 2 * half_turn - c, 2 * half_turn + c});
+  check_instants("piecewise(x < -0.3 : sin(x + 0.3), else : (x + 0.3)^3) = 0", {c, 2 * half_turn - c, 2 * half_turn + c});
+}
+
 TEST_CASE("sets at events that touch zero, beside one another") {
   const auto counts = [](const std::string& events, double end) {
     const auto r = run_text("dimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\nstart x = 1\n" + events, end);
