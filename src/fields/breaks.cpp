@@ -4,6 +4,8 @@
 #include <maupertuis/function_kernel.hpp>
 #include <maupertuis/kinds.hpp>
 
+#include "fields/resting_fields.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -193,7 +195,8 @@ void warn(const FieldBreak& b, const FieldEquations& equations, Diagnostics& dia
 
 bool warn_of_breaks(const FieldEquations& equations, const std::vector<int>& cells, Diagnostics& diagnostics) {
   Search search(equations, cells);
-  for (std::size_t i = 0; i < equations.model->start.size(); ++i) search.look_at_start(i);
+  for (std::size_t i = 0; i < equations.model->start.size(); ++i)
+    if (moves(equations, equations.model->start[i].field)) search.look_at_start(i);
   for (const FieldBreak& b : search.out) warn(b, equations, diagnostics);
   return !search.out.empty();
 }

@@ -8,7 +8,8 @@ namespace maupertuis {
 /// cell, whatever the order: whether there is one. (A density that jumps has elements with borders there.)
 ///
 /// Starts with abs, min, max, piecewise or broken powers are sampled along lines, and differences that stay as pieces
-/// are halved are breaks. At most one for each line of the start.
+/// are halved are breaks. At most one for each line of the start. In fields without inertia no waves run: nothing is
+/// told of theirs.
 bool warn_of_breaks(const FieldEquations& equations, const std::vector<int>& cells, Diagnostics& diagnostics);
 
 }  // namespace maupertuis

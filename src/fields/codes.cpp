@@ -178,6 +178,16 @@ constexpr CodeEntry kEntries[] = {
      "# maup derive\nfield u(x) : length on x = 0 m .. 1 m\nparam T0 = 1 N\ndensity = -1/2 T0 u_x^2\n",
      "# maup derive\nfield u(x) : length on x = 0 m .. 1 m\nparam ρ = 1 kg/m, T0 = 1 N\n"
      "density = 1/2 ρ u'^2 - 1/2 T0 u_x^2\n"},
+    {"N0662", "a start of a field without inertia that is not followed",
+     "A string or a beam without mass is at rest at every moment: between the masses that it carries its shape follows "
+     "from their places. A mass starts where the start of the field has its place; what the start says between them "
+     "is another shape than that of the rest, and does not count.",
+     "# maup simulate\nfield u(x) : length on x = 0 m .. 2 m cells 4 order 4 boundary u = 0\n"
+     "param T0 = 1 N, m = 1 kg, a = 1 m, A = 1 mm\ndensity = -1/2 T0 u_x^2\nT = 1/2 m u(a)'^2\n"
+     "start u = A x (2 a - x)/a^2\nrun 1 s\n",
+     "# maup simulate\nfield u(x) : length on x = 0 m .. 2 m cells 4 order 4 boundary u = 0\n"
+     "param T0 = 1 N, m = 1 kg, a = 1 m, A = 1 mm\ndensity = -1/2 T0 u_x^2\nT = 1/2 m u(a)'^2\n"
+     "start u = A min(x, 2 a - x)/a\nrun 1 s\n"},
 };
 
 }  // namespace

@@ -229,6 +229,7 @@ std::optional<FieldRunResult> run_coupled(const Model& model, const FieldEquatio
   look_at_breaks(problem, *mesh, diagnostics);
   const auto fine = run_once(*mesh, questions, problem.width, options, diagnostics);
   if (!fine) return std::nullopt;
+  tell_moved_starts(mesh->moved_starts(fine->result.start), equations, diagnostics);
   FieldRunResult out = result_of(*fine, *mesh, problem);
   const std::vector<double> errors = coupled_errors(*fine, *mesh, problem, out.happenings, out.trouble.empty());
   for (std::size_t i = 0; i < questions.size(); ++i) out.answers.push_back({fine->answers[i], errors[i]});

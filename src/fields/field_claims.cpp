@@ -85,6 +85,12 @@ class FieldVerifier {
   void decide(const Kind&, ExpectationResult& result) {
     result.message = "Not supported yet for fields.";
   }
+  void decide(const expectation::Frequencies& e, ExpectationResult& result) {
+    result.message =
+        fmt::format("Frequencies of a model with fields are those of a field: write `expect frequencies of {} : …`{}.",
+                    s_.fields[equations_.varied.front()].name,
+                    e.squared ? ", the frequencies themselves and not their squares" : "");
+  }
   void decide(const expectation::Error& e, ExpectationResult& result) {
     result.expected = "error " + e.code;
     result.actual = "no error";

@@ -89,6 +89,13 @@ std::string jet_name(const FieldMotion::StartClash& c, const FieldEquations& equ
   return equations.system().jet_name({equations.varied[c.field], std::move(space), c.time});
 }
 
+/// Where the start of a field, or of its rates, is written; else the density.
+Span span_of_start(const FieldEquations& equations, std::size_t varied, int order) {
+  for (const FieldStart& start : equations.model->start)
+    if (start.field == equations.varied[varied] && start.order == order) return start.span;
+  return equations.system().density_span;
+}
+
 /// Two numbers that differ, also where they do so in late digits.
 std::string both_numbers(double value, double other) {
   const std::string one = fmt::format("{:.6g}", value), two = fmt::format("{:.6g}", other);
@@ -103,13 +110,27 @@ void warn_of_clashes(const std::vector<FieldMotion::StartClash>& clashes, const 
   for (const FieldMotion::StartClash& c : clashes) {
     const std::string name = jet_name(c, equations);
     diagnostics.warning(
-        "W0646", equations.model->start.empty() ? s.density_span : equations.model->start.front().span,
+        "W0646", span_of_start(equations, c.field, c.time),
         fmt::format("the start does not fit the condition at the {}: {} = {} (SI units)", side_name(c.side, s), name,
                     both_numbers(c.start, c.condition)),
         fmt::format("The condition is followed, so that a jump of {} runs into the field, which no mesh "
                     "resolves.",
                     name),
         fmt::format("Give a start whose {} is that of the condition there.", name));
+  }
+}
+
+void tell_moved_starts(const std::vector<SemiDiscrete::MovedStart>& moved, const FieldEquations& equations,
+                       Diagnostics& diagnostics) {
+  const FieldSystem& s = equations.system();
+  for (const SemiDiscrete::MovedStart& m : moved) {
+    const std::string &field = s.fields[equations.varied[m.varied]].name, &x = s.space.front().name;
+    diagnostics.note(
+        "N0662", span_of_start(equations, m.varied, m.order),
+        fmt::format("{}, which has no inertia, does not begin as written: {}{} = {} at {} = {:.6g} (SI units)", field,
+                    field, m.order == 1 ? "'" : "", both_numbers(m.found, m.written), x, m.x),
+        "It is at rest at every moment, in the shape that the places of the masses give it; these start as written.",
+        "Give the masses their start by it; what it says between them does not count.");
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include "fields/field_method.hpp"
+#include "fields/semi_discrete.hpp"
 
 #include <maupertuis/field_run.hpp>
 
@@ -22,6 +23,9 @@ void announce_memory(const FieldRunOptions& options, double bytes);
 /// W0646: the end of the mesh is put to its condition, and what the start says beside it runs in as a wave.
 void warn_of_clashes(const std::vector<FieldMotion::StartClash>& clashes, const FieldEquations& equations,
                      Diagnostics& diagnostics);
+/// N0662: fields without inertia that begin at rest, and so otherwise than written.
+void tell_moved_starts(const std::vector<SemiDiscrete::MovedStart>& moved, const FieldEquations& equations,
+                       Diagnostics& diagnostics);
 /// W0650: what acts for less than a step; whether there is such.
 bool warn_of_short_action(const FieldEquations& equations, const std::vector<double>& switching, double step,
                           const FieldRunOptions& options, Diagnostics& diagnostics);

@@ -210,15 +210,29 @@ std::vector<Expr> start_of(const FieldEquations& equations) {
 
 }  // namespace
 
+namespace {
+
+/// Whether an expression holds a derivative by the time.
+bool holds_motion(const FieldEquations& equations, Expr e) {
+  const std::vector<Expr> symbols = symbols_of({&e, 1});
+  return std::any_of(symbols.begin(), symbols.end(), [&](const Expr& symbol) {
+    if (const auto jet = equations.system().jet_of(symbol)) return jet->time > 0;
+    return symbol.role() == Role::Coordinate && symbol.order() > 0;
+  });
+}
+
+}  // namespace
+
+bool moves(const FieldEquations& equations, std::size_t field) {
+  const auto at = std::find(equations.varied.begin(), equations.varied.end(), field);
+  return at != equations.varied.end() &&
+         holds_motion(equations, equations.residuals[static_cast<std::size_t>(at - equations.varied.begin())]);
+}
+
 bool nothing_moves(const FieldEquations& equations) {
-  const auto moves = [&](const Expr& e) {
-    const std::vector<Expr> symbols = symbols_of({&e, 1});
-    return std::any_of(symbols.begin(), symbols.end(), [&](const Expr& symbol) {
-      if (const auto jet = equations.system().jet_of(symbol)) return jet->time > 0;
-      return symbol.role() == Role::Coordinate && symbol.order() > 0;
-    });
+  const auto any_moves = [&](const ExprVector& list) {
+    return std::any_of(list.begin(), list.end(), [&](const Expr& e) { return holds_motion(equations, e); });
   };
-  const auto any_moves = [&](const ExprVector& list) { return std::any_of(list.begin(), list.end(), moves); };
   if (any_moves(equations.residuals)) return false;
   if (!equations.bodies) return true;
   const EquationsOfMotion& bodies = *equations.bodies;

@@ -47,6 +47,10 @@ std::optional<ComputedRest> computed_rest(const FieldEquations& equations, const
 /// next to the start.
 std::optional<ComputedRest> rest_in_numbers(const FieldEquations& equations, std::string& why);
 
+/// Whether a derivative by the time stands in the equation of a field. One without any, as of a string or a beam
+/// without mass, is at rest at every moment: no waves run in it.
+bool moves(const FieldEquations& equations, std::size_t field);
+
 /// Whether nothing of a model can move: no derivative by the time stands in the equations of its fields and bodies.
 bool nothing_moves(const FieldEquations& equations);
 

@@ -2,10 +2,8 @@
 
 #include <maupertuis/coupled_fields.hpp>
 #include <maupertuis/evaluate.hpp>
-#include <maupertuis/repeated_evaluation.hpp>
 
 #include "fields/given_fields.hpp"
-#include "linear_algebra/dense.hpp"
 #include "linear_algebra/quadrature.hpp"
 
 #include <fmt/format.h>
@@ -184,6 +182,14 @@ void SemiDiscrete::set_quadrature() {
   }
 }
 
+/// The degree of freedom of a value or a slope at a place, where elements have a border.
+std::size_t SemiDiscrete::dof_at(std::size_t a, const PlaceCoordinate& place) const {
+  const double at = number(place.place), near = 1e-12 * (mesh_.borders.back() - mesh_.borders.front());
+  std::size_t border = 0;
+  while (std::abs(mesh_.borders[border] - at) > near) ++border;
+  return place.jet.space[0] == 0 ? spaces_[a].value_at_border(border) : spaces_[a].slope_at_border(border);
+}
+
 void SemiDiscrete::set_degrees_of_freedom() {
   const FieldSystem& s = equations_->system();
   MechanicalSystem& system = model_.system;
@@ -192,13 +198,9 @@ void SemiDiscrete::set_degrees_of_freedom() {
     const ElementSpace& space = spaces_[a];
     values_.emplace_back(space.size());
     coordinates_.emplace_back(space.size());
-    const double near = 1e-12 * (mesh_.borders.back() - mesh_.borders.front());
     for (const PlaceCoordinate& p : equations_->model->attached) {
       if (p.jet.field != field || p.moves) continue;
-      const double at = number(p.place);
-      std::size_t border = 0;
-      while (std::abs(mesh_.borders[border] - at) > near) ++border;
-      const std::size_t dof = p.jet.space[0] == 0 ? space.value_at_border(border) : space.slope_at_border(border);
+      const std::size_t dof = dof_at(a, p);
       coordinates_[a][dof] = p.coordinate;
       values_[a][dof] = system.coordinates[p.coordinate].q;
     }
@@ -395,121 +397,6 @@ bool SemiDiscrete::add_given_slopes(Diagnostics& diagnostics) {
   return true;
 }
 
-namespace {
-
-/// Coefficients of the functions of a space that come nearest to a function, what is given at ends kept.
-std::vector<double> projected(const ElementSpace& space, const std::vector<double>& function,
-                              const std::vector<std::optional<double>>& given) {
-  const std::vector<ElementSpace::Point>& points = space.points();
-  std::vector<double> out(space.size(), 0);
-  std::vector<std::size_t> free;
-  for (std::size_t j = 0; j < out.size(); ++j)
-    if (given[j])
-      out[j] = *given[j];
-    else
-      free.push_back(j);
-  if (space.kind() == EKind::Nodal) {
-    for (std::size_t q = 0; q < points.size(); ++q)
-      for (const ElementSpace::Part& part : points[q].parts)
-        if (part.of[0] == 1 && !given[part.dof]) out[part.dof] = function[q];
-    return out;
-  }
-  const auto n = static_cast<Eigen::Index>(out.size());
-  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(n, n);
-  Eigen::VectorXd b = Eigen::VectorXd::Zero(n);
-  for (std::size_t q = 0; q < points.size(); ++q) {
-    for (const ElementSpace::Part& i : points[q].parts) {
-      b(static_cast<Eigen::Index>(i.dof)) += points[q].weight * i.of[0] * function[q];
-      for (const ElementSpace::Part& j : points[q].parts)
-        m(static_cast<Eigen::Index>(i.dof), static_cast<Eigen::Index>(j.dof)) += points[q].weight * i.of[0] * j.of[0];
-    }
-  }
-  const auto f = static_cast<Eigen::Index>(free.size());
-  Eigen::MatrixXd mm(f, f);
-  Eigen::VectorXd bb(f);
-  for (Eigen::Index i = 0; i < f; ++i) {
-    const auto row = static_cast<Eigen::Index>(free[static_cast<std::size_t>(i)]);
-    bb(i) = b(row);
-    for (Eigen::Index j = 0; j < n; ++j)
-      if (given[static_cast<std::size_t>(j)]) bb(i) -= m(row, j) * out[static_cast<std::size_t>(j)];
-    for (Eigen::Index j = 0; j < f; ++j)
-      mm(i, j) = m(row, static_cast<Eigen::Index>(free[static_cast<std::size_t>(j)]));
-  }
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(mm);
-  const Eigen::VectorXd c = qr.solve(bb);
-  for (Eigen::Index i = 0; i < f; ++i) out[free[static_cast<std::size_t>(i)]] = c(i);
-  return out;
-}
-
-/// A field without any velocity in its equation is at rest at every moment: nothing runs into it.
-bool has_waves(const FieldEquations& equations, std::size_t varied) {
-  const std::vector<Expr> symbols = symbols_of({&equations.residuals[varied], 1});
-  return std::any_of(symbols.begin(), symbols.end(), [&](const Expr& symbol) {
-    const auto jet = equations.system().jet_of(symbol);
-    return jet && jet->time > 0;
-  });
-}
-
-}  // namespace
-
-bool SemiDiscrete::set_start(Diagnostics& diagnostics) {
-  const FieldSystem& s = equations_->system();
-  Bindings at_start = numbers_;
-  at_start[s.context->time()] = begin();
-  for (std::size_t a = 0; a < spaces_.size(); ++a) {
-    const bool waves = has_waves(*equations_, a);
-    for (int order = 0; order < 2; ++order) {
-      Expr start = s.context->number(0);
-      bool given_at_all = false;
-      for (const FieldStart& one : equations_->model->start)
-        if (one.field == equations_->varied[a] && one.order == order)
-          start = s.expanded(one.value), given_at_all = true;
-      const Expr root[] = {start};
-      const RepeatedEvaluation at(root);
-      std::vector<double> function;
-      for (const ElementSpace::Point& p : spaces_[a].points())
-        function.push_back(
-            at([&](Expr symbol) { return symbol == s.space.front().symbol ? p.x : numbers_.at(symbol); }).front());
-      for (const double v : function)
-        if (!std::isfinite(v)) {
-          diagnostics.error("E0645", equations_->model->start.front().span,
-                            "the start of a field is not a finite number somewhere in its domain",
-                            "A run can only begin from definite values at all places.",
-                            "Look for a logarithm or a root of a negative number in it, or a division by zero.");
-          return false;
-        }
-      // sin π is rounding, which must not violate a contact that the field touches.
-      constexpr double rounding = 4e-16;
-      double size = 0;
-      for (const double v : function) size = std::max(size, std::abs(v));
-      for (double& v : function) v = std::abs(v) <= rounding * size ? 0 : v;
-      std::vector<std::optional<double>> given(spaces_[a].size());
-      for (std::size_t j = 0; j < given.size(); ++j)
-        if (!coordinates_[a][j])
-          given[j] = evaluate(order ? total_time_derivative(values_[a][j]) : values_[a][j], at_start);
-      for (const bool right : {false, true}) {
-        const auto& g = given[spaces_[a].value_at_border(right ? mesh_.borders.size() - 1 : 0)];
-        const double value = right ? function.back() : function.front();
-        if (waves && g && std::abs(*g - value) > 1e-9 * std::max(size, std::abs(*g)))
-          clashes_.push_back({a, 0, order, right ? Side::Right : Side::Left, value, *g});
-      }
-      const std::vector<double> c = projected(spaces_[a], function, given);
-      for (std::size_t j = 0; j < c.size(); ++j)
-        if (coordinates_[a][j]) {
-          StartValue v;
-          v.coordinate = *coordinates_[a][j];
-          v.order = order;
-          v.value = constant(c[j]);
-          // Of elements without waves it is no choice, and gives way to what the coordinates that they carry start
-          // with.
-          if (!waves && !given_at_all) v.span = model_.system.coordinates[v.coordinate].span;
-          model_.experiment.start.push_back(std::move(v));
-        }
-    }
-  }
-  return true;
-}
-
 Expr SemiDiscrete::value_at(std::size_t a, int by_time, int by_space, double x) const {
   return combination(a, spaces_[a].at(x, x >= mesh_.borders.back()), by_space, by_time);
 }
@@ -530,18 +417,21 @@ ExprMap SemiDiscrete::beside_attached(double shift) const {
   return out;
 }
 
+bool SemiDiscrete::has_inertia(const Coordinate& c) const {
+  return equations_->bodies && !differentiate(equations_->bodies->lagrangian_expanded, c.velocity).is_zero();
+}
+
 bool SemiDiscrete::stands_on_masses(const FieldQuestion& question) const {
   if (question.total || !equations_->bodies) return false;
-  const EquationsOfMotion& bodies = *equations_->bodies;
   const std::vector<Expr> asked = symbols_of({&question.value, 1});
   const auto holds = [&](const Expr& e) { return std::find(asked.begin(), asked.end(), e) != asked.end(); };
   for (const PlaceValue& place : equations_->model->places)
     if (holds(place.symbol)) return false;
   bool any = false;
   for (const PlaceCoordinate& p : equations_->model->attached) {
-    const Coordinate& c = bodies.system->coordinates[p.coordinate];
+    const Coordinate& c = equations_->bodies->system->coordinates[p.coordinate];
     if (!holds(c.q) && !holds(c.velocity)) continue;
-    if (p.moves || differentiate(bodies.lagrangian_expanded, c.velocity).is_zero()) return false;
+    if (p.moves || !has_inertia(c)) return false;
     any = true;
   }
   return any;

@@ -1,6 +1,7 @@
 #pragma once
 #include <maupertuis/field_run.hpp>
 #include <maupertuis/repeated_evaluation.hpp>
+#include <maupertuis/simulation.hpp>
 
 #include "fields/field_elements.hpp"
 #include "fields/field_motion.hpp"
@@ -11,6 +12,8 @@
 #include <vector>
 
 namespace maupertuis {
+
+class WrittenStart;
 
 /// The borders of elements: the ends, each place that bodies hold, each change of the density, and what makes `cells`
 /// of the whole.
@@ -47,6 +50,14 @@ class SemiDiscrete {
   bool bends() const;
   const std::vector<double>& borders() const { return mesh_.borders; }
   const std::vector<FieldMotion::StartClash>& start_clashes() const { return clashes_; }
+  /// A field without inertia that begins otherwise than written: where by most, what is written there, what it is, SI.
+  struct MovedStart {
+    std::size_t varied = 0;
+    int order = 0;  // 1: its rate
+    double x = 0, written = 0, found = 0;
+  };
+  /// `begin`: the coordinates of the run at its start; nothing where there is none.
+  std::vector<MovedStart> moved_starts(const State& begin) const;
   /// Names of events that end a run: a place that moves left the domain.
   const std::vector<std::string>& departures() const { return departures_; }
   /// Whether elements are left that have no inertia: they do not follow what they carry by linear forces.
@@ -75,7 +86,18 @@ class SemiDiscrete {
   bool add_given_slopes(Diagnostics& diagnostics);
   void add_force_densities();
   void add_end_forces();
+  std::size_t dof_at(std::size_t a, const PlaceCoordinate& place) const;
   bool set_start(Diagnostics& diagnostics);
+  std::vector<std::optional<double>> held_at_ends(std::size_t a, int order) const;
+  void look_for_clashes(std::size_t a, int order, const WrittenStart& start, double size,
+                        const std::vector<std::optional<double>>& held);
+  void keep_places(std::size_t a, const WrittenStart& start, double size,
+                   std::vector<std::optional<double>>& kept) const;
+  void add_start(std::size_t a, int order, bool is_written, const std::vector<double>& coefficients);
+  MovedStart most_moved(std::size_t a, int order, const WrittenStart& start, const State& begin) const;
+  double value_in(Expr value, const State& state) const;
+  /// Whether bodies give mass to a coordinate of theirs, such as the value of a field at a place.
+  bool has_inertia(const Coordinate& c) const;
   bool refuse_starts_of_places(Diagnostics& diagnostics) const;
   bool replace_places(Diagnostics& diagnostics);
   bool has_slopes(std::size_t field) const;

@@ -6,6 +6,7 @@
 #include "fields/field_sides.hpp"
 #include "fields/given_fields.hpp"
 #include "fields/on_shell.hpp"
+#include "fields/resting_fields.hpp"
 #include "fields/switching.hpp"
 
 #include <algorithm>
@@ -59,10 +60,12 @@ bool has_bodies(const FieldEquations& equations, const NaturalCondition& n, Side
 void add_sides(const FieldEquations& equations, std::vector<Condition>& out) {
   const FieldSystem& s = equations.system();
   for (const BoundaryCondition& b : s.boundary)
-    out.push_back(at_side(equations, b.side, b.jet.field, s.jet_symbol(b.jet), s.expanded(b.value), b.jet.order()));
+    if (moves(equations, b.jet.field))
+      out.push_back(at_side(equations, b.side, b.jet.field, s.jet_symbol(b.jet), s.expanded(b.value), b.jet.order()));
   for (const NaturalCondition& n : equations.natural)
     for (const Side side : sides_across(n.along)) {
-      if (s.periodic(n.along) || is_given(s, n, side) || has_bodies(equations, n, side)) continue;
+      if (!moves(equations, n.field) || s.periodic(n.along) || is_given(s, n, side) || has_bodies(equations, n, side))
+        continue;
       Expr force = s.context->number(0);  // p + F = 0 on the right, −p + F = 0 on the left
       for (const EndForce& f : s.end_forces)
         if (f.side == side && f.jet.field == n.field && (f.jet.order() == 1) == n.moment)
@@ -89,7 +92,7 @@ void add_places(const FieldEquations& equations, const Bindings& values, double 
                 std::vector<Condition>& out) {
   const FieldSystem& s = equations.system();
   for (const InterfaceCondition& i : equations.interfaces) {
-    if (s.context->depends_on_time(i.place.id())) continue;
+    if (!moves(equations, i.field) || s.context->depends_on_time(i.place.id())) continue;
     Condition c;
     c.at = (evaluate(s.expanded(i.place), values) - from) / width;
     c.jets = substitute(s.expanded(expand_time_derivatives(i.value)), jets_at(equations, i.place));

@@ -19,8 +19,8 @@ struct SideFit {
 /// there. A time derivative of a field with curvatures is worth two in space. u = x (1 − x) between held ends has u'' =
 /// −2 at both, where nothing moves: its curvature jumps. Meshes gain by halving their cells what that derivative lets
 /// them. The lowest one that counts: of tails of pulses, where less than 1e-5 of the condition does not hold, those
-/// that are seen from node to node, `spacing` apart. What is given has the branches that it has until `until`. Cost:
-/// milliseconds.
+/// that are seen from node to node, `spacing` apart. What is given has the branches that it has until `until`. Fields
+/// without inertia, in which no waves run, fit. Cost: milliseconds.
 SideFit fit_of_sides(const FieldEquations& equations, double begin, double until, double spacing);
 
 }  // namespace maupertuis
