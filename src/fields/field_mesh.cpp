@@ -467,12 +467,10 @@ double FieldMesh::omega_max(const Interrupt& interrupt) {
   }
   for (const Held& held : held_)
     if (!held.force) w[held.field][node_of(held)] = 0;
-  const auto accelerations = [&](const FieldValues& u) {
+  const auto accelerations = [&](const FieldValues& u, FieldValues& to) {
     load(u, v_);
     coefficient(0);
-    FieldValues out;
-    for (std::size_t f = 0; f < fields_; ++f) out.push_back(past_[f * (kOrder + 2)]);
-    return out;
+    for (std::size_t f = 0; f < fields_; ++f) to[f] = past_[f * (kOrder + 2)];
   };
   constexpr int rounds = 60;
   return largest_frequency(u_, std::move(w), accelerations, rounds, trouble_, interrupt);

@@ -88,17 +88,19 @@ Expr without_constants(Expr e, const std::unordered_map<Expr, double, ExprHash>&
   return e.context().product(rest);
 }
 
-/// φ, the places and t keep their past: the mesh writes and reads it.
-std::vector<std::size_t> inputs_with_a_past(std::size_t fields) {
-  std::vector<std::size_t> out;
-  for (std::size_t f = 0; f < fields; ++f) out.push_back(PlaneMesh::kInputs * f + PlaneMesh::Phi);
-  for (std::size_t i = 0; i < 3; ++i) out.push_back(PlaneMesh::kInputs * fields + i);
-  return out;
-}
-
 bool stands_in_any(const std::vector<Expr>& roots, Expr symbol) {
   const std::vector<Expr> below = symbols_of(roots);
   return std::find(below.begin(), below.end(), symbol) != below.end();
+}
+
+/// φ, and the places and t where they stand in the equation, keep their past: the mesh writes and reads it.
+std::vector<std::size_t> inputs_with_a_past(const PointForm& form) {
+  std::vector<std::size_t> out;
+  for (std::size_t f = 0; f < form.fields; ++f) out.push_back(PlaneMesh::kInputs * f + PlaneMesh::Phi);
+  const std::vector<Expr> roots = roots_of(form);
+  for (std::size_t i = PlaneMesh::kInputs * form.fields; i < PlaneMesh::kInputs * form.fields + 3; ++i)
+    if (stands_in_any(roots, form.inputs[i])) out.push_back(i);
+  return out;
 }
 
 }  // namespace
@@ -129,14 +131,15 @@ PlaneMesh::PlaneMesh(const FieldEquations& equations, const PointForm& form, int
       uses_rate_ = uses_rate_ || stands_in_any(roots, form.inputs[kInputs * f + i]);
   }
   uses_time_ = stands_in_any(roots, s_.context->time());
-  series_.keep(inputs_with_a_past(fields_), form.a.size());
+  series_.keep(inputs_with_a_past(form), form.a.size());
   series_.resize(lanes_, kOrder + 2, rows());
   energies_.resize(lanes_, 1);
-  for (std::size_t row = 0; row < rows(); ++row) {
-    series_.select(row);
-    for (std::size_t i = 0; i < 2; ++i)
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t row = 0; row < rows() && stands_in_any(roots, s_.space[i].symbol); ++row) {
+      series_.select(row);
       for (std::size_t n = 0; n < lanes_; ++n) series_.input(kInputs * fields_ + i, 0)[n] = place(i, row, n);
-  }
+    }
+  for (std::size_t n = 0; n < lanes_; ++n) energies_.input(kInputs * fields_, 0)[n] = place(0, 0, n);
   for (const EndForce& f : s_.end_forces) hold(f.side, f.jet.field, f.value, true);
   for (const BoundaryCondition& b : s_.boundary) {
     if (b.jet.order() == 0) {
@@ -189,7 +192,7 @@ double PlaneMesh::bytes(const FieldEquations& equations, const PointForm& form, 
   std::string trouble;
   auto series = LaneSeries::make(roots_of(form), form.inputs, constants, trouble);
   if (!series) return 0;
-  series->keep(inputs_with_a_past(form.fields), form.a.size());
+  series->keep(inputs_with_a_past(form), form.a.size());
   const double lanes = cells_x * cells_y * (order + 1.0) * (order + 1.0);
   // φ, φ' and, at the start, a direction of the power iteration with two accelerations
   return series->bytes(lanes, kOrder + 2) + 6.0 * static_cast<double>(form.fields) * lanes * sizeof(double);
@@ -531,18 +534,16 @@ double PlaneMesh::omega_max(const Interrupt& interrupt) {
   constexpr int rounds = 100;
   std::vector<Rows> w(fields_, Rows(lanes_ * rows()));
   fill_randomly(w);
-  const std::vector<Rows> here = u_;
-  const auto accelerations = [&](const std::vector<Rows>& moved) {
-    u_ = moved;
-    std::vector<Rows> out(fields_, Rows(lanes_ * rows()));
+  const auto accelerations = [&](std::vector<Rows>& state, std::vector<Rows>& to) {
+    std::swap(u_, state);
     sweep(1, [&](std::size_t row) {
       series_.select(row);
-      for (std::size_t f = 0; f < fields_; ++f) scale_into(out[f].data() + row * lanes_, phi(f, 2), 2, lanes_);
+      for (std::size_t f = 0; f < fields_; ++f) scale_into(to[f].data() + row * lanes_, phi(f, 2), 2, lanes_);
     });
-    u_ = here;
-    return out;
+    std::swap(u_, state);
   };
-  return largest_frequency(u_, std::move(w), accelerations, rounds, trouble_, interrupt);
+  const std::vector<Rows> here = u_;
+  return largest_frequency(here, std::move(w), accelerations, rounds, trouble_, interrupt);
 }
 
 }  // namespace maupertuis

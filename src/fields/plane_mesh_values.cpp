@@ -21,9 +21,8 @@ void PlaneMesh::show_row(std::size_t row) {
     slopes(energies_.input(i + SlopeX, 0), energies_.input(i + SlopeY, 0), u);
     slopes(energies_.input(i + RateX, 0), energies_.input(i + RateY, 0), v);
   }
-  series_.select(row);
-  for (std::size_t i = kInputs * fields_; i < kInputs * fields_ + 2; ++i)
-    std::copy_n(series_.input(i, 0), lanes_, energies_.input(i, 0));
+  for (std::size_t j = 0; j < points(); ++j)  // x is the same in all rows
+    std::fill_n(energies_.input(kInputs * fields_ + 1, 0) + j * line_, line_, place(1, row, j * line_));
   std::fill_n(energies_.input(kInputs * fields_ + 2, 0), lanes_, t_);
 }
 

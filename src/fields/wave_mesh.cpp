@@ -18,34 +18,48 @@ void fill_randomly(FieldValues& w) {
       x = (seed = seed * 6364136223846793005ull + 1442695040888963407ull, static_cast<double>(seed >> 33) / 4e9 - 0.5);
 }
 
-double largest_frequency(const FieldValues& u, FieldValues w,
-                         const std::function<FieldValues(const FieldValues&)>& accelerations, int rounds,
-                         const std::string& trouble, const Interrupt& interrupt) {
-  double size = 1, count = 0;
-  for (const auto& row : u) {
+namespace {
+
+double mean_square_root(const FieldValues& x) {
+  double sum = 0, count = 0;
+  for (const auto& row : x) {
     count += static_cast<double>(row.size());
-    for (const double x : row) size = std::max(size, std::abs(x));
+    for (const double value : row) sum += value * value;
   }
+  return std::sqrt(sum / count);
+}
+
+/// A little off u in the direction of w.
+void move_along(FieldValues& to, const FieldValues& u, const FieldValues& w, double share) {
+  for (std::size_t f = 0; f < w.size(); ++f)
+    for (std::size_t n = 0; n < w[f].size(); ++n) to[f][n] = u[f][n] + share * w[f][n];
+}
+
+/// (a − b)/by, into a.
+void set_difference(FieldValues& a, const FieldValues& b, double by) {
+  for (std::size_t f = 0; f < a.size(); ++f)
+    for (std::size_t n = 0; n < a[f].size(); ++n) a[f][n] = (a[f][n] - b[f][n]) / by;
+}
+
+}  // namespace
+
+/// All rounds share their buffers: on large meshes fresh ones took most of the time.
+double largest_frequency(const FieldValues& u, FieldValues w, const Accelerations& accelerations, int rounds,
+                         const std::string& trouble, const Interrupt& interrupt) {
+  double size = 1;
+  for (const auto& row : u)
+    for (const double x : row) size = std::max(size, std::abs(x));
   const double epsilon = 1e-7 * size;
-  const auto norm_of = [&](const FieldValues& x) {
-    double sum = 0;
-    for (const auto& row : x)
-      for (const double value : row) sum += value * value;
-    return std::sqrt(sum / count);
-  };
-  const FieldValues at_rest = accelerations(u);
-  double square = 0;
+  FieldValues moved = u, at_rest = u;
+  accelerations(moved, at_rest);
+  double norm = mean_square_root(w), square = 0;
   for (int round = 0; round < rounds && trouble.empty(); ++round) {
     interrupt.throw_if_asked();
-    const double norm = norm_of(w);
     if (!(norm > 0)) return 0;
-    FieldValues moved = u;
-    for (std::size_t f = 0; f < w.size(); ++f)
-      for (std::size_t n = 0; n < w[f].size(); ++n) moved[f][n] += epsilon * (w[f][n] /= norm);
-    const FieldValues there = accelerations(moved);
-    for (std::size_t f = 0; f < w.size(); ++f)
-      for (std::size_t n = 0; n < w[f].size(); ++n) w[f][n] = (there[f][n] - at_rest[f][n]) / epsilon;
-    square = norm_of(w);
+    move_along(moved, u, w, epsilon / norm);
+    accelerations(moved, w);
+    set_difference(w, at_rest, epsilon);
+    norm = square = mean_square_root(w);
   }
   return std::sqrt(square);
 }

@@ -22,11 +22,11 @@ class WaveMesh : public FieldMotion {
   std::vector<Expr> time_derivatives(Expr value) const;
 };
 
-/// The largest frequency of small motions about u by power iteration from the direction w.
-/// accelerations(u) is φ'' at a state; `trouble` ends the iteration.
 using FieldValues = std::vector<std::vector<double>>;  // [fields][lanes]
-double largest_frequency(const FieldValues& u, FieldValues w,
-                         const std::function<FieldValues(const FieldValues&)>& accelerations, int rounds,
+/// φ'' at a state into `to`; what stands in `state` afterwards is left open.
+using Accelerations = std::function<void(FieldValues& state, FieldValues& to)>;
+/// The largest frequency of small motions about u by power iteration from the direction w. `trouble` ends it.
+double largest_frequency(const FieldValues& u, FieldValues w, const Accelerations& accelerations, int rounds,
                          const std::string& trouble, const Interrupt& interrupt);
 /// Numbers of −1/2 .. 1/2, always the same.
 void fill_randomly(FieldValues& w);
