@@ -106,7 +106,13 @@ std::vector<std::size_t> inputs_with_a_past(const PointForm& form) {
 }  // namespace
 
 PlaneMesh::PlaneMesh(const FieldEquations& equations, const PointForm& form, int cells_x, int cells_y, int order)
-    : WaveMesh(equations), form_(form), p_(order), fields_(form.fields), rule_(order) {
+    : WaveMesh(equations),
+      form_(form),
+      p_(order),
+      fields_(form.fields),
+      rule_(order),
+      slopes_(EvenOddProduct::slopes(rule_)),
+      stiffness_(EvenOddProduct::stiffness(rule_)) {
   std::unordered_map<Expr, double, ExprHash> constants;
   for (const Parameter& p : equations.model->parameters) constants[p.symbol] = values_[p.symbol] = p.si_value;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -115,12 +121,12 @@ PlaneMesh::PlaneMesh(const FieldEquations& equations, const PointForm& form, int
     axes_[i].width = (value_of(s_.space[i].to, {}) - axes_[i].from) / axes_[i].cells;
   }
   line_ = points() * cells(), lanes_ = points() * line_;
-  slopes_.emplace(rule_);
   std::vector<Expr> roots = roots_of(form);
   const std::vector<Expr> sizes{form.energy};
   stress_scale_.resize(form.s.size());
   for (std::size_t i = 0; i < form.s.size(); ++i)
     roots[roots.size() - form.s.size() + i] = without_constants(form.s[i], constants, stress_scale_[i]);
+  look_for_plain_stresses(roots);
   auto series = LaneSeries::make(roots, form.inputs, constants, trouble_);
   auto energies = LaneSeries::make(sizes, form.inputs, constants, trouble_);
   if (!series || !energies) return;
@@ -163,6 +169,21 @@ PlaneMesh::PlaneMesh(const FieldEquations& equations, const PointForm& form, int
   prepare_masses();
   force_.assign(fields_ * lanes_, 0), other_.assign(lanes_, 0);
   pending_.assign(kOrder, std::vector<double>(fields_ * line_)), first_ = pending_;
+}
+
+/// Which stresses are numbers times the slopes of their own fields, as of membranes: then the stiffness of an element
+/// is one matrix along each direction. Slopes are computed where anything else holds them.
+void PlaneMesh::look_for_plain_stresses(const std::vector<Expr>& roots) {
+  const std::size_t stresses = form_.s.size(), first = roots.size() - stresses;
+  std::vector<Expr> others(roots.begin(), roots.begin() + static_cast<std::ptrdiff_t>(first));
+  for (std::size_t i = 0; i < stresses; ++i) {
+    const std::size_t f = i % fields_, direction = i / fields_;
+    is_slope_.push_back(roots[first + i] == form_.inputs[kInputs * f + SlopeX + direction]);
+    if (!is_slope_.back()) others.push_back(roots[first + i]);
+  }
+  for (std::size_t f = 0; f < fields_; ++f)
+    for (const std::size_t i : {SlopeX, SlopeY})
+      uses_slope_ = uses_slope_ || stands_in_any(others, form_.inputs[kInputs * f + i]);
 }
 
 /// One A⁻¹ for all nodes where A is a matrix of numbers, and no field is held that has mass in common with another one.
@@ -309,7 +330,7 @@ void PlaneMesh::start() {
 
 /// ∂_x and ∂_y of one row of elements.
 void PlaneMesh::slopes(double* to_x, double* to_y, const double* from) const {
-  const EvenOddSlopes& d = *slopes_;
+  const EvenOddProduct& d = slopes_;
   for (std::size_t j = 0; j < points(); ++j)
     d.apply(to_x + j * line_, nullptr, from + j * line_, 2 / axes_[0].width, cells(), cells());
   d.apply(to_y, nullptr, from, 2 / axes_[1].width, line_, line_);
@@ -326,7 +347,7 @@ void PlaneMesh::take_row(std::size_t row) {
 void PlaneMesh::prepare(std::size_t k) {
   for (std::size_t f = 0; f < fields_; ++f) {
     const std::size_t i = kInputs * f;
-    slopes(series_.input(i + SlopeX, k), series_.input(i + SlopeY, k), phi(f, k));
+    if (uses_slope_) slopes(series_.input(i + SlopeX, k), series_.input(i + SlopeY, k), phi(f, k));
     if (!uses_velocity_ && !uses_rate_) continue;
     scale_into(series_.input(i + Velocity, k), phi(f, k + 1), static_cast<double>(k + 1), lanes_);
     if (uses_rate_) slopes(series_.input(i + RateX, k), series_.input(i + RateY, k), series_.input(i + Velocity, k));
@@ -373,37 +394,44 @@ void PlaneMesh::masses(std::size_t row) {
   if (row + 1 == rows()) mass_known_ = true;
 }
 
+/// base + ∂s/∂x of one direction with what the sides of the elements add; `base` may be null. Where it is, into `to`;
+/// `base` itself where there is no such stress.
+const double* PlaneMesh::add_stress(std::size_t f, std::size_t direction, std::size_t k, const double* base,
+                                    double* to) {
+  const std::size_t i = direction * fields_ + f, root = fields_ * fields_ + fields_ + i;
+  if (series_.number_root(root) == 0.0) return base;
+  const double slope = 2 / axes_[direction].width, scale = slope * stress_scale_[i];
+  const EvenOddProduct& matrix = is_slope_[i] ? stiffness_ : slopes_;
+  const double* from = is_slope_[i] ? phi(f, k) : series_.root(root, k);
+  const double factor = is_slope_[i] ? slope * scale : scale;
+  if (direction == 1) matrix.apply(to, base, from, factor, line_, line_);
+  for (std::size_t at = 0; direction == 0 && at < lanes_; at += line_)
+    matrix.apply(to + at, base ? base + at : nullptr, from + at, factor, cells(), cells());
+  if (!is_slope_[i]) add_sides_of_elements(f, direction, k, to);
+  return to;
+}
+
+/// ± s over the weight of the end of an element, at its two sides.
+void PlaneMesh::add_sides_of_elements(std::size_t f, std::size_t direction, std::size_t k, double* to) {
+  const std::size_t i = direction * fields_ + f, n = direction == 0 ? cells() : line_;
+  const std::size_t whole = direction == 0 ? line_ : lanes_;
+  const double scale = 2 / axes_[direction].width * stress_scale_[i] / rule_.w[0];
+  const double* s = series_.root(fields_ * fields_ + fields_ + i, k);
+  for (std::size_t at = 0; at < lanes_; at += whole) {
+    add_scaled(to + at, s + at, scale, n);
+    add_scaled(to + at + whole - n, s + at + whole - n, -scale, n);
+  }
+}
+
 /// −A φ'' of coefficient k, element by element: g + ∂_x s_x + ∂_y s_y and the sides.
 void PlaneMesh::force(std::size_t f, std::size_t row, std::size_t k) {
-  const std::size_t pairs = fields_ * fields_, g = pairs + f, n = cells(), last = points() - 1;
-  const double scale_x = 2 / axes_[0].width * stress_scale_[f],
-               scale_y = 2 / axes_[1].width * stress_scale_[fields_ + f];
+  const std::size_t g = fields_ * fields_ + f;
   double* out = force_.data() + f * lanes_;
-  const double* base = series_.number_root(g) == 0.0 ? nullptr : series_.root(g, k);
-  if (const std::size_t r = g + fields_; !series_.number_root(r)) {
-    const double* s = series_.root(r, k);
-    for (std::size_t j = 0; j <= last; ++j)
-      slopes_->apply(other_.data() + j * line_, base ? base + j * line_ : nullptr, s + j * line_, scale_x, n, n);
-    base = other_.data();
-  }
-  if (const std::size_t r = g + 2 * fields_; !series_.number_root(r)) {
-    slopes_->apply(out, base, series_.root(r, k), scale_y, line_, line_);
-  } else if (base) {
-    std::copy_n(base, lanes_, out);
-  } else {
-    std::fill_n(out, lanes_, 0.0);
-  }
-  if (const std::size_t r = g + fields_; series_.number_root(r) != 0.0)
-    for (std::size_t j = 0; j <= last; ++j) {
-      const double* s = series_.root(r, k) + j * line_;
-      add_scaled(out + j * line_, s, scale_x / rule_.w[0], n);
-      add_scaled(out + (j + 1) * line_ - n, s + line_ - n, -scale_x / rule_.w[0], n);
-    }
-  if (const std::size_t r = g + 2 * fields_; series_.number_root(r) != 0.0) {
-    const double* s = series_.root(r, k);
-    add_scaled(out, s, scale_y / rule_.w[0], line_);
-    add_scaled(out + last * line_, s + last * line_, -scale_y / rule_.w[0], line_);
-  }
+  const double* sum = series_.number_root(g) == 0.0 ? nullptr : series_.root(g, k);
+  sum = add_stress(f, 0, k, sum, other_.data());
+  sum = add_stress(f, 1, k, sum, out);
+  if (!sum) std::fill_n(out, lanes_, 0.0);
+  if (sum && sum != out) std::copy_n(sum, lanes_, out);
   for (std::size_t o = 0; o < fields_ && !form_.constant_mass; ++o)
     for (std::size_t i = 1; i <= k; ++i)
       add_scaled_products(out, series_.root(f * fields_ + o, i), phi(o, k - i + 2),

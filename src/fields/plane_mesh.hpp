@@ -57,9 +57,12 @@ class PlaneMesh final : public WaveMesh {
   double* phi(std::size_t f, std::size_t k) { return series_.input(6 * f, k); }
   void slopes(double* to_x, double* to_y, const double* from) const;
   void prepare(std::size_t k);
+  void look_for_plain_stresses(const std::vector<Expr>& roots);
   void prepare_masses();
   void masses(std::size_t row);
   void force(std::size_t f, std::size_t row, std::size_t k);
+  const double* add_stress(std::size_t f, std::size_t direction, std::size_t k, const double* base, double* to);
+  void add_sides_of_elements(std::size_t f, std::size_t direction, std::size_t k, double* to);
   void share_columns(double* lanes) const;
   void process(std::size_t row, std::size_t k);
   void finish(std::size_t row, std::size_t k, std::size_t from_line, std::size_t lines, double* forces,
@@ -93,10 +96,11 @@ class PlaneMesh final : public WaveMesh {
   Axis axes_[2];
   std::size_t fields_, line_ = 0, lanes_ = 0;  // nodes of a line, of a row of elements
   Lobatto rule_;
-  std::optional<EvenOddSlopes> slopes_;
+  EvenOddProduct slopes_, stiffness_;
   LaneSeries series_, energies_;
   std::vector<double> stress_scale_;  // [directions × fields] constant factors of s, which its roots are without
-  bool uses_time_ = false, uses_velocity_ = false, uses_rate_ = false;
+  std::vector<bool> is_slope_;        // [directions × fields] whether s is a number times the slope of its own field
+  bool uses_slope_ = false, uses_time_ = false, uses_velocity_ = false, uses_rate_ = false;
   std::vector<Rows> u_, v_, next_u_, next_v_;  // [fields]
   std::vector<double> force_, other_;          // of one row: [fields × lanes], [lanes]
   std::vector<std::vector<double>> pending_;   // [orders] the last line of the row before, [fields × line]
