@@ -400,7 +400,7 @@ const double* PlaneMesh::add_stress(std::size_t f, std::size_t direction, std::s
                                     double* to) {
   const std::size_t i = direction * fields_ + f, root = fields_ * fields_ + fields_ + i;
   if (series_.number_root(root) == 0.0) return base;
-  const double slope = 2 / axes_[direction].width, scale = slope * stress_scale_[i];
+  const double slope = 2 / axes_[direction].width, scale = slope * stress_scale_[i] * share_of_force(k);
   const EvenOddProduct& matrix = is_slope_[i] ? stiffness_ : slopes_;
   const double* from = is_slope_[i] ? phi(f, k) : series_.root(root, k);
   const double factor = is_slope_[i] ? slope * scale : scale;
@@ -415,7 +415,7 @@ const double* PlaneMesh::add_stress(std::size_t f, std::size_t direction, std::s
 void PlaneMesh::add_sides_of_elements(std::size_t f, std::size_t direction, std::size_t k, double* to) {
   const std::size_t i = direction * fields_ + f, n = direction == 0 ? cells() : line_;
   const std::size_t whole = direction == 0 ? line_ : lanes_;
-  const double scale = 2 / axes_[direction].width * stress_scale_[i] / rule_.w[0];
+  const double scale = 2 / axes_[direction].width * stress_scale_[i] / rule_.w[0] * share_of_force(k);
   const double* s = series_.root(fields_ * fields_ + fields_ + i, k);
   for (std::size_t at = 0; at < lanes_; at += whole) {
     add_scaled(to + at, s + at, scale, n);
@@ -423,15 +423,22 @@ void PlaneMesh::add_sides_of_elements(std::size_t f, std::size_t direction, std:
   }
 }
 
-/// −A φ'' of coefficient k, element by element: g + ∂_x s_x + ∂_y s_y and the sides.
-void PlaneMesh::force(std::size_t f, std::size_t row, std::size_t k) {
+/// What a force is multiplied by as it is made: the coefficient k + 2 of a field alone whose A is a number is a
+/// multiple of its force, so that no pass over a row is needed for it.
+double PlaneMesh::share_of_force(std::size_t k) const {
+  return is_alone() ? -scalar_inverse_.front() / static_cast<double>((k + 1) * (k + 2)) : 1;
+}
+
+/// −A φ'' of coefficient k, element by element, times its share: g + ∂_x s_x + ∂_y s_y and the sides.
+void PlaneMesh::force(std::size_t f, std::size_t row, std::size_t k, double* out) {
   const std::size_t g = fields_ * fields_ + f;
-  double* out = force_.data() + f * lanes_;
-  const double* sum = series_.number_root(g) == 0.0 ? nullptr : series_.root(g, k);
-  sum = add_stress(f, 0, k, sum, other_.data());
+  const double share = share_of_force(k);
+  const double* potential = series_.number_root(g) == 0.0 ? nullptr : series_.root(g, k);
+  const double* sum = add_stress(f, 0, k, is_alone() ? nullptr : potential, other_.data());
   sum = add_stress(f, 1, k, sum, out);
   if (!sum) std::fill_n(out, lanes_, 0.0);
   if (sum && sum != out) std::copy_n(sum, lanes_, out);
+  if (is_alone() && potential) add_scaled(out, potential, share, lanes_);
   for (std::size_t o = 0; o < fields_ && !form_.constant_mass; ++o)
     for (std::size_t i = 1; i <= k; ++i)
       add_scaled_products(out, series_.root(f * fields_ + o, i), phi(o, k - i + 2),
@@ -439,14 +446,15 @@ void PlaneMesh::force(std::size_t f, std::size_t row, std::size_t k) {
   for (const Held& held : held_) {
     if (!held.force || held.field != f) continue;
     const bool across = held.side == Side::Left || held.side == Side::Right;
-    const double factor = 2 / rule_.w[0] / axes_[across ? 0 : 1].width;
+    const double factor = share * 2 / rule_.w[0] / axes_[across ? 0 : 1].width;
     each_held(held, row, k, 0, points(), [&](std::size_t lane, double value) { out[lane] -= factor * value; });
   }
   share_columns(out);
 }
 
-/// φ_{k+2} in lines of a row whose forces, `stride` apart for the fields, are known with all that their neighbours add.
-/// Where a field is held that has mass in common with others, its acceleration stands in the place of its force.
+/// φ_{k+2} in lines of a row whose forces, `stride` apart for the fields, are known with all that their neighbours add;
+/// that of a field alone is its force. Where a field is held that has mass in common with others, its acceleration
+/// stands in the place of its force.
 void PlaneMesh::finish(std::size_t row, std::size_t k, std::size_t from_line, std::size_t lines, double* forces,
                        std::size_t stride) {
   series_.select(row);
@@ -458,7 +466,9 @@ void PlaneMesh::finish(std::size_t row, std::size_t k, std::size_t from_line, st
                 [&](std::size_t lane, double value) { forces[held.field * stride + lane - at] = value / factor; });
   for (std::size_t f = 0; f < fields_; ++f) {
     double* out = phi(f, k + 2) + at;
-    if (inverse_.empty()) {
+    if (is_alone()) {
+      if (out != forces) std::copy_n(forces, n, out);
+    } else if (inverse_.empty()) {
       scale_into(out, forces, factor * scalar_inverse_[f * fields_], n);
       for (std::size_t o = 1; o < fields_; ++o)
         if (const double c = scalar_inverse_[f * fields_ + o]; c != 0)
@@ -486,18 +496,19 @@ void PlaneMesh::process(std::size_t row, std::size_t k) {
   if (k == 0 && !inverse_.empty() && !(form_.constant_mass && mass_known_)) masses(row);
   const std::size_t last = points() - 1;
   const bool wraps = s_.periodic(1), top = row + 1 == rows();
+  double* forces = is_alone() ? phi(0, k + 2) : force_.data();  // of this row, whichever is selected
   for (std::size_t f = 0; f < fields_; ++f) {
-    force(f, row, k);
-    double* lanes = force_.data() + f * lanes_;
+    double* lanes = forces + f * lanes_;
+    force(f, row, k, lanes);
     if (row > 0) set_means(lanes, pending_[k].data() + f * line_, line_);
     if (row == 0) std::copy_n(lanes, line_, first_[k].data() + f * line_);
     if (wraps && top) set_means(lanes + last * line_, first_[k].data() + f * line_, line_);
   }
   if (row > 0) finish(row - 1, k, last, 1, pending_[k].data(), line_);
-  finish(row, k, 0, points(), force_.data(), lanes_);
+  finish(row, k, 0, points(), forces, lanes_);
   if (wraps && top) finish(0, k, 0, 1, first_[k].data(), line_);
   for (std::size_t f = 0; f < fields_ && !top; ++f)
-    std::copy_n(force_.data() + f * lanes_ + last * line_, line_, pending_[k].data() + f * line_);
+    std::copy_n(forces + f * lanes_ + last * line_, line_, pending_[k].data() + f * line_);
 }
 
 /// All coefficients below `orders` + 2 of all rows; `behind` is called where a row is done.

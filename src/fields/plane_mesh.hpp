@@ -60,7 +60,9 @@ class PlaneMesh final : public WaveMesh {
   void look_for_plain_stresses(const std::vector<Expr>& roots);
   void prepare_masses();
   void masses(std::size_t row);
-  void force(std::size_t f, std::size_t row, std::size_t k);
+  bool is_alone() const { return fields_ == 1 && inverse_.empty(); }
+  double share_of_force(std::size_t k) const;
+  void force(std::size_t f, std::size_t row, std::size_t k, double* out);
   const double* add_stress(std::size_t f, std::size_t direction, std::size_t k, const double* base, double* to);
   void add_sides_of_elements(std::size_t f, std::size_t direction, std::size_t k, double* to);
   void share_columns(double* lanes) const;
