@@ -32,6 +32,19 @@ add_library(maup_options INTERFACE)
 target_link_libraries(maup_options INTERFACE maup_flags)
 target_include_directories(maup_options INTERFACE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
 
+# The batch that divides the sources of a target evenly, about as large as the one wanted: 21 sources are one object,
+# not one and a second that compiles all headers again for a single source.
+function(maup_even_batch target wanted variable)
+  get_target_property(sources ${target} SOURCES)
+  list(LENGTH sources count)
+  math(EXPR objects "(2 * ${count} + ${wanted}) / (2 * ${wanted})")  # the nearest number of them
+  if(objects EQUAL 0)
+    set(objects 1)
+  endif()
+  math(EXPR batch "(${count} + ${objects} - 1) / ${objects}")
+  set(${variable} ${batch} PARENT_SCOPE)
+endfunction()
+
 # Compiles the sources of a target several at a time (a unity build): most of a small file's time goes into its headers.
 # ALONE: sources whose file-local names are those of others, or which are slow to compile themselves. Sources with
 # options of their own are left alone by CMake.
@@ -42,6 +55,7 @@ function(maup_compile_together target folder batch)
   if(NOT MAUPERTUIS_UNITY)
     return()
   endif()
+  maup_even_batch(${target} ${batch} batch)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # The sources that are compiled together are taken for headers.

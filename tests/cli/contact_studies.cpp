@@ -7,6 +7,7 @@
 
 using namespace cli_test;
 
+namespace contact_studies {
 namespace {
 
 const std::string gallery = std::string(PROJECT_DIR) + "/models/";
@@ -109,3 +110,5 @@ TEST_CASE("hamiltonian, action, compare and reduce want one mode") {
     CHECK(json_of(refused).at("diagnostics")[0].at("code") == (command.front() == "compare" ? "E0835" : "E0270"));
   }
 }
+
+}  // namespace contact_studies

@@ -5,6 +5,7 @@
 
 using namespace cli_test;
 
+namespace notations {
 namespace {
 
 const std::vector<std::string> models{"double_pendulum", "spherical_pendulum", "lagrange_top", "motor_link"};
@@ -114,3 +115,5 @@ TEST_CASE("colors only where they are wanted") {
   CHECK(contains(maup({"check", "-", "--color", "always"}, wrong).err, escape));
   CHECK(!contains(shell("NO_COLOR=1 \"$MAUP\" check /none --color auto").err, escape));
 }
+
+}  // namespace notations

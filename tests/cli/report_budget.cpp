@@ -7,6 +7,7 @@
 
 using namespace cli_test;
 
+namespace report_budget {
 namespace {
 
 std::string chain(int links) {
@@ -94,3 +95,5 @@ TEST_CASE("a budget too short for a certificate leaves no page; a run is shown a
   CHECK(contains(cut.err, "The run ended early: its share of the budget of 6s was used up"));
   CHECK(contains(read(page), "was used up"));
 }
+
+}  // namespace report_budget

@@ -12,6 +12,7 @@
 /// Frequencies and shapes of membranes against their closed forms.
 using namespace maupertuis;
 
+namespace plane_modes_test {
 namespace {
 
 FieldModes plane_modes_of(const std::string& text, std::size_t count) {
@@ -410,3 +411,5 @@ TEST_CASE("bodies on a line that are driven, that change in time or rest at a ki
   // ω tan 2ω = 1 − ω² without the spring's part: tan 2ω (ω² − 1) = ω
   CHECK(std::abs(std::tan(2 * given) * (given * given - 1) - given) < 1e-9);
 }
+
+}  // namespace plane_modes_test

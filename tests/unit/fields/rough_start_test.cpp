@@ -12,6 +12,7 @@
 /// Starts with kinks, or that do not fit their sides: all modes of the mesh have energy.
 using namespace maupertuis;
 
+namespace rough_start_test {
 namespace {
 
 FieldRunResult run_of(const std::string& text, double duration) {
@@ -103,3 +104,5 @@ TEST_CASE("a pulse of 10 µs after half an hour is seen among more steps than ca
   CHECK(std::abs(*found - 1500.0037) < 1e-3);
   CHECK_FALSE(unresolved_moment(*equations, {}, 1e-3, {0, 1400}));
 }
+
+}  // namespace rough_start_test

@@ -14,6 +14,7 @@
 /// Ends that are moved, turned or pushed by what switches at a moment, against d'Alembert's solution.
 using namespace maupertuis;
 
+namespace switching_test {
 namespace {
 
 struct Asked {
@@ -95,3 +96,5 @@ TEST_CASE("no error is known where a pulse is shorter than a step") {
   REQUIRE(found);
   CHECK_FALSE(found->results.at(0).passed);
 }
+
+}  // namespace switching_test

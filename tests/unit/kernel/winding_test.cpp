@@ -9,12 +9,12 @@ using namespace maupertuis;
 
 namespace {
 
-struct Angles {
+struct TwoAngles {
   Context context;
   KernelSource source;
   Expr a, b, k;
 
-  Angles() {
+  TwoAngles() {
     a = context.symbol("a", Role::Coordinate), b = context.symbol("b", Role::Coordinate);
     k = context.symbol("k", Role::Parameter);
     source.coordinates = {a, b};
@@ -33,7 +33,7 @@ struct Angles {
 }  // namespace
 
 TEST_CASE("angles wind where they enter through sines and cosines of whole multiples alone") {
-  Angles m;
+  TwoAngles m;
   CHECK(m.with(cos(m.a) + sin(Rational(3) * m.b - Rational(2) * m.a)).coordinates == std::vector<bool>{true, true});
   CHECK(m.with(cos(m.a) + m.k * pow(m.b, 2)).coordinates == std::vector<bool>{true, false});
   CHECK(m.with(cos(m.a / Rational(2))).coordinates == std::vector<bool>{false, true});
@@ -44,7 +44,7 @@ TEST_CASE("angles wind where they enter through sines and cosines of whole multi
 }
 
 TEST_CASE("observables say what a turn adds to them, events forbid it") {
-  Angles m;
+  TwoAngles m;
   m.source.observables = {m.a, m.a - Rational(2) * m.b, sin(m.a), m.dot(m.b)};
   const Winding& found = m.with(cos(m.a));
   REQUIRE(found.observables.size() == 4);

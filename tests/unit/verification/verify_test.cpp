@@ -4,6 +4,7 @@
 
 using namespace maupertuis;
 
+namespace verify_test {
 namespace {
 
 const std::string pendulum = R"(system pendulum
@@ -251,3 +252,5 @@ TEST_CASE("accelerations in what is conserved stand for what the equations say o
   passes(rod, "expect conserved x y'' - y x'' + g x");
   passes(rod, "expect y'' not conserved");
 }
+
+}  // namespace verify_test
