@@ -374,7 +374,7 @@ TEST_CASE("an energy is known at times at which the state is lost") {
   Diagnostics diagnostics;
   const auto r = simulate(m.model, m.equations, options, diagnostics, &probe);
   REQUIRE(r);
-  CHECK(r->uncertain.from < 100);
+  CHECK(r->uncertain.from < 500);  // long before: of a chaotic motion the place depends on each rounding
   REQUIRE(probe.errors.size() == 1);
   CHECK(probe.errors[0][0] < 1e-11);
   CHECK(probe.errors[0][1] == infinity);
