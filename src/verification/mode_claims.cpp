@@ -26,14 +26,16 @@ struct Frequency {
 std::vector<Frequency> frequencies(const ModalAnalysis& analysis, bool squared) {
   std::vector<Frequency> out;
   std::size_t zeros = 0;
+  Frequency zero;
   for (const Mode& m : analysis.modes) {
     const double w = m.kind == Mode::Kind::Growth ? m.eigenvalue.real() : m.frequency();
-    if (m.kind == Mode::Kind::Zero) zeros += m.zeros;
+    if (m.kind == Mode::Kind::Zero) zeros += m.zeros, zero.error = std::max(zero.error, m.error);
     const double error = squared ? (2 * std::abs(w) + m.error) * m.error : m.error;
     if (m.kind == Mode::Kind::Oscillation) out.insert(out.end(), m.chain, {squared ? w * w : w, error});
     if (m.kind == Mode::Kind::Growth && squared) out.insert(out.end(), m.chain, {-w * w, error});
   }
-  out.insert(out.end(), (zeros + 1) / 2, Frequency{});
+  if (squared) zero.error *= zero.error;
+  out.insert(out.end(), (zeros + 1) / 2, zero);
   std::sort(out.begin(), out.end(), [](const Frequency& a, const Frequency& b) { return a.value < b.value; });
   return out;
 }
@@ -214,11 +216,15 @@ void ModeClaims::judge_frequencies(const expectation::Frequencies& e, const Moda
   for (std::size_t i = 0; i < actual.size(); ++i) {
     const double allowed = e.tolerance.relative ? tolerance * std::abs(expected[i]) : tolerance,
                  error = std::abs(actual[i].value - expected[i]);
-    if (actual[i].error > least_certain * allowed && expected[i] != 0) {
+    // A frequency of 0 has no part of itself: it is told from 0 beside the largest.
+    const double scale = expected[i] == 0 && e.tolerance.relative ? tolerance * std::abs(expected.back()) : allowed;
+    if (actual[i].error > least_certain * scale) {
       result.message = fmt::format(
-          "The frequency {:.6g} is known to ± {:.1e} of it only: beside others that are so much higher rounding hides "
-          "the rest.",
-          actual[i].value / e.unit.factor, actual[i].error / std::abs(actual[i].value));
+          "The frequency {:.6g} is known to ± {:.1e}{} only: beside others that are so much higher rounding "
+          "hides the rest.",
+          actual[i].value / e.unit.factor,
+          actual[i].value == 0 ? actual[i].error / e.unit.factor : actual[i].error / std::abs(actual[i].value),
+          actual[i].value == 0 ? "" : " of it");
       return;
     }
     worst = std::max(worst, error <= allowed ? error / std::max(allowed, 1e-300) : HUGE_VAL);

@@ -1,5 +1,6 @@
 #include "analysis/linearization/dense.hpp"
 #include "analysis/linearization/measured.hpp"
+#include "analysis/linearization/modes_in_digits.hpp"
 #include "analysis/linearization/turning_frame.hpp"
 #include "linear_algebra/products.hpp"
 
@@ -234,8 +235,10 @@ LinearizationResult linearize(const PointEquations& equations, const OperatingPo
   check_operating_point(point, e.n, e.m, e.k);
   const Matrix turning = to_eigen(point.turning);
   const auto rows_at = [&](PointEquations::Impl::Rows& rows) { return in_frame(e.at(rows, point), turning); };
-  Pieces p{rows_at(e.balance), rows_at(e.positions), rows_at(e.rates), rows_at(e.accelerations), {}};
-  if (turning.size() > 0) p.cancelling = sizes_in_frame(e.at(e.balance, point), turning);
+  RowsAtPoint balance = e.at(e.balance, point);
+  restore_entries(equations, point, balance);
+  Pieces p{in_frame(balance, turning), rows_at(e.positions), rows_at(e.rates), rows_at(e.accelerations), {}};
+  if (turning.size() > 0) p.cancelling = sizes_in_frame(balance, turning);
   LinearizationResult result;
   Linearization& out = result.linearization;
   out.point = point;

@@ -46,7 +46,8 @@ class Analysis {
     else
       state_modes();
     if (equilibrium_ && is_in_doubt())
-      if (const auto precise = modes_in_digits(equations_, *equilibrium_)) take(*precise);
+      if (const auto precise = modes_in_digits(equations_, *equilibrium_); precise && is_whole(*precise))
+        take(*precise);
     if (!out_.symmetric) join_chains();
     finish();
     return std::move(out_);
@@ -63,6 +64,13 @@ class Analysis {
       if (m.kind != Mode::Kind::Zero && m.error > certain * std::abs(m.eigenvalue)) return true;
     }
     return zeros > explained || is_lost_in_entries(equations_, l_.point);
+  }
+
+  /// Where constraints meet singularly their rows are rounding, and leave other motions in digits than in double.
+  bool is_whole(const std::vector<PreciseMode>& modes) const {
+    std::size_t count = 0;
+    for (const PreciseMode& m : modes) count += m.multiplicity * (m.eigenvalue.imag() > 0 ? 2 : 1);
+    return count == l_.a.rows;
   }
 
   void take(const std::vector<PreciseMode>& modes) {

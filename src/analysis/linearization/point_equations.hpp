@@ -1,6 +1,7 @@
 #pragma once
 #include "analysis/linearization/matrices.hpp"
 
+#include <maupertuis/close_evaluation.hpp>
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/function_kernel.hpp>
 
@@ -62,6 +63,7 @@ struct PointEquations::Impl {
   std::vector<bool> turns_by_parameters;  // [n] whether a turn changes nothing depends on values of parameters
 
   mutable std::optional<bool> known_autonomous;  // at these values of parameters; looked for when it is asked
+  mutable std::optional<CloseEvaluation> entries_of_balance;  // by rows, of q, q̇, q̈; made when it is asked for
 
  private:
   std::vector<double> gather(const OperatingPoint& point) const;

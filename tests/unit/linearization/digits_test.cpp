@@ -185,3 +185,53 @@ TEST_CASE("forces without a potential, or along velocities, may feed a motion, h
   CHECK(is_stable("0", circulatory));
   CHECK(is_stable("0.1", "force x = c y\nforce y = c x\n"));
 }
+
+namespace {
+
+/// Three bodies in a row on stiff links, with a fourth that a constraint carries along.
+std::string carried(const char* e, const char* constraint) {
+  return std::string("dimensionless\nparam k = 1e12, e = ") + e +
+         "\ncoord x, y, z, w : number\nL = 1/2 (x'^2 + y'^2 + z'^2 + w'^2) - 1/2 k (x - y)^2 - 1/2 k (y - z)^2 "
+         "- 1/2 e x^2\nconstraint " +
+         constraint + "\n";
+}
+
+}  // namespace
+
+TEST_CASE("constraints leave frequencies all their digits") {
+  for (const char* constraint : {"w = z", "w' = z'", "w = z + 1/2 z^2", "w = z\nconstraint 2 w = z + w"}) {
+    CAPTURE(constraint);
+    const ModalAnalysis soft = first_of(carried("1e-2", constraint));
+    REQUIRE(frequencies(soft).size() == 3);
+    CHECK(near(frequencies(soft)[0], 0.05, 1e-13));  // all four on one spring
+    const ModalAnalysis pushed = first_of(carried("-1e-2", constraint));
+    CHECK(pushed.stability.verdict == Stability::Unstable);
+    CHECK(near(pushed.stability.growth_rate, 0.05, 1e-13));
+  }
+  CHECK(first_of(carried("1e-2", "w = z")).stability.verdict == Stability::Energetic);
+}
+
+TEST_CASE("a rod that pulls, and a stiff link at its end, have all their digits") {
+  // About the bottom: m (x'' + g/l x) + k (x − X) = 0, n X'' + k (X − x) = 0.
+  const double g_l = 9.81 / 0.7, k = 1e13, m = 2, n = 3;
+  const ModalAnalysis rod = first_of(
+      "dimensionless\nparam m = 2, n = 3, l = 0.7, g = 9.81, k = 1e13\ncoord x, y, X : number\n"
+      "L = 1/2 m (x'^2 + y'^2) + 1/2 n X'^2 - m g y - 1/2 k (x - X)^2\nconstraint x^2 + y^2 = l^2\nstart y = -0.7\n");
+  REQUIRE(frequencies(rod).size() == 2);
+  const double sum = g_l + k / m + k / n, product = g_l * k / n;
+  const double large = (sum + std::sqrt(sum * sum - 4 * product)) / 2;
+  CHECK(near(frequencies(rod)[0], std::sqrt(product / large), 1e-13));
+  CHECK(near(frequencies(rod)[1], std::sqrt(large), 1e-13));
+}
+
+TEST_CASE("matrices are shown in the digits that their formulas lose") {
+  // K = ∂²V/∂b² = c (1 − cos b), of which double keeps half the digits or less.
+  Linearized m("dimensionless\nparam c = 1e10\ncoord b : number\nL = 1/2 b'^2 - c (cos b - 1 + b^2/2)\n");
+  for (const double b : {1e-3, 1e-5, 1e-7}) {
+    CAPTURE(b);
+    const Linearization there = linearize(m.at, {0, {b}, {0}, {0}, {}, {}}).linearization;
+    const double stiffness = -2e10 * std::pow(std::sin(b / 2), 2);
+    CHECK(near(there.stiffness.at(0, 0), -stiffness, 1e-15));
+    CHECK(near(there.a.at(1, 0), stiffness, 1e-15));
+  }
+}
