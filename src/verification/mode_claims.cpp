@@ -217,8 +217,9 @@ void ModeClaims::judge_frequencies(const expectation::Frequencies& e, const Moda
     const double allowed = e.tolerance.relative ? tolerance * std::abs(expected[i]) : tolerance,
                  error = std::abs(actual[i].value - expected[i]);
     // A frequency of 0 has no part of itself: it is told from 0 beside the largest.
-    const double scale = expected[i] == 0 && e.tolerance.relative ? tolerance * std::abs(expected.back()) : allowed;
-    if (actual[i].error > least_certain * scale) {
+    const bool is_zero = expected[i] == 0;
+    const double scale = is_zero && e.tolerance.relative ? tolerance * std::abs(expected.back()) : allowed;
+    if (actual[i].error > (is_zero ? 1 : least_certain) * scale) {
       result.message = fmt::format(
           "The frequency {:.6g} is known to ± {:.1e}{} only: beside others that are so much higher rounding "
           "hides the rest.",
