@@ -1,5 +1,5 @@
+#include "analysis/linearization/branch_walk.hpp"
 #include "analysis/linearization/point_equations.hpp"
-#include "analysis/linearization/turning_point.hpp"
 
 #include <maupertuis/interrupt.hpp>
 #include <maupertuis/locus.hpp>
@@ -49,11 +49,12 @@ class Tracer {
       for (; whole < steps; ++whole)
         add_value(from + (to - from) * static_cast<double>(whole) / static_cast<double>(steps - 1),
                   whole == 0 || whole == steps / 2 || whole == steps - 1);
-      follow_back();
+      for (std::size_t b = 0; b < locus_.branches.size(); ++b) extend(b, true);
+      find_folds();
+      drop_points_of_folds();
       look_between();
       find_changes();
       join_births();
-      find_folds();
     } catch (const Interrupted&) {
       if (whole == 0) throw;
       locus_.values.resize(whole);
@@ -207,35 +208,77 @@ class Tracer {
   }
 
   /// A search can miss a branch at some values, one that begins far from the start for instance: from where it was met
-  /// first it is followed to the values before.
-  void follow_back() {
-    for (LocusBranch& branch : locus_.branches) {
-      auto k = std::find(locus_.values.begin(), locus_.values.end(), branch.points.front().parameter);
-      while (k != locus_.values.begin() && is_followed(branch.points.front().equilibrium)) {
-        const auto before = follow_back(branch, *--k);
-        if (!before) break;
-        branch.points.insert(branch.points.begin(), *before);
-      }
+  /// it is followed to the values before, or after.
+  void extend(std::size_t b, bool front) {
+    for (;;) {
+      const LocusBranch& branch = locus_.branches[b];
+      const LocusPoint& end = front ? branch.points.front() : branch.points.back();
+      const auto value = value_next_to(end.parameter, front);
+      if (!value || !is_followed(end.equilibrium)) return;
+      const auto next = extended(branch, front, *value);
+      if (!next) return;
+      auto& points = locus_.branches[b].points;
+      points.insert(front ? points.begin() : points.end(), *next);
     }
   }
-  /// Nothing where it does not come from there, or other branches pass.
-  std::optional<LocusPoint> follow_back(const LocusBranch& branch, double value) {
-    const std::vector<LocusPoint> backwards(branch.points.rbegin(), branch.points.rend());
-    const auto there = continued(backwards, value);
-    const auto is_there = [&](const LocusPoint& p) {
-      return p.parameter == value && distance(p.equilibrium, *there) <= one_place;
-    };
-    const auto passes = [&](const LocusBranch& b) { return std::any_of(b.points.begin(), b.points.end(), is_there); };
-    if (!there || std::any_of(locus_.branches.begin(), locus_.branches.end(), passes)) return std::nullopt;
+  /// Nothing where it does not lead there, or other branches pass.
+  std::optional<LocusPoint> extended(const LocusBranch& branch, bool front, double value) {
+    const std::vector<LocusPoint> along =
+        front ? std::vector<LocusPoint>(branch.points.rbegin(), branch.points.rend()) : branch.points;
+    const auto there = continued(along, value);
+    if (!there || branch_at(value, *there)) return std::nullopt;
     return judged(value, *there);
+  }
+
+  std::optional<std::size_t> branch_at(double value, const Equilibrium& x) const {
+    for (std::size_t b = 0; b < locus_.branches.size(); ++b)
+      for (const LocusPoint& p : locus_.branches[b].points)
+        if (p.parameter == value && distance(p.equilibrium, x) <= one_place) return b;
+    return std::nullopt;
   }
 
   std::optional<Equilibrium> continued(const std::vector<LocusPoint>& points) {
     return continued(points, locus_.values.back());
   }
+  /// The point of a branch at another value. Along the curve itself, as far as that can be followed; beyond a fold
+  /// another branch begins.
+  std::optional<Equilibrium> continued(const std::vector<LocusPoint>& points, double to) {
+    const LocusPoint& last = points.back();
+    if (!is_curve()) return in_steps(points, to);
+    if (is_regular(last)) {
+      const BranchWalk walk = walk_from(last, to);
+      if (walk.end == BranchWalk::End::Arrived && walk.folds.empty()) return settled(last.equilibrium, walk.last);
+      if (walk.end != BranchWalk::End::Lost || !walk.folds.empty()) return std::nullopt;
+    }
+    const auto there = in_steps(points, to);
+    if (!there || is_regular(last)) return there;
+    // From a singular point several ways may lead on: those on which it is a fold are branches of their own.
+    const BranchWalk back = walk_from({to, *there, {}, {}, {}}, last.parameter);
+    return back.folds.empty() ? there : std::nullopt;
+  }
+
+  bool is_curve() const { return !in_time(); }
+
+  BranchWalk walk_from(const LocusPoint& from, double to) {
+    set_parameter(from.parameter);
+    const BranchWalk out =
+        walk_along(equations_.impl(), {from.equilibrium.point, parameter_, from.parameter, to, sizes_, symmetries_});
+    set_parameter(to);
+    return out;
+  }
+
+  /// The rest next to a place that a walk has come to, as a search tells it.
+  std::optional<Equilibrium> settled(const Equilibrium& like, const RestAt& place) {
+    set_parameter(place.value);
+    Equilibrium guess = like;
+    guess.point = place.rest;
+    const auto found = near(guess);
+    return found && distance(*found, guess) <= one_place ? found : std::nullopt;
+  }
+
   /// The point at a value next to the last of a branch, in steps that are halved where they are long, or lead nowhere:
   /// at the end of a branch, where it turns back, all of them do.
-  std::optional<Equilibrium> continued(const std::vector<LocusPoint>& points, double to) {
+  std::optional<Equilibrium> in_steps(const std::vector<LocusPoint>& points, double to) {
     constexpr double least = 1.0 / 4096;  // of a step of the sweep
     Step last{points.back().parameter, points.back().equilibrium};
     std::optional<Step> before;
@@ -377,10 +420,15 @@ class Tracer {
     locus_.changes.push_back({(low.parameter + high.parameter) / 2, branch, before, after});
   }
 
-  /// Next to the straight line, or by short steps from one of the ends.
+  /// Next to the straight line, much nearer than the ends are to each other; else from one of the ends.
   std::optional<LocusPoint> between(const LocusPoint& low, const LocusPoint& high, double middle) {
+    constexpr double near_line = 0.1;
     const Step ends[] = {{low.parameter, low.equilibrium}, {high.parameter, high.equilibrium}};
-    if (auto point = follow(middle, on_line(ends[0], ends[1], middle))) return point;
+    const Equilibrium guess = on_line(ends[0], ends[1], middle);
+    const double most = near_line * distance(low.equilibrium, high.equilibrium) + one_place;
+    if (auto point = follow(middle, guess);
+        point && (!is_followed(guess) || distance(point->equilibrium, guess) <= most))
+      return point;
     for (const LocusPoint* end : {&low, &high})
       if (const auto there = continued({*end}, middle)) return judged(middle, *there);
     return std::nullopt;
@@ -400,16 +448,24 @@ class Tracer {
 
   // ------------------------------------------------------------------------------------------------------------ folds
 
-  /// A branch that begins or ends between two values of the sweep, and out of no other one, turns back there.
+  /// A branch that begins or ends between two values of the sweep, and out of no other one, turns back there. The arms
+  /// beyond are branches too, also where no start led to them.
   void find_folds() {
-    for (std::size_t b = 0; b < locus_.branches.size(); ++b)
+    if (!is_curve()) return;
+    constexpr std::size_t most_branches = 1000;
+    for (std::size_t b = 0; b < std::min(most_branches, locus_.branches.size()); ++b)
       for (const bool front : {true, false}) {
-        const auto& points = locus_.branches[b].points;
-        const LocusPoint end = front ? points.front() : points.back();
+        const LocusPoint end = end_of(b, front);
         const auto beyond = value_next_to(end.parameter, front);
-        if (in_time() || !beyond || !is_followed(end.equilibrium)) continue;
-        if (const auto turn = turn_beyond(end, *beyond)) add_fold(b, front, end, *turn);
+        if (!beyond || !is_followed(end.equilibrium) || !is_regular(end)) continue;
+        const BranchWalk walk = walk_from(end, *beyond);
+        if (!walk.folds.empty()) add_folds(b, front, end, walk);
       }
+  }
+
+  LocusPoint end_of(std::size_t b, bool front) const {
+    const auto& points = locus_.branches[b].points;
+    return front ? points.front() : points.back();
   }
 
   /// The value of the sweep before or after that of a point; nothing beyond its ends, and of points between.
@@ -420,27 +476,98 @@ class Tracer {
     return before ? *(k - 1) : *(k + 1);
   }
 
-  std::optional<TurningPoint> turn_beyond(const LocusPoint& end, double beyond) {
-    set_parameter(end.parameter);
-    return turning_point(equations_.impl(),
-                         {end.equilibrium.point, parameter_, end.parameter, beyond, sizes_, symmetries_});
+  /// From the end of a branch through all folds of the walk: arms within one step of the sweep have points at their
+  /// folds and one between, the last one goes on from where the walk ends.
+  void add_folds(std::size_t b, bool front, const LocusPoint& end, const BranchWalk& walk) {
+    std::size_t fold = add_fold(b, front, end, walk.folds.front());
+    for (std::size_t k = 0; k < walk.arms.size(); ++k) {
+      const Fold next = fold_at(end, walk.folds[k + 1]);
+      const std::size_t there = known_fold(next);
+      if (there < locus_.folds.size() && locus_.folds[there].branches.size() > 1) return;  // the arms are there
+      const LocusPoint middle = judged_at(end, walk.arms[k]);
+      // Of two folds one is met first along the sweep.
+      const bool forward = (walk.folds[k + 1].value - walk.folds[k].value) * step() > 0;
+      locus_.branches.push_back({{middle}});
+      const std::size_t arm = locus_.branches.size() - 1;
+      attach_to(fold, arm, forward, middle);
+      fold = add_fold(arm, !forward, middle, walk.folds[k + 1]);
+    }
+    if (walk.end == BranchWalk::End::Lost) return;
+    const bool returned = walk.end == BranchWalk::End::Returned;
+    add_last_arm(fold, returned == front, end, walk.last);
   }
 
-  void add_fold(std::size_t b, bool front, const LocusPoint& end, const TurningPoint& turn) {
-    Equilibrium x = end.equilibrium;
-    x.point = turn.rest;
-    const auto is_known = [&](const Fold& f) {
-      return std::abs(f.parameter - turn.value) <= one_place * std::abs(step()) &&
-             distance(f.equilibrium, x) <= one_place;
-    };
-    auto fold = std::find_if(locus_.folds.begin(), locus_.folds.end(), is_known);
-    if (fold == locus_.folds.end()) fold = locus_.folds.insert(fold, {turn.value, x, {}});
-    fold->branches.push_back(b);
-    set_parameter(fold->parameter);
-    LocusPoint last = judged(fold->parameter, fold->equilibrium);
+  /// `front`: whether the arm begins at the fold, in the direction of the sweep.
+  void add_last_arm(std::size_t fold, bool front, const LocusPoint& like, const RestAt& place) {
+    const auto there = settled(like.equilibrium, place);
+    if (!there) return;
+    auto arm = branch_at(place.value, *there);
+    const bool is_new = !arm;
+    if (is_new) {
+      arm = locus_.branches.size();
+      locus_.branches.push_back({{judged(place.value, *there)}});
+    }
+    if (const LocusPoint end = end_of(*arm, front); end.parameter == place.value) attach_to(fold, *arm, front, end);
+    if (is_new) extend(*arm, !front);
+  }
+
+  Fold fold_at(const LocusPoint& like, const RestAt& place) const {
+    Equilibrium x = like.equilibrium;
+    x.point = place.rest;
+    return {place.value, x, {}};
+  }
+  LocusPoint judged_at(const LocusPoint& like, const RestAt& place) {
+    set_parameter(place.value);
+    return judged(place.value, fold_at(like, place).equilibrium);
+  }
+
+  /// Its number; that of a new one where there is none.
+  std::size_t known_fold(const Fold& fold) const {
+    const auto found = std::find_if(locus_.folds.begin(), locus_.folds.end(), [&](const Fold& f) {
+      return std::abs(f.parameter - fold.parameter) <= one_place * std::abs(step()) &&
+             distance(f.equilibrium, fold.equilibrium) <= one_place;
+    });
+    return static_cast<std::size_t>(found - locus_.folds.begin());
+  }
+
+  std::size_t add_fold(std::size_t b, bool front, const LocusPoint& end, const RestAt& turn) {
+    const Fold fold = fold_at(end, turn);
+    const std::size_t number = known_fold(fold);
+    if (number == locus_.folds.size()) locus_.folds.push_back(fold);
+    attach_to(number, b, front, end);
+    return number;
+  }
+
+  /// The fold is the last point of the branch there, with the verdict of its neighbour.
+  void attach_to(std::size_t number, std::size_t b, bool front, const LocusPoint& end) {
+    Fold& fold = locus_.folds[number];
+    if (std::find(fold.branches.begin(), fold.branches.end(), b) != fold.branches.end() || fold.branches.size() > 1)
+      return;
+    fold.branches.push_back(b);
+    set_parameter(fold.parameter);
+    LocusPoint last = judged(fold.parameter, fold.equilibrium);
     last.stability = end.stability;
     auto& points = locus_.branches[b].points;
     points.insert(front ? points.begin() : points.end(), last);
+  }
+
+  /// A fold at a value of the sweep is found by the search too, as a point of no branch.
+  void drop_points_of_folds() {
+    constexpr double of_double_root = 1e-4;  // as far as rounding of the forces leaves it open
+    std::vector<std::size_t> numbers;        // new ones
+    std::vector<LocusBranch> left;
+    for (const LocusBranch& b : locus_.branches) {
+      const LocusPoint& x = b.points.front();
+      const bool is_fold =
+          b.points.size() == 1 && std::any_of(locus_.folds.begin(), locus_.folds.end(), [&](const Fold& f) {
+            return f.parameter == x.parameter && distance(f.equilibrium, x.equilibrium) <= of_double_root;
+          });
+      numbers.push_back(left.size());
+      if (!is_fold) left.push_back(b);
+    }
+    locus_.branches = std::move(left);
+    for (Fold& f : locus_.folds)
+      for (std::size_t& b : f.branches) b = numbers[b];
   }
 
   double step() const { return locus_.values[1] - locus_.values[0]; }

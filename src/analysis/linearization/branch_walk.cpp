@@ -1,0 +1,319 @@
+#include "analysis/linearization/branch_walk.hpp"
+
+#include "linear_algebra/dense.hpp"
+
+#include <maupertuis/precise_roots.hpp>
+#include <maupertuis/transform.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+/// The rests are a curve F(z) = 0 of z = (q, λ, τ, p): balance, constraints, and no way along the translations, whose
+/// forces τ vanish. With the tangent t, J t = 0, as a further row the matrix stays regular where the curve turns back,
+/// though ∂F/∂q is singular there; where another branch crosses, its determinant changes sign.
+namespace maupertuis {
+namespace {
+
+constexpr double longest = 0.05, first_step = 1e-3, shortest = 1e-9;  // of a step, in typical sizes
+constexpr int most_steps = 2000, most_corrections = 10, most_halvings = 80;
+constexpr double straight = 0.9;      // cosine of the turn in one step
+constexpr double converged = 1e-13;   // of a correction: the next one is rounding
+constexpr double at_rounding = 1e-9;  // of one that does not shrink any more
+constexpr double rough = 1e-5;        // of one that rounding of the forces does not let shrink: 100 digits do
+constexpr double level = 1e-4;        // of the tangent's part along the parameter: else the curve has a corner there
+constexpr double on_value = 1e-9;     // of the way between two values: a fold so near to one of them is at it
+constexpr double one_crossing = 1e-9, near_crossing = 1e-5;  // of a step: where two branches have one point
+constexpr double apart = 1e-5;  // of the way between two values of the parameter, for the derivative by it
+
+struct OnCurve {
+  Vector z, tangent;
+  bool regular_side = false;  // the sign of the determinant
+};
+
+class RestCurve {
+ public:
+  RestCurve(PointEquations::Impl& equations, const BranchStretch& end)
+      : e_(equations),
+        end_(end),
+        n_(static_cast<Index>(equations.n)),
+        m_(static_cast<Index>(equations.m)),
+        pins_(static_cast<Index>(end.translations.size())),
+        size_(n_ + m_ + pins_ + 1) {}
+
+  BranchWalk walk() {
+    auto here = begin();
+    BranchWalk out;
+    double step = first_step;
+    for (int k = 0; here && k < most_steps && step > shortest; ++k) {
+      const auto next = ahead(*here, step);
+      if (!next || !goes_on(*here, *next, step) || (crosses(*here, *next) && is_jump(*here, *next, step))) {
+        step /= 2;
+        continue;
+      }
+      if (turns(*here, *next)) {
+        const auto fold = crosses(*here, *next) ? std::nullopt : located(*here, *next, step);
+        if (!fold) return out;
+        if (!out.folds.empty()) out.arms.push_back(rest_at(here->z));
+        out.folds.push_back(*fold);
+      }
+      const double way = parameter_of(*next);
+      if (way > 1 + on_value || way < -on_value) {
+        const auto there = at_value(*here, *next, step, way > 0 ? 1 : 0);
+        if (there) out.last = *there, out.end = way > 0 ? BranchWalk::End::Arrived : BranchWalk::End::Returned;
+        return out;
+      }
+      here = next;
+      step = std::min(2 * step, longest);
+    }
+    return out;
+  }
+
+ private:
+  double parameter_of(const OnCurve& x) const { return x.z[size_ - 1]; }
+  RestAt rest_at(const Vector& z) const { return {value_of(z), rest_of(z)}; }
+
+  static bool crosses(const OnCurve& from, const OnCurve& next) { return from.regular_side != next.regular_side; }
+  bool turns(const OnCurve& from, const OnCurve& next) const {
+    return (from.tangent[size_ - 1] > 0) != (next.tangent[size_ - 1] > 0);
+  }
+  bool goes_on(const OnCurve& from, const OnCurve& next, double step) const {
+    return next.tangent.dot(weighed(from.tangent)) >= straight && weighed(next.z - from.z).norm() * straight <= step;
+  }
+
+  /// Where the determinant has another sign, another branch crosses, or the step has gone over to one that passes
+  /// nearby: then a place between, from which both sides are as near as the steps to it, is not there.
+  bool is_jump(const OnCurve& from, const OnCurve& next, double step) {
+    Vector low = from.z, high = next.z;
+    double below = 0, above = step;
+    while (above - below > one_crossing) {
+      std::optional<OnCurve> middle;
+      for (const double part : {0.5, 0.4}) {  // the very place is singular
+        if (middle) break;
+        middle = ahead(from, below + part * (above - below));
+      }
+      if (!middle && above - below > near_crossing) return true;
+      if (!middle) break;
+      const double way = weighed(from.tangent).dot(middle->z - from.z);
+      if (crosses(from, *middle))
+        above = way, high = middle->z;
+      else
+        below = way, low = middle->z;
+    }
+    constexpr double oblique = 4;
+    return weighed(high - low).norm() > oblique * (above - below) + one_crossing;
+  }
+
+  /// The rest at the end of the stretch, or at its beginning, that lies between two places: by secants (Illinois).
+  std::optional<RestAt> at_value(const OnCurve& from, const OnCurve& next, double step, double value) {
+    double low = 0, high = step, off_low = parameter_of(from) - value, off_high = parameter_of(next) - value;
+    Vector z = next.z;
+    for (int k = 0; k < most_halvings && std::abs(z[size_ - 1] - value) > converged; ++k) {
+      const double at = k % 8 == 7 ? (low + high) / 2 : high - off_high * (high - low) / (off_high - off_low);
+      const auto middle = ahead(from, at);
+      if (!middle) return std::nullopt;
+      z = middle->z;
+      const double off = parameter_of(*middle) - value;
+      if ((off > 0) == (off_high > 0))
+        high = at, off_high = off, off_low /= 2;
+      else
+        low = high, off_low = off_high, high = at, off_high = off;
+    }
+    z[size_ - 1] = value;
+    return rest_at(z);
+  }
+
+  /// The parameter runs from 0 to 1 on the way.
+  std::optional<OnCurve> begin() {
+    Vector z = Vector::Zero(size_);
+    for (Index i = 0; i < n_; ++i) z[i] = end_.rest.q[static_cast<std::size_t>(i)] / size_of(i);
+    for (Index i = 0; i < m_; ++i) z[n_ + i] = end_.rest.multipliers[static_cast<std::size_t>(i)];
+    return with_tangent(z, Vector::Unit(size_, size_ - 1));
+  }
+
+  double size_of(Index i) const { return end_.sizes[static_cast<std::size_t>(i)]; }
+  /// The values at the ends exactly.
+  double value_of(const Vector& z) const {
+    const double part = z[size_ - 1];
+    return part == 1 ? end_.beyond : end_.value + part * (end_.beyond - end_.value);
+  }
+
+  OperatingPoint rest_of(const Vector& z) const {
+    OperatingPoint out = end_.rest;
+    for (Index i = 0; i < n_; ++i) out.q[static_cast<std::size_t>(i)] = z[i] * size_of(i);
+    for (Index i = 0; i < m_; ++i) out.multipliers[static_cast<std::size_t>(i)] = z[n_ + i];
+    return out;
+  }
+
+  void set_parameter(double value) {
+    e_.parameters[end_.parameter] = value;
+    for (PointEquations::Impl::Rows* rows : {&e_.resting, &e_.positions}) {
+      rows->values.set_parameters(e_.parameters);
+      rows->entries.set_parameters(e_.parameters);
+    }
+  }
+
+  /// F at a place, in units of nothing in particular.
+  Vector forces(const Vector& z) {
+    set_parameter(value_of(z));
+    const OperatingPoint at = rest_of(z);
+    Vector out = Vector::Zero(size_ - 1);
+    out.head(n_) = e_.value(e_.resting, at);
+    out.segment(n_, m_) = e_.value(e_.positions, at);
+    for (Index k = 0; k < pins_; ++k) {
+      const Vector d = direction(k);
+      out.head(n_) += z[n_ + m_ + k] * d;
+      for (Index i = 0; i < n_; ++i)
+        out[n_ + m_ + k] += d[i] * (z[i] - end_.rest.q[static_cast<std::size_t>(i)] / size_of(i));
+    }
+    return out;
+  }
+
+  Vector direction(Index k) const { return to_eigen(end_.translations[static_cast<std::size_t>(k)].direction); }
+
+  Matrix jacobian(const Vector& z) {
+    Matrix out = Matrix::Zero(size_ - 1, size_);
+    const Vector step = apart * Vector::Unit(size_, size_ - 1);
+    out.rightCols(1) = (forces(z + step) - forces(z - step)) / (2 * apart);
+    set_parameter(value_of(z));
+    const OperatingPoint at = rest_of(z);
+    const RowsAtPoint balance = e_.at(e_.resting, at), positions = e_.at(e_.positions, at);
+    for (Index i = 0; i < n_; ++i) {
+      out.block(0, i, n_, 1) = size_of(i) * balance.by_q.col(i);
+      out.block(n_, i, m_, 1) = size_of(i) * positions.by_q.col(i);
+    }
+    out.block(0, n_, n_, m_) = balance.by_multipliers;
+    for (Index k = 0; k < pins_; ++k) {
+      out.block(0, n_ + m_ + k, n_, 1) = direction(k);
+      out.block(n_ + m_ + k, 0, 1, n_) = direction(k).transpose();
+    }
+    return out;
+  }
+
+  /// Multipliers have no size of their own: how far two places are apart is a matter of q and p.
+  Vector weighed(Vector z) const {
+    z.segment(n_, size_ - 1 - n_).setZero();
+    return z;
+  }
+
+  /// Rows of one size, the last of them across the curve.
+  struct Bordered {
+    Eigen::PartialPivLU<Matrix> lu;
+    Vector rows;
+  };
+  std::optional<Bordered> bordered(const Vector& z, const Vector& across) {
+    Matrix all(size_, size_);
+    all << jacobian(z), across.transpose();
+    if (!all.allFinite()) return std::nullopt;
+    const Vector largest = all.cwiseAbs().rowwise().maxCoeff();
+    const Vector rows = (largest.array() > 0).select(largest.cwiseInverse(), 1.0);
+    return Bordered{Eigen::PartialPivLU<Matrix>(Matrix(rows.asDiagonal() * all)), rows};
+  }
+
+  static bool is_positive(const Bordered& b) {
+    const Vector pivots = b.lu.matrixLU().diagonal();
+    return ((pivots.array() < 0).count() % 2 == 0) == (b.lu.permutationP().determinant() > 0);
+  }
+
+  std::optional<OnCurve> with_tangent(const Vector& z, const Vector& across) {
+    const auto b = bordered(z, across);
+    if (!b) return std::nullopt;
+    Vector t = b->lu.solve(Vector(b->rows[size_ - 1] * Vector::Unit(size_, size_ - 1)));
+    t /= weighed(t).norm();
+    if (!t.allFinite()) return std::nullopt;
+    const auto own = bordered(z, weighed(t));
+    return own ? std::optional(OnCurve{z, t, is_positive(*own)}) : std::nullopt;
+  }
+
+  /// The place of the curve so far along the tangent.
+  std::optional<OnCurve> ahead(const OnCurve& from, double step) {
+    const Vector across = weighed(from.tangent);
+    Vector z = from.z + step * from.tangent;
+    double before = HUGE_VAL;
+    for (int k = 0; k < most_corrections; ++k) {
+      const auto b = bordered(z, across);
+      if (!b) return std::nullopt;
+      Vector off(size_);
+      off << forces(z), across.dot(z - from.z) - step;
+      const Vector move = b->lu.solve(Vector(b->rows.cwiseProduct(off)));
+      const double length = weighed(move).norm();
+      if (!(length < before || length < at_rounding))
+        return before < rough && in_digits(z, from.tangent) ? with_tangent(z, across) : std::nullopt;
+      z -= move;
+      if (length < converged || (length < at_rounding && length > before / 4)) return with_tangent(z, across);
+      before = length;
+    }
+    return std::nullopt;
+  }
+
+  /// The tangent's part along the parameter has another sign a step ahead.
+  std::optional<RestAt> located(const OnCurve& from, const OnCurve& next, double step) {
+    double low = 0, high = step;
+    OnCurve at = next;
+    for (int k = 0; k < most_halvings && high - low > 1e-16 * step; ++k) {
+      const auto middle = ahead(from, (low + high) / 2);
+      if (!middle) return std::nullopt;
+      at = *middle;
+      (turns(from, at) ? high : low) = (low + high) / 2;
+    }
+    if (std::abs(at.tangent[size_ - 1]) > level) return std::nullopt;
+    for (Index i = 0; i < n_; ++i)
+      if (std::abs(at.z[i]) < converged) at.z[i] = 0;
+    for (const double value : {0.0, 1.0})
+      if (std::abs(parameter_of(at) - value) <= on_value) at.z[size_ - 1] = value;
+    return rest_at(at.z);
+  }
+
+  // ----------------------------------------------------------------------------------------------------- in 100 digits
+
+  /// Beside a stiff link rounding of its force moves the others: the place on the curve with the same value of what the
+  /// tangent has most of.
+  bool in_digits(Vector& z, const Vector& tangent) {
+    const double all_of_way = std::abs(end_.beyond - end_.value);
+    Index held = 0;
+    weighed(tangent).cwiseAbs().maxCoeff(&held);
+    std::vector<Expr> unknowns;
+    std::vector<double> sizes;
+    std::vector<Index> places;
+    const auto add = [&](Index place, Expr symbol, double size) {
+      if (place != held) unknowns.push_back(symbol), sizes.push_back(size), places.push_back(place);
+    };
+    const MechanicalSystem& system = *e_.system;
+    for (Index i = 0; i < n_; ++i) add(i, system.coordinates[static_cast<std::size_t>(i)].q, size_of(i));
+    for (Index i = 0; i < m_; ++i) add(n_ + i, system.constraints[static_cast<std::size_t>(i)].multiplier, 0);
+    add(size_ - 1, system.parameters[end_.parameter].symbol, all_of_way);
+    set_parameter(value_of(z));
+    const auto root = PreciseRoots(resting_rows(), unknowns).near(values_at(e_, rest_of(z)), sizes, 1e2 * rough);
+    if (!root) return false;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const Index i = places[k];
+      z[i] = i < n_           ? (*root)[k] / size_of(i)
+             : i == size_ - 1 ? ((*root)[k] - end_.value) / (end_.beyond - end_.value)
+                              : (*root)[k];
+    }
+    return true;
+  }
+
+  /// Balance and positions where nothing moves, the other parameters as exact numbers.
+  ExprVector resting_rows() const {
+    ExprMap held = exact_parameters(e_);
+    held.erase(e_.system->parameters[end_.parameter].symbol);
+    for (const Coordinate& c : e_.system->coordinates)
+      for (const Expr& rate : {c.velocity, c.acceleration}) held.emplace(rate, e_.system->context->number(0));
+    ExprVector rows = e_.balance_rows;
+    rows.insert(rows.end(), e_.kept_rows.begin(), e_.kept_rows.begin() + static_cast<std::ptrdiff_t>(e_.holonomic));
+    return substitute(rows, held);
+  }
+
+  PointEquations::Impl& e_;
+  const BranchStretch& end_;
+  Index n_, m_, pins_, size_;
+};
+
+}  // namespace
+
+BranchWalk walk_along(PointEquations::Impl& equations, const BranchStretch& stretch) {
+  const bool is_plain = equations.holonomic == equations.m && equations.relations.kernel.size() == 0;
+  return is_plain ? RestCurve(equations, stretch).walk() : BranchWalk();
+}
+
+}  // namespace maupertuis
