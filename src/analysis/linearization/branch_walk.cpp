@@ -3,10 +3,13 @@
 #include "linear_algebra/dense.hpp"
 
 #include <maupertuis/precise_roots.hpp>
+#include <maupertuis/switches.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 
 /// The rests are a curve F(z) = 0 of z = (q, λ, τ, p): balance, constraints, and no way along the translations, whose
 /// forces τ vanish. With the tangent t, J t = 0, as a further row the matrix stays regular where the curve turns back,
@@ -258,39 +261,104 @@ class RestCurve {
     if (std::abs(at.tangent[size_ - 1]) > level) return std::nullopt;
     for (Index i = 0; i < n_; ++i)
       if (std::abs(at.z[i]) < converged) at.z[i] = 0;
-    for (const double value : {0.0, 1.0})
-      if (std::abs(parameter_of(at) - value) <= on_value) at.z[size_ - 1] = value;
-    return rest_at(at.z);
+    RestAt out = fold_in_digits(at).value_or(rest_at(at.z));
+    for (const double value : {end_.value, end_.beyond})
+      if (std::abs(out.value - value) <= on_value * std::abs(end_.beyond - end_.value)) out.value = value;
+    return out;
   }
 
   // ----------------------------------------------------------------------------------------------------- in 100 digits
 
-  /// Beside a stiff link rounding of its force moves the others: the place on the curve with the same value of what the
-  /// tangent has most of.
-  bool in_digits(Vector& z, const Vector& tangent) {
-    const double all_of_way = std::abs(end_.beyond - end_.value);
-    Index held = 0;
-    weighed(tangent).cwiseAbs().maxCoeff(&held);
-    std::vector<Expr> unknowns;
+  /// Some of q, λ and the parameter, with what a root is measured by.
+  struct Unknowns {
+    std::vector<Expr> symbols;
     std::vector<double> sizes;
-    std::vector<Index> places;
+    std::vector<Index> places;  // in z
+  };
+  Unknowns unknowns_but(Index held) const {
+    Unknowns out;
     const auto add = [&](Index place, Expr symbol, double size) {
-      if (place != held) unknowns.push_back(symbol), sizes.push_back(size), places.push_back(place);
+      if (place == held) return;
+      out.symbols.push_back(symbol);
+      out.sizes.push_back(size);
+      out.places.push_back(place);
     };
     const MechanicalSystem& system = *e_.system;
     for (Index i = 0; i < n_; ++i) add(i, system.coordinates[static_cast<std::size_t>(i)].q, size_of(i));
     for (Index i = 0; i < m_; ++i) add(n_ + i, system.constraints[static_cast<std::size_t>(i)].multiplier, 0);
-    add(size_ - 1, system.parameters[end_.parameter].symbol, all_of_way);
-    set_parameter(value_of(z));
-    const auto root = PreciseRoots(resting_rows(), unknowns).near(values_at(e_, rest_of(z)), sizes, 1e2 * rough);
-    if (!root) return false;
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      const Index i = places[k];
-      z[i] = i < n_           ? (*root)[k] / size_of(i)
-             : i == size_ - 1 ? ((*root)[k] - end_.value) / (end_.beyond - end_.value)
-                              : (*root)[k];
+    add(size_ - 1, system.parameters[end_.parameter].symbol, std::abs(end_.beyond - end_.value));
+    return out;
+  }
+  void take(const Unknowns& unknowns, const std::vector<double>& root, Vector& z) const {
+    for (std::size_t k = 0; k < unknowns.places.size(); ++k) {
+      const Index i = unknowns.places[k];
+      z[i] = i < n_           ? root[k] / size_of(i)
+             : i == size_ - 1 ? (root[k] - end_.value) / (end_.beyond - end_.value)
+                              : root[k];
     }
-    return true;
+  }
+
+  /// Beside a stiff link rounding of its force moves the others: the place on the curve with the same value of what the
+  /// tangent has most of.
+  bool in_digits(Vector& z, const Vector& tangent) {
+    Index held = 0;
+    weighed(tangent).cwiseAbs().maxCoeff(&held);
+    set_parameter(value_of(z));
+    const Unknowns unknowns = unknowns_but(held);
+    auto roots = roots_.find(held);
+    if (roots == roots_.end())
+      roots = roots_.emplace(held, std::make_unique<PreciseRoots>(resting_rows(), unknowns.symbols)).first;
+    const auto root = roots->second->near(values_at(e_, rest_of(z)), unknowns.sizes, 1e2 * rough);
+    if (root) take(unknowns, *root, z);
+    return root.has_value();
+  }
+
+  /// F(q, λ, p) = 0 and ∂F/∂(q, λ) w = 0 with t·w = 1 is regular at a fold (Moore and Spence 1980). Velocities and
+  /// accelerations, which no row of rests holds, stand for w.
+  std::optional<RestAt> fold_in_digits(const OnCurve& at) {
+    constexpr double nearby = 1e-4;
+    const ExprVector rows = resting_rows();
+    if (m_ > n_ || !switches_of(rows).empty()) return std::nullopt;
+    const Unknowns unknowns = unknowns_but(size_);
+    ExprVector symbols = unknowns.symbols;
+    std::vector<double> sizes = unknowns.sizes;
+    const ExprVector way = symbols_of_way();
+    symbols.insert(symbols.end(), way.begin(), way.end());
+    sizes.resize(symbols.size(), 0);
+    set_parameter(value_of(at.z));
+    Bindings from = values_at(e_, rest_of(at.z));
+    const double length = at.tangent.head(n_).squaredNorm();
+    for (Index i = 0; i < n_ + m_; ++i)
+      from[way[static_cast<std::size_t>(i)]] = at.tangent[i] * (i < n_ ? size_of(i) : 1) / length;
+    const auto root =
+        PreciseRoots(with_way(rows, unknowns.symbols, way, at.tangent), symbols).near(from, sizes, nearby);
+    if (!root) return std::nullopt;
+    Vector z = at.z;
+    take(unknowns, *root, z);
+    return rest_at(z);
+  }
+  ExprVector symbols_of_way() const {
+    const std::vector<Coordinate>& all = e_.system->coordinates;
+    ExprVector out;
+    for (Index i = 0; i < n_; ++i) out.push_back(all[static_cast<std::size_t>(i)].velocity);
+    for (Index i = 0; i < m_; ++i) out.push_back(all[static_cast<std::size_t>(i)].acceleration);
+    return out;
+  }
+  /// The rows, their change along w, and t·w − 1.
+  ExprVector with_way(const ExprVector& rows, const ExprVector& unknowns, const ExprVector& way,
+                      const Vector& tangent) const {
+    Context& context = *e_.system->context;
+    ExprVector out = rows;
+    for (const Expr& row : rows) {
+      Expr change = context.number(0);
+      for (std::size_t j = 0; j < way.size(); ++j) change = change + differentiate(row, unknowns[j]) * way[j];
+      out.push_back(change);
+    }
+    Expr along = context.number(-1);
+    for (Index i = 0; i < n_; ++i)
+      along = along + way[static_cast<std::size_t>(i)] * Rational::from_double(tangent[i] / size_of(i));
+    out.push_back(along);
+    return out;
   }
 
   /// Balance and positions where nothing moves, the other parameters as exact numbers.
@@ -307,6 +375,7 @@ class RestCurve {
   PointEquations::Impl& e_;
   const BranchStretch& end_;
   Index n_, m_, pins_, size_;
+  std::map<Index, std::unique_ptr<PreciseRoots>> roots_;  // by what is held
 };
 
 }  // namespace

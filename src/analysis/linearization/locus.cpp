@@ -568,6 +568,7 @@ class Tracer {
     locus_.branches = std::move(left);
     for (Fold& f : locus_.folds)
       for (std::size_t& b : f.branches) b = numbers[b];
+    for (Fold& f : locus_.folds) std::sort(f.branches.begin(), f.branches.end());
   }
 
   double step() const { return locus_.values[1] - locus_.values[0]; }
