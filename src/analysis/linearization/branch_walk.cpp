@@ -49,7 +49,8 @@ class RestCurve {
     double step = first_step;
     for (int k = 0; here && k < most_steps && step > shortest; ++k) {
       const auto next = ahead(*here, step);
-      if (!next || !goes_on(*here, *next, step) || (crosses(*here, *next) && is_jump(*here, *next, step))) {
+      if (!next || !goes_on(*here, *next, step) || (crosses(*here, *next) && is_jump(*here, *next, step)) ||
+          hides_turns(*here, *next, step)) {
         step /= 2;
         continue;
       }
@@ -81,6 +82,21 @@ class RestCurve {
   }
   bool goes_on(const OnCurve& from, const OnCurve& next, double step) const {
     return next.tangent.dot(weighed(from.tangent)) >= straight && weighed(next.z - from.z).norm() * straight <= step;
+  }
+
+  /// Whether the curve turns back and on again within the step: its part along the parameter, small at both ends, has a
+  /// minimum between them that is not known to be positive. Of a cusp, where it is 0, nothing is known at last.
+  bool hides_turns(const OnCurve& from, const OnCurve& next, double step) {
+    constexpr double steep = 0.2, shortest_looked_at = 1e-6, certain = 0.5;
+    const Index p = size_ - 1;
+    const double ends[] = {std::abs(from.tangent[p]), std::abs(next.tangent[p])};
+    if (turns(from, next) || std::min(ends[0], ends[1]) > steep || step < shortest_looked_at) return false;
+    const auto middle = ahead(from, step / 2);
+    if (!middle || turns(from, *middle)) return true;
+    const double between = std::abs(middle->tangent[p]), bend = ends[0] + ends[1] - 2 * between,
+                 slope = (ends[1] - ends[0]) / 2;
+    if (!(bend > std::abs(slope))) return false;  // the least one is at an end
+    return between - slope * slope / (2 * bend) < certain * std::min({ends[0], ends[1], between});
   }
 
   /// Where the determinant has another sign, another branch crosses, or the step has gone over to one that passes

@@ -108,7 +108,15 @@ class Tracer {
       }
     const Linearization l = linearize(equations_, x.point).linearization;
     const ModalAnalysis analysis = modal_analysis(equations_, l, symmetries_, &x);
-    return {value, x, analysis.stability, analysis.eigenvalues, {}};
+    return {value, x, analysis.stability, analysis.eigenvalues, {product_of_eigenvalues(analysis)}};
+  }
+
+  /// Smooth in the parameter, 0 where one passes 0; but for those that vanish.
+  static double product_of_eigenvalues(const ModalAnalysis& analysis) {
+    std::complex<double> out = 1;
+    for (const std::complex<double>& z : analysis.eigenvalues)
+      if (z != 0.0) out *= z;
+    return out.real();
   }
 
   std::vector<LocusPoint> points_at(double value, bool everywhere) {
@@ -337,14 +345,14 @@ class Tracer {
     return std::nullopt;
   }
 
-  /// Of a driven system a verdict may hold in a window narrower than the step: it opens where a multiplier comes
-  /// nearest to 1 or −1.
+  /// A verdict may hold in a window narrower than the step: it opens where a multiplier comes nearest to 1 or −1, or an
+  /// eigenvalue to 0.
   void look_between() {
     for (LocusBranch& branch : locus_.branches) {
       std::vector<LocusPoint> found;
-      for (std::size_t i = 1; i + 1 < branch.points.size(); ++i)
-        for (std::size_t which = 0; which < branch.points[i].passes.size(); ++which)
-          if (const auto window = window_beside(&branch.points[i - 1], which)) found.push_back(*window);
+      for (std::size_t which = 0; which < branch.points.front().passes.size(); ++which)
+        for (std::size_t i = 0; i < branch.points.size() && branch.points.size() > 1; ++i)
+          if (const auto window = window_about(branch.points, i, which)) found.push_back(*window);
       for (LocusPoint& x : found) {
         const auto after = std::find_if(branch.points.begin(), branch.points.end(),
                                         [&](const LocusPoint& y) { return (y.parameter - x.parameter) * step() > 0; });
@@ -353,13 +361,28 @@ class Tracer {
     }
   }
 
+  /// At an end of the branch a place a little further inwards stands in the middle.
+  std::optional<LocusPoint> window_about(const std::vector<LocusPoint>& points, std::size_t i, std::size_t which) {
+    constexpr double little = 1e-3;  // of the way to the next point
+    if (i > 0 && i + 1 < points.size()) return window_beside(points[i - 1], points[i], points[i + 1], which);
+    const LocusPoint &end = points[i], &next = i == 0 ? points[1] : points[i - 1];
+    const auto is_less = [&](const LocusPoint& x, const LocusPoint& y) {
+      return x.passes.size() > which && y.passes.size() > which &&
+             std::abs(x.passes[which]) <= std::abs(y.passes[which]);
+    };
+    if (!is_less(end, next) || end.stability.verdict != next.stability.verdict) return std::nullopt;
+    const auto inside = between(end, next, end.parameter + little * (next.parameter - end.parameter));
+    if (!inside || !is_less(*inside, end)) return std::nullopt;
+    if (inside->stability.verdict != end.stability.verdict) return inside;
+    return i == 0 ? window_beside(end, *inside, next, which) : window_beside(next, *inside, end, which);
+  }
+
   /// Three neighbours of one verdict, the middle one nearest to a pass: the minimum of the distance between the outer
   /// ones, by parabolas and golden sections in turn, until the verdict is another or it is clear that it never is.
-  std::optional<LocusPoint> window_beside(const LocusPoint* points, std::size_t which) {
+  std::optional<LocusPoint> window_beside(LocusPoint low, LocusPoint middle, LocusPoint high, std::size_t which) {
     constexpr int most = 60;
     constexpr double far = 0.5;                               // of the distance at the middle
     constexpr double short_way = 1.0 / 8, narrowest = 1e-10;  // of the step: there it is a parabola; there is none
-    LocusPoint low = points[0], middle = points[1], high = points[2];
     for (const LocusPoint* p : {&low, &high})
       if (p->passes.size() <= which || p->stability.verdict != middle.stability.verdict) return std::nullopt;
     const double side = std::copysign(1.0, middle.passes[which]);
@@ -574,8 +597,9 @@ class Tracer {
   double step() const { return locus_.values[1] - locus_.values[0]; }
   /// x in (y − step, y) in the direction of the sweep.
   bool is_before(double x, double y) const {
+    constexpr double rounding = 1e-9;
     const double along = (y - x) / step();
-    return along > 0 && along <= 1;
+    return along > 0 && along <= 1 + rounding;
   }
 
   void attach(std::size_t b, const StabilityChange& change, const LocusPoint& end, bool front) {
