@@ -433,6 +433,10 @@ class Tracer {
   /// is lost on the way the place is not known, and none is told.
   void bisect(std::size_t branch, LocusPoint low, LocusPoint high) {
     const Stability before = low.stability.verdict, after = high.stability.verdict;
+    if (const auto place = in_time() ? passed_between(low, high) : std::nullopt) {
+      locus_.changes.push_back({*place, branch, before, after});
+      return;
+    }
     for (int k = 0; k < 60; ++k) {
       const double middle = low.parameter + (high.parameter - low.parameter) / 2;
       if (middle == low.parameter || middle == high.parameter) break;
@@ -441,6 +445,48 @@ class Tracer {
       (point->stability.verdict == before ? low : high) = *point;
     }
     locus_.changes.push_back({(low.parameter + high.parameter) / 2, branch, before, after});
+  }
+
+  /// Where a multiplier passes 1 or −1, by secants (Illinois): smooth there, while the verdict needs a multiplier that
+  /// has left the circle beyond its error. Nothing where none passes, or the verdict changes elsewhere.
+  std::optional<double> passed_between(const LocusPoint& from, const LocusPoint& to) {
+    const auto changes_sign = [&](std::size_t k) {
+      return k < to.passes.size() && (from.passes[k] > 0) != (to.passes[k] > 0);
+    };
+    std::size_t which = 0;
+    while (which < from.passes.size() && !changes_sign(which)) ++which;
+    if (which == from.passes.size()) return std::nullopt;
+    const auto place = zero_of_pass(from, to, which);
+    if (!place) return std::nullopt;
+    constexpr double beside = 1e-6;  // of the step
+    for (const LocusPoint* end : {&from, &to}) {
+      const double side = std::copysign(std::min(beside * std::abs(step()), std::abs(end->parameter - *place) / 2),
+                                        end->parameter - *place);
+      const auto there = between(from, to, *place + side);
+      if (!there || there->stability.verdict != end->stability.verdict) return std::nullopt;
+    }
+    return place;
+  }
+
+  std::optional<double> zero_of_pass(const LocusPoint& from, const LocusPoint& to, std::size_t which) {
+    constexpr int most = 60;
+    constexpr double close = 1e-13;  // of the step
+    LocusPoint low = from, high = to;
+    double f_low = low.passes[which], f_high = high.passes[which];
+    for (int k = 0; k < most && f_high != 0; ++k) {
+      const double width = high.parameter - low.parameter;
+      const double at = k % 4 == 3 ? low.parameter + width / 2 : high.parameter - f_high * width / (f_high - f_low);
+      if (std::abs(at - high.parameter) <= close * std::abs(step())) return at;
+      const auto here = between(low, high, at);
+      if (!here || here->passes.size() <= which) return std::nullopt;
+      const double f = here->passes[which];
+      if ((f > 0) == (f_high > 0))
+        f_low /= 2;
+      else
+        low = high, f_low = f_high;
+      high = *here, f_high = f;
+    }
+    return high.parameter;
   }
 
   /// Next to the straight line, much nearer than the ends are to each other; else from one of the ends.
