@@ -18,7 +18,7 @@ namespace maupertuis {
 namespace {
 
 constexpr double longest = 0.05, first_step = 1e-3, shortest = 1e-9;  // of a step, in typical sizes
-constexpr int most_steps = 2000, most_corrections = 10, most_halvings = 80;
+constexpr int most_steps = 5000, most_corrections = 10, most_halvings = 80;
 constexpr double straight = 0.9;      // cosine of the turn in one step
 constexpr double converged = 1e-13;   // of a correction: the next one is rounding
 constexpr double at_rounding = 1e-9;  // of one that does not shrink any more
@@ -127,7 +127,8 @@ class RestCurve {
     double low = 0, high = step, off_low = parameter_of(from) - value, off_high = parameter_of(next) - value;
     Vector z = next.z;
     for (int k = 0; k < most_halvings && std::abs(z[size_ - 1] - value) > converged; ++k) {
-      const double at = k % 8 == 7 ? (low + high) / 2 : high - off_high * (high - low) / (off_high - off_low);
+      const bool halves = k % 8 == 7 || off_high == off_low;
+      const double at = halves ? (low + high) / 2 : high - off_high * (high - low) / (off_high - off_low);
       const auto middle = ahead(from, at);
       if (!middle) return std::nullopt;
       z = middle->z;
@@ -333,6 +334,7 @@ class RestCurve {
   /// accelerations, which no row of rests holds, stand for w.
   std::optional<RestAt> fold_in_digits(const OnCurve& at) {
     constexpr double nearby = 1e-4;
+    set_parameter(value_of(at.z));
     const ExprVector rows = resting_rows();
     if (m_ > n_ || !switches_of(rows).empty()) return std::nullopt;
     const Unknowns unknowns = unknowns_but(size_);
@@ -341,7 +343,6 @@ class RestCurve {
     const ExprVector way = symbols_of_way();
     symbols.insert(symbols.end(), way.begin(), way.end());
     sizes.resize(symbols.size(), 0);
-    set_parameter(value_of(at.z));
     Bindings from = values_at(e_, rest_of(at.z));
     const double length = at.tangent.head(n_).squaredNorm();
     for (Index i = 0; i < n_ + m_; ++i)

@@ -108,14 +108,21 @@ class Tracer {
       }
     const Linearization l = linearize(equations_, x.point).linearization;
     const ModalAnalysis analysis = modal_analysis(equations_, l, symmetries_, &x);
-    return {value, x, analysis.stability, analysis.eigenvalues, {product_of_eigenvalues(analysis)}};
+    return {value, x, analysis.stability, analysis.eigenvalues, {product_of_eigenvalues(analysis, x)}};
   }
 
-  /// Smooth in the parameter, 0 where one passes 0; but for those that vanish.
-  static double product_of_eigenvalues(const ModalAnalysis& analysis) {
+  /// Smooth in the parameter, 0 where one passes 0; but for those that vanish by a symmetry or along a family.
+  double product_of_eigenvalues(const ModalAnalysis& analysis, const Equilibrium& x) const {
+    std::size_t explained = x.family;
+    for (const Translation& t : symmetries_) explained += 1 + t.conserved;
     std::complex<double> out = 1;
     for (const std::complex<double>& z : analysis.eigenvalues)
-      if (z != 0.0) out *= z;
+      if (z != 0.0)
+        out *= z;
+      else if (explained > 0)
+        --explained;
+      else
+        out = 0;
     return out.real();
   }
 
@@ -366,6 +373,7 @@ class Tracer {
     constexpr double little = 1e-3;  // of the way to the next point
     if (i > 0 && i + 1 < points.size()) return window_beside(points[i - 1], points[i], points[i + 1], which);
     const LocusPoint &end = points[i], &next = i == 0 ? points[1] : points[i - 1];
+    if (end.parameter != locus_.values.front() && end.parameter != locus_.values.back()) return std::nullopt;
     const auto is_less = [&](const LocusPoint& x, const LocusPoint& y) {
       return x.passes.size() > which && y.passes.size() > which &&
              std::abs(x.passes[which]) <= std::abs(y.passes[which]);
@@ -395,6 +403,7 @@ class Tracer {
       const double at = k % 2 == 0 ? through.at : golden(low.parameter, middle.parameter, high.parameter);
       const bool above = (at - middle.parameter) * step() > 0;
       if (at == middle.parameter) continue;
+      if (!((at - low.parameter) * (high.parameter - at) > 0)) return std::nullopt;  // rounding of the parameter
       const auto here = above ? between(middle, high, at) : between(low, middle, at);
       if (!here || here->passes.size() <= which) return std::nullopt;
       if (here->stability.verdict != middle.stability.verdict) return here;
