@@ -269,6 +269,31 @@ TEST_CASE("along a sweep a driven system is judged by multipliers: the tongue of
   CHECK_THROWS_AS(sweep(0, 0.5, 1.5, 9, &stop), Interrupted);
 }
 
+TEST_CASE("windows of Meissner's equation, in the first and the last step of a sweep too") {
+  // Over each half of the period a constant stiffness, p² and r² = a ± ε; at the borders the trace is ± 2.
+  const ModelText m(
+      "dimensionless\nparam a = 0.3, ε = 0.05\ncoord x : number\nT = 1/2 x'^2\n"
+      "V = 1/2 (a + ε sign(sin t)) x^2\n");
+  const auto trace = [](double a) {
+    const double p = std::sqrt(a + 0.05), r = std::sqrt(a - 0.05), u = p * std::numbers::pi, v = r * std::numbers::pi;
+    return 2 * std::cos(u) * std::cos(v) - (p / r + r / p) * std::sin(u) * std::sin(v);
+  };
+  const auto changes = [&](double from, double to, std::size_t steps) {
+    PointEquations points(m.equations);
+    return parameter_locus(points, {0, {0.0}, {0.0}}, 0, from, to, steps,
+                           driven_neighbours(m.model, m.equations, 0, nullptr))
+        .changes;
+  };
+  for (const auto& [from, to, steps] : {std::tuple(0.98, 1.6, 3), std::tuple(0.6, 1.03, 3), std::tuple(1.03, 0.6, 3)}) {
+    CAPTURE(from);
+    const auto found = changes(from, to, static_cast<std::size_t>(steps));
+    REQUIRE(found.size() == 2);
+    for (const StabilityChange& c : found) CHECK(trace(c.parameter) == doctest::Approx(2).epsilon(1e-11));
+    CHECK(found[0].parameter == doctest::Approx(0.999375113).epsilon(1e-8));
+    CHECK(found[1].parameter == doctest::Approx(1.001871).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("where a sweep takes the drive away the system is judged without it, and where it begins with it") {
   // Off resonance, damped: stable with and without the drive, also where the model itself has none.
   for (const char* strength : {"0", "0.3"}) {
